@@ -1,0 +1,129 @@
+//! Soak: many seeds of a scenario under every policy. Fails when a trial fails, a number is undefined, counts are not conserved or a
+//! robot that has somewhere to go does not come nearer for more than 30 s.
+//!
+//! `cargo run --release --package experiments --example soak [SCENARIO] [SEEDS]`
+
+use std::process::ExitCode;
+
+use experiments::sweep::{Outcome, keys, run_all};
+use rne_core::{policy_named, policy_names};
+use usar_sim::record::TrialRecord;
+use usar_sim::scenario::Scenario;
+use usar_sim::simulation::Simulation;
+
+const LONGEST_STALL_S: f64 = 30.0;
+
+fn main() -> ExitCode {
+    let mut arguments = std::env::args().skip(1);
+    let path = arguments.next().unwrap_or_else(|| "scenarios/paper.ron".into());
+    let seeds = arguments.next().and_then(|seeds| seeds.parse().ok()).unwrap_or(100);
+    let scenario = match Scenario::load(path.as_ref()) {
+        Ok((scenario, _)) => with(&scenario, seeds),
+        Err(error) => {
+            eprintln!("error: {error}");
+            return ExitCode::from(2);
+        }
+    };
+    let jobs = std::thread::available_parallelism().map_or(1, usize::from);
+    let outcomes = run_all(
+        &keys(&scenario),
+        jobs,
+        |key| {
+            let policy = policy_named(&key.policy_name, &scenario.rne).map_err(|error| error.to_string())?;
+            let trial = Simulation::new(&scenario, &*policy, key.seed).map_err(|error| error.to_string())?;
+            Ok(trial.run(|_, _, _| {}))
+        },
+        |_| {},
+    );
+    let outcomes = outcomes.expect("threads start");
+    let faults: Vec<String> = outcomes.iter().flat_map(faults).collect();
+    faults.iter().for_each(|fault| println!("{fault}"));
+    summarise(&outcomes);
+    println!("{} trials, {} faults", outcomes.len(), faults.len());
+    ExitCode::from(u8::from(!faults.is_empty()))
+}
+
+fn with(scenario: &Scenario, seeds: u32) -> Scenario {
+    let mut file = (**scenario).clone();
+    file.sweep.policies = policy_names().into_iter().map(str::to_owned).collect();
+    file.sweep.trials = seeds;
+    Scenario::try_from(file).expect("the scenario was valid")
+}
+
+fn faults(outcome: &Outcome) -> Vec<String> {
+    let Some(record) = outcome.record() else { return outcome.failure().into_iter().collect() };
+    let name = format!("{} seed {}", outcome.key.policy_name, outcome.key.seed);
+    let mut faults = Vec::new();
+    for robot in &record.robots {
+        if robot.longest_stall_s > LONGEST_STALL_S {
+            faults.push(format!(
+                "{name}: robot {} did not come nearer for {:.1} s",
+                robot.robot, robot.longest_stall_s
+            ));
+        }
+        let numbers =
+            [robot.final_energy, robot.final_hp, robot.energy_spent, robot.hp_lost, robot.distance_m];
+        if !numbers.iter().all(|number| number.is_finite()) {
+            faults.push(format!("{name}: robot {} has undefined numbers {numbers:?}", robot.robot));
+        }
+    }
+    let of_rounds =
+        |count: fn(&usar_sim::metrics::RoundRecord) -> u32| record.rounds.iter().map(count).sum::<u32>();
+    let totals = (record.rescued(), record.hard.secured + record.easy.secured);
+    if totals != (of_rounds(|round| round.rescued), of_rounds(|round| round.secured)) || totals.0 > totals.1 {
+        faults.push(format!("{name}: rescued and secured {totals:?} do not add up over the rounds"));
+    }
+    let spent: f64 = record.robots.iter().map(|robot| robot.energy_spent).sum();
+    if (spent - record.energy()).abs() > 1e-6 {
+        faults.push(format!("{name}: robots spent {spent} energy, the record says {}", record.energy()));
+    }
+    faults
+}
+
+/// What `docs/model.md` says of the scenario, over all policies together.
+fn summarise(outcomes: &[Outcome]) {
+    let records: Vec<&TrialRecord> = outcomes.iter().filter_map(Outcome::record).collect();
+    let each =
+        |value: &dyn Fn(&TrialRecord) -> f64| records.iter().map(|record| value(record)).collect::<Vec<_>>();
+    let line = |name: &str, values: Vec<f64>| {
+        let mean = values.iter().sum::<f64>() / values.len() as f64;
+        let (least, most) =
+            values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| (a.min(*v), b.max(*v)));
+        println!("{name:<42} mean {mean:8.2}  least {least:8.2}  most {most:8.2}");
+    };
+    let groups = |record: &TrialRecord| {
+        record.rounds.iter().filter(|round| round.end_s.is_some()).count().max(1) as f64
+    };
+    line("complete rounds", each(&|r| f64::from(r.completed_rounds)));
+    line("rescued, hard task", each(&|r| f64::from(r.hard.rescued)));
+    line("rescued, easy task", each(&|r| f64::from(r.easy.rescued)));
+    line(
+        "share of complete group rounds that deliver",
+        each(&|r| {
+            r.rounds.iter().filter(|round| round.end_s.is_some() && round.rescued > 0).count() as f64
+                / groups(r)
+        }),
+    );
+    line(
+        "secured per complete group round",
+        each(&|r| {
+            r.rounds
+                .iter()
+                .filter(|round| round.end_s.is_some())
+                .map(|round| f64::from(round.secured))
+                .sum::<f64>()
+                / groups(r)
+        }),
+    );
+    line("turned back, per trial", each(&|r| f64::from(r.turned_back)));
+    line("stranded or disabled, per trial", each(&|r| (r.stranded() + r.disabled()) as f64));
+    line("energy spent per robot, percent points", each(&|r| r.energy() / r.robots.len() as f64));
+    line("HP lost per robot, percent points", each(&|r| r.hp() / r.robots.len() as f64));
+    line(
+        "waited per robot, s",
+        each(&|r| r.robots.iter().map(|x| x.waiting_s).sum::<f64>() / r.robots.len() as f64),
+    );
+    line("longest stall, s", each(&|r| r.robots.iter().map(|x| x.longest_stall_s).fold(0.0, f64::max)));
+    line("conflicts", each(&|r| f64::from(r.conflicts)));
+    line("deadlocks", each(&|r| f64::from(r.deadlocks)));
+}

@@ -1,0 +1,75 @@
+//! The command line.
+
+use std::io::Write;
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+use crate::commands::{check, group, run, sweep, trust};
+use crate::failure::Failure;
+
+/// Which robots should team up? A laboratory for trust and grouping policies in mixed robot teams.
+#[derive(Debug, Parser)]
+#[command(
+    name = "usar",
+    version,
+    about,
+    max_term_width = 110,
+    after_help = "\
+Examples:
+  usar sweep scenarios/paper.ron                       the paper's experiment: policies compared over paired trials
+  usar run scenarios/paper.ron --policy RNE --seed 3   one trial, round by round
+  usar trust --weights 6,4,2 --from 86,120,30 --to 20,30,10
+  usar group robots.csv --policy RNE
+  usar check scenarios/*.ron                           is every value in its range?"
+)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    Run(run::Arguments),
+    Sweep(sweep::Arguments),
+    Check(check::Arguments),
+    Trust(trust::Arguments),
+    Group(group::Arguments),
+}
+
+/// Runs the command that the process was called with. Exit status 0 for a result, 2 for input that cannot be used, 1 for trouble underway.
+#[must_use]
+pub fn main() -> ExitCode {
+    // A panic is a defect of ours; it is caught and reported in one sentence, never as a backtrace.
+    std::panic::set_hook(Box::new(|_| {}));
+    let cli = Cli::parse();
+    let mut out = std::io::stdout().lock();
+    let result = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| cli.command.execute(&mut out)))
+        .unwrap_or_else(|panic| Err(Failure::run(format!("internal error: {}", panic_message(&*panic)))));
+    let result = result.and_then(|()| Ok(out.flush()?));
+    match result {
+        Ok(()) | Err(Failure::ClosedOutput) => ExitCode::SUCCESS,
+        Err(failure) => {
+            let _ = writeln!(std::io::stderr(), "error: {failure}");
+            ExitCode::from(if matches!(failure, Failure::Input(_)) { 2 } else { 1 })
+        }
+    }
+}
+
+impl Command {
+    fn execute(&self, out: &mut dyn Write) -> Result<(), Failure> {
+        match self {
+            Self::Run(arguments) => arguments.execute(out),
+            Self::Sweep(arguments) => arguments.execute(out),
+            Self::Check(arguments) => arguments.execute(out),
+            Self::Trust(arguments) => arguments.execute(out),
+            Self::Group(arguments) => arguments.execute(out),
+        }
+    }
+}
+
+/// What a panic said.
+pub(crate) fn panic_message(panic: &(dyn std::any::Any + Send)) -> String {
+    let text = panic.downcast_ref::<String>().map(String::as_str);
+    text.or_else(|| panic.downcast_ref::<&str>().copied()).unwrap_or("a defect without a message").to_owned()
+}

@@ -1,0 +1,105 @@
+//! `usar run`: one trial, with a per-round account.
+
+use std::io::Write;
+use std::path::PathBuf;
+
+use clap::Args;
+use rne_core::policy_named;
+use serde::Serialize;
+use usar_sim::record::{Status, TrialRecord};
+use usar_sim::simulation::Simulation;
+
+use super::{SCHEMA_VERSION, load};
+use crate::failure::Failure;
+use crate::table::{ratio, rounds_table};
+
+/// Run one trial and tell what happened, round by round
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  usar run scenarios/paper.ron
+  usar run scenarios/paper.ron --policy DIS --seed 7 --json")]
+pub(crate) struct Arguments {
+    /// Scenario file (RON)
+    file: PathBuf,
+    /// Grouping policy [default: the scenario's first]
+    #[arg(long)]
+    policy: Option<String>,
+    /// Seed of the trial [default: the scenario's first]
+    #[arg(long)]
+    seed: Option<u64>,
+    /// Print one JSON object
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Serialize)]
+struct Output<'a> {
+    schema_version: u32,
+    scenario: &'a str,
+    rescuees: u32,
+    #[serde(flatten)]
+    record: &'a TrialRecord,
+}
+
+impl Arguments {
+    pub(crate) fn execute(&self, out: &mut dyn Write) -> Result<(), Failure> {
+        let (scenario, _) = load(&self.file)?;
+        let name = self.policy.as_ref().unwrap_or(&scenario.sweep.policies[0]);
+        let policy = policy_named(name, &scenario.rne).map_err(Failure::input)?;
+        let seed = self.seed.unwrap_or(scenario.sweep.first_seed);
+        let simulation = Simulation::new(&scenario, &*policy, seed)
+            .map_err(|error| Failure::input(format!("{}: {error}", self.file.display())))?;
+        let record = simulation.run(|_, _, _| {});
+        if let Status::Failed(reason) = &record.status {
+            return Err(Failure::run(format!("trial of {name} with seed {seed} failed: {reason}")));
+        }
+        if self.json {
+            let output = Output {
+                schema_version: SCHEMA_VERSION,
+                scenario: &scenario.name,
+                rescuees: record.rescued(),
+                record: &record,
+            };
+            return Ok(writeln!(out, "{}", serde_json::to_string(&output).map_err(Failure::run)?)?);
+        }
+        print(out, &scenario.name, &record)
+    }
+}
+
+fn print(out: &mut dyn Write, scenario: &str, record: &TrialRecord) -> Result<(), Failure> {
+    writeln!(
+        out,
+        "{scenario}, policy {}, seed {}: {} s simulated, {}",
+        record.policy,
+        record.seed,
+        record.time_s,
+        record.status.name().replace('_', " ")
+    )?;
+    writeln!(out, "{}", rounds_table(record))?;
+    let (rescued, hard, easy) = (record.rescued(), record.hard.rescued, record.easy.rescued);
+    writeln!(
+        out,
+        "rescued      {rescued} (hard {hard}, easy {easy}) in {} complete rounds; on board at the end {}",
+        record.completed_rounds,
+        record.hard.secured + record.easy.secured - rescued
+    )?;
+    let per = |cost: f64| ratio(cost, rescued).map_or("-".to_owned(), |ratio| format!("{ratio:.2}"));
+    writeln!(out, "per rescuee  {} energy, {} HP (percent points)", per(record.energy()), per(record.hp()))?;
+    let waiting: f64 = record.robots.iter().map(|robot| robot.waiting_s).sum();
+    let stall = record.robots.iter().map(|robot| robot.longest_stall_s).fold(0.0, f64::max);
+    writeln!(
+        out,
+        "robots       turned back {} times, {} stranded, {} disabled",
+        record.turned_back,
+        record.stranded(),
+        record.disabled()
+    )?;
+    writeln!(
+        out,
+        "conflicts    {} conflicts, {} deadlocks, {waiting:.0} s waited in all, longest stall {stall:.1} s",
+        record.conflicts, record.deadlocks
+    )?;
+    writeln!(out, "state hash   {}", record.state_hash)?;
+    Ok(())
+}

@@ -1,0 +1,12 @@
+//! The laboratory behind the command `usar`: trials in parallel, tables, records, and the trust maths alone.
+
+mod cli;
+mod commands;
+mod failure;
+pub mod provenance;
+pub mod stats;
+pub mod sweep;
+mod table;
+
+pub use cli::main;
+pub use failure::Failure;

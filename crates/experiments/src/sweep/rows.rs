@@ -1,0 +1,167 @@
+//! Rows of the tables that a sweep writes. Undefined values are empty cells.
+
+use serde::Serialize;
+use usar_sim::record::{RobotRecord, TrialRecord};
+
+use super::{Outcome, TrialKey};
+
+/// A row of `trials.csv`: the authors' columns first, under their names, then ours. `method` and `policy` say the same; the one is
+/// there so that the authors' files and ours can be stacked, the other for the words of this project.
+#[derive(Serialize)]
+pub(super) struct TrialRow<'a> {
+    method: &'a str,
+    trial: u32,
+    time_s: Option<f64>,
+    rescuees_total: Option<u32>,
+    rescuees_hard: Option<u32>,
+    rescuees_easy: Option<u32>,
+    energy_hard: Option<f64>,
+    energy_easy: Option<f64>,
+    energy_total: Option<f64>,
+    hp_hard: Option<f64>,
+    hp_easy: Option<f64>,
+    hp_total: Option<f64>,
+    rounds: Option<u32>,
+    policy: &'a str,
+    seed: u64,
+    status: &'a str,
+    energy_ungrouped: Option<f64>,
+    hp_ungrouped: Option<f64>,
+    secured_total: Option<u32>,
+    secured_hard: Option<u32>,
+    secured_easy: Option<u32>,
+    turned_back: Option<u32>,
+    stranded: Option<usize>,
+    disabled: Option<usize>,
+    distance_m: Option<f64>,
+    waiting_s: Option<f64>,
+    longest_stall_s: Option<f64>,
+    conflicts: Option<u32>,
+    deadlocks: Option<u32>,
+    state_hash: &'a str,
+}
+
+impl<'a> TrialRow<'a> {
+    pub(super) fn new(outcome: &'a Outcome) -> Self {
+        let record = outcome.record();
+        let TrialKey { policy_name, trial, seed, .. } = &outcome.key;
+        let robots = |value: fn(&RobotRecord) -> f64| record.map(|r| r.robots.iter().map(value).sum());
+        Self {
+            method: policy_name,
+            trial: *trial,
+            time_s: record.map(|r| r.time_s),
+            rescuees_total: record.map(TrialRecord::rescued),
+            rescuees_hard: record.map(|r| r.hard.rescued),
+            rescuees_easy: record.map(|r| r.easy.rescued),
+            energy_hard: record.map(|r| r.hard.energy),
+            energy_easy: record.map(|r| r.easy.energy),
+            energy_total: record.map(TrialRecord::energy),
+            hp_hard: record.map(|r| r.hard.hp),
+            hp_easy: record.map(|r| r.easy.hp),
+            hp_total: record.map(TrialRecord::hp),
+            rounds: record.map(|r| r.completed_rounds),
+            policy: policy_name,
+            seed: *seed,
+            status: record.map_or("failed", |r| r.status.name()),
+            energy_ungrouped: record.map(|r| r.ungrouped_energy),
+            hp_ungrouped: record.map(|r| r.ungrouped_hp),
+            secured_total: record.map(|r| r.hard.secured + r.easy.secured),
+            secured_hard: record.map(|r| r.hard.secured),
+            secured_easy: record.map(|r| r.easy.secured),
+            turned_back: record.map(|r| r.turned_back),
+            stranded: record.map(TrialRecord::stranded),
+            disabled: record.map(TrialRecord::disabled),
+            distance_m: robots(|robot| robot.distance_m),
+            waiting_s: robots(|robot| robot.waiting_s),
+            longest_stall_s: record
+                .map(|r| r.robots.iter().map(|robot| robot.longest_stall_s).fold(0.0, f64::max)),
+            conflicts: record.map(|r| r.conflicts),
+            deadlocks: record.map(|r| r.deadlocks),
+            state_hash: record.map_or("", |r| &r.state_hash),
+        }
+    }
+}
+
+/// A row of `rounds.csv`: one group in one round.
+#[derive(Serialize)]
+pub(super) struct RoundRow<'a> {
+    policy: &'a str,
+    trial: u32,
+    seed: u64,
+    round: u32,
+    task: &'a str,
+    start_s: f64,
+    end_s: Option<f64>,
+    members: String,
+    secured: u32,
+    rescued: u32,
+    energy: f64,
+    hp: f64,
+    turned_back: u32,
+    return_cause: Option<&'a str>,
+}
+
+impl<'a> RoundRow<'a> {
+    pub(super) fn of(outcome: &'a Outcome) -> impl Iterator<Item = Self> {
+        outcome.record().into_iter().flat_map(|record| &record.rounds).map(|round| Self {
+            policy: &outcome.key.policy_name,
+            trial: outcome.key.trial,
+            seed: outcome.key.seed,
+            round: round.round,
+            task: round.task.name(),
+            start_s: round.start_s,
+            end_s: round.end_s,
+            members: round.members.iter().map(u32::to_string).collect::<Vec<_>>().join(" "),
+            secured: round.secured,
+            rescued: round.rescued,
+            energy: round.energy,
+            hp: round.hp,
+            turned_back: round.turned_back,
+            return_cause: round.return_cause.map(usar_sim::event::ReturnCause::name),
+        })
+    }
+}
+
+/// A row of `robots.csv`: one robot in one trial, with its initial levels.
+#[derive(Serialize)]
+pub(super) struct RobotRow<'a> {
+    policy: &'a str,
+    trial: u32,
+    seed: u64,
+    robot: u32,
+    role: &'a str,
+    initial_energy: f64,
+    initial_hp: f64,
+    final_energy: f64,
+    final_hp: f64,
+    energy_spent: f64,
+    hp_lost: f64,
+    distance_m: f64,
+    waiting_s: f64,
+    longest_stall_s: f64,
+    stranded: bool,
+    disabled: bool,
+}
+
+impl<'a> RobotRow<'a> {
+    pub(super) fn of(outcome: &'a Outcome) -> impl Iterator<Item = Self> {
+        outcome.record().into_iter().flat_map(|record| &record.robots).map(|robot| Self {
+            policy: &outcome.key.policy_name,
+            trial: outcome.key.trial,
+            seed: outcome.key.seed,
+            robot: robot.robot,
+            role: robot.role.name(),
+            initial_energy: robot.initial_energy,
+            initial_hp: robot.initial_hp,
+            final_energy: robot.final_energy,
+            final_hp: robot.final_hp,
+            energy_spent: robot.energy_spent,
+            hp_lost: robot.hp_lost,
+            distance_m: robot.distance_m,
+            waiting_s: robot.waiting_s,
+            longest_stall_s: robot.longest_stall_s,
+            stranded: robot.stranded,
+            disabled: robot.disabled,
+        })
+    }
+}

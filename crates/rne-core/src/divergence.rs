@@ -1,0 +1,135 @@
+//! Relative entropy between distributions, its symmetric relatives, and mutual information (paper: Eqs. 1, 2 and 7).
+//!
+//! Checked against SciPy 1.17 (`scipy.stats.entropy`, `scipy.spatial.distance.jensenshannon` squared). All in nats.
+
+use nalgebra::DMatrix;
+
+use crate::error::NeedsError;
+use crate::needs::{NeedDistribution, check_entries, check_length};
+use crate::trust::RelativeNeedsEntropy;
+
+/// `T(P||Q) = sum_k P_k ln(P_k / Q_k)` (Eqs. 1 and 7), the RNE from the holder of `p` to the holder of `q`.
+/// `0 ln(0/q)` is 0; a need with `p > 0` and `q = 0` makes the value infinite.
+///
+/// # Errors
+/// Distributions over different numbers of needs.
+pub fn relative_entropy(
+    p: &NeedDistribution,
+    q: &NeedDistribution,
+) -> Result<RelativeNeedsEntropy, NeedsError> {
+    check_length("second distribution", p.shares().len(), q.shares().len())?;
+    Ok(RelativeNeedsEntropy::from_nats(kullback_leibler(p.shares(), q.shares())))
+}
+
+/// `T(P||Q) + T(Q||P)` (Jeffreys).
+///
+/// # Errors
+/// Distributions over different numbers of needs.
+pub fn jeffreys(p: &NeedDistribution, q: &NeedDistribution) -> Result<RelativeNeedsEntropy, NeedsError> {
+    check_length("second distribution", p.shares().len(), q.shares().len())?;
+    let both = kullback_leibler(p.shares(), q.shares()) + kullback_leibler(q.shares(), p.shares());
+    Ok(RelativeNeedsEntropy::from_nats(both))
+}
+
+/// Jensen-Shannon divergence: the mean relative entropy to the midpoint of the two; in [0, ln 2], never infinite.
+///
+/// # Errors
+/// Distributions over different numbers of needs.
+pub fn jensen_shannon(p: &NeedDistribution, q: &NeedDistribution) -> Result<f64, NeedsError> {
+    check_length("second distribution", p.shares().len(), q.shares().len())?;
+    Ok(jensen_shannon_nats(p.shares(), q.shares()))
+}
+
+/// Mutual information `I(X;Y)` of a joint distribution (rows x, columns y), in nats: the relative entropy between the
+/// joint and the product of its margins (Eq. 2).
+///
+/// # Errors
+/// An empty matrix, an entry that is NaN, infinite or negative, or entries that do not add up to 1 (to within 1e-9).
+pub fn mutual_information(joint: &DMatrix<f64>) -> Result<f64, NeedsError> {
+    check_entries("joint distribution", joint.as_slice())?;
+    let sum: f64 = joint.iter().sum();
+    if (sum - 1.0).abs() > 1e-9 {
+        return Err(NeedsError::NotNormalised { what: "joint distribution", found: sum });
+    }
+    let rows: Vec<f64> = joint.row_iter().map(|row| row.iter().sum()).collect();
+    let columns: Vec<f64> = joint.column_iter().map(|column| column.iter().sum()).collect();
+    let mut information = 0.0;
+    for (x, row) in rows.iter().enumerate() {
+        for (y, column) in columns.iter().enumerate() {
+            let p = joint[(x, y)];
+            if p > 0.0 {
+                // As a difference of logarithms: the product of two small margins could vanish, their logarithms cannot.
+                information += p * (libm::log(p) - libm::log(*row) - libm::log(*column));
+            }
+        }
+    }
+    Ok(information.max(0.0))
+}
+
+/// Kullback-Leibler sum over raw shares; `f64::INFINITY` where a share of `p` has none in `q`.
+pub(crate) fn kullback_leibler(p: &[f64], q: &[f64]) -> f64 {
+    let mut sum = 0.0;
+    for (p, q) in p.iter().zip(q) {
+        if *p > 0.0 {
+            if *q <= 0.0 {
+                return f64::INFINITY;
+            }
+            sum += p * log_ratio(*p, *q);
+        }
+    }
+    sum
+}
+
+/// `ln(p / q)` for shares above zero, also where the quotient leaves the range of `f64`.
+fn log_ratio(p: f64, q: f64) -> f64 {
+    let ratio = p / q;
+    if ratio.is_normal() { libm::log(ratio) } else { libm::log(p) - libm::log(q) }
+}
+
+/// Jensen-Shannon sum over raw shares.
+pub(crate) fn jensen_shannon_nats(p: &[f64], q: &[f64]) -> f64 {
+    let half = |a: f64, b: f64| if a > 0.0 { a * libm::log(a / f64::midpoint(a, b)) } else { 0.0 };
+    let sum: f64 = p.iter().zip(q).map(|(p, q)| 0.5 * (half(*p, *q) + half(*q, *p))).sum();
+    sum.max(0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn shares(values: &[f64]) -> NeedDistribution {
+        NeedDistribution::from_shares(values.to_vec()).unwrap()
+    }
+
+    #[test]
+    fn a_need_that_the_other_lacks_is_an_explicit_infinity() {
+        let (p, q) = (shares(&[0.5, 0.5]), shares(&[1.0, 0.0]));
+        assert!(relative_entropy(&p, &q).unwrap().is_infinite());
+        let finite = relative_entropy(&q, &p).unwrap().nats().unwrap();
+        assert!((finite - std::f64::consts::LN_2).abs() < 1e-15);
+    }
+
+    #[test]
+    fn symmetric_divergences_match_scipy() {
+        // scipy.stats.entropy([.2,.3,.5],[.5,.25,.25]) + the reverse; jensenshannon(...)**2
+        let (p, q) = (shares(&[0.2, 0.3, 0.5]), shares(&[0.5, 0.25, 0.25]));
+        assert!((jeffreys(&p, &q).unwrap().nats().unwrap() - 0.457_290_092_541_930_5).abs() < 1e-12);
+        assert!((jensen_shannon(&p, &q).unwrap() - 0.055_582_470_863_469_35).abs() < 1e-12);
+    }
+
+    #[test]
+    fn mutual_information_is_zero_for_independent_and_ln_2_for_equal_coins() {
+        let independent = DMatrix::from_row_slice(2, 2, &[0.25, 0.25, 0.25, 0.25]);
+        let equal = DMatrix::from_row_slice(2, 2, &[0.5, 0.0, 0.0, 0.5]);
+        assert!(mutual_information(&independent).unwrap().abs() < 1e-15);
+        assert!((mutual_information(&equal).unwrap() - std::f64::consts::LN_2).abs() < 1e-15);
+        assert!(mutual_information(&DMatrix::from_row_slice(1, 2, &[0.5, 0.6])).is_err());
+    }
+
+    #[test]
+    fn shares_at_the_edge_of_the_number_range_give_a_finite_value() {
+        let p = shares(&[1.0 - 1e-300, 1e-300]);
+        let q = shares(&[1e-320, 1.0 - 1e-320]);
+        assert!(relative_entropy(&p, &q).unwrap().nats().unwrap().is_finite());
+    }
+}

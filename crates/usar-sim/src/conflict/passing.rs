@@ -1,0 +1,120 @@
+//! Passing at a tangent: the free direction nearest to the wished one, past robots that stand and clear of known debris.
+
+use parry2d::math::Vector;
+
+use super::Mover;
+use crate::planning::{KnownObstacle, polygon_contains, polygon_crossed};
+
+/// How far ahead a robot looks for those that stand in its way, in metres.
+pub const PASSING_RANGE_M: f32 = 2.0;
+
+/// Tangents are taken to discs larger by this factor, so that rounding does not make them touch.
+const TANGENT_SLACK: f32 = 1.01;
+
+/// A direction that leads further back than this (cosine to the wish) is no way past.
+const LEAST_ADVANCE: f32 = -0.3;
+
+/// What a robot has to pass.
+pub(super) struct Surroundings<'a> {
+    /// Centres relative to the robot and safety distances of the robots that stand or yield.
+    pub(super) discs: Vec<(Vector, f32)>,
+    /// Debris that it knows.
+    pub(super) obstacles: &'a [KnownObstacle],
+}
+
+impl Surroundings<'_> {
+    /// Whether a robot at `from` can go `range` metres in a direction.
+    fn is_free(&self, from: Vector, direction: Vector, range: f32) -> bool {
+        let clear_of_discs = self.discs.iter().all(|(center, distance)| {
+            if center.length_squared() < distance * distance {
+                return direction.dot(*center) <= 0.02 * center.length(); // already too close: not nearer
+            }
+            let nearest = center.dot(direction).clamp(0.0, range);
+            (*center - direction * nearest).length_squared() >= distance * distance
+        });
+        let to = from + direction * range.min(1.0);
+        clear_of_discs
+            && self.obstacles.iter().all(|obstacle| {
+                polygon_contains(&obstacle.tight, from) || !polygon_crossed(&obstacle.tight, from, to)
+            })
+    }
+}
+
+/// The free direction nearest to the wished one: the wish itself, or a tangent of one of the discs. `None` where nothing is free.
+pub(super) fn passing_direction(me: &Mover, surroundings: &Surroundings) -> Option<Vector> {
+    let wish = me.wish.normalize_or_zero();
+    let range = PASSING_RANGE_M.min(me.way_left);
+    let near = |(center, distance): &&(Vector, f32)| center.length() < range + distance;
+    if surroundings.discs.iter().find(near).is_none() {
+        return Some(wish); // the route already keeps clear of debris
+    }
+    let tangents =
+        surroundings.discs.iter().filter(near).flat_map(|(center, distance)| tangents(*center, *distance));
+    std::iter::once(wish)
+        .chain(tangents)
+        .filter(|direction| direction.dot(wish) > LEAST_ADVANCE)
+        .filter(|direction| surroundings.is_free(me.position, *direction, range))
+        .max_by(|a, b| a.dot(wish).total_cmp(&b.dot(wish)))
+}
+
+/// Directions from the origin that touch a disc on its right and on its left.
+fn tangents(center: Vector, radius: f32) -> [Vector; 2] {
+    let distance = center.length().max(1e-6);
+    let toward = center / distance;
+    let sin = (radius * TANGENT_SLACK / distance).min(1.0);
+    let cos = (1.0 - sin * sin).sqrt();
+    let turned = |sin: f32| Vector::new(toward.x * cos - toward.y * sin, toward.x * sin + toward.y * cos);
+    [turned(-sin), turned(sin)]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::PriorityKey;
+    use super::*;
+    use crate::ids::RobotId;
+
+    fn mover(wish: [f32; 2]) -> Mover<'static> {
+        Mover {
+            robot: RobotId(0),
+            aerial: false,
+            position: Vector::ZERO,
+            velocity: Vector::ZERO,
+            wish: wish.into(),
+            way_left: 10.0,
+            radius: 0.4,
+            priority: PriorityKey { energy: 50.0, robot: RobotId(0) },
+            obstacles: &[],
+        }
+    }
+
+    fn pass(discs: &[([f32; 2], f32)]) -> Option<Vector> {
+        let discs = discs.iter().map(|(center, radius)| (Vector::from(*center), *radius)).collect();
+        passing_direction(&mover([1.0, 0.0]), &Surroundings { discs, obstacles: &[] })
+    }
+
+    #[test]
+    fn a_free_wish_is_granted() {
+        assert_eq!(pass(&[]), Some(Vector::X));
+        assert_eq!(pass(&[([0.0, 2.0], 0.9), ([-1.0, 0.0], 0.9)]), Some(Vector::X));
+    }
+
+    #[test]
+    fn a_robot_in_the_way_is_passed_at_a_tangent() {
+        let direction = pass(&[([1.5, 0.1], 0.9)]).unwrap();
+        assert!(direction.y < -0.3, "on the side where there is more room");
+        let nearest = (Vector::new(1.5, 0.1) - direction * direction.dot(Vector::new(1.5, 0.1))).length();
+        assert!((0.9..0.93).contains(&nearest), "{nearest}");
+    }
+
+    #[test]
+    fn a_robot_that_is_too_close_is_left_and_a_ring_of_robots_blocks() {
+        assert!(pass(&[([0.5, 0.0], 0.9)]).unwrap().x.abs() < 0.05);
+        let ring: Vec<_> = (0..8)
+            .map(|i| {
+                let angle = i as f32 * std::f32::consts::FRAC_PI_4;
+                ([1.2 * libm::cosf(angle), 1.2 * libm::sinf(angle)], 0.9)
+            })
+            .collect();
+        assert_eq!(pass(&ring), None);
+    }
+}

@@ -1,0 +1,135 @@
+//! Predicted conflicts: pairs of robots whose wishes would bring them into each other's safety distance, and the sets that
+//! these pairs connect.
+
+use super::Mover;
+use super::passing::PASSING_RANGE_M;
+
+/// Robots near one another, by sweep and prune along x.
+#[derive(Default)]
+pub(super) struct Neighbours {
+    by_x: Vec<usize>,
+    pairs: Vec<(usize, usize)>,
+    lists: Vec<Vec<usize>>,
+}
+
+impl Neighbours {
+    /// Finds all pairs of one layer that could meet within the horizon or stand in each other's way.
+    pub(super) fn find(&mut self, movers: &[Mover], horizon: f32) {
+        let fastest = movers.iter().map(|mover| mover.wish.length()).fold(0.0, f32::max);
+        let largest = movers.iter().map(|mover| mover.radius).fold(0.0, f32::max);
+        let range = (2.0 * fastest * horizon).max(PASSING_RANGE_M) + 2.0 * largest + 1.0;
+        self.by_x.clear();
+        self.by_x.extend(0..movers.len());
+        self.by_x.sort_by(|a, b| movers[*a].position.x.total_cmp(&movers[*b].position.x).then(a.cmp(b)));
+        self.pairs.clear();
+        for (at, a) in self.by_x.iter().enumerate() {
+            for b in &self.by_x[at + 1..] {
+                let apart = movers[*b].position - movers[*a].position;
+                if apart.x > range {
+                    break;
+                }
+                if movers[*a].aerial == movers[*b].aerial && apart.length_squared() <= range * range {
+                    self.pairs.push((*a.min(b), *a.max(b)));
+                }
+            }
+        }
+        self.pairs.sort_unstable();
+        self.lists.resize_with(movers.len(), Vec::new);
+        self.lists.iter_mut().for_each(Vec::clear);
+        for (a, b) in &self.pairs {
+            self.lists[*a].push(*b);
+            self.lists[*b].push(*a);
+        }
+    }
+
+    /// The pairs, each once, in order.
+    pub(super) fn pairs(&self) -> &[(usize, usize)] {
+        &self.pairs
+    }
+
+    /// The robots near one robot.
+    pub(super) fn of(&self, i: usize) -> &[usize] {
+        &self.lists[i]
+    }
+}
+
+/// Whether two robots that both want to move would come closer than their safety distance within the horizon, if both got
+/// their wish. Robots that already are too close but part are not in conflict.
+pub(super) fn will_conflict(a: &Mover, b: &Mover, margin: f32, horizon: f32) -> bool {
+    if !a.wishes_to_move() || !b.wishes_to_move() {
+        return false;
+    }
+    let apart = b.position - a.position;
+    let closing = b.wish - a.wish;
+    let approach = -apart.dot(closing);
+    if approach <= 0.0 {
+        return false;
+    }
+    let nearest_at = (approach / closing.length_squared()).min(horizon);
+    let safety = a.radius + b.radius + margin;
+    (apart + closing * nearest_at).length_squared() < safety * safety
+}
+
+/// Connected components of at least two robots, each in ascending order, in order of their first member.
+pub(super) fn components(count: usize, pairs: impl Iterator<Item = (usize, usize)>) -> Vec<Vec<usize>> {
+    let mut root: Vec<usize> = (0..count).collect();
+    let find = |root: &mut Vec<usize>, mut i: usize| {
+        while root[i] != i {
+            root[i] = root[root[i]];
+            i = root[i];
+        }
+        i
+    };
+    for (a, b) in pairs {
+        let (a, b) = (find(&mut root, a), find(&mut root, b));
+        root[a.max(b)] = a.min(b);
+    }
+    let mut sets: Vec<Vec<usize>> = vec![Vec::new(); count];
+    for i in 0..count {
+        let first = find(&mut root, i);
+        sets[first].push(i);
+    }
+    sets.retain(|set| set.len() > 1);
+    sets
+}
+
+#[cfg(test)]
+mod tests {
+    use parry2d::math::Vector;
+
+    use super::super::PriorityKey;
+    use super::*;
+    use crate::ids::RobotId;
+
+    fn mover(id: u32, at: [f32; 2], wish: [f32; 2]) -> Mover<'static> {
+        Mover {
+            robot: RobotId(id),
+            aerial: false,
+            position: at.into(),
+            velocity: Vector::ZERO,
+            wish: wish.into(),
+            way_left: 10.0,
+            radius: 0.4,
+            priority: PriorityKey { energy: 50.0, robot: RobotId(id) },
+            obstacles: &[],
+        }
+    }
+
+    #[test]
+    fn robots_that_would_meet_conflict_and_robots_that_part_or_keep_abreast_do_not() {
+        let conflict = |a: Mover, b: Mover| will_conflict(&a, &b, 0.1, 1.0);
+        let east = |x: f32, y: f32| mover(0, [x, y], [1.0, 0.0]);
+        let west = |x: f32, y: f32| mover(1, [x, y], [-1.0, 0.0]);
+        assert!(conflict(east(0.0, 0.0), west(2.0, 0.0)));
+        assert!(!conflict(east(0.0, 0.0), west(2.0, 1.0)), "passes beside");
+        assert!(!conflict(east(0.0, 0.0), west(5.0, 0.0)), "beyond the horizon");
+        assert!(!conflict(west(0.0, 0.0), east(0.5, 0.0)), "parts");
+        assert!(!conflict(east(0.0, 0.0), mover(1, [0.0, 0.95], [1.0, 0.0])), "abreast");
+        assert!(!conflict(east(0.0, 0.0), mover(1, [1.0, 0.0], [0.0, 0.0])), "the other stands");
+    }
+
+    #[test]
+    fn sets_are_connected_components() {
+        assert_eq!(components(6, [(0, 3), (3, 5), (1, 2)].into_iter()), [vec![0, 3, 5], vec![1, 2]]);
+    }
+}

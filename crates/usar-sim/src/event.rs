@@ -1,0 +1,190 @@
+//! Events: what happened, in order. Mechanics publish them; metrics and recorders only listen.
+
+use rne_core::Difficulty;
+use serde::Serialize;
+
+use crate::ids::{RescueeId, RobotId};
+
+/// Why a robot turned back to its rest place.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+pub enum TurnBackCause {
+    /// Its energy is below the threshold, or would not last for the way.
+    Energy,
+    /// Its HP is below the threshold.
+    Hp,
+}
+
+/// Why a group went home.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+pub enum ReturnCause {
+    /// No member in the field has room left.
+    CapacityUsed,
+    /// No member in the field has a resource left.
+    ResourcesUsed,
+    /// All members searched the whole area and know of nobody who is left.
+    NothingLeft,
+    /// Nobody who can carry is left in the field.
+    NoCarrier,
+}
+
+impl ReturnCause {
+    /// The cause in words.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::CapacityUsed => "capacity used",
+            Self::ResourcesUsed => "resources used",
+            Self::NothingLeft => "nothing left",
+            Self::NoCarrier => "no carrier",
+        }
+    }
+}
+
+/// Where a rescuee was delivered.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+pub enum Place {
+    /// Home.
+    Home,
+    /// A rest place.
+    Rest,
+}
+
+/// Something that happened.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub enum Event {
+    /// The team was grouped and a round began.
+    RoundStarted {
+        /// Number of the round, from 1.
+        round: u32,
+        /// Members of the group for the hard task.
+        hard: Vec<RobotId>,
+        /// Members of the group for the easy task.
+        easy: Vec<RobotId>,
+    },
+    /// Every robot that can still move is home again.
+    RoundEnded {
+        /// Number of the round.
+        round: u32,
+    },
+    /// A group went home.
+    GroupReturned {
+        /// Its task.
+        task: Difficulty,
+        /// Why.
+        cause: ReturnCause,
+    },
+    /// A robot filled up its resources at home.
+    Restocked {
+        /// The robot.
+        robot: RobotId,
+        /// Resources that it has now.
+        resources: u32,
+    },
+    /// Debris was noticed, or noticed to have moved.
+    DebrisDiscovered {
+        /// Who noticed it.
+        robot: RobotId,
+        /// Its number.
+        debris: u32,
+    },
+    /// A radiation zone was noticed.
+    ZoneDiscovered {
+        /// Who noticed it.
+        robot: RobotId,
+        /// Its number.
+        zone: u32,
+    },
+    /// A rescuee was seen.
+    Sighted {
+        /// Who saw it.
+        robot: RobotId,
+        /// The rescuee.
+        rescuee: RescueeId,
+    },
+    /// A rescuee was taken on board: one unit of the robot's capacity and one resource were used.
+    Loaded {
+        /// The robot.
+        robot: RobotId,
+        /// The rescuee.
+        rescuee: RescueeId,
+        /// The member whose resource was used.
+        resource_of: RobotId,
+    },
+    /// A rescuee was delivered: it is rescued.
+    Delivered {
+        /// The robot.
+        robot: RobotId,
+        /// The rescuee.
+        rescuee: RescueeId,
+        /// Where.
+        place: Place,
+    },
+    /// A robot left for its rest place.
+    TurnedBack {
+        /// The robot.
+        robot: RobotId,
+        /// Why.
+        cause: TurnBackCause,
+    },
+    /// A robot began to rest.
+    RestStarted {
+        /// The robot.
+        robot: RobotId,
+    },
+    /// A robot is full again.
+    RestEnded {
+        /// The robot.
+        robot: RobotId,
+    },
+    /// A robot's energy is 0.
+    Stranded {
+        /// The robot.
+        robot: RobotId,
+    },
+    /// A robot's HP is 0.
+    Disabled {
+        /// The robot.
+        robot: RobotId,
+    },
+    /// Robots came into conflict.
+    ConflictStarted {
+        /// The conflict set.
+        robots: Vec<RobotId>,
+    },
+    /// A conflict set stood still.
+    Deadlocked {
+        /// The conflict set, in order of precedence.
+        robots: Vec<RobotId>,
+    },
+    /// A deadlocked set backs off sideways.
+    BackedOff {
+        /// The conflict set.
+        robots: Vec<RobotId>,
+    },
+    /// No robot that can carry is left.
+    MissionOver,
+}
+
+/// The events of the current step, in order.
+#[derive(Debug, Default)]
+pub struct EventLog {
+    events: Vec<Event>,
+}
+
+impl EventLog {
+    /// Publishes an event.
+    pub fn push(&mut self, event: Event) {
+        self.events.push(event);
+    }
+
+    /// The events since the last [`EventLog::clear`].
+    #[must_use]
+    pub fn events(&self) -> &[Event] {
+        &self.events
+    }
+
+    /// Forgets all events.
+    pub fn clear(&mut self) {
+        self.events.clear();
+    }
+}

@@ -1,0 +1,77 @@
+//! What each robot is doing in the mission.
+
+use parry2d::math::Vector;
+use rne_core::Difficulty;
+
+use crate::ids::RescueeId;
+
+/// What a robot is doing.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Activity {
+    /// At its place at home, waiting for the next round.
+    Home,
+    /// On its way to the task area, or sweeping it for rescuees.
+    Searching,
+    /// On its way to a rescuee.
+    Approaching(RescueeId),
+    /// Loading a rescuee until the given step.
+    Loading(RescueeId, u64),
+    /// In the task area with nothing to do: full, or all searched.
+    Standby,
+    /// On its way home.
+    Returning,
+    /// On its way to a rest place.
+    ToRest,
+    /// Resting until the given step.
+    Resting(u64),
+}
+
+impl Activity {
+    /// Whether it works in the field: not home, not on its way back, not resting.
+    #[must_use]
+    pub fn is_in_field(self) -> bool {
+        matches!(self, Self::Searching | Self::Approaching(_) | Self::Loading(..) | Self::Standby)
+    }
+
+    /// The rescuee that it has claimed.
+    #[must_use]
+    pub fn claim(self) -> Option<RescueeId> {
+        match self {
+            Self::Approaching(rescuee) | Self::Loading(rescuee, _) => Some(rescuee),
+            _ => None,
+        }
+    }
+}
+
+/// A robot's part in the mission.
+#[derive(Debug, Clone)]
+pub struct Agent {
+    /// What it is doing.
+    pub activity: Activity,
+    /// The task of its group in this round; `None` for a robot that is not grouped.
+    pub task: Option<Difficulty>,
+    /// The task at whose rest place it rests.
+    pub rest_at: Difficulty,
+    /// Places still to pass on its sweep of the task area, the next one last.
+    pub sweep: Vec<Vector>,
+    /// Where it waits in the task area when there is nothing to do.
+    pub muster: Vector,
+    /// Energy and HP when the round began, unless it rested since.
+    pub levels_at_start: Option<[f64; 2]>,
+    /// The most energy and HP that one round has cost it, in percent points.
+    pub costliest_round: [f64; 2],
+}
+
+impl Agent {
+    pub(super) fn new() -> Self {
+        Self {
+            activity: Activity::Home,
+            task: None,
+            rest_at: Difficulty::Easy,
+            sweep: Vec::new(),
+            muster: Vector::ZERO,
+            levels_at_start: None,
+            costliest_round: [0.0; 2],
+        }
+    }
+}

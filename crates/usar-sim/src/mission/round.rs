@@ -1,0 +1,142 @@
+//! The decisions of a round, as pure functions: who takes part, who turns back, and when a group goes home.
+
+use crate::event::{ReturnCause, TurnBackCause};
+use crate::scenario::{MissionRules, TurnBack};
+
+/// A robot's levels before a round, and what its costliest round has cost, in percent (points).
+#[derive(Debug, Clone, Copy)]
+pub struct Fitness {
+    /// Battery level.
+    pub energy: f64,
+    /// Health level.
+    pub hp: f64,
+    /// The most energy and HP that one round has cost.
+    pub costliest_round: [f64; 2],
+}
+
+/// Whether a robot is fit for a round; if not, it rests during that round.
+#[must_use]
+pub fn is_fit(rules: &MissionRules, robot: &Fitness) -> bool {
+    let fit = |level: f64, threshold: f64, rule: TurnBack, cost: f64| {
+        let expected = if rule == TurnBack::BeforeRound { level - cost } else { level };
+        level >= threshold && expected >= threshold || level >= 100.0
+    };
+    fit(robot.energy, rules.energy_threshold, rules.energy_turn_back, robot.costliest_round[0])
+        && fit(robot.hp, rules.hp_threshold, rules.hp_turn_back, robot.costliest_round[1])
+}
+
+/// Why a robot in the field must leave for its rest place now, if it must. `way_cost` is the energy that the straight way to the
+/// rest place costs, in percent points.
+#[must_use]
+pub fn turn_back_cause(rules: &MissionRules, energy: f64, hp: f64, way_cost: f64) -> Option<TurnBackCause> {
+    let at_once = |rule: TurnBack, level: f64, threshold: f64| rule == TurnBack::AtOnce && level < threshold;
+    if at_once(rules.energy_turn_back, energy, rules.energy_threshold)
+        || energy < rules.rest_reserve * way_cost
+    {
+        Some(TurnBackCause::Energy)
+    } else if at_once(rules.hp_turn_back, hp, rules.hp_threshold) {
+        Some(TurnBackCause::Hp)
+    } else {
+        None
+    }
+}
+
+/// What a group in the field can still do.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct FieldState {
+    /// Members in the field who can carry.
+    pub carrying_members: u32,
+    /// Room that they have left.
+    pub free_capacity: u32,
+    /// Resources that the members in the field have left.
+    pub resources: u32,
+    /// Rescuees that are known, waiting and reachable, or claimed.
+    pub known_rescuees: u32,
+    /// Members that have not yet swept the whole area.
+    pub still_searching: u32,
+}
+
+/// Why a group goes home now, if it does.
+#[must_use]
+pub fn return_cause(field: &FieldState) -> Option<ReturnCause> {
+    if field.carrying_members == 0 {
+        Some(ReturnCause::NoCarrier)
+    } else if field.free_capacity == 0 {
+        Some(ReturnCause::CapacityUsed)
+    } else if field.resources == 0 {
+        Some(ReturnCause::ResourcesUsed)
+    } else if field.known_rescuees == 0 && field.still_searching == 0 {
+        Some(ReturnCause::NothingLeft)
+    } else {
+        None
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn rules(turn_back: TurnBack) -> MissionRules {
+        MissionRules {
+            energy_threshold: 30.0,
+            hp_threshold: 30.0,
+            energy_turn_back: turn_back,
+            hp_turn_back: turn_back,
+            rest_reserve: 1.5,
+            rest_s: 30.0,
+            loading_s: 2.0,
+            reach_m: 1.0,
+            area_margin_m: 4.0,
+            blind_speed_loss: 0.3,
+            health_floor: 0.5,
+        }
+    }
+
+    #[test]
+    fn every_fact_of_the_field_against_the_decision() {
+        let at_work = FieldState {
+            carrying_members: 3,
+            free_capacity: 9,
+            resources: 9,
+            known_rescuees: 5,
+            still_searching: 1,
+        };
+        let table = [
+            (at_work, None),
+            (FieldState { known_rescuees: 0, ..at_work }, None),
+            (FieldState { still_searching: 0, ..at_work }, None),
+            (FieldState { known_rescuees: 0, still_searching: 0, ..at_work }, Some(ReturnCause::NothingLeft)),
+            (FieldState { resources: 0, ..at_work }, Some(ReturnCause::ResourcesUsed)),
+            (FieldState { free_capacity: 0, ..at_work }, Some(ReturnCause::CapacityUsed)),
+            (FieldState { carrying_members: 0, free_capacity: 0, ..at_work }, Some(ReturnCause::NoCarrier)),
+            (FieldState::default(), Some(ReturnCause::NoCarrier)),
+        ];
+        for (field, cause) in table {
+            assert_eq!(return_cause(&field), cause, "{field:?}");
+        }
+    }
+
+    #[test]
+    fn a_robot_turns_back_at_once_by_default_and_always_for_the_way() {
+        let cause = |rule, energy, hp, way| turn_back_cause(&rules(rule), energy, hp, way);
+        assert_eq!(cause(TurnBack::AtOnce, 29.9, 90.0, 1.0), Some(TurnBackCause::Energy));
+        assert_eq!(cause(TurnBack::AtOnce, 30.0, 29.0, 1.0), Some(TurnBackCause::Hp));
+        assert_eq!(cause(TurnBack::AtOnce, 30.0, 30.0, 1.0), None);
+        assert_eq!(cause(TurnBack::WhenHome, 10.0, 10.0, 1.0), None);
+        assert_eq!(cause(TurnBack::WhenHome, 10.0, 10.0, 7.0), Some(TurnBackCause::Energy));
+    }
+
+    #[test]
+    fn a_robot_is_fit_for_a_round_above_the_thresholds_and_if_asked_for_its_cost() {
+        let fit = |rule, energy, cost| {
+            let robot = Fitness { energy, hp: 90.0, costliest_round: [cost, 0.0] };
+            is_fit(&rules(rule), &robot)
+        };
+        assert!(fit(TurnBack::AtOnce, 30.0, 50.0));
+        assert!(!fit(TurnBack::AtOnce, 29.0, 0.0));
+        assert!(!fit(TurnBack::WhenHome, 29.0, 0.0));
+        assert!(!fit(TurnBack::BeforeRound, 60.0, 40.0));
+        assert!(fit(TurnBack::BeforeRound, 75.0, 40.0));
+        assert!(fit(TurnBack::BeforeRound, 100.0, 90.0), "full is as fit as it gets");
+    }
+}

@@ -1,0 +1,110 @@
+//! What a group knows of the world: shared by its members at once, pooled by the whole team at home.
+
+use parry2d::math::Vector;
+
+use super::obstacles::{KnownObstacle, ObstacleKey};
+use crate::world::{RadiationZone, World};
+
+/// Knowledge of a group, or of the team at home.
+#[derive(Clone)]
+pub struct Knowledge {
+    /// For each piece of debris, the number of its sightings that are known; 0 is unknown.
+    pub debris: Vec<u32>,
+    /// For each radiation zone, whether it is known.
+    pub zones: Vec<bool>,
+    /// For each rescuee, whether it was seen.
+    pub rescuees: Vec<bool>,
+    /// For each robot, whether it is known to stand for good.
+    pub wrecks: Vec<bool>,
+    /// Counts the changes that concern routes.
+    pub revision: u32,
+    obstacles: Vec<KnownObstacle>,
+    known_zones: Vec<(u32, RadiationZone)>,
+    radius: f32,
+    clearance: f32,
+}
+
+impl Knowledge {
+    /// Nothing is known. Obstacles will be inflated for robots of `radius` that keep `clearance`, in metres.
+    #[must_use]
+    pub fn nothing(world: &World, radius: f32, clearance: f32) -> Self {
+        Self {
+            debris: vec![0; world.debris.len()],
+            zones: vec![false; world.zones.len()],
+            rescuees: vec![false; world.rescuees.len()],
+            wrecks: vec![false; world.robots.len()],
+            revision: 0,
+            obstacles: Vec::new(),
+            known_zones: Vec::new(),
+            radius,
+            clearance,
+        }
+    }
+
+    /// The known obstacles, in order of their keys.
+    #[must_use]
+    pub fn obstacles(&self) -> &[KnownObstacle] {
+        &self.obstacles
+    }
+
+    /// The known radiation zones, with their numbers.
+    #[must_use]
+    pub fn known_zones(&self) -> &[(u32, RadiationZone)] {
+        &self.known_zones
+    }
+
+    /// Takes note of a piece of debris as it lies now.
+    pub fn learn_debris(&mut self, world: &World, number: usize) {
+        self.learn_sighting(world, number, world.debris[number].sightings.len() as u32);
+    }
+
+    fn learn_sighting(&mut self, world: &World, number: usize, sighting: u32) {
+        if sighting > self.debris[number] {
+            self.debris[number] = sighting;
+            let outline = &world.debris[number].sightings[sighting as usize - 1];
+            let key = ObstacleKey::Debris(number as u32, sighting);
+            let obstacle = KnownObstacle::new(key, outline, self.radius, self.clearance);
+            self.obstacles.retain(|o| !matches!(o.key, ObstacleKey::Debris(n, _) if n as usize == number));
+            self.insert(obstacle);
+        }
+    }
+
+    /// Takes note of a radiation zone.
+    pub fn learn_zone(&mut self, world: &World, number: usize) {
+        if !std::mem::replace(&mut self.zones[number], true) {
+            let at = self.known_zones.partition_point(|(other, _)| (*other as usize) < number);
+            self.known_zones.insert(at, (number as u32, world.zones[number]));
+            self.revision += 1;
+        }
+    }
+
+    /// Takes note of a robot that stands for good.
+    pub fn learn_wreck(&mut self, world: &World, number: usize) {
+        if !std::mem::replace(&mut self.wrecks[number], true) {
+            let robot = &world.robots[number];
+            if !robot.is_aerial() {
+                let (at, own): (Vector, f32) = (robot.position, robot.radius());
+                self.insert(KnownObstacle::wreck(number as u32, at, own, self.radius, self.clearance));
+            }
+        }
+    }
+
+    /// Takes over all that another group knows.
+    pub fn learn_all(&mut self, world: &World, other: &Self) {
+        for (number, sighting) in other.debris.iter().enumerate() {
+            self.learn_sighting(world, number, *sighting);
+        }
+        let known = |list: &[bool]| -> Vec<usize> { (0..list.len()).filter(|i| list[*i]).collect() };
+        known(&other.zones).into_iter().for_each(|number| self.learn_zone(world, number));
+        known(&other.wrecks).into_iter().for_each(|number| self.learn_wreck(world, number));
+        for (own, other) in self.rescuees.iter_mut().zip(&other.rescuees) {
+            *own |= other;
+        }
+    }
+
+    fn insert(&mut self, obstacle: KnownObstacle) {
+        let at = self.obstacles.partition_point(|other| other.key < obstacle.key);
+        self.obstacles.insert(at, obstacle);
+        self.revision += 1;
+    }
+}

@@ -1,0 +1,248 @@
+//! Keeps each robot on a route to its goal: plans when it has to, and says which velocity the robot would like.
+
+use parry2d::math::Vector;
+
+use super::obstacles::{KnownObstacle, crosses};
+use super::{Knowledge, Planner, Query, Route};
+use crate::ids::RobotId;
+use crate::scenario::Scenario;
+use crate::world::{Robot, World};
+
+/// A robot checks this often, in steps, that the way to its next waypoint is still free.
+const ROUTE_CHECK_STEPS: u64 = 25;
+
+/// A robot that has not come nearer for this long, in seconds, plans round the robots that stand in its way; and again each time the
+/// same span has passed.
+const DETOUR_AFTER_S: f64 = 4.0;
+
+/// Standing robots within this distance are planned round then, in metres.
+const DETOUR_RANGE_M: f32 = 8.0;
+
+/// A robot slower than this stands, in metres per second.
+pub const STANDING_MPS: f32 = 0.05;
+
+/// Coming nearer by less than this is no progress, in metres.
+const PROGRESS_M: f32 = 0.05;
+
+/// A robot is at the end of its route within this distance, in metres.
+const ROUTE_END_M: f32 = 0.15;
+
+/// Share of the drive's acceleration that robots plan to brake with; the rest is in reserve.
+const PLANNED_BRAKING: f32 = 0.8;
+
+/// Where a robot wants to be.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Goal {
+    /// The place.
+    pub point: Vector,
+    /// How near is near enough, in metres.
+    pub within: f32,
+}
+
+/// The journey of one robot.
+#[derive(Debug, Clone, Default)]
+pub struct Traveller {
+    goal: Option<Goal>,
+    route: Option<Route>,
+    is_planned: bool,
+    revision: u32,
+    /// Least length that the route ahead has had, in metres.
+    best_length: f32,
+    /// Steps since it last came nearer.
+    stalled_steps: u64,
+    /// The longest that it ever failed to come nearer although it had somewhere to go, in steps.
+    pub longest_stall_steps: u64,
+}
+
+impl Traveller {
+    /// Whether the robot has somewhere to go.
+    #[must_use]
+    pub fn goal(&self) -> Option<Goal> {
+        self.goal
+    }
+
+    /// The route, where there is one.
+    #[must_use]
+    pub fn route(&self) -> Option<&Route> {
+        self.route.as_ref()
+    }
+
+    /// Whether a robot at this place is where it wants to be, or as near as its route leads.
+    #[must_use]
+    pub fn has_arrived(&self, position: Vector) -> bool {
+        let near = |place: Vector, within: f32| (place - position).length_squared() <= within * within;
+        self.goal.is_some_and(|goal| near(goal.point, goal.within))
+            || self.route.as_ref().is_some_and(|route| near(route.end(), ROUTE_END_M))
+    }
+
+    /// Whether a route was looked for in vain.
+    #[must_use]
+    pub fn leads_nowhere(&self) -> bool {
+        self.goal.is_some() && self.is_planned && self.route.is_none()
+    }
+
+    fn set_route(&mut self, route: Option<Route>, position: Vector, fresh: bool) {
+        if fresh {
+            self.best_length = route.as_ref().map_or(f32::INFINITY, |route| route.length(position));
+            self.stalled_steps = 0;
+        }
+        self.route = route;
+        self.is_planned = true;
+    }
+
+    fn note_progress(&mut self, position: Vector) {
+        let length = self.route.as_ref().map_or(f32::INFINITY, |route| route.length(position));
+        if length < self.best_length - PROGRESS_M {
+            self.best_length = length;
+            self.stalled_steps = 0;
+        } else {
+            self.stalled_steps += 1;
+            self.longest_stall_steps = self.longest_stall_steps.max(self.stalled_steps);
+        }
+    }
+}
+
+/// The journeys of all robots.
+pub struct Navigator {
+    planner: Planner,
+    travellers: Vec<Traveller>,
+    detour_steps: u64,
+    clearance: f32,
+}
+
+impl Navigator {
+    /// Nobody has anywhere to go.
+    #[must_use]
+    pub fn new(scenario: &Scenario, robots: usize) -> Self {
+        Self {
+            planner: Planner::new(scenario),
+            travellers: vec![Traveller::default(); robots],
+            detour_steps: (DETOUR_AFTER_S / scenario.dt_s).round() as u64,
+            clearance: scenario.planning.clearance_m as f32,
+        }
+    }
+
+    /// The journey of one robot.
+    #[must_use]
+    pub fn traveller(&self, robot: RobotId) -> &Traveller {
+        &self.travellers[robot.index()]
+    }
+
+    /// Sends a robot somewhere, or nowhere. The same goal again changes nothing.
+    pub fn set_goal(&mut self, robot: RobotId, goal: Option<Goal>) {
+        let traveller = &mut self.travellers[robot.index()];
+        if traveller.goal != goal {
+            let longest_stall_steps = traveller.longest_stall_steps;
+            *traveller = Traveller { goal, longest_stall_steps, ..Traveller::default() };
+        }
+    }
+
+    /// Plans where a robot has no route yet, where new knowledge cuts it or makes it dearer, or where it leads nowhere.
+    pub fn plan<'k>(&mut self, world: &World, knowledge_of: impl Fn(RobotId) -> &'k Knowledge, step: u64) {
+        for robot in &world.robots {
+            let traveller = &mut self.travellers[robot.id.index()];
+            let Some(goal) = traveller.goal else { continue };
+            if !robot.is_able() || traveller.has_arrived(robot.position) {
+                continue;
+            }
+            let knowledge = knowledge_of(robot.id);
+            if let Some(route) = &mut traveller.route {
+                route.advance(robot.position);
+            }
+            traveller.note_progress(robot.position);
+
+            let check_due = (step + robot.id.0 as u64).is_multiple_of(ROUTE_CHECK_STEPS);
+            let learned = traveller.revision != knowledge.revision;
+            let stalled =
+                traveller.stalled_steps > 0 && traveller.stalled_steps.is_multiple_of(self.detour_steps);
+            let replan = match &traveller.route {
+                None => learned || check_due,
+                Some(route) => {
+                    stalled
+                        || learned && affects(knowledge, route, robot)
+                        || check_due && first_leg_cut(knowledge, route, robot)
+                }
+            };
+            traveller.revision = knowledge.revision;
+            if replan || !traveller.is_planned {
+                let fresh = learned || traveller.route.is_none();
+                let in_the_way = if stalled { self.standing_near(world, robot) } else { Vec::new() };
+                let route = self.find_route(robot, goal, knowledge, &in_the_way);
+                self.travellers[robot.id.index()].set_route(route, robot.position, fresh);
+            }
+        }
+    }
+
+    fn find_route(
+        &mut self,
+        robot: &Robot,
+        goal: Goal,
+        knowledge: &Knowledge,
+        in_the_way: &[KnownObstacle],
+    ) -> Option<Route> {
+        let query = Query {
+            from: robot.position,
+            to: goal.point,
+            aerial: robot.is_aerial(),
+            speed: robot.speed() as f32,
+            obstacles: knowledge.obstacles(),
+            in_the_way,
+            zones: knowledge.known_zones(),
+        };
+        // When the standing robots leave no way, the route through them is kept: they may go.
+        self.planner.route(&query).or_else(|| self.planner.route(&Query { in_the_way: &[], ..query }))
+    }
+
+    /// Robots of the same layer that stand near, as obstacles.
+    fn standing_near(&self, world: &World, robot: &Robot) -> Vec<KnownObstacle> {
+        let stands = |other: &&Robot| {
+            other.id != robot.id
+                && other.is_aerial() == robot.is_aerial()
+                && other.velocity.length() < STANDING_MPS
+                && (other.position - robot.position).length() < DETOUR_RANGE_M
+        };
+        let obstacle = |other: &Robot| {
+            KnownObstacle::wreck(other.id.0, other.position, other.radius(), robot.radius(), self.clearance)
+        };
+        world.robots.iter().filter(stands).map(obstacle).collect()
+    }
+
+    /// The velocity that takes a robot along its route: at most `speed`, slower before turns and the end. Zero where it has nowhere
+    /// to go.
+    #[must_use]
+    pub fn preferred_velocity(&self, robot: &Robot, speed: f32) -> Vector {
+        let traveller = &self.travellers[robot.id.index()];
+        let Some(route) = traveller.route.as_ref().filter(|_| !traveller.has_arrived(robot.position)) else {
+            return Vector::ZERO;
+        };
+        let braking = PLANNED_BRAKING * robot.spec.acceleration_mps2 as f32;
+        let reachable = |target: f32, distance: f32| (target * target + 2.0 * braking * distance).sqrt();
+        let ahead = route.ahead();
+        let to_next = ahead[0] - robot.position;
+        let distance = to_next.length();
+        let direction = to_next.normalize_or_zero();
+        let mut wished = speed.min(reachable(0.0, route.length(robot.position)));
+        if let Some(after) = ahead.get(1) {
+            let turn = direction.dot((*after - ahead[0]).normalize_or_zero());
+            let in_turn = speed * f32::midpoint(1.0, turn).max(0.3);
+            wished = wished.min(reachable(in_turn, distance));
+        }
+        direction * wished
+    }
+}
+
+/// Whether what is known cuts the route ahead, or shows that it leads through radiation.
+fn affects(knowledge: &Knowledge, route: &Route, robot: &Robot) -> bool {
+    let cut = !robot.is_aerial()
+        && route
+            .legs(robot.position)
+            .any(|(a, b)| knowledge.obstacles().iter().any(|obstacle| crosses(&obstacle.tight, a, b)));
+    cut || knowledge.known_zones().iter().any(|(_, zone)| route.length_inside(robot.position, zone) > 0.0)
+}
+
+/// Whether the way to the next waypoint is cut, for a robot that was pushed or had to step aside.
+fn first_leg_cut(knowledge: &Knowledge, route: &Route, robot: &Robot) -> bool {
+    let next = route.ahead()[0];
+    !robot.is_aerial()
+        && knowledge.obstacles().iter().any(|obstacle| crosses(&obstacle.tight, robot.position, next))
+}

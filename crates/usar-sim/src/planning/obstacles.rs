@@ -1,0 +1,151 @@
+//! Obstacles as robots know them, and the plane geometry of inflated convex outlines.
+
+use parry2d::math::Vector;
+use parry2d::shape::SharedShape;
+
+use crate::world::Outline;
+
+/// Zones that are closed to a route are left by this much, in metres, so that the route does not graze them.
+pub(super) const ZONE_MARGIN_M: f32 = 0.1;
+
+/// Points pushed out of an obstacle end up this far outside, in metres.
+const PUSH_OUT_M: f32 = 0.02;
+
+/// What is known and in which version: debris by number and sighting, or a robot that stands for good.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum ObstacleKey {
+    /// Debris of this number, as seen in this sighting.
+    Debris(u32, u32),
+    /// A robot that stands at its place for good.
+    Wreck(u32),
+}
+
+/// An obstacle that a robot knows.
+#[derive(Debug, Clone)]
+pub struct KnownObstacle {
+    /// What it is.
+    pub key: ObstacleKey,
+    /// Corners, anticlockwise, inflated by radius and clearance: routes stay outside.
+    pub planned: Vec<Vector>,
+    /// Corners, anticlockwise, inflated by radius and a third of the clearance: a way through this is cut.
+    pub tight: Vec<Vector>,
+}
+
+impl KnownObstacle {
+    /// An outline inflated for robots of `radius` that keep `clearance`, in metres.
+    #[must_use]
+    pub fn new(key: ObstacleKey, outline: &Outline, radius: f32, clearance: f32) -> Self {
+        Self {
+            key,
+            planned: outline.inflated(radius + clearance),
+            tight: outline.inflated(radius + clearance / 3.0),
+        }
+    }
+
+    /// A robot that stands for good.
+    #[must_use]
+    pub fn wreck(number: u32, at: Vector, own_radius: f32, radius: f32, clearance: f32) -> Self {
+        let outline = Outline { shape: SharedShape::ball(own_radius), ..Outline::disc(at, own_radius) };
+        Self::new(ObstacleKey::Wreck(number), &outline, radius, clearance)
+    }
+}
+
+/// Whether a convex polygon (anticlockwise) holds a point.
+pub fn contains(polygon: &[Vector], point: Vector) -> bool {
+    edges(polygon).all(|(a, b)| (b - a).perp_dot(point - a) >= 0.0)
+}
+
+/// Whether the way from `a` to `b` leads through the inside of a convex polygon (anticlockwise): clips the way by each edge
+/// (Cyrus and Beck) and asks whether more than a grazing touch is left.
+pub fn crosses(polygon: &[Vector], a: Vector, b: Vector) -> bool {
+    const GRAZE_M: f32 = 1.0e-3;
+    let way = b - a;
+    let length = way.length();
+    let (mut enter, mut leave) = (0.0_f32, 1.0_f32);
+    for (p, q) in edges(polygon) {
+        let edge = q - p;
+        let depth = edge.perp_dot(a - p); // positive inside
+        let change = edge.perp_dot(way);
+        if change.abs() < 1e-12 {
+            if depth <= 0.0 {
+                return false;
+            }
+        } else if change > 0.0 {
+            enter = enter.max(-depth / change);
+        } else {
+            leave = leave.min(-depth / change);
+        }
+        if enter >= leave {
+            return false;
+        }
+    }
+    (leave - enter) * length > GRAZE_M
+}
+
+/// The nearest point to `point` that is outside all polygons and `offset` metres inside the arena; or the best that a few rounds of
+/// pushing find.
+pub(super) fn push_out<P: AsRef<[Vector]>>(
+    point: Vector,
+    polygons: &[P],
+    arena: Vector,
+    offset: f32,
+) -> Vector {
+    let border = Vector::splat(offset + PUSH_OUT_M);
+    let inside_arena = |point: Vector| point.max(border).min((arena - border).max(border));
+    let mut point = inside_arena(point);
+    for _ in 0..8 {
+        let Some(polygon) = polygons.iter().find(|polygon| contains(polygon.as_ref(), point)) else {
+            return point;
+        };
+        point = inside_arena(nearest_outside(polygon.as_ref(), point));
+    }
+    point
+}
+
+/// The nearest point outside a convex polygon to a point inside it.
+fn nearest_outside(polygon: &[Vector], point: Vector) -> Vector {
+    let mut best = (f32::INFINITY, point);
+    for (a, b) in edges(polygon) {
+        let outward = Vector::new(b.y - a.y, a.x - b.x).normalize_or_zero();
+        let depth = outward.dot(a - point);
+        if depth < best.0 {
+            best = (depth, point + outward * (depth + PUSH_OUT_M));
+        }
+    }
+    best.1
+}
+
+fn edges(polygon: &[Vector]) -> impl Iterator<Item = (Vector, Vector)> + '_ {
+    (0..polygon.len()).map(|i| (polygon[i], polygon[(i + 1) % polygon.len()]))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn square() -> Vec<Vector> {
+        [[1.0, 1.0], [3.0, 1.0], [3.0, 3.0], [1.0, 3.0]].map(Vector::from).to_vec()
+    }
+
+    #[test]
+    fn ways_through_the_inside_cross_and_grazing_ones_do_not() {
+        let way = |a: [f32; 2], b: [f32; 2]| crosses(&square(), a.into(), b.into());
+        assert!(way([0.0, 2.0], [4.0, 2.0]));
+        assert!(way([2.0, 2.0], [5.0, 5.0]), "from inside");
+        assert!(way([0.0, 0.0], [4.0, 4.0]));
+        assert!(!way([0.0, 1.0], [4.0, 1.0]), "along an edge");
+        assert!(!way([0.0, 2.0], [2.0, 4.0]), "through a corner");
+        assert!(!way([0.0, 2.0], [0.9, 2.0]), "ends before");
+        assert!(!way([5.0, 5.0], [6.0, 6.0]));
+    }
+
+    #[test]
+    fn points_are_pushed_out_by_the_shortest_way() {
+        let arena = Vector::new(10.0, 10.0);
+        let out = push_out(Vector::new(2.0, 1.2), &[square()], arena, 0.5);
+        assert!(!contains(&square(), out) && (out - Vector::new(2.0, 1.0)).length() < 0.03, "{out}");
+        let free = Vector::new(6.0, 6.0);
+        assert_eq!(push_out(free, &[square()], arena, 0.5), free);
+        assert!(push_out(Vector::new(-1.0, 5.0), &[square()], arena, 0.5).x >= 0.5);
+    }
+}

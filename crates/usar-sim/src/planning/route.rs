@@ -1,0 +1,67 @@
+//! A route: waypoints to pass one after the other.
+
+use parry2d::math::Vector;
+
+use crate::world::RadiationZone;
+
+/// A waypoint counts as passed within this distance, in metres.
+const PASSED_M: f32 = 0.25;
+
+/// Waypoints to a goal, and which of them comes next.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Route {
+    waypoints: Vec<Vector>,
+    next: usize,
+}
+
+impl Route {
+    /// A route along these waypoints, of which there is at least one.
+    #[must_use]
+    pub fn new(waypoints: Vec<Vector>) -> Self {
+        debug_assert!(!waypoints.is_empty());
+        Self { waypoints, next: 0 }
+    }
+
+    /// Waypoints still to pass; never empty.
+    #[must_use]
+    pub fn ahead(&self) -> &[Vector] {
+        &self.waypoints[self.next..]
+    }
+
+    /// Where it ends.
+    #[must_use]
+    pub fn end(&self) -> Vector {
+        self.waypoints[self.waypoints.len() - 1]
+    }
+
+    /// Skips the waypoints that the robot has passed: it is near, or beyond on the way to the one after.
+    pub fn advance(&mut self, position: Vector) {
+        while self.next + 1 < self.waypoints.len() {
+            let (at, after) = (self.waypoints[self.next], self.waypoints[self.next + 1]);
+            let near = (at - position).length_squared() < PASSED_M * PASSED_M;
+            let beyond = (position - at).dot(after - at) > 0.0 && (position - at).length() < 4.0 * PASSED_M;
+            if !near && !beyond {
+                return;
+            }
+            self.next += 1;
+        }
+    }
+
+    /// Length from a position along the waypoints ahead, in metres.
+    #[must_use]
+    pub fn length(&self, from: Vector) -> f32 {
+        self.legs(from).map(|(a, b)| (b - a).length()).sum()
+    }
+
+    /// Length inside a radiation zone, in metres.
+    #[must_use]
+    pub fn length_inside(&self, from: Vector, zone: &RadiationZone) -> f32 {
+        self.legs(from).map(|(a, b)| zone.length_inside(a, b)).sum()
+    }
+
+    /// The straight legs ahead.
+    pub fn legs(&self, from: Vector) -> impl Iterator<Item = (Vector, Vector)> + '_ {
+        let starts = std::iter::once(from).chain(self.ahead().iter().copied());
+        starts.zip(self.ahead().iter().copied())
+    }
+}

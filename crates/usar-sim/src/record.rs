@@ -1,0 +1,127 @@
+//! The record of a trial: what is left when it is over.
+
+use rne_core::Role;
+use serde::Serialize;
+
+use crate::metrics::{RoundRecord, TaskTotals};
+
+/// How a trial ended.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub enum Status {
+    /// The time was over.
+    Completed,
+    /// No robot that can carry was left before the time was over.
+    NoCarrierLeft,
+    /// Something went wrong; the numbers are those up to then and must not be used.
+    Failed(String),
+}
+
+impl Status {
+    /// The status as one word, for tables.
+    #[must_use]
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Completed => "completed",
+            Self::NoCarrierLeft => "no_carrier_left",
+            Self::Failed(_) => "failed",
+        }
+    }
+}
+
+/// One robot's part in a trial.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct RobotRecord {
+    /// Identity.
+    pub robot: u32,
+    /// What it is for.
+    pub role: Role,
+    /// Battery level at the start, in percent.
+    pub initial_energy: f64,
+    /// Health level at the start, in percent.
+    pub initial_hp: f64,
+    /// Battery level at the end, in percent.
+    pub final_energy: f64,
+    /// Health level at the end, in percent.
+    pub final_hp: f64,
+    /// Percent points of energy spent.
+    pub energy_spent: f64,
+    /// Percent points of HP lost.
+    pub hp_lost: f64,
+    /// Way travelled, in metres.
+    pub distance_m: f64,
+    /// Time in which it had somewhere to go but yielded or was blocked, in seconds.
+    pub waiting_s: f64,
+    /// The longest time in which it had somewhere to go and did not come nearer, in seconds.
+    pub longest_stall_s: f64,
+    /// Whether it ended stranded (energy 0).
+    pub stranded: bool,
+    /// Whether it ended disabled (HP 0).
+    pub disabled: bool,
+}
+
+/// One trial.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct TrialRecord {
+    /// Name of the grouping policy.
+    pub policy: String,
+    /// Seed of the trial.
+    pub seed: u64,
+    /// How it ended.
+    pub status: Status,
+    /// Simulated time, in seconds.
+    pub time_s: f64,
+    /// Totals of the hard task.
+    pub hard: TaskTotals,
+    /// Totals of the easy task.
+    pub easy: TaskTotals,
+    /// Percent points of energy spent outside any group.
+    pub ungrouped_energy: f64,
+    /// Percent points of HP lost outside any group.
+    pub ungrouped_hp: f64,
+    /// Rounds that ended with everybody home.
+    pub completed_rounds: u32,
+    /// Rounds, each with one record per task.
+    pub rounds: Vec<RoundRecord>,
+    /// Robots, by id.
+    pub robots: Vec<RobotRecord>,
+    /// Times that a robot turned back to rest.
+    pub turned_back: u32,
+    /// Conflict sets that formed.
+    pub conflicts: u32,
+    /// Times that a conflict set stood still.
+    pub deadlocks: u32,
+    /// Hash chain over the trajectories and levels, 32 hexadecimal digits: equal hashes, equal trials.
+    pub state_hash: String,
+}
+
+impl TrialRecord {
+    /// Rescuees delivered, both tasks.
+    #[must_use]
+    pub fn rescued(&self) -> u32 {
+        self.hard.rescued + self.easy.rescued
+    }
+
+    /// Percent points of energy spent by the whole team.
+    #[must_use]
+    pub fn energy(&self) -> f64 {
+        self.hard.energy + self.easy.energy + self.ungrouped_energy
+    }
+
+    /// Percent points of HP lost by the whole team.
+    #[must_use]
+    pub fn hp(&self) -> f64 {
+        self.hard.hp + self.easy.hp + self.ungrouped_hp
+    }
+
+    /// Robots that ended stranded.
+    #[must_use]
+    pub fn stranded(&self) -> usize {
+        self.robots.iter().filter(|robot| robot.stranded).count()
+    }
+
+    /// Robots that ended disabled.
+    #[must_use]
+    pub fn disabled(&self) -> usize {
+        self.robots.iter().filter(|robot| robot.disabled).count()
+    }
+}

@@ -1,0 +1,103 @@
+//! Errors of scenarios: file, line, field, rule and found value, all problems of a file at once.
+
+use std::fmt;
+use std::path::PathBuf;
+
+use thiserror::Error;
+
+/// One value that breaks a rule.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Problem {
+    /// Path of the field, e.g. `tasks.hard.grid[0]`.
+    pub field: String,
+    /// Line of the field in its file, where it is known.
+    pub line: Option<usize>,
+    /// What holds for the field, e.g. `must be a number from 0 to 100`.
+    pub rule: String,
+    /// What stands there.
+    pub found: String,
+}
+
+/// All problems of one file, in the order of its fields.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Problems {
+    /// The file.
+    pub path: PathBuf,
+    /// At least one problem.
+    pub list: Vec<Problem>,
+}
+
+impl fmt::Display for Problems {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (i, problem) in self.list.iter().enumerate() {
+            let line = problem.line.map(|line| format!(":{line}")).unwrap_or_default();
+            let separator = if i == 0 { "" } else { "\n" };
+            let Problem { field, rule, found, .. } = problem;
+            write!(f, "{separator}{}{line}: {field} {rule}, found {found}", self.path.display())?;
+        }
+        Ok(())
+    }
+}
+
+/// A scenario that cannot be used.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum ScenarioError {
+    /// The file cannot be read.
+    #[error("{}: {reason}", path.display())]
+    Unreadable {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        reason: String,
+    },
+    /// The file is not the RON text of a scenario: a syntax error, an unknown or missing field, or a wrong type.
+    #[error("{}:{line}:{column}: {field}{message}", path.display())]
+    Malformed {
+        /// The file.
+        path: PathBuf,
+        /// Line, from 1.
+        line: usize,
+        /// Column, from 1.
+        column: usize,
+        /// `field: `, or nothing where the error is not in a field.
+        field: String,
+        /// What is wrong.
+        message: String,
+    },
+    /// Values break rules.
+    #[error("{0}")]
+    Invalid(Problems),
+}
+
+/// A trial's layout that cannot be drawn.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum LayoutError {
+    /// No room for one more sampled thing.
+    #[error(
+        "sampled.{task}: no room for {what} {number} of {count} after {tries} tries; lower the count, the radius or gap_m"
+    )]
+    NoRoom {
+        /// `hard` or `easy`.
+        task: &'static str,
+        /// `debris` or `radiation`.
+        what: &'static str,
+        /// Which of them, from 1.
+        number: u32,
+        /// How many were asked for.
+        count: u32,
+        /// Draws made.
+        tries: u32,
+    },
+    /// Debris and walls leave no way for the largest ground robot.
+    #[error(
+        "debris leaves no way from {from} to {to} that is wide enough for a robot of radius {radius_m} m with clearance"
+    )]
+    NoPassage {
+        /// Where from.
+        from: &'static str,
+        /// Where to.
+        to: &'static str,
+        /// Radius of the largest ground robot, in metres.
+        radius_m: f64,
+    },
+}

@@ -1,0 +1,362 @@
+//! The scenario file as it is written: a serde mirror of the RON text, with its defaults. What a value may be is in `validate`.
+//!
+//! SI units; points are `(x, y)` in metres from the arena's lower left corner; levels are percent of a robot's own maximum.
+
+use rne_core::{Difficulty, RneOptions, Role};
+use serde::{Deserialize, Serialize};
+
+use crate::vitals::Rates;
+
+/// A point `(x, y)` or an extent `(width, height)`, in metres.
+pub type Point = [f64; 2];
+
+/// A whole scenario.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ScenarioFile {
+    /// Short name: letters, digits, `-`, `_` and `.`; names the folder of results.
+    pub name: String,
+    /// What the scenario is for.
+    #[serde(default)]
+    pub description: String,
+    /// What `usar sweep` runs when the command line does not say otherwise.
+    pub sweep: SweepDefaults,
+    /// Simulated time of a trial, in seconds.
+    pub duration_s: f64,
+    /// Length of a simulation step, in seconds.
+    pub dt_s: f64,
+    /// Width and height of the walled arena, in metres.
+    pub arena_m: Point,
+    /// The team, row by row: ids are given in this order, from 0. Each robot's place in its row is its home.
+    pub team: Vec<Row>,
+    /// What a robot of each role is and can do.
+    pub roles: Roles,
+    /// Distribution of the initial levels.
+    pub initial_levels: InitialLevels,
+    /// The two tasks.
+    pub tasks: Tasks,
+    /// Debris at known places.
+    #[serde(default)]
+    pub debris: Vec<DebrisFile>,
+    /// Radiation zones at known places.
+    #[serde(default)]
+    pub radiation: Vec<ZoneFile>,
+    /// Debris and radiation zones drawn at random for each trial, in addition.
+    #[serde(default)]
+    pub sampled: Sampled,
+    /// What moving and radiation cost.
+    pub costs: Costs,
+    /// Rules of the mission.
+    pub mission: MissionRules,
+    /// Rules of route planning.
+    pub planning: PlanningRules,
+    /// Rules of right of way.
+    pub conflicts: ConflictRules,
+    /// Options of the RNE policy.
+    #[serde(default)]
+    pub rne: RneOptions,
+}
+
+/// What a sweep runs by default.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SweepDefaults {
+    /// Names of the grouping policies to compare.
+    pub policies: Vec<String>,
+    /// Paired trials per policy.
+    pub trials: u32,
+    /// Seed of the first trial; the next trials count up.
+    pub first_seed: u64,
+}
+
+/// Robots of one role side by side.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Row {
+    /// Role of the whole row.
+    pub role: Role,
+    /// Number of robots.
+    pub count: u32,
+    /// Centre of the row.
+    pub center: Point,
+    /// Distance between the first and the last robot, in metres.
+    pub width_m: f64,
+}
+
+/// One description for each role.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Roles {
+    /// Ground robot that carries many rescuees.
+    pub carrier: RoleSpec,
+    /// Ground robot that brings many resources.
+    pub supplier: RoleSpec,
+    /// Aerial robot that sees far.
+    pub observer: RoleSpec,
+}
+
+impl Roles {
+    /// The description of one role.
+    #[must_use]
+    pub fn of(&self, role: Role) -> &RoleSpec {
+        match role {
+            Role::Carrier => &self.carrier,
+            Role::Supplier => &self.supplier,
+            Role::Observer => &self.observer,
+        }
+    }
+}
+
+/// What a robot is and can do, at full health.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RoleSpec {
+    /// Radius of the disc, in metres.
+    pub radius_m: f64,
+    /// Mass, in kilograms.
+    pub mass_kg: f64,
+    /// Health points at 100 %: the need `hp`.
+    pub hp: f64,
+    /// Battery capacity at 100 %: the need `eng`.
+    pub energy: f64,
+    /// Top speed, in metres per second: the need `v`.
+    pub speed_mps: f64,
+    /// Greatest acceleration and braking of the drive, in metres per second squared.
+    pub acceleration_mps2: f64,
+    /// Range within which debris and radiation are noticed, in metres: the need `sen`.
+    pub sensing_m: f64,
+    /// Range within which rescuees are seen, in metres: the need `obs`.
+    pub observing_m: f64,
+    /// Rescuees that it can have on board: the need `cap`.
+    pub capacity: u32,
+    /// Rescuing resources that it takes along each round: the need `res`.
+    pub resources: u32,
+}
+
+/// Normal distributions of the initial levels, in percent, clamped to [1, 100].
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct InitialLevels {
+    /// Battery level.
+    pub energy: Normal,
+    /// Health level.
+    pub hp: Normal,
+}
+
+/// A normal distribution.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Normal {
+    /// Mean, in percent.
+    pub mean: f64,
+    /// Standard deviation, in percent points.
+    pub sd: f64,
+}
+
+/// The two tasks.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Tasks {
+    /// The hard task.
+    pub hard: TaskFile,
+    /// The easy task.
+    pub easy: TaskFile,
+}
+
+impl Tasks {
+    /// The task of one difficulty.
+    #[must_use]
+    pub fn of(&self, task: Difficulty) -> &TaskFile {
+        match task {
+            Difficulty::Hard => &self.hard,
+            Difficulty::Easy => &self.easy,
+        }
+    }
+}
+
+/// A block of rescuees and the rest place that belongs to it.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct TaskFile {
+    /// Centre of the block of rescuees.
+    pub center: Point,
+    /// Width and height of the block, in metres.
+    pub size_m: Point,
+    /// Rescuees along the width and along the height: they stand in a regular grid.
+    pub grid: [u32; 2],
+    /// Centre of the rest place.
+    pub rest: Point,
+}
+
+/// A piece of debris.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct DebrisFile {
+    /// Its outline.
+    pub shape: DebrisShape,
+    /// Its centre (for a polygon: the origin of its points).
+    pub at: Point,
+    /// Rotation, in degrees anticlockwise.
+    #[serde(default)]
+    pub rotation_deg: f64,
+    /// Mass and friction of debris that a robot can push; absent for fixed debris.
+    #[serde(default)]
+    pub movable: Option<Movable>,
+}
+
+/// Outline of a piece of debris.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub enum DebrisShape {
+    /// A disc of this radius in metres.
+    Disc(f64),
+    /// A rectangle of this width and height in metres.
+    Box(f64, f64),
+    /// A convex polygon: its corners in metres, anticlockwise.
+    Polygon(Vec<Point>),
+}
+
+/// Debris that can be pushed.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Movable {
+    /// Mass, in kilograms.
+    pub mass_kg: f64,
+    /// Coefficient of friction with the ground.
+    pub friction: f64,
+}
+
+/// A radiation zone: a source and the radius of its effect.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ZoneFile {
+    /// The source.
+    pub at: Point,
+    /// Radius, in metres.
+    pub radius_m: f64,
+}
+
+/// Random debris and radiation. All counts 0 by default.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Sampled {
+    /// Between home and the hard task.
+    pub hard: SampledCounts,
+    /// Between home and the easy task.
+    pub easy: SampledCounts,
+    /// Least and greatest radius of a sampled disc of debris, in metres.
+    pub debris_radius_m: [f64; 2],
+    /// Least and greatest radius of a sampled radiation zone, in metres.
+    pub zone_radius_m: [f64; 2],
+    /// Least free distance between two pieces of debris, in metres.
+    pub gap_m: f64,
+    /// Half the width of the strip between home and a task in which they are sampled, in metres.
+    pub strip_m: f64,
+}
+
+impl Default for Sampled {
+    fn default() -> Self {
+        Self {
+            hard: SampledCounts::default(),
+            easy: SampledCounts::default(),
+            debris_radius_m: [0.4, 0.8],
+            zone_radius_m: [2.0, 4.0],
+            gap_m: 2.0,
+            strip_m: 12.0,
+        }
+    }
+}
+
+impl Sampled {
+    /// The counts of one task.
+    #[must_use]
+    pub fn of(&self, task: Difficulty) -> SampledCounts {
+        match task {
+            Difficulty::Hard => self.hard,
+            Difficulty::Easy => self.easy,
+        }
+    }
+}
+
+/// How many to draw for one task.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct SampledCounts {
+    /// Pieces of fixed debris.
+    pub debris: u32,
+    /// Radiation zones.
+    pub radiation: u32,
+}
+
+/// What moving and radiation cost.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Costs {
+    /// Battery.
+    pub energy: Rates,
+    /// Health, inside radiation zones.
+    pub hp: Rates,
+}
+
+/// When a robot below the threshold turns back.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub enum TurnBack {
+    /// At once, wherever it is. The default; the paper's words.
+    #[default]
+    AtOnce,
+    /// Once it is home: the round is finished first.
+    WhenHome,
+    /// Before a round at whose end it would be below, judged by its costliest round so far.
+    BeforeRound,
+}
+
+/// Rules of the mission.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct MissionRules {
+    /// Battery level below which a robot needs rest, in percent.
+    pub energy_threshold: f64,
+    /// Health level below which a robot needs rest, in percent.
+    pub hp_threshold: f64,
+    /// When a robot with little energy turns back.
+    #[serde(default)]
+    pub energy_turn_back: TurnBack,
+    /// When a robot with little health turns back.
+    #[serde(default)]
+    pub hp_turn_back: TurnBack,
+    /// A robot also turns back when its energy is less than this many times what the straight way to its rest place costs.
+    pub rest_reserve: f64,
+    /// Time at a rest place, in seconds.
+    pub rest_s: f64,
+    /// Time to load one rescuee, in seconds.
+    pub loading_s: f64,
+    /// Distance from its centre within which a robot can load a rescuee, in metres.
+    pub reach_m: f64,
+    /// How far a task's area extends beyond its block of rescuees, in metres. Resources are shared within it.
+    pub area_margin_m: f64,
+    /// Share of its speed that a robot loses when its group has no live observer.
+    pub blind_speed_loss: f64,
+    /// Factor on speed, sensing and observing range at health 0 %; it rises linearly to 1 at 100 %.
+    pub health_floor: f64,
+}
+
+/// Rules of route planning.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PlanningRules {
+    /// Distance that routes keep from known debris and walls, beyond the robot's radius, in metres.
+    pub clearance_m: f64,
+    /// Price of one second inside one radiation zone, in metres of detour.
+    pub exposure_price_m: f64,
+}
+
+/// Rules of right of way.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ConflictRules {
+    /// Distance that robots keep from one another, beyond their radii, in metres.
+    pub margin_m: f64,
+    /// How far ahead a conflict is predicted, in seconds.
+    pub horizon_s: f64,
+    /// Steps without motion after which a conflict set counts as deadlocked.
+    pub deadlock_steps: u32,
+}

@@ -1,0 +1,127 @@
+//! Scenarios: read from RON, checked, and then known to be usable.
+
+mod error;
+mod file;
+mod locate;
+mod validate;
+
+use std::ops::Deref;
+use std::path::Path;
+
+use ron::extensions::Extensions;
+
+pub use error::{LayoutError, Problem, Problems, ScenarioError};
+pub use file::*;
+
+use locate::FieldLines;
+
+/// Greatest size of a scenario file, in bytes.
+const MAX_FILE_BYTES: u64 = 4 << 20;
+
+/// A scenario whose every value was checked. Reads like the [`ScenarioFile`] that it was made from.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Scenario(ScenarioFile);
+
+impl Deref for Scenario {
+    type Target = ScenarioFile;
+
+    fn deref(&self) -> &ScenarioFile {
+        &self.0
+    }
+}
+
+impl TryFrom<ScenarioFile> for Scenario {
+    type Error = Vec<Problem>;
+
+    fn try_from(file: ScenarioFile) -> Result<Self, Vec<Problem>> {
+        let problems = validate::problems(&file);
+        if problems.is_empty() { Ok(Self(file)) } else { Err(problems) }
+    }
+}
+
+impl Scenario {
+    /// Reads and checks a file; returns the scenario and its text.
+    ///
+    /// # Errors
+    /// A file that is missing, a folder, not text or too large; a text that is not a scenario; values that break rules.
+    pub fn load(path: &Path) -> Result<(Self, String), ScenarioError> {
+        let unreadable = |reason: String| ScenarioError::Unreadable { path: path.to_owned(), reason };
+        let metadata = std::fs::metadata(path).map_err(|e| unreadable(format!("cannot be read: {e}")))?;
+        if metadata.is_dir() {
+            return Err(unreadable("is a folder, not a scenario file".into()));
+        }
+        if metadata.len() > MAX_FILE_BYTES {
+            return Err(unreadable(format!(
+                "is larger than the {} MiB that a scenario may have",
+                MAX_FILE_BYTES >> 20
+            )));
+        }
+        let text = std::fs::read_to_string(path).map_err(|e| unreadable(format!("cannot be read: {e}")))?;
+        if text.trim().is_empty() {
+            return Err(unreadable("is empty; see scenarios/paper.ron for a complete scenario".into()));
+        }
+        Ok((Self::parse(&text, path)?, text))
+    }
+
+    /// Checks the text of a scenario; `path` is used in messages only.
+    ///
+    /// # Errors
+    /// A text that is not a scenario, or values that break rules.
+    pub fn parse(text: &str, path: &Path) -> Result<Self, ScenarioError> {
+        let malformed = |error: ron::error::SpannedError, field: String| ScenarioError::Malformed {
+            path: path.to_owned(),
+            line: error.span.start.line,
+            column: error.span.start.col,
+            field: if field.is_empty() || field == "." { String::new() } else { format!("{field}: ") },
+            message: error.code.to_string(),
+        };
+        if let Some(at) = text.find("#![") {
+            return Err(ScenarioError::Malformed {
+                path: path.to_owned(),
+                line: 1 + text[..at].matches('\n').count(),
+                column: 1,
+                field: String::new(),
+                message: "extensions change what a file means and are not allowed; remove `#![...]`".into(),
+            });
+        }
+        let options = ron::Options::default().with_default_extension(Extensions::IMPLICIT_SOME);
+        let mut deserializer = ron::Deserializer::from_str_with_options(text, &options)
+            .map_err(|error| malformed(error, String::new()))?;
+        let file: ScenarioFile = serde_path_to_error::deserialize(&mut deserializer).map_err(|error| {
+            let field = error.path().to_string();
+            malformed(deserializer.span_error(error.into_inner()), field)
+        })?;
+        deserializer.end().map_err(|code| malformed(deserializer.span_error(code), String::new()))?;
+
+        Self::try_from(file).map_err(|mut list| {
+            let lines = FieldLines::of(text);
+            for problem in &mut list {
+                problem.line = lines.find(&problem.field);
+            }
+            ScenarioError::Invalid(Problems { path: path.to_owned(), list })
+        })
+    }
+
+    /// Number of simulation steps in a trial.
+    #[must_use]
+    pub fn steps(&self) -> u64 {
+        (self.duration_s / self.dt_s).round() as u64
+    }
+
+    /// Radius of the largest ground robot of the team, in metres.
+    #[must_use]
+    pub fn ground_radius_m(&self) -> f64 {
+        self.radius_of(|role| role != rne_core::Role::Observer)
+    }
+
+    /// Radius of the largest aerial robot of the team, in metres.
+    #[must_use]
+    pub fn aerial_radius_m(&self) -> f64 {
+        self.radius_of(|role| role == rne_core::Role::Observer)
+    }
+
+    fn radius_of(&self, wanted: impl Fn(rne_core::Role) -> bool) -> f64 {
+        let rows = self.team.iter().filter(|row| wanted(row.role));
+        rows.map(|row| self.roles.of(row.role).radius_m).fold(0.0, f64::max)
+    }
+}

@@ -1,0 +1,315 @@
+//! The rules of a scenario: every value in its range, and the values in keeping with one another.
+
+use std::fmt::Display;
+use std::ops::RangeInclusive;
+
+use rne_core::{Difficulty, NEED_NAMES, Role, policy_named};
+
+use super::error::Problem;
+use super::file::{DebrisShape, Normal, Point, RoleSpec, ScenarioFile, TaskFile};
+use crate::vitals::Rates;
+use crate::world::{debris_outline, row_positions};
+
+/// All broken rules, in the order of the fields.
+pub(super) fn problems(file: &ScenarioFile) -> Vec<Problem> {
+    let mut check = Checker { problems: Vec::new(), arena: file.arena_m };
+    general(&mut check, file);
+    team(&mut check, file);
+    roles(&mut check, file);
+    levels(&mut check, file);
+    for task in Difficulty::ALL {
+        task_area(&mut check, &format!("tasks.{}", task.name()), file.tasks.of(task));
+    }
+    debris(&mut check, file);
+    sampled(&mut check, file);
+    rules(&mut check, file);
+    policies(&mut check, file);
+    if check.problems.is_empty() {
+        homes_are_free(&mut check, file); // needs sound shapes and places
+    }
+    check.problems
+}
+
+struct Checker {
+    problems: Vec<Problem>,
+    arena: Point,
+}
+
+impl Checker {
+    fn fail(&mut self, field: impl Into<String>, rule: impl Into<String>, found: impl Display) {
+        let (field, rule, found) = (field.into(), rule.into(), found.to_string());
+        self.problems.push(Problem { field, line: None, rule, found });
+    }
+
+    fn number(&mut self, field: impl Into<String>, value: f64, range: RangeInclusive<f64>) {
+        if !range.contains(&value) {
+            let rule = format!("must be a number from {} to {}", range.start(), range.end());
+            self.fail(field, rule, value);
+        }
+    }
+
+    fn count(&mut self, field: impl Into<String>, value: u32, range: RangeInclusive<u32>) {
+        if !range.contains(&value) {
+            self.fail(field, format!("must be a count from {} to {}", range.start(), range.end()), value);
+        }
+    }
+
+    /// A point at least `margin` metres inside the arena.
+    fn inside(&mut self, field: impl Into<String>, point: Point, margin: f64) {
+        let fits = |x: f64, size: f64| x >= margin && x <= size - margin;
+        if !fits(point[0], self.arena[0]) || !fits(point[1], self.arena[1]) {
+            let rule = format!("must lie in the arena, at least {margin} m from its walls");
+            self.fail(field, rule, format!("({}, {})", point[0], point[1]));
+        }
+    }
+}
+
+fn general(check: &mut Checker, file: &ScenarioFile) {
+    let plain = |c: char| c.is_ascii_alphanumeric() || "-_.".contains(c);
+    if file.name.is_empty() || file.name.starts_with('.') || !file.name.chars().all(plain) {
+        let rule = "must be a name of letters, digits, `-`, `_` and `.` that does not start with `.`";
+        check.fail("name", rule, format!("{:?}", file.name));
+    }
+    check.count("sweep.trials", file.sweep.trials, 1..=1_000_000);
+    if file.sweep.policies.is_empty() {
+        check.fail("sweep.policies", "must name at least one policy", "none");
+    }
+    check.number("duration_s", file.duration_s, 1.0..=86_400.0);
+    check.number("dt_s", file.dt_s, 0.001..=0.05);
+    check.number("arena_m[0]", file.arena_m[0], 2.0..=20_000.0);
+    check.number("arena_m[1]", file.arena_m[1], 2.0..=20_000.0);
+}
+
+fn team(check: &mut Checker, file: &ScenarioFile) {
+    let total: u64 = file.team.iter().map(|row| u64::from(row.count)).sum();
+    if total == 0 || total > 20_000 {
+        check.fail("team", "must have 1 to 20000 robots", total);
+        return;
+    }
+    for (i, row) in file.team.iter().enumerate() {
+        let field = format!("team[{i}]");
+        let radius = file.roles.of(row.role).radius_m;
+        check.number(format!("{field}.width_m"), row.width_m, 0.0..=20_000.0);
+        check.inside(format!("{field}.center"), [row.center[0] - row.width_m / 2.0, row.center[1]], radius);
+        check.inside(format!("{field}.center"), [row.center[0] + row.width_m / 2.0, row.center[1]], radius);
+    }
+}
+
+fn roles(check: &mut Checker, file: &ScenarioFile) {
+    for (name, spec) in [
+        ("carrier", &file.roles.carrier),
+        ("supplier", &file.roles.supplier),
+        ("observer", &file.roles.observer),
+    ] {
+        role(check, &format!("roles.{name}"), spec, file.dt_s);
+    }
+    for name in ["capacity", "resources"] {
+        let found =
+            if name == "capacity" { file.roles.observer.capacity } else { file.roles.observer.resources };
+        if found != 0 {
+            check.fail(
+                format!("roles.observer.{name}"),
+                "must be 0: aerial robots see, they do not carry",
+                found,
+            );
+        }
+    }
+}
+
+fn role(check: &mut Checker, field: &str, spec: &RoleSpec, dt: f64) {
+    check.number(format!("{field}.radius_m"), spec.radius_m, 0.05..=5.0);
+    check.number(format!("{field}.mass_kg"), spec.mass_kg, 0.1..=10_000.0);
+    check.number(format!("{field}.hp"), spec.hp, 0.001..=1e6);
+    check.number(format!("{field}.energy"), spec.energy, 0.001..=1e6);
+    check.number(format!("{field}.speed_mps"), spec.speed_mps, 0.05..=20.0);
+    check.number(format!("{field}.acceleration_mps2"), spec.acceleration_mps2, 0.05..=100.0);
+    check.number(format!("{field}.sensing_m"), spec.sensing_m, 0.0..=1000.0);
+    check.number(format!("{field}.observing_m"), spec.observing_m, 0.0..=1000.0);
+    check.count(format!("{field}.capacity"), spec.capacity, 0..=10_000);
+    check.count(format!("{field}.resources"), spec.resources, 0..=10_000);
+    if spec.speed_mps * dt > spec.radius_m {
+        let rule = format!(
+            "times dt_s ({dt} s) must be at most radius_m ({} m), or contacts are missed",
+            spec.radius_m
+        );
+        check.fail(format!("{field}.speed_mps"), rule, spec.speed_mps);
+    }
+}
+
+fn levels(check: &mut Checker, file: &ScenarioFile) {
+    let mut normal = |field: &str, Normal { mean, sd }: Normal| {
+        check.number(format!("{field}.mean"), mean, 0.0..=100.0);
+        check.number(format!("{field}.sd"), sd, 0.0..=100.0);
+    };
+    normal("initial_levels.energy", file.initial_levels.energy);
+    normal("initial_levels.hp", file.initial_levels.hp);
+}
+
+fn task_area(check: &mut Checker, field: &str, task: &TaskFile) {
+    check.number(format!("{field}.size_m[0]"), task.size_m[0], 0.0..=10_000.0);
+    check.number(format!("{field}.size_m[1]"), task.size_m[1], 0.0..=10_000.0);
+    check.count(format!("{field}.grid[0]"), task.grid[0], 0..=1000);
+    check.count(format!("{field}.grid[1]"), task.grid[1], 0..=1000);
+    let [half_w, half_h] = task.size_m.map(|size| size / 2.0);
+    for corner in [[-half_w, -half_h], [half_w, half_h]] {
+        let corner = [task.center[0] + corner[0], task.center[1] + corner[1]];
+        check.inside(format!("{field}.center"), corner, 0.0);
+    }
+    check.inside(format!("{field}.rest"), task.rest, 0.0);
+}
+
+fn debris(check: &mut Checker, file: &ScenarioFile) {
+    if file.debris.len() > 100_000 {
+        check.fail("debris", "must have at most 100000 entries", file.debris.len());
+        return;
+    }
+    for (i, piece) in file.debris.iter().enumerate() {
+        let field = format!("debris[{i}]");
+        match &piece.shape {
+            DebrisShape::Disc(radius) => check.number(format!("{field}.shape"), *radius, 0.05..=100.0),
+            DebrisShape::Box(width, height) => {
+                check.number(format!("{field}.shape"), *width, 0.1..=1000.0);
+                check.number(format!("{field}.shape"), *height, 0.1..=1000.0);
+            }
+            DebrisShape::Polygon(corners) => polygon(check, &format!("{field}.shape"), corners),
+        }
+        check.inside(format!("{field}.at"), piece.at, 0.0);
+        check.number(format!("{field}.rotation_deg"), piece.rotation_deg, -360.0..=360.0);
+        if let Some(movable) = piece.movable {
+            check.number(format!("{field}.movable.mass_kg"), movable.mass_kg, 0.1..=100_000.0);
+            check.number(format!("{field}.movable.friction"), movable.friction, 0.0..=10.0);
+        }
+    }
+    for (i, zone) in file.radiation.iter().enumerate() {
+        check.inside(format!("radiation[{i}].at"), zone.at, 0.0);
+        check.number(format!("radiation[{i}].radius_m"), zone.radius_m, 0.01..=1000.0);
+    }
+}
+
+fn polygon(check: &mut Checker, field: &str, corners: &[Point]) {
+    if !(3..=64).contains(&corners.len()) {
+        return check.fail(field, "must have 3 to 64 corners", corners.len());
+    }
+    if let Some(bad) = corners.iter().flatten().find(|x| !(-1000.0..=1000.0).contains(*x)) {
+        return check.fail(field, "must have corners within 1000 m of its origin", bad);
+    }
+    for i in 0..corners.len() {
+        let [a, b, c] = [0, 1, 2].map(|k| corners[(i + k) % corners.len()]);
+        let turn = (b[0] - a[0]) * (c[1] - b[1]) - (b[1] - a[1]) * (c[0] - b[0]);
+        if turn < 1e-4 {
+            let rule = "must be convex, with its corners anticlockwise and none on a straight line";
+            return check.fail(
+                field,
+                rule,
+                format!("corner {} at ({}, {})", (i + 1) % corners.len(), b[0], b[1]),
+            );
+        }
+    }
+}
+
+fn sampled(check: &mut Checker, file: &ScenarioFile) {
+    let sampled = &file.sampled;
+    for task in Difficulty::ALL {
+        let counts = sampled.of(task);
+        check.count(format!("sampled.{}.debris", task.name()), counts.debris, 0..=10_000);
+        check.count(format!("sampled.{}.radiation", task.name()), counts.radiation, 0..=10_000);
+    }
+    for (name, [least, greatest]) in
+        [("debris_radius_m", sampled.debris_radius_m), ("zone_radius_m", sampled.zone_radius_m)]
+    {
+        check.number(format!("sampled.{name}[0]"), least, 0.05..=100.0);
+        check.number(format!("sampled.{name}[1]"), greatest, least..=100.0);
+    }
+    check.number("sampled.gap_m", sampled.gap_m, 0.0..=100.0);
+    check.number("sampled.strip_m", sampled.strip_m, 0.1..=10_000.0);
+}
+
+fn rules(check: &mut Checker, file: &ScenarioFile) {
+    let mut rates = |field: &str, rates: &Rates| {
+        check.number(format!("{field}.per_step"), rates.per_step, 0.0..=100.0);
+        check.number(format!("{field}.per_metre"), rates.per_metre, 0.0..=100.0);
+        check.number(format!("{field}.per_second"), rates.per_second, 0.0..=100.0);
+    };
+    rates("costs.energy", &file.costs.energy);
+    rates("costs.hp", &file.costs.hp);
+    let mission = &file.mission;
+    check.number("mission.energy_threshold", mission.energy_threshold, 0.0..=99.0);
+    check.number("mission.hp_threshold", mission.hp_threshold, 0.0..=99.0);
+    check.number("mission.rest_reserve", mission.rest_reserve, 0.0..=10.0);
+    check.number("mission.rest_s", mission.rest_s, 0.0..=86_400.0);
+    check.number("mission.loading_s", mission.loading_s, 0.0..=3600.0);
+    let least_reach = file.ground_reach_m();
+    check.number("mission.reach_m", mission.reach_m, least_reach..=20.0);
+    check.number("mission.area_margin_m", mission.area_margin_m, least_reach..=1000.0);
+    check.number("mission.blind_speed_loss", mission.blind_speed_loss, 0.0..=0.95);
+    check.number("mission.health_floor", mission.health_floor, 0.05..=1.0);
+    check.number("planning.clearance_m", file.planning.clearance_m, 0.02..=10.0);
+    check.number("planning.exposure_price_m", file.planning.exposure_price_m, 0.0..=1e6);
+    check.number("conflicts.margin_m", file.conflicts.margin_m, 0.0..=10.0);
+    check.number("conflicts.horizon_s", file.conflicts.horizon_s, 0.0..=60.0);
+    check.count("conflicts.deadlock_steps", file.conflicts.deadlock_steps, 1..=100_000);
+}
+
+impl ScenarioFile {
+    /// Least reach that lets a robot load a rescuee next to another robot: its own radius.
+    fn ground_reach_m(&self) -> f64 {
+        self.roles.carrier.radius_m.max(self.roles.supplier.radius_m)
+    }
+}
+
+fn policies(check: &mut Checker, file: &ScenarioFile) {
+    for (i, name) in file.sweep.policies.iter().enumerate() {
+        if let Err(error) = policy_named(name, &rne_core::RneOptions::default()) {
+            check.fail(format!("sweep.policies[{i}]"), "must be a known policy", error);
+        } else if file.sweep.policies[..i].contains(name) {
+            check.fail(format!("sweep.policies[{i}]"), "must not stand twice", format!("{name:?}"));
+        }
+    }
+    if let Err(error) = policy_named("RNE", &file.rne) {
+        check.fail("rne.weights", "must be usable weights", error);
+    }
+    if let Some(weights) = file.rne.weights.as_ref().filter(|weights| weights.len() != NEED_NAMES.len()) {
+        let rule = format!("must have {} entries ({})", NEED_NAMES.len(), NEED_NAMES.join(", "));
+        check.fail("rne.weights", rule, weights.len());
+    }
+}
+
+/// No home on another home of its layer, nor inside debris (observers fly over it).
+fn homes_are_free(check: &mut Checker, file: &ScenarioFile) {
+    let mut homes: Vec<(usize, Role, Point)> = Vec::new();
+    for (i, row) in file.team.iter().enumerate() {
+        homes.extend(row_positions(row).map(|at| (i, row.role, at)));
+    }
+    homes.sort_by(|a, b| a.2[0].total_cmp(&b.2[0]));
+    let layer = |role| role == Role::Observer;
+    let radius = |role| file.roles.of(role).radius_m;
+    let widest =
+        file.roles.carrier.radius_m.max(file.roles.supplier.radius_m).max(file.roles.observer.radius_m);
+    for (i, (row, role, at)) in homes.iter().enumerate() {
+        let near = homes[i + 1..].iter().take_while(|other| other.2[0] - at[0] < 2.0 * widest);
+        for (_, other_role, other) in near.filter(|other| layer(other.1) == layer(*role)) {
+            let distance = libm::hypot(at[0] - other[0], at[1] - other[1]);
+            let needed = radius(*role) + radius(*other_role);
+            if distance < needed {
+                let rule = format!("must leave at least {needed} m between the centres of two robots");
+                check.fail(
+                    format!("team[{row}]"),
+                    rule,
+                    format!("{distance:.3} m at ({}, {})", at[0], at[1]),
+                );
+            }
+        }
+    }
+    for (i, piece) in file.debris.iter().enumerate() {
+        let outline = debris_outline(piece);
+        for (_, role, at) in homes.iter().filter(|home| !layer(home.1)) {
+            if outline.distance_to([at[0] as f32, at[1] as f32].into()) < radius(*role) as f32 {
+                check.fail(
+                    format!("debris[{i}].at"),
+                    "must leave every robot's home free",
+                    format!("a home at ({}, {})", at[0], at[1]),
+                );
+            }
+        }
+    }
+}

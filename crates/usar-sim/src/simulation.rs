@@ -1,0 +1,270 @@
+//! One trial: a scenario, a policy and a seed in; a record out.
+
+use parry2d::math::Vector;
+use rne_core::GroupingPolicy;
+use xxhash_rust::xxh3::Xxh3;
+
+use crate::conflict::{Directive, Mover, PriorityKey, Resolver};
+use crate::event::{Event, EventLog};
+use crate::ids::RobotId;
+use crate::layout::Layout;
+use crate::metrics::Metrics;
+use crate::mission::{Activity, Mission};
+use crate::planning::{Navigator, STANDING_MPS};
+use crate::record::{RobotRecord, Status, TrialRecord};
+use crate::scenario::{LayoutError, Scenario};
+use crate::vitals::{energy_cost, hp_cost};
+use crate::world::{Condition, World};
+
+/// The state is hashed once in this many steps, and at the end.
+const HASH_PERIOD_STEPS: u64 = 50;
+
+/// A running trial.
+pub struct Simulation<'a> {
+    scenario: &'a Scenario,
+    policy: &'a dyn GroupingPolicy,
+    seed: u64,
+    step: u64,
+    world: World,
+    mission: Mission,
+    navigator: Navigator,
+    resolver: Resolver,
+    metrics: Metrics,
+    log: EventLog,
+    tallies: Vec<Tally>,
+    hash: Xxh3,
+}
+
+/// What is added up for each robot.
+#[derive(Debug, Clone, Copy, Default)]
+struct Tally {
+    initial: [f64; 2],
+    spent: [f64; 2],
+    distance_m: f64,
+    waiting_steps: u64,
+}
+
+impl<'a> Simulation<'a> {
+    /// Draws the layout and builds the world.
+    ///
+    /// # Errors
+    /// The layout cannot be drawn.
+    pub fn new(
+        scenario: &'a Scenario,
+        policy: &'a dyn GroupingPolicy,
+        seed: u64,
+    ) -> Result<Self, LayoutError> {
+        let layout = Layout::sample(scenario, seed)?;
+        let world = World::build(scenario, &layout);
+        let tallies =
+            layout.robots.iter().map(|start| Tally { initial: [start.energy, start.hp], ..Tally::default() });
+        Ok(Self {
+            scenario,
+            policy,
+            seed,
+            step: 0,
+            mission: Mission::new(scenario, &world, seed),
+            navigator: Navigator::new(scenario, world.robots.len()),
+            resolver: Resolver::new(scenario.conflicts, scenario.dt_s),
+            metrics: Metrics::new(world.robots.len()),
+            log: EventLog::default(),
+            tallies: tallies.collect(),
+            hash: Xxh3::new(),
+            world,
+        })
+    }
+
+    /// Runs to the end. `listen` hears the events of each step, with the time in seconds and the world as it is then.
+    pub fn run(mut self, mut listen: impl FnMut(f64, &[Event], &World)) -> TrialRecord {
+        let status = loop {
+            if let Some(status) = self.ending() {
+                break status;
+            }
+            if let Err(reason) = self.step() {
+                break Status::Failed(reason);
+            }
+            listen(self.time_s(), self.log.events(), &self.world);
+        };
+        self.into_record(status)
+    }
+
+    fn ending(&self) -> Option<Status> {
+        if self.mission.is_over {
+            Some(Status::NoCarrierLeft)
+        } else if self.step >= self.scenario.steps() {
+            Some(Status::Completed)
+        } else {
+            None
+        }
+    }
+
+    /// Simulated time, in seconds.
+    #[must_use]
+    pub fn time_s(&self) -> f64 {
+        self.step as f64 * self.scenario.dt_s
+    }
+
+    /// The world as it is now.
+    #[must_use]
+    pub fn world(&self) -> &World {
+        &self.world
+    }
+
+    /// The mission as it is now.
+    #[must_use]
+    pub fn mission(&self) -> &Mission {
+        &self.mission
+    }
+
+    /// The events of the last step.
+    #[must_use]
+    pub fn events(&self) -> &[Event] {
+        self.log.events()
+    }
+
+    /// One step: all robots decide from the same snapshot, then all act.
+    ///
+    /// # Errors
+    /// The policy fails, or the physics breaks down.
+    pub fn step(&mut self) -> Result<(), String> {
+        self.log.clear();
+        self.mission.sense(&self.world, self.step, &mut self.log);
+        self.mission.decide(&mut self.world, &mut self.navigator, self.policy, self.step, &mut self.log)?;
+        let mission = &self.mission;
+        self.navigator.plan(&self.world, |robot| mission.knowledge_of(robot), self.step);
+        self.resolve_and_drive();
+        self.world.integrate();
+        self.step += 1;
+        self.expose();
+        self.mission.settle(&mut self.world, &self.navigator, self.step, &mut self.log);
+        self.metrics.listen(self.log.events(), &self.world, self.time_s());
+        self.hash_state();
+        if self.world.physics.is_broken() {
+            return Err(format!(
+                "the physics broke down at {:.2} s: a body's state is not finite",
+                self.time_s()
+            ));
+        }
+        Ok(())
+    }
+
+    /// Resolves conflicts, and lets each drive come as near to what it is told as its force allows.
+    fn resolve_and_drive(&mut self) {
+        let (world, mission, navigator) = (&self.world, &self.mission, &self.navigator);
+        let movers: Vec<Mover> = world
+            .robots
+            .iter()
+            .map(|robot| {
+                let speed = mission.speed_of(robot, world) as f32;
+                let wish =
+                    if robot.is_able() { navigator.preferred_velocity(robot, speed) } else { Vector::ZERO };
+                let route = navigator.traveller(robot.id).route();
+                Mover {
+                    robot: robot.id,
+                    aerial: robot.is_aerial(),
+                    position: robot.position,
+                    velocity: robot.velocity,
+                    wish,
+                    way_left: route.map_or(0.0, |route| route.length(robot.position)),
+                    radius: robot.radius(),
+                    priority: PriorityKey { energy: robot.energy, robot: robot.id },
+                    obstacles: if robot.is_aerial() {
+                        &[]
+                    } else {
+                        mission.knowledge_of(robot.id).obstacles()
+                    },
+                }
+            })
+            .collect();
+        let directives = self.resolver.resolve(&movers, &mut self.log);
+        for ((mover, directive), tally) in movers.iter().zip(directives).zip(&mut self.tallies) {
+            let spec = &self.world.robots[mover.robot.index()].spec;
+            let greatest_change = (spec.acceleration_mps2 * self.scenario.dt_s) as f32;
+            let change = (directive.velocity() - mover.velocity).clamp_length_max(greatest_change);
+            self.world.physics.drive(mover.robot, change);
+            tally.waiting_steps +=
+                u64::from(matches!(directive, Directive::Yield { .. } | Directive::Blocked));
+        }
+    }
+
+    /// Energy for moving, HP for radiation; robots that have none left stay where they are.
+    fn expose(&mut self) {
+        let (costs, dt) = (self.scenario.costs, self.scenario.dt_s);
+        for (robot, tally) in self.world.robots.iter_mut().zip(&mut self.tallies) {
+            let speed = robot.velocity.length();
+            let metres = f64::from(speed) * dt;
+            tally.distance_m += metres;
+            let resting = matches!(self.mission.agents[robot.id.index()].activity, Activity::Resting(_));
+            if !robot.is_able() || resting {
+                continue;
+            }
+            let zones = self.world.zones.iter().filter(|zone| zone.contains(robot.position)).count();
+            let energy = energy_cost(&costs.energy, speed > STANDING_MPS, metres, dt).min(robot.energy);
+            let hp = hp_cost(&costs.hp, zones, metres, dt).min(robot.hp);
+            robot.energy -= energy;
+            robot.hp -= hp;
+            tally.spent = [tally.spent[0] + energy, tally.spent[1] + hp];
+            self.metrics.charge(robot.id.index(), energy, hp);
+            if robot.energy <= 0.0 {
+                robot.condition = Condition::Stranded;
+                self.log.push(Event::Stranded { robot: robot.id });
+            } else if robot.hp <= 0.0 {
+                robot.condition = Condition::Disabled;
+                self.log.push(Event::Disabled { robot: robot.id });
+            }
+        }
+    }
+
+    fn hash_state(&mut self) {
+        if !self.step.is_multiple_of(HASH_PERIOD_STEPS) {
+            return;
+        }
+        for robot in &self.world.robots {
+            let places = [robot.position, robot.velocity].into_iter().flat_map(|v| [v.x, v.y]);
+            places.for_each(|value| self.hash.update(&value.to_le_bytes()));
+            [robot.energy, robot.hp].iter().for_each(|level| self.hash.update(&level.to_le_bytes()));
+            self.hash.update(&(robot.load.len() as u32).to_le_bytes());
+            self.hash.update(&robot.resources.to_le_bytes());
+        }
+    }
+
+    fn into_record(self, status: Status) -> TrialRecord {
+        let seconds = |steps: u64| steps as f64 * self.scenario.dt_s;
+        let robots = self.world.robots.iter().zip(&self.tallies).map(|(robot, tally)| RobotRecord {
+            robot: robot.id.0,
+            role: robot.role,
+            initial_energy: tally.initial[0],
+            initial_hp: tally.initial[1],
+            final_energy: robot.energy,
+            final_hp: robot.hp,
+            energy_spent: tally.spent[0],
+            hp_lost: tally.spent[1],
+            distance_m: tally.distance_m,
+            waiting_s: seconds(tally.waiting_steps),
+            longest_stall_s: seconds(self.longest_stall_steps(robot.id)),
+            stranded: robot.condition == Condition::Stranded,
+            disabled: robot.condition == Condition::Disabled,
+        });
+        TrialRecord {
+            policy: self.policy.name().to_owned(),
+            seed: self.seed,
+            status,
+            time_s: self.time_s(),
+            hard: self.metrics.tasks[0],
+            easy: self.metrics.tasks[1],
+            ungrouped_energy: self.metrics.ungrouped[0],
+            ungrouped_hp: self.metrics.ungrouped[1],
+            completed_rounds: self.metrics.completed_rounds,
+            robots: robots.collect(),
+            turned_back: self.metrics.turned_back,
+            conflicts: self.metrics.conflicts,
+            deadlocks: self.metrics.deadlocks,
+            state_hash: format!("{:032x}", self.hash.digest128()),
+            rounds: self.metrics.rounds,
+        }
+    }
+
+    fn longest_stall_steps(&self, robot: RobotId) -> u64 {
+        self.navigator.traveller(robot).longest_stall_steps
+    }
+}

@@ -1,0 +1,58 @@
+//! What exists: robots, debris, radiation zones and rescuees.
+
+mod debris;
+mod radiation;
+mod rescuee;
+mod robot;
+
+pub use debris::{Debris, Outline, debris_outline};
+pub use radiation::RadiationZone;
+pub use rescuee::{Rescuee, RescueeState, rescuee_positions};
+pub use robot::{Condition, Robot, rest_slot, row_positions};
+
+use crate::layout::Layout;
+use crate::physics::Physics;
+use crate::scenario::Scenario;
+
+/// The state of everything that is in the arena.
+pub struct World {
+    /// Rigid bodies.
+    pub physics: Physics,
+    /// Robots, by id.
+    pub robots: Vec<Robot>,
+    /// Debris.
+    pub debris: Vec<Debris>,
+    /// Radiation zones.
+    pub zones: Vec<RadiationZone>,
+    /// Rescuees, by id.
+    pub rescuees: Vec<Rescuee>,
+}
+
+impl World {
+    /// Everything at its initial place.
+    #[must_use]
+    pub fn build(scenario: &Scenario, layout: &Layout) -> Self {
+        let robots: Vec<Robot> = layout.robots.iter().map(|start| Robot::new(scenario, start)).collect();
+        let debris: Vec<Debris> = layout.debris.iter().map(Debris::new).collect();
+        Self {
+            physics: Physics::new(scenario, &robots, &layout.debris, &debris),
+            robots,
+            debris,
+            zones: layout.zones.iter().map(RadiationZone::new).collect(),
+            rescuees: rescuee_positions(scenario),
+        }
+    }
+
+    /// Moves time on by one step and reads back where everything is.
+    pub fn integrate(&mut self) {
+        self.physics.integrate();
+        for robot in &mut self.robots {
+            (robot.position, robot.velocity) = self.physics.robot_motion(robot.id);
+        }
+        for (piece, pose) in self.debris.iter_mut().zip(self.physics.debris_poses()) {
+            if let Some(pose) = pose {
+                piece.moved_to(pose);
+            }
+        }
+    }
+}

@@ -1,0 +1,9 @@
+# Recipes for people; `just ci` is exactly what CI runs.
+
+# All that CI checks
+ci:
+    bash .ci/run
+
+# 100 seeds of paper.ron under all five policies: nobody stuck, nothing lost, no number undefined
+soak:
+    cargo run --release --package experiments --example soak

@@ -1,0 +1,244 @@
+//! The command `usar` as a user meets it: its output, and one clear sentence for bad input.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use serde_json::Value;
+
+use crate::support::{paper_text, root};
+
+/// The program, built beside the test.
+fn usar(arguments: &[&str], folder: &Path) -> Output {
+    let program = program();
+    Command::new(program).args(arguments).current_dir(folder).output().expect("usar runs")
+}
+
+/// `target/<profile>/usar`: cargo builds the binaries of all workspace members before it runs tests of the workspace.
+fn program() -> PathBuf {
+    let test = std::env::current_exe().unwrap();
+    let program =
+        test.parent().and_then(Path::parent).unwrap().join(format!("usar{}", std::env::consts::EXE_SUFFIX));
+    assert!(program.exists(), "{} is not there: run `cargo test` for the whole workspace", program.display());
+    program
+}
+
+fn json(arguments: &[&str]) -> Value {
+    let output = usar(arguments, &root());
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    serde_json::from_slice(&output.stdout).unwrap()
+}
+
+#[track_caller]
+fn refused(arguments: &[&str], message: &str) {
+    let folder = tempfile::tempdir().unwrap();
+    let output = usar(arguments, folder.path());
+    let stderr = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(2), "{arguments:?}: {stderr}");
+    assert!(stderr.contains(message), "{arguments:?} must say {message:?}, said {stderr:?}");
+    assert!(!stderr.contains("panicked"), "{stderr}");
+    assert!(output.stdout.is_empty());
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0, "nothing is left behind");
+}
+
+#[test]
+fn trust_prints_the_papers_first_example() {
+    let value = json(&["trust", "--weights", "6,4,2", "--from", "86,120,30", "--to", "20,30,10", "--json"]);
+    assert_eq!(value["schema_version"], 1);
+    assert_eq!(value["infinite"], false);
+    let rne = value["rne"].as_f64().unwrap();
+    assert!((rne - 0.003_725_460_660_859_402).abs() < 1e-12);
+    assert!((value["trust"].as_f64().unwrap() - (-rne).exp()).abs() < 1e-15);
+    assert!((value["from"][0].as_f64().unwrap() - 43.0 / 88.0).abs() < 1e-15);
+    assert!((value["to"][2].as_f64().unwrap() - 1.0 / 13.0).abs() < 1e-15);
+}
+
+#[test]
+fn trust_between_groups_and_in_other_bases() {
+    let groups = [
+        "trust",
+        "--weights",
+        "6,4,2",
+        "--from",
+        "82,114,24",
+        "--from",
+        "79,117,23",
+        "--to",
+        "40,56,12",
+        "--to",
+        "56,48,15",
+        "--json",
+        "--base",
+        "10",
+    ];
+    let value = json(&groups);
+    let rne = value["rne"].as_f64().unwrap();
+    assert!((rne - 0.009_534_892_308_733_986).abs() < 1e-12);
+    assert!((value["rne_in_base"].as_f64().unwrap() - rne / std::f64::consts::LN_10).abs() < 1e-15);
+}
+
+#[test]
+fn infinite_rne_is_said_and_not_printed_as_a_number() {
+    let value = json(&["trust", "--weights", "1,1", "--from", "1,1", "--to", "1,0", "--json"]);
+    assert_eq!(
+        (&value["rne"], &value["infinite"], value["trust"].as_f64()),
+        (&Value::Null, &Value::Bool(true), Some(0.0))
+    );
+}
+
+#[test]
+fn bad_needs_are_refused() {
+    let trust = |weights, from, to, message| {
+        refused(&["trust", "--weights", weights, "--from", from, "--to", to], message)
+    };
+    trust("6,4,2", "86,120", "20,30,10", "--from: needs must have 3 entries, found 2");
+    trust("6,4,2", "86,-1,30", "20,30,10", "--from: needs[1] must be a finite number >= 0, found -1");
+    trust("6,4,2", "86,120,30", "20,NaN,10", "--to: needs[1] must be a finite number >= 0, found NaN");
+    trust("6,4,2", "inf,120,30", "20,30,10", "--from: needs[0] must be a finite number >= 0, found inf");
+    trust(
+        "6,4,2",
+        "0,0,0",
+        "20,30,10",
+        "--from: weighted needs must have at least one entry above 0, found only zeros",
+    );
+    trust(
+        "0,0,0",
+        "1,2,3",
+        "20,30,10",
+        "--weights: weights must have at least one entry above 0, found only zeros",
+    );
+    trust("6,x,2", "1,2,3", "20,30,10", "--weights: entry 2 must be a number, found \"x\"");
+    trust("", "1", "1", "--weights: entry 1 must be a number, found \"\"");
+}
+
+const TABLE: &str = "id,role,x,y,hp,v,sen,eng,res,cap,obs,energy_level,hp_level
+1,Carrier,40,14,90,2.1,2.8,120,1,6,0.006,80,90
+2,carrier,43,14,60,1.8,2.4,60,1,6,0.006,40,60
+3,Supplier,45,16,95,2.2,2.9,140,10,1,0.006,93,95
+4,Supplier,47,16,70,1.9,2.5,75,10,1,0.006,50,70
+5,Observer,46,18,45,1.4,17,90,0,0,5.7,90,90
+6,Observer,47,18,30,1.2,14,40,0,0,4.8,40,60
+";
+
+fn table(text: &str) -> (tempfile::TempDir, String) {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("robots.csv");
+    std::fs::write(&path, text).unwrap();
+    (folder, path.to_str().unwrap().to_owned())
+}
+
+#[test]
+fn group_splits_a_table_by_any_policy() {
+    let (_folder, path) = table(TABLE);
+    for policy in ["RNE", "ENG", "HP_DIS", "DIS", "RANDOM"] {
+        let value =
+            json(&["group", &path, "--policy", policy, "--easy", "73,51", "--hard", "15,64", "--json"]);
+        let ids = |task: &str| {
+            value[task].as_array().unwrap().iter().map(|id| id.as_u64().unwrap()).collect::<Vec<_>>()
+        };
+        let mut all = [ids("easy"), ids("hard")].concat();
+        all.sort_unstable();
+        assert_eq!(all, [1, 2, 3, 4, 5, 6], "{policy}");
+        if policy == "ENG" {
+            assert_eq!(ids("hard"), [1, 3, 5]);
+        }
+        assert_eq!(value["score"].is_null(), policy != "RNE");
+    }
+}
+
+#[test]
+fn bad_tables_are_refused_with_their_lines() {
+    let refuse = |text: &str, arguments: &[&str], message: &str| {
+        let (_folder, path) = table(text);
+        refused(&[&["group", path.as_str()], arguments].concat(), message);
+    };
+    refuse("", &[], "the header lacks id, role, x, y, hp");
+    refuse(TABLE.lines().next().unwrap(), &[], "has no robots");
+    refuse(
+        &TABLE.replace("2,carrier", "2,pilot"),
+        &[],
+        "robots.csv:3: role must be Carrier, Supplier or Observer, found \"pilot\"",
+    );
+    refuse(
+        &TABLE.replace("2,carrier,43", "2,carrier,nan"),
+        &[],
+        "robots.csv:3: x must be a finite number, found \"nan\"",
+    );
+    refuse(
+        &TABLE.replace("14,90,2.1", "14,-90,2.1"),
+        &[],
+        "robots.csv:2: hp must be a number >= 0, found -90",
+    );
+    refuse(&TABLE.replace("\n2,", "\n1,"), &[], "robot id 1 stands twice");
+    refuse(TABLE, &["--policy", "DIS"], "policy DIS needs the positions of both tasks, which is missing");
+    refuse(
+        &TABLE.replace("energy_level", "note"),
+        &["--policy", "ENG"],
+        "policy ENG needs the energy level, which is missing for robot 1",
+    );
+    refuse(
+        TABLE,
+        &["--policy", "NEAREST"],
+        "unknown policy \"NEAREST\"; known policies: RNE, DIS, ENG, HP_DIS, RANDOM",
+    );
+    refuse(TABLE, &["--score", "Most"], "--score: ");
+    refuse(TABLE, &["--weights", "1,2"], "weights must have 7 entries, found 2");
+}
+
+#[test]
+fn bad_files_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let write = |name: &str, text: &str| {
+        std::fs::write(folder.path().join(name), text).unwrap();
+        folder.path().join(name).to_str().unwrap().to_owned()
+    };
+    let empty = write("empty.ron", "");
+    let blank = write("blank.ron", "\n  \n");
+    let broken = write("broken.ron", "(name: \"x\",");
+    let good = write("good.ron", &paper_text());
+    let here = folder.path().to_str().unwrap();
+    for verb in ["check", "run", "sweep"] {
+        refused(&[verb, "missing.ron"], "missing.ron: cannot be read");
+        refused(&[verb, here], "is a folder, not a scenario file");
+        refused(&[verb, &empty], "empty.ron: is empty");
+        refused(&[verb, &blank], "blank.ron: is empty");
+        refused(&[verb, &broken], "broken.ron:1:");
+    }
+    refused(&["run", &good, "--policy", "NEAREST"], "unknown policy \"NEAREST\"; known policies: RNE, DIS");
+    refused(
+        &["sweep", &good, "--policies", "RNE,NEAREST"],
+        "unknown policy \"NEAREST\"; known policies: RNE, DIS",
+    );
+    refused(&["sweep", &good, "--trials", "0"], "--trials");
+    refused(&["sweep", &good, "--out", &good], "is a file, not a folder");
+    refused(&["sweep", &good, "--out", here], "is not empty; nothing was overwritten");
+}
+
+#[test]
+fn a_sweep_writes_the_same_bytes_on_one_and_on_two_threads() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = paper_text().replace("duration_s: 600.0", "duration_s: 60.0");
+    std::fs::write(folder.path().join("short.ron"), text).unwrap();
+    let sweep = |jobs: &str, out: &str| {
+        let output =
+            usar(&["sweep", "short.ron", "--trials", "3", "--jobs", jobs, "--out", out], folder.path());
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        output.stdout
+    };
+    assert_eq!(sweep("1", "one"), sweep("2", "two"), "the tables");
+    let mut names = Vec::new();
+    for entry in std::fs::read_dir(folder.path().join("one")).unwrap() {
+        let name = entry.unwrap().file_name();
+        let bytes = |run: &str| std::fs::read(folder.path().join(run).join(&name)).unwrap();
+        assert_eq!(bytes("one"), bytes("two"), "{name:?}");
+        names.push(name.into_string().unwrap());
+    }
+    names.sort();
+    assert_eq!(
+        names,
+        ["experiment.ron", "manifest.json", "resolved.ron", "robots.csv", "rounds.csv", "trials.csv"]
+    );
+    let mut trials = csv::Reader::from_path(folder.path().join("one/trials.csv")).unwrap();
+    assert_eq!(trials.records().count(), 12);
+    let text = std::fs::read_to_string(folder.path().join("one/trials.csv")).unwrap().to_lowercase();
+    assert!(!text.contains("nan") && !text.contains("inf"), "{text}");
+}
