@@ -1,8 +1,8 @@
 //! Grouping policies: properties of every partition, and brute force for small teams.
 
 use proptest::prelude::*;
-use rand::SeedableRng;
 use rand::rngs::ChaCha8Rng;
+use rand::{RngExt, SeedableRng};
 use rne_core::grouping::EXACT_ROLE_SIZE;
 use rne_core::grouping::rne::{HardRule, MergeReading, ScoreDirection};
 use rne_core::{
@@ -224,24 +224,97 @@ fn distance_by_brute_force(members: &[Member]) -> (Vec<u32>, Vec<u32>) {
 #[test]
 fn rne_merges_as_brute_force_does() {
     for seed in 0..20 {
-        let mut draws = ChaCha8Rng::seed_from_u64(seed);
-        let mut level = || {
-            use rand::RngExt;
-            draws.random_range(5.0..100.0)
-        };
-        let levels: Vec<(f64, f64)> = (0..12).map(|_| (level(), level())).collect();
-        let members = team([6, 4, 2], &levels);
+        let members = random_team(seed);
         let found = group("RNE", &RneOptions::default(), &members);
-        let (pairing, score) = merge_by_brute_force(&members);
+        let (one, other, score) = merge_by_brute_force(&members);
         assert!((found.score.unwrap().nats().unwrap() - score).abs() < 1e-11, "seed {seed}");
-        let sides = [&found.easy, &found.hard];
-        assert!(sides.contains(&&pairing), "seed {seed}: {pairing:?} is not one of {sides:?}");
+        let hard = if mean_trust_within(&members, &one) < mean_trust_within(&members, &other) {
+            &one
+        } else {
+            &other
+        };
+        assert_eq!(
+            &found.hard, hard,
+            "seed {seed}: the group with the lower mean RNE within takes the hard task"
+        );
     }
 }
 
-fn merge_by_brute_force(members: &[Member]) -> (Vec<u32>, f64) {
+/// The other hard rules, from their definitions.
+#[test]
+fn each_hard_rule_sends_the_group_that_it_names() {
+    for seed in 0..10 {
+        let members = random_team(seed);
+        let mean = |ids: &[u32], level: &dyn Fn(&Member) -> f64| {
+            ids.iter().map(|id| level(&members[*id as usize])).sum::<f64>() / ids.len() as f64
+        };
+        let maximum = |k: usize| members.iter().map(|m| m.needs.values()[k]).fold(0.0, f64::max);
+        let capability = |m: &Member| (0..7).map(|k| m.needs.values()[k] / maximum(k)).sum::<f64>();
+        let rules: [(HardRule, &dyn Fn(&Member) -> f64); 3] = [
+            (HardRule::MeanEnergy, &|m| m.energy_level.unwrap()),
+            (HardRule::MeanHp, &|m| m.hp_level.unwrap()),
+            (HardRule::Capability, &capability),
+        ];
+        for (hard_rule, level) in rules {
+            let found = group("RNE", &RneOptions { hard_rule, ..RneOptions::default() }, &members);
+            assert!(mean(&found.hard, level) >= mean(&found.easy, level), "seed {seed}, {hard_rule:?}");
+        }
+    }
+}
+
+/// Each score direction finds the largest value of its own definition, among all splits of a role.
+#[test]
+fn each_score_is_the_largest_of_its_definition() {
+    for seed in 0..5 {
+        let members: Vec<Member> =
+            random_team(seed).into_iter().filter(|m| m.role == Role::Carrier).collect();
+        let weights = scaled_weights(&members);
+        for score in [ScoreDirection::Sum, ScoreDirection::JensenShannon, ScoreDirection::FirstToSecond] {
+            let best = (0..1_u32 << members.len())
+                .filter(|c| c.count_ones() as usize == members.len() / 2 && c & 1 == 1)
+                .map(|chosen| {
+                    let side = |inside: bool| {
+                        let of = (0..members.len()).filter(|i| (chosen >> i & 1 == 1) == inside);
+                        let needs: Vec<NeedVector> = of.map(|i| members[i].needs.clone()).collect();
+                        NeedDistribution::of_group(&needs, &weights).unwrap()
+                    };
+                    let (p, q) = (side(true), side(false));
+                    match score {
+                        ScoreDirection::Sum => rne_core::jeffreys(&p, &q).unwrap().nats().unwrap(),
+                        ScoreDirection::JensenShannon => rne_core::jensen_shannon(&p, &q).unwrap(),
+                        _ => relative_entropy(&p, &q).unwrap().nats().unwrap(),
+                    }
+                })
+                .fold(0.0, f64::max);
+            let found = group("RNE", &RneOptions { score, ..RneOptions::default() }, &members);
+            assert!((found.score.unwrap().nats().unwrap() - best).abs() < 1e-11, "seed {seed}, {score:?}");
+        }
+    }
+}
+
+fn random_team(seed: u64) -> Vec<Member> {
+    let mut draws = ChaCha8Rng::seed_from_u64(seed);
+    let mut level = || draws.random_range(5.0..100.0);
+    let levels: Vec<(f64, f64)> = (0..12).map(|_| (level(), level())).collect();
+    team([6, 4, 2], &levels)
+}
+
+fn scaled_weights(members: &[Member]) -> NeedWeights {
     let maximum = |k: usize| members.iter().map(|m| m.needs.values()[k]).fold(0.0, f64::max);
-    let weights = NeedWeights::new((0..7).map(|k| 1.0 / maximum(k)).collect()).unwrap();
+    NeedWeights::new((0..7).map(|k| 1.0 / maximum(k)).collect()).unwrap()
+}
+
+/// Definition 2, averaged: the mean RNE of the members to their own group's distribution.
+fn mean_trust_within(members: &[Member], ids: &[u32]) -> f64 {
+    let weights = scaled_weights(members);
+    let needs: Vec<NeedVector> = ids.iter().map(|id| members[*id as usize].needs.clone()).collect();
+    let whole = NeedDistribution::of_group(&needs, &weights).unwrap();
+    let own = needs.iter().map(|needs| NeedDistribution::of_agent(needs, &weights).unwrap());
+    own.map(|own| relative_entropy(&own, &whole).unwrap().nats().unwrap()).sum::<f64>() / ids.len() as f64
+}
+
+fn merge_by_brute_force(members: &[Member]) -> (Vec<u32>, Vec<u32>, f64) {
+    let weights = scaled_weights(members);
     let score = |one: &[u32], other: &[u32]| {
         let of = |ids: &[u32]| {
             let needs: Vec<NeedVector> = ids.iter().map(|id| members[*id as usize].needs.clone()).collect();
@@ -283,16 +356,16 @@ fn merge_by_brute_force(members: &[Member]) -> (Vec<u32>, f64) {
         let (p, q) = merged.as_ref().unwrap();
         best = score(p, q);
     }
-    let mut side = merged.unwrap().0;
-    side.sort_unstable();
-    (side, best)
+    let (mut one, mut other) = merged.unwrap();
+    one.sort_unstable();
+    other.sort_unstable();
+    (one, other, best)
 }
 
 #[test]
 fn twenty_robots_are_searched_exactly_and_more_by_local_search_that_says_so() {
     let mut draws = ChaCha8Rng::seed_from_u64(11);
     let mut levels = |count: usize| -> Vec<(f64, f64)> {
-        use rand::RngExt;
         (0..count).map(|_| (draws.random_range(5.0..100.0), draws.random_range(5.0..100.0))).collect()
     };
     let exact =

@@ -32,7 +32,7 @@ fn one_more_robot_leaves_the_others_levels_and_the_layout_alone() {
     let (before, after) = (Layout::sample(&as_it_is, 5).unwrap(), Layout::sample(&one_more, 5).unwrap());
     assert_eq!(after.robots.len(), 13);
     assert_eq!(before.robots[..], after.robots[..12]);
-    assert_eq!(before.debris.len(), after.debris.len());
+    assert_eq!((before.debris, before.zones), (after.debris, after.zones));
 }
 
 #[test]

@@ -2,10 +2,10 @@
 
 mod support;
 
-mod command_line;
 mod conservation;
 mod errata;
 mod grouping;
+mod ledger;
 mod pairing;
 mod paper_counts;
 mod scenarios;

@@ -69,8 +69,15 @@ fn right(text: &str) -> Cell {
 /// `mean ± sd`; with the number of trials where the quantity is not defined in all of them.
 fn moments(moments: &Moments, trials: usize) -> String {
     let Some(mean) = moments.mean else { return "-".to_owned() };
-    let decimals = if mean.abs() >= 100.0 { 1 } else { 2 };
+    let decimals = decimals(mean);
     let sd = moments.sd.map_or(String::new(), |sd| format!(" ± {sd:.decimals$}"));
     let partly = if moments.count < trials { format!(" (n = {})", moments.count) } else { String::new() };
     format!("{mean:.decimals$}{sd}{partly}")
+}
+
+/// Decimals that show a mean with about three significant digits, and at least one.
+fn decimals(mean: f64) -> usize {
+    (1..8)
+        .find(|decimals| mean.abs() * 10_f64.powi(*decimals) >= 100.0)
+        .map_or(2, |decimals| decimals as usize)
 }

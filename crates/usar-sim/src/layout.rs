@@ -2,18 +2,22 @@
 
 use parry2d::math::Vector;
 use rand::RngExt;
+use rand::rngs::ChaCha8Rng;
 use rne_core::{Difficulty, Role};
 
 use crate::ids::RobotId;
 use crate::planning::Planner;
 use crate::scenario::{
-    DebrisFile, DebrisShape, LayoutError, Normal, Point, SampledCounts, Scenario, ScenarioFile, ZoneFile,
+    DebrisFile, DebrisShape, LayoutError, Normal, Point, SampledCounts, Scenario, ZoneFile,
 };
 use crate::seed::{Purpose, normal, stream};
 use crate::world::{debris_outline, rescuee_positions, rest_slot, row_positions};
 
 /// Draws for one sampled thing before it is said that there is no room.
 const SAMPLING_TRIES: u32 = 500;
+
+/// Layouts drawn before it is said that there is no passage.
+const LAYOUT_ATTEMPTS: u32 = 20;
 
 /// Least initial level, in percent: a robot starts with something.
 const LEAST_LEVEL: f64 = 1.0;
@@ -45,29 +49,42 @@ pub struct Layout {
 }
 
 impl Layout {
-    /// Draws the layout of the trial with this seed.
+    /// Draws the layout of the trial with this seed. Sampled debris that leaves no passage is drawn again.
     ///
     /// # Errors
     /// No room for what is to be sampled, or no passage between home, tasks and rest places.
     pub fn sample(scenario: &Scenario, trial_seed: u64) -> Result<Self, LayoutError> {
-        let mut layout = Self {
-            robots: robot_starts(scenario, trial_seed),
-            debris: scenario.debris.clone(),
-            zones: scenario.radiation.clone(),
-        };
-        for task in Difficulty::ALL {
-            layout.sample_near(scenario, task, trial_seed)?;
+        let draws_nothing = Difficulty::ALL.iter().all(|task| scenario.sampled.of(*task).debris == 0);
+        let attempts = if draws_nothing { 1 } else { LAYOUT_ATTEMPTS };
+        let mut blocked = None;
+        for attempt in 0..attempts {
+            let mut layout = Self {
+                robots: robot_starts(scenario, trial_seed),
+                debris: scenario.debris.clone(),
+                zones: scenario.radiation.clone(),
+            };
+            for task in Difficulty::ALL {
+                layout.sample_near(scenario, task, trial_seed, attempt)?;
+            }
+            match layout.check_passages(scenario) {
+                Ok(()) => return Ok(layout),
+                Err(error) => blocked = Some(error),
+            }
         }
-        layout.check_passages(scenario)?;
-        Ok(layout)
+        Err(blocked
+            .unwrap_or(LayoutError::NoPassage { to: "anywhere", radius_m: scenario.ground_radius_m() }))
     }
 
-    fn sample_near(&mut self, scenario: &Scenario, task: Difficulty, seed: u64) -> Result<(), LayoutError> {
+    fn sample_near(
+        &mut self,
+        scenario: &Scenario,
+        task: Difficulty,
+        seed: u64,
+        attempt: u32,
+    ) -> Result<(), LayoutError> {
         let SampledCounts { debris, radiation } = scenario.sampled.of(task);
-        if debris + radiation == 0 {
-            return Ok(());
-        }
-        let mut strip = Strip::new(scenario, task, seed);
+        let strip = Strip::new(scenario, task);
+        let keep_clear = KeepClear::new(scenario);
         let no_room = |what, number: u32, count| LayoutError::NoRoom {
             task: task.name(),
             what,
@@ -75,13 +92,18 @@ impl Layout {
             count,
             tries: SAMPLING_TRIES,
         };
+        // Each thing has a stream of its own: one thing more leaves the others where they are.
+        let entity =
+            |i: u32| u64::from(task == Difficulty::Hard) << 63 | u64::from(attempt) << 32 | u64::from(i);
         for i in 0..debris {
-            let place = strip.draw(scenario.sampled.debris_radius_m, |at, radius| {
-                strip_clear(scenario, at, radius + scenario.sampled.gap_m)
-                    && self.debris.iter().all(|other| {
-                        let distance = debris_outline(other).distance_to(vector(at));
-                        f64::from(distance) >= radius + scenario.sampled.gap_m
-                    })
+            let mut draws = stream(seed, Purpose::SampledDebris, entity(i));
+            let gap = scenario.sampled.gap_m;
+            let place = strip.draw(&mut draws, scenario.sampled.debris_radius_m, |at, radius| {
+                keep_clear.allows(at, radius + gap)
+                    && self
+                        .debris
+                        .iter()
+                        .all(|other| f64::from(debris_outline(other).distance_to(vector(at))) >= radius + gap)
             });
             let (at, radius) = place.ok_or_else(|| no_room("debris", i, debris))?;
             self.debris.push(DebrisFile {
@@ -92,32 +114,41 @@ impl Layout {
             });
         }
         for i in 0..radiation {
+            let mut draws = stream(seed, Purpose::SampledRadiation, entity(i));
             let place = strip
-                .draw(scenario.sampled.zone_radius_m, |at, radius| strip_clear(scenario, at, radius + 0.5));
+                .draw(&mut draws, scenario.sampled.zone_radius_m, |at, radius| keep_clear.allows(at, radius));
             let (at, radius_m) = place.ok_or_else(|| no_room("radiation", i, radiation))?;
             self.zones.push(ZoneFile { at, radius_m });
         }
         Ok(())
     }
 
-    /// Every place that a mission needs can be reached from home by the largest ground robot.
+    /// Every place that a mission needs can be reached by the largest ground robot, from the first ground robot's home.
     fn check_passages(&self, scenario: &Scenario) -> Result<(), LayoutError> {
-        let planner = Planner::new(scenario);
-        let outlines: Vec<_> = self.debris.iter().map(debris_outline).collect();
-        let home = self.robots.first().map_or(Vector::ZERO, |robot| robot.home);
-        let places = [
-            ("the hard task", scenario.tasks.hard.center),
-            ("the easy task", scenario.tasks.easy.center),
-            ("the hard task's rest place", scenario.tasks.hard.rest),
-            ("the easy task's rest place", scenario.tasks.easy.rest),
+        let ground: Vec<&RobotStart> =
+            self.robots.iter().filter(|robot| robot.role != Role::Observer).collect();
+        let Some(first) = ground.first() else { return Ok(()) };
+        let mut places = vec![
+            ("the hard task", vector(scenario.tasks.hard.center)),
+            ("the easy task", vector(scenario.tasks.easy.center)),
         ];
-        for (to, place) in places {
-            if !planner.is_reachable(&outlines, home, vector(place)) {
-                let radius_m = scenario.ground_radius_m();
-                return Err(LayoutError::NoPassage { from: "home", to, radius_m });
-            }
+        let robots = self.robots.len() as u32;
+        for robot in &ground {
+            places.push(("a robot's home", robot.home));
+            places.push((
+                "the hard task's rest place",
+                rest_slot(scenario, Difficulty::Hard, robot.id, robots),
+            ));
+            places.push((
+                "the easy task's rest place",
+                rest_slot(scenario, Difficulty::Easy, robot.id, robots),
+            ));
         }
-        Ok(())
+        let outlines: Vec<_> = self.debris.iter().map(debris_outline).collect();
+        match Planner::new(scenario).first_unreachable(&outlines, first.home, &places) {
+            Some((to, _)) => Err(LayoutError::NoPassage { to, radius_m: scenario.ground_radius_m() }),
+            None => Ok(()),
+        }
     }
 }
 
@@ -138,17 +169,16 @@ fn robot_starts(scenario: &Scenario, seed: u64) -> Vec<RobotStart> {
         .collect()
 }
 
-/// The strip between home and a task, with the stream of draws for it.
+/// The strip between home and a task in which things are sampled.
 struct Strip {
     from: Point,
     along: Point,
     half_width: f64,
     arena: Point,
-    draws: rand::rngs::ChaCha8Rng,
 }
 
 impl Strip {
-    fn new(scenario: &ScenarioFile, task: Difficulty, seed: u64) -> Self {
+    fn new(scenario: &Scenario, task: Difficulty) -> Self {
         let from = scenario.team[0].center;
         let to = scenario.tasks.of(task).center;
         Self {
@@ -156,15 +186,19 @@ impl Strip {
             along: [to[0] - from[0], to[1] - from[1]],
             half_width: scenario.sampled.strip_m,
             arena: scenario.arena_m,
-            draws: stream(seed, Purpose::Layout, u64::from(task == Difficulty::Hard)),
         }
     }
 
     /// A place and a radius that are accepted, or nothing after many tries.
-    fn draw(&mut self, radii: [f64; 2], accept: impl Fn(Point, f64) -> bool) -> Option<(Point, f64)> {
+    fn draw(
+        &self,
+        draws: &mut ChaCha8Rng,
+        radii: [f64; 2],
+        accept: impl Fn(Point, f64) -> bool,
+    ) -> Option<(Point, f64)> {
         let length = libm::hypot(self.along[0], self.along[1]).max(1e-9);
         for _ in 0..SAMPLING_TRIES {
-            let [t, side, size] = [(); 3].map(|()| self.draws.random::<f64>());
+            let [t, side, size] = [(); 3].map(|()| draws.random::<f64>());
             let side = (2.0 * side - 1.0) * self.half_width / length;
             let radius = radii[0] + (radii[1] - radii[0]) * size;
             let at = [
@@ -180,19 +214,28 @@ impl Strip {
     }
 }
 
-/// No home, rest place or rescuee within `radius` metres.
-fn strip_clear(scenario: &Scenario, at: Point, radius: f64) -> bool {
-    let robots: u32 = scenario.team.iter().map(|row| row.count).sum();
-    let far = |other: Point, other_radius: f64| {
-        libm::hypot(at[0] - other[0], at[1] - other[1]) >= radius + other_radius
-    };
-    let point = |v: Vector| [f64::from(v.x), f64::from(v.y)];
-    let rests = Difficulty::ALL
-        .into_iter()
-        .flat_map(|task| (0..robots).map(move |i| rest_slot(scenario, task, RobotId(i), robots)));
-    scenario.team.iter().flat_map(row_positions).all(|home| far(home, scenario.ground_radius_m()))
-        && rests.into_iter().all(|slot| far(point(slot), scenario.ground_radius_m()))
-        && rescuee_positions(scenario).iter().all(|rescuee| far(point(rescuee.position), 0.0))
+/// Homes, places to rest and rescuees, each with the radius of what stands there.
+struct KeepClear(Vec<(Point, f64)>);
+
+impl KeepClear {
+    fn new(scenario: &Scenario) -> Self {
+        let robots: u32 = scenario.team.iter().map(|row| row.count).sum();
+        let radius = scenario.ground_radius_m();
+        let point = |v: Vector| [f64::from(v.x), f64::from(v.y)];
+        let mut places: Vec<(Point, f64)> =
+            scenario.team.iter().flat_map(row_positions).map(|home| (home, radius)).collect();
+        for task in Difficulty::ALL {
+            let slots = (0..robots).map(|i| rest_slot(scenario, task, RobotId(i), robots));
+            places.extend(slots.map(|slot| (point(slot), radius)));
+        }
+        places.extend(rescuee_positions(scenario).iter().map(|rescuee| (point(rescuee.position), 0.0)));
+        Self(places)
+    }
+
+    /// None of them within `radius` metres.
+    fn allows(&self, at: Point, radius: f64) -> bool {
+        self.0.iter().all(|(place, own)| libm::hypot(at[0] - place[0], at[1] - place[1]) >= radius + own)
+    }
 }
 
 fn vector(at: Point) -> Vector {

@@ -16,8 +16,10 @@ pub enum Purpose {
     HpLevel,
     /// Draws of the grouping policy in a round.
     Grouping,
-    /// Sampled debris and radiation zones near a task.
-    Layout,
+    /// One piece of sampled debris.
+    SampledDebris,
+    /// One sampled radiation zone.
+    SampledRadiation,
 }
 
 impl Purpose {
@@ -27,7 +29,8 @@ impl Purpose {
             Self::EnergyLevel => 1,
             Self::HpLevel => 2,
             Self::Grouping => 3,
-            Self::Layout => 4,
+            Self::SampledDebris => 4,
+            Self::SampledRadiation => 5,
         }
     }
 }

@@ -77,8 +77,9 @@ pub fn look_around(
             log.push(Event::ZoneDiscovered { robot: robot.id, zone: number as u32 });
         }
     }
-    for other in world.robots.iter().filter(|other| !other.is_able()) {
-        if !knowledge.wrecks[other.id.index()] && (other.position - robot.position).length() <= sensing {
+    for other in &world.robots {
+        let in_range = |at: Vector| (robot.position - at).length() <= sensing;
+        if !knowledge.wrecks[other.id.index()] && other.wreck_at.is_some_and(in_range) {
             knowledge.learn_wreck(world, other.id.index());
         }
     }

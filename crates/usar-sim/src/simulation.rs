@@ -10,11 +10,11 @@ use crate::ids::RobotId;
 use crate::layout::Layout;
 use crate::metrics::Metrics;
 use crate::mission::{Activity, Mission};
-use crate::planning::{Navigator, STANDING_MPS};
+use crate::planning::Navigator;
 use crate::record::{RobotRecord, Status, TrialRecord};
 use crate::scenario::{LayoutError, Scenario};
 use crate::vitals::{energy_cost, hp_cost};
-use crate::world::{Condition, World};
+use crate::world::{Condition, RescueeState, Robot, STANDING_MPS, World};
 
 /// The state is hashed once in this many steps, and at the end.
 const HASH_PERIOD_STEPS: u64 = 50;
@@ -116,6 +116,12 @@ impl<'a> Simulation<'a> {
         &self.mission
     }
 
+    /// The journeys of the robots as they are now.
+    #[must_use]
+    pub fn navigator(&self) -> &Navigator {
+        &self.navigator
+    }
+
     /// The events of the last step.
     #[must_use]
     pub fn events(&self) -> &[Event] {
@@ -130,15 +136,18 @@ impl<'a> Simulation<'a> {
         self.log.clear();
         self.mission.sense(&self.world, self.step, &mut self.log);
         self.mission.decide(&mut self.world, &mut self.navigator, self.policy, self.step, &mut self.log)?;
-        let mission = &self.mission;
-        self.navigator.plan(&self.world, |robot| mission.knowledge_of(robot), self.step);
+        self.metrics.listen(self.log.events(), &self.world, self.time_s());
+        let heard = self.log.events().len();
+        self.plan();
         self.resolve_and_drive();
         self.world.integrate();
         self.step += 1;
         self.expose();
         self.mission.settle(&mut self.world, &self.navigator, self.step, &mut self.log);
-        self.metrics.listen(self.log.events(), &self.world, self.time_s());
-        self.hash_state();
+        self.metrics.listen(&self.log.events()[heard..], &self.world, self.time_s());
+        if self.step.is_multiple_of(HASH_PERIOD_STEPS) {
+            self.hash_state();
+        }
         if self.world.physics.is_broken() {
             return Err(format!(
                 "the physics broke down at {:.2} s: a body's state is not finite",
@@ -146,6 +155,12 @@ impl<'a> Simulation<'a> {
             ));
         }
         Ok(())
+    }
+
+    fn plan(&mut self) {
+        let (mission, world) = (&self.mission, &self.world);
+        let speed_of = |robot: &Robot| mission.speed_of(robot, world);
+        self.navigator.plan(world, |robot| mission.knowledge_of(robot), speed_of, self.step);
     }
 
     /// Resolves conflicts, and lets each drive come as near to what it is told as its force allows.
@@ -216,19 +231,31 @@ impl<'a> Simulation<'a> {
     }
 
     fn hash_state(&mut self) {
-        if !self.step.is_multiple_of(HASH_PERIOD_STEPS) {
-            return;
-        }
         for robot in &self.world.robots {
             let places = [robot.position, robot.velocity].into_iter().flat_map(|v| [v.x, v.y]);
             places.for_each(|value| self.hash.update(&value.to_le_bytes()));
             [robot.energy, robot.hp].iter().for_each(|level| self.hash.update(&level.to_le_bytes()));
             self.hash.update(&(robot.load.len() as u32).to_le_bytes());
             self.hash.update(&robot.resources.to_le_bytes());
+            self.hash.update(&[robot.condition as u8]);
+        }
+        for piece in &self.world.debris {
+            let pose = &piece.outline.pose;
+            let values = [pose.translation.x, pose.translation.y, pose.rotation.cos(), pose.rotation.sin()];
+            values.iter().for_each(|value| self.hash.update(&value.to_le_bytes()));
+        }
+        for rescuee in &self.world.rescuees {
+            let state = match rescuee.state {
+                RescueeState::Waiting => u32::MAX,
+                RescueeState::Rescued => u32::MAX - 1,
+                RescueeState::OnBoard(robot) => robot.0,
+            };
+            self.hash.update(&state.to_le_bytes());
         }
     }
 
-    fn into_record(self, status: Status) -> TrialRecord {
+    fn into_record(mut self, status: Status) -> TrialRecord {
+        self.hash_state();
         let seconds = |steps: u64| steps as f64 * self.scenario.dt_s;
         let robots = self.world.robots.iter().zip(&self.tallies).map(|(robot, tally)| RobotRecord {
             robot: robot.id.0,

@@ -13,7 +13,8 @@ use usar_sim::simulation::Simulation;
 use super::load;
 use crate::failure::Failure;
 use crate::stats::Summary;
-use crate::sweep::{Outcome, TrialKey, folder, keys, run_all};
+use crate::sweep::folder::Draft;
+use crate::sweep::{Outcome, TrialKey, keys, run_all};
 use crate::table::policy_table;
 
 /// Compare policies over paired trials: the same initial levels for every policy
@@ -58,8 +59,8 @@ impl Arguments {
             .iter()
             .map(|name| policy_named(name, &scenario.rne).map_err(Failure::input))
             .collect::<Result<Vec<_>, _>>()?;
-        let target = folder::target(self.out.as_deref(), &scenario.name)?;
         self.check_layouts(&scenario)?;
+        let draft = Draft::new(self.out.as_deref(), &scenario.name)?;
 
         let keys = keys(&scenario);
         let jobs = self.jobs.map_or_else(default_jobs, |jobs| jobs as usize);
@@ -72,15 +73,15 @@ impl Arguments {
         )?;
         progress.finish_and_clear();
 
-        folder::write(&target, &text, &scenario, &outcomes)?;
         writeln!(
             out,
             "{}",
             policy_table(&scenario.sweep.policies, &Summary::of_all(&scenario.sweep.policies, &outcomes))
         )?;
         writeln!(out, "{}", footnote(&scenario))?;
+        let place = draft.publish(&text, &scenario, &outcomes)?;
         if !self.quiet {
-            eprintln!("results in {}", target.display());
+            eprintln!("results in {}", place.display());
         }
         let failed: Vec<String> = outcomes.iter().filter_map(Outcome::failure).collect();
         if failed.is_empty() { Ok(()) } else { Err(Failure::run(failed.join("\n"))) }
@@ -96,7 +97,7 @@ impl Arguments {
         file.sweep.first_seed = self.seed.unwrap_or(file.sweep.first_seed);
         Scenario::try_from(file).map_err(|problems| {
             let lines = problems.iter().map(|p| match p.field.starts_with("sweep.policies") {
-                true => format!("--policies: {}", p.found),
+                true => format!("--policies: {}, found {}", p.rule, p.found),
                 false => format!("{} {}, found {}", p.field, p.rule, p.found),
             });
             Failure::Input(lines.collect::<Vec<_>>().join("\n"))

@@ -1,6 +1,7 @@
 //! The folder of a sweep's results. It appears whole or not at all.
 
 use std::fs;
+use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use serde::Serialize;
@@ -11,78 +12,120 @@ use super::rows::{RobotRow, RoundRow, TrialRow};
 use crate::failure::Failure;
 use crate::provenance::Manifest;
 
-/// Where the results go: the folder that was asked for, or a new one under `results/`.
-///
-/// # Errors
-/// The folder that was asked for is there and not empty, or is a file.
-pub fn target(asked: Option<&Path>, name: &str) -> Result<PathBuf, Failure> {
-    match asked {
-        None => {
-            let base = Path::new("results");
-            let numbered = (2..).map(|n| base.join(format!("{name}-{n}")));
-            let mut candidates = std::iter::once(base.join(name)).chain(numbered);
-            candidates
-                .find(|path| !path.exists())
-                .ok_or_else(|| Failure::input("no free folder under results/"))
-        }
-        Some(path) => match fs::read_dir(path) {
-            Ok(mut entries) => match entries.next() {
-                None => Ok(path.to_owned()),
-                Some(_) => Err(Failure::input(format!(
-                    "--out: {} is not empty; nothing was overwritten",
-                    path.display()
-                ))),
-            },
-            Err(_) if path.exists() => {
-                Err(Failure::input(format!("--out: {} is a file, not a folder", path.display())))
+/// Results on their way to their folder: written beside it, and moved there in one go.
+pub struct Draft {
+    folder: tempfile::TempDir,
+    target: Target,
+}
+
+enum Target {
+    /// The folder that was asked for.
+    Asked(PathBuf),
+    /// `results/NAME`, or the first of `results/NAME-2`, `-3`, ... that is free when the results are there.
+    Next(PathBuf),
+}
+
+impl Draft {
+    /// Checks that the results will find their place before they are made.
+    ///
+    /// # Errors
+    /// The folder that was asked for is not empty or is a file, or the place cannot be written to.
+    pub fn new(asked: Option<&Path>, name: &str) -> Result<Self, Failure> {
+        let target = match asked {
+            Some(path) => Target::Asked(check_free(path)?.to_owned()),
+            None => Target::Next(Path::new("results").join(name)),
+        };
+        let path = match &target {
+            Target::Asked(path) | Target::Next(path) => path,
+        };
+        let parent = path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        let trouble = |error| Failure::input(format!("cannot write to {}: {error}", parent.display()));
+        fs::create_dir_all(parent).map_err(trouble)?;
+        let folder = tempfile::Builder::new().prefix(".usar-").tempdir_in(parent).map_err(trouble)?;
+        Ok(Self { folder, target })
+    }
+
+    /// Writes all files and moves them into place; returns where that is.
+    ///
+    /// # Errors
+    /// The disk does not take them. What was written is kept, and the error says where.
+    pub fn publish(self, given: &str, scenario: &Scenario, outcomes: &[Outcome]) -> Result<PathBuf, Failure> {
+        let files = files(given, scenario, outcomes)?;
+        let draft = self.folder.keep();
+        let place = || -> std::io::Result<PathBuf> {
+            for (name, content) in files {
+                let mut file = fs::File::create(draft.join(name))?;
+                file.write_all(&content)?;
+                file.sync_all()?;
             }
-            Err(_) => Ok(path.to_owned()),
-        },
+            make_readable(&draft)?;
+            match &self.target {
+                Target::Asked(path) => fs::rename(&draft, path).map(|()| path.clone()),
+                Target::Next(path) => rename_to_next_free(&draft, path),
+            }
+        };
+        place().map_err(|error| {
+            Failure::run(format!(
+                "cannot finish the results: {error}; what was written is in {}",
+                draft.display()
+            ))
+        })
     }
 }
 
-/// Writes all files into a folder beside the target, then moves it into place.
-///
-/// # Errors
-/// The disk does not take it.
-pub fn write(target: &Path, given: &str, scenario: &Scenario, outcomes: &[Outcome]) -> Result<(), Failure> {
-    let trouble = |error: std::io::Error| Failure::run(format!("cannot write {}: {error}", target.display()));
-    let parent = target.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    fs::create_dir_all(parent).map_err(trouble)?;
-    let draft = tempfile::Builder::new().prefix(".usar-").tempdir_in(parent).map_err(trouble)?;
+fn check_free(path: &Path) -> Result<&Path, Failure> {
+    if !path.exists() {
+        return Ok(path);
+    }
+    let entries = fs::read_dir(path)
+        .map_err(|_| Failure::input(format!("--out: {} is a file, not a folder", path.display())))?;
+    if entries.count() > 0 {
+        return Err(Failure::input(format!(
+            "--out: {} is not empty; nothing was overwritten",
+            path.display()
+        )));
+    }
+    Ok(path)
+}
 
+fn rename_to_next_free(draft: &Path, first: &Path) -> std::io::Result<PathBuf> {
+    let name = first.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    let numbered = (2..).map(|n| first.with_file_name(format!("{name}-{n}")));
+    for path in std::iter::once(first.to_owned()).chain(numbered).filter(|path| !path.exists()) {
+        match fs::rename(draft, &path) {
+            // Another sweep took it in the meantime.
+            Err(error) if error.kind() == std::io::ErrorKind::DirectoryNotEmpty => {}
+            result => return result.map(|()| path),
+        }
+    }
+    Err(std::io::Error::other("no free name is left"))
+}
+
+/// Temporary folders are private; results are not.
+fn make_readable(folder: &Path) -> std::io::Result<()> {
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt;
+        fs::set_permissions(folder, fs::Permissions::from_mode(0o755))?;
+    }
+    Ok(())
+}
+
+type File = (&'static str, Vec<u8>);
+
+fn files(given: &str, scenario: &Scenario, outcomes: &[Outcome]) -> Result<Vec<File>, Failure> {
     let resolved =
         ron::ser::to_string_pretty(&**scenario, ron::ser::PrettyConfig::new()).map_err(Failure::run)?;
-    let files = [
+    let mut files = vec![
         ("experiment.ron", given.as_bytes().to_vec()),
         ("resolved.ron", (resolved + "\n").into_bytes()),
         ("trials.csv", table(outcomes.iter().map(TrialRow::new))?),
         ("rounds.csv", table(outcomes.iter().flat_map(RoundRow::of))?),
         ("robots.csv", table(outcomes.iter().flat_map(RobotRow::of))?),
     ];
-    let manifest = Manifest::new(scenario, &files);
-    let manifest = serde_json::to_string_pretty(&manifest).map_err(Failure::run)? + "\n";
-    let all = files.into_iter().chain([("manifest.json", manifest.into_bytes())]);
-    for (name, content) in all {
-        let path = draft.path().join(name);
-        fs::write(&path, content).map_err(trouble)?;
-        fs::File::open(&path).and_then(|file| file.sync_all()).map_err(trouble)?;
-    }
-    let draft = draft.keep();
-    publish(&draft, target).map_err(|error| {
-        let _ = fs::remove_dir_all(&draft);
-        trouble(error)
-    })
-}
-
-fn publish(draft: &Path, target: &Path) -> std::io::Result<()> {
-    #[cfg(unix)]
-    {
-        // Temporary folders are private; results are not.
-        use std::os::unix::fs::PermissionsExt;
-        fs::set_permissions(draft, fs::Permissions::from_mode(0o755))?;
-    }
-    fs::rename(draft, target)
+    let manifest = serde_json::to_string_pretty(&Manifest::new(scenario, &files)).map_err(Failure::run)?;
+    files.push(("manifest.json", (manifest + "\n").into_bytes()));
+    Ok(files)
 }
 
 fn table<R: Serialize>(rows: impl Iterator<Item = R>) -> Result<Vec<u8>, Failure> {

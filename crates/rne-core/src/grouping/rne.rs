@@ -131,10 +131,12 @@ impl Rne {
             .collect();
         for (row, member) in rows.iter().zip(members) {
             let sum: f64 = row.iter().sum();
-            let source = match sum {
-                0.0 => NeedsError::AllZero { what: "weighted needs" },
-                sum if sum * rows.len() as f64 == f64::INFINITY => NeedsError::Overflow { found: sum },
-                _ => continue,
+            let source = if sum == 0.0 {
+                NeedsError::AllZero { what: "weighted needs" }
+            } else if !sum.is_normal() || !(sum * rows.len() as f64).is_finite() {
+                NeedsError::Overflow { found: sum }
+            } else {
+                continue;
             };
             return Err(GroupingError::Needs { id: member.id, source });
         }

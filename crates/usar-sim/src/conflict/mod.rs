@@ -2,7 +2,7 @@
 //!
 //! Robots whose next moves would bring them into each other's safety distance form a conflict set. The head of the set moves,
 //! passing the others at a tangent; the others yield until it is out of the set; then the next one is the head. A set in which nobody
-//! moves is deadlocked: its order is rotated, and after a full cycle without motion it backs off sideways.
+//! moves, or whose head moves but comes no nearer, is deadlocked: its order is rotated, and after a full cycle in vain it backs off sideways.
 //!
 //! Pure: positions and wishes in, directives out; the only state is the order of the sets that persist.
 
@@ -18,7 +18,7 @@ use crate::ids::RobotId;
 use crate::planning::KnownObstacle;
 use crate::scenario::ConflictRules;
 
-use deadlock::{ConflictSet, Verdict};
+use deadlock::{ConflictSet, Observation, Patience, Verdict};
 pub use passing::PASSING_RANGE_M;
 use passing::{Surroundings, passing_direction};
 use predict::{Neighbours, components, will_conflict};
@@ -82,25 +82,33 @@ impl Directive {
     }
 }
 
+/// How long a deadlocked set backs off, in seconds.
+const BACK_OFF_S: f64 = 1.0;
+
+/// How long the head of a set may move without coming nearer before it loses its turn, in seconds.
+const LIVELOCK_S: f64 = 1.0;
+
 /// The conflict resolver of one trial.
 pub struct Resolver {
     rules: ConflictRules,
-    back_off_steps: u32,
+    patience: Patience,
     sets: Vec<ConflictSet>,
     neighbours: Neighbours,
     directives: Vec<Directive>,
 }
 
-/// How long a deadlocked set backs off, in seconds.
-const BACK_OFF_S: f64 = 1.0;
-
 impl Resolver {
     /// No conflicts yet.
     #[must_use]
     pub fn new(rules: ConflictRules, dt: f64) -> Self {
+        let steps = |seconds: f64| (seconds / dt).round() as u32;
         Self {
             rules,
-            back_off_steps: (BACK_OFF_S / dt).round() as u32,
+            patience: Patience {
+                deadlock: rules.deadlock_steps,
+                livelock: steps(LIVELOCK_S),
+                back_off: steps(BACK_OFF_S),
+            },
             sets: Vec::new(),
             neighbours: Neighbours::default(),
             directives: Vec::new(),
@@ -109,103 +117,99 @@ impl Resolver {
 
     /// One directive for each mover, in their order.
     pub fn resolve(&mut self, movers: &[Mover], log: &mut EventLog) -> &[Directive] {
-        self.neighbours.find(movers, self.rules.horizon_s as f32);
         let (margin, horizon) = (self.rules.margin_m as f32, self.rules.horizon_s as f32);
-        let pairs = self
-            .neighbours
-            .pairs()
-            .iter()
-            .copied()
-            .filter(|(a, b)| will_conflict(&movers[*a], &movers[*b], margin, horizon));
-        let members = components(movers.len(), pairs);
-        self.carry_over(&members, movers, log);
+        self.neighbours.find(movers, margin, horizon);
+        let pairs = self.neighbours.pairs().iter().copied();
+        let conflicts = pairs.filter(|(a, b)| will_conflict(&movers[*a], &movers[*b], margin, horizon));
+        self.carry_over(&components(movers.len(), conflicts), movers, log);
 
         self.directives.clear();
         self.directives.resize(movers.len(), Directive::Stand);
-        let mut yielding = vec![false; movers.len()];
+        let verdicts: Vec<Verdict> = (0..self.sets.len()).map(|set| self.judge(set, movers, log)).collect();
+        let mut stands: Vec<bool> = movers.iter().map(|mover| !mover.wishes_to_move()).collect();
         for set in &self.sets {
-            set.order[1..].iter().for_each(|member| yielding[*member] = true);
+            set.order[1..].iter().for_each(|member| stands[*member] = true);
         }
-        for set in 0..self.sets.len() {
-            self.direct_set(set, movers, &yielding, log);
+        for i in 0..movers.len() {
+            if movers[i].wishes_to_move() && !stands[i] {
+                self.directives[i] = self.pass(i, movers, movers[i].wish, &stands);
+            }
         }
-        let in_set: Vec<bool> = flags(movers.len(), self.sets.iter().flat_map(|set| &set.order));
-        for (i, mover) in movers.iter().enumerate() {
-            if !in_set[i] && mover.wishes_to_move() {
-                self.directives[i] = self.passing(i, movers, &yielding);
+        for (set, verdict) in self.sets.iter().zip(verdicts) {
+            let backs_off = matches!(verdict, Verdict::BacksOff | Verdict::BackingOff);
+            let members = if backs_off { &set.order[..] } else { &set.order[1..] };
+            for i in members {
+                self.directives[*i] = if backs_off {
+                    let wish = back_off_wish(*i, &set.order, movers);
+                    Directive::BackOff(self.pass(*i, movers, wish, &stands).velocity())
+                } else {
+                    Directive::Yield { to: movers[set.order[0]].robot }
+                };
             }
         }
         &self.directives
     }
 
-    /// Keeps the order of the sets that persist; orders the new ones by priority.
+    /// Sets that share at least half their members with one of the last step are its continuation: whoever is head stays it until
+    /// it is out of the set. The others are new.
     fn carry_over(&mut self, members: &[Vec<usize>], movers: &[Mover], log: &mut EventLog) {
         let mut before = std::mem::take(&mut self.sets);
+        let priority = |i: usize| movers[i].priority;
         for members in members {
-            let known = before.iter().position(|set| set.has_members(members));
-            self.sets.push(known.map_or_else(
-                || {
-                    let robots = members.iter().map(|i| movers[*i].robot).collect();
-                    log.push(Event::ConflictStarted { robots });
-                    ConflictSet::new(members, |i| movers[i].priority)
-                },
-                |at| before.swap_remove(at),
-            ));
+            let known =
+                before.iter().position(|set| 2 * set.shared(members) >= members.len().max(set.order.len()));
+            if let Some(at) = known {
+                let mut set = before.remove(at);
+                set.regroup(members, priority);
+                self.sets.push(set);
+            } else {
+                log.push(Event::ConflictStarted { robots: robots(members, movers) });
+                self.sets.push(ConflictSet::new(members, priority));
+            }
         }
     }
 
-    fn direct_set(&mut self, set: usize, movers: &[Mover], yielding: &[bool], log: &mut EventLog) {
-        let moving = self.sets[set].order.iter().any(|i| movers[*i].velocity.length() > deadlock::STILL_MPS);
+    fn judge(&mut self, set: usize, movers: &[Mover], log: &mut EventLog) -> Verdict {
         let set = &mut self.sets[set];
-        let robots = |order: &[usize]| order.iter().map(|i| movers[*i].robot).collect();
-        let verdict = set.observe(moving, self.rules.deadlock_steps, self.back_off_steps);
+        let speeds = set.order.iter().map(|i| movers[*i].velocity.length());
+        let seen =
+            Observation { fastest: speeds.fold(0.0, f32::max), head_way_left: movers[set.order[0]].way_left };
+        let verdict = set.observe(seen, self.patience);
         match verdict {
-            Verdict::Rotated => log.push(Event::Deadlocked { robots: robots(&set.order) }),
-            Verdict::BacksOff => log.push(Event::BackedOff { robots: robots(&set.order) }),
+            Verdict::Rotated => log.push(Event::Deadlocked { robots: robots(&set.order, movers) }),
+            Verdict::BacksOff => log.push(Event::BackedOff { robots: robots(&set.order, movers) }),
             Verdict::Ordered | Verdict::BackingOff => {}
         }
-        let order = set.order.clone();
-        if matches!(verdict, Verdict::BacksOff | Verdict::BackingOff) {
-            for i in &order {
-                let velocity = deadlock::back_off_velocity(*i, &order, movers);
-                self.directives[*i] = Directive::BackOff(velocity);
-            }
-            return;
-        }
-        let head = order[0];
-        for i in &order[1..] {
-            self.directives[*i] = Directive::Yield { to: movers[head].robot };
-        }
-        let mut others_yield = yielding.to_vec();
-        others_yield[head] = false;
-        self.directives[head] = self.passing(head, movers, &others_yield);
+        verdict
     }
 
-    /// The way of a robot that has the right of way, past those that stand or yield.
-    fn passing(&self, i: usize, movers: &[Mover], yielding: &[bool]) -> Directive {
-        let me = &movers[i];
+    /// The way of a robot that has the right of way, past those that stand.
+    fn pass(&self, i: usize, movers: &[Mover], wish: Vector, stands: &[bool]) -> Directive {
+        let me = Mover { wish, ..movers[i] };
         let margin = self.rules.margin_m as f32;
-        let blockers = self
-            .neighbours
-            .of(i)
-            .iter()
-            .map(|j| (*j, &movers[*j]))
-            .filter(|(j, other)| other.aerial == me.aerial && (yielding[*j] || !other.wishes_to_move()));
+        let blockers = self.neighbours.of(i).iter().filter(|j| stands[**j]).map(|j| &movers[*j]);
         let surroundings = Surroundings {
             discs: blockers
-                .map(|(_, other)| (other.position - me.position, me.radius + other.radius + margin))
+                .map(|other| (other.position - me.position, me.radius + other.radius + margin))
                 .collect(),
             obstacles: me.obstacles,
         };
-        match passing_direction(me, &surroundings) {
-            Some(direction) => Directive::Proceed(direction * me.wish.length()),
+        match passing_direction(&me, &surroundings) {
+            Some(direction) => Directive::Proceed(direction * wish.length()),
             None => Directive::Blocked,
         }
     }
 }
 
-fn flags<'a>(count: usize, members: impl Iterator<Item = &'a usize>) -> Vec<bool> {
-    let mut flags = vec![false; count];
-    members.for_each(|i| flags[*i] = true);
-    flags
+/// Sideways and away from the middle of the set, at half the wished speed.
+fn back_off_wish(i: usize, order: &[usize], movers: &[Mover]) -> Vector {
+    let middle = order.iter().map(|j| movers[*j].position).sum::<Vector>() / order.len() as f32;
+    let me = &movers[i];
+    let away = (me.position - middle).normalize_or_zero();
+    let to_the_right = -me.wish.perp().normalize_or_zero();
+    (away + to_the_right).normalize_or(to_the_right) * (0.5 * me.wish.length())
+}
+
+fn robots(members: &[usize], movers: &[Mover]) -> Vec<RobotId> {
+    members.iter().map(|i| movers[*i].robot).collect()
 }

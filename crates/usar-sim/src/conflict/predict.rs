@@ -14,10 +14,10 @@ pub(super) struct Neighbours {
 
 impl Neighbours {
     /// Finds all pairs of one layer that could meet within the horizon or stand in each other's way.
-    pub(super) fn find(&mut self, movers: &[Mover], horizon: f32) {
+    pub(super) fn find(&mut self, movers: &[Mover], margin: f32, horizon: f32) {
         let fastest = movers.iter().map(|mover| mover.wish.length()).fold(0.0, f32::max);
         let largest = movers.iter().map(|mover| mover.radius).fold(0.0, f32::max);
-        let range = (2.0 * fastest * horizon).max(PASSING_RANGE_M) + 2.0 * largest + 1.0;
+        let range = (2.0 * fastest * horizon).max(PASSING_RANGE_M) + 2.0 * largest + margin;
         self.by_x.clear();
         self.by_x.extend(0..movers.len());
         self.by_x.sort_by(|a, b| movers[*a].position.x.total_cmp(&movers[*b].position.x).then(a.cmp(b)));

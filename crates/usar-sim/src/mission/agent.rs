@@ -58,6 +58,8 @@ pub struct Agent {
     pub muster: Vector,
     /// Energy and HP when the round began, unless it rested since.
     pub levels_at_start: Option<[f64; 2]>,
+    /// Whether it has rested since it last was in a group.
+    pub has_rested: bool,
     /// The most energy and HP that one round has cost it, in percent points.
     pub costliest_round: [f64; 2],
 }
@@ -71,6 +73,7 @@ impl Agent {
             sweep: Vec::new(),
             muster: Vector::ZERO,
             levels_at_start: None,
+            has_rested: false,
             costliest_round: [0.0; 2],
         }
     }

@@ -19,24 +19,32 @@ pub struct TaskArea {
     /// Upper right corner of the block of rescuees.
     block_max: Vector,
     margin: f32,
+    /// Distance of the first row of waiting places from the block.
+    muster_margin: f32,
     spacing: f32,
     home: Vector,
 }
 
 impl TaskArea {
-    /// The area of one task; waiting places are on the side that faces `home`.
+    /// The area of one task; waiting places are on the side that faces `home`. The area reaches as far as the waiting places of all
+    /// `robots`, so that whoever waits shares its resources.
     #[must_use]
-    pub fn new(scenario: &Scenario, task: Difficulty, home: Vector) -> Self {
+    pub fn new(scenario: &Scenario, task: Difficulty, home: Vector, robots: usize) -> Self {
         let file = scenario.tasks.of(task);
         let vector = |[x, y]: [f64; 2]| Vector::new(x as f32, y as f32);
         let (center, half) = (vector(file.center), vector(file.size_m) / 2.0);
-        Self {
+        let mut area = Self {
             block_min: center - half,
             block_max: center + half,
             margin: scenario.mission.area_margin_m as f32,
+            muster_margin: 0.6 * scenario.mission.area_margin_m as f32,
             spacing: 2.0 * scenario.ground_radius_m() as f32 + MUSTER_GAP_M,
             home,
-        }
+        };
+        let last = area.muster(robots.saturating_sub(1));
+        let beyond = (last - last.clamp(area.block_min, area.block_max)).abs().max_element();
+        area.margin = area.margin.max(beyond + area.spacing);
+        area
     }
 
     /// Whether a point lies in the area.
@@ -87,6 +95,13 @@ impl TaskArea {
         path
     }
 
+    /// The waiting place of the `rank`-th of `ranks` aerial members: side by side over the middle of the block.
+    #[must_use]
+    pub fn hover(&self, rank: usize, ranks: usize) -> Vector {
+        let aside = rank as f32 - (ranks.max(1) - 1) as f32 / 2.0;
+        self.center() + Vector::new(aside * self.spacing, 0.0)
+    }
+
     /// The waiting place of the `rank`-th member: rows in the margin, on the side that faces home.
     #[must_use]
     pub fn muster(&self, rank: usize) -> Vector {
@@ -98,7 +113,7 @@ impl TaskArea {
         let per_row = (2.0 * length / self.spacing).floor().max(1.0) as usize;
         let (row, place) = (rank / per_row, rank % per_row);
         let along = (place as f32 - (per_row - 1) as f32 / 2.0) * self.spacing;
-        let out = sign * (depth + 0.6 * self.margin + row as f32 * self.spacing);
+        let out = sign * (depth + self.muster_margin + row as f32 * self.spacing);
         self.center() + if facing_y { Vector::new(along, out) } else { Vector::new(out, along) }
     }
 }
@@ -113,6 +128,7 @@ mod tests {
             block_min: center - half,
             block_max: center + half,
             margin: 4.0,
+            muster_margin: 2.4,
             spacing: 1.6,
             home: Vector::new(40.0, 10.0),
         }

@@ -10,7 +10,7 @@ use rne_core::{Difficulty, Grouping, GroupingPolicy, Member, TaskPositions, Team
 
 pub use agent::{Activity, Agent};
 pub use area::TaskArea;
-pub use round::{FieldState, Fitness, is_fit, return_cause, turn_back_cause};
+pub use round::{FieldState, Fitness, return_cause, turn_back_cause, unfit_cause};
 
 use crate::event::{Event, EventLog, TurnBackCause};
 use crate::ids::{RescueeId, RobotId};
@@ -81,7 +81,7 @@ impl Mission {
             dt: scenario.dt_s,
             trial_seed,
             tasks: TaskPositions { easy: scenario.tasks.easy.center, hard: scenario.tasks.hard.center },
-            areas: Difficulty::ALL.map(|task| TaskArea::new(scenario, task, home)),
+            areas: Difficulty::ALL.map(|task| TaskArea::new(scenario, task, home, world.robots.len())),
             blocks: RescueeBlock::of(world),
             agents: vec![Agent::new(); world.robots.len()],
             groups: [Group::default(), Group::default()],
@@ -139,7 +139,12 @@ impl Mission {
         step: u64,
         log: &mut EventLog,
     ) -> Result<(), String> {
-        if !self.is_over && self.everybody_is_home(world) {
+        if !Self::has_carrier_left(world) {
+            self.is_over = true;
+            log.push(Event::MissionOver);
+            return Ok(());
+        }
+        if self.everybody_is_home(world) {
             self.end_round(world, log);
             self.begin_round(world, policy, log)?;
         }
@@ -158,6 +163,10 @@ impl Mission {
     fn everybody_is_home(&self, world: &World) -> bool {
         let home = |robot: &Robot| self.agents[robot.id.index()].activity == Activity::Home;
         world.robots.iter().filter(|robot| robot.is_able()).all(home)
+    }
+
+    fn has_carrier_left(world: &World) -> bool {
+        world.robots.iter().any(|robot| robot.is_able() && robot.can_carry())
     }
 
     /// Pools what the groups know, and notes what the round cost each robot.
@@ -185,12 +194,6 @@ impl Mission {
         policy: &dyn GroupingPolicy,
         log: &mut EventLog,
     ) -> Result<(), String> {
-        if !world.robots.iter().any(|robot| robot.is_able() && robot.can_carry()) {
-            self.is_over = true;
-            self.groups = [Group::default(), Group::default()];
-            log.push(Event::MissionOver);
-            return Ok(());
-        }
         self.round += 1;
         self.unreachable.fill(false);
         for robot in world.robots.iter_mut().filter(|robot| robot.is_able()) {
@@ -202,26 +205,24 @@ impl Mission {
         }
         let able: Vec<RobotId> =
             world.robots.iter().filter(|robot| robot.is_able()).map(|robot| robot.id).collect();
-        let (fit, unfit): (Vec<RobotId>, Vec<RobotId>) = able.into_iter().partition(|id| {
-            let (robot, agent) = (&world.robots[id.index()], &self.agents[id.index()]);
-            let costliest_round = agent.costliest_round;
-            is_fit(&self.rules, &Fitness { energy: robot.energy, hp: robot.hp, costliest_round })
-        });
+        let (mut fit, mut unfit) = (Vec::new(), Vec::new());
+        for id in able {
+            match self.unfit_cause(&world.robots[id.index()]) {
+                None => fit.push(id),
+                Some(cause) => unfit.push((id, cause)),
+            }
+        }
         let grouping = self.group(world, policy, &fit)?;
         let ids = |group: &[u32]| group.iter().map(|id| RobotId(*id)).collect::<Vec<_>>();
         let (hard, easy) = (ids(&grouping.hard), ids(&grouping.easy));
         log.push(Event::RoundStarted { round: self.round, hard: hard.clone(), easy: easy.clone() });
         self.send_out(Difficulty::Hard, hard, world);
         self.send_out(Difficulty::Easy, easy, world);
-        for id in unfit {
+        for (id, cause) in unfit {
             let robot = &world.robots[id.index()];
             let way = |task| (robot.rest_slot(task) - robot.position).length();
             let hard_is_nearer = way(Difficulty::Hard) < way(Difficulty::Easy);
-            let cause = if robot.energy < self.rules.energy_threshold {
-                TurnBackCause::Energy
-            } else {
-                TurnBackCause::Hp
-            };
+
             let agent = self.agent(id);
             agent.rest_at = if hard_is_nearer { Difficulty::Hard } else { Difficulty::Easy };
             agent.activity = Activity::ToRest;
@@ -229,6 +230,12 @@ impl Mission {
             log.push(Event::TurnedBack { robot: id, cause });
         }
         Ok(())
+    }
+
+    fn unfit_cause(&self, robot: &Robot) -> Option<TurnBackCause> {
+        let Agent { costliest_round, has_rested, .. } = self.agents[robot.id.index()];
+        let fitness = Fitness { energy: robot.energy, hp: robot.hp, costliest_round, has_rested };
+        unfit_cause(&self.rules, &fitness)
     }
 
     fn group(&self, world: &World, policy: &dyn GroupingPolicy, fit: &[RobotId]) -> Result<Grouping, String> {
@@ -272,10 +279,11 @@ impl Mission {
                 if robot.is_aerial() { (&mut aerial, flying) } else { (&mut ground, members.len() - flying) };
             let agent = &mut self.agents[id.index()];
             agent.task = Some(task);
+            agent.has_rested = false;
             agent.rest_at = task;
             agent.sweep = area.sweep(robot.observing_range() as f32, *rank, ranks);
             agent.sweep.reverse();
-            agent.muster = if robot.is_aerial() { area.center() } else { area.muster(*rank) };
+            agent.muster = if robot.is_aerial() { area.hover(*rank, ranks) } else { area.muster(*rank) };
             agent.activity = if at_work { Activity::Searching } else { Activity::Home };
             *rank += 1;
         }

@@ -39,6 +39,7 @@ impl Mission {
                     world.robots[id].energy = 100.0;
                     world.robots[id].hp = 100.0;
                     self.agents[id].activity = Activity::Returning;
+                    self.agents[id].has_rested = true;
                     log.push(Event::RestEnded { robot });
                 }
                 _ => {}

@@ -12,17 +12,24 @@ pub struct Fitness {
     pub hp: f64,
     /// The most energy and HP that one round has cost.
     pub costliest_round: [f64; 2],
+    /// Whether it has rested since it last was in a group: then it is as fit as it gets.
+    pub has_rested: bool,
 }
 
-/// Whether a robot is fit for a round; if not, it rests during that round.
+/// Why a robot must rest during the coming round, if it must.
 #[must_use]
-pub fn is_fit(rules: &MissionRules, robot: &Fitness) -> bool {
-    let fit = |level: f64, threshold: f64, rule: TurnBack, cost: f64| {
+pub fn unfit_cause(rules: &MissionRules, robot: &Fitness) -> Option<TurnBackCause> {
+    let low = |level: f64, threshold: f64, rule: TurnBack, cost: f64| {
         let expected = if rule == TurnBack::BeforeRound { level - cost } else { level };
-        level >= threshold && expected >= threshold || level >= 100.0
+        expected < threshold && !robot.has_rested
     };
-    fit(robot.energy, rules.energy_threshold, rules.energy_turn_back, robot.costliest_round[0])
-        && fit(robot.hp, rules.hp_threshold, rules.hp_turn_back, robot.costliest_round[1])
+    if low(robot.energy, rules.energy_threshold, rules.energy_turn_back, robot.costliest_round[0]) {
+        Some(TurnBackCause::Energy)
+    } else if low(robot.hp, rules.hp_threshold, rules.hp_turn_back, robot.costliest_round[1]) {
+        Some(TurnBackCause::Hp)
+    } else {
+        None
+    }
 }
 
 /// Why a robot in the field must leave for its rest place now, if it must. `way_cost` is the energy that the straight way to the
@@ -128,15 +135,17 @@ mod tests {
 
     #[test]
     fn a_robot_is_fit_for_a_round_above_the_thresholds_and_if_asked_for_its_cost() {
-        let fit = |rule, energy, cost| {
-            let robot = Fitness { energy, hp: 90.0, costliest_round: [cost, 0.0] };
-            is_fit(&rules(rule), &robot)
+        let cause = |rule, energy, cost, has_rested| {
+            let robot = Fitness { energy, hp: 90.0, costliest_round: [cost, 0.0], has_rested };
+            unfit_cause(&rules(rule), &robot)
         };
+        let fit = |rule, energy, cost| cause(rule, energy, cost, false).is_none();
         assert!(fit(TurnBack::AtOnce, 30.0, 50.0));
         assert!(!fit(TurnBack::AtOnce, 29.0, 0.0));
         assert!(!fit(TurnBack::WhenHome, 29.0, 0.0));
         assert!(!fit(TurnBack::BeforeRound, 60.0, 40.0));
         assert!(fit(TurnBack::BeforeRound, 75.0, 40.0));
-        assert!(fit(TurnBack::BeforeRound, 100.0, 90.0), "full is as fit as it gets");
+        assert_eq!(cause(TurnBack::BeforeRound, 98.0, 90.0, false), Some(TurnBackCause::Energy));
+        assert_eq!(cause(TurnBack::BeforeRound, 98.0, 90.0, true), None, "as fit as it gets");
     }
 }

@@ -1,7 +1,5 @@
 //! What a group knows of the world: shared by its members at once, pooled by the whole team at home.
 
-use parry2d::math::Vector;
-
 use super::obstacles::{KnownObstacle, ObstacleKey};
 use crate::world::{RadiationZone, World};
 
@@ -80,12 +78,12 @@ impl Knowledge {
 
     /// Takes note of a robot that stands for good.
     pub fn learn_wreck(&mut self, world: &World, number: usize) {
-        if !std::mem::replace(&mut self.wrecks[number], true) {
-            let robot = &world.robots[number];
-            if !robot.is_aerial() {
-                let (at, own): (Vector, f32) = (robot.position, robot.radius());
-                self.insert(KnownObstacle::wreck(number as u32, at, own, self.radius, self.clearance));
-            }
+        let robot = &world.robots[number];
+        let Some(at) = robot.wreck_at else { return };
+        if !std::mem::replace(&mut self.wrecks[number], true) && !robot.is_aerial() {
+            let obstacle =
+                KnownObstacle::wreck(number as u32, at, robot.radius(), self.radius, self.clearance);
+            self.insert(obstacle);
         }
     }
 

@@ -11,7 +11,7 @@ mod obstacles;
 mod route;
 
 pub use knowledge::Knowledge;
-pub use navigator::{Goal, Navigator, STANDING_MPS, Traveller};
+pub use navigator::{Goal, Navigator, Traveller};
 pub use obstacles::{KnownObstacle, ObstacleKey, contains as polygon_contains, crosses as polygon_crossed};
 pub use route::Route;
 
@@ -108,14 +108,19 @@ impl Planner {
         Some(best)
     }
 
-    /// Whether the largest ground robot can go from one point to another among these outlines.
+    /// The first of these places that the largest ground robot cannot reach from `from` among these outlines.
     #[must_use]
-    pub fn is_reachable(&self, outlines: &[Outline], from: Vector, to: Vector) -> bool {
-        let corners: Vec<Vec<Vector>> =
-            outlines.iter().map(|outline| outline.inflated(self.offset(false))).collect();
-        let free = |point| push_out(point, &corners, self.arena, self.offset(false));
-        let mesh = self.mesh(&corners, self.offset(false));
-        mesh.path(free(from), free(to)).is_some()
+    pub fn first_unreachable<'p, T>(
+        &self,
+        outlines: &[Outline],
+        from: Vector,
+        places: &'p [(T, Vector)],
+    ) -> Option<&'p (T, Vector)> {
+        let offset = self.offset(false);
+        let corners: Vec<Vec<Vector>> = outlines.iter().map(|outline| outline.inflated(offset)).collect();
+        let free = |point| push_out(point, &corners, self.arena, offset);
+        let mesh = mesh(self.arena, &corners, offset);
+        places.iter().find(|(_, to)| mesh.path(free(from), free(*to)).is_none())
     }
 
     /// Length of a route and the price of its exposure, in metres.
@@ -148,7 +153,7 @@ impl Planner {
             let key = (query.aerial, obstacles.iter().map(|o| o.key).collect(), closed.to_vec());
             waypoints.extend(self.shared_mesh(key, &corners, offset).path(from, to)?.path);
         } else {
-            waypoints.extend(self.mesh(&corners, offset).path(from, to)?.path);
+            waypoints.extend(mesh(self.arena, &corners, offset).path(from, to)?.path);
         }
         Some(Route::new(waypoints))
     }
@@ -158,20 +163,20 @@ impl Planner {
         if self.meshes.len() >= MAX_MESHES && !self.meshes.contains_key(&key) {
             self.meshes.clear();
         }
-        let mesh = if self.meshes.contains_key(&key) { None } else { Some(self.mesh(obstacles, offset)) };
-        self.meshes.entry(key).or_insert_with(|| mesh.expect("made above"))
+        let arena = self.arena;
+        self.meshes.entry(key).or_insert_with(|| mesh(arena, obstacles, offset))
     }
+}
 
-    /// The free plane among obstacles, as a navigation mesh.
-    fn mesh<P: AsRef<[Vector]>>(&self, obstacles: &[P], offset: f32) -> Mesh {
-        let (w, h) = (self.arena.x - offset, self.arena.y - offset);
-        let border = [[offset, offset], [w, offset], [w, h], [offset, h]].map(Vector::from);
-        let mut triangulation = Triangulation::from_outer_edges(&border);
-        triangulation.add_obstacles(obstacles.iter().map(|polygon| polygon.as_ref().to_vec()));
-        let mut mesh = triangulation.as_navmesh();
-        mesh.merge_polygons();
-        mesh.bake();
-        mesh.set_search_delta(0.01);
-        mesh
-    }
+/// The free plane among obstacles, as a navigation mesh.
+fn mesh<P: AsRef<[Vector]>>(arena: Vector, obstacles: &[P], offset: f32) -> Mesh {
+    let (w, h) = (arena.x - offset, arena.y - offset);
+    let border = [[offset, offset], [w, offset], [w, h], [offset, h]].map(Vector::from);
+    let mut triangulation = Triangulation::from_outer_edges(&border);
+    triangulation.add_obstacles(obstacles.iter().map(|polygon| polygon.as_ref().to_vec()));
+    let mut mesh = triangulation.as_navmesh();
+    mesh.merge_polygons();
+    mesh.bake();
+    mesh.set_search_delta(0.01);
+    mesh
 }

@@ -6,7 +6,7 @@ use super::obstacles::{KnownObstacle, crosses};
 use super::{Knowledge, Planner, Query, Route};
 use crate::ids::RobotId;
 use crate::scenario::Scenario;
-use crate::world::{Robot, World};
+use crate::world::{Robot, STANDING_MPS, World};
 
 /// A robot checks this often, in steps, that the way to its next waypoint is still free.
 const ROUTE_CHECK_STEPS: u64 = 25;
@@ -17,9 +17,6 @@ const DETOUR_AFTER_S: f64 = 4.0;
 
 /// Standing robots within this distance are planned round then, in metres.
 const DETOUR_RANGE_M: f32 = 8.0;
-
-/// A robot slower than this stands, in metres per second.
-pub const STANDING_MPS: f32 = 0.05;
 
 /// Coming nearer by less than this is no progress, in metres.
 const PROGRESS_M: f32 = 0.05;
@@ -40,7 +37,7 @@ pub struct Goal {
 }
 
 /// The journey of one robot.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone)]
 pub struct Traveller {
     goal: Option<Goal>,
     route: Option<Route>,
@@ -55,6 +52,18 @@ pub struct Traveller {
 }
 
 impl Traveller {
+    fn to(goal: Option<Goal>) -> Self {
+        Self {
+            goal,
+            route: None,
+            is_planned: false,
+            revision: 0,
+            best_length: f32::INFINITY,
+            stalled_steps: 0,
+            longest_stall_steps: 0,
+        }
+    }
+
     /// Whether the robot has somewhere to go.
     #[must_use]
     pub fn goal(&self) -> Option<Goal> {
@@ -75,6 +84,12 @@ impl Traveller {
             || self.route.as_ref().is_some_and(|route| near(route.end(), ROUTE_END_M))
     }
 
+    /// Steps since the robot last came nearer to its goal.
+    #[must_use]
+    pub fn stalled_steps(&self) -> u64 {
+        self.stalled_steps
+    }
+
     /// Whether a route was looked for in vain.
     #[must_use]
     pub fn leads_nowhere(&self) -> bool {
@@ -82,8 +97,8 @@ impl Traveller {
     }
 
     fn set_route(&mut self, route: Option<Route>, position: Vector, fresh: bool) {
-        if fresh {
-            self.best_length = route.as_ref().map_or(f32::INFINITY, |route| route.length(position));
+        if let Some(route) = route.as_ref().filter(|_| fresh) {
+            self.best_length = route.length(position);
             self.stalled_steps = 0;
         }
         self.route = route;
@@ -116,7 +131,7 @@ impl Navigator {
     pub fn new(scenario: &Scenario, robots: usize) -> Self {
         Self {
             planner: Planner::new(scenario),
-            travellers: vec![Traveller::default(); robots],
+            travellers: vec![Traveller::to(None); robots],
             detour_steps: (DETOUR_AFTER_S / scenario.dt_s).round() as u64,
             clearance: scenario.planning.clearance_m as f32,
         }
@@ -133,12 +148,19 @@ impl Navigator {
         let traveller = &mut self.travellers[robot.index()];
         if traveller.goal != goal {
             let longest_stall_steps = traveller.longest_stall_steps;
-            *traveller = Traveller { goal, longest_stall_steps, ..Traveller::default() };
+            *traveller = Traveller { longest_stall_steps, ..Traveller::to(goal) };
         }
     }
 
-    /// Plans where a robot has no route yet, where new knowledge cuts it or makes it dearer, or where it leads nowhere.
-    pub fn plan<'k>(&mut self, world: &World, knowledge_of: impl Fn(RobotId) -> &'k Knowledge, step: u64) {
+    /// Plans where a robot has no route yet, where new knowledge cuts it or makes it dearer, or where it leads nowhere. `speed_of` is a
+    /// robot's present top speed, in metres per second.
+    pub fn plan<'k>(
+        &mut self,
+        world: &World,
+        knowledge_of: impl Fn(RobotId) -> &'k Knowledge,
+        speed_of: impl Fn(&Robot) -> f64,
+        step: u64,
+    ) {
         for robot in &world.robots {
             let traveller = &mut self.travellers[robot.id.index()];
             let Some(goal) = traveller.goal else { continue };
@@ -165,9 +187,10 @@ impl Navigator {
             };
             traveller.revision = knowledge.revision;
             if replan || !traveller.is_planned {
-                let fresh = learned || traveller.route.is_none();
+                let fresh = learned || !traveller.is_planned;
                 let in_the_way = if stalled { self.standing_near(world, robot) } else { Vec::new() };
-                let route = self.find_route(robot, goal, knowledge, &in_the_way);
+                let route =
+                    self.find_route(robot, goal.point, speed_of(robot) as f32, (knowledge, &in_the_way));
                 self.travellers[robot.id.index()].set_route(route, robot.position, fresh);
             }
         }
@@ -176,15 +199,15 @@ impl Navigator {
     fn find_route(
         &mut self,
         robot: &Robot,
-        goal: Goal,
-        knowledge: &Knowledge,
-        in_the_way: &[KnownObstacle],
+        to: Vector,
+        speed: f32,
+        (knowledge, in_the_way): (&Knowledge, &[KnownObstacle]),
     ) -> Option<Route> {
         let query = Query {
             from: robot.position,
-            to: goal.point,
+            to,
             aerial: robot.is_aerial(),
-            speed: robot.speed() as f32,
+            speed,
             obstacles: knowledge.obstacles(),
             in_the_way,
             zones: knowledge.known_zones(),

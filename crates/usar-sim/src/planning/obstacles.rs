@@ -99,7 +99,25 @@ pub(super) fn push_out<P: AsRef<[Vector]>>(
         };
         point = inside_arena(nearest_outside(polygon.as_ref(), point));
     }
-    point
+    nearest_free_corner(point, polygons, inside_arena)
+}
+
+/// Between overlapping obstacles pushing goes to and fro: then the nearest corner that lies outside all others is taken.
+fn nearest_free_corner<P: AsRef<[Vector]>>(
+    point: Vector,
+    polygons: &[P],
+    inside_arena: impl Fn(Vector) -> Vector,
+) -> Vector {
+    let corners = polygons.iter().flat_map(|polygon| {
+        let polygon = polygon.as_ref();
+        let middle = polygon.iter().copied().sum::<Vector>() / polygon.len() as f32;
+        polygon.iter().map(move |corner| *corner + (*corner - middle).normalize_or_zero() * PUSH_OUT_M)
+    });
+    corners
+        .filter(|corner| inside_arena(*corner) == *corner)
+        .filter(|corner| !polygons.iter().any(|polygon| contains(polygon.as_ref(), *corner)))
+        .min_by(|a, b| (*a - point).length_squared().total_cmp(&(*b - point).length_squared()))
+        .unwrap_or(point)
 }
 
 /// The nearest point outside a convex polygon to a point inside it.
@@ -144,6 +162,10 @@ mod tests {
         let arena = Vector::new(10.0, 10.0);
         let out = push_out(Vector::new(2.0, 1.2), &[square()], arena, 0.5);
         assert!(!contains(&square(), out) && (out - Vector::new(2.0, 1.0)).length() < 0.03, "{out}");
+        let other = [[2.5, 1.0], [4.5, 1.0], [4.5, 3.0], [2.5, 3.0]].map(Vector::from).to_vec();
+        let overlapping = [square(), other];
+        let out = push_out(Vector::new(2.75, 2.0), &overlapping, arena, 0.5);
+        assert!(!overlapping.iter().any(|polygon| contains(polygon, out)), "{out}");
         let free = Vector::new(6.0, 6.0);
         assert_eq!(push_out(free, &[square()], arena, 0.5), free);
         assert!(push_out(Vector::new(-1.0, 5.0), &[square()], arena, 0.5).x >= 0.5);

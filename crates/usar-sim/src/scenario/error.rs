@@ -90,11 +90,9 @@ pub enum LayoutError {
     },
     /// Debris and walls leave no way for the largest ground robot.
     #[error(
-        "debris leaves no way from {from} to {to} that is wide enough for a robot of radius {radius_m} m with clearance"
+        "debris leaves no way from home to {to} that is wide enough for a robot of radius {radius_m} m with clearance"
     )]
     NoPassage {
-        /// Where from.
-        from: &'static str,
         /// Where to.
         to: &'static str,
         /// Radius of the largest ground robot, in metres.

@@ -11,7 +11,7 @@ pub(super) struct FieldLines {
 impl FieldLines {
     /// Walks the whole text.
     pub(super) fn of(text: &str) -> Self {
-        let mut walker = Walker { text: text.as_bytes(), at: 0, lines: Vec::new() };
+        let mut walker = Walker { text: text.as_bytes(), at: 0, breaks: 0, counted: 0, lines: Vec::new() };
         walker.value("");
         Self { lines: walker.lines }
     }
@@ -31,12 +31,22 @@ impl FieldLines {
 struct Walker<'a> {
     text: &'a [u8],
     at: usize,
+    /// Line breaks before `counted`.
+    breaks: usize,
+    counted: usize,
     lines: Vec<(String, usize)>,
 }
 
 impl Walker<'_> {
     fn peek(&self) -> Option<u8> {
         self.text.get(self.at).copied()
+    }
+
+    /// The line of the present position.
+    fn line(&mut self) -> usize {
+        self.breaks += self.text[self.counted..self.at].iter().filter(|b| **b == b'\n').count();
+        self.counted = self.at;
+        1 + self.breaks
     }
 
     fn starts_with(&self, what: &[u8]) -> bool {
@@ -132,7 +142,7 @@ impl Walker<'_> {
                 }
                 Some(b',') => self.at += 1,
                 Some(_) => {
-                    let line = 1 + self.text[..self.at].iter().filter(|b| **b == b'\n').count();
+                    let line = self.line();
                     let entry = match self.field_name() {
                         Some(name) if path.is_empty() => name,
                         Some(name) => format!("{path}.{name}"),

@@ -272,6 +272,17 @@ fn policies(check: &mut Checker, file: &ScenarioFile) {
         let rule = format!("must have {} entries ({})", NEED_NAMES.len(), NEED_NAMES.join(", "));
         check.fail("rne.weights", rule, weights.len());
     }
+    let weights = file.rne.weights.clone().unwrap_or_else(|| vec![1.0; NEED_NAMES.len()]);
+    for row in &file.team {
+        let spec = file.roles.of(row.role);
+        let (resources, capacity) = (f64::from(spec.resources), f64::from(spec.capacity));
+        let needs =
+            [spec.hp, spec.speed_mps, spec.sensing_m, spec.energy, resources, capacity, spec.observing_m];
+        if needs.iter().zip(&weights).all(|(need, weight)| need * weight == 0.0) {
+            let rule = format!("must weigh a need that a {} has", row.role.name());
+            check.fail("rne.weights", rule, format!("{weights:?}"));
+        }
+    }
 }
 
 /// No home on another home of its layer, nor inside debris (observers fly over it).

@@ -85,7 +85,11 @@ impl Debris {
     pub(super) fn moved_to(&mut self, pose: Pose) {
         self.outline.pose = pose;
         let seen = &self.sightings[self.sightings.len() - 1].pose;
-        if (seen.translation - pose.translation).length_squared() > NOTICED_MOVE_M * NOTICED_MOVE_M {
+        let arm = self.outline.shape.compute_local_bounding_sphere().radius;
+        let turned =
+            Vector::new(pose.rotation.cos() - seen.rotation.cos(), pose.rotation.sin() - seen.rotation.sin());
+        let moved = (seen.translation - pose.translation).length() + arm * turned.length();
+        if moved > NOTICED_MOVE_M {
             self.sightings.push(self.outline.clone());
         }
     }

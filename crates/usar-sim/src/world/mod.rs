@@ -14,6 +14,9 @@ use crate::layout::Layout;
 use crate::physics::Physics;
 use crate::scenario::Scenario;
 
+/// A robot slower than this stands, in metres per second.
+pub const STANDING_MPS: f32 = 0.05;
+
 /// The state of everything that is in the arena.
 pub struct World {
     /// Rigid bodies.
@@ -48,6 +51,9 @@ impl World {
         self.physics.integrate();
         for robot in &mut self.robots {
             (robot.position, robot.velocity) = self.physics.robot_motion(robot.id);
+            if !robot.is_able() && robot.wreck_at.is_none() && robot.velocity.length() < STANDING_MPS {
+                robot.wreck_at = Some(robot.position);
+            }
         }
         for (piece, pose) in self.debris.iter_mut().zip(self.physics.debris_poses()) {
             if let Some(pose) = pose {

@@ -46,6 +46,8 @@ pub struct Robot {
     pub load: Vec<RescueeId>,
     /// Whether it can still act.
     pub condition: Condition,
+    /// Where it came to stand for good, once it can no longer act.
+    pub wreck_at: Option<Vector>,
     health_floor: f64,
 }
 
@@ -68,6 +70,7 @@ impl Robot {
             resources: 0,
             load: Vec::new(),
             condition: Condition::Able,
+            wreck_at: None,
             health_floor: scenario.mission.health_floor,
         }
     }

@@ -5,21 +5,16 @@ use std::process::{Command, Output};
 
 use serde_json::Value;
 
-use crate::support::{paper_text, root};
-
-/// The program, built beside the test.
 fn usar(arguments: &[&str], folder: &Path) -> Output {
-    let program = program();
-    Command::new(program).args(arguments).current_dir(folder).output().expect("usar runs")
+    Command::new(env!("CARGO_BIN_EXE_usar")).args(arguments).current_dir(folder).output().expect("usar runs")
 }
 
-/// `target/<profile>/usar`: cargo builds the binaries of all workspace members before it runs tests of the workspace.
-fn program() -> PathBuf {
-    let test = std::env::current_exe().unwrap();
-    let program =
-        test.parent().and_then(Path::parent).unwrap().join(format!("usar{}", std::env::consts::EXE_SUFFIX));
-    assert!(program.exists(), "{} is not there: run `cargo test` for the whole workspace", program.display());
-    program
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).ancestors().nth(2).unwrap().to_owned()
+}
+
+fn paper_text() -> String {
+    std::fs::read_to_string(root().join("scenarios/paper.ron")).unwrap()
 }
 
 fn json(arguments: &[&str]) -> Value {
