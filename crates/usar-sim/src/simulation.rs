@@ -181,6 +181,7 @@ impl<'a> Simulation<'a> {
                     velocity: robot.velocity,
                     wish,
                     way_left: route.map_or(0.0, |route| route.length(robot.position)),
+                    leg_left: route.map_or(0.0, |route| (route.ahead()[0] - robot.position).length()),
                     radius: robot.radius(),
                     priority: PriorityKey { energy: robot.energy, robot: robot.id },
                     obstacles: if robot.is_aerial() {

@@ -39,6 +39,8 @@ pub struct Mover<'a> {
     pub wish: Vector,
     /// Way that is left to its goal, in metres.
     pub way_left: f32,
+    /// Way that is left to its next waypoint, in metres.
+    pub leg_left: f32,
     /// Radius, in metres.
     pub radius: f32,
     /// Its claim to the right of way.
@@ -87,6 +89,12 @@ const BACK_OFF_S: f64 = 1.0;
 
 /// How long the head of a set may move without coming nearer before it loses its turn, in seconds.
 const LIVELOCK_S: f64 = 1.0;
+
+/// Where there is no way past at the full margin, robots squeeze past at this one, in metres.
+const SQUEEZE_MARGIN_M: f32 = 0.03;
+
+/// Share of the wished speed at which robots squeeze past.
+const SQUEEZE_SPEED: f32 = 0.4;
 
 /// The conflict resolver of one trial.
 pub struct Resolver {
@@ -186,16 +194,18 @@ impl Resolver {
     /// The way of a robot that has the right of way, past those that stand.
     fn pass(&self, i: usize, movers: &[Mover], wish: Vector, stands: &[bool]) -> Directive {
         let me = Mover { wish, ..movers[i] };
-        let margin = self.rules.margin_m as f32;
         let blockers = self.neighbours.of(i).iter().filter(|j| stands[**j]).map(|j| &movers[*j]);
-        let surroundings = Surroundings {
-            discs: blockers
-                .map(|other| (other.position - me.position, me.radius + other.radius + margin))
-                .collect(),
+        let mut surroundings = Surroundings {
+            discs: blockers.map(|other| (other.position - me.position, me.radius + other.radius)).collect(),
+            margin: self.rules.margin_m as f32,
             obstacles: me.obstacles,
         };
+        if let Some(direction) = passing_direction(&me, &surroundings) {
+            return Directive::Proceed(direction * wish.length());
+        }
+        surroundings.margin = surroundings.margin.min(SQUEEZE_MARGIN_M);
         match passing_direction(&me, &surroundings) {
-            Some(direction) => Directive::Proceed(direction * wish.length()),
+            Some(direction) => Directive::Proceed(direction * wish.length() * SQUEEZE_SPEED),
             None => Directive::Blocked,
         }
     }

@@ -16,8 +16,10 @@ const LEAST_ADVANCE: f32 = -0.3;
 
 /// What a robot has to pass.
 pub(super) struct Surroundings<'a> {
-    /// Centres relative to the robot and safety distances of the robots that stand or yield.
+    /// Centres relative to the robot, and distances at which they touch, of the robots that stand or yield.
     pub(super) discs: Vec<(Vector, f32)>,
+    /// Distance to keep from them beyond touching, in metres.
+    pub(super) margin: f32,
     /// Debris that it knows.
     pub(super) obstacles: &'a [KnownObstacle],
 }
@@ -25,7 +27,8 @@ pub(super) struct Surroundings<'a> {
 impl Surroundings<'_> {
     /// Whether a robot at `from` can go `range` metres in a direction.
     fn is_free(&self, from: Vector, direction: Vector, range: f32) -> bool {
-        let clear_of_discs = self.discs.iter().all(|(center, distance)| {
+        let clear_of_discs = self.discs.iter().all(|(center, touch)| {
+            let distance = touch + self.margin;
             if center.length_squared() < distance * distance {
                 return direction.dot(*center) <= 0.02 * center.length(); // already too close: not nearer
             }
@@ -43,13 +46,14 @@ impl Surroundings<'_> {
 /// The free direction nearest to the wished one: the wish itself, or a tangent of one of the discs. `None` where nothing is free.
 pub(super) fn passing_direction(me: &Mover, surroundings: &Surroundings) -> Option<Vector> {
     let wish = me.wish.normalize_or_zero();
-    let range = PASSING_RANGE_M.min(me.way_left);
-    let near = |(center, distance): &&(Vector, f32)| center.length() < range + distance;
+    let range = PASSING_RANGE_M.min(me.leg_left); // the route bends there
+    let margin = surroundings.margin;
+    let near = |(center, touch): &&(Vector, f32)| center.length() < range + touch + margin;
     if surroundings.discs.iter().find(near).is_none() {
         return Some(wish); // the route already keeps clear of debris
     }
     let tangents =
-        surroundings.discs.iter().filter(near).flat_map(|(center, distance)| tangents(*center, *distance));
+        surroundings.discs.iter().filter(near).flat_map(|(center, touch)| tangents(*center, touch + margin));
     std::iter::once(wish)
         .chain(tangents)
         .filter(|direction| direction.dot(wish) > LEAST_ADVANCE)
@@ -81,6 +85,7 @@ mod tests {
             velocity: Vector::ZERO,
             wish: wish.into(),
             way_left: 10.0,
+            leg_left: 10.0,
             radius: 0.4,
             priority: PriorityKey { energy: 50.0, robot: RobotId(0) },
             obstacles: &[],
@@ -89,7 +94,7 @@ mod tests {
 
     fn pass(discs: &[([f32; 2], f32)]) -> Option<Vector> {
         let discs = discs.iter().map(|(center, radius)| (Vector::from(*center), *radius)).collect();
-        passing_direction(&mover([1.0, 0.0]), &Surroundings { discs, obstacles: &[] })
+        passing_direction(&mover([1.0, 0.0]), &Surroundings { discs, margin: 0.0, obstacles: &[] })
     }
 
     #[test]

@@ -109,6 +109,7 @@ mod tests {
             velocity: Vector::ZERO,
             wish: wish.into(),
             way_left: 10.0,
+            leg_left: 10.0,
             radius: 0.4,
             priority: PriorityKey { energy: 50.0, robot: RobotId(id) },
             obstacles: &[],
