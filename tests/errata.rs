@@ -77,7 +77,7 @@ fn example_2_distributions() {
 #[test]
 fn example_2_trust_in_g1_comes_from_rounded_shares() {
     close(trust(R1, G1), 0.001_021_780_791_560_237_4, 1e-12);
-    close(raw_sum(&digits(R1, rounded_4), &digits(G1, rounded_4), ln), 0.000915, 5e-7);
+    close(raw_sum(&digits(R1, rounded_4), &digits(G1, rounded_4), ln), 0.000_915, 5e-7);
 }
 
 #[test]
@@ -85,7 +85,7 @@ fn example_2_trust_in_g2_comes_from_rounded_shares() {
     close(trust(R1, G2), 0.007_766_973_877_978_922, 1e-12);
     let from_rounded = raw_sum(&digits(R1, rounded_4), &digits(G2, rounded_4), ln);
     close(from_rounded, 0.007_670_31, 5e-9);
-    close(from_rounded, 0.007674, 5e-6);
+    close(from_rounded, 0.007_674, 5e-6);
     assert!(trust(R1, G1) < trust(R1, G2), "R1 trusts G1 more, as the paper says");
 }
 

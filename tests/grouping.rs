@@ -240,6 +240,9 @@ fn rne_merges_as_brute_force_does() {
     }
 }
 
+/// A number of one robot.
+type Level<'a> = &'a dyn Fn(&Member) -> f64;
+
 /// The other hard rules, from their definitions.
 #[test]
 fn each_hard_rule_sends_the_group_that_it_names() {
@@ -250,7 +253,7 @@ fn each_hard_rule_sends_the_group_that_it_names() {
         };
         let maximum = |k: usize| members.iter().map(|m| m.needs.values()[k]).fold(0.0, f64::max);
         let capability = |m: &Member| (0..7).map(|k| m.needs.values()[k] / maximum(k)).sum::<f64>();
-        let rules: [(HardRule, &dyn Fn(&Member) -> f64); 3] = [
+        let rules: [(HardRule, Level); 3] = [
             (HardRule::MeanEnergy, &|m| m.energy_level.unwrap()),
             (HardRule::MeanHp, &|m| m.hp_level.unwrap()),
             (HardRule::Capability, &capability),

@@ -83,7 +83,7 @@ fn infinite_rne_is_said_and_not_printed_as_a_number() {
 #[test]
 fn bad_needs_are_refused() {
     let trust = |weights, from, to, message| {
-        refused(&["trust", "--weights", weights, "--from", from, "--to", to], message)
+        refused(&["trust", "--weights", weights, "--from", from, "--to", to], message);
     };
     trust("6,4,2", "86,120", "20,30,10", "--from: needs must have 3 entries, found 2");
     trust("6,4,2", "86,-1,30", "20,30,10", "--from: needs[1] must be a finite number >= 0, found -1");

@@ -1,6 +1,6 @@
 //! Relative entropy between distributions, its symmetric relatives, and mutual information (paper: Eqs. 1, 2 and 7).
 //!
-//! Checked against SciPy 1.17 (`scipy.stats.entropy`, `scipy.spatial.distance.jensenshannon` squared). All in nats.
+//! Checked against `SciPy` 1.17 (`scipy.stats.entropy`, `scipy.spatial.distance.jensenshannon` squared). All in nats.
 
 use nalgebra::DMatrix;
 

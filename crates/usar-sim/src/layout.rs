@@ -198,8 +198,8 @@ impl Strip {
     ) -> Option<(Point, f64)> {
         let length = libm::hypot(self.along[0], self.along[1]).max(1e-9);
         for _ in 0..SAMPLING_TRIES {
-            let [t, side, size] = [(); 3].map(|()| draws.random::<f64>());
-            let side = (2.0 * side - 1.0) * self.half_width / length;
+            let [t, u, size] = [(); 3].map(|()| draws.random::<f64>());
+            let side = (2.0 * u - 1.0) * self.half_width / length;
             let radius = radii[0] + (radii[1] - radii[0]) * size;
             let at = [
                 self.from[0] + t * self.along[0] - side * self.along[1],

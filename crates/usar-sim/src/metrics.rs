@@ -77,20 +77,17 @@ impl Metrics {
 
     /// Charges what a robot spent in this step.
     pub fn charge(&mut self, robot: usize, energy: f64, hp: f64) {
-        match self.task_of[robot] {
-            Some(task) => {
-                let totals = &mut self.tasks[task_index(task)];
-                totals.energy += energy;
-                totals.hp += hp;
-                if let Some(round) = self.current(task) {
-                    round.energy += energy;
-                    round.hp += hp;
-                }
+        if let Some(task) = self.task_of[robot] {
+            let totals = &mut self.tasks[task_index(task)];
+            totals.energy += energy;
+            totals.hp += hp;
+            if let Some(round) = self.current(task) {
+                round.energy += energy;
+                round.hp += hp;
             }
-            None => {
-                self.ungrouped[0] += energy;
-                self.ungrouped[1] += hp;
-            }
+        } else {
+            self.ungrouped[0] += energy;
+            self.ungrouped[1] += hp;
         }
     }
 

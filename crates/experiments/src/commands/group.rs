@@ -195,10 +195,11 @@ fn point(flag: &str, text: &str) -> Result<[f64; 2], Failure> {
 /// Reads the table; says all that is wrong with it at once.
 fn read_team(path: &Path) -> Result<Vec<Member>, Failure> {
     let shown = path.display();
-    let text = std::fs::read_to_string(path).map_err(|error| match path.is_dir() {
-        true => Failure::input(format!("{shown}: is a folder, not a table")),
-        false => Failure::input(format!("{shown}: cannot be read: {error}")),
-    })?;
+    if path.is_dir() {
+        return Err(Failure::input(format!("{shown}: is a folder, not a table")));
+    }
+    let text = std::fs::read_to_string(path)
+        .map_err(|error| Failure::input(format!("{shown}: cannot be read: {error}")))?;
     let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(text.as_bytes());
     let header = reader.headers().map_err(|error| Failure::input(format!("{shown}: {error}")))?.clone();
     let column = |name: &str| header.iter().position(|found| found == name);

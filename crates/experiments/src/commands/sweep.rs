@@ -7,7 +7,7 @@ use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 use rne_core::{GroupingPolicy, policy_named};
 use usar_sim::layout::Layout;
-use usar_sim::scenario::Scenario;
+use usar_sim::scenario::{Problem, SampledCounts, Scenario};
 use usar_sim::simulation::Simulation;
 
 use super::load;
@@ -96,18 +96,19 @@ impl Arguments {
         file.sweep.trials = self.trials.unwrap_or(file.sweep.trials);
         file.sweep.first_seed = self.seed.unwrap_or(file.sweep.first_seed);
         Scenario::try_from(file).map_err(|problems| {
-            let lines = problems.iter().map(|p| match p.field.starts_with("sweep.policies") {
-                true => format!("--policies: {}, found {}", p.rule, p.found),
-                false => format!("{} {}, found {}", p.field, p.rule, p.found),
-            });
+            let line = |p: &Problem| {
+                let name = if p.field.starts_with("sweep.policies") { "--policies:" } else { &p.field };
+                format!("{name} {}, found {}", p.rule, p.found)
+            };
+            let lines = problems.iter().map(line);
             Failure::Input(lines.collect::<Vec<_>>().join("\n"))
         })
     }
 
     /// Draws every layout before the first trial runs, so that a scenario without room fails at once.
     fn check_layouts(&self, scenario: &Scenario) -> Result<(), Failure> {
-        let drawn =
-            scenario.sampled.hard != Default::default() || scenario.sampled.easy != Default::default();
+        let drawn = scenario.sampled.hard != SampledCounts::default()
+            || scenario.sampled.easy != SampledCounts::default();
         let trials = if drawn { scenario.sweep.trials } else { 1 };
         for trial in 0..trials {
             let seed = scenario.sweep.first_seed.wrapping_add(u64::from(trial));

@@ -45,9 +45,8 @@ impl Outcome {
     /// Why the trial cannot be used, in one sentence.
     #[must_use]
     pub fn failure(&self) -> Option<String> {
-        let reason = match &self.result {
-            Ok(TrialRecord { status: Status::Failed(reason), .. }) | Err(reason) => reason,
-            Ok(_) => return None,
+        let (Ok(TrialRecord { status: Status::Failed(reason), .. }) | Err(reason)) = &self.result else {
+            return None;
         };
         let TrialKey { policy_name, trial, seed, .. } = &self.key;
         Some(format!("trial {trial} of {policy_name} (seed {seed}) failed: {reason}"))

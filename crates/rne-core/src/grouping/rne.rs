@@ -242,7 +242,9 @@ fn scale_by_maximum(weights: &mut [f64], members: &[Member]) {
 fn half_of(side: &[usize], of_role: &[usize], rows: &[Vec<f64>]) -> Half {
     let members: Vec<usize> = side.iter().map(|i| of_role[*i]).collect();
     let mut sum = vec![0.0; rows[0].len()];
-    members.iter().for_each(|i| add(&mut sum, &rows[*i]));
+    for i in &members {
+        add(&mut sum, &rows[*i]);
+    }
     Half { members, sum }
 }
 

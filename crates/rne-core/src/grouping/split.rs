@@ -194,8 +194,7 @@ fn best_ranked_start(rows: &[Vec<f64>], scorer: &mut Scorer) -> Vec<bool> {
     let sizes = [rows.len() / 2, rows.len() - rows.len() / 2];
     let mut best = (f64::NEG_INFINITY, Vec::new());
     for need in 0..rows[0].len() {
-        let mut ranked: Vec<usize> = (0..rows.len()).collect();
-        ranked.sort_by(|a, b| shares[*b][need].total_cmp(&shares[*a][need]).then(a.cmp(b)));
+        let ranked = ranked_by_share(&shares, need);
         for size in sizes {
             let mut in_first = vec![false; rows.len()];
             ranked[..size].iter().for_each(|i| in_first[*i] = true);
@@ -207,6 +206,13 @@ fn best_ranked_start(rows: &[Vec<f64>], scorer: &mut Scorer) -> Vec<bool> {
         }
     }
     best.1
+}
+
+/// Robots by their share of a need, the largest first.
+fn ranked_by_share(shares: &[Vec<f64>], need: usize) -> Vec<usize> {
+    let mut ranked: Vec<usize> = (0..shares.len()).collect();
+    ranked.sort_by(|a, b| shares[*b][need].total_cmp(&shares[*a][need]).then(a.cmp(b)));
+    ranked
 }
 
 fn half_sums(rows: &[Vec<f64>], in_first: &[bool]) -> [Vec<f64>; 2] {

@@ -131,6 +131,10 @@ impl Mission {
     ///
     /// # Errors
     /// The policy fails, or does not put each robot into exactly one group.
+    #[expect(
+        clippy::too_many_arguments,
+        reason = "the step's parts are lent one by one; a struct of them would only rename this list"
+    )]
     pub fn decide(
         &mut self,
         world: &mut World,
@@ -384,12 +388,12 @@ impl Mission {
                 self.agent(id).activity = Activity::Searching;
             }
             Activity::Searching | Activity::Standby if self.groups[task_index(task)].at_work => {
-                if (step + id.0 as u64).is_multiple_of(SENSING_PERIOD_STEPS) && robot.free_capacity() > 0 {
-                    if let Some(rescuee) = self.nearest_available(task, id, world) {
-                        world.rescuees[rescuee.index()].claimed_by = Some(id);
-                        self.agent(id).activity = Activity::Approaching(rescuee);
-                        return;
-                    }
+                let looks_for_work =
+                    (step + id.0 as u64).is_multiple_of(SENSING_PERIOD_STEPS) && robot.free_capacity() > 0;
+                if looks_for_work && let Some(rescuee) = self.nearest_available(task, id, world) {
+                    world.rescuees[rescuee.index()].claimed_by = Some(id);
+                    self.agent(id).activity = Activity::Approaching(rescuee);
+                    return;
                 }
                 self.go_on_searching(id, &world.robots[id.index()], navigator);
             }

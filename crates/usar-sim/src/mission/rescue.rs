@@ -19,11 +19,12 @@ impl Mission {
             }
             let arrived = || navigator.traveller(robot).has_arrived(world.robots[id].position);
             match self.agents[id].activity {
-                Activity::Approaching(rescuee) if self.can_reach(robot, rescuee, world) => {
-                    if self.resource_holder(robot, world).is_some() {
-                        let done = step + self.steps(self.rules.loading_s);
-                        self.agents[id].activity = Activity::Loading(rescuee, done);
-                    }
+                Activity::Approaching(rescuee)
+                    if self.can_reach(robot, rescuee, world)
+                        && self.resource_holder(robot, world).is_some() =>
+                {
+                    let done = step + self.steps(self.rules.loading_s);
+                    self.agents[id].activity = Activity::Loading(rescuee, done);
                 }
                 Activity::Loading(rescuee, done) if step >= done => self.load(robot, rescuee, world, log),
                 Activity::Returning if arrived() => {

@@ -51,12 +51,14 @@ impl KnownObstacle {
 }
 
 /// Whether a convex polygon (anticlockwise) holds a point.
+#[must_use]
 pub fn contains(polygon: &[Vector], point: Vector) -> bool {
     edges(polygon).all(|(a, b)| (b - a).perp_dot(point - a) >= 0.0)
 }
 
 /// Whether the way from `a` to `b` leads through the inside of a convex polygon (anticlockwise): clips the way by each edge
 /// (Cyrus and Beck) and asks whether more than a grazing touch is left.
+#[must_use]
 pub fn crosses(polygon: &[Vector], a: Vector, b: Vector) -> bool {
     const GRAZE_M: f32 = 1.0e-3;
     let way = b - a;

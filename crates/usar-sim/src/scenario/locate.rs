@@ -44,7 +44,8 @@ impl Walker<'_> {
 
     /// The line of the present position.
     fn line(&mut self) -> usize {
-        self.breaks += self.text[self.counted..self.at].iter().filter(|b| **b == b'\n').count();
+        let new = String::from_utf8_lossy(&self.text[self.counted..self.at]);
+        self.breaks += new.matches('\n').count();
         self.counted = self.at;
         1 + self.breaks
     }

@@ -163,7 +163,7 @@ const REST_GAP_M: f64 = 0.8;
 /// A robot's own place at a task's rest place: a square block around its centre, in order of ids.
 #[must_use]
 pub fn rest_slot(scenario: &Scenario, task: Difficulty, robot: RobotId, robots: u32) -> Vector {
-    let columns = (1..).find(|c| c * c >= robots).unwrap_or(1);
+    let columns = robots.isqrt() + u32::from(robots.isqrt().pow(2) < robots);
     let rows = robots.div_ceil(columns);
     let spacing = 2.0 * scenario.ground_radius_m().max(scenario.aerial_radius_m()) + REST_GAP_M;
     let offset = |i: u32, count: u32| spacing * (f64::from(i) - f64::from(count - 1) / 2.0);
