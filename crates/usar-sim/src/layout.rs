@@ -199,11 +199,11 @@ impl Strip {
         let length = libm::hypot(self.along[0], self.along[1]).max(1e-9);
         for _ in 0..SAMPLING_TRIES {
             let [t, u, size] = [(); 3].map(|()| draws.random::<f64>());
-            let side = (2.0 * u - 1.0) * self.half_width / length;
+            let aside = (2.0 * u - 1.0) * self.half_width / length;
             let radius = radii[0] + (radii[1] - radii[0]) * size;
             let at = [
-                self.from[0] + t * self.along[0] - side * self.along[1],
-                self.from[1] + t * self.along[1] + side * self.along[0],
+                self.from[0] + t * self.along[0] - aside * self.along[1],
+                self.from[1] + t * self.along[1] + aside * self.along[0],
             ];
             let inside = (0..2).all(|k| at[k] >= radius && at[k] <= self.arena[k] - radius);
             if inside && accept(at, radius) {

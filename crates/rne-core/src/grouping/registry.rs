@@ -10,7 +10,7 @@ use crate::error::GroupingError;
 
 type Make = fn(&RneOptions) -> Result<Box<dyn GroupingPolicy>, GroupingError>;
 
-const POLICIES: [(&str, Make); 5] = [
+const POLICIES: &[(&str, Make)] = &[
     ("RNE", |options| Ok(Box::new(Rne::new(options.clone())?))),
     ("DIS", |_| Ok(Box::new(Distance))),
     ("ENG", |_| Ok(Box::new(Energy))),
