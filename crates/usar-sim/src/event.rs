@@ -151,16 +151,42 @@ pub enum Event {
         /// The conflict set.
         robots: Vec<RobotId>,
     },
-    /// A conflict set stood still.
+    /// A conflict set came to nothing: nobody moved, or its head came no nearer. One of the next three solves it.
     Deadlocked {
         /// The conflict set, in order of precedence.
         robots: Vec<RobotId>,
     },
-    /// A deadlocked set backs off sideways.
+    /// A robot in the way of one with the right of way goes to where that one can pass.
+    MadeRoom {
+        /// The robot that makes room.
+        robot: RobotId,
+        /// The robot for which it makes room.
+        room_for: RobotId,
+    },
+    /// Another member of a deadlocked set has the right of way.
+    TurnPassed {
+        /// The conflict set, in its new order of precedence.
+        robots: Vec<RobotId>,
+    },
+    /// A deadlocked set backs off sideways: each of its members was head in vain.
     BackedOff {
         /// The conflict set.
         robots: Vec<RobotId>,
     },
+    /// A robot was where its errand led it.
+    ErrandDone {
+        /// The robot.
+        robot: RobotId,
+    },
+    /// A robot gave up on a place to which it knows no way: the rescuee, the errand or the rest place there.
+    Unreachable {
+        /// The robot.
+        robot: RobotId,
+        /// The place, in metres.
+        place: [f32; 2],
+    },
+    /// All errands are done or given up.
+    ErrandsOver,
     /// No robot that can carry is left.
     MissionOver,
 }

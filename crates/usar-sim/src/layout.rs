@@ -66,6 +66,9 @@ impl Layout {
             for task in Difficulty::ALL {
                 layout.sample_near(scenario, task, trial_seed, attempt)?;
             }
+            if !scenario.errands.is_empty() {
+                return Ok(layout); // an errand that leads nowhere is found out by the robot
+            }
             match layout.check_passages(scenario) {
                 Ok(()) => return Ok(layout),
                 Err(error) => blocked = Some(error),
@@ -153,18 +156,23 @@ impl Layout {
 }
 
 fn robot_starts(scenario: &Scenario, seed: u64) -> Vec<RobotStart> {
-    let homes = scenario.team.iter().flat_map(|row| row_positions(row).map(|at| (row.role, at)));
+    let homes = scenario.team.iter().flat_map(|row| row_positions(row).map(move |at| (row, at)));
     let level = |purpose, robot: u32, Normal { mean, sd }: Normal| {
         normal(&mut stream(seed, purpose, u64::from(robot)), mean, sd).clamp(LEAST_LEVEL, 100.0)
     };
     homes
         .zip(0..)
-        .map(|((role, home), id)| RobotStart {
+        .map(|((row, home), id)| RobotStart {
             id: RobotId(id),
-            role,
+            role: row.role,
             home: vector(home),
-            energy: level(Purpose::EnergyLevel, id, scenario.initial_levels.energy),
-            hp: level(Purpose::HpLevel, id, scenario.initial_levels.hp),
+            energy: row.levels.map_or_else(
+                || level(Purpose::EnergyLevel, id, scenario.initial_levels.energy),
+                |levels| levels.energy,
+            ),
+            hp: row
+                .levels
+                .map_or_else(|| level(Purpose::HpLevel, id, scenario.initial_levels.hp), |levels| levels.hp),
         })
         .collect()
 }

@@ -62,8 +62,18 @@ pub struct Metrics {
     pub turned_back: u32,
     /// Conflict sets that formed.
     pub conflicts: u32,
-    /// Times that a set stood still and its order was rotated, or it backed off.
+    /// Times that a conflict set came to nothing.
     pub deadlocks: u32,
+    /// Times that the turn passed to another member of a deadlocked set.
+    pub rotations: u32,
+    /// Times that a robot made room for another.
+    pub retreats: u32,
+    /// Times that a deadlocked set backed off.
+    pub back_offs: u32,
+    /// Errands done.
+    pub errands_done: u32,
+    /// Places that robots gave up on.
+    pub unreachable: u32,
     /// The task of each robot's group in the current round.
     task_of: Vec<Option<Difficulty>>,
 }
@@ -130,7 +140,12 @@ impl Metrics {
                     }
                 }
                 Event::ConflictStarted { .. } => self.conflicts += 1,
-                Event::Deadlocked { .. } | Event::BackedOff { .. } => self.deadlocks += 1,
+                Event::Deadlocked { .. } => self.deadlocks += 1,
+                Event::TurnPassed { .. } => self.rotations += 1,
+                Event::MadeRoom { .. } => self.retreats += 1,
+                Event::BackedOff { .. } => self.back_offs += 1,
+                Event::ErrandDone { .. } => self.errands_done += 1,
+                Event::Unreachable { .. } => self.unreachable += 1,
                 _ => {}
             }
         }

@@ -3,6 +3,7 @@
 use rne_core::Role;
 use serde::Serialize;
 
+use crate::conflict::Delay;
 use crate::metrics::{RoundRecord, TaskTotals};
 
 /// How a trial ended.
@@ -12,6 +13,8 @@ pub enum Status {
     Completed,
     /// No robot that can carry was left before the time was over.
     NoCarrierLeft,
+    /// All errands were done or given up before the time was over.
+    ErrandsOver,
     /// Something went wrong; the numbers are those up to then and must not be used.
     Failed(String),
 }
@@ -23,6 +26,7 @@ impl Status {
         match self {
             Self::Completed => "completed",
             Self::NoCarrierLeft => "no_carrier_left",
+            Self::ErrandsOver => "errands_over",
             Self::Failed(_) => "failed",
         }
     }
@@ -53,6 +57,8 @@ pub struct RobotRecord {
     pub waiting_s: f64,
     /// The longest time in which it had somewhere to go and did not come nearer, in seconds.
     pub longest_stall_s: f64,
+    /// What held it up at the end of that time, and whom it waited for.
+    pub stall: Delay,
     /// Whether it ended stranded (energy 0).
     pub stranded: bool,
     /// Whether it ended disabled (HP 0).
@@ -88,8 +94,18 @@ pub struct TrialRecord {
     pub turned_back: u32,
     /// Conflict sets that formed.
     pub conflicts: u32,
-    /// Times that a conflict set stood still.
+    /// Times that a conflict set came to nothing.
     pub deadlocks: u32,
+    /// Times that the turn passed to another member of a deadlocked set.
+    pub rotations: u32,
+    /// Times that a robot made room for another.
+    pub retreats: u32,
+    /// Times that a deadlocked set backed off.
+    pub back_offs: u32,
+    /// Errands done, in a scenario with errands.
+    pub errands_done: u32,
+    /// Places that robots gave up on, because they knew no way there.
+    pub unreachable: u32,
     /// Hash chain over the trajectories and levels, 32 hexadecimal digits: equal hashes, equal trials.
     pub state_hash: String,
 }

@@ -4,15 +4,15 @@ use parry2d::math::Vector;
 use rne_core::GroupingPolicy;
 use xxhash_rust::xxh3::Xxh3;
 
-use crate::conflict::{Directive, Mover, PriorityKey, Resolver};
+use crate::conflict::{Delay, DelayCause, Directive, Mover, PriorityKey, Resolver};
 use crate::event::{Event, EventLog};
-use crate::ids::RobotId;
+
 use crate::layout::Layout;
 use crate::metrics::Metrics;
-use crate::mission::{Activity, Mission};
-use crate::planning::Navigator;
+use crate::mission::{Activity, Ending, Mission};
+use crate::planning::{Navigator, PLANNED_BRAKING, Traveller};
 use crate::record::{RobotRecord, Status, TrialRecord};
-use crate::scenario::{LayoutError, Scenario};
+use crate::scenario::{LayoutError, PriorityRule, Scenario};
 use crate::vitals::{energy_cost, hp_cost};
 use crate::world::{Condition, RescueeState, Robot, STANDING_MPS, World};
 
@@ -42,6 +42,8 @@ struct Tally {
     spent: [f64; 2],
     distance_m: f64,
     waiting_steps: u64,
+    delay: Delay,
+    stalled_longest: (u64, Delay),
 }
 
 impl<'a> Simulation<'a> {
@@ -65,7 +67,7 @@ impl<'a> Simulation<'a> {
             step: 0,
             mission: Mission::new(scenario, &world, seed),
             navigator: Navigator::new(scenario, world.robots.len()),
-            resolver: Resolver::new(scenario.conflicts, scenario.dt_s),
+            resolver: Resolver::new(scenario),
             metrics: Metrics::new(world.robots.len()),
             log: EventLog::default(),
             tallies: tallies.collect(),
@@ -89,8 +91,11 @@ impl<'a> Simulation<'a> {
     }
 
     fn ending(&self) -> Option<Status> {
-        if self.mission.is_over {
-            Some(Status::NoCarrierLeft)
+        if let Some(ending) = self.mission.ending {
+            Some(match ending {
+                Ending::NoCarrierLeft => Status::NoCarrierLeft,
+                Ending::ErrandsOver => Status::ErrandsOver,
+            })
         } else if self.step >= self.scenario.steps() {
             Some(Status::Completed)
         } else {
@@ -120,6 +125,11 @@ impl<'a> Simulation<'a> {
     #[must_use]
     pub fn navigator(&self) -> &Navigator {
         &self.navigator
+    }
+
+    /// Why each robot does not move on, as far as it does not; by id.
+    pub fn delays(&self) -> impl Iterator<Item = Delay> + '_ {
+        self.tallies.iter().map(|tally| tally.delay)
     }
 
     /// The events of the last step.
@@ -166,40 +176,22 @@ impl<'a> Simulation<'a> {
     /// Resolves conflicts, and lets each drive come as near to what it is told as its force allows.
     fn resolve_and_drive(&mut self) {
         let (world, mission, navigator) = (&self.world, &self.mission, &self.navigator);
-        let movers: Vec<Mover> = world
-            .robots
-            .iter()
-            .map(|robot| {
-                let speed = mission.speed_of(robot, world) as f32;
-                let wish =
-                    if robot.is_able() { navigator.preferred_velocity(robot, speed) } else { Vector::ZERO };
-                let route = navigator.traveller(robot.id).route();
-                Mover {
-                    robot: robot.id,
-                    aerial: robot.is_aerial(),
-                    position: robot.position,
-                    velocity: robot.velocity,
-                    wish,
-                    way_left: route.map_or(0.0, |route| route.length(robot.position)),
-                    leg_left: route.map_or(0.0, |route| (route.ahead()[0] - robot.position).length()),
-                    radius: robot.radius(),
-                    priority: PriorityKey { energy: robot.energy, robot: robot.id },
-                    obstacles: if robot.is_aerial() {
-                        &[]
-                    } else {
-                        mission.knowledge_of(robot.id).obstacles()
-                    },
-                }
-            })
-            .collect();
-        let directives = self.resolver.resolve(&movers, &mut self.log);
-        for ((mover, directive), tally) in movers.iter().zip(directives).zip(&mut self.tallies) {
-            let spec = &self.world.robots[mover.robot.index()].spec;
-            let greatest_change = (spec.acceleration_mps2 * self.scenario.dt_s) as f32;
-            let change = (directive.velocity() - mover.velocity).clamp_length_max(greatest_change);
-            self.world.physics.drive(mover.robot, change);
-            tally.waiting_steps +=
-                u64::from(matches!(directive, Directive::Yield { .. } | Directive::Blocked));
+        let rule = self.scenario.conflicts.priority;
+        let mut movers: Vec<Mover> =
+            world.robots.iter().map(|robot| mover(robot, rule, (world, mission, navigator))).collect();
+        let directives = self.resolver.resolve(&mut movers, &mut self.log);
+        for ((robot, directive), tally) in self.world.robots.iter().zip(directives).zip(&mut self.tallies) {
+            let greatest_change = (robot.spec.acceleration_mps2 * self.scenario.dt_s) as f32;
+            let change = (directive.velocity() - robot.velocity).clamp_length_max(greatest_change);
+            self.world.physics.drive(robot.id, change);
+
+            let traveller = self.navigator.traveller(robot.id);
+            let activity = self.mission.agents[robot.id.index()].activity;
+            tally.note_delay(Delay {
+                cause: delay_cause(robot, activity, traveller, *directive),
+                waits_for: directive.waits_for(),
+            });
+            tally.note_stall(traveller.stalled_steps());
         }
     }
 
@@ -269,7 +261,8 @@ impl<'a> Simulation<'a> {
             hp_lost: tally.spent[1],
             distance_m: tally.distance_m,
             waiting_s: seconds(tally.waiting_steps),
-            longest_stall_s: seconds(self.longest_stall_steps(robot.id)),
+            longest_stall_s: seconds(tally.stalled_longest.0),
+            stall: tally.stalled_longest.1,
             stranded: robot.condition == Condition::Stranded,
             disabled: robot.condition == Condition::Disabled,
         });
@@ -287,12 +280,79 @@ impl<'a> Simulation<'a> {
             turned_back: self.metrics.turned_back,
             conflicts: self.metrics.conflicts,
             deadlocks: self.metrics.deadlocks,
+            rotations: self.metrics.rotations,
+            retreats: self.metrics.retreats,
+            back_offs: self.metrics.back_offs,
+            errands_done: self.metrics.errands_done,
+            unreachable: self.metrics.unreachable,
             state_hash: format!("{:032x}", self.hash.digest128()),
             rounds: self.metrics.rounds,
         }
     }
 
-    fn longest_stall_steps(&self, robot: RobotId) -> u64 {
-        self.navigator.traveller(robot).longest_stall_steps
+    }
+
+impl Tally {
+    fn note_delay(&mut self, delay: Delay) {
+        self.waiting_steps += u64::from(delay.cause.is_waiting());
+        self.delay = delay;
+    }
+
+    fn note_stall(&mut self, steps: u64) {
+        if steps > self.stalled_longest.0 {
+            self.stalled_longest = (steps, self.delay);
+        }
+    }
+}
+
+/// A robot as the resolver sees it.
+fn mover<'s>(
+    robot: &Robot,
+    rule: PriorityRule,
+    (world, mission, navigator): (&World, &'s Mission, &'s Navigator),
+) -> Mover<'s> {
+    let speed = mission.speed_of(robot, world) as f32;
+    let wish = if robot.is_able() { navigator.preferred_velocity(robot, speed) } else { Vector::ZERO };
+    let route = navigator.traveller(robot.id).route();
+    let agent = &mission.agents[robot.id.index()];
+    let is_busy = matches!(agent.activity, Activity::Loading(..) | Activity::Resting(_));
+    Mover {
+        robot: robot.id,
+        aerial: robot.is_aerial(),
+        position: robot.position,
+        velocity: robot.velocity,
+        wish,
+        way_left: route.map_or(0.0, |route| route.length(robot.position)),
+        leg_left: route.map_or(0.0, |route| (route.ahead()[0] - robot.position).length()),
+        route: route.map_or(&[], |route| route.ahead()),
+        trail: navigator.trail(robot.id),
+        radius: robot.radius(),
+        speed,
+        braking: PLANNED_BRAKING * robot.spec.acceleration_mps2 as f32,
+        priority: PriorityKey::new(rule, robot.id, agent.task, [robot.energy, robot.hp]),
+        obstacles: if robot.is_aerial() { &[] } else { mission.knowledge_of(robot.id).obstacles() },
+        can_make_room: robot.is_able() && !is_busy,
+    }
+}
+
+/// Why a robot does not move on, as far as it does not.
+fn delay_cause(robot: &Robot, activity: Activity, traveller: &Traveller, directive: Directive) -> DelayCause {
+    match robot.condition {
+        Condition::Stranded => return DelayCause::Stranded,
+        Condition::Disabled => return DelayCause::Disabled,
+        Condition::Able => {}
+    }
+    match directive {
+        Directive::Yield { .. } => DelayCause::RightOfWay,
+        Directive::Blocked { .. } => DelayCause::Blocked,
+        Directive::Retreat { .. } => DelayCause::MakingRoom,
+        Directive::BackOff(_) => DelayCause::BackingOff,
+        Directive::Proceed(_) => DelayCause::UnderWay,
+        Directive::Stand => match activity {
+            Activity::Loading(..) => DelayCause::Loading,
+            Activity::Resting(_) => DelayCause::Resting,
+            _ if traveller.leads_nowhere() => DelayCause::NoRoute,
+            _ => DelayCause::NothingToDo,
+        },
     }
 }

@@ -38,6 +38,11 @@ pub(super) struct TrialRow<'a> {
     longest_stall_s: Option<f64>,
     conflicts: Option<u32>,
     deadlocks: Option<u32>,
+    rotations: Option<u32>,
+    retreats: Option<u32>,
+    back_offs: Option<u32>,
+    unreachable: Option<u32>,
+    errands_done: Option<u32>,
     state_hash: &'a str,
 }
 
@@ -77,6 +82,11 @@ impl<'a> TrialRow<'a> {
                 .map(|r| r.robots.iter().map(|robot| robot.longest_stall_s).fold(0.0, f64::max)),
             conflicts: record.map(|r| r.conflicts),
             deadlocks: record.map(|r| r.deadlocks),
+            rotations: record.map(|r| r.rotations),
+            retreats: record.map(|r| r.retreats),
+            back_offs: record.map(|r| r.back_offs),
+            unreachable: record.map(|r| r.unreachable),
+            errands_done: record.map(|r| r.errands_done),
             state_hash: record.map_or("", |r| &r.state_hash),
         }
     }
@@ -139,6 +149,8 @@ pub(super) struct RobotRow<'a> {
     distance_m: f64,
     waiting_s: f64,
     longest_stall_s: f64,
+    stall_cause: &'a str,
+    stall_waits_for: Option<u32>,
     stranded: bool,
     disabled: bool,
 }
@@ -160,6 +172,8 @@ impl<'a> RobotRow<'a> {
             distance_m: robot.distance_m,
             waiting_s: robot.waiting_s,
             longest_stall_s: robot.longest_stall_s,
+            stall_cause: robot.stall.cause.name(),
+            stall_waits_for: robot.stall.waits_for.map(|robot| robot.0),
             stranded: robot.stranded,
             disabled: robot.disabled,
         })

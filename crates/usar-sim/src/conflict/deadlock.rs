@@ -1,9 +1,12 @@
-//! Conflict sets over time: their order, and what happens when nobody comes on (the paper's Algorithm 6, read as a rotation).
+//! Conflict sets over time: their order, and when they have come to nothing (the paper's Algorithm 6).
 //!
 //! Two ways to come to nothing are told apart: a *deadlock*, in which nobody moves, and a *livelock*, in which the head moves to and
 //! fro but comes no nearer to its goal. Both give the next robot its turn.
 
+use std::cmp::Reverse;
+
 use super::PriorityKey;
+use crate::scenario::ResolverRule;
 
 /// Slower than this is no motion, in metres per second.
 const STILL_MPS: f32 = 0.02;
@@ -32,27 +35,35 @@ pub(super) struct Patience {
 }
 
 /// A conflict set that persists from step to step.
+#[derive(Debug, Clone)]
 pub(super) struct ConflictSet {
     /// Members in order of precedence; the first is the head.
     pub(super) order: Vec<usize>,
     still_steps: u32,
     head_best: f32,
     head_steps: u32,
-    rotations: usize,
+    turns: usize,
     backing_off: u32,
 }
 
-/// What a set does in this step.
+/// How a set fares in this step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Verdict {
+pub(super) enum Progress {
     /// The head goes, the others yield.
-    Ordered,
-    /// It came to nothing: the head went to the tail just now.
-    Rotated,
-    /// Every member was head in vain: from now on it backs off.
-    BacksOff,
-    /// It goes on backing off.
+    Flowing,
+    /// It came to nothing.
+    Stuck,
+    /// It makes room sideways.
     BackingOff,
+}
+
+/// What a stuck set does next.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum NextTurn {
+    /// Another head tries.
+    OfNextHead,
+    /// Every member was head in vain: all back off.
+    OfNobody,
 }
 
 impl ConflictSet {
@@ -63,7 +74,7 @@ impl ConflictSet {
             still_steps: 0,
             head_best: f32::INFINITY,
             head_steps: 0,
-            rotations: 0,
+            turns: 0,
             backing_off: 0,
         };
         set.regroup(members, priority);
@@ -82,21 +93,26 @@ impl ConflictSet {
         let mut newcomers: Vec<usize> = members.iter().copied().filter(|i| !self.order.contains(i)).collect();
         newcomers.sort_by(|a, b| priority(*a).precedence(&priority(*b)));
         self.order.extend(newcomers);
-        if self.order.first().copied() != head {
-            self.next_head();
-        }
+        self.note_head(head);
     }
 
-    /// Counts the steps that come to nothing: rotates when patience ends, and backs off once all have been head in vain.
-    pub(super) fn observe(&mut self, seen: Observation, patience: Patience) -> Verdict {
+    /// Puts those who make room for others first, the deepest of a chain before all: the others cannot go before.
+    pub(super) fn promote(&mut self, depth: impl Fn(usize) -> u32) {
+        let head = self.order.first().copied();
+        self.order.sort_by_key(|i| Reverse(depth(*i)));
+        self.note_head(head);
+    }
+
+    /// Counts the steps that come to nothing.
+    pub(super) fn observe(&mut self, seen: Observation, patience: Patience) -> Progress {
         if self.backing_off > 0 {
             self.backing_off -= 1;
-            return Verdict::BackingOff;
+            return Progress::BackingOff;
         }
         self.still_steps = if seen.fastest > STILL_MPS { 0 } else { self.still_steps + 1 };
         if seen.head_way_left < self.head_best - PROGRESS_M {
             if self.head_best.is_finite() {
-                self.rotations = 0;
+                self.turns = 0;
             }
             self.head_best = seen.head_way_left;
             self.head_steps = 0;
@@ -104,17 +120,38 @@ impl ConflictSet {
             self.head_steps += 1;
         }
         if self.still_steps < patience.deadlock && self.head_steps < patience.livelock {
-            return Verdict::Ordered;
+            Progress::Flowing
+        } else {
+            Progress::Stuck
         }
-        self.order.rotate_left(1);
+    }
+
+    /// Lets the head wait on: somebody makes room for it.
+    pub(super) fn wait_for_room(&mut self) {
         self.next_head();
-        self.rotations += 1;
-        if self.rotations < self.order.len() {
-            return Verdict::Rotated;
+    }
+
+    /// Gives the turn to another head, or has the set back off when all have been head.
+    pub(super) fn give_turn(&mut self, rule: ResolverRule, patience: Patience) -> NextTurn {
+        self.turns += 1;
+        let cycle_is_over = self.turns >= self.order.len();
+        match rule {
+            ResolverRule::Swap if !cycle_is_over => self.order.swap(0, self.turns),
+            _ => self.order.rotate_left(1),
         }
-        self.rotations = 0;
+        self.next_head();
+        if !cycle_is_over {
+            return NextTurn::OfNextHead;
+        }
+        self.turns = 0;
         self.backing_off = patience.back_off;
-        Verdict::BacksOff
+        NextTurn::OfNobody
+    }
+
+    fn note_head(&mut self, before: Option<usize>) {
+        if self.order.first().copied() != before {
+            self.next_head();
+        }
     }
 
     fn next_head(&mut self) {
@@ -133,15 +170,18 @@ mod tests {
 
     fn priority(i: usize) -> PriorityKey {
         let energy = [50.0, 20.0, 80.0, 10.0];
-        PriorityKey { energy: energy[i], robot: RobotId(i as u32) }
+        PriorityKey { class: 0, level: energy[i], robot: RobotId(i as u32) }
     }
 
     fn set() -> ConflictSet {
         ConflictSet::new(&[0, 1, 2], priority)
     }
 
-    fn still(set: &mut ConflictSet) -> Verdict {
-        set.observe(Observation { fastest: 0.0, head_way_left: 5.0 }, PATIENCE)
+    fn stand_still(set: &mut ConflictSet, rule: ResolverRule) -> Option<NextTurn> {
+        match set.observe(Observation { fastest: 0.0, head_way_left: 5.0 }, PATIENCE) {
+            Progress::Stuck => Some(set.give_turn(rule, PATIENCE)),
+            _ => None,
+        }
     }
 
     #[test]
@@ -153,14 +193,36 @@ mod tests {
     }
 
     #[test]
-    fn a_still_set_rotates_and_after_a_full_cycle_backs_off() {
+    fn a_still_set_gives_everybody_a_turn_and_then_backs_off() {
+        for rule in [ResolverRule::Rotation, ResolverRule::Swap] {
+            let mut set = set();
+            let turns: Vec<_> = (0..12).map(|_| (stand_still(&mut set, rule), set.order[0])).collect();
+            let solved: Vec<_> =
+                turns.iter().enumerate().filter(|(_, (turn, _))| turn.is_some()).collect();
+            let found: Vec<_> = solved.iter().map(|(step, (turn, head))| (*step, turn.unwrap(), *head)).collect();
+            assert_eq!(found[..2], [(3, NextTurn::OfNextHead, 0), (7, NextTurn::OfNextHead, 2)]);
+            assert_eq!((found[2].0, found[2].1), (11, NextTurn::OfNobody));
+            let seen = Observation { fastest: 0.0, head_way_left: 5.0 };
+            let after: Vec<_> = (0..3).map(|_| set.observe(seen, PATIENCE)).collect();
+            assert_eq!(after, [Progress::BackingOff, Progress::BackingOff, Progress::Flowing]);
+        }
+    }
+
+    #[test]
+    fn rotation_sends_the_head_to_the_tail_and_the_swap_exchanges_it() {
+        let (mut rotated, mut swapped) = (set(), set());
+        rotated.give_turn(ResolverRule::Rotation, PATIENCE);
+        swapped.give_turn(ResolverRule::Swap, PATIENCE);
+        assert_eq!((rotated.order, swapped.order.clone()), (vec![0, 2, 1], vec![0, 1, 2]));
+        swapped.give_turn(ResolverRule::Swap, PATIENCE);
+        assert_eq!(swapped.order, [2, 1, 0]);
+    }
+
+    #[test]
+    fn who_makes_room_goes_first() {
         let mut set = set();
-        let verdicts: Vec<Verdict> = (0..12).map(|_| still(&mut set)).collect();
-        let at = |verdict| verdicts.iter().enumerate().filter(move |(_, v)| **v == verdict).map(|(i, _)| i);
-        assert_eq!(at(Verdict::Rotated).collect::<Vec<_>>(), [3, 7]);
-        assert_eq!(at(Verdict::BacksOff).collect::<Vec<_>>(), [11]);
-        assert_eq!([still(&mut set), still(&mut set)], [Verdict::BackingOff; 2]);
-        assert_eq!(still(&mut set), Verdict::Ordered);
+        set.promote(|i| [0, 0, 1][i]);
+        assert_eq!(set.order, [2, 1, 0]);
     }
 
     #[test]
@@ -168,18 +230,17 @@ mod tests {
         let mut set = set();
         for i in 0..100_u8 {
             let seen = Observation { fastest: 1.0, head_way_left: 100.0 - f32::from(i) };
-            assert_eq!(set.observe(seen, PATIENCE), Verdict::Ordered);
+            assert_eq!(set.observe(seen, PATIENCE), Progress::Flowing);
         }
         assert_eq!(set.order, [1, 0, 2]);
     }
 
     #[test]
-    fn a_head_that_moves_to_and_fro_loses_its_turn() {
+    fn a_head_that_moves_to_and_fro_is_stuck() {
         let mut set = set();
         let mut to_and_fro = |i: u8| {
             set.observe(Observation { fastest: 2.0, head_way_left: 3.0 + 0.1 * f32::from(i % 2) }, PATIENCE)
         };
-        let first = (0..30).position(|i| to_and_fro(i) == Verdict::Rotated);
-        assert_eq!(first, Some(20));
+        assert_eq!((0..30).position(|i| to_and_fro(i) == Progress::Stuck), Some(20));
     }
 }

@@ -2,27 +2,35 @@
 //!
 //! Robots whose next moves would bring them into each other's safety distance form a conflict set. The head of the set moves,
 //! passing the others at a tangent; the others yield until it is out of the set; then the next one is the head. A set in which nobody
-//! moves, or whose head moves but comes no nearer, is deadlocked: its order is rotated, and after a full cycle in vain it backs off sideways.
+//! moves, or whose head moves but comes no nearer, is deadlocked. Then, in this order: the robot in the way of the head makes room
+//! ([`retreat`]), another member is the head, and after a full cycle in vain the whole set backs off sideways.
 //!
-//! Pure: positions and wishes in, directives out; the only state is the order of the sets that persist.
+//! Pure: positions and wishes in, directives out; the only state is the order of the sets that persist and who makes room for whom.
 
 mod deadlock;
+mod delay;
 mod passing;
 mod predict;
 mod priority;
+mod retreat;
+mod room;
+#[cfg(test)]
+mod testing;
 
 use parry2d::math::Vector;
 
 use crate::event::{Event, EventLog};
 use crate::ids::RobotId;
 use crate::planning::KnownObstacle;
-use crate::scenario::ConflictRules;
+use crate::scenario::{ConflictRules, ResolverRule, Scenario};
 
-use deadlock::{ConflictSet, Observation, Patience, Verdict};
+use deadlock::{ConflictSet, NextTurn, Observation, Patience, Progress};
+pub use delay::{Delay, DelayCause, wait_cycles};
 pub use passing::PASSING_RANGE_M;
-use passing::{Surroundings, passing_direction};
+use passing::{Surroundings, nearest_in_the_way, passing_direction};
 use predict::{Neighbours, components, will_conflict};
 pub use priority::PriorityKey;
+use retreat::{Limits, Retreats};
 
 /// A robot as the resolver sees it.
 #[derive(Debug, Clone, Copy)]
@@ -41,12 +49,22 @@ pub struct Mover<'a> {
     pub way_left: f32,
     /// Way that is left to its next waypoint, in metres.
     pub leg_left: f32,
+    /// Waypoints ahead.
+    pub route: &'a [Vector],
+    /// Places that it came by, the latest last.
+    pub trail: &'a [Vector],
     /// Radius, in metres.
     pub radius: f32,
+    /// Present top speed, in metres per second.
+    pub speed: f32,
+    /// Deceleration that it plans with, in metres per second squared.
+    pub braking: f32,
     /// Its claim to the right of way.
     pub priority: PriorityKey,
     /// The obstacles that it knows; none for aerial robots.
     pub obstacles: &'a [KnownObstacle],
+    /// Whether it may be asked to make room: not while it loads or rests, nor when it can no longer act.
+    pub can_make_room: bool,
 }
 
 impl Mover<'_> {
@@ -65,10 +83,20 @@ pub enum Directive {
         /// The robot that it waits for.
         to: RobotId,
     },
-    /// Make room with this velocity: the whole set is deadlocked.
+    /// Move with this velocity to where another robot can pass, or stand there until it has.
+    Retreat {
+        /// Metres per second.
+        velocity: Vector,
+        /// The robot for which it makes room.
+        room_for: RobotId,
+    },
+    /// Make room sideways with this velocity: the whole set is deadlocked.
     BackOff(Vector),
     /// Stop: no direction is free at the moment.
-    Blocked,
+    Blocked {
+        /// The robot in the way, where it is one.
+        by: Option<RobotId>,
+    },
     /// Stand: there is nowhere to go.
     Stand,
 }
@@ -78,8 +106,19 @@ impl Directive {
     #[must_use]
     pub fn velocity(self) -> Vector {
         match self {
-            Self::Proceed(velocity) | Self::BackOff(velocity) => velocity,
-            Self::Yield { .. } | Self::Blocked | Self::Stand => Vector::ZERO,
+            Self::Proceed(velocity) | Self::BackOff(velocity) | Self::Retreat { velocity, .. } => velocity,
+            Self::Yield { .. } | Self::Blocked { .. } | Self::Stand => Vector::ZERO,
+        }
+    }
+
+    /// The robot that it waits for, where there is one.
+    #[must_use]
+    pub fn waits_for(self) -> Option<RobotId> {
+        match self {
+            Self::Yield { to } => Some(to),
+            Self::Blocked { by } => by,
+            Self::Retreat { velocity, room_for } if velocity == Vector::ZERO => Some(room_for),
+            _ => None,
         }
     }
 }
@@ -89,6 +128,15 @@ const BACK_OFF_S: f64 = 1.0;
 
 /// How long the head of a set may move without coming nearer before it loses its turn, in seconds.
 const LIVELOCK_S: f64 = 1.0;
+
+/// How long a robot tries to get to where it makes room without coming nearer, in seconds.
+const RETREAT_PATIENCE_S: f64 = 3.0;
+
+/// How long a robot stays where it makes room, in seconds, when the other does not pass.
+const ROOM_PATIENCE_S: f64 = 15.0;
+
+/// How often a robot that is alone before a blocked way asks for room, in seconds.
+const ASK_AGAIN_S: f64 = 0.5;
 
 /// Where there is no way past at the full margin, robots squeeze past at this one, in metres.
 const SQUEEZE_MARGIN_M: f32 = 0.03;
@@ -100,16 +148,23 @@ const SQUEEZE_SPEED: f32 = 0.4;
 pub struct Resolver {
     rules: ConflictRules,
     patience: Patience,
+    ask_again: u32,
     sets: Vec<ConflictSet>,
+    retreats: Retreats,
     neighbours: Neighbours,
     directives: Vec<Directive>,
+    /// For each robot, steps since its way was last free.
+    blocked_steps: Vec<u32>,
 }
 
 impl Resolver {
     /// No conflicts yet.
     #[must_use]
-    pub fn new(rules: ConflictRules, dt: f64) -> Self {
-        let steps = |seconds: f64| (seconds / dt).round() as u32;
+    pub fn new(scenario: &Scenario) -> Self {
+        let rules = scenario.conflicts;
+        let steps = |seconds: f64| (seconds / scenario.dt_s).round() as u32;
+        let limits = Limits { underway: steps(RETREAT_PATIENCE_S), at_place: steps(ROOM_PATIENCE_S) };
+        let arena = Vector::new(scenario.arena_m[0] as f32, scenario.arena_m[1] as f32);
         Self {
             rules,
             patience: Patience {
@@ -117,44 +172,34 @@ impl Resolver {
                 livelock: steps(LIVELOCK_S),
                 back_off: steps(BACK_OFF_S),
             },
+            ask_again: steps(ASK_AGAIN_S).max(1),
             sets: Vec::new(),
+            retreats: Retreats::new(limits, rules.margin_m as f32, arena),
             neighbours: Neighbours::default(),
             directives: Vec::new(),
+            blocked_steps: Vec::new(),
         }
     }
 
-    /// One directive for each mover, in their order.
-    pub fn resolve(&mut self, movers: &[Mover], log: &mut EventLog) -> &[Directive] {
+    /// One directive for each mover, in their order. The wishes of those who make room are replaced.
+    pub fn resolve(&mut self, movers: &mut [Mover], log: &mut EventLog) -> &[Directive] {
+        if self.rules.resolver == ResolverRule::None {
+            self.directives.clear();
+            self.directives.extend(movers.iter().map(|mover| granted(mover.wish)));
+            return &self.directives;
+        }
+        self.blocked_steps.resize(movers.len(), 0);
+        self.directives.resize(movers.len(), Directive::Stand);
+        self.retreats.follow(movers);
         let (margin, horizon) = (self.rules.margin_m as f32, self.rules.horizon_s as f32);
         self.neighbours.find(movers, margin, horizon);
         let pairs = self.neighbours.pairs().iter().copied();
         let conflicts = pairs.filter(|(a, b)| will_conflict(&movers[*a], &movers[*b], margin, horizon));
         self.carry_over(&components(movers.len(), conflicts), movers, log);
-
-        self.directives.clear();
-        self.directives.resize(movers.len(), Directive::Stand);
-        let verdicts: Vec<Verdict> = (0..self.sets.len()).map(|set| self.judge(set, movers, log)).collect();
-        let mut stands: Vec<bool> = movers.iter().map(|mover| !mover.wishes_to_move()).collect();
-        for set in &self.sets {
-            set.order[1..].iter().for_each(|member| stands[*member] = true);
-        }
-        for i in 0..movers.len() {
-            if movers[i].wishes_to_move() && !stands[i] {
-                self.directives[i] = self.pass(i, movers, movers[i].wish, &stands);
-            }
-        }
-        for (set, verdict) in self.sets.iter().zip(verdicts) {
-            let backs_off = matches!(verdict, Verdict::BacksOff | Verdict::BackingOff);
-            let members = if backs_off { &set.order[..] } else { &set.order[1..] };
-            for i in members {
-                self.directives[*i] = if backs_off {
-                    let wish = back_off_wish(*i, &set.order, movers);
-                    Directive::BackOff(self.pass(*i, movers, wish, &stands).velocity())
-                } else {
-                    Directive::Yield { to: movers[set.order[0]].robot }
-                };
-            }
-        }
+        let progress: Vec<Progress> =
+            (0..self.sets.len()).map(|set| self.judge(set, movers, log)).collect();
+        self.direct(movers, &progress);
+        self.ask_for_room(movers, log);
         &self.directives
     }
 
@@ -166,37 +211,147 @@ impl Resolver {
         for members in members {
             let known =
                 before.iter().position(|set| 2 * set.shared(members) >= members.len().max(set.order.len()));
-            if let Some(at) = known {
+            let mut set = if let Some(at) = known {
                 let mut set = before.remove(at);
                 set.regroup(members, priority);
-                self.sets.push(set);
+                set
             } else {
                 log.push(Event::ConflictStarted { robots: robots(members, movers) });
-                self.sets.push(ConflictSet::new(members, priority));
+                ConflictSet::new(members, priority)
+            };
+            set.promote(|i| self.retreats.depth(i));
+            self.sets.push(set);
+        }
+    }
+
+    /// How a set fares; a stuck one gets room, another head or a pause.
+    fn judge(&mut self, at: usize, movers: &[Mover], log: &mut EventLog) -> Progress {
+        let set = &mut self.sets[at];
+        let speeds = set.order.iter().map(|i| movers[*i].velocity.length());
+        let seen =
+            Observation { fastest: speeds.fold(0.0, f32::max), head_way_left: movers[set.order[0]].way_left };
+        let progress = set.observe(seen, self.patience);
+        if progress != Progress::Stuck {
+            return progress;
+        }
+        let (head, order) = (set.order[0], robots(&set.order, movers));
+        log.push(Event::Deadlocked { robots: order });
+        if let Directive::Blocked { by: Some(by) } = self.directives[head]
+            && self.make_room(head, by.index(), movers, log)
+        {
+            self.sets[at].wait_for_room();
+            return Progress::Flowing;
+        }
+        let set = &mut self.sets[at];
+        let turn = set.give_turn(self.rules.resolver, self.patience);
+        let robots = robots(&set.order, movers);
+        match turn {
+            NextTurn::OfNextHead => {
+                log.push(Event::TurnPassed { robots });
+                Progress::Flowing
+            }
+            NextTurn::OfNobody => {
+                log.push(Event::BackedOff { robots });
+                Progress::BackingOff
             }
         }
     }
 
-    fn judge(&mut self, set: usize, movers: &[Mover], log: &mut EventLog) -> Verdict {
-        let set = &mut self.sets[set];
-        let speeds = set.order.iter().map(|i| movers[*i].velocity.length());
-        let seen =
-            Observation { fastest: speeds.fold(0.0, f32::max), head_way_left: movers[set.order[0]].way_left };
-        let verdict = set.observe(seen, self.patience);
-        match verdict {
-            Verdict::Rotated => log.push(Event::Deadlocked { robots: robots(&set.order, movers) }),
-            Verdict::BacksOff => log.push(Event::BackedOff { robots: robots(&set.order, movers) }),
-            Verdict::Ordered | Verdict::BackingOff => {}
+    /// Heads and robots without conflicts go, past those that stand; the others yield, or back off.
+    fn direct(&mut self, movers: &[Mover], progress: &[Progress]) {
+        let mut stands: Vec<bool> = movers.iter().map(|mover| !mover.wishes_to_move()).collect();
+        for set in &self.sets {
+            set.order[1..].iter().for_each(|member| stands[*member] = true);
         }
-        verdict
+        for i in 0..movers.len() {
+            self.directives[i] = if movers[i].wishes_to_move() && !stands[i] {
+                self.pass(i, movers, movers[i].wish, &stands)
+            } else {
+                Directive::Stand
+            };
+        }
+        for (set, progress) in self.sets.iter().zip(progress) {
+            let backs_off = *progress == Progress::BackingOff;
+            let members = if backs_off { &set.order[..] } else { &set.order[1..] };
+            for i in members {
+                self.directives[*i] = if backs_off {
+                    let wish = back_off_wish(*i, &set.order, movers);
+                    Directive::BackOff(self.pass(*i, movers, wish, &stands).velocity())
+                } else {
+                    Directive::Yield { to: movers[set.order[0]].robot }
+                };
+            }
+        }
+        for i in 0..movers.len() {
+            let Some(retreat) = self.retreats.of(i) else { continue };
+            let room_for = movers[retreat.head].robot;
+            match self.directives[i] {
+                Directive::Proceed(velocity) => {
+                    self.directives[i] = Directive::Retreat { velocity, room_for };
+                }
+                Directive::Stand => {
+                    self.directives[i] = Directive::Retreat { velocity: Vector::ZERO, room_for };
+                }
+                _ => {}
+            }
+        }
+    }
+
+    /// Robots outside any set whose way has been blocked for a while by one that has nowhere to go, or that waits for them in the end.
+    fn ask_for_room(&mut self, movers: &[Mover], log: &mut EventLog) {
+        let mut due = Vec::new();
+        for (i, directive) in self.directives.iter().enumerate() {
+            match directive {
+                Directive::Blocked { by } => {
+                    self.blocked_steps[i] += 1;
+                    let steps = self.blocked_steps[i];
+                    let asks = steps == self.patience.deadlock || steps.is_multiple_of(self.ask_again);
+                    due.extend(by.filter(|_| asks).map(|by| (i, by.index())));
+                }
+                _ => self.blocked_steps[i] = 0,
+            }
+        }
+        if due.is_empty() {
+            return;
+        }
+        let waits_for: Vec<Option<usize>> =
+            self.directives.iter().map(|directive| directive.waits_for().map(RobotId::index)).collect();
+        let cycles = wait_cycles(&waits_for);
+        for (i, blocker) in due {
+            let is_parked = !movers[blocker].wishes_to_move() && self.retreats.of(blocker).is_none();
+            if is_parked || self.retreats.depth(i) > 0 || self.leads_cycle(i, &cycles, movers) {
+                self.make_room(i, blocker, movers, log);
+            }
+        }
+    }
+
+    /// Whether a robot has the best claim of all blocked ones on a cycle of waiting.
+    fn leads_cycle(&self, i: usize, cycles: &[Vec<usize>], movers: &[Mover]) -> bool {
+        let blocked = |k: &&usize| matches!(self.directives[**k], Directive::Blocked { .. });
+        cycles.iter().filter(|cycle| cycle.contains(&i)).any(|cycle| {
+            let best = cycle.iter().filter(blocked).min_by(|a, b| {
+                let depth = |k: usize| std::cmp::Reverse(self.retreats.depth(k));
+                depth(**a).cmp(&depth(**b)).then(movers[**a].priority.precedence(&movers[**b].priority))
+            });
+            best == Some(&i)
+        })
+    }
+
+    fn make_room(&mut self, i: usize, blocker: usize, movers: &[Mover], log: &mut EventLog) -> bool {
+        let makes = self.retreats.may_ask(i, blocker, movers) && self.retreats.ask(i, blocker, movers);
+        if makes {
+            log.push(Event::MadeRoom { robot: movers[blocker].robot, room_for: movers[i].robot });
+        }
+        makes
     }
 
     /// The way of a robot that has the right of way, past those that stand.
     fn pass(&self, i: usize, movers: &[Mover], wish: Vector, stands: &[bool]) -> Directive {
         let me = Mover { wish, ..movers[i] };
-        let blockers = self.neighbours.of(i).iter().filter(|j| stands[**j]).map(|j| &movers[*j]);
+        let near = self.neighbours.of(i);
+        let blockers = || near.iter().filter(|j| stands[**j]).map(|j| &movers[*j]);
         let mut surroundings = Surroundings {
-            discs: blockers.map(|other| (other.position - me.position, me.radius + other.radius)).collect(),
+            discs: blockers().map(|other| (other.position - me.position, me.radius + other.radius)).collect(),
             margin: self.rules.margin_m as f32,
             obstacles: me.obstacles,
         };
@@ -206,9 +361,16 @@ impl Resolver {
         surroundings.margin = surroundings.margin.min(SQUEEZE_MARGIN_M);
         match passing_direction(&me, &surroundings) {
             Some(direction) => Directive::Proceed(direction * wish.length() * SQUEEZE_SPEED),
-            None => Directive::Blocked,
+            None => {
+                let blocker = nearest_in_the_way(wish, &surroundings).and_then(|at| blockers().nth(at));
+                Directive::Blocked { by: blocker.map(|other| other.robot) }
+            }
         }
     }
+}
+
+fn granted(wish: Vector) -> Directive {
+    if wish == Vector::ZERO { Directive::Stand } else { Directive::Proceed(wish) }
 }
 
 /// Sideways and away from the middle of the set, at half the wished speed.

@@ -61,6 +61,19 @@ pub(super) fn passing_direction(me: &Mover, surroundings: &Surroundings) -> Opti
         .max_by(|a, b| a.dot(wish).total_cmp(&b.dot(wish)))
 }
 
+/// The disc that is in the way of a wish: the nearest of those that a robot would touch, or else the nearest of all.
+pub(super) fn nearest_in_the_way(wish: Vector, surroundings: &Surroundings) -> Option<usize> {
+    let wish = wish.normalize_or_zero();
+    let rank = |(center, touch): &(Vector, f32)| {
+        let ahead = center.dot(wish);
+        let aside = (*center - wish * ahead).length();
+        let misses = ahead <= 0.0 || aside > touch + surroundings.margin;
+        (misses, center.length() - touch)
+    };
+    let discs = surroundings.discs.iter().map(rank).enumerate();
+    discs.min_by(|(_, a), (_, b)| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1))).map(|(at, _)| at)
+}
+
 /// Directions from the origin that touch a disc on its right and on its left.
 fn tangents(center: Vector, radius: f32) -> [Vector; 2] {
     let distance = center.length().max(1e-6);
@@ -73,28 +86,12 @@ fn tangents(center: Vector, radius: f32) -> [Vector; 2] {
 
 #[cfg(test)]
 mod tests {
-    use super::super::PriorityKey;
+    use super::super::testing::mover;
     use super::*;
-    use crate::ids::RobotId;
-
-    fn mover(wish: [f32; 2]) -> Mover<'static> {
-        Mover {
-            robot: RobotId(0),
-            aerial: false,
-            position: Vector::ZERO,
-            velocity: Vector::ZERO,
-            wish: wish.into(),
-            way_left: 10.0,
-            leg_left: 10.0,
-            radius: 0.4,
-            priority: PriorityKey { energy: 50.0, robot: RobotId(0) },
-            obstacles: &[],
-        }
-    }
 
     fn pass(discs: &[([f32; 2], f32)]) -> Option<Vector> {
         let discs = discs.iter().map(|(center, radius)| (Vector::from(*center), *radius)).collect();
-        passing_direction(&mover([1.0, 0.0]), &Surroundings { discs, margin: 0.0, obstacles: &[] })
+        passing_direction(&mover(0, [0.0, 0.0], [1.0, 0.0]), &Surroundings { discs, margin: 0.0, obstacles: &[] })
     }
 
     #[test]

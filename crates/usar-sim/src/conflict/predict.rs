@@ -95,26 +95,8 @@ pub(super) fn components(count: usize, pairs: impl Iterator<Item = (usize, usize
 
 #[cfg(test)]
 mod tests {
-    use parry2d::math::Vector;
-
-    use super::super::PriorityKey;
+    use super::super::testing::mover;
     use super::*;
-    use crate::ids::RobotId;
-
-    fn mover(id: u32, at: [f32; 2], wish: [f32; 2]) -> Mover<'static> {
-        Mover {
-            robot: RobotId(id),
-            aerial: false,
-            position: at.into(),
-            velocity: Vector::ZERO,
-            wish: wish.into(),
-            way_left: 10.0,
-            leg_left: 10.0,
-            radius: 0.4,
-            priority: PriorityKey { energy: 50.0, robot: RobotId(id) },
-            obstacles: &[],
-        }
-    }
 
     #[test]
     fn robots_that_would_meet_conflict_and_robots_that_part_or_keep_abreast_do_not() {

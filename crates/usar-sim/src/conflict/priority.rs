@@ -2,21 +2,88 @@
 
 use std::cmp::Ordering;
 
-use crate::ids::RobotId;
+use rne_core::Difficulty;
 
-/// Lowest energy first, because the robot with the least left can least afford to wait; then the lowest id.
+use crate::ids::RobotId;
+use crate::scenario::PriorityRule;
+
+/// A claim to the right of way. The smaller key goes first; no two robots have the same.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PriorityKey {
-    /// Battery level, in percent.
-    pub energy: f64,
-    /// Identity.
+    /// Decides first: 0 for all robots, or the rank of their task.
+    pub class: u8,
+    /// Decides among equals: a level in percent, negative where the highest goes first.
+    pub level: f64,
+    /// Decides among equals: the lowest id goes first.
     pub robot: RobotId,
 }
 
 impl PriorityKey {
-    /// `Less` goes first. A total order: no two robots have the same id.
+    /// The key of a robot with these levels, in percent, whose group has this task.
+    ///
+    /// - `LowestEnergyFirst`, because the robot with the least left can least afford to wait.
+    /// - `TaskThenEnergy`: robots of the hard task, whose way is the longest, then those of the easy one, then those without a group.
+    /// - `HighestEnergyFirst`, the opposite of the first: what the order is worth shows between the two.
+    /// - `LowestHpFirst`, because the robot that can bear the least radiation should stand in it the least.
+    #[must_use]
+    pub fn new(
+        rule: PriorityRule,
+        robot: RobotId,
+        task: Option<Difficulty>,
+        [energy, hp]: [f64; 2],
+    ) -> Self {
+        let (class, level) = match rule {
+            PriorityRule::LowestEnergyFirst => (0, energy),
+            PriorityRule::TaskThenEnergy => (task_rank(task), energy),
+            PriorityRule::HighestEnergyFirst => (0, -energy),
+            PriorityRule::LowestHpFirst => (0, hp),
+        };
+        Self { class, level, robot }
+    }
+
+    /// `Less` goes first.
     #[must_use]
     pub fn precedence(&self, other: &Self) -> Ordering {
-        self.energy.total_cmp(&other.energy).then(self.robot.cmp(&other.robot))
+        let level = || self.level.total_cmp(&other.level);
+        self.class.cmp(&other.class).then_with(level).then(self.robot.cmp(&other.robot))
+    }
+}
+
+fn task_rank(task: Option<Difficulty>) -> u8 {
+    match task {
+        Some(Difficulty::Hard) => 0,
+        Some(Difficulty::Easy) => 1,
+        None => 2,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_rule_has_its_first() {
+        let first = |rule| {
+            let robots = [
+                (Some(Difficulty::Easy), [20.0, 90.0]),
+                (Some(Difficulty::Hard), [50.0, 80.0]),
+                (None, [70.0, 60.0]),
+            ];
+            let keys = robots
+                .iter()
+                .zip(0..)
+                .map(|((task, levels), id)| PriorityKey::new(rule, RobotId(id), *task, *levels));
+            keys.min_by(PriorityKey::precedence).unwrap().robot.0
+        };
+        assert_eq!(first(PriorityRule::LowestEnergyFirst), 0);
+        assert_eq!(first(PriorityRule::TaskThenEnergy), 1);
+        assert_eq!(first(PriorityRule::HighestEnergyFirst), 2);
+        assert_eq!(first(PriorityRule::LowestHpFirst), 2);
+    }
+
+    #[test]
+    fn the_lowest_id_settles_ties() {
+        let key = |id| PriorityKey::new(PriorityRule::LowestEnergyFirst, RobotId(id), None, [50.0, 50.0]);
+        assert_eq!(key(1).precedence(&key(2)), Ordering::Less);
     }
 }

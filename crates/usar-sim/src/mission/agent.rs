@@ -16,8 +16,10 @@ pub enum Activity {
     Approaching(RescueeId),
     /// Loading a rescuee until the given step.
     Loading(RescueeId, u64),
-    /// In the task area with nothing to do: full, or all searched.
+    /// In the task area, or at the end of its errands, with nothing to do.
     Standby,
+    /// On its way to the next place of its errand.
+    OnErrand,
     /// On its way home.
     Returning,
     /// On its way to a rest place.
@@ -52,14 +54,16 @@ pub struct Agent {
     pub task: Option<Difficulty>,
     /// The task at whose rest place it rests.
     pub rest_at: Difficulty,
-    /// Places still to pass on its sweep of the task area, the next one last.
+    /// Places still to pass on its sweep of the task area or its errand, the next one last.
     pub sweep: Vec<Vector>,
-    /// Where it waits in the task area when there is nothing to do.
+    /// Where it waits when there is nothing to do.
     pub muster: Vector,
     /// Energy and HP when the round began, unless it rested since.
     pub levels_at_start: Option<[f64; 2]>,
     /// Whether it has rested since it last was in a group.
     pub has_rested: bool,
+    /// Whether it knows no way to where it should be, and the team does not wait for it.
+    pub is_cut_off: bool,
     /// The most energy and HP that one round has cost it, in percent points.
     pub costliest_round: [f64; 2],
 }
@@ -74,6 +78,7 @@ impl Agent {
             muster: Vector::ZERO,
             levels_at_start: None,
             has_rested: false,
+            is_cut_off: false,
             costliest_round: [0.0; 2],
         }
     }

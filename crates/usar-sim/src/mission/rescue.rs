@@ -48,7 +48,7 @@ impl Mission {
         }
     }
 
-    fn steps(&self, seconds: f64) -> u64 {
+    pub(super) fn steps(&self, seconds: f64) -> u64 {
         (seconds / self.dt).round() as u64
     }
 

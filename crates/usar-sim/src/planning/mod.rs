@@ -9,9 +9,10 @@ mod knowledge;
 mod navigator;
 mod obstacles;
 mod route;
+mod trail;
 
 pub use knowledge::Knowledge;
-pub use navigator::{Goal, Navigator, Traveller};
+pub use navigator::{Goal, Navigator, PLANNED_BRAKING, Traveller};
 pub use obstacles::{KnownObstacle, ObstacleKey, contains as polygon_contains, crosses as polygon_crossed};
 pub use route::Route;
 

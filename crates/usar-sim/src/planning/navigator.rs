@@ -3,6 +3,7 @@
 use parry2d::math::Vector;
 
 use super::obstacles::{KnownObstacle, crosses};
+use super::trail::Trail;
 use super::{Knowledge, Planner, Query, Route};
 use crate::ids::RobotId;
 use crate::scenario::Scenario;
@@ -25,7 +26,7 @@ const PROGRESS_M: f32 = 0.05;
 const ROUTE_END_M: f32 = 0.15;
 
 /// Share of the drive's acceleration that robots plan to brake with; the rest is in reserve.
-const PLANNED_BRAKING: f32 = 0.8;
+pub const PLANNED_BRAKING: f32 = 0.8;
 
 /// Where a robot wants to be.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -47,8 +48,9 @@ pub struct Traveller {
     best_length: f32,
     /// Steps since it last came nearer.
     stalled_steps: u64,
-    /// The longest that it ever failed to come nearer although it had somewhere to go, in steps.
-    pub longest_stall_steps: u64,
+    /// Steps since it last knew a way.
+    lost_steps: u64,
+    
 }
 
 impl Traveller {
@@ -60,7 +62,7 @@ impl Traveller {
             revision: 0,
             best_length: f32::INFINITY,
             stalled_steps: 0,
-            longest_stall_steps: 0,
+            lost_steps: 0,
         }
     }
 
@@ -96,6 +98,12 @@ impl Traveller {
         self.goal.is_some() && self.is_planned && self.route.is_none()
     }
 
+    /// Steps for which it has known no way to its goal.
+    #[must_use]
+    pub fn lost_steps(&self) -> u64 {
+        self.lost_steps
+    }
+
     fn set_route(&mut self, route: Option<Route>, position: Vector, fresh: bool) {
         if let Some(route) = route.as_ref().filter(|_| fresh) {
             self.best_length = route.length(position);
@@ -106,13 +114,13 @@ impl Traveller {
     }
 
     fn note_progress(&mut self, position: Vector) {
+        self.lost_steps = if self.leads_nowhere() { self.lost_steps + 1 } else { 0 };
         let length = self.route.as_ref().map_or(f32::INFINITY, |route| route.length(position));
         if length < self.best_length - PROGRESS_M {
             self.best_length = length;
             self.stalled_steps = 0;
         } else {
             self.stalled_steps += 1;
-            self.longest_stall_steps = self.longest_stall_steps.max(self.stalled_steps);
         }
     }
 }
@@ -121,6 +129,7 @@ impl Traveller {
 pub struct Navigator {
     planner: Planner,
     travellers: Vec<Traveller>,
+    trails: Vec<Trail>,
     detour_steps: u64,
     clearance: f32,
 }
@@ -132,6 +141,7 @@ impl Navigator {
         Self {
             planner: Planner::new(scenario),
             travellers: vec![Traveller::to(None); robots],
+            trails: vec![Trail::default(); robots],
             detour_steps: (DETOUR_AFTER_S / scenario.dt_s).round() as u64,
             clearance: scenario.planning.clearance_m as f32,
         }
@@ -143,12 +153,17 @@ impl Navigator {
         &self.travellers[robot.index()]
     }
 
+    /// Places that a robot came by, the latest last.
+    #[must_use]
+    pub fn trail(&self, robot: RobotId) -> &[Vector] {
+        self.trails[robot.index()].points()
+    }
+
     /// Sends a robot somewhere, or nowhere. The same goal again changes nothing.
     pub fn set_goal(&mut self, robot: RobotId, goal: Option<Goal>) {
         let traveller = &mut self.travellers[robot.index()];
         if traveller.goal != goal {
-            let longest_stall_steps = traveller.longest_stall_steps;
-            *traveller = Traveller { longest_stall_steps, ..Traveller::to(goal) };
+            *traveller = Traveller::to(goal);
         }
     }
 
@@ -162,6 +177,7 @@ impl Navigator {
         step: u64,
     ) {
         for robot in &world.robots {
+            self.trails[robot.id.index()].note(robot.position);
             let traveller = &mut self.travellers[robot.id.index()];
             let Some(goal) = traveller.goal else { continue };
             if !robot.is_able() || traveller.has_arrived(robot.position) {

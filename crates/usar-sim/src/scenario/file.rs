@@ -20,6 +20,7 @@ pub struct ScenarioFile {
     #[serde(default)]
     pub description: String,
     /// What `usar sweep` runs when the command line does not say otherwise.
+    #[serde(default)]
     pub sweep: SweepDefaults,
     /// Simulated time of a trial, in seconds.
     pub duration_s: f64,
@@ -30,11 +31,18 @@ pub struct ScenarioFile {
     /// The team, row by row: ids are given in this order, from 0. Each robot's place in its row is its home.
     pub team: Vec<Row>,
     /// What a robot of each role is and can do.
+    #[serde(default)]
     pub roles: Roles,
     /// Distribution of the initial levels.
+    #[serde(default)]
     pub initial_levels: InitialLevels,
     /// The two tasks.
+    #[serde(default)]
     pub tasks: Tasks,
+    /// Places that robots are to go to: when there are any, they take the place of the mission, and the trial is over when all are
+    /// done. Robots without an errand stand at home.
+    #[serde(default)]
+    pub errands: Vec<Errand>,
     /// Debris at known places.
     #[serde(default)]
     pub debris: Vec<DebrisFile>,
@@ -45,12 +53,16 @@ pub struct ScenarioFile {
     #[serde(default)]
     pub sampled: Sampled,
     /// What moving and radiation cost.
+    #[serde(default)]
     pub costs: Costs,
     /// Rules of the mission.
+    #[serde(default)]
     pub mission: MissionRules,
     /// Rules of route planning.
+    #[serde(default)]
     pub planning: PlanningRules,
     /// Rules of right of way.
+    #[serde(default)]
     pub conflicts: ConflictRules,
     /// Options of the RNE policy.
     #[serde(default)]
@@ -81,11 +93,34 @@ pub struct Row {
     pub center: Point,
     /// Distance between the first and the last robot, in metres.
     pub width_m: f64,
+    /// Initial levels of the whole row, instead of draws.
+    #[serde(default)]
+    pub levels: Option<Levels>,
 }
 
-/// One description for each role.
+/// Levels of a robot, in percent.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
+pub struct Levels {
+    /// Battery.
+    pub energy: f64,
+    /// Health.
+    pub hp: f64,
+}
+
+/// Places that one robot is to go to, one after the other.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Errand {
+    /// Id of the robot.
+    pub robot: u32,
+    /// The places, in order. It waits at the last.
+    pub to: Vec<Point>,
+}
+
+/// One description for each role; the default for a role that is not described.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
 pub struct Roles {
     /// Ground robot that carries many rescuees.
     pub carrier: RoleSpec,
@@ -359,4 +394,37 @@ pub struct ConflictRules {
     pub horizon_s: f64,
     /// Steps without motion after which a conflict set counts as deadlocked.
     pub deadlock_steps: u32,
+    /// Who has the right of way.
+    #[serde(default)]
+    pub priority: PriorityRule,
+    /// What resolves conflicts and deadlocks.
+    #[serde(default)]
+    pub resolver: ResolverRule,
+}
+
+/// Who has the right of way in a conflict set; ties go to the lowest id.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub enum PriorityRule {
+    /// The robot with the lowest battery level. The default.
+    #[default]
+    LowestEnergyFirst,
+    /// Robots of the hard task, then of the easy task, then those without a group; among them the lowest battery level.
+    TaskThenEnergy,
+    /// The robot with the highest battery level.
+    HighestEnergyFirst,
+    /// The robot with the lowest health level.
+    LowestHpFirst,
+}
+
+/// What resolves conflicts and deadlocks.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub enum ResolverRule {
+    /// Right of way; the order of a deadlocked set is rotated, head to tail. The default.
+    #[default]
+    Rotation,
+    /// Right of way; the head of a deadlocked set changes places with the next in line, then with the one after: the paper's
+    /// Algorithm 6, literally.
+    Swap,
+    /// Nothing: robots drive as they wish and bump into each other. For comparison.
+    None,
 }

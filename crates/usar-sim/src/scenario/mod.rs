@@ -1,5 +1,6 @@
 //! Scenarios: read from RON, checked, and then known to be usable.
 
+mod defaults;
 mod error;
 mod file;
 mod locate;

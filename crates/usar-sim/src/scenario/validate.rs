@@ -6,7 +6,7 @@ use std::ops::RangeInclusive;
 use rne_core::{Difficulty, NEED_NAMES, Role, policy_named};
 
 use super::error::Problem;
-use super::file::{DebrisShape, Normal, Point, RoleSpec, ScenarioFile, TaskFile};
+use super::file::{DebrisShape, Normal, Point, RoleSpec, SampledCounts, ScenarioFile, TaskFile, Tasks};
 use crate::vitals::Rates;
 use crate::world::{debris_outline, row_positions};
 
@@ -17,8 +17,10 @@ pub(super) fn problems(file: &ScenarioFile) -> Vec<Problem> {
     team(&mut check, file);
     roles(&mut check, file);
     levels(&mut check, file);
-    for task in Difficulty::ALL {
-        task_area(&mut check, &format!("tasks.{}", task.name()), file.tasks.of(task));
+    if file.errands.is_empty() {
+        tasks(&mut check, file);
+    } else {
+        errands(&mut check, file);
     }
     debris(&mut check, file);
     sampled(&mut check, file);
@@ -90,6 +92,10 @@ fn team(check: &mut Checker, file: &ScenarioFile) {
         let field = format!("team[{i}]");
         let radius = file.roles.of(row.role).radius_m;
         check.number(format!("{field}.width_m"), row.width_m, 0.0..=20_000.0);
+        if let Some(levels) = row.levels {
+            check.number(format!("{field}.levels.energy"), levels.energy, 0.01..=100.0);
+            check.number(format!("{field}.levels.hp"), levels.hp, 0.01..=100.0);
+        }
         check.inside(format!("{field}.center"), [row.center[0] - row.width_m / 2.0, row.center[1]], radius);
         check.inside(format!("{field}.center"), [row.center[0] + row.width_m / 2.0, row.center[1]], radius);
     }
@@ -143,6 +149,38 @@ fn levels(check: &mut Checker, file: &ScenarioFile) {
     };
     normal("initial_levels.energy", file.initial_levels.energy);
     normal("initial_levels.hp", file.initial_levels.hp);
+}
+
+fn tasks(check: &mut Checker, file: &ScenarioFile) {
+    if file.tasks == Tasks::default() {
+        return check.fail("tasks", "must be given when there are no errands", "neither");
+    }
+    for task in Difficulty::ALL {
+        task_area(check, &format!("tasks.{}", task.name()), file.tasks.of(task));
+    }
+}
+
+fn errands(check: &mut Checker, file: &ScenarioFile) {
+    let robots: u32 = file.team.iter().map(|row| row.count).sum();
+    let mut last: Vec<(u32, Point)> = Vec::new();
+    for (i, errand) in file.errands.iter().enumerate() {
+        if errand.robot >= robots {
+            let rule = format!("must be the id of one of the {robots} robots");
+            check.fail(format!("errands[{i}].robot"), rule, errand.robot);
+        } else if last.iter().any(|(robot, _)| *robot == errand.robot) {
+            check.fail(format!("errands[{i}].robot"), "must not stand twice", errand.robot);
+        }
+        for (k, place) in errand.to.iter().enumerate() {
+            check.inside(format!("errands[{i}].to[{k}]"), *place, 0.0);
+        }
+        match errand.to.last() {
+            Some(place) => last.push((errand.robot, *place)),
+            None => check.fail(format!("errands[{i}].to"), "must name at least one place", "none"),
+        }
+    }
+    if file.sampled.hard != SampledCounts::default() || file.sampled.easy != SampledCounts::default() {
+        check.fail("sampled", "must be absent where there are errands: it fills the ways to tasks", "counts above 0");
+    }
 }
 
 fn task_area(check: &mut Checker, field: &str, task: &TaskFile) {

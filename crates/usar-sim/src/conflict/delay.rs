@@ -1,0 +1,110 @@
+//! Why robots stand still, and whom they wait for.
+
+use serde::Serialize;
+
+use crate::ids::RobotId;
+
+/// Why a robot does not move on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+pub enum DelayCause {
+    /// Nothing holds it up: it moves.
+    #[default]
+    UnderWay,
+    /// It is where it should be and has nothing to do.
+    NothingToDo,
+    /// It takes a rescuee on board.
+    Loading,
+    /// It rests.
+    Resting,
+    /// It yields to a robot with the right of way.
+    RightOfWay,
+    /// Its way is blocked by a robot that stands, or by debris.
+    Blocked,
+    /// It makes room for a robot with the right of way.
+    MakingRoom,
+    /// Its whole conflict set was deadlocked and backs off.
+    BackingOff,
+    /// It knows no way to where it should be.
+    NoRoute,
+    /// Its energy is 0.
+    Stranded,
+    /// Its HP is 0.
+    Disabled,
+}
+
+impl DelayCause {
+    /// The cause as one word, for tables.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::UnderWay => "under_way",
+            Self::NothingToDo => "nothing_to_do",
+            Self::Loading => "loading",
+            Self::Resting => "resting",
+            Self::RightOfWay => "right_of_way",
+            Self::Blocked => "blocked",
+            Self::MakingRoom => "making_room",
+            Self::BackingOff => "backing_off",
+            Self::NoRoute => "no_route",
+            Self::Stranded => "stranded",
+            Self::Disabled => "disabled",
+        }
+    }
+
+    /// Whether the robot would move if other robots let it.
+    #[must_use]
+    pub fn is_waiting(self) -> bool {
+        matches!(self, Self::RightOfWay | Self::Blocked)
+    }
+}
+
+/// Why a robot does not move on, and whom it waits for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+pub struct Delay {
+    /// Why.
+    pub cause: DelayCause,
+    /// The robot that it waits for, where there is one.
+    pub waits_for: Option<RobotId>,
+}
+
+/// The cycles of a wait-for graph: `waits_for[i]` is the robot that robot `i` waits for. Each robot waits for at most one, so
+/// that every cycle is found by following the waits once. O(robots).
+///
+/// ```
+/// use usar_sim::conflict::wait_cycles;
+///
+/// assert_eq!(wait_cycles(&[Some(1), Some(2), Some(1), None]), [vec![1, 2]]);
+/// ```
+#[must_use]
+pub fn wait_cycles(waits_for: &[Option<usize>]) -> Vec<Vec<usize>> {
+    let mut visited_from = vec![usize::MAX; waits_for.len()];
+    let mut cycles = Vec::new();
+    for start in 0..waits_for.len() {
+        let mut at = Some(start);
+        while let Some(i) = at.filter(|i| visited_from[*i] == usize::MAX) {
+            visited_from[i] = start;
+            at = waits_for[i];
+        }
+        let Some(first) = at.filter(|i| visited_from[*i] == start) else { continue };
+        let mut cycle = vec![first];
+        let mut next = waits_for[first];
+        while let Some(i) = next.filter(|i| *i != first) {
+            cycle.push(i);
+            next = waits_for[i];
+        }
+        cycles.push(cycle);
+    }
+    cycles
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn cycles_are_found_once_and_chains_are_none() {
+        assert!(wait_cycles(&[Some(1), Some(2), None]).is_empty());
+        assert_eq!(wait_cycles(&[Some(1), Some(0), Some(0)]), [vec![0, 1]]);
+        assert_eq!(wait_cycles(&[Some(0), Some(3), Some(1), Some(2)]), [vec![0], vec![1, 3, 2]]);
+    }
+}

@@ -1,0 +1,214 @@
+//! Robots that make room: who does, for whom, and until when.
+//!
+//! A robot in the way of one with the right of way inherits its priority (as in PIBT; Okumura, Machida, Défago & Tamura, 2022) and
+//! retreats to the nearest place that leaves room. Whoever stands in *its* way makes room in turn: a chain, whose depth is counted.
+
+use parry2d::math::Vector;
+
+use super::Mover;
+use crate::world::STANDING_MPS;
+use super::room::{Ask, distance_to_way, ways};
+
+/// Longest chain of robots that make room for one another.
+const MAX_DEPTH: u32 = 12;
+
+/// Share of its top speed at which a robot retreats.
+const RETREAT_SPEED: f32 = 0.8;
+
+/// A waypoint of a retreat counts as passed within this distance, in metres.
+const PASSED_M: f32 = 0.1;
+
+/// Coming nearer by less than this is no progress, in metres.
+const PROGRESS_M: f32 = 0.05;
+
+/// Robots farther than this from one that makes room do not matter to it, in metres.
+const CROWD_RANGE_M: f32 = 25.0;
+
+/// Distance between the points at which a retreat is compared with the way of the other robot, in metres.
+const SAMPLE_M: f32 = 0.4;
+
+/// How long robots try, in steps.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Limits {
+    /// On the way to the place, without coming nearer to it.
+    pub(super) underway: u32,
+    /// At the place, while the other robot stands.
+    pub(super) at_place: u32,
+}
+
+/// One robot that makes room.
+#[derive(Debug, Clone)]
+pub(super) struct Retreat {
+    /// The robot for which it makes room.
+    pub(super) head: usize,
+    /// 1 when `head` is on its own way, one more than the retreat of `head` otherwise.
+    pub(super) depth: u32,
+    /// Waypoints to the place, the next one last; empty at the place.
+    path: Vec<Vector>,
+    /// The whole way from where it was in the way to the place, at short distances.
+    line: Vec<Vector>,
+    least_left: f32,
+    idle_steps: u32,
+}
+
+/// All retreats, by robot.
+pub(super) struct Retreats {
+    of: Vec<Option<Retreat>>,
+    limits: Limits,
+    margin: f32,
+    arena: Vector,
+}
+
+impl Retreats {
+    pub(super) fn new(limits: Limits, margin: f32, arena: Vector) -> Self {
+        Self { of: Vec::new(), limits, margin, arena }
+    }
+
+    /// The retreat of a robot.
+    pub(super) fn of(&self, i: usize) -> Option<&Retreat> {
+        self.of[i].as_ref()
+    }
+
+    /// Place in the chain of a robot: 0 for one on its own way.
+    pub(super) fn depth(&self, i: usize) -> u32 {
+        self.of[i].as_ref().map_or(0, |retreat| retreat.depth)
+    }
+
+    /// Ends the retreats that are over, and gives the others the wish to go to their place.
+    pub(super) fn follow(&mut self, movers: &mut [Mover]) {
+        self.of.resize(movers.len(), None);
+        for i in 0..movers.len() {
+            let Some(mut retreat) = self.of[i].take() else { continue };
+            retreat.advance(&movers[i], &movers[retreat.head]);
+            if !self.is_over(i, &retreat, movers) {
+                self.of[i] = Some(retreat);
+            }
+        }
+        for (mover, retreat) in movers.iter_mut().zip(&self.of) {
+            if let Some(retreat) = retreat {
+                retreat.guide(mover);
+            }
+        }
+    }
+
+    fn is_over(&self, i: usize, retreat: &Retreat, movers: &[Mover]) -> bool {
+        let (me, head) = (&movers[i], &movers[retreat.head]);
+        let limit = if retreat.path.is_empty() { self.limits.at_place } else { self.limits.underway };
+        let head_way: Vec<Vector> = match &self.of[retreat.head] {
+            Some(other) => other.way(head),
+            None if head.wishes_to_move() => {
+                std::iter::once(head.position).chain(head.route.iter().copied()).collect()
+            }
+            None => return true,
+        };
+        !me.can_make_room
+            || retreat.idle_steps > limit
+            || retreat.is_passed(&head_way, me.radius + head.radius + self.margin)
+    }
+
+    /// Whether a robot is asked at all: it can move, and does not already make room for somebody with a better claim.
+    pub(super) fn may_ask(&self, i: usize, blocker: usize, movers: &[Mover]) -> bool {
+        movers[blocker].can_make_room
+            && self.depth(i) < MAX_DEPTH
+            && self.depth(blocker) <= self.depth(i)
+    }
+
+    /// Has `blocker` make room for `i`. Whether there is room to make.
+    pub(super) fn ask(&mut self, i: usize, blocker: usize, movers: &[Mover]) -> bool {
+        let Some(path) = self.find_room(i, blocker, movers) else { return false };
+        self.of[blocker] = Some(Retreat {
+            head: i,
+            depth: self.depth(i) + 1,
+            line: sampled(movers[blocker].position, &path),
+            path: path.into_iter().rev().collect(),
+            least_left: f32::INFINITY,
+            idle_steps: 0,
+        });
+        true
+    }
+
+    fn find_room(&self, i: usize, blocker: usize, movers: &[Mover]) -> Option<Vec<Vector>> {
+        let (me, head) = (&movers[blocker], &movers[i]);
+        let others = || {
+            movers.iter().enumerate().filter(|(k, other)| {
+                *k != i
+                    && *k != blocker
+                    && other.aerial == me.aerial
+                    && (other.position - me.position).length() < CROWD_RANGE_M
+            })
+        };
+        let disc = |at: Vector, other: &Mover| (at, me.radius + other.radius);
+        let reserved = others().filter_map(|(k, other)| {
+            let place = self.of[k].as_ref()?.path.first()?;
+            Some(disc(*place, other))
+        });
+        let [route, behind] = ways(head);
+        let mut ask = Ask {
+            me,
+            head,
+            way: self.of[i].as_ref().map_or(route, |retreat| retreat.way(head)),
+            through_head: false,
+            crowd: others().map(|(_, other)| disc(other.position, other)).collect(),
+            reserved: reserved.collect(),
+            margin: self.margin,
+            arena: self.arena,
+        };
+        ask.find().or_else(|| {
+            ask.way.extend(behind); // both would have to get out of here: off the whole way of `head`
+            ask.through_head = true;
+            ask.find()
+        })
+    }
+}
+
+/// Points of a way, at most `SAMPLE_M` apart.
+fn sampled(from: Vector, path: &[Vector]) -> Vec<Vector> {
+    let mut points = vec![from];
+    for to in path {
+        let start = points[points.len() - 1];
+        let count = ((*to - start).length() / SAMPLE_M).ceil().max(1.0);
+        points.extend((1..=count as u32).map(|k| start.lerp(*to, k as f32 / count)));
+    }
+    points
+}
+
+impl Retreat {
+
+    /// The way to the place, from where the robot is.
+    fn way(&self, me: &Mover) -> Vec<Vector> {
+        std::iter::once(me.position).chain(self.path.iter().rev().copied()).collect()
+    }
+
+    /// Whether the way of the other robot keeps this far, in metres, from the whole way of the retreat.
+    fn is_passed(&self, head_way: &[Vector], apart: f32) -> bool {
+        self.line.iter().all(|point| distance_to_way(*point, head_way) > 0.95 * apart)
+    }
+
+    fn advance(&mut self, me: &Mover, head: &Mover) {
+        while self.path.last().is_some_and(|next| (*next - me.position).length() < PASSED_M) {
+            self.path.pop();
+            self.least_left = f32::INFINITY;
+        }
+        let left = self.path.last().map_or(0.0, |next| (*next - me.position).length());
+        let waits_for_mover = self.path.is_empty() && head.velocity.length() > STANDING_MPS;
+        if left < self.least_left - PROGRESS_M || waits_for_mover {
+            self.least_left = left;
+            self.idle_steps = 0;
+        } else {
+            self.idle_steps += 1;
+        }
+    }
+
+    /// Lets a robot wish to go where it makes room, or to stay there.
+    fn guide(&self, me: &mut Mover) {
+        let Some(next) = self.path.last() else {
+            me.wish = Vector::ZERO;
+            return;
+        };
+        let to_next = *next - me.position;
+        me.way_left = self.way(me).windows(2).map(|leg| (leg[1] - leg[0]).length()).sum();
+        me.leg_left = to_next.length();
+        let reachable = (2.0 * me.braking * me.leg_left).sqrt().max(0.05);
+        me.wish = to_next.normalize_or_zero() * (RETREAT_SPEED * me.speed).min(reachable);
+    }
+}

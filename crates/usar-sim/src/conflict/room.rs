@@ -1,0 +1,316 @@
+//! Where a robot can make room: the nearest place from which it leaves another robot's way free, and the way there.
+//!
+//! In the open that is a step aside; in a passage that is too narrow for two it is the way that the robot came by, back to the nearest
+//! bay. Dijkstra's algorithm on a local grid, cells of half the robot's radius; O(cells log cells), at most 201 x 201 of them.
+
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+
+use parry2d::math::Vector;
+
+use super::Mover;
+use crate::planning::{KnownObstacle, polygon_contains};
+
+/// Cells from the middle of the grid to its border.
+const HALF_CELLS: i32 = 100;
+
+/// Cells in a row.
+const ROW: i32 = 2 * HALF_CELLS + 1;
+
+/// Cost of a step along a row or column, and of a diagonal one.
+const STEP_COST: [u32; 2] = [10, 14];
+
+/// Extra cost of a cell where another robot stands: it would have to make room in turn.
+const CROWD_COST: u32 = 60;
+
+/// Way of the other robot, ahead and behind, that is to be left free, in metres.
+const CLEARED_WAY_M: f32 = 30.0;
+
+/// A robot that is nearer than this to an obstacle that it should keep off from may pass along it, in metres.
+const LEAVE_M: f32 = 0.8;
+
+/// A question for room.
+pub(super) struct Ask<'a> {
+    /// Who is to make room.
+    pub(super) me: &'a Mover<'a>,
+    /// For whom.
+    pub(super) head: &'a Mover<'a>,
+    /// The way of `head` that is to be left free.
+    pub(super) way: Vec<Vector>,
+    /// Whether `me` may go through where `head` is: `head` will have to make room for it first.
+    pub(super) through_head: bool,
+    /// Other robots: centre, and distance at which they touch `me`.
+    pub(super) crowd: Vec<(Vector, f32)>,
+    /// Places that other robots are on their way to, to make room there.
+    pub(super) reserved: Vec<(Vector, f32)>,
+    /// Distance to keep from robots, in metres.
+    pub(super) margin: f32,
+    /// Width and height of the arena, in metres.
+    pub(super) arena: Vector,
+}
+
+/// The ways of a robot: ahead from where it is, and behind.
+pub(super) fn ways(robot: &Mover) -> [Vec<Vector>; 2] {
+    let ahead = std::iter::once(robot.position).chain(robot.route.iter().copied());
+    let behind = std::iter::once(robot.position).chain(robot.trail.iter().rev().copied());
+    [cut(ahead), cut(behind)]
+}
+
+fn cut(points: impl Iterator<Item = Vector>) -> Vec<Vector> {
+    let mut length = 0.0;
+    let mut way: Vec<Vector> = Vec::new();
+    for point in points {
+        length += way.last().map_or(0.0, |last| (point - *last).length());
+        way.push(point);
+        if length > CLEARED_WAY_M {
+            break;
+        }
+    }
+    way
+}
+
+/// Distance of a point from a way, in metres.
+pub(super) fn distance_to_way(point: Vector, way: &[Vector]) -> f32 {
+    let to_leg = |leg: &[Vector]| {
+        let along = leg[1] - leg[0];
+        let t = ((point - leg[0]).dot(along) / along.length_squared().max(1e-9)).clamp(0.0, 1.0);
+        (leg[0] + along * t - point).length()
+    };
+    match way {
+        [] => f32::INFINITY,
+        [only] => (*only - point).length(),
+        _ => way.windows(2).map(to_leg).fold(f32::INFINITY, f32::min),
+    }
+}
+
+impl Ask<'_> {
+    /// The way to the nearest place that leaves room, without the robot's own position; `None` where there is none within reach.
+    pub(super) fn find(&self) -> Option<Vec<Vector>> {
+        let mut grid = Grid::new(self);
+        let place = grid.search()?;
+        Some(grid.way_to(place))
+    }
+
+    fn touch_head(&self) -> f32 {
+        self.me.radius + self.head.radius
+    }
+
+    /// Whether `me` leaves room at this point.
+    fn leaves_room(&self, point: Vector) -> bool {
+        let clear = |(center, touch): &(Vector, f32)| (*center - point).length() >= touch + self.margin;
+        distance_to_way(point, &self.way) >= self.touch_head() + self.margin
+            && self.crowd.iter().all(clear)
+            && self.reserved.iter().all(clear)
+    }
+}
+
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Cell {
+    Unknown,
+    Blocked,
+    Free,
+    Crowded,
+}
+
+struct Grid<'a> {
+    ask: &'a Ask<'a>,
+    size: f32,
+    /// Obstacles near enough to matter.
+    obstacles: Vec<&'a KnownObstacle>,
+    cells: Vec<Cell>,
+    cost: Vec<u32>,
+    from: Vec<u32>,
+}
+
+impl<'a> Grid<'a> {
+    fn new(ask: &'a Ask<'a>) -> Self {
+        let size = 0.5 * ask.me.radius;
+        let reach = size * HALF_CELLS as f32;
+        let here = ask.me.position;
+        let near = |obstacle: &&KnownObstacle| {
+            let distance = |corner: &Vector| (*corner - here).abs().max_element();
+            let nearest = obstacle.tight.iter().map(distance).fold(f32::INFINITY, f32::min);
+            nearest <= 2.0 * reach // large pieces may reach in between their corners
+                && !(polygon_contains(&obstacle.tight, here) && nearest < LEAVE_M)
+        };
+        let count = (ROW * ROW) as usize;
+        Self {
+            ask,
+            size,
+            obstacles: ask.me.obstacles.iter().filter(near).collect(),
+            cells: vec![Cell::Unknown; count],
+            cost: vec![u32::MAX; count],
+            from: vec![u32::MAX; count],
+        }
+    }
+
+    fn point(&self, cell: u32) -> Vector {
+        let (row, column) = (cell as i32 / ROW, cell as i32 % ROW);
+        let offset = Vector::new((column - HALF_CELLS) as f32, (row - HALF_CELLS) as f32);
+        self.ask.me.position + offset * self.size
+    }
+
+    fn search(&mut self) -> Option<u32> {
+        let start = (HALF_CELLS * ROW + HALF_CELLS) as u32;
+        let mut open = BinaryHeap::from([Reverse((0, start))]);
+        self.cost[start as usize] = 0;
+        while let Some(Reverse((cost, cell))) = open.pop() {
+            if cost > self.cost[cell as usize] {
+                continue;
+            }
+            if cell != start && self.kind(cell) == Cell::Free && self.ask.leaves_room(self.point(cell)) {
+                return Some(cell);
+            }
+            for (next, step) in neighbours(cell) {
+                let crowd = match self.kind(next) {
+                    Cell::Blocked | Cell::Unknown => continue,
+                    Cell::Free => 0,
+                    Cell::Crowded => CROWD_COST,
+                };
+                let cost = cost + step + crowd;
+                if cost < self.cost[next as usize] {
+                    self.cost[next as usize] = cost;
+                    self.from[next as usize] = cell;
+                    open.push(Reverse((cost, next)));
+                }
+            }
+        }
+        None
+    }
+
+    /// What is in a cell, found out when it is first looked at.
+    fn kind(&mut self, cell: u32) -> Cell {
+        if self.cells[cell as usize] == Cell::Unknown {
+            self.cells[cell as usize] = self.look_at(self.point(cell));
+        }
+        self.cells[cell as usize]
+    }
+
+    fn look_at(&self, point: Vector) -> Cell {
+        let Ask { me, head, arena, .. } = self.ask;
+        let border = Vector::splat(me.radius);
+        let outside = point.cmplt(border).any() || point.cmpgt(*arena - border).any();
+        if outside || self.obstacles.iter().any(|obstacle| polygon_contains(&obstacle.tight, point)) {
+            return Cell::Blocked;
+        }
+        // Already touching, a robot may still leave.
+        let nearer = |center: Vector| (center - point).length() < (center - me.position).length();
+        let meets = |center: Vector, touch: f32| (center - point).length() < touch && nearer(center);
+        if meets(head.position, self.ask.touch_head()) {
+            return if self.ask.through_head { Cell::Crowded } else { Cell::Blocked };
+        }
+        let crowded = self.ask.crowd.iter().any(|(center, touch)| meets(*center, *touch));
+        if crowded { Cell::Crowded } else { Cell::Free }
+    }
+
+    /// The way to a cell, its corners only.
+    fn way_to(&mut self, place: u32) -> Vec<Vector> {
+        let mut way = vec![place];
+        let mut last = place;
+        while self.from[last as usize] != u32::MAX {
+            last = self.from[last as usize];
+            way.push(last);
+        }
+        way.reverse();
+        let mut corners = Vec::new();
+        let mut at = 0;
+        while at + 1 < way.len() {
+            let next = (at + 1..way.len()).rev().find(|to| *to == at + 1 || self.is_clear(way[at], way[*to]));
+            at = next.unwrap_or(at + 1);
+            corners.push(self.point(way[at]));
+        }
+        corners
+    }
+
+    /// Whether the straight way between two cells leads through free cells only.
+    fn is_clear(&self, a: u32, b: u32) -> bool {
+        let (a, b) = (self.point(a), self.point(b));
+        let samples = (2.0 * (b - a).length() / self.size).ceil().max(1.0);
+        (0..=samples as u32).all(|i| self.look_at(a.lerp(b, i as f32 / samples)) == Cell::Free)
+    }
+}
+
+fn neighbours(cell: u32) -> impl Iterator<Item = (u32, u32)> {
+    let (row, column) = (cell as i32 / ROW, cell as i32 % ROW);
+    (0..9).filter(|k| *k != 4).filter_map(move |k| {
+        let (to_row, to_column) = (row + k / 3 - 1, column + k % 3 - 1);
+        let inside = (0..ROW).contains(&to_row) && (0..ROW).contains(&to_column);
+        let diagonal = usize::from(to_row != row && to_column != column);
+        inside.then_some(((to_row * ROW + to_column) as u32, STEP_COST[diagonal]))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::mover;
+    use super::*;
+    use crate::planning::ObstacleKey;
+    use crate::world::Outline;
+
+    fn wall(center: [f32; 2], size: [f32; 2]) -> KnownObstacle {
+        let shape = parry2d::shape::SharedShape::cuboid(size[0] / 2.0, size[1] / 2.0);
+        let outline = Outline { shape, ..Outline::disc(center.into(), 1.0) };
+        KnownObstacle::new(ObstacleKey::Debris(0, 1), &outline, 0.4, 0.15)
+    }
+
+    /// A passage along x at y = 10, 1.2 m wide, from x = 5 to x = 15, whose northern wall has a bay between x = 11 and x = 13.
+    fn passage() -> Vec<KnownObstacle> {
+        vec![
+            wall([10.0, 9.0], [10.0, 0.8]),
+            wall([8.0, 11.0], [6.0, 0.8]),
+            wall([14.0, 11.0], [2.0, 0.8]),
+            wall([12.0, 12.4], [6.0, 0.8]),
+        ]
+    }
+
+    fn ask<'a>(me: &'a Mover, head: &'a Mover) -> Ask<'a> {
+        let [way, _] = ways(head);
+        Ask {
+            me,
+            head,
+            way,
+            through_head: false,
+            crowd: Vec::new(),
+            reserved: Vec::new(),
+            margin: 0.15,
+            arena: Vector::splat(20.0),
+        }
+    }
+
+    #[test]
+    fn in_the_open_a_robot_steps_aside() {
+        let head = mover(0, [5.0, 10.0], [1.0, 0.0]);
+        let me = mover(1, [6.0, 10.0], [-1.0, 0.0]);
+        let way = ask(&me, &head).find().unwrap();
+        let place = way[way.len() - 1];
+        assert!((place.y - 10.0).abs() >= 0.95 && (place - me.position).length() < 1.3, "{way:?}");
+    }
+
+    #[test]
+    fn in_a_passage_it_goes_back_to_the_nearest_bay() {
+        let obstacles = passage();
+        let head = Mover { obstacles: &obstacles, ..mover(0, [7.0, 10.0], [1.0, 0.0]) };
+        let me = Mover { obstacles: &obstacles, ..mover(1, [8.0, 10.0], [-1.0, 0.0]) };
+        let place = *ask(&me, &head).find().unwrap().last().unwrap();
+        assert!((11.0..13.0).contains(&place.x) && place.y > 10.9, "{place}");
+        let taken = Ask { reserved: vec![(place, 0.8)], ..ask(&me, &head) };
+        let farther = *taken.find().unwrap().last().unwrap();
+        assert!(farther.x > 15.0, "the bay is taken: {farther}");
+    }
+
+    #[test]
+    fn out_of_a_dead_end_there_is_a_way_through_the_other_only() {
+        let mut obstacles = passage();
+        obstacles[1] = wall([10.0, 11.0], [10.0, 0.8]);
+        obstacles.push(wall([15.0, 10.0], [0.8, 3.0]));
+        let head = Mover { obstacles: &obstacles, ..mover(0, [8.0, 10.0], [1.0, 0.0]) };
+        let me = Mover { obstacles: &obstacles, ..mover(1, [10.0, 10.0], [0.0, 0.0]) };
+        assert_eq!(ask(&me, &head).find(), None);
+        let trail = [Vector::new(2.0, 10.0)];
+        let head = Mover { trail: &trail, ..head };
+        let way = ways(&head).concat();
+        let through = Ask { through_head: true, way, ..ask(&me, &head) };
+        let place = *through.find().unwrap().last().unwrap();
+        assert!(place.x < 5.0 && (place.y - 10.0).abs() > 0.9, "{place}");
+    }
+}

@@ -1,0 +1,32 @@
+//! Robots for unit tests.
+
+use parry2d::math::Vector;
+
+use super::{Mover, PriorityKey};
+use crate::ids::RobotId;
+
+/// A ground robot of 0.4 m radius that wishes this velocity; its route leads 10 m that way.
+pub(super) fn mover(id: u32, at: [f32; 2], wish: [f32; 2]) -> Mover<'static> {
+    let (position, wish) = (Vector::from(at), Vector::from(wish));
+    Mover {
+        robot: RobotId(id),
+        aerial: false,
+        position,
+        velocity: Vector::ZERO,
+        wish,
+        way_left: 10.0,
+        leg_left: 10.0,
+        route: if wish == Vector::ZERO {
+            &[]
+        } else {
+            Box::leak(Box::new([position + 10.0 * wish.normalize()]))
+        },
+        trail: &[],
+        radius: 0.4,
+        speed: 2.0,
+        braking: 3.0,
+        priority: PriorityKey { class: 0, level: 50.0, robot: RobotId(id) },
+        obstacles: &[],
+        can_make_room: true,
+    }
+}

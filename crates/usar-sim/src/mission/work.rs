@@ -1,0 +1,98 @@
+//! Work in the field: claims on rescuees, and the search for more.
+
+use rne_core::Difficulty;
+
+use super::{Activity, Mission, task_index};
+use crate::event::{Event, EventLog};
+use crate::ids::{RescueeId, RobotId};
+use crate::planning::Navigator;
+use crate::sensing::{RescueeBlock, SENSING_PERIOD_STEPS};
+use crate::world::{RescueeState, Robot, World};
+
+impl Mission {
+    /// Rescuees that a group knows of and that nobody has claimed.
+    pub(super) fn available<'w>(&'w self, task: Difficulty, world: &'w World) -> impl Iterator<Item = RescueeId> + 'w {
+        let known = &self.knowledge[task_index(task)].rescuees;
+        let block = self.blocks.iter().find(|block| block.task() == task);
+        block
+            .map(RescueeBlock::ids)
+            .unwrap_or_default()
+            .filter(move |i| {
+                let rescuee = &world.rescuees[*i];
+                known[*i]
+                    && rescuee.state == RescueeState::Waiting
+                    && rescuee.claimed_by.is_none()
+                    && !self.unreachable[*i]
+            })
+            .map(|i| RescueeId(i as u32))
+    }
+
+    /// A robot's next activity, where it is free to choose.
+    pub(super) fn choose_activity(
+        &mut self,
+        id: RobotId,
+        world: &mut World,
+        (navigator, step): (&Navigator, u64),
+        log: &mut EventLog,
+    ) {
+        let robot = &world.robots[id.index()];
+        let activity = self.agents[id.index()].activity;
+        let Some(task) = self.agents[id.index()].task.filter(|_| robot.is_able()) else { return };
+        match activity {
+            Activity::Approaching(rescuee) if self.is_out_of_reach(id, rescuee, world, navigator) => {
+                self.unreachable[rescuee.index()] = true;
+                let place = world.rescuees[rescuee.index()].position.into();
+                log.push(Event::Unreachable { robot: id, place });
+                self.release_claim(id, world);
+                self.agent(id).activity = Activity::Searching;
+            }
+            Activity::Searching | Activity::Standby if self.groups[task_index(task)].at_work => {
+                let looks_for_work =
+                    (step + id.0 as u64).is_multiple_of(SENSING_PERIOD_STEPS) && robot.free_capacity() > 0;
+                if looks_for_work && let Some(rescuee) = self.nearest_available(task, id, world) {
+                    world.rescuees[rescuee.index()].claimed_by = Some(id);
+                    self.agent(id).activity = Activity::Approaching(rescuee);
+                    return;
+                }
+                self.go_on_searching(id, &world.robots[id.index()], navigator);
+            }
+            _ => {}
+        }
+    }
+
+    /// Whether a robot's route ends, or there is none, before the rescuee is within reach.
+    fn is_out_of_reach(&self, id: RobotId, rescuee: RescueeId, world: &World, navigator: &Navigator) -> bool {
+        let traveller = navigator.traveller(id);
+        let robot = &world.robots[id.index()];
+        let apart = (world.rescuees[rescuee.index()].position - robot.position).length();
+        let at_end = traveller.has_arrived(robot.position) && apart > self.rules.reach_m as f32;
+        at_end || traveller.leads_nowhere()
+    }
+
+    fn go_on_searching(&mut self, id: RobotId, robot: &Robot, navigator: &Navigator) {
+        let agent = &mut self.agents[id.index()];
+        let traveller = navigator.traveller(id);
+        if robot.can_carry() && robot.free_capacity() == 0 {
+            agent.sweep.clear();
+        } else if agent.activity == Activity::Searching
+            && (traveller.has_arrived(robot.position) || traveller.leads_nowhere())
+            && traveller.goal().map(|goal| goal.point) == agent.sweep.last().copied()
+        {
+            agent.sweep.pop();
+        }
+        agent.activity = if agent.sweep.is_empty() { Activity::Standby } else { Activity::Searching };
+    }
+
+    /// The nearest rescuee that a robot may claim: there must be a resource for it in the field that no other claim needs.
+    fn nearest_available(&self, task: Difficulty, id: RobotId, world: &World) -> Option<RescueeId> {
+        let field = self.members_in_field(task, world);
+        let resources: u32 = field.iter().map(|id| world.robots[id.index()].resources).sum();
+        let claims = field.iter().filter(|id| self.agents[id.index()].activity.claim().is_some()).count();
+        if resources <= claims as u32 {
+            return None;
+        }
+        let here = world.robots[id.index()].position;
+        let distance = |id: &RescueeId| (world.rescuees[id.index()].position - here).length_squared();
+        self.available(task, world).min_by(|a, b| distance(a).total_cmp(&distance(b)).then(a.cmp(b)))
+    }
+}

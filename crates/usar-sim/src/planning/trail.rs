@@ -1,0 +1,33 @@
+//! Where a robot came by.
+
+use parry2d::math::Vector;
+
+/// Distance between two points of a trail, in metres.
+const SPACING_M: f32 = 0.5;
+
+/// Points that are kept at least; twice as many at most.
+const KEPT: usize = 60;
+
+/// The last 30 m or more of a robot's way.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Trail {
+    points: Vec<Vector>,
+}
+
+impl Trail {
+    /// Takes note of where the robot is.
+    pub(super) fn note(&mut self, position: Vector) {
+        let is_far = |last: &Vector| (*last - position).length_squared() >= SPACING_M * SPACING_M;
+        if self.points.last().is_none_or(is_far) {
+            if self.points.len() == 2 * KEPT {
+                self.points.drain(..KEPT);
+            }
+            self.points.push(position);
+        }
+    }
+
+    /// The points, the latest last.
+    pub(super) fn points(&self) -> &[Vector] {
+        &self.points
+    }
+}
