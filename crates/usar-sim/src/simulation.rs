@@ -7,6 +7,7 @@ use xxhash_rust::xxh3::Xxh3;
 use crate::conflict::{Delay, DelayCause, Directive, Mover, PriorityKey, Resolver};
 use crate::event::{Event, EventLog};
 
+use crate::ids::RobotId;
 use crate::layout::Layout;
 use crate::metrics::Metrics;
 use crate::mission::{Activity, Ending, Mission};
@@ -43,7 +44,15 @@ struct Tally {
     distance_m: f64,
     waiting_steps: u64,
     delay: Delay,
-    stalled_longest: (u64, Delay),
+    stall: Stall,
+    longest_stall: (u64, Delay),
+}
+
+/// What held a robot up since it last came nearer.
+#[derive(Debug, Clone, Copy, Default)]
+struct Stall {
+    /// Steps for each cause, and whom it waited for last.
+    causes: [(u64, Option<RobotId>); DelayCause::ALL.len()],
 }
 
 impl<'a> Simulation<'a> {
@@ -90,7 +99,9 @@ impl<'a> Simulation<'a> {
         self.into_record(status)
     }
 
-    fn ending(&self) -> Option<Status> {
+    /// How the trial ended, once it is over.
+    #[must_use]
+    pub fn ending(&self) -> Option<Status> {
         if let Some(ending) = self.mission.ending {
             Some(match ending {
                 Ending::NoCarrierLeft => Status::NoCarrierLeft,
@@ -101,6 +112,13 @@ impl<'a> Simulation<'a> {
         } else {
             None
         }
+    }
+
+    /// The record of the trial as far as it was run, step by step.
+    #[must_use]
+    pub fn finish(self) -> TrialRecord {
+        let status = self.ending().unwrap_or(Status::Failed("it was not run to its end".to_owned()));
+        self.into_record(status)
     }
 
     /// Simulated time, in seconds.
@@ -261,8 +279,8 @@ impl<'a> Simulation<'a> {
             hp_lost: tally.spent[1],
             distance_m: tally.distance_m,
             waiting_s: seconds(tally.waiting_steps),
-            longest_stall_s: seconds(tally.stalled_longest.0),
-            stall: tally.stalled_longest.1,
+            longest_stall_s: seconds(tally.longest_stall.0),
+            stall: tally.longest_stall.1,
             stranded: robot.condition == Condition::Stranded,
             disabled: robot.condition == Condition::Disabled,
         });
@@ -298,9 +316,20 @@ impl Tally {
         self.delay = delay;
     }
 
+    /// `steps` since the robot last came nearer. What took the most of them is the cause.
     fn note_stall(&mut self, steps: u64) {
-        if steps > self.stalled_longest.0 {
-            self.stalled_longest = (steps, self.delay);
+        if steps == 0 {
+            self.stall = Stall::default();
+            return;
+        }
+        let (count, waits_for) = &mut self.stall.causes[self.delay.cause as usize];
+        *count += 1;
+        *waits_for = self.delay.waits_for.or(*waits_for);
+        if steps > self.longest_stall.0 {
+            let causes = DelayCause::ALL.into_iter().zip(self.stall.causes);
+            let most = causes.rev().max_by_key(|(_, (count, _))| *count);
+            let delay = most.map(|(cause, (_, waits_for))| Delay { cause, waits_for });
+            self.longest_stall = (steps, delay.unwrap_or_default());
         }
     }
 }

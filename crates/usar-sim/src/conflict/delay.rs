@@ -33,6 +33,21 @@ pub enum DelayCause {
 }
 
 impl DelayCause {
+    /// All causes, in their order.
+    pub const ALL: [Self; 11] = [
+        Self::UnderWay,
+        Self::NothingToDo,
+        Self::Loading,
+        Self::Resting,
+        Self::RightOfWay,
+        Self::Blocked,
+        Self::MakingRoom,
+        Self::BackingOff,
+        Self::NoRoute,
+        Self::Stranded,
+        Self::Disabled,
+    ];
+
     /// The cause as one word, for tables.
     #[must_use]
     pub fn name(self) -> &'static str {
@@ -100,6 +115,11 @@ pub fn wait_cycles(waits_for: &[Option<usize>]) -> Vec<Vec<usize>> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn causes_stand_in_their_order() {
+        assert!(DelayCause::ALL.iter().enumerate().all(|(i, cause)| *cause as usize == i));
+    }
 
     #[test]
     fn cycles_are_found_once_and_chains_are_none() {

@@ -127,13 +127,16 @@ impl Directive {
 const BACK_OFF_S: f64 = 1.0;
 
 /// How long the head of a set may move without coming nearer before it loses its turn, in seconds.
-const LIVELOCK_S: f64 = 1.0;
+const LIVELOCK_S: f64 = 2.0;
 
 /// How long a robot tries to get to where it makes room without coming nearer, in seconds.
 const RETREAT_PATIENCE_S: f64 = 3.0;
 
 /// How long a robot stays where it makes room, in seconds, when the other does not pass.
 const ROOM_PATIENCE_S: f64 = 15.0;
+
+/// How long a robot is not asked again after it tried in vain to make room, in seconds.
+const RESPITE_S: f64 = 3.0;
 
 /// How often a robot that is alone before a blocked way asks for room, in seconds.
 const ASK_AGAIN_S: f64 = 0.5;
@@ -152,7 +155,11 @@ pub struct Resolver {
     sets: Vec<ConflictSet>,
     retreats: Retreats,
     neighbours: Neighbours,
+    /// Pairs in conflict, the lower number first, in order.
+    conflicts: Vec<(usize, usize)>,
     directives: Vec<Directive>,
+    /// For each robot, the direction that it was told last; zero where it stood.
+    headings: Vec<Vector>,
     /// For each robot, steps since its way was last free.
     blocked_steps: Vec<u32>,
 }
@@ -163,7 +170,7 @@ impl Resolver {
     pub fn new(scenario: &Scenario) -> Self {
         let rules = scenario.conflicts;
         let steps = |seconds: f64| (seconds / scenario.dt_s).round() as u32;
-        let limits = Limits { underway: steps(RETREAT_PATIENCE_S), at_place: steps(ROOM_PATIENCE_S) };
+        let limits = Limits { underway: steps(RETREAT_PATIENCE_S), at_place: steps(ROOM_PATIENCE_S), respite: steps(RESPITE_S) };
         let arena = Vector::new(scenario.arena_m[0] as f32, scenario.arena_m[1] as f32);
         Self {
             rules,
@@ -176,7 +183,9 @@ impl Resolver {
             sets: Vec::new(),
             retreats: Retreats::new(limits, rules.margin_m as f32, arena),
             neighbours: Neighbours::default(),
+            conflicts: Vec::new(),
             directives: Vec::new(),
+            headings: Vec::new(),
             blocked_steps: Vec::new(),
         }
     }
@@ -189,29 +198,35 @@ impl Resolver {
             return &self.directives;
         }
         self.blocked_steps.resize(movers.len(), 0);
+        self.headings.resize(movers.len(), Vector::ZERO);
         self.directives.resize(movers.len(), Directive::Stand);
         self.retreats.follow(movers);
         let (margin, horizon) = (self.rules.margin_m as f32, self.rules.horizon_s as f32);
         self.neighbours.find(movers, margin, horizon);
         let pairs = self.neighbours.pairs().iter().copied();
-        let conflicts = pairs.filter(|(a, b)| will_conflict(&movers[*a], &movers[*b], margin, horizon));
-        self.carry_over(&components(movers.len(), conflicts), movers, log);
+        self.conflicts.clear();
+        self.conflicts
+            .extend(pairs.filter(|(a, b)| will_conflict(&movers[*a], &movers[*b], margin, horizon)));
+        self.carry_over(&components(movers.len(), self.conflicts.iter().copied()), movers, log);
         let progress: Vec<Progress> =
             (0..self.sets.len()).map(|set| self.judge(set, movers, log)).collect();
         self.direct(movers, &progress);
+        for (heading, directive) in self.headings.iter_mut().zip(&self.directives) {
+            *heading = directive.velocity().normalize_or_zero();
+        }
         self.ask_for_room(movers, log);
         &self.directives
     }
 
-    /// Sets that share at least half their members with one of the last step are its continuation: whoever is head stays it until
-    /// it is out of the set. The others are new.
+    /// A set continues the one of the last step with which it shares the most members: whoever is head stays it until it is out of the
+    /// set. One that shares none is new.
     fn carry_over(&mut self, members: &[Vec<usize>], movers: &[Mover], log: &mut EventLog) {
         let mut before = std::mem::take(&mut self.sets);
         let priority = |i: usize| movers[i].priority;
         for members in members {
-            let known =
-                before.iter().position(|set| 2 * set.shared(members) >= members.len().max(set.order.len()));
-            let mut set = if let Some(at) = known {
+            let shares = before.iter().map(|set| set.shared(members)).enumerate();
+            let most = shares.rev().max_by_key(|(_, shared)| *shared).filter(|(_, shared)| *shared > 0);
+            let mut set = if let Some((at, _)) = most {
                 let mut set = before.remove(at);
                 set.regroup(members, priority);
                 set
@@ -230,18 +245,22 @@ impl Resolver {
         let speeds = set.order.iter().map(|i| movers[*i].velocity.length());
         let seen =
             Observation { fastest: speeds.fold(0.0, f32::max), head_way_left: movers[set.order[0]].way_left };
+        if self.retreats.is_served(set.order[0]) {
+            set.wait_for_room();
+        }
         let progress = set.observe(seen, self.patience);
         if progress != Progress::Stuck {
             return progress;
         }
         let (head, order) = (set.order[0], robots(&set.order, movers));
         log.push(Event::Deadlocked { robots: order });
-        if let Directive::Blocked { by: Some(by) } = self.directives[head]
-            && self.make_room(head, by.index(), movers, log)
+        if let Some(blocker) = self.who_stops(head, movers)
+            && self.make_room(head, blocker, movers, log)
         {
             self.sets[at].wait_for_room();
             return Progress::Flowing;
         }
+        self.retreats.give_up(head);
         let set = &mut self.sets[at];
         let turn = set.give_turn(self.rules.resolver, self.patience);
         let robots = robots(&set.order, movers);
@@ -257,11 +276,41 @@ impl Resolver {
         }
     }
 
+    /// Those of a set that go: its head, and whoever makes room and is in no conflict with those before it.
+    fn who_goes(&self, set: &ConflictSet) -> Vec<usize> {
+        let in_conflict = |a: usize, b: usize| self.conflicts.binary_search(&(a.min(b), a.max(b))).is_ok();
+        let mut goes = vec![set.order[0]];
+        for i in &set.order[1..] {
+            if self.retreats.depth(*i) > 0 && !goes.iter().any(|other| in_conflict(*i, *other)) {
+                goes.push(*i);
+            }
+        }
+        goes
+    }
+
+    /// The robot in the way of one that does not come on: the one that blocked it in the last step, or else the nearest in its way.
+    fn who_stops(&self, i: usize, movers: &[Mover]) -> Option<usize> {
+        if let Directive::Blocked { by } = self.directives[i] {
+            return by.map(RobotId::index);
+        }
+        let me = &movers[i];
+        let slow = |j: &&usize| movers[**j].velocity.length() < 0.5 * me.wish.length();
+        let near: Vec<usize> = self.neighbours.of(i).iter().filter(slow).copied().collect();
+        let discs = near.iter().map(|j| (movers[*j].position - me.position, me.radius + movers[*j].radius));
+        let surroundings = self.surroundings(me, discs.collect(), self.headings[i]);
+        nearest_in_the_way(me.wish, &surroundings).map(|at| near[at])
+    }
+
+    fn surroundings<'m>(&self, me: &Mover<'m>, discs: Vec<(Vector, f32)>, heading: Vector) -> Surroundings<'m> {
+        Surroundings { discs, margin: self.rules.margin_m as f32, obstacles: me.obstacles, heading }
+    }
+
     /// Heads and robots without conflicts go, past those that stand; the others yield, or back off.
     fn direct(&mut self, movers: &[Mover], progress: &[Progress]) {
         let mut stands: Vec<bool> = movers.iter().map(|mover| !mover.wishes_to_move()).collect();
-        for set in &self.sets {
-            set.order[1..].iter().for_each(|member| stands[*member] = true);
+        let goers: Vec<Vec<usize>> = self.sets.iter().map(|set| self.who_goes(set)).collect();
+        for (set, goers) in self.sets.iter().zip(&goers) {
+            set.order.iter().for_each(|member| stands[*member] = !goers.contains(member));
         }
         for i in 0..movers.len() {
             self.directives[i] = if movers[i].wishes_to_move() && !stands[i] {
@@ -270,10 +319,9 @@ impl Resolver {
                 Directive::Stand
             };
         }
-        for (set, progress) in self.sets.iter().zip(progress) {
+        for ((set, goers), progress) in self.sets.iter().zip(&goers).zip(progress) {
             let backs_off = *progress == Progress::BackingOff;
-            let members = if backs_off { &set.order[..] } else { &set.order[1..] };
-            for i in members {
+            for i in set.order.iter().filter(|i| backs_off || !goers.contains(i)) {
                 self.directives[*i] = if backs_off {
                     let wish = back_off_wish(*i, &set.order, movers);
                     Directive::BackOff(self.pass(*i, movers, wish, &stands).velocity())
@@ -318,8 +366,9 @@ impl Resolver {
             self.directives.iter().map(|directive| directive.waits_for().map(RobotId::index)).collect();
         let cycles = wait_cycles(&waits_for);
         for (i, blocker) in due {
-            let is_parked = !movers[blocker].wishes_to_move() && self.retreats.of(blocker).is_none();
-            if is_parked || self.retreats.depth(i) > 0 || self.leads_cycle(i, &cycles, movers) {
+            let is_parked = !movers[blocker].wishes_to_move();
+            let is_head = self.sets.iter().any(|set| set.order[0] == i && set.order.contains(&blocker));
+            if is_parked || is_head || self.retreats.depth(i) > 0 || self.leads_cycle(i, &cycles, movers) {
                 self.make_room(i, blocker, movers, log);
             }
         }
@@ -350,11 +399,8 @@ impl Resolver {
         let me = Mover { wish, ..movers[i] };
         let near = self.neighbours.of(i);
         let blockers = || near.iter().filter(|j| stands[**j]).map(|j| &movers[*j]);
-        let mut surroundings = Surroundings {
-            discs: blockers().map(|other| (other.position - me.position, me.radius + other.radius)).collect(),
-            margin: self.rules.margin_m as f32,
-            obstacles: me.obstacles,
-        };
+        let discs = blockers().map(|other| (other.position - me.position, me.radius + other.radius));
+        let mut surroundings = self.surroundings(&me, discs.collect(), self.headings[i]);
         if let Some(direction) = passing_direction(&me, &surroundings) {
             return Directive::Proceed(direction * wish.length());
         }

@@ -3,13 +3,19 @@
 use parry2d::math::Vector;
 
 use super::Mover;
-use crate::planning::{KnownObstacle, polygon_contains, polygon_crossed};
+use crate::planning::{KnownObstacle, outward_normal, polygon_contains, polygon_crossed};
 
 /// How far ahead a robot looks for those that stand in its way, in metres.
 pub const PASSING_RANGE_M: f32 = 2.0;
 
 /// Tangents are taken to discs larger by this factor, so that rounding does not make them touch.
 const TANGENT_SLACK: f32 = 1.01;
+
+/// Directions whose cosine to what is too close is at most this lead past it.
+const SLIDE: f32 = 0.02;
+
+/// How much the direction of the last step counts, against 1 for the wish.
+const PERSISTENCE: f32 = 0.3;
 
 /// A direction that leads further back than this (cosine to the wish) is no way past.
 const LEAST_ADVANCE: f32 = -0.3;
@@ -22,6 +28,8 @@ pub(super) struct Surroundings<'a> {
     pub(super) margin: f32,
     /// Debris that it knows.
     pub(super) obstacles: &'a [KnownObstacle],
+    /// The direction that it took in the last step; zero where it took none.
+    pub(super) heading: Vector,
 }
 
 impl Surroundings<'_> {
@@ -30,20 +38,37 @@ impl Surroundings<'_> {
         let clear_of_discs = self.discs.iter().all(|(center, touch)| {
             let distance = touch + self.margin;
             if center.length_squared() < distance * distance {
-                return direction.dot(*center) <= 0.02 * center.length(); // already too close: not nearer
+                return direction.dot(*center) <= SLIDE * center.length(); // already too close: not nearer
             }
             let nearest = center.dot(direction).clamp(0.0, range);
             (*center - direction * nearest).length_squared() >= distance * distance
         });
         let to = from + direction * range.min(1.0);
         clear_of_discs
-            && self.obstacles.iter().all(|obstacle| {
-                polygon_contains(&obstacle.tight, from) || !polygon_crossed(&obstacle.tight, from, to)
+            && self.obstacles.iter().all(|obstacle| match self.outward(obstacle, from) {
+                Some(outward) => direction.dot(outward) >= -SLIDE, // already too close: not nearer
+                None => !polygon_crossed(&obstacle.tight, from, to),
             })
+    }
+
+    /// The direction that leads out of an obstacle's surroundings, for a robot that is in them.
+    fn outward(&self, obstacle: &KnownObstacle, from: Vector) -> Option<Vector> {
+        polygon_contains(&obstacle.tight, from).then(|| outward_normal(&obstacle.tight, from))
+    }
+
+    /// How good a free direction is: near to the wish, and to the one before, so that a robot does not dither between two sides.
+    fn merit(&self, direction: Vector, wish: Vector) -> f32 {
+        direction.dot(wish) + PERSISTENCE * direction.dot(self.heading)
+    }
+
+    /// Directions along the obstacles that a robot is too close to.
+    fn along_obstacles(&self, from: Vector) -> impl Iterator<Item = Vector> {
+        let outward = self.obstacles.iter().filter_map(move |obstacle| self.outward(obstacle, from));
+        outward.flat_map(|outward| [outward.perp(), -outward.perp(), outward])
     }
 }
 
-/// The free direction nearest to the wished one: the wish itself, or a tangent of one of the discs. `None` where nothing is free.
+/// The best free direction: the wish itself, or a tangent of what is in the way. `None` where nothing is free.
 pub(super) fn passing_direction(me: &Mover, surroundings: &Surroundings) -> Option<Vector> {
     let wish = me.wish.normalize_or_zero();
     let range = PASSING_RANGE_M.min(me.leg_left); // the route bends there
@@ -56,22 +81,23 @@ pub(super) fn passing_direction(me: &Mover, surroundings: &Surroundings) -> Opti
         surroundings.discs.iter().filter(near).flat_map(|(center, touch)| tangents(*center, touch + margin));
     std::iter::once(wish)
         .chain(tangents)
+        .chain(surroundings.along_obstacles(me.position))
         .filter(|direction| direction.dot(wish) > LEAST_ADVANCE)
         .filter(|direction| surroundings.is_free(me.position, *direction, range))
-        .max_by(|a, b| a.dot(wish).total_cmp(&b.dot(wish)))
+        .max_by(|a, b| surroundings.merit(*a, wish).total_cmp(&surroundings.merit(*b, wish)))
 }
 
-/// The disc that is in the way of a wish: the nearest of those that a robot would touch, or else the nearest of all.
+/// The nearest disc that is in the way of a wish.
 pub(super) fn nearest_in_the_way(wish: Vector, surroundings: &Surroundings) -> Option<usize> {
     let wish = wish.normalize_or_zero();
-    let rank = |(center, touch): &(Vector, f32)| {
+    let gap = |(center, touch): &(Vector, f32)| {
         let ahead = center.dot(wish);
         let aside = (*center - wish * ahead).length();
-        let misses = ahead <= 0.0 || aside > touch + surroundings.margin;
-        (misses, center.length() - touch)
+        let gap = center.length() - touch;
+        (ahead > 0.0 && aside < touch + surroundings.margin && gap < PASSING_RANGE_M).then_some(gap)
     };
-    let discs = surroundings.discs.iter().map(rank).enumerate();
-    discs.min_by(|(_, a), (_, b)| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1))).map(|(at, _)| at)
+    let gaps = surroundings.discs.iter().enumerate().filter_map(|(at, disc)| Some((at, gap(disc)?)));
+    gaps.min_by(|(_, a), (_, b)| a.total_cmp(b)).map(|(at, _)| at)
 }
 
 /// Directions from the origin that touch a disc on its right and on its left.
@@ -91,7 +117,7 @@ mod tests {
 
     fn pass(discs: &[([f32; 2], f32)]) -> Option<Vector> {
         let discs = discs.iter().map(|(center, radius)| (Vector::from(*center), *radius)).collect();
-        passing_direction(&mover(0, [0.0, 0.0], [1.0, 0.0]), &Surroundings { discs, margin: 0.0, obstacles: &[] })
+        passing_direction(&mover(0, [0.0, 0.0], [1.0, 0.0]), &Surroundings { discs, margin: 0.0, obstacles: &[], heading: Vector::ZERO })
     }
 
     #[test]

@@ -34,6 +34,8 @@ pub(super) struct Limits {
     pub(super) underway: u32,
     /// At the place, while the other robot stands.
     pub(super) at_place: u32,
+    /// After it came to nothing, before they are asked again.
+    pub(super) respite: u32,
 }
 
 /// One robot that makes room.
@@ -54,6 +56,8 @@ pub(super) struct Retreat {
 /// All retreats, by robot.
 pub(super) struct Retreats {
     of: Vec<Option<Retreat>>,
+    /// Steps for which a robot is not asked again.
+    respite: Vec<u32>,
     limits: Limits,
     margin: f32,
     arena: Vector,
@@ -61,7 +65,7 @@ pub(super) struct Retreats {
 
 impl Retreats {
     pub(super) fn new(limits: Limits, margin: f32, arena: Vector) -> Self {
-        Self { of: Vec::new(), limits, margin, arena }
+        Self { of: Vec::new(), respite: Vec::new(), limits, margin, arena }
     }
 
     /// The retreat of a robot.
@@ -74,12 +78,28 @@ impl Retreats {
         self.of[i].as_ref().map_or(0, |retreat| retreat.depth)
     }
 
+    /// Whether somebody is on the way to make room for this robot. Depths grow along a chain, so that patience ends somewhere.
+    pub(super) fn is_served(&self, i: usize) -> bool {
+        let depth = self.depth(i);
+        let serves = |retreat: &Retreat| {
+            retreat.head == i && retreat.depth > depth && !retreat.path.is_empty()
+        };
+        self.of.iter().flatten().any(serves)
+    }
+
+    fn is_at_place(&self, i: usize) -> bool {
+        self.of[i].as_ref().is_some_and(|retreat| retreat.path.is_empty())
+    }
+
     /// Ends the retreats that are over, and gives the others the wish to go to their place.
     pub(super) fn follow(&mut self, movers: &mut [Mover]) {
         self.of.resize(movers.len(), None);
+        self.respite.resize(movers.len(), 0);
+        self.respite.iter_mut().for_each(|steps| *steps = steps.saturating_sub(1));
         for i in 0..movers.len() {
+            let is_served = self.is_served(i);
             let Some(mut retreat) = self.of[i].take() else { continue };
-            retreat.advance(&movers[i], &movers[retreat.head]);
+            retreat.advance(&movers[i], &movers[retreat.head], is_served);
             if !self.is_over(i, &retreat, movers) {
                 self.of[i] = Some(retreat);
             }
@@ -106,25 +126,37 @@ impl Retreats {
             || retreat.is_passed(&head_way, me.radius + head.radius + self.margin)
     }
 
+    /// Ends the retreat of a robot, if it is on one that comes to nothing.
+    pub(super) fn give_up(&mut self, i: usize) {
+        if self.of[i].take().is_some() {
+            self.respite[i] = self.limits.respite;
+        }
+    }
+
     /// Whether a robot is asked at all: it can move, and does not already make room for somebody with a better claim.
     pub(super) fn may_ask(&self, i: usize, blocker: usize, movers: &[Mover]) -> bool {
         movers[blocker].can_make_room
+            && self.respite[blocker] == 0
             && self.depth(i) < MAX_DEPTH
-            && self.depth(blocker) <= self.depth(i)
+            && (self.depth(blocker) <= self.depth(i) || self.is_at_place(blocker))
     }
 
-    /// Has `blocker` make room for `i`. Whether there is room to make.
+    /// Has `blocker` make room for `i`. Whether it is in the way and there is room to make.
     pub(super) fn ask(&mut self, i: usize, blocker: usize, movers: &[Mover]) -> bool {
         let Some(path) = self.find_room(i, blocker, movers) else { return false };
-        self.of[blocker] = Some(Retreat {
+        let retreat = Retreat {
             head: i,
             depth: self.depth(i) + 1,
             line: sampled(movers[blocker].position, &path),
             path: path.into_iter().rev().collect(),
             least_left: f32::INFINITY,
             idle_steps: 0,
-        });
-        true
+        };
+        let is_in_the_way = !self.is_over(blocker, &retreat, movers);
+        if is_in_the_way {
+            self.of[blocker] = Some(retreat);
+        }
+        is_in_the_way
     }
 
     fn find_room(&self, i: usize, blocker: usize, movers: &[Mover]) -> Option<Vec<Vector>> {
@@ -184,14 +216,14 @@ impl Retreat {
         self.line.iter().all(|point| distance_to_way(*point, head_way) > 0.95 * apart)
     }
 
-    fn advance(&mut self, me: &Mover, head: &Mover) {
+    fn advance(&mut self, me: &Mover, head: &Mover, is_served: bool) {
         while self.path.last().is_some_and(|next| (*next - me.position).length() < PASSED_M) {
             self.path.pop();
             self.least_left = f32::INFINITY;
         }
         let left = self.path.last().map_or(0.0, |next| (*next - me.position).length());
         let waits_for_mover = self.path.is_empty() && head.velocity.length() > STANDING_MPS;
-        if left < self.least_left - PROGRESS_M || waits_for_mover {
+        if left < self.least_left - PROGRESS_M || waits_for_mover || is_served {
             self.least_left = left;
             self.idle_steps = 0;
         } else {

@@ -21,7 +21,7 @@ const ROW: i32 = 2 * HALF_CELLS + 1;
 const STEP_COST: [u32; 2] = [10, 14];
 
 /// Extra cost of a cell where another robot stands: it would have to make room in turn.
-const CROWD_COST: u32 = 60;
+const CROWD_COST: u32 = 150;
 
 /// Way of the other robot, ahead and behind, that is to be left free, in metres.
 const CLEARED_WAY_M: f32 = 30.0;

@@ -13,7 +13,9 @@ mod trail;
 
 pub use knowledge::Knowledge;
 pub use navigator::{Goal, Navigator, PLANNED_BRAKING, Traveller};
-pub use obstacles::{KnownObstacle, ObstacleKey, contains as polygon_contains, crosses as polygon_crossed};
+pub use obstacles::{
+    KnownObstacle, ObstacleKey, contains as polygon_contains, crosses as polygon_crossed, outward_normal,
+};
 pub use route::Route;
 
 use std::collections::BTreeMap;

@@ -124,15 +124,27 @@ fn nearest_free_corner<P: AsRef<[Vector]>>(
 
 /// The nearest point outside a convex polygon to a point inside it.
 fn nearest_outside(polygon: &[Vector], point: Vector) -> Vector {
-    let mut best = (f32::INFINITY, point);
+    let (outward, depth) = nearest_edge(polygon, point);
+    point + outward * (depth + PUSH_OUT_M)
+}
+
+/// The unit vector that leads the shortest way out of a convex polygon (anticlockwise) that holds a point.
+#[must_use]
+pub fn outward_normal(polygon: &[Vector], point: Vector) -> Vector {
+    nearest_edge(polygon, point).0
+}
+
+/// Outward normal of the nearest edge, and the depth of the point below it, in metres.
+fn nearest_edge(polygon: &[Vector], point: Vector) -> (Vector, f32) {
+    let mut nearest = (Vector::ZERO, f32::INFINITY);
     for (a, b) in edges(polygon) {
         let outward = Vector::new(b.y - a.y, a.x - b.x).normalize_or_zero();
         let depth = outward.dot(a - point);
-        if depth < best.0 {
-            best = (depth, point + outward * (depth + PUSH_OUT_M));
+        if depth < nearest.1 {
+            nearest = (outward, depth);
         }
     }
-    best.1
+    nearest
 }
 
 fn edges(polygon: &[Vector]) -> impl Iterator<Item = (Vector, Vector)> + '_ {

@@ -157,8 +157,8 @@ pub fn row_positions(row: &Row) -> impl Iterator<Item = [f64; 2]> {
     (0..row.count).map(move |i| [left + row.width_m * f64::from(i) / gaps, row.center[1]])
 }
 
-/// Free distance between two robots at a rest place, in metres.
-const REST_GAP_M: f64 = 0.8;
+/// Free distance between two robots at a rest place, in metres: others can pass between them.
+const REST_GAP_M: f64 = 1.2;
 
 /// A robot's own place at a task's rest place: a square block around its centre, in order of ids.
 #[must_use]
