@@ -7,3 +7,7 @@ ci:
 # 100 seeds of paper.ron under all five policies: nobody stuck, nothing lost, no number undefined
 soak:
     cargo run --release --package experiments --example soak
+
+# 500 random feasible worlds of 2 to 50 robots: who does not get there, and why
+worlds:
+    cargo run --release --package experiments --example worlds

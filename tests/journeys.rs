@@ -25,7 +25,8 @@ impl Journeys {
     pub fn run(scenario: &Scenario) -> Result<Self, String> {
         let policy = rne_core::policy_named(&scenario.sweep.policies[0], &scenario.rne).expect("known");
         let mut trial = Simulation::new(scenario, &*policy, scenario.sweep.first_seed)
-            .map_err(|error| error.to_string())?;
+            .map_err(|error| error.to_string())?
+            .checked();
         let (mut still, mut longest) = (0_u64, 0_u64);
         while trial.ending().is_none() {
             trial.step()?;
@@ -49,7 +50,12 @@ impl Journeys {
     pub fn stalls(&self) -> impl Iterator<Item = String> + '_ {
         self.record.robots.iter().filter(|robot| robot.longest_stall_s > STALL_S).map(|robot| {
             let waits_for = robot.stall.waits_for.map(|id| format!(" robot {id}")).unwrap_or_default();
-            format!("robot {}: {:.1} s, {}{waits_for}", robot.robot, robot.longest_stall_s, robot.stall.cause.name())
+            format!(
+                "robot {}: {:.1} s, {}{waits_for}",
+                robot.robot,
+                robot.longest_stall_s,
+                robot.stall.cause.name()
+            )
         })
     }
 }

@@ -10,7 +10,8 @@ use crate::support::{paper, paper_text, paper_with, root};
 #[test]
 fn every_scenario_loads() {
     let mut found = 0;
-    for entry in std::fs::read_dir(root().join("scenarios")).unwrap() {
+    let files = |folder| std::fs::read_dir(root().join(folder)).unwrap();
+    for entry in files("scenarios").chain(files("scenarios/minimal")) {
         let path = entry.unwrap().path();
         if path.extension().is_some_and(|extension| extension == "ron") {
             let (scenario, _) = Scenario::load(&path).unwrap_or_else(|error| panic!("{error}"));
@@ -19,6 +20,37 @@ fn every_scenario_loads() {
         }
     }
     assert!(found > 0);
+}
+
+#[test]
+fn the_defaults_are_those_of_the_paper_s_scenario() {
+    use usar_sim::scenario::{
+        ConflictRules, Costs, InitialLevels, MissionRules, PlanningRules, Roles, Sampled,
+    };
+    let paper = paper();
+    assert_eq!(paper.roles, Roles::default());
+    assert_eq!(paper.initial_levels, InitialLevels::default());
+    assert_eq!(paper.costs, Costs::default());
+    assert_eq!(paper.mission, MissionRules::default());
+    assert_eq!(paper.planning, PlanningRules::default());
+    assert_eq!(paper.conflicts, ConflictRules::default());
+    assert_eq!(paper.sampled, Sampled::default());
+}
+
+#[test]
+fn a_scenario_needs_tasks_or_errands_and_errands_need_robots_and_places() {
+    let small = "(name: \"s\", duration_s: 10.0, dt_s: 0.02, arena_m: (10.0, 10.0), team: [(role: Carrier, count: 1, center: (5.0, 5.0), width_m: 0.0)],";
+    let error = |rest: &str| {
+        let text = format!("{small}{rest})");
+        Scenario::parse(&text, Path::new("s.ron")).unwrap_err().to_string()
+    };
+    assert!(error("").contains("tasks must be given when there are no errands"));
+    let errors =
+        error("errands: [(robot: 0, to: [(3.0, 30.0)]), (robot: 7, to: [(1.0, 1.0)]), (robot: 0, to: [])]");
+    assert!(errors.contains("errands[0].to[0] must lie in the arena"), "{errors}");
+    assert!(errors.contains("errands[1].robot must be the id of one of the 1 robots, found 7"), "{errors}");
+    assert!(errors.contains("errands[2].robot must not stand twice"), "{errors}");
+    assert!(errors.contains("errands[2].to must name at least one place"), "{errors}");
 }
 
 #[test]

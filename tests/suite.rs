@@ -1,12 +1,17 @@
 //! Integration tests of the whole system, one binary.
 
+mod journeys;
 mod support;
+mod worlds;
 
 mod conservation;
 mod errata;
 mod grouping;
-mod ledger;
+mod invariants;
+mod minimal;
 mod pairing;
 mod paper_counts;
+mod random_worlds;
+mod routes;
 mod scenarios;
 mod trust;

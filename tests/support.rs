@@ -33,8 +33,8 @@ pub fn paper_with(replacements: &[(&str, &str)]) -> Scenario {
     Scenario::parse(&text, "paper.ron".as_ref()).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// One trial.
+/// One trial, with every invariant checked at every step.
 pub fn trial(scenario: &Scenario, policy: &str, seed: u64) -> TrialRecord {
     let policy = policy_named(policy, &scenario.rne).unwrap();
-    Simulation::new(scenario, &*policy, seed).unwrap().run(|_, _, _| {})
+    Simulation::new(scenario, &*policy, seed).unwrap().checked().run(|_, _, _| {})
 }

@@ -5,8 +5,8 @@
 
 use parry2d::math::Vector;
 use rand::RngExt;
-use rand::rngs::ChaCha8Rng;
 use rand::SeedableRng;
+use rand::rngs::ChaCha8Rng;
 use rne_core::Role;
 use usar_sim::scenario::{
     ConflictRules, Costs, DebrisFile, DebrisShape, Errand, InitialLevels, MissionRules, Movable, Normal,
@@ -118,12 +118,17 @@ fn mission(seed: u64, draws: &mut ChaCha8Rng) -> Option<ScenarioFile> {
 }
 
 /// Debris that covers a share of the arena above a line, with a wall that has a door in some.
-fn debris(draws: &mut ChaCha8Rng, arena: Point, (above, robots): (f64, u32), cover: [f64; 2]) -> Vec<DebrisFile> {
+fn debris(
+    draws: &mut ChaCha8Rng,
+    arena: Point,
+    (above, robots): (f64, u32),
+    cover: [f64; 2],
+) -> Vec<DebrisFile> {
     let mut left = draws.random_range(cover[0]..cover[1]) * arena[0] * (arena[1] - above);
     let mut debris = Vec::new();
     while left > 0.0 {
         let size = draws.random_range(0.3..1.2);
-        let (shape, area) = match draws.random_range(0..3_u32) {
+        let (shape, covered) = match draws.random_range(0..3_u32) {
             0 => (DebrisShape::Disc(size), std::f64::consts::PI * size * size),
             1 => {
                 let corners = (0..5).map(|k| {
@@ -137,7 +142,7 @@ fn debris(draws: &mut ChaCha8Rng, arena: Point, (above, robots): (f64, u32), cov
                 (DebrisShape::Box(size, long * size), long * size * size)
             }
         };
-        left -= area;
+        left -= covered;
         let small = size < 0.45 && draws.random_range(0..3_u32) == 0;
         debris.push(DebrisFile {
             shape,

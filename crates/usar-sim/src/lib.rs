@@ -19,6 +19,7 @@
 pub mod conflict;
 pub mod event;
 pub mod ids;
+pub mod invariant;
 pub mod layout;
 pub mod metrics;
 pub mod mission;

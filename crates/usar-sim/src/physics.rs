@@ -25,6 +25,9 @@ const HALF_WALL_M: f32 = 1.0;
 /// Friction between bodies that touch.
 const BODY_FRICTION: f32 = 0.2;
 
+/// Overlaps are corrected at most this fast, in metres per second: 0.8 mm in a step of 0.02 s, so that no robot jumps.
+const CORRECTION_MPS: f32 = 0.04;
+
 /// Standard gravity, in metres per second squared: the weight with which movable debris rubs on the ground.
 const GRAVITY: f32 = 9.806_65;
 
@@ -105,7 +108,7 @@ fn parameters(dt: f32) -> IntegrationParameters {
         warmstart_coefficient: 1.0,
         length_unit: 1.0,
         normalized_allowed_linear_error: 0.005,
-        normalized_max_corrective_velocity: 3.0,
+        normalized_max_corrective_velocity: CORRECTION_MPS,
         normalized_prediction_distance: 0.02,
         normalized_max_linear_velocity: 400.0,
         num_solver_iterations: 4,

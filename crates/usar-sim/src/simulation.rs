@@ -8,6 +8,7 @@ use crate::conflict::{Delay, DelayCause, Directive, Mover, PriorityKey, Resolver
 use crate::event::{Event, EventLog};
 
 use crate::ids::RobotId;
+use crate::invariant::{Invariants, Overlaps};
 use crate::layout::Layout;
 use crate::metrics::Metrics;
 use crate::mission::{Activity, Ending, Mission};
@@ -34,6 +35,7 @@ pub struct Simulation<'a> {
     log: EventLog,
     tallies: Vec<Tally>,
     hash: Xxh3,
+    invariants: Option<Invariants>,
 }
 
 /// What is added up for each robot.
@@ -81,8 +83,22 @@ impl<'a> Simulation<'a> {
             log: EventLog::default(),
             tallies: tallies.collect(),
             hash: Xxh3::new(),
+            invariants: None,
             world,
         })
+    }
+
+    /// The same trial, with every invariant checked at every step: a violation ends it as failed.
+    #[must_use]
+    pub fn checked(mut self) -> Self {
+        self.invariants = Some(Invariants::new(self.scenario, &self.world));
+        self
+    }
+
+    /// How deep bodies have overlapped so far, in a checked trial.
+    #[must_use]
+    pub fn overlaps(&self) -> Option<Overlaps> {
+        self.invariants.as_ref().map(Invariants::overlaps)
     }
 
     /// Runs to the end. `listen` hears the events of each step, with the time in seconds and the world as it is then.
@@ -133,6 +149,11 @@ impl<'a> Simulation<'a> {
         &self.world
     }
 
+    /// The world, to be changed: for tests that seed faults. The next step goes on from what is there.
+    pub fn world_mut(&mut self) -> &mut World {
+        &mut self.world
+    }
+
     /// The mission as it is now.
     #[must_use]
     pub fn mission(&self) -> &Mission {
@@ -175,6 +196,10 @@ impl<'a> Simulation<'a> {
         self.metrics.listen(&self.log.events()[heard..], &self.world, self.time_s());
         if self.step.is_multiple_of(HASH_PERIOD_STEPS) {
             self.hash_state();
+        }
+        let time_s = self.time_s();
+        if let Some(invariants) = &mut self.invariants {
+            invariants.listen(time_s, self.log.events(), &self.world).map_err(|broken| broken.to_string())?;
         }
         if self.world.physics.is_broken() {
             return Err(format!(
@@ -307,8 +332,7 @@ impl<'a> Simulation<'a> {
             rounds: self.metrics.rounds,
         }
     }
-
-    }
+}
 
 impl Tally {
     fn note_delay(&mut self, delay: Delay) {

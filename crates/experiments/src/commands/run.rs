@@ -18,7 +18,8 @@ use crate::table::{ratio, rounds_table};
 #[command(after_help = "\
 Examples:
   usar run scenarios/paper.ron
-  usar run scenarios/paper.ron --policy DIS --seed 7 --json")]
+  usar run scenarios/paper.ron --policy DIS --seed 7 --json
+  usar run scenarios/minimal/head_on.ron --check")]
 pub(crate) struct Arguments {
     /// Scenario file (RON)
     file: PathBuf,
@@ -28,6 +29,9 @@ pub(crate) struct Arguments {
     /// Seed of the trial [default: the scenario's first]
     #[arg(long)]
     seed: Option<u64>,
+    /// Check every invariant at every step; a violation ends the trial as failed
+    #[arg(long)]
+    check: bool,
     /// Print one JSON object
     #[arg(long)]
     json: bool,
@@ -50,6 +54,7 @@ impl Arguments {
         let seed = self.seed.unwrap_or(scenario.sweep.first_seed);
         let simulation = Simulation::new(&scenario, &*policy, seed)
             .map_err(|error| Failure::input(format!("{}: {error}", self.file.display())))?;
+        let simulation = if self.check { simulation.checked() } else { simulation };
         let record = simulation.run(|_, _, _| {});
         if let Status::Failed(reason) = &record.status {
             return Err(Failure::run(format!("trial of {name} with seed {seed} failed: {reason}")));
@@ -100,6 +105,15 @@ fn print(out: &mut dyn Write, scenario: &str, record: &TrialRecord) -> Result<()
         "conflicts    {} conflicts, {} deadlocks, {waiting:.0} s waited in all, longest stall {stall:.1} s",
         record.conflicts, record.deadlocks
     )?;
+    writeln!(
+        out,
+        "deadlocks    {} times a robot made room, {} times the turn passed, {} times a set backed off",
+        record.retreats, record.rotations, record.back_offs
+    )?;
+    if record.errands_done + record.unreachable > 0 {
+        let (done, unreachable) = (record.errands_done, record.unreachable);
+        writeln!(out, "places       {done} errands done, {unreachable} places given up as unreachable")?;
+    }
     writeln!(out, "state hash   {}", record.state_hash)?;
     Ok(())
 }

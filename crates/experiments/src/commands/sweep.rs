@@ -44,6 +44,9 @@ pub(crate) struct Arguments {
     /// Folder for the results; must not exist yet or be empty [default: results/NAME, or the next free results/NAME-N]
     #[arg(long)]
     out: Option<PathBuf>,
+    /// Check every invariant at every step; a violation ends the trial as failed
+    #[arg(long)]
+    check: bool,
     /// No progress on stderr
     #[arg(long)]
     quiet: bool,
@@ -68,7 +71,7 @@ impl Arguments {
         let outcomes = run_all(
             &keys,
             jobs,
-            |key| trial(&scenario, policies[key.policy].as_ref(), key),
+            |key| self.trial(&scenario, policies[key.policy].as_ref(), key),
             |outcome| report(&progress, outcome),
         )?;
         progress.finish_and_clear();
@@ -85,6 +88,17 @@ impl Arguments {
         }
         let failed: Vec<String> = outcomes.iter().filter_map(Outcome::failure).collect();
         if failed.is_empty() { Ok(()) } else { Err(Failure::run(failed.join("\n"))) }
+    }
+
+    fn trial(
+        &self,
+        scenario: &Scenario,
+        policy: &dyn GroupingPolicy,
+        key: &TrialKey,
+    ) -> Result<usar_sim::record::TrialRecord, String> {
+        let simulation = Simulation::new(scenario, policy, key.seed).map_err(|error| error.to_string())?;
+        let simulation = if self.check { simulation.checked() } else { simulation };
+        Ok(simulation.run(|_, _, _| {}))
     }
 
     /// The scenario with what the command line says otherwise.
@@ -135,15 +149,6 @@ impl Arguments {
 
 fn default_jobs() -> usize {
     std::thread::available_parallelism().map_or(1, usize::from)
-}
-
-fn trial(
-    scenario: &Scenario,
-    policy: &dyn GroupingPolicy,
-    key: &TrialKey,
-) -> Result<usar_sim::record::TrialRecord, String> {
-    let simulation = Simulation::new(scenario, policy, key.seed).map_err(|error| error.to_string())?;
-    Ok(simulation.run(|_, _, _| {}))
 }
 
 fn report(progress: &ProgressBar, outcome: &Outcome) {

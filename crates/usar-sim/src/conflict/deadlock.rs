@@ -197,9 +197,9 @@ mod tests {
         for rule in [ResolverRule::Rotation, ResolverRule::Swap] {
             let mut set = set();
             let turns: Vec<_> = (0..12).map(|_| (stand_still(&mut set, rule), set.order[0])).collect();
-            let solved: Vec<_> =
-                turns.iter().enumerate().filter(|(_, (turn, _))| turn.is_some()).collect();
-            let found: Vec<_> = solved.iter().map(|(step, (turn, head))| (*step, turn.unwrap(), *head)).collect();
+            let solved: Vec<_> = turns.iter().enumerate().filter(|(_, (turn, _))| turn.is_some()).collect();
+            let found: Vec<_> =
+                solved.iter().map(|(step, (turn, head))| (*step, turn.unwrap(), *head)).collect();
             assert_eq!(found[..2], [(3, NextTurn::OfNextHead, 0), (7, NextTurn::OfNextHead, 2)]);
             assert_eq!((found[2].0, found[2].1), (11, NextTurn::OfNobody));
             let seen = Observation { fastest: 0.0, head_way_left: 5.0 };

@@ -170,7 +170,11 @@ impl Resolver {
     pub fn new(scenario: &Scenario) -> Self {
         let rules = scenario.conflicts;
         let steps = |seconds: f64| (seconds / scenario.dt_s).round() as u32;
-        let limits = Limits { underway: steps(RETREAT_PATIENCE_S), at_place: steps(ROOM_PATIENCE_S), respite: steps(RESPITE_S) };
+        let limits = Limits {
+            underway: steps(RETREAT_PATIENCE_S),
+            at_place: steps(ROOM_PATIENCE_S),
+            respite: steps(RESPITE_S),
+        };
         let arena = Vector::new(scenario.arena_m[0] as f32, scenario.arena_m[1] as f32);
         Self {
             rules,
@@ -208,8 +212,7 @@ impl Resolver {
         self.conflicts
             .extend(pairs.filter(|(a, b)| will_conflict(&movers[*a], &movers[*b], margin, horizon)));
         self.carry_over(&components(movers.len(), self.conflicts.iter().copied()), movers, log);
-        let progress: Vec<Progress> =
-            (0..self.sets.len()).map(|set| self.judge(set, movers, log)).collect();
+        let progress: Vec<Progress> = (0..self.sets.len()).map(|set| self.judge(set, movers, log)).collect();
         self.direct(movers, &progress);
         for (heading, directive) in self.headings.iter_mut().zip(&self.directives) {
             *heading = directive.velocity().normalize_or_zero();
@@ -276,12 +279,12 @@ impl Resolver {
         }
     }
 
-    /// Those of a set that go: its head, and whoever makes room and is in no conflict with those before it.
+    /// Those of a set that go: its head, and whoever is in no conflict with one before it that goes.
     fn who_goes(&self, set: &ConflictSet) -> Vec<usize> {
         let in_conflict = |a: usize, b: usize| self.conflicts.binary_search(&(a.min(b), a.max(b))).is_ok();
         let mut goes = vec![set.order[0]];
         for i in &set.order[1..] {
-            if self.retreats.depth(*i) > 0 && !goes.iter().any(|other| in_conflict(*i, *other)) {
+            if !goes.iter().any(|other| in_conflict(*i, *other)) {
                 goes.push(*i);
             }
         }
@@ -301,7 +304,12 @@ impl Resolver {
         nearest_in_the_way(me.wish, &surroundings).map(|at| near[at])
     }
 
-    fn surroundings<'m>(&self, me: &Mover<'m>, discs: Vec<(Vector, f32)>, heading: Vector) -> Surroundings<'m> {
+    fn surroundings<'m>(
+        &self,
+        me: &Mover<'m>,
+        discs: Vec<(Vector, f32)>,
+        heading: Vector,
+    ) -> Surroundings<'m> {
         Surroundings { discs, margin: self.rules.margin_m as f32, obstacles: me.obstacles, heading }
     }
 
@@ -405,13 +413,11 @@ impl Resolver {
             return Directive::Proceed(direction * wish.length());
         }
         surroundings.margin = surroundings.margin.min(SQUEEZE_MARGIN_M);
-        match passing_direction(&me, &surroundings) {
-            Some(direction) => Directive::Proceed(direction * wish.length() * SQUEEZE_SPEED),
-            None => {
-                let blocker = nearest_in_the_way(wish, &surroundings).and_then(|at| blockers().nth(at));
-                Directive::Blocked { by: blocker.map(|other| other.robot) }
-            }
+        if let Some(direction) = passing_direction(&me, &surroundings) {
+            return Directive::Proceed(direction * wish.length() * SQUEEZE_SPEED);
         }
+        let blocker = nearest_in_the_way(wish, &surroundings).and_then(|at| blockers().nth(at));
+        Directive::Blocked { by: blocker.map(|other| other.robot) }
     }
 }
 

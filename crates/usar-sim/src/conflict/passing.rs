@@ -45,15 +45,10 @@ impl Surroundings<'_> {
         });
         let to = from + direction * range.min(1.0);
         clear_of_discs
-            && self.obstacles.iter().all(|obstacle| match self.outward(obstacle, from) {
+            && self.obstacles.iter().all(|obstacle| match outward(obstacle, from) {
                 Some(outward) => direction.dot(outward) >= -SLIDE, // already too close: not nearer
                 None => !polygon_crossed(&obstacle.tight, from, to),
             })
-    }
-
-    /// The direction that leads out of an obstacle's surroundings, for a robot that is in them.
-    fn outward(&self, obstacle: &KnownObstacle, from: Vector) -> Option<Vector> {
-        polygon_contains(&obstacle.tight, from).then(|| outward_normal(&obstacle.tight, from))
     }
 
     /// How good a free direction is: near to the wish, and to the one before, so that a robot does not dither between two sides.
@@ -63,9 +58,14 @@ impl Surroundings<'_> {
 
     /// Directions along the obstacles that a robot is too close to.
     fn along_obstacles(&self, from: Vector) -> impl Iterator<Item = Vector> {
-        let outward = self.obstacles.iter().filter_map(move |obstacle| self.outward(obstacle, from));
+        let outward = self.obstacles.iter().filter_map(move |obstacle| outward(obstacle, from));
         outward.flat_map(|outward| [outward.perp(), -outward.perp(), outward])
     }
+}
+
+/// The direction that leads out of an obstacle's surroundings, for a robot that is in them.
+fn outward(obstacle: &KnownObstacle, from: Vector) -> Option<Vector> {
+    polygon_contains(&obstacle.tight, from).then(|| outward_normal(&obstacle.tight, from))
 }
 
 /// The best free direction: the wish itself, or a tangent of what is in the way. `None` where nothing is free.
@@ -117,7 +117,10 @@ mod tests {
 
     fn pass(discs: &[([f32; 2], f32)]) -> Option<Vector> {
         let discs = discs.iter().map(|(center, radius)| (Vector::from(*center), *radius)).collect();
-        passing_direction(&mover(0, [0.0, 0.0], [1.0, 0.0]), &Surroundings { discs, margin: 0.0, obstacles: &[], heading: Vector::ZERO })
+        passing_direction(
+            &mover(0, [0.0, 0.0], [1.0, 0.0]),
+            &Surroundings { discs, margin: 0.0, obstacles: &[], heading: Vector::ZERO },
+        )
     }
 
     #[test]

@@ -26,12 +26,7 @@ impl PriorityKey {
     /// - `HighestEnergyFirst`, the opposite of the first: what the order is worth shows between the two.
     /// - `LowestHpFirst`, because the robot that can bear the least radiation should stand in it the least.
     #[must_use]
-    pub fn new(
-        rule: PriorityRule,
-        robot: RobotId,
-        task: Option<Difficulty>,
-        [energy, hp]: [f64; 2],
-    ) -> Self {
+    pub fn new(rule: PriorityRule, robot: RobotId, task: Option<Difficulty>, [energy, hp]: [f64; 2]) -> Self {
         let (class, level) = match rule {
             PriorityRule::LowestEnergyFirst => (0, energy),
             PriorityRule::TaskThenEnergy => (task_rank(task), energy),

@@ -6,8 +6,8 @@
 use parry2d::math::Vector;
 
 use super::Mover;
-use crate::world::STANDING_MPS;
 use super::room::{Ask, distance_to_way, ways};
+use crate::world::STANDING_MPS;
 
 /// Longest chain of robots that make room for one another.
 const MAX_DEPTH: u32 = 12;
@@ -81,9 +81,8 @@ impl Retreats {
     /// Whether somebody is on the way to make room for this robot. Depths grow along a chain, so that patience ends somewhere.
     pub(super) fn is_served(&self, i: usize) -> bool {
         let depth = self.depth(i);
-        let serves = |retreat: &Retreat| {
-            retreat.head == i && retreat.depth > depth && !retreat.path.is_empty()
-        };
+        let serves =
+            |retreat: &Retreat| retreat.head == i && retreat.depth > depth && !retreat.path.is_empty();
         self.of.iter().flatten().any(serves)
     }
 
@@ -205,7 +204,6 @@ fn sampled(from: Vector, path: &[Vector]) -> Vec<Vector> {
 }
 
 impl Retreat {
-
     /// The way to the place, from where the robot is.
     fn way(&self, me: &Mover) -> Vec<Vector> {
         std::iter::once(me.position).chain(self.path.iter().rev().copied()).collect()

@@ -145,7 +145,7 @@ impl<'a> Grid<'a> {
     }
 
     fn point(&self, cell: u32) -> Vector {
-        let (row, column) = (cell as i32 / ROW, cell as i32 % ROW);
+        let (row, column) = (cell.cast_signed() / ROW, cell.cast_signed() % ROW);
         let offset = Vector::new((column - HALF_CELLS) as f32, (row - HALF_CELLS) as f32);
         self.ask.me.position + offset * self.size
     }
@@ -231,7 +231,7 @@ impl<'a> Grid<'a> {
 }
 
 fn neighbours(cell: u32) -> impl Iterator<Item = (u32, u32)> {
-    let (row, column) = (cell as i32 / ROW, cell as i32 % ROW);
+    let (row, column) = (cell.cast_signed() / ROW, cell.cast_signed() % ROW);
     (0..9).filter(|k| *k != 4).filter_map(move |k| {
         let (to_row, to_column) = (row + k / 3 - 1, column + k % 3 - 1);
         let inside = (0..ROW).contains(&to_row) && (0..ROW).contains(&to_column);

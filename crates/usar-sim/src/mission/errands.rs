@@ -27,9 +27,8 @@ impl Mission {
                 self.follow_errand(robot, navigator, log);
             }
         }
-        let is_busy = |robot: &Robot| {
-            robot.is_able() && self.agents[robot.id.index()].activity == Activity::OnErrand
-        };
+        let is_busy =
+            |robot: &Robot| robot.is_able() && self.agents[robot.id.index()].activity == Activity::OnErrand;
         if !world.robots.iter().any(is_busy) {
             self.ending = Some(Ending::ErrandsOver);
             log.push(Event::ErrandsOver);

@@ -11,7 +11,11 @@ use crate::world::{RescueeState, Robot, World};
 
 impl Mission {
     /// Rescuees that a group knows of and that nobody has claimed.
-    pub(super) fn available<'w>(&'w self, task: Difficulty, world: &'w World) -> impl Iterator<Item = RescueeId> + 'w {
+    pub(super) fn available<'w>(
+        &'w self,
+        task: Difficulty,
+        world: &'w World,
+    ) -> impl Iterator<Item = RescueeId> + 'w {
         let known = &self.knowledge[task_index(task)].rescuees;
         let block = self.blocks.iter().find(|block| block.task() == task);
         block

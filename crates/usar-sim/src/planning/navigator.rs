@@ -12,8 +12,8 @@ use crate::world::{Robot, STANDING_MPS, World};
 /// A robot checks this often, in steps, that the way to its next waypoint is still free.
 const ROUTE_CHECK_STEPS: u64 = 25;
 
-/// A robot that has not come nearer for this long, in seconds, plans round the robots that stand in its way; and again each time the
-/// same span has passed.
+/// A robot that has not come nearer for this long, in seconds, plans round the robots that stand in its way; after four times as long it
+/// goes straight again, and so on in turn: robots that it does not see may close the way round as well.
 const DETOUR_AFTER_S: f64 = 4.0;
 
 /// Standing robots within this distance are planned round then, in metres.
@@ -37,6 +37,15 @@ pub struct Goal {
     pub within: f32,
 }
 
+/// What a robot tries that does not come nearer.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Attempt {
+    /// A way round the robots that stand near.
+    Detour,
+    /// The way that takes no heed of them: whoever is in the way is asked to make room.
+    Straight,
+}
+
 /// The journey of one robot.
 #[derive(Debug, Clone)]
 pub struct Traveller {
@@ -50,7 +59,6 @@ pub struct Traveller {
     stalled_steps: u64,
     /// Steps since it last knew a way.
     lost_steps: u64,
-    
 }
 
 impl Traveller {
@@ -102,6 +110,18 @@ impl Traveller {
     #[must_use]
     pub fn lost_steps(&self) -> u64 {
         self.lost_steps
+    }
+
+    /// What a robot that does not come nearer tries now, if it is time to try something.
+    fn attempt(&self, detour_steps: u64) -> Option<Attempt> {
+        if self.stalled_steps == 0 || !self.stalled_steps.is_multiple_of(detour_steps) {
+            return None;
+        }
+        match self.stalled_steps / detour_steps % 4 {
+            1 => Some(Attempt::Detour),
+            0 => Some(Attempt::Straight),
+            _ => None,
+        }
     }
 
     fn set_route(&mut self, route: Option<Route>, position: Vector, fresh: bool) {
@@ -191,12 +211,11 @@ impl Navigator {
 
             let check_due = (step + robot.id.0 as u64).is_multiple_of(ROUTE_CHECK_STEPS);
             let learned = traveller.revision != knowledge.revision;
-            let stalled =
-                traveller.stalled_steps > 0 && traveller.stalled_steps.is_multiple_of(self.detour_steps);
+            let attempt = traveller.attempt(self.detour_steps);
             let replan = match &traveller.route {
                 None => learned || check_due,
                 Some(route) => {
-                    stalled
+                    attempt.is_some()
                         || learned && affects(knowledge, route, robot)
                         || check_due && first_leg_cut(knowledge, route, robot)
                 }
@@ -204,7 +223,10 @@ impl Navigator {
             traveller.revision = knowledge.revision;
             if replan || !traveller.is_planned {
                 let fresh = learned || !traveller.is_planned;
-                let in_the_way = if stalled { self.standing_near(world, robot) } else { Vec::new() };
+                let in_the_way = match attempt {
+                    Some(Attempt::Detour) => self.standing_near(world, robot),
+                    _ => Vec::new(),
+                };
                 let route =
                     self.find_route(robot, goal.point, speed_of(robot) as f32, (knowledge, &in_the_way));
                 self.travellers[robot.id.index()].set_route(route, robot.position, fresh);

@@ -179,7 +179,11 @@ fn errands(check: &mut Checker, file: &ScenarioFile) {
         }
     }
     if file.sampled.hard != SampledCounts::default() || file.sampled.easy != SampledCounts::default() {
-        check.fail("sampled", "must be absent where there are errands: it fills the ways to tasks", "counts above 0");
+        check.fail(
+            "sampled",
+            "must be absent where there are errands: it fills the ways to tasks",
+            "counts above 0",
+        );
     }
 }
 

@@ -31,6 +31,12 @@ impl Outline {
         self.shape.distance_to_point(&self.pose, point, true)
     }
 
+    /// Distance from a point to the outline, in metres; negative inside.
+    #[must_use]
+    pub fn signed_distance(&self, point: Vector) -> f32 {
+        self.shape.distance_to_point(&self.pose, point, false)
+    }
+
     /// Corners, anticlockwise, of a convex polygon that holds every point within `by` metres of the outline and little more.
     #[must_use]
     pub fn inflated(&self, by: f32) -> Vec<Vector> {
@@ -69,6 +75,10 @@ fn ring(corners: u32, radius: f32) -> impl Iterator<Item = Vector> {
 pub struct Debris {
     /// Where it is.
     pub outline: Outline,
+    /// Whether nothing can push it.
+    pub is_fixed: bool,
+    /// No point of it is farther from its centre than this, in metres.
+    pub reach: f32,
     /// The outlines that robots may have seen: the initial one, and one more each time it was pushed noticeably.
     pub sightings: Vec<Outline>,
 }
@@ -78,7 +88,9 @@ impl Debris {
     #[must_use]
     pub fn new(file: &DebrisFile) -> Self {
         let outline = debris_outline(file);
-        Self { sightings: vec![outline.clone()], outline }
+        let bounds = outline.shape.compute_local_bounding_sphere();
+        let reach = bounds.center.length() + bounds.radius;
+        Self { is_fixed: file.movable.is_none(), sightings: vec![outline.clone()], reach, outline }
     }
 
     /// Takes a new pose from the physics.

@@ -1,0 +1,106 @@
+//! The invariant checker: sound trials pass it, and every seeded fault is caught in the step in which it is seeded.
+
+use parry2d::math::Vector;
+use usar_sim::event::{Event, Place};
+use usar_sim::ids::{RescueeId, RobotId};
+use usar_sim::invariant::Invariants;
+use usar_sim::simulation::Simulation;
+use usar_sim::world::{RescueeState, World};
+
+use crate::support::paper;
+
+/// What a fault can tamper with: the time, the events and the world that the checker is shown.
+struct Shown<'a> {
+    time_s: f64,
+    events: Vec<Event>,
+    world: &'a mut World,
+    /// A robot with somebody on board.
+    robot: usize,
+}
+
+type Fault = (&'static str, fn(&mut Shown));
+
+/// Each fault, with a part of what the checker says of it.
+const FAULTS: [Fault; 24] = [
+    ("moved 1.0", |s| s.world.robots[s.robot].position.x += 1.0),
+    ("moved 0.0", |s| s.world.robots[s.robot].position.y += 0.075),
+    ("NaN", |s| s.world.robots[s.robot].position.x = f32::NAN),
+    ("inf", |s| s.world.robots[s.robot].velocity.y = f32::INFINITY),
+    ("speed", |s| s.world.robots[s.robot].velocity = Vector::new(7.0, 0.0)),
+    ("acceleration", |s| {
+        let robot = &mut s.world.robots[s.robot];
+        robot.velocity = -robot.velocity - Vector::new(0.5, 0.0);
+    }),
+    ("overlaps", |s| s.world.debris[0].outline.pose.translation = s.world.robots[s.robot].position),
+    ("energy NaN", |s| s.world.robots[s.robot].energy = f64::NAN),
+    ("energy 101", |s| s.world.robots[s.robot].energy = 101.0),
+    ("energy -1", |s| s.world.robots[s.robot].energy = -1.0),
+    ("energy rose", |s| s.world.robots[s.robot].energy += 0.01),
+    ("HP rose", |s| s.world.robots[s.robot].hp += 0.001),
+    ("HP -0.5", |s| s.world.robots[s.robot].hp = -0.5),
+    ("resources", |s| s.world.robots[s.robot].resources += 1),
+    ("rescuees on board", |s| {
+        let twice = s.world.robots[s.robot].load[0];
+        s.world.robots[s.robot].load.push(twice);
+    }),
+    ("rescuees on board", |s| s.world.robots[s.robot].load.clear()),
+    ("rescuees, should be", |s| s.world.rescuees.truncate(399)),
+    ("Rescued, should be", |s| s.world.rescuees[0].state = RescueeState::Rescued),
+    ("should be OnBoard", |s| {
+        let id = s.world.robots[s.robot].load[0];
+        s.world.rescuees[id.index()].state = RescueeState::OnBoard(RobotId(s.robot as u32 + 1));
+    }),
+    ("room for", |s| {
+        let capacity = s.world.robots[s.robot].spec.capacity;
+        s.world.robots[s.robot].load = (0..=capacity).map(RescueeId).collect();
+    }),
+    ("time went", |s| s.time_s -= 1.0),
+    ("loaded rescuee", |s| {
+        let (robot, rescuee) = (RobotId(s.robot as u32), s.world.robots[s.robot].load[0]);
+        s.events.push(Event::Loaded { robot, rescuee, resource_of: robot });
+    }),
+    ("delivered rescuee", |s| {
+        let robot = RobotId(s.robot as u32);
+        s.events.push(Event::Delivered { robot, rescuee: RescueeId(399), place: Place::Home });
+    }),
+    ("rested", |s| s.events.push(Event::RestEnded { robot: RobotId(s.robot as u32) })),
+];
+
+#[test]
+fn each_of_24_faults_is_caught_within_one_step() {
+    let scenario = paper();
+    let policy = rne_core::policy_named("RNE", &scenario.rne).unwrap();
+    for (said, fault) in FAULTS {
+        let mut trial = Simulation::new(&scenario, &*policy, 1).unwrap();
+        let mut check = Invariants::new(&scenario, trial.world());
+        let robot = loop {
+            trial.step().unwrap();
+            check.listen(trial.time_s(), trial.events(), trial.world()).unwrap();
+            let carries = |robot: &&usar_sim::world::Robot| {
+                !robot.load.is_empty() && robot.velocity.length() > 1.0 && robot.hp < 99.0
+            };
+            if let Some(robot) = trial.world().robots.iter().find(carries) {
+                break robot.id.index();
+            }
+        };
+        trial.step().unwrap();
+        let (time_s, events) = (trial.time_s(), trial.events().to_vec());
+        let mut shown = Shown { time_s, events, world: trial.world_mut(), robot };
+        fault(&mut shown);
+        let broken = check.listen(shown.time_s, &shown.events, shown.world).unwrap_err().to_string();
+        assert!(broken.contains(said), "{said}: {broken}");
+    }
+}
+
+#[test]
+fn a_violation_ends_the_trial_as_failed_with_robot_step_and_values() {
+    let scenario = paper();
+    let policy = rne_core::policy_named("RNE", &scenario.rne).unwrap();
+    let mut trial = Simulation::new(&scenario, &*policy, 1).unwrap().checked();
+    for _ in 0..100 {
+        trial.step().unwrap();
+    }
+    trial.world_mut().robots[3].energy = 150.0;
+    let reason = trial.step().unwrap_err();
+    assert!(reason.starts_with("invariant violated at 2.02 s: robot 3: energy 1"), "{reason}");
+}

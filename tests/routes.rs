@@ -1,0 +1,209 @@
+//! Routes, proved by a checker of its own: connected, clear of known debris, and as short as an oracle's.
+//!
+//! The oracle is a visibility graph over the corners of the same inflated outlines, searched by Dijkstra in f64: exact, and too slow for
+//! anything but small maps.
+
+use parry2d::math::Vector;
+use rand::rngs::ChaCha8Rng;
+use rand::{RngExt, SeedableRng};
+use usar_sim::planning::{KnownObstacle, ObstacleKey, Planner, Query, Route};
+use usar_sim::scenario::{DebrisFile, DebrisShape, Scenario};
+use usar_sim::world::{Outline, RadiationZone, debris_outline};
+
+use crate::support::{paper, paper_with};
+
+type P = [f64; 2];
+
+const OFFSET_M: f64 = 0.55; // radius and clearance of paper.ron
+const ARENA: P = [89.5, 71.5];
+
+fn sub(a: P, b: P) -> P {
+    [a[0] - b[0], a[1] - b[1]]
+}
+
+fn cross(a: P, b: P) -> f64 {
+    a[0] * b[1] - a[1] * b[0]
+}
+
+fn distance(a: P, b: P) -> f64 {
+    (a[0] - b[0]).hypot(a[1] - b[1])
+}
+
+/// Whether more than a touch of the way from `a` to `b` is inside a convex polygon: bisected to the middle of what is left of it.
+fn enters(polygon: &[P], a: P, b: P) -> bool {
+    let (mut from, mut to) = (0.0_f64, 1.0_f64);
+    for i in 0..polygon.len() {
+        let (p, q) = (polygon[i], polygon[(i + 1) % polygon.len()]);
+        let (at_a, at_b) = (cross(sub(q, p), sub(a, p)), cross(sub(q, p), sub(b, p)));
+        match (at_a > 0.0, at_b > 0.0) {
+            (false, false) => return false,
+            (false, true) => from = from.max(at_a / (at_a - at_b)),
+            (true, false) => to = to.min(at_a / (at_a - at_b)),
+            (true, true) => {}
+        }
+    }
+    (to - from) * distance(a, b) > 2e-3
+}
+
+fn holds(polygon: &[P], point: P, depth: f64) -> bool {
+    (0..polygon.len()).all(|i| {
+        let (p, q) = (polygon[i], polygon[(i + 1) % polygon.len()]);
+        cross(sub(q, p), sub(point, p)) > depth * distance(p, q)
+    })
+}
+
+/// Length of the shortest way, or `None` where there is none.
+fn shortest(polygons: &[Vec<P>], from: P, to: P) -> Option<f64> {
+    let inside = |p: &P| {
+        (0..2).all(|k| p[k] >= OFFSET_M - 1e-4 && p[k] <= ARENA[k] - OFFSET_M + 1e-4)
+            && !polygons.iter().any(|polygon| holds(polygon, *p, 1e-3))
+    };
+    let mut nodes = vec![from, to];
+    nodes.extend(polygons.iter().flatten().copied().filter(inside));
+    let mut best = vec![f64::INFINITY; nodes.len()];
+    let mut done = vec![false; nodes.len()];
+    best[0] = 0.0;
+    while let Some(i) = (0..nodes.len()).filter(|i| !done[*i]).min_by(|a, b| best[*a].total_cmp(&best[*b])) {
+        if !best[i].is_finite() || i == 1 {
+            break;
+        }
+        done[i] = true;
+        for j in 0..nodes.len() {
+            let length = best[i] + distance(nodes[i], nodes[j]);
+            if length < best[j] && !polygons.iter().any(|polygon| enters(polygon, nodes[i], nodes[j])) {
+                best[j] = length;
+            }
+        }
+    }
+    best[1].is_finite().then_some(best[1])
+}
+
+fn random_debris(draws: &mut ChaCha8Rng) -> Vec<Outline> {
+    (0..draws.random_range(1..12_u32))
+        .map(|_| {
+            let size = draws.random_range(0.3..4.0);
+            let shape = match draws.random_range(0..3_u32) {
+                0 => DebrisShape::Disc(size),
+                1 => DebrisShape::Box(size, draws.random_range(0.2..8.0)),
+                _ => DebrisShape::Polygon(vec![[-size, -size], [size, -0.5 * size], [0.0, size]]),
+            };
+            let at = [draws.random_range(25.0..65.0), draws.random_range(20.0..50.0)];
+            let rotation_deg = draws.random_range(-180.0..180.0);
+            debris_outline(&DebrisFile { shape, at, rotation_deg, movable: None })
+        })
+        .collect()
+}
+
+fn known(outlines: &[Outline]) -> Vec<KnownObstacle> {
+    let number = |i: usize| ObstacleKey::Debris(i as u32, 1);
+    outlines.iter().enumerate().map(|(i, o)| KnownObstacle::new(number(i), o, 0.4, 0.15)).collect()
+}
+
+fn plan(scenario: &Scenario, obstacles: &[KnownObstacle], from: P, to: P) -> Option<Route> {
+    let vector = |p: P| Vector::new(p[0] as f32, p[1] as f32);
+    Planner::new(scenario).route(&Query {
+        from: vector(from),
+        to: vector(to),
+        aerial: false,
+        speed: 2.25,
+        obstacles,
+        in_the_way: &[],
+        zones: &[],
+    })
+}
+
+#[test]
+fn routes_are_connected_clear_of_known_debris_and_as_short_as_the_oracle_s() {
+    let scenario = paper();
+    let mut compared = 0;
+    for seed in 0..150 {
+        let mut draws = ChaCha8Rng::seed_from_u64(seed);
+        let outlines = random_debris(&mut draws);
+        let obstacles = known(&outlines);
+        let polygons: Vec<Vec<P>> = obstacles
+            .iter()
+            .map(|obstacle| obstacle.planned.iter().map(|p| [f64::from(p.x), f64::from(p.y)]).collect())
+            .collect();
+        let mut place = |x: f64| [x + draws.random_range(-5.0..5.0), draws.random_range(10.0..60.0)];
+        let (from, to) = (place(15.0), place(75.0));
+        if polygons.iter().any(|polygon| holds(polygon, from, 0.0) || holds(polygon, to, 0.0)) {
+            continue;
+        }
+        let route = plan(&scenario, &obstacles, from, to);
+        let oracle = shortest(&polygons, from, to);
+        assert_eq!(route.is_some(), oracle.is_some(), "seed {seed}");
+        let (Some(route), Some(oracle)) = (route, oracle) else { continue };
+        let start = Vector::new(from[0] as f32, from[1] as f32);
+        let length = f64::from(route.length(start));
+        assert!(
+            (length - oracle).abs() <= 1e-3 * oracle.max(1.0),
+            "seed {seed}: {length} m, oracle {oracle} m"
+        );
+        assert!(distance([f64::from(route.end().x), f64::from(route.end().y)], to) < 1e-3, "seed {seed}");
+        for (a, b) in route.legs(start) {
+            for step in 0..=200 {
+                let point = a.lerp(b, step as f32 / 200.0);
+                let gap = outlines.iter().map(|o| o.distance_to(point)).fold(f32::INFINITY, f32::min);
+                assert!(f64::from(gap) >= OFFSET_M - 2e-3, "seed {seed}: {gap} m from debris at {point}");
+            }
+        }
+        compared += 1;
+    }
+    assert!(compared > 100, "{compared} routes compared");
+}
+
+#[test]
+fn a_detour_round_radiation_is_made_where_it_is_cheaper_and_no_further() {
+    let cost = |price: &str| {
+        let scenario = paper_with(&[("exposure_price_m: 2.0", &format!("exposure_price_m: {price}"))]);
+        let zone = RadiationZone { center: Vector::new(40.0, 30.0), radius: 4.0 };
+        let from = Vector::new(30.0, 30.0);
+        let route = Planner::new(&scenario).route(&Query {
+            from,
+            to: Vector::new(50.0, 30.0),
+            aerial: false,
+            speed: 2.0,
+            obstacles: &[],
+            in_the_way: &[],
+            zones: &[(0, zone)],
+        });
+        let route = route.unwrap();
+        (route.length(from), route.length_inside(from, &zone))
+    };
+    let (straight, inside) = cost("0.0");
+    assert!((straight - 20.0).abs() < 1e-3 && (inside - 8.0).abs() < 1e-3);
+    // Round the disc: two tangents of sqrt(10^2 - 4^2) m and an arc of 4 (pi - 2 acos(4 / 10)) m, 21.62 m in all.
+    let (round, inside) = cost("2.0");
+    assert!((21.6..21.95).contains(&round) && inside == 0.0, "{round} m, {inside} m inside");
+    let (cheap, inside) = cost("0.3");
+    assert!(
+        (cheap - 20.0).abs() < 1e-3 && inside > 0.0,
+        "4 s inside for 1.2 m are cheaper than 1.6 m round it"
+    );
+}
+
+#[test]
+fn observers_fly_over_debris() {
+    let scenario = paper();
+    let wall = debris_outline(&DebrisFile {
+        shape: DebrisShape::Box(1.0, 60.0),
+        at: [45.0, 35.0],
+        rotation_deg: 0.0,
+        movable: None,
+    });
+    let query = |aerial| Query {
+        from: Vector::new(30.0, 30.0),
+        to: Vector::new(60.0, 30.0),
+        aerial,
+        speed: 1.5,
+        obstacles: &[],
+        in_the_way: &[],
+        zones: &[],
+    };
+    let obstacles = known(&[wall]);
+    let length = |aerial| {
+        let query = Query { obstacles: &obstacles, ..query(aerial) };
+        Planner::new(&scenario).route(&query).unwrap().length(query.from)
+    };
+    assert!((length(true) - 30.0).abs() < 1e-3 && length(false) > 55.0);
+}
