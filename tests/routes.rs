@@ -6,9 +6,10 @@
 use parry2d::math::Vector;
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
-use usar_sim::planning::{KnownObstacle, ObstacleKey, Planner, Query, Route};
+use usar_sim::layout::Layout;
+use usar_sim::planning::{Goal, Knowledge, KnownObstacle, Navigator, ObstacleKey, Planner, Query, Route};
 use usar_sim::scenario::{DebrisFile, DebrisShape, Scenario};
-use usar_sim::world::{Outline, RadiationZone, debris_outline};
+use usar_sim::world::{Outline, RadiationZone, World, debris_outline};
 
 use crate::support::{paper, paper_with};
 
@@ -206,4 +207,45 @@ fn observers_fly_over_debris() {
         Planner::new(&scenario).route(&query).unwrap().length(query.from)
     };
     assert!((length(true) - 30.0).abs() < 1e-3 && length(false) > 55.0);
+}
+
+/// A wall whose only gap, 2 m wide, is closed by a crate; the way round the wall is long.
+const CLOSED_GAP: &str = r#"(
+    name: "closed gap", description: "", duration_s: 60.0, dt_s: 0.02, arena_m: (30.0, 30.0),
+    team: [(role: Carrier, count: 1, center: (10.0, 5.0), width_m: 0.0)],
+    errands: [(robot: 0, to: [(20.0, 5.0)])],
+    debris: [
+        (shape: Box(0.4, 4.0), at: (15.0, 2.0)),
+        (shape: Box(0.4, 19.0), at: (15.0, 15.5)),
+        (shape: Box(0.8, 2.0), at: (15.0, 5.0), movable: (mass_kg: 30.0, friction: 0.5)),
+    ],
+)"#;
+
+#[test]
+fn a_way_that_a_pushed_piece_leaves_free_is_taken_once_it_is_noticed_and_others_do_not_count() {
+    let scenario = Scenario::parse(CLOSED_GAP, "closed_gap.ron".as_ref()).unwrap();
+    let length_after_move = |by: [f32; 2]| {
+        let layout = Layout::sample(&scenario, 1).unwrap();
+        let mut world = World::build(&scenario, &layout);
+        let mut known = Knowledge::nothing(&world, 0.4, 0.15);
+        (0..3).for_each(|piece| known.learn_debris(&world, piece));
+        let mut navigator = Navigator::new(&scenario, 1);
+        let robot = world.robots[0].id;
+        navigator.set_goal(robot, Some(Goal { point: Vector::new(20.0, 5.0), within: 0.15 }));
+        let mut length = |world: &World, known: &Knowledge| {
+            navigator.plan(world, |_| known, |_| 2.0, 1);
+            navigator.traveller(robot).route().unwrap().length(world.robots[0].position)
+        };
+        let before = length(&world, &known);
+        let mut moved = world.debris[2].outline.clone();
+        moved.pose.translation += Vector::from(by);
+        world.debris[2].sightings.push(moved);
+        assert_eq!(length(&world, &known), before, "nobody has noticed yet");
+        known.learn_debris(&world, 2);
+        (before, length(&world, &known))
+    };
+    let (before, after) = length_after_move([5.0, 8.0]);
+    assert!(before > 40.0 && (after - 10.0).abs() < 1e-3, "{before} m, then {after} m");
+    let (before, after) = length_after_move([0.1, 0.0]);
+    assert_eq!(after, before, "still closed");
 }

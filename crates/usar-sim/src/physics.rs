@@ -200,3 +200,89 @@ fn insert_debris(
     world.insert_impulse_joint(ground, handle, joint);
     Some(handle)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::layout::Layout;
+    use crate::world::World;
+
+    /// A robot of `speed` m/s at (5, 5) and one piece of debris.
+    fn world(speed: f32, debris: &str) -> World {
+        let text = format!(
+            r#"(name: "physics", description: "", duration_s: 10.0, dt_s: 0.02, arena_m: (40.0, 10.0),
+            team: [(role: Carrier, count: 1, center: (5.0, 5.0), width_m: 0.0)],
+            roles: (
+                carrier: (radius_m: 0.4, mass_kg: 50.0, hp: 100.0, energy: 150.0, speed_mps: {speed:?},
+                    acceleration_mps2: 100.0, sensing_m: 3.0, observing_m: 1.0, capacity: 1, resources: 1),
+            ),
+            errands: [(robot: 0, to: [(35.0, 5.0)])],
+            debris: [{debris}])"#
+        );
+        let scenario =
+            Scenario::parse(&text, "physics.ron".as_ref()).unwrap_or_else(|error| panic!("{error}"));
+        World::build(&scenario, &Layout::sample(&scenario, 1).unwrap())
+    }
+
+    /// Drives the robot at this velocity, as far as the strongest drive can, and lets `look` see every step.
+    fn drive(world: &mut World, velocity: Vector, steps: u32, mut look: impl FnMut(&World)) {
+        for _ in 0..steps {
+            let robot = &world.robots[0];
+            let change = (velocity - robot.velocity).clamp_length_max(100.0 * 0.02);
+            let id = robot.id;
+            world.physics.drive(id, change);
+            world.integrate();
+            look(world);
+        }
+    }
+
+    #[test]
+    fn nobody_gets_through_the_thinnest_wall_at_the_highest_speed() {
+        let (thinnest, fastest) = (0.1, 20.0); // a rule of scenarios: speed times step is at most the radius
+        let wall = format!("(shape: Box({thinnest:?}, 9.9), at: (20.0, 5.0))");
+        for angle in [0.0, 0.5, 1.2] {
+            let mut world = world(fastest, &wall);
+            let velocity = Vector::new(libm::cosf(angle), libm::sinf(angle)) * fastest;
+            let mut farthest: f32 = 0.0;
+            drive(&mut world, velocity, 500, |world| farthest = farthest.max(world.robots[0].position.x));
+            let touching = 20.0 - thinnest / 2.0 - 0.4;
+            assert!((touching - 0.01..touching + 0.05).contains(&farthest), "{angle}: {farthest}");
+        }
+    }
+
+    #[test]
+    fn a_piece_that_slides_is_braked_by_friction_whatever_its_mass() {
+        for (mass, friction) in [(10.0, 0.5), (200.0, 0.5), (30.0, 0.2)] {
+            let piece = format!(
+                "(shape: Box(1.0, 1.0), at: (15.0, 5.0), movable: (mass_kg: {mass:?}, friction: {friction:?}))"
+            );
+            let mut world = world(1.0, &piece);
+            let handle = world.physics.debris[0].unwrap();
+            let speed: f32 = 3.0;
+            world.physics.world.bodies[handle].set_linvel(Vector::new(speed, 0.0), true);
+            (0..200).for_each(|_| world.integrate());
+            let way = world.debris[0].outline.pose.translation.x - 15.0;
+            let expected = speed * speed / (2.0 * friction * GRAVITY);
+            assert!((way - expected).abs() < 0.05 * expected + 0.02, "{mass} kg: {way} m, not {expected} m");
+        }
+    }
+
+    #[test]
+    fn a_piece_is_pushed_by_more_than_its_friction_only() {
+        let way_pushed_by = |newton: f32| {
+            let mut world = world(
+                1.0,
+                "(shape: Box(1.0, 1.0), at: (15.0, 5.0), movable: (mass_kg: 20.0, friction: 0.5))",
+            );
+            let handle = world.physics.debris[0].unwrap();
+            world.physics.world.bodies[handle].add_force(Vector::new(newton, 0.0), true);
+            (0..100).for_each(|_| world.integrate());
+            world.debris[0].outline.pose.translation.x - 15.0
+        };
+        let limit = 0.5 * 20.0 * GRAVITY;
+        assert!(way_pushed_by(0.9 * limit) < 0.01);
+        let expected = 0.5 * (0.5 * limit / 20.0) * 2.0 * 2.0; // half the limit is left to accelerate 20 kg for 2 s
+        let way = way_pushed_by(1.5 * limit);
+        assert!((way - expected).abs() < 0.05 * expected, "{way} m, not {expected} m");
+    }
+}

@@ -1,7 +1,29 @@
 //! What a group knows of the world: shared by its members at once, pooled by the whole team at home.
 
+use parry2d::math::Vector;
+
 use super::obstacles::{KnownObstacle, ObstacleKey};
 use crate::world::{RadiationZone, World};
+
+/// A place that was found to be free again: a piece of debris was pushed away from there.
+#[derive(Debug, Clone, Copy)]
+pub struct Opening {
+    /// The revision of the knowledge in which it is known.
+    pub revision: u32,
+    /// Middle of the place.
+    pub center: Vector,
+    /// No way through the place that was closed before is farther from the middle than this, in metres.
+    pub reach: f32,
+}
+
+impl Opening {
+    /// A lower bound for the length of any way from `a` to `b` that leads through here, in metres.
+    #[must_use]
+    pub fn least_way(&self, a: Vector, b: Vector) -> f32 {
+        let to_here = |point: Vector| ((point - self.center).length() - self.reach).max(0.0);
+        to_here(a) + to_here(b)
+    }
+}
 
 /// Knowledge of a group, or of the team at home.
 #[derive(Clone)]
@@ -17,6 +39,7 @@ pub struct Knowledge {
     /// Counts the changes that concern routes.
     pub revision: u32,
     obstacles: Vec<KnownObstacle>,
+    openings: Vec<Opening>,
     known_zones: Vec<(u32, RadiationZone)>,
     radius: f32,
     clearance: f32,
@@ -33,6 +56,7 @@ impl Knowledge {
             wrecks: vec![false; world.robots.len()],
             revision: 0,
             obstacles: Vec::new(),
+            openings: Vec::new(),
             known_zones: Vec::new(),
             radius,
             clearance,
@@ -43,6 +67,11 @@ impl Knowledge {
     #[must_use]
     pub fn obstacles(&self) -> &[KnownObstacle] {
         &self.obstacles
+    }
+
+    /// Places that were found to be free again since a revision.
+    pub fn openings_since(&self, revision: u32) -> impl Iterator<Item = &Opening> {
+        self.openings.iter().rev().take_while(move |opening| opening.revision > revision)
     }
 
     /// The known radiation zones, with their numbers.
@@ -62,7 +91,12 @@ impl Knowledge {
             let outline = &world.debris[number].sightings[sighting as usize - 1];
             let key = ObstacleKey::Debris(number as u32, sighting);
             let obstacle = KnownObstacle::new(key, outline, self.radius, self.clearance);
-            self.obstacles.retain(|o| !matches!(o.key, ObstacleKey::Debris(n, _) if n as usize == number));
+            let is_it =
+                |o: &KnownObstacle| matches!(o.key, ObstacleKey::Debris(n, _) if n as usize == number);
+            if let Some(at) = self.obstacles.iter().position(is_it) {
+                let (center, reach) = self.obstacles.remove(at).bounds();
+                self.openings.push(Opening { revision: self.revision + 1, center, reach });
+            }
             self.insert(obstacle);
         }
     }

@@ -11,7 +11,7 @@ mod obstacles;
 mod route;
 mod trail;
 
-pub use knowledge::Knowledge;
+pub use knowledge::{Knowledge, Opening};
 pub use navigator::{Goal, Navigator, PLANNED_BRAKING, Traveller};
 pub use obstacles::{
     KnownObstacle, ObstacleKey, contains as polygon_contains, crosses as polygon_crossed, outward_normal,
@@ -43,6 +43,7 @@ pub struct Planner {
 type MeshKey = (bool, Vec<ObstacleKey>, Vec<u32>);
 
 /// A question to the planner.
+#[derive(Clone, Copy)]
 pub struct Query<'a> {
     /// Where the robot is.
     pub from: Vector,
@@ -127,7 +128,8 @@ impl Planner {
     }
 
     /// Length of a route and the price of its exposure, in metres.
-    fn cost(&self, query: &Query, route: &Route) -> f32 {
+    #[must_use]
+    pub fn cost(&self, query: &Query, route: &Route) -> f32 {
         let inside: f32 = query.zones.iter().map(|(_, zone)| route.length_inside(query.from, zone)).sum();
         route.length(query.from) + self.exposure_price_m * inside / query.speed.max(0.01)
     }

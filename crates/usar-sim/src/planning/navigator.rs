@@ -4,7 +4,7 @@ use parry2d::math::Vector;
 
 use super::obstacles::{KnownObstacle, crosses};
 use super::trail::Trail;
-use super::{Knowledge, Planner, Query, Route};
+use super::{Knowledge, Opening, Planner, Query, Route};
 use crate::ids::RobotId;
 use crate::scenario::Scenario;
 use crate::world::{Robot, STANDING_MPS, World};
@@ -187,7 +187,7 @@ impl Navigator {
         }
     }
 
-    /// Plans where a robot has no route yet, where new knowledge cuts it or makes it dearer, or where it leads nowhere. `speed_of` is a
+    /// Plans where a robot has no route yet, where new knowledge cuts it or may make it dearer or cheaper, or where it leads nowhere. `speed_of` is a
     /// robot's present top speed, in metres per second.
     pub fn plan<'k>(
         &mut self,
@@ -209,6 +209,15 @@ impl Navigator {
             }
             traveller.note_progress(robot.position);
 
+            let query = || Query {
+                from: robot.position,
+                to: goal.point,
+                aerial: robot.is_aerial(),
+                speed: speed_of(robot) as f32,
+                obstacles: knowledge.obstacles(),
+                in_the_way: &[],
+                zones: knowledge.known_zones(),
+            };
             let check_due = (step + robot.id.0 as u64).is_multiple_of(ROUTE_CHECK_STEPS);
             let learned = traveller.revision != knowledge.revision;
             let attempt = traveller.attempt(self.detour_steps);
@@ -217,6 +226,13 @@ impl Navigator {
                 Some(route) => {
                     attempt.is_some()
                         || learned && affects(knowledge, route, robot)
+                        || learned
+                            && may_cheapen(
+                                &self.planner,
+                                &query(),
+                                route,
+                                knowledge.openings_since(traveller.revision),
+                            )
                         || check_due && first_leg_cut(knowledge, route, robot)
                 }
             };
@@ -227,31 +243,15 @@ impl Navigator {
                     Some(Attempt::Detour) => self.standing_near(world, robot),
                     _ => Vec::new(),
                 };
-                let route =
-                    self.find_route(robot, goal.point, speed_of(robot) as f32, (knowledge, &in_the_way));
+                let route = self.find_route(&query(), &in_the_way);
                 self.travellers[robot.id.index()].set_route(route, robot.position, fresh);
             }
         }
     }
 
-    fn find_route(
-        &mut self,
-        robot: &Robot,
-        to: Vector,
-        speed: f32,
-        (knowledge, in_the_way): (&Knowledge, &[KnownObstacle]),
-    ) -> Option<Route> {
-        let query = Query {
-            from: robot.position,
-            to,
-            aerial: robot.is_aerial(),
-            speed,
-            obstacles: knowledge.obstacles(),
-            in_the_way,
-            zones: knowledge.known_zones(),
-        };
-        // When the standing robots leave no way, the route through them is kept: they may go.
-        self.planner.route(&query).or_else(|| self.planner.route(&Query { in_the_way: &[], ..query }))
+    /// The cheapest route round what is in the way; where that leaves no way, through it: robots that stand may go.
+    fn find_route(&mut self, query: &Query, in_the_way: &[KnownObstacle]) -> Option<Route> {
+        self.planner.route(&Query { in_the_way, ..*query }).or_else(|| self.planner.route(query))
     }
 
     /// Robots of the same layer that stand near, as obstacles.
@@ -299,6 +299,18 @@ fn affects(knowledge: &Knowledge, route: &Route, robot: &Robot) -> bool {
             .legs(robot.position)
             .any(|(a, b)| knowledge.obstacles().iter().any(|obstacle| crosses(&obstacle.tight, a, b)));
     cut || knowledge.known_zones().iter().any(|(_, zone)| route.length_inside(robot.position, zone) > 0.0)
+}
+
+/// Whether debris was pushed from a place through which a cheaper way may lead now. Never `false` where one does.
+fn may_cheapen<'o>(
+    planner: &Planner,
+    query: &Query,
+    route: &Route,
+    mut openings: impl Iterator<Item = &'o Opening>,
+) -> bool {
+    let is_near =
+        |opening: &Opening| opening.least_way(query.from, query.to) < planner.cost(query, route) - PROGRESS_M;
+    !query.aerial && openings.any(is_near)
 }
 
 /// Whether the way to the next waypoint is cut, for a robot that was pushed or had to step aside.

@@ -42,6 +42,13 @@ impl KnownObstacle {
         }
     }
 
+    /// Middle of the corners of `planned`, and the distance of the farthest from it, in metres.
+    pub(super) fn bounds(&self) -> (Vector, f32) {
+        let middle = self.planned.iter().copied().sum::<Vector>() / self.planned.len() as f32;
+        let distance = |corner: &Vector| (*corner - middle).length();
+        (middle, self.planned.iter().map(distance).fold(0.0, f32::max))
+    }
+
     /// A robot that stands for good.
     #[must_use]
     pub fn wreck(number: u32, at: Vector, own_radius: f32, radius: f32, clearance: f32) -> Self {
