@@ -27,6 +27,12 @@ const CROWD_RANGE_M: f32 = 25.0;
 /// Distance between the points at which a retreat is compared with the way of the other robot, in metres.
 const SAMPLE_M: f32 = 0.4;
 
+/// Robots within this distance of one that makes room go through in one platoon, in metres.
+const PLATOON_M: f32 = 5.0;
+
+/// Robots whose wishes differ by no more than this (cosine) go in the same direction.
+const PLATOON_COS: f32 = 0.5;
+
 /// How long robots try, in steps.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Limits {
@@ -51,6 +57,8 @@ pub(super) struct Retreat {
     line: Vec<Vector>,
     least_left: f32,
     idle_steps: u32,
+    /// Steps since it began to make room, for whomever.
+    held_steps: u32,
 }
 
 /// All retreats, by robot.
@@ -99,7 +107,9 @@ impl Retreats {
             let is_served = self.is_served(i);
             let Some(mut retreat) = self.of[i].take() else { continue };
             retreat.advance(&movers[i], &movers[retreat.head], is_served);
-            if !self.is_over(i, &retreat, movers) {
+            if self.is_over(i, &retreat, movers) {
+                self.of[i] = self.for_the_next(i, retreat, movers);
+            } else {
                 self.of[i] = Some(retreat);
             }
         }
@@ -123,6 +133,33 @@ impl Retreats {
         !me.can_make_room
             || retreat.idle_steps > limit
             || retreat.is_passed(&head_way, me.radius + head.radius + self.margin)
+    }
+
+    /// The same room for the next robot that comes after the one that passed: robots go through a narrow passage in platoons, not one at a
+    /// time from either side.
+    fn for_the_next(&self, i: usize, mut retreat: Retreat, movers: &[Mover]) -> Option<Retreat> {
+        let (me, passed) = (&movers[i], &movers[retreat.head]);
+        let direction = passed.wish.normalize_or_zero();
+        let follows = |k: &usize| {
+            let other = &movers[*k];
+            let to_me = me.position - other.position;
+            *k != i
+                && *k != retreat.head
+                && other.aerial == me.aerial
+                && self.depth(*k) == 0
+                && to_me.length() < PLATOON_M
+                && other.wish.normalize_or_zero().dot(direction) > PLATOON_COS
+                && !retreat.is_passed(&ways(other)[0], me.radius + other.radius + self.margin)
+        };
+        if !me.can_make_room || retreat.held_steps > self.limits.at_place {
+            return None;
+        }
+        let near = |k: &usize| (movers[*k].position - me.position).length();
+        let next = (0..movers.len()).filter(follows).min_by(|a, b| near(a).total_cmp(&near(b)))?;
+        retreat.head = next;
+        retreat.depth = 1;
+        retreat.idle_steps = 0;
+        Some(retreat)
     }
 
     /// Ends the retreat of a robot, if it is on one that comes to nothing.
@@ -150,6 +187,7 @@ impl Retreats {
             path: path.into_iter().rev().collect(),
             least_left: f32::INFINITY,
             idle_steps: 0,
+            held_steps: 0,
         };
         let is_in_the_way = !self.is_over(blocker, &retreat, movers);
         if is_in_the_way {
@@ -215,6 +253,7 @@ impl Retreat {
     }
 
     fn advance(&mut self, me: &Mover, head: &Mover, is_served: bool) {
+        self.held_steps += 1;
         while self.path.last().is_some_and(|next| (*next - me.position).length() < PASSED_M) {
             self.path.pop();
             self.least_left = f32::INFINITY;
