@@ -3,6 +3,7 @@
 //! Feasibility is found out by a flood fill of its own, not by the planner under test: of the points on a fine grid that keep a robot's
 //! radius and clearance from all debris and walls, those that hang together with the first robot's home.
 
+use parry2d::bounding_volume::{Aabb, BoundingVolume};
 use parry2d::math::Vector;
 use rand::RngExt;
 use rand::SeedableRng;
@@ -20,6 +21,9 @@ const CELL_M: f64 = 0.15;
 
 /// Radius of all robots and the clearance of their routes, in metres.
 const KEEP_OFF_M: f64 = 0.55;
+
+/// No debris lies within this distance of a door, in metres.
+const APRON_M: f32 = 2.0;
 
 /// The world of a seed: errands for even seeds, a rescue mission for odd ones; 2 to 50 robots.
 pub fn world(seed: u64) -> Scenario {
@@ -157,6 +161,13 @@ fn debris(
         let (x, door) = (arena[0] * draws.random_range(0.35..0.65), lanes * draws.random_range(1.3..1.8));
         let (from, to) = (above, arena[1]);
         let at = draws.random_range(from + 2.0..to - 2.0 - door);
+        // No debris in the door: its lanes would not be free.
+        let doorway = Aabb::new(Vector::new(x as f32, at as f32), Vector::new(x as f32, (at + door) as f32));
+        debris.retain(|piece| {
+            let outline = debris_outline(piece);
+            let bounds = outline.shape.compute_aabb(&outline.pose);
+            !bounds.intersects(&doorway.loosened(APRON_M))
+        });
         for (low, high) in [(from, at), (at + door, to)] {
             debris.push(DebrisFile {
                 shape: DebrisShape::Box(0.4, high - low),
