@@ -211,7 +211,7 @@ fn observers_fly_over_debris() {
 
 /// A wall whose only gap, 2 m wide, is closed by a crate; the way round the wall is long.
 const CLOSED_GAP: &str = r#"(
-    name: "closed gap", description: "", duration_s: 60.0, dt_s: 0.02, arena_m: (30.0, 30.0),
+    name: "closed-gap", description: "", duration_s: 60.0, dt_s: 0.02, arena_m: (30.0, 30.0),
     team: [(role: Carrier, count: 1, center: (10.0, 5.0), width_m: 0.0)],
     errands: [(robot: 0, to: [(20.0, 5.0)])],
     debris: [

@@ -1,10 +1,12 @@
 //! Integration tests of the whole system, one binary.
 
+mod golden;
 mod journeys;
 mod support;
 mod worlds;
 
 mod conservation;
+mod determinism;
 mod errata;
 mod grouping;
 mod invariants;

@@ -7,6 +7,7 @@ use std::process::ExitCode;
 
 use experiments::sweep::{Outcome, keys, run_all};
 use rne_core::{policy_named, policy_names};
+use usar_sim::invariant::Overlaps;
 use usar_sim::record::TrialRecord;
 use usar_sim::scenario::Scenario;
 use usar_sim::simulation::Simulation;
@@ -114,6 +115,13 @@ fn summarise(outcomes: &[Outcome]) {
         each(&|r| r.robots.iter().map(|x| x.waiting_s).sum::<f64>() / r.robots.len() as f64),
     );
     line("longest stall, s", each(&|r| r.robots.iter().map(|x| x.longest_stall_s).fold(0.0, f64::max)));
+    let overlaps = || records.iter().filter_map(|record| record.overlaps);
+    let total = Overlaps {
+        contacts: overlaps().map(|o| o.contacts).sum(),
+        rare: overlaps().map(|o| o.rare).sum(),
+        deepest_m: overlaps().map(|o| o.deepest_m).fold(0.0, f32::max),
+    };
+    println!("overlaps: {total}");
     line("conflicts", each(&|r| f64::from(r.conflicts)));
     line("deadlocks", each(&|r| f64::from(r.deadlocks)));
 }

@@ -5,7 +5,7 @@ use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 
-use crate::commands::{check, group, run, sweep, trust};
+use crate::commands::{check, group, run, sweep, trust, verify};
 use crate::failure::Failure;
 
 /// Which robots should team up? A laboratory for trust and grouping policies in mixed robot teams.
@@ -19,6 +19,7 @@ use crate::failure::Failure;
 Examples:
   usar sweep scenarios/paper.ron                       the paper's experiment: policies compared over paired trials
   usar run scenarios/paper.ron --policy RNE --seed 3   one trial, round by round
+  usar verify results/paper                            do the numbers come out again?
   usar trust --weights 6,4,2 --from 86,120,30 --to 20,30,10
   usar group robots.csv --policy RNE
   usar check scenarios/*.ron                           is every value in its range?"
@@ -32,6 +33,7 @@ struct Cli {
 enum Command {
     Run(run::Arguments),
     Sweep(sweep::Arguments),
+    Verify(verify::Arguments),
     Check(check::Arguments),
     Trust(trust::Arguments),
     Group(group::Arguments),
@@ -61,6 +63,7 @@ impl Command {
         match self {
             Self::Run(arguments) => arguments.execute(out),
             Self::Sweep(arguments) => arguments.execute(out),
+            Self::Verify(arguments) => arguments.execute(out),
             Self::Check(arguments) => arguments.execute(out),
             Self::Trust(arguments) => arguments.execute(out),
             Self::Group(arguments) => arguments.execute(out),

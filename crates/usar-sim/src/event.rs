@@ -1,12 +1,13 @@
 //! Events: what happened, in order. Mechanics publish them; metrics and recorders only listen.
 
 use rne_core::Difficulty;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
+use crate::hash::part;
 use crate::ids::{RescueeId, RobotId};
 
 /// Why a robot turned back to its rest place.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum TurnBackCause {
     /// Its energy is below the threshold, or would not last for the way.
     Energy,
@@ -15,7 +16,7 @@ pub enum TurnBackCause {
 }
 
 /// Why a group went home.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum ReturnCause {
     /// No member in the field has room left.
     CapacityUsed,
@@ -41,7 +42,7 @@ impl ReturnCause {
 }
 
 /// Where a rescuee was delivered.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Place {
     /// Home.
     Home,
@@ -50,7 +51,7 @@ pub enum Place {
 }
 
 /// Something that happened.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Event {
     /// The team was grouped and a round began.
     RoundStarted {
@@ -191,10 +192,11 @@ pub enum Event {
     MissionOver,
 }
 
-/// The events of the current step, in order.
-#[derive(Debug, Default)]
+/// The events of the current step, in order, and a hash over all before.
+#[derive(Debug, Default, Serialize, Deserialize)]
 pub struct EventLog {
     events: Vec<Event>,
+    past: u128,
 }
 
 impl EventLog {
@@ -209,8 +211,11 @@ impl EventLog {
         &self.events
     }
 
-    /// Forgets all events.
+    /// Begins a new step: of the events so far only their hash is kept.
     pub fn clear(&mut self) {
-        self.events.clear();
+        if !self.events.is_empty() {
+            self.past = part(&(self.past, &self.events));
+            self.events.clear();
+        }
     }
 }

@@ -6,6 +6,7 @@
 use std::fmt;
 
 use parry2d::math::Vector;
+use serde::Serialize;
 
 use crate::event::Event;
 use crate::ids::RobotId;
@@ -67,7 +68,7 @@ struct Before {
 }
 
 /// How deep bodies overlapped in a trial.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
 pub struct Overlaps {
     /// Robot-steps in contact with something.
     pub contacts: u64,
@@ -75,6 +76,17 @@ pub struct Overlaps {
     pub rare: u64,
     /// The deepest, in metres.
     pub deepest_m: f32,
+}
+
+impl fmt::Display for Overlaps {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { contacts, rare, deepest_m } = self;
+        let (deepest_mm, limit_mm) = (1000.0 * deepest_m.max(0.0), 1000.0 * RARE_OVERLAP_M);
+        write!(
+            f,
+            "{contacts} robot-steps in contact, {rare} deeper than {limit_mm:.0} mm, deepest {deepest_mm:.1} mm"
+        )
+    }
 }
 
 /// The account of one trial.
@@ -93,7 +105,7 @@ pub struct Invariants {
 }
 
 impl Invariants {
-    /// The account before the first step.
+    /// The account before the next step, from the world as it is now.
     #[must_use]
     pub fn new(scenario: &Scenario, world: &World) -> Self {
         let fastest = |aerial: bool| {
@@ -105,7 +117,7 @@ impl Invariants {
             velocity: robot.velocity,
             levels: [robot.energy, robot.hp],
             resources: robot.resources,
-            in_contact: false,
+            in_contact: true, // unknown: the first step is judged by the wider limits
         };
         Self {
             dt: scenario.dt_s as f32,
@@ -113,7 +125,7 @@ impl Invariants {
             fastest: [fastest(false), fastest(true)],
             time_s: 0.0,
             before: world.robots.iter().map(before).collect(),
-            rescuees: vec![RescueeState::Waiting; world.rescuees.len()],
+            rescuees: world.rescuees.iter().map(|rescuee| rescuee.state).collect(),
             overlaps: Overlaps::default(),
             by_x: (0..world.robots.len()).collect(),
             overlap: vec![f32::NEG_INFINITY; world.robots.len()],

@@ -18,6 +18,7 @@
 
 pub mod conflict;
 pub mod event;
+pub mod hash;
 pub mod ids;
 pub mod invariant;
 pub mod layout;
@@ -30,5 +31,7 @@ pub mod scenario;
 pub mod seed;
 pub mod sensing;
 pub mod simulation;
+pub mod snapshot;
+mod tally;
 pub mod vitals;
 pub mod world;

@@ -1,14 +1,14 @@
 //! The paper's metrics and what explains them, gathered by listening to events and charges.
 
 use rne_core::Difficulty;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::event::{Event, ReturnCause};
 use crate::mission::task_index;
 use crate::world::World;
 
 /// What one group did in one round.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct RoundRecord {
     /// Number of the round, from 1.
     pub round: u32,
@@ -35,7 +35,7 @@ pub struct RoundRecord {
 }
 
 /// What was done and spent for one task.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct TaskTotals {
     /// Rescuees delivered.
     pub rescued: u32,
@@ -48,7 +48,7 @@ pub struct TaskTotals {
 }
 
 /// The metrics of a trial as it goes on.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub struct Metrics {
     /// Totals of the hard and of the easy task.
     pub tasks: [TaskTotals; 2],

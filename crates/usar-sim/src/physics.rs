@@ -9,6 +9,7 @@ use rapier2d::dynamics::{
 };
 use rapier2d::geometry::{ColliderBuilder, Group, InteractionGroups, InteractionTestMode};
 use rapier2d::pipeline::PhysicsWorld;
+use serde::{Deserialize, Serialize};
 
 use crate::ids::RobotId;
 use crate::scenario::{DebrisFile, Scenario};
@@ -38,7 +39,9 @@ const GRAVITY: f32 = 9.806_65;
 const GROUND_GRIP: f32 = 1.0e3;
 
 /// The rigid bodies of one trial.
+#[derive(Serialize, Deserialize)]
 pub struct Physics {
+    #[serde(with = "as_bytes")]
     world: PhysicsWorld,
     robots: Vec<RigidBodyHandle>,
     /// Bodies of movable debris; fixed debris never moves.
@@ -85,6 +88,16 @@ impl Physics {
         (body.translation(), body.linvel())
     }
 
+    /// Pose, velocity and angular velocity of every body that can move: a part of the hash chain.
+    pub(crate) fn motions(&self) -> Vec<(Pose, Vector, f32)> {
+        let movable = self.robots.iter().chain(self.debris.iter().flatten());
+        let motion = |handle: &RigidBodyHandle| {
+            let body = &self.world.bodies[*handle];
+            (*body.position(), body.linvel(), body.angvel())
+        };
+        movable.map(motion).collect()
+    }
+
     /// Poses of the debris, in order; `None` for fixed debris.
     pub(crate) fn debris_poses(&self) -> impl Iterator<Item = Option<Pose>> + '_ {
         self.debris.iter().map(|handle| handle.map(|handle| *self.world.bodies[handle].position()))
@@ -93,6 +106,20 @@ impl Physics {
     /// Whether the engine disabled a body because its state was no longer finite.
     pub(crate) fn is_broken(&self) -> bool {
         !self.world.quarantine().is_empty()
+    }
+}
+
+/// The engine's world as a run of bytes, for snapshots.
+mod as_bytes {
+    use rapier2d::pipeline::PhysicsWorld;
+    use serde::{Deserialize, Deserializer, Serialize, Serializer, de, ser};
+
+    pub(super) fn serialize<S: Serializer>(world: &PhysicsWorld, to: S) -> Result<S::Ok, S::Error> {
+        frozen_physics::freeze(world).map_err(ser::Error::custom)?.serialize(to)
+    }
+
+    pub(super) fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<PhysicsWorld, D::Error> {
+        frozen_physics::thaw(&Vec::deserialize(from)?).map_err(de::Error::custom)
     }
 }
 

@@ -4,6 +4,8 @@ use rne_core::Role;
 use serde::Serialize;
 
 use crate::conflict::Delay;
+use crate::hash::HashChain;
+use crate::invariant::Overlaps;
 use crate::metrics::{RoundRecord, TaskTotals};
 
 /// How a trial ended.
@@ -106,8 +108,14 @@ pub struct TrialRecord {
     pub errands_done: u32,
     /// Places that robots gave up on, because they knew no way there.
     pub unreachable: u32,
-    /// Hash chain over the trajectories and levels, 32 hexadecimal digits: equal hashes, equal trials.
+    /// How deep bodies overlapped, in a checked trial.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub overlaps: Option<Overlaps>,
+    /// Last digest of the hash chain over the whole state, 32 hexadecimal digits: equal hashes, equal trials.
     pub state_hash: String,
+    /// The hash chain.
+    #[serde(skip)]
+    pub chain: HashChain,
 }
 
 impl TrialRecord {

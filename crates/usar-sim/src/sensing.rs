@@ -1,6 +1,7 @@
 //! What robots notice: debris, radiation and wrecks within their sensing range, rescuees within their observing range. Ranges are discs that
 //! shrink with health; nothing occludes. What one member notices, its whole group knows at once.
 
+use serde::{Deserialize, Serialize};
 use std::ops::Range;
 
 use parry2d::math::Vector;
@@ -15,6 +16,7 @@ use crate::world::{RescueeState, Robot, World};
 pub const SENSING_PERIOD_STEPS: u64 = 5;
 
 /// Where the rescuees of a task are, to pass over those that are out of range.
+#[derive(Serialize, Deserialize)]
 pub struct RescueeBlock {
     task: Difficulty,
     ids: Range<usize>,

@@ -2,30 +2,34 @@
 
 use parry2d::math::Vector;
 use rne_core::GroupingPolicy;
-use xxhash_rust::xxh3::Xxh3;
+use serde::{Deserialize, Serialize};
 
-use crate::conflict::{Delay, DelayCause, Directive, Mover, PriorityKey, Resolver};
+use crate::conflict::{Delay, Mover, PriorityKey, Resolver};
 use crate::event::{Event, EventLog};
-
-use crate::ids::RobotId;
+use crate::hash::{HashChain, PARTS, PERIOD_STEPS, part};
 use crate::invariant::{Invariants, Overlaps};
 use crate::layout::Layout;
 use crate::metrics::Metrics;
 use crate::mission::{Activity, Ending, Mission};
-use crate::planning::{Navigator, PLANNED_BRAKING, Traveller};
-use crate::record::{RobotRecord, Status, TrialRecord};
+use crate::planning::{Navigator, PLANNED_BRAKING};
+use crate::record::{Status, TrialRecord};
 use crate::scenario::{LayoutError, PriorityRule, Scenario};
+use crate::tally::{Tally, delay_cause};
 use crate::vitals::{energy_cost, hp_cost};
-use crate::world::{Condition, RescueeState, Robot, STANDING_MPS, World};
-
-/// The state is hashed once in this many steps, and at the end.
-const HASH_PERIOD_STEPS: u64 = 50;
+use crate::world::{Condition, Robot, STANDING_MPS, World};
 
 /// A running trial.
 pub struct Simulation<'a> {
     scenario: &'a Scenario,
     policy: &'a dyn GroupingPolicy,
     seed: u64,
+    state: State,
+    invariants: Option<Invariants>,
+}
+
+/// All that changes in a trial: what a snapshot holds and what the hash chain covers.
+#[derive(Serialize, Deserialize)]
+pub(crate) struct State {
     step: u64,
     world: World,
     mission: Mission,
@@ -34,27 +38,61 @@ pub struct Simulation<'a> {
     metrics: Metrics,
     log: EventLog,
     tallies: Vec<Tally>,
-    hash: Xxh3,
-    invariants: Option<Invariants>,
+    chain: HashChain,
 }
 
-/// What is added up for each robot.
-#[derive(Debug, Clone, Copy, Default)]
-struct Tally {
-    initial: [f64; 2],
-    spent: [f64; 2],
-    distance_m: f64,
-    waiting_steps: u64,
-    delay: Delay,
-    stall: Stall,
-    longest_stall: (u64, Delay),
+/// The stages of a step, in their order.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Stage {
+    /// What is in range becomes known.
+    Sense,
+    /// Rounds, grouping, claims, goals.
+    Mission,
+    /// Routes.
+    Plan,
+    /// Right of way.
+    Resolve,
+    /// Changes of velocity.
+    Drive,
+    /// The physics.
+    Integrate,
+    /// Energy for moving, HP for radiation.
+    Exposure,
+    /// Loading, delivering, resting.
+    Rescue,
+    /// Metrics, hash chain, invariants.
+    Record,
 }
 
-/// What held a robot up since it last came nearer.
-#[derive(Debug, Clone, Copy, Default)]
-struct Stall {
-    /// Steps for each cause, and whom it waited for last.
-    causes: [(u64, Option<RobotId>); DelayCause::ALL.len()],
+impl Stage {
+    /// All stages, in their order.
+    pub const ALL: [Self; 9] = [
+        Self::Sense,
+        Self::Mission,
+        Self::Plan,
+        Self::Resolve,
+        Self::Drive,
+        Self::Integrate,
+        Self::Exposure,
+        Self::Rescue,
+        Self::Record,
+    ];
+
+    /// The stage as one word, for tables.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Sense => "sense",
+            Self::Mission => "mission",
+            Self::Plan => "plan",
+            Self::Resolve => "resolve",
+            Self::Drive => "drive",
+            Self::Integrate => "integrate",
+            Self::Exposure => "exposure",
+            Self::Rescue => "rescue",
+            Self::Record => "record",
+        }
+    }
 }
 
 impl<'a> Simulation<'a> {
@@ -69,29 +107,35 @@ impl<'a> Simulation<'a> {
     ) -> Result<Self, LayoutError> {
         let layout = Layout::sample(scenario, seed)?;
         let world = World::build(scenario, &layout);
-        let tallies =
-            layout.robots.iter().map(|start| Tally { initial: [start.energy, start.hp], ..Tally::default() });
-        Ok(Self {
-            scenario,
-            policy,
-            seed,
+        let state = State {
             step: 0,
             mission: Mission::new(scenario, &world, seed),
             navigator: Navigator::new(scenario, world.robots.len()),
             resolver: Resolver::new(scenario),
             metrics: Metrics::new(world.robots.len()),
             log: EventLog::default(),
-            tallies: tallies.collect(),
-            hash: Xxh3::new(),
-            invariants: None,
+            tallies: layout.robots.iter().map(|start| Tally::new(start.energy, start.hp)).collect(),
+            chain: HashChain::default(),
             world,
-        })
+        };
+        Ok(Self { scenario, policy, seed, state, invariants: None })
+    }
+
+    /// A trial that goes on from this state.
+    pub(crate) fn from_state(
+        scenario: &'a Scenario,
+        policy: &'a dyn GroupingPolicy,
+        seed: u64,
+        mut state: State,
+    ) -> Self {
+        state.mission.restore(&state.world);
+        Self { scenario, policy, seed, state, invariants: None }
     }
 
     /// The same trial, with every invariant checked at every step: a violation ends it as failed.
     #[must_use]
     pub fn checked(mut self) -> Self {
-        self.invariants = Some(Invariants::new(self.scenario, &self.world));
+        self.invariants = Some(Invariants::new(self.scenario, &self.state.world));
         self
     }
 
@@ -110,7 +154,7 @@ impl<'a> Simulation<'a> {
             if let Err(reason) = self.step() {
                 break Status::Failed(reason);
             }
-            listen(self.time_s(), self.log.events(), &self.world);
+            listen(self.time_s(), self.events(), self.world());
         };
         self.into_record(status)
     }
@@ -118,12 +162,12 @@ impl<'a> Simulation<'a> {
     /// How the trial ended, once it is over.
     #[must_use]
     pub fn ending(&self) -> Option<Status> {
-        if let Some(ending) = self.mission.ending {
+        if let Some(ending) = self.state.mission.ending {
             Some(match ending {
                 Ending::NoCarrierLeft => Status::NoCarrierLeft,
                 Ending::ErrandsOver => Status::ErrandsOver,
             })
-        } else if self.step >= self.scenario.steps() {
+        } else if self.state.step >= self.scenario.steps() {
             Some(Status::Completed)
         } else {
             None
@@ -137,77 +181,189 @@ impl<'a> Simulation<'a> {
         self.into_record(status)
     }
 
+    /// The scenario.
+    #[must_use]
+    pub fn scenario(&self) -> &'a Scenario {
+        self.scenario
+    }
+
+    /// The grouping policy.
+    #[must_use]
+    pub fn policy(&self) -> &'a dyn GroupingPolicy {
+        self.policy
+    }
+
+    /// Seed of the trial.
+    #[must_use]
+    pub fn seed(&self) -> u64 {
+        self.seed
+    }
+
+    /// Steps done.
+    #[must_use]
+    pub fn steps(&self) -> u64 {
+        self.state.step
+    }
+
     /// Simulated time, in seconds.
     #[must_use]
     pub fn time_s(&self) -> f64 {
-        self.step as f64 * self.scenario.dt_s
+        self.state.step as f64 * self.scenario.dt_s
     }
 
     /// The world as it is now.
     #[must_use]
     pub fn world(&self) -> &World {
-        &self.world
+        &self.state.world
     }
 
     /// The world, to be changed: for tests that seed faults. The next step goes on from what is there.
     pub fn world_mut(&mut self) -> &mut World {
-        &mut self.world
+        &mut self.state.world
     }
 
     /// The mission as it is now.
     #[must_use]
     pub fn mission(&self) -> &Mission {
-        &self.mission
+        &self.state.mission
     }
 
     /// The journeys of the robots as they are now.
     #[must_use]
     pub fn navigator(&self) -> &Navigator {
-        &self.navigator
+        &self.state.navigator
     }
 
     /// Why each robot does not move on, as far as it does not; by id.
     pub fn delays(&self) -> impl Iterator<Item = Delay> + '_ {
-        self.tallies.iter().map(|tally| tally.delay)
+        self.state.tallies.iter().map(Tally::delay)
     }
 
     /// The events of the last step.
     #[must_use]
     pub fn events(&self) -> &[Event] {
-        self.log.events()
+        self.state.log.events()
+    }
+
+    pub(crate) fn state(&self) -> &State {
+        &self.state
+    }
+
+    #[cfg(test)]
+    pub(crate) fn state_mut(&mut self) -> &mut State {
+        &mut self.state
     }
 
     /// One step: all robots decide from the same snapshot, then all act.
     ///
     /// # Errors
-    /// The policy fails, or the physics breaks down.
+    /// The policy fails, the physics breaks down, or, in a checked trial, an invariant is violated.
     pub fn step(&mut self) -> Result<(), String> {
-        self.log.clear();
-        self.mission.sense(&self.world, self.step, &mut self.log);
-        self.mission.decide(&mut self.world, &mut self.navigator, self.policy, self.step, &mut self.log)?;
-        self.metrics.listen(self.log.events(), &self.world, self.time_s());
-        let heard = self.log.events().len();
-        self.plan();
-        self.resolve_and_drive();
-        self.world.integrate();
-        self.step += 1;
-        self.expose();
-        self.mission.settle(&mut self.world, &self.navigator, self.step, &mut self.log);
-        self.metrics.listen(&self.log.events()[heard..], &self.world, self.time_s());
-        if self.step.is_multiple_of(HASH_PERIOD_STEPS) {
-            self.hash_state();
+        self.step_watched(|_| {})
+    }
+
+    /// A step that reports the end of each of its stages, to measure them.
+    ///
+    /// # Errors
+    /// Those of [`Simulation::step`].
+    pub fn step_watched(&mut self, mut done: impl FnMut(Stage)) -> Result<(), String> {
+        let state = &mut self.state;
+        state.log.clear();
+        state.mission.sense(&state.world, state.step, &mut state.log);
+        done(Stage::Sense);
+        state.mission.decide(
+            &mut state.world,
+            &mut state.navigator,
+            self.policy,
+            state.step,
+            &mut state.log,
+        )?;
+        done(Stage::Mission);
+        let decided = state.listen(0, self.scenario.dt_s);
+        state.plan();
+        done(Stage::Plan);
+        state.resolve(self.scenario);
+        done(Stage::Resolve);
+        state.drive(self.scenario);
+        done(Stage::Drive);
+        state.world.integrate();
+        state.step += 1;
+        done(Stage::Integrate);
+        state.expose(self.scenario);
+        done(Stage::Exposure);
+        state.mission.settle(&mut state.world, &state.navigator, state.step, &mut state.log);
+        done(Stage::Rescue);
+        state.listen(decided, self.scenario.dt_s);
+        if state.step.is_multiple_of(PERIOD_STEPS) {
+            state.add_link();
         }
+        self.check()?;
+        done(Stage::Record);
+        Ok(())
+    }
+
+    fn check(&mut self) -> Result<(), String> {
         let time_s = self.time_s();
+        let State { log, world, .. } = &self.state;
         if let Some(invariants) = &mut self.invariants {
-            invariants.listen(time_s, self.log.events(), &self.world).map_err(|broken| broken.to_string())?;
+            invariants.listen(time_s, log.events(), world).map_err(|broken| broken.to_string())?;
         }
-        if self.world.physics.is_broken() {
-            return Err(format!(
-                "the physics broke down at {:.2} s: a body's state is not finite",
-                self.time_s()
-            ));
+        if world.physics.is_broken() {
+            return Err(format!("the physics broke down at {time_s:.2} s: a body's state is not finite"));
         }
         Ok(())
+    }
+
+    fn into_record(mut self, status: Status) -> TrialRecord {
+        self.state.add_link();
+        let time_s = self.time_s();
+        let overlaps = self.overlaps();
+        let State { world, metrics, tallies, chain, .. } = self.state;
+        let robots = world.robots.iter().zip(&tallies);
+        TrialRecord {
+            policy: self.policy.name().to_owned(),
+            seed: self.seed,
+            status,
+            time_s,
+            hard: metrics.tasks[0],
+            easy: metrics.tasks[1],
+            ungrouped_energy: metrics.ungrouped[0],
+            ungrouped_hp: metrics.ungrouped[1],
+            completed_rounds: metrics.completed_rounds,
+            robots: robots.map(|(robot, tally)| tally.record(robot, self.scenario.dt_s)).collect(),
+            turned_back: metrics.turned_back,
+            conflicts: metrics.conflicts,
+            deadlocks: metrics.deadlocks,
+            rotations: metrics.rotations,
+            retreats: metrics.retreats,
+            back_offs: metrics.back_offs,
+            errands_done: metrics.errands_done,
+            unreachable: metrics.unreachable,
+            overlaps,
+            state_hash: chain.digest(),
+            chain,
+            rounds: metrics.rounds,
+        }
+    }
+}
+
+#[cfg(test)]
+impl State {
+    pub(crate) fn step(&self) -> u64 {
+        self.step
+    }
+
+    pub(crate) fn chain_mut(&mut self) -> &mut HashChain {
+        &mut self.chain
+    }
+}
+
+impl State {
+    /// Lets the metrics hear the events from the `from`-th of this step on; returns how many there are.
+    fn listen(&mut self, from: usize, dt_s: f64) -> usize {
+        let events = self.log.events();
+        self.metrics.listen(&events[from..], &self.world, self.step as f64 * dt_s);
+        events.len()
     }
 
     fn plan(&mut self) {
@@ -216,35 +372,37 @@ impl<'a> Simulation<'a> {
         self.navigator.plan(world, |robot| mission.knowledge_of(robot), speed_of, self.step);
     }
 
-    /// Resolves conflicts, and lets each drive come as near to what it is told as its force allows.
-    fn resolve_and_drive(&mut self) {
-        let (world, mission, navigator) = (&self.world, &self.mission, &self.navigator);
-        let rule = self.scenario.conflicts.priority;
+    /// Settles who goes and who waits, and takes note of why robots stop.
+    fn resolve(&mut self, scenario: &Scenario) {
+        let rule = scenario.conflicts.priority;
+        let seen_by = (&self.world, &self.mission, &self.navigator);
         let mut movers: Vec<Mover> =
-            world.robots.iter().map(|robot| mover(robot, rule, (world, mission, navigator))).collect();
+            self.world.robots.iter().map(|robot| mover(robot, rule, seen_by)).collect();
         let directives = self.resolver.resolve(&mut movers, &mut self.log);
         for ((robot, directive), tally) in self.world.robots.iter().zip(directives).zip(&mut self.tallies) {
-            let greatest_change = (robot.spec.acceleration_mps2 * self.scenario.dt_s) as f32;
-            let change = (directive.velocity() - robot.velocity).clamp_length_max(greatest_change);
-            self.world.physics.drive(robot.id, change);
-
             let traveller = self.navigator.traveller(robot.id);
             let activity = self.mission.agents[robot.id.index()].activity;
-            tally.note_delay(Delay {
-                cause: delay_cause(robot, activity, traveller, *directive),
-                waits_for: directive.waits_for(),
-            });
-            tally.note_stall(traveller.stalled_steps());
+            let cause = delay_cause(robot, activity, traveller, *directive);
+            tally.note_delay(Delay { cause, waits_for: directive.waits_for() }, traveller.stalled_steps());
+        }
+    }
+
+    /// Lets each drive come as near to what it is told as its force allows.
+    fn drive(&mut self, scenario: &Scenario) {
+        for (robot, directive) in self.world.robots.iter().zip(self.resolver.directives()) {
+            let greatest_change = (robot.spec.acceleration_mps2 * scenario.dt_s) as f32;
+            let change = (directive.velocity() - robot.velocity).clamp_length_max(greatest_change);
+            self.world.physics.drive(robot.id, change);
         }
     }
 
     /// Energy for moving, HP for radiation; robots that have none left stay where they are.
-    fn expose(&mut self) {
-        let (costs, dt) = (self.scenario.costs, self.scenario.dt_s);
+    fn expose(&mut self, scenario: &Scenario) {
+        let (costs, dt) = (&scenario.costs, scenario.dt_s);
         for (robot, tally) in self.world.robots.iter_mut().zip(&mut self.tallies) {
             let speed = robot.velocity.length();
             let metres = f64::from(speed) * dt;
-            tally.distance_m += metres;
+            tally.note_way(metres);
             let resting = matches!(self.mission.agents[robot.id.index()].activity, Activity::Resting(_));
             if !robot.is_able() || resting {
                 continue;
@@ -254,7 +412,7 @@ impl<'a> Simulation<'a> {
             let hp = hp_cost(&costs.hp, zones, metres, dt).min(robot.hp);
             robot.energy -= energy;
             robot.hp -= hp;
-            tally.spent = [tally.spent[0] + energy, tally.spent[1] + hp];
+            tally.note_costs(energy, hp);
             self.metrics.charge(robot.id.index(), energy, hp);
             if robot.energy <= 0.0 {
                 robot.condition = Condition::Stranded;
@@ -266,95 +424,29 @@ impl<'a> Simulation<'a> {
         }
     }
 
-    fn hash_state(&mut self) {
-        for robot in &self.world.robots {
-            let places = [robot.position, robot.velocity].into_iter().flat_map(|v| [v.x, v.y]);
-            places.for_each(|value| self.hash.update(&value.to_le_bytes()));
-            [robot.energy, robot.hp].iter().for_each(|level| self.hash.update(&level.to_le_bytes()));
-            self.hash.update(&(robot.load.len() as u32).to_le_bytes());
-            self.hash.update(&robot.resources.to_le_bytes());
-            self.hash.update(&[robot.condition as u8]);
-        }
-        for piece in &self.world.debris {
-            let pose = &piece.outline.pose;
-            let values = [pose.translation.x, pose.translation.y, pose.rotation.cos(), pose.rotation.sin()];
-            values.iter().for_each(|value| self.hash.update(&value.to_le_bytes()));
-        }
-        for rescuee in &self.world.rescuees {
-            let state = match rescuee.state {
-                RescueeState::Waiting => u32::MAX,
-                RescueeState::Rescued => u32::MAX - 1,
-                RescueeState::OnBoard(robot) => robot.0,
-            };
-            self.hash.update(&state.to_le_bytes());
-        }
-    }
-
-    fn into_record(mut self, status: Status) -> TrialRecord {
-        self.hash_state();
-        let seconds = |steps: u64| steps as f64 * self.scenario.dt_s;
-        let robots = self.world.robots.iter().zip(&self.tallies).map(|(robot, tally)| RobotRecord {
-            robot: robot.id.0,
-            role: robot.role,
-            initial_energy: tally.initial[0],
-            initial_hp: tally.initial[1],
-            final_energy: robot.energy,
-            final_hp: robot.hp,
-            energy_spent: tally.spent[0],
-            hp_lost: tally.spent[1],
-            distance_m: tally.distance_m,
-            waiting_s: seconds(tally.waiting_steps),
-            longest_stall_s: seconds(tally.longest_stall.0),
-            stall: tally.longest_stall.1,
-            stranded: robot.condition == Condition::Stranded,
-            disabled: robot.condition == Condition::Disabled,
-        });
-        TrialRecord {
-            policy: self.policy.name().to_owned(),
-            seed: self.seed,
-            status,
-            time_s: self.time_s(),
-            hard: self.metrics.tasks[0],
-            easy: self.metrics.tasks[1],
-            ungrouped_energy: self.metrics.ungrouped[0],
-            ungrouped_hp: self.metrics.ungrouped[1],
-            completed_rounds: self.metrics.completed_rounds,
-            robots: robots.collect(),
-            turned_back: self.metrics.turned_back,
-            conflicts: self.metrics.conflicts,
-            deadlocks: self.metrics.deadlocks,
-            rotations: self.metrics.rotations,
-            retreats: self.metrics.retreats,
-            back_offs: self.metrics.back_offs,
-            errands_done: self.metrics.errands_done,
-            unreachable: self.metrics.unreachable,
-            state_hash: format!("{:032x}", self.hash.digest128()),
-            rounds: self.metrics.rounds,
-        }
-    }
-}
-
-impl Tally {
-    fn note_delay(&mut self, delay: Delay) {
-        self.waiting_steps += u64::from(delay.cause.is_waiting());
-        self.delay = delay;
-    }
-
-    /// `steps` since the robot last came nearer. What took the most of them is the cause.
-    fn note_stall(&mut self, steps: u64) {
-        if steps == 0 {
-            self.stall = Stall::default();
+    /// Adds a link to the hash chain.
+    fn add_link(&mut self) {
+        if self.chain.links().last().is_some_and(|link| link.step == self.step) {
             return;
         }
-        let (count, waits_for) = &mut self.stall.causes[self.delay.cause as usize];
-        *count += 1;
-        *waits_for = self.delay.waits_for.or(*waits_for);
-        if steps > self.longest_stall.0 {
-            let causes = DelayCause::ALL.into_iter().zip(self.stall.causes);
-            let most = causes.rev().max_by_key(|(_, (count, _))| *count);
-            let delay = most.map(|(cause, (_, waits_for))| Delay { cause, waits_for });
-            self.longest_stall = (steps, delay.unwrap_or_default());
-        }
+        let parts = self.parts();
+        self.chain.add(self.step, parts);
+    }
+
+    /// The hash of each part of the state, in the order of [`PARTS`].
+    pub(crate) fn parts(&self) -> [u128; PARTS.len()] {
+        [
+            part(&self.world.physics.motions()),
+            part(&self.world.robots),
+            part(&(&self.world.debris, &self.world.zones)),
+            part(&self.world.rescuees),
+            part(self.mission.beliefs()),
+            part(&self.mission.course()),
+            part(&self.navigator),
+            part(&self.resolver),
+            part(&(&self.metrics, &self.tallies)),
+            part(&self.log),
+        ]
     }
 }
 
@@ -385,27 +477,5 @@ fn mover<'s>(
         priority: PriorityKey::new(rule, robot.id, agent.task, [robot.energy, robot.hp]),
         obstacles: if robot.is_aerial() { &[] } else { mission.knowledge_of(robot.id).obstacles() },
         can_make_room: robot.is_able() && !is_busy,
-    }
-}
-
-/// Why a robot does not move on, as far as it does not.
-fn delay_cause(robot: &Robot, activity: Activity, traveller: &Traveller, directive: Directive) -> DelayCause {
-    match robot.condition {
-        Condition::Stranded => return DelayCause::Stranded,
-        Condition::Disabled => return DelayCause::Disabled,
-        Condition::Able => {}
-    }
-    match directive {
-        Directive::Yield { .. } => DelayCause::RightOfWay,
-        Directive::Blocked { .. } => DelayCause::Blocked,
-        Directive::Retreat { .. } => DelayCause::MakingRoom,
-        Directive::BackOff(_) => DelayCause::BackingOff,
-        Directive::Proceed(_) => DelayCause::UnderWay,
-        Directive::Stand => match activity {
-            Activity::Loading(..) => DelayCause::Loading,
-            Activity::Resting(_) => DelayCause::Resting,
-            _ if traveller.leads_nowhere() => DelayCause::NoRoute,
-            _ => DelayCause::NothingToDo,
-        },
     }
 }

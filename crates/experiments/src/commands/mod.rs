@@ -3,11 +3,14 @@
 pub(crate) mod check;
 pub(crate) mod group;
 pub(crate) mod run;
+mod snapshot;
 pub(crate) mod sweep;
 pub(crate) mod trust;
+pub(crate) mod verify;
 
 use std::path::Path;
 
+use indicatif::{ProgressBar, ProgressStyle};
 use usar_sim::scenario::Scenario;
 
 use crate::failure::Failure;
@@ -28,4 +31,24 @@ pub(crate) fn numbers(flag: &str, text: &str) -> Result<Vec<f64>, Failure> {
         })
     };
     text.split(',').enumerate().map(number).collect()
+}
+
+/// One thread per core.
+pub(crate) fn default_jobs() -> usize {
+    std::thread::available_parallelism().map_or(1, usize::from)
+}
+
+/// Progress on stderr: a bar, or one line where that is not a terminal.
+pub(crate) fn progress_bar(trials: usize, jobs: usize, quiet: bool) -> ProgressBar {
+    if quiet {
+        return ProgressBar::hidden();
+    }
+    let bar = ProgressBar::new(trials as u64);
+    let style = "{bar:32} {pos}/{len} trials, {elapsed} gone, {eta} left";
+    bar.set_style(ProgressStyle::with_template(style).unwrap_or_else(|_| ProgressStyle::default_bar()));
+    if bar.is_hidden() {
+        eprintln!("{trials} trials on {jobs} threads");
+    }
+    bar.enable_steady_tick(std::time::Duration::from_millis(200));
+    bar
 }

@@ -9,6 +9,7 @@ use serde::Serialize;
 use usar_sim::record::{Status, TrialRecord};
 use usar_sim::simulation::Simulation;
 
+use super::snapshot::{Snapshot, save};
 use super::{SCHEMA_VERSION, load};
 use crate::failure::Failure;
 use crate::table::{ratio, rounds_table};
@@ -19,7 +20,9 @@ use crate::table::{ratio, rounds_table};
 Examples:
   usar run scenarios/paper.ron
   usar run scenarios/paper.ron --policy DIS --seed 7 --json
-  usar run scenarios/minimal/head_on.ron --check")]
+  usar run scenarios/minimal/head_on.ron --check
+  usar run scenarios/paper.ron --seed 3 --save half.snapshot --save-at 300    the trial, and a snapshot of it on the way
+  usar run scenarios/paper.ron --from half.snapshot                           the rest of that trial, with the same result")]
 pub(crate) struct Arguments {
     /// Scenario file (RON)
     file: PathBuf,
@@ -29,6 +32,15 @@ pub(crate) struct Arguments {
     /// Seed of the trial [default: the scenario's first]
     #[arg(long)]
     seed: Option<u64>,
+    /// Write a snapshot of the whole trial to this file, at --save-at; the file must not exist yet
+    #[arg(long, value_name = "FILE", requires = "save_at")]
+    save: Option<PathBuf>,
+    /// When to write the snapshot, in seconds of simulated time
+    #[arg(long, value_name = "SECONDS", requires = "save")]
+    save_at: Option<f64>,
+    /// Go on from a snapshot of a trial of this scenario
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["policy", "seed"])]
+    from: Option<PathBuf>,
     /// Check every invariant at every step; a violation ends the trial as failed
     #[arg(long)]
     check: bool,
@@ -49,12 +61,22 @@ struct Output<'a> {
 impl Arguments {
     pub(crate) fn execute(&self, out: &mut dyn Write) -> Result<(), Failure> {
         let (scenario, _) = load(&self.file)?;
-        let name = self.policy.as_ref().unwrap_or(&scenario.sweep.policies[0]);
+        let snapshot = self.from.as_deref().map(Snapshot::read).transpose()?;
+        let name = match &snapshot {
+            Some(snapshot) => &snapshot.identity.policy,
+            None => self.policy.as_ref().unwrap_or(&scenario.sweep.policies[0]),
+        };
         let policy = policy_named(name, &scenario.rne).map_err(Failure::input)?;
-        let seed = self.seed.unwrap_or(scenario.sweep.first_seed);
-        let simulation = Simulation::new(&scenario, &*policy, seed)
-            .map_err(|error| Failure::input(format!("{}: {error}", self.file.display())))?;
-        let simulation = if self.check { simulation.checked() } else { simulation };
+        let simulation = match &snapshot {
+            Some(snapshot) => snapshot.restore(&scenario, &*policy)?,
+            None => Simulation::new(&scenario, &*policy, self.seed.unwrap_or(scenario.sweep.first_seed))
+                .map_err(|error| Failure::input(format!("{}: {error}", self.file.display())))?,
+        };
+        let seed = simulation.seed();
+        let mut simulation = if self.check { simulation.checked() } else { simulation };
+        if let (Some(path), Some(seconds)) = (&self.save, self.save_at) {
+            save(&mut simulation, path, seconds)?;
+        }
         let record = simulation.run(|_, _, _| {});
         if let Status::Failed(reason) = &record.status {
             return Err(Failure::run(format!("trial of {name} with seed {seed} failed: {reason}")));
@@ -113,6 +135,9 @@ fn print(out: &mut dyn Write, scenario: &str, record: &TrialRecord) -> Result<()
     if record.errands_done + record.unreachable > 0 {
         let (done, unreachable) = (record.errands_done, record.unreachable);
         writeln!(out, "places       {done} errands done, {unreachable} places given up as unreachable")?;
+    }
+    if let Some(overlaps) = record.overlaps {
+        writeln!(out, "overlaps     {overlaps}")?;
     }
     writeln!(out, "state hash   {}", record.state_hash)?;
     Ok(())

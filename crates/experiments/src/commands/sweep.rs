@@ -4,13 +4,13 @@ use std::io::Write;
 use std::path::PathBuf;
 
 use clap::Args;
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::ProgressBar;
 use rne_core::{GroupingPolicy, policy_named};
 use usar_sim::layout::Layout;
 use usar_sim::scenario::{Problem, SampledCounts, Scenario};
 use usar_sim::simulation::Simulation;
 
-use super::load;
+use super::{default_jobs, load, progress_bar};
 use crate::failure::Failure;
 use crate::stats::Summary;
 use crate::sweep::folder::Draft;
@@ -20,8 +20,8 @@ use crate::table::policy_table;
 /// Compare policies over paired trials: the same initial levels for every policy
 #[derive(Debug, Args)]
 #[command(after_help = "\
-Results go to a new folder: trials.csv (a row per trial), rounds.csv, robots.csv, manifest.json, and the scenario as given
-(experiment.ron) and as run (resolved.ron). They do not depend on --jobs.
+Results go to a new folder: trials.csv (a row per trial), rounds.csv, robots.csv, hashes.csv (for `usar verify`), manifest.json, and the
+scenario as given (experiment.ron) and as run (resolved.ron). They do not depend on --jobs.
 
 Examples:
   usar sweep scenarios/paper.ron
@@ -67,7 +67,7 @@ impl Arguments {
 
         let keys = keys(&scenario);
         let jobs = self.jobs.map_or_else(default_jobs, |jobs| jobs as usize);
-        let progress = self.progress(keys.len(), jobs);
+        let progress = progress_bar(keys.len(), jobs, self.quiet);
         let outcomes = run_all(
             &keys,
             jobs,
@@ -131,24 +131,6 @@ impl Arguments {
         }
         Ok(())
     }
-
-    fn progress(&self, trials: usize, jobs: usize) -> ProgressBar {
-        if self.quiet {
-            return ProgressBar::hidden();
-        }
-        let bar = ProgressBar::new(trials as u64);
-        let style = "{bar:32} {pos}/{len} trials, {elapsed} gone, {eta} left";
-        bar.set_style(ProgressStyle::with_template(style).unwrap_or_else(|_| ProgressStyle::default_bar()));
-        if bar.is_hidden() {
-            eprintln!("{trials} trials on {jobs} threads"); // not a terminal: one line instead of a bar
-        }
-        bar.enable_steady_tick(std::time::Duration::from_millis(200));
-        bar
-    }
-}
-
-fn default_jobs() -> usize {
-    std::thread::available_parallelism().map_or(1, usize::from)
 }
 
 fn report(progress: &ProgressBar, outcome: &Outcome) {

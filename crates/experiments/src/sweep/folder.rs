@@ -8,6 +8,7 @@ use serde::Serialize;
 use usar_sim::scenario::Scenario;
 
 use super::Outcome;
+use super::links::{self, LinkRow};
 use super::rows::{RobotRow, RoundRow, TrialRow};
 use crate::failure::Failure;
 use crate::provenance::Manifest;
@@ -122,6 +123,7 @@ fn files(given: &str, scenario: &Scenario, outcomes: &[Outcome]) -> Result<Vec<F
         ("trials.csv", table(outcomes.iter().map(TrialRow::new))?),
         ("rounds.csv", table(outcomes.iter().flat_map(RoundRow::of))?),
         ("robots.csv", table(outcomes.iter().flat_map(RobotRow::of))?),
+        (links::FILE, table(outcomes.iter().flat_map(LinkRow::of))?),
     ];
     let manifest = serde_json::to_string_pretty(&Manifest::new(scenario, &files)).map_err(Failure::run)?;
     files.push(("manifest.json", (manifest + "\n").into_bytes()));

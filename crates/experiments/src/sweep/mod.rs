@@ -1,6 +1,7 @@
 //! Many trials: which ones, on which threads, and what became of them.
 
 pub mod folder;
+pub mod links;
 mod rows;
 
 use std::panic::{AssertUnwindSafe, catch_unwind};

@@ -87,7 +87,7 @@ pub struct Member {
 }
 
 /// Centres of the two task areas, in metres.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct TaskPositions {
     /// Centre of the easy task's area.
     pub easy: [f64; 2],

@@ -3,6 +3,7 @@
 //! Two ways to come to nothing are told apart: a *deadlock*, in which nobody moves, and a *livelock*, in which the head moves to and
 //! fro but comes no nearer to its goal. Both give the next robot its turn.
 
+use serde::{Deserialize, Serialize};
 use std::cmp::Reverse;
 
 use super::PriorityKey;
@@ -24,7 +25,7 @@ pub(super) struct Observation {
 }
 
 /// When a set is given up on, in steps.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
 pub(super) struct Patience {
     /// Without motion.
     pub(super) deadlock: u32,
@@ -35,7 +36,7 @@ pub(super) struct Patience {
 }
 
 /// A conflict set that persists from step to step.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub(super) struct ConflictSet {
     /// Members in order of precedence; the first is the head.
     pub(super) order: Vec<usize>,

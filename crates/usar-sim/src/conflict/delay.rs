@@ -1,11 +1,11 @@
 //! Why robots stand still, and whom they wait for.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::ids::RobotId;
 
 /// Why a robot does not move on.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum DelayCause {
     /// Nothing holds it up: it moves.
     #[default]
@@ -74,7 +74,7 @@ impl DelayCause {
 }
 
 /// Why a robot does not move on, and whom it waits for.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct Delay {
     /// Why.
     pub cause: DelayCause,

@@ -18,6 +18,7 @@ mod room;
 mod testing;
 
 use parry2d::math::Vector;
+use serde::{Deserialize, Serialize};
 
 use crate::event::{Event, EventLog};
 use crate::ids::RobotId;
@@ -74,7 +75,7 @@ impl Mover<'_> {
 }
 
 /// What a robot is to do in this step.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub enum Directive {
     /// Move with this velocity.
     Proceed(Vector),
@@ -148,14 +149,18 @@ const SQUEEZE_MARGIN_M: f32 = 0.03;
 const SQUEEZE_SPEED: f32 = 0.4;
 
 /// The conflict resolver of one trial.
+#[derive(Serialize, Deserialize)]
 pub struct Resolver {
     rules: ConflictRules,
     patience: Patience,
     ask_again: u32,
     sets: Vec<ConflictSet>,
     retreats: Retreats,
+    /// Found anew in every step.
+    #[serde(skip)]
     neighbours: Neighbours,
-    /// Pairs in conflict, the lower number first, in order.
+    /// Pairs in conflict, the lower number first, in order; found anew in every step.
+    #[serde(skip)]
     conflicts: Vec<(usize, usize)>,
     directives: Vec<Directive>,
     /// For each robot, the direction that it was told last; zero where it stood.
@@ -218,6 +223,12 @@ impl Resolver {
             *heading = directive.velocity().normalize_or_zero();
         }
         self.ask_for_room(movers, log);
+        &self.directives
+    }
+
+    /// The directives of the last step, by robot.
+    #[must_use]
+    pub fn directives(&self) -> &[Directive] {
         &self.directives
     }
 

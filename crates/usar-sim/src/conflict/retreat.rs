@@ -4,6 +4,7 @@
 //! retreats to the nearest place that leaves room. Whoever stands in *its* way makes room in turn: a chain, whose depth is counted.
 
 use parry2d::math::Vector;
+use serde::{Deserialize, Serialize};
 
 use super::Mover;
 use super::room::{Ask, distance_to_way, ways};
@@ -34,7 +35,7 @@ const PLATOON_M: f32 = 5.0;
 const PLATOON_COS: f32 = 0.5;
 
 /// How long robots try, in steps.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
 pub(super) struct Limits {
     /// On the way to the place, without coming nearer to it.
     pub(super) underway: u32,
@@ -45,7 +46,7 @@ pub(super) struct Limits {
 }
 
 /// One robot that makes room.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub(super) struct Retreat {
     /// The robot for which it makes room.
     pub(super) head: usize,
@@ -62,6 +63,7 @@ pub(super) struct Retreat {
 }
 
 /// All retreats, by robot.
+#[derive(Serialize, Deserialize)]
 pub(super) struct Retreats {
     of: Vec<Option<Retreat>>,
     /// Steps for which a robot is not asked again.

@@ -2,11 +2,12 @@
 
 use parry2d::math::Vector;
 use rne_core::Difficulty;
+use serde::{Deserialize, Serialize};
 
 use crate::ids::RescueeId;
 
 /// What a robot is doing.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Activity {
     /// At its place at home, waiting for the next round.
     Home,
@@ -46,7 +47,7 @@ impl Activity {
 }
 
 /// A robot's part in the mission.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Agent {
     /// What it is doing.
     pub activity: Activity,

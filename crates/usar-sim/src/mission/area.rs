@@ -2,6 +2,7 @@
 
 use parry2d::math::Vector;
 use rne_core::Difficulty;
+use serde::{Deserialize, Serialize};
 
 use crate::scenario::Scenario;
 
@@ -12,7 +13,7 @@ const LEAST_LANE_SPACING_M: f32 = 2.0;
 const MUSTER_GAP_M: f32 = 0.8;
 
 /// A task's area.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
 pub struct TaskArea {
     /// Lower left corner of the block of rescuees.
     block_min: Vector,

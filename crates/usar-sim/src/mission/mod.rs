@@ -10,6 +10,7 @@ mod work;
 
 use parry2d::math::Vector;
 use rne_core::{Difficulty, GroupingPolicy, TaskPositions};
+use serde::{Deserialize, Serialize};
 
 pub use agent::{Activity, Agent};
 pub use area::TaskArea;
@@ -19,7 +20,6 @@ use crate::event::{Event, EventLog};
 use crate::ids::RobotId;
 use crate::planning::{Goal, Knowledge, Navigator};
 use crate::scenario::{Costs, MissionRules, Scenario};
-
 use crate::sensing::{RescueeBlock, SENSING_PERIOD_STEPS, look_around};
 use crate::world::{Robot, World};
 
@@ -30,7 +30,7 @@ const SLOT_M: f32 = 0.15;
 const SWEEP_M: f32 = 0.8;
 
 /// The group of one task in the current round.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub struct Group {
     /// Its members, by id.
     pub members: Vec<RobotId>,
@@ -39,6 +39,7 @@ pub struct Group {
 }
 
 /// The state of the mission of one trial.
+#[derive(Serialize, Deserialize)]
 pub struct Mission {
     rules: MissionRules,
     costs: Costs,
@@ -62,7 +63,7 @@ pub struct Mission {
 }
 
 /// Why a mission is over before its time.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Ending {
     /// No robot that can carry is left.
     NoCarrierLeft,
@@ -122,6 +123,24 @@ impl Mission {
     #[must_use]
     pub fn knowledge_of(&self, robot: RobotId) -> &Knowledge {
         &self.knowledge[self.side_of(robot)]
+    }
+
+    /// What the groups and the team at home know: a part of the hash chain.
+    pub(crate) fn beliefs(&self) -> &impl Serialize {
+        &self.knowledge
+    }
+
+    /// All but the beliefs: a part of the hash chain.
+    pub(crate) fn course(&self) -> impl Serialize + '_ {
+        let Self { rules, costs, dt, trial_seed, tasks, areas, blocks, has_errands, .. } = self;
+        let Self { agents, groups, unreachable, round, ending, .. } = self;
+        let given = (rules, costs, dt, trial_seed, tasks, areas, blocks, has_errands);
+        (given, agents, groups, unreachable, round, ending)
+    }
+
+    /// Makes anew what a snapshot leaves out because it follows from the rest.
+    pub(crate) fn restore(&mut self, world: &World) {
+        self.knowledge.iter_mut().for_each(|knowledge| knowledge.restore(world));
     }
 
     fn side_of(&self, robot: RobotId) -> usize {

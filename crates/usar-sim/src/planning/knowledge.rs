@@ -1,12 +1,13 @@
 //! What a group knows of the world: shared by its members at once, pooled by the whole team at home.
 
 use parry2d::math::Vector;
+use serde::{Deserialize, Serialize};
 
 use super::obstacles::{KnownObstacle, ObstacleKey};
-use crate::world::{RadiationZone, World};
+use crate::world::{RadiationZone, Robot, World};
 
 /// A place that was found to be free again: a piece of debris was pushed away from there.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
 pub struct Opening {
     /// The revision of the knowledge in which it is known.
     pub revision: u32,
@@ -26,7 +27,7 @@ impl Opening {
 }
 
 /// Knowledge of a group, or of the team at home.
-#[derive(Clone)]
+#[derive(Clone, Serialize, Deserialize)]
 pub struct Knowledge {
     /// For each piece of debris, the number of its sightings that are known; 0 is unknown.
     pub debris: Vec<u32>,
@@ -38,8 +39,12 @@ pub struct Knowledge {
     pub wrecks: Vec<bool>,
     /// Counts the changes that concern routes.
     pub revision: u32,
+    /// Follows from `debris` and `wrecks`.
+    #[serde(skip)]
     obstacles: Vec<KnownObstacle>,
     openings: Vec<Opening>,
+    /// Follows from `zones`.
+    #[serde(skip)]
     known_zones: Vec<(u32, RadiationZone)>,
     radius: f32,
     clearance: f32,
@@ -88,9 +93,7 @@ impl Knowledge {
     fn learn_sighting(&mut self, world: &World, number: usize, sighting: u32) {
         if sighting > self.debris[number] {
             self.debris[number] = sighting;
-            let outline = &world.debris[number].sightings[sighting as usize - 1];
-            let key = ObstacleKey::Debris(number as u32, sighting);
-            let obstacle = KnownObstacle::new(key, outline, self.radius, self.clearance);
+            let obstacle = self.debris_obstacle(world, number);
             let is_it =
                 |o: &KnownObstacle| matches!(o.key, ObstacleKey::Debris(n, _) if n as usize == number);
             if let Some(at) = self.obstacles.iter().position(is_it) {
@@ -115,9 +118,7 @@ impl Knowledge {
         let robot = &world.robots[number];
         let Some(at) = robot.wreck_at else { return };
         if !std::mem::replace(&mut self.wrecks[number], true) && !robot.is_aerial() {
-            let obstacle =
-                KnownObstacle::wreck(number as u32, at, robot.radius(), self.radius, self.clearance);
-            self.insert(obstacle);
+            self.insert(self.wreck_obstacle(robot, at));
         }
     }
 
@@ -132,6 +133,29 @@ impl Knowledge {
         for (own, other) in self.rescuees.iter_mut().zip(&other.rescuees) {
             *own |= other;
         }
+    }
+
+    /// A piece of debris as it is known.
+    fn debris_obstacle(&self, world: &World, number: usize) -> KnownObstacle {
+        let sighting = self.debris[number];
+        let outline = &world.debris[number].sightings[sighting as usize - 1];
+        let key = ObstacleKey::Debris(number as u32, sighting);
+        KnownObstacle::new(key, outline, self.radius, self.clearance)
+    }
+
+    fn wreck_obstacle(&self, robot: &Robot, at: Vector) -> KnownObstacle {
+        KnownObstacle::wreck(robot.id.0, at, robot.radius(), self.radius, self.clearance)
+    }
+
+    /// Makes anew what a snapshot leaves out because it follows from the rest.
+    pub(crate) fn restore(&mut self, world: &World) {
+        let known = (0..self.debris.len()).filter(|number| self.debris[*number] > 0);
+        let debris = known.map(|number| self.debris_obstacle(world, number));
+        let wrecks = world.robots.iter().filter(|robot| self.wrecks[robot.id.index()] && !robot.is_aerial());
+        let wrecks = wrecks.filter_map(|robot| Some(self.wreck_obstacle(robot, robot.wreck_at?)));
+        self.obstacles = debris.chain(wrecks).collect(); // in order of their keys
+        let known_zones = world.zones.iter().zip(0_u32..).filter(|(_, number)| self.zones[*number as usize]);
+        self.known_zones = known_zones.map(|(zone, number)| (number, *zone)).collect();
     }
 
     fn insert(&mut self, obstacle: KnownObstacle) {

@@ -22,6 +22,7 @@ use std::collections::BTreeMap;
 
 use parry2d::math::Vector;
 use polyanya::{Mesh, Triangulation};
+use serde::{Deserialize, Serialize};
 
 use crate::scenario::Scenario;
 use crate::world::{Outline, RadiationZone};
@@ -31,11 +32,14 @@ use obstacles::{ZONE_MARGIN_M, push_out};
 const MAX_MESHES: usize = 64;
 
 /// Planner of one trial. Meshes are shared by all robots that know the same.
+#[derive(Serialize, Deserialize)]
 pub struct Planner {
     arena: Vector,
     /// Distance of ground and of aerial routes from obstacles, in metres.
     offsets: [f32; 2],
     exposure_price_m: f32,
+    /// Follows from what is known: kept to save time only.
+    #[serde(skip)]
     meshes: BTreeMap<MeshKey, Mesh>,
 }
 

@@ -1,6 +1,7 @@
 //! Keeps each robot on a route to its goal: plans when it has to, and says which velocity the robot would like.
 
 use parry2d::math::Vector;
+use serde::{Deserialize, Serialize};
 
 use super::obstacles::{KnownObstacle, crosses};
 use super::trail::Trail;
@@ -29,7 +30,7 @@ const ROUTE_END_M: f32 = 0.15;
 pub const PLANNED_BRAKING: f32 = 0.8;
 
 /// Where a robot wants to be.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Goal {
     /// The place.
     pub point: Vector,
@@ -47,7 +48,7 @@ enum Attempt {
 }
 
 /// The journey of one robot.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Traveller {
     goal: Option<Goal>,
     route: Option<Route>,
@@ -146,6 +147,7 @@ impl Traveller {
 }
 
 /// The journeys of all robots.
+#[derive(Serialize, Deserialize)]
 pub struct Navigator {
     planner: Planner,
     travellers: Vec<Traveller>,

@@ -1,6 +1,7 @@
 //! A route: waypoints to pass one after the other.
 
 use parry2d::math::Vector;
+use serde::{Deserialize, Serialize};
 
 use crate::world::RadiationZone;
 
@@ -8,7 +9,7 @@ use crate::world::RadiationZone;
 const PASSED_M: f32 = 0.25;
 
 /// Waypoints to a goal, and which of them comes next.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Route {
     waypoints: Vec<Vector>,
     next: usize,

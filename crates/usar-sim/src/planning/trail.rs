@@ -1,6 +1,7 @@
 //! Where a robot came by.
 
 use parry2d::math::Vector;
+use serde::{Deserialize, Serialize};
 
 /// Distance between two points of a trail, in metres.
 const SPACING_M: f32 = 0.5;
@@ -9,7 +10,7 @@ const SPACING_M: f32 = 0.5;
 const KEPT: usize = 60;
 
 /// The last 30 m or more of a robot's way.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub(super) struct Trail {
     points: Vec<Vector>,
 }

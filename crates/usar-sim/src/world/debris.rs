@@ -3,6 +3,7 @@
 use parry2d::math::{Pose, Rotation, Vector};
 use parry2d::shape::SharedShape;
 use parry2d::transformation::convex_hull;
+use serde::{Deserialize, Serialize};
 
 use crate::scenario::{DebrisFile, DebrisShape};
 
@@ -10,7 +11,7 @@ use crate::scenario::{DebrisFile, DebrisShape};
 const NOTICED_MOVE_M: f32 = 0.2;
 
 /// A convex shape in its place.
-#[derive(Clone)]
+#[derive(Clone, Serialize, Deserialize)]
 pub struct Outline {
     /// The shape.
     pub shape: SharedShape,
@@ -71,7 +72,7 @@ fn ring(corners: u32, radius: f32) -> impl Iterator<Item = Vector> {
 }
 
 /// A piece of debris in the world.
-#[derive(Clone)]
+#[derive(Clone, Serialize, Deserialize)]
 pub struct Debris {
     /// Where it is.
     pub outline: Outline,

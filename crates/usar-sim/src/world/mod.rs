@@ -13,11 +13,13 @@ pub use robot::{Condition, Robot, rest_slot, row_positions};
 use crate::layout::Layout;
 use crate::physics::Physics;
 use crate::scenario::Scenario;
+use serde::{Deserialize, Serialize};
 
 /// A robot slower than this stands, in metres per second.
 pub const STANDING_MPS: f32 = 0.05;
 
 /// The state of everything that is in the arena.
+#[derive(Serialize, Deserialize)]
 pub struct World {
     /// Rigid bodies.
     pub physics: Physics,

@@ -1,11 +1,12 @@
 //! Radiation zones: discs, whose effects add up where they overlap.
 
 use parry2d::math::Vector;
+use serde::{Deserialize, Serialize};
 
 use crate::scenario::ZoneFile;
 
 /// A source of radiation and the radius of its effect.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct RadiationZone {
     /// The source.
     pub center: Vector,

@@ -2,12 +2,13 @@
 
 use parry2d::math::Vector;
 use rne_core::Difficulty;
+use serde::{Deserialize, Serialize};
 
 use crate::ids::{RescueeId, RobotId};
 use crate::scenario::Scenario;
 
 /// Where a rescuee is in its rescue.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum RescueeState {
     /// Where it was from the start.
     Waiting,
@@ -18,7 +19,7 @@ pub enum RescueeState {
 }
 
 /// A person or valuable to rescue.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Rescuee {
     /// Identity.
     pub id: RescueeId,

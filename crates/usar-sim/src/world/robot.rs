@@ -2,6 +2,7 @@
 
 use parry2d::math::Vector;
 use rne_core::{Difficulty, NeedVector, NeedsError, Role};
+use serde::{Deserialize, Serialize};
 
 use crate::ids::{RescueeId, RobotId};
 use crate::layout::RobotStart;
@@ -9,7 +10,7 @@ use crate::scenario::{RoleSpec, Row, Scenario};
 use crate::vitals::health_factor;
 
 /// Whether a robot can still act.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Condition {
     /// It can.
     Able,
@@ -20,7 +21,7 @@ pub enum Condition {
 }
 
 /// A robot.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Robot {
     /// Identity.
     pub id: RobotId,

@@ -1,0 +1,110 @@
+//! Worlds of any size at one density: 5 boxes a robot in a walled square of 40 sqrt(N / 12) m, ten ground robots to two aerial ones, for the
+//! raw physics and for the full simulator alike.
+
+use rand::rngs::ChaCha8Rng;
+use rand::{RngExt, SeedableRng};
+use rne_core::{Difficulty, Role};
+use usar_sim::scenario::{
+    DebrisFile, DebrisShape, InitialLevels, Normal, Point, RoleSpec, Roles, Row, Scenario, ScenarioFile,
+    SweepDefaults, TaskFile, Tasks,
+};
+
+/// Radius of all robots, in metres.
+pub const RADIUS_M: f64 = 0.25;
+/// Top speed of all robots, in metres per second.
+pub const SPEED_MPS: f64 = 1.0;
+/// Time step, in seconds.
+pub const DT_S: f64 = 0.02;
+
+/// Side of the arena, in metres.
+pub fn side(robots: u32) -> f64 {
+    40.0 * (f64::from(robots) / 12.0).sqrt()
+}
+
+/// Two of twelve robots fly.
+pub fn aerial(robots: u32) -> u32 {
+    (robots / 6).max(1)
+}
+
+/// Boxes of half extents 0.4 to 1.2 m at any angle, off the places that `is_taken`.
+pub fn boxes(robots: u32, is_taken: impl Fn(Point) -> bool) -> Vec<DebrisFile> {
+    let mut draws = ChaCha8Rng::seed_from_u64(u64::from(robots));
+    let mut boxes = Vec::new();
+    while boxes.len() < 5 * robots as usize {
+        let half = [0; 2].map(|_| draws.random_range(0.4..1.2));
+        let at = [0; 2].map(|_| draws.random_range(0.0..side(robots)));
+        let rotation_deg = draws.random_range(0.0..180.0);
+        if !is_taken(at) {
+            let shape = DebrisShape::Box(2.0 * half[0], 2.0 * half[1]);
+            boxes.push(DebrisFile { shape, at, rotation_deg, movable: None });
+        }
+    }
+    boxes
+}
+
+/// A mission for the full simulator: `duration_s` seconds, homes in rows along the southern wall.
+pub fn mission(robots: u32, duration_s: f64) -> Scenario {
+    let side = side(robots);
+    let aerial = aerial(robots);
+    let suppliers = robots / 3;
+    let spacing = 2.0 * RADIUS_M + 0.7;
+    let per_row = ((side - 4.0) / spacing) as u32;
+    let mut team = Vec::new();
+    let mut y = 1.5;
+    for (role, count) in
+        [(Role::Carrier, robots - suppliers - aerial), (Role::Supplier, suppliers), (Role::Observer, aerial)]
+    {
+        let mut left = count;
+        while left > 0 {
+            let count = left.min(per_row);
+            let width_m = spacing * f64::from(count - 1);
+            team.push(Row { role, count, center: [side / 2.0, y], width_m, levels: None });
+            left -= count;
+            y += spacing;
+        }
+    }
+    let task = |x: f64| TaskFile {
+        center: [x, 0.85 * side],
+        size_m: [0.2 * side, 0.1 * side],
+        grid: [robots.min(100), 5],
+        rest: [x, 0.5 * side],
+    };
+    let tasks = Tasks { hard: task(0.25 * side), easy: task(0.75 * side) };
+    let block = f64::from(robots).sqrt() * (2.0 * RADIUS_M + 1.2) / 2.0 + 2.5;
+    let is_taken = |[x, at]: Point| {
+        let at_rest = |task: &TaskFile| (x - task.rest[0]).abs() < block && (at - task.rest[1]).abs() < block;
+        at < y + 1.5 || Difficulty::ALL.iter().any(|task| at_rest(tasks.of(*task)))
+    };
+    let role = |spec: RoleSpec| RoleSpec {
+        radius_m: RADIUS_M,
+        speed_mps: SPEED_MPS,
+        acceleration_mps2: 2.0,
+        ..spec
+    };
+    let Roles { carrier, supplier, observer } = Roles::default();
+    let file = ScenarioFile {
+        name: format!("density-{robots}"),
+        description: String::new(),
+        sweep: SweepDefaults { policies: vec!["ENG".into()], trials: 1, first_seed: 1 },
+        duration_s,
+        dt_s: DT_S,
+        arena_m: [side, side],
+        debris: boxes(robots, is_taken),
+        team,
+        roles: Roles { carrier: role(carrier), supplier: role(supplier), observer: role(observer) },
+        initial_levels: InitialLevels {
+            energy: Normal { mean: 80.0, sd: 20.0 },
+            hp: Normal { mean: 90.0, sd: 10.0 },
+        },
+        tasks,
+        errands: Vec::new(),
+        radiation: Vec::new(),
+        sampled: Default::default(),
+        costs: Default::default(),
+        mission: Default::default(),
+        planning: Default::default(),
+        conflicts: Default::default(),
+        rne: rne_core::RneOptions::default(),
+    };
+    Scenario::try_from(file).unwrap_or_else(|problems| panic!("{problems:?}"))
+}

@@ -1,0 +1,86 @@
+//! What a step costs, as ratios to the raw physics measured in the same process, turn by turn. Times themselves depend on the machine and its
+//! neighbours; ratios less so, and instruction counts (`just instructions`) hardly.
+//!
+//! `cargo bench --bench speed`
+
+#![expect(missing_docs, reason = "a program, not a library")]
+
+mod density;
+mod raw;
+
+use std::time::Instant;
+
+use rne_core::policy_named;
+use usar_sim::scenario::Scenario;
+use usar_sim::simulation::{Simulation, Stage};
+
+/// Turns of reference and subject.
+const TURNS: usize = 7;
+
+fn main() {
+    // `cargo test --benches` and `cargo clippy` build this; only `cargo bench` runs it.
+    if !std::env::args().any(|argument| argument == "--bench") {
+        return;
+    }
+    let paper = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenarios/paper.ron");
+    let (paper, _) = Scenario::load(paper.as_ref()).unwrap_or_else(|error| panic!("{error}"));
+    let cases = [
+        ("paper.ron", 12, paper, "RNE", 30_000),
+        ("density-12", 12, density::mission(12, 120.0), "ENG", 6_000),
+        ("density-100", 100, density::mission(100, 60.0), "ENG", 3_000),
+        ("density-1000", 1000, density::mission(1000, 10.0), "ENG", 500),
+    ];
+    println!("{TURNS} turns each, medians; us a step; raw: rapier2d alone with as many robots\n");
+    println!("{:<14}{:>8}{:>10}{:>8}{:>12}", "", "raw", "full", "ratio", "trials/s");
+    let mut shares = Vec::new();
+    let mut growth = Vec::new();
+    for (name, robots, scenario, policy, steps) in &cases {
+        let mut turns: Vec<[f64; 2]> =
+            (0..TURNS).map(|_| [raw_us(*robots, *steps), full_us(scenario, policy, *steps)]).collect();
+        turns.sort_by(|a, b| (a[1] / a[0]).total_cmp(&(b[1] / b[0])));
+        let [raw, full] = turns[TURNS / 2];
+        let trials = 1e6 / (full * *steps as f64);
+        println!("{name:<14}{raw:>8.1}{full:>10.1}{:>8.2}{trials:>12.2}", full / raw);
+        shares.push((name, stages_us(scenario, policy, *steps)));
+        growth.push((f64::from(*robots), full));
+    }
+    println!("\n{:<14}{}", "", Stage::ALL.map(|stage| format!("{:>10}", stage.name())).concat());
+    for (name, stages) in shares {
+        println!("{name:<14}{}", stages.map(|us| format!("{us:>10.2}")).concat());
+    }
+    let [(few, fast), .., (many, slow)] = growth[1..] else { unreachable!("three sizes") };
+    println!("\ngrowth exponent, {few} to {many} robots: {:.2}", (slow / fast).ln() / (many / few).ln());
+}
+
+fn raw_us(robots: u32, steps: u64) -> f64 {
+    let steps = steps.min(3_000);
+    let mut world = raw::Raw::new(robots);
+    (0..50).for_each(|_| world.step());
+    let start = Instant::now();
+    (0..steps).for_each(|_| world.step());
+    start.elapsed().as_secs_f64() * 1e6 / steps as f64
+}
+
+fn full_us(scenario: &Scenario, policy: &str, steps: u64) -> f64 {
+    let policy = policy_named(policy, &scenario.rne).expect("known");
+    let start = Instant::now();
+    let mut trial = Simulation::new(scenario, &*policy, 1).expect("drawn");
+    (0..steps).for_each(|_| trial.step().expect("sound"));
+    start.elapsed().as_secs_f64() * 1e6 / steps as f64
+}
+
+fn stages_us(scenario: &Scenario, policy: &str, steps: u64) -> [f64; Stage::ALL.len()] {
+    let policy = policy_named(policy, &scenario.rne).expect("known");
+    let mut trial = Simulation::new(scenario, &*policy, 1).expect("drawn");
+    let mut spent = [0.0; Stage::ALL.len()];
+    for _ in 0..steps {
+        let mut last = Instant::now();
+        let step = trial.step_watched(|stage| {
+            let now = Instant::now();
+            spent[stage as usize] += (now - last).as_secs_f64();
+            last = now;
+        });
+        step.expect("sound");
+    }
+    spent.map(|seconds| seconds * 1e6 / steps as f64)
+}

@@ -1,0 +1,75 @@
+//! The hash chain over the whole state of a trial: equal chains, equal trials, step by step.
+//!
+//! Every [`PERIOD_STEPS`] steps and at the end, each part of the state is written as bytes (postcard) and hashed (XXH3, 128 bits); the
+//! digests of all parts, the step and the link before make the next link. The parts are kept in short as well, so that two chains that
+//! part tell where.
+
+use serde::{Deserialize, Serialize};
+use xxhash_rust::xxh3::xxh3_128;
+
+/// A link is added once in this many steps.
+pub const PERIOD_STEPS: u64 = 50;
+
+/// The parts of the state, in the order of [`Link::parts`].
+pub const PARTS: [&str; 10] = [
+    "bodies", "robots", "debris", "rescuees", "beliefs", "mission", "routes", "resolver", "metrics", "events",
+];
+
+/// One link of the chain.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Link {
+    /// Steps done.
+    pub step: u64,
+    /// The low 16 bits of each part's hash.
+    pub parts: [u16; PARTS.len()],
+    /// Hash over all that came before and all parts.
+    pub digest: u128,
+}
+
+impl Link {
+    /// Names of the parts in which two links of the same step differ.
+    #[must_use]
+    pub fn differing_parts(&self, other: &Self) -> Vec<&'static str> {
+        let pairs = PARTS.into_iter().zip(self.parts.iter().zip(&other.parts));
+        pairs.filter(|(_, (a, b))| a != b).map(|(name, _)| name).collect()
+    }
+}
+
+/// The chain of one trial as far as it is run.
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct HashChain {
+    links: Vec<Link>,
+}
+
+impl HashChain {
+    /// Adds a link from the hashes of the parts after `step` steps.
+    pub(crate) fn add(&mut self, step: u64, parts: [u128; PARTS.len()]) {
+        let before = self.links.last().map_or(0, |link| link.digest);
+        let mut bytes = Vec::with_capacity(16 * (PARTS.len() + 2));
+        bytes.extend(before.to_le_bytes());
+        bytes.extend(step.to_le_bytes());
+        parts.iter().for_each(|part| bytes.extend(part.to_le_bytes()));
+        self.links.push(Link { step, parts: parts.map(|part| part as u16), digest: xxh3_128(&bytes) });
+    }
+
+    /// The links, in order of their steps.
+    #[must_use]
+    pub fn links(&self) -> &[Link] {
+        &self.links
+    }
+
+    /// The last digest, 32 hexadecimal digits.
+    #[must_use]
+    pub fn digest(&self) -> String {
+        format!("{:032x}", self.links.last().map_or(0, |link| link.digest))
+    }
+}
+
+/// Hash of the bytes of one part of the state.
+///
+/// # Panics
+/// Never: all parts are of types that postcard can write to memory.
+#[must_use]
+pub(crate) fn part(value: &impl Serialize) -> u128 {
+    xxh3_128(&postcard::to_stdvec(value).expect("the state can be written to memory"))
+}

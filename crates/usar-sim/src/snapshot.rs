@@ -1,0 +1,263 @@
+//! A trial as bytes, to go on with later: in another process, on another machine of the same kind, with the same result bit for bit.
+//!
+//! Layout, numbers in little-endian order: eight bytes `USARSNAP`; the format's version (u32); length (u64) and XXH3-128 (u128) of the
+//! payload; the payload, in postcard's format: what the trial is of, then its whole state.
+
+use rne_core::GroupingPolicy;
+use serde::{Deserialize, Serialize};
+use xxhash_rust::xxh3::xxh3_128;
+
+use crate::scenario::Scenario;
+use crate::simulation::{Simulation, State};
+
+/// What every snapshot begins with.
+const MAGIC: &[u8; 8] = b"USARSNAP";
+
+/// Version of the format: one more whenever the state changes its shape.
+pub const VERSION: u32 = 1;
+
+const HEADER_BYTES: usize = 8 + 4 + 8 + 16;
+
+/// Why bytes are not a snapshot that a trial can go on from.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum SnapshotError {
+    /// The bytes do not begin like a snapshot.
+    #[error("is not a snapshot of a trial")]
+    Foreign,
+    /// Another version of the format.
+    #[error("is a snapshot of format {found}; this program reads format {VERSION}")]
+    Version {
+        /// The version that was found.
+        found: u32,
+    },
+    /// Bytes are missing, or too many.
+    #[error("should have {expected} bytes and has {found}: it was cut short or written over")]
+    Length {
+        /// Length by the header.
+        expected: u64,
+        /// Length that was found.
+        found: u64,
+    },
+    /// The checksum is wrong.
+    #[error("is damaged: its checksum is wrong")]
+    Damaged,
+    /// A snapshot of another trial.
+    #[error("is of another {what}: {found} instead of {expected}")]
+    Mismatch {
+        /// What differs.
+        what: &'static str,
+        /// What the snapshot is of.
+        found: String,
+        /// What was asked for.
+        expected: String,
+    },
+}
+
+/// What a snapshot is of.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Identity {
+    /// Name of the scenario.
+    pub scenario: String,
+    /// XXH3-128 of all that the scenario says.
+    pub scenario_hash: u128,
+    /// Name of the policy.
+    pub policy: String,
+    /// Seed of the trial.
+    pub seed: u64,
+}
+
+impl Identity {
+    fn new(scenario: &Scenario, policy: &dyn GroupingPolicy, seed: u64) -> Self {
+        Self {
+            scenario: scenario.name.clone(),
+            scenario_hash: crate::hash::part(&**scenario),
+            policy: policy.name().to_owned(),
+            seed,
+        }
+    }
+
+    /// Reads what a snapshot is of; all checks but those against a scenario are made.
+    ///
+    /// # Errors
+    /// The bytes are no sound snapshot.
+    pub fn of(bytes: &[u8]) -> Result<Self, SnapshotError> {
+        let (identity, _) = postcard::take_from_bytes(payload(bytes)?).map_err(|_| SnapshotError::Damaged)?;
+        Ok(identity)
+    }
+
+    fn check(&self, expected: &Self) -> Result<(), SnapshotError> {
+        let mismatch = |what, found: String, expected: String| {
+            if found == expected { Ok(()) } else { Err(SnapshotError::Mismatch { what, found, expected }) }
+        };
+        mismatch("scenario", self.scenario.clone(), expected.scenario.clone())?;
+        let hash = |identity: &Self| format!("one with hash {:032x}", identity.scenario_hash);
+        mismatch("version of the scenario", hash(self), hash(expected))?;
+        mismatch("policy", self.policy.clone(), expected.policy.clone())
+    }
+}
+
+/// The checked payload of a snapshot.
+fn payload(bytes: &[u8]) -> Result<&[u8], SnapshotError> {
+    let Some(rest) = bytes.strip_prefix(MAGIC) else { return Err(SnapshotError::Foreign) };
+    let length = |expected: u64| SnapshotError::Length { expected, found: bytes.len() as u64 };
+    let (version, rest) = rest.split_first_chunk().ok_or_else(|| length(HEADER_BYTES as u64))?;
+    let found = u32::from_le_bytes(*version);
+    if found != VERSION {
+        return Err(SnapshotError::Version { found });
+    }
+    let (count, rest) = rest.split_first_chunk().ok_or_else(|| length(HEADER_BYTES as u64))?;
+    let (checksum, payload) = rest.split_first_chunk().ok_or_else(|| length(HEADER_BYTES as u64))?;
+    let count = u64::from_le_bytes(*count);
+    if count != payload.len() as u64 {
+        return Err(length(count.saturating_add(HEADER_BYTES as u64)));
+    }
+    if u128::from_le_bytes(*checksum) != xxh3_128(payload) {
+        return Err(SnapshotError::Damaged);
+    }
+    Ok(payload)
+}
+
+impl<'a> Simulation<'a> {
+    /// The whole trial as it is now.
+    ///
+    /// # Panics
+    /// Never: the state is of types that postcard can write to memory.
+    #[must_use]
+    pub fn snapshot(&self) -> Vec<u8> {
+        let identity = Identity::new(self.scenario(), self.policy(), self.seed());
+        let payload =
+            postcard::to_stdvec(&(identity, self.state())).expect("the state can be written to memory");
+        let mut bytes = Vec::with_capacity(HEADER_BYTES + payload.len());
+        bytes.extend(MAGIC);
+        bytes.extend(VERSION.to_le_bytes());
+        bytes.extend((payload.len() as u64).to_le_bytes());
+        bytes.extend(xxh3_128(&payload).to_le_bytes());
+        bytes.extend(payload);
+        bytes
+    }
+
+    /// The trial that a snapshot was taken of, at the step where it was taken. Unchecked, until [`Simulation::checked`] is called.
+    ///
+    /// # Errors
+    /// The bytes are no sound snapshot, or one of another scenario or policy.
+    pub fn restore(
+        scenario: &'a Scenario,
+        policy: &'a dyn GroupingPolicy,
+        bytes: &[u8],
+    ) -> Result<Self, SnapshotError> {
+        let found = Identity::of(bytes)?;
+        found.check(&Identity::new(scenario, policy, found.seed))?;
+        let (identity, state): (Identity, State) =
+            postcard::from_bytes(payload(bytes)?).map_err(|_| SnapshotError::Damaged)?;
+        Ok(Self::from_state(scenario, policy, identity.seed, state))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use rne_core::policy_named;
+
+    use super::*;
+    use crate::hash::HashChain;
+
+    /// Ground and aerial robots in conflict on a mission, debris that is pushed, radiation, rescuees.
+    fn scenario() -> Scenario {
+        let text = r#"(
+            name: "fields", description: "", duration_s: 60.0, dt_s: 0.02, arena_m: (24.0, 16.0),
+            team: [
+                (role: Carrier, count: 2, center: (12.0, 2.0), width_m: 1.5),
+                (role: Supplier, count: 2, center: (12.0, 4.0), width_m: 1.5),
+                (role: Observer, count: 2, center: (12.0, 6.0), width_m: 1.5),
+            ],
+            tasks: (
+                hard: (center: (5.0, 12.0), size_m: (2.0, 1.0), grid: (3, 2), rest: (5.0, 5.0)),
+                easy: (center: (19.0, 12.0), size_m: (2.0, 1.0), grid: (3, 2), rest: (19.0, 5.0)),
+            ),
+            debris: [
+                (shape: Box(1.0, 0.6), at: (9.0, 7.0), rotation_deg: 20.0, movable: (mass_kg: 5.0, friction: 0.3)),
+                (shape: Disc(0.5), at: (16.0, 8.0)),
+            ],
+            radiation: [(at: (8.0, 9.0), radius_m: 2.0)],
+        )"#;
+        Scenario::parse(text, "fields.ron".as_ref()).unwrap_or_else(|error| panic!("{error}"))
+    }
+
+    fn after<'a>(scenario: &'a Scenario, policy: &'a dyn GroupingPolicy, steps: u64) -> Simulation<'a> {
+        let mut trial = Simulation::new(scenario, policy, 1).unwrap();
+        (0..steps).for_each(|_| trial.step().unwrap());
+        trial
+    }
+
+    #[test]
+    fn every_field_of_the_state_counts_in_the_hash() {
+        let scenario = scenario();
+        let policy = policy_named("RNE", &scenario.rne).unwrap();
+        let mut trial = after(&scenario, &*policy, 340);
+        *trial.state_mut().chain_mut() = HashChain::default();
+        let digest = |state: &State| {
+            let mut chain = HashChain::default();
+            chain.add(state.step(), state.parts());
+            chain.digest()
+        };
+        let bytes = postcard::to_stdvec(trial.state()).unwrap();
+        let original = digest(trial.state());
+        let step_bytes = postcard::to_stdvec(&trial.steps()).unwrap().len();
+        let physics_bytes = postcard::to_stdvec(&trial.world().physics).unwrap().len();
+        let mut tried = 0;
+        for at in (0..step_bytes).chain(step_bytes + physics_bytes..bytes.len() - 1) {
+            let mut flipped = bytes.clone();
+            flipped[at] ^= 1;
+            let Ok(state) = postcard::from_bytes::<State>(&flipped) else { continue };
+            if postcard::to_stdvec(&state).unwrap() != flipped {
+                continue; // read as something else: a length, or a number written in another way
+            }
+            tried += 1;
+            assert_ne!(digest(&state), original, "byte {at} of {} does not count", bytes.len());
+        }
+        assert!(tried > (bytes.len() - physics_bytes) / 2, "{tried} of {} bytes tried", bytes.len());
+    }
+
+    #[test]
+    fn a_cut_or_flipped_snapshot_is_refused_by_name() {
+        let scenario = scenario();
+        let policy = policy_named("RNE", &scenario.rne).unwrap();
+        let bytes = after(&scenario, &*policy, 40).snapshot();
+        let refuse = |bytes: &[u8]| Simulation::restore(&scenario, &*policy, bytes).err().unwrap();
+        for length in [0, 7, 8, 11, 20, 35, 36, bytes.len() / 2, bytes.len() - 1] {
+            let error = refuse(&bytes[..length]);
+            let expected = matches!(error, SnapshotError::Length { .. })
+                || length < 8 && error == SnapshotError::Foreign;
+            assert!(expected, "{length} bytes: {error}");
+        }
+        for at in (0..bytes.len()).step_by(97).chain(0..HEADER_BYTES) {
+            let mut flipped = bytes.clone();
+            flipped[at] ^= 0x40;
+            let error = refuse(&flipped);
+            let expected = match at {
+                0..8 => error == SnapshotError::Foreign,
+                8..12 => matches!(error, SnapshotError::Version { .. }),
+                12..20 => matches!(error, SnapshotError::Length { .. }),
+                _ => error == SnapshotError::Damaged,
+            };
+            assert!(expected, "byte {at}: {error}");
+        }
+        let mut longer = bytes.clone();
+        longer.push(0);
+        assert!(matches!(refuse(&longer), SnapshotError::Length { .. }));
+    }
+
+    #[test]
+    fn a_snapshot_of_another_scenario_or_policy_is_refused_by_name() {
+        let scenario = scenario();
+        let policy = policy_named("RNE", &scenario.rne).unwrap();
+        let bytes = after(&scenario, &*policy, 3).snapshot();
+        let other = policy_named("RANDOM", &scenario.rne).unwrap();
+        let error = Simulation::restore(&scenario, &*other, &bytes).err().unwrap().to_string();
+        assert_eq!(error, "is of another policy: RNE instead of RANDOM");
+        let mut file = (*scenario).clone();
+        file.debris[1].at[0] += 0.01;
+        let moved = Scenario::try_from(file).unwrap();
+        let error = Simulation::restore(&moved, &*policy, &bytes).err().unwrap().to_string();
+        assert!(error.starts_with("is of another version of the scenario: one with hash "), "{error}");
+    }
+}

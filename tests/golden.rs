@@ -1,0 +1,34 @@
+//! The hashes of the small worlds: what they are, and what they should be.
+
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+
+use usar_sim::scenario::Scenario;
+use usar_sim::simulation::Simulation;
+
+fn root() -> &'static Path {
+    let manifest = Path::new(env!("CARGO_MANIFEST_DIR"));
+    manifest.ancestors().find(|folder| folder.join("scenarios").is_dir()).expect("inside the workspace")
+}
+
+/// The file with the hashes as they should be.
+pub fn path() -> PathBuf {
+    root().join("tests/golden_hashes.txt")
+}
+
+/// A line for each small world, each policy and its state's hash at the end of the trial with seed 1.
+pub fn hashes() -> String {
+    let mut files: Vec<PathBuf> = std::fs::read_dir(root().join("scenarios/minimal"))
+        .expect("there are small worlds")
+        .map(|entry| entry.expect("readable").path())
+        .collect();
+    files.sort();
+    let mut text = String::new();
+    for path in files {
+        let (scenario, _) = Scenario::load(&path).unwrap_or_else(|error| panic!("{error}"));
+        let policy = rne_core::policy_named("RNE", &scenario.rne).expect("known");
+        let trial = Simulation::new(&scenario, &*policy, 1).expect("drawn");
+        writeln!(text, "{} {}", scenario.name, trial.run(|_, _, _| {}).state_hash).expect("memory");
+    }
+    text
+}
