@@ -49,7 +49,7 @@ impl Raw {
             world.insert(body, ColliderBuilder::cuboid(width as f32 / 2.0, height as f32 / 2.0));
         }
         let mut draws = ChaCha8Rng::seed_from_u64(1);
-        let mut place = |draws: &mut ChaCha8Rng| {
+        let place = |draws: &mut ChaCha8Rng| {
             Vector::new(draws.random_range(1.0..side - 1.0), draws.random_range(1.0..side - 1.0))
         };
         let robots = (0..robots)

@@ -32,7 +32,7 @@ impl LinkRow {
             trial: outcome.key.trial,
             step: link.step,
             digest: format!("{:032x}", link.digest),
-            parts: link.parts.iter().map(|part| format!("{part:04x}")).collect(),
+            parts: link.parts.map(|part| format!("{part:04x}")).concat(),
         })
     }
 
