@@ -467,7 +467,7 @@ fn mover<'s>(
         position: robot.position,
         velocity: robot.velocity,
         wish,
-        way_left: route.map_or(0.0, |route| route.length(robot.position)),
+        retreat_left: None,
         leg_left: route.map_or(0.0, |route| (route.ahead()[0] - robot.position).length()),
         route: route.map_or(&[], |route| route.ahead()),
         trail: navigator.trail(robot.id),

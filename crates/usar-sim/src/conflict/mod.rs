@@ -46,8 +46,8 @@ pub struct Mover<'a> {
     pub velocity: Vector,
     /// The velocity that it would like; zero for a robot with nowhere to go.
     pub wish: Vector,
-    /// Way that is left to its goal, in metres.
-    pub way_left: f32,
+    /// Way that is left to where it makes room, in metres; none for a robot on its own way.
+    pub retreat_left: Option<f32>,
     /// Way that is left to its next waypoint, in metres.
     pub leg_left: f32,
     /// Waypoints ahead.
@@ -71,6 +71,12 @@ pub struct Mover<'a> {
 impl Mover<'_> {
     fn wishes_to_move(&self) -> bool {
         self.wish != Vector::ZERO
+    }
+
+    /// Way that is left to where it is going, in metres.
+    fn way_left(&self) -> f32 {
+        let starts = std::iter::once(&self.position).chain(self.route);
+        self.retreat_left.unwrap_or_else(|| starts.zip(self.route).map(|(a, b)| (*b - *a).length()).sum())
     }
 }
 
@@ -216,7 +222,7 @@ impl Resolver {
         self.conflicts.clear();
         self.conflicts
             .extend(pairs.filter(|(a, b)| will_conflict(&movers[*a], &movers[*b], margin, horizon)));
-        self.carry_over(&components(movers.len(), self.conflicts.iter().copied()), movers, log);
+        self.carry_over(&components(movers.len(), &self.conflicts), movers, log);
         let progress: Vec<Progress> = (0..self.sets.len()).map(|set| self.judge(set, movers, log)).collect();
         self.direct(movers, &progress);
         for (heading, directive) in self.headings.iter_mut().zip(&self.directives) {
@@ -257,8 +263,10 @@ impl Resolver {
     fn judge(&mut self, at: usize, movers: &[Mover], log: &mut EventLog) -> Progress {
         let set = &mut self.sets[at];
         let speeds = set.order.iter().map(|i| movers[*i].velocity.length());
-        let seen =
-            Observation { fastest: speeds.fold(0.0, f32::max), head_way_left: movers[set.order[0]].way_left };
+        let seen = Observation {
+            fastest: speeds.fold(0.0, f32::max),
+            head_way_left: movers[set.order[0]].way_left(),
+        };
         if self.retreats.is_served(set.order[0]) {
             set.wait_for_room();
         }

@@ -18,8 +18,10 @@ impl Neighbours {
         let fastest = movers.iter().map(|mover| mover.wish.length()).fold(0.0, f32::max);
         let largest = movers.iter().map(|mover| mover.radius).fold(0.0, f32::max);
         let range = (2.0 * fastest * horizon).max(PASSING_RANGE_M) + 2.0 * largest + margin;
-        self.by_x.clear();
-        self.by_x.extend(0..movers.len());
+        if self.by_x.len() != movers.len() {
+            self.by_x = (0..movers.len()).collect();
+        }
+        // Nearly sorted since the last step: linear.
         self.by_x.sort_by(|a, b| movers[*a].position.x.total_cmp(&movers[*b].position.x).then(a.cmp(b)));
         self.pairs.clear();
         for (at, a) in self.by_x.iter().enumerate() {
@@ -71,7 +73,10 @@ pub(super) fn will_conflict(a: &Mover, b: &Mover, margin: f32, horizon: f32) -> 
 }
 
 /// Connected components of at least two robots, each in ascending order, in order of their first member.
-pub(super) fn components(count: usize, pairs: impl Iterator<Item = (usize, usize)>) -> Vec<Vec<usize>> {
+pub(super) fn components(count: usize, pairs: &[(usize, usize)]) -> Vec<Vec<usize>> {
+    if pairs.is_empty() {
+        return Vec::new();
+    }
     let mut root: Vec<usize> = (0..count).collect();
     let find = |root: &mut Vec<usize>, mut i: usize| {
         while root[i] != i {
@@ -81,15 +86,22 @@ pub(super) fn components(count: usize, pairs: impl Iterator<Item = (usize, usize
         i
     };
     for (a, b) in pairs {
-        let (a, b) = (find(&mut root, a), find(&mut root, b));
+        let (a, b) = (find(&mut root, *a), find(&mut root, *b));
         root[a.max(b)] = a.min(b);
     }
-    let mut sets: Vec<Vec<usize>> = vec![Vec::new(); count];
-    for i in 0..count {
+    let mut sets: Vec<Vec<usize>> = Vec::new();
+    let mut set_of = vec![usize::MAX; count];
+    let mut members: Vec<usize> = pairs.iter().flat_map(|(a, b)| [*a, *b]).collect();
+    members.sort_unstable();
+    members.dedup();
+    for i in members {
         let first = find(&mut root, i);
-        sets[first].push(i);
+        if set_of[first] == usize::MAX {
+            set_of[first] = sets.len();
+            sets.push(Vec::new());
+        }
+        sets[set_of[first]].push(i);
     }
-    sets.retain(|set| set.len() > 1);
     sets
 }
 
@@ -113,6 +125,6 @@ mod tests {
 
     #[test]
     fn sets_are_connected_components() {
-        assert_eq!(components(6, [(0, 3), (3, 5), (1, 2)].into_iter()), [vec![0, 3, 5], vec![1, 2]]);
+        assert_eq!(components(6, &[(0, 3), (3, 5), (1, 2)]), [vec![0, 3, 5], vec![1, 2]]);
     }
 }

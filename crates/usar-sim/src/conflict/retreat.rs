@@ -106,6 +106,9 @@ impl Retreats {
         self.respite.resize(movers.len(), 0);
         self.respite.iter_mut().for_each(|steps| *steps = steps.saturating_sub(1));
         for i in 0..movers.len() {
+            if self.of[i].is_none() {
+                continue;
+            }
             let is_served = self.is_served(i);
             let Some(mut retreat) = self.of[i].take() else { continue };
             retreat.advance(&movers[i], &movers[retreat.head], is_served);
@@ -277,7 +280,7 @@ impl Retreat {
             return;
         };
         let to_next = *next - me.position;
-        me.way_left = self.way(me).windows(2).map(|leg| (leg[1] - leg[0]).length()).sum();
+        me.retreat_left = Some(self.way(me).windows(2).map(|leg| (leg[1] - leg[0]).length()).sum());
         me.leg_left = to_next.length();
         let reachable = (2.0 * me.braking * me.leg_left).sqrt().max(0.05);
         me.wish = to_next.normalize_or_zero() * (RETREAT_SPEED * me.speed).min(reachable);

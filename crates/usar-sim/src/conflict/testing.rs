@@ -14,7 +14,7 @@ pub(super) fn mover(id: u32, at: [f32; 2], wish: [f32; 2]) -> Mover<'static> {
         position,
         velocity: Vector::ZERO,
         wish,
-        way_left: 10.0,
+        retreat_left: None,
         leg_left: 10.0,
         route: if wish == Vector::ZERO {
             &[]

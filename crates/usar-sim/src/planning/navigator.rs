@@ -284,6 +284,9 @@ impl Navigator {
         let to_next = ahead[0] - robot.position;
         let distance = to_next.length();
         let direction = to_next.normalize_or_zero();
+        if 2.0 * braking * distance > speed * speed * 1.001 {
+            return direction * speed; // the next waypoint is farther than the way that it takes to stop
+        }
         let mut wished = speed.min(reachable(0.0, route.length(robot.position)));
         if let Some(after) = ahead.get(1) {
             let turn = direction.dot((*after - ahead[0]).normalize_or_zero());
