@@ -17,42 +17,64 @@ fn main() -> ExitCode {
     let mut arguments = std::env::args().skip(1).map(|text| text.parse::<u64>().expect("a number"));
     let first = arguments.next().unwrap_or(0);
     let count = arguments.next().unwrap_or(500);
-    let results: Vec<(u64, Result<Journeys, String>)> = (first..first + count)
-        .into_par_iter()
-        .map(|seed| (seed, Journeys::run(&worlds::world(seed))))
-        .collect();
-    let (mut robots, mut stalls, mut faults) = (0, 0, 0);
-    let mut undone = 0;
-    let mut longest: f64 = 0.0;
-    for (seed, result) in &results {
-        match result {
-            Ok(journeys) => {
-                robots += journeys.record.robots.len();
-                for stall in journeys.stalls() {
-                    stalls += 1;
-                    println!("world {seed}: {stall}");
-                }
-                longest = longest.max(journeys.standstill_s);
-                if journeys.standstill_s > STANDSTILL_S {
-                    faults += 1;
-                    println!("world {seed}: all stood for {:.1} s", journeys.standstill_s);
-                }
-                let record = &journeys.record;
-                if seed.is_multiple_of(2) && record.status.name() != "errands_over" {
-                    undone += 1;
-                    println!("world {seed}: {} robots, errands not over in time", record.robots.len());
-                }
-            }
-            Err(reason) => {
-                faults += 1;
-                println!("world {seed}: {reason}");
-            }
-        }
+    let mut totals = Totals::default();
+    for start in (first..first + count).step_by(CHUNK) {
+        let seeds = start..(start + CHUNK as u64).min(first + count);
+        let run = |seed: u64| (seed, Journeys::run(&worlds::world(seed)));
+        let results: Vec<(u64, Result<Journeys, String>)> = seeds.into_par_iter().map(run).collect();
+        results.iter().for_each(|(seed, result)| totals.add(*seed, result));
     }
+    let Totals { robots, stalls, faults, undone, longest } = totals;
     let share = 100.0 * f64::from(stalls) / robots as f64;
     println!(
         "{count} worlds, {robots} robots: {faults} faults, longest standstill {longest:.1} s, {stalls} robots ({share:.2} %) \
          without progress for 30 s, {undone} worlds with errands left"
     );
     ExitCode::from(u8::from(faults > 0 || share > 1.0))
+}
+
+/// Worlds between two outputs.
+const CHUNK: usize = 10;
+
+#[derive(Default)]
+struct Totals {
+    robots: usize,
+    stalls: u32,
+    faults: u32,
+    undone: u32,
+    longest: f64,
+}
+
+impl Totals {
+    /// Adds a world, and prints what is to be said of it.
+    fn add(&mut self, seed: u64, result: &Result<Journeys, String>) {
+        let journeys = match result {
+            Ok(journeys) => journeys,
+            Err(reason) => {
+                self.faults += 1;
+                println!("world {seed}: {reason}");
+                return;
+            }
+        };
+        let record = &journeys.record;
+        self.robots += record.robots.len();
+        for stall in journeys.stalls() {
+            self.stalls += 1;
+            println!("world {seed}: {stall}");
+        }
+        self.longest = self.longest.max(journeys.standstill_s);
+        if journeys.standstill_s > STANDSTILL_S {
+            self.faults += 1;
+            println!("world {seed}: all stood for {:.1} s", journeys.standstill_s);
+        }
+        if seed.is_multiple_of(2) && record.status.name() != "errands_over" {
+            self.undone += 1;
+            println!("world {seed}: {} robots, errands not over in time", record.robots.len());
+        }
+        let Self { robots, stalls, .. } = self;
+        println!(
+            "world {seed}: {} robots; {stalls} of {robots} so far did not come nearer for 30 s",
+            record.robots.len()
+        );
+    }
 }

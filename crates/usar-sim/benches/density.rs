@@ -5,8 +5,8 @@ use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 use rne_core::{Difficulty, Role};
 use usar_sim::scenario::{
-    DebrisFile, DebrisShape, InitialLevels, Normal, Point, RoleSpec, Roles, Row, Scenario, ScenarioFile,
-    SweepDefaults, TaskFile, Tasks,
+    ConflictRules, Costs, DebrisFile, DebrisShape, InitialLevels, MissionRules, Normal, PlanningRules, Point,
+    RoleSpec, Roles, Row, Sampled, Scenario, ScenarioFile, SweepDefaults, TaskFile, Tasks,
 };
 
 /// Radius of all robots, in metres.
@@ -99,11 +99,11 @@ pub fn mission(robots: u32, duration_s: f64) -> Scenario {
         tasks,
         errands: Vec::new(),
         radiation: Vec::new(),
-        sampled: Default::default(),
-        costs: Default::default(),
-        mission: Default::default(),
-        planning: Default::default(),
-        conflicts: Default::default(),
+        sampled: Sampled::default(),
+        costs: Costs::default(),
+        mission: MissionRules::default(),
+        planning: PlanningRules::default(),
+        conflicts: ConflictRules::default(),
         rne: rne_core::RneOptions::default(),
     };
     Scenario::try_from(file).unwrap_or_else(|problems| panic!("{problems:?}"))

@@ -26,20 +26,14 @@ impl Raw {
         let mut world = PhysicsWorld::new();
         world.gravity = Vector::ZERO;
         world.integration_parameters.dt = DT_S as f32;
-        for (x, y, w, h) in
-            [(0.5, -1.0, 0.5, 0.0), (0.5, 1.0, 0.5, 0.0), (-1.0, 0.5, 0.0, 0.5), (1.0, 0.5, 0.0, 0.5)]
-        {
-            let beyond = |k: f32| {
-                if k == 1.0 {
-                    side + 1.0
-                } else if k == -1.0 {
-                    -1.0
-                } else {
-                    k * side
-                }
-            };
-            let body = RigidBodyBuilder::fixed().translation(Vector::new(beyond(x), beyond(y)));
-            world.insert(body, ColliderBuilder::cuboid(w * side + 1.0, h * side + 1.0));
+        let (half, outside) = (side / 2.0, side + 1.0);
+        for (at, [w, h]) in [
+            ([half, -1.0], [outside, 1.0]),
+            ([half, outside], [outside, 1.0]),
+            ([-1.0, half], [1.0, outside]),
+            ([outside, half], [1.0, outside]),
+        ] {
+            world.insert(RigidBodyBuilder::fixed().translation(at.into()), ColliderBuilder::cuboid(w, h));
         }
         for piece in boxes(robots, |_| false) {
             let DebrisShape::Box(width, height) = piece.shape else { unreachable!("only boxes are drawn") };

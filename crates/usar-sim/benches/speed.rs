@@ -3,6 +3,8 @@
 //!
 //! `cargo bench --bench speed [-- CASE...]`
 
+#![expect(clippy::disallowed_methods, reason = "it measures time, and nothing depends on what it prints")]
+
 mod density;
 mod raw;
 
