@@ -12,7 +12,8 @@ use std::time::Instant;
 
 use rne_core::policy_named;
 use usar_sim::scenario::Scenario;
-use usar_sim::simulation::{Simulation, Stage};
+use usar_sim::simulation::Simulation;
+use usar_sim::stage::Stage;
 
 /// Turns of reference and subject.
 const TURNS: usize = 5;

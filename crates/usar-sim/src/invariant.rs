@@ -117,9 +117,9 @@ impl Invariants {
             velocity: robot.velocity,
             levels: [robot.energy, robot.hp],
             resources: robot.resources,
-            in_contact: true, // unknown: the first step is judged by the wider limits
+            in_contact: false,
         };
-        Self {
+        let mut account = Self {
             dt: scenario.dt_s as f32,
             arena: Vector::new(scenario.arena_m[0] as f32, scenario.arena_m[1] as f32),
             fastest: [fastest(false), fastest(true)],
@@ -129,7 +129,13 @@ impl Invariants {
             overlaps: Overlaps::default(),
             by_x: (0..world.robots.len()).collect(),
             overlap: vec![f32::NEG_INFINITY; world.robots.len()],
+        };
+        account.measure_overlaps(world);
+        for (before, overlap) in account.before.iter_mut().zip(&account.overlap) {
+            before.in_contact = *overlap > -CONTACT_M;
         }
+        account.overlaps = Overlaps::default();
+        account
     }
 
     /// How deep bodies have overlapped so far.

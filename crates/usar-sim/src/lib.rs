@@ -32,6 +32,7 @@ pub mod seed;
 pub mod sensing;
 pub mod simulation;
 pub mod snapshot;
+pub mod stage;
 mod tally;
 pub mod vitals;
 pub mod world;

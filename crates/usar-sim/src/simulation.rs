@@ -14,6 +14,7 @@ use crate::mission::{Activity, Ending, Mission};
 use crate::planning::{Navigator, PLANNED_BRAKING};
 use crate::record::{Status, TrialRecord};
 use crate::scenario::{LayoutError, PriorityRule, Scenario};
+use crate::stage::Stage;
 use crate::tally::{Tally, delay_cause};
 use crate::vitals::{energy_cost, hp_cost};
 use crate::world::{Condition, Robot, STANDING_MPS, World};
@@ -39,60 +40,6 @@ pub(crate) struct State {
     log: EventLog,
     tallies: Vec<Tally>,
     chain: HashChain,
-}
-
-/// The stages of a step, in their order.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Stage {
-    /// What is in range becomes known.
-    Sense,
-    /// Rounds, grouping, claims, goals.
-    Mission,
-    /// Routes.
-    Plan,
-    /// Right of way.
-    Resolve,
-    /// Changes of velocity.
-    Drive,
-    /// The physics.
-    Integrate,
-    /// Energy for moving, HP for radiation.
-    Exposure,
-    /// Loading, delivering, resting.
-    Rescue,
-    /// Metrics, hash chain, invariants.
-    Record,
-}
-
-impl Stage {
-    /// All stages, in their order.
-    pub const ALL: [Self; 9] = [
-        Self::Sense,
-        Self::Mission,
-        Self::Plan,
-        Self::Resolve,
-        Self::Drive,
-        Self::Integrate,
-        Self::Exposure,
-        Self::Rescue,
-        Self::Record,
-    ];
-
-    /// The stage as one word, for tables.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Sense => "sense",
-            Self::Mission => "mission",
-            Self::Plan => "plan",
-            Self::Resolve => "resolve",
-            Self::Drive => "drive",
-            Self::Integrate => "integrate",
-            Self::Exposure => "exposure",
-            Self::Rescue => "rescue",
-            Self::Record => "record",
-        }
-    }
 }
 
 impl<'a> Simulation<'a> {

@@ -306,7 +306,7 @@ fn affects(knowledge: &Knowledge, route: &Route, robot: &Robot) -> bool {
     cut || knowledge.known_zones().iter().any(|(_, zone)| route.length_inside(robot.position, zone) > 0.0)
 }
 
-/// Whether debris was pushed from a place through which a cheaper way may lead now. Never `false` where one does.
+/// Whether debris was pushed from a place through which a cheaper way may lead now. Never `false` where one does that is worth it.
 fn may_cheapen<'o>(
     planner: &Planner,
     query: &Query,
