@@ -16,6 +16,14 @@ worlds:
 bench:
     cargo bench --bench speed
 
+# Instructions of a short trial and of the grouping search against the committed figures; `--write` renews them
+instructions *arguments:
+    bash .ci/instructions {{arguments}}
+
+# 10,000 robots for a minute: time and memory
+scale *arguments:
+    cargo run --release --package experiments --example scale -- {{arguments}}
+
 # New golden hashes of the small worlds; say in CHANGELOG.md why numbers change
 golden:
     cargo run --release --package experiments --example golden -- --write

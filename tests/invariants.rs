@@ -21,7 +21,7 @@ struct Shown<'a> {
 type Fault = (&'static str, fn(&mut Shown));
 
 /// Each fault, with a part of what the checker says of it.
-const FAULTS: [Fault; 24] = [
+const FAULTS: [Fault; 25] = [
     ("moved 1.0", |s| s.world.robots[s.robot].position.x += 1.0),
     ("moved 0.0", |s| s.world.robots[s.robot].position.y += 0.075),
     ("NaN", |s| s.world.robots[s.robot].position.x = f32::NAN),
@@ -31,7 +31,11 @@ const FAULTS: [Fault; 24] = [
         let robot = &mut s.world.robots[s.robot];
         robot.velocity = -robot.velocity - Vector::new(0.5, 0.0);
     }),
-    ("overlaps", |s| s.world.debris[0].outline.pose.translation = s.world.robots[s.robot].position),
+    ("overlaps", |s| {
+        let movable = s.world.debris.iter().position(|piece| !piece.is_fixed).unwrap();
+        s.world.debris[movable].outline.pose.translation = s.world.robots[s.robot].position;
+    }),
+    ("debris 0 is fixed", |s| s.world.debris[0].outline.pose.translation.x += 0.1),
     ("energy NaN", |s| s.world.robots[s.robot].energy = f64::NAN),
     ("energy 101", |s| s.world.robots[s.robot].energy = 101.0),
     ("energy -1", |s| s.world.robots[s.robot].energy = -1.0),
@@ -67,7 +71,7 @@ const FAULTS: [Fault; 24] = [
 ];
 
 #[test]
-fn each_of_24_faults_is_caught_within_one_step() {
+fn each_of_25_faults_is_caught_within_one_step() {
     let scenario = paper();
     let policy = rne_core::policy_named("RNE", &scenario.rne).unwrap();
     for (said, fault) in FAULTS {

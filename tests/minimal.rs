@@ -49,6 +49,7 @@ fn free_path_s(scenario: &Scenario, trial: &Simulation) -> f64 {
                 aerial: robot.is_aerial(),
                 speed: 1.0,
                 obstacles: known.obstacles(),
+                so_far: &[],
                 in_the_way: &[],
                 zones: &[],
             };

@@ -7,7 +7,9 @@ use parry2d::math::Vector;
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 use usar_sim::layout::Layout;
-use usar_sim::planning::{Goal, Knowledge, KnownObstacle, Navigator, ObstacleKey, Planner, Query, Route};
+use usar_sim::planning::{
+    Goal, Knowledge, KnownObstacle, Navigator, ObstacleKey, ObstacleMap, Planner, Query, Route,
+};
 use usar_sim::scenario::{DebrisFile, DebrisShape, Scenario};
 use usar_sim::world::{Outline, RadiationZone, World, debris_outline};
 
@@ -95,12 +97,12 @@ fn random_debris(draws: &mut ChaCha8Rng) -> Vec<Outline> {
         .collect()
 }
 
-fn known(outlines: &[Outline]) -> Vec<KnownObstacle> {
-    let number = |i: usize| ObstacleKey::Debris(i as u32, 1);
-    outlines.iter().enumerate().map(|(i, o)| KnownObstacle::new(number(i), o, 0.4, 0.15)).collect()
+fn known(outlines: &[Outline]) -> ObstacleMap {
+    let number = |i: usize| ObstacleKey::Debris(i as u32);
+    outlines.iter().enumerate().map(|(i, o)| KnownObstacle::new(number(i), 1, o, 0.4, 0.15)).collect()
 }
 
-fn plan(scenario: &Scenario, obstacles: &[KnownObstacle], from: P, to: P) -> Option<Route> {
+fn plan(scenario: &Scenario, obstacles: &ObstacleMap, from: P, to: P) -> Option<Route> {
     let vector = |p: P| Vector::new(p[0] as f32, p[1] as f32);
     Planner::new(scenario).route(&Query {
         from: vector(from),
@@ -108,6 +110,7 @@ fn plan(scenario: &Scenario, obstacles: &[KnownObstacle], from: P, to: P) -> Opt
         aerial: false,
         speed: 2.25,
         obstacles,
+        so_far: &[],
         in_the_way: &[],
         zones: &[],
     })
@@ -164,7 +167,8 @@ fn a_detour_round_radiation_is_made_where_it_is_cheaper_and_no_further() {
             to: Vector::new(50.0, 30.0),
             aerial: false,
             speed: 2.0,
-            obstacles: &[],
+            obstacles: &ObstacleMap::default(),
+            so_far: &[],
             in_the_way: &[],
             zones: &[(0, zone)],
         });
@@ -192,18 +196,18 @@ fn observers_fly_over_debris() {
         rotation_deg: 0.0,
         movable: None,
     });
-    let query = |aerial| Query {
-        from: Vector::new(30.0, 30.0),
-        to: Vector::new(60.0, 30.0),
-        aerial,
-        speed: 1.5,
-        obstacles: &[],
-        in_the_way: &[],
-        zones: &[],
-    };
     let obstacles = known(&[wall]);
     let length = |aerial| {
-        let query = Query { obstacles: &obstacles, ..query(aerial) };
+        let query = Query {
+            from: Vector::new(30.0, 30.0),
+            to: Vector::new(60.0, 30.0),
+            aerial,
+            speed: 1.5,
+            obstacles: &obstacles,
+            so_far: &[],
+            in_the_way: &[],
+            zones: &[],
+        };
         Planner::new(&scenario).route(&query).unwrap().length(query.from)
     };
     assert!((length(true) - 30.0).abs() < 1e-3 && length(false) > 55.0);

@@ -6,7 +6,9 @@
 #![expect(clippy::disallowed_methods, reason = "it measures time, and nothing depends on what it prints")]
 
 mod density;
+mod grouping;
 mod raw;
+mod team;
 
 use std::time::Instant;
 
@@ -28,8 +30,8 @@ fn main() {
     let cases = [
         ("paper.ron", 12, paper, "RNE", 30_000),
         ("density-12", 12, density::mission(12, 60.0), "ENG", 3_000),
-        ("density-100", 100, density::mission(100, 20.0), "ENG", 1_000),
-        ("density-1000", 1000, density::mission(1000, 4.0), "ENG", 200),
+        ("density-100", 100, density::mission(100, 60.0), "ENG", 3_000),
+        ("density-1000", 1000, density::mission(1000, 60.0), "ENG", 3_000),
     ];
     println!("{TURNS} turns each, medians; us a step; raw: rapier2d alone with as many robots\n");
     println!("{:<14}{:>8}{:>10}{:>8}{:>12}", "", "raw", "full", "ratio", "trials/s");
@@ -53,6 +55,9 @@ fn main() {
     }
     if let [_, (few, fast), .., (many, slow)] = growth[..] {
         println!("\ngrowth exponent, {few} to {many} robots: {:.2}", (slow / fast).ln() / (many / few).ln());
+    }
+    if asked.is_empty() || asked.iter().any(|name| name == "grouping") {
+        grouping::print_table();
     }
 }
 

@@ -5,7 +5,7 @@
 
 use std::fmt;
 
-use parry2d::math::Vector;
+use parry2d::math::{Pose, Vector};
 use serde::Serialize;
 
 use crate::event::Event;
@@ -35,6 +35,12 @@ const AT_REST_M: f32 = 1.0;
 /// Robots nearer than this touch something for the purpose of limits on acceleration, in metres.
 const CONTACT_M: f32 = 0.02;
 
+/// Debris farther than this from a robot is not measured, in metres.
+const LOOK_M: f32 = 2.0;
+
+/// Rounding of a distance in an arena, in metres: added to every way that is taken off a distance.
+const ROUNDING_M: f32 = 1.0e-4;
+
 /// A broken invariant: where, when and with which values.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Violation {
@@ -57,7 +63,7 @@ impl fmt::Display for Violation {
 }
 
 /// What one robot was like after the last step.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 struct Before {
     position: Vector,
     velocity: Vector,
@@ -65,6 +71,23 @@ struct Before {
     resources: u32,
     /// Whether it touched something, or nearly.
     in_contact: bool,
+}
+
+/// What is known of the fixed debris round a robot.
+#[derive(Debug, Clone)]
+struct Look {
+    /// Where the robot was when all of it was looked at.
+    at: Vector,
+    /// Numbers of the pieces that were nearer than [`LOOK_M`] then.
+    near: Vec<usize>,
+    /// None is nearer than this now, in metres.
+    gap: f32,
+}
+
+impl Look {
+    fn never() -> Self {
+        Self { at: Vector::ZERO, near: Vec::new(), gap: f32::NEG_INFINITY }
+    }
 }
 
 /// How deep bodies overlapped in a trial.
@@ -99,6 +122,15 @@ pub struct Invariants {
     before: Vec<Before>,
     /// Where each rescuee is by the events.
     rescuees: Vec<RescueeState>,
+    on_board: usize,
+    /// The changes of the world's rescuees that were compared with the account; none when the account has changed since.
+    checked_changes: Option<u64>,
+    /// Numbers of the movable debris.
+    movable: Vec<usize>,
+    /// Numbers of the fixed debris, and where each piece is to stay.
+    fixed: Vec<(usize, Pose)>,
+    /// For each robot, the last look at the fixed debris.
+    looks: Vec<Look>,
     overlaps: Overlaps,
     by_x: Vec<usize>,
     overlap: Vec<f32>,
@@ -119,6 +151,10 @@ impl Invariants {
             resources: robot.resources,
             in_contact: false,
         };
+        let x = |robot: &usize| world.robots[*robot].position.x;
+        let mut by_x: Vec<usize> = (0..world.robots.len()).collect();
+        by_x.sort_by(|a, b| x(a).total_cmp(&x(b)));
+        let fixed = world.debris.iter().enumerate().filter(|(_, piece)| piece.is_fixed);
         let mut account = Self {
             dt: scenario.dt_s as f32,
             arena: Vector::new(scenario.arena_m[0] as f32, scenario.arena_m[1] as f32),
@@ -126,8 +162,13 @@ impl Invariants {
             time_s: 0.0,
             before: world.robots.iter().map(before).collect(),
             rescuees: world.rescuees.iter().map(|rescuee| rescuee.state).collect(),
+            on_board: world.robots.iter().map(|robot| robot.load.len()).sum(),
+            checked_changes: None,
+            movable: (0..world.debris.len()).filter(|number| !world.debris[*number].is_fixed).collect(),
+            fixed: fixed.map(|(number, piece)| (number, piece.outline.pose)).collect(),
+            looks: vec![Look::never(); world.robots.len()],
             overlaps: Overlaps::default(),
-            by_x: (0..world.robots.len()).collect(),
+            by_x,
             overlap: vec![f32::NEG_INFINITY; world.robots.len()],
         };
         account.measure_overlaps(world);
@@ -159,6 +200,11 @@ impl Invariants {
         if world.physics.is_broken() {
             return Err(self.violation(None, "the physics set a body aside: its state is not finite".into()));
         }
+        if let Some((number, _)) =
+            self.fixed.iter().find(|(number, at)| world.debris[*number].outline.pose != *at)
+        {
+            return Err(self.violation(None, format!("debris {number} is fixed, but moved")));
+        }
         self.measure_overlaps(world);
         for robot in &world.robots {
             self.check_robot(robot, events)?;
@@ -189,6 +235,8 @@ impl Invariants {
                     );
                 };
                 self.before[resource_of.index()].resources = left;
+                self.on_board += 1;
+                self.checked_changes = None;
             }
             Event::Delivered { robot, rescuee, .. } => {
                 let place = &mut self.rescuees[rescuee.index()];
@@ -197,6 +245,8 @@ impl Invariants {
                     return Err(self.violation(Some(*robot), what));
                 }
                 *place = RescueeState::Rescued;
+                self.on_board -= 1;
+                self.checked_changes = None;
             }
             Event::RestEnded { robot } => {
                 let robot = &world.robots[robot.index()];
@@ -214,13 +264,23 @@ impl Invariants {
     fn check_robot(&mut self, robot: &Robot, events: &[Event]) -> Result<(), Violation> {
         let i = robot.id.index();
         let before = self.before[i];
+        let in_contact = self.overlap[i] > -CONTACT_M;
+        let now = Before {
+            position: robot.position,
+            velocity: robot.velocity,
+            levels: [robot.energy, robot.hp],
+            resources: robot.resources,
+            in_contact,
+        };
+        if now == before && self.overlap[i] <= MAX_OVERLAP_M {
+            return Ok(()); // it stands still, and was checked
+        }
         let fail = |what: String| Err(self.violation(Some(robot.id), what));
         if !robot.position.is_finite() || !robot.velocity.is_finite() {
             return fail(format!("position {}, velocity {}", robot.position, robot.velocity));
         }
-        let levels = [robot.energy, robot.hp];
         for (name, now, then) in
-            [("energy", levels[0], before.levels[0]), ("HP", levels[1], before.levels[1])]
+            [("energy", robot.energy, before.levels[0]), ("HP", robot.hp, before.levels[1])]
         {
             if !(0.0..=100.0).contains(&now) {
                 return fail(format!("{name} {now} %"));
@@ -233,13 +293,10 @@ impl Invariants {
         if robot.resources != before.resources {
             return fail(format!("resources {}, should be {}", robot.resources, before.resources));
         }
-        let in_contact = self.overlap[i] > -CONTACT_M;
         if let Err(what) = self.check_motion(robot, &before, in_contact) {
             return fail(what);
         }
-        let resources = before.resources;
-        self.before[i] =
-            Before { position: robot.position, velocity: robot.velocity, levels, resources, in_contact };
+        self.before[i] = now;
         Ok(())
     }
 
@@ -247,19 +304,22 @@ impl Invariants {
     fn check_motion(&self, robot: &Robot, before: &Before, in_contact: bool) -> Result<(), String> {
         let touches = in_contact || before.in_contact;
         let top = self.fastest[usize::from(robot.is_aerial())] * if touches { PUSHED } else { 1.0 };
-        let step = (robot.position - before.position).length();
+        let step = robot.position - before.position;
         let longest = top * self.dt + STEP_SLACK_M;
-        if step > longest {
+        if step.length_squared() > longest * longest {
+            let step = step.length();
             return Err(format!("moved {step:.4} m in one step, more than {longest:.4} m"));
         }
-        let speed = robot.velocity.length();
         let fastest = longest / self.dt;
-        if speed > fastest {
+        if robot.velocity.length_squared() > fastest * fastest {
+            let speed = robot.velocity.length();
             return Err(format!("speed {speed:.4} m/s, more than {fastest:.4} m/s"));
         }
-        let change = (robot.velocity - before.velocity).length() / self.dt;
+        let change = (robot.velocity - before.velocity) / self.dt;
         let greatest = robot.spec.acceleration_mps2 as f32;
-        if change > greatest * 1.01 + 1e-3 && !touches {
+        let limit = greatest * 1.01 + 1e-3;
+        if change.length_squared() > limit * limit && !touches {
+            let change = change.length();
             return Err(format!(
                 "acceleration {change:.3} m/s^2 without contact, more than {greatest:.3} m/s^2"
             ));
@@ -275,7 +335,14 @@ impl Invariants {
     fn measure_overlaps(&mut self, world: &World) {
         let robots = &world.robots;
         self.overlap.fill(f32::NEG_INFINITY);
-        self.by_x.sort_by(|a, b| robots[*a].position.x.total_cmp(&robots[*b].position.x)); // nearly sorted: linear
+        // By insertion: they are nearly sorted since the last step.
+        for end in 1..self.by_x.len() {
+            let mut at = end;
+            while at > 0 && robots[self.by_x[at - 1]].position.x > robots[self.by_x[at]].position.x {
+                self.by_x.swap(at - 1, at);
+                at -= 1;
+            }
+        }
         for (at, i) in self.by_x.iter().enumerate() {
             let a = &robots[*i];
             for j in &self.by_x[at + 1..] {
@@ -292,37 +359,69 @@ impl Invariants {
         }
         for robot in robots {
             let to_wall = robot.position.min(self.arena - robot.position).min_element();
+            let with_debris = self.overlap_with_debris(robot, world);
             let overlap = &mut self.overlap[robot.id.index()];
-            *overlap = overlap.max(robot.radius() - to_wall);
-            if !robot.is_aerial() {
-                for piece in &world.debris {
-                    let reach = piece.reach + robot.radius() + CONTACT_M;
-                    let apart = piece.outline.pose.translation - robot.position;
-                    if apart.length_squared() < reach * reach {
-                        *overlap =
-                            overlap.max(robot.radius() - piece.outline.signed_distance(robot.position));
-                    }
-                }
+            *overlap = overlap.max(robot.radius() - to_wall).max(with_debris);
+            if *overlap > 0.0 {
+                self.overlaps.contacts += 1;
+                self.overlaps.rare += u64::from(*overlap > RARE_OVERLAP_M);
+                self.overlaps.deepest_m = self.overlaps.deepest_m.max(*overlap);
             }
-            self.overlaps.contacts += u64::from(*overlap > 0.0);
-            self.overlaps.rare += u64::from(*overlap > RARE_OVERLAP_M);
-            self.overlaps.deepest_m = self.overlaps.deepest_m.max(*overlap);
         }
     }
 
+    /// The deepest overlap of a robot with debris; negative is a gap, as far as it matters. Fixed debris is looked at only when the robot
+    /// has come far enough since the last look to touch any.
+    fn overlap_with_debris(&mut self, robot: &Robot, world: &World) -> f32 {
+        if robot.is_aerial() {
+            return f32::NEG_INFINITY;
+        }
+        let gap = |number: &usize| {
+            let piece = &world.debris[*number];
+            let apart = (piece.outline.pose.translation - robot.position).length();
+            let far = apart - piece.reach - robot.radius();
+            if far < LOOK_M { piece.outline.signed_distance(robot.position) - robot.radius() } else { far }
+        };
+        let look = &mut self.looks[robot.id.index()];
+        look.gap -= (robot.position - self.before[robot.id.index()].position).length() + ROUNDING_M;
+        let is_far = look.gap > CONTACT_M; // false where a position is not finite
+        if !is_far {
+            let may_meet_others = (robot.position - look.at).length() > LOOK_M - CONTACT_M;
+            if look.gap == f32::NEG_INFINITY || may_meet_others {
+                look.at = robot.position;
+                look.near.clear();
+                look.near.extend(
+                    self.fixed.iter().map(|(number, _)| *number).filter(|number| gap(number) < LOOK_M),
+                );
+            }
+            let left = LOOK_M - (robot.position - look.at).length();
+            look.gap = look.near.iter().map(gap).fold(left, f32::min);
+        }
+        let mut least = look.gap;
+        for piece in self.movable.iter().map(|number| &world.debris[*number]) {
+            let reach = piece.reach + robot.radius() + CONTACT_M;
+            if (piece.outline.pose.translation - robot.position).length_squared() < reach * reach {
+                least = least.min(piece.outline.signed_distance(robot.position) - robot.radius());
+            }
+        }
+        -least
+    }
+
     /// Every rescuee is where the account says, once, and nobody has more on board than there is room for.
-    fn check_rescuees(&self, world: &World) -> Result<(), Violation> {
+    fn check_rescuees(&mut self, world: &World) -> Result<(), Violation> {
         if world.rescuees.len() != self.rescuees.len() {
             let what = format!("{} rescuees, should be {}", world.rescuees.len(), self.rescuees.len());
             return Err(self.violation(None, what));
         }
-        let mut on_board = 0;
-        for (rescuee, expected) in world.rescuees.iter().zip(&self.rescuees) {
-            if rescuee.state != *expected {
-                let what = format!("rescuee {} is {:?}, should be {expected:?}", rescuee.id, rescuee.state);
-                return Err(self.violation(None, what));
+        if self.checked_changes != Some(world.rescuees.changes()) {
+            for (rescuee, expected) in world.rescuees.iter().zip(&self.rescuees) {
+                if rescuee.state != *expected {
+                    let what =
+                        format!("rescuee {} is {:?}, should be {expected:?}", rescuee.id, rescuee.state);
+                    return Err(self.violation(None, what));
+                }
             }
-            on_board += usize::from(matches!(expected, RescueeState::OnBoard(_)));
+            self.checked_changes = Some(world.rescuees.changes());
         }
         let loads: usize = world.robots.iter().map(|robot| robot.load.len()).sum();
         for robot in world.robots.iter().filter(|robot| !robot.load.is_empty()) {
@@ -339,8 +438,9 @@ impl Invariants {
                 );
             }
         }
-        if loads != on_board {
-            return Err(self.violation(None, format!("{loads} rescuees on board, should be {on_board}")));
+        if loads != self.on_board {
+            let what = format!("{loads} rescuees on board, should be {}", self.on_board);
+            return Err(self.violation(None, what));
         }
         Ok(())
     }

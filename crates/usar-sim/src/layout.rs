@@ -136,16 +136,14 @@ impl Layout {
             ("the easy task", vector(scenario.tasks.easy.center)),
         ];
         let robots = self.robots.len() as u32;
-        for robot in &ground {
-            places.push(("a robot's home", robot.home));
-            places.push((
-                "the hard task's rest place",
-                rest_slot(scenario, Difficulty::Hard, robot.id, robots),
-            ));
-            places.push((
-                "the easy task's rest place",
-                rest_slot(scenario, Difficulty::Easy, robot.id, robots),
-            ));
+        // Neighbours one after the other: each is looked for from the one before.
+        places.extend(ground.iter().map(|robot| ("a robot's home", robot.home)));
+        for task in Difficulty::ALL {
+            let name = match task {
+                Difficulty::Hard => "the hard task's rest place",
+                Difficulty::Easy => "the easy task's rest place",
+            };
+            places.extend(ground.iter().map(|robot| (name, rest_slot(scenario, task, robot.id, robots))));
         }
         let outlines: Vec<_> = self.debris.iter().map(debris_outline).collect();
         match Planner::new(scenario).first_unreachable(&outlines, first.home, &places) {

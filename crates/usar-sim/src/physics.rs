@@ -59,6 +59,7 @@ impl Physics {
         let mut world = PhysicsWorld::new();
         world.gravity = Vector::ZERO;
         world.integration_parameters = parameters(scenario.dt_s as f32);
+        world.broad_phase.adaptive_change_detection_margin = true;
         insert_walls(&mut world, scenario.arena_m.map(|size| size as f32));
         let ground = world.insert_body(RigidBodyBuilder::fixed());
         let debris = files
@@ -98,9 +99,11 @@ impl Physics {
         movable.map(motion).collect()
     }
 
-    /// Poses of the debris, in order; `None` for fixed debris.
-    pub(crate) fn debris_poses(&self) -> impl Iterator<Item = Option<Pose>> + '_ {
-        self.debris.iter().map(|handle| handle.map(|handle| *self.world.bodies[handle].position()))
+    /// Numbers and poses of the movable debris, in order.
+    pub(crate) fn debris_poses(&self) -> impl Iterator<Item = (usize, Pose)> + '_ {
+        let movable =
+            self.debris.iter().enumerate().filter_map(|(number, handle)| Some((number, (*handle)?)));
+        movable.map(|(number, handle)| (number, *self.world.bodies[handle].position()))
     }
 
     /// Whether the engine disabled a body because its state was no longer finite.
@@ -147,7 +150,7 @@ fn parameters(dt: f32) -> IntegrationParameters {
         num_internal_stabilization_iterations: 1,
         max_ccd_substeps: 1,
         contact_clustering: true,
-        contact_recycling: true,
+        contact_recycling: false,
         normalized_contact_recycle_distance: 0.05,
         friction_in_bias_pass: false,
         warmstart_joints: false,

@@ -6,6 +6,7 @@ use std::ops::Range;
 
 use parry2d::math::Vector;
 use rne_core::Difficulty;
+use smallvec::SmallVec;
 
 use crate::event::{Event, EventLog};
 use crate::ids::RescueeId;
@@ -57,18 +58,22 @@ impl RescueeBlock {
     }
 }
 
-/// Lets one robot look around, for the knowledge that it shares.
+/// Lets one robot look around, for the knowledge that it shares: for debris, zones, `wrecks` (robots that stand for good, by number) and
+/// rescuees.
 pub fn look_around(
     world: &World,
-    blocks: &[RescueeBlock],
+    (blocks, wrecks): (&[RescueeBlock], &[usize]),
     robot: &Robot,
     knowledge: &mut Knowledge,
     log: &mut EventLog,
 ) {
     let sensing = robot.sensing_range() as f32;
-    for (number, piece) in world.debris.iter().enumerate() {
-        let is_news = knowledge.debris[number] < piece.sightings.len() as u32;
-        if is_news && piece.outline.distance_to(robot.position) <= sensing {
+    let is_news = |number: &usize| knowledge.debris[*number] < world.debris[*number].sightings.len() as u32;
+    let mut near: SmallVec<[usize; 64]> =
+        world.debris_places.near(robot.position, sensing).into_iter().filter(is_news).collect();
+    near.sort_unstable();
+    for number in near {
+        if world.debris[number].outline.distance_to(robot.position) <= sensing {
             knowledge.learn_debris(world, number);
             log.push(Event::DebrisDiscovered { robot: robot.id, debris: number as u32 });
         }
@@ -79,10 +84,10 @@ pub fn look_around(
             log.push(Event::ZoneDiscovered { robot: robot.id, zone: number as u32 });
         }
     }
-    for other in &world.robots {
-        let in_range = |at: Vector| (robot.position - at).length() <= sensing;
-        if !knowledge.wrecks[other.id.index()] && other.wreck_at.is_some_and(in_range) {
-            knowledge.learn_wreck(world, other.id.index());
+    let in_range = |at: Vector| (robot.position - at).length() <= sensing;
+    for wreck in wrecks {
+        if !knowledge.wrecks[*wreck] && world.robots[*wreck].wreck_at.is_some_and(in_range) {
+            knowledge.learn_wreck(world, *wreck);
         }
     }
     let observing = robot.observing_range() as f32;

@@ -26,6 +26,8 @@ pub struct Simulation<'a> {
     seed: u64,
     state: State,
     invariants: Option<Invariants>,
+    /// Empty between steps: its memory serves the next step.
+    movers: Vec<Mover<'static>>,
 }
 
 /// All that changes in a trial: what a snapshot holds and what the hash chain covers.
@@ -65,7 +67,7 @@ impl<'a> Simulation<'a> {
             chain: HashChain::default(),
             world,
         };
-        Ok(Self { scenario, policy, seed, state, invariants: None })
+        Ok(Self { scenario, policy, seed, state, invariants: None, movers: Vec::new() })
     }
 
     /// A trial that goes on from this state.
@@ -75,8 +77,9 @@ impl<'a> Simulation<'a> {
         seed: u64,
         mut state: State,
     ) -> Self {
+        state.world.restore();
         state.mission.restore(&state.world);
-        Self { scenario, policy, seed, state, invariants: None }
+        Self { scenario, policy, seed, state, invariants: None, movers: Vec::new() }
     }
 
     /// The same trial, with every invariant checked at every step: a violation ends it as failed.
@@ -229,7 +232,7 @@ impl<'a> Simulation<'a> {
         let decided = state.listen(0, self.scenario.dt_s);
         state.plan();
         done(Stage::Plan);
-        state.resolve(self.scenario);
+        state.resolve(self.scenario, &mut self.movers);
         done(Stage::Resolve);
         state.drive(self.scenario);
         done(Stage::Drive);
@@ -315,16 +318,16 @@ impl State {
 
     fn plan(&mut self) {
         let (mission, world) = (&self.mission, &self.world);
-        let speed_of = |robot: &Robot| mission.speed_of(robot, world);
+        let speed_of = |robot: &Robot| mission.speed_of(robot);
         self.navigator.plan(world, |robot| mission.knowledge_of(robot), speed_of, self.step);
     }
 
     /// Settles who goes and who waits, and takes note of why robots stop.
-    fn resolve(&mut self, scenario: &Scenario) {
+    fn resolve(&mut self, scenario: &Scenario, spare: &mut Vec<Mover<'static>>) {
         let rule = scenario.conflicts.priority;
-        let seen_by = (&self.world, &self.mission, &self.navigator);
-        let mut movers: Vec<Mover> =
-            self.world.robots.iter().map(|robot| mover(robot, rule, seen_by)).collect();
+        let seen_by = (&self.mission, &self.navigator);
+        let mut movers: Vec<Mover> = std::mem::take(spare);
+        movers.extend(self.world.robots.iter().map(|robot| mover(robot, rule, seen_by)));
         let directives = self.resolver.resolve(&mut movers, &mut self.log);
         for ((robot, directive), tally) in self.world.robots.iter().zip(directives).zip(&mut self.tallies) {
             let traveller = self.navigator.traveller(robot.id);
@@ -332,6 +335,8 @@ impl State {
             let cause = delay_cause(robot, activity, traveller, *directive);
             tally.note_delay(Delay { cause, waits_for: directive.waits_for() }, traveller.stalled_steps());
         }
+        movers.clear();
+        *spare = movers.into_iter().map(|_| unreachable!("it is empty")).collect(); // the same memory
     }
 
     /// Lets each drive come as near to what it is told as its force allows.
@@ -401,9 +406,9 @@ impl State {
 fn mover<'s>(
     robot: &Robot,
     rule: PriorityRule,
-    (world, mission, navigator): (&World, &'s Mission, &'s Navigator),
+    (mission, navigator): (&'s Mission, &'s Navigator),
 ) -> Mover<'s> {
-    let speed = mission.speed_of(robot, world) as f32;
+    let speed = mission.speed_of(robot) as f32;
     let wish = if robot.is_able() { navigator.preferred_velocity(robot, speed) } else { Vector::ZERO };
     let route = navigator.traveller(robot.id).route();
     let agent = &mission.agents[robot.id.index()];
@@ -422,7 +427,7 @@ fn mover<'s>(
         speed,
         braking: PLANNED_BRAKING * robot.spec.acceleration_mps2 as f32,
         priority: PriorityKey::new(rule, robot.id, agent.task, [robot.energy, robot.hp]),
-        obstacles: if robot.is_aerial() { &[] } else { mission.knowledge_of(robot.id).obstacles() },
+        known: (!robot.is_aerial()).then(|| mission.knowledge_of(robot.id).obstacles()),
         can_make_room: robot.is_able() && !is_busy,
     }
 }

@@ -78,20 +78,21 @@ impl ConflictSet {
             turns: 0,
             backing_off: 0,
         };
-        set.regroup(members, priority);
+        set.regroup(members, |_| false, priority);
         set
     }
 
-    /// How many of these members it has.
-    pub(super) fn shared(&self, members: &[usize]) -> usize {
-        self.order.iter().filter(|i| members.contains(i)).count()
-    }
-
-    /// Takes new members: those who stay keep their order, newcomers queue behind them by priority.
-    pub(super) fn regroup(&mut self, members: &[usize], priority: impl Fn(usize) -> PriorityKey) {
+    /// Takes new members, in ascending order: those who stay keep their order, newcomers, who were not in it, queue behind them by
+    /// priority.
+    pub(super) fn regroup(
+        &mut self,
+        members: &[usize],
+        was_in: impl Fn(usize) -> bool,
+        priority: impl Fn(usize) -> PriorityKey,
+    ) {
         let head = self.order.first().copied();
-        self.order.retain(|i| members.contains(i));
-        let mut newcomers: Vec<usize> = members.iter().copied().filter(|i| !self.order.contains(i)).collect();
+        self.order.retain(|i| members.binary_search(i).is_ok());
+        let mut newcomers: Vec<usize> = members.iter().copied().filter(|i| !was_in(*i)).collect();
         newcomers.sort_by(|a, b| priority(*a).precedence(&priority(*b)));
         self.order.extend(newcomers);
         self.note_head(head);
@@ -189,7 +190,7 @@ mod tests {
     fn the_lowest_energy_is_the_head_and_newcomers_queue() {
         let mut set = set();
         assert_eq!(set.order, [1, 0, 2]);
-        set.regroup(&[0, 2, 3], priority);
+        set.regroup(&[0, 2, 3], |i| i < 3, priority);
         assert_eq!(set.order, [0, 2, 3]);
     }
 

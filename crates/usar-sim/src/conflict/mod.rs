@@ -9,6 +9,7 @@
 
 mod deadlock;
 mod delay;
+mod mover;
 mod passing;
 mod predict;
 mod priority;
@@ -17,118 +18,23 @@ mod room;
 #[cfg(test)]
 mod testing;
 
+use std::collections::BTreeMap;
+
 use parry2d::math::Vector;
 use serde::{Deserialize, Serialize};
 
 use crate::event::{Event, EventLog};
 use crate::ids::RobotId;
-use crate::planning::KnownObstacle;
 use crate::scenario::{ConflictRules, ResolverRule, Scenario};
 
 use deadlock::{ConflictSet, NextTurn, Observation, Patience, Progress};
 pub use delay::{Delay, DelayCause, wait_cycles};
+pub use mover::{Directive, Mover};
 pub use passing::PASSING_RANGE_M;
 use passing::{Surroundings, nearest_in_the_way, passing_direction};
-use predict::{Neighbours, components, will_conflict};
+use predict::{Conflicts, Neighbours};
 pub use priority::PriorityKey;
 use retreat::{Limits, Retreats};
-
-/// A robot as the resolver sees it.
-#[derive(Debug, Clone, Copy)]
-pub struct Mover<'a> {
-    /// Identity.
-    pub robot: RobotId,
-    /// Whether it flies; robots of different layers do not meet.
-    pub aerial: bool,
-    /// Centre, in metres.
-    pub position: Vector,
-    /// Velocity, in metres per second.
-    pub velocity: Vector,
-    /// The velocity that it would like; zero for a robot with nowhere to go.
-    pub wish: Vector,
-    /// Way that is left to where it makes room, in metres; none for a robot on its own way.
-    pub retreat_left: Option<f32>,
-    /// Way that is left to its next waypoint, in metres.
-    pub leg_left: f32,
-    /// Waypoints ahead.
-    pub route: &'a [Vector],
-    /// Places that it came by, the latest last.
-    pub trail: &'a [Vector],
-    /// Radius, in metres.
-    pub radius: f32,
-    /// Present top speed, in metres per second.
-    pub speed: f32,
-    /// Deceleration that it plans with, in metres per second squared.
-    pub braking: f32,
-    /// Its claim to the right of way.
-    pub priority: PriorityKey,
-    /// The obstacles that it knows; none for aerial robots.
-    pub obstacles: &'a [KnownObstacle],
-    /// Whether it may be asked to make room: not while it loads or rests, nor when it can no longer act.
-    pub can_make_room: bool,
-}
-
-impl Mover<'_> {
-    fn wishes_to_move(&self) -> bool {
-        self.wish != Vector::ZERO
-    }
-
-    /// Way that is left to where it is going, in metres.
-    fn way_left(&self) -> f32 {
-        let starts = std::iter::once(&self.position).chain(self.route);
-        self.retreat_left.unwrap_or_else(|| starts.zip(self.route).map(|(a, b)| (*b - *a).length()).sum())
-    }
-}
-
-/// What a robot is to do in this step.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub enum Directive {
-    /// Move with this velocity.
-    Proceed(Vector),
-    /// Stop, and let another robot pass.
-    Yield {
-        /// The robot that it waits for.
-        to: RobotId,
-    },
-    /// Move with this velocity to where another robot can pass, or stand there until it has.
-    Retreat {
-        /// Metres per second.
-        velocity: Vector,
-        /// The robot for which it makes room.
-        room_for: RobotId,
-    },
-    /// Make room sideways with this velocity: the whole set is deadlocked.
-    BackOff(Vector),
-    /// Stop: no direction is free at the moment.
-    Blocked {
-        /// The robot in the way, where it is one.
-        by: Option<RobotId>,
-    },
-    /// Stand: there is nowhere to go.
-    Stand,
-}
-
-impl Directive {
-    /// The velocity that the drive is to reach.
-    #[must_use]
-    pub fn velocity(self) -> Vector {
-        match self {
-            Self::Proceed(velocity) | Self::BackOff(velocity) | Self::Retreat { velocity, .. } => velocity,
-            Self::Yield { .. } | Self::Blocked { .. } | Self::Stand => Vector::ZERO,
-        }
-    }
-
-    /// The robot that it waits for, where there is one.
-    #[must_use]
-    pub fn waits_for(self) -> Option<RobotId> {
-        match self {
-            Self::Yield { to } => Some(to),
-            Self::Blocked { by } => by,
-            Self::Retreat { velocity, room_for } if velocity == Vector::ZERO => Some(room_for),
-            _ => None,
-        }
-    }
-}
 
 /// How long a deadlocked set backs off, in seconds.
 const BACK_OFF_S: f64 = 1.0;
@@ -162,12 +68,17 @@ pub struct Resolver {
     ask_again: u32,
     sets: Vec<ConflictSet>,
     retreats: Retreats,
-    /// Found anew in every step.
+    /// Found anew in every step, as are the following.
     #[serde(skip)]
     neighbours: Neighbours,
-    /// Pairs in conflict, the lower number first, in order; found anew in every step.
     #[serde(skip)]
-    conflicts: Vec<(usize, usize)>,
+    conflicts: Conflicts,
+    /// For each robot, the set that it is in.
+    #[serde(skip)]
+    set_of: Vec<Option<usize>>,
+    /// For each robot, whether others are to pass it: it has nowhere to go, or yields.
+    #[serde(skip)]
+    stands: Vec<bool>,
     directives: Vec<Directive>,
     /// For each robot, the direction that it was told last; zero where it stood.
     headings: Vec<Vector>,
@@ -198,7 +109,9 @@ impl Resolver {
             sets: Vec::new(),
             retreats: Retreats::new(limits, rules.margin_m as f32, arena),
             neighbours: Neighbours::default(),
-            conflicts: Vec::new(),
+            conflicts: Conflicts::default(),
+            set_of: Vec::new(),
+            stands: Vec::new(),
             directives: Vec::new(),
             headings: Vec::new(),
             blocked_steps: Vec::new(),
@@ -209,20 +122,18 @@ impl Resolver {
     pub fn resolve(&mut self, movers: &mut [Mover], log: &mut EventLog) -> &[Directive] {
         if self.rules.resolver == ResolverRule::None {
             self.directives.clear();
-            self.directives.extend(movers.iter().map(|mover| granted(mover.wish)));
+            self.directives.extend(movers.iter().map(|mover| Directive::granted(mover.wish)));
             return &self.directives;
         }
         self.blocked_steps.resize(movers.len(), 0);
         self.headings.resize(movers.len(), Vector::ZERO);
         self.directives.resize(movers.len(), Directive::Stand);
-        self.retreats.follow(movers);
+        self.neighbours.sort(movers);
+        self.retreats.follow(movers, &self.neighbours);
         let (margin, horizon) = (self.rules.margin_m as f32, self.rules.horizon_s as f32);
-        self.neighbours.find(movers, margin, horizon);
-        let pairs = self.neighbours.pairs().iter().copied();
-        self.conflicts.clear();
-        self.conflicts
-            .extend(pairs.filter(|(a, b)| will_conflict(&movers[*a], &movers[*b], margin, horizon)));
-        self.carry_over(&components(movers.len(), &self.conflicts), movers, log);
+        self.neighbours.pair(movers, margin, horizon);
+        self.conflicts.find(movers, &self.neighbours, margin, horizon);
+        self.carry_over(movers, log);
         let progress: Vec<Progress> = (0..self.sets.len()).map(|set| self.judge(set, movers, log)).collect();
         self.direct(movers, &progress);
         for (heading, directive) in self.headings.iter_mut().zip(&self.directives) {
@@ -240,23 +151,25 @@ impl Resolver {
 
     /// A set continues the one of the last step with which it shares the most members: whoever is head stays it until it is out of the
     /// set. One that shares none is new.
-    fn carry_over(&mut self, members: &[Vec<usize>], movers: &[Mover], log: &mut EventLog) {
-        let mut before = std::mem::take(&mut self.sets);
+    fn carry_over(&mut self, movers: &[Mover], log: &mut EventLog) {
+        let mut before: Vec<Option<ConflictSet>> =
+            std::mem::take(&mut self.sets).into_iter().map(Some).collect();
+        note_sets(&mut self.set_of, movers.len(), before.iter().flatten());
         let priority = |i: usize| movers[i].priority;
-        for members in members {
-            let shares = before.iter().map(|set| set.shared(members)).enumerate();
-            let most = shares.rev().max_by_key(|(_, shared)| *shared).filter(|(_, shared)| *shared > 0);
-            let mut set = if let Some((at, _)) = most {
-                let mut set = before.remove(at);
-                set.regroup(members, priority);
+        for members in self.conflicts.components() {
+            let mut set = if let Some(at) = most_shared(&members, &self.set_of, &before)
+                && let Some(mut set) = before[at].take()
+            {
+                set.regroup(&members, |i| self.set_of[i] == Some(at), priority);
                 set
             } else {
-                log.push(Event::ConflictStarted { robots: robots(members, movers) });
-                ConflictSet::new(members, priority)
+                log.push(Event::ConflictStarted { robots: robots(&members, movers) });
+                ConflictSet::new(&members, priority)
             };
             set.promote(|i| self.retreats.depth(i));
             self.sets.push(set);
         }
+        note_sets(&mut self.set_of, movers.len(), self.sets.iter());
     }
 
     /// How a set fares; a stuck one gets room, another head or a pause.
@@ -298,16 +211,16 @@ impl Resolver {
         }
     }
 
-    /// Those of a set that go: its head, and whoever is in no conflict with one before it that goes.
-    fn who_goes(&self, set: &ConflictSet) -> Vec<usize> {
-        let in_conflict = |a: usize, b: usize| self.conflicts.binary_search(&(a.min(b), a.max(b))).is_ok();
-        let mut goes = vec![set.order[0]];
-        for i in &set.order[1..] {
-            if !goes.iter().any(|other| in_conflict(*i, *other)) {
-                goes.push(*i);
-            }
+    /// Who stands: whoever has nowhere to go, and of each set all but its head and those in no conflict with one before them that goes.
+    fn note_who_stands(&mut self, movers: &[Mover]) {
+        self.stands.clear();
+        let is_alone = |i: usize| self.set_of[i].is_none();
+        self.stands.extend((0..movers.len()).map(|i| !is_alone(i) || !movers[i].wishes_to_move()));
+        for i in self.sets.iter().flat_map(|set| &set.order) {
+            let set = self.set_of[*i];
+            let goes_before = |j: &usize| self.set_of[*j] == set && !self.stands[*j];
+            self.stands[*i] = self.conflicts.of(*i).iter().any(goes_before);
         }
-        goes
     }
 
     /// The robot in the way of one that does not come on: the one that blocked it in the last step, or else the nearest in its way.
@@ -319,56 +232,48 @@ impl Resolver {
         let slow = |j: &&usize| movers[**j].velocity.length() < 0.5 * me.wish.length();
         let near: Vec<usize> = self.neighbours.of(i).iter().filter(slow).copied().collect();
         let discs = near.iter().map(|j| (movers[*j].position - me.position, me.radius + movers[*j].radius));
-        let surroundings = self.surroundings(me, discs.collect(), self.headings[i]);
+        let surroundings = self.surroundings(i, me, discs);
         nearest_in_the_way(me.wish, &surroundings).map(|at| near[at])
     }
 
     fn surroundings<'m>(
         &self,
+        i: usize,
         me: &Mover<'m>,
-        discs: Vec<(Vector, f32)>,
-        heading: Vector,
+        discs: impl Iterator<Item = (Vector, f32)>,
     ) -> Surroundings<'m> {
-        Surroundings { discs, margin: self.rules.margin_m as f32, obstacles: me.obstacles, heading }
+        let margin = self.rules.margin_m as f32;
+        Surroundings { discs: discs.collect(), margin, known: me.known, heading: self.headings[i] }
     }
 
     /// Heads and robots without conflicts go, past those that stand; the others yield, or back off.
     fn direct(&mut self, movers: &[Mover], progress: &[Progress]) {
-        let mut stands: Vec<bool> = movers.iter().map(|mover| !mover.wishes_to_move()).collect();
-        let goers: Vec<Vec<usize>> = self.sets.iter().map(|set| self.who_goes(set)).collect();
-        for (set, goers) in self.sets.iter().zip(&goers) {
-            set.order.iter().for_each(|member| stands[*member] = !goers.contains(member));
-        }
+        self.note_who_stands(movers);
         for i in 0..movers.len() {
-            self.directives[i] = if movers[i].wishes_to_move() && !stands[i] {
-                self.pass(i, movers, movers[i].wish, &stands)
-            } else {
-                Directive::Stand
-            };
+            let goes = movers[i].wishes_to_move() && !self.stands[i];
+            self.directives[i] = if goes { self.pass(i, movers, movers[i].wish) } else { Directive::Stand };
         }
-        for ((set, goers), progress) in self.sets.iter().zip(&goers).zip(progress) {
+        for (set, progress) in self.sets.iter().zip(progress) {
             let backs_off = *progress == Progress::BackingOff;
-            for i in set.order.iter().filter(|i| backs_off || !goers.contains(i)) {
+            let middle =
+                set.order.iter().map(|i| movers[*i].position).sum::<Vector>() / set.order.len() as f32;
+            for i in set.order.iter().filter(|i| backs_off || self.stands[**i]) {
                 self.directives[*i] = if backs_off {
-                    let wish = back_off_wish(*i, &set.order, movers);
-                    Directive::BackOff(self.pass(*i, movers, wish, &stands).velocity())
+                    let wish = back_off_wish(&movers[*i], middle);
+                    Directive::BackOff(self.pass(*i, movers, wish).velocity())
                 } else {
                     Directive::Yield { to: movers[set.order[0]].robot }
                 };
             }
         }
-        for i in 0..movers.len() {
-            let Some(retreat) = self.retreats.of(i) else { continue };
+        for (i, retreat) in self.retreats.iter() {
             let room_for = movers[retreat.head].robot;
-            match self.directives[i] {
-                Directive::Proceed(velocity) => {
-                    self.directives[i] = Directive::Retreat { velocity, room_for };
-                }
-                Directive::Stand => {
-                    self.directives[i] = Directive::Retreat { velocity: Vector::ZERO, room_for };
-                }
-                _ => {}
-            }
+            let velocity = match self.directives[i] {
+                Directive::Proceed(velocity) => velocity,
+                Directive::Stand => Vector::ZERO,
+                _ => continue,
+            };
+            self.directives[i] = Directive::Retreat { velocity, room_for };
         }
     }
 
@@ -394,7 +299,8 @@ impl Resolver {
         let cycles = wait_cycles(&waits_for);
         for (i, blocker) in due {
             let is_parked = !movers[blocker].wishes_to_move();
-            let is_head = self.sets.iter().any(|set| set.order[0] == i && set.order.contains(&blocker));
+            let set = self.set_of[i].filter(|set| self.set_of[blocker] == Some(*set));
+            let is_head = set.is_some_and(|set| self.sets[set].order[0] == i);
             if is_parked || is_head || self.retreats.depth(i) > 0 || self.leads_cycle(i, &cycles, movers) {
                 self.make_room(i, blocker, movers, log);
             }
@@ -414,7 +320,8 @@ impl Resolver {
     }
 
     fn make_room(&mut self, i: usize, blocker: usize, movers: &[Mover], log: &mut EventLog) -> bool {
-        let makes = self.retreats.may_ask(i, blocker, movers) && self.retreats.ask(i, blocker, movers);
+        let may_ask = self.retreats.may_ask(i, blocker, movers);
+        let makes = may_ask && self.retreats.ask(i, blocker, movers, &self.neighbours);
         if makes {
             log.push(Event::MadeRoom { robot: movers[blocker].robot, room_for: movers[i].robot });
         }
@@ -422,12 +329,12 @@ impl Resolver {
     }
 
     /// The way of a robot that has the right of way, past those that stand.
-    fn pass(&self, i: usize, movers: &[Mover], wish: Vector, stands: &[bool]) -> Directive {
+    fn pass(&self, i: usize, movers: &[Mover], wish: Vector) -> Directive {
         let me = Mover { wish, ..movers[i] };
         let near = self.neighbours.of(i);
-        let blockers = || near.iter().filter(|j| stands[**j]).map(|j| &movers[*j]);
+        let blockers = || near.iter().filter(|j| self.stands[**j]).map(|j| &movers[*j]);
         let discs = blockers().map(|other| (other.position - me.position, me.radius + other.radius));
-        let mut surroundings = self.surroundings(&me, discs.collect(), self.headings[i]);
+        let mut surroundings = self.surroundings(i, &me, discs);
         if let Some(direction) = passing_direction(&me, &surroundings) {
             return Directive::Proceed(direction * wish.length());
         }
@@ -440,14 +347,30 @@ impl Resolver {
     }
 }
 
-fn granted(wish: Vector) -> Directive {
-    if wish == Vector::ZERO { Directive::Stand } else { Directive::Proceed(wish) }
+/// Notes for each robot the set that it is in.
+fn note_sets<'s>(
+    set_of: &mut Vec<Option<usize>>,
+    robots: usize,
+    sets: impl Iterator<Item = &'s ConflictSet>,
+) {
+    set_of.clear();
+    set_of.resize(robots, None);
+    for (at, set) in sets.enumerate() {
+        set.order.iter().for_each(|i| set_of[*i] = Some(at));
+    }
+}
+
+/// The set, of those that are left, in which the most of these members were; the first of several.
+fn most_shared(members: &[usize], set_of: &[Option<usize>], left: &[Option<ConflictSet>]) -> Option<usize> {
+    let mut shares = BTreeMap::new();
+    for at in members.iter().filter_map(|i| set_of[*i]).filter(|at| left[*at].is_some()) {
+        *shares.entry(at).or_insert(0) += 1;
+    }
+    shares.into_iter().rev().max_by_key(|(_, shared)| *shared).map(|(at, _)| at)
 }
 
 /// Sideways and away from the middle of the set, at half the wished speed.
-fn back_off_wish(i: usize, order: &[usize], movers: &[Mover]) -> Vector {
-    let middle = order.iter().map(|j| movers[*j].position).sum::<Vector>() / order.len() as f32;
-    let me = &movers[i];
+fn back_off_wish(me: &Mover, middle: Vector) -> Vector {
     let away = (me.position - middle).normalize_or_zero();
     let to_the_right = -me.wish.perp().normalize_or_zero();
     (away + to_the_right).normalize_or(to_the_right) * (0.5 * me.wish.length())

@@ -1,12 +1,16 @@
 //! Passing at a tangent: the free direction nearest to the wished one, past robots that stand and clear of known debris.
 
 use parry2d::math::Vector;
+use smallvec::SmallVec;
 
 use super::Mover;
-use crate::planning::{KnownObstacle, outward_normal, polygon_contains, polygon_crossed};
+use crate::planning::{KnownObstacle, ObstacleMap, outward_normal, polygon_contains, polygon_crossed};
 
 /// How far ahead a robot looks for those that stand in its way, in metres.
 pub const PASSING_RANGE_M: f32 = 2.0;
+
+/// How far ahead a robot that goes off its route looks for debris, in metres.
+const DEBRIS_RANGE_M: f32 = 1.0;
 
 /// Tangents are taken to discs larger by this factor, so that rounding does not make them touch.
 const TANGENT_SLACK: f32 = 1.01;
@@ -23,18 +27,26 @@ const LEAST_ADVANCE: f32 = -0.3;
 /// What a robot has to pass.
 pub(super) struct Surroundings<'a> {
     /// Centres relative to the robot, and distances at which they touch, of the robots that stand or yield.
-    pub(super) discs: Vec<(Vector, f32)>,
+    pub(super) discs: SmallVec<[(Vector, f32); 16]>,
     /// Distance to keep from them beyond touching, in metres.
     pub(super) margin: f32,
-    /// Debris that it knows.
-    pub(super) obstacles: &'a [KnownObstacle],
+    /// Debris that it knows; none for a robot that flies.
+    pub(super) known: Option<&'a ObstacleMap>,
     /// The direction that it took in the last step; zero where it took none.
     pub(super) heading: Vector,
 }
 
-impl Surroundings<'_> {
+/// Pieces of debris near enough to be run into.
+type Near<'a> = SmallVec<[&'a KnownObstacle; 16]>;
+
+impl<'a> Surroundings<'a> {
+    /// Debris that a robot at this point may run into within [`DEBRIS_RANGE_M`].
+    fn debris(&self, from: Vector) -> Near<'a> {
+        self.known.into_iter().flat_map(|known| known.near(from, DEBRIS_RANGE_M)).collect()
+    }
+
     /// Whether a robot at `from` can go `range` metres in a direction.
-    fn is_free(&self, from: Vector, direction: Vector, range: f32) -> bool {
+    fn is_free(&self, debris: &Near, from: Vector, direction: Vector, range: f32) -> bool {
         let clear_of_discs = self.discs.iter().all(|(center, touch)| {
             let distance = touch + self.margin;
             if center.length_squared() < distance * distance {
@@ -43,9 +55,9 @@ impl Surroundings<'_> {
             let nearest = center.dot(direction).clamp(0.0, range);
             (*center - direction * nearest).length_squared() >= distance * distance
         });
-        let to = from + direction * range.min(1.0);
+        let to = from + direction * range.min(DEBRIS_RANGE_M);
         clear_of_discs
-            && self.obstacles.iter().all(|obstacle| match outward(obstacle, from) {
+            && debris.iter().all(|obstacle| match outward(obstacle, from) {
                 Some(outward) => direction.dot(outward) >= -SLIDE, // already too close: not nearer
                 None => !polygon_crossed(&obstacle.tight, from, to),
             })
@@ -55,12 +67,12 @@ impl Surroundings<'_> {
     fn merit(&self, direction: Vector, wish: Vector) -> f32 {
         direction.dot(wish) + PERSISTENCE * direction.dot(self.heading)
     }
+}
 
-    /// Directions along the obstacles that a robot is too close to.
-    fn along_obstacles(&self, from: Vector) -> impl Iterator<Item = Vector> {
-        let outward = self.obstacles.iter().filter_map(move |obstacle| outward(obstacle, from));
-        outward.flat_map(|outward| [outward.perp(), -outward.perp(), outward])
-    }
+/// Directions along the debris that a robot is too close to.
+fn along_debris(debris: &Near, from: Vector) -> impl Iterator<Item = Vector> {
+    let outward = debris.iter().filter_map(move |obstacle| outward(obstacle, from));
+    outward.flat_map(|outward| [outward.perp(), -outward.perp(), outward])
 }
 
 /// The direction that leads out of an obstacle's surroundings, for a robot that is in them.
@@ -79,12 +91,18 @@ pub(super) fn passing_direction(me: &Mover, surroundings: &Surroundings) -> Opti
     }
     let tangents =
         surroundings.discs.iter().filter(near).flat_map(|(center, touch)| tangents(*center, touch + margin));
+    let debris = surroundings.debris(me.position);
+    // Debris comes in no particular order: among equals, coordinates decide.
+    let rank = |direction: &Vector| (surroundings.merit(*direction, wish), direction.x, direction.y);
+    let order = |a: (f32, f32, f32), b: (f32, f32, f32)| {
+        a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)).then(a.2.total_cmp(&b.2))
+    };
     std::iter::once(wish)
         .chain(tangents)
-        .chain(surroundings.along_obstacles(me.position))
+        .chain(along_debris(&debris, me.position))
         .filter(|direction| direction.dot(wish) > LEAST_ADVANCE)
-        .filter(|direction| surroundings.is_free(me.position, *direction, range))
-        .max_by(|a, b| surroundings.merit(*a, wish).total_cmp(&surroundings.merit(*b, wish)))
+        .filter(|direction| surroundings.is_free(&debris, me.position, *direction, range))
+        .max_by(|a, b| order(rank(a), rank(b)))
 }
 
 /// The nearest disc that is in the way of a wish.
@@ -119,7 +137,7 @@ mod tests {
         let discs = discs.iter().map(|(center, radius)| (Vector::from(*center), *radius)).collect();
         passing_direction(
             &mover(0, [0.0, 0.0], [1.0, 0.0]),
-            &Surroundings { discs, margin: 0.0, obstacles: &[], heading: Vector::ZERO },
+            &Surroundings { discs, margin: 0.0, known: None, heading: Vector::ZERO },
         )
     }
 

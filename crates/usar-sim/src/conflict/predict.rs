@@ -1,6 +1,8 @@
 //! Predicted conflicts: pairs of robots whose wishes would bring them into each other's safety distance, and the sets that
 //! these pairs connect.
 
+use parry2d::math::Vector;
+
 use super::Mover;
 use super::passing::PASSING_RANGE_M;
 
@@ -8,22 +10,38 @@ use super::passing::PASSING_RANGE_M;
 #[derive(Default)]
 pub(super) struct Neighbours {
     by_x: Vec<usize>,
-    pairs: Vec<(usize, usize)>,
     lists: Vec<Vec<usize>>,
 }
 
 impl Neighbours {
-    /// Finds all pairs of one layer that could meet within the horizon or stand in each other's way.
-    pub(super) fn find(&mut self, movers: &[Mover], margin: f32, horizon: f32) {
-        let fastest = movers.iter().map(|mover| mover.wish.length()).fold(0.0, f32::max);
-        let largest = movers.iter().map(|mover| mover.radius).fold(0.0, f32::max);
-        let range = (2.0 * fastest * horizon).max(PASSING_RANGE_M) + 2.0 * largest + margin;
+    /// Puts the robots in order along x.
+    pub(super) fn sort(&mut self, movers: &[Mover]) {
         if self.by_x.len() != movers.len() {
             self.by_x = (0..movers.len()).collect();
         }
         // Nearly sorted since the last step: linear.
         self.by_x.sort_by(|a, b| movers[*a].position.x.total_cmp(&movers[*b].position.x).then(a.cmp(b)));
-        self.pairs.clear();
+    }
+
+    /// The robots that are nearer to a point than `range` metres, once they are sorted; in no particular order.
+    pub(super) fn within<'m>(
+        &'m self,
+        movers: &'m [Mover],
+        point: Vector,
+        range: f32,
+    ) -> impl Iterator<Item = usize> + 'm {
+        let first = self.by_x.partition_point(|i| movers[*i].position.x < point.x - range);
+        let strip = self.by_x[first..].iter().copied();
+        let strip = strip.take_while(move |i| movers[*i].position.x <= point.x + range);
+        strip.filter(move |i| (movers[*i].position - point).length() < range)
+    }
+
+    /// Finds all pairs of one layer that could meet within the horizon or stand in each other's way, once they are sorted.
+    pub(super) fn pair(&mut self, movers: &[Mover], margin: f32, horizon: f32) {
+        let fastest = movers.iter().map(|mover| mover.wish.length()).fold(0.0, f32::max);
+        let largest = movers.iter().map(|mover| mover.radius).fold(0.0, f32::max);
+        let range = (2.0 * fastest * horizon).max(PASSING_RANGE_M) + 2.0 * largest + margin;
+        clear(&mut self.lists, movers.len());
         for (at, a) in self.by_x.iter().enumerate() {
             for b in &self.by_x[at + 1..] {
                 let apart = movers[*b].position - movers[*a].position;
@@ -31,22 +49,18 @@ impl Neighbours {
                     break;
                 }
                 if movers[*a].aerial == movers[*b].aerial && apart.length_squared() <= range * range {
-                    self.pairs.push((*a.min(b), *a.max(b)));
+                    self.lists[*a].push(*b);
+                    self.lists[*b].push(*a);
                 }
             }
         }
-        self.pairs.sort_unstable();
-        self.lists.resize_with(movers.len(), Vec::new);
-        self.lists.iter_mut().for_each(Vec::clear);
-        for (a, b) in &self.pairs {
-            self.lists[*a].push(*b);
-            self.lists[*b].push(*a);
-        }
+        self.lists.iter_mut().for_each(|list| list.sort_unstable());
     }
 
-    /// The pairs, each once, in order.
-    pub(super) fn pairs(&self) -> &[(usize, usize)] {
-        &self.pairs
+    /// The pairs, each once with the lower number first, in order.
+    fn pairs(&self) -> impl Iterator<Item = (usize, usize)> {
+        let lists = self.lists.iter().enumerate();
+        lists.flat_map(|(a, list)| list.iter().filter(move |b| **b > a).map(move |b| (a, *b)))
     }
 
     /// The robots near one robot.
@@ -57,7 +71,7 @@ impl Neighbours {
 
 /// Whether two robots that both want to move would come closer than their safety distance within the horizon, if both got
 /// their wish. Robots that already are too close but part are not in conflict.
-pub(super) fn will_conflict(a: &Mover, b: &Mover, margin: f32, horizon: f32) -> bool {
+fn will_conflict(a: &Mover, b: &Mover, margin: f32, horizon: f32) -> bool {
     if !a.wishes_to_move() || !b.wishes_to_move() {
         return false;
     }
@@ -72,8 +86,43 @@ pub(super) fn will_conflict(a: &Mover, b: &Mover, margin: f32, horizon: f32) -> 
     (apart + closing * nearest_at).length_squared() < safety * safety
 }
 
-/// Connected components of at least two robots, each in ascending order, in order of their first member.
-pub(super) fn components(count: usize, pairs: &[(usize, usize)]) -> Vec<Vec<usize>> {
+fn clear(lists: &mut Vec<Vec<usize>>, robots: usize) {
+    lists.resize_with(robots, Vec::new);
+    lists.iter_mut().for_each(Vec::clear);
+}
+
+/// The predicted conflicts of a step.
+#[derive(Default)]
+pub(super) struct Conflicts {
+    pairs: Vec<(usize, usize)>,
+    lists: Vec<Vec<usize>>,
+}
+
+impl Conflicts {
+    /// Finds those among neighbours, for a margin in metres and a horizon in seconds.
+    pub(super) fn find(&mut self, movers: &[Mover], neighbours: &Neighbours, margin: f32, horizon: f32) {
+        let in_conflict = |(a, b): &(usize, usize)| will_conflict(&movers[*a], &movers[*b], margin, horizon);
+        self.pairs.clear();
+        self.pairs.extend(neighbours.pairs().filter(in_conflict));
+        clear(&mut self.lists, movers.len());
+        for (a, b) in &self.pairs {
+            self.lists[*a].push(*b);
+            self.lists[*b].push(*a);
+        }
+    }
+
+    /// The robots in conflict with one.
+    pub(super) fn of(&self, i: usize) -> &[usize] {
+        &self.lists[i]
+    }
+
+    /// The sets that they connect: at least two robots each, in ascending order, in order of their first member.
+    pub(super) fn components(&self) -> Vec<Vec<usize>> {
+        components(self.lists.len(), &self.pairs)
+    }
+}
+
+fn components(count: usize, pairs: &[(usize, usize)]) -> Vec<Vec<usize>> {
     if pairs.is_empty() {
         return Vec::new();
     }

@@ -3,10 +3,13 @@
 //! A robot in the way of one with the right of way inherits its priority (as in PIBT; Okumura, Machida, Défago & Tamura, 2022) and
 //! retreats to the nearest place that leaves room. Whoever stands in *its* way makes room in turn: a chain, whose depth is counted.
 
+use std::collections::{BTreeMap, BTreeSet};
+
 use parry2d::math::Vector;
 use serde::{Deserialize, Serialize};
 
 use super::Mover;
+use super::predict::Neighbours;
 use super::room::{Ask, distance_to_way, ways};
 use crate::world::STANDING_MPS;
 
@@ -65,7 +68,9 @@ pub(super) struct Retreat {
 /// All retreats, by robot.
 #[derive(Serialize, Deserialize)]
 pub(super) struct Retreats {
-    of: Vec<Option<Retreat>>,
+    of: BTreeMap<usize, Retreat>,
+    /// For whom, and who makes room: the retreats by their heads.
+    served: BTreeSet<(usize, usize)>,
     /// Steps for which a robot is not asked again.
     respite: Vec<u32>,
     limits: Limits,
@@ -75,60 +80,65 @@ pub(super) struct Retreats {
 
 impl Retreats {
     pub(super) fn new(limits: Limits, margin: f32, arena: Vector) -> Self {
-        Self { of: Vec::new(), respite: Vec::new(), limits, margin, arena }
+        Self { of: BTreeMap::new(), served: BTreeSet::new(), respite: Vec::new(), limits, margin, arena }
     }
 
-    /// The retreat of a robot.
-    pub(super) fn of(&self, i: usize) -> Option<&Retreat> {
-        self.of[i].as_ref()
+    /// The robots that make room, in order.
+    pub(super) fn iter(&self) -> impl Iterator<Item = (usize, &Retreat)> {
+        self.of.iter().map(|(i, retreat)| (*i, retreat))
     }
 
     /// Place in the chain of a robot: 0 for one on its own way.
     pub(super) fn depth(&self, i: usize) -> u32 {
-        self.of[i].as_ref().map_or(0, |retreat| retreat.depth)
+        self.of.get(&i).map_or(0, |retreat| retreat.depth)
     }
 
     /// Whether somebody is on the way to make room for this robot. Depths grow along a chain, so that patience ends somewhere.
     pub(super) fn is_served(&self, i: usize) -> bool {
         let depth = self.depth(i);
-        let serves =
-            |retreat: &Retreat| retreat.head == i && retreat.depth > depth && !retreat.path.is_empty();
-        self.of.iter().flatten().any(serves)
+        let serves = |retreat: &Retreat| retreat.depth > depth && !retreat.path.is_empty();
+        self.served.range((i, 0)..=(i, usize::MAX)).any(|(_, maker)| serves(&self.of[maker]))
     }
 
     fn is_at_place(&self, i: usize) -> bool {
-        self.of[i].as_ref().is_some_and(|retreat| retreat.path.is_empty())
+        self.of.get(&i).is_some_and(|retreat| retreat.path.is_empty())
+    }
+
+    fn begin(&mut self, i: usize, retreat: Retreat) {
+        self.end(i);
+        self.served.insert((retreat.head, i));
+        self.of.insert(i, retreat);
+    }
+
+    fn end(&mut self, i: usize) -> Option<Retreat> {
+        let retreat = self.of.remove(&i)?;
+        self.served.remove(&(retreat.head, i));
+        Some(retreat)
     }
 
     /// Ends the retreats that are over, and gives the others the wish to go to their place.
-    pub(super) fn follow(&mut self, movers: &mut [Mover]) {
-        self.of.resize(movers.len(), None);
+    pub(super) fn follow(&mut self, movers: &mut [Mover], neighbours: &Neighbours) {
         self.respite.resize(movers.len(), 0);
         self.respite.iter_mut().for_each(|steps| *steps = steps.saturating_sub(1));
-        for i in 0..movers.len() {
-            if self.of[i].is_none() {
-                continue;
-            }
+        let makers: Vec<usize> = self.of.keys().copied().collect();
+        for i in makers {
             let is_served = self.is_served(i);
-            let Some(mut retreat) = self.of[i].take() else { continue };
+            let Some(mut retreat) = self.end(i) else { continue };
             retreat.advance(&movers[i], &movers[retreat.head], is_served);
-            if self.is_over(i, &retreat, movers) {
-                self.of[i] = self.for_the_next(i, retreat, movers);
-            } else {
-                self.of[i] = Some(retreat);
+            if !self.is_over(i, &retreat, movers) {
+                self.begin(i, retreat);
+            } else if let Some(retreat) = self.for_the_next(i, retreat, movers, neighbours) {
+                self.begin(i, retreat);
             }
         }
-        for (mover, retreat) in movers.iter_mut().zip(&self.of) {
-            if let Some(retreat) = retreat {
-                retreat.guide(mover);
-            }
+        for (i, retreat) in &self.of {
+            retreat.guide(&mut movers[*i]);
         }
     }
 
     fn is_over(&self, i: usize, retreat: &Retreat, movers: &[Mover]) -> bool {
         let (me, head) = (&movers[i], &movers[retreat.head]);
-        let limit = if retreat.path.is_empty() { self.limits.at_place } else { self.limits.underway };
-        let head_way: Vec<Vector> = match &self.of[retreat.head] {
+        let head_way: Vec<Vector> = match self.of.get(&retreat.head) {
             Some(other) => other.way(head),
             None if head.wishes_to_move() => {
                 std::iter::once(head.position).chain(head.route.iter().copied()).collect()
@@ -136,31 +146,44 @@ impl Retreats {
             None => return true,
         };
         !me.can_make_room
-            || retreat.idle_steps > limit
+            || self.is_out_of_patience(retreat)
             || retreat.is_passed(&head_way, me.radius + head.radius + self.margin)
+    }
+
+    fn is_out_of_patience(&self, retreat: &Retreat) -> bool {
+        let limit = if retreat.path.is_empty() { self.limits.at_place } else { self.limits.underway };
+        retreat.idle_steps > limit
     }
 
     /// The same room for the next robot that comes after the one that passed: robots go through a narrow passage in platoons, not one at a
     /// time from either side.
-    fn for_the_next(&self, i: usize, mut retreat: Retreat, movers: &[Mover]) -> Option<Retreat> {
+    fn for_the_next(
+        &self,
+        i: usize,
+        mut retreat: Retreat,
+        movers: &[Mover],
+        neighbours: &Neighbours,
+    ) -> Option<Retreat> {
         let (me, passed) = (&movers[i], &movers[retreat.head]);
         let direction = passed.wish.normalize_or_zero();
         let follows = |k: &usize| {
             let other = &movers[*k];
-            let to_me = me.position - other.position;
             *k != i
                 && *k != retreat.head
                 && other.aerial == me.aerial
                 && self.depth(*k) == 0
-                && to_me.length() < PLATOON_M
                 && other.wish.normalize_or_zero().dot(direction) > PLATOON_COS
                 && !retreat.is_passed(&ways(other)[0], me.radius + other.radius + self.margin)
         };
-        if !me.can_make_room || retreat.held_steps > self.limits.at_place {
+        if !me.can_make_room || self.is_out_of_patience(&retreat) || retreat.held_steps > self.limits.at_place
+        {
             return None;
         }
         let near = |k: &usize| (movers[*k].position - me.position).length();
-        let next = (0..movers.len()).filter(follows).min_by(|a, b| near(a).total_cmp(&near(b)))?;
+        let next = neighbours
+            .within(movers, me.position, PLATOON_M)
+            .filter(follows)
+            .min_by(|a, b| near(a).total_cmp(&near(b)).then(a.cmp(b)))?;
         retreat.head = next;
         retreat.depth = 1;
         retreat.idle_steps = 0;
@@ -169,7 +192,7 @@ impl Retreats {
 
     /// Ends the retreat of a robot, if it is on one that comes to nothing.
     pub(super) fn give_up(&mut self, i: usize) {
-        if self.of[i].take().is_some() {
+        if self.end(i).is_some() {
             self.respite[i] = self.limits.respite;
         }
     }
@@ -183,8 +206,14 @@ impl Retreats {
     }
 
     /// Has `blocker` make room for `i`. Whether it is in the way and there is room to make.
-    pub(super) fn ask(&mut self, i: usize, blocker: usize, movers: &[Mover]) -> bool {
-        let Some(path) = self.find_room(i, blocker, movers) else { return false };
+    pub(super) fn ask(
+        &mut self,
+        i: usize,
+        blocker: usize,
+        movers: &[Mover],
+        neighbours: &Neighbours,
+    ) -> bool {
+        let Some(path) = self.find_room(i, blocker, movers, neighbours) else { return false };
         let retreat = Retreat {
             head: i,
             depth: self.depth(i) + 1,
@@ -196,31 +225,33 @@ impl Retreats {
         };
         let is_in_the_way = !self.is_over(blocker, &retreat, movers);
         if is_in_the_way {
-            self.of[blocker] = Some(retreat);
+            self.begin(blocker, retreat);
         }
         is_in_the_way
     }
 
-    fn find_room(&self, i: usize, blocker: usize, movers: &[Mover]) -> Option<Vec<Vector>> {
+    fn find_room(
+        &self,
+        i: usize,
+        blocker: usize,
+        movers: &[Mover],
+        neighbours: &Neighbours,
+    ) -> Option<Vec<Vector>> {
         let (me, head) = (&movers[blocker], &movers[i]);
         let others = || {
-            movers.iter().enumerate().filter(|(k, other)| {
-                *k != i
-                    && *k != blocker
-                    && other.aerial == me.aerial
-                    && (other.position - me.position).length() < CROWD_RANGE_M
-            })
+            let near = neighbours.within(movers, me.position, CROWD_RANGE_M).map(|k| (k, &movers[k]));
+            near.filter(|(k, other)| *k != i && *k != blocker && other.aerial == me.aerial)
         };
         let disc = |at: Vector, other: &Mover| (at, me.radius + other.radius);
         let reserved = others().filter_map(|(k, other)| {
-            let place = self.of[k].as_ref()?.path.first()?;
+            let place = self.of.get(&k)?.path.first()?;
             Some(disc(*place, other))
         });
         let [route, behind] = ways(head);
         let mut ask = Ask {
             me,
             head,
-            way: self.of[i].as_ref().map_or(route, |retreat| retreat.way(head)),
+            way: self.of.get(&i).map_or(route, |retreat| retreat.way(head)),
             through_head: false,
             crowd: others().map(|(_, other)| disc(other.position, other)).collect(),
             reserved: reserved.collect(),

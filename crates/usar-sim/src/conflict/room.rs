@@ -127,17 +127,22 @@ impl<'a> Grid<'a> {
         let size = 0.5 * ask.me.radius;
         let reach = size * HALF_CELLS as f32;
         let here = ask.me.position;
-        let near = |obstacle: &&KnownObstacle| {
+        let matters = |obstacle: &&KnownObstacle| {
             let distance = |corner: &Vector| (*corner - here).abs().max_element();
-            let nearest = obstacle.tight.iter().map(distance).fold(f32::INFINITY, f32::min);
-            nearest <= 2.0 * reach // large pieces may reach in between their corners
-                && !(polygon_contains(&obstacle.tight, here) && nearest < LEAVE_M)
+            let is_left = || obstacle.tight.iter().map(distance).any(|nearest| nearest < LEAVE_M);
+            !(polygon_contains(&obstacle.tight, here) && is_left())
         };
         let count = (ROW * ROW) as usize;
         Self {
             ask,
             size,
-            obstacles: ask.me.obstacles.iter().filter(near).collect(),
+            obstacles: ask
+                .me
+                .known
+                .into_iter()
+                .flat_map(|known| known.near(here, reach))
+                .filter(matters)
+                .collect(),
             cells: vec![Cell::Unknown; count],
             cost: vec![u32::MAX; count],
             from: vec![u32::MAX; count],
@@ -244,23 +249,24 @@ fn neighbours(cell: u32) -> impl Iterator<Item = (u32, u32)> {
 mod tests {
     use super::super::testing::mover;
     use super::*;
-    use crate::planning::ObstacleKey;
+    use crate::planning::{ObstacleKey, ObstacleMap};
     use crate::world::Outline;
 
-    fn wall(center: [f32; 2], size: [f32; 2]) -> KnownObstacle {
+    fn wall(number: u32, center: [f32; 2], size: [f32; 2]) -> KnownObstacle {
         let shape = parry2d::shape::SharedShape::cuboid(size[0] / 2.0, size[1] / 2.0);
         let outline = Outline { shape, ..Outline::disc(center.into(), 1.0) };
-        KnownObstacle::new(ObstacleKey::Debris(0, 1), &outline, 0.4, 0.15)
+        KnownObstacle::new(ObstacleKey::Debris(number), 1, &outline, 0.4, 0.15)
     }
 
     /// A passage along x at y = 10, 1.2 m wide, from x = 5 to x = 15, whose northern wall has a bay between x = 11 and x = 13.
-    fn passage() -> Vec<KnownObstacle> {
-        vec![
-            wall([10.0, 9.0], [10.0, 0.8]),
-            wall([8.0, 11.0], [6.0, 0.8]),
-            wall([14.0, 11.0], [2.0, 0.8]),
-            wall([12.0, 12.4], [6.0, 0.8]),
-        ]
+    fn passage() -> ObstacleMap {
+        let walls = [
+            wall(0, [10.0, 9.0], [10.0, 0.8]),
+            wall(1, [8.0, 11.0], [6.0, 0.8]),
+            wall(2, [14.0, 11.0], [2.0, 0.8]),
+            wall(3, [12.0, 12.4], [6.0, 0.8]),
+        ];
+        walls.into_iter().collect()
     }
 
     fn ask<'a>(me: &'a Mover, head: &'a Mover) -> Ask<'a> {
@@ -289,8 +295,8 @@ mod tests {
     #[test]
     fn in_a_passage_it_goes_back_to_the_nearest_bay() {
         let obstacles = passage();
-        let head = Mover { obstacles: &obstacles, ..mover(0, [7.0, 10.0], [1.0, 0.0]) };
-        let me = Mover { obstacles: &obstacles, ..mover(1, [8.0, 10.0], [-1.0, 0.0]) };
+        let head = Mover { known: Some(&obstacles), ..mover(0, [7.0, 10.0], [1.0, 0.0]) };
+        let me = Mover { known: Some(&obstacles), ..mover(1, [8.0, 10.0], [-1.0, 0.0]) };
         let place = *ask(&me, &head).find().unwrap().last().unwrap();
         assert!((11.0..13.0).contains(&place.x) && place.y > 10.9, "{place}");
         let taken = Ask { reserved: vec![(place, 0.8)], ..ask(&me, &head) };
@@ -301,10 +307,10 @@ mod tests {
     #[test]
     fn out_of_a_dead_end_there_is_a_way_through_the_other_only() {
         let mut obstacles = passage();
-        obstacles[1] = wall([10.0, 11.0], [10.0, 0.8]);
-        obstacles.push(wall([15.0, 10.0], [0.8, 3.0]));
-        let head = Mover { obstacles: &obstacles, ..mover(0, [8.0, 10.0], [1.0, 0.0]) };
-        let me = Mover { obstacles: &obstacles, ..mover(1, [10.0, 10.0], [0.0, 0.0]) };
+        obstacles.insert(wall(1, [10.0, 11.0], [10.0, 0.8]));
+        obstacles.insert(wall(4, [15.0, 10.0], [0.8, 3.0]));
+        let head = Mover { known: Some(&obstacles), ..mover(0, [8.0, 10.0], [1.0, 0.0]) };
+        let me = Mover { known: Some(&obstacles), ..mover(1, [10.0, 10.0], [0.0, 0.0]) };
         assert_eq!(ask(&me, &head).find(), None);
         let trail = [Vector::new(2.0, 10.0)];
         let head = Mover { trail: &trail, ..head };

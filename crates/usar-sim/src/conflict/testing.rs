@@ -26,7 +26,7 @@ pub(super) fn mover(id: u32, at: [f32; 2], wish: [f32; 2]) -> Mover<'static> {
         speed: 2.0,
         braking: 3.0,
         priority: PriorityKey { class: 0, level: 50.0, robot: RobotId(id) },
-        obstacles: &[],
+        known: None,
         can_make_room: true,
     }
 }

@@ -11,6 +11,7 @@ mod work;
 use parry2d::math::Vector;
 use rne_core::{Difficulty, GroupingPolicy, TaskPositions};
 use serde::{Deserialize, Serialize};
+use smallvec::SmallVec;
 
 pub use agent::{Activity, Agent};
 pub use area::TaskArea;
@@ -22,6 +23,7 @@ use crate::planning::{Goal, Knowledge, Navigator};
 use crate::scenario::{Costs, MissionRules, Scenario};
 use crate::sensing::{RescueeBlock, SENSING_PERIOD_STEPS, look_around};
 use crate::world::{Robot, World};
+use work::Supply;
 
 /// How near a robot comes to its place at home or at a rest place, in metres.
 const SLOT_M: f32 = 0.15;
@@ -60,6 +62,11 @@ pub struct Mission {
     /// Why there is nothing left to do, once there is nothing.
     pub ending: Option<Ending>,
     has_errands: bool,
+    /// For each task, whether its group has a live observer. Found anew in every step, as is the following.
+    #[serde(skip)]
+    is_guided: [bool; 2],
+    #[serde(skip)]
+    supplies: [Supply; 2],
 }
 
 /// Why a mission is over before its time.
@@ -114,6 +121,8 @@ impl Mission {
             round: 0,
             ending: None,
             has_errands: !scenario.errands.is_empty(),
+            is_guided: [false; 2],
+            supplies: Default::default(),
         };
         mission.hand_out_errands(scenario);
         mission
@@ -141,6 +150,7 @@ impl Mission {
     /// Makes anew what a snapshot leaves out because it follows from the rest.
     pub(crate) fn restore(&mut self, world: &World) {
         self.knowledge.iter_mut().for_each(|knowledge| knowledge.restore(world));
+        self.look_for_guides(world);
     }
 
     fn side_of(&self, robot: RobotId) -> usize {
@@ -156,20 +166,30 @@ impl Mission {
         if !step.is_multiple_of(SENSING_PERIOD_STEPS) {
             return;
         }
+        let wrecks: SmallVec<[usize; 16]> = world
+            .robots
+            .iter()
+            .filter(|robot| robot.wreck_at.is_some())
+            .map(|robot| robot.id.index())
+            .collect();
         for robot in world.robots.iter().filter(|robot| robot.is_able()) {
             let side = self.side_of(robot.id);
-            look_around(world, &self.blocks, robot, &mut self.knowledge[side], log);
+            look_around(world, (&self.blocks, &wrecks), robot, &mut self.knowledge[side], log);
         }
     }
 
     /// Top speed of a robot: lower with its health, and lower where its group has no live observer.
     #[must_use]
-    pub fn speed_of(&self, robot: &Robot, world: &World) -> f64 {
-        let blind = self.agents[robot.id.index()].task.is_some_and(|task| {
-            let members = &self.groups[task_index(task)].members;
-            !members.iter().map(|id| &world.robots[id.index()]).any(|m| m.is_aerial() && m.is_able())
-        });
-        robot.speed() * if blind { 1.0 - self.rules.blind_speed_loss } else { 1.0 }
+    pub fn speed_of(&self, robot: &Robot) -> f64 {
+        let task = self.agents[robot.id.index()].task;
+        let is_blind = task.is_some_and(|task| !self.is_guided[task_index(task)]);
+        robot.speed() * if is_blind { 1.0 - self.rules.blind_speed_loss } else { 1.0 }
+    }
+
+    fn look_for_guides(&mut self, world: &World) {
+        let guides = |robot: &Robot| robot.is_aerial() && robot.is_able();
+        self.is_guided = [0, 1]
+            .map(|task: usize| self.groups[task].members.iter().any(|id| guides(&world.robots[id.index()])));
     }
 
     /// Decides what every robot does next, and sends it there.
@@ -188,6 +208,7 @@ impl Mission {
         step: u64,
         log: &mut EventLog,
     ) -> Result<(), String> {
+        self.look_for_guides(world);
         if self.has_errands {
             self.follow_errands(world, navigator, log);
         } else if Self::has_carrier_left(world) {
@@ -215,11 +236,13 @@ impl Mission {
         if self.everybody_is_home(world) {
             self.end_round(world, log);
             self.begin_round(world, policy, log)?;
+            self.look_for_guides(world);
         }
         self.turn_back(world, log);
         for task in Difficulty::ALL {
             self.call_back(task, world, log);
         }
+        self.supplies.iter_mut().for_each(Supply::forget);
         for robot in 0..world.robots.len() {
             self.choose_activity(RobotId(robot as u32), world, (navigator, step), log);
         }
@@ -262,7 +285,7 @@ impl Mission {
                 continue;
             }
             let way = f64::from((robot.rest_slot(agent.rest_at) - robot.position).length());
-            let way_cost = self.way_cost(way, self.speed_of(robot, world));
+            let way_cost = self.way_cost(way, self.speed_of(robot));
             if let Some(cause) = turn_back_cause(&self.rules, robot.energy, robot.hp, way_cost) {
                 self.release_claim(RobotId(id as u32), world);
                 let agent = &mut self.agents[id];
@@ -288,22 +311,23 @@ impl Mission {
         let Some(cause) = return_cause(&self.field_state(task, world)) else { return };
         log.push(Event::GroupReturned { task, cause });
         self.groups[task_index(task)].at_work = false;
-        for id in self.members_in_field(task, world) {
+        for id in self.in_field(task, world).collect::<Vec<_>>() {
             self.release_claim(id, world);
             self.agent(id).activity = Activity::Returning;
         }
     }
 
-    fn members_in_field(&self, task: Difficulty, world: &World) -> Vec<RobotId> {
-        let in_field = |id: &RobotId| {
+    /// The members of a group that can act and work in the field, by id.
+    fn in_field<'m>(&'m self, task: Difficulty, world: &'m World) -> impl Iterator<Item = RobotId> + 'm {
+        let is_in_field = |id: &RobotId| {
             world.robots[id.index()].is_able() && self.agents[id.index()].activity.is_in_field()
         };
-        self.groups[task_index(task)].members.iter().copied().filter(in_field).collect()
+        self.groups[task_index(task)].members.iter().copied().filter(is_in_field)
     }
 
     fn field_state(&self, task: Difficulty, world: &World) -> FieldState {
         let mut field = FieldState::default();
-        for id in self.members_in_field(task, world) {
+        for id in self.in_field(task, world) {
             let (robot, agent) = (&world.robots[id.index()], &self.agents[id.index()]);
             field.carrying_members += u32::from(robot.can_carry());
             field.free_capacity += robot.free_capacity();

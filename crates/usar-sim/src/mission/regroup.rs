@@ -24,8 +24,7 @@ impl Mission {
         }
         log.push(Event::RoundEnded { round: self.round });
         let [hard, easy, home] = &mut self.knowledge;
-        home.learn_all(world, hard);
-        home.learn_all(world, easy);
+        home.pool(world, [hard, easy]);
         for (agent, robot) in self.agents.iter_mut().zip(&world.robots) {
             agent.task = None;
             if let Some([energy, hp]) = agent.levels_at_start {

@@ -1,5 +1,6 @@
 //! Work in the field: claims on rescuees, and the search for more.
 
+use parry2d::math::Vector;
 use rne_core::Difficulty;
 
 use super::{Activity, Mission, task_index};
@@ -8,6 +9,37 @@ use crate::ids::{RescueeId, RobotId};
 use crate::planning::Navigator;
 use crate::sensing::{RescueeBlock, SENSING_PERIOD_STEPS};
 use crate::world::{RescueeState, Robot, World};
+
+/// What a group can still claim in a step.
+#[derive(Default)]
+pub(super) struct Supply {
+    is_known: bool,
+    /// Resources in the field that no claim needs; negative where there are more claims than resources.
+    spare: i64,
+    rescuees: Vec<RescueeId>,
+}
+
+impl Supply {
+    /// It is to be found anew.
+    pub(super) fn forget(&mut self) {
+        self.is_known = false;
+    }
+
+    fn note_claim(&mut self, claimed: RescueeId) {
+        self.spare -= 1;
+        self.rescuees.retain(|rescuee| *rescuee != claimed);
+    }
+
+    fn note_release(&mut self) {
+        self.spare += 1;
+    }
+
+    fn nearest(&self, here: Vector, world: &World) -> Option<RescueeId> {
+        let distance = |id: &RescueeId| (world.rescuees[id.index()].position - here).length_squared();
+        let nearest = self.rescuees.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)).then(a.cmp(b)));
+        nearest.copied().filter(|_| self.spare > 0)
+    }
+}
 
 impl Mission {
     /// Rescuees that a group knows of and that nobody has claimed.
@@ -48,12 +80,14 @@ impl Mission {
                 let place = world.rescuees[rescuee.index()].position.into();
                 log.push(Event::Unreachable { robot: id, place });
                 self.release_claim(id, world);
+                self.supplies[task_index(task)].note_release();
                 self.agent(id).activity = Activity::Searching;
             }
             Activity::Searching | Activity::Standby if self.groups[task_index(task)].at_work => {
                 let looks_for_work =
                     (step + id.0 as u64).is_multiple_of(SENSING_PERIOD_STEPS) && robot.free_capacity() > 0;
                 if looks_for_work && let Some(rescuee) = self.nearest_available(task, id, world) {
+                    self.supplies[task_index(task)].note_claim(rescuee);
                     world.rescuees[rescuee.index()].claimed_by = Some(id);
                     self.agent(id).activity = Activity::Approaching(rescuee);
                     return;
@@ -88,15 +122,22 @@ impl Mission {
     }
 
     /// The nearest rescuee that a robot may claim: there must be a resource for it in the field that no other claim needs.
-    fn nearest_available(&self, task: Difficulty, id: RobotId, world: &World) -> Option<RescueeId> {
-        let field = self.members_in_field(task, world);
-        let resources: u32 = field.iter().map(|id| world.robots[id.index()].resources).sum();
-        let claims = field.iter().filter(|id| self.agents[id.index()].activity.claim().is_some()).count();
-        if resources <= claims as u32 {
-            return None;
+    fn nearest_available(&mut self, task: Difficulty, id: RobotId, world: &World) -> Option<RescueeId> {
+        if !self.supplies[task_index(task)].is_known {
+            self.take_stock(task, world);
         }
-        let here = world.robots[id.index()].position;
-        let distance = |id: &RescueeId| (world.rescuees[id.index()].position - here).length_squared();
-        self.available(task, world).min_by(|a, b| distance(a).total_cmp(&distance(b)).then(a.cmp(b)))
+        self.supplies[task_index(task)].nearest(world.robots[id.index()].position, world)
+    }
+
+    fn take_stock(&mut self, task: Difficulty, world: &World) {
+        let resources = |id: RobotId| i64::from(world.robots[id.index()].resources);
+        let claims = |id: RobotId| i64::from(self.agents[id.index()].activity.claim().is_some());
+        let spare = self.in_field(task, world).map(|id| resources(id) - claims(id)).sum();
+        let mut rescuees = std::mem::take(&mut self.supplies[task_index(task)].rescuees);
+        rescuees.clear();
+        if spare > 0 {
+            rescuees.extend(self.available(task, world));
+        }
+        self.supplies[task_index(task)] = Supply { is_known: true, spare, rescuees };
     }
 }

@@ -3,27 +3,43 @@
 use parry2d::math::Vector;
 use serde::{Deserialize, Serialize};
 
+use super::map::ObstacleMap;
 use super::obstacles::{KnownObstacle, ObstacleKey};
 use crate::world::{RadiationZone, Robot, World};
 
+/// What was learned that concerns routes.
+#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
+pub(super) enum News {
+    /// An obstacle is known, where it is now.
+    Obstacle(ObstacleKey),
+    /// A radiation zone is known.
+    Zone(u32),
+    /// A place is free again.
+    Opening(Opening),
+}
+
 /// A place that was found to be free again: a piece of debris was pushed away from there.
 #[derive(Debug, Clone, Copy, Serialize, Deserialize)]
-pub struct Opening {
-    /// The revision of the knowledge in which it is known.
-    pub revision: u32,
+pub(super) struct Opening {
     /// Middle of the place.
-    pub center: Vector,
+    center: Vector,
     /// No way through the place that was closed before is farther from the middle than this, in metres.
-    pub reach: f32,
+    reach: f32,
 }
 
 impl Opening {
     /// A lower bound for the length of any way from `a` to `b` that leads through here, in metres.
-    #[must_use]
-    pub fn least_way(&self, a: Vector, b: Vector) -> f32 {
+    pub(super) fn least_way(&self, a: Vector, b: Vector) -> f32 {
         let to_here = |point: Vector| ((point - self.center).length() - self.reach).max(0.0);
         to_here(a) + to_here(b)
     }
+}
+
+/// How much of some knowledge has been taken into account.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub(super) struct Seen {
+    pool: u32,
+    news: usize,
 }
 
 /// Knowledge of a group, or of the team at home.
@@ -37,12 +53,13 @@ pub struct Knowledge {
     pub rescuees: Vec<bool>,
     /// For each robot, whether it is known to stand for good.
     pub wrecks: Vec<bool>,
-    /// Counts the changes that concern routes.
-    pub revision: u32,
+    /// How often the groups have pooled what they know. Between two times, what a group knows goes on from what the team knew.
+    pool: u32,
+    /// What concerns routes, in the order in which it was learned.
+    news: Vec<News>,
     /// Follows from `debris` and `wrecks`.
     #[serde(skip)]
-    obstacles: Vec<KnownObstacle>,
-    openings: Vec<Opening>,
+    obstacles: ObstacleMap,
     /// Follows from `zones`.
     #[serde(skip)]
     known_zones: Vec<(u32, RadiationZone)>,
@@ -59,30 +76,36 @@ impl Knowledge {
             zones: vec![false; world.zones.len()],
             rescuees: vec![false; world.rescuees.len()],
             wrecks: vec![false; world.robots.len()],
-            revision: 0,
-            obstacles: Vec::new(),
-            openings: Vec::new(),
+            pool: 0,
+            news: Vec::new(),
+            obstacles: ObstacleMap::default(),
             known_zones: Vec::new(),
             radius,
             clearance,
         }
     }
 
-    /// The known obstacles, in order of their keys.
+    /// The known obstacles.
     #[must_use]
-    pub fn obstacles(&self) -> &[KnownObstacle] {
+    pub fn obstacles(&self) -> &ObstacleMap {
         &self.obstacles
-    }
-
-    /// Places that were found to be free again since a revision.
-    pub fn openings_since(&self, revision: u32) -> impl Iterator<Item = &Opening> {
-        self.openings.iter().rev().take_while(move |opening| opening.revision > revision)
     }
 
     /// The known radiation zones, with their numbers.
     #[must_use]
     pub fn known_zones(&self) -> &[(u32, RadiationZone)] {
         &self.known_zones
+    }
+
+    /// A mark up to which everything that is known now has been seen.
+    pub(super) fn seen(&self) -> Seen {
+        Seen { pool: self.pool, news: self.news.len() }
+    }
+
+    /// What was learned since a mark; everything, where the mark is from before the groups last pooled what they know.
+    pub(super) fn news_since(&self, seen: Seen) -> &[News] {
+        let from = if seen.pool == self.pool { seen.news.min(self.news.len()) } else { 0 };
+        &self.news[from..]
     }
 
     /// Takes note of a piece of debris as it lies now.
@@ -94,12 +117,6 @@ impl Knowledge {
         if sighting > self.debris[number] {
             self.debris[number] = sighting;
             let obstacle = self.debris_obstacle(world, number);
-            let is_it =
-                |o: &KnownObstacle| matches!(o.key, ObstacleKey::Debris(n, _) if n as usize == number);
-            if let Some(at) = self.obstacles.iter().position(is_it) {
-                let (center, reach) = self.obstacles.remove(at).bounds();
-                self.openings.push(Opening { revision: self.revision + 1, center, reach });
-            }
             self.insert(obstacle);
         }
     }
@@ -109,7 +126,7 @@ impl Knowledge {
         if !std::mem::replace(&mut self.zones[number], true) {
             let at = self.known_zones.partition_point(|(other, _)| (*other as usize) < number);
             self.known_zones.insert(at, (number as u32, world.zones[number]));
-            self.revision += 1;
+            self.news.push(News::Zone(number as u32));
         }
     }
 
@@ -122,8 +139,13 @@ impl Knowledge {
         }
     }
 
-    /// Takes over all that another group knows.
-    pub fn learn_all(&mut self, world: &World, other: &Self) {
+    /// Takes over all that two groups know.
+    pub fn pool(&mut self, world: &World, groups: [&Self; 2]) {
+        groups.into_iter().for_each(|group| self.learn_all(world, group));
+        self.pool += 1;
+    }
+
+    fn learn_all(&mut self, world: &World, other: &Self) {
         for (number, sighting) in other.debris.iter().enumerate() {
             self.learn_sighting(world, number, *sighting);
         }
@@ -139,8 +161,7 @@ impl Knowledge {
     fn debris_obstacle(&self, world: &World, number: usize) -> KnownObstacle {
         let sighting = self.debris[number];
         let outline = &world.debris[number].sightings[sighting as usize - 1];
-        let key = ObstacleKey::Debris(number as u32, sighting);
-        KnownObstacle::new(key, outline, self.radius, self.clearance)
+        KnownObstacle::new(ObstacleKey::Debris(number as u32), sighting, outline, self.radius, self.clearance)
     }
 
     fn wreck_obstacle(&self, robot: &Robot, at: Vector) -> KnownObstacle {
@@ -153,14 +174,17 @@ impl Knowledge {
         let debris = known.map(|number| self.debris_obstacle(world, number));
         let wrecks = world.robots.iter().filter(|robot| self.wrecks[robot.id.index()] && !robot.is_aerial());
         let wrecks = wrecks.filter_map(|robot| Some(self.wreck_obstacle(robot, robot.wreck_at?)));
-        self.obstacles = debris.chain(wrecks).collect(); // in order of their keys
+        self.obstacles = debris.chain(wrecks).collect();
         let known_zones = world.zones.iter().zip(0_u32..).filter(|(_, number)| self.zones[*number as usize]);
         self.known_zones = known_zones.map(|(zone, number)| (number, *zone)).collect();
     }
 
     fn insert(&mut self, obstacle: KnownObstacle) {
-        let at = self.obstacles.partition_point(|other| other.key < obstacle.key);
-        self.obstacles.insert(at, obstacle);
-        self.revision += 1;
+        let key = obstacle.key;
+        if let Some(before) = self.obstacles.insert(obstacle) {
+            let (center, reach) = before.middle_and_reach();
+            self.news.push(News::Opening(Opening { center, reach }));
+        }
+        self.news.push(News::Obstacle(key));
     }
 }

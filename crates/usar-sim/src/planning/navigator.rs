@@ -3,9 +3,10 @@
 use parry2d::math::Vector;
 use serde::{Deserialize, Serialize};
 
-use super::obstacles::{KnownObstacle, crosses};
+use super::knowledge::{News, Seen};
+use super::obstacles::KnownObstacle;
 use super::trail::Trail;
-use super::{Knowledge, Opening, Planner, Query, Route};
+use super::{Knowledge, Planner, Query, Route};
 use crate::ids::RobotId;
 use crate::scenario::Scenario;
 use crate::world::{Robot, STANDING_MPS, World};
@@ -53,7 +54,7 @@ pub struct Traveller {
     goal: Option<Goal>,
     route: Option<Route>,
     is_planned: bool,
-    revision: u32,
+    seen: Seen,
     /// Least length that the route ahead has had, in metres.
     best_length: f32,
     /// Steps since it last came nearer.
@@ -68,7 +69,7 @@ impl Traveller {
             goal,
             route: None,
             is_planned: false,
-            revision: 0,
+            seen: Seen::default(),
             best_length: f32::INFINITY,
             stalled_steps: 0,
             lost_steps: 0,
@@ -217,57 +218,37 @@ impl Navigator {
                 aerial: robot.is_aerial(),
                 speed: speed_of(robot) as f32,
                 obstacles: knowledge.obstacles(),
+                so_far: &[],
                 in_the_way: &[],
                 zones: knowledge.known_zones(),
             };
             let check_due = (step + robot.id.0 as u64).is_multiple_of(ROUTE_CHECK_STEPS);
-            let learned = traveller.revision != knowledge.revision;
+            let news = knowledge.news_since(traveller.seen);
             let attempt = traveller.attempt(self.detour_steps);
+            let route = traveller.route.as_ref();
+            let is_cut =
+                route.is_some_and(|route| news.iter().any(|news| concerns(*news, knowledge, route, robot)));
+            let matters =
+                is_cut || route.is_some_and(|route| may_cheapen(&self.planner, &query(), route, news));
             let replan = match &traveller.route {
-                None => learned || check_due,
+                None => !news.is_empty() || check_due,
                 Some(route) => {
-                    attempt.is_some()
-                        || learned && affects(knowledge, route, robot)
-                        || learned
-                            && may_cheapen(
-                                &self.planner,
-                                &query(),
-                                route,
-                                knowledge.openings_since(traveller.revision),
-                            )
-                        || check_due && first_leg_cut(knowledge, route, robot)
+                    attempt.is_some() || matters || check_due && first_leg_cut(knowledge, route, robot)
                 }
             };
-            traveller.revision = knowledge.revision;
+            traveller.seen = knowledge.seen();
             if replan || !traveller.is_planned {
-                let fresh = learned || !traveller.is_planned;
+                let fresh = matters || !traveller.is_planned || traveller.route.is_none() && !news.is_empty();
                 let in_the_way = match attempt {
-                    Some(Attempt::Detour) => self.standing_near(world, robot),
+                    Some(Attempt::Detour) => standing_near(world, robot, self.clearance),
                     _ => Vec::new(),
                 };
-                let route = self.find_route(&query(), &in_the_way);
-                self.travellers[robot.id.index()].set_route(route, robot.position, fresh);
+                let so_far = traveller.route.as_ref().filter(|_| is_cut).map_or(&[][..], Route::ahead);
+                let query = Query { so_far, in_the_way: &in_the_way, ..query() };
+                let route = find_route(&mut self.planner, &query);
+                traveller.set_route(route, robot.position, fresh);
             }
         }
-    }
-
-    /// The cheapest route round what is in the way; where that leaves no way, through it: robots that stand may go.
-    fn find_route(&mut self, query: &Query, in_the_way: &[KnownObstacle]) -> Option<Route> {
-        self.planner.route(&Query { in_the_way, ..*query }).or_else(|| self.planner.route(query))
-    }
-
-    /// Robots of the same layer that stand near, as obstacles.
-    fn standing_near(&self, world: &World, robot: &Robot) -> Vec<KnownObstacle> {
-        let stands = |other: &&Robot| {
-            other.id != robot.id
-                && other.is_aerial() == robot.is_aerial()
-                && other.velocity.length() < STANDING_MPS
-                && (other.position - robot.position).length() < DETOUR_RANGE_M
-        };
-        let obstacle = |other: &Robot| {
-            KnownObstacle::wreck(other.id.0, other.position, other.radius(), robot.radius(), self.clearance)
-        };
-        world.robots.iter().filter(stands).map(obstacle).collect()
     }
 
     /// The velocity that takes a robot along its route: at most `speed`, slower before turns and the end. Zero where it has nowhere
@@ -297,30 +278,57 @@ impl Navigator {
     }
 }
 
-/// Whether what is known cuts the route ahead, or shows that it leads through radiation.
-fn affects(knowledge: &Knowledge, route: &Route, robot: &Robot) -> bool {
-    let cut = !robot.is_aerial()
-        && route
-            .legs(robot.position)
-            .any(|(a, b)| knowledge.obstacles().iter().any(|obstacle| crosses(&obstacle.tight, a, b)));
-    cut || knowledge.known_zones().iter().any(|(_, zone)| route.length_inside(robot.position, zone) > 0.0)
+/// Robots of the same layer that stand near, as obstacles.
+fn standing_near(world: &World, robot: &Robot, clearance: f32) -> Vec<KnownObstacle> {
+    let stands = |other: &&Robot| {
+        other.id != robot.id
+            && other.is_aerial() == robot.is_aerial()
+            && other.velocity.length() < STANDING_MPS
+            && (other.position - robot.position).length() < DETOUR_RANGE_M
+    };
+    let obstacle = |other: &Robot| {
+        KnownObstacle::wreck(other.id.0, other.position, other.radius(), robot.radius(), clearance)
+    };
+    world.robots.iter().filter(stands).map(obstacle).collect()
+}
+
+/// The cheapest route round what is in the way; where that leaves no way, through it: robots that stand may go.
+fn find_route(planner: &mut Planner, query: &Query) -> Option<Route> {
+    let route = planner.route(query);
+    if route.is_some() || query.in_the_way.is_empty() {
+        return route;
+    }
+    planner.route(&Query { in_the_way: &[], ..*query })
+}
+
+/// Whether something that was learned cuts the route ahead, or shows that it leads through radiation.
+fn concerns(news: News, knowledge: &Knowledge, route: &Route, robot: &Robot) -> bool {
+    match news {
+        News::Obstacle(key) => {
+            let obstacle = knowledge.obstacles().get(key).filter(|_| !robot.is_aerial());
+            obstacle.is_some_and(|obstacle| route.legs(robot.position).any(|(a, b)| obstacle.cuts(a, b)))
+        }
+        News::Zone(number) => {
+            let zone = knowledge.known_zones().iter().find(|(other, _)| *other == number);
+            zone.is_some_and(|(_, zone)| route.length_inside(robot.position, zone) > 0.0)
+        }
+        News::Opening(_) => false,
+    }
 }
 
 /// Whether debris was pushed from a place through which a cheaper way may lead now. Never `false` where one does that is worth it.
-fn may_cheapen<'o>(
-    planner: &Planner,
-    query: &Query,
-    route: &Route,
-    mut openings: impl Iterator<Item = &'o Opening>,
-) -> bool {
-    let is_near =
-        |opening: &Opening| opening.least_way(query.from, query.to) < planner.cost(query, route) - PROGRESS_M;
-    !query.aerial && openings.any(is_near)
+fn may_cheapen(planner: &Planner, query: &Query, route: &Route, news: &[News]) -> bool {
+    !query.aerial
+        && news.iter().any(|news| match news {
+            News::Opening(opening) => {
+                opening.least_way(query.from, query.to) < planner.cost(query, route) - PROGRESS_M
+            }
+            _ => false,
+        })
 }
 
 /// Whether the way to the next waypoint is cut, for a robot that was pushed or had to step aside.
 fn first_leg_cut(knowledge: &Knowledge, route: &Route, robot: &Robot) -> bool {
     let next = route.ahead()[0];
-    !robot.is_aerial()
-        && knowledge.obstacles().iter().any(|obstacle| crosses(&obstacle.tight, robot.position, next))
+    !robot.is_aerial() && knowledge.obstacles().cuts(robot.position, next)
 }

@@ -1,9 +1,11 @@
 //! Obstacles as robots know them, and the plane geometry of inflated convex outlines.
 
+use parry2d::bounding_volume::Aabb;
 use parry2d::math::Vector;
 use parry2d::shape::SharedShape;
 
 use crate::world::Outline;
+use serde::{Deserialize, Serialize};
 
 /// Zones that are closed to a route are left by this much, in metres, so that the route does not graze them.
 pub(super) const ZONE_MARGIN_M: f32 = 0.1;
@@ -11,12 +13,12 @@ pub(super) const ZONE_MARGIN_M: f32 = 0.1;
 /// Points pushed out of an obstacle end up this far outside, in metres.
 const PUSH_OUT_M: f32 = 0.02;
 
-/// What is known and in which version: debris by number and sighting, or a robot that stands for good.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+/// What an obstacle is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum ObstacleKey {
-    /// Debris of this number, as seen in this sighting.
-    Debris(u32, u32),
-    /// A robot that stands at its place for good.
+    /// Debris of this number.
+    Debris(u32),
+    /// A robot of this number that stands at its place for good.
     Wreck(u32),
 }
 
@@ -25,25 +27,38 @@ pub enum ObstacleKey {
 pub struct KnownObstacle {
     /// What it is.
     pub key: ObstacleKey,
+    /// Number of the sighting in which it is known; 0 for what never moves again.
+    pub sighting: u32,
     /// Corners, anticlockwise, inflated by radius and clearance: routes stay outside.
     pub planned: Vec<Vector>,
     /// Corners, anticlockwise, inflated by radius and a third of the clearance: a way through this is cut.
     pub tight: Vec<Vector>,
+    bounds: Aabb,
 }
 
 impl KnownObstacle {
     /// An outline inflated for robots of `radius` that keep `clearance`, in metres.
     #[must_use]
-    pub fn new(key: ObstacleKey, outline: &Outline, radius: f32, clearance: f32) -> Self {
-        Self {
-            key,
-            planned: outline.inflated(radius + clearance),
-            tight: outline.inflated(radius + clearance / 3.0),
-        }
+    pub fn new(key: ObstacleKey, sighting: u32, outline: &Outline, radius: f32, clearance: f32) -> Self {
+        let planned = outline.inflated(radius + clearance);
+        let tight = outline.inflated(radius + clearance / 3.0);
+        Self { key, sighting, bounds: Aabb::from_points(planned.iter().copied()), planned, tight }
+    }
+
+    /// The box that holds `planned`.
+    pub(super) fn bounds(&self) -> &Aabb {
+        &self.bounds
+    }
+
+    /// Whether the way from `a` to `b` is cut by it.
+    pub(super) fn cuts(&self, a: Vector, b: Vector) -> bool {
+        let Aabb { mins, maxs } = self.bounds;
+        let beside = a.max(b).cmplt(mins).any() || a.min(b).cmpgt(maxs).any();
+        !beside && crosses(&self.tight, a, b)
     }
 
     /// Middle of the corners of `planned`, and the distance of the farthest from it, in metres.
-    pub(super) fn bounds(&self) -> (Vector, f32) {
+    pub(super) fn middle_and_reach(&self) -> (Vector, f32) {
         let middle = self.planned.iter().copied().sum::<Vector>() / self.planned.len() as f32;
         let distance = |corner: &Vector| (*corner - middle).length();
         (middle, self.planned.iter().map(distance).fold(0.0, f32::max))
@@ -53,7 +68,7 @@ impl KnownObstacle {
     #[must_use]
     pub fn wreck(number: u32, at: Vector, own_radius: f32, radius: f32, clearance: f32) -> Self {
         let outline = Outline { shape: SharedShape::ball(own_radius), ..Outline::disc(at, own_radius) };
-        Self::new(ObstacleKey::Wreck(number), &outline, radius, clearance)
+        Self::new(ObstacleKey::Wreck(number), 0, &outline, radius, clearance)
     }
 }
 
@@ -61,6 +76,12 @@ impl KnownObstacle {
 #[must_use]
 pub fn contains(polygon: &[Vector], point: Vector) -> bool {
     edges(polygon).all(|(a, b)| (b - a).perp_dot(point - a) >= 0.0)
+}
+
+/// Whether a point is in a convex polygon (anticlockwise), or at its border.
+pub(super) fn touches(polygon: &[Vector], point: Vector) -> bool {
+    const BORDER_M: f32 = 0.01;
+    edges(polygon).all(|(a, b)| (b - a).perp_dot(point - a) >= -BORDER_M * (b - a).length())
 }
 
 /// Whether the way from `a` to `b` leads through the inside of a convex polygon (anticlockwise): clips the way by each edge

@@ -1,5 +1,6 @@
 //! Debris: convex pieces, fixed or movable.
 
+use parry2d::bounding_volume::Aabb;
 use parry2d::math::{Pose, Rotation, Vector};
 use parry2d::shape::SharedShape;
 use parry2d::transformation::convex_hull;
@@ -92,6 +93,12 @@ impl Debris {
         let bounds = outline.shape.compute_local_bounding_sphere();
         let reach = bounds.center.length() + bounds.radius;
         Self { is_fixed: file.movable.is_none(), sightings: vec![outline.clone()], reach, outline }
+    }
+
+    /// The box that holds it.
+    #[must_use]
+    pub fn bounds(&self) -> Aabb {
+        self.outline.shape.compute_aabb(&self.outline.pose)
     }
 
     /// Takes a new pose from the physics.

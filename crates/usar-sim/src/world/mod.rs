@@ -1,13 +1,15 @@
 //! What exists: robots, debris, radiation zones and rescuees.
 
 mod debris;
+mod places;
 mod radiation;
 mod rescuee;
 mod robot;
 
 pub use debris::{Debris, Outline, debris_outline};
+pub use places::Places;
 pub use radiation::RadiationZone;
-pub use rescuee::{Rescuee, RescueeState, rescuee_positions};
+pub use rescuee::{Rescuee, RescueeState, Rescuees, rescuee_positions};
 pub use robot::{Condition, Robot, rest_slot, row_positions};
 
 use crate::layout::Layout;
@@ -27,10 +29,13 @@ pub struct World {
     pub robots: Vec<Robot>,
     /// Debris.
     pub debris: Vec<Debris>,
+    /// Where the debris is.
+    #[serde(skip)]
+    pub debris_places: Places,
     /// Radiation zones.
     pub zones: Vec<RadiationZone>,
     /// Rescuees, by id.
-    pub rescuees: Vec<Rescuee>,
+    pub rescuees: Rescuees,
 }
 
 impl World {
@@ -42,9 +47,10 @@ impl World {
         Self {
             physics: Physics::new(scenario, &robots, &layout.debris, &debris),
             robots,
+            debris_places: debris.iter().map(Debris::bounds).collect(),
             debris,
             zones: layout.zones.iter().map(RadiationZone::new).collect(),
-            rescuees: rescuee_positions(scenario),
+            rescuees: rescuee_positions(scenario).into(),
         }
     }
 
@@ -57,10 +63,17 @@ impl World {
                 robot.wreck_at = Some(robot.position);
             }
         }
-        for (piece, pose) in self.debris.iter_mut().zip(self.physics.debris_poses()) {
-            if let Some(pose) = pose {
+        for (number, pose) in self.physics.debris_poses() {
+            let piece = &mut self.debris[number];
+            if piece.outline.pose != pose {
                 piece.moved_to(pose);
+                self.debris_places.put(number, piece.bounds());
             }
         }
+    }
+
+    /// Makes anew what a snapshot leaves out because it follows from the rest.
+    pub(crate) fn restore(&mut self) {
+        self.debris_places = self.debris.iter().map(Debris::bounds).collect();
     }
 }

@@ -1,5 +1,7 @@
 //! Rescuees: persons and valuables, in a grid in each task's area.
 
+use std::ops::{Deref, DerefMut};
+
 use parry2d::math::Vector;
 use rne_core::Difficulty;
 use serde::{Deserialize, Serialize};
@@ -31,6 +33,43 @@ pub struct Rescuee {
     pub state: RescueeState,
     /// The robot that is on its way to it or loading it.
     pub claimed_by: Option<RobotId>,
+}
+
+/// All rescuees of a world, by id. Counts how often somebody may have changed one, so that who checks them looks only then.
+#[derive(Default, Serialize, Deserialize)]
+pub struct Rescuees {
+    list: Vec<Rescuee>,
+    #[serde(skip)]
+    changes: u64,
+}
+
+impl Rescuees {
+    /// How often the list was lent to be changed.
+    #[must_use]
+    pub fn changes(&self) -> u64 {
+        self.changes
+    }
+}
+
+impl From<Vec<Rescuee>> for Rescuees {
+    fn from(list: Vec<Rescuee>) -> Self {
+        Self { list, changes: 0 }
+    }
+}
+
+impl Deref for Rescuees {
+    type Target = Vec<Rescuee>;
+
+    fn deref(&self) -> &Vec<Rescuee> {
+        &self.list
+    }
+}
+
+impl DerefMut for Rescuees {
+    fn deref_mut(&mut self) -> &mut Vec<Rescuee> {
+        self.changes += 1;
+        &mut self.list
+    }
 }
 
 /// All rescuees, waiting; those of the hard task first.

@@ -1,0 +1,110 @@
+//! What the resolver is told of a robot, and what it tells it.
+
+use parry2d::math::Vector;
+use serde::{Deserialize, Serialize};
+
+use super::PriorityKey;
+use crate::ids::RobotId;
+use crate::planning::ObstacleMap;
+
+/// A robot as the resolver sees it.
+#[derive(Debug, Clone, Copy)]
+pub struct Mover<'a> {
+    /// Identity.
+    pub robot: RobotId,
+    /// Whether it flies; robots of different layers do not meet.
+    pub aerial: bool,
+    /// Centre, in metres.
+    pub position: Vector,
+    /// Velocity, in metres per second.
+    pub velocity: Vector,
+    /// The velocity that it would like; zero for a robot with nowhere to go.
+    pub wish: Vector,
+    /// Way that is left to where it makes room, in metres; none for a robot on its own way.
+    pub retreat_left: Option<f32>,
+    /// Way that is left to its next waypoint, in metres.
+    pub leg_left: f32,
+    /// Waypoints ahead.
+    pub route: &'a [Vector],
+    /// Places that it came by, the latest last.
+    pub trail: &'a [Vector],
+    /// Radius, in metres.
+    pub radius: f32,
+    /// Present top speed, in metres per second.
+    pub speed: f32,
+    /// Deceleration that it plans with, in metres per second squared.
+    pub braking: f32,
+    /// Its claim to the right of way.
+    pub priority: PriorityKey,
+    /// The obstacles that it knows; none for aerial robots.
+    pub known: Option<&'a ObstacleMap>,
+    /// Whether it may be asked to make room: not while it loads or rests, nor when it can no longer act.
+    pub can_make_room: bool,
+}
+
+impl Mover<'_> {
+    pub(super) fn wishes_to_move(&self) -> bool {
+        self.wish != Vector::ZERO
+    }
+
+    /// Way that is left to where it is going, in metres.
+    pub(super) fn way_left(&self) -> f32 {
+        let starts = std::iter::once(&self.position).chain(self.route);
+        self.retreat_left.unwrap_or_else(|| starts.zip(self.route).map(|(a, b)| (*b - *a).length()).sum())
+    }
+}
+
+/// What a robot is to do in this step.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub enum Directive {
+    /// Move with this velocity.
+    Proceed(Vector),
+    /// Stop, and let another robot pass.
+    Yield {
+        /// The robot that it waits for.
+        to: RobotId,
+    },
+    /// Move with this velocity to where another robot can pass, or stand there until it has.
+    Retreat {
+        /// Metres per second.
+        velocity: Vector,
+        /// The robot for which it makes room.
+        room_for: RobotId,
+    },
+    /// Make room sideways with this velocity: the whole set is deadlocked.
+    BackOff(Vector),
+    /// Stop: no direction is free at the moment.
+    Blocked {
+        /// The robot in the way, where it is one.
+        by: Option<RobotId>,
+    },
+    /// Stand: there is nowhere to go.
+    Stand,
+}
+
+impl Directive {
+    /// Every wish is granted.
+    pub(super) fn granted(wish: Vector) -> Self {
+        if wish == Vector::ZERO { Self::Stand } else { Self::Proceed(wish) }
+    }
+
+    /// The velocity that the drive is to reach.
+    #[must_use]
+    pub fn velocity(self) -> Vector {
+        match self {
+            Self::Proceed(velocity) | Self::BackOff(velocity) | Self::Retreat { velocity, .. } => velocity,
+            Self::Yield { .. } | Self::Blocked { .. } | Self::Stand => Vector::ZERO,
+        }
+    }
+
+    /// The robot that it waits for, where there is one.
+    #[must_use]
+    pub fn waits_for(self) -> Option<RobotId> {
+        match self {
+            Self::Yield { to } => Some(to),
+            Self::Blocked { by } => by,
+            Self::Retreat { velocity, room_for } if velocity == Vector::ZERO => Some(room_for),
+            _ => None,
+        }
+    }
+}

@@ -1,0 +1,150 @@
+//! The shortest way among obstacles, found among the few of them that it has to do with.
+
+use std::collections::BTreeMap;
+
+use parry2d::math::Vector;
+use polyanya::{Mesh, Triangulation};
+
+use super::map::ObstacleMap;
+use super::obstacles::{KnownObstacle, ObstacleKey, contains, crosses, push_out, touches};
+
+/// Where a point is too near to an obstacle, a free one is looked for among the obstacles within this range, in metres; where that finds
+/// none, within a larger one.
+const PUSH_OUT_RANGE_M: f32 = 8.0;
+
+/// Meshes kept; when there are more, all are dropped and made anew on demand.
+const MAX_MESHES: usize = 64;
+
+/// Meshes among few obstacles, kept to save time: robots that go the same way ask for the same ones again and again.
+#[derive(Default)]
+pub(super) struct Meshes(BTreeMap<MeshKey, Mesh>);
+
+/// What a mesh was made of: the distance from the border as its bits, the obstacles with the sightings in which they are known, and the
+/// numbers of the closed zones.
+type MeshKey = (u32, Vec<(ObstacleKey, u32)>, Vec<u32>);
+
+/// What a way has to keep clear of.
+pub(super) struct Surroundings<'a> {
+    /// Width and height of the arena, in metres.
+    pub(super) arena: Vector,
+    /// Distance to keep from its border, in metres.
+    pub(super) offset: f32,
+    /// Obstacles that matter as far as a way runs into them; none for a robot that flies over them.
+    pub(super) known: Option<&'a ObstacleMap>,
+    /// Corners of the few obstacles that count in any case.
+    pub(super) always: Vec<&'a [Vector]>,
+    /// Numbers that tell these obstacles from others, where their meshes are to be kept.
+    pub(super) numbers: Option<&'a [u32]>,
+}
+
+impl<'a> Surroundings<'a> {
+    /// The free point nearest to a point, or nearly: the point itself where it is free.
+    pub(super) fn free_point(&self, point: Vector) -> Vector {
+        let mut range = PUSH_OUT_RANGE_M;
+        loop {
+            let free = push_out(point, &self.near(point, range), self.arena, self.offset);
+            if range > self.arena.max_element() || !self.covers(free) {
+                return free;
+            }
+            range *= 4.0;
+        }
+    }
+
+    /// Corners of the obstacles near a point, where it is not free.
+    fn near(&self, point: Vector, range: f32) -> Vec<&'a [Vector]> {
+        if !self.covers(point) {
+            return Vec::new();
+        }
+        let near = self.known.into_iter().flat_map(|known| known.near(point, range));
+        let mut near: Vec<&KnownObstacle> = near.collect();
+        near.sort_unstable_by_key(|obstacle| obstacle.key);
+        near.into_iter()
+            .map(|obstacle| obstacle.planned.as_slice())
+            .chain(self.always.iter().copied())
+            .collect()
+    }
+
+    fn covers(&self, point: Vector) -> bool {
+        self.known.is_some_and(|known| known.covers(point))
+            || self.always.iter().any(|polygon| contains(polygon, point))
+    }
+
+    /// The shortest way from one free point to another, without its start; `None` where there is none. `hint` are the waypoints of a way
+    /// that may be cut, to begin with what it meets; there may be none.
+    pub(super) fn way(
+        &self,
+        [from, to]: [Vector; 2],
+        hint: &[Vector],
+        meshes: &mut Meshes,
+    ) -> Option<Vec<Vector>> {
+        let mut way = if hint.is_empty() { vec![to] } else { hint.to_vec() };
+        let mut met = self.bent_round(hint);
+        let mut is_clear = hint.is_empty() && !self.always.iter().any(|polygon| crosses(polygon, from, to));
+        loop {
+            let news = self.met_first(from, &way, &met);
+            if news.is_empty() && is_clear {
+                return Some(way);
+            }
+            met.extend(news);
+            met.sort_unstable_by_key(|obstacle| obstacle.key);
+            way = self.way_round(&met, [from, to], meshes)?;
+            is_clear = true;
+        }
+    }
+
+    /// The obstacles at whose corners a way bends.
+    fn bent_round(&self, way: &[Vector]) -> Vec<&'a KnownObstacle> {
+        let Some(known) = self.known else { return Vec::new() };
+        let bends = way
+            .iter()
+            .flat_map(|bend| known.near(*bend, 0.0).filter(|obstacle| touches(&obstacle.planned, *bend)));
+        let mut met: Vec<&KnownObstacle> = bends.collect();
+        met.sort_unstable_by_key(|obstacle| obstacle.key);
+        met.dedup_by_key(|obstacle| obstacle.key);
+        met
+    }
+
+    /// The shortest way round these obstacles.
+    fn way_round(
+        &self,
+        met: &[&KnownObstacle],
+        [from, to]: [Vector; 2],
+        Meshes(meshes): &mut Meshes,
+    ) -> Option<Vec<Vector>> {
+        let Some(numbers) = self.numbers else { return Some(self.mesh(met).path(from, to)?.path) };
+        let seen = met.iter().map(|obstacle| (obstacle.key, obstacle.sighting)).collect();
+        let key = (self.offset.to_bits(), seen, numbers.to_vec());
+        if meshes.len() >= MAX_MESHES && !meshes.contains_key(&key) {
+            meshes.clear();
+        }
+        Some(meshes.entry(key).or_insert_with(|| self.mesh(met)).path(from, to)?.path)
+    }
+
+    /// The obstacles that a way runs into beyond those that it was made to keep clear of.
+    fn met_first(&self, from: Vector, way: &[Vector], met: &[&KnownObstacle]) -> Vec<&'a KnownObstacle> {
+        let Some(known) = self.known else { return Vec::new() };
+        let starts = std::iter::once(&from).chain(way);
+        let run_into = |(a, b): (&Vector, &Vector)| {
+            let (a, b) = (*a, *b);
+            known.along(a, b).filter(move |obstacle| crosses(&obstacle.planned, a, b))
+        };
+        let is_new =
+            |obstacle: &&KnownObstacle| met.binary_search_by_key(&obstacle.key, |met| met.key).is_err();
+        let mut news: Vec<&KnownObstacle> = starts.zip(way).flat_map(run_into).filter(is_new).collect();
+        news.sort_unstable_by_key(|obstacle| obstacle.key);
+        news.dedup_by_key(|obstacle| obstacle.key);
+        news
+    }
+
+    /// The free plane among obstacles, as a navigation mesh.
+    fn mesh(&self, met: &[&KnownObstacle]) -> Mesh {
+        let (offset, Vector { x, y }) = (self.offset, self.arena - self.offset);
+        let border = [[offset, offset], [x, offset], [x, y], [offset, y]].map(Vector::from);
+        let mut triangulation = Triangulation::from_outer_edges(&border);
+        let met = met.iter().map(|obstacle| obstacle.planned.as_slice());
+        triangulation.add_obstacles(met.chain(self.always.iter().copied()).map(<[Vector]>::to_vec));
+        let mut mesh = triangulation.as_navmesh();
+        mesh.set_search_delta(0.01);
+        mesh
+    }
+}

@@ -1,0 +1,60 @@
+//! Things found by place.
+
+use parry2d::bounding_volume::{Aabb, BoundingVolume};
+use parry2d::math::Vector;
+use parry2d::partitioning::{Bvh, BvhNode, TraversalAction};
+use parry2d::query::Ray;
+use smallvec::SmallVec;
+
+/// Bounds are this much too large, in metres: rounding must not hide a thing.
+const BOUNDS_MARGIN_M: f32 = 0.01;
+
+/// Numbers of things, in no particular order: whoever depends on an order sorts them.
+pub type Found = SmallVec<[usize; 32]>;
+
+/// Where numbered things are, as boxes in a tree: a search costs what it finds and little more.
+#[derive(Debug, Clone, Default)]
+pub struct Places {
+    tree: Bvh,
+}
+
+impl Places {
+    /// Notes the box that holds a thing.
+    pub fn put(&mut self, number: usize, bounds: Aabb) {
+        self.tree.insert(bounds.loosened(BOUNDS_MARGIN_M), number as u32);
+    }
+
+    /// The things whose boxes reach within this range of a point, in metres, in either direction of x and y.
+    #[must_use]
+    pub fn near(&self, point: Vector, range: f32) -> Found {
+        let area = Aabb::from_half_extents(point, Vector::splat(range));
+        self.find(|node| node.aabb().intersects(&area))
+    }
+
+    /// The things whose boxes the way from `a` to `b` touches.
+    #[must_use]
+    pub fn along(&self, a: Vector, b: Vector) -> Found {
+        let way = Ray::new(a, b - a);
+        self.find(|node| node.cast_ray(&way, 1.0) <= 1.0)
+    }
+
+    fn find(&self, reaches: impl Fn(&BvhNode) -> bool) -> Found {
+        let mut found = Found::new();
+        self.tree.traverse(|node| {
+            if !reaches(node) {
+                return TraversalAction::Prune;
+            }
+            found.extend(node.leaf_data().map(|number| number as usize));
+            TraversalAction::Continue
+        });
+        found
+    }
+}
+
+impl FromIterator<Aabb> for Places {
+    fn from_iter<T: IntoIterator<Item = Aabb>>(bounds: T) -> Self {
+        let mut places = Self::default();
+        bounds.into_iter().enumerate().for_each(|(number, bounds)| places.put(number, bounds));
+        places
+    }
+}

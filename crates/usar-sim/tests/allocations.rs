@@ -1,0 +1,64 @@
+//! A steady step unsteady no memory: between its events a trial lives on what it has. Counted by an allocator, in a process of its own.
+
+use std::alloc::System;
+
+use rne_core::policy_named;
+use stats_alloc::{INSTRUMENTED_SYSTEM, Region, StatsAlloc};
+use usar_sim::conflict::DelayCause;
+use usar_sim::hash::PERIOD_STEPS;
+use usar_sim::scenario::Scenario;
+use usar_sim::simulation::Simulation;
+use usar_sim::stage::Stage;
+
+#[global_allocator]
+static ALLOCATOR: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
+
+const STAGES: usize = Stage::ALL.len();
+
+/// Allocations of each stage in one step.
+fn count(trial: &mut Simulation) -> [usize; STAGES] {
+    let mut taken = [0; STAGES];
+    let mut region = Region::new(ALLOCATOR);
+    let step = trial.step_watched(|stage| {
+        let change = region.change_and_reset();
+        taken[stage as usize] = change.allocations + change.reallocations;
+    });
+    step.expect("sound");
+    taken
+}
+
+/// Whether somebody waits for, or makes room for, another robot.
+fn is_in_conflict(trial: &Simulation) -> bool {
+    trial.delays().any(|delay| {
+        let own = [DelayCause::UnderWay, DelayCause::NothingToDo, DelayCause::Loading, DelayCause::Resting];
+        !own.contains(&delay.cause)
+    })
+}
+
+#[test]
+fn a_step_without_events_plans_and_conflicts_takes_no_memory() {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenarios/paper.ron");
+    let (scenario, _) = Scenario::load(path.as_ref()).unwrap();
+    let policy = policy_named("RNE", &scenario.rne).unwrap();
+    let mut trial = Simulation::new(&scenario, &*policy, 1).unwrap();
+    let (mut steady, mut planned, mut unsteady) = (0, 0, 0);
+    for _ in 0..10_000 {
+        // Events are hashed at the beginning of the step after them.
+        let was_busy = is_in_conflict(&trial) || !trial.events().is_empty();
+        let mut taken = count(&mut trial);
+        // The engine's own: its step, and its list of driven bodies.
+        taken[Stage::Integrate as usize] = 0;
+        taken[Stage::Drive as usize] = 0;
+        let has_link = trial.steps().is_multiple_of(PERIOD_STEPS);
+        if was_busy || is_in_conflict(&trial) || !trial.events().is_empty() || has_link {
+            continue;
+        }
+        planned += usize::from(taken[Stage::Plan as usize] > 0);
+        taken[Stage::Plan as usize] = 0;
+        unsteady += usize::from(taken != [0; STAGES]);
+        steady += 1;
+    }
+    println!("{steady} steady steps, of which {unsteady} take memory; routes are planned in {planned}");
+    assert!(steady > 5_000 && planned < steady / 20, "{steady} steady steps, routes planned in {planned}");
+    assert!(unsteady < steady / 1_000, "{unsteady} of {steady} steady steps take memory"); // a list is longer than ever before
+}
