@@ -97,33 +97,30 @@ fn random_debris(draws: &mut ChaCha8Rng) -> Vec<Outline> {
         .collect()
 }
 
-fn known(outlines: &[Outline]) -> ObstacleMap {
-    let number = |i: usize| ObstacleKey::Debris(i as u32);
-    outlines.iter().enumerate().map(|(i, o)| KnownObstacle::new(number(i), 1, o, 0.4, 0.15)).collect()
+fn known(outlines: &[Outline], sighting: u32) -> ObstacleMap {
+    let key = |i: usize| ObstacleKey::Debris(i as u32);
+    outlines.iter().enumerate().map(|(i, o)| KnownObstacle::new(key(i), sighting, o, 0.4, 0.15)).collect()
 }
 
-fn plan(scenario: &Scenario, obstacles: &ObstacleMap, from: P, to: P) -> Option<Route> {
-    let vector = |p: P| Vector::new(p[0] as f32, p[1] as f32);
-    Planner::new(scenario).route(&Query {
-        from: vector(from),
-        to: vector(to),
-        aerial: false,
-        speed: 2.25,
-        obstacles,
-        so_far: &[],
-        in_the_way: &[],
-        zones: &[],
-    })
+fn vector(p: P) -> Vector {
+    Vector::new(p[0] as f32, p[1] as f32)
+}
+
+/// A ground robot's query at its usual speed.
+fn query<'a>(obstacles: &'a ObstacleMap, from: P, to: P, so_far: &'a [Vector]) -> Query<'a> {
+    let (from, to) = (vector(from), vector(to));
+    Query { from, to, aerial: false, speed: 2.25, obstacles, so_far, in_the_way: &[], zones: &[] }
 }
 
 #[test]
 fn routes_are_connected_clear_of_known_debris_and_as_short_as_the_oracle_s() {
-    let scenario = paper();
+    // One planner for all maps: it keeps meshes, and must tell the pieces of one map from those of another by their sightings.
+    let mut planner = Planner::new(&paper());
     let mut compared = 0;
     for seed in 0..150 {
         let mut draws = ChaCha8Rng::seed_from_u64(seed);
         let outlines = random_debris(&mut draws);
-        let obstacles = known(&outlines);
+        let obstacles = known(&outlines, seed as u32 + 1);
         let polygons: Vec<Vec<P>> = obstacles
             .iter()
             .map(|obstacle| obstacle.planned.iter().map(|p| [f64::from(p.x), f64::from(p.y)]).collect())
@@ -133,16 +130,23 @@ fn routes_are_connected_clear_of_known_debris_and_as_short_as_the_oracle_s() {
         if polygons.iter().any(|polygon| holds(polygon, from, 0.0) || holds(polygon, to, 0.0)) {
             continue;
         }
-        let route = plan(&scenario, &obstacles, from, to);
+        // As a robot finds out: first without one half of the pieces, then from the route that the other half cuts.
+        let few = known(&outlines[..outlines.len() / 2], seed as u32 + 1);
+        let so_far = planner.route(&query(&few, from, to, &[]));
+        let so_far = so_far.as_ref().map_or(&[][..], Route::ahead);
+        let route = planner.route(&query(&obstacles, from, to, so_far));
+        let fresh = planner.route(&query(&obstacles, from, to, &[]));
+        assert_eq!(route.is_some(), fresh.is_some(), "seed {seed}");
         let oracle = shortest(&polygons, from, to);
         assert_eq!(route.is_some(), oracle.is_some(), "seed {seed}");
         let (Some(route), Some(oracle)) = (route, oracle) else { continue };
-        let start = Vector::new(from[0] as f32, from[1] as f32);
-        let length = f64::from(route.length(start));
-        assert!(
-            (length - oracle).abs() <= 1e-3 * oracle.max(1.0),
-            "seed {seed}: {length} m, oracle {oracle} m"
-        );
+        let start = vector(from);
+        for length in [&route, &fresh.unwrap()].map(|route| f64::from(route.length(start))) {
+            assert!(
+                (length - oracle).abs() <= 1e-3 * oracle.max(1.0),
+                "seed {seed}: {length} m, oracle {oracle} m"
+            );
+        }
         assert!(distance([f64::from(route.end().x), f64::from(route.end().y)], to) < 1e-3, "seed {seed}");
         for (a, b) in route.legs(start) {
             for step in 0..=200 {
@@ -196,7 +200,7 @@ fn observers_fly_over_debris() {
         rotation_deg: 0.0,
         movable: None,
     });
-    let obstacles = known(&[wall]);
+    let obstacles = known(&[wall], 1);
     let length = |aerial| {
         let query = Query {
             from: Vector::new(30.0, 30.0),

@@ -78,6 +78,7 @@ impl<'a> Simulation<'a> {
         mut state: State,
     ) -> Self {
         state.world.restore();
+        state.resolver.restore();
         state.mission.restore(&state.world);
         Self { scenario, policy, seed, state, invariants: None, movers: Vec::new() }
     }

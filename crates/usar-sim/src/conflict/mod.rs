@@ -143,6 +143,11 @@ impl Resolver {
         &self.directives
     }
 
+    /// Makes anew what a snapshot leaves out because it follows from the rest.
+    pub(crate) fn restore(&mut self) {
+        self.retreats.restore();
+    }
+
     /// The directives of the last step, by robot.
     #[must_use]
     pub fn directives(&self) -> &[Directive] {

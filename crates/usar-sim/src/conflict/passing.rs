@@ -40,9 +40,13 @@ pub(super) struct Surroundings<'a> {
 type Near<'a> = SmallVec<[&'a KnownObstacle; 16]>;
 
 impl<'a> Surroundings<'a> {
-    /// Debris that a robot at this point may run into within [`DEBRIS_RANGE_M`].
+    /// Debris that a robot at this point may run into within [`DEBRIS_RANGE_M`], in order of its keys: among equally good directions, the
+    /// order decides.
     fn debris(&self, from: Vector) -> Near<'a> {
-        self.known.into_iter().flat_map(|known| known.near(from, DEBRIS_RANGE_M)).collect()
+        let mut near: Near =
+            self.known.into_iter().flat_map(|known| known.near(from, DEBRIS_RANGE_M)).collect();
+        near.sort_unstable_by_key(|obstacle| obstacle.key);
+        near
     }
 
     /// Whether a robot at `from` can go `range` metres in a direction.
@@ -92,17 +96,12 @@ pub(super) fn passing_direction(me: &Mover, surroundings: &Surroundings) -> Opti
     let tangents =
         surroundings.discs.iter().filter(near).flat_map(|(center, touch)| tangents(*center, touch + margin));
     let debris = surroundings.debris(me.position);
-    // Debris comes in no particular order: among equals, coordinates decide.
-    let rank = |direction: &Vector| (surroundings.merit(*direction, wish), direction.x, direction.y);
-    let order = |a: (f32, f32, f32), b: (f32, f32, f32)| {
-        a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)).then(a.2.total_cmp(&b.2))
-    };
     std::iter::once(wish)
         .chain(tangents)
         .chain(along_debris(&debris, me.position))
         .filter(|direction| direction.dot(wish) > LEAST_ADVANCE)
         .filter(|direction| surroundings.is_free(&debris, me.position, *direction, range))
-        .max_by(|a, b| order(rank(a), rank(b)))
+        .max_by(|a, b| surroundings.merit(*a, wish).total_cmp(&surroundings.merit(*b, wish)))
 }
 
 /// The nearest disc that is in the way of a wish.

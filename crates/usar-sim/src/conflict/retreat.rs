@@ -69,7 +69,8 @@ pub(super) struct Retreat {
 #[derive(Serialize, Deserialize)]
 pub(super) struct Retreats {
     of: BTreeMap<usize, Retreat>,
-    /// For whom, and who makes room: the retreats by their heads.
+    /// For whom, and who makes room: the retreats by their heads. Follows from `of`.
+    #[serde(skip)]
     served: BTreeSet<(usize, usize)>,
     /// Steps for which a robot is not asked again.
     respite: Vec<u32>,
@@ -102,6 +103,11 @@ impl Retreats {
 
     fn is_at_place(&self, i: usize) -> bool {
         self.of.get(&i).is_some_and(|retreat| retreat.path.is_empty())
+    }
+
+    /// Makes anew what a snapshot leaves out because it follows from the rest.
+    pub(super) fn restore(&mut self) {
+        self.served = self.of.iter().map(|(i, retreat)| (retreat.head, *i)).collect();
     }
 
     fn begin(&mut self, i: usize, retreat: Retreat) {

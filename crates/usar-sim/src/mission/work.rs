@@ -30,10 +30,6 @@ impl Supply {
         self.rescuees.retain(|rescuee| *rescuee != claimed);
     }
 
-    fn note_release(&mut self) {
-        self.spare += 1;
-    }
-
     fn nearest(&self, here: Vector, world: &World) -> Option<RescueeId> {
         let distance = |id: &RescueeId| (world.rescuees[id.index()].position - here).length_squared();
         let nearest = self.rescuees.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)).then(a.cmp(b)));
@@ -80,7 +76,7 @@ impl Mission {
                 let place = world.rescuees[rescuee.index()].position.into();
                 log.push(Event::Unreachable { robot: id, place });
                 self.release_claim(id, world);
-                self.supplies[task_index(task)].note_release();
+                self.supplies[task_index(task)].forget();
                 self.agent(id).activity = Activity::Searching;
             }
             Activity::Searching | Activity::Standby if self.groups[task_index(task)].at_work => {

@@ -39,12 +39,12 @@ impl ObstacleMap {
         self.slots.values().map(|slot| &self.obstacles[*slot])
     }
 
-    /// Those whose surroundings may reach within this range of a point, in metres.
+    /// Those whose inflated outlines may reach within this range of a point, in metres.
     pub fn near(&self, point: Vector, range: f32) -> impl Iterator<Item = &KnownObstacle> {
         self.places.near(point, range).into_iter().map(|slot| &self.obstacles[slot])
     }
 
-    /// Those whose surroundings the way from `a` to `b` may touch.
+    /// Those whose inflated outlines the way from `a` to `b` may touch.
     pub fn along(&self, a: Vector, b: Vector) -> impl Iterator<Item = &KnownObstacle> {
         self.places.along(a, b).into_iter().map(|slot| &self.obstacles[slot])
     }

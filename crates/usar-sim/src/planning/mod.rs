@@ -15,7 +15,7 @@ mod map;
 mod navigator;
 mod obstacles;
 mod route;
-mod surroundings;
+mod search;
 mod trail;
 
 pub use knowledge::Knowledge;
@@ -32,7 +32,7 @@ use serde::{Deserialize, Serialize};
 use crate::scenario::Scenario;
 use crate::world::{Outline, RadiationZone};
 use obstacles::ZONE_MARGIN_M;
-use surroundings::{Meshes, Surroundings};
+use search::{Meshes, Search};
 
 /// Planner of one trial.
 #[derive(Serialize, Deserialize)]
@@ -130,17 +130,12 @@ impl Planner {
         let obstacle =
             |(outline, number)| KnownObstacle::new(ObstacleKey::Debris(number), 1, outline, offset, 0.0);
         let known: ObstacleMap = outlines.iter().zip(0..).map(obstacle).collect();
-        let surroundings = Surroundings {
-            arena: self.arena,
-            offset,
-            known: Some(&known),
-            always: Vec::new(),
-            numbers: None,
-        };
-        let mut reached = surroundings.free_point(from);
+        let search =
+            Search { arena: self.arena, offset, known: Some(&known), always: Vec::new(), numbers: None };
+        let mut reached = search.free_point(from);
         places.iter().find(|(_, place)| {
-            let place = surroundings.free_point(*place);
-            let is_reached = surroundings.way([reached, place], &[], &mut self.meshes).is_some();
+            let place = search.free_point(*place);
+            let is_reached = search.way([reached, place], &[], &mut self.meshes).is_some();
             reached = if is_reached { place } else { reached };
             !is_reached
         })
@@ -159,16 +154,15 @@ impl Planner {
         let zones: Vec<Vec<Vector>> =
             zones.map(|(_, zone)| Outline::disc(zone.center, zone.radius).inflated(ZONE_MARGIN_M)).collect();
         let in_the_way = query.in_the_way.iter().map(|obstacle| &obstacle.planned);
-        let surroundings = Surroundings {
+        let search = Search {
             arena: self.arena,
             offset: self.offset(query.aerial),
             known: (!query.aerial).then_some(query.obstacles),
             always: zones.iter().chain(in_the_way).map(Vec::as_slice).collect(),
             numbers: query.in_the_way.is_empty().then_some(closed),
         };
-        let from = surroundings.free_point(query.from);
-        let way =
-            surroundings.way([from, surroundings.free_point(query.to)], query.so_far, &mut self.meshes)?;
+        let from = search.free_point(query.from);
+        let way = search.way([from, search.free_point(query.to)], query.so_far, &mut self.meshes)?;
         let start = (from != query.from).then_some(from);
         Some(Route::new(start.into_iter().chain(way).collect()))
     }

@@ -50,7 +50,7 @@ impl World {
             debris_places: debris.iter().map(Debris::bounds).collect(),
             debris,
             zones: layout.zones.iter().map(RadiationZone::new).collect(),
-            rescuees: rescuee_positions(scenario).into(),
+            rescuees: Rescuees::new(rescuee_positions(scenario)),
         }
     }
 

@@ -36,7 +36,7 @@ pub struct Rescuee {
 }
 
 /// All rescuees of a world, by id. Counts how often somebody may have changed one, so that who checks them looks only then.
-#[derive(Default, Serialize, Deserialize)]
+#[derive(Serialize, Deserialize)]
 pub struct Rescuees {
     list: Vec<Rescuee>,
     #[serde(skip)]
@@ -44,16 +44,14 @@ pub struct Rescuees {
 }
 
 impl Rescuees {
+    pub(super) fn new(list: Vec<Rescuee>) -> Self {
+        Self { list, changes: 0 }
+    }
+
     /// How often the list was lent to be changed.
     #[must_use]
     pub fn changes(&self) -> u64 {
         self.changes
-    }
-}
-
-impl From<Vec<Rescuee>> for Rescuees {
-    fn from(list: Vec<Rescuee>) -> Self {
-        Self { list, changes: 0 }
     }
 }
 

@@ -24,7 +24,7 @@ pub(super) struct Meshes(BTreeMap<MeshKey, Mesh>);
 type MeshKey = (u32, Vec<(ObstacleKey, u32)>, Vec<u32>);
 
 /// What a way has to keep clear of.
-pub(super) struct Surroundings<'a> {
+pub(super) struct Search<'a> {
     /// Width and height of the arena, in metres.
     pub(super) arena: Vector,
     /// Distance to keep from its border, in metres.
@@ -37,24 +37,20 @@ pub(super) struct Surroundings<'a> {
     pub(super) numbers: Option<&'a [u32]>,
 }
 
-impl<'a> Surroundings<'a> {
-    /// The free point nearest to a point, or nearly: the point itself where it is free.
+impl<'a> Search<'a> {
+    /// The free point nearest to a point, or nearly: the point itself where it is free and off the border.
     pub(super) fn free_point(&self, point: Vector) -> Vector {
+        let mut free = push_out::<&[Vector]>(point, &[], self.arena, self.offset);
         let mut range = PUSH_OUT_RANGE_M;
-        loop {
-            let free = push_out(point, &self.near(point, range), self.arena, self.offset);
-            if range > self.arena.max_element() || !self.covers(free) {
-                return free;
-            }
+        while self.covers(free) && range < 4.0 * self.arena.max_element() {
+            free = push_out(point, &self.near(point, range), self.arena, self.offset);
             range *= 4.0;
         }
+        free
     }
 
-    /// Corners of the obstacles near a point, where it is not free.
+    /// Corners of the obstacles near a point.
     fn near(&self, point: Vector, range: f32) -> Vec<&'a [Vector]> {
-        if !self.covers(point) {
-            return Vec::new();
-        }
         let near = self.known.into_iter().flat_map(|known| known.near(point, range));
         let mut near: Vec<&KnownObstacle> = near.collect();
         near.sort_unstable_by_key(|obstacle| obstacle.key);
@@ -146,5 +142,31 @@ impl<'a> Surroundings<'a> {
         let mut mesh = triangulation.as_navmesh();
         mesh.set_search_delta(0.01);
         mesh
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::world::Outline;
+
+    #[test]
+    fn points_in_the_strip_along_the_border_find_a_free_point_beside_what_stands_there() {
+        let disc = Outline::disc(Vector::new(10.0, 1.4), 0.3);
+        let known: ObstacleMap =
+            std::iter::once(KnownObstacle::new(ObstacleKey::Debris(0), 1, &disc, 0.4, 0.15)).collect();
+        let search = Search {
+            arena: Vector::splat(20.0),
+            offset: 0.55,
+            known: Some(&known),
+            always: Vec::new(),
+            numbers: None,
+        };
+        let point = Vector::new(10.0, 0.45); // free itself, but nearer to the border than routes go
+        assert!(!search.covers(point) && search.covers(Vector::new(10.0, 0.57)));
+        let free = search.free_point(point);
+        assert!(!search.covers(free) && free.y >= 0.55 && (free - point).length() < 1.2, "{free}");
+        assert!(search.way([free, Vector::new(10.0, 15.0)], &[], &mut Meshes::default()).is_some());
+        assert_eq!(search.free_point(Vector::new(5.0, 5.0)), Vector::new(5.0, 5.0));
     }
 }

@@ -1,0 +1,209 @@
+//! How deep bodies overlap, measured from their shapes and poses alone.
+
+use std::fmt;
+
+use parry2d::math::{Pose, Vector};
+use serde::Serialize;
+
+use crate::ids::RobotId;
+use crate::scenario::Scenario;
+use crate::world::{Robot, World};
+
+/// Overlap that one contact in a thousand may exceed, in metres.
+pub const RARE_OVERLAP_M: f32 = 0.01;
+
+/// Robots nearer than this touch something for the purpose of limits on acceleration, in metres.
+const CONTACT_M: f32 = 0.02;
+
+/// Debris farther than this from a robot is not measured, in metres.
+const LOOK_M: f32 = 2.0;
+
+/// Rounding of a distance in an arena, in metres: added to every way that is taken off a distance.
+const ROUNDING_M: f32 = 1.0e-4;
+
+/// How deep bodies overlapped in a trial.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+pub struct Overlaps {
+    /// Robot-steps in contact with something.
+    pub contacts: u64,
+    /// Those deeper than [`RARE_OVERLAP_M`].
+    pub rare: u64,
+    /// The deepest, in metres.
+    pub deepest_m: f32,
+}
+
+impl fmt::Display for Overlaps {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { contacts, rare, deepest_m } = self;
+        let (deepest_mm, limit_mm) = (1000.0 * deepest_m.max(0.0), 1000.0 * RARE_OVERLAP_M);
+        write!(
+            f,
+            "{contacts} robot-steps in contact, {rare} deeper than {limit_mm:.0} mm, deepest {deepest_mm:.1} mm"
+        )
+    }
+}
+
+/// What is known of the debris round a robot that has not moved.
+#[derive(Debug, Clone)]
+struct Look {
+    /// Where the robot was when all of it was looked at.
+    at: Vector,
+    /// Where it was last.
+    last: Vector,
+    /// Numbers of the pieces that were nearer than [`LOOK_M`] then.
+    near: Vec<usize>,
+    /// None is nearer than this now, in metres.
+    gap: f32,
+}
+
+impl Look {
+    fn never() -> Self {
+        Self { at: Vector::ZERO, last: Vector::ZERO, near: Vec::new(), gap: f32::NEG_INFINITY }
+    }
+}
+
+/// Measures overlaps from step to step.
+pub(super) struct Gauge {
+    arena: Vector,
+    /// Numbers of the debris that has not moved yet, and where each piece is.
+    still: Vec<(usize, Pose)>,
+    /// Numbers of the debris that was pushed.
+    pushed: Vec<usize>,
+    /// For each robot, the last look at the debris that has not moved.
+    looks: Vec<Look>,
+    /// Numbers of the robots in order of x.
+    by_x: Vec<usize>,
+    /// For each robot, the deepest overlap in this step, in metres; negative is a gap.
+    overlap: Vec<f32>,
+    total: Overlaps,
+}
+
+impl Gauge {
+    /// Nothing is measured yet.
+    pub(super) fn new(scenario: &Scenario, world: &World) -> Self {
+        let x = |robot: &usize| world.robots[*robot].position.x;
+        let mut by_x: Vec<usize> = (0..world.robots.len()).collect();
+        by_x.sort_by(|a, b| x(a).total_cmp(&x(b)));
+        Self {
+            arena: Vector::new(scenario.arena_m[0] as f32, scenario.arena_m[1] as f32),
+            still: world.debris.iter().map(|piece| piece.outline.pose).enumerate().collect(),
+            pushed: Vec::new(),
+            looks: vec![Look::never(); world.robots.len()],
+            by_x,
+            overlap: vec![f32::NEG_INFINITY; world.robots.len()],
+            total: Overlaps::default(),
+        }
+    }
+
+    /// Begins to count anew.
+    pub(super) fn forget(&mut self) {
+        self.total = Overlaps::default();
+    }
+
+    /// What was measured so far.
+    pub(super) fn total(&self) -> Overlaps {
+        self.total
+    }
+
+    /// The deepest overlap of a robot in this step, in metres; negative is a gap, as far as it matters.
+    pub(super) fn of(&self, robot: RobotId) -> f32 {
+        self.overlap[robot.index()]
+    }
+
+    /// Whether a robot touches something, or nearly.
+    pub(super) fn is_in_contact(&self, robot: RobotId) -> bool {
+        self.of(robot) > -CONTACT_M
+    }
+
+    /// Takes note of the pieces that were pushed for the first time. Number of a fixed one that is not where it was, if there is one.
+    pub(super) fn note_pushed(&mut self, world: &World) -> Option<usize> {
+        while let Some(at) =
+            self.still.iter().position(|(number, at)| world.debris[*number].outline.pose != *at)
+        {
+            let (number, _) = self.still[at];
+            if world.debris[number].is_fixed {
+                return Some(number);
+            }
+            self.still.swap_remove(at);
+            self.pushed.push(number);
+        }
+        None
+    }
+
+    /// The deepest overlap of each robot with another of its layer, a wall or debris; negative is a gap, as far as it matters.
+    pub(super) fn measure(&mut self, world: &World) {
+        let robots = &world.robots;
+        self.overlap.fill(f32::NEG_INFINITY);
+        // By insertion: they are nearly sorted since the last step.
+        for end in 1..self.by_x.len() {
+            let mut at = end;
+            while at > 0 && robots[self.by_x[at - 1]].position.x > robots[self.by_x[at]].position.x {
+                self.by_x.swap(at - 1, at);
+                at -= 1;
+            }
+        }
+        for (at, i) in self.by_x.iter().enumerate() {
+            let a = &robots[*i];
+            for j in &self.by_x[at + 1..] {
+                let b = &robots[*j];
+                if b.position.x - a.position.x > 2.0 * a.radius().max(b.radius()) + CONTACT_M {
+                    break;
+                }
+                if a.is_aerial() == b.is_aerial() {
+                    let overlap = a.radius() + b.radius() - (a.position - b.position).length();
+                    self.overlap[*i] = self.overlap[*i].max(overlap);
+                    self.overlap[*j] = self.overlap[*j].max(overlap);
+                }
+            }
+        }
+        for robot in robots {
+            let to_wall = robot.position.min(self.arena - robot.position).min_element();
+            let with_debris = self.with_debris(robot, world);
+            let overlap = &mut self.overlap[robot.id.index()];
+            *overlap = overlap.max(robot.radius() - to_wall).max(with_debris);
+            if *overlap > 0.0 {
+                self.total.contacts += 1;
+                self.total.rare += u64::from(*overlap > RARE_OVERLAP_M);
+                self.total.deepest_m = self.total.deepest_m.max(*overlap);
+            }
+        }
+    }
+
+    /// The deepest overlap of a robot with debris; negative is a gap, as far as it matters. Debris that has not moved is looked at only when
+    /// the robot has come far enough since the last look to touch any.
+    fn with_debris(&mut self, robot: &Robot, world: &World) -> f32 {
+        if robot.is_aerial() {
+            return f32::NEG_INFINITY;
+        }
+        let gap = |number: &usize| {
+            let piece = &world.debris[*number];
+            let apart = (piece.outline.pose.translation - robot.position).length();
+            let far = apart - piece.reach - robot.radius();
+            if far < LOOK_M { piece.outline.signed_distance(robot.position) - robot.radius() } else { far }
+        };
+        let look = &mut self.looks[robot.id.index()];
+        look.gap -= (robot.position - look.last).length() + ROUNDING_M;
+        look.last = robot.position;
+        let is_far = look.gap > CONTACT_M; // false where a position is not finite
+        if !is_far {
+            let may_meet_others = (robot.position - look.at).length() > LOOK_M - CONTACT_M;
+            if look.gap == f32::NEG_INFINITY || may_meet_others {
+                look.at = robot.position;
+                look.near.clear();
+                look.near.extend(
+                    self.still.iter().map(|(number, _)| *number).filter(|number| gap(number) < LOOK_M),
+                );
+            }
+            let left = LOOK_M - (robot.position - look.at).length();
+            look.gap = look.near.iter().map(gap).fold(left, f32::min);
+        }
+        let mut least = look.gap;
+        for piece in self.pushed.iter().map(|number| &world.debris[*number]) {
+            let reach = piece.reach + robot.radius() + CONTACT_M;
+            if (piece.outline.pose.translation - robot.position).length_squared() < reach * reach {
+                least = least.min(piece.outline.signed_distance(robot.position) - robot.radius());
+            }
+        }
+        -least
+    }
+}
