@@ -14,7 +14,7 @@ fn main() {
     let mut arguments = std::env::args().skip(1).map(|text| text.parse::<u32>().expect("a whole number"));
     let robots = arguments.next().unwrap_or(10_000);
     let seconds = arguments.next().unwrap_or(60);
-    let scenario = density::mission(robots, f64::from(seconds));
+    let scenario = density::mission(robots, f64::from(seconds), None);
     let policy = policy_named("ENG", &scenario.rne).expect("known");
     let start = Instant::now();
     let mut trial = Simulation::new(&scenario, &*policy, 1).expect("drawn");

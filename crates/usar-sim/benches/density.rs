@@ -42,8 +42,9 @@ pub fn boxes(robots: u32, is_taken: impl Fn(Point) -> bool) -> Vec<DebrisFile> {
     boxes
 }
 
-/// A mission for the full simulator: `duration_s` seconds, homes in rows along the southern wall.
-pub fn mission(robots: u32, duration_s: f64) -> Scenario {
+/// A mission for the full simulator: `duration_s` seconds, homes in rows along the southern wall, tasks across the arena or, so that a minute
+/// sees robots at work, this far from the homes; rest places before them or beyond.
+pub fn mission(robots: u32, duration_s: f64, to_tasks_m: Option<f64>) -> Scenario {
     let side = side(robots);
     let aerial = aerial(robots);
     let suppliers = robots / 3;
@@ -63,14 +64,14 @@ pub fn mission(robots: u32, duration_s: f64) -> Scenario {
             y += spacing;
         }
     }
+    let block = f64::from(robots).sqrt() * (2.0 * RADIUS_M + 1.2) / 2.0 + 2.5;
     let task = |x: f64| TaskFile {
-        center: [x, 0.85 * side],
+        center: [x, to_tasks_m.map_or(0.85 * side, |gap| y + gap + 0.05 * side)],
         size_m: [0.2 * side, 0.1 * side],
         grid: [robots.min(100), 5],
-        rest: [x, 0.5 * side],
+        rest: [x, to_tasks_m.map_or(0.5 * side, |gap| y + gap + 0.1 * side + block)],
     };
     let tasks = Tasks { hard: task(0.25 * side), easy: task(0.75 * side) };
-    let block = f64::from(robots).sqrt() * (2.0 * RADIUS_M + 1.2) / 2.0 + 2.5;
     let is_taken = |[x, at]: Point| {
         let at_rest = |task: &TaskFile| (x - task.rest[0]).abs() < block && (at - task.rest[1]).abs() < block;
         at < y + 1.5 || Difficulty::ALL.iter().any(|task| at_rest(tasks.of(*task)))

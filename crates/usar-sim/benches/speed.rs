@@ -29,9 +29,10 @@ fn main() {
     let (paper, _) = Scenario::load(paper.as_ref()).unwrap_or_else(|error| panic!("{error}"));
     let cases = [
         ("paper.ron", 12, paper, "RNE", 30_000),
-        ("density-12", 12, density::mission(12, 60.0), "ENG", 3_000),
-        ("density-100", 100, density::mission(100, 60.0), "ENG", 3_000),
-        ("density-1000", 1000, density::mission(1000, 60.0), "ENG", 3_000),
+        ("density-12", 12, density::mission(12, 60.0, None), "ENG", 3_000),
+        ("density-100", 100, density::mission(100, 60.0, None), "ENG", 3_000),
+        ("density-1000", 1000, density::mission(1000, 60.0, None), "ENG", 3_000),
+        ("work-1000", 1000, density::mission(1000, 60.0, Some(10.0)), "ENG", 3_000),
     ];
     println!("{TURNS} turns each, medians; us a step; raw: rapier2d alone with as many robots\n");
     println!("{:<14}{:>8}{:>10}{:>8}{:>12}", "", "raw", "full", "ratio", "trials/s");
@@ -47,13 +48,15 @@ fn main() {
         let trials = 1e6 / (full * *steps as f64);
         println!("{name:<14}{raw:>8.1}{full:>10.1}{:>8.2}{trials:>12.2}", full / raw);
         shares.push((name, stages_us(scenario, policy, *steps)));
-        growth.push((f64::from(*robots), full));
+        if name.starts_with("density") {
+            growth.push((f64::from(*robots), full));
+        }
     }
     println!("\n{:<14}{}", "", Stage::ALL.map(|stage| format!("{:>10}", stage.name())).concat());
     for (name, stages) in shares {
         println!("{name:<14}{}", stages.map(|us| format!("{us:>10.2}")).concat());
     }
-    if let [_, (few, fast), .., (many, slow)] = growth[..] {
+    if let [(few, fast), .., (many, slow)] = growth[..] {
         println!("\ngrowth exponent, {few} to {many} robots: {:.2}", (slow / fast).ln() / (many / few).ln());
     }
     if asked.is_empty() || asked.iter().any(|name| name == "grouping") {
