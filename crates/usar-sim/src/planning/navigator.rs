@@ -48,6 +48,17 @@ enum Attempt {
     Straight,
 }
 
+/// What news do to a route.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Effect {
+    /// It stays as good as it was.
+    None,
+    /// It is cut, or leads through radiation.
+    Cut,
+    /// There may be a cheaper one, or one at all.
+    Cheaper,
+}
+
 /// The journey of one robot.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Traveller {
@@ -212,7 +223,7 @@ impl Navigator {
             }
             traveller.note_progress(robot.position);
 
-            let query = || Query {
+            let query = Query {
                 from: robot.position,
                 to: goal.point,
                 aerial: robot.is_aerial(),
@@ -223,28 +234,29 @@ impl Navigator {
                 zones: knowledge.known_zones(),
             };
             let check_due = (step + robot.id.0 as u64).is_multiple_of(ROUTE_CHECK_STEPS);
-            let news = knowledge.news_since(traveller.seen);
             let attempt = traveller.attempt(self.detour_steps);
-            let route = traveller.route.as_ref();
-            let is_cut =
-                route.is_some_and(|route| news.iter().any(|news| concerns(*news, knowledge, route, robot)));
-            let matters =
-                is_cut || route.is_some_and(|route| may_cheapen(&self.planner, &query(), route, news));
-            let replan = match &traveller.route {
-                None => !news.is_empty() || check_due,
+            let news = knowledge.news_since(traveller.seen);
+            traveller.seen = knowledge.seen();
+            let (replan, effect) = match &traveller.route {
+                None => (
+                    !news.is_empty() || check_due,
+                    if news.is_empty() { Effect::None } else { Effect::Cheaper },
+                ),
                 Some(route) => {
-                    attempt.is_some() || matters || check_due && first_leg_cut(knowledge, route, robot)
+                    let effect = effect(&self.planner, &query, route, (news, knowledge), robot);
+                    let cut_ahead = || check_due && first_leg_cut(knowledge, route, robot);
+                    (attempt.is_some() || effect != Effect::None || cut_ahead(), effect)
                 }
             };
-            traveller.seen = knowledge.seen();
             if replan || !traveller.is_planned {
-                let fresh = matters || !traveller.is_planned || traveller.route.is_none() && !news.is_empty();
+                let fresh = effect != Effect::None || !traveller.is_planned;
                 let in_the_way = match attempt {
                     Some(Attempt::Detour) => standing_near(world, robot, self.clearance),
                     _ => Vec::new(),
                 };
-                let so_far = traveller.route.as_ref().filter(|_| is_cut).map_or(&[][..], Route::ahead);
-                let query = Query { so_far, in_the_way: &in_the_way, ..query() };
+                let cut = traveller.route.as_ref().filter(|_| effect == Effect::Cut);
+                let so_far = cut.map_or(&[][..], Route::ahead);
+                let query = Query { so_far, in_the_way: &in_the_way, ..query };
                 let route = find_route(&mut self.planner, &query);
                 traveller.set_route(route, robot.position, fresh);
             }
@@ -299,6 +311,23 @@ fn find_route(planner: &mut Planner, query: &Query) -> Option<Route> {
         return route;
     }
     planner.route(&Query { in_the_way: &[], ..*query })
+}
+
+/// What news do to a route.
+fn effect(
+    planner: &Planner,
+    query: &Query,
+    route: &Route,
+    (news, knowledge): (&[News], &Knowledge),
+    robot: &Robot,
+) -> Effect {
+    if news.iter().any(|news| concerns(*news, knowledge, route, robot)) {
+        Effect::Cut
+    } else if may_cheapen(planner, query, route, news) {
+        Effect::Cheaper
+    } else {
+        Effect::None
+    }
 }
 
 /// Whether something that was learned cuts the route ahead, or shows that it leads through radiation.
