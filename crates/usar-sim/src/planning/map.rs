@@ -49,6 +49,11 @@ impl ObstacleMap {
         self.places.along(a, b).into_iter().map(|slot| &self.obstacles[slot])
     }
 
+    /// Those whose inflated outlines may reach within this range of the way from `a` to `b`, in metres.
+    pub fn beside(&self, a: Vector, b: Vector, range: f32) -> impl Iterator<Item = &KnownObstacle> {
+        self.places.beside(a, b, range).into_iter().map(|slot| &self.obstacles[slot])
+    }
+
     /// Whether an obstacle cuts the way from `a` to `b`.
     #[must_use]
     pub fn cuts(&self, a: Vector, b: Vector) -> bool {

@@ -12,6 +12,10 @@ use super::obstacles::{KnownObstacle, ObstacleKey, contains, crosses, push_out, 
 /// none, within a larger one.
 const PUSH_OUT_RANGE_M: f32 = 8.0;
 
+/// A way that is cut once more, after a first round of obstacles, is likely to meet what is this near to the cut leg, in metres, and twice as
+/// far in each further round: guessing saves rounds, and with them meshes.
+const GUESS_RANGE_M: f32 = 2.0;
+
 /// Meshes kept; when there are more, all are dropped and made anew on demand.
 const MAX_MESHES: usize = 64;
 
@@ -76,8 +80,9 @@ impl<'a> Search<'a> {
         let mut way = if hint.is_empty() { vec![to] } else { hint.to_vec() };
         let mut met = self.bent_round(hint);
         let mut is_clear = hint.is_empty() && !self.always.iter().any(|polygon| crosses(polygon, from, to));
+        let mut guess = 0.0;
         loop {
-            let news = self.met_first(from, &way, &met);
+            let news = self.news_along(from, &way, &met, guess);
             if news.is_empty() && is_clear {
                 return Some(way);
             }
@@ -85,6 +90,7 @@ impl<'a> Search<'a> {
             met.sort_unstable_by_key(|obstacle| obstacle.key);
             way = self.way_round(&met, [from, to], meshes)?;
             is_clear = true;
+            guess = f32::max(GUESS_RANGE_M, 2.0 * guess);
         }
     }
 
@@ -116,17 +122,23 @@ impl<'a> Search<'a> {
         Some(meshes.entry(key).or_insert_with(|| self.mesh(met)).path(from, to)?.path)
     }
 
-    /// The obstacles that a way runs into beyond those that it was made to keep clear of.
-    fn met_first(&self, from: Vector, way: &[Vector], met: &[&KnownObstacle]) -> Vec<&'a KnownObstacle> {
+    /// The obstacles near those legs of a way that run into one, beyond those that it was made to keep clear of; none for a way that runs
+    /// into none.
+    fn news_along(
+        &self,
+        from: Vector,
+        way: &[Vector],
+        met: &[&KnownObstacle],
+        guess: f32,
+    ) -> Vec<&'a KnownObstacle> {
         let Some(known) = self.known else { return Vec::new() };
-        let starts = std::iter::once(&from).chain(way);
-        let run_into = |(a, b): (&Vector, &Vector)| {
-            let (a, b) = (*a, *b);
-            known.along(a, b).filter(move |obstacle| crosses(&obstacle.planned, a, b))
-        };
         let is_new =
             |obstacle: &&KnownObstacle| met.binary_search_by_key(&obstacle.key, |met| met.key).is_err();
-        let mut news: Vec<&KnownObstacle> = starts.zip(way).flat_map(run_into).filter(is_new).collect();
+        let is_cut = |a, b| known.along(a, b).filter(is_new).any(|obstacle| crosses(&obstacle.planned, a, b));
+        let legs = std::iter::once(&from).chain(way).zip(way);
+        let cut = legs.filter(|(a, b)| is_cut(**a, **b));
+        let mut news: Vec<&KnownObstacle> =
+            cut.flat_map(|(a, b)| known.beside(*a, *b, guess)).filter(is_new).collect();
         news.sort_unstable_by_key(|obstacle| obstacle.key);
         news.dedup_by_key(|obstacle| obstacle.key);
         news

@@ -3,7 +3,7 @@
 use parry2d::bounding_volume::{Aabb, BoundingVolume};
 use parry2d::math::Vector;
 use parry2d::partitioning::{Bvh, BvhNode, TraversalAction};
-use parry2d::query::Ray;
+use parry2d::query::{Ray, RayCast};
 use smallvec::SmallVec;
 
 /// Bounds are this much too large, in metres: rounding must not hide a thing.
@@ -36,6 +36,13 @@ impl Places {
     pub fn along(&self, a: Vector, b: Vector) -> Found {
         let way = Ray::new(a, b - a);
         self.find(|node| node.cast_ray(&way, 1.0) <= 1.0)
+    }
+
+    /// The things whose boxes reach within this range of the way from `a` to `b`, in metres, in either direction of x and y.
+    #[must_use]
+    pub fn beside(&self, a: Vector, b: Vector, range: f32) -> Found {
+        let way = Ray::new(a, b - a);
+        self.find(|node| node.aabb().loosened(range).cast_local_ray(&way, 1.0, true).is_some())
     }
 
     fn find(&self, reaches: impl Fn(&BvhNode) -> bool) -> Found {
