@@ -52,6 +52,12 @@ impl HashChain {
         self.links.push(Link { step, parts: parts.map(|part| part as u16), digest: xxh3_128(&bytes) });
     }
 
+    /// A chain of these links, as it was recorded.
+    #[must_use]
+    pub fn of(links: Vec<Link>) -> Self {
+        Self { links }
+    }
+
     /// The links, in order of their steps.
     #[must_use]
     pub fn links(&self) -> &[Link] {

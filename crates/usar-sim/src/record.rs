@@ -1,7 +1,7 @@
 //! The record of a trial: what is left when it is over.
 
 use rne_core::Role;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::conflict::Delay;
 use crate::hash::HashChain;
@@ -9,7 +9,7 @@ use crate::invariant::Overlaps;
 use crate::metrics::{RoundRecord, TaskTotals};
 
 /// How a trial ended.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Status {
     /// The time was over.
     Completed,
@@ -35,7 +35,7 @@ impl Status {
 }
 
 /// One robot's part in a trial.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct RobotRecord {
     /// Identity.
     pub robot: u32,
@@ -68,7 +68,7 @@ pub struct RobotRecord {
 }
 
 /// One trial.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct TrialRecord {
     /// Name of the grouping policy.
     pub policy: String,
@@ -109,7 +109,7 @@ pub struct TrialRecord {
     /// Places that robots gave up on, because they knew no way there.
     pub unreachable: u32,
     /// How deep bodies overlapped, in a checked trial.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub overlaps: Option<Overlaps>,
     /// Last digest of the hash chain over the whole state, 32 hexadecimal digits: equal hashes, equal trials.
     pub state_hash: String,

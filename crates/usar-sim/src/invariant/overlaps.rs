@@ -3,7 +3,7 @@
 use std::fmt;
 
 use parry2d::math::{Pose, Vector};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::ids::RobotId;
 use crate::scenario::Scenario;
@@ -22,7 +22,7 @@ const LOOK_M: f32 = 2.0;
 const ROUNDING_M: f32 = 1.0e-4;
 
 /// How deep bodies overlapped in a trial.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct Overlaps {
     /// Robot-steps in contact with something.
     pub contacts: u64,

@@ -1,29 +1,72 @@
-//! Finds the line of a field in a RON text, so that a broken rule is reported where the user can mend it.
+//! Finds the fields of a RON text: the line of one, so that a broken rule is reported where the user can mend it, and the text of its
+//! value, so that it can be set.
 //!
 //! RON's deserialiser gives positions for its own errors only. This walks a text that is already known to be well-formed
-//! and notes the line at which each field and list entry starts.
+//! and notes where each field and list entry stands.
 
-/// Lines of the fields of one text.
-pub(super) struct FieldLines {
-    lines: Vec<(String, usize)>,
+use std::ops::Range;
+
+/// Where the fields of one text stand.
+pub struct Fields {
+    fields: Vec<Field>,
 }
 
-impl FieldLines {
+/// A field or an entry of a list.
+struct Field {
+    /// Path such as `tasks.hard.grid[0]`.
+    path: String,
+    /// Line, from 1.
+    line: usize,
+    /// Bytes of its value.
+    value: Range<usize>,
+}
+
+impl Fields {
     /// Walks the whole text.
-    pub(super) fn of(text: &str) -> Self {
-        let mut walker = Walker { text: text.as_bytes(), at: 0, breaks: 0, counted: 0, lines: Vec::new() };
+    #[must_use]
+    pub fn of(text: &str) -> Self {
+        let mut walker = Walker { text: text.as_bytes(), at: 0, breaks: 0, counted: 0, fields: Vec::new() };
         walker.value("");
-        Self { lines: walker.lines }
+        Self { fields: walker.fields }
+    }
+
+    /// The bytes of a field's value, if it is written down.
+    #[must_use]
+    pub fn value(&self, path: &str) -> Option<Range<usize>> {
+        self.fields.iter().find(|field| field.path == path).map(|field| field.value.clone())
+    }
+
+    /// Paths and bytes of the values of all fields that have no fields of their own.
+    pub fn leaves(&self) -> impl Iterator<Item = (&str, Range<usize>)> {
+        // A field is noted before what is in it.
+        let following = self.fields.iter().skip(1).map(Some).chain([None]);
+        let is_leaf = |(field, next): &(&Field, Option<&Field>)| {
+            next.is_none_or(|next| next.value.start >= field.value.end)
+        };
+        let pairs = self.fields.iter().zip(following);
+        pairs.filter(is_leaf).map(|(field, _)| (field.path.as_str(), field.value.clone()))
+    }
+
+    /// Names of the fields directly in a field; of the whole text for an empty path.
+    #[must_use]
+    pub fn inside(&self, path: &str) -> Vec<&str> {
+        let directly = |field: &'_ Field| {
+            let rest = field.path.strip_prefix(path)?;
+            let rest = if path.is_empty() { rest } else { rest.strip_prefix('.')? };
+            (!rest.contains(['.', '['])).then_some(field.path.len() - rest.len())
+        };
+        self.fields.iter().filter_map(|field| directly(field).map(|start| &field.path[start..])).collect()
     }
 
     /// Line (from 1) of a field such as `tasks.hard.grid[0]`, or of the nearest field around it that is written down.
-    pub(super) fn find(&self, field: &str) -> Option<usize> {
-        let mut field = field;
+    #[must_use]
+    pub fn line(&self, path: &str) -> Option<usize> {
+        let mut path = path;
         loop {
-            if let Some((_, line)) = self.lines.iter().find(|(path, _)| path == field) {
-                return Some(*line);
+            if let Some(field) = self.fields.iter().find(|field| field.path == path) {
+                return Some(field.line);
             }
-            field = &field[..field.rfind(['.', '['])?];
+            path = &path[..path.rfind(['.', '['])?];
         }
     }
 }
@@ -34,7 +77,7 @@ struct Walker<'a> {
     /// Line breaks before `counted`.
     breaks: usize,
     counted: usize,
-    lines: Vec<(String, usize)>,
+    fields: Vec<Field>,
 }
 
 impl Walker<'_> {
@@ -149,10 +192,12 @@ impl Walker<'_> {
                         Some(name) => format!("{path}.{name}"),
                         None => format!("{path}[{index}]"),
                     };
-                    self.lines.push((entry.clone(), line));
-                    let before = self.at;
+                    self.skip_blank();
+                    let (before, number) = (self.at, self.fields.len());
+                    self.fields.push(Field { path: entry.clone(), line, value: before..before });
                     self.value(&entry);
                     self.at += usize::from(self.at == before); // never stands still, whatever the text
+                    self.fields[number].value.end = self.at.min(self.text.len());
                     index += 1;
                 }
             }
@@ -162,7 +207,12 @@ impl Walker<'_> {
     /// The name before a `:`, which is skipped; or nothing, and nothing is skipped.
     fn field_name(&mut self) -> Option<String> {
         let start = self.at;
-        let name = self.identifier();
+        if self.peek() == Some(b'"') {
+            self.string(); // the key of a map
+        } else {
+            self.identifier();
+        }
+        let name = String::from_utf8_lossy(&self.text[start..self.at.min(self.text.len())]).into_owned();
         self.skip_blank();
         if !name.is_empty() && self.peek() == Some(b':') {
             self.at += 1;
@@ -210,12 +260,13 @@ mod tests {
             3.0), extra: Some((mass: 2.0))),
     ],
     last: -1e3,
+    map: {"a.b": [1, 2]},
 )
 "##;
 
     #[test]
     fn fields_are_found_where_they_stand() {
-        let lines = FieldLines::of(TEXT);
+        let fields = Fields::of(TEXT);
         for (field, line) in [
             ("name", 3),
             ("raw", 4),
@@ -224,22 +275,44 @@ mod tests {
             ("list[1].at[1]", 8),
             ("list[1].extra.mass", 8),
             ("last", 10),
+            ("map.\"a.b\"[1]", 11),
         ] {
-            assert_eq!(lines.find(field), Some(line), "{field}");
+            assert_eq!(fields.line(field), Some(line), "{field}");
         }
     }
 
     #[test]
     fn a_field_that_is_not_written_is_found_at_what_surrounds_it() {
-        let lines = FieldLines::of(TEXT);
-        assert_eq!(lines.find("list[1].rotation"), Some(7));
-        assert_eq!(lines.find("absent.deep"), None);
+        let fields = Fields::of(TEXT);
+        assert_eq!(fields.line("list[1].rotation"), Some(7));
+        assert_eq!(fields.line("absent.deep"), None);
+        assert_eq!(fields.value("absent.deep"), None);
+    }
+
+    #[test]
+    fn the_text_of_a_value_is_found() {
+        let fields = Fields::of(TEXT);
+        for (path, value) in [
+            ("name", r#""a (tricky, \" one)""#),
+            ("raw", r##"r#"x: (" "#"##),
+            ("list[0].at", "(1.0, 2.0)"),
+            ("list[0].at[1]", "2.0"),
+            ("list[0].shape", "Disc(0.5)"),
+            ("list[1].extra.mass", "2.0"),
+            ("last", "-1e3"),
+        ] {
+            assert_eq!(&TEXT[fields.value(path).unwrap()], value, "{path}");
+        }
+        let leaves: Vec<&str> = fields.leaves().map(|(path, _)| path).collect();
+        assert_eq!(leaves[..4], ["name", "raw", "list[0].at[0]", "list[0].at[1]"]);
+        assert_eq!(fields.inside(""), ["name", "raw", "list", "last", "map"]);
+        assert_eq!(fields.inside("list[1]"), ["at", "extra"]);
     }
 
     #[test]
     fn broken_text_ends_the_walk() {
         for text in ["(", "(a: \"", "(a: r##\"", "/* /*", "(a: [", ")))", "(,,:,)"] {
-            FieldLines::of(text);
+            let _ = Fields::of(text);
         }
     }
 }

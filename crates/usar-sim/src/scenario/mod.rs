@@ -4,17 +4,19 @@ mod defaults;
 mod error;
 mod file;
 mod locate;
+mod set;
 mod validate;
 
 use std::ops::Deref;
 use std::path::Path;
 
 use ron::extensions::Extensions;
+use serde::de::DeserializeOwned;
 
 pub use error::{LayoutError, Problem, Problems, ScenarioError};
 pub use file::*;
-
-use locate::FieldLines;
+pub use locate::Fields;
+pub use set::SetError;
 
 /// Greatest size of a scenario file, in bytes.
 const MAX_FILE_BYTES: u64 = 4 << 20;
@@ -40,27 +42,73 @@ impl TryFrom<ScenarioFile> for Scenario {
     }
 }
 
+/// How all texts of the project are read.
+pub(crate) fn ron_options() -> ron::Options {
+    ron::Options::default().with_default_extension(Extensions::IMPLICIT_SOME)
+}
+
+/// Reads a text file of reasonable size.
+///
+/// # Errors
+/// A file that is missing, a folder, not text, empty or too large.
+pub fn read_text(path: &Path) -> Result<String, ScenarioError> {
+    let unreadable = |reason: String| ScenarioError::Unreadable { path: path.to_owned(), reason };
+    let metadata = std::fs::metadata(path).map_err(|e| unreadable(format!("cannot be read: {e}")))?;
+    if metadata.is_dir() {
+        return Err(unreadable("is a folder, not a scenario file".into()));
+    }
+    if metadata.len() > MAX_FILE_BYTES {
+        return Err(unreadable(format!(
+            "is larger than the {} MiB that a scenario may have",
+            MAX_FILE_BYTES >> 20
+        )));
+    }
+    let text = std::fs::read_to_string(path).map_err(|e| unreadable(format!("cannot be read: {e}")))?;
+    if text.trim().is_empty() {
+        return Err(unreadable("is empty; see scenarios/paper.ron for a complete scenario".into()));
+    }
+    Ok(text)
+}
+
+/// Reads a value from a RON text; `path` is used in messages only.
+///
+/// # Errors
+/// A syntax error, an unknown or missing field, or a wrong type, with its line and field.
+pub fn parse_ron<T: DeserializeOwned>(text: &str, path: &Path) -> Result<T, ScenarioError> {
+    let malformed = |error: ron::error::SpannedError, field: String| ScenarioError::Malformed {
+        path: path.to_owned(),
+        line: error.span.start.line,
+        column: error.span.start.col,
+        field: if field.is_empty() || field == "." { String::new() } else { format!("{field}: ") },
+        message: error.code.to_string(),
+    };
+    if let Some(at) = text.find("#![") {
+        return Err(ScenarioError::Malformed {
+            path: path.to_owned(),
+            line: 1 + text[..at].matches('\n').count(),
+            column: 1,
+            field: String::new(),
+            message: "extensions change what a file means and are not allowed; remove `#![...]`".into(),
+        });
+    }
+    let options = ron_options();
+    let mut deserializer = ron::Deserializer::from_str_with_options(text, &options)
+        .map_err(|error| malformed(error, String::new()))?;
+    let value: T = serde_path_to_error::deserialize(&mut deserializer).map_err(|error| {
+        let field = error.path().to_string();
+        malformed(deserializer.span_error(error.into_inner()), field)
+    })?;
+    deserializer.end().map_err(|code| malformed(deserializer.span_error(code), String::new()))?;
+    Ok(value)
+}
+
 impl Scenario {
     /// Reads and checks a file; returns the scenario and its text.
     ///
     /// # Errors
     /// A file that is missing, a folder, not text or too large; a text that is not a scenario; values that break rules.
     pub fn load(path: &Path) -> Result<(Self, String), ScenarioError> {
-        let unreadable = |reason: String| ScenarioError::Unreadable { path: path.to_owned(), reason };
-        let metadata = std::fs::metadata(path).map_err(|e| unreadable(format!("cannot be read: {e}")))?;
-        if metadata.is_dir() {
-            return Err(unreadable("is a folder, not a scenario file".into()));
-        }
-        if metadata.len() > MAX_FILE_BYTES {
-            return Err(unreadable(format!(
-                "is larger than the {} MiB that a scenario may have",
-                MAX_FILE_BYTES >> 20
-            )));
-        }
-        let text = std::fs::read_to_string(path).map_err(|e| unreadable(format!("cannot be read: {e}")))?;
-        if text.trim().is_empty() {
-            return Err(unreadable("is empty; see scenarios/paper.ron for a complete scenario".into()));
-        }
+        let text = read_text(path)?;
         Ok((Self::parse(&text, path)?, text))
     }
 
@@ -69,38 +117,24 @@ impl Scenario {
     /// # Errors
     /// A text that is not a scenario, or values that break rules.
     pub fn parse(text: &str, path: &Path) -> Result<Self, ScenarioError> {
-        let malformed = |error: ron::error::SpannedError, field: String| ScenarioError::Malformed {
-            path: path.to_owned(),
-            line: error.span.start.line,
-            column: error.span.start.col,
-            field: if field.is_empty() || field == "." { String::new() } else { format!("{field}: ") },
-            message: error.code.to_string(),
-        };
-        if let Some(at) = text.find("#![") {
-            return Err(ScenarioError::Malformed {
-                path: path.to_owned(),
-                line: 1 + text[..at].matches('\n').count(),
-                column: 1,
-                field: String::new(),
-                message: "extensions change what a file means and are not allowed; remove `#![...]`".into(),
-            });
-        }
-        let options = ron::Options::default().with_default_extension(Extensions::IMPLICIT_SOME);
-        let mut deserializer = ron::Deserializer::from_str_with_options(text, &options)
-            .map_err(|error| malformed(error, String::new()))?;
-        let file: ScenarioFile = serde_path_to_error::deserialize(&mut deserializer).map_err(|error| {
-            let field = error.path().to_string();
-            malformed(deserializer.span_error(error.into_inner()), field)
-        })?;
-        deserializer.end().map_err(|code| malformed(deserializer.span_error(code), String::new()))?;
-
+        let file: ScenarioFile = parse_ron(text, path)?;
         Self::try_from(file).map_err(|mut list| {
-            let lines = FieldLines::of(text);
+            let fields = Fields::of(text);
             for problem in &mut list {
-                problem.line = lines.find(&problem.field);
+                problem.line = fields.line(&problem.field);
             }
             ScenarioError::Invalid(Problems { path: path.to_owned(), list })
         })
+    }
+
+    /// The whole scenario with every value, as text.
+    ///
+    /// # Panics
+    /// Never: a checked scenario can be written.
+    #[must_use]
+    pub fn resolved(&self) -> String {
+        let pretty = ron::ser::to_string_pretty(&self.0, ron::ser::PrettyConfig::new().new_line("\n"));
+        pretty.expect("a checked scenario can be written") + "\n"
     }
 
     /// Number of simulation steps in a trial.
