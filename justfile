@@ -12,6 +12,11 @@ soak:
 worlds:
     cargo run --release --package experiments --example worlds
 
+# A sweep killed at 100 random moments: nothing lost, nothing done twice, the same bytes in the end
+kills *arguments:
+    cargo build --release --package experiments
+    cargo run --release --package experiments --example kills -- {{arguments}}
+
 # What a step costs: full simulator against raw physics, stage by stage
 bench:
     cargo bench --bench speed

@@ -1,7 +1,11 @@
 //! One seed, one result, bit for bit: the promises of `docs/determinism.md` that one process can test. Those about processes, threads and
 //! surroundings are tested at the command line.
 
-use experiments::sweep::{TrialKey, keys, run_all};
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
+use experiments::experiment::{Experiment, Overrides};
+use experiments::sweep::{Limits, Run, TrialKey, run_all};
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 use rne_core::{GroupingPolicy, policy_named};
@@ -10,7 +14,7 @@ use usar_sim::scenario::Scenario;
 use usar_sim::simulation::Simulation;
 
 use crate::golden;
-use crate::support::{paper, paper_with};
+use crate::support::{self, paper, paper_with};
 
 /// Runs a trial and restores it from its own snapshot wherever `when` says so.
 fn restored(
@@ -66,19 +70,26 @@ fn checking_and_listening_change_nothing() {
 
 #[test]
 fn the_order_of_trials_changes_nothing() {
-    let scenario = paper_with(&[("duration_s: 600.0", "duration_s: 30.0"), ("trials: 10", "trials: 2")]);
-    let run = |key: &TrialKey| {
-        let policy = policy_named(&key.policy_name, &scenario.rne).map_err(|error| error.to_string())?;
-        Ok(Simulation::new(&scenario, &*policy, key.seed).unwrap().run(|_, _, _| {}))
-    };
-    let forwards = keys(&scenario);
+    let overrides =
+        Overrides { trials: Some(2), set: vec!["duration_s=30.0".to_owned()], ..Overrides::default() };
+    let experiment =
+        Arc::new(Experiment::load(&support::root().join("scenarios/paper.ron"), &overrides).unwrap());
+    let forwards: Vec<TrialKey> = experiment.keys(None).collect();
     let mut shuffled = forwards.clone();
     shuffled.reverse();
     shuffled.swap(1, 5);
     let records = |keys: &[TrialKey]| {
-        let mut outcomes = run_all(keys, 2, run, |_| {}).unwrap();
-        outcomes.sort_by_key(|outcome| (outcome.key.policy, outcome.key.trial));
-        outcomes.into_iter().map(|outcome| outcome.result.unwrap()).collect::<Vec<_>>()
+        let experiment = Arc::clone(&experiment);
+        let run: Arc<Run> = Arc::new(move |key, halt| experiment.run(key, halt));
+        let limits = Limits { jobs: 2, trial: None };
+        let mut outcomes = Vec::new();
+        let all = run_all(keys.to_vec(), limits, run, &AtomicBool::new(false), |outcome| {
+            outcomes.push(outcome);
+            Ok(())
+        });
+        assert!(all.unwrap());
+        outcomes.sort_by(|a, b| a.key.cmp(&b.key));
+        outcomes.into_iter().map(|outcome| outcome.result.unwrap().record).collect::<Vec<_>>()
     };
     assert_eq!(records(&forwards), records(&shuffled));
 }

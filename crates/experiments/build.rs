@@ -1,5 +1,9 @@
-//! Tells the program which commit it was built from, for the manifest of its results.
+//! Tells the program what it was built from, for the manifest of its results: the commit, and a hash of the sources, which decide numbers
+//! whether they are committed or not.
 
+use std::collections::hash_map::DefaultHasher;
+use std::hash::{Hash, Hasher};
+use std::path::{Path, PathBuf};
 use std::process::Command;
 
 fn main() {
@@ -10,8 +14,32 @@ fn main() {
     };
     let commit = git(&["describe", "--always", "--dirty", "--abbrev=40", "--exclude=*"]);
     println!("cargo::rustc-env=USAR_COMMIT={}", commit.as_deref().unwrap_or("unknown"));
+    println!("cargo::rustc-env=USAR_SOURCE={:016x}", source_hash(Path::new("../..")));
     if let Some(folder) = git(&["rev-parse", "--absolute-git-dir"]) {
         println!("cargo::rerun-if-changed={folder}/logs/HEAD");
     }
     println!("cargo::rerun-if-changed=../");
+    println!("cargo::rerun-if-changed=../../Cargo.lock");
+}
+
+/// A hash of the lock file and of all sources of the crates, by path and content.
+fn source_hash(root: &Path) -> u64 {
+    let mut files = vec![root.join("Cargo.lock")];
+    for name in ["rne-core", "frozen-physics", "usar-sim", "experiments"] {
+        collect(&root.join("crates").join(name).join("src"), &mut files);
+    }
+    files.sort();
+    let mut hasher = DefaultHasher::new();
+    for file in files {
+        let content = std::fs::read(&file).unwrap_or_default();
+        (file.to_string_lossy(), content).hash(&mut hasher);
+    }
+    hasher.finish()
+}
+
+fn collect(folder: &Path, files: &mut Vec<PathBuf>) {
+    for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
+        let path = entry.path();
+        if path.is_dir() { collect(&path, files) } else { files.push(path) }
+    }
 }

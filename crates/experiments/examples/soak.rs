@@ -4,13 +4,14 @@
 //! `cargo run --release --package experiments --example soak [SCENARIO] [SEEDS]`
 
 use std::process::ExitCode;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 
-use experiments::sweep::{Outcome, keys, run_all};
-use rne_core::{policy_named, policy_names};
+use experiments::experiment::{Experiment, Overrides};
+use experiments::sweep::{Limits, Outcome, run_all};
+use rne_core::policy_names;
 use usar_sim::invariant::Overlaps;
 use usar_sim::record::TrialRecord;
-use usar_sim::scenario::Scenario;
-use usar_sim::simulation::Simulation;
 
 const LONGEST_STALL_S: f64 = 30.0;
 
@@ -18,25 +19,34 @@ fn main() -> ExitCode {
     let mut arguments = std::env::args().skip(1);
     let path = arguments.next().unwrap_or_else(|| "scenarios/paper.ron".into());
     let seeds = arguments.next().and_then(|seeds| seeds.parse().ok()).unwrap_or(100);
-    let scenario = match Scenario::load(path.as_ref()) {
-        Ok((scenario, _)) => with(&scenario, seeds),
+    let overrides = Overrides {
+        policies: Some(policy_names().into_iter().map(str::to_owned).collect()),
+        trials: Some(seeds),
+        is_checked: true,
+        ..Overrides::default()
+    };
+    let experiment = match Experiment::load(path.as_ref(), &overrides) {
+        Ok(experiment) => Arc::new(experiment),
         Err(error) => {
             eprintln!("error: {error}");
             return ExitCode::from(2);
         }
     };
     let jobs = std::thread::available_parallelism().map_or(1, usize::from);
-    let outcomes = run_all(
-        &keys(&scenario),
-        jobs,
-        |key| {
-            let policy = policy_named(&key.policy_name, &scenario.rne).map_err(|error| error.to_string())?;
-            let trial = Simulation::new(&scenario, &*policy, key.seed).map_err(|error| error.to_string())?;
-            Ok(trial.checked().run(|_, _, _| {}))
+    let keys: Vec<_> = experiment.keys(None).collect();
+    let mut outcomes = Vec::new();
+    let ran = run_all(
+        keys,
+        Limits { jobs, trial: None },
+        Arc::new(move |key, halt| experiment.run(key, halt)),
+        &AtomicBool::new(false),
+        |outcome| {
+            outcomes.push(outcome);
+            Ok(())
         },
-        |_| {},
     );
-    let outcomes = outcomes.expect("threads start");
+    assert!(ran.expect("threads start"));
+    outcomes.sort_by(|a, b| a.key.cmp(&b.key));
     let faults: Vec<String> = outcomes.iter().flat_map(faults).collect();
     faults.iter().for_each(|fault| println!("{fault}"));
     summarise(&outcomes);
@@ -44,16 +54,9 @@ fn main() -> ExitCode {
     ExitCode::from(u8::from(!faults.is_empty()))
 }
 
-fn with(scenario: &Scenario, seeds: u32) -> Scenario {
-    let mut file = (**scenario).clone();
-    file.sweep.policies = policy_names().into_iter().map(str::to_owned).collect();
-    file.sweep.trials = seeds;
-    Scenario::try_from(file).expect("the scenario was valid")
-}
-
 fn faults(outcome: &Outcome) -> Vec<String> {
     let Some(record) = outcome.record() else { return outcome.failure().into_iter().collect() };
-    let name = format!("{} seed {}", outcome.key.policy_name, outcome.key.seed);
+    let name = format!("{} seed {}", outcome.key.label, outcome.key.seed);
     let mut faults = Vec::new();
     for robot in &record.robots {
         if robot.longest_stall_s > LONGEST_STALL_S {

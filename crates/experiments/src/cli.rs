@@ -5,7 +5,7 @@ use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 
-use crate::commands::{check, group, run, sweep, trust, verify};
+use crate::commands::{check, compare, estimate, group, merge, run, sweep, trust, verify};
 use crate::failure::Failure;
 
 /// Which robots should team up? A laboratory for trust and grouping policies in mixed robot teams.
@@ -19,6 +19,8 @@ use crate::failure::Failure;
 Examples:
   usar sweep scenarios/paper.ron                       the paper's experiment: policies compared over paired trials
   usar run scenarios/paper.ron --policy RNE --seed 3   one trial, round by round
+  usar compare results/paper                           is A better than B, by how much, how sure is that?
+  usar estimate scenarios/paper.ron --trials 1000      how long, and how much disk?
   usar verify results/paper                            do the numbers come out again?
   usar trust --weights 6,4,2 --from 86,120,30 --to 20,30,10
   usar group robots.csv --policy RNE
@@ -33,13 +35,17 @@ struct Cli {
 enum Command {
     Run(run::Arguments),
     Sweep(sweep::Arguments),
+    Estimate(estimate::Arguments),
+    Merge(merge::Arguments),
+    Compare(compare::Arguments),
     Verify(verify::Arguments),
     Check(check::Arguments),
     Trust(trust::Arguments),
     Group(group::Arguments),
 }
 
-/// Runs the command that the process was called with. Exit status 0 for a result, 2 for input that cannot be used, 1 for trouble underway.
+/// Runs the command that the process was called with. The exit status is 0 for a result, else
+/// [`Failure::exit_status`].
 #[must_use]
 pub fn main() -> ExitCode {
     // A panic is a defect of ours; it is caught and reported in one sentence, never as a backtrace.
@@ -53,7 +59,7 @@ pub fn main() -> ExitCode {
         Ok(()) | Err(Failure::ClosedOutput) => ExitCode::SUCCESS,
         Err(failure) => {
             let _ = writeln!(std::io::stderr(), "error: {failure}");
-            ExitCode::from(if matches!(failure, Failure::Input(_)) { 2 } else { 1 })
+            ExitCode::from(failure.exit_status())
         }
     }
 }
@@ -63,6 +69,9 @@ impl Command {
         match self {
             Self::Run(arguments) => arguments.execute(out),
             Self::Sweep(arguments) => arguments.execute(out),
+            Self::Estimate(arguments) => arguments.execute(out),
+            Self::Merge(arguments) => arguments.execute(out),
+            Self::Compare(arguments) => arguments.execute(out),
             Self::Verify(arguments) => arguments.execute(out),
             Self::Check(arguments) => arguments.execute(out),
             Self::Trust(arguments) => arguments.execute(out),

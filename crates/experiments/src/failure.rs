@@ -11,6 +11,12 @@ pub enum Failure {
     /// It went wrong underway: exit status 1.
     #[error("{0}")]
     Run(String),
+    /// The disk or folder does not do what is needed: exit status 3. What was finished is kept.
+    #[error("{0}")]
+    Storage(String),
+    /// The user stopped it: exit status 130.
+    #[error("{0}")]
+    Interrupted(String),
     /// The reader of our output went away (`usar ... | head`): no message, exit status 0.
     #[error("output closed")]
     ClosedOutput,
@@ -20,6 +26,23 @@ impl Failure {
     /// Bad input, from anything that says what is wrong.
     pub fn input(message: impl std::fmt::Display) -> Self {
         Self::Input(message.to_string())
+    }
+
+    /// Trouble with a disk or folder.
+    pub fn storage(message: impl std::fmt::Display) -> Self {
+        Self::Storage(message.to_string())
+    }
+
+    /// The exit status of the process.
+    #[must_use]
+    pub fn exit_status(&self) -> u8 {
+        match self {
+            Self::ClosedOutput => 0,
+            Self::Run(_) => 1,
+            Self::Input(_) => 2,
+            Self::Storage(_) => 3,
+            Self::Interrupted(_) => 130,
+        }
     }
 
     /// Trouble underway.
@@ -33,7 +56,7 @@ impl From<std::io::Error> for Failure {
         if error.kind() == std::io::ErrorKind::BrokenPipe {
             Self::ClosedOutput
         } else {
-            Self::Run(format!("cannot write: {error}"))
+            Self::Storage(format!("cannot write: {error}"))
         }
     }
 }

@@ -2,7 +2,10 @@
 
 mod cli;
 mod commands;
+pub mod comparison;
+pub mod experiment;
 mod failure;
+pub mod metric;
 pub mod provenance;
 pub mod stats;
 pub mod sweep;

@@ -1,52 +1,157 @@
-//! Where results come from: enough to make them again.
+//! Where results come from: enough to make them again, and to refuse to mix them with others.
 
-use serde::Serialize;
-use usar_sim::scenario::Scenario;
-use xxhash_rust::xxh3::xxh3_128;
+use serde::{Deserialize, Serialize};
+use usar_sim::scenario::Fields;
+
+use crate::experiment::{Axis, Experiment, Seeds, Shard};
+use crate::sweep::FileHash;
+
+/// Version of the folder's layout.
+pub const SCHEMA_VERSION: u32 = 2;
 
 /// `manifest.json`. Holds nothing that differs between two runs of the same sweep: no time of day, no number of threads.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Manifest {
     schema_version: u32,
-    program: &'static str,
-    version: &'static str,
+    program: String,
+    /// Version of the program.
+    pub version: String,
     /// Commit of the source, with `-dirty` where it was changed.
-    commit: &'static str,
+    pub commit: String,
+    /// Hash of the source.
+    pub source: String,
     /// Features that change numbers.
-    features: [&'static str; 1],
-    scenario: String,
-    policies: Vec<String>,
-    trials: u32,
-    seeds: Vec<u64>,
-    /// XXH3-128 of each file, in hexadecimal digits.
-    files: Vec<FileHash>,
-}
-
-#[derive(Debug, Serialize)]
-struct FileHash {
-    name: &'static str,
-    xxh3_128: String,
+    features: Vec<String>,
+    /// Name of the sweep.
+    pub name: String,
+    /// The policies as they were written.
+    pub policies: Vec<String>,
+    /// The axes.
+    pub axes: Vec<Axis>,
+    /// Paired trials for each case and policy.
+    pub trials: u32,
+    /// Their seeds.
+    pub seeds: Seeds,
+    /// Whether every invariant was checked at every step.
+    pub is_checked: bool,
+    /// Which part of the sweep this is, if it is not the whole.
+    pub shard: Option<Shard>,
+    /// Whether all trials are there.
+    pub is_complete: bool,
+    /// The files of the folder with their hashes, but for this one.
+    pub files: Vec<FileHash>,
 }
 
 impl Manifest {
-    /// The manifest of a sweep with these files.
+    /// The manifest of an experiment that is not complete yet.
     #[must_use]
-    pub fn new(scenario: &Scenario, files: &[(&'static str, Vec<u8>)]) -> Self {
-        let first = scenario.sweep.first_seed;
+    pub fn new(experiment: &Experiment, shard: Option<Shard>, files: Vec<FileHash>) -> Self {
         Self {
-            schema_version: 1,
-            program: "usar",
-            version: env!("CARGO_PKG_VERSION"),
-            commit: env!("USAR_COMMIT"),
-            features: ["rapier2d/enhanced-determinism"],
-            scenario: scenario.name.clone(),
-            policies: scenario.sweep.policies.clone(),
-            trials: scenario.sweep.trials,
-            seeds: (0..scenario.sweep.trials).map(|i| first.wrapping_add(u64::from(i))).collect(),
-            files: files
-                .iter()
-                .map(|(name, content)| FileHash { name, xxh3_128: format!("{:032x}", xxh3_128(content)) })
-                .collect(),
+            schema_version: SCHEMA_VERSION,
+            program: "usar".into(),
+            version: env!("CARGO_PKG_VERSION").into(),
+            commit: env!("USAR_COMMIT").into(),
+            source: env!("USAR_SOURCE").into(),
+            features: vec!["rapier2d/enhanced-determinism".into()],
+            name: experiment.name.clone(),
+            policies: experiment.policies.iter().map(|policy| policy.written().to_owned()).collect(),
+            axes: experiment.axes.clone(),
+            trials: experiment.trials,
+            seeds: experiment.seeds.clone(),
+            is_checked: experiment.is_checked,
+            shard,
+            is_complete: false,
+            files,
         }
+    }
+
+    /// The manifest as it was before the first trial.
+    #[must_use]
+    pub fn started(&self) -> Self {
+        Self { is_complete: false, files: Vec::new(), ..self.clone() }
+    }
+
+    /// What keeps the results of this manifest from being continued or joined by those of another, one sentence each. The number of trials
+    /// does not.
+    #[must_use]
+    pub fn differences(&self, other: &Self) -> Vec<String> {
+        let mut differences = Vec::new();
+        let mut compare = |what: &str, there: String, now: String| {
+            if there != now {
+                differences.push(format!("{what}: {there} there, {now} now"));
+            }
+        };
+        let program = |m: &Self| format!("usar {} with source {}", m.version, m.source);
+        compare("layout", self.schema_version.to_string(), other.schema_version.to_string());
+        compare("program", program(self), program(other));
+        compare("policies", self.policies.join(", "), other.policies.join(", "));
+        let axes = |m: &Self| {
+            let axis = |axis: &Axis| format!("{} [{}]", axis.path, axis.values.join(", "));
+            if m.axes.is_empty() {
+                "none".into()
+            } else {
+                m.axes.iter().map(axis).collect::<Vec<_>>().join(", ")
+            }
+        };
+        compare("axes", axes(self), axes(other));
+        let seeds = |m: &Self| match &m.seeds {
+            Seeds::From(first) => format!("from {first} on"),
+            Seeds::Listed(list) => format!("{list:?}"),
+        };
+        let grows =
+            matches!((&self.seeds, &other.seeds), (Seeds::Listed(a), Seeds::Listed(b)) if b.starts_with(a));
+        if !grows {
+            compare("seeds", seeds(self), seeds(other));
+        }
+        compare("--check", self.is_checked.to_string(), other.is_checked.to_string());
+        let shard =
+            |m: &Self| m.shard.map_or("whole".into(), |shard| format!("shard {}/{}", shard.number, shard.of));
+        compare("shard", shard(self), shard(other));
+        differences
+    }
+}
+
+/// The fields in which two resolved scenarios differ, but for what a sweep runs by default, one sentence each.
+#[must_use]
+pub fn scenario_differences(there: &str, now: &str) -> Vec<String> {
+    let (there_fields, now_fields) = (Fields::of(there), Fields::of(now));
+    let decides = |path: &str| {
+        !(path.starts_with("sweep.") || path == "sweep" || path == "name" || path == "description")
+    };
+    let value = |text: &str, fields: &Fields, path: &str| {
+        fields.value(path).map(|value| text[value].trim().to_owned())
+    };
+    let mut differences = Vec::new();
+    for (path, place) in now_fields.leaves().filter(|(path, _)| decides(path)) {
+        let new = now[place].trim();
+        match value(there, &there_fields, path) {
+            Some(old) if old == new => {}
+            Some(old) => differences.push(format!("{path}: {old} there, {new} now")),
+            None => differences.push(format!("{path}: nothing there, {new} now")),
+        }
+    }
+    for (path, place) in there_fields.leaves().filter(|(path, _)| decides(path)) {
+        if value(now, &now_fields, path).is_none() {
+            differences.push(format!("{path}: {} there, nothing now", there[place].trim()));
+        }
+    }
+    differences
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn fields_that_differ_are_named() {
+        let there = "(name: \"a\", sweep: (trials: 1), costs: (hp: 1.0), debris: [(at: (1.0, 2.0))])";
+        let now = "(name: \"b\", sweep: (trials: 2), costs: (hp: 2.0), debris: [(at: (1.0, 2.0)), (at: (3.0, 2.0))])";
+        let differences = scenario_differences(there, now);
+        assert_eq!(differences[0], "costs.hp: 1.0 there, 2.0 now");
+        assert_eq!(differences[1], "debris[1].at[0]: nothing there, 3.0 now");
+        assert!(
+            scenario_differences(now, there).iter().any(|d| d == "debris[1].at[1]: 2.0 there, nothing now")
+        );
+        assert_eq!(scenario_differences(now, now), Vec::<String>::new());
     }
 }

@@ -5,23 +5,85 @@ use comfy_table::{Cell, CellAlignment, Table};
 use usar_sim::event::ReturnCause;
 use usar_sim::record::TrialRecord;
 
-use crate::stats::{METRICS, Moments, Summary};
+use crate::comparison::{Comparison, digits, short, short_p};
+use crate::metric::METRICS;
+use crate::stats::Moments;
+use crate::sweep::folder::{Folder, Measured};
 
-/// A cost per rescuee; `None` without any rescuee.
-#[must_use]
-pub fn ratio(cost: f64, rescuees: u32) -> Option<f64> {
-    (rescuees > 0).then(|| cost / f64::from(rescuees))
-}
-
-/// Metrics down, policies across: mean ± sample standard deviation.
-pub(crate) fn policy_table(policies: &[String], summaries: &[Summary]) -> Table {
+/// Metrics down, policies across: mean ± sample standard deviation of one case.
+pub(crate) fn policy_table(folder: &Folder, case: usize) -> Table {
+    let policies = &folder.experiment().policies;
     let mut table = Table::new();
     table.load_style(UTF8_FULL_CONDENSED);
     let header = std::iter::once(Cell::new("policy"));
-    table.set_header(header.chain(policies.iter().map(|name| right(name))));
-    for (i, (name, _)) in METRICS.iter().enumerate() {
-        let cells = summaries.iter().map(|summary| right(&moments(&summary.metrics[i], summary.trials)));
-        table.add_row(std::iter::once(Cell::new(name)).chain(cells));
+    table.set_header(header.chain(policies.iter().map(|policy| right(&policy.label))));
+    let mut last = "";
+    for (i, metric) in METRICS.iter().enumerate().filter(|(_, metric)| metric.is_papers) {
+        let cells = (0..policies.len()).map(|policy| {
+            let (values, trials) = values(folder, case, policy, i);
+            right(&moments(&Moments::of(&values), trials))
+        });
+        table.add_row(std::iter::once(Cell::new(indented(metric.title, last))).chain(cells));
+        last = metric.title;
+    }
+    table
+}
+
+/// The defined values of a metric, and the number of trials that ran to their end.
+pub(crate) fn values(folder: &Folder, case: usize, policy: usize, metric: usize) -> (Vec<f64>, usize) {
+    let range = (case, policy, 0)..=(case, policy, u32::MAX);
+    let measured = folder.results().range(range).filter_map(|(_, Measured { metrics, .. })| metrics.as_ref());
+    let all: Vec<Option<f64>> = measured.map(|metrics| metrics[metric]).collect();
+    (all.iter().copied().flatten().collect(), all.len())
+}
+
+/// A title of which only the last word is shown where the words before are those of the title above.
+fn indented(title: &str, above: &str) -> String {
+    let common = |text: &str| text.rfind(' ').map(|end| text[..end].to_owned());
+    match (common(title), common(above)) {
+        (Some(here), Some(there)) if here == there => " ".repeat(here.len()) + &title[here.len()..],
+        _ => title.to_owned(),
+    }
+}
+
+/// A row for each comparison.
+pub(crate) fn comparison_table(comparisons: &[&Comparison]) -> Table {
+    let mut table = Table::new();
+    table.load_style(UTF8_FULL_CONDENSED);
+    table.set_header([
+        "metric",
+        "A - B",
+        "n",
+        "mean A",
+        "mean B",
+        "difference",
+        "95 % interval",
+        "shift",
+        "p",
+        "p Holm",
+        "effect",
+        "pairs for 80 %",
+    ]);
+    let number = |value: Option<f64>| right(&value.map_or("-".to_owned(), short));
+    let mean = |value: Option<f64>| right(&value.map_or("-".to_owned(), |value| digits(value, 4)));
+    for c in comparisons {
+        let interval =
+            c.interval.map_or("-".to_owned(), |[low, high]| format!("{} to {}", short(low), short(high)));
+        let p = |p: Option<f64>| right(&p.map_or("-".to_owned(), short_p));
+        table.add_row([
+            Cell::new(c.metric),
+            Cell::new(format!("{} - {}", c.a, c.b)),
+            right(&c.n.to_string()),
+            mean(c.mean_a),
+            mean(c.mean_b),
+            number(c.difference),
+            right(&interval),
+            number(c.shift),
+            p(c.p),
+            p(c.p_holm),
+            right(&c.effect.map_or("-".to_owned(), |effect| format!("{effect:.2}"))),
+            right(&c.pairs_needed.map_or("-".to_owned(), |pairs| pairs.to_string())),
+        ]);
     }
     table
 }

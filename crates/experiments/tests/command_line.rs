@@ -206,7 +206,10 @@ fn bad_files_are_refused() {
     );
     refused(&["sweep", &good, "--trials", "0"], "--trials");
     refused(&["sweep", &good, "--out", &good], "is a file, not a folder");
-    refused(&["sweep", &good, "--out", here], "is not empty; nothing was overwritten");
+    refused(
+        &["sweep", &good, "--out", here],
+        "is not empty and not the folder of a sweep; nothing was overwritten",
+    );
 }
 
 /// A folder with `short.ron`: the paper's scenario, a minute long.
@@ -244,12 +247,16 @@ fn a_sweep_writes_the_same_bytes_on_any_number_of_threads() {
     assert_eq!(one, sweep("8"));
     let names: Vec<&str> = one.1.keys().map(String::as_str).collect();
     let expected = [
+        ".lock",
         "experiment.ron",
+        "groups.csv",
         "hashes.csv",
+        "journal.jsonl",
         "manifest.json",
         "resolved.ron",
         "robots.csv",
         "rounds.csv",
+        "series.csv",
         "trials.csv",
     ];
     assert_eq!(names, expected);

@@ -1,7 +1,11 @@
 //! One file per verb of the command line.
 
 pub(crate) mod check;
+pub(crate) mod compare;
+pub(crate) mod estimate;
 pub(crate) mod group;
+pub(crate) mod merge;
+mod precision;
 pub(crate) mod run;
 mod snapshot;
 pub(crate) mod sweep;

@@ -11,8 +11,9 @@ use usar_sim::simulation::Simulation;
 
 use super::snapshot::{Snapshot, save};
 use super::{SCHEMA_VERSION, load};
+use crate::experiment::with_settings;
 use crate::failure::Failure;
-use crate::table::{ratio, rounds_table};
+use crate::table::rounds_table;
 
 /// Run one trial and tell what happened, round by round
 #[derive(Debug, Args)]
@@ -21,6 +22,7 @@ Examples:
   usar run scenarios/paper.ron
   usar run scenarios/paper.ron --policy DIS --seed 7 --json
   usar run scenarios/minimal/head_on.ron --check
+  usar run scenarios/paper.ron --policy RNE --set rne.hard_rule=MeanEnergy --set duration_s=300
   usar run scenarios/paper.ron --seed 3 --save half.snapshot --save-at 300    the trial, and a snapshot of it on the way
   usar run scenarios/paper.ron --from half.snapshot                           the rest of that trial, with the same result")]
 pub(crate) struct Arguments {
@@ -44,6 +46,9 @@ pub(crate) struct Arguments {
     /// Check every invariant at every step; a violation ends the trial as failed
     #[arg(long)]
     check: bool,
+    /// Set a field of the scenario, by its path, to a value in RON, e.g. `costs.energy.per_step=0.009`; may stand several times
+    #[arg(long, value_name = "PATH=VALUE")]
+    set: Vec<String>,
     /// Print one JSON object
     #[arg(long)]
     json: bool,
@@ -61,6 +66,7 @@ struct Output<'a> {
 impl Arguments {
     pub(crate) fn execute(&self, out: &mut dyn Write) -> Result<(), Failure> {
         let (scenario, _) = load(&self.file)?;
+        let scenario = with_settings(&scenario, &self.set)?;
         let snapshot = self.from.as_deref().map(Snapshot::read).transpose()?;
         let name = match &snapshot {
             Some(snapshot) => &snapshot.identity.policy,
@@ -111,7 +117,10 @@ fn print(out: &mut dyn Write, scenario: &str, record: &TrialRecord) -> Result<()
         record.completed_rounds,
         record.hard.secured + record.easy.secured - rescued
     )?;
-    let per = |cost: f64| ratio(cost, rescued).map_or("-".to_owned(), |ratio| format!("{ratio:.2}"));
+    let per = |cost: f64| match rescued {
+        0 => "-".to_owned(),
+        _ => format!("{:.2}", cost / f64::from(rescued)),
+    };
     writeln!(out, "per rescuee  {} energy, {} HP (percent points)", per(record.energy()), per(record.hp()))?;
     let waiting: f64 = record.robots.iter().map(|robot| robot.waiting_s).sum();
     let stall = record.robots.iter().map(|robot| robot.longest_stall_s).fold(0.0, f64::max);

@@ -1,49 +1,81 @@
-//! `usar sweep`: paired trials of several policies, a table, and a folder of results.
+//! `usar sweep`: paired trials of several policies, a table, and a folder of results that survives anything.
 
 use std::io::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
 
 use clap::Args;
-use indicatif::ProgressBar;
-use rne_core::{GroupingPolicy, policy_named};
-use usar_sim::layout::Layout;
-use usar_sim::scenario::{Problem, SampledCounts, Scenario};
-use usar_sim::simulation::Simulation;
 
-use super::{default_jobs, load, progress_bar};
+use super::precision::Precision;
+use super::{default_jobs, progress_bar};
+use crate::experiment::{Experiment, Overrides, Shard, split_list};
 use crate::failure::Failure;
-use crate::stats::Summary;
-use crate::sweep::folder::Draft;
-use crate::sweep::{Outcome, TrialKey, keys, run_all};
+use crate::sweep::folder::{Folder, Opening, trials_in};
+use crate::sweep::{Limits, Run, TrialKey, run_all};
 use crate::table::policy_table;
+
+/// Tables of more cases than these are left to `usar compare` and `usar report`.
+const MAX_TABLES: usize = 8;
+
+/// Set by Ctrl-C.
+static STOP: AtomicBool = AtomicBool::new(false);
 
 /// Compare policies over paired trials: the same initial levels for every policy
 #[derive(Debug, Args)]
 #[command(after_help = "\
-Results go to a new folder: trials.csv (a row per trial), rounds.csv, robots.csv, hashes.csv (for `usar verify`), manifest.json, and the
-scenario as given (experiment.ron) and as run (resolved.ron). They do not depend on --jobs.
+FILE is a scenario, or a sweep file: a scenario with policies, trials and axes (scenarios/sweeps/).
+
+Each trial is on disk as soon as it is done. The same command again goes on where it was broken off, and skips what is finished; more
+--trials only adds. The folder holds trials.csv (a row per trial), rounds.csv, groups.csv, robots.csv, series.csv, hashes.csv (for `usar
+verify`), journal.jsonl, manifest.json, and the file as given (experiment.ron) and its scenario as run (resolved.ron). Nothing in it depends
+on --jobs or on interruptions.
+
+Exit status: 0 when all trials gave numbers, 1 when one did not, 2 for bad input, 3 for trouble with the disk, 130 after Ctrl-C.
 
 Examples:
   usar sweep scenarios/paper.ron
-  usar sweep scenarios/paper.ron --policies RNE,RANDOM --trials 100 --jobs 2 --out results/many")]
+  usar sweep scenarios/paper.ron --policies RNE,RANDOM --trials 100 --out results/many
+  usar sweep scenarios/paper.ron --policies 'RNE,sum=RNE(score: Sum)' --out results/directions
+  usar sweep scenarios/sweeps/energy.ron --shard 2/8            the second of eight parts; `usar merge` joins them
+  usar sweep scenarios/paper.ron --policies RNE,DIS --precision 'rescuees.hard: RNE-DIS: 2.0' --max-trials 500")]
 pub(crate) struct Arguments {
-    /// Scenario file (RON)
+    /// Scenario or sweep file (RON)
     file: PathBuf,
-    /// Policies, separated by commas [default: the scenario's]
-    #[arg(long, value_delimiter = ',')]
-    policies: Option<Vec<String>>,
-    /// Trials per policy [default: the scenario's]
+    /// Policies, separated by commas, with options in brackets [default: the file's]
+    #[arg(long)]
+    policies: Option<String>,
+    /// Trials for each policy and case [default: the file's]
     #[arg(long, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     trials: Option<u32>,
-    /// Seed of the first trial [default: the scenario's]
+    /// Seed of the first trial [default: the file's]
     #[arg(long)]
     seed: Option<u64>,
+    /// Set a field of the scenario, by its path, to a value in RON, e.g. `costs.energy.per_step=0.009`; may stand several times
+    #[arg(long, value_name = "PATH=VALUE")]
+    set: Vec<String>,
     /// Threads [default: one per core]
     #[arg(long, value_parser = clap::value_parser!(u32).range(1..=1024))]
     jobs: Option<u32>,
-    /// Folder for the results; must not exist yet or be empty [default: results/NAME, or the next free results/NAME-N]
+    /// Folder for the results [default: results/NAME]
     #[arg(long)]
     out: Option<PathBuf>,
+    /// Start over: delete what a sweep has left in the folder
+    #[arg(long)]
+    fresh: bool,
+    /// Run part i of n only
+    #[arg(long, value_name = "i/n")]
+    shard: Option<Shard>,
+    /// Add trials until the 95 % interval of a difference is at most this far from its mean, e.g. 'rescuees.hard: RNE-DIS: 2.0'
+    #[arg(long, value_name = "METRIC: A-B: BOUND", conflicts_with = "shard")]
+    precision: Option<String>,
+    /// Trials at which --precision gives up
+    #[arg(long, default_value_t = 1000, requires = "precision", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    max_trials: u32,
+    /// Longest time of one trial, in seconds; one that takes longer is given up
+    #[arg(long, default_value_t = 600.0, value_name = "SECONDS")]
+    max_trial_s: f64,
     /// Check every invariant at every step; a violation ends the trial as failed
     #[arg(long)]
     check: bool,
@@ -54,98 +86,133 @@ pub(crate) struct Arguments {
 
 impl Arguments {
     pub(crate) fn execute(&self, out: &mut dyn Write) -> Result<(), Failure> {
-        let (given, text) = load(&self.file)?;
-        let scenario = self.resolve(&given)?;
-        let policies = scenario
-            .sweep
-            .policies
-            .iter()
-            .map(|name| policy_named(name, &scenario.rne).map_err(Failure::input))
-            .collect::<Result<Vec<_>, _>>()?;
-        self.check_layouts(&scenario)?;
-        let draft = Draft::new(self.out.as_deref(), &scenario.name)?;
-
-        let keys = keys(&scenario);
-        let jobs = self.jobs.map_or_else(default_jobs, |jobs| jobs as usize);
-        let progress = progress_bar(keys.len(), jobs, self.quiet);
-        let outcomes = run_all(
-            &keys,
-            jobs,
-            |key| self.trial(&scenario, policies[key.policy].as_ref(), key),
-            |outcome| report(&progress, outcome),
-        )?;
-        progress.finish_and_clear();
-
-        writeln!(
-            out,
-            "{}",
-            policy_table(&scenario.sweep.policies, &Summary::of_all(&scenario.sweep.policies, &outcomes))
-        )?;
-        writeln!(out, "{}", footnote(&scenario))?;
-        let place = draft.publish(&text, &scenario, &outcomes)?;
-        if !self.quiet {
-            eprintln!("results in {}", place.display());
+        if !(self.max_trial_s > 0.0 && self.max_trial_s <= 1e9) {
+            return Err(Failure::input(format!(
+                "--max-trial-s: must be above 0, found {}",
+                self.max_trial_s
+            )));
         }
-        let failed: Vec<String> = outcomes.iter().filter_map(Outcome::failure).collect();
+        let mut experiment = Experiment::load(&self.file, &self.overrides())?;
+        let path = self.out.clone().unwrap_or_else(|| default_path(&experiment.name, self.shard));
+        if self.trials.is_none()
+            && !self.fresh
+            && let Some(trials) = trials_in(&path)
+            && trials > experiment.trials
+        {
+            experiment = experiment.with_trials(trials)?;
+        }
+        let precision =
+            self.precision.as_deref().map(|text| Precision::parse(text, &experiment)).transpose()?;
+        if precision.is_some() {
+            experiment = experiment.with_trials(Precision::first_look(experiment.trials, self.max_trials))?;
+        }
+        experiment.check_layouts(&self.file)?;
+
+        let _ = ctrlc::set_handler(|| STOP.store(true, Ordering::Relaxed));
+        let opening = Opening { shard: self.shard, is_fresh: self.fresh };
+        let mut folder =
+            Folder::open(&path, Arc::new(experiment), opening, &mut |note| eprintln!("note: {note}"))?;
+        self.run(&mut folder)?;
+        while let Some(trials) = precision.as_ref().and_then(|rule| rule.next_look(&folder, self.max_trials))
+        {
+            folder.extend(Arc::new(folder.experiment().with_trials(trials)?))?;
+            self.run(&mut folder)?;
+        }
+        folder.finish()?;
+        print(out, &folder)?;
+        if let Some(precision) = &precision {
+            writeln!(out, "{}", precision.verdict(&folder))?;
+        }
+        if !self.quiet {
+            eprintln!("results in {}", path.display());
+        }
+        let failed: Vec<&str> =
+            folder.results().values().filter_map(|measured| measured.failure.as_deref()).collect();
         if failed.is_empty() { Ok(()) } else { Err(Failure::run(failed.join("\n"))) }
     }
 
-    fn trial(
-        &self,
-        scenario: &Scenario,
-        policy: &dyn GroupingPolicy,
-        key: &TrialKey,
-    ) -> Result<usar_sim::record::TrialRecord, String> {
-        let simulation = Simulation::new(scenario, policy, key.seed).map_err(|error| error.to_string())?;
-        let simulation = if self.check { simulation.checked() } else { simulation };
-        Ok(simulation.run(|_, _, _| {}))
+    fn overrides(&self) -> Overrides {
+        let policies = self.policies.as_deref();
+        Overrides {
+            policies: policies.map(|list| split_list(list).into_iter().map(str::to_owned).collect()),
+            trials: self.trials,
+            first_seed: self.seed,
+            set: self.set.clone(),
+            is_checked: self.check,
+        }
     }
 
-    /// The scenario with what the command line says otherwise.
-    fn resolve(&self, given: &Scenario) -> Result<Scenario, Failure> {
-        let mut file = (**given).clone();
-        if let Some(policies) = &self.policies {
-            file.sweep.policies.clone_from(policies);
+    /// Runs what is missing.
+    fn run(&self, folder: &mut Folder) -> Result<(), Failure> {
+        let all: Vec<TrialKey> = folder.experiment().keys(self.shard).collect();
+        let missing: Vec<TrialKey> = all.iter().filter(|key| !folder.has(key)).cloned().collect();
+        if !self.quiet && missing.len() < all.len() {
+            eprintln!("{} of {} trials are there already", all.len() - missing.len(), all.len());
         }
-        file.sweep.trials = self.trials.unwrap_or(file.sweep.trials);
-        file.sweep.first_seed = self.seed.unwrap_or(file.sweep.first_seed);
-        Scenario::try_from(file).map_err(|problems| {
-            let line = |p: &Problem| {
-                let name = if p.field.starts_with("sweep.policies") { "--policies:" } else { &p.field };
-                format!("{name} {}, found {}", p.rule, p.found)
-            };
-            let lines = problems.iter().map(line);
-            Failure::Input(lines.collect::<Vec<_>>().join("\n"))
-        })
-    }
-
-    /// Draws every layout before the first trial runs, so that a scenario without room fails at once.
-    fn check_layouts(&self, scenario: &Scenario) -> Result<(), Failure> {
-        let drawn = scenario.sampled.hard != SampledCounts::default()
-            || scenario.sampled.easy != SampledCounts::default();
-        let trials = if drawn { scenario.sweep.trials } else { 1 };
-        for trial in 0..trials {
-            let seed = scenario.sweep.first_seed.wrapping_add(u64::from(trial));
-            Layout::sample(scenario, seed)
-                .map_err(|error| Failure::input(format!("{}: seed {seed}: {error}", self.file.display())))?;
+        if missing.is_empty() {
+            return Ok(());
         }
-        Ok(())
+        let jobs = self.jobs.map_or_else(default_jobs, |jobs| jobs as usize);
+        let progress = progress_bar(missing.len(), jobs, self.quiet);
+        let limits = Limits { jobs, trial: Some(Duration::from_secs_f64(self.max_trial_s)) };
+        let experiment = folder.shared_experiment();
+        let run: Arc<Run> = Arc::new(move |key, halt| experiment.run(key, halt));
+        let is_whole = run_all(missing, limits, run, &STOP, |outcome| {
+            if let Some(failure) = outcome.failure() {
+                progress.suspend(|| eprintln!("{failure}"));
+            }
+            progress.inc(1);
+            folder.add(&outcome)
+        })?;
+        progress.finish_and_clear();
+        if is_whole {
+            return Ok(());
+        }
+        let (done, path) = (folder.results().len(), folder.path().display());
+        Err(Failure::Interrupted(format!(
+            "stopped; {done} finished trials are in {path}, and the same command goes on"
+        )))
     }
 }
 
-fn report(progress: &ProgressBar, outcome: &Outcome) {
-    if let Some(failure) = outcome.failure() {
-        progress.suspend(|| eprintln!("{failure}"));
-    }
-    progress.inc(1);
+fn default_path(name: &str, shard: Option<Shard>) -> PathBuf {
+    let part = shard.map_or(String::new(), |shard| format!("-{}-of-{}", shard.number, shard.of));
+    Path::new("results").join(format!("{name}{part}"))
 }
 
-fn footnote(scenario: &Scenario) -> String {
+/// The table of each case, and what it stands on.
+pub(super) fn print(out: &mut dyn Write, folder: &Folder) -> Result<(), Failure> {
+    let experiment = folder.experiment();
+    for (i, case) in experiment.cases.iter().enumerate().take(MAX_TABLES) {
+        let place = experiment.describe(case);
+        if !place.is_empty() {
+            writeln!(out, "{}", place.trim_end_matches(": "))?;
+        }
+        writeln!(out, "{}", policy_table(folder, i))?;
+    }
+    if experiment.cases.len() > MAX_TABLES {
+        writeln!(
+            out,
+            "... and {} further cases: see trials.csv, or `usar report`",
+            experiment.cases.len() - MAX_TABLES
+        )?;
+    }
+    writeln!(out, "{}", footnote(folder))?;
+    Ok(())
+}
+
+fn footnote(folder: &Folder) -> String {
+    let experiment = folder.experiment();
+    let (first, last) = (experiment.seed(1), experiment.seed(experiment.trials));
+    let failed = folder.results().values().filter(|measured| measured.metrics.is_none()).count();
+    let missing = experiment.keys(None).filter(|key| !folder.has(key)).count();
+    let gaps = match (failed, missing) {
+        (0, 0) => String::new(),
+        _ => format!("\n{failed} trials failed, {missing} are missing: these are not in the means"),
+    };
     format!(
-        "mean ± sample standard deviation over {} paired trials (seeds {} to {}); energy and HP in percent points per rescuee delivered;\n\
-         totals include what robots spent outside a group, on their way to rest",
-        scenario.sweep.trials,
-        scenario.sweep.first_seed,
-        scenario.sweep.first_seed.wrapping_add(u64::from(scenario.sweep.trials) - 1),
+        "mean ± sample standard deviation over {} paired trials (seeds {first} to {last}); energy and HP in percent points per rescuee delivered;\n\
+         totals include what robots spent outside a group, on their way to rest{gaps}",
+        experiment.trials,
     )
 }

@@ -2,17 +2,18 @@
 
 use std::io::Write;
 use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 
 use clap::Args;
-use rne_core::policy_named;
-use serde::Deserialize;
 use usar_sim::hash::Link;
-use usar_sim::scenario::Scenario;
-use usar_sim::simulation::Simulation;
 
-use super::{default_jobs, load, progress_bar};
+use super::{default_jobs, progress_bar};
+use crate::experiment::Experiment;
 use crate::failure::Failure;
-use crate::sweep::{Outcome, TrialKey, keys, links, run_all};
+use crate::provenance::Manifest;
+use crate::sweep::folder::{broken_files, experiment_in};
+use crate::sweep::{Limits, Outcome, Run, TrialKey, links, run_all};
 
 /// Run a finished sweep again and compare the whole state of every trial, step by step
 #[derive(Debug, Args)]
@@ -37,35 +38,43 @@ pub(crate) struct Arguments {
     quiet: bool,
 }
 
-/// What is read of `manifest.json`.
-#[derive(Deserialize)]
-struct Origin {
-    version: String,
-    commit: String,
-}
-
 impl Arguments {
     pub(crate) fn execute(&self, out: &mut dyn Write) -> Result<(), Failure> {
-        let (scenario, _) = load(&self.folder.join("resolved.ron"))?;
+        let (experiment, manifest) = experiment_in(&self.folder)?;
+        let experiment = Arc::new(experiment);
         let recorded = links::read(&self.folder)?;
-        let all = keys(&scenario);
+        let all: Vec<TrialKey> = experiment.keys(manifest.shard).collect();
         let chosen = self.choose(&all);
         let jobs = self.jobs.map_or_else(default_jobs, |jobs| jobs as usize);
-        self.mention_other_version();
+        self.mention_other_version(&manifest);
         let progress = progress_bar(chosen.len(), jobs, self.quiet);
-        let outcomes = run_all(&chosen, jobs, |key| run(&scenario, key), |_| progress.inc(1))?;
+        let mut outcomes = Vec::new();
+        let again = Arc::clone(&experiment);
+        let run: Arc<Run> = Arc::new(move |key, halt| again.run(key, halt));
+        run_all(chosen, Limits { jobs, trial: None }, run, &AtomicBool::new(false), |outcome| {
+            progress.inc(1);
+            outcomes.push(outcome);
+            Ok(())
+        })?;
+        outcomes.sort_by(|a, b| a.key.cmp(&b.key));
         progress.finish_and_clear();
 
         let nothing = Vec::new();
         let recorded =
-            |key: &TrialKey| recorded.get(&(key.policy_name.clone(), key.trial)).unwrap_or(&nothing);
+            |key: &TrialKey| recorded.get(&(key.case, key.label.clone(), key.trial)).unwrap_or(&nothing);
         let differences: Vec<String> = outcomes
             .iter()
-            .filter_map(|outcome| difference(outcome, recorded(&outcome.key), &scenario))
+            .filter_map(|outcome| difference(outcome, recorded(&outcome.key), &experiment))
             .collect();
         let count = outcomes.len();
         let of_all = if count < all.len() { format!(" (of {})", all.len()) } else { String::new() };
+        for name in broken_files(&self.folder, &manifest) {
+            eprintln!("{}: does not have the checksum of the manifest", self.folder.join(name).display());
+        }
         match differences.first() {
+            None if !broken_files(&self.folder, &manifest).is_empty() => Err(Failure::run(format!(
+                "{count} of {count} trials{of_all} match, but files were changed since"
+            ))),
             None => Ok(writeln!(out, "{count} of {count} trials{of_all} match, step by step")?),
             Some(first) => Err(Failure::run(format!(
                 "{} of {count} trials{of_all} do not match\n{first}",
@@ -79,34 +88,27 @@ impl Arguments {
         (0..count).map(|i| all[i * all.len() / count].clone()).collect()
     }
 
-    /// Numbers are promised for the same version only.
-    fn mention_other_version(&self) {
-        let text = std::fs::read(self.folder.join("manifest.json")).unwrap_or_default();
-        let Ok(origin) = serde_json::from_slice::<Origin>(&text) else { return };
+    /// Numbers are promised for the same program only.
+    fn mention_other_version(&self, manifest: &Manifest) {
         let (version, commit) = (env!("CARGO_PKG_VERSION"), env!("USAR_COMMIT"));
-        if !self.quiet && (origin.version != version || origin.commit != commit) {
+        if !self.quiet && (manifest.version != version || manifest.source != env!("USAR_SOURCE")) {
             eprintln!(
                 "note: the sweep is of usar {} ({}), this is usar {version} ({commit})",
-                origin.version, origin.commit
+                manifest.version, manifest.commit
             );
         }
     }
 }
 
-fn run(scenario: &Scenario, key: &TrialKey) -> Result<usar_sim::record::TrialRecord, String> {
-    let policy = policy_named(&key.policy_name, &scenario.rne).map_err(|error| error.to_string())?;
-    let trial = Simulation::new(scenario, &*policy, key.seed).map_err(|error| error.to_string())?;
-    Ok(trial.run(|_, _, _| {}))
-}
-
 /// Where a trial first differs from its recorded chain.
-fn difference(outcome: &Outcome, recorded: &[Link], scenario: &Scenario) -> Option<String> {
-    let TrialKey { policy_name, trial, seed, .. } = &outcome.key;
-    let name = format!("trial {trial} of {policy_name} (seed {seed})");
+fn difference(outcome: &Outcome, recorded: &[Link], experiment: &Experiment) -> Option<String> {
+    let TrialKey { case, label, trial, seed, .. } = &outcome.key;
+    let case = &experiment.cases[*case];
+    let name = format!("{}trial {trial} of {label} (seed {seed})", experiment.describe(case));
     let again = outcome.record().map(|record| record.chain.links()).unwrap_or_default();
     let pairs = recorded.iter().zip(again);
     if let Some((before, now)) = pairs.clone().find(|(before, now)| before != now) {
-        let time_s = now.step as f64 * scenario.dt_s;
+        let time_s = now.step as f64 * case.scenario.dt_s;
         let parts = before.differing_parts(now).join(", ");
         let parts = if parts.is_empty() { "the chain only".to_owned() } else { parts };
         return Some(format!("{name} differs first at step {} ({time_s:.2} s), in: {parts}", now.step));

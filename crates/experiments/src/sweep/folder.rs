@@ -1,139 +1,457 @@
-//! The folder of a sweep's results. It appears whole or not at all.
+//! The folder of a sweep's results: resumable at any moment, and the same bytes in the end.
+//!
+//! `journal.jsonl` takes each trial as it is done; when all are done, the tables are made from it. The manifest says what the sweep is from
+//! the first moment on, so that the same command goes on with it and another is refused.
 
-use std::fs;
-use std::io::Write;
+use std::collections::BTreeMap;
+use std::fs::{self, File, TryLockError};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
-use serde::Serialize;
 use usar_sim::scenario::Scenario;
+use xxhash_rust::xxh3::xxh3_128;
 
-use super::Outcome;
+use super::journal::{self, Damage, Journal, Place};
 use super::links::{self, LinkRow};
-use super::rows::{RobotRow, RoundRow, TrialRow};
+use super::rows::{GroupRow, RobotRow, RoundRow, SeriesRow, TrialRow};
+use super::tables::{FileHash, NewFile, Table};
+use super::trial::{Outcome, TrialKey};
+use crate::experiment::{Experiment, Parts, Shard};
 use crate::failure::Failure;
-use crate::provenance::Manifest;
+use crate::metric::measure;
+use crate::provenance::{Manifest, scenario_differences};
 
-/// Results on their way to their folder: written beside it, and moved there in one go.
-pub struct Draft {
-    folder: tempfile::TempDir,
-    target: Target,
+const MANIFEST: &str = "manifest.json";
+const GIVEN: &str = "experiment.ron";
+const RESOLVED: &str = "resolved.ron";
+/// Held by the process that writes to the folder.
+const LOCK: &str = ".lock";
+const TABLES: [&str; 6] = ["trials.csv", "rounds.csv", "groups.csv", "robots.csv", "series.csv", links::FILE];
+
+/// A sweep's folder with what is finished in it.
+pub struct Folder {
+    path: PathBuf,
+    experiment: Arc<Experiment>,
+    manifest: Manifest,
+    journal: Journal,
+    results: BTreeMap<Place, Measured>,
+    /// Held until the folder is dropped.
+    _lock: Option<File>,
 }
 
-enum Target {
-    /// The folder that was asked for.
-    Asked(PathBuf),
-    /// `results/NAME`, or the first of `results/NAME-2`, `-3`, ... that is free when the results are there.
-    Next(PathBuf),
+/// What comparisons need of a trial.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Measured {
+    /// Its status in one word.
+    pub status: &'static str,
+    /// Values of all metrics, in the order of [`crate::metric::METRICS`]; `None` for a trial without numbers.
+    pub metrics: Option<Vec<Option<f64>>>,
+    /// Why it gave nothing.
+    pub failure: Option<String>,
 }
 
-impl Draft {
-    /// Checks that the results will find their place before they are made.
-    ///
-    /// # Errors
-    /// The folder that was asked for is not empty or is a file, or the place cannot be written to.
-    pub fn new(asked: Option<&Path>, name: &str) -> Result<Self, Failure> {
-        let target = match asked {
-            Some(path) => Target::Asked(check_free(path)?.to_owned()),
-            None => Target::Next(Path::new("results").join(name)),
-        };
-        let path = match &target {
-            Target::Asked(path) | Target::Next(path) => path,
-        };
-        let parent = path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
-        let trouble = |error| Failure::input(format!("cannot write to {}: {error}", parent.display()));
-        fs::create_dir_all(parent).map_err(trouble)?;
-        let folder = tempfile::Builder::new().prefix(".usar-").tempdir_in(parent).map_err(trouble)?;
-        Ok(Self { folder, target })
-    }
-
-    /// Writes all files and moves them into place; returns where that is.
-    ///
-    /// # Errors
-    /// The disk does not take them. What was written is kept, and the error says where.
-    pub fn publish(self, given: &str, scenario: &Scenario, outcomes: &[Outcome]) -> Result<PathBuf, Failure> {
-        let files = files(given, scenario, outcomes)?;
-        let draft = self.folder.keep();
-        let place = || -> std::io::Result<PathBuf> {
-            for (name, content) in files {
-                let mut file = fs::File::create(draft.join(name))?;
-                file.write_all(&content)?;
-                file.sync_all()?;
-            }
-            make_readable(&draft)?;
-            match &self.target {
-                Target::Asked(path) => fs::rename(&draft, path).map(|()| path.clone()),
-                Target::Next(path) => rename_to_next_free(&draft, path),
-            }
-        };
-        place().map_err(|error| {
-            Failure::run(format!(
-                "cannot finish the results: {error}; what was written is in {}",
-                draft.display()
-            ))
-        })
+impl Measured {
+    fn of(outcome: &Outcome) -> Self {
+        Self { status: outcome.status(), metrics: outcome.record().map(measure), failure: outcome.failure() }
     }
 }
 
-fn check_free(path: &Path) -> Result<&Path, Failure> {
+/// How a folder is opened to be written.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Opening {
+    /// The part of the sweep to run.
+    pub shard: Option<Shard>,
+    /// Start over: what is there of another sweep is deleted.
+    pub is_fresh: bool,
+}
+
+impl Folder {
+    /// Opens the folder of a new sweep, or of one that was broken off or is to be extended. What is to be said about it goes to `say`.
+    ///
+    /// # Errors
+    /// It belongs to something else; the folder cannot be used; another process uses it.
+    pub fn open(
+        path: &Path,
+        experiment: Arc<Experiment>,
+        opening: Opening,
+        say: &mut dyn FnMut(String),
+    ) -> Result<Self, Failure> {
+        check_is_ours(path)?;
+        let trouble = |error| Failure::storage(format!("cannot write to {}: {error}", path.display()));
+        fs::create_dir_all(path).map_err(trouble)?;
+        let lock = lock(path)?;
+        if opening.is_fresh {
+            clear(path).map_err(trouble)?;
+        }
+        let manifest = Manifest::new(&experiment, opening.shard, Vec::new());
+        let mut finished = None;
+        if let Some(there) = read_manifest(path)? {
+            check_continues(path, &there, &manifest, &experiment.base.resolved())?;
+            let broken = broken_files(path, &there);
+            for name in &broken {
+                let name = path.join(name);
+                say(format!(
+                    "{}: does not have the checksum of the manifest; it is made again",
+                    name.display()
+                ));
+            }
+            let is_same = there.is_complete && there.started() == manifest;
+            finished = (is_same && broken.is_empty()).then_some(there);
+        } else if path.join(journal::FILE).exists() {
+            return Err(Failure::storage(format!(
+                "{}: has a journal but no {MANIFEST}, so what it is of is not known; --fresh starts over",
+                path.display()
+            )));
+        }
+        if let Some(manifest) = finished {
+            let mut damaged = false;
+            let mut note = |damage| {
+                damaged = true;
+                say(damage);
+            };
+            let folder = Self::with_journal(path, Arc::clone(&experiment), manifest, true, &mut note)?;
+            let missing = folder.experiment.keys(opening.shard).any(|key| !folder.has(&key));
+            if !damaged && !missing {
+                return Ok(Self { _lock: Some(lock), ..folder });
+            }
+        }
+        // What the journal is of is on disk before the journal.
+        let manifest = write_start(path, &experiment, opening.shard)?;
+        let folder = Self::with_journal(path, experiment, manifest, true, say)?;
+        Ok(Self { _lock: Some(lock), ..folder })
+    }
+
+    /// Reads a folder, complete or not.
+    ///
+    /// # Errors
+    /// It is not the folder of a sweep of this program, or its files are damaged.
+    pub fn read(path: &Path) -> Result<Self, Failure> {
+        let not_one = |reason: &dyn std::fmt::Display| {
+            Failure::input(format!("{}: is not the folder of a sweep: {reason}", path.display()))
+        };
+        if !path.is_dir() {
+            return Err(not_one(&"there is no such folder"));
+        }
+        let manifest = read_manifest(path)?.ok_or_else(|| not_one(&format!("{MANIFEST} is missing")))?;
+        let experiment = Arc::new(experiment_of(path, &manifest)?);
+        let now = Manifest::new(&experiment, manifest.shard, Vec::new());
+        let differences = manifest.differences(&now);
+        if !differences.is_empty() {
+            let differences = differences.join("\n  ");
+            return Err(Failure::input(format!(
+                "{}: is of another program:\n  {differences}",
+                path.display()
+            )));
+        }
+        let broken = broken_files(path, &manifest);
+        if !broken.is_empty() {
+            return Err(Failure::input(format!(
+                "{}: these files do not have the checksums of the manifest: {}; the sweep's command makes them again",
+                path.display(),
+                broken.join(", ")
+            )));
+        }
+        let mut damages = Vec::new();
+        let folder =
+            Self::with_journal(path, experiment, manifest, false, &mut |damage| damages.push(damage))?;
+        // A sweep that is under way may be writing its last line.
+        damages.retain(|damage| folder.manifest.is_complete || !damage.contains("is cut off"));
+        if damages.is_empty() { Ok(folder) } else { Err(Failure::input(damages.join("\n"))) }
+    }
+
+    fn with_journal(
+        path: &Path,
+        experiment: Arc<Experiment>,
+        manifest: Manifest,
+        is_writable: bool,
+        say: &mut dyn FnMut(String),
+    ) -> Result<Self, Failure> {
+        let mut results = BTreeMap::new();
+        let (journal, damages) = Journal::open(path, &experiment, is_writable, |outcome| {
+            let TrialKey { case, policy, trial, .. } = outcome.key;
+            results.insert((case, policy, trial), Measured::of(&outcome));
+        })?;
+        for Damage(damage) in damages {
+            say(format!("{damage}; that trial is run again"));
+        }
+        Ok(Self { path: path.to_owned(), experiment, manifest, journal, results, _lock: None })
+    }
+
+    /// Goes on with more trials of the same sweep.
+    ///
+    /// # Errors
+    /// The disk does not take it.
+    pub fn extend(&mut self, experiment: Arc<Experiment>) -> Result<(), Failure> {
+        self.manifest = write_start(&self.path, &experiment, self.manifest.shard)?;
+        self.experiment = experiment;
+        Ok(())
+    }
+
+    /// Where it is.
+    #[must_use]
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// What it is of.
+    #[must_use]
+    pub fn experiment(&self) -> &Experiment {
+        &self.experiment
+    }
+
+    /// What it is of, to share with threads.
+    #[must_use]
+    pub fn shared_experiment(&self) -> Arc<Experiment> {
+        Arc::clone(&self.experiment)
+    }
+
+    /// Its manifest.
+    #[must_use]
+    pub fn manifest(&self) -> &Manifest {
+        &self.manifest
+    }
+
+    /// What is finished, by place.
+    #[must_use]
+    pub fn results(&self) -> &BTreeMap<Place, Measured> {
+        &self.results
+    }
+
+    /// Whether a trial is finished.
+    #[must_use]
+    pub fn has(&self, key: &TrialKey) -> bool {
+        self.journal.has(key)
+    }
+
+    /// A finished trial.
+    ///
+    /// # Errors
+    /// The journal cannot be read.
+    pub fn outcome(&mut self, place: Place) -> Result<Outcome, Failure> {
+        self.journal.outcome(place, &self.experiment)
+    }
+
+    /// Its line in the journal.
+    ///
+    /// # Errors
+    /// The journal cannot be read.
+    pub fn line(&mut self, place: Place) -> Result<Vec<u8>, Failure> {
+        self.journal.line(place)
+    }
+
+    /// Takes a trial: when this returns, it is on disk.
+    ///
+    /// # Errors
+    /// The disk does not take it.
+    pub fn add(&mut self, outcome: &Outcome) -> Result<(), Failure> {
+        self.journal.add(&self.experiment, outcome)?;
+        let TrialKey { case, policy, trial, .. } = outcome.key;
+        self.results.insert((case, policy, trial), Measured::of(outcome));
+        Ok(())
+    }
+
+    /// Takes the line of a trial from another folder.
+    ///
+    /// # Errors
+    /// The disk does not take it.
+    pub fn add_line(&mut self, line: &[u8], place: Place, measured: Measured) -> Result<(), Failure> {
+        self.journal.append(line, place)?;
+        self.results.insert(place, measured);
+        Ok(())
+    }
+
+    /// Makes the tables, unless they are there already.
+    ///
+    /// # Errors
+    /// The disk does not take them.
+    pub fn finish(&mut self) -> Result<(), Failure> {
+        if self.manifest.is_complete {
+            return Ok(());
+        }
+        self.journal.tidy()?;
+        let names: Vec<String> = self.experiment.axes.iter().map(|axis| axis.path.clone()).collect();
+        let [mut trials, mut rounds, mut groups, mut robots, mut series, mut hashes] = {
+            let mut tables = Vec::new();
+            for name in TABLES {
+                tables.push(Table::new(&self.path, name, names.clone())?);
+            }
+            <[Table; 6]>::try_from(tables).map_err(|_| Failure::run("there are six tables"))?
+        };
+        let experiment = Arc::clone(&self.experiment);
+        let duration_s: Vec<f64> = experiment.cases.iter().map(|case| case.scenario.duration_s).collect();
+        for place in self.journal.places().collect::<Vec<_>>() {
+            let outcome = &self.outcome(place)?;
+            let case = (place.0, experiment.cases[place.0].values.as_slice());
+            trials.add(case, &TrialRow::new(outcome, &experiment))?;
+            RoundRow::of(outcome).try_for_each(|row| rounds.add(case, &row))?;
+            GroupRow::of(outcome).try_for_each(|row| groups.add(case, &row))?;
+            RobotRow::of(outcome).try_for_each(|row| robots.add(case, &row))?;
+            SeriesRow::of(outcome, duration_s[place.0]).try_for_each(|row| series.add(case, &row))?;
+            LinkRow::of(outcome).try_for_each(|row| hashes.add(case, &row))?;
+        }
+        for table in [trials, rounds, groups, robots, series, hashes] {
+            self.manifest.files.push(table.finish()?);
+        }
+        let journal = self.path.join(journal::FILE);
+        let hash = file_hash(&journal)
+            .map_err(|error| Failure::storage(format!("{}: {error}", journal.display())))?;
+        self.manifest.files.push(FileHash { name: journal::FILE.into(), xxh3_128: hash });
+        self.manifest.is_complete = true;
+        write_manifest(&self.path, &self.manifest)
+    }
+}
+
+/// Writes what a sweep is of.
+fn write_start(path: &Path, experiment: &Experiment, shard: Option<Shard>) -> Result<Manifest, Failure> {
+    let files = vec![
+        NewFile::write(path, GIVEN, experiment.given.as_bytes())?,
+        NewFile::write(path, RESOLVED, experiment.base.resolved().as_bytes())?,
+    ];
+    let manifest = Manifest::new(experiment, shard, files);
+    write_manifest(path, &manifest)?;
+    Ok(manifest)
+}
+
+fn write_manifest(path: &Path, manifest: &Manifest) -> Result<(), Failure> {
+    let text = serde_json::to_string_pretty(manifest).map_err(Failure::run)?;
+    NewFile::write(path, MANIFEST, (text + "\n").as_bytes())?;
+    // The names of the files are on disk when the folder is.
+    let synced = File::open(path).and_then(|folder| folder.sync_all());
+    synced.map_err(|error| Failure::storage(format!("{}: {error}", path.display())))
+}
+
+/// The names of all files that a sweep writes.
+fn known_names() -> impl Iterator<Item = &'static str> {
+    [MANIFEST, GIVEN, RESOLVED, LOCK, journal::FILE].into_iter().chain(TABLES)
+}
+
+/// Refuses a folder that holds anything but a sweep's files.
+fn check_is_ours(path: &Path) -> Result<(), Failure> {
     if !path.exists() {
-        return Ok(path);
+        return Ok(());
     }
     let entries = fs::read_dir(path)
         .map_err(|_| Failure::input(format!("--out: {} is a file, not a folder", path.display())))?;
-    if entries.count() > 0 {
-        return Err(Failure::input(format!(
-            "--out: {} is not empty; nothing was overwritten",
-            path.display()
-        )));
-    }
-    Ok(path)
-}
-
-fn rename_to_next_free(draft: &Path, first: &Path) -> std::io::Result<PathBuf> {
-    let name = first.file_name().unwrap_or_default().to_string_lossy().into_owned();
-    let numbered = (2..).map(|n| first.with_file_name(format!("{name}-{n}")));
-    for path in std::iter::once(first.to_owned()).chain(numbered).filter(|path| !path.exists()) {
-        match fs::rename(draft, &path) {
-            // Another sweep took it in the meantime.
-            Err(error) if error.kind() == std::io::ErrorKind::DirectoryNotEmpty => {}
-            result => return result.map(|()| path),
+    let is_ours = |name: &str| {
+        let name = name.strip_suffix(".new").unwrap_or(name);
+        known_names().any(|known| known == name) || name == "report.html" || name == "plots"
+    };
+    let has_manifest = path.join(MANIFEST).exists();
+    for entry in entries.flatten() {
+        let name = entry.file_name().to_string_lossy().into_owned();
+        if !has_manifest && !is_ours(&name) {
+            return Err(Failure::input(format!(
+                "--out: {} is not empty and not the folder of a sweep; nothing was overwritten",
+                path.display()
+            )));
         }
-    }
-    Err(std::io::Error::other("no free name is left"))
-}
-
-/// Temporary folders are private; results are not.
-fn make_readable(folder: &Path) -> std::io::Result<()> {
-    #[cfg(unix)]
-    {
-        use std::os::unix::fs::PermissionsExt;
-        fs::set_permissions(folder, fs::Permissions::from_mode(0o755))?;
     }
     Ok(())
 }
 
-type File = (&'static str, Vec<u8>);
-
-fn files(given: &str, scenario: &Scenario, outcomes: &[Outcome]) -> Result<Vec<File>, Failure> {
-    let resolved =
-        ron::ser::to_string_pretty(&**scenario, ron::ser::PrettyConfig::new()).map_err(Failure::run)?;
-    let mut files = vec![
-        ("experiment.ron", given.as_bytes().to_vec()),
-        ("resolved.ron", (resolved + "\n").into_bytes()),
-        ("trials.csv", table(outcomes.iter().map(TrialRow::new))?),
-        ("rounds.csv", table(outcomes.iter().flat_map(RoundRow::of))?),
-        ("robots.csv", table(outcomes.iter().flat_map(RobotRow::of))?),
-        (links::FILE, table(outcomes.iter().flat_map(LinkRow::of))?),
-    ];
-    let manifest = serde_json::to_string_pretty(&Manifest::new(scenario, &files)).map_err(Failure::run)?;
-    files.push(("manifest.json", (manifest + "\n").into_bytes()));
-    Ok(files)
+/// Takes the folder for this process.
+fn lock(path: &Path) -> Result<File, Failure> {
+    let name = path.join(LOCK);
+    let trouble = |error| Failure::storage(format!("cannot write to {}: {error}", path.display()));
+    let file = File::options().create(true).append(true).open(&name).map_err(trouble)?;
+    match file.try_lock() {
+        Ok(()) => Ok(file),
+        Err(TryLockError::WouldBlock) => {
+            Err(Failure::storage(format!("{}: another process is at work in this folder", path.display())))
+        }
+        Err(TryLockError::Error(error)) => Err(trouble(error)),
+    }
 }
 
-fn table<R: Serialize>(rows: impl Iterator<Item = R>) -> Result<Vec<u8>, Failure> {
-    let mut writer = csv::Writer::from_writer(Vec::new());
-    for row in rows {
-        writer.serialize(row).map_err(Failure::run)?;
+/// Deletes what a sweep wrote.
+fn clear(path: &Path) -> std::io::Result<()> {
+    for name in known_names().filter(|name| *name != LOCK) {
+        for name in [name.to_owned(), format!("{name}.new")] {
+            match fs::remove_file(path.join(name)) {
+                Err(error) if error.kind() != std::io::ErrorKind::NotFound => return Err(error),
+                _ => {}
+            }
+        }
     }
-    writer.into_inner().map_err(Failure::run)
+    Ok(())
+}
+
+fn read_manifest(path: &Path) -> Result<Option<Manifest>, Failure> {
+    let name = path.join(MANIFEST);
+    let text = match fs::read(&name) {
+        Ok(text) => text,
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(None),
+        Err(error) => return Err(Failure::storage(format!("{}: {error}", name.display()))),
+    };
+    serde_json::from_slice(&text).map(Some).map_err(|error| {
+        let name = name.display();
+        Failure::input(format!("{name}: is not a manifest of this program: {error}; --fresh starts over"))
+    })
+}
+
+/// Refuses to go on with another sweep, or with fewer trials than there are.
+fn check_continues(path: &Path, there: &Manifest, now: &Manifest, resolved: &str) -> Result<(), Failure> {
+    let mut differences = there.differences(now);
+    let old = fs::read_to_string(path.join(RESOLVED)).unwrap_or_default();
+    differences.extend(scenario_differences(&old, resolved));
+    if now.trials < there.trials {
+        differences
+            .push(format!("trials: {} there, {} now; trials can only be added", there.trials, now.trials));
+    }
+    if differences.is_empty() {
+        return Ok(());
+    }
+    Err(Failure::input(format!(
+        "{} has results of something else; --out takes another folder, --fresh starts over:\n  {}",
+        path.display(),
+        differences.join("\n  ")
+    )))
+}
+
+/// Names of the files that do not have the hashes of the manifest. The journal has checksums of its own.
+#[must_use]
+pub fn broken_files(path: &Path, manifest: &Manifest) -> Vec<String> {
+    let is_broken = |file: &&FileHash| {
+        file.name != journal::FILE && file_hash(&path.join(&file.name)).ok() != Some(file.xxh3_128.clone())
+    };
+    manifest.files.iter().filter(is_broken).map(|file| file.name.clone()).collect()
+}
+
+fn file_hash(path: &Path) -> std::io::Result<String> {
+    Ok(format!("{:032x}", xxh3_128(&fs::read(path)?)))
+}
+
+/// The experiment that a folder is of.
+///
+/// # Errors
+/// Its resolved scenario cannot be read.
+pub fn experiment_of(path: &Path, manifest: &Manifest) -> Result<Experiment, Failure> {
+    let (base, _) = Scenario::load(&path.join(RESOLVED)).map_err(Failure::input)?;
+    let given = fs::read_to_string(path.join(GIVEN)).unwrap_or_default();
+    Experiment::assemble(Parts {
+        name: manifest.name.clone(),
+        given,
+        base,
+        axes: manifest.axes.clone(),
+        policies: manifest.policies.clone(),
+        trials: manifest.trials,
+        seeds: manifest.seeds.clone(),
+        is_checked: manifest.is_checked,
+    })
+}
+
+/// The experiment of a folder, whatever program made it.
+///
+/// # Errors
+/// It is not the folder of a sweep.
+pub fn experiment_in(path: &Path) -> Result<(Experiment, Manifest), Failure> {
+    let missing = || Failure::input(format!("{}: is not the folder of a finished sweep", path.display()));
+    let manifest = read_manifest(path)?.ok_or_else(missing)?;
+    Ok((experiment_of(path, &manifest)?, manifest))
+}
+
+/// How many trials a folder's sweep has, if there is one.
+#[must_use]
+pub fn trials_in(path: &Path) -> Option<u32> {
+    read_manifest(path).ok()?.map(|manifest| manifest.trials)
 }

@@ -4,9 +4,9 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
-use usar_sim::hash::{Link, PARTS};
+use usar_sim::hash::{HashChain, Link, PARTS};
 
-use super::Outcome;
+use super::trial::Outcome;
 use crate::failure::Failure;
 
 /// Name of the table.
@@ -24,11 +24,18 @@ pub(super) struct LinkRow {
     parts: String,
 }
 
+/// The column that tells cases apart, where there are several.
+#[derive(Debug, Deserialize)]
+struct CaseColumn {
+    #[serde(default)]
+    case: Option<usize>,
+}
+
 impl LinkRow {
     pub(super) fn of(outcome: &Outcome) -> impl Iterator<Item = Self> {
         let links = outcome.record().map(|record| record.chain.links()).unwrap_or_default();
         links.iter().map(|link| Self {
-            policy: outcome.key.policy_name.clone(),
+            policy: outcome.key.label.clone(),
             trial: outcome.key.trial,
             step: link.step,
             digest: format!("{:032x}", link.digest),
@@ -37,17 +44,40 @@ impl LinkRow {
     }
 
     fn link(&self) -> Option<Link> {
-        let digest = u128::from_str_radix(&self.digest, 16).ok()?;
-        let mut parts = [0; PARTS.len()];
-        for (i, part) in parts.iter_mut().enumerate() {
-            *part = u16::from_str_radix(self.parts.get(4 * i..4 * i + 4)?, 16).ok()?;
-        }
-        Some(Link { step: self.step, parts, digest })
+        link_of(self.step, &self.digest, &self.parts)
     }
 }
 
-/// The chains by policy and number of the trial.
-pub type Chains = BTreeMap<(String, u32), Vec<Link>>;
+fn link_of(step: u64, digest: &str, digits: &str) -> Option<Link> {
+    let digest = u128::from_str_radix(digest, 16).ok()?;
+    let mut parts = [0; PARTS.len()];
+    for (i, part) in parts.iter_mut().enumerate() {
+        *part = u16::from_str_radix(digits.get(4 * i..4 * i + 4)?, 16).ok()?;
+    }
+    Some(Link { step, parts, digest })
+}
+
+/// A chain as one text.
+pub(super) fn encode(links: &[Link]) -> String {
+    let link = |link: &Link| {
+        let parts = link.parts.map(|part| format!("{part:04x}")).concat();
+        format!("{}:{:032x}:{parts}", link.step, link.digest)
+    };
+    links.iter().map(link).collect::<Vec<_>>().join(" ")
+}
+
+/// The chain that a text holds.
+pub(super) fn decode(text: &str) -> Option<HashChain> {
+    let link = |text: &str| {
+        let mut pieces = text.split(':');
+        let (step, digest, parts) = (pieces.next()?, pieces.next()?, pieces.next()?);
+        link_of(step.parse().ok()?, digest, parts)
+    };
+    Some(HashChain::of(text.split_whitespace().map(link).collect::<Option<Vec<Link>>>()?))
+}
+
+/// The chains by case, policy and number of the trial.
+pub type Chains = BTreeMap<(usize, String, u32), Vec<Link>>;
 
 /// Reads the table of a sweep's folder.
 ///
@@ -61,13 +91,18 @@ pub fn read(folder: &Path) -> Result<Chains, Failure> {
             folder.display()
         ))
     })?;
+    let bad = |line: u64, reason: String| Failure::input(format!("{}:{line}: {reason}", path.display()));
+    let header = reader.headers().map_err(|error| bad(1, error.to_string()))?.clone();
     let mut chains = Chains::new();
-    for (row, line) in reader.deserialize::<LinkRow>().zip(2..) {
-        let bad = |reason: String| Failure::input(format!("{}:{line}: {reason}", path.display()));
-        let row = row.map_err(|error| bad(error.to_string()))?;
-        let link =
-            row.link().ok_or_else(|| bad("digest and parts must be hexadecimal digits, 32 and 40".into()))?;
-        chains.entry((row.policy, row.trial)).or_default().push(link);
+    for (record, line) in reader.records().zip(2..) {
+        let record = record.map_err(|error| bad(line, error.to_string()))?;
+        let row = record.deserialize::<LinkRow>(Some(&header));
+        let row = row.map_err(|error| bad(line, error.to_string()))?;
+        let case = record.deserialize::<CaseColumn>(Some(&header));
+        let case =
+            case.map_err(|error| bad(line, error.to_string()))?.case.map_or(0, |case| case.saturating_sub(1));
+        let wrong = || bad(line, "digest and parts must be hexadecimal digits, 32 and 40".into());
+        chains.entry((case, row.policy.clone(), row.trial)).or_default().push(row.link().ok_or_else(wrong)?);
     }
     Ok(chains)
 }

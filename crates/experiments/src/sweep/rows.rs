@@ -3,7 +3,8 @@
 use serde::Serialize;
 use usar_sim::record::{RobotRecord, TrialRecord};
 
-use super::{Outcome, TrialKey};
+use super::trial::{Outcome, TrialKey};
+use crate::experiment::Experiment;
 
 /// A row of `trials.csv`: the authors' columns first, under their names, then ours. `method` and `policy` say the same; the one is
 /// there so that the authors' files and ours can be stacked, the other for the words of this project.
@@ -44,15 +45,18 @@ pub(super) struct TrialRow<'a> {
     unreachable: Option<u32>,
     errands_done: Option<u32>,
     state_hash: &'a str,
+    failure: Option<&'a str>,
+    replay: Option<String>,
 }
 
 impl<'a> TrialRow<'a> {
-    pub(super) fn new(outcome: &'a Outcome) -> Self {
+    pub(super) fn new(outcome: &'a Outcome, experiment: &Experiment) -> Self {
         let record = outcome.record();
-        let TrialKey { policy_name, trial, seed, .. } = &outcome.key;
+        let TrialKey { label, trial, seed, .. } = &outcome.key;
+        let fault = outcome.result.as_ref().err();
         let robots = |value: fn(&RobotRecord) -> f64| record.map(|r| r.robots.iter().map(value).sum());
         Self {
-            method: policy_name,
+            method: label,
             trial: *trial,
             time_s: record.map(|r| r.time_s),
             rescuees_total: record.map(TrialRecord::rescued),
@@ -65,9 +69,9 @@ impl<'a> TrialRow<'a> {
             hp_easy: record.map(|r| r.easy.hp),
             hp_total: record.map(TrialRecord::hp),
             rounds: record.map(|r| r.completed_rounds),
-            policy: policy_name,
+            policy: label,
             seed: *seed,
-            status: record.map_or("failed", |r| r.status.name()),
+            status: outcome.status(),
             energy_ungrouped: record.map(|r| r.ungrouped_energy),
             hp_ungrouped: record.map(|r| r.ungrouped_hp),
             secured_total: record.map(|r| r.hard.secured + r.easy.secured),
@@ -88,6 +92,8 @@ impl<'a> TrialRow<'a> {
             unreachable: record.map(|r| r.unreachable),
             errands_done: record.map(|r| r.errands_done),
             state_hash: record.map_or("", |r| &r.state_hash),
+            failure: fault.map(|fault| fault.reason.as_str()),
+            replay: fault.map(|_| experiment.replay_command(&outcome.key)),
         }
     }
 }
@@ -114,7 +120,7 @@ pub(super) struct RoundRow<'a> {
 impl<'a> RoundRow<'a> {
     pub(super) fn of(outcome: &'a Outcome) -> impl Iterator<Item = Self> {
         outcome.record().into_iter().flat_map(|record| &record.rounds).map(|round| Self {
-            policy: &outcome.key.policy_name,
+            policy: &outcome.key.label,
             trial: outcome.key.trial,
             seed: outcome.key.seed,
             round: round.round,
@@ -158,7 +164,7 @@ pub(super) struct RobotRow<'a> {
 impl<'a> RobotRow<'a> {
     pub(super) fn of(outcome: &'a Outcome) -> impl Iterator<Item = Self> {
         outcome.record().into_iter().flat_map(|record| &record.robots).map(|robot| Self {
-            policy: &outcome.key.policy_name,
+            policy: &outcome.key.label,
             trial: outcome.key.trial,
             seed: outcome.key.seed,
             robot: robot.robot,
@@ -177,5 +183,96 @@ impl<'a> RobotRow<'a> {
             stranded: robot.stranded,
             disabled: robot.disabled,
         })
+    }
+}
+
+/// A row of `groups.csv`: one robot when it was grouped, with the needs that the policy saw.
+#[derive(Serialize)]
+pub(super) struct GroupRow<'a> {
+    policy: &'a str,
+    trial: u32,
+    seed: u64,
+    round: u32,
+    robot: u32,
+    role: &'a str,
+    task: &'a str,
+    energy: f64,
+    hp: f64,
+    need_hp: f64,
+    need_v: f64,
+    need_sen: f64,
+    need_eng: f64,
+    need_res: f64,
+    need_cap: f64,
+    need_obs: f64,
+}
+
+impl<'a> GroupRow<'a> {
+    pub(super) fn of(outcome: &'a Outcome) -> impl Iterator<Item = Self> {
+        let trial = outcome.result.as_ref().ok();
+        trial.into_iter().flat_map(|trial| trial.grouped.iter().map(move |robot| (trial, robot))).filter_map(
+            |(trial, robot)| {
+                let [need_hp, need_v, need_sen, need_eng, need_res, need_cap, need_obs] =
+                    *robot.needs.as_slice()
+                else {
+                    return None;
+                };
+                Some(Self {
+                    policy: &outcome.key.label,
+                    trial: outcome.key.trial,
+                    seed: outcome.key.seed,
+                    round: robot.round,
+                    robot: robot.robot,
+                    role: trial.record.robots[robot.robot as usize].role.name(),
+                    task: robot.task.name(),
+                    energy: robot.energy,
+                    hp: robot.hp,
+                    need_hp,
+                    need_v,
+                    need_sen,
+                    need_eng,
+                    need_res,
+                    need_cap,
+                    need_obs,
+                })
+            },
+        )
+    }
+}
+
+/// Time between two rows of `series.csv`, in seconds.
+const SERIES_PERIOD_S: f64 = 10.0;
+
+/// A row of `series.csv`: what was delivered up to a time.
+#[derive(Serialize)]
+pub(super) struct SeriesRow<'a> {
+    policy: &'a str,
+    trial: u32,
+    seed: u64,
+    time_s: f64,
+    rescuees_total: usize,
+    rescuees_hard: usize,
+    rescuees_easy: usize,
+}
+
+impl<'a> SeriesRow<'a> {
+    pub(super) fn of(outcome: &'a Outcome, duration_s: f64) -> impl Iterator<Item = Self> {
+        let rows = move |trial: &'a super::Trial| {
+            let times = (0..).map(|i| f64::from(i) * SERIES_PERIOD_S);
+            times.take_while(move |time| *time <= duration_s).map(move |time_s| {
+                let [hard, easy] =
+                    [0, 1].map(|task: usize| trial.deliveries[task].partition_point(|at| *at <= time_s));
+                Self {
+                    policy: &outcome.key.label,
+                    trial: outcome.key.trial,
+                    seed: outcome.key.seed,
+                    time_s,
+                    rescuees_total: hard + easy,
+                    rescuees_hard: hard,
+                    rescuees_easy: easy,
+                }
+            })
+        };
+        outcome.result.as_ref().ok().into_iter().flat_map(rows)
     }
 }

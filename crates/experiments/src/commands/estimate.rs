@@ -1,0 +1,135 @@
+//! `usar estimate`: what a sweep would take, from a short calibration run.
+
+use std::io::Write;
+use std::path::PathBuf;
+use std::sync::atomic::AtomicBool;
+use std::time::Instant;
+
+use clap::Args;
+use serde::Serialize;
+
+use super::{SCHEMA_VERSION, default_jobs};
+use crate::experiment::{Experiment, Overrides, split_list};
+use crate::failure::Failure;
+use crate::sweep::TrialKey;
+use crate::sweep::folder::Folder;
+
+/// Trials that are run to measure.
+const CALIBRATION_TRIALS: usize = 6;
+
+/// How many trials, how long, and how much disk a sweep takes, from a short calibration run
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Runs up to six trials, spread over the sweep's cases and policies, one after the other, and throws them away.
+
+Examples:
+  usar estimate scenarios/paper.ron --trials 1000
+  usar estimate scenarios/sweeps/energy.ron --json")]
+pub(crate) struct Arguments {
+    /// Scenario or sweep file (RON)
+    file: PathBuf,
+    /// Policies, separated by commas [default: the file's]
+    #[arg(long)]
+    policies: Option<String>,
+    /// Trials for each policy and case [default: the file's]
+    #[arg(long, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    trials: Option<u32>,
+    /// Set a field of the scenario, by its path, to a value in RON; may stand several times
+    #[arg(long, value_name = "PATH=VALUE")]
+    set: Vec<String>,
+    /// Threads that the sweep will have [default: one per core]
+    #[arg(long, value_parser = clap::value_parser!(u32).range(1..=1024))]
+    jobs: Option<u32>,
+    /// Print one JSON object
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Serialize)]
+struct Output {
+    schema_version: u32,
+    cases: usize,
+    policies: usize,
+    trials_each: u32,
+    trials: usize,
+    jobs: usize,
+    seconds_per_trial: f64,
+    seconds: f64,
+    bytes: u64,
+    measured: usize,
+}
+
+impl Arguments {
+    pub(crate) fn execute(&self, out: &mut dyn Write) -> Result<(), Failure> {
+        let overrides = Overrides {
+            policies: self
+                .policies
+                .as_deref()
+                .map(|list| split_list(list).into_iter().map(str::to_owned).collect()),
+            trials: self.trials,
+            set: self.set.clone(),
+            ..Overrides::default()
+        };
+        let experiment = Experiment::load(&self.file, &overrides)?;
+        let keys: Vec<TrialKey> = experiment.keys(None).collect();
+        let count = keys.len().min(CALIBRATION_TRIALS);
+        let sample: Vec<&TrialKey> = (0..count).map(|i| &keys[i * keys.len() / count]).collect();
+        let (seconds_each, bytes_each) = measure(&experiment, &sample)?;
+        let jobs = self.jobs.map_or_else(default_jobs, |jobs| jobs as usize);
+        let output = Output {
+            schema_version: SCHEMA_VERSION,
+            cases: experiment.cases.len(),
+            policies: experiment.policies.len(),
+            trials_each: experiment.trials,
+            trials: keys.len(),
+            jobs,
+            seconds_per_trial: seconds_each,
+            seconds: seconds_each * keys.len().div_ceil(jobs) as f64,
+            bytes: bytes_each * keys.len() as u64,
+            measured: count,
+        };
+        if self.json {
+            return Ok(writeln!(out, "{}", serde_json::to_string(&output).map_err(Failure::run)?)?);
+        }
+        let Output { cases, policies, trials_each, trials, seconds, bytes, measured, .. } = output;
+        writeln!(out, "trials  {trials}: {cases} cases x {policies} policies x {trials_each}")?;
+        writeln!(out, "time    about {} on {jobs} threads ({seconds_each:.2} s a trial)", duration(seconds))?;
+        writeln!(out, "disk    about {}", size(bytes))?;
+        writeln!(out, "from {measured} trials; times depend on what else the machine does")?;
+        Ok(())
+    }
+}
+
+/// Mean time in seconds and size in bytes of these trials.
+fn measure(experiment: &Experiment, sample: &[&TrialKey]) -> Result<(f64, u64), Failure> {
+    let place = tempfile::tempdir()?;
+    let halt = AtomicBool::new(false);
+    let path = place.path().join("sweep");
+    let shared = std::sync::Arc::new(experiment.with_trials(experiment.trials)?);
+    let mut folder = Folder::open(&path, shared, crate::sweep::folder::Opening::default(), &mut |_| {})?;
+    let start = Instant::now();
+    for key in sample {
+        let result = experiment.run(key, &halt);
+        folder.add(&crate::sweep::Outcome { key: (*key).clone(), result })?;
+    }
+    let seconds = start.elapsed().as_secs_f64() / sample.len() as f64;
+    folder.finish()?;
+    let files = std::fs::read_dir(&path)?.flatten().filter_map(|entry| entry.metadata().ok());
+    Ok((seconds, files.map(|file| file.len()).sum::<u64>() / sample.len() as u64))
+}
+
+fn duration(seconds: f64) -> String {
+    match seconds {
+        s if s < 100.0 => format!("{s:.0} s"),
+        s if s < 6_000.0 => format!("{:.0} min", s / 60.0),
+        s => format!("{:.1} h", s / 3_600.0),
+    }
+}
+
+fn size(bytes: u64) -> String {
+    match bytes as f64 {
+        b if b < 1e6 => format!("{:.0} kB", b / 1e3),
+        b if b < 1e9 => format!("{:.1} MB", b / 1e6),
+        b => format!("{:.1} GB", b / 1e9),
+    }
+}

@@ -1,0 +1,258 @@
+//! Paired comparisons of policies: what differs, by how much, and how sure that is.
+
+use std::collections::BTreeMap;
+
+use rayon::prelude::*;
+use serde::Serialize;
+use xxhash_rust::xxh3::xxh3_64;
+
+use crate::experiment::Experiment;
+use crate::failure::Failure;
+use crate::metric::{METRICS, Metric};
+use crate::stats::Moments;
+use crate::stats::bootstrap::{RESAMPLES, Width, bca_interval};
+use crate::stats::paired::{hodges_lehmann, holm, pairs_needed};
+use crate::stats::wilcoxon::SignedRank;
+use crate::sweep::folder::{Folder, Measured};
+
+/// Level of a finding, after correction.
+pub const LEVEL: f64 = 0.05;
+/// Confidence of intervals.
+pub const CONFIDENCE: f64 = 0.95;
+
+/// Two policies over the same seeds, in one metric.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Comparison {
+    /// Number of the case, from 1.
+    pub case: usize,
+    /// Values of the axes there, in RON.
+    pub axes: BTreeMap<String, String>,
+    /// Name of the metric.
+    pub metric: &'static str,
+    /// The first policy.
+    pub a: String,
+    /// The second.
+    pub b: String,
+    /// Pairs in which the metric is defined for both.
+    pub n: usize,
+    /// Pairs of which one trial at least failed.
+    pub failed: usize,
+    /// Pairs of which one trial at least has not been run.
+    pub missing: usize,
+    /// Pairs in which the metric is not defined for one at least.
+    pub undefined: usize,
+    /// Mean of the first over these pairs.
+    pub mean_a: Option<f64>,
+    /// Mean of the second.
+    pub mean_b: Option<f64>,
+    /// Mean of the differences, first less second.
+    pub difference: Option<f64>,
+    /// Its 95 % bootstrap interval.
+    pub interval: Option<[f64; 2]>,
+    /// Hodges-Lehmann shift.
+    pub shift: Option<f64>,
+    /// Two-sided p of Wilcoxon's signed-rank test; none without any pair.
+    pub p: Option<f64>,
+    /// Whether p was counted over all signs, not drawn.
+    pub is_exact: bool,
+    /// p after Holm's correction over all comparisons made together.
+    pub p_holm: Option<f64>,
+    /// Matched-pairs rank-biserial correlation.
+    pub effect: Option<f64>,
+    /// Pairs that would be needed for 80 % power, were the effect what was observed.
+    pub pairs_needed: Option<u64>,
+    /// The finding in words.
+    pub in_words: String,
+}
+
+/// The differences of all pairs in one metric.
+#[derive(Debug, Default, Clone, PartialEq)]
+pub struct Pairs {
+    /// Values of the first policy.
+    pub a: Vec<f64>,
+    /// Values of the second.
+    pub b: Vec<f64>,
+    failed: usize,
+    missing: usize,
+    undefined: usize,
+}
+
+impl Pairs {
+    /// The pairs of a case.
+    #[must_use]
+    pub fn of(folder: &Folder, case: usize, metric: usize, [a, b]: [usize; 2]) -> Self {
+        let mut pairs = Self::default();
+        for trial in 1..=folder.experiment().trials {
+            let result = |policy| folder.results().get(&(case, policy, trial));
+            let value = |measured: &Measured| Some(measured.metrics.as_ref()?[metric]);
+            match (result(a), result(b)) {
+                (Some(a), Some(b)) => match (value(a), value(b)) {
+                    (Some(Some(a)), Some(Some(b))) => {
+                        pairs.a.push(a);
+                        pairs.b.push(b);
+                    }
+                    (Some(_), Some(_)) => pairs.undefined += 1,
+                    _ => pairs.failed += 1,
+                },
+                _ => pairs.missing += 1,
+            }
+        }
+        pairs
+    }
+
+    /// First less second.
+    #[must_use]
+    pub fn differences(&self) -> Vec<f64> {
+        self.a.iter().zip(&self.b).map(|(a, b)| a - b).collect()
+    }
+}
+
+/// All comparisons of these metrics: of each pair of policies, or of each with the baseline.
+///
+/// # Errors
+/// An unknown baseline, or a sweep of one policy.
+pub fn compare(
+    folder: &Folder,
+    metrics: &[usize],
+    baseline: Option<&str>,
+) -> Result<Vec<Comparison>, Failure> {
+    let experiment = folder.experiment();
+    let pairs = policy_pairs(experiment, baseline)?;
+    let cases = 0..experiment.cases.len();
+    let all: Vec<(usize, usize, [usize; 2])> = cases
+        .flat_map(|case| metrics.iter().map(move |metric| (case, *metric)))
+        .flat_map(|(case, metric)| pairs.iter().map(move |pair| (case, metric, *pair)))
+        .collect();
+    let one = |(case, metric, pair): &(usize, usize, [usize; 2])| {
+        let pairs = Pairs::of(folder, *case, *metric, *pair);
+        comparison(experiment, *case, &METRICS[*metric], *pair, &pairs)
+    };
+    let mut comparisons: Vec<Comparison> = all.par_iter().map(one).collect();
+    let tested: Vec<usize> = (0..comparisons.len()).filter(|i| comparisons[*i].p.is_some()).collect();
+    let ps: Vec<f64> = tested.iter().filter_map(|i| comparisons[*i].p).collect();
+    for (i, p) in tested.into_iter().zip(holm(&ps)) {
+        comparisons[i].p_holm = Some(p);
+    }
+    for comparison in &mut comparisons {
+        comparison.in_words = in_words(comparison);
+    }
+    Ok(comparisons)
+}
+
+fn policy_pairs(experiment: &Experiment, baseline: Option<&str>) -> Result<Vec<[usize; 2]>, Failure> {
+    let labels: Vec<&str> = experiment.policies.iter().map(|policy| policy.label.as_str()).collect();
+    let count = labels.len();
+    if count < 2 {
+        return Err(Failure::input(format!(
+            "there is nothing to compare: the sweep is of {} only",
+            labels[0]
+        )));
+    }
+    let Some(baseline) = baseline else {
+        return Ok((0..count).flat_map(|a| (a + 1..count).map(move |b| [a, b])).collect());
+    };
+    let place = labels.iter().position(|label| *label == baseline).ok_or_else(|| {
+        Failure::input(format!(
+            "--baseline: must be a policy of the sweep ({}), found {baseline:?}",
+            labels.join(", ")
+        ))
+    })?;
+    Ok((0..count).filter(|a| *a != place).map(|a| [a, place]).collect())
+}
+
+fn comparison(
+    experiment: &Experiment,
+    case: usize,
+    metric: &Metric,
+    [a, b]: [usize; 2],
+    pairs: &Pairs,
+) -> Comparison {
+    let differences = pairs.differences();
+    let labels = [a, b].map(|policy| experiment.policies[policy].label.clone());
+    let values = experiment.axes.iter().zip(&experiment.cases[case].values);
+    let seed = xxh3_64(format!("{case} {} {labels:?}", metric.name).as_bytes());
+    let test = SignedRank::of(&differences);
+    let has_pairs = !differences.is_empty();
+    let [label_a, label_b] = labels;
+    Comparison {
+        case: case + 1,
+        axes: values.map(|(axis, value)| (axis.path.clone(), value.clone())).collect(),
+        metric: metric.name,
+        a: label_a,
+        b: label_b,
+        n: differences.len(),
+        failed: pairs.failed,
+        missing: pairs.missing,
+        undefined: pairs.undefined,
+        mean_a: Moments::of(&pairs.a).mean,
+        mean_b: Moments::of(&pairs.b).mean,
+        difference: Moments::of(&differences).mean,
+        interval: bca_interval(&differences, CONFIDENCE, (RESAMPLES, seed), Width::Expanded),
+        shift: hodges_lehmann(&differences),
+        p: has_pairs.then_some(test.p),
+        is_exact: test.is_exact,
+        p_holm: None,
+        effect: has_pairs.then(|| test.effect()),
+        pairs_needed: pairs_needed(&differences),
+        in_words: String::new(),
+    }
+}
+
+/// The finding as one sentence.
+fn in_words(comparison: &Comparison) -> String {
+    let Comparison { a, b, n, .. } = comparison;
+    let title =
+        METRICS.iter().find(|metric| metric.name == comparison.metric).map_or("", |metric| metric.title);
+    let place = comparison.axes.iter().map(|(path, value)| format!("{path}={value}"));
+    let place = place.chain([title.to_owned()]).collect::<Vec<_>>().join(", ");
+    let (Some(difference), Some(p)) = (comparison.difference, comparison.p_holm) else {
+        return format!(
+            "{place}: nothing can be said of {a} and {b}: there is no pair in which both are defined."
+        );
+    };
+    let Some([low, high]) = comparison.interval else {
+        return format!(
+            "{place}: {a} less {b} is {} in the only pair; that says nothing.",
+            short(difference)
+        );
+    };
+    let range = format!("95 % interval {} to {}, n = {n}", short(low), short(high));
+    let size = short(difference.abs());
+    let direction = if difference > 0.0 { "above" } else { "below" };
+    let needed = comparison.pairs_needed.map_or(String::new(), |needed| {
+        format!(" Were this the true difference, {needed} pairs would show it in four of five experiments.")
+    });
+    if p < LEVEL {
+        return format!("{place}: {a} is {size} {direction} {b} ({range}; corrected p = {}).", short_p(p));
+    }
+    if difference == 0.0 {
+        return format!("{place}: no difference shows between {a} and {b}: their means are equal ({range}).");
+    }
+    format!(
+        "{place}: no difference shows between {a} and {b}: {a} is {size} {direction} ({range}; corrected p = {}).{needed}",
+        short_p(p)
+    )
+}
+
+/// About three significant digits.
+#[must_use]
+pub fn short(value: f64) -> String {
+    digits(value, 3)
+}
+
+/// About this many significant digits.
+#[must_use]
+pub fn digits(value: f64, digits: i32) -> String {
+    if value == 0.0 {
+        return "0".to_owned();
+    }
+    let decimals = (digits - 1 - value.abs().log10().floor() as i32).clamp(0, 12) as usize;
+    let text = format!("{value:.decimals$}");
+    if text.trim_start_matches(['-', '0', '.']).is_empty() { "0".to_owned() } else { text }
+}
+
+/// A p value as papers print it.
+#[must_use]
+pub fn short_p(p: f64) -> String {
+    if p < 0.0001 { "< 0.0001".to_owned() } else { format!("{p:.4}") }
+}

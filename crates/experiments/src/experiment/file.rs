@@ -1,0 +1,74 @@
+//! The sweep file as it is written.
+
+use std::fmt;
+use std::marker::PhantomData;
+
+use ron::value::RawValue;
+use serde::de::{Deserialize, Deserializer, Error, MapAccess, Visitor};
+
+/// A sweep file: a scenario, what to set in it, the policies to compare, and the axes to go along.
+#[derive(Debug, serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct SweepFile {
+    /// Short name; names the folder of results.
+    pub name: String,
+    /// What the sweep is for.
+    #[serde(default)]
+    #[expect(dead_code, reason = "for readers of the file")]
+    pub description: String,
+    /// Path of the scenario, from this file's folder.
+    pub scenario: String,
+    /// Fields of the scenario to set, by their paths.
+    #[serde(default)]
+    pub set: Map<Box<RawValue>>,
+    /// Policies to compare; the scenario's where there are none.
+    #[serde(default)]
+    pub policies: Option<Vec<String>>,
+    /// Paired trials for each case and policy.
+    #[serde(default)]
+    pub trials: Option<u32>,
+    /// Seed of the first trial.
+    #[serde(default)]
+    pub first_seed: Option<u64>,
+    /// Seeds of the trials, one by one, instead of `trials` and `first_seed`.
+    #[serde(default)]
+    pub seeds: Option<Vec<u64>>,
+    /// Fields and the values that each takes: the full grid is run.
+    #[serde(default)]
+    pub axes: Map<Vec<Box<RawValue>>>,
+}
+
+/// A map in the order in which it is written; no key may stand twice.
+#[derive(Debug)]
+pub(super) struct Map<V>(pub Vec<(String, V)>);
+
+impl<V> Default for Map<V> {
+    fn default() -> Self {
+        Self(Vec::new())
+    }
+}
+
+impl<'de, V: Deserialize<'de>> Deserialize<'de> for Map<V> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Entries<V>(PhantomData<V>);
+        impl<'de, V: Deserialize<'de>> Visitor<'de> for Entries<V> {
+            type Value = Map<V>;
+
+            fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+                f.write_str("a map such as {\"costs.energy.per_step\": ...}")
+            }
+
+            fn visit_map<A: MapAccess<'de>>(self, mut access: A) -> Result<Map<V>, A::Error> {
+                let mut entries: Vec<(String, V)> = Vec::new();
+                while let Some((key, value)) = access.next_entry::<String, V>()? {
+                    if entries.iter().any(|(known, _)| *known == key) {
+                        return Err(A::Error::custom(format!("{key:?} stands twice")));
+                    }
+                    entries.push((key, value));
+                }
+                Ok(Map(entries))
+            }
+        }
+        deserializer.deserialize_map(Entries(PhantomData))
+    }
+}

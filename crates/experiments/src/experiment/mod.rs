@@ -1,0 +1,446 @@
+//! What a sweep runs: a scenario or a sweep file, resolved into cases, policies and trials.
+
+mod file;
+mod policy;
+
+use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
+use rne_core::GroupingPolicy;
+use usar_sim::layout::Layout;
+use xxhash_rust::xxh3::xxh3_128;
+
+use usar_sim::scenario::{Fields, Problem, SampledCounts, Scenario, ScenarioFile, parse_ron, read_text};
+
+pub use policy::{PolicySpec, split_list};
+
+use crate::failure::Failure;
+use crate::sweep::{Fault, Trial, TrialKey, run_trial};
+use file::{Map, SweepFile};
+
+/// Most cases that the axes of a sweep may span.
+const MAX_CASES: usize = 100_000;
+
+/// A field of the scenario and the values that it takes, in RON.
+#[derive(Debug, Clone, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+pub struct Axis {
+    /// Path of the field.
+    pub path: String,
+    /// Its values.
+    pub values: Vec<String>,
+}
+
+/// One point of the grid that the axes span.
+pub struct Case {
+    /// The value of each axis, in RON.
+    pub values: Vec<String>,
+    /// The scenario there.
+    pub scenario: Scenario,
+    /// The sweep's policies there.
+    pub policies: Vec<Arc<dyn GroupingPolicy>>,
+}
+
+/// The seeds of the trials.
+#[derive(Debug, Clone, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+pub enum Seeds {
+    /// They count up from the first.
+    From(u64),
+    /// They are these.
+    Listed(Vec<u64>),
+}
+
+/// One of several parts of a sweep, to run apart from the others.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+pub struct Shard {
+    /// Which part, from 1.
+    pub number: u32,
+    /// Number of parts.
+    pub of: u32,
+}
+
+impl std::str::FromStr for Shard {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let parts = text.split_once('/').map(|(number, of)| (number.trim().parse(), of.trim().parse()));
+        match parts {
+            Some((Ok(number), Ok(of))) if (1..=of).contains(&number) => Ok(Self { number, of }),
+            _ => Err(format!("must be i/n with i from 1 to n, found {text:?}")),
+        }
+    }
+}
+
+/// What the command line says otherwise.
+#[derive(Debug, Clone, Default)]
+pub struct Overrides {
+    /// Policies instead of the file's.
+    pub policies: Option<Vec<String>>,
+    /// Trials for each case and policy.
+    pub trials: Option<u32>,
+    /// Seed of the first trial.
+    pub first_seed: Option<u64>,
+    /// Fields to set, as `path=value`.
+    pub set: Vec<String>,
+    /// Check every invariant at every step.
+    pub is_checked: bool,
+}
+
+/// A sweep, ready to run.
+pub struct Experiment {
+    /// Names the folder of results.
+    pub name: String,
+    /// Text of the file that it was read from.
+    pub given: String,
+    /// The scenario before any axis is set.
+    pub base: Scenario,
+    /// The axes; none for one case.
+    pub axes: Vec<Axis>,
+    /// The grid, the last axis fastest; one case without axes.
+    pub cases: Vec<Case>,
+    /// The policies to compare.
+    pub policies: Vec<PolicySpec>,
+    /// Paired trials for each case and policy.
+    pub trials: u32,
+    /// Their seeds.
+    pub seeds: Seeds,
+    /// Whether every invariant is checked at every step.
+    pub is_checked: bool,
+    /// For each case and policy, a hash of what decides its numbers but for the seed.
+    ids: Vec<Vec<u128>>,
+}
+
+/// The parts of an experiment before they are put together.
+pub(crate) struct Parts {
+    pub name: String,
+    pub given: String,
+    pub base: Scenario,
+    pub axes: Vec<Axis>,
+    pub policies: Vec<String>,
+    pub trials: u32,
+    pub seeds: Seeds,
+    pub is_checked: bool,
+}
+
+impl Experiment {
+    /// Reads a scenario or a sweep file.
+    ///
+    /// # Errors
+    /// Bad input, with file, line, field, rule and found value.
+    pub fn load(path: &Path, overrides: &Overrides) -> Result<Self, Failure> {
+        let text = read_text(path).map_err(Failure::input)?;
+        let is_sweep = Fields::of(&text).inside("").contains(&"scenario");
+        let mut parts = if is_sweep { from_sweep_file(text, path)? } else { from_scenario(text, path)? };
+        parts.base = with_settings(&parts.base, &overrides.set)?;
+        if let Some(policies) = &overrides.policies {
+            parts.policies.clone_from(policies);
+        }
+        if let Some(first) = overrides.first_seed {
+            parts.seeds = Seeds::From(first);
+        }
+        parts.trials = overrides.trials.unwrap_or(parts.trials);
+        parts.is_checked = overrides.is_checked;
+        Self::assemble(parts)
+    }
+
+    /// Puts the parts together and checks them.
+    ///
+    /// # Errors
+    /// A policy, an axis or a case that cannot be used.
+    pub(crate) fn assemble(parts: Parts) -> Result<Self, Failure> {
+        let Parts { name, given, base, axes, policies, trials, seeds, is_checked } = parts;
+        let policies = checked_policies(&policies)?;
+        if let Seeds::Listed(list) = &seeds
+            && list.len() < trials as usize
+        {
+            return Err(Failure::input(format!(
+                "trials: must be at most the number of listed seeds, {}, found {trials}",
+                list.len()
+            )));
+        }
+        let mut file: ScenarioFile = (*base).clone();
+        file.sweep.trials = trials;
+        if let Seeds::From(first) = seeds {
+            file.sweep.first_seed = first;
+        }
+        let mut plain: Vec<String> = policies.iter().map(|policy| policy.name.clone()).collect();
+        let mut seen = Vec::new();
+        plain.retain(|name| {
+            !seen.contains(name) && {
+                seen.push(name.clone());
+                true
+            }
+        });
+        file.sweep.policies = plain;
+        let base = checked(file, "")?;
+        let cases = cases(&base, &axes, &policies)?;
+        let id = |case: &Case, policy: &PolicySpec| {
+            let scenario = policy.options_in(&case.scenario).map_err(Failure::input)?;
+            let program = (env!("CARGO_PKG_VERSION"), env!("USAR_SOURCE"));
+            let text = format!("{program:?} {is_checked} {} {}", policy.name, deciding_text(&scenario));
+            Ok(xxh3_128(text.as_bytes()))
+        };
+        let ids = |case| policies.iter().map(|policy| id(case, policy)).collect::<Result<Vec<_>, Failure>>();
+        let ids = cases.iter().map(ids).collect::<Result<Vec<_>, Failure>>()?;
+        Ok(Self { name, given, base, axes, cases, policies, trials, seeds, is_checked, ids })
+    }
+
+    /// What decides the numbers of a trial, as a hash of 32 hexadecimal digits: the resolved scenario, the policy with its options, the
+    /// seed, and the program.
+    #[must_use]
+    pub fn id(&self, key: &TrialKey) -> String {
+        let rest = self.ids[key.case][key.policy];
+        format!("{:032x}", xxh3_128(format!("{rest:032x} {}", key.seed).as_bytes()))
+    }
+
+    /// The trials that a shard runs, or all: case by case, policy by policy. Adding trials to a sweep leaves each trial in its shard.
+    pub fn keys(&self, shard: Option<Shard>) -> impl Iterator<Item = TrialKey> + '_ {
+        let (cases, policies) = (self.cases.len(), self.policies.len());
+        let places = (0..cases).flat_map(move |case| (0..policies).map(move |policy| (case, policy)));
+        let trials = move |(case, policy)| (1..=self.trials).map(move |trial| (case, policy, trial));
+        let is_ours = move |(case, policy, trial): &(usize, usize, u32)| {
+            let index = (*trial as usize - 1) * cases * policies + case * policies + policy;
+            shard.is_none_or(|shard| index % shard.of as usize == shard.number as usize - 1)
+        };
+        places.flat_map(trials).filter(is_ours).map(|place| self.key(place))
+    }
+
+    /// The name of a trial.
+    #[must_use]
+    pub fn key(&self, (case, policy, trial): (usize, usize, u32)) -> TrialKey {
+        TrialKey { case, policy, trial, seed: self.seed(trial), label: self.policies[policy].label.clone() }
+    }
+
+    /// Runs one trial.
+    ///
+    /// # Errors
+    /// What kept it from its end.
+    pub fn run(&self, key: &TrialKey, halt: &AtomicBool) -> Result<Trial, Fault> {
+        let case = &self.cases[key.case];
+        run_trial(&case.scenario, &*case.policies[key.policy], key.seed, self.is_checked, halt)
+    }
+
+    /// The command that runs one trial again, in the folder of the results.
+    #[must_use]
+    pub fn replay_command(&self, key: &TrialKey) -> String {
+        let policy = &self.policies[key.policy];
+        let axes = self.axes.iter().zip(&self.cases[key.case].values);
+        let axes = axes.map(|(axis, value)| format!("--set '{}={value}'", axis.path));
+        let options = policy.options().iter().map(|(option, value)| format!("--set 'rne.{option}={value}'"));
+        let command = format!("usar run resolved.ron --policy {} --seed {}", policy.name, key.seed);
+        let check = self.is_checked.then(|| "--check".to_owned());
+        std::iter::once(command).chain(axes).chain(options).chain(check).collect::<Vec<_>>().join(" ")
+    }
+
+    /// The same sweep with another number of trials.
+    ///
+    /// # Errors
+    /// More trials than listed seeds.
+    pub fn with_trials(&self, trials: u32) -> Result<Self, Failure> {
+        Self::assemble(Parts {
+            name: self.name.clone(),
+            given: self.given.clone(),
+            base: self.base.clone(),
+            axes: self.axes.clone(),
+            policies: self.policies.iter().map(|policy| policy.written().to_owned()).collect(),
+            trials,
+            seeds: self.seeds.clone(),
+            is_checked: self.is_checked,
+        })
+    }
+
+    /// Seed of a trial, numbered from 1.
+    #[must_use]
+    pub fn seed(&self, trial: u32) -> u64 {
+        match &self.seeds {
+            Seeds::From(first) => first.wrapping_add(u64::from(trial - 1)),
+            Seeds::Listed(list) => list[trial as usize - 1],
+        }
+    }
+
+    /// Draws every layout, so that a scenario without room fails before the first trial runs.
+    ///
+    /// # Errors
+    /// A layout that cannot be drawn, with its seed.
+    pub fn check_layouts(&self, path: &Path) -> Result<(), Failure> {
+        for case in &self.cases {
+            let sampled = &case.scenario.sampled;
+            let drawn = sampled.hard != SampledCounts::default() || sampled.easy != SampledCounts::default();
+            let trials = if drawn { self.trials } else { 1 };
+            for seed in (1..=trials).map(|trial| self.seed(trial)) {
+                Layout::sample(&case.scenario, seed).map_err(|error| {
+                    let place = self.describe(case);
+                    Failure::input(format!("{}: {place}seed {seed}: {error}", path.display()))
+                })?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Where on the axes a case is, with a colon; nothing without axes.
+    #[must_use]
+    pub fn describe(&self, case: &Case) -> String {
+        let places: Vec<String> = self
+            .axes
+            .iter()
+            .zip(&case.values)
+            .map(|(axis, value)| format!("{}={value}", axis.path))
+            .collect();
+        if places.is_empty() { String::new() } else { format!("{}: ", places.join(", ")) }
+    }
+}
+
+/// A scenario with fields set by `path=value`.
+///
+/// # Errors
+/// A field that is not there, a value that does not fit it or breaks a rule.
+pub fn with_settings(scenario: &Scenario, settings: &[String]) -> Result<Scenario, Failure> {
+    let mut file: ScenarioFile = (**scenario).clone();
+    for entry in settings {
+        let (path, value) = entry
+            .split_once('=')
+            .ok_or_else(|| Failure::input(format!("--set: must be path=value, found {entry:?}")))?;
+        file.set(path.trim(), value).map_err(|error| Failure::input(format!("--set: {error}")))?;
+    }
+    checked(file, "--set: ")
+}
+
+fn from_scenario(text: String, path: &Path) -> Result<Parts, Failure> {
+    let base = Scenario::parse(&text, path).map_err(Failure::input)?;
+    Ok(Parts {
+        name: base.name.clone(),
+        given: text,
+        axes: Vec::new(),
+        policies: base.sweep.policies.clone(),
+        trials: base.sweep.trials,
+        seeds: Seeds::From(base.sweep.first_seed),
+        is_checked: false,
+        base,
+    })
+}
+
+fn from_sweep_file(text: String, path: &Path) -> Result<Parts, Failure> {
+    let file: SweepFile = parse_ron(&text, path).map_err(Failure::input)?;
+    let fields = Fields::of(&text);
+    let bad = |field: &str, reason: &dyn std::fmt::Display| {
+        let line = fields.line(field).map_or(String::new(), |line| format!(":{line}"));
+        Failure::input(format!("{}{line}: {field}: {reason}", path.display()))
+    };
+    let usable = |c: char| c.is_ascii_alphanumeric() || "-_.".contains(c);
+    if file.name.is_empty() || file.name.starts_with('.') || !file.name.chars().all(usable) {
+        return Err(bad("name", &format!("must be letters, digits, -, _ and ., found {:?}", file.name)));
+    }
+    let scenario = path.parent().unwrap_or(Path::new("")).join(&file.scenario);
+    let (base, _) = Scenario::load(&scenario).map_err(Failure::input)?;
+    let mut set: ScenarioFile = (*base).clone();
+    for (field, value) in &file.set.0 {
+        let place = format!("set.{field:?}");
+        set.set(field, value.get_ron()).map_err(|error| bad(&place, &error))?;
+    }
+    let base = checked(set, &format!("{}: set: ", path.display()))?;
+    let axes = axes(file.axes, &base, &bad)?;
+    let seeds = match (file.seeds, file.first_seed) {
+        (Some(_), Some(_)) => return Err(bad("seeds", &"must not stand beside first_seed")),
+        (Some(list), None) if list.is_empty() => {
+            return Err(bad("seeds", &"must have at least one, found none"));
+        }
+        (Some(list), None) => Seeds::Listed(list),
+        (None, first) => Seeds::From(first.unwrap_or(base.sweep.first_seed)),
+    };
+    let listed = if let Seeds::Listed(list) = &seeds { Some(list.len() as u32) } else { None };
+    Ok(Parts {
+        name: file.name,
+        given: text,
+        axes,
+        policies: file.policies.unwrap_or_else(|| base.sweep.policies.clone()),
+        trials: file.trials.or(listed).unwrap_or(base.sweep.trials),
+        seeds,
+        is_checked: false,
+        base,
+    })
+}
+
+type Bad<'a> = dyn Fn(&str, &dyn std::fmt::Display) -> Failure + 'a;
+
+/// Checks each value of each axis alone, so that a wrong one is named with its line.
+fn axes(map: Map<Vec<Box<ron::value::RawValue>>>, base: &Scenario, bad: &Bad) -> Result<Vec<Axis>, Failure> {
+    let mut axes = Vec::new();
+    for (path, values) in map.0 {
+        let field = format!("axes.{path:?}");
+        let values: Vec<String> = values.iter().map(|value| value.get_ron().trim().to_owned()).collect();
+        if values.is_empty() {
+            return Err(bad(&field, &"must have at least one value, found none"));
+        }
+        for (i, value) in values.iter().enumerate() {
+            let entry = format!("{field}[{i}]");
+            if values[..i].contains(value) {
+                return Err(bad(&entry, &format!("must not stand twice, found {value}")));
+            }
+            let mut file: ScenarioFile = (**base).clone();
+            file.set(&path, value).map_err(|error| bad(&entry, &error))?;
+        }
+        axes.push(Axis { path, values });
+    }
+    Ok(axes)
+}
+
+fn checked_policies(written: &[String]) -> Result<Vec<PolicySpec>, Failure> {
+    let mut policies: Vec<PolicySpec> = Vec::new();
+    for text in written {
+        let policy = PolicySpec::parse(text).map_err(|error| Failure::input(format!("policies: {error}")))?;
+        if policies.iter().any(|known| known.label == policy.label) {
+            return Err(Failure::input(format!("policies: must not stand twice, found {:?}", policy.label)));
+        }
+        policies.push(policy);
+    }
+    if policies.is_empty() {
+        return Err(Failure::input("policies: must name at least one policy, found none"));
+    }
+    Ok(policies)
+}
+
+fn checked(file: ScenarioFile, prefix: &str) -> Result<Scenario, Failure> {
+    Scenario::try_from(file).map_err(|problems| {
+        let line = |p: &Problem| format!("{prefix}{} {}, found {}", p.field, p.rule, p.found);
+        Failure::Input(problems.iter().map(line).collect::<Vec<_>>().join("\n"))
+    })
+}
+
+/// The full grid, the last axis fastest.
+fn cases(base: &Scenario, axes: &[Axis], policies: &[PolicySpec]) -> Result<Vec<Case>, Failure> {
+    let count = axes.iter().try_fold(1_usize, |count, axis| count.checked_mul(axis.values.len()));
+    if count.is_none_or(|count| count > MAX_CASES) {
+        return Err(Failure::input(format!("axes: must span at most {MAX_CASES} cases")));
+    }
+    let mut grid: Vec<Vec<&str>> = vec![Vec::new()];
+    for axis in axes {
+        grid = grid
+            .iter()
+            .flat_map(|case| {
+                axis.values.iter().map(move |value| [case.as_slice(), &[value.as_str()]].concat())
+            })
+            .collect();
+    }
+    let case = |values: Vec<&str>| {
+        let mut file: ScenarioFile = (**base).clone();
+        let places = axes.iter().zip(&values).map(|(axis, value)| format!("{}={value}: ", axis.path));
+        let place = places.collect::<Vec<_>>().concat();
+        for (axis, value) in axes.iter().zip(&values) {
+            file.set(&axis.path, value).map_err(|error| Failure::input(format!("axes: {error}")))?;
+        }
+        let scenario = checked(file, &place)?;
+        let policies = policies.iter().map(|policy| policy.make(&scenario)).collect::<Result<_, _>>();
+        let policies = policies.map_err(|error| Failure::input(format!("{place}{error}")))?;
+        Ok(Case { values: values.into_iter().map(str::to_owned).collect(), scenario, policies })
+    };
+    grid.into_iter().map(case).collect()
+}
+
+/// What of a scenario decides numbers, as text: all but its name, its description and the sweep's defaults.
+fn deciding_text(scenario: &Scenario) -> String {
+    let mut file: ScenarioFile = (**scenario).clone();
+    file.name = String::new();
+    file.description = String::new();
+    file.sweep = usar_sim::scenario::SweepDefaults::default();
+    ron::to_string(&file).unwrap_or_default()
+}

@@ -1,0 +1,147 @@
+//! Policies as a sweep names them: `RNE`, `RNE(score: Sum)`, or `label=RNE(score: Sum, sort: true)`.
+
+use std::sync::Arc;
+
+use rne_core::{GroupingPolicy, policy_named};
+use usar_sim::scenario::{Fields, Scenario, ScenarioFile};
+
+/// A policy with its options.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct PolicySpec {
+    /// What tables and figures call it.
+    pub label: String,
+    /// Its name in the registry.
+    pub name: String,
+    /// Options that differ from the scenario's, with their values in RON.
+    options: Vec<(String, String)>,
+    /// As it was written.
+    written: String,
+}
+
+impl PolicySpec {
+    /// Reads one.
+    ///
+    /// # Errors
+    /// An unknown name, an option of a policy that has none, or brackets that do not close; in one sentence.
+    pub fn parse(text: &str) -> Result<Self, String> {
+        let written = text.trim().to_owned();
+        let open = written.find('(').unwrap_or(written.len());
+        let (label, rest) = match written[..open].find('=') {
+            Some(at) => (Some(written[..at].trim()), written[at + 1..].trim()),
+            None => (None, written.as_str()),
+        };
+        let (name, options) = rest.split_at(rest.find('(').unwrap_or(rest.len()));
+        let name = name.trim();
+        policy_named(name, &rne_core::RneOptions::default()).map_err(|error| error.to_string())?;
+        let options = Self::parse_options(name, options)?;
+        let named: Vec<String> = options.iter().map(|(option, value)| format!("{option}: {value}")).collect();
+        let plain = if named.is_empty() { name.to_owned() } else { format!("{name}({})", named.join(", ")) };
+        if label.is_some_and(str::is_empty) {
+            return Err(format!("the label before `=` is empty in {written:?}"));
+        }
+        let label = label.map_or(plain, str::to_owned);
+        Ok(Self { label, name: name.to_owned(), options, written })
+    }
+
+    fn parse_options(name: &str, text: &str) -> Result<Vec<(String, String)>, String> {
+        if text.is_empty() {
+            return Ok(Vec::new());
+        }
+        if name != "RNE" {
+            return Err(format!("policy {name} has no options, found {text:?}"));
+        }
+        let fields = Fields::of(text);
+        let value = |option: &str| fields.value(option).map(|value| text[value].trim().to_owned());
+        let names = fields.inside("");
+        let options: Vec<(String, String)> =
+            names.iter().filter_map(|option| Some(((*option).to_owned(), value(option)?))).collect();
+        let stands_twice = (1..names.len()).any(|i| names[..i].contains(&names[i]));
+        let written: Vec<String> =
+            options.iter().map(|(option, value)| format!("{option}:{value}")).collect();
+        let without_blanks = |text: &str| text.split_whitespace().collect::<String>();
+        let rebuilt = without_blanks(&format!("({})", written.join(",")));
+        if stands_twice || without_blanks(text).replace(",)", ")") != rebuilt {
+            return Err(format!(
+                "options must be written as (name: value, name: value), each once, found {text:?}"
+            ));
+        }
+        Ok(options)
+    }
+
+    /// The policy in a scenario: the scenario's options, and its own over them.
+    ///
+    /// # Errors
+    /// Options that cannot be used, in one sentence.
+    pub fn make(&self, scenario: &Scenario) -> Result<Arc<dyn GroupingPolicy>, String> {
+        let options = self.options_in(scenario)?.rne.clone();
+        policy_named(&self.name, &options).map(Arc::from).map_err(|error| error.to_string())
+    }
+
+    /// The scenario as this policy sees it.
+    ///
+    /// # Errors
+    /// Those of [`PolicySpec::make`].
+    pub fn options_in(&self, scenario: &Scenario) -> Result<Scenario, String> {
+        let mut file: ScenarioFile = (**scenario).clone();
+        for (option, value) in &self.options {
+            file.set(&format!("rne.{option}"), value)
+                .map_err(|error| format!("policy {}: {error}", self.label))?;
+        }
+        Scenario::try_from(file).map_err(|problems| {
+            let problem = &problems[0];
+            format!("policy {}: {} {}, found {}", self.label, problem.field, problem.rule, problem.found)
+        })
+    }
+
+    /// Options that differ from the scenario's, with their values in RON.
+    #[must_use]
+    pub fn options(&self) -> &[(String, String)] {
+        &self.options
+    }
+
+    /// As it was written: reads to the same policy.
+    #[must_use]
+    pub fn written(&self) -> &str {
+        &self.written
+    }
+}
+
+/// The entries of a list whose commas may stand in brackets as well.
+#[must_use]
+pub fn split_list(text: &str) -> Vec<&str> {
+    let mut depth = 0_i32;
+    let splits = |c: char| {
+        depth += i32::from("([{".contains(c)) - i32::from(")]}".contains(c));
+        c == ',' && depth == 0
+    };
+    text.split(splits).map(str::trim).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn policies_have_names_options_and_labels() {
+        let spec = |text| PolicySpec::parse(text).unwrap();
+        assert_eq!(spec("DIS").label, "DIS");
+        let options = spec("RNE( score : Sum, weights: [1, 2, 3, 4, 5, 6, 7], )");
+        assert_eq!(options.label, "RNE(score: Sum, weights: [1, 2, 3, 4, 5, 6, 7])");
+        let labelled = spec("sum=RNE(score: Sum)");
+        assert_eq!((labelled.label.as_str(), labelled.name.as_str()), ("sum", "RNE"));
+        assert_eq!(split_list("DIS, a=RNE(sort: true, scale: false),ENG").len(), 3);
+    }
+
+    #[test]
+    fn bad_policies_are_refused() {
+        let refused = |text| PolicySpec::parse(text).unwrap_err();
+        assert!(refused("NEAREST").contains("unknown policy"));
+        assert!(refused("DIS(score: Sum)").contains("policy DIS has no options"));
+        assert!(refused("=RNE").contains("label"));
+        for text in
+            ["RNE(", "RNE(Sum)", "RNE(sort: true", "RNE(sort: true, sort: false)", "RNE(sort: true) x"]
+        {
+            assert!(refused(text).contains("options must be written as"), "{text}");
+        }
+    }
+}

@@ -1,0 +1,91 @@
+//! Bootstrap interval of a mean: bias-corrected and accelerated (Efron 1987), widened for small samples.
+//!
+//! With few differences the bootstrap's intervals are too narrow: resampled means spread by a factor of sqrt((n - 1) / n) too little, and
+//! normal quantiles stand where t quantiles should (at n = 10 a 95 % interval covers about 90 %). [`Width::Expanded`] corrects
+//! both by asking for more extreme quantiles (Hesterberg 2015, "What teachers should know about the bootstrap", The American Statistician
+//! 69:4). [`Width::Plain`] is the textbook's interval, checked against `SciPy` 1.17.1.
+
+use rand::rngs::ChaCha8Rng;
+use rand::{RngExt, SeedableRng};
+use statrs::distribution::{ContinuousCDF, Normal, StudentsT};
+use statrs::statistics::Statistics;
+
+/// Resamples of an interval.
+pub const RESAMPLES: usize = 10_000;
+
+/// Which quantiles the interval is made of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Width {
+    /// Those of the textbook.
+    Plain,
+    /// More extreme ones, right for small samples.
+    Expanded,
+}
+
+/// The interval of the mean at this confidence, from draws of this seed; `None` for fewer than two values. Where all values are equal it
+/// is that value.
+#[must_use]
+pub fn bca_interval(
+    values: &[f64],
+    confidence: f64,
+    (resamples, seed): (usize, u64),
+    width: Width,
+) -> Option<[f64; 2]> {
+    let count = values.len();
+    if count < 2 {
+        return None;
+    }
+    if values.iter().all(|value| value.total_cmp(&values[0]).is_eq()) {
+        return Some([values[0]; 2]);
+    }
+    let mean = values.mean();
+    let normal = Normal::standard();
+    let mut draws = ChaCha8Rng::seed_from_u64(seed);
+    let mut means: Vec<f64> = (0..resamples)
+        .map(|_| {
+            let sum: f64 = (0..count).map(|_| values[draws.random_range(0..count as u32) as usize]).sum();
+            sum / count as f64
+        })
+        .collect();
+    means.sort_by(f64::total_cmp);
+    let below = means.partition_point(|resampled| *resampled < mean);
+    let up_to = means.partition_point(|resampled| *resampled <= mean);
+    let share = (below + up_to) as f64 / (2 * resamples) as f64;
+    let bias = normal.inverse_cdf(share.clamp(1.0 / resamples as f64, 1.0 - 1.0 / resamples as f64));
+    let acceleration = acceleration(values, mean);
+    let tail = tail(count, confidence, width)?;
+    let limit = |z: f64| {
+        let moved = bias + z;
+        quantile(&means, normal.cdf(bias + moved / (1.0 - acceleration * moved)))
+    };
+    let z = normal.inverse_cdf(tail);
+    Some([limit(z), limit(-z)])
+}
+
+/// Probability of each tail.
+fn tail(count: usize, confidence: f64, width: Width) -> Option<f64> {
+    let tail = (1.0 - confidence) / 2.0;
+    match width {
+        Width::Plain => Some(tail),
+        Width::Expanded => {
+            let freedom = count as f64 - 1.0;
+            let t = StudentsT::new(0.0, 1.0, freedom).ok()?.inverse_cdf(tail);
+            Some(Normal::standard().cdf(t * (count as f64 / freedom).sqrt()))
+        }
+    }
+}
+
+/// From the jackknife; for a mean it is the skewness of the values over 6 sqrt(n).
+fn acceleration(values: &[f64], mean: f64) -> f64 {
+    let power = |exponent: i32| values.iter().map(|value| (value - mean).powi(exponent)).sum::<f64>();
+    power(3) / (6.0 * power(2).powf(1.5))
+}
+
+/// Quantile of values in order, interpolated linearly (type 7 of Hyndman & Fan 1996).
+#[must_use]
+pub fn quantile(sorted: &[f64], share: f64) -> f64 {
+    let place = share.clamp(0.0, 1.0) * (sorted.len() - 1) as f64;
+    let below = place.floor() as usize;
+    let above = (below + 1).min(sorted.len() - 1);
+    sorted[below] + (sorted[above] - sorted[below]) * (place - below as f64)
+}

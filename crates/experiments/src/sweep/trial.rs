@@ -1,0 +1,173 @@
+//! One trial of a sweep: its name, and what is kept of it.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use rne_core::{Difficulty, GroupingPolicy};
+use serde::{Deserialize, Serialize};
+use usar_sim::event::Event;
+use usar_sim::record::{Status, TrialRecord};
+use usar_sim::scenario::Scenario;
+use usar_sim::simulation::Simulation;
+
+/// A trial looks once in this many steps whether it is to stop.
+const HALT_CHECK_STEPS: u64 = 64;
+
+/// Names one trial of a sweep.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
+pub struct TrialKey {
+    /// Number of the case, from 0.
+    pub case: usize,
+    /// Place of the policy in the sweep's list.
+    pub policy: usize,
+    /// Number of the trial, from 1. Trials of the same case and number are pairs: they share their seed.
+    pub trial: u32,
+    /// Seed of the trial.
+    pub seed: u64,
+    /// What the sweep calls the policy.
+    pub label: String,
+}
+
+/// A trial that ran to its end.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Trial {
+    /// Its record.
+    pub record: TrialRecord,
+    /// Times of the deliveries from the hard and from the easy task, in seconds.
+    pub deliveries: [Vec<f64>; 2],
+    /// The robots as each round found them.
+    pub grouped: Vec<Grouped>,
+}
+
+/// A robot when it was grouped.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Grouped {
+    /// Number of the round, from 1.
+    pub round: u32,
+    /// The robot.
+    pub robot: u32,
+    /// The task of its group.
+    pub task: Difficulty,
+    /// Battery level, in percent.
+    pub energy: f64,
+    /// Health level, in percent.
+    pub hp: f64,
+    /// Its needs vector, in the order of [`rne_core::NEED_NAMES`].
+    pub needs: Vec<f64>,
+}
+
+/// A trial without numbers.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Fault {
+    /// What kind of trouble.
+    pub kind: FaultKind,
+    /// What happened, in a sentence.
+    pub reason: String,
+}
+
+/// What kept a trial from its end.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum FaultKind {
+    /// It said so itself: an invariant was violated, a policy failed, or the physics broke down.
+    Failed,
+    /// The program has a defect.
+    Panicked,
+    /// It took longer than a trial may.
+    TimedOut,
+}
+
+impl FaultKind {
+    /// As one word, for tables.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Failed => "failed",
+            Self::Panicked => "panicked",
+            Self::TimedOut => "timed_out",
+        }
+    }
+}
+
+/// What became of a trial.
+#[derive(Debug, Clone)]
+pub struct Outcome {
+    /// Which trial.
+    pub key: TrialKey,
+    /// What it gave, or why nothing.
+    pub result: Result<Trial, Fault>,
+}
+
+impl Outcome {
+    /// Its record, if the trial ran to its end.
+    #[must_use]
+    pub fn record(&self) -> Option<&TrialRecord> {
+        self.result.as_ref().ok().map(|trial| &trial.record)
+    }
+
+    /// Its status in one word, for tables.
+    #[must_use]
+    pub fn status(&self) -> &'static str {
+        self.result.as_ref().map_or_else(|fault| fault.kind.name(), |trial| trial.record.status.name())
+    }
+
+    /// Why there is nothing, in one sentence.
+    #[must_use]
+    pub fn failure(&self) -> Option<String> {
+        let Fault { kind, reason } = self.result.as_ref().err()?;
+        let TrialKey { label, trial, seed, .. } = &self.key;
+        let kind = kind.name().replace('_', " ");
+        Some(format!("trial {trial} of {label} (seed {seed}) {kind}: {reason}"))
+    }
+}
+
+/// Runs one trial; `halt` ends it early.
+///
+/// # Errors
+/// Its layout cannot be drawn, something went wrong in it, or it was halted.
+pub fn run_trial(
+    scenario: &Scenario,
+    policy: &dyn GroupingPolicy,
+    seed: u64,
+    is_checked: bool,
+    halt: &AtomicBool,
+) -> Result<Trial, Fault> {
+    let failed = |reason: String| Fault { kind: FaultKind::Failed, reason };
+    let simulation = Simulation::new(scenario, policy, seed).map_err(|error| failed(error.to_string()))?;
+    let mut simulation = if is_checked { simulation.checked() } else { simulation };
+    let (mut deliveries, mut grouped) = ([Vec::new(), Vec::new()], Vec::new());
+    while simulation.ending().is_none() {
+        if simulation.steps().is_multiple_of(HALT_CHECK_STEPS) && halt.load(Ordering::Relaxed) {
+            return Err(failed("it was halted".to_owned()));
+        }
+        simulation.step().map_err(failed)?;
+        for event in simulation.events() {
+            match event {
+                Event::RoundStarted { round, hard, easy } => {
+                    for (task, members) in [(Difficulty::Hard, hard), (Difficulty::Easy, easy)] {
+                        grouped.extend(
+                            members.iter().filter_map(|id| as_grouped(&simulation, *round, task, id.index())),
+                        );
+                    }
+                }
+                Event::Delivered { rescuee, .. } => {
+                    let task = simulation.world().rescuees[rescuee.index()].task;
+                    deliveries[usize::from(task == Difficulty::Easy)].push(simulation.time_s());
+                }
+                _ => {}
+            }
+        }
+    }
+    let record = simulation.finish();
+    match record.status {
+        Status::Failed(reason) => Err(failed(reason)),
+        _ => Ok(Trial { record, deliveries, grouped }),
+    }
+}
+
+/// A robot with the levels and needs that the policy saw, one step ago.
+fn as_grouped(simulation: &Simulation, round: u32, task: Difficulty, robot: usize) -> Option<Grouped> {
+    let [energy, hp] = simulation.mission().agents[robot].levels_at_start?;
+    let mut then = simulation.world().robots[robot].clone();
+    (then.energy, then.hp) = (energy, hp);
+    let needs = then.needs().ok()?;
+    Some(Grouped { round, robot: robot as u32, task, energy, hp, needs: needs.values().to_vec() })
+}

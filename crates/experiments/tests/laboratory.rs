@@ -1,0 +1,443 @@
+//! Sweeps that survive: broken off, killed, extended, refused, divided and joined; and what is said of them.
+
+mod kills;
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+use std::time::{Duration, Instant};
+
+use kills::{files, kill_sweeps};
+use serde_json::Value;
+
+fn program() -> &'static Path {
+    Path::new(env!("CARGO_BIN_EXE_usar"))
+}
+
+fn usar(folder: &Path, arguments: &[&str]) -> Output {
+    Command::new(program()).args(arguments).current_dir(folder).output().expect("usar runs")
+}
+
+/// A folder with `short.ron`, the paper's scenario for half a minute, and `grid.ron`, a sweep file over it.
+fn place() -> tempfile::TempDir {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).ancestors().nth(2).unwrap();
+    let text = std::fs::read_to_string(root.join("scenarios/paper.ron")).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let text = text.replace("duration_s: 600.0", "duration_s: 30.0");
+    std::fs::write(folder.path().join("short.ron"), text).unwrap();
+    let grid = "(
+    name: \"grid\",
+    scenario: \"short.ron\",
+    set: {\"mission.loading_s\": 1.0},
+    policies: [\"RNE\", \"sum=RNE(score: Sum)\", \"DIS\"],
+    trials: 2,
+    axes: {
+        \"roles.carrier.speed_mps\": [1.5, 3.0],
+        \"rne.hard_rule\": [IntraGroupTrust, MeanEnergy],
+    },
+)";
+    std::fs::write(folder.path().join("grid.ron"), grid).unwrap();
+    folder
+}
+
+#[track_caller]
+fn succeeds(output: &Output) -> String {
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    String::from_utf8(output.stdout.clone()).unwrap()
+}
+
+/// The command ends with this status and a message that holds all of these, and leaves the folder of results as it was.
+#[track_caller]
+fn refused(folder: &Path, status: i32, arguments: &[&str], messages: &[&str]) {
+    let results = folder.join("results");
+    let content = |path: &Path| if path.is_dir() { format!("{:?}", tree(path)) } else { String::new() };
+    let before = content(&results);
+    let output = usar(folder, arguments);
+    let stderr = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(status), "{arguments:?}: {stderr}");
+    for message in messages {
+        assert!(stderr.contains(message), "{arguments:?} must say {message:?}, said {stderr:?}");
+    }
+    assert!(before == content(&results), "{arguments:?} changed the results");
+}
+
+fn tree(folder: &Path) -> Vec<(PathBuf, Vec<u8>)> {
+    let mut entries: Vec<PathBuf> =
+        std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
+    entries.sort();
+    let content = |path: &PathBuf| {
+        if path.is_dir() { tree(path) } else { vec![(path.clone(), std::fs::read(path).unwrap())] }
+    };
+    entries.iter().flat_map(content).collect()
+}
+
+fn rows(folder: &Path, table: &str) -> Vec<csv::StringRecord> {
+    csv::Reader::from_path(folder.join(table)).unwrap().records().map(Result::unwrap).collect()
+}
+
+#[test]
+fn a_sweep_killed_at_random_moments_ends_with_the_files_of_one_left_alone() {
+    let folder = place();
+    let arguments = ["sweep", "short.ron", "--trials", "4", "--policies", "RNE,DIS"];
+    let report = kill_sweeps(program(), &arguments, folder.path(), 12, 250);
+    assert!(report.kills == 12 && report.sweeps > 0, "{report:?}");
+}
+
+#[test]
+fn the_same_command_goes_on_and_more_trials_only_add() {
+    let folder = place();
+    let sweep = |more: &[&str]| {
+        usar(folder.path(), &[&["sweep", "short.ron", "--policies", "RNE,DIS"], more].concat())
+    };
+    succeeds(&sweep(&["--trials", "2"]));
+    let results = folder.path().join("results/paper");
+    let again = sweep(&["--trials", "2"]);
+    assert!(String::from_utf8_lossy(&again.stderr).contains("4 of 4 trials are there already"));
+    let more = sweep(&["--trials", "3"]);
+    assert!(String::from_utf8_lossy(&more.stderr).contains("4 of 6 trials are there already"));
+    succeeds(&sweep(&["--trials", "3", "--out", "results/whole"]));
+    assert!(files(&results) == files(&folder.path().join("results/whole")), "added trials change no byte");
+    // The file says 10; the folder has 3: nobody asked for a number, so there is nothing to refuse.
+    std::fs::write(folder.path().join("one.ron"), small_default(folder.path())).unwrap();
+    let plain = usar(folder.path(), &["sweep", "one.ron", "--policies", "RNE,DIS"]);
+    assert!(String::from_utf8_lossy(&plain.stderr).contains("6 of 6 trials are there already"));
+}
+
+/// `short.ron` with a single trial by default.
+fn small_default(folder: &Path) -> String {
+    std::fs::read_to_string(folder.join("short.ron")).unwrap().replace("trials: 10", "trials: 1")
+}
+
+#[test]
+fn another_sweep_in_the_folder_is_refused_and_each_difference_named() {
+    let folder = place();
+    let here = folder.path();
+    let sweep = ["sweep", "short.ron", "--policies", "RNE,DIS", "--trials", "2"];
+    succeeds(&usar(here, &sweep));
+    let with = |more: &[&'static str]| [&sweep[..], more].concat();
+    refused(
+        here,
+        2,
+        &with(&["--set", "costs.energy.per_step=0.009"]),
+        &["results/paper has results of something else", "costs.energy.per_step: 0.0045 there, 0.009 now"],
+    );
+    refused(here, 2, &with(&["--seed", "7"]), &["seeds: from 1 on there, from 7 on now"]);
+    refused(here, 2, &with(&["--check"]), &["--check: false there, true now"]);
+    refused(
+        here,
+        2,
+        &["sweep", "short.ron", "--policies", "RNE,DIS", "--trials", "1"],
+        &["trials: 2 there, 1 now"],
+    );
+    refused(
+        here,
+        2,
+        &["sweep", "short.ron", "--policies", "ENG", "--trials", "2"],
+        &["policies: RNE, DIS there, ENG now"],
+    );
+    refused(here, 2, &["sweep", "short.ron", "--set", "costs.energy=1"], &["--set: costs.energy: "]);
+    refused(here, 2, &["sweep", "short.ron", "--set", "dt_s=-1"], &["--set: dt_s must"]);
+    succeeds(&usar(here, &["sweep", "short.ron", "--policies", "ENG", "--trials", "1", "--fresh"]));
+    assert_eq!(rows(&here.join("results/paper"), "trials.csv").len(), 1);
+}
+
+#[test]
+fn a_sweep_file_spans_its_grid_and_any_field_can_be_an_axis() {
+    let folder = place();
+    let here = folder.path();
+    let said = succeeds(&usar(here, &["sweep", "grid.ron"]));
+    assert!(said.contains("roles.carrier.speed_mps=1.5, rne.hard_rule=MeanEnergy"), "{said}");
+    let results = here.join("results/grid");
+    let trials = rows(&results, "trials.csv");
+    assert_eq!(trials.len(), 2 * 2 * 3 * 2);
+    assert_eq!(trials[23].iter().take(4).collect::<Vec<_>>(), ["4", "3.0", "MeanEnergy", "DIS"]);
+    let column = |name: &str| {
+        let mut table = csv::Reader::from_path(results.join("trials.csv")).unwrap();
+        table.headers().unwrap().iter().position(|column| column == name).unwrap()
+    };
+    let distance = |row: &csv::StringRecord| row[column("distance_m")].parse::<f64>().unwrap();
+    assert!(distance(&trials[18]) > 1.2 * distance(&trials[0]), "faster carriers go farther");
+    assert_eq!(succeeds(&usar(here, &["verify", "results/grid"])), "24 of 24 trials match, step by step\n");
+    // DIS has no hard rule: the two cases are one.
+    let hashes: Vec<&str> = [4, 10].map(|row: usize| &trials[row][column("state_hash")]).to_vec();
+    assert_eq!(hashes[0], hashes[1]);
+    // A row can be run again alone.
+    let arguments = ["run", "results/grid/resolved.ron", "--policy", "RNE", "--seed", "2", "--json", "--set"];
+    let set = ["roles.carrier.speed_mps=3.0", "--set", "rne.score=Sum"];
+    let run: Value = serde_json::from_str(&succeeds(&usar(here, &[&arguments[..], &set].concat()))).unwrap();
+    let row = trials.iter().find(|row| &row[0] == "3" && &row[3] == "sum" && &row[4] == "2").unwrap();
+    assert_eq!(run["state_hash"], row[column("state_hash")]);
+}
+
+#[test]
+fn bad_sweep_files_are_refused_with_their_lines() {
+    let folder = place();
+    let here = folder.path();
+    let grid = std::fs::read_to_string(here.join("grid.ron")).unwrap();
+    let refuse = |from: &str, to: &str, message: &str| {
+        assert!(grid.contains(from));
+        std::fs::write(here.join("bad.ron"), grid.replace(from, to)).unwrap();
+        refused(here, 2, &["sweep", "bad.ron"], &[message]);
+    };
+    refuse(
+        "carrier.speed_mps",
+        "carrier.speed",
+        "bad.ron:8: axes.\"roles.carrier.speed\"[0]: roles.carrier.speed: no such field; roles.carrier has ",
+    );
+    refuse("[1.5, 3.0]", "[1.5, \"fast\"]", "bad.ron:8: axes.\"roles.carrier.speed_mps\"[1]: ");
+    refuse(
+        "[1.5, 3.0]",
+        "[1.5, -3.0]",
+        "roles.carrier.speed_mps=-3.0: rne.hard_rule=IntraGroupTrust: roles.carrier.speed_mps must",
+    );
+    refuse("[1.5, 3.0]", "[1.5, 1.5]", "must not stand twice, found 1.5");
+    refuse("[1.5, 3.0]", "[]", "must have at least one value");
+    refuse("\"mission.loading_s\"", "\"mission.loading\"", "bad.ron:4: set.\"mission.loading\": ");
+    refuse("trials: 2", "trails: 2", "bad.ron:6:");
+    refuse("short.ron", "long.ron", "long.ron: cannot be read");
+    refuse("score: Sum", "score: Most", "policy sum: rne.score: ");
+    refuse("\"DIS\"", "\"RNE\"", "policies: must not stand twice, found \"RNE\"");
+    refuse(
+        "trials: 2",
+        "trials: 3, seeds: [1, 2]",
+        "trials: must be at most the number of listed seeds, 2, found 3",
+    );
+    refuse("trials: 2", "seeds: [1, 2], first_seed: 1", "seeds: must not stand beside first_seed");
+}
+
+#[test]
+fn shards_are_joined_to_the_bytes_of_a_single_run() {
+    let folder = place();
+    let here = folder.path();
+    succeeds(&usar(here, &["sweep", "grid.ron", "--out", "whole"]));
+    for shard in ["1/3", "2/3", "3/3"] {
+        succeeds(&usar(here, &["sweep", "grid.ron", "--shard", shard]));
+    }
+    let parts = ["results/grid-1-of-3", "results/grid-2-of-3", "results/grid-3-of-3"];
+    let merge = |parts: &[&'static str]| [&["merge"], parts, &["--out", "joined"]].concat();
+    refused(here, 2, &merge(&parts[..2]), &["8 trials are missing: "]);
+    succeeds(&usar(here, &["sweep", "grid.ron", "--shard", "3/3", "--trials", "3", "--out", "results/more"]));
+    refused(
+        here,
+        2,
+        &merge(&[parts[0], "results/more"]),
+        &["are not of one sweep", "trials: 2 there, 3 now"],
+    );
+    succeeds(&usar(here, &["sweep", "short.ron", "--trials", "1", "--out", "results/other"]));
+    refused(here, 2, &merge(&[parts[0], "results/other"]), &["are not of one sweep", "axes: "]);
+    succeeds(&usar(here, &merge(&parts)));
+    assert!(files(&here.join("joined")) == files(&here.join("whole")));
+    refused(here, 2, &["sweep", "grid.ron", "--shard", "4/3"], &["must be i/n with i from 1 to n"]);
+}
+
+#[test]
+fn changed_bytes_are_named_and_made_again() {
+    let folder = place();
+    let here = folder.path();
+    let sweep = ["sweep", "short.ron", "--policies", "RNE,DIS", "--trials", "2"];
+    succeeds(&usar(here, &sweep));
+    let results = here.join("results/paper");
+    let sound = files(&results);
+    let damage = |name: &str, change: fn(&mut Vec<u8>)| {
+        let mut bytes = sound[name].clone();
+        change(&mut bytes);
+        std::fs::write(results.join(name), bytes).unwrap();
+    };
+    let mended = |message: &str| {
+        let output = usar(here, &sweep);
+        let stderr = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.success() && stderr.contains(message), "{stderr}");
+        assert!(files(&results) == sound, "{message}");
+    };
+    let flip = |bytes: &mut Vec<u8>| {
+        let middle = bytes.len() / 2;
+        bytes[middle] ^= 1;
+    };
+    damage("journal.jsonl", flip);
+    refused(here, 2, &["compare", "results/paper"], &["journal.jsonl:", "checksum does not match"]);
+    mended("the checksum does not match");
+    damage("journal.jsonl", |bytes| bytes.truncate(bytes.len() - 100));
+    refused(here, 2, &["compare", "results/paper"], &["journal.jsonl:4: the last line is cut off"]);
+    mended("journal.jsonl:4: the last line is cut off");
+    damage("trials.csv", flip);
+    refused(here, 2, &["compare", "results/paper"], &["trials.csv"]);
+    mended("trials.csv: does not have the checksum");
+    damage("hashes.csv", |bytes| bytes.truncate(1000));
+    mended("hashes.csv: does not have the checksum");
+    std::fs::remove_file(results.join("robots.csv")).unwrap();
+    mended("robots.csv: does not have the checksum");
+    damage("manifest.json", |bytes| bytes.truncate(100));
+    refused(here, 2, &sweep, &["manifest.json: is not a manifest of this program"]);
+    succeeds(&usar(here, &[&sweep[..], &["--fresh"]].concat()));
+    assert!(files(&results) == sound);
+}
+
+#[test]
+fn trouble_with_the_disk_breaks_nothing() {
+    let folder = place();
+    let here = folder.path();
+    succeeds(&usar(here, &["sweep", "short.ron", "--policies", "RNE", "--trials", "4", "--out", "whole"]));
+    // Files may not grow beyond some blocks: what a full disk does, without one.
+    for blocks in ["1", "20", "60"] {
+        let limited = format!(
+            "trap '' XFSZ; ulimit -f {blocks}; exec '{}' sweep short.ron --policies RNE --trials 4 --quiet",
+            program().display()
+        );
+        let output = Command::new("sh").args(["-c", &limited]).current_dir(here).output().unwrap();
+        let stderr = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(3), "{blocks}: {stderr}");
+        assert!(stderr.contains("File too large"), "{stderr}");
+    }
+    succeeds(&usar(here, &["sweep", "short.ron", "--policies", "RNE", "--trials", "4"]));
+    assert!(
+        files(&here.join("results/paper")) == files(&here.join("whole")),
+        "it goes on when the cause is gone"
+    );
+
+    std::fs::write(here.join("file"), "").unwrap();
+    refused(here, 3, &["sweep", "short.ron", "--out", "file/results"], &["cannot write to file/results"]);
+
+    let lock = std::fs::File::open(here.join("results/paper/.lock")).unwrap();
+    lock.lock().unwrap();
+    refused(
+        here,
+        3,
+        &["sweep", "short.ron", "--policies", "RNE", "--trials", "4"],
+        &["results/paper: another process is at work in this folder"],
+    );
+}
+
+#[test]
+fn an_interrupted_sweep_stops_at_once_and_goes_on() {
+    let folder = place();
+    let here = folder.path();
+    let sweep = ["sweep", "short.ron", "--policies", "RNE", "--trials", "60"];
+    let child = Command::new(program()).args(sweep).current_dir(here).stderr(Stdio::piped()).spawn().unwrap();
+    let journal = here.join("results/paper/journal.jsonl");
+    while std::fs::metadata(&journal).map_or(0, |file| file.len()) == 0 {
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
+    let since = Instant::now();
+    let output = child.wait_with_output().unwrap();
+    assert!(since.elapsed() < Duration::from_secs(2));
+    assert_eq!(output.status.code(), Some(130));
+    assert!(String::from_utf8_lossy(&output.stderr).contains("and the same command goes on"));
+    let again = usar(here, &sweep);
+    succeeds(&again);
+    assert!(String::from_utf8_lossy(&again.stderr).contains("of 60 trials are there already"));
+    assert_eq!(rows(&here.join("results/paper"), "trials.csv").len(), 60);
+}
+
+#[test]
+fn trials_that_give_nothing_are_rows_that_can_be_run_again() {
+    let folder = place();
+    let here = folder.path();
+    let sweep = ["sweep", "short.ron", "--policies", "RNE,DIS", "--trials", "2", "--set", "duration_s=600.0"];
+    let late = usar(here, &[&sweep[..], &["--max-trial-s", "0.001"]].concat());
+    assert_eq!(late.status.code(), Some(1));
+    let said = String::from_utf8_lossy(&late.stdout).into_owned();
+    assert!(said.contains("4 trials failed, 0 are missing"), "{said}");
+    assert!(String::from_utf8_lossy(&late.stderr).contains("trial 1 of RNE (seed 1) timed out"));
+    let late = rows(&here.join("results/paper"), "trials.csv");
+    let last = |row: &csv::StringRecord| row.iter().next_back().unwrap().to_owned();
+    assert!(late.len() == 4 && late.iter().all(|row| &row[15] == "timed_out" && row[3].is_empty()));
+    assert_eq!(last(&late[3]), "usar run resolved.ron --policy DIS --seed 2");
+    // That may have been the machine's fault, so they are run again.
+    succeeds(&usar(here, &sweep));
+    assert!(rows(&here.join("results/paper"), "trials.csv").iter().all(|row| &row[15] == "completed"));
+}
+
+#[test]
+fn comparisons_are_paired_and_say_what_they_stand_on() {
+    let folder = place();
+    let here = folder.path();
+    succeeds(&usar(
+        here,
+        &["sweep", "short.ron", "--policies", "RNE,DIS,ENG", "--trials", "6", "--set", "duration_s=120"],
+    ));
+    let json: Value = serde_json::from_str(&succeeds(&usar(
+        here,
+        &[
+            "compare",
+            "results/paper",
+            "--metric",
+            "distance",
+            "--metric",
+            "rescuees.hard",
+            "--baseline",
+            "DIS",
+            "--json",
+        ],
+    )))
+    .unwrap();
+    let comparisons = json["comparisons"].as_array().unwrap();
+    assert_eq!(comparisons.len(), 4);
+    let trials = rows(&here.join("results/paper"), "trials.csv");
+    let distances = |policy: &str| -> Vec<f64> {
+        trials.iter().filter(|row| &row[0] == policy).map(|row| row[24].parse().unwrap()).collect()
+    };
+    let (rne, dis) = (distances("RNE"), distances("DIS"));
+    let mean = rne.iter().zip(&dis).map(|(a, b)| a - b).sum::<f64>() / 6.0;
+    assert_eq!(
+        (&comparisons[0]["a"], &comparisons[0]["b"], &comparisons[0]["n"]),
+        (&"RNE".into(), &"DIS".into(), &6.into())
+    );
+    assert!((comparisons[0]["difference"].as_f64().unwrap() - mean).abs() < 1e-9);
+    let [low, high] = [0, 1].map(|i: usize| comparisons[0]["interval"][i].as_f64().unwrap());
+    assert!(low <= mean && mean <= high);
+    let text = succeeds(&usar(here, &["compare", "results/paper"]));
+    assert!(text.contains("Holm's correction over the 30 comparisons above"), "{text}");
+    assert!(text.contains("in which the metric is not defined"), "{text}");
+    assert!(!text.contains("NaN") && !text.contains("inf"), "{text}");
+    assert_eq!(text, succeeds(&usar(here, &["compare", "results/paper"])), "the bootstrap is seeded");
+    refused(
+        here,
+        2,
+        &["compare", "results/paper", "--metric", "luck"],
+        &["unknown metric \"luck\"; known metrics: rescuees.total"],
+    );
+    refused(
+        here,
+        2,
+        &["compare", "results/paper", "--baseline", "RANDOM"],
+        &["must be a policy of the sweep (RNE, DIS, ENG)"],
+    );
+    refused(here, 2, &["compare", "results"], &["results: is not the folder of a sweep"]);
+}
+
+#[test]
+fn trials_are_added_until_the_difference_is_known_well_enough() {
+    let folder = place();
+    let here = folder.path();
+    let sweep = |bound: &str, most: &str| {
+        let rule = format!("distance: RNE-DIS: {bound}");
+        let arguments =
+            ["sweep", "short.ron", "--policies", "RNE,DIS", "--precision", &rule, "--max-trials", most];
+        succeeds(&usar(here, &arguments))
+    };
+    let wide = sweep("1000", "100");
+    assert!(wide.contains("precision reached") && wide.contains("(20 pairs"), "{wide}");
+    let narrow = sweep("0.001", "25");
+    assert!(narrow.contains("precision NOT reached") && narrow.contains("after 25 pairs"), "{narrow}");
+    assert_eq!(rows(&here.join("results/paper"), "trials.csv").len(), 50);
+    refused(
+        here,
+        2,
+        &["sweep", "short.ron", "--precision", "distance: RNE: 2"],
+        &["A and B must be two policies"],
+    );
+    refused(here, 2, &["sweep", "short.ron", "--precision", "distance: RNE-DIS: 0"], &["a number above 0"]);
+}
+
+#[test]
+fn an_estimate_says_trials_time_and_disk() {
+    let folder = place();
+    let json: Value = serde_json::from_str(&succeeds(&usar(
+        folder.path(),
+        &["estimate", "grid.ron", "--trials", "100", "--json"],
+    )))
+    .unwrap();
+    assert_eq!((&json["trials"], &json["cases"], &json["policies"]), (&1200.into(), &4.into(), &3.into()));
+    assert!(json["seconds"].as_f64().unwrap() > 0.0 && json["bytes"].as_u64().unwrap() > 1200 * 1000);
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 2, "nothing is left behind");
+}
