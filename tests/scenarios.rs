@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use experiments::experiment::{Experiment, Overrides};
 use usar_sim::layout::Layout;
 use usar_sim::scenario::Scenario;
 
@@ -18,6 +19,18 @@ fn every_scenario_loads() {
             Layout::sample(&scenario, scenario.sweep.first_seed).unwrap();
             found += 1;
         }
+    }
+    assert!(found > 0);
+}
+
+#[test]
+fn every_sweep_file_loads() {
+    let mut found = 0;
+    for entry in std::fs::read_dir(root().join("scenarios/sweeps")).unwrap() {
+        let path = entry.unwrap().path();
+        let sweep = Experiment::load(&path, &Overrides::default()).unwrap_or_else(|error| panic!("{error}"));
+        assert!(sweep.keys(None).count() > 0);
+        found += 1;
     }
     assert!(found > 0);
 }

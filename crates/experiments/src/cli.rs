@@ -5,7 +5,7 @@ use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 
-use crate::commands::{check, compare, estimate, group, merge, run, sweep, trust, verify};
+use crate::commands::{check, compare, estimate, group, merge, report, run, sweep, trust, verify};
 use crate::failure::Failure;
 
 /// Which robots should team up? A laboratory for trust and grouping policies in mixed robot teams.
@@ -20,6 +20,7 @@ Examples:
   usar sweep scenarios/paper.ron                       the paper's experiment: policies compared over paired trials
   usar run scenarios/paper.ron --policy RNE --seed 3   one trial, round by round
   usar compare results/paper                           is A better than B, by how much, how sure is that?
+  usar report results/paper                            all of it as one page, with figures
   usar estimate scenarios/paper.ron --trials 1000      how long, and how much disk?
   usar verify results/paper                            do the numbers come out again?
   usar trust --weights 6,4,2 --from 86,120,30 --to 20,30,10
@@ -38,6 +39,7 @@ enum Command {
     Estimate(estimate::Arguments),
     Merge(merge::Arguments),
     Compare(compare::Arguments),
+    Report(report::Arguments),
     Verify(verify::Arguments),
     Check(check::Arguments),
     Trust(trust::Arguments),
@@ -72,6 +74,7 @@ impl Command {
             Self::Estimate(arguments) => arguments.execute(out),
             Self::Merge(arguments) => arguments.execute(out),
             Self::Compare(arguments) => arguments.execute(out),
+            Self::Report(arguments) => arguments.execute(out),
             Self::Verify(arguments) => arguments.execute(out),
             Self::Check(arguments) => arguments.execute(out),
             Self::Trust(arguments) => arguments.execute(out),

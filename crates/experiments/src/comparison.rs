@@ -65,6 +65,30 @@ pub struct Comparison {
     pub in_words: String,
 }
 
+impl Comparison {
+    /// Whether a difference shows after correction.
+    #[must_use]
+    pub fn is_found(&self) -> bool {
+        self.p_holm.is_some_and(|p| p < LEVEL)
+    }
+}
+
+/// What to say where so many comparisons of so few pairs were made together that none of these can show a difference, whatever it is.
+#[must_use]
+pub fn limit_of_correction(comparisons: &[&Comparison], family: usize) -> Option<String> {
+    let most = comparisons.iter().map(|comparison| comparison.n).max()?;
+    let smallest = 2.0_f64.powi(1 - i32::try_from(most).ok()?);
+    let least = smallest * family as f64;
+    (most > 0 && least >= LEVEL).then(|| {
+        format!(
+            "With {most} pairs the smallest p there is, {}, becomes {} after correction over {family} comparisons: none can show a difference, \
+             however large. Compare fewer things, chosen beforehand (--metric, --baseline), or run more trials.",
+            short(smallest),
+            short(least.min(1.0))
+        )
+    })
+}
+
 /// The differences of all pairs in one metric.
 #[derive(Debug, Default, Clone, PartialEq)]
 pub struct Pairs {
@@ -222,7 +246,7 @@ fn in_words(comparison: &Comparison) -> String {
     let needed = comparison.pairs_needed.map_or(String::new(), |needed| {
         format!(" Were this the true difference, {needed} pairs would show it in four of five experiments.")
     });
-    if p < LEVEL {
+    if comparison.is_found() {
         return format!("{place}: {a} is {size} {direction} {b} ({range}; corrected p = {}).", short_p(p));
     }
     if difference == 0.0 {

@@ -7,6 +7,7 @@ pub mod experiment;
 mod failure;
 pub mod metric;
 pub mod provenance;
+pub mod report;
 pub mod stats;
 pub mod sweep;
 mod table;

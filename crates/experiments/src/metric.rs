@@ -12,6 +12,8 @@ pub struct Metric {
     pub title: &'static str,
     /// Unit; empty for a count.
     pub unit: &'static str,
+    /// The report's figure of box plots that shows it beside others of the same figure; empty for none.
+    pub figure: &'static str,
     /// Whether it is one of the paper's, which are shown unless others are asked for.
     pub is_papers: bool,
     /// Its value; `None` where it is undefined.
@@ -21,46 +23,51 @@ pub struct Metric {
 const POINTS: &str = "percent points per rescuee";
 
 /// All metrics.
+#[rustfmt::skip]
 pub const METRICS: &[Metric] = &[
-    papers("rescuees.total", "rescuees total", "", |r| Some(f64::from(r.rescued()))),
-    papers("rescuees.hard", "rescuees hard", "", |r| Some(f64::from(r.hard.rescued))),
-    papers("rescuees.easy", "rescuees easy", "", |r| Some(f64::from(r.easy.rescued))),
-    papers("energy_per_rescuee.total", "energy per rescuee total", POINTS, |r| {
-        ratio(r.energy(), r.rescued())
-    }),
-    papers("energy_per_rescuee.hard", "energy per rescuee hard", POINTS, |r| {
-        ratio(r.hard.energy, r.hard.rescued)
-    }),
-    papers("energy_per_rescuee.easy", "energy per rescuee easy", POINTS, |r| {
-        ratio(r.easy.energy, r.easy.rescued)
-    }),
-    papers("hp_per_rescuee.total", "HP per rescuee total", POINTS, |r| ratio(r.hp(), r.rescued())),
-    papers("hp_per_rescuee.hard", "HP per rescuee hard", POINTS, |r| ratio(r.hard.hp, r.hard.rescued)),
-    papers("hp_per_rescuee.easy", "HP per rescuee easy", POINTS, |r| ratio(r.easy.hp, r.easy.rescued)),
-    papers("rounds", "rounds", "", |r| Some(f64::from(r.completed_rounds))),
-    other("secured", "secured", "", |r| Some(f64::from(r.hard.secured + r.easy.secured))),
-    other("energy.total", "energy spent", "percent points", |r| Some(r.energy())),
-    other("hp.total", "HP lost", "percent points", |r| Some(r.hp())),
-    other("turned_back", "times turned back", "", |r| Some(f64::from(r.turned_back))),
-    other("stranded", "robots stranded", "", |r| Some(r.stranded() as f64)),
-    other("disabled", "robots disabled", "", |r| Some(r.disabled() as f64)),
-    other("distance", "distance travelled", "m", |r| Some(sum(r, |robot| robot.distance_m))),
-    other("waiting", "time waited", "s", |r| Some(sum(r, |robot| robot.waiting_s))),
-    other("longest_stall", "longest stall", "s", |r| {
-        Some(r.robots.iter().map(|robot| robot.longest_stall_s).fold(0.0, f64::max))
-    }),
-    other("conflicts", "conflicts", "", |r| Some(f64::from(r.conflicts))),
-    other("deadlocks", "deadlocks", "", |r| Some(f64::from(r.deadlocks))),
+    papers("rescuees.total", "rescuees total", "", "rescuees", |r| Some(f64::from(r.rescued()))),
+    papers("rescuees.hard", "rescuees hard", "", "rescuees", |r| Some(f64::from(r.hard.rescued))),
+    papers("rescuees.easy", "rescuees easy", "", "rescuees", |r| Some(f64::from(r.easy.rescued))),
+    papers("energy_per_rescuee.total", "energy per rescuee total", POINTS, "energy per rescuee", |r| ratio(r.energy(), r.rescued())),
+    papers("energy_per_rescuee.hard", "energy per rescuee hard", POINTS, "energy per rescuee", |r| ratio(r.hard.energy, r.hard.rescued)),
+    papers("energy_per_rescuee.easy", "energy per rescuee easy", POINTS, "energy per rescuee", |r| ratio(r.easy.energy, r.easy.rescued)),
+    papers("hp_per_rescuee.total", "HP per rescuee total", POINTS, "HP per rescuee", |r| ratio(r.hp(), r.rescued())),
+    papers("hp_per_rescuee.hard", "HP per rescuee hard", POINTS, "HP per rescuee", |r| ratio(r.hard.hp, r.hard.rescued)),
+    papers("hp_per_rescuee.easy", "HP per rescuee easy", POINTS, "HP per rescuee", |r| ratio(r.easy.hp, r.easy.rescued)),
+    papers("rounds", "rounds", "", "", |r| Some(f64::from(r.completed_rounds))),
+    other("waiting", "time waited", "s", "waiting and deadlocks", |r| Some(sum(r, |robot| robot.waiting_s))),
+    other("deadlocks", "deadlocks", "", "waiting and deadlocks", |r| Some(f64::from(r.deadlocks))),
+    other("longest_stall", "longest stall", "s", "waiting and deadlocks", |r| Some(longest_stall(r))),
+    other("conflicts", "conflicts", "", "", |r| Some(f64::from(r.conflicts))),
+    other("secured", "secured", "", "", |r| Some(f64::from(r.hard.secured + r.easy.secured))),
+    other("energy.total", "energy spent", "percent points", "", |r| Some(r.energy())),
+    other("hp.total", "HP lost", "percent points", "", |r| Some(r.hp())),
+    other("turned_back", "times turned back", "", "", |r| Some(f64::from(r.turned_back))),
+    other("stranded", "robots stranded", "", "", |r| Some(r.stranded() as f64)),
+    other("disabled", "robots disabled", "", "", |r| Some(r.disabled() as f64)),
+    other("distance", "distance travelled", "m", "", |r| Some(sum(r, |robot| robot.distance_m))),
 ];
 
 type Value = fn(&TrialRecord) -> Option<f64>;
 
-const fn papers(name: &'static str, title: &'static str, unit: &'static str, value: Value) -> Metric {
-    Metric { name, title, unit, is_papers: true, value }
+const fn papers(
+    name: &'static str,
+    title: &'static str,
+    unit: &'static str,
+    figure: &'static str,
+    value: Value,
+) -> Metric {
+    Metric { name, title, unit, figure, is_papers: true, value }
 }
 
-const fn other(name: &'static str, title: &'static str, unit: &'static str, value: Value) -> Metric {
-    Metric { name, title, unit, is_papers: false, value }
+const fn other(
+    name: &'static str,
+    title: &'static str,
+    unit: &'static str,
+    figure: &'static str,
+    value: Value,
+) -> Metric {
+    Metric { name, title, unit, figure, is_papers: false, value }
 }
 
 fn ratio(cost: f64, rescuees: u32) -> Option<f64> {
@@ -69,6 +76,10 @@ fn ratio(cost: f64, rescuees: u32) -> Option<f64> {
 
 fn sum(record: &TrialRecord, value: fn(&RobotRecord) -> f64) -> f64 {
     record.robots.iter().map(value).sum()
+}
+
+fn longest_stall(record: &TrialRecord) -> f64 {
+    record.robots.iter().map(|robot| robot.longest_stall_s).fold(0.0, f64::max)
 }
 
 /// The place of a metric in [`METRICS`].
@@ -94,6 +105,19 @@ pub fn chosen(names: &[String]) -> Result<Vec<usize>, Failure> {
         return Ok((0..METRICS.len()).collect());
     }
     names.iter().map(|name| metric_named(name)).collect()
+}
+
+/// The figures of the report in their order, each with the places of its metrics.
+#[must_use]
+pub fn figures() -> Vec<(&'static str, Vec<usize>)> {
+    let mut figures: Vec<(&str, Vec<usize>)> = Vec::new();
+    for (place, metric) in METRICS.iter().enumerate().filter(|(_, metric)| !metric.figure.is_empty()) {
+        match figures.iter_mut().find(|(name, _)| *name == metric.figure) {
+            Some((_, places)) => places.push(place),
+            None => figures.push((metric.figure, vec![place])),
+        }
+    }
+    figures
 }
 
 /// Values of all metrics of a trial, in the order of [`METRICS`].

@@ -12,7 +12,8 @@ pub const SCHEMA_VERSION: u32 = 2;
 /// `manifest.json`. Holds nothing that differs between two runs of the same sweep: no time of day, no number of threads.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Manifest {
-    schema_version: u32,
+    /// Version of the folder's layout.
+    pub schema_version: u32,
     program: String,
     /// Version of the program.
     pub version: String,
@@ -49,9 +50,9 @@ impl Manifest {
         Self {
             schema_version: SCHEMA_VERSION,
             program: "usar".into(),
-            version: env!("CARGO_PKG_VERSION").into(),
+            version: experiment.program.version.clone(),
             commit: env!("USAR_COMMIT").into(),
-            source: env!("USAR_SOURCE").into(),
+            source: experiment.program.source.clone(),
             features: vec!["rapier2d/enhanced-determinism".into()],
             name: experiment.name.clone(),
             policies: experiment.policies.iter().map(|policy| policy.written().to_owned()).collect(),

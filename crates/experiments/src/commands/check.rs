@@ -1,19 +1,17 @@
-//! `usar check`: validates scenarios without running them.
+//! `usar check`: validates scenarios and sweep files without running them.
 
 use std::io::Write;
 use std::path::PathBuf;
 
-use clap::Args;
-use usar_sim::layout::Layout;
-
-use super::load;
+use crate::experiment::{Experiment, Overrides};
 use crate::failure::Failure;
+use clap::Args;
 
-/// Validate scenarios without running them
+/// Validate scenarios and sweep files without running them
 #[derive(Debug, Args)]
-#[command(after_help = "Example:\n  usar check scenarios/*.ron")]
+#[command(after_help = "Example:\n  usar check scenarios/*.ron scenarios/sweeps/*.ron")]
 pub(crate) struct Arguments {
-    /// Scenario files (RON)
+    /// Scenario or sweep files (RON)
     #[arg(required = true)]
     files: Vec<PathBuf>,
 }
@@ -22,12 +20,10 @@ impl Arguments {
     pub(crate) fn execute(&self, out: &mut dyn Write) -> Result<(), Failure> {
         let mut problems = Vec::new();
         for file in &self.files {
-            let checked = load(file).and_then(|(scenario, _)| {
-                Layout::sample(&scenario, scenario.sweep.first_seed)
-                    .map_err(|error| Failure::input(format!("{}: {error}", file.display())))
-            });
+            let checked = Experiment::load(file, &Overrides::default())
+                .and_then(|experiment| experiment.with_trials(1)?.check_layouts(file));
             match checked {
-                Ok(_) => writeln!(out, "{}: ok", file.display())?,
+                Ok(()) => writeln!(out, "{}: ok", file.display())?,
                 Err(failure) => problems.push(failure.to_string()),
             }
         }

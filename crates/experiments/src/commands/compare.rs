@@ -7,7 +7,7 @@ use clap::Args;
 use serde::Serialize;
 
 use super::SCHEMA_VERSION;
-use crate::comparison::{CONFIDENCE, Comparison, LEVEL, compare};
+use crate::comparison::{CONFIDENCE, Comparison, LEVEL, compare, limit_of_correction};
 use crate::failure::Failure;
 use crate::metric::chosen;
 use crate::stats::bootstrap::RESAMPLES;
@@ -78,6 +78,10 @@ impl Arguments {
         }
         for comparison in &comparisons {
             writeln!(out, "{}", comparison.in_words)?;
+        }
+        let all: Vec<&Comparison> = comparisons.iter().collect();
+        if let Some(limit) = limit_of_correction(&all, comparisons.len()) {
+            writeln!(out, "\n{limit}")?;
         }
         writeln!(out, "\n{}", footnote(&comparisons))?;
         Ok(())

@@ -8,6 +8,7 @@ use std::sync::Arc;
 use clap::Args;
 
 use super::sweep::print;
+use crate::experiment::Program;
 use crate::failure::Failure;
 use crate::sweep::folder::{Folder, Opening, experiment_in};
 
@@ -36,6 +37,17 @@ impl Arguments {
     pub(crate) fn execute(&self, out: &mut dyn Write) -> Result<(), Failure> {
         let mut shards = self.folders.iter().map(|path| Folder::read(path)).collect::<Result<Vec<_>, _>>()?;
         let first = shards[0].manifest().clone();
+        let this = Program::this();
+        if (&first.version, &first.source) != (&this.version, &this.source) {
+            return Err(Failure::input(format!(
+                "{} is of usar {} with source {}; this is {} with source {}: merge with the program that ran the shards",
+                self.folders[0].display(),
+                first.version,
+                first.source,
+                this.version,
+                this.source
+            )));
+        }
         for shard in &shards {
             let mut differences = first.differences(shard.manifest());
             differences.retain(|difference| !difference.starts_with("shard: "));

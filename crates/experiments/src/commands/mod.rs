@@ -6,6 +6,7 @@ pub(crate) mod estimate;
 pub(crate) mod group;
 pub(crate) mod merge;
 mod precision;
+pub(crate) mod report;
 pub(crate) mod run;
 mod snapshot;
 pub(crate) mod sweep;

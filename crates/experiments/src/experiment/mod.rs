@@ -50,6 +50,23 @@ pub enum Seeds {
     Listed(Vec<u64>),
 }
 
+/// A build of this program.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Program {
+    /// Its version.
+    pub version: String,
+    /// Hash of its source.
+    pub source: String,
+}
+
+impl Program {
+    /// The one that runs now.
+    #[must_use]
+    pub fn this() -> Self {
+        Self { version: env!("CARGO_PKG_VERSION").to_owned(), source: env!("USAR_SOURCE").to_owned() }
+    }
+}
+
 /// One of several parts of a sweep, to run apart from the others.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct Shard {
@@ -106,6 +123,8 @@ pub struct Experiment {
     pub seeds: Seeds,
     /// Whether every invariant is checked at every step.
     pub is_checked: bool,
+    /// What runs it, or ran it.
+    pub program: Program,
     /// For each case and policy, a hash of what decides its numbers but for the seed.
     ids: Vec<Vec<u128>>,
 }
@@ -120,6 +139,7 @@ pub(crate) struct Parts {
     pub trials: u32,
     pub seeds: Seeds,
     pub is_checked: bool,
+    pub program: Program,
 }
 
 impl Experiment {
@@ -148,7 +168,7 @@ impl Experiment {
     /// # Errors
     /// A policy, an axis or a case that cannot be used.
     pub(crate) fn assemble(parts: Parts) -> Result<Self, Failure> {
-        let Parts { name, given, base, axes, policies, trials, seeds, is_checked } = parts;
+        let Parts { name, given, base, axes, policies, trials, seeds, is_checked, program } = parts;
         let policies = checked_policies(&policies)?;
         if let Seeds::Listed(list) = &seeds
             && list.len() < trials as usize
@@ -176,13 +196,12 @@ impl Experiment {
         let cases = cases(&base, &axes, &policies)?;
         let id = |case: &Case, policy: &PolicySpec| {
             let scenario = policy.options_in(&case.scenario).map_err(Failure::input)?;
-            let program = (env!("CARGO_PKG_VERSION"), env!("USAR_SOURCE"));
             let text = format!("{program:?} {is_checked} {} {}", policy.name, deciding_text(&scenario));
             Ok(xxh3_128(text.as_bytes()))
         };
         let ids = |case| policies.iter().map(|policy| id(case, policy)).collect::<Result<Vec<_>, Failure>>();
         let ids = cases.iter().map(ids).collect::<Result<Vec<_>, Failure>>()?;
-        Ok(Self { name, given, base, axes, cases, policies, trials, seeds, is_checked, ids })
+        Ok(Self { name, given, base, axes, cases, policies, trials, seeds, is_checked, program, ids })
     }
 
     /// What decides the numbers of a trial, as a hash of 32 hexadecimal digits: the resolved scenario, the policy with its options, the
@@ -246,6 +265,7 @@ impl Experiment {
             trials,
             seeds: self.seeds.clone(),
             is_checked: self.is_checked,
+            program: self.program.clone(),
         })
     }
 
@@ -315,6 +335,7 @@ fn from_scenario(text: String, path: &Path) -> Result<Parts, Failure> {
         trials: base.sweep.trials,
         seeds: Seeds::From(base.sweep.first_seed),
         is_checked: false,
+        program: Program::this(),
         base,
     })
 }
@@ -356,6 +377,7 @@ fn from_sweep_file(text: String, path: &Path) -> Result<Parts, Failure> {
         trials: file.trials.or(listed).unwrap_or(base.sweep.trials),
         seeds,
         is_checked: false,
+        program: Program::this(),
         base,
     })
 }

@@ -16,10 +16,10 @@ use super::links::{self, LinkRow};
 use super::rows::{GroupRow, RobotRow, RoundRow, SeriesRow, TrialRow};
 use super::tables::{FileHash, NewFile, Table};
 use super::trial::{Outcome, TrialKey};
-use crate::experiment::{Experiment, Parts, Shard};
+use crate::experiment::{Experiment, Parts, Program, Shard};
 use crate::failure::Failure;
 use crate::metric::measure;
-use crate::provenance::{Manifest, scenario_differences};
+use crate::provenance::{Manifest, SCHEMA_VERSION, scenario_differences};
 
 const MANIFEST: &str = "manifest.json";
 const GIVEN: &str = "experiment.ron";
@@ -27,6 +27,9 @@ const RESOLVED: &str = "resolved.ron";
 /// Held by the process that writes to the folder.
 const LOCK: &str = ".lock";
 const TABLES: [&str; 6] = ["trials.csv", "rounds.csv", "groups.csv", "robots.csv", "series.csv", links::FILE];
+
+/// Damaged lines of a journal that are named.
+const MAX_DAMAGES: usize = 5;
 
 /// A sweep's folder with what is finished in it.
 pub struct Folder {
@@ -105,9 +108,9 @@ impl Folder {
         }
         if let Some(manifest) = finished {
             let mut damaged = false;
-            let mut note = |damage| {
+            let mut note = |damage: String| {
                 damaged = true;
-                say(damage);
+                say(again(damage));
             };
             let folder = Self::with_journal(path, Arc::clone(&experiment), manifest, true, &mut note)?;
             let missing = folder.experiment.keys(opening.shard).any(|key| !folder.has(&key));
@@ -117,14 +120,14 @@ impl Folder {
         }
         // What the journal is of is on disk before the journal.
         let manifest = write_start(path, &experiment, opening.shard)?;
-        let folder = Self::with_journal(path, experiment, manifest, true, say)?;
+        let folder = Self::with_journal(path, experiment, manifest, true, &mut |damage| say(again(damage)))?;
         Ok(Self { _lock: Some(lock), ..folder })
     }
 
     /// Reads a folder, complete or not.
     ///
     /// # Errors
-    /// It is not the folder of a sweep of this program, or its files are damaged.
+    /// It is not the folder of a sweep, or its files are damaged.
     pub fn read(path: &Path) -> Result<Self, Failure> {
         let not_one = |reason: &dyn std::fmt::Display| {
             Failure::input(format!("{}: is not the folder of a sweep: {reason}", path.display()))
@@ -133,16 +136,13 @@ impl Folder {
             return Err(not_one(&"there is no such folder"));
         }
         let manifest = read_manifest(path)?.ok_or_else(|| not_one(&format!("{MANIFEST} is missing")))?;
-        let experiment = Arc::new(experiment_of(path, &manifest)?);
-        let now = Manifest::new(&experiment, manifest.shard, Vec::new());
-        let differences = manifest.differences(&now);
-        if !differences.is_empty() {
-            let differences = differences.join("\n  ");
-            return Err(Failure::input(format!(
-                "{}: is of another program:\n  {differences}",
-                path.display()
+        if manifest.schema_version != SCHEMA_VERSION {
+            return Err(not_one(&format!(
+                "its layout has version {}; this program reads version {SCHEMA_VERSION}",
+                manifest.schema_version
             )));
         }
+        let experiment = Arc::new(experiment_of(path, &manifest)?);
         let broken = broken_files(path, &manifest);
         if !broken.is_empty() {
             return Err(Failure::input(format!(
@@ -171,8 +171,10 @@ impl Folder {
             let TrialKey { case, policy, trial, .. } = outcome.key;
             results.insert((case, policy, trial), Measured::of(&outcome));
         })?;
-        for Damage(damage) in damages {
-            say(format!("{damage}; that trial is run again"));
+        let count = damages.len();
+        damages.into_iter().take(MAX_DAMAGES).for_each(|Damage(damage)| say(damage));
+        if count > MAX_DAMAGES {
+            say(format!("{}: {} further lines cannot be used", path.display(), count - MAX_DAMAGES));
         }
         Ok(Self { path: path.to_owned(), experiment, manifest, journal, results, _lock: None })
     }
@@ -299,6 +301,10 @@ impl Folder {
         self.manifest.is_complete = true;
         write_manifest(&self.path, &self.manifest)
     }
+}
+
+fn again(damage: String) -> String {
+    damage + "; what it held is run again"
 }
 
 /// Writes what a sweep is of.
@@ -437,6 +443,7 @@ pub fn experiment_of(path: &Path, manifest: &Manifest) -> Result<Experiment, Fai
         trials: manifest.trials,
         seeds: manifest.seeds.clone(),
         is_checked: manifest.is_checked,
+        program: Program { version: manifest.version.clone(), source: manifest.source.clone() },
     })
 }
 

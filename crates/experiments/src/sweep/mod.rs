@@ -10,4 +10,5 @@ mod trial;
 
 pub use pool::{Limits, Run, run_all};
 pub use tables::FileHash;
+pub(crate) use tables::NewFile;
 pub use trial::{Fault, FaultKind, Grouped, Outcome, Trial, TrialKey, run_trial};

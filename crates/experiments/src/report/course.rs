@@ -1,0 +1,227 @@
+//! Figures of how missions went: rescuees over time, who was in which group, and the trust within the team.
+
+use kuva::plot::Heatmap;
+use kuva::render::plots::Plot;
+use rne_core::{
+    NEED_NAMES, NeedDistribution, NeedVector, NeedWeights, RelativeNeedsEntropy, relative_entropy,
+};
+
+use super::figure::{Figure, Panel, draw, layout, line_panel, shades, table};
+use super::gather::{Gathered, times};
+use super::metrics::capitalised;
+use crate::experiment::Experiment;
+use crate::failure::Failure;
+use crate::stats::Moments;
+use crate::stats::paired::t_half_width;
+
+/// Rescuees over time, with a band.
+pub(super) fn over_time(
+    experiment: &Experiment,
+    case: usize,
+    gathered: &[Gathered],
+) -> Result<Figure, Failure> {
+    let times = times(experiment.cases[case].scenario.duration_s);
+    let (mut panels, mut rows) = (Vec::new(), Vec::new());
+    for (part, title) in ["rescuees total", "rescuees hard", "rescuees easy"].into_iter().enumerate() {
+        let mut lines = Vec::new();
+        for (i, (policy, gathered)) in experiment.policies.iter().zip(gathered).enumerate() {
+            let mut points = Vec::new();
+            for (at, time) in times.iter().enumerate() {
+                let values: Vec<f64> = gathered.delivered.iter().map(|trial| trial[at][part]).collect();
+                let Some(mean) = Moments::of(&values).mean else { continue };
+                let half = t_half_width(&values).unwrap_or(0.0);
+                points.push((*time, mean, half));
+                rows.push(vec![
+                    title.replace(' ', "."),
+                    policy.label.clone(),
+                    time.to_string(),
+                    values.len().to_string(),
+                    mean.to_string(),
+                    half.to_string(),
+                ]);
+            }
+            lines.push((i, policy.label.as_str(), points));
+        }
+        panels.extend(line_panel(&lines, [title, "time (s)", "delivered"]));
+    }
+    let n = gathered.iter().map(|gathered| gathered.delivered.len()).min().unwrap_or(0);
+    Ok(Figure {
+        name: "rescuees-over-time".into(),
+        title: "Rescuees over time".into(),
+        caption: format!(
+            "Mean delivered up to each time, with its 95 % t interval (band). n = {n} trials or more for each policy."
+        ),
+        svg: if panels.is_empty() { String::new() } else { draw(panels, 3, [420.0, 320.0]) },
+        csv: table(&["metric", "policy", "time_s", "n", "mean", "half_width"], rows)?,
+    })
+}
+
+/// In which share of the trials each robot is sent to the hard task, round by round.
+pub(super) fn membership(experiment: &Experiment, gathered: &[Gathered]) -> Result<Figure, Failure> {
+    let (mut panels, mut rows, mut least) = (Vec::new(), Vec::new(), u32::MAX);
+    for (policy, gathered) in experiment.policies.iter().zip(gathered) {
+        for ((round, robot), [hard, easy]) in &gathered.groups {
+            let role = gathered.roles[*robot as usize].to_owned();
+            rows.push(vec![
+                policy.label.clone(),
+                round.to_string(),
+                robot.to_string(),
+                role,
+                hard.to_string(),
+                easy.to_string(),
+            ]);
+        }
+        // A round counts as far as each robot was grouped in some trial.
+        let robots = gathered.roles.len() as u32;
+        let count = |round, robot| gathered.groups.get(&(round, robot)).copied().unwrap_or([0, 0]);
+        let is_full = |round: &u32| (0..robots).all(|robot| count(*round, robot) != [0, 0]);
+        let rounds: Vec<u32> = (1..).take_while(is_full).take(40).collect();
+        if rounds.is_empty() || robots == 0 {
+            continue;
+        }
+        let share = |round: u32, robot: u32| {
+            let [hard, easy] = count(round, robot);
+            f64::from(hard) / f64::from(hard + easy)
+        };
+        least = rounds
+            .iter()
+            .flat_map(|round| (0..robots).map(|robot| count(*round, robot).iter().sum()))
+            .chain([least])
+            .min()
+            .unwrap_or(0);
+        let data: Vec<Vec<f64>> =
+            (0..robots).map(|robot| rounds.iter().map(|round| share(*round, robot)).collect()).collect();
+        let plots =
+            vec![Plot::Heatmap(Heatmap::new().with_data(data).with_color_map(shades()).with_values())];
+        let names =
+            gathered.roles.iter().enumerate().map(|(robot, role)| format!("{robot} {}", role.to_lowercase()));
+        let layout = layout(&plots, &policy.label)
+            .with_x_label("round")
+            .with_x_categories(rounds.iter().map(u32::to_string).collect())
+            .with_y_categories(names.collect());
+        panels.push(Panel { plots, layout });
+    }
+    Ok(Figure {
+        name: "groups".into(),
+        title: "Groups over rounds".into(),
+        caption: format!(
+            "Share of trials in which a robot was sent to the hard task, of those in which it was grouped (n = {} or more a cell). \
+             Rounds that not every robot saw are in the table only.",
+            if least == u32::MAX { 0 } else { least }
+        ),
+        svg: if panels.is_empty() { String::new() } else { draw(panels, 2, [520.0, 380.0]) },
+        csv: table(&["policy", "round", "robot", "role", "hard", "easy"], rows)?,
+    })
+}
+
+/// RNE from each robot to each other of its role, in the first round of the first trial.
+pub(super) fn trust(
+    experiment: &Experiment,
+    case: usize,
+    gathered: &[Gathered],
+) -> Result<Option<Figure>, Failure> {
+    let Some(gathered) = gathered.iter().find(|gathered| !gathered.first_round.is_empty()) else {
+        return Ok(None);
+    };
+    let team = &gathered.first_round;
+    let options = &experiment.cases[case].scenario.rne;
+    let mut weights = options.weights.clone().unwrap_or_else(|| vec![1.0; NEED_NAMES.len()]);
+    if options.scale {
+        for (k, weight) in weights.iter_mut().enumerate() {
+            let most = team.iter().map(|robot| robot.needs[k]).fold(0.0, f64::max);
+            *weight = if most > 0.0 { *weight / most } else { 0.0 };
+        }
+    }
+    let weights = NeedWeights::new(weights).map_err(Failure::run)?;
+    let distribution = |robot: &crate::sweep::Grouped| {
+        NeedDistribution::of_agent(&NeedVector::new(robot.needs.clone())?, &weights)
+    };
+    let distributions = team.iter().map(distribution).collect::<Result<Vec<_>, _>>().map_err(Failure::run)?;
+    let rne =
+        |i: usize, j: usize| relative_entropy(&distributions[i], &distributions[j]).map_err(Failure::run);
+    let mut rows = Vec::new();
+    for i in 0..team.len() {
+        for j in 0..team.len() {
+            let value = rne(i, j)?.nats().map_or("infinite".to_owned(), |nats| nats.to_string());
+            rows.push(vec![team[i].robot.to_string(), team[j].robot.to_string(), value]);
+        }
+    }
+    let mut panels = Vec::new();
+    for role in ["Carrier", "Supplier", "Observer"] {
+        let members: Vec<usize> =
+            (0..team.len()).filter(|i| gathered.roles[team[*i].robot as usize] == role).collect();
+        if members.len() < 2 {
+            continue;
+        }
+        let mut data = Vec::new();
+        for i in &members {
+            let row =
+                members.iter().map(|j| rne(*i, *j)).collect::<Result<Vec<RelativeNeedsEntropy>, _>>()?;
+            data.push(
+                row.iter().map(|rne| rne.nats().map_or(0.0, |nats| 1000.0 * nats)).collect::<Vec<f64>>(),
+            );
+        }
+        let plots =
+            vec![Plot::Heatmap(Heatmap::new().with_data(data).with_color_map(shades()).with_values())];
+        let names: Vec<String> = members.iter().map(|i| team[*i].robot.to_string()).collect();
+        let layout = layout(&plots, &format!("{}s", role.to_lowercase()))
+            .with_x_categories(names.clone())
+            .with_y_categories(names)
+            .with_x_label("to robot")
+            .with_y_label("from robot");
+        panels.push(Panel { plots, layout });
+    }
+    Ok(Some(Figure {
+        name: "trust".into(),
+        title: "Relative Needs Entropy within each role".into(),
+        caption: "RNE from each robot to each other of its role when the first trial's first round was grouped, in thousandths of a nat; lower is more \
+                  trust. The weights are the scenario's. Between roles it is infinite wherever one lacks a need that the other has; the table \
+                  has all pairs. n = 1 trial."
+            .into(),
+        svg: if panels.is_empty() { String::new() } else { draw(panels, 3, [400.0, 360.0]) },
+        csv: table(&["from", "to", "rne_nats"], rows)?,
+    }))
+}
+
+/// The mean levels of the groups, round by round.
+pub(super) fn levels(experiment: &Experiment, gathered: &[Gathered]) -> Result<Figure, Failure> {
+    let (mut panels, mut rows) = (Vec::new(), Vec::new());
+    for (level, name) in ["energy", "HP"].into_iter().enumerate() {
+        for (task, task_name) in ["hard", "easy"].into_iter().enumerate() {
+            let mut lines = Vec::new();
+            for (i, (policy, gathered)) in experiment.policies.iter().zip(gathered).enumerate() {
+                let mut points = Vec::new();
+                for ((round, _), trials) in gathered.levels.iter().filter(|((_, of), _)| *of == task) {
+                    let values: Vec<f64> = trials.iter().map(|trial| trial[level]).collect();
+                    let Some(mean) = Moments::of(&values).mean else { continue };
+                    let half = t_half_width(&values).unwrap_or(0.0);
+                    rows.push(vec![
+                        name.to_lowercase(),
+                        task_name.into(),
+                        policy.label.clone(),
+                        round.to_string(),
+                        values.len().to_string(),
+                        mean.to_string(),
+                        half.to_string(),
+                    ]);
+                    // Rounds that few trials reached say little and would stretch the axis.
+                    if 2 * values.len() >= gathered.delivered.len() {
+                        points.push((f64::from(*round), mean, half));
+                    }
+                }
+                lines.push((i, policy.label.as_str(), points));
+            }
+            let title = format!("{}, group of the {task_name} task", capitalised(name));
+            panels.extend(line_panel(&lines, [&title, "round", "mean level (percent)"]));
+        }
+    }
+    Ok(Figure {
+        name: "levels".into(),
+        title: "Levels of the groups".into(),
+        caption: "Mean battery and health level of each group's robots when it was formed, with the 95 % t interval over trials (band), for rounds that \
+                  half of the trials reached; the table has all rounds with their n."
+            .into(),
+        svg: if panels.is_empty() { String::new() } else { draw(panels, 2, [480.0, 300.0]) },
+        csv: table(&["level", "task", "policy", "round", "n", "mean", "half_width"], rows)?,
+    })
+}

@@ -1,0 +1,82 @@
+//! What figures need beyond the metrics, from one pass over the trials of a case.
+
+use std::collections::BTreeMap;
+
+use rne_core::Difficulty;
+
+use crate::failure::Failure;
+use crate::sweep::folder::Folder;
+use crate::sweep::{Grouped, Trial};
+
+/// Time between two points of a series, in seconds.
+const PERIOD_S: f64 = 10.0;
+
+/// What was gathered of one policy.
+#[derive(Default)]
+pub(super) struct Gathered {
+    /// For each trial, what was delivered up to each time: total, hard, easy.
+    pub delivered: Vec<Vec<[f64; 3]>>,
+    /// For each round and robot, in how many trials it was grouped for the hard and for the easy task.
+    pub groups: BTreeMap<(u32, u32), [u32; 2]>,
+    /// For each round, task and trial, the mean energy and HP of the group.
+    pub levels: BTreeMap<(u32, usize), Vec<[f64; 2]>>,
+    /// The robots of the first round of the first trial.
+    pub first_round: Vec<Grouped>,
+    /// Roles of the robots.
+    pub roles: Vec<&'static str>,
+}
+
+/// The times of the points of a series, in seconds.
+pub(super) fn times(duration_s: f64) -> Vec<f64> {
+    let times = (0..).map(|i| f64::from(i) * PERIOD_S);
+    times.take_while(|time| *time <= duration_s).collect()
+}
+
+/// Goes once over all trials of a case, policy by policy.
+pub(super) fn gather(folder: &mut Folder, case: usize) -> Result<Vec<Gathered>, Failure> {
+    let times = times(folder.experiment().cases[case].scenario.duration_s);
+    let policies = folder.experiment().policies.len();
+    let mut all = Vec::new();
+    for policy in 0..policies {
+        let mut gathered = Gathered::default();
+        let places: Vec<_> = folder
+            .results()
+            .range((case, policy, 0)..=(case, policy, u32::MAX))
+            .map(|(place, _)| *place)
+            .collect();
+        for place in places {
+            if let Ok(trial) = folder.outcome(place)?.result {
+                gathered.add(&trial, &times);
+            }
+        }
+        all.push(gathered);
+    }
+    Ok(all)
+}
+
+impl Gathered {
+    fn add(&mut self, trial: &Trial, times: &[f64]) {
+        let upto = |task: usize, time: f64| trial.deliveries[task].partition_point(|at| *at <= time) as f64;
+        let point = |time: &f64| {
+            let [hard, easy] = [upto(0, *time), upto(1, *time)];
+            [hard + easy, hard, easy]
+        };
+        self.delivered.push(times.iter().map(point).collect());
+        let mut groups: BTreeMap<(u32, usize), Vec<[f64; 2]>> = BTreeMap::new();
+        for robot in &trial.grouped {
+            let task = usize::from(robot.task == Difficulty::Easy);
+            self.groups.entry((robot.round, robot.robot)).or_default()[task] += 1;
+            groups.entry((robot.round, task)).or_default().push([robot.energy, robot.hp]);
+        }
+        for (group, levels) in groups {
+            let mean =
+                |level: usize| levels.iter().map(|robot| robot[level]).sum::<f64>() / levels.len() as f64;
+            self.levels.entry(group).or_default().push([mean(0), mean(1)]);
+        }
+        if self.first_round.is_empty() {
+            self.first_round = trial.grouped.iter().filter(|robot| robot.round == 1).cloned().collect();
+            self.first_round.sort_by_key(|robot| robot.robot);
+            self.roles = trial.record.robots.iter().map(|robot| robot.role.name()).collect();
+        }
+    }
+}
