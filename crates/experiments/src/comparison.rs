@@ -194,7 +194,10 @@ fn comparison(
     let differences = pairs.differences();
     let labels = [a, b].map(|policy| experiment.policies[policy].label.clone());
     let values = experiment.axes.iter().zip(&experiment.cases[case].values);
-    let seed = xxh3_64(format!("{case} {} {labels:?}", metric.name).as_bytes());
+    // The same draws whichever policy is named first.
+    let mut pair = labels.clone();
+    pair.sort();
+    let seed = xxh3_64(format!("{case} {} {pair:?}", metric.name).as_bytes());
     let test = SignedRank::of(&differences);
     let has_pairs = !differences.is_empty();
     let [label_a, label_b] = labels;

@@ -18,13 +18,13 @@ use crate::table::comparison_table;
 /// Is A better than B, by how much, and how sure is that? Paired by seed
 #[derive(Debug, Args)]
 #[command(after_help = "\
-For each metric and pair of policies: mean of each, mean difference with its 95 % bootstrap interval, Hodges-Lehmann shift, Wilcoxon's
-signed-rank test, its p after Holm's correction over all comparisons shown, effect size (matched-pairs rank-biserial), how many pairs would
-be needed for 80 % power, and one sentence. Choose metrics before looking: the correction knows only what is shown together.
+For each metric and pair of policies: mean of each, mean difference with its 95 % bootstrap interval, Hodges-Lehmann shift, Wilcoxon's \
+signed-rank test, its p after Holm's correction over all comparisons shown, effect size (matched-pairs rank-biserial), how many pairs \
+would be needed for 80 % power, and one sentence. Choose metrics before looking: the correction knows only what is shown together.
 
 Examples:
   usar compare results/paper
-  usar compare results/paper --metric rescuees.hard --metric energy_per_rescuee.hard --baseline DIS
+  usar compare results/paper --metric rescuees.hard --metric rescuees.easy --baseline DIS
   usar compare results/paper --metric all --json")]
 pub(crate) struct Arguments {
     /// Folder of a sweep

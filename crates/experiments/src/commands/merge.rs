@@ -21,8 +21,8 @@ const MAX_NAMED: usize = 5;
 Refuses shards of different sweeps or programs, shards that disagree about a trial, and a sum of shards that lacks a trial.
 
 Example:
-  usar sweep scenarios/sweeps/energy.ron --shard 1/2     on one machine
-  usar sweep scenarios/sweeps/energy.ron --shard 2/2     on another
+  usar sweep scenarios/sweeps/energy.ron --shard 1/2     (on one machine)
+  usar sweep scenarios/sweeps/energy.ron --shard 2/2     (on another)
   usar merge results/energy-1-of-2 results/energy-2-of-2 --out results/energy")]
 pub(crate) struct Arguments {
     /// Folders of shards

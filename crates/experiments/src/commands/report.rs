@@ -16,7 +16,7 @@ Writes report.html into the folder, which opens from disk and prints, and plots/
 
 Examples:
   usar report results/paper
-  usar report results/energy --case 3      the third point of the grid")]
+  usar report results/energy --case 3      (the third point of the grid)")]
 pub(crate) struct Arguments {
     /// Folder of a sweep
     folder: PathBuf,

@@ -27,19 +27,19 @@ static STOP: AtomicBool = AtomicBool::new(false);
 #[command(after_help = "\
 FILE is a scenario, or a sweep file: a scenario with policies, trials and axes (scenarios/sweeps/).
 
-Each trial is on disk as soon as it is done. The same command again goes on where it was broken off, and skips what is finished; more
---trials only adds. The folder holds trials.csv (a row per trial), rounds.csv, groups.csv, robots.csv, series.csv, hashes.csv (for `usar
-verify`), journal.jsonl, manifest.json, and the file as given (experiment.ron) and its scenario as run (resolved.ron). Nothing in it depends
-on --jobs or on interruptions.
+Each trial is on disk as soon as it is done. The same command again goes on where it was broken off, and skips what is finished; more \
+--trials only adds. Nothing in the folder depends on --jobs or on interruptions. It holds trials.csv (a row per trial), rounds.csv, \
+groups.csv, robots.csv, series.csv, hashes.csv (for `usar verify`), journal.jsonl, manifest.json, the file as given (experiment.ron), \
+and its scenario as run (resolved.ron).
 
 Exit status: 0 when all trials gave numbers, 1 when one did not, 2 for bad input, 3 for trouble with the disk, 130 after Ctrl-C.
 
 Examples:
   usar sweep scenarios/paper.ron
   usar sweep scenarios/paper.ron --policies RNE,RANDOM --trials 100 --out results/many
-  usar sweep scenarios/paper.ron --policies 'RNE,sum=RNE(score: Sum)' --out results/directions
-  usar sweep scenarios/sweeps/energy.ron --shard 2/8            the second of eight parts; `usar merge` joins them
-  usar sweep scenarios/paper.ron --policies RNE,DIS --precision 'rescuees.hard: RNE-DIS: 2.0' --max-trials 500")]
+  usar sweep scenarios/paper.ron --policies 'RNE,sum=RNE(score: Sum)' --out results/sum
+  usar sweep scenarios/sweeps/energy.ron --shard 2/8     (then `usar merge`)
+  usar sweep scenarios/paper.ron --precision 'rescuees.hard: RNE-DIS: 2.0' --max-trials 500")]
 pub(crate) struct Arguments {
     /// Scenario or sweep file (RON)
     file: PathBuf,
