@@ -10,7 +10,7 @@ use crate::experiment::Experiment;
 use crate::failure::Failure;
 use crate::metric::{METRICS, Metric};
 use crate::stats::Moments;
-use crate::stats::bootstrap::{RESAMPLES, Width, bca_interval};
+use crate::stats::bootstrap::{Width, bca_interval, resamples};
 use crate::stats::paired::{hodges_lehmann, holm, pairs_needed};
 use crate::stats::wilcoxon::SignedRank;
 use crate::sweep::folder::{Folder, Measured};
@@ -214,7 +214,12 @@ fn comparison(
         mean_a: Moments::of(&pairs.a).mean,
         mean_b: Moments::of(&pairs.b).mean,
         difference: Moments::of(&differences).mean,
-        interval: bca_interval(&differences, CONFIDENCE, (RESAMPLES, seed), Width::Expanded),
+        interval: bca_interval(
+            &differences,
+            CONFIDENCE,
+            (resamples(differences.len()), seed),
+            Width::Expanded,
+        ),
         shift: hodges_lehmann(&differences),
         p: has_pairs.then_some(test.p),
         is_exact: test.is_exact,

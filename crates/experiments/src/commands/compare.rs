@@ -10,7 +10,7 @@ use super::SCHEMA_VERSION;
 use crate::comparison::{CONFIDENCE, Comparison, LEVEL, compare, limit_of_correction};
 use crate::failure::Failure;
 use crate::metric::chosen;
-use crate::stats::bootstrap::RESAMPLES;
+use crate::stats::bootstrap::{RESAMPLES, resamples};
 use crate::stats::wilcoxon::{DRAWS, EXACT_PAIRS};
 use crate::sweep::folder::Folder;
 use crate::table::comparison_table;
@@ -92,13 +92,14 @@ fn footnote(comparisons: &[Comparison]) -> String {
     let count = comparisons.len();
     let sum = |value: fn(&Comparison) -> usize| comparisons.iter().map(value).sum::<usize>();
     let (failed, missing, undefined) = (sum(|c| c.failed), sum(|c| c.missing), sum(|c| c.undefined));
+    let most = comparisons.iter().map(|c| resamples(c.n)).min().unwrap_or(RESAMPLES);
     let drawn = if comparisons.iter().all(|c| c.is_exact) {
         "p exact".to_owned()
     } else {
         format!("p exact to {EXACT_PAIRS} pairs, beyond from {DRAWS} random signs")
     };
     format!(
-        "Paired by seed. Interval: BCa bootstrap of the mean difference, widened for small n, {RESAMPLES} resamples, fixed seed. {drawn}; two-sided;\n\
+        "Paired by seed. Interval: BCa bootstrap of the mean difference, widened for small n, {most} resamples, fixed seed. {drawn}; two-sided;\n\
          Holm's correction over the {count} comparisons above. Pairs left out, over all comparisons: {failed} with a failed trial, {missing} with\n\
          a missing one, {undefined} in which the metric is not defined (no rescuee). docs/experiments.md explains each figure."
     )

@@ -113,7 +113,7 @@ fn measure(experiment: &Experiment, sample: &[&TrialKey]) -> Result<(f64, u64), 
         folder.add(&crate::sweep::Outcome { key: (*key).clone(), result })?;
     }
     let seconds = start.elapsed().as_secs_f64() / sample.len() as f64;
-    folder.finish()?;
+    folder.finish(&halt)?;
     let files = std::fs::read_dir(&path)?.flatten().filter_map(|entry| entry.metadata().ok());
     Ok((seconds, files.map(|file| file.len()).sum::<u64>() / sample.len() as u64))
 }

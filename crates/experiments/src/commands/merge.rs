@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::io::Write;
 use std::path::PathBuf;
 use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 
 use clap::Args;
 
@@ -110,7 +111,7 @@ impl Arguments {
         for (place, (line, measured, _)) in lines {
             whole.add_line(&line, place, measured)?;
         }
-        whole.finish()?;
+        whole.finish(&AtomicBool::new(false))?;
         print(out, &whole)
     }
 }

@@ -118,7 +118,7 @@ impl Arguments {
             folder.extend(Arc::new(folder.experiment().with_trials(trials)?))?;
             self.run(&mut folder)?;
         }
-        folder.finish()?;
+        folder.finish(&STOP)?;
         print(out, &folder)?;
         if let Some(precision) = &precision {
             writeln!(out, "{}", precision.verdict(&folder))?;
@@ -165,13 +165,7 @@ impl Arguments {
             folder.add(&outcome)
         })?;
         progress.finish_and_clear();
-        if is_whole {
-            return Ok(());
-        }
-        let (done, path) = (folder.results().len(), folder.path().display());
-        Err(Failure::Interrupted(format!(
-            "stopped; {done} finished trials are in {path}, and the same command goes on"
-        )))
+        if is_whole { Ok(()) } else { Err(folder.interrupted()) }
     }
 }
 

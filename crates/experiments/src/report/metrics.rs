@@ -12,6 +12,9 @@ use crate::stats::paired::t_half_width;
 use crate::sweep::folder::Folder;
 use crate::table::values;
 
+/// Trials of a policy that are drawn as points; more would only blacken the figure.
+const MAX_POINTS: usize = 300;
+
 const PANEL: [f64; 2] = [360.0, 320.0];
 
 /// A title with its unit.
@@ -31,13 +34,13 @@ pub(super) fn boxes(folder: &Folder, case: usize) -> Result<Vec<Figure>, Failure
 
 fn box_figure(folder: &Folder, case: usize, name: &str, metrics: &[usize]) -> Result<Figure, Failure> {
     let policies = &folder.experiment().policies;
+    let has_points = folder.experiment().trials as usize <= MAX_POINTS;
     let (mut panels, mut rows, mut counts) = (Vec::new(), Vec::new(), Vec::new());
     for metric in metrics {
-        let mut plot = BoxPlot::new()
-            .with_width(0.6)
-            .with_strip(0.2)
-            .with_overlay_size(2.5)
-            .with_overlay_color("#333333");
+        let mut plot = BoxPlot::new().with_width(0.6);
+        if has_points {
+            plot = plot.with_strip(0.2).with_overlay_size(2.5).with_overlay_color("#333333");
+        }
         let (mut colours, mut all) = (Vec::new(), Vec::new());
         for (i, policy) in policies.iter().enumerate() {
             let (values, _) = values(folder, case, i, *metric);
@@ -68,7 +71,8 @@ fn box_figure(folder: &Folder, case: usize, name: &str, metrics: &[usize]) -> Re
         name: name.replace(' ', "-").to_lowercase(),
         title: capitalised(name),
         caption: format!(
-            "Median, quartiles and 1.5 times their distance; each point is a trial. {}",
+            "Median, quartiles, and whiskers to the last trial within 1.5 times the distance of the quartiles; {}. {}",
+            if has_points { "each point is a trial" } else { "points are left out for so many trials" },
             per_box(&counts)
         ),
         svg: if panels.is_empty() { String::new() } else { draw(panels, 3, PANEL) },
@@ -123,6 +127,7 @@ pub(super) fn costs(folder: &Folder, case: usize) -> Result<Figure, Failure> {
             };
             rows.extend(points.iter().map(row));
             if !points.is_empty() {
+                let points = points.into_iter().take(MAX_POINTS);
                 let plot = ScatterPlot::new().with_data(points).with_color(colour(i)).with_size(3.5);
                 plots.push(Plot::Scatter(plot.with_legend(policy.label.clone())));
             }
@@ -144,7 +149,10 @@ pub(super) fn costs(folder: &Folder, case: usize) -> Result<Figure, Failure> {
     Ok(Figure {
         name: "costs".into(),
         title: "Energy and HP per rescuee".into(),
-        caption: format!("Percent points per rescuee delivered; each point is a trial. {}", per_box(&counts)),
+        caption: format!(
+            "Percent points per rescuee delivered; each point is a trial, of {MAX_POINTS} at most for each policy. {}",
+            per_box(&counts)
+        ),
         svg: if panels.is_empty() { String::new() } else { draw(panels, 3, [400.0, 320.0]) },
         csv: table(&["task", "policy", "energy_per_rescuee", "hp_per_rescuee"], rows)?,
     })

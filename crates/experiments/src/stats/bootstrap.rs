@@ -12,6 +12,14 @@ use statrs::statistics::Statistics;
 
 /// Resamples of an interval.
 pub const RESAMPLES: usize = 10_000;
+/// Draws after which an interval has enough: many pairs need fewer resamples.
+const MAX_DRAWS: usize = 20_000_000;
+
+/// Resamples for so many pairs: [`RESAMPLES`] to 2,000 pairs, beyond down to 2,000.
+#[must_use]
+pub fn resamples(pairs: usize) -> usize {
+    (MAX_DRAWS / pairs.max(1)).clamp(2_000, RESAMPLES)
+}
 
 /// Which quantiles the interval is made of.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

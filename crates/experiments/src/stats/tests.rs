@@ -119,6 +119,17 @@ fn the_shift_is_the_median_of_walsh_averages() {
     assert_eq!(hodges_lehmann(&TIES_AND_ZEROS), Some(1.0));
     assert_eq!(hodges_lehmann(&MIXED), Some(1.125));
     assert_eq!(hodges_lehmann(&[]), None);
+    // 1,001 whole numbers: the means of two are 0, 0.5, ..., 1000, and 500 is their median.
+    let many: Vec<f64> = (0..=1_000).map(f64::from).collect();
+    assert!((hodges_lehmann(&many).unwrap() - 500.0).abs() < 1e-9);
+    let skewed: Vec<f64> = (0..=1_000).map(|i| f64::from(i).powi(2)).collect();
+    let mut averages: Vec<f64> = skewed
+        .iter()
+        .enumerate()
+        .flat_map(|(i, a)| skewed[i..].iter().map(move |b| f64::midpoint(*a, *b)))
+        .collect();
+    averages.sort_by(f64::total_cmp);
+    assert!((hodges_lehmann(&skewed).unwrap() - averages[(averages.len() - 1) / 2]).abs() < 1e-6);
 }
 
 /// Holm's own rule by hand: 0.01 x 4, then 0.03 x 3 twice (never less than before), then 0.2.

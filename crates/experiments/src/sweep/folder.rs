@@ -7,6 +7,7 @@ use std::collections::BTreeMap;
 use std::fs::{self, File, TryLockError};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use usar_sim::scenario::Scenario;
 use xxhash_rust::xxh3::xxh3_128;
@@ -262,11 +263,20 @@ impl Folder {
         Ok(())
     }
 
+    /// What is to be said when the sweep was stopped.
+    #[must_use]
+    pub fn interrupted(&self) -> Failure {
+        let (done, path) = (self.results.len(), self.path.display());
+        Failure::Interrupted(format!(
+            "stopped; {done} finished trials are in {path}, and the same command goes on"
+        ))
+    }
+
     /// Makes the tables, unless they are there already.
     ///
     /// # Errors
-    /// The disk does not take them.
-    pub fn finish(&mut self) -> Result<(), Failure> {
+    /// The disk does not take them, or `stop` was set: the same command makes them.
+    pub fn finish(&mut self, stop: &AtomicBool) -> Result<(), Failure> {
         if self.manifest.is_complete {
             return Ok(());
         }
@@ -282,6 +292,9 @@ impl Folder {
         let experiment = Arc::clone(&self.experiment);
         let duration_s: Vec<f64> = experiment.cases.iter().map(|case| case.scenario.duration_s).collect();
         for place in self.journal.places().collect::<Vec<_>>() {
+            if stop.load(Ordering::Relaxed) {
+                return Err(self.interrupted());
+            }
             let outcome = &self.outcome(place)?;
             let case = (place.0, experiment.cases[place.0].values.as_slice());
             trials.add(case, &TrialRow::new(outcome, &experiment))?;
