@@ -20,12 +20,14 @@ fn main() {
     }
     println!("cargo::rerun-if-changed=../");
     println!("cargo::rerun-if-changed=../../Cargo.lock");
+    println!("cargo::rerun-if-changed=../../Cargo.toml");
 }
 
-/// A hash of the lock file and of all sources of the crates, by path and content.
+/// A hash of the manifests, the lock file and all sources of the crates, by path and content.
 fn source_hash(root: &Path) -> u64 {
-    let mut files = vec![root.join("Cargo.lock")];
+    let mut files = vec![root.join("Cargo.lock"), root.join("Cargo.toml")];
     for name in ["rne-core", "frozen-physics", "usar-sim", "experiments"] {
+        files.push(root.join("crates").join(name).join("Cargo.toml"));
         collect(&root.join("crates").join(name).join("src"), &mut files);
     }
     files.sort();

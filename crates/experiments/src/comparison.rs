@@ -1,7 +1,5 @@
 //! Paired comparisons of policies: what differs, by how much, and how sure that is.
 
-use std::collections::BTreeMap;
-
 use rayon::prelude::*;
 use serde::Serialize;
 use xxhash_rust::xxh3::xxh3_64;
@@ -12,7 +10,7 @@ use crate::metric::{METRICS, Metric};
 use crate::stats::Moments;
 use crate::stats::bootstrap::{Width, bca_interval, resamples};
 use crate::stats::paired::{hodges_lehmann, holm, pairs_needed};
-use crate::stats::wilcoxon::SignedRank;
+use crate::stats::wilcoxon::{DRAWS, EXACT_PAIRS, SignedRank};
 use crate::sweep::folder::{Folder, Measured};
 
 /// Level of a finding, after correction.
@@ -26,7 +24,7 @@ pub struct Comparison {
     /// Number of the case, from 1.
     pub case: usize,
     /// Values of the axes there, in RON.
-    pub axes: BTreeMap<String, String>,
+    pub axes: Vec<(String, String)>,
     /// Name of the metric.
     pub metric: &'static str,
     /// The first policy.
@@ -73,13 +71,18 @@ impl Comparison {
     }
 }
 
-/// What to say where so many comparisons of so few pairs were made together that none of these can show a difference, whatever it is.
+/// What to say where so many comparisons of so few pairs were made together that none can show a difference, whatever it is.
 #[must_use]
-pub fn limit_of_correction(comparisons: &[&Comparison], family: usize) -> Option<String> {
+pub fn limit_of_correction(comparisons: &[Comparison]) -> Option<String> {
+    let family = comparisons.iter().filter(|comparison| comparison.p.is_some()).count();
     let most = comparisons.iter().map(|comparison| comparison.n).max()?;
-    let smallest = 2.0_f64.powi(1 - i32::try_from(most).ok()?);
+    let smallest = if most > EXACT_PAIRS {
+        2.0 / f64::from(DRAWS + 1)
+    } else {
+        2.0_f64.powi(1 - i32::try_from(most).ok()?)
+    };
     let least = smallest * family as f64;
-    (most > 0 && least >= LEVEL).then(|| {
+    (family > 0 && least >= LEVEL).then(|| {
         format!(
             "With {most} pairs the smallest p there is, {}, becomes {} after correction over {family} comparisons: none can show a difference, \
              however large. Compare fewer things, chosen beforehand (--metric, --baseline), or run more trials.",
@@ -87,6 +90,16 @@ pub fn limit_of_correction(comparisons: &[&Comparison], family: usize) -> Option
             short(least.min(1.0))
         )
     })
+}
+
+/// What p is, in words.
+#[must_use]
+pub fn test_in_words(comparisons: &[Comparison]) -> String {
+    if comparisons.iter().all(|comparison| comparison.is_exact) {
+        "p exact".to_owned()
+    } else {
+        format!("p exact to {EXACT_PAIRS} pairs, beyond from {DRAWS} random choices of signs")
+    }
 }
 
 /// The differences of all pairs in one metric.
@@ -254,6 +267,19 @@ fn in_words(comparison: &Comparison) -> String {
     let needed = comparison.pairs_needed.map_or(String::new(), |needed| {
         format!(" Were this the true difference, {needed} pairs would show it in four of five experiments.")
     });
+    let is_clear =
+        (low > 0.0 || high < 0.0) && comparison.effect.is_some_and(|effect| effect * difference > 0.0);
+    if comparison.is_found() && !is_clear {
+        let shift = comparison.shift.unwrap_or(0.0);
+        return format!(
+            "{place}: {a} and {b} differ, but not plainly in the mean: by ranks {a} is {} (shift {}; corrected p = {}), while the mean \
+             difference is {} ({range}).",
+            if comparison.effect.unwrap_or(0.0) > 0.0 { "above" } else { "below" },
+            short(shift),
+            short_p(p),
+            short(difference)
+        );
+    }
     if comparison.is_found() {
         return format!("{place}: {a} is {size} {direction} {b} ({range}; corrected p = {}).", short_p(p));
     }

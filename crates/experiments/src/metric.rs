@@ -104,7 +104,14 @@ pub fn chosen(names: &[String]) -> Result<Vec<usize>, Failure> {
     if names.iter().any(|name| name == "all") {
         return Ok((0..METRICS.len()).collect());
     }
-    names.iter().map(|name| metric_named(name)).collect()
+    let mut places = Vec::new();
+    for name in names {
+        let place = metric_named(name)?;
+        if !places.contains(&place) {
+            places.push(place);
+        }
+    }
+    Ok(places)
 }
 
 /// The figures of the report in their order, each with the places of its metrics.

@@ -2,8 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 use usar_sim::scenario::Fields;
+use xxhash_rust::xxh3::xxh3_128;
 
 use crate::experiment::{Axis, Experiment, Seeds, Shard};
+use crate::failure::Failure;
 use crate::sweep::FileHash;
 
 /// Version of the folder's layout.
@@ -41,6 +43,8 @@ pub struct Manifest {
     pub is_complete: bool,
     /// The files of the folder with their hashes, but for this one.
     pub files: Vec<FileHash>,
+    /// XXH3-128 of the manifest as it is without this.
+    checksum: String,
 }
 
 impl Manifest {
@@ -63,7 +67,33 @@ impl Manifest {
             shard,
             is_complete: false,
             files,
+            checksum: String::new(),
         }
+    }
+
+    /// The manifest as text, with its checksum.
+    ///
+    /// # Errors
+    /// None: it can be written to memory.
+    pub fn text(&self) -> Result<String, Failure> {
+        let text = |manifest: &Self| serde_json::to_string_pretty(manifest).map_err(Failure::run);
+        let bare = Self { checksum: String::new(), ..self.clone() };
+        let checksum = format!("{:032x}", xxh3_128(text(&bare)?.as_bytes()));
+        Ok(text(&Self { checksum, ..bare })? + "\n")
+    }
+
+    /// Reads a manifest.
+    ///
+    /// # Errors
+    /// It is none, or was changed; in words.
+    pub fn parse(text: &[u8]) -> Result<Self, String> {
+        let mut manifest: Self = serde_json::from_slice(text).map_err(|error| error.to_string())?;
+        let again = manifest.text().map_err(|error| error.to_string())?;
+        if manifest.schema_version == SCHEMA_VERSION && again.as_bytes() != text {
+            return Err("its checksum does not match: it was changed".to_owned());
+        }
+        manifest.checksum.clear();
+        Ok(manifest)
     }
 
     /// The manifest as it was before the first trial.

@@ -20,8 +20,8 @@ pub(crate) fn policy_table(folder: &Folder, case: usize) -> Table {
     let mut last = "";
     for (i, metric) in METRICS.iter().enumerate().filter(|(_, metric)| metric.is_papers) {
         let cells = (0..policies.len()).map(|policy| {
-            let (values, trials) = values(folder, case, policy, i);
-            right(&moments(&Moments::of(&values), trials))
+            let values = values(folder, case, policy, i);
+            right(&moments(&Moments::of(&values), folder.experiment().trials as usize))
         });
         table.add_row(std::iter::once(Cell::new(indented(metric.title, last))).chain(cells));
         last = metric.title;
@@ -29,12 +29,11 @@ pub(crate) fn policy_table(folder: &Folder, case: usize) -> Table {
     table
 }
 
-/// The defined values of a metric, and the number of trials that ran to their end.
-pub(crate) fn values(folder: &Folder, case: usize, policy: usize, metric: usize) -> (Vec<f64>, usize) {
+/// The values of a metric, as far as trials ran to their end and it is defined.
+pub(crate) fn values(folder: &Folder, case: usize, policy: usize, metric: usize) -> Vec<f64> {
     let range = (case, policy, 0)..=(case, policy, u32::MAX);
     let measured = folder.results().range(range).filter_map(|(_, Measured { metrics, .. })| metrics.as_ref());
-    let all: Vec<Option<f64>> = measured.map(|metrics| metrics[metric]).collect();
-    (all.iter().copied().flatten().collect(), all.len())
+    measured.filter_map(|metrics| metrics[metric]).collect()
 }
 
 /// A title of which only the last word is shown where the words before are those of the title above.
@@ -128,7 +127,7 @@ fn right(text: &str) -> Cell {
     Cell::new(text).set_alignment(CellAlignment::Right)
 }
 
-/// `mean ± sd`; with the number of trials where the quantity is not defined in all of them.
+/// `mean ± sd`; with the number of trials where not all that were asked for have it.
 fn moments(moments: &Moments, trials: usize) -> String {
     let Some(mean) = moments.mean else { return "-".to_owned() };
     let decimals = decimals(mean);

@@ -253,10 +253,12 @@ fn a_sweep_writes_the_same_bytes_on_any_number_of_threads() {
         "hashes.csv",
         "journal.jsonl",
         "manifest.json",
+        "metrics.csv",
         "resolved.ron",
         "robots.csv",
         "rounds.csv",
         "series.csv",
+        "sweep.ron",
         "trials.csv",
     ];
     assert_eq!(names, expected);

@@ -214,7 +214,7 @@ fn shards_are_joined_to_the_bytes_of_a_single_run() {
     }
     let parts = ["results/grid-1-of-3", "results/grid-2-of-3", "results/grid-3-of-3"];
     let merge = |parts: &[&'static str]| [&["merge"], parts, &["--out", "joined"]].concat();
-    refused(here, 2, &merge(&parts[..2]), &["8 trials are missing: "]);
+    refused(here, 2, &merge(&parts[..2]), &["shard 3/3 is not there: 8 trials are missing: "]);
     succeeds(&usar(here, &["sweep", "grid.ron", "--shard", "3/3", "--trials", "3", "--out", "results/more"]));
     refused(
         here,
@@ -477,7 +477,7 @@ fn a_report_is_one_file_with_figures_and_the_numbers_behind_them() {
         let table = csv::Reader::from_reader(&*plots[&format!("{name}.csv")]).records().count();
         assert!(table > 0, "{name}");
     }
-    for words in ["sum", "roles.carrier.speed_mps=1.5", "usar sweep FILE", "duration_s: 120", "Holm"] {
+    for words in ["sum", "roles.carrier.speed_mps=1.5", "usar sweep sweep.ron", "duration_s: 120", "Holm"] {
         assert!(page.contains(words), "{words}");
     }
     succeeds(&usar(here, &["report", "results/grid"]));
@@ -526,4 +526,142 @@ fn the_reports_numbers_are_those_of_the_trials() {
     let shown = &rows(&results.join("plots"), "trust.csv")[1];
     assert_eq!((&shown[0], &shown[1]), ("0", "1"));
     assert!((shown[2].parse::<f64>().unwrap() - rne).abs() < 1e-12);
+}
+
+#[test]
+fn the_sweep_file_in_the_folder_makes_it_again() {
+    let folder = place();
+    let here = folder.path();
+    succeeds(&usar(here, &["sweep", "grid.ron", "--set", "duration_s=20", "--trials", "1"]));
+    let results = here.join("results/grid");
+    succeeds(&usar(&results, &["sweep", "sweep.ron", "--out", "again"]));
+    let (before, again) = (files_but(&results), files_but(&results.join("again")));
+    assert_eq!(before, again);
+}
+
+/// The tables of a folder.
+fn files_but(folder: &Path) -> Vec<(String, Vec<u8>)> {
+    let names = ["trials.csv", "rounds.csv", "hashes.csv", "metrics.csv", "journal.jsonl", "resolved.ron"];
+    names.iter().map(|name| ((*name).to_owned(), std::fs::read(folder.join(name)).unwrap())).collect()
+}
+
+#[test]
+fn other_peoples_files_are_left_alone() {
+    let folder = place();
+    let here = folder.path();
+    let message = &["is not empty and not the folder of a sweep; nothing was overwritten"];
+    for (name, content) in [("trials.csv", "method,trial\nDIS,1\n"), ("manifest.json", "{\"name\": \"web\"}")]
+    {
+        let results = here.join("results");
+        std::fs::create_dir_all(&results).unwrap();
+        std::fs::write(results.join(name), content).unwrap();
+        refused(here, 2, &["sweep", "short.ron", "--out", "results"], message);
+        refused(here, 2, &["sweep", "short.ron", "--out", "results", "--fresh"], message);
+        std::fs::remove_dir_all(&results).unwrap();
+    }
+}
+
+#[test]
+fn a_changed_manifest_or_a_journal_that_lacks_lines_is_noticed() {
+    let folder = place();
+    let here = folder.path();
+    let sweep = ["sweep", "short.ron", "--policies", "RNE,DIS", "--trials", "2"];
+    succeeds(&usar(here, &sweep));
+    let results = here.join("results/paper");
+    let sound = files(&results);
+    let text = |name: &str| String::from_utf8(sound[name].clone()).unwrap();
+    std::fs::write(
+        results.join("manifest.json"),
+        text("manifest.json").replace("\"trials\": 2", "\"trials\": 3"),
+    )
+    .unwrap();
+    refused(here, 2, &["compare", "results/paper"], &["manifest.json", "its checksum does not match"]);
+    std::fs::write(results.join("manifest.json"), text("manifest.json")).unwrap();
+    let journal: Vec<&str> = text("journal.jsonl").leak().lines().collect();
+    std::fs::write(results.join("journal.jsonl"), journal[..3].join("\n") + "\n").unwrap();
+    refused(
+        here,
+        2,
+        &["compare", "results/paper"],
+        &["do not have the checksums of the manifest: journal.jsonl"],
+    );
+    succeeds(&usar(here, &sweep));
+    assert!(files(&results) == sound);
+}
+
+#[test]
+fn trials_that_took_too_long_are_counted_and_joined() {
+    let folder = place();
+    let here = folder.path();
+    let sweep = ["sweep", "short.ron", "--policies", "RNE,DIS", "--trials", "2", "--set", "duration_s=600.0"];
+    for shard in ["1/2", "2/2"] {
+        let late = usar(here, &[&sweep[..], &["--shard", shard, "--max-trial-s", "0.001"]].concat());
+        assert_eq!(late.status.code(), Some(1));
+    }
+    let parts = ["results/paper-1-of-2", "results/paper-2-of-2"];
+    let merged = usar(here, &["merge", parts[0], parts[1], "--out", "results/whole"]);
+    assert_eq!(merged.status.code(), Some(1), "{}", String::from_utf8_lossy(&merged.stderr));
+    let said = succeeds(&usar(here, &["compare", "results/whole", "--metric", "rescuees.hard"]));
+    assert!(said.contains("2 with a failed trial, 0 with"), "{said}");
+    // Joined once more, nothing changes.
+    let before = files(&here.join("results/whole"));
+    usar(here, &["merge", parts[0], parts[1], "--out", "results/whole"]);
+    assert!(files(&here.join("results/whole"))["journal.jsonl"] == before["journal.jsonl"]);
+}
+
+#[test]
+fn a_rule_of_precision_can_be_given_again_and_needs_pairs_that_differ() {
+    let folder = place();
+    let here = folder.path();
+    let sweep = |metric: &str| {
+        let rule = format!("{metric}: RNE-DIS: 0.001");
+        let arguments = ["sweep", "short.ron", "--policies", "RNE,DIS", "--trials", "20"];
+        succeeds(&usar(here, &[&arguments[..], &["--precision", &rule, "--max-trials", "25"]].concat()))
+    };
+    let first = sweep("distance");
+    assert!(first.contains("after 25 pairs"), "{first}");
+    assert_eq!(first, sweep("distance"), "the same command again");
+    // Nobody is rescued within half a minute: no pair differs from another.
+    let none = sweep("rescuees.hard");
+    assert!(none.contains("NOT reached: there are too few pairs"), "{none}");
+    let listed =
+        std::fs::read_to_string(here.join("grid.ron")).unwrap().replace("trials: 2", "seeds: [5, 6, 9]");
+    std::fs::write(here.join("listed.ron"), listed).unwrap();
+    let rule = ["--precision", "distance: RNE-DIS: 0.001", "--out", "results/listed"];
+    let said = succeeds(&usar(here, &[&["sweep", "listed.ron"], &rule[..]].concat()));
+    assert!(said.contains("after 3 pairs"), "{said}");
+}
+
+#[test]
+fn strange_texts_are_refused_in_words() {
+    let folder = place();
+    let here = folder.path();
+    std::fs::write(here.join("deep.ron"), "(".repeat(200_000)).unwrap();
+    refused(here, 2, &["check", "deep.ron"], &["deep.ron:"]);
+    refused(here, 2, &["sweep", "short.ron", "--policies", "RNE(score: '日')"], &["rne.score: "]);
+    refused(here, 2, &["sweep", "short.ron", "--set", "duration_s='日'"], &["--set: duration_s: "]);
+    refused(
+        here,
+        2,
+        &["sweep", "short.ron", "--set", &format!("dt_s={}", "[".repeat(100_000))],
+        &["--set: dt_s: "],
+    );
+    refused(
+        here,
+        2,
+        &["sweep", "short.ron", "--set", "sweep.trials=3"],
+        &["--set: sweep.trials: decides no number"],
+    );
+    let grid = std::fs::read_to_string(here.join("grid.ron")).unwrap();
+    let commented = grid.replace("[1.5, 3.0]", "[1.5, // as printed\n 3.0 /* twice */]");
+    std::fs::write(here.join("commented.ron"), commented).unwrap();
+    succeeds(&usar(here, &["check", "commented.ron"]));
+    for (from, to, message) in [
+        ("[1.5, 3.0]", "[3, 3.0]", "axes.\"roles.carrier.speed_mps\"[1]: must not stand twice, found 3.0"),
+        ("roles.carrier.speed_mps", "sweep.trials", "decides no number of a trial"),
+        ("trials: 2", "seeds: [4, 4]", "seeds: must differ"),
+    ] {
+        std::fs::write(here.join("bad.ron"), grid.replace(from, to)).unwrap();
+        refused(here, 2, &["sweep", "bad.ron"], &[message]);
+    }
 }

@@ -7,11 +7,10 @@ use clap::Args;
 use serde::Serialize;
 
 use super::SCHEMA_VERSION;
-use crate::comparison::{CONFIDENCE, Comparison, LEVEL, compare, limit_of_correction};
+use crate::comparison::{CONFIDENCE, Comparison, LEVEL, compare, limit_of_correction, test_in_words};
 use crate::failure::Failure;
 use crate::metric::chosen;
 use crate::stats::bootstrap::{RESAMPLES, resamples};
-use crate::stats::wilcoxon::{DRAWS, EXACT_PAIRS};
 use crate::sweep::folder::Folder;
 use crate::table::comparison_table;
 
@@ -79,8 +78,7 @@ impl Arguments {
         for comparison in &comparisons {
             writeln!(out, "{}", comparison.in_words)?;
         }
-        let all: Vec<&Comparison> = comparisons.iter().collect();
-        if let Some(limit) = limit_of_correction(&all, comparisons.len()) {
+        if let Some(limit) = limit_of_correction(&comparisons) {
             writeln!(out, "\n{limit}")?;
         }
         writeln!(out, "\n{}", footnote(&comparisons))?;
@@ -89,15 +87,11 @@ impl Arguments {
 }
 
 fn footnote(comparisons: &[Comparison]) -> String {
-    let count = comparisons.len();
+    let count = comparisons.iter().filter(|c| c.p.is_some()).count();
     let sum = |value: fn(&Comparison) -> usize| comparisons.iter().map(value).sum::<usize>();
     let (failed, missing, undefined) = (sum(|c| c.failed), sum(|c| c.missing), sum(|c| c.undefined));
     let most = comparisons.iter().map(|c| resamples(c.n)).min().unwrap_or(RESAMPLES);
-    let drawn = if comparisons.iter().all(|c| c.is_exact) {
-        "p exact".to_owned()
-    } else {
-        format!("p exact to {EXACT_PAIRS} pairs, beyond from {DRAWS} random signs")
-    };
+    let drawn = test_in_words(comparisons);
     format!(
         "Paired by seed. Interval: BCa bootstrap of the mean difference, widened for small n, {most} resamples, fixed seed. {drawn}; two-sided;\n\
          Holm's correction over the {count} comparisons above. Pairs left out, over all comparisons: {failed} with a failed trial, {missing} with\n\

@@ -7,11 +7,13 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use clap::Args;
+use xxhash_rust::xxh3::xxh3_128;
 
 use super::sweep::print;
-use crate::experiment::Program;
+use crate::experiment::{Program, Shard};
 use crate::failure::Failure;
 use crate::sweep::folder::{Folder, Opening, experiment_in};
+use crate::sweep::{Place, TrialKey};
 
 /// How many missing trials are named.
 const MAX_NAMED: usize = 5;
@@ -67,22 +69,17 @@ impl Arguments {
                 )));
             }
         }
-        let mut lines = BTreeMap::new();
-        for shard in &mut shards {
-            for (place, measured) in shard.results().clone() {
-                let line = shard.line(place)?;
-                let path = shard.path().to_owned();
-                if let Some((other, _, from)) = lines.insert(place, (line.clone(), measured, path.clone()))
-                    && other != line
-                {
-                    let key = shard.experiment().key(place);
+        let mut sources: BTreeMap<Place, (usize, u128)> = BTreeMap::new();
+        for (i, shard) in shards.iter_mut().enumerate() {
+            for place in shard.results().keys().copied().collect::<Vec<_>>() {
+                let hash = xxh3_128(&shard.line(place)?);
+                let (source, known) = *sources.entry(place).or_insert((i, hash));
+                if known != hash {
+                    let TrialKey { trial, label, seed, .. } = shard.experiment().key(place);
                     return Err(Failure::input(format!(
-                        "{} and {} disagree about trial {} of {} (seed {})",
-                        from.display(),
-                        path.display(),
-                        key.trial,
-                        key.label,
-                        key.seed
+                        "{} and {} disagree about trial {trial} of {label} (seed {seed})",
+                        self.folders[source].display(),
+                        self.folders[i].display()
                     )));
                 }
             }
@@ -90,7 +87,7 @@ impl Arguments {
         let (experiment, _) = experiment_in(&self.folders[0])?;
         let missing: Vec<String> = experiment
             .keys(None)
-            .filter(|key| !lines.contains_key(&(key.case, key.policy, key.trial)))
+            .filter(|key| !sources.contains_key(&(key.case, key.policy, key.trial)))
             .map(|key| {
                 format!(
                     "{}trial {} of {}",
@@ -103,15 +100,38 @@ impl Arguments {
         if !missing.is_empty() {
             let more = if missing.len() > MAX_NAMED { ", ..." } else { "" };
             let named = missing[..missing.len().min(MAX_NAMED)].join(", ");
-            return Err(Failure::input(format!("{} trials are missing: {named}{more}", missing.len())));
+            let absent = absent_shards(&shards);
+            return Err(Failure::input(format!(
+                "{}{} trials are missing: {named}{more}",
+                absent,
+                missing.len()
+            )));
         }
         let mut whole = Folder::open(&self.out, Arc::new(experiment), Opening::default(), &mut |note| {
             eprintln!("note: {note}");
         })?;
-        for (place, (line, measured, _)) in lines {
-            whole.add_line(&line, place, measured)?;
+        for (place, (source, _)) in sources {
+            if !whole.has(&whole.experiment().key(place)) {
+                let measured = shards[source].results()[&place].clone();
+                whole.add_line(&shards[source].line(place)?, place, measured)?;
+            }
         }
         whole.finish(&AtomicBool::new(false))?;
-        print(out, &whole)
+        print(out, &whole)?;
+        let failed: Vec<&str> =
+            whole.results().values().filter_map(|measured| measured.failure.as_deref()).collect();
+        if failed.is_empty() { Ok(()) } else { Err(Failure::run(failed.join("\n"))) }
     }
+}
+
+/// Which of the shards are not there, in words; nothing where all are.
+fn absent_shards(shards: &[Folder]) -> String {
+    let there: Vec<Shard> = shards.iter().filter_map(|folder| folder.manifest().shard).collect();
+    let Some(first) = there.first() else { return String::new() };
+    let is_there = |number: &u32| there.iter().any(|shard| shard.of == first.of && shard.number == *number);
+    let absent: Vec<String> = (1..=first.of)
+        .filter(|number| !is_there(number))
+        .map(|number| format!("{number}/{}", first.of))
+        .collect();
+    if absent.is_empty() { String::new() } else { format!("shard {} is not there: ", absent.join(", ")) }
 }

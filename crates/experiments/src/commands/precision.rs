@@ -50,32 +50,50 @@ impl Precision {
     /// Pairs at the next look, if there is to be one.
     pub(super) fn next_look(&self, folder: &Folder, most: u32) -> Option<u32> {
         let trials = folder.experiment().trials;
-        let is_reached = self.half_width(folder).is_some_and(|half| half <= self.bound);
+        let is_reached = self.state(folder).is_some_and(|state| state.half_width <= self.bound);
         (!is_reached && trials < most).then(|| next_look(trials).min(most))
     }
 
-    /// The greatest half width over all cases; `None` where one has too few pairs.
-    fn half_width(&self, folder: &Folder) -> Option<f64> {
-        let cases = 0..folder.experiment().cases.len();
-        let half = |case| t_half_width(&Pairs::of(folder, case, self.metric, self.policies).differences());
-        cases.map(half).try_fold(0.0, |most: f64, half| Some(most.max(half?)))
+    /// Where it stands; `None` where a case has too few pairs, or pairs without any spread, to say anything.
+    fn state(&self, folder: &Folder) -> Option<State> {
+        let mut state = State { half_width: 0.0, pairs: usize::MAX };
+        for case in 0..folder.experiment().cases.len() {
+            let differences = Pairs::of(folder, case, self.metric, self.policies).differences();
+            let half_width = t_half_width(&differences).filter(|half| *half > 0.0)?;
+            let enough = differences.len() >= FIRST_LOOK.min(folder.experiment().trials) as usize;
+            state.half_width = state.half_width.max(half_width);
+            state.pairs = state.pairs.min(differences.len());
+            if !enough {
+                return None;
+            }
+        }
+        Some(state)
     }
 
     /// What came of it, in words.
     pub(super) fn verdict(&self, folder: &Folder) -> String {
         let (metric, [a, b], bound) = (METRICS[self.metric].name, &self.labels, short(self.bound));
-        let trials = folder.experiment().trials;
-        match self.half_width(folder) {
-            Some(half) if half <= self.bound => format!(
-                "precision reached: the 95 % interval of {metric}, {a} less {b}, is its mean ± {} or narrower ({trials} pairs, bound {bound})",
-                short(half)
+        match self.state(folder) {
+            Some(State { half_width, pairs }) if half_width <= self.bound => format!(
+                "precision reached: the 95 % interval of {metric}, {a} less {b}, is its mean ± {} or narrower ({pairs} pairs, bound {bound})",
+                short(half_width)
             ),
-            Some(half) => format!(
-                "precision NOT reached: the 95 % interval of {metric}, {a} less {b}, is its mean ± {} after {trials} pairs, bound {bound}; \
-                 a larger --max-trials goes on",
-                short(half)
+            Some(State { half_width, pairs }) => format!(
+                "precision NOT reached: the 95 % interval of {metric}, {a} less {b}, is its mean ± {} after {pairs} pairs, bound {bound}; \
+                 more trials (--max-trials) go on",
+                short(half_width)
             ),
-            None => format!("precision NOT reached: there are too few pairs in which {metric} is defined"),
+            None => format!(
+                "precision NOT reached: there are too few pairs in which {metric} is defined for both, or they do not differ among themselves"
+            ),
         }
     }
+}
+
+/// Where the rule stands.
+struct State {
+    /// The greatest half width over all cases.
+    half_width: f64,
+    /// The least number of pairs over all cases.
+    pairs: usize,
 }

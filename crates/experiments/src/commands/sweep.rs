@@ -94,7 +94,7 @@ impl Arguments {
         }
         let mut experiment = Experiment::load(&self.file, &self.overrides())?;
         let path = self.out.clone().unwrap_or_else(|| default_path(&experiment.name, self.shard));
-        if self.trials.is_none()
+        if (self.trials.is_none() || self.precision.is_some())
             && !self.fresh
             && let Some(trials) = trials_in(&path)
             && trials > experiment.trials
@@ -104,7 +104,8 @@ impl Arguments {
         let precision =
             self.precision.as_deref().map(|text| Precision::parse(text, &experiment)).transpose()?;
         if precision.is_some() {
-            experiment = experiment.with_trials(Precision::first_look(experiment.trials, self.max_trials))?;
+            let first = Precision::first_look(experiment.trials, self.most(&experiment));
+            experiment = experiment.with_trials(first)?;
         }
         experiment.check_layouts(&self.file)?;
 
@@ -113,8 +114,8 @@ impl Arguments {
         let mut folder =
             Folder::open(&path, Arc::new(experiment), opening, &mut |note| eprintln!("note: {note}"))?;
         self.run(&mut folder)?;
-        while let Some(trials) = precision.as_ref().and_then(|rule| rule.next_look(&folder, self.max_trials))
-        {
+        let most = self.most(folder.experiment());
+        while let Some(trials) = precision.as_ref().and_then(|rule| rule.next_look(&folder, most)) {
             folder.extend(Arc::new(folder.experiment().with_trials(trials)?))?;
             self.run(&mut folder)?;
         }
@@ -129,6 +130,11 @@ impl Arguments {
         let failed: Vec<&str> =
             folder.results().values().filter_map(|measured| measured.failure.as_deref()).collect();
         if failed.is_empty() { Ok(()) } else { Err(Failure::run(failed.join("\n"))) }
+    }
+
+    /// Trials at which --precision gives up.
+    fn most(&self, experiment: &Experiment) -> u32 {
+        self.max_trials.min(experiment.most_trials())
     }
 
     fn overrides(&self) -> Overrides {

@@ -4,6 +4,7 @@ use std::io::Write;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
+use std::time::Duration;
 
 use clap::Args;
 use usar_sim::hash::Link;
@@ -38,6 +39,9 @@ pub(crate) struct Arguments {
     quiet: bool,
 }
 
+/// A trial that takes longer is given up.
+const LONGEST_TRIAL: Duration = Duration::from_hours(1);
+
 impl Arguments {
     pub(crate) fn execute(&self, out: &mut dyn Write) -> Result<(), Failure> {
         let (experiment, manifest) = experiment_in(&self.folder)?;
@@ -51,11 +55,17 @@ impl Arguments {
         let mut outcomes = Vec::new();
         let again = Arc::clone(&experiment);
         let run: Arc<Run> = Arc::new(move |key, halt| again.run(key, halt));
-        run_all(chosen, Limits { jobs, trial: None }, run, &AtomicBool::new(false), |outcome| {
-            progress.inc(1);
-            outcomes.push(outcome);
-            Ok(())
-        })?;
+        run_all(
+            chosen,
+            Limits { jobs, trial: Some(LONGEST_TRIAL) },
+            run,
+            &AtomicBool::new(false),
+            |outcome| {
+                progress.inc(1);
+                outcomes.push(outcome);
+                Ok(())
+            },
+        )?;
         outcomes.sort_by(|a, b| a.key.cmp(&b.key));
         progress.finish_and_clear();
 

@@ -244,8 +244,12 @@ impl Experiment {
     pub fn replay_command(&self, key: &TrialKey) -> String {
         let policy = &self.policies[key.policy];
         let axes = self.axes.iter().zip(&self.cases[key.case].values);
-        let axes = axes.map(|(axis, value)| format!("--set '{}={value}'", axis.path));
-        let options = policy.options().iter().map(|(option, value)| format!("--set 'rne.{option}={value}'"));
+        let set = |path: &str, value: &str| {
+            let value = value.split_whitespace().collect::<Vec<_>>().join(" ");
+            format!("--set '{}={}'", path, value.replace('\'', "'\\''"))
+        };
+        let axes = axes.map(|(axis, value)| set(&axis.path, value));
+        let options = policy.options().iter().map(|(option, value)| set(&format!("rne.{option}"), value));
         let command = format!("usar run resolved.ron --policy {} --seed {}", policy.name, key.seed);
         let check = self.is_checked.then(|| "--check".to_owned());
         std::iter::once(command).chain(axes).chain(options).chain(check).collect::<Vec<_>>().join(" ")
@@ -267,6 +271,39 @@ impl Experiment {
             is_checked: self.is_checked,
             program: self.program.clone(),
         })
+    }
+
+    /// Trials for which there are seeds.
+    #[must_use]
+    pub fn most_trials(&self) -> u32 {
+        match &self.seeds {
+            Seeds::From(_) => u32::MAX,
+            Seeds::Listed(list) => list.len() as u32,
+        }
+    }
+
+    /// The same sweep as a file over its resolved scenario, which is in the same folder.
+    ///
+    /// # Errors
+    /// None: it can be written to memory.
+    pub fn as_sweep_file(&self, scenario: &str) -> Result<String, Failure> {
+        let quoted = |text: &str| ron::to_string(text).map_err(Failure::run);
+        let policies =
+            self.policies.iter().map(|policy| quoted(policy.written())).collect::<Result<Vec<_>, _>>()?;
+        let seeds = match &self.seeds {
+            Seeds::From(first) => format!("first_seed: {first}"),
+            Seeds::Listed(list) => format!("seeds: {list:?}"),
+        };
+        let line =
+            |axis: &Axis| Ok(format!("        {}: [{}],\n", quoted(&axis.path)?, axis.values.join(", ")));
+        let axes = self.axes.iter().map(line).collect::<Result<Vec<_>, Failure>>()?.concat();
+        Ok(format!(
+            "(\n    name: {},\n    scenario: {},\n    policies: [{}],\n    trials: {},\n    {seeds},\n    axes: {{\n{axes}    }},\n)\n",
+            quoted(&self.name)?,
+            quoted(scenario)?,
+            policies.join(", "),
+            self.trials,
+        ))
     }
 
     /// Seed of a trial, numbered from 1.
@@ -320,7 +357,13 @@ pub fn with_settings(scenario: &Scenario, settings: &[String]) -> Result<Scenari
         let (path, value) = entry
             .split_once('=')
             .ok_or_else(|| Failure::input(format!("--set: must be path=value, found {entry:?}")))?;
-        file.set(path.trim(), value).map_err(|error| Failure::input(format!("--set: {error}")))?;
+        let path = path.trim();
+        if !decides(path) {
+            return Err(Failure::input(format!(
+                "--set: {path}: decides no number of a trial; --policies, --trials and --seed say what is run"
+            )));
+        }
+        file.set(path, value).map_err(|error| Failure::input(format!("--set: {error}")))?;
     }
     checked(file, "--set: ")
 }
@@ -356,7 +399,7 @@ fn from_sweep_file(text: String, path: &Path) -> Result<Parts, Failure> {
     let mut set: ScenarioFile = (*base).clone();
     for (field, value) in &file.set.0 {
         let place = format!("set.{field:?}");
-        set.set(field, value.get_ron()).map_err(|error| bad(&place, &error))?;
+        set.set(field, value.trim().get_ron()).map_err(|error| bad(&place, &error))?;
     }
     let base = checked(set, &format!("{}: set: ", path.display()))?;
     let axes = axes(file.axes, &base, &bad)?;
@@ -364,6 +407,9 @@ fn from_sweep_file(text: String, path: &Path) -> Result<Parts, Failure> {
         (Some(_), Some(_)) => return Err(bad("seeds", &"must not stand beside first_seed")),
         (Some(list), None) if list.is_empty() => {
             return Err(bad("seeds", &"must have at least one, found none"));
+        }
+        (Some(list), None) if (1..list.len()).any(|i| list[..i].contains(&list[i])) => {
+            return Err(bad("seeds", &"must differ: trials of one seed are one trial"));
         }
         (Some(list), None) => Seeds::Listed(list),
         (None, first) => Seeds::From(first.unwrap_or(base.sweep.first_seed)),
@@ -389,17 +435,22 @@ fn axes(map: Map<Vec<Box<ron::value::RawValue>>>, base: &Scenario, bad: &Bad) ->
     let mut axes = Vec::new();
     for (path, values) in map.0 {
         let field = format!("axes.{path:?}");
-        let values: Vec<String> = values.iter().map(|value| value.get_ron().trim().to_owned()).collect();
+        let values: Vec<String> = values.iter().map(|value| value.trim().get_ron().to_owned()).collect();
         if values.is_empty() {
             return Err(bad(&field, &"must have at least one value, found none"));
         }
+        if !decides(&path) {
+            return Err(bad(&field, &"decides no number of a trial, so that it can be no axis"));
+        }
+        let mut files: Vec<ScenarioFile> = Vec::new();
         for (i, value) in values.iter().enumerate() {
             let entry = format!("{field}[{i}]");
-            if values[..i].contains(value) {
-                return Err(bad(&entry, &format!("must not stand twice, found {value}")));
-            }
             let mut file: ScenarioFile = (**base).clone();
             file.set(&path, value).map_err(|error| bad(&entry, &error))?;
+            if files.contains(&file) {
+                return Err(bad(&entry, &format!("must not stand twice, found {value}")));
+            }
+            files.push(file);
         }
         axes.push(Axis { path, values });
     }
@@ -456,6 +507,12 @@ fn cases(base: &Scenario, axes: &[Axis], policies: &[PolicySpec]) -> Result<Vec<
         Ok(Case { values: values.into_iter().map(str::to_owned).collect(), scenario, policies })
     };
     grid.into_iter().map(case).collect()
+}
+
+/// Whether a field decides numbers: all do but the scenario's name, its description and what a sweep runs by default.
+fn decides(path: &str) -> bool {
+    let first = path.split(['.', '[']).next().unwrap_or_default();
+    !["name", "description", "sweep"].contains(&first)
 }
 
 /// What of a scenario decides numbers, as text: all but its name, its description and the sweep's defaults.

@@ -14,7 +14,7 @@ pub struct PolicySpec {
     pub name: String,
     /// Options that differ from the scenario's, with their values in RON.
     options: Vec<(String, String)>,
-    /// As it was written.
+    /// As it can be written.
     written: String,
 }
 
@@ -24,11 +24,11 @@ impl PolicySpec {
     /// # Errors
     /// An unknown name, an option of a policy that has none, or brackets that do not close; in one sentence.
     pub fn parse(text: &str) -> Result<Self, String> {
-        let written = text.trim().to_owned();
-        let open = written.find('(').unwrap_or(written.len());
-        let (label, rest) = match written[..open].find('=') {
-            Some(at) => (Some(written[..at].trim()), written[at + 1..].trim()),
-            None => (None, written.as_str()),
+        let text = text.trim();
+        let open = text.find('(').unwrap_or(text.len());
+        let (label, rest) = match text[..open].find('=') {
+            Some(at) => (Some(text[..at].trim()), text[at + 1..].trim()),
+            None => (None, text),
         };
         let (name, options) = rest.split_at(rest.find('(').unwrap_or(rest.len()));
         let name = name.trim();
@@ -37,8 +37,9 @@ impl PolicySpec {
         let named: Vec<String> = options.iter().map(|(option, value)| format!("{option}: {value}")).collect();
         let plain = if named.is_empty() { name.to_owned() } else { format!("{name}({})", named.join(", ")) };
         if label.is_some_and(str::is_empty) {
-            return Err(format!("the label before `=` is empty in {written:?}"));
+            return Err(format!("the label before `=` is empty in {text:?}"));
         }
+        let written = label.map_or(plain.clone(), |label| format!("{label}={plain}"));
         let label = label.map_or(plain, str::to_owned);
         Ok(Self { label, name: name.to_owned(), options, written })
     }
@@ -99,7 +100,7 @@ impl PolicySpec {
         &self.options
     }
 
-    /// As it was written: reads to the same policy.
+    /// As it can be written: reads to the same policy.
     #[must_use]
     pub fn written(&self) -> &str {
         &self.written

@@ -29,15 +29,15 @@ pub(super) fn over_time(
             for (at, time) in times.iter().enumerate() {
                 let values: Vec<f64> = gathered.delivered.iter().map(|trial| trial[at][part]).collect();
                 let Some(mean) = Moments::of(&values).mean else { continue };
-                let half = t_half_width(&values).unwrap_or(0.0);
-                points.push((*time, mean, half));
+                let half = t_half_width(&values);
+                points.push((*time, mean, half.unwrap_or(0.0)));
                 rows.push(vec![
                     title.replace(' ', "."),
                     policy.label.clone(),
                     time.to_string(),
                     values.len().to_string(),
                     mean.to_string(),
-                    half.to_string(),
+                    half.map_or(String::new(), |half| half.to_string()),
                 ]);
             }
             lines.push((i, policy.label.as_str(), points));
@@ -75,7 +75,7 @@ pub(super) fn membership(experiment: &Experiment, gathered: &[Gathered]) -> Resu
         let robots = gathered.roles.len() as u32;
         let count = |round, robot| gathered.groups.get(&(round, robot)).copied().unwrap_or([0, 0]);
         let is_full = |round: &u32| (0..robots).all(|robot| count(*round, robot) != [0, 0]);
-        let rounds: Vec<u32> = (1..).take_while(is_full).take(40).collect();
+        let rounds: Vec<u32> = (1..u32::MAX).take_while(is_full).collect();
         if rounds.is_empty() || robots == 0 {
             continue;
         }
@@ -120,9 +120,9 @@ pub(super) fn trust(
     case: usize,
     gathered: &[Gathered],
 ) -> Result<Option<Figure>, Failure> {
-    let Some(gathered) = gathered.iter().find(|gathered| !gathered.first_round.is_empty()) else {
-        return Ok(None);
-    };
+    let mut with_rounds =
+        experiment.policies.iter().zip(gathered).filter(|(_, gathered)| !gathered.first_round.is_empty());
+    let Some((policy, gathered)) = with_rounds.next() else { return Ok(None) };
     let team = &gathered.first_round;
     let options = &experiment.cases[case].scenario.rne;
     let mut weights = options.weights.clone().unwrap_or_else(|| vec![1.0; NEED_NAMES.len()]);
@@ -174,10 +174,12 @@ pub(super) fn trust(
     Ok(Some(Figure {
         name: "trust".into(),
         title: "Relative Needs Entropy within each role".into(),
-        caption: "RNE from each robot to each other of its role when the first trial's first round was grouped, in thousandths of a nat; lower is more \
-                  trust. The weights are the scenario's. Between roles it is infinite wherever one lacks a need that the other has; the table \
-                  has all pairs. n = 1 trial."
-            .into(),
+        caption: format!(
+            "RNE from each robot to each other of its role when the first round of trial {} under {} was grouped, in thousandths of a nat; lower is \
+             more trust. The weights are the scenario's. Between roles it is infinite wherever one lacks a need that the other has; the table \
+             has all pairs. n = 1 trial.",
+            gathered.first_trial, policy.label
+        ),
         svg: if panels.is_empty() { String::new() } else { draw(panels, 3, [400.0, 360.0]) },
         csv: table(&["from", "to", "rne_nats"], rows)?,
     }))
@@ -194,7 +196,7 @@ pub(super) fn levels(experiment: &Experiment, gathered: &[Gathered]) -> Result<F
                 for ((round, _), trials) in gathered.levels.iter().filter(|((_, of), _)| *of == task) {
                     let values: Vec<f64> = trials.iter().map(|trial| trial[level]).collect();
                     let Some(mean) = Moments::of(&values).mean else { continue };
-                    let half = t_half_width(&values).unwrap_or(0.0);
+                    let half = t_half_width(&values);
                     rows.push(vec![
                         name.to_lowercase(),
                         task_name.into(),
@@ -202,11 +204,11 @@ pub(super) fn levels(experiment: &Experiment, gathered: &[Gathered]) -> Result<F
                         round.to_string(),
                         values.len().to_string(),
                         mean.to_string(),
-                        half.to_string(),
+                        half.map_or(String::new(), |half| half.to_string()),
                     ]);
                     // Rounds that few trials reached say little and would stretch the axis.
                     if 2 * values.len() >= gathered.delivered.len() {
-                        points.push((f64::from(*round), mean, half));
+                        points.push((f64::from(*round), mean, half.unwrap_or(0.0)));
                     }
                 }
                 lines.push((i, policy.label.as_str(), points));

@@ -20,8 +20,10 @@ pub(super) struct Gathered {
     pub groups: BTreeMap<(u32, u32), [u32; 2]>,
     /// For each round, task and trial, the mean energy and HP of the group.
     pub levels: BTreeMap<(u32, usize), Vec<[f64; 2]>>,
-    /// The robots of the first round of the first trial.
+    /// The robots of the first round of the first trial that has one.
     pub first_round: Vec<Grouped>,
+    /// Number of that trial.
+    pub first_trial: u32,
     /// Roles of the robots.
     pub roles: Vec<&'static str>,
 }
@@ -46,7 +48,7 @@ pub(super) fn gather(folder: &mut Folder, case: usize) -> Result<Vec<Gathered>, 
             .collect();
         for place in places {
             if let Ok(trial) = folder.outcome(place)?.result {
-                gathered.add(&trial, &times);
+                gathered.add(place.2, &trial, &times);
             }
         }
         all.push(gathered);
@@ -55,7 +57,7 @@ pub(super) fn gather(folder: &mut Folder, case: usize) -> Result<Vec<Gathered>, 
 }
 
 impl Gathered {
-    fn add(&mut self, trial: &Trial, times: &[f64]) {
+    fn add(&mut self, number: u32, trial: &Trial, times: &[f64]) {
         let upto = |task: usize, time: f64| trial.deliveries[task].partition_point(|at| *at <= time) as f64;
         let point = |time: &f64| {
             let [hard, easy] = [upto(0, *time), upto(1, *time)];
@@ -74,6 +76,7 @@ impl Gathered {
             self.levels.entry(group).or_default().push([mean(0), mean(1)]);
         }
         if self.first_round.is_empty() {
+            self.first_trial = number;
             self.first_round = trial.grouped.iter().filter(|robot| robot.round == 1).cloned().collect();
             self.first_round.sort_by_key(|robot| robot.robot);
             self.roles = trial.record.robots.iter().map(|robot| robot.role.name()).collect();

@@ -43,7 +43,7 @@ fn box_figure(folder: &Folder, case: usize, name: &str, metrics: &[usize]) -> Re
         }
         let (mut colours, mut all) = (Vec::new(), Vec::new());
         for (i, policy) in policies.iter().enumerate() {
-            let (values, _) = values(folder, case, i, *metric);
+            let values = values(folder, case, i, *metric);
             counts.push(values.len());
             rows.extend(
                 values
@@ -241,17 +241,21 @@ pub(super) fn axes(folder: &Folder, case: usize) -> Result<Vec<Figure>, Failure>
             for (p, policy) in experiment.policies.iter().enumerate() {
                 let mut points: Vec<(f64, f64, f64)> = Vec::new();
                 for (at, other) in cases.iter().enumerate() {
-                    let (values, _) = values(folder, *other, p, *metric);
+                    let values = values(folder, *other, p, *metric);
                     let Some(mean) = Moments::of(&values).mean else { continue };
-                    let half = t_half_width(&values).unwrap_or(0.0);
-                    points.push((if is_numeric { numbers[at] } else { at as f64 }, mean, half));
+                    let half = t_half_width(&values);
+                    points.push((
+                        if is_numeric { numbers[at] } else { at as f64 },
+                        mean,
+                        half.unwrap_or(0.0),
+                    ));
                     rows.push(vec![
                         METRICS[*metric].name.into(),
                         policy.label.clone(),
                         axis.values[at].clone(),
                         values.len().to_string(),
                         mean.to_string(),
-                        half.to_string(),
+                        half.map_or(String::new(), |half| half.to_string()),
                     ]);
                 }
                 points.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -287,11 +291,15 @@ pub(super) fn axes(folder: &Folder, case: usize) -> Result<Vec<Figure>, Failure>
 pub(super) fn summary(folder: &Folder, case: usize) -> Vec<Vec<String>> {
     let policies = &folder.experiment().policies;
     let cell = |policy: usize, metric: usize| {
-        let (values, trials) = values(folder, case, policy, metric);
+        let values = values(folder, case, policy, metric);
         let moments = Moments::of(&values);
         let Some(mean) = moments.mean else { return "-".to_owned() };
         let sd = moments.sd.map_or(String::new(), |sd| format!(" ± {}", short(sd)));
-        let partly = if values.len() < trials { format!(" (n = {})", values.len()) } else { String::new() };
+        let partly = if values.len() < folder.experiment().trials as usize {
+            format!(" (n = {})", values.len())
+        } else {
+            String::new()
+        };
         format!("{}{sd}{partly}", crate::comparison::digits(mean, 4))
     };
     let papers = (0..METRICS.len()).filter(|metric| METRICS[*metric].is_papers);

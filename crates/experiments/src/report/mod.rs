@@ -9,12 +9,12 @@ use std::path::PathBuf;
 
 use askama::Template;
 
-use crate::comparison::{Comparison, compare, digits, limit_of_correction, short, short_p};
+use crate::comparison::{Comparison, compare, digits, limit_of_correction, short, short_p, test_in_words};
 use crate::experiment::{Axis, Seeds};
 use crate::failure::Failure;
 use crate::metric::chosen;
 use crate::sweep::NewFile;
-use crate::sweep::folder::Folder;
+use crate::sweep::folder::{Folder, PLOTS, REPORT};
 use figure::Figure;
 
 #[derive(Template)]
@@ -34,6 +34,7 @@ struct Page<'a> {
     found: Vec<&'a str>,
     open: Vec<&'a str>,
     limit: Option<String>,
+    test: String,
     family: usize,
     figures: &'a [Figure],
     axes: &'a [Axis],
@@ -47,6 +48,7 @@ struct Row {
     metric: &'static str,
     pair: String,
     n: usize,
+    left_out: usize,
     means: String,
     difference: String,
     interval: String,
@@ -67,18 +69,18 @@ pub fn write(folder: &mut Folder, case: usize) -> Result<PathBuf, Failure> {
     let all = if policies > 1 { compare(folder, &chosen(&[])?, None)? } else { Vec::new() };
     let here: Vec<&Comparison> = all.iter().filter(|comparison| comparison.case == case + 1).collect();
     let figures = figures(folder, case, &here)?;
-    let page = page(folder, case, &here, all.len(), &figures).render().map_err(Failure::run)?;
+    let page = page(folder, case, &here, &all, &figures).render().map_err(Failure::run)?;
 
     let path = folder.path().to_owned();
-    let plots = path.join("plots");
+    let plots = path.join(PLOTS);
     let trouble = |error| Failure::storage(format!("cannot write to {}: {error}", plots.display()));
     std::fs::create_dir_all(&plots).map_err(trouble)?;
     for figure in &figures {
         NewFile::write(&plots, &format!("{}.svg", figure.name), figure.svg.as_bytes())?;
         NewFile::write(&plots, &format!("{}.csv", figure.name), figure.csv.as_bytes())?;
     }
-    NewFile::write(&path, "report.html", page.as_bytes())?;
-    Ok(path.join("report.html"))
+    NewFile::write(&path, REPORT, page.as_bytes())?;
+    Ok(path.join(REPORT))
 }
 
 fn figures(folder: &mut Folder, case: usize, comparisons: &[&Comparison]) -> Result<Vec<Figure>, Failure> {
@@ -102,12 +104,12 @@ fn page<'a>(
     folder: &'a Folder,
     case: usize,
     comparisons: &[&'a Comparison],
-    family: usize,
+    all: &[Comparison],
     figures: &'a [Figure],
 ) -> Page<'a> {
     let (experiment, manifest) = (folder.experiment(), folder.manifest());
     let failed = folder.results().values().filter(|measured| measured.metrics.is_none()).count();
-    let all = experiment.keys(manifest.shard).count();
+    let asked = experiment.keys(manifest.shard).count();
     let seeds = match &experiment.seeds {
         Seeds::From(first) => format!("{first} to {}", experiment.seed(experiment.trials)),
         Seeds::Listed(list) => format!("{list:?}"),
@@ -132,15 +134,16 @@ fn page<'a>(
         is_complete: manifest.is_complete,
         finished: folder.results().len() - failed,
         failed,
-        missing: all - folder.results().len().min(all),
+        missing: asked - folder.results().len().min(asked),
         trials: experiment.trials,
         labels: experiment.policies.iter().map(|policy| policy.label.as_str()).collect(),
         summary: metrics::summary(folder, case),
         comparisons: comparisons.iter().map(|comparison| row(comparison)).collect(),
         found: sentences(true),
         open: sentences(false),
-        limit: limit_of_correction(comparisons, family),
-        family,
+        limit: limit_of_correction(all),
+        test: test_in_words(all),
+        family: all.iter().filter(|comparison| comparison.p.is_some()).count(),
         figures,
         axes: &experiment.axes,
         facts,
@@ -151,18 +154,8 @@ fn page<'a>(
 
 /// What makes these results again.
 fn command(folder: &Folder) -> String {
-    let (experiment, manifest) = (folder.experiment(), folder.manifest());
-    let trials = experiment.trials;
-    let check = if manifest.is_checked { " --check" } else { "" };
-    let policies = manifest.policies.join(",");
-    match &experiment.seeds {
-        Seeds::From(first) if experiment.axes.is_empty() => format!(
-            "usar sweep resolved.ron --policies '{policies}' --trials {trials} --seed {first}{check} --out again\nusar report again"
-        ),
-        _ => format!(
-            "usar sweep FILE --trials {trials}{check} --out again    # FILE: experiment.ron, put beside its scenario\nusar report again"
-        ),
-    }
+    let check = if folder.manifest().is_checked { " --check" } else { "" };
+    format!("usar sweep sweep.ron{check} --out again\nusar report again")
 }
 
 fn row(c: &Comparison) -> Row {
@@ -172,6 +165,7 @@ fn row(c: &Comparison) -> Row {
         metric: c.metric,
         pair: format!("{} - {}", c.a, c.b),
         n: c.n,
+        left_out: c.failed + c.missing + c.undefined,
         means: format!("{}, {}", mean(c.mean_a), mean(c.mean_b)),
         difference: number(c.difference),
         interval: c

@@ -8,7 +8,6 @@
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 use statrs::distribution::{ContinuousCDF, Normal, StudentsT};
-use statrs::statistics::Statistics;
 
 /// Resamples of an interval.
 pub const RESAMPLES: usize = 10_000;
@@ -46,7 +45,8 @@ pub fn bca_interval(
     if values.iter().all(|value| value.total_cmp(&values[0]).is_eq()) {
         return Some([values[0]; 2]);
     }
-    let mean = values.mean();
+    // Added up as the resamples are, so that a resample of the same values ties with it.
+    let mean = values.iter().sum::<f64>() / count as f64;
     let normal = Normal::standard();
     let mut draws = ChaCha8Rng::seed_from_u64(seed);
     let mut means: Vec<f64> = (0..resamples)

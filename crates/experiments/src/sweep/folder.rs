@@ -10,23 +10,33 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use usar_sim::scenario::Scenario;
-use xxhash_rust::xxh3::xxh3_128;
+use xxhash_rust::xxh3::Xxh3;
 
 use super::journal::{self, Damage, Journal, Place};
 use super::links::{self, LinkRow};
 use super::rows::{GroupRow, RobotRow, RoundRow, SeriesRow, TrialRow};
-use super::tables::{FileHash, NewFile, Table};
+use super::tables::{FileHash, NewFile, Table, columns};
 use super::trial::{Outcome, TrialKey};
 use crate::experiment::{Experiment, Parts, Program, Shard};
 use crate::failure::Failure;
-use crate::metric::measure;
+use crate::metric::{METRICS, measure};
 use crate::provenance::{Manifest, SCHEMA_VERSION, scenario_differences};
 
 const MANIFEST: &str = "manifest.json";
 const GIVEN: &str = "experiment.ron";
 const RESOLVED: &str = "resolved.ron";
+/// The sweep as a file over the resolved scenario: what makes the folder again.
+const AGAIN: &str = "sweep.ron";
+/// Written before anything else.
+const INPUTS: [&str; 3] = [GIVEN, RESOLVED, AGAIN];
+/// The report, and the folder of its figures.
+pub const REPORT: &str = "report.html";
+/// See [`REPORT`].
+pub const PLOTS: &str = "plots";
 /// Held by the process that writes to the folder.
 const LOCK: &str = ".lock";
+/// Every metric of every trial.
+const METRICS_FILE: &str = "metrics.csv";
 const TABLES: [&str; 6] = ["trials.csv", "rounds.csv", "groups.csv", "robots.csv", "series.csv", links::FILE];
 
 /// Damaged lines of a journal that are named.
@@ -83,6 +93,7 @@ impl Folder {
         check_is_ours(path)?;
         let trouble = |error| Failure::storage(format!("cannot write to {}: {error}", path.display()));
         fs::create_dir_all(path).map_err(trouble)?;
+        path.parent().map_or(Ok(()), sync_folder)?;
         let lock = lock(path)?;
         if opening.is_fresh {
             clear(path).map_err(trouble)?;
@@ -145,18 +156,16 @@ impl Folder {
         }
         let experiment = Arc::new(experiment_of(path, &manifest)?);
         let broken = broken_files(path, &manifest);
-        if !broken.is_empty() {
-            return Err(Failure::input(format!(
-                "{}: these files do not have the checksums of the manifest: {}; the sweep's command makes them again",
-                path.display(),
-                broken.join(", ")
-            )));
-        }
         let mut damages = Vec::new();
         let folder =
             Self::with_journal(path, experiment, manifest, false, &mut |damage| damages.push(damage))?;
-        // A sweep that is under way may be writing its last line.
-        damages.retain(|damage| folder.manifest.is_complete || !damage.contains("is cut off"));
+        if !broken.is_empty() {
+            damages.push(format!(
+                "{}: these files do not have the checksums of the manifest: {}; the sweep's command makes them again",
+                path.display(),
+                broken.join(", ")
+            ));
+        }
         if damages.is_empty() { Ok(folder) } else { Err(Failure::input(damages.join("\n"))) }
     }
 
@@ -172,8 +181,12 @@ impl Folder {
             let TrialKey { case, policy, trial, .. } = outcome.key;
             results.insert((case, policy, trial), Measured::of(&outcome));
         })?;
+        // A sweep that is under way may be writing its last line.
+        let may_write = !is_writable && !manifest.is_complete;
+        let damages: Vec<Damage> =
+            damages.into_iter().filter(|damage| !(may_write && damage.is_cut_off)).collect();
         let count = damages.len();
-        damages.into_iter().take(MAX_DAMAGES).for_each(|Damage(damage)| say(damage));
+        damages.into_iter().take(MAX_DAMAGES).for_each(|damage| say(damage.what));
         if count > MAX_DAMAGES {
             say(format!("{}: {} further lines cannot be used", path.display(), count - MAX_DAMAGES));
         }
@@ -272,6 +285,26 @@ impl Folder {
         ))
     }
 
+    /// `metrics.csv`: every metric of every trial that has numbers.
+    fn metrics_table(&self) -> Result<FileHash, Failure> {
+        let axes = self.experiment.axes.iter().map(|axis| axis.path.clone()).collect();
+        let mut table = Table::new(&self.path, METRICS_FILE, axes)?;
+        let header: Vec<&str> =
+            ["policy", "trial", "seed"].into_iter().chain(METRICS.iter().map(|metric| metric.name)).collect();
+        for ((case, policy, trial), measured) in &self.results {
+            let Some(metrics) = &measured.metrics else { continue };
+            let key = self.experiment.key((*case, *policy, *trial));
+            let cell = |value: &Option<f64>| value.map_or(String::new(), |value| value.to_string());
+            let row = [key.label, trial.to_string(), key.seed.to_string()]
+                .into_iter()
+                .chain(metrics.iter().map(cell));
+            let row: Vec<String> = row.collect();
+            let values = &self.experiment.cases[*case].values;
+            table.add_record((*case, values), &header, row.iter().map(String::as_str))?;
+        }
+        table.finish(&header)
+    }
+
     /// Makes the tables, unless they are there already.
     ///
     /// # Errors
@@ -304,12 +337,19 @@ impl Folder {
             SeriesRow::of(outcome, duration_s[place.0]).try_for_each(|row| series.add(case, &row))?;
             LinkRow::of(outcome).try_for_each(|row| hashes.add(case, &row))?;
         }
-        for table in [trials, rounds, groups, robots, series, hashes] {
-            self.manifest.files.push(table.finish()?);
-        }
+        let finished = [
+            trials.finish(&columns::<TrialRow>()?)?,
+            rounds.finish(&columns::<RoundRow>()?)?,
+            groups.finish(&columns::<GroupRow>()?)?,
+            robots.finish(&columns::<RobotRow>()?)?,
+            series.finish(&columns::<SeriesRow>()?)?,
+            hashes.finish(&columns::<LinkRow>()?)?,
+        ];
+        self.manifest.files.extend(finished);
         let journal = self.path.join(journal::FILE);
         let hash = file_hash(&journal)
             .map_err(|error| Failure::storage(format!("{}: {error}", journal.display())))?;
+        self.manifest.files.push(self.metrics_table()?);
         self.manifest.files.push(FileHash { name: journal::FILE.into(), xxh3_128: hash });
         self.manifest.is_complete = true;
         write_manifest(&self.path, &self.manifest)
@@ -325,40 +365,52 @@ fn write_start(path: &Path, experiment: &Experiment, shard: Option<Shard>) -> Re
     let files = vec![
         NewFile::write(path, GIVEN, experiment.given.as_bytes())?,
         NewFile::write(path, RESOLVED, experiment.base.resolved().as_bytes())?,
+        NewFile::write(path, AGAIN, experiment.as_sweep_file(RESOLVED)?.as_bytes())?,
     ];
+    // A report would be of what was there before.
+    let trouble = |error| Failure::storage(format!("cannot write to {}: {error}", path.display()));
+    remove(&path.join(REPORT)).map_err(trouble)?;
     let manifest = Manifest::new(experiment, shard, files);
     write_manifest(path, &manifest)?;
     Ok(manifest)
 }
 
 fn write_manifest(path: &Path, manifest: &Manifest) -> Result<(), Failure> {
-    let text = serde_json::to_string_pretty(manifest).map_err(Failure::run)?;
-    NewFile::write(path, MANIFEST, (text + "\n").as_bytes())?;
-    // The names of the files are on disk when the folder is.
+    NewFile::write(path, MANIFEST, manifest.text()?.as_bytes())?;
+    sync_folder(path)
+}
+
+/// The names of files are on disk when their folder is.
+fn sync_folder(path: &Path) -> Result<(), Failure> {
+    let path = if path.as_os_str().is_empty() { Path::new(".") } else { path };
     let synced = File::open(path).and_then(|folder| folder.sync_all());
     synced.map_err(|error| Failure::storage(format!("{}: {error}", path.display())))
 }
 
 /// The names of all files that a sweep writes.
 fn known_names() -> impl Iterator<Item = &'static str> {
-    [MANIFEST, GIVEN, RESOLVED, LOCK, journal::FILE].into_iter().chain(TABLES)
+    [MANIFEST, LOCK, journal::FILE, REPORT].into_iter().chain(INPUTS).chain(TABLES).chain([METRICS_FILE])
 }
 
-/// Refuses a folder that holds anything but a sweep's files.
+/// Refuses a folder that is not a sweep's: one with a manifest or a journal of this program, or with nothing but what a sweep writes first.
 fn check_is_ours(path: &Path) -> Result<(), Failure> {
     if !path.exists() {
         return Ok(());
     }
+    if !path.is_dir() {
+        return Err(Failure::input(format!("--out: {} is a file, not a folder", path.display())));
+    }
+    let manifest = fs::read(path.join(MANIFEST)).unwrap_or_default();
+    let manifest: serde_json::Value = serde_json::from_slice(&manifest).unwrap_or_default();
+    if manifest["program"] == "usar" || journal::is_one(path) {
+        return Ok(());
+    }
     let entries = fs::read_dir(path)
-        .map_err(|_| Failure::input(format!("--out: {} is a file, not a folder", path.display())))?;
-    let is_ours = |name: &str| {
-        let name = name.strip_suffix(".new").unwrap_or(name);
-        known_names().any(|known| known == name) || name == "report.html" || name == "plots"
-    };
-    let has_manifest = path.join(MANIFEST).exists();
+        .map_err(|error| Failure::storage(format!("--out: {} cannot be read: {error}", path.display())))?;
+    let comes_first =
+        |name: &str| name == LOCK || name.strip_suffix(".new").is_some() || INPUTS.contains(&name);
     for entry in entries.flatten() {
-        let name = entry.file_name().to_string_lossy().into_owned();
-        if !has_manifest && !is_ours(&name) {
+        if !comes_first(&entry.file_name().to_string_lossy()) {
             return Err(Failure::input(format!(
                 "--out: {} is not empty and not the folder of a sweep; nothing was overwritten",
                 path.display()
@@ -385,14 +437,22 @@ fn lock(path: &Path) -> Result<File, Failure> {
 /// Deletes what a sweep wrote.
 fn clear(path: &Path) -> std::io::Result<()> {
     for name in known_names().filter(|name| *name != LOCK) {
-        for name in [name.to_owned(), format!("{name}.new")] {
-            match fs::remove_file(path.join(name)) {
-                Err(error) if error.kind() != std::io::ErrorKind::NotFound => return Err(error),
-                _ => {}
-            }
-        }
+        remove(&path.join(name))?;
+        remove(&path.join(format!("{name}.new")))?;
     }
+    let plots = fs::read_dir(path.join(PLOTS)).into_iter().flatten().flatten().map(|entry| entry.path());
+    for plot in plots.filter(|plot| plot.extension().is_some_and(|kind| kind == "svg" || kind == "csv")) {
+        remove(&plot)?;
+    }
+    let _ = fs::remove_dir(path.join(PLOTS)); // it stays where something else is in it
     Ok(())
+}
+
+fn remove(file: &Path) -> std::io::Result<()> {
+    match fs::remove_file(file) {
+        Err(error) if error.kind() != std::io::ErrorKind::NotFound => Err(error),
+        _ => Ok(()),
+    }
 }
 
 fn read_manifest(path: &Path) -> Result<Option<Manifest>, Failure> {
@@ -402,9 +462,9 @@ fn read_manifest(path: &Path) -> Result<Option<Manifest>, Failure> {
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(None),
         Err(error) => return Err(Failure::storage(format!("{}: {error}", name.display()))),
     };
-    serde_json::from_slice(&text).map(Some).map_err(|error| {
+    Manifest::parse(&text).map(Some).map_err(|reason| {
         let name = name.display();
-        Failure::input(format!("{name}: is not a manifest of this program: {error}; --fresh starts over"))
+        Failure::input(format!("{name}: is not a manifest of this program: {reason}; --fresh starts over"))
     })
 }
 
@@ -427,17 +487,30 @@ fn check_continues(path: &Path, there: &Manifest, now: &Manifest, resolved: &str
     )))
 }
 
-/// Names of the files that do not have the hashes of the manifest. The journal has checksums of its own.
+/// Names of the files that do not have the hashes of the manifest.
 #[must_use]
 pub fn broken_files(path: &Path, manifest: &Manifest) -> Vec<String> {
-    let is_broken = |file: &&FileHash| {
-        file.name != journal::FILE && file_hash(&path.join(&file.name)).ok() != Some(file.xxh3_128.clone())
-    };
+    let is_broken = |file: &&FileHash| file_hash(&path.join(&file.name)).ok() != Some(file.xxh3_128.clone());
     manifest.files.iter().filter(is_broken).map(|file| file.name.clone()).collect()
 }
 
+struct HashWriter(Xxh3);
+
+impl std::io::Write for HashWriter {
+    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
+        self.0.update(bytes);
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> std::io::Result<()> {
+        Ok(())
+    }
+}
+
 fn file_hash(path: &Path) -> std::io::Result<String> {
-    Ok(format!("{:032x}", xxh3_128(&fs::read(path)?)))
+    let mut hash = HashWriter(Xxh3::new());
+    std::io::copy(&mut File::open(path)?, &mut hash)?;
+    Ok(format!("{:032x}", hash.0.digest128()))
 }
 
 /// The experiment that a folder is of.

@@ -37,7 +37,20 @@ pub struct Journal {
 
 /// A line that cannot be used.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Damage(pub String);
+pub struct Damage {
+    /// File, line and what is wrong.
+    pub what: String,
+    /// Whether it is the last line, and has no end.
+    pub is_cut_off: bool,
+}
+
+/// Whether a folder has a journal of this program.
+#[must_use]
+pub fn is_one(folder: &Path) -> bool {
+    let mut head = [0; HEAD.len()];
+    let read = File::open(folder.join(FILE)).and_then(|mut file| file.read_exact(&mut head));
+    read.is_ok() && head == *HEAD.as_bytes()
+}
 
 #[derive(Serialize, Deserialize)]
 struct Entry {
@@ -56,8 +69,8 @@ enum Stored {
 }
 
 impl Journal {
-    /// Opens the journal of a folder and hands each finished trial to `found`, in the order of the file. Trials that timed out count as not
-    /// run. A last line that is cut off is what a killed process was writing.
+    /// Opens the journal of a folder and hands each finished trial to `found`, in the order of the file. For one who writes, trials that timed
+    /// out count as not run. A last line that is cut off is what a killed process was writing.
     ///
     /// # Errors
     /// The file cannot be read.
@@ -72,6 +85,9 @@ impl Journal {
         let mut options = OpenOptions::new();
         options.read(true).write(is_writable).create(is_writable);
         let file = options.open(&path).map_err(trouble)?;
+        if is_writable {
+            File::open(folder).and_then(|folder| folder.sync_all()).map_err(trouble)?;
+        }
         let mut reader = BufReader::new(&file);
         let (mut length, mut lines, mut damages) = (0, BTreeMap::new(), Vec::new());
         let mut line = Vec::new();
@@ -82,7 +98,8 @@ impl Journal {
                 break;
             }
             if line.last() != Some(&b'\n') {
-                damages.push(Damage(format!("{}:{number}: the last line is cut off", path.display())));
+                let what = format!("{}:{number}: the last line is cut off", path.display());
+                damages.push(Damage { what, is_cut_off: true });
                 break;
             }
             match outcome_of(&line, experiment) {
@@ -90,12 +107,15 @@ impl Journal {
                     let TrialKey { case, policy, trial, .. } = outcome.key;
                     let timed_out =
                         matches!(&outcome.result, Err(fault) if fault.kind == FaultKind::TimedOut);
-                    if !timed_out {
+                    if !(timed_out && is_writable) {
                         lines.insert((case, policy, trial), (length, size));
                         found(outcome);
                     }
                 }
-                Err(reason) => damages.push(Damage(format!("{}:{number}: {reason}", path.display()))),
+                Err(reason) => {
+                    let what = format!("{}:{number}: {reason}", path.display());
+                    damages.push(Damage { what, is_cut_off: false });
+                }
             }
             length += size as u64;
         }

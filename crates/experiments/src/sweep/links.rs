@@ -13,7 +13,7 @@ use crate::failure::Failure;
 pub const FILE: &str = "hashes.csv";
 
 /// A row: one link of a trial's hash chain.
-#[derive(Debug, Serialize, Deserialize)]
+#[derive(Debug, Default, Serialize, Deserialize)]
 pub(super) struct LinkRow {
     policy: String,
     trial: u32,

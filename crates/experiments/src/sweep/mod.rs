@@ -8,6 +8,7 @@ mod rows;
 mod tables;
 mod trial;
 
+pub use journal::Place;
 pub use pool::{Limits, Run, run_all};
 pub use tables::FileHash;
 pub(crate) use tables::NewFile;

@@ -8,7 +8,7 @@ use crate::experiment::Experiment;
 
 /// A row of `trials.csv`: the authors' columns first, under their names, then ours. `method` and `policy` say the same; the one is
 /// there so that the authors' files and ours can be stacked, the other for the words of this project.
-#[derive(Serialize)]
+#[derive(Serialize, Default)]
 pub(super) struct TrialRow<'a> {
     method: &'a str,
     trial: u32,
@@ -99,7 +99,7 @@ impl<'a> TrialRow<'a> {
 }
 
 /// A row of `rounds.csv`: one group in one round.
-#[derive(Serialize)]
+#[derive(Serialize, Default)]
 pub(super) struct RoundRow<'a> {
     policy: &'a str,
     trial: u32,
@@ -139,7 +139,7 @@ impl<'a> RoundRow<'a> {
 }
 
 /// A row of `robots.csv`: one robot in one trial, with its initial levels.
-#[derive(Serialize)]
+#[derive(Serialize, Default)]
 pub(super) struct RobotRow<'a> {
     policy: &'a str,
     trial: u32,
@@ -187,7 +187,7 @@ impl<'a> RobotRow<'a> {
 }
 
 /// A row of `groups.csv`: one robot when it was grouped, with the needs that the policy saw.
-#[derive(Serialize)]
+#[derive(Serialize, Default)]
 pub(super) struct GroupRow<'a> {
     policy: &'a str,
     trial: u32,
@@ -244,7 +244,7 @@ impl<'a> GroupRow<'a> {
 const SERIES_PERIOD_S: f64 = 10.0;
 
 /// A row of `series.csv`: what was delivered up to a time.
-#[derive(Serialize)]
+#[derive(Serialize, Default)]
 pub(super) struct SeriesRow<'a> {
     policy: &'a str,
     trial: u32,

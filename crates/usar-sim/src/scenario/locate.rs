@@ -6,6 +6,9 @@
 
 use std::ops::Range;
 
+/// Brackets within brackets that are followed.
+const MAX_DEPTH: usize = 128;
+
 /// Where the fields of one text stand.
 pub struct Fields {
     fields: Vec<Field>,
@@ -25,7 +28,8 @@ impl Fields {
     /// Walks the whole text.
     #[must_use]
     pub fn of(text: &str) -> Self {
-        let mut walker = Walker { text: text.as_bytes(), at: 0, breaks: 0, counted: 0, fields: Vec::new() };
+        let mut walker =
+            Walker { text: text.as_bytes(), at: 0, breaks: 0, counted: 0, fields: Vec::new(), depth: 0 };
         walker.value("");
         Self { fields: walker.fields }
     }
@@ -78,6 +82,8 @@ struct Walker<'a> {
     breaks: usize,
     counted: usize,
     fields: Vec<Field>,
+    /// Open brackets.
+    depth: usize,
 }
 
 impl Walker<'_> {
@@ -144,8 +150,8 @@ impl Walker<'_> {
         self.skip_blank();
         match self.peek() {
             Some(b'(' | b'[' | b'{') => self.entries(path),
-            Some(b'"') => self.string(),
-            Some(b'\'') => self.at += 3,
+            Some(b'"') => self.quoted(b'"'),
+            Some(b'\'') => self.quoted(b'\''),
             Some(b) if b.is_ascii_alphabetic() || b == b'_' => {
                 let name = self.identifier();
                 if name == "r" && matches!(self.peek(), Some(b'"' | b'#')) {
@@ -175,6 +181,10 @@ impl Walker<'_> {
     /// Fields or elements between brackets.
     fn entries(&mut self, path: &str) {
         self.at += 1;
+        self.depth += 1;
+        if self.depth > MAX_DEPTH {
+            self.at = self.text.len(); // RON itself refuses such a text
+        }
         let mut index = 0;
         loop {
             self.skip_blank();
@@ -182,6 +192,7 @@ impl Walker<'_> {
                 None => return,
                 Some(b')' | b']' | b'}') => {
                     self.at += 1;
+                    self.depth -= 1;
                     return;
                 }
                 Some(b',') => self.at += 1,
@@ -208,7 +219,7 @@ impl Walker<'_> {
     fn field_name(&mut self) -> Option<String> {
         let start = self.at;
         if self.peek() == Some(b'"') {
-            self.string(); // the key of a map
+            self.quoted(b'"'); // the key of a map
         } else {
             self.identifier();
         }
@@ -222,14 +233,16 @@ impl Walker<'_> {
         None
     }
 
-    fn string(&mut self) {
+    /// A string or a character.
+    fn quoted(&mut self, quote: u8) {
         self.at += 1;
         while let Some(byte) = self.peek() {
             self.at += if byte == b'\\' { 2 } else { 1 };
-            if byte == b'"' {
-                return;
+            if byte == quote {
+                break;
             }
         }
+        self.at = self.at.min(self.text.len());
     }
 
     fn raw_string(&mut self) {
@@ -311,8 +324,12 @@ mod tests {
 
     #[test]
     fn broken_text_ends_the_walk() {
-        for text in ["(", "(a: \"", "(a: r##\"", "/* /*", "(a: [", ")))", "(,,:,)"] {
-            let _ = Fields::of(text);
+        for text in
+            ["(", "(a: \"", "(a: r##\"", "/* /*", "(a: [", ")))", "(,,:,)", "(a: '", "(a: '\\", "(a: '日')"]
+        {
+            let fields = Fields::of(text);
+            fields.leaves().for_each(|(_, value)| assert!(text.get(value).is_some(), "{text}"));
         }
+        let _ = Fields::of(&"([{".repeat(100_000));
     }
 }

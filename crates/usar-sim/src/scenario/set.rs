@@ -57,7 +57,7 @@ impl ScenarioFile {
 fn is_one_value(text: &str) -> bool {
     let wrapped = format!("[{text}]");
     let value = Fields::of(&wrapped).value("[0]");
-    value.is_some_and(|value| wrapped[value].trim() == text.trim()) && !text.contains("//")
+    value.is_some_and(|value| wrapped[value].trim() == text.trim())
 }
 
 fn unknown(path: &str, fields: &Fields) -> SetError {
