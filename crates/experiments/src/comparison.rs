@@ -84,7 +84,7 @@ pub fn limit_of_correction(comparisons: &[Comparison]) -> Option<String> {
     let least = smallest * family as f64;
     (family > 0 && least >= LEVEL).then(|| {
         format!(
-            "With {most} pairs the smallest p there is, {}, becomes {} after correction over {family} comparisons: none can show a difference, \
+            "At n = {most} the smallest p there is, {}, becomes {} after correction over {family} comparisons: none can show a difference, \
              however large. Compare fewer things, chosen beforehand (--metric, --baseline), or run more trials.",
             short(smallest),
             short(least.min(1.0))
@@ -252,7 +252,7 @@ fn in_words(comparison: &Comparison) -> String {
     let place = place.chain([title.to_owned()]).collect::<Vec<_>>().join(", ");
     let (Some(difference), Some(p)) = (comparison.difference, comparison.p_holm) else {
         return format!(
-            "{place}: nothing can be said of {a} and {b}: there is no pair in which both are defined."
+            "{place}: nothing can be said of {a} and {b}: there is no pair of trials in which both have a value."
         );
     };
     let Some([low, high]) = comparison.interval else {
@@ -265,30 +265,30 @@ fn in_words(comparison: &Comparison) -> String {
     let size = short(difference.abs());
     let direction = if difference > 0.0 { "above" } else { "below" };
     let needed = comparison.pairs_needed.map_or(String::new(), |needed| {
-        format!(" Were this the true difference, {needed} pairs would show it in four of five experiments.")
+        format!(" Were this the true difference, about {needed} pairs would show it in four of five experiments to a single, uncorrected test.")
     });
     let is_clear =
         (low > 0.0 || high < 0.0) && comparison.effect.is_some_and(|effect| effect * difference > 0.0);
     if comparison.is_found() && !is_clear {
         let shift = comparison.shift.unwrap_or(0.0);
         return format!(
-            "{place}: {a} and {b} differ, but not plainly in the mean: by ranks {a} is {} (shift {}; corrected p = {}), while the mean \
+            "{place}: {a} and {b} differ, but not plainly in the mean: by ranks {a} is {} (shift {}; corrected {}), while the mean \
              difference is {} ({range}).",
             if comparison.effect.unwrap_or(0.0) > 0.0 { "above" } else { "below" },
             short(shift),
-            short_p(p),
+            p_in_words(p),
             short(difference)
         );
     }
     if comparison.is_found() {
-        return format!("{place}: {a} is {size} {direction} {b} ({range}; corrected p = {}).", short_p(p));
+        return format!("{place}: {a} is {size} {direction} {b} ({range}; corrected {}).", p_in_words(p));
     }
     if difference == 0.0 {
         return format!("{place}: no difference shows between {a} and {b}: their means are equal ({range}).");
     }
     format!(
-        "{place}: no difference shows between {a} and {b}: {a} is {size} {direction} ({range}; corrected p = {}).{needed}",
-        short_p(p)
+        "{place}: no difference shows between {a} and {b}: {a} is {size} {direction} ({range}; corrected {}).{needed}",
+        p_in_words(p)
     )
 }
 
@@ -313,4 +313,9 @@ pub fn digits(value: f64, digits: i32) -> String {
 #[must_use]
 pub fn short_p(p: f64) -> String {
     if p < 0.0001 { "< 0.0001".to_owned() } else { format!("{p:.4}") }
+}
+
+/// The same in a sentence.
+fn p_in_words(p: f64) -> String {
+    if p < 0.0001 { "p < 0.0001".to_owned() } else { format!("p = {p:.4}") }
 }

@@ -39,6 +39,8 @@ pub const METRICS: &[Metric] = &[
     other("deadlocks", "deadlocks", "", "waiting and deadlocks", |r| Some(f64::from(r.deadlocks))),
     other("longest_stall", "longest stall", "s", "waiting and deadlocks", |r| Some(longest_stall(r))),
     other("conflicts", "conflicts", "", "", |r| Some(f64::from(r.conflicts))),
+    other("errands_done", "errands done", "", "", |r| Some(f64::from(r.errands_done))),
+    other("time", "time to the end", "s", "", |r| Some(r.time_s)),
     other("secured", "secured", "", "", |r| Some(f64::from(r.hard.secured + r.easy.secured))),
     other("energy.total", "energy spent", "percent points", "", |r| Some(r.energy())),
     other("hp.total", "HP lost", "percent points", "", |r| Some(r.hp())),

@@ -214,7 +214,7 @@ fn shards_are_joined_to_the_bytes_of_a_single_run() {
     }
     let parts = ["results/grid-1-of-3", "results/grid-2-of-3", "results/grid-3-of-3"];
     let merge = |parts: &[&'static str]| [&["merge"], parts, &["--out", "joined"]].concat();
-    refused(here, 2, &merge(&parts[..2]), &["shard 3/3 is not there: 8 trials are missing: "]);
+    refused(here, 2, &merge(&parts[..2]), &["shard 3/3 is not there: missing trials, 8: "]);
     succeeds(&usar(here, &["sweep", "grid.ron", "--shard", "3/3", "--trials", "3", "--out", "results/more"]));
     refused(
         here,
@@ -652,6 +652,12 @@ fn strange_texts_are_refused_in_words() {
         &["sweep", "short.ron", "--set", "sweep.trials=3"],
         &["--set: sweep.trials: decides no number"],
     );
+    refused(
+        here,
+        2,
+        &["sweep", "grid.ron", "--set", "rne.hard_rule=MeanHp"],
+        &["--set: rne.hard_rule is an axis"],
+    );
     let grid = std::fs::read_to_string(here.join("grid.ron")).unwrap();
     let commented = grid.replace("[1.5, 3.0]", "[1.5, // as printed\n 3.0 /* twice */]");
     std::fs::write(here.join("commented.ron"), commented).unwrap();
@@ -659,6 +665,13 @@ fn strange_texts_are_refused_in_words() {
     for (from, to, message) in [
         ("[1.5, 3.0]", "[3, 3.0]", "axes.\"roles.carrier.speed_mps\"[1]: must not stand twice, found 3.0"),
         ("roles.carrier.speed_mps", "sweep.trials", "decides no number of a trial"),
+        (
+            "rne.hard_rule",
+            "roles.carrier",
+            "must not be a part of another axis, found roles.carrier.speed_mps",
+        ),
+        ("sum=RNE", "DIS=RNE", "must not be the name of another policy"),
+        ("sum=RNE", "a\\nb=RNE", "must be visible characters"),
         ("trials: 2", "seeds: [4, 4]", "seeds: must differ"),
     ] {
         std::fs::write(here.join("bad.ron"), grid.replace(from, to)).unwrap();

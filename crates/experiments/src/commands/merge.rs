@@ -102,7 +102,7 @@ impl Arguments {
             let named = missing[..missing.len().min(MAX_NAMED)].join(", ");
             let absent = absent_shards(&shards);
             return Err(Failure::input(format!(
-                "{}{} trials are missing: {named}{more}",
+                "{}missing trials, {}: {named}{more}",
                 absent,
                 missing.len()
             )));

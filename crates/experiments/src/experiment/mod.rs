@@ -152,6 +152,12 @@ impl Experiment {
         let is_sweep = Fields::of(&text).inside("").contains(&"scenario");
         let mut parts = if is_sweep { from_sweep_file(text, path)? } else { from_scenario(text, path)? };
         parts.base = with_settings(&parts.base, &overrides.set)?;
+        let is_set = |axis: &&Axis| {
+            overrides.set.iter().any(|entry| entry.split('=').next().unwrap_or_default().trim() == axis.path)
+        };
+        if let Some(axis) = parts.axes.iter().find(is_set) {
+            return Err(Failure::input(format!("--set: {} is an axis of this sweep", axis.path)));
+        }
         if let Some(policies) = &overrides.policies {
             parts.policies.clone_from(policies);
         }
@@ -441,6 +447,14 @@ fn axes(map: Map<Vec<Box<ron::value::RawValue>>>, base: &Scenario, bad: &Bad) ->
         }
         if !decides(&path) {
             return Err(bad(&field, &"decides no number of a trial, so that it can be no axis"));
+        }
+        let holds = |outer: &str, inner: &str| {
+            inner.strip_prefix(outer).is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']))
+        };
+        if let Some(Axis { path: other, .. }) =
+            axes.iter().find(|axis: &&Axis| holds(&axis.path, &path) || holds(&path, &axis.path))
+        {
+            return Err(bad(&field, &format!("must not be a part of another axis, found {other}")));
         }
         let mut files: Vec<ScenarioFile> = Vec::new();
         for (i, value) in values.iter().enumerate() {

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use rne_core::{GroupingPolicy, policy_named};
+use rne_core::{GroupingPolicy, policy_named, policy_names};
 use usar_sim::scenario::{Fields, Scenario, ScenarioFile};
 
 /// A policy with its options.
@@ -36,8 +36,13 @@ impl PolicySpec {
         let options = Self::parse_options(name, options)?;
         let named: Vec<String> = options.iter().map(|(option, value)| format!("{option}: {value}")).collect();
         let plain = if named.is_empty() { name.to_owned() } else { format!("{name}({})", named.join(", ")) };
-        if label.is_some_and(str::is_empty) {
-            return Err(format!("the label before `=` is empty in {text:?}"));
+        if label.is_some_and(|label| label.is_empty() || label.chars().any(char::is_control)) {
+            return Err(format!("the label before `=` must be visible characters, found {text:?}"));
+        }
+        if label.is_some_and(|label| label != name && policy_names().contains(&label)) {
+            return Err(format!(
+                "the label before `=` must not be the name of another policy, found {text:?}"
+            ));
         }
         let written = label.map_or(plain.clone(), |label| format!("{label}={plain}"));
         let label = label.map_or(plain, str::to_owned);

@@ -1,12 +1,10 @@
 //! Figures of how missions went: rescuees over time, who was in which group, and the trust within the team.
 
-use kuva::plot::Heatmap;
-use kuva::render::plots::Plot;
 use rne_core::{
     NEED_NAMES, NeedDistribution, NeedVector, NeedWeights, RelativeNeedsEntropy, relative_entropy,
 };
 
-use super::figure::{Figure, Panel, draw, layout, line_panel, shades, table};
+use super::figure::{Figure, Panel, draw, heat_map, layout, line_panel, names, table};
 use super::gather::{Gathered, times};
 use super::metrics::capitalised;
 use crate::experiment::Experiment;
@@ -21,6 +19,7 @@ pub(super) fn over_time(
     gathered: &[Gathered],
 ) -> Result<Figure, Failure> {
     let times = times(experiment.cases[case].scenario.duration_s);
+    let names = names(experiment);
     let (mut panels, mut rows) = (Vec::new(), Vec::new());
     for (part, title) in ["rescuees total", "rescuees hard", "rescuees easy"].into_iter().enumerate() {
         let mut lines = Vec::new();
@@ -40,7 +39,7 @@ pub(super) fn over_time(
                     half.map_or(String::new(), |half| half.to_string()),
                 ]);
             }
-            lines.push((i, policy.label.as_str(), points));
+            lines.push((i, names[i].as_str(), points));
         }
         panels.extend(line_panel(&lines, [title, "time (s)", "delivered"]));
     }
@@ -59,7 +58,7 @@ pub(super) fn over_time(
 /// In which share of the trials each robot is sent to the hard task, round by round.
 pub(super) fn membership(experiment: &Experiment, gathered: &[Gathered]) -> Result<Figure, Failure> {
     let (mut panels, mut rows, mut least) = (Vec::new(), Vec::new(), u32::MAX);
-    for (policy, gathered) in experiment.policies.iter().zip(gathered) {
+    for ((policy, name), gathered) in experiment.policies.iter().zip(&names(experiment)).zip(gathered) {
         for ((round, robot), [hard, easy]) in &gathered.groups {
             let role = gathered.roles[*robot as usize].to_owned();
             rows.push(vec![
@@ -91,11 +90,10 @@ pub(super) fn membership(experiment: &Experiment, gathered: &[Gathered]) -> Resu
             .unwrap_or(0);
         let data: Vec<Vec<f64>> =
             (0..robots).map(|robot| rounds.iter().map(|round| share(*round, robot)).collect()).collect();
-        let plots =
-            vec![Plot::Heatmap(Heatmap::new().with_data(data).with_color_map(shades()).with_values())];
+        let plots = vec![heat_map(data, 1.0)];
         let names =
             gathered.roles.iter().enumerate().map(|(robot, role)| format!("{robot} {}", role.to_lowercase()));
-        let layout = layout(&plots, &policy.label)
+        let layout = layout(&plots, name)
             .with_x_label("round")
             .with_x_categories(rounds.iter().map(u32::to_string).collect())
             .with_y_categories(names.collect());
@@ -161,8 +159,8 @@ pub(super) fn trust(
                 row.iter().map(|rne| rne.nats().map_or(0.0, |nats| 1000.0 * nats)).collect::<Vec<f64>>(),
             );
         }
-        let plots =
-            vec![Plot::Heatmap(Heatmap::new().with_data(data).with_color_map(shades()).with_values())];
+        let most = data.iter().flatten().copied().fold(0.0, f64::max);
+        let plots = vec![heat_map(data, most)];
         let names: Vec<String> = members.iter().map(|i| team[*i].robot.to_string()).collect();
         let layout = layout(&plots, &format!("{}s", role.to_lowercase()))
             .with_x_categories(names.clone())
@@ -187,6 +185,7 @@ pub(super) fn trust(
 
 /// The mean levels of the groups, round by round.
 pub(super) fn levels(experiment: &Experiment, gathered: &[Gathered]) -> Result<Figure, Failure> {
+    let names = names(experiment);
     let (mut panels, mut rows) = (Vec::new(), Vec::new());
     for (level, name) in ["energy", "HP"].into_iter().enumerate() {
         for (task, task_name) in ["hard", "easy"].into_iter().enumerate() {
@@ -211,7 +210,7 @@ pub(super) fn levels(experiment: &Experiment, gathered: &[Gathered]) -> Result<F
                         points.push((f64::from(*round), mean, half.unwrap_or(0.0)));
                     }
                 }
-                lines.push((i, policy.label.as_str(), points));
+                lines.push((i, names[i].as_str(), points));
             }
             let title = format!("{}, group of the {task_name} task", capitalised(name));
             panels.extend(line_panel(&lines, [&title, "round", "mean level (percent)"]));

@@ -3,11 +3,12 @@
 use std::sync::Arc;
 
 use kuva::backend::svg::SvgBackend;
-use kuva::plot::{ColorMap, LinePlot};
+use kuva::plot::{ColorMap, Heatmap, LinePlot};
 use kuva::render::figure::Figure as Panels;
 use kuva::render::layout::{Layout, TickFormat};
 use kuva::render::plots::Plot;
 
+use crate::experiment::{Experiment, PolicySpec};
 use crate::failure::Failure;
 
 /// Okabe and Ito's colours, which the colour-blind tell apart, in the order of the policies.
@@ -101,13 +102,30 @@ pub(super) fn line_panel(lines: &[Line], words: [&str; 3]) -> Option<Panel> {
     Some(Panel { plots, layout })
 }
 
-/// From white to blue, light enough for black figures on it.
-pub(super) fn shades() -> ColorMap {
-    ColorMap::Custom(Arc::new(|share: f64| {
+/// A heat map with its values written in it: white at 0, blue at `most`, light enough for black figures on it. One value has one colour,
+/// whatever the range of the others.
+pub(super) fn heat_map(data: Vec<Vec<f64>>, most: f64) -> Plot {
+    let all = || data.iter().flatten().copied();
+    let (low, high) = (all().fold(f64::INFINITY, f64::min), all().fold(f64::NEG_INFINITY, f64::max));
+    let colours = ColorMap::Custom(Arc::new(move |place: f64| {
+        let share = (low + place.clamp(0.0, 1.0) * (high - low)) / most.max(f64::MIN_POSITIVE);
         let part = |end: f64| (255.0 + (end - 255.0) * share.clamp(0.0, 1.0)).round() as u8;
         format!("#{:02X}{:02X}{:02X}", part(86.0), part(180.0), part(233.0))
-    }))
+    }));
+    Plot::Heatmap(Heatmap::new().with_data(data).with_color_map(colours).with_values())
 }
+
+/// What figures call the policies: their labels, or where one is too long for an axis, the policy's name with its place in the list.
+pub(super) fn names(experiment: &Experiment) -> Vec<String> {
+    let name = |(i, policy): (usize, &PolicySpec)| {
+        let is_short = policy.label.chars().count() <= LONGEST_NAME;
+        if is_short { policy.label.clone() } else { format!("{} #{}", policy.name, i + 1) }
+    };
+    experiment.policies.iter().enumerate().map(name).collect()
+}
+
+/// Characters of a policy's label that a figure has room for.
+const LONGEST_NAME: usize = 12;
 
 /// Panels in rows of this many, as one drawing.
 pub(super) fn draw(panels: Vec<Panel>, columns: usize, [width, height]: [f64; 2]) -> String {

@@ -3,8 +3,9 @@
 use kuva::plot::{BoxPlot, ForestPlot, ScatterPlot};
 use kuva::render::plots::Plot;
 
-use super::figure::{Figure, Panel, colour, draw, layout, line_panel, range, table};
+use super::figure::{Figure, Panel, colour, draw, layout, line_panel, names, range, table};
 use crate::comparison::{Comparison, short};
+use crate::experiment::Experiment;
 use crate::failure::Failure;
 use crate::metric::{METRICS, figures, metric_named};
 use crate::stats::Moments;
@@ -34,6 +35,7 @@ pub(super) fn boxes(folder: &Folder, case: usize) -> Result<Vec<Figure>, Failure
 
 fn box_figure(folder: &Folder, case: usize, name: &str, metrics: &[usize]) -> Result<Figure, Failure> {
     let policies = &folder.experiment().policies;
+    let names = names(folder.experiment());
     let has_points = folder.experiment().trials as usize <= MAX_POINTS;
     let (mut panels, mut rows, mut counts) = (Vec::new(), Vec::new(), Vec::new());
     for metric in metrics {
@@ -52,7 +54,7 @@ fn box_figure(folder: &Folder, case: usize, name: &str, metrics: &[usize]) -> Re
             );
             all.extend_from_slice(&values);
             if !values.is_empty() {
-                plot = plot.with_group(policy.label.clone(), values);
+                plot = plot.with_group(names[i].clone(), values);
                 colours.push(lighter(colour(i)));
             }
         }
@@ -80,14 +82,14 @@ fn box_figure(folder: &Folder, case: usize, name: &str, metrics: &[usize]) -> Re
     })
 }
 
-/// On how many trials each box stands.
+/// On how many trials each policy's part of a panel stands.
 fn per_box(counts: &[usize]) -> String {
     let (least, most) =
         (counts.iter().min().copied().unwrap_or(0), counts.iter().max().copied().unwrap_or(0));
     if least == most {
-        format!("n = {least} for each box.")
+        format!("n = {least} for each policy.")
     } else {
-        format!("n = {least} to {most} for each box: trials in which it is defined.")
+        format!("n = {least} to {most} for each policy: trials in which it is defined.")
     }
 }
 
@@ -105,6 +107,7 @@ pub(super) fn capitalised(text: &str) -> String {
 /// Energy against HP per rescuee: what a rescue costs.
 pub(super) fn costs(folder: &Folder, case: usize) -> Result<Figure, Failure> {
     let policies = &folder.experiment().policies;
+    let names = names(folder.experiment());
     let (mut panels, mut rows, mut counts) = (Vec::new(), Vec::new(), Vec::new());
     for part in ["total", "hard", "easy"] {
         let [energy, hp] = ["energy", "hp"].map(|cost| metric_named(&format!("{cost}_per_rescuee.{part}")));
@@ -129,7 +132,7 @@ pub(super) fn costs(folder: &Folder, case: usize) -> Result<Figure, Failure> {
             if !points.is_empty() {
                 let points = points.into_iter().take(MAX_POINTS);
                 let plot = ScatterPlot::new().with_data(points).with_color(colour(i)).with_size(3.5);
-                plots.push(Plot::Scatter(plot.with_legend(policy.label.clone())));
+                plots.push(Plot::Scatter(plot.with_legend(names[i].clone())));
             }
         }
         if plots.is_empty() {
@@ -159,7 +162,12 @@ pub(super) fn costs(folder: &Folder, case: usize) -> Result<Figure, Failure> {
 }
 
 /// Paired differences with their intervals.
-pub(super) fn forest(comparisons: &[&Comparison]) -> Result<Figure, Failure> {
+pub(super) fn forest(experiment: &Experiment, comparisons: &[&Comparison]) -> Result<Figure, Failure> {
+    let names = names(experiment);
+    let name = |label: &String| {
+        let place = experiment.policies.iter().position(|policy| policy.label == *label);
+        place.map_or("", |place| names[place].as_str())
+    };
     let mut metrics: Vec<&str> = comparisons.iter().map(|comparison| comparison.metric).collect();
     metrics.dedup();
     let mut panels = Vec::new();
@@ -171,7 +179,7 @@ pub(super) fn forest(comparisons: &[&Comparison]) -> Result<Figure, Failure> {
             let (Some(difference), Some([low, high])) = (comparison.difference, comparison.interval) else {
                 continue;
             };
-            let label = format!("{} - {} ({})", comparison.a, comparison.b, comparison.n);
+            let label = format!("{} - {} ({})", name(&comparison.a), name(&comparison.b), comparison.n);
             plot = plot.with_colored_row(label, difference, low, high, "#0072B2");
             ends.extend([low, high]);
         }
@@ -181,6 +189,7 @@ pub(super) fn forest(comparisons: &[&Comparison]) -> Result<Figure, Failure> {
             let unit = METRICS[place].unit;
             let layout = layout(&plots, METRICS[place].title)
                 .with_x_label(if unit.is_empty() { "difference" } else { unit })
+                .with_ticks(4)
                 .with_x_axis_min(low)
                 .with_x_axis_max(high);
             panels.push(Panel { plots, layout });
@@ -223,6 +232,7 @@ fn forest_range(ends: &[f64]) -> [f64; 2] {
 /// Means of the first figure's metrics along each axis of numbers, the other axes as in the case.
 pub(super) fn axes(folder: &Folder, case: usize) -> Result<Vec<Figure>, Failure> {
     let experiment = folder.experiment();
+    let names = names(experiment);
     let metrics = figures().into_iter().next().map_or(Vec::new(), |(_, metrics)| metrics);
     let mut all = Vec::new();
     for (i, axis) in experiment.axes.iter().enumerate() {
@@ -259,14 +269,14 @@ pub(super) fn axes(folder: &Folder, case: usize) -> Result<Vec<Figure>, Failure>
                     ]);
                 }
                 points.sort_by(|a, b| a.0.total_cmp(&b.0));
-                lines.push((p, policy.label.as_str(), points));
+                lines.push((p, names[p].as_str(), points));
             }
             panels.extend(line_panel(&lines, [&with_unit(*metric), &axis.path, ""]));
         }
         let n = experiment.trials;
-        let named: Vec<String> =
+        let places: Vec<String> =
             axis.values.iter().enumerate().map(|(at, value)| format!("{at}: {value}")).collect();
-        let legend = if is_numeric { String::new() } else { format!(" Values: {}.", named.join(", ")) };
+        let legend = if is_numeric { String::new() } else { format!(" Values: {}.", places.join(", ")) };
         let others: Vec<String> = experiment
             .axes
             .iter()

@@ -29,6 +29,8 @@ struct Page<'a> {
     missing: usize,
     trials: u32,
     labels: Vec<&'a str>,
+    /// What figures call policies whose labels are too long for them, with these.
+    abbreviations: Vec<(String, &'a str)>,
     summary: Vec<Vec<String>>,
     comparisons: Vec<Row>,
     found: Vec<&'a str>,
@@ -89,7 +91,7 @@ fn figures(folder: &mut Folder, case: usize, comparisons: &[&Comparison]) -> Res
     let mut figures = metrics::boxes(folder, case)?;
     figures.push(metrics::costs(folder, case)?);
     if !comparisons.is_empty() {
-        figures.push(metrics::forest(comparisons)?);
+        figures.push(metrics::forest(experiment, comparisons)?);
     }
     figures.push(course::over_time(experiment, case, &gathered)?);
     figures.push(course::membership(experiment, &gathered)?);
@@ -127,7 +129,10 @@ fn page<'a>(
         let wanted = comparisons.iter().filter(|comparison| comparison.is_found() == is_found);
         wanted.map(|comparison| comparison.in_words.as_str()).collect()
     };
+    let names = figure::names(experiment).into_iter();
+    let pairs = names.zip(&experiment.policies).map(|(name, policy)| (name, policy.label.as_str()));
     Page {
+        abbreviations: pairs.filter(|(name, label)| name != label).collect(),
         name: &experiment.name,
         description: &experiment.base.description,
         place: experiment.describe(&experiment.cases[case]).trim_end_matches(": ").to_owned(),

@@ -120,10 +120,7 @@ impl Folder {
         }
         if let Some(manifest) = finished {
             let mut damaged = false;
-            let mut note = |damage: String| {
-                damaged = true;
-                say(again(damage));
-            };
+            let mut note = |_| damaged = true; // it is said below
             let folder = Self::with_journal(path, Arc::clone(&experiment), manifest, true, &mut note)?;
             let missing = folder.experiment.keys(opening.shard).any(|key| !folder.has(&key));
             if !damaged && !missing {

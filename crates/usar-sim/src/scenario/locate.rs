@@ -51,6 +51,17 @@ impl Fields {
         pairs.filter(is_leaf).map(|(field, _)| (field.path.as_str(), field.value.clone()))
     }
 
+    /// Number of entries of a list that is written down.
+    #[must_use]
+    pub fn entries(&self, path: &str) -> Option<usize> {
+        let is_entry = |field: &&Field| {
+            let rest = field.path.strip_prefix(path).and_then(|rest| rest.strip_prefix('['));
+            rest.is_some_and(|rest| rest.find(']') == Some(rest.len() - 1))
+        };
+        self.value(path)?;
+        Some(self.fields.iter().filter(is_entry).count())
+    }
+
     /// Names of the fields directly in a field; of the whole text for an empty path.
     #[must_use]
     pub fn inside(&self, path: &str) -> Vec<&str> {

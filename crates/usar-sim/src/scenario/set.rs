@@ -64,6 +64,9 @@ fn unknown(path: &str, fields: &Fields) -> SetError {
     let mut within = path;
     let known = loop {
         within = within.rfind(['.', '[']).map_or("", |end| &within[..end]);
+        if let Some(count) = fields.entries(within).filter(|_| path[within.len()..].starts_with('[')) {
+            break format!("{count} entries, from [0] on");
+        }
         let known = fields.inside(within);
         if !known.is_empty() || within.is_empty() {
             break known.join(", ");
@@ -117,7 +120,10 @@ mod tests {
             "costs.energy.per_stop: no such field; costs.energy has per_step, per_metre, per_second"
         );
         assert!(refused("cots.energy", "1").contains("a scenario has name, description, sweep"));
-        assert!(refused("debris[7].at", "(1, 1)").contains("no such field"));
+        assert_eq!(
+            refused("debris[7].at", "(1, 1)"),
+            "debris[7].at: no such field; debris has 2 entries, from [0] on"
+        );
         assert!(refused("duration_s", "\"long\"").contains("found \"long\""));
         assert!(refused("rne.hard_rule", "Luck").contains("IntraGroupTrust"));
         for value in ["1, dt_s: 1", "1) //", "1 /* ", "", "(1"] {
