@@ -277,7 +277,7 @@ fn trouble_with_the_disk_breaks_nothing() {
     let here = folder.path();
     succeeds(&usar(here, &["sweep", "short.ron", "--policies", "RNE", "--trials", "4", "--out", "whole"]));
     // Files may not grow beyond some blocks: what a full disk does, without one.
-    for blocks in ["1", "20", "60"] {
+    for blocks in ["1", "12", "20"] {
         let limited = format!(
             "trap '' XFSZ; ulimit -f {blocks}; exec '{}' sweep short.ron --policies RNE --trials 4 --quiet",
             program().display()

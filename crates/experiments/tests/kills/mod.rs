@@ -36,7 +36,7 @@ pub fn kill_sweeps(usar: &Path, arguments: &[&str], folder: &Path, kills: u32, l
     assert!(command("alone").status().expect("usar runs").success());
     let alone = files(&folder.join("alone"));
     let (mut report, mut finished) = (Report::default(), 0);
-    while report.kills < kills || finished > 0 {
+    while report.kills < kills || finished > 0 || report.sweeps == 0 {
         let mut child = command("killed").spawn().expect("usar runs");
         if report.kills < kills {
             std::thread::sleep(Duration::from_millis(draws.random_range(0..=longest_ms)));
