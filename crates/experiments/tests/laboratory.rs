@@ -26,6 +26,7 @@ fn place() -> tempfile::TempDir {
     std::fs::write(folder.path().join("short.ron"), text).unwrap();
     let grid = "(
     name: \"grid\",
+    description: \"faster carriers\",
     scenario: \"short.ron\",
     set: {\"mission.loading_s\": 1.0},
     policies: [\"RNE\", \"sum=RNE(score: Sum)\", \"DIS\"],
@@ -181,9 +182,9 @@ fn bad_sweep_files_are_refused_with_their_lines() {
     refuse(
         "carrier.speed_mps",
         "carrier.speed",
-        "bad.ron:8: axes.\"roles.carrier.speed\"[0]: roles.carrier.speed: no such field; roles.carrier has ",
+        "bad.ron:9: axes.\"roles.carrier.speed\"[0]: roles.carrier.speed: no such field; roles.carrier has ",
     );
-    refuse("[1.5, 3.0]", "[1.5, \"fast\"]", "bad.ron:8: axes.\"roles.carrier.speed_mps\"[1]: ");
+    refuse("[1.5, 3.0]", "[1.5, \"fast\"]", "bad.ron:9: axes.\"roles.carrier.speed_mps\"[1]: ");
     refuse(
         "[1.5, 3.0]",
         "[1.5, -3.0]",
@@ -191,8 +192,8 @@ fn bad_sweep_files_are_refused_with_their_lines() {
     );
     refuse("[1.5, 3.0]", "[1.5, 1.5]", "must not stand twice, found 1.5");
     refuse("[1.5, 3.0]", "[]", "must have at least one value");
-    refuse("\"mission.loading_s\"", "\"mission.loading\"", "bad.ron:4: set.\"mission.loading\": ");
-    refuse("trials: 2", "trails: 2", "bad.ron:6:");
+    refuse("\"mission.loading_s\"", "\"mission.loading\"", "bad.ron:5: set.\"mission.loading\": ");
+    refuse("trials: 2", "trails: 2", "bad.ron:7:");
     refuse("short.ron", "long.ron", "long.ron: cannot be read");
     refuse("score: Sum", "score: Most", "policy sum: rne.score: ");
     refuse("\"DIS\"", "\"RNE\"", "policies: must not stand twice, found \"RNE\"");
@@ -477,7 +478,14 @@ fn a_report_is_one_file_with_figures_and_the_numbers_behind_them() {
         let table = csv::Reader::from_reader(&*plots[&format!("{name}.csv")]).records().count();
         assert!(table > 0, "{name}");
     }
-    for words in ["sum", "roles.carrier.speed_mps=1.5", "usar sweep sweep.ron", "duration_s: 120", "Holm"] {
+    for words in [
+        "sum",
+        "faster carriers",
+        "roles.carrier.speed_mps=1.5",
+        "usar sweep sweep.ron",
+        "duration_s: 120",
+        "Holm",
+    ] {
         assert!(page.contains(words), "{words}");
     }
     succeeds(&usar(here, &["report", "results/grid"]));

@@ -14,7 +14,6 @@ pub(super) struct SweepFile {
     pub name: String,
     /// What the sweep is for.
     #[serde(default)]
-    #[expect(dead_code, reason = "for readers of the file")]
     pub description: String,
     /// Path of the scenario, from this file's folder.
     pub scenario: String,

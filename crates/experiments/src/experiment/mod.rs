@@ -184,6 +184,13 @@ impl Experiment {
                 list.len()
             )));
         }
+        if let Seeds::From(first) = &seeds
+            && first.checked_add(u64::from(trials)).is_none()
+        {
+            return Err(Failure::input(format!(
+                "seeds: {trials} from {first} on go beyond the greatest seed"
+            )));
+        }
         let mut file: ScenarioFile = (*base).clone();
         file.sweep.trials = trials;
         if let Seeds::From(first) = seeds {
@@ -403,6 +410,9 @@ fn from_sweep_file(text: String, path: &Path) -> Result<Parts, Failure> {
     let scenario = path.parent().unwrap_or(Path::new("")).join(&file.scenario);
     let (base, _) = Scenario::load(&scenario).map_err(Failure::input)?;
     let mut set: ScenarioFile = (*base).clone();
+    if !file.description.is_empty() {
+        set.description.clone_from(&file.description);
+    }
     for (field, value) in &file.set.0 {
         let place = format!("set.{field:?}");
         set.set(field, value.trim().get_ron()).map_err(|error| bad(&place, &error))?;
