@@ -102,8 +102,14 @@ impl Manifest {
         Self { is_complete: false, files: Vec::new(), ..self.clone() }
     }
 
+    /// Which part of the sweep it is, in words.
+    #[must_use]
+    pub fn part(&self) -> String {
+        self.shard.map_or("whole".into(), |shard| format!("shard {}/{}", shard.number, shard.of))
+    }
+
     /// What keeps the results of this manifest from being continued or joined by those of another, one sentence each. The number of trials
-    /// does not.
+    /// does not, nor which part of the sweep it is.
     #[must_use]
     pub fn differences(&self, other: &Self) -> Vec<String> {
         let mut differences = Vec::new();
@@ -135,9 +141,6 @@ impl Manifest {
             compare("seeds", seeds(self), seeds(other));
         }
         compare("--check", self.is_checked.to_string(), other.is_checked.to_string());
-        let shard =
-            |m: &Self| m.shard.map_or("whole".into(), |shard| format!("shard {}/{}", shard.number, shard.of));
-        compare("shard", shard(self), shard(other));
         differences
     }
 }

@@ -10,8 +10,9 @@ use clap::Args;
 use xxhash_rust::xxh3::xxh3_128;
 
 use super::sweep::print;
-use crate::experiment::{Program, Shard};
+use crate::experiment::{Experiment, Program, Shard};
 use crate::failure::Failure;
+use crate::provenance::scenario_differences;
 use crate::sweep::folder::{Folder, Opening, experiment_in};
 use crate::sweep::{Place, TrialKey};
 
@@ -39,74 +40,10 @@ pub(crate) struct Arguments {
 impl Arguments {
     pub(crate) fn execute(&self, out: &mut dyn Write) -> Result<(), Failure> {
         let mut shards = self.folders.iter().map(|path| Folder::read(path)).collect::<Result<Vec<_>, _>>()?;
-        let first = shards[0].manifest().clone();
-        let this = Program::this();
-        if (&first.version, &first.source) != (&this.version, &this.source) {
-            return Err(Failure::input(format!(
-                "{} is of usar {} with source {}; this is {} with source {}: merge with the program that ran the shards",
-                self.folders[0].display(),
-                first.version,
-                first.source,
-                this.version,
-                this.source
-            )));
-        }
-        for shard in &shards {
-            let mut differences = first.differences(shard.manifest());
-            differences.retain(|difference| !difference.starts_with("shard: "));
-            differences.extend(crate::provenance::scenario_differences(
-                &shards[0].experiment().base.resolved(),
-                &shard.experiment().base.resolved(),
-            ));
-            if first.trials != shard.manifest().trials {
-                differences.push(format!("trials: {} there, {} now", first.trials, shard.manifest().trials));
-            }
-            if !differences.is_empty() {
-                let (one, other) = (self.folders[0].display(), shard.path().display());
-                let differences = differences.join("\n  ");
-                return Err(Failure::input(format!(
-                    "{one} and {other} are not of one sweep:\n  {differences}"
-                )));
-            }
-        }
-        let mut sources: BTreeMap<Place, (usize, u128)> = BTreeMap::new();
-        for (i, shard) in shards.iter_mut().enumerate() {
-            for place in shard.results().keys().copied().collect::<Vec<_>>() {
-                let hash = xxh3_128(&shard.line(place)?);
-                let (source, known) = *sources.entry(place).or_insert((i, hash));
-                if known != hash {
-                    let TrialKey { trial, label, seed, .. } = shard.experiment().key(place);
-                    return Err(Failure::input(format!(
-                        "{} and {} disagree about trial {trial} of {label} (seed {seed})",
-                        self.folders[source].display(),
-                        self.folders[i].display()
-                    )));
-                }
-            }
-        }
+        check_same_sweep(&shards)?;
+        let sources = sources(&mut shards)?;
         let (experiment, _) = experiment_in(&self.folders[0])?;
-        let missing: Vec<String> = experiment
-            .keys(None)
-            .filter(|key| !sources.contains_key(&(key.case, key.policy, key.trial)))
-            .map(|key| {
-                format!(
-                    "{}trial {} of {}",
-                    experiment.describe(&experiment.cases[key.case]),
-                    key.trial,
-                    key.label
-                )
-            })
-            .collect();
-        if !missing.is_empty() {
-            let more = if missing.len() > MAX_NAMED { ", ..." } else { "" };
-            let named = missing[..missing.len().min(MAX_NAMED)].join(", ");
-            let absent = absent_shards(&shards);
-            return Err(Failure::input(format!(
-                "{}missing trials, {}: {named}{more}",
-                absent,
-                missing.len()
-            )));
-        }
+        check_complete(&experiment, &sources, &shards)?;
         let mut whole = Folder::open(&self.out, Arc::new(experiment), Opening::default(), &mut |note| {
             eprintln!("note: {note}");
         })?;
@@ -122,6 +59,74 @@ impl Arguments {
             whole.results().values().filter_map(|measured| measured.failure.as_deref()).collect();
         if failed.is_empty() { Ok(()) } else { Err(Failure::run(failed.join("\n"))) }
     }
+}
+
+/// Refuses shards of another program than this one, and shards of different sweeps.
+fn check_same_sweep(shards: &[Folder]) -> Result<(), Failure> {
+    let (first, this) = (shards[0].manifest(), Program::this());
+    if (&first.version, &first.source) != (&this.version, &this.source) {
+        return Err(Failure::input(format!(
+            "{} is of usar {} with source {}; this is {} with source {}: merge with the program that ran the shards",
+            shards[0].path().display(),
+            first.version,
+            first.source,
+            this.version,
+            this.source
+        )));
+    }
+    let resolved = shards[0].experiment().base.resolved();
+    for shard in shards {
+        let mut differences = first.differences(shard.manifest());
+        differences.extend(scenario_differences(&resolved, &shard.experiment().base.resolved()));
+        if first.trials != shard.manifest().trials {
+            differences.push(format!("trials: {} there, {} now", first.trials, shard.manifest().trials));
+        }
+        if !differences.is_empty() {
+            let (one, other) = (shards[0].path().display(), shard.path().display());
+            let differences = differences.join("\n  ");
+            return Err(Failure::input(format!("{one} and {other} are not of one sweep:\n  {differences}")));
+        }
+    }
+    Ok(())
+}
+
+/// For each trial, the first shard that has it and a hash of its line; shards that disagree are refused.
+fn sources(shards: &mut [Folder]) -> Result<Sources, Failure> {
+    let paths: Vec<PathBuf> = shards.iter().map(|shard| shard.path().to_owned()).collect();
+    let mut sources = Sources::new();
+    for (i, shard) in shards.iter_mut().enumerate() {
+        for place in shard.results().keys().copied().collect::<Vec<_>>() {
+            let hash = xxh3_128(&shard.line(place)?);
+            let (source, known) = *sources.entry(place).or_insert((i, hash));
+            if known != hash {
+                let TrialKey { trial, label, seed, .. } = shard.experiment().key(place);
+                return Err(Failure::input(format!(
+                    "{} and {} disagree about trial {trial} of {label} (seed {seed})",
+                    paths[source].display(),
+                    paths[i].display()
+                )));
+            }
+        }
+    }
+    Ok(sources)
+}
+
+type Sources = BTreeMap<Place, (usize, u128)>;
+
+/// Refuses shards that lack a trial, naming the shards that are not there and the first trials.
+fn check_complete(experiment: &Experiment, sources: &Sources, shards: &[Folder]) -> Result<(), Failure> {
+    let is_missing = |key: &TrialKey| !sources.contains_key(&(key.case, key.policy, key.trial));
+    let name = |key: TrialKey| {
+        let case = experiment.describe(&experiment.cases[key.case]);
+        format!("{case}trial {} of {}", key.trial, key.label)
+    };
+    let missing: Vec<String> = experiment.keys(None).filter(is_missing).map(name).collect();
+    if missing.is_empty() {
+        return Ok(());
+    }
+    let more = if missing.len() > MAX_NAMED { ", ..." } else { "" };
+    let named = missing[..missing.len().min(MAX_NAMED)].join(", ");
+    Err(Failure::input(format!("{}missing trials, {}: {named}{more}", absent_shards(shards), missing.len())))
 }
 
 /// Which of the shards are not there, in words; nothing where all are.

@@ -2,6 +2,7 @@
 
 mod file;
 mod policy;
+mod read;
 
 use std::path::Path;
 use std::sync::Arc;
@@ -11,13 +12,14 @@ use rne_core::GroupingPolicy;
 use usar_sim::layout::Layout;
 use xxhash_rust::xxh3::xxh3_128;
 
-use usar_sim::scenario::{Fields, Problem, SampledCounts, Scenario, ScenarioFile, parse_ron, read_text};
+use usar_sim::scenario::{Fields, SampledCounts, Scenario, ScenarioFile, read_text};
 
 pub use policy::{PolicySpec, split_list};
+pub use read::with_settings;
 
 use crate::failure::Failure;
 use crate::sweep::{Fault, Trial, TrialKey, run_trial};
-use file::{Map, SweepFile};
+use read::{checked, from_scenario, from_sweep_file};
 
 /// Most cases that the axes of a sweep may span.
 const MAX_CASES: usize = 100_000;
@@ -360,127 +362,6 @@ impl Experiment {
     }
 }
 
-/// A scenario with fields set by `path=value`.
-///
-/// # Errors
-/// A field that is not there, a value that does not fit it or breaks a rule.
-pub fn with_settings(scenario: &Scenario, settings: &[String]) -> Result<Scenario, Failure> {
-    let mut file: ScenarioFile = (**scenario).clone();
-    for entry in settings {
-        let (path, value) = entry
-            .split_once('=')
-            .ok_or_else(|| Failure::input(format!("--set: must be path=value, found {entry:?}")))?;
-        let path = path.trim();
-        if !decides(path) {
-            return Err(Failure::input(format!(
-                "--set: {path}: decides no number of a trial; --policies, --trials and --seed say what is run"
-            )));
-        }
-        file.set(path, value).map_err(|error| Failure::input(format!("--set: {error}")))?;
-    }
-    checked(file, "--set: ")
-}
-
-fn from_scenario(text: String, path: &Path) -> Result<Parts, Failure> {
-    let base = Scenario::parse(&text, path).map_err(Failure::input)?;
-    Ok(Parts {
-        name: base.name.clone(),
-        given: text,
-        axes: Vec::new(),
-        policies: base.sweep.policies.clone(),
-        trials: base.sweep.trials,
-        seeds: Seeds::From(base.sweep.first_seed),
-        is_checked: false,
-        program: Program::this(),
-        base,
-    })
-}
-
-fn from_sweep_file(text: String, path: &Path) -> Result<Parts, Failure> {
-    let file: SweepFile = parse_ron(&text, path).map_err(Failure::input)?;
-    let fields = Fields::of(&text);
-    let bad = |field: &str, reason: &dyn std::fmt::Display| {
-        let line = fields.line(field).map_or(String::new(), |line| format!(":{line}"));
-        Failure::input(format!("{}{line}: {field}: {reason}", path.display()))
-    };
-    let usable = |c: char| c.is_ascii_alphanumeric() || "-_.".contains(c);
-    if file.name.is_empty() || file.name.starts_with('.') || !file.name.chars().all(usable) {
-        return Err(bad("name", &format!("must be letters, digits, -, _ and ., found {:?}", file.name)));
-    }
-    let scenario = path.parent().unwrap_or(Path::new("")).join(&file.scenario);
-    let (base, _) = Scenario::load(&scenario).map_err(Failure::input)?;
-    let mut set: ScenarioFile = (*base).clone();
-    if !file.description.is_empty() {
-        set.description.clone_from(&file.description);
-    }
-    for (field, value) in &file.set.0 {
-        let place = format!("set.{field:?}");
-        set.set(field, value.trim().get_ron()).map_err(|error| bad(&place, &error))?;
-    }
-    let base = checked(set, &format!("{}: set: ", path.display()))?;
-    let axes = axes(file.axes, &base, &bad)?;
-    let seeds = match (file.seeds, file.first_seed) {
-        (Some(_), Some(_)) => return Err(bad("seeds", &"must not stand beside first_seed")),
-        (Some(list), None) if list.is_empty() => {
-            return Err(bad("seeds", &"must have at least one, found none"));
-        }
-        (Some(list), None) if (1..list.len()).any(|i| list[..i].contains(&list[i])) => {
-            return Err(bad("seeds", &"must differ: trials of one seed are one trial"));
-        }
-        (Some(list), None) => Seeds::Listed(list),
-        (None, first) => Seeds::From(first.unwrap_or(base.sweep.first_seed)),
-    };
-    let listed = if let Seeds::Listed(list) = &seeds { Some(list.len() as u32) } else { None };
-    Ok(Parts {
-        name: file.name,
-        given: text,
-        axes,
-        policies: file.policies.unwrap_or_else(|| base.sweep.policies.clone()),
-        trials: file.trials.or(listed).unwrap_or(base.sweep.trials),
-        seeds,
-        is_checked: false,
-        program: Program::this(),
-        base,
-    })
-}
-
-type Bad<'a> = dyn Fn(&str, &dyn std::fmt::Display) -> Failure + 'a;
-
-/// Checks each value of each axis alone, so that a wrong one is named with its line.
-fn axes(map: Map<Vec<Box<ron::value::RawValue>>>, base: &Scenario, bad: &Bad) -> Result<Vec<Axis>, Failure> {
-    let mut axes = Vec::new();
-    for (path, values) in map.0 {
-        let field = format!("axes.{path:?}");
-        let values: Vec<String> = values.iter().map(|value| value.trim().get_ron().to_owned()).collect();
-        if values.is_empty() {
-            return Err(bad(&field, &"must have at least one value, found none"));
-        }
-        if !decides(&path) {
-            return Err(bad(&field, &"decides no number of a trial, so that it can be no axis"));
-        }
-        let holds = |outer: &str, inner: &str| {
-            inner.strip_prefix(outer).is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']))
-        };
-        if let Some(Axis { path: other, .. }) =
-            axes.iter().find(|axis: &&Axis| holds(&axis.path, &path) || holds(&path, &axis.path))
-        {
-            return Err(bad(&field, &format!("must not be a part of another axis, found {other}")));
-        }
-        let mut files: Vec<ScenarioFile> = Vec::new();
-        for (i, value) in values.iter().enumerate() {
-            let entry = format!("{field}[{i}]");
-            let mut file: ScenarioFile = (**base).clone();
-            file.set(&path, value).map_err(|error| bad(&entry, &error))?;
-            if files.contains(&file) {
-                return Err(bad(&entry, &format!("must not stand twice, found {value}")));
-            }
-            files.push(file);
-        }
-        axes.push(Axis { path, values });
-    }
-    Ok(axes)
-}
-
 fn checked_policies(written: &[String]) -> Result<Vec<PolicySpec>, Failure> {
     let mut policies: Vec<PolicySpec> = Vec::new();
     for text in written {
@@ -494,13 +375,6 @@ fn checked_policies(written: &[String]) -> Result<Vec<PolicySpec>, Failure> {
         return Err(Failure::input("policies: must name at least one policy, found none"));
     }
     Ok(policies)
-}
-
-fn checked(file: ScenarioFile, prefix: &str) -> Result<Scenario, Failure> {
-    Scenario::try_from(file).map_err(|problems| {
-        let line = |p: &Problem| format!("{prefix}{} {}, found {}", p.field, p.rule, p.found);
-        Failure::Input(problems.iter().map(line).collect::<Vec<_>>().join("\n"))
-    })
 }
 
 /// The full grid, the last axis fastest.
@@ -531,12 +405,6 @@ fn cases(base: &Scenario, axes: &[Axis], policies: &[PolicySpec]) -> Result<Vec<
         Ok(Case { values: values.into_iter().map(str::to_owned).collect(), scenario, policies })
     };
     grid.into_iter().map(case).collect()
-}
-
-/// Whether a field decides numbers: all do but the scenario's name, its description and what a sweep runs by default.
-fn decides(path: &str) -> bool {
-    let first = path.split(['.', '[']).next().unwrap_or_default();
-    !["name", "description", "sweep"].contains(&first)
 }
 
 /// What of a scenario decides numbers, as text: all but its name, its description and the sweep's defaults.

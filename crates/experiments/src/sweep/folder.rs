@@ -468,6 +468,9 @@ fn read_manifest(path: &Path) -> Result<Option<Manifest>, Failure> {
 /// Refuses to go on with another sweep, or with fewer trials than there are.
 fn check_continues(path: &Path, there: &Manifest, now: &Manifest, resolved: &str) -> Result<(), Failure> {
     let mut differences = there.differences(now);
+    if there.shard != now.shard {
+        differences.push(format!("shard: {} there, {} now", there.part(), now.part()));
+    }
     let old = fs::read_to_string(path.join(RESOLVED)).unwrap_or_default();
     differences.extend(scenario_differences(&old, resolved));
     if now.trials < there.trials {
