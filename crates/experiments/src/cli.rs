@@ -5,7 +5,7 @@ use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 
-use crate::commands::{check, compare, estimate, group, merge, report, run, sweep, trust, verify};
+use crate::commands::{calibrate, check, compare, estimate, group, merge, report, reproduce, run, sweep, trust, verify};
 use crate::failure::Failure;
 
 /// Which robots should team up? A laboratory for trust and grouping policies in mixed robot teams.
@@ -40,7 +40,9 @@ enum Command {
     Merge(merge::Arguments),
     Compare(compare::Arguments),
     Report(report::Arguments),
+    Reproduce(reproduce::Arguments),
     Verify(verify::Arguments),
+    Calibrate(calibrate::Arguments),
     Check(check::Arguments),
     Trust(trust::Arguments),
     Group(group::Arguments),
@@ -74,8 +76,10 @@ impl Command {
             Self::Estimate(arguments) => arguments.execute(out),
             Self::Merge(arguments) => arguments.execute(out),
             Self::Compare(arguments) => arguments.execute(out),
+            Self::Reproduce(arguments) => arguments.execute(out),
             Self::Report(arguments) => arguments.execute(out),
             Self::Verify(arguments) => arguments.execute(out),
+            Self::Calibrate(arguments) => arguments.execute(out),
             Self::Check(arguments) => arguments.execute(out),
             Self::Trust(arguments) => arguments.execute(out),
             Self::Group(arguments) => arguments.execute(out),

@@ -1,5 +1,7 @@
 //! The laboratory behind the command `usar`: trials in parallel, tables, records, and the trust maths alone.
 
+pub mod calibration;
+pub mod claims;
 mod cli;
 mod commands;
 pub mod comparison;

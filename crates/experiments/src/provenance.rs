@@ -9,7 +9,7 @@ use crate::failure::Failure;
 use crate::sweep::FileHash;
 
 /// Version of the folder's layout.
-pub const SCHEMA_VERSION: u32 = 2;
+pub const SCHEMA_VERSION: u32 = 3;
 
 /// `manifest.json`. Holds nothing that differs between two runs of the same sweep: no time of day, no number of threads.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -37,6 +37,8 @@ pub struct Manifest {
     pub seeds: Seeds,
     /// Whether every invariant was checked at every step.
     pub is_checked: bool,
+    /// Whether the large tables and the hash chains were left out.
+    pub is_lean: bool,
     /// Which part of the sweep this is, if it is not the whole.
     pub shard: Option<Shard>,
     /// Whether all trials are there.
@@ -64,6 +66,7 @@ impl Manifest {
             trials: experiment.trials,
             seeds: experiment.seeds.clone(),
             is_checked: experiment.is_checked,
+            is_lean: experiment.is_lean,
             shard,
             is_complete: false,
             files,
@@ -141,6 +144,7 @@ impl Manifest {
             compare("seeds", seeds(self), seeds(other));
         }
         compare("--check", self.is_checked.to_string(), other.is_checked.to_string());
+        compare("lean", self.is_lean.to_string(), other.is_lean.to_string());
         differences
     }
 }

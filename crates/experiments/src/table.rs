@@ -5,6 +5,9 @@ use comfy_table::{Cell, CellAlignment, Table};
 use usar_sim::event::ReturnCause;
 use usar_sim::record::TrialRecord;
 
+use crate::calibration::Fit;
+use crate::claims::{CLAIMS, Example, PartFinding, Shares};
+use crate::commands::reproduce::{Judged, PAPERS_TRIALS};
 use crate::comparison::{Comparison, digits, short, short_p};
 use crate::metric::METRICS;
 use crate::stats::Moments;
@@ -82,6 +85,113 @@ pub(crate) fn comparison_table(comparisons: &[&Comparison]) -> Table {
             p(c.p_holm),
             right(&c.effect.map_or("-".to_owned(), |effect| format!("{effect:.2}"))),
             right(&c.pairs_needed.map_or("-".to_owned(), |pairs| pairs.to_string())),
+        ]);
+    }
+    table
+}
+
+/// What a scenario's trials say of each claim: a row for each of its comparisons.
+pub(crate) fn claims_table(judged: &Judged, trials: u32) -> Table {
+    let mut table = Table::new();
+    table.load_style(UTF8_FULL_CONDENSED);
+    let few = format!("first {PAPERS_TRIALS} pairs");
+    let all = format!("{trials} pairs");
+    table.set_header(["claim", &few, &all, "difference", "95 % interval", "n", "first 10"]);
+    let difference = |found: &PartFinding| right(&found.difference.map_or("-".to_owned(), short));
+    for ((claim, few), all) in CLAIMS.iter().zip(&judged.of_few).zip(&judged.of_all) {
+        table.add_row([
+            Cell::new(claim.words),
+            Cell::new(few.verdict.words()),
+            Cell::new(all.verdict.words()),
+        ]);
+        for (part, (few, all)) in claim.parts.iter().zip(few.parts.iter().zip(&all.parts)) {
+            table.add_row([
+                Cell::new(format!("  {}", part.words())),
+                Cell::new(""),
+                Cell::new(""),
+                difference(all),
+                right(&interval(all.interval)),
+                right(&all.differences.len().to_string()),
+                right(&format!("{} ({})", few.difference.map_or("-".to_owned(), short), interval(few.interval))),
+            ]);
+        }
+    }
+    table
+}
+
+fn interval(interval: Option<[f64; 2]>) -> String {
+    interval.map_or("-".to_owned(), |[low, high]| format!("{} to {}", short(low), short(high)))
+}
+
+/// The paper's examples with exact values.
+pub(crate) fn examples_table(examples: &[Example]) -> Table {
+    let mut table = Table::new();
+    table.load_style(UTF8_FULL_CONDENSED);
+    table.set_header(["example", "claim", "entropy of the one", "of the other", "verdict"]);
+    for example in examples {
+        table.add_row([
+            Cell::new(example.name),
+            Cell::new(example.words),
+            right(&digits(example.trusting, 4)),
+            right(&digits(example.doubting, 4)),
+            Cell::new(example.verdict.words()),
+        ]);
+    }
+    table
+}
+
+/// What experiments of other sizes would say of each claim.
+pub(crate) fn power_table(judged: &Judged) -> Table {
+    let mut table = Table::new();
+    table.load_style(UTF8_FULL_CONDENSED);
+    table.set_header(["claim", "leans to", "pairs for 80 %", "of 10 pairs: holds", "does not", "undecided"]);
+    let share = |share: f64| right(&format!("{:.0} %", 100.0 * share));
+    for (claim, power) in CLAIMS.iter().zip(&judged.powers) {
+        let Some(power) = power else { continue };
+        let Shares { holds, does_not_hold } = power.of_few;
+        table.add_row([
+            Cell::new(claim.words),
+            Cell::new(power.leaning.words()),
+            right(&power.pairs_needed.map_or("> 1000000".to_owned(), |pairs| pairs.to_string())),
+            share(holds),
+            share(does_not_hold),
+            share((1.0 - holds - does_not_hold).max(0.0)),
+        ]);
+    }
+    table
+}
+
+/// All verdicts side by side.
+pub(crate) fn verdicts_table(judged: &[Judged], trials: u32) -> Table {
+    let mut table = Table::new();
+    table.load_style(UTF8_FULL_CONDENSED);
+    let header = judged.iter().flat_map(|scenario| {
+        [PAPERS_TRIALS, trials].map(|trials| Cell::new(format!("{}, {trials} pairs", scenario.scenario)))
+    });
+    table.set_header(std::iter::once(Cell::new("claim")).chain(header));
+    for (i, claim) in CLAIMS.iter().enumerate() {
+        let verdicts = judged.iter().flat_map(|scenario| {
+            [&scenario.of_few, &scenario.of_all].map(|findings| Cell::new(findings[i].verdict.words()))
+        });
+        table.add_row(std::iter::once(Cell::new(claim.words)).chain(verdicts));
+    }
+    table
+}
+
+/// A row for each quantity of a calibration.
+pub(crate) fn fit_table(rows: &[Fit]) -> Table {
+    let mut table = Table::new();
+    table.load_style(UTF8_FULL_CONDENSED);
+    table.set_header(["quantity", "data", "fitted", "fresh", "means apart by", "sd ratio"]);
+    let spread = |mean: f64, sd: f64| right(&format!("{} ± {}", digits(mean, 4), digits(sd, 2)));
+    for row in rows {
+        table.add_row([
+            Cell::new(row.quantity),
+            spread(row.data_mean, row.data_sd),
+            spread(row.fitted_mean, row.fitted_sd),
+            spread(row.fresh_mean, row.fresh_sd),
+            right(&format!("{:+.1} sd", row.off_by_sd)),
+            right(&format!("{:.2}", row.sd_ratio)),
         ]);
     }
     table

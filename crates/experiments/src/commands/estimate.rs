@@ -109,7 +109,7 @@ fn measure(experiment: &Experiment, sample: &[&TrialKey]) -> Result<(f64, u64), 
     let mut folder = Folder::open(&path, shared, crate::sweep::folder::Opening::default(), &mut |_| {})?;
     let start = Instant::now();
     for key in sample {
-        let result = experiment.run(key, &halt);
+        let result = experiment.run_alone(key, &halt);
         folder.add(&crate::sweep::Outcome { key: (*key).clone(), result })?;
     }
     let seconds = start.elapsed().as_secs_f64() / sample.len() as f64;

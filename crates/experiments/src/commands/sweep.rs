@@ -3,24 +3,20 @@
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use clap::Args;
 
 use super::precision::Precision;
-use super::{default_jobs, progress_bar};
+use super::{STOP, default_jobs, run_missing, stop_on_ctrl_c};
 use crate::experiment::{Experiment, Overrides, Shard, split_list};
 use crate::failure::Failure;
 use crate::sweep::folder::{Folder, Opening, trials_in};
-use crate::sweep::{Limits, Run, TrialKey, run_all};
+use crate::sweep::Limits;
 use crate::table::policy_table;
 
 /// Tables of more cases than these are left to `usar compare` and `usar report`.
 const MAX_TABLES: usize = 8;
-
-/// Set by Ctrl-C.
-static STOP: AtomicBool = AtomicBool::new(false);
 
 /// Compare policies over paired trials: the same initial levels for every policy
 #[derive(Debug, Args)]
@@ -109,7 +105,7 @@ impl Arguments {
         }
         experiment.check_layouts(&self.file)?;
 
-        let _ = ctrlc::set_handler(|| STOP.store(true, Ordering::Relaxed));
+        stop_on_ctrl_c();
         let opening = Opening { shard: self.shard, is_fresh: self.fresh };
         let mut folder =
             Folder::open(&path, Arc::new(experiment), opening, &mut |note| eprintln!("note: {note}"))?;
@@ -150,28 +146,9 @@ impl Arguments {
 
     /// Runs what is missing.
     fn run(&self, folder: &mut Folder) -> Result<(), Failure> {
-        let all: Vec<TrialKey> = folder.experiment().keys(self.shard).collect();
-        let missing: Vec<TrialKey> = all.iter().filter(|key| !folder.has(key)).cloned().collect();
-        if !self.quiet && missing.len() < all.len() {
-            eprintln!("{} of {} trials are there already", all.len() - missing.len(), all.len());
-        }
-        if missing.is_empty() {
-            return Ok(());
-        }
         let jobs = self.jobs.map_or_else(default_jobs, |jobs| jobs as usize);
-        let progress = progress_bar(missing.len(), jobs, self.quiet);
         let limits = Limits { jobs, trial: Some(Duration::from_secs_f64(self.max_trial_s)) };
-        let experiment = folder.shared_experiment();
-        let run: Arc<Run> = Arc::new(move |key, halt| experiment.run(key, halt));
-        let is_whole = run_all(missing, limits, run, &STOP, |outcome| {
-            if let Some(failure) = outcome.failure() {
-                progress.suspend(|| eprintln!("{failure}"));
-            }
-            progress.inc(1);
-            folder.add(&outcome)
-        })?;
-        progress.finish_and_clear();
-        if is_whole { Ok(()) } else { Err(folder.interrupted()) }
+        run_missing(folder, self.shard, limits, self.quiet)
     }
 }
 

@@ -46,15 +46,21 @@ impl Arguments {
     pub(crate) fn execute(&self, out: &mut dyn Write) -> Result<(), Failure> {
         let (experiment, manifest) = experiment_in(&self.folder)?;
         let experiment = Arc::new(experiment);
+        if manifest.is_lean {
+            return Err(Failure::input(format!(
+                "{}: its sweep is lean: it has no hashes to compare with",
+                self.folder.display()
+            )));
+        }
         let recorded = links::read(&self.folder)?;
         let all: Vec<TrialKey> = experiment.keys(manifest.shard).collect();
         let chosen = self.choose(&all);
         let jobs = self.jobs.map_or_else(default_jobs, |jobs| jobs as usize);
         self.mention_other_version(&manifest);
-        let progress = progress_bar(chosen.len(), jobs, self.quiet);
+        let progress = progress_bar(chosen.len(), "trials", jobs, self.quiet);
         let mut outcomes = Vec::new();
         let again = Arc::clone(&experiment);
-        let run: Arc<Run> = Arc::new(move |key, halt| again.run(key, halt));
+        let run: Arc<Run> = Arc::new(move |key, halt| again.run_alone(key, halt));
         run_all(
             chosen,
             Limits { jobs, trial: Some(LONGEST_TRIAL) },

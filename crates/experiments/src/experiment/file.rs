@@ -23,6 +23,9 @@ pub(super) struct SweepFile {
     /// Policies to compare; the scenario's where there are none.
     #[serde(default)]
     pub policies: Option<Vec<String>>,
+    /// Options of RNE and the values that each takes: the policy `RNE` stands for every combination.
+    #[serde(default)]
+    pub readings: Map<Vec<Box<RawValue>>>,
     /// Paired trials for each case and policy.
     #[serde(default)]
     pub trials: Option<u32>,
@@ -32,6 +35,9 @@ pub(super) struct SweepFile {
     /// Seeds of the trials, one by one, instead of `trials` and `first_seed`.
     #[serde(default)]
     pub seeds: Option<Vec<u64>>,
+    /// Whether to leave out what takes most of the disk: `groups.csv`, `robots.csv`, `series.csv` and the hash chains.
+    #[serde(default)]
+    pub lean: bool,
     /// Fields and the values that each takes: the full grid is run.
     #[serde(default)]
     pub axes: Map<Vec<Box<RawValue>>>,

@@ -18,7 +18,7 @@ pub use policy::{PolicySpec, split_list};
 pub use read::with_settings;
 
 use crate::failure::Failure;
-use crate::sweep::{Fault, Trial, TrialKey, run_trial};
+use crate::sweep::{Fault, SharedTrials, Trial, TrialKey, run_trial};
 use read::{checked, from_scenario, from_sweep_file};
 
 /// Most cases that the axes of a sweep may span.
@@ -125,10 +125,13 @@ pub struct Experiment {
     pub seeds: Seeds,
     /// Whether every invariant is checked at every step.
     pub is_checked: bool,
+    /// Whether the large tables and the hash chains are left out.
+    pub is_lean: bool,
     /// What runs it, or ran it.
     pub program: Program,
     /// For each case and policy, a hash of what decides its numbers but for the seed.
     ids: Vec<Vec<u128>>,
+    shared: SharedTrials,
 }
 
 /// The parts of an experiment before they are put together.
@@ -141,6 +144,7 @@ pub(crate) struct Parts {
     pub trials: u32,
     pub seeds: Seeds,
     pub is_checked: bool,
+    pub is_lean: bool,
     pub program: Program,
 }
 
@@ -150,7 +154,14 @@ impl Experiment {
     /// # Errors
     /// Bad input, with file, line, field, rule and found value.
     pub fn load(path: &Path, overrides: &Overrides) -> Result<Self, Failure> {
-        let text = read_text(path).map_err(Failure::input)?;
+        Self::parse(read_text(path).map_err(Failure::input)?, path, overrides)
+    }
+
+    /// Reads the text of a scenario or a sweep file; `path` says where its scenario is, and stands in messages.
+    ///
+    /// # Errors
+    /// Those of [`Experiment::load`].
+    pub fn parse(text: String, path: &Path, overrides: &Overrides) -> Result<Self, Failure> {
         let is_sweep = Fields::of(&text).inside("").contains(&"scenario");
         let mut parts = if is_sweep { from_sweep_file(text, path)? } else { from_scenario(text, path)? };
         parts.base = with_settings(&parts.base, &overrides.set)?;
@@ -176,7 +187,7 @@ impl Experiment {
     /// # Errors
     /// A policy, an axis or a case that cannot be used.
     pub(crate) fn assemble(parts: Parts) -> Result<Self, Failure> {
-        let Parts { name, given, base, axes, policies, trials, seeds, is_checked, program } = parts;
+        let Parts { name, given, base, axes, policies, trials, seeds, is_checked, is_lean, program } = parts;
         let policies = checked_policies(&policies)?;
         if let Seeds::Listed(list) = &seeds
             && list.len() < trials as usize
@@ -216,7 +227,7 @@ impl Experiment {
         };
         let ids = |case| policies.iter().map(|policy| id(case, policy)).collect::<Result<Vec<_>, Failure>>();
         let ids = cases.iter().map(ids).collect::<Result<Vec<_>, Failure>>()?;
-        Ok(Self { name, given, base, axes, cases, policies, trials, seeds, is_checked, program, ids })
+        Ok(Self { name, given, base, axes, cases, policies, trials, seeds, is_checked, is_lean, program, ids, shared: SharedTrials::default() })
     }
 
     /// What decides the numbers of a trial, as a hash of 32 hexadecimal digits: the resolved scenario, the policy with its options, the
@@ -245,11 +256,21 @@ impl Experiment {
         TrialKey { case, policy, trial, seed: self.seed(trial), label: self.policies[policy].label.clone() }
     }
 
-    /// Runs one trial.
+    /// Runs one trial, or takes it over from a policy that grouped every round in the same way.
     ///
     /// # Errors
     /// What kept it from its end.
     pub fn run(&self, key: &TrialKey, halt: &AtomicBool) -> Result<Trial, Fault> {
+        let case = &self.cases[key.case];
+        let policy = &*case.policies[key.policy];
+        self.shared.run((key.case, &case.scenario), policy, key.seed, self.is_checked, halt)
+    }
+
+    /// Simulates one trial, whatever others are known.
+    ///
+    /// # Errors
+    /// What kept it from its end.
+    pub fn run_alone(&self, key: &TrialKey, halt: &AtomicBool) -> Result<Trial, Fault> {
         let case = &self.cases[key.case];
         run_trial(&case.scenario, &*case.policies[key.policy], key.seed, self.is_checked, halt)
     }
@@ -284,6 +305,7 @@ impl Experiment {
             trials,
             seeds: self.seeds.clone(),
             is_checked: self.is_checked,
+            is_lean: self.is_lean,
             program: self.program.clone(),
         })
     }
@@ -313,11 +335,12 @@ impl Experiment {
             |axis: &Axis| Ok(format!("        {}: [{}],\n", quoted(&axis.path)?, axis.values.join(", ")));
         let axes = self.axes.iter().map(line).collect::<Result<Vec<_>, Failure>>()?.concat();
         Ok(format!(
-            "(\n    name: {},\n    scenario: {},\n    policies: [{}],\n    trials: {},\n    {seeds},\n    axes: {{\n{axes}    }},\n)\n",
+            "(\n    name: {},\n    scenario: {},\n    policies: [{}],\n    trials: {},\n    {seeds},\n    lean: {},\n    axes: {{\n{axes}    }},\n)\n",
             quoted(&self.name)?,
             quoted(scenario)?,
             policies.join(", "),
             self.trials,
+            self.is_lean,
         ))
     }
 

@@ -8,6 +8,9 @@ use super::file::{Map, SweepFile};
 use super::{Axis, Parts, Program, Seeds};
 use crate::failure::Failure;
 
+/// Most combinations of readings that a sweep may have.
+const MAX_READINGS: usize = 10_000;
+
 /// A scenario with fields set by `path=value`.
 ///
 /// # Errors
@@ -39,6 +42,7 @@ pub(super) fn from_scenario(text: String, path: &Path) -> Result<Parts, Failure>
         trials: base.sweep.trials,
         seeds: Seeds::From(base.sweep.first_seed),
         is_checked: false,
+        is_lean: false,
         program: Program::this(),
         base,
     })
@@ -67,6 +71,11 @@ pub(super) fn from_sweep_file(text: String, path: &Path) -> Result<Parts, Failur
     }
     let base = checked(set, &format!("{}: set: ", path.display()))?;
     let axes = axes(file.axes, &base, &bad)?;
+    let readings = readings(file.readings, &base, &bad)?;
+    let policies = file.policies.unwrap_or_else(|| base.sweep.policies.clone());
+    if !readings.is_empty() && !policies.iter().any(|policy| policy.trim() == "RNE") {
+        return Err(bad("readings", &"are those of the policy RNE, which the sweep has not"));
+    }
     let seeds = match (file.seeds, file.first_seed) {
         (Some(_), Some(_)) => return Err(bad("seeds", &"must not stand beside first_seed")),
         (Some(list), None) if list.is_empty() => {
@@ -83,10 +92,11 @@ pub(super) fn from_sweep_file(text: String, path: &Path) -> Result<Parts, Failur
         name: file.name,
         given: text,
         axes,
-        policies: file.policies.unwrap_or_else(|| base.sweep.policies.clone()),
+        policies: with_readings(policies, &readings, &base),
         trials: file.trials.or(listed).unwrap_or(base.sweep.trials),
         seeds,
         is_checked: false,
+        is_lean: file.lean,
         program: Program::this(),
         base,
     })
@@ -127,6 +137,63 @@ fn axes(map: Map<Vec<Box<ron::value::RawValue>>>, base: &Scenario, bad: &Bad) ->
         axes.push(Axis { path, values });
     }
     Ok(axes)
+}
+
+/// An option of RNE with its values.
+type Reading = (String, Vec<String>);
+
+/// Checks each value of each option alone.
+fn readings(
+    map: Map<Vec<Box<ron::value::RawValue>>>,
+    base: &Scenario,
+    bad: &Bad,
+) -> Result<Vec<Reading>, Failure> {
+    let mut readings: Vec<Reading> = Vec::new();
+    for (option, values) in map.0 {
+        let field = format!("readings.{option:?}");
+        let values: Vec<String> = values.iter().map(|value| value.trim().get_ron().to_owned()).collect();
+        if values.is_empty() {
+            return Err(bad(&field, &"must have at least one value, found none"));
+        }
+        for (i, value) in values.iter().enumerate() {
+            let mut file: ScenarioFile = (**base).clone();
+            file.set(&format!("rne.{option}"), value).map_err(|error| bad(&format!("{field}[{i}]"), &error))?;
+            if values[..i].contains(value) {
+                return Err(bad(&format!("{field}[{i}]"), &format!("must not stand twice, found {value}")));
+            }
+        }
+        readings.push((option, values));
+    }
+    let count = readings.iter().map(|(_, values)| values.len()).try_fold(1_usize, usize::checked_mul);
+    if count.is_none_or(|count| count > MAX_READINGS) {
+        return Err(bad("readings", &format!("must be at most {MAX_READINGS} combinations")));
+    }
+    Ok(readings)
+}
+
+/// The policies with every combination of the readings in the place of RNE. One is named by the options in which it differs from the scenario's.
+fn with_readings(policies: Vec<String>, readings: &[Reading], base: &Scenario) -> Vec<String> {
+    let mut combinations = vec![Vec::new()];
+    for (option, values) in readings {
+        let mut longer = Vec::new();
+        for combination in &combinations {
+            for value in values {
+                let mut file: ScenarioFile = (**base).clone();
+                let is_default = file.set(&format!("rne.{option}"), value).is_ok() && file == **base;
+                let mut next: Vec<String> = combination.clone();
+                next.extend((!is_default).then(|| format!("{option}: {value}")));
+                longer.push(next);
+            }
+        }
+        combinations = longer;
+    }
+    let named = |combination: &Vec<String>| {
+        if combination.is_empty() { "RNE".to_owned() } else { format!("RNE({})", combination.join(", ")) }
+    };
+    let expand = |policy: String| {
+        if policy.trim() == "RNE" { combinations.iter().map(named).collect() } else { vec![policy] }
+    };
+    policies.into_iter().flat_map(expand).collect()
 }
 
 pub(super) fn checked(file: ScenarioFile, prefix: &str) -> Result<Scenario, Failure> {

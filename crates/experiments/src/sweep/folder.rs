@@ -282,6 +282,19 @@ impl Folder {
         ))
     }
 
+    /// Makes all tables from the journal.
+    fn tables(&mut self, stop: &AtomicBool) -> Result<Vec<FileHash>, Failure> {
+        let experiment = Arc::clone(&self.experiment);
+        let mut tables = Tables::new(&self.path, &experiment)?;
+        for place in self.journal.places().collect::<Vec<_>>() {
+            if stop.load(Ordering::Relaxed) {
+                return Err(self.interrupted());
+            }
+            tables.add(&self.outcome(place)?, &experiment)?;
+        }
+        tables.finish()
+    }
+
     /// `metrics.csv`: every metric of every trial that has numbers.
     fn metrics_table(&self) -> Result<FileHash, Failure> {
         let axes = self.experiment.axes.iter().map(|axis| axis.path.clone()).collect();
@@ -311,37 +324,7 @@ impl Folder {
             return Ok(());
         }
         self.journal.tidy()?;
-        let names: Vec<String> = self.experiment.axes.iter().map(|axis| axis.path.clone()).collect();
-        let [mut trials, mut rounds, mut groups, mut robots, mut series, mut hashes] = {
-            let mut tables = Vec::new();
-            for name in TABLES {
-                tables.push(Table::new(&self.path, name, names.clone())?);
-            }
-            <[Table; 6]>::try_from(tables).map_err(|_| Failure::run("there are six tables"))?
-        };
-        let experiment = Arc::clone(&self.experiment);
-        let duration_s: Vec<f64> = experiment.cases.iter().map(|case| case.scenario.duration_s).collect();
-        for place in self.journal.places().collect::<Vec<_>>() {
-            if stop.load(Ordering::Relaxed) {
-                return Err(self.interrupted());
-            }
-            let outcome = &self.outcome(place)?;
-            let case = (place.0, experiment.cases[place.0].values.as_slice());
-            trials.add(case, &TrialRow::new(outcome, &experiment))?;
-            RoundRow::of(outcome).try_for_each(|row| rounds.add(case, &row))?;
-            GroupRow::of(outcome).try_for_each(|row| groups.add(case, &row))?;
-            RobotRow::of(outcome).try_for_each(|row| robots.add(case, &row))?;
-            SeriesRow::of(outcome, duration_s[place.0]).try_for_each(|row| series.add(case, &row))?;
-            LinkRow::of(outcome).try_for_each(|row| hashes.add(case, &row))?;
-        }
-        let finished = [
-            trials.finish(&columns::<TrialRow>()?)?,
-            rounds.finish(&columns::<RoundRow>()?)?,
-            groups.finish(&columns::<GroupRow>()?)?,
-            robots.finish(&columns::<RobotRow>()?)?,
-            series.finish(&columns::<SeriesRow>()?)?,
-            hashes.finish(&columns::<LinkRow>()?)?,
-        ];
+        let finished = self.tables(stop)?;
         self.manifest.files.extend(finished);
         let journal = self.path.join(journal::FILE);
         let hash = file_hash(&journal)
@@ -350,6 +333,58 @@ impl Folder {
         self.manifest.files.push(FileHash { name: journal::FILE.into(), xxh3_128: hash });
         self.manifest.is_complete = true;
         write_manifest(&self.path, &self.manifest)
+    }
+}
+
+/// The tables on their way; of a lean sweep the first two only.
+struct Tables {
+    trials: Table,
+    rounds: Table,
+    large: Option<Large>,
+}
+
+/// The tables that a lean sweep leaves out.
+struct Large {
+    groups: Table,
+    robots: Table,
+    series: Table,
+    hashes: Table,
+}
+
+impl Tables {
+    fn new(path: &Path, experiment: &Experiment) -> Result<Self, Failure> {
+        let axes: Vec<String> = experiment.axes.iter().map(|axis| axis.path.clone()).collect();
+        let table = |place: usize| Table::new(path, TABLES[place], axes.clone());
+        let large = || {
+            Ok::<_, Failure>(Large { groups: table(2)?, robots: table(3)?, series: table(4)?, hashes: table(5)? })
+        };
+        let large = if experiment.is_lean { None } else { Some(large()?) };
+        Ok(Self { trials: table(0)?, rounds: table(1)?, large })
+    }
+
+    fn add(&mut self, outcome: &Outcome, experiment: &Experiment) -> Result<(), Failure> {
+        let number = outcome.key.case;
+        let case = (number, experiment.cases[number].values.as_slice());
+        self.trials.add(case, &TrialRow::new(outcome, experiment))?;
+        RoundRow::of(outcome).try_for_each(|row| self.rounds.add(case, &row))?;
+        let Some(large) = &mut self.large else { return Ok(()) };
+        let duration_s = experiment.cases[number].scenario.duration_s;
+        GroupRow::of(outcome).try_for_each(|row| large.groups.add(case, &row))?;
+        RobotRow::of(outcome).try_for_each(|row| large.robots.add(case, &row))?;
+        SeriesRow::of(outcome, duration_s).try_for_each(|row| large.series.add(case, &row))?;
+        LinkRow::of(outcome).try_for_each(|row| large.hashes.add(case, &row))
+    }
+
+    fn finish(self) -> Result<Vec<FileHash>, Failure> {
+        let mut files =
+            vec![self.trials.finish(&columns::<TrialRow>()?)?, self.rounds.finish(&columns::<RoundRow>()?)?];
+        if let Some(large) = self.large {
+            files.push(large.groups.finish(&columns::<GroupRow>()?)?);
+            files.push(large.robots.finish(&columns::<RobotRow>()?)?);
+            files.push(large.series.finish(&columns::<SeriesRow>()?)?);
+            files.push(large.hashes.finish(&columns::<LinkRow>()?)?);
+        }
+        Ok(files)
     }
 }
 
@@ -418,7 +453,7 @@ fn check_is_ours(path: &Path) -> Result<(), Failure> {
 }
 
 /// Takes the folder for this process.
-fn lock(path: &Path) -> Result<File, Failure> {
+pub(crate) fn lock(path: &Path) -> Result<File, Failure> {
     let name = path.join(LOCK);
     let trouble = |error| Failure::storage(format!("cannot write to {}: {error}", path.display()));
     let file = File::options().create(true).append(true).open(&name).map_err(trouble)?;
@@ -529,6 +564,7 @@ pub fn experiment_of(path: &Path, manifest: &Manifest) -> Result<Experiment, Fai
         trials: manifest.trials,
         seeds: manifest.seeds.clone(),
         is_checked: manifest.is_checked,
+        is_lean: manifest.is_lean,
         program: Program { version: manifest.version.clone(), source: manifest.source.clone() },
     })
 }

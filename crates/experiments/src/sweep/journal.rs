@@ -226,7 +226,8 @@ fn line_of(experiment: &Experiment, outcome: &Outcome) -> Result<Vec<u8>, Failur
     let key = &outcome.key;
     let stored = match &outcome.result {
         Ok(trial) => {
-            Stored::Ended { links: links::encode(trial.record.chain.links()), trial: Box::new(trial.clone()) }
+            let links = if experiment.is_lean { &[] } else { trial.record.chain.links() };
+            Stored::Ended { links: links::encode(links), trial: Box::new(trial.clone()) }
         }
         Err(fault) => Stored::Fault(fault.clone()),
     };

@@ -5,11 +5,13 @@ mod journal;
 pub mod links;
 mod pool;
 mod rows;
+mod shared;
 mod tables;
 mod trial;
 
 pub use journal::Place;
 pub use pool::{Limits, Run, run_all};
 pub use tables::FileHash;
+pub use shared::SharedTrials;
 pub(crate) use tables::NewFile;
 pub use trial::{Fault, FaultKind, Grouped, Outcome, Trial, TrialKey, run_trial};

@@ -1,0 +1,201 @@
+//! A free parameter of a calibration: the fields of the scenario that it sets, and the range in which it is searched.
+
+use std::fmt;
+
+use usar_sim::scenario::{Fields, ScenarioFile};
+
+/// Significant digits of a candidate value, so that the log and the calibrated scenario hold what was run, to the bit.
+const DIGITS: usize = 4;
+
+/// A free parameter. It may set several fields that belong together, each in a fixed ratio to it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Free {
+    /// Its name: the first path as written.
+    pub name: String,
+    /// Every field that it sets, by path, with the field's ratio to the parameter.
+    fields: Vec<(String, f64)>,
+    low: f64,
+    high: f64,
+    is_log: bool,
+}
+
+impl Free {
+    /// Reads `PATH[*RATIO] [+ PATH[*RATIO] ...]=LOW..HIGH[ log]`; `[*]` in a path is every entry of a list. `fields` are those of `text`, in
+    /// which each path must be written.
+    ///
+    /// # Errors
+    /// A text of another form, a path that is not in the scenario, or a range that cannot be searched; in one sentence.
+    pub fn parse(spec: &str, fields: &Fields) -> Result<Self, String> {
+        let form = || format!("must be 'PATH=LOW..HIGH' (PATH + PATH*RATIO=LOW..HIGH log), found {spec:?}");
+        let (paths, range) = spec.rsplit_once('=').ok_or_else(form)?;
+        let (range, is_log) =
+            range.trim().strip_suffix("log").map_or((range.trim(), false), |range| (range.trim(), true));
+        let (low, high) = range.split_once("..").ok_or_else(form)?;
+        let number = |text: &str| text.trim().parse::<f64>().ok().filter(|value| value.is_finite());
+        let (low, high) = number(low).zip(number(high)).ok_or_else(form)?;
+        if low >= high {
+            return Err(format!("the lower bound must be below the upper one, found {spec:?}"));
+        }
+        if is_log && low <= 0.0 {
+            return Err(format!("a logarithmic range must be above 0, found {spec:?}"));
+        }
+        let mut named = Vec::new();
+        let mut name = String::new();
+        for part in paths.split('+') {
+            let (path, ratio) = match part.rfind('*').filter(|at| !part[at + 1..].starts_with(']')) {
+                Some(at) => (part[..at].trim(), number(&part[at + 1..]).ok_or_else(form)?),
+                None => (part.trim(), 1.0),
+            };
+            if name.is_empty() {
+                path.clone_into(&mut name);
+            }
+            let matching: Vec<(String, f64)> = fields
+                .leaves()
+                .filter(|(known, _)| matches(path, known))
+                .map(|(known, _)| (known.to_owned(), ratio))
+                .collect();
+            if matching.is_empty() {
+                return Err(format!(
+                    "{path}: is not written in the scenario; write it there, so that what is found can take its place"
+                ));
+            }
+            named.extend(matching);
+        }
+        Ok(Self { name, fields: named, low, high, is_log })
+    }
+
+    /// The value at a place on the line of all numbers, of which [0, 1] is the range; beyond, the range is mirrored again and again.
+    #[must_use]
+    pub fn value(&self, place: f64) -> f64 {
+        let folded = place.rem_euclid(2.0);
+        let unit = if folded > 1.0 { 2.0 - folded } else { folded };
+        let value = if self.is_log {
+            self.low * (self.high / self.low).powf(unit)
+        } else {
+            self.low + unit * (self.high - self.low)
+        };
+        rounded(value).clamp(self.low, self.high)
+    }
+
+    /// The place of a value, kept a tenth of the range away from its ends.
+    #[must_use]
+    pub fn place(&self, value: f64) -> f64 {
+        let value = value.clamp(self.low, self.high);
+        let unit = if self.is_log {
+            (value / self.low).ln() / (self.high / self.low).ln()
+        } else {
+            (value - self.low) / (self.high - self.low)
+        };
+        unit.clamp(0.1, 0.9)
+    }
+
+    /// The ends of its range.
+    #[must_use]
+    pub fn ends(&self) -> [f64; 2] {
+        [self.low, self.high]
+    }
+
+    /// Its fields, each with its value in RON.
+    pub fn settings(&self, value: f64) -> impl Iterator<Item = (&str, String)> {
+        self.fields.iter().map(move |(path, ratio)| (path.as_str(), in_ron(rounded(value * ratio))))
+    }
+
+    /// Its present value: that of its first field.
+    ///
+    /// # Errors
+    /// The field is not a number.
+    pub fn present(&self, text: &str, fields: &Fields) -> Result<f64, String> {
+        let (path, ratio) = &self.fields[0];
+        let written = fields.value(path).map(|value| text[value].trim()).unwrap_or_default();
+        let value = written.parse::<f64>();
+        value.map(|value| value / ratio).map_err(|_| format!("{path}: must be a number, found {written}"))
+    }
+
+    /// Sets its fields.
+    ///
+    /// # Errors
+    /// A field does not take the value, in one sentence.
+    pub fn set(&self, file: &mut ScenarioFile, value: f64) -> Result<(), String> {
+        self.settings(value).try_for_each(|(path, value)| file.set(path, &value)).map_err(|e| e.to_string())
+    }
+}
+
+impl fmt::Display for Free {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let fields = self.fields.iter().map(|(path, ratio)| format!("{path} * {ratio}"));
+        let fields: Vec<String> = fields.collect();
+        let scale = if self.is_log { " log" } else { "" };
+        write!(f, "{} = {}..{}{scale}", fields.join(" + "), self.low, self.high)
+    }
+}
+
+/// A number as RON writes a float.
+pub(super) fn in_ron(value: f64) -> String {
+    format!("{value:?}")
+}
+
+/// A number with few digits.
+pub(super) fn rounded(value: f64) -> f64 {
+    format!("{value:.*e}", DIGITS - 1).parse().unwrap_or(value)
+}
+
+/// Whether a path is what a pattern names.
+fn matches(pattern: &str, path: &str) -> bool {
+    let mut rest = path;
+    let mut parts = pattern.split("[*]").peekable();
+    while let Some(part) = parts.next() {
+        let Some(after) = rest.strip_prefix(part) else { return false };
+        rest = after;
+        if parts.peek().is_some() {
+            let Some(end) = rest.find(']').filter(|_| rest.starts_with('[')) else { return false };
+            rest = &rest[end + 1..];
+        }
+    }
+    rest.is_empty()
+}
+
+#[cfg(test)]
+#[expect(clippy::float_cmp, reason = "values are rounded to four digits")]
+mod tests {
+    use super::*;
+
+    const TEXT: &str = "(roles: (a: (v: 3.0), b: (v: 2.0)), zones: [(r: 4.5), (r: 4.5)], n: (k: 1))";
+
+    fn free(spec: &str) -> Result<Free, String> {
+        Free::parse(spec, &Fields::of(TEXT))
+    }
+
+    #[test]
+    fn one_parameter_may_set_several_fields_in_fixed_ratios() {
+        let speed = free("roles.a.v + roles.b.v*0.66667 = 1..6").unwrap();
+        assert_eq!(speed.name, "roles.a.v");
+        let settings: Vec<_> = speed.settings(3.0).collect();
+        assert_eq!(settings, [("roles.a.v", "3.0".to_owned()), ("roles.b.v", "2.0".to_owned())]);
+        let radius = free("zones[*].r=2..8").unwrap();
+        assert_eq!(radius.settings(5.0).map(|(path, _)| path).collect::<Vec<_>>(), ["zones[0].r", "zones[1].r"]);
+    }
+
+    #[test]
+    fn a_range_is_mirrored_at_its_ends() {
+        let linear = free("roles.a.v=1..3").unwrap();
+        assert_eq!([-0.25, 0.0, 0.5, 1.0, 1.25, 2.5].map(|x| linear.value(x)), [1.5, 1.0, 2.0, 3.0, 2.5, 2.0]);
+        assert_eq!(linear.place(2.0), 0.5);
+        let log = free("roles.a.v=0.01..1 log").unwrap();
+        assert_eq!(log.value(0.5), 0.1);
+        assert!((log.place(0.1) - 0.5).abs() < 1e-12);
+    }
+
+    #[test]
+    fn what_cannot_be_searched_is_refused() {
+        for (spec, says) in [
+            ("roles.a.v", "must be 'PATH=LOW..HIGH'"),
+            ("roles.a.v=3..1", "the lower bound must be below"),
+            ("roles.a.v=0..1 log", "must be above 0"),
+            ("roles.c.v=0..1", "roles.c.v: is not written in the scenario"),
+            ("roles.a=0..1", "roles.a: is not written in the scenario"),
+        ] {
+            let error = free(spec).unwrap_err();
+            assert!(error.contains(says), "{spec}: {error}");
+        }
+    }
+}

@@ -1,0 +1,236 @@
+//! Calibration: free parameters of a scenario, searched so that the distance baseline does what recorded trials of it did.
+//!
+//! Only [`POLICY`] can be run here: how other policies fare in the calibrated world is a result, so nothing that fits it may look at them.
+//! The search is CMA-ES (Hansen 2016, "The CMA Evolution Strategy: A Tutorial", arXiv 1604.00772), from the crate `cmaes`, over a box that is
+//! mirrored at its ends. It is deterministic: a search that was broken off is repeated from its start, with the evaluations in the log instead of
+//! new trials.
+
+mod fit;
+mod free;
+mod log;
+mod target;
+
+use std::cell::Cell;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use cmaes::{CMAESOptions, DVector};
+use rayon::prelude::*;
+use rne_core::{GroupingPolicy, policy_named};
+use usar_sim::scenario::{Fields, Scenario, ScenarioFile};
+
+pub use fit::{Fit, write_fit};
+pub use free::Free;
+pub use log::Log;
+pub use target::{Quantity, Spread, Target};
+
+use crate::failure::Failure;
+use crate::sweep::run_trial;
+
+/// The one policy that is ever calibrated.
+pub const POLICY: &str = "DIS";
+
+/// First step of the search, in units of each parameter's range.
+const FIRST_STEP: f64 = 0.25;
+
+/// What a calibrated scenario's name ends with.
+const SUFFIX: &str = "-calibrated";
+
+/// The misfit of a candidate that cannot be run.
+const WORST: f64 = 1e9;
+
+/// What is fitted to what.
+pub struct Calibration {
+    /// The scenario to start from, as text in which each free field is written.
+    pub text: String,
+    /// The same, checked.
+    pub base: Scenario,
+    /// The free parameters.
+    pub free: Vec<Free>,
+    /// What to aim at.
+    pub target: Target,
+    /// Trials of an evaluation.
+    pub trials: u32,
+    /// Seed of the first of them.
+    pub first_seed: u64,
+    /// Seed of the search.
+    pub seed: u64,
+}
+
+/// One candidate and how it fared.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Evaluation {
+    /// A value for each free parameter.
+    pub values: Vec<f64>,
+    /// How far it is from the target.
+    pub misfit: f64,
+    /// Means and spreads of the target's quantities; none for a candidate that cannot be run.
+    pub spreads: Vec<Spread>,
+    /// Why it cannot be run.
+    pub failure: Option<String>,
+}
+
+impl Calibration {
+    /// The scenario with these values.
+    ///
+    /// # Errors
+    /// A value breaks a rule, in one sentence.
+    pub fn scenario(&self, values: &[f64]) -> Result<Scenario, String> {
+        let mut file: ScenarioFile = (*self.base).clone();
+        self.free.iter().zip(values).try_for_each(|(free, value)| free.set(&mut file, *value))?;
+        Scenario::try_from(file)
+            .map_err(|problems| format!("{} {}, found {}", problems[0].field, problems[0].rule, problems[0].found))
+    }
+
+    /// The text of the scenario with these values in their places, and a name that says so; all else, comments too, is as it was.
+    ///
+    /// # Errors
+    /// None: each free field is written in the text.
+    pub fn text_with(&self, values: &[f64]) -> Result<String, String> {
+        let pairs = self.free.iter().zip(values).flat_map(|(free, value)| free.settings(*value));
+        let mut settings: Vec<_> = pairs.map(|(path, value)| (path.to_owned(), value)).collect();
+        if !self.base.name.ends_with(SUFFIX) {
+            settings.push(("name".to_owned(), format!("{:?}", format!("{}{SUFFIX}", self.base.name))));
+        }
+        with_written(&self.text, &settings)
+    }
+
+    /// Checks that both ends of each range can be run, the other fields being as they are.
+    ///
+    /// # Errors
+    /// An end that cannot.
+    pub fn check(&self) -> Result<(), Failure> {
+        for free in &self.free {
+            for end in free.ends() {
+                let mut file: ScenarioFile = (*self.base).clone();
+                free.set(&mut file, end).map_err(|error| Failure::input(format!("--free: {error}")))?;
+                Scenario::try_from(file).map_err(|problems| {
+                    let problem = &problems[0];
+                    Failure::input(format!("--free: {} {}, found {}", problem.field, problem.rule, problem.found))
+                })?;
+            }
+        }
+        Ok(())
+    }
+
+    /// The quantities of trials with these seeds, each a list over the trials. `None` when `stop` was set.
+    ///
+    /// # Errors
+    /// A candidate that cannot be run, in one sentence.
+    pub fn measure(
+        &self,
+        values: &[f64],
+        seeds: impl IntoParallelIterator<Item = u64>,
+        stop: &AtomicBool,
+    ) -> Result<Option<Vec<Vec<f64>>>, String> {
+        let scenario = self.scenario(values)?;
+        let policy = the_policy()?;
+        let trial = |seed| run_trial(&scenario, &*policy, seed, false, stop).map_err(|fault| fault.reason);
+        let rows: Result<Vec<Vec<f64>>, String> =
+            seeds.into_par_iter().map(|seed| trial(seed).map(|trial| self.target.measure(&trial.record))).collect();
+        if stop.load(Ordering::Relaxed) {
+            return Ok(None);
+        }
+        let rows = rows?;
+        Ok(Some((0..self.target.spreads.len()).map(|q| rows.iter().map(|row| row[q]).collect()).collect()))
+    }
+
+    fn evaluate(&self, values: Vec<f64>, stop: &AtomicBool) -> Option<Evaluation> {
+        let seeds = (0..self.trials).into_par_iter().map(|trial| self.first_seed + u64::from(trial));
+        match self.measure(&values, seeds, stop) {
+            Ok(None) => None,
+            Ok(Some(quantities)) => {
+                let spreads: Vec<Spread> = quantities.iter().filter_map(|values| Spread::of(values)).collect();
+                Some(Evaluation { misfit: self.target.misfit(&spreads), values, spreads, failure: None })
+            }
+            Err(reason) => {
+                Some(Evaluation { values, misfit: WORST, spreads: Vec::new(), failure: Some(reason) })
+            }
+        }
+    }
+
+    /// Searches until there are so many evaluations in the log, or nothing gets better; returns whether it came to its end: not so when
+    /// `stop` was set. `done` hears the number of evaluations so far and the least misfit.
+    ///
+    /// # Errors
+    /// The disk does not take the log.
+    pub fn search(
+        &self,
+        evaluations: usize,
+        log: &mut Log,
+        stop: &AtomicBool,
+        mut done: impl FnMut(usize, f64),
+    ) -> Result<bool, Failure> {
+        let fields = Fields::of(&self.text);
+        let place = |free: &Free| free.present(&self.text, &fields).map(|value| free.place(value));
+        let start = self.free.iter().map(place).collect::<Result<Vec<f64>, _>>().map_err(Failure::input)?;
+        let trouble = Cell::new(None);
+        let (mut asked, mut least) = (0, f64::INFINITY);
+        let objective = |x: &DVector<f64>| {
+            let values: Vec<f64> = self.free.iter().zip(x.iter()).map(|(free, x)| free.value(*x)).collect();
+            let known = log.find(&values).map(|evaluation| evaluation.misfit);
+            let misfit = known.or_else(|| {
+                let evaluation = self.evaluate(values, stop)?;
+                let misfit = evaluation.misfit;
+                log.add(evaluation).map_err(|failure| trouble.set(Some(failure))).ok()?;
+                Some(misfit)
+            });
+            asked += 1;
+            least = least.min(misfit.unwrap_or(WORST));
+            done(asked, least);
+            misfit.unwrap_or(WORST)
+        };
+        let options = CMAESOptions::new(start, FIRST_STEP).seed(self.seed).max_function_evals(evaluations);
+        let mut search = options.build(objective).map_err(|_| Failure::run("the search has no free parameter"))?;
+        while search.next().is_none() {
+            if let Some(failure) = trouble.take() {
+                return Err(failure);
+            }
+            if stop.load(Ordering::Relaxed) {
+                return Ok(false);
+            }
+        }
+        trouble.take().map_or(Ok(!stop.load(Ordering::Relaxed)), Err)
+    }
+}
+
+fn the_policy() -> Result<Box<dyn GroupingPolicy>, String> {
+    policy_named(POLICY, &rne_core::RneOptions::default()).map_err(|error| error.to_string())
+}
+
+/// The text of a scenario with the values of these fields replaced.
+///
+/// # Errors
+/// A field that is not written in it.
+pub fn with_written(text: &str, settings: &[(String, String)]) -> Result<String, String> {
+    let fields = Fields::of(text);
+    let place = |(path, value): &(String, String)| {
+        let place = fields.value(path).ok_or_else(|| {
+            format!("{path}: is not written in the scenario; write it there, so that its value can take its place")
+        })?;
+        Ok((place, value.clone()))
+    };
+    let mut places = settings.iter().map(place).collect::<Result<Vec<_>, String>>()?;
+    places.sort_by_key(|(place, _)| place.start);
+    let mut text = text.to_owned();
+    for (place, value) in places.into_iter().rev() {
+        let old = &text[place.clone()];
+        let end = place.start + old.trim_end().len();
+        let start = place.end - old.trim_start().len();
+        text.replace_range(start..end, value.trim());
+    }
+    Ok(text)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn values_take_their_places_and_comments_stay() {
+        let text = "(\n    a: 1.0, // one\n    b: (c: [2.0, 3.0]), // two\n)";
+        let set = [("b.c[1]".to_owned(), "9.5".to_owned()), ("a".to_owned(), "0.25".to_owned())];
+        let expected = "(\n    a: 0.25, // one\n    b: (c: [2.0, 9.5]), // two\n)";
+        assert_eq!(with_written(text, &set).unwrap(), expected);
+        assert!(with_written(text, &[("d".to_owned(), "1".to_owned())]).unwrap_err().starts_with("d: is not written"));
+    }
+}
