@@ -5,7 +5,7 @@ use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 
-use crate::commands::{calibrate, check, compare, estimate, group, merge, report, reproduce, run, sweep, trust, verify};
+use crate::commands::{calibrate, check, compare, estimate, explain, group, merge, readings, report, reproduce, run, sweep, trust, verify};
 use crate::failure::Failure;
 
 /// Which robots should team up? A laboratory for trust and grouping policies in mixed robot teams.
@@ -41,6 +41,8 @@ enum Command {
     Compare(compare::Arguments),
     Report(report::Arguments),
     Reproduce(reproduce::Arguments),
+    Explain(explain::Arguments),
+    Readings(readings::Arguments),
     Verify(verify::Arguments),
     Calibrate(calibrate::Arguments),
     Check(check::Arguments),
@@ -78,6 +80,8 @@ impl Command {
             Self::Compare(arguments) => arguments.execute(out),
             Self::Reproduce(arguments) => arguments.execute(out),
             Self::Report(arguments) => arguments.execute(out),
+            Self::Explain(arguments) => arguments.execute(out),
+            Self::Readings(arguments) => arguments.execute(out),
             Self::Verify(arguments) => arguments.execute(out),
             Self::Calibrate(arguments) => arguments.execute(out),
             Self::Check(arguments) => arguments.execute(out),

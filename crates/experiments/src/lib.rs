@@ -10,6 +10,7 @@ mod failure;
 pub mod metric;
 pub mod provenance;
 pub mod report;
+pub mod rounds;
 pub mod stats;
 pub mod sweep;
 mod table;

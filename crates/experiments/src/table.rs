@@ -7,9 +7,12 @@ use usar_sim::record::TrialRecord;
 
 use crate::calibration::Fit;
 use crate::claims::{CLAIMS, Example, PartFinding, Shares};
+use crate::commands::explain::GroupLevels;
+use crate::commands::readings::{Difference, ReadingRow, RivalRow, SHOWN};
 use crate::commands::reproduce::{Judged, PAPERS_TRIALS};
 use crate::comparison::{Comparison, digits, short, short_p};
 use crate::metric::METRICS;
+use crate::rounds::{KEYS, Likeness};
 use crate::stats::Moments;
 use crate::sweep::folder::{Folder, Measured};
 
@@ -174,6 +177,115 @@ pub(crate) fn verdicts_table(judged: &[Judged], trials: u32) -> Table {
             [&scenario.of_few, &scenario.of_all].map(|findings| Cell::new(findings[i].verdict.words()))
         });
         table.add_row(std::iter::once(Cell::new(claim.words)).chain(verdicts));
+    }
+    table
+}
+
+/// How often each policy's split is that of sorting.
+pub(crate) fn likeness_table(policies: &[(String, [Likeness; 3])]) -> Table {
+    let mut table = Table::new();
+    table.load_style(UTF8_FULL_CONDENSED);
+    table.set_header(["policy", "rounds", "sorted by", "split", "chance", "carriers", "suppliers", "higher"]);
+    let share = |share: f64| right(&format!("{:.1} %", 100.0 * share));
+    for (label, likenesses) in policies {
+        for (i, (key, likeness)) in KEYS.iter().zip(likenesses).enumerate() {
+            let first = |text: &str| if i == 0 { text.to_owned() } else { String::new() };
+            table.add_row([
+                Cell::new(first(label)),
+                right(&first(&likeness.rounds.to_string())),
+                Cell::new(key.name),
+                share(likeness.split),
+                share(likeness.chance),
+                share(likeness.carriers),
+                share(likeness.suppliers),
+                share(likeness.hard_is_higher),
+            ]);
+        }
+    }
+    table
+}
+
+/// Mean levels of the groups, round by round.
+pub(crate) fn levels_table(levels: &[GroupLevels]) -> Table {
+    let mut table = Table::new();
+    table.load_style(UTF8_FULL_CONDENSED);
+    table.set_header(["policy", "round", "n", "energy hard", "easy", "difference", "HP hard", "easy", "difference"]);
+    let level = |level: f64| right(&format!("{level:.1}"));
+    let mut last = "";
+    for row in levels {
+        let label = if row.policy == last { "" } else { &row.policy };
+        last = &row.policy;
+        table.add_row([
+            Cell::new(label),
+            right(&row.round.to_string()),
+            right(&row.count.to_string()),
+            level(row.hard[0]),
+            level(row.easy[0]),
+            right(&format!("{:+.1}", row.hard[0] - row.easy[0])),
+            level(row.hard[1]),
+            level(row.easy[1]),
+            right(&format!("{:+.1}", row.hard[1] - row.easy[1])),
+        ]);
+    }
+    table
+}
+
+fn differences(differences: &[Option<Difference>]) -> impl Iterator<Item = Cell> + '_ {
+    differences.iter().map(|difference| {
+        let text = |d: &Difference| format!("{} ± {}", signed(d.mean), digits(d.half, 2));
+        right(&difference.as_ref().map_or("-".to_owned(), text))
+    })
+}
+
+fn signed(value: f64) -> String {
+    if value > 0.0 { format!("+{}", short(value)) } else { short(value) }
+}
+
+/// The titles of the metrics that readings are compared in.
+fn shown() -> impl Iterator<Item = Cell> {
+    let title = |name: &str| METRICS.iter().find(|metric| metric.name == name).map_or("", |metric| metric.title);
+    SHOWN.into_iter().map(move |name| Cell::new(title(name)))
+}
+
+/// Each reading by itself.
+pub(crate) fn readings_table(rows: &[ReadingRow]) -> Table {
+    let mut table = Table::new();
+    table.load_style(UTF8_FULL_CONDENSED);
+    let header = ["reading", "regrouped", "split otherwise", "trials"].map(Cell::new);
+    table.set_header(header.into_iter().chain(shown()));
+    let share = |share: f64| right(&format!("{:.1} %", 100.0 * share));
+    for row in rows {
+        let [grouped, split] = row.regrouped;
+        let cells = [Cell::new(&row.reading), share(grouped), share(split), share(row.trials)];
+        table.add_row(cells.into_iter().chain(differences(&row.differences)));
+    }
+    table
+}
+
+/// Each reading averaged over the others.
+pub(crate) fn averaged_table(rows: &[(String, Vec<Option<Difference>>)]) -> Table {
+    let mut table = Table::new();
+    table.load_style(UTF8_FULL_CONDENSED);
+    table.set_header(std::iter::once(Cell::new("reading")).chain(shown()));
+    for (reading, row) in rows {
+        table.add_row(std::iter::once(Cell::new(reading)).chain(differences(row)));
+    }
+    table
+}
+
+/// All readings against other policies.
+pub(crate) fn rivals_table(rows: &[RivalRow]) -> Table {
+    let mut table = Table::new();
+    table.load_style(UTF8_FULL_CONDENSED);
+    table.set_header(["metric", "against", "above", "below", "neither", "least", "greatest"]);
+    for row in rows {
+        let end = |(reading, difference): &(String, Difference)| {
+            Cell::new(format!("{} ± {} ({reading})", signed(difference.mean), digits(difference.half, 2)))
+        };
+        let [least, most] = &row.ends;
+        let counts = row.counts.map(|count| right(&count.to_string()));
+        let cells = [Cell::new(row.metric), Cell::new(&row.rival)].into_iter().chain(counts);
+        table.add_row(cells.chain([end(least), end(most)]));
     }
     table
 }

@@ -1,7 +1,7 @@
 //! Figures of how missions went: rescuees over time, who was in which group, and the trust within the team.
 
 use rne_core::{
-    NEED_NAMES, NeedDistribution, NeedVector, NeedWeights, RelativeNeedsEntropy, relative_entropy,
+    NeedDistribution, NeedVector, RelativeNeedsEntropy, relative_entropy,
 };
 
 use super::figure::{Figure, Panel, draw, heat_map, layout, line_panel, names, table};
@@ -9,6 +9,7 @@ use super::gather::{Gathered, times};
 use super::metrics::capitalised;
 use crate::experiment::Experiment;
 use crate::failure::Failure;
+use crate::rounds::weights_of;
 use crate::stats::Moments;
 use crate::stats::paired::t_half_width;
 
@@ -123,14 +124,7 @@ pub(super) fn trust(
     let Some((policy, gathered)) = with_rounds.next() else { return Ok(None) };
     let team = &gathered.first_round;
     let options = &experiment.cases[case].scenario.rne;
-    let mut weights = options.weights.clone().unwrap_or_else(|| vec![1.0; NEED_NAMES.len()]);
-    if options.scale {
-        for (k, weight) in weights.iter_mut().enumerate() {
-            let most = team.iter().map(|robot| robot.needs[k]).fold(0.0, f64::max);
-            *weight = if most > 0.0 { *weight / most } else { 0.0 };
-        }
-    }
-    let weights = NeedWeights::new(weights).map_err(Failure::run)?;
+    let weights = weights_of(team, options)?;
     let distribution = |robot: &crate::sweep::Grouped| {
         NeedDistribution::of_agent(&NeedVector::new(robot.needs.clone())?, &weights)
     };

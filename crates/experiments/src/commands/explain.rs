@@ -1,0 +1,152 @@
+//! `usar explain`: what the policies' groups of a sweep amount to.
+
+use std::collections::BTreeMap;
+use std::io::Write;
+use std::path::PathBuf;
+
+use clap::Args;
+use rne_core::Difficulty;
+
+use crate::failure::Failure;
+use crate::rounds::{Blindness, KEYS, Likeness, Round, blindness, likeness, rounds_of};
+use crate::sweep::folder::Folder;
+use crate::table::{levels_table, likeness_table};
+
+/// What do the policies' groups amount to: sorting by energy, by HP, or by what?
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Prints, for each policy of a finished sweep, how often its split of the team is the one that sorting each role by energy, by HP or by their ratio \
+would give; the mean levels of the groups round by round; and an example of how blind relative entropy is to magnitude.
+
+Examples:
+  usar explain results/paper
+  usar explain results/energy --case 3")]
+pub(crate) struct Arguments {
+    /// Folder of a sweep
+    folder: PathBuf,
+    /// Number of the case, where the sweep has axes
+    #[arg(long, default_value_t = 1)]
+    case: usize,
+}
+
+/// Mean levels of the groups of one policy in one round.
+pub(crate) struct GroupLevels {
+    /// Name of the policy.
+    pub policy: String,
+    /// Number of the round, from 1.
+    pub round: u32,
+    /// Rounds with two groups that it is over.
+    pub count: usize,
+    /// Mean energy and HP of the group of the hard task.
+    pub hard: [f64; 2],
+    /// And of the easy task.
+    pub easy: [f64; 2],
+}
+
+impl Arguments {
+    pub(crate) fn execute(&self, out: &mut dyn Write) -> Result<(), Failure> {
+        let mut folder = Folder::read(&self.folder)?;
+        let cases = folder.experiment().cases.len();
+        if !(1..=cases).contains(&self.case) {
+            return Err(Failure::input(format!("--case: must be from 1 to {cases}, found {}", self.case)));
+        }
+        let case = self.case - 1;
+        let labels: Vec<String> = folder.experiment().policies.iter().map(|policy| policy.label.clone()).collect();
+        let (mut likenesses, mut levels, mut example) = (Vec::new(), Vec::new(), None);
+        for (policy, label) in labels.iter().enumerate() {
+            let rounds = rounds_in(&mut folder, case, policy)?;
+            likenesses.push((label.clone(), KEYS.each_ref().map(|key| likeness(&rounds, key))));
+            levels.extend(levels_of(label, &rounds));
+            if example.is_none() {
+                let options = folder.experiment().cases[case].scenario.rne.clone();
+                example = blindness(&rounds, &options)?;
+            }
+        }
+        print(out, &likenesses, &levels, example.as_ref())
+    }
+}
+
+/// All rounds of one policy.
+pub(crate) fn rounds_in(folder: &mut Folder, case: usize, policy: usize) -> Result<Vec<Round>, Failure> {
+    let places: Vec<_> = folder
+        .results()
+        .range((case, policy, 0)..=(case, policy, u32::MAX))
+        .map(|(place, _)| *place)
+        .collect();
+    let mut rounds = Vec::new();
+    for place in places {
+        if let Ok(trial) = folder.outcome(place)?.result {
+            rounds.extend(rounds_of(place.2, &trial));
+        }
+    }
+    Ok(rounds)
+}
+
+fn levels_of(label: &str, rounds: &[Round]) -> Vec<GroupLevels> {
+    let mut by_round: BTreeMap<u32, Vec<[[f64; 2]; 2]>> = BTreeMap::new();
+    for round in rounds {
+        let levels = |task: Difficulty| {
+            let members: Vec<_> = round.robots.iter().filter(|robot| robot.task == task).collect();
+            let mean = |value: fn(&crate::sweep::Grouped) -> f64| {
+                members.iter().map(|robot| value(robot)).sum::<f64>() / members.len() as f64
+            };
+            (!members.is_empty()).then(|| [mean(|robot| robot.energy), mean(|robot| robot.hp)])
+        };
+        if let Some(both) = levels(Difficulty::Hard).zip(levels(Difficulty::Easy)) {
+            by_round.entry(round.round).or_default().push([both.0, both.1]);
+        }
+    }
+    let of_round = |(round, trials): (u32, Vec<[[f64; 2]; 2]>)| {
+        let mean = |task: usize, level: usize| {
+            trials.iter().map(|trial| trial[task][level]).sum::<f64>() / trials.len() as f64
+        };
+        GroupLevels {
+            policy: label.to_owned(),
+            round,
+            count: trials.len(),
+            hard: [mean(0, 0), mean(0, 1)],
+            easy: [mean(1, 0), mean(1, 1)],
+        }
+    };
+    by_round.into_iter().map(of_round).collect()
+}
+
+fn print(
+    out: &mut dyn Write,
+    likenesses: &[(String, [Likeness; 3])],
+    levels: &[GroupLevels],
+    example: Option<&Blindness>,
+) -> Result<(), Failure> {
+    writeln!(out, "In which share of the rounds a policy's split is the one that sorting each role gives")?;
+    writeln!(out, "{}", likeness_table(likenesses))?;
+    writeln!(
+        out,
+        "split: in all roles, whichever half takes which task; chance: the share of all splits into halves; higher: the group of the hard task has the\n\
+         higher mean of that level\n"
+    )?;
+    writeln!(out, "Mean levels of the groups when a round begins, in percent")?;
+    writeln!(out, "{}", levels_table(levels))?;
+    writeln!(out, "n: rounds with two groups\n")?;
+    let Some(Blindness { trial, seed, round, role, unlike, alike, misjudged }) = example else { return Ok(()) };
+    let robot = |robot: &crate::sweep::Grouped| {
+        format!("robot {} (energy {:.0} %, HP {:.0} %)", robot.robot, robot.energy, robot.hp)
+    };
+    writeln!(out, "Blind to magnitude: trial {trial} (seed {seed}), round {round}, {}s", role.to_lowercase())?;
+    for (pair, what) in [(unlike, "farther apart, more trust"), (alike, "nearer, less trust")] {
+        writeln!(
+            out,
+            "  {} to {}: {:.0} points apart, RNE {:.2e} nats, trust {:.6} ({what})",
+            robot(&pair.from),
+            robot(&pair.to),
+            pair.apart(),
+            pair.rne,
+            (-pair.rne).exp(),
+        )?;
+    }
+    writeln!(
+        out,
+        "Of all two pairs of robots of one role and round, in {:.0} % the one whose levels are nearer to each other has the higher entropy (by chance: 50 %).",
+        100.0 * misjudged
+    )?;
+    Ok(())
+}

@@ -1,0 +1,38 @@
+//! Pages of `docs/` hold the output of commands: each block after a line `<!-- $ usar ... -->` is what that command prints.
+
+use std::path::Path;
+use std::process::Command;
+
+/// What stands before a block.
+const MARK: &str = "<!-- $ usar ";
+
+/// The commands of a page, in order.
+pub fn commands(page: &str) -> Vec<String> {
+    page.lines().filter_map(command_of).map(str::to_owned).collect()
+}
+
+fn command_of(line: &str) -> Option<&str> {
+    Some(line.strip_prefix(MARK)?.strip_suffix(" -->")?.trim())
+}
+
+/// The page with the block of each command that `run` answers replaced by the answer.
+pub fn renewed(page: &str, mut run: impl FnMut(&str) -> Option<String>) -> String {
+    let mut new = String::new();
+    let mut lines = page.split_inclusive('\n');
+    while let Some(line) = lines.next() {
+        new.push_str(line);
+        let Some(answer) = command_of(line.trim_end()).and_then(&mut run) else { continue };
+        assert_eq!(lines.next(), Some("```text\n"), "a block follows {line}");
+        assert!(lines.any(|line| line == "```\n"), "the block after {line} ends");
+        new.push_str(&format!("```text\n{}\n```\n", answer.trim_end()));
+    }
+    new
+}
+
+/// What `usar` prints when it is run in this folder.
+pub fn answer(usar: &Path, folder: &Path, arguments: &str) -> String {
+    let output = Command::new(usar).args(arguments.split_whitespace()).current_dir(folder).output();
+    let output = output.expect("usar runs");
+    assert!(output.status.success(), "usar {arguments}: {}", String::from_utf8_lossy(&output.stderr));
+    String::from_utf8(output.stdout).expect("text")
+}
