@@ -32,3 +32,23 @@ scale *arguments:
 # New golden hashes of the small worlds; say in CHANGELOG.md why numbers change
 golden:
     cargo run --release --package experiments --example golden -- --write
+
+# The numbers in docs/, anew: the commands before each block are run; their results must be there (`just results`)
+pages *pages:
+    cargo build --release --package experiments
+    cargo run --release --package experiments --example pages -- {{pages}}
+
+# The results that the pages in docs/ are made of: about an hour on two cores, 4 GB of disk; goes on where it was broken off
+results:
+    cargo build --release --package experiments
+    target/release/usar sweep scenarios/paper.ron
+    target/release/usar reproduce
+    target/release/usar sweep scenarios/sweeps/turning-back.ron
+    target/release/usar sweep scenarios/sweeps/turning-back-calibrated.ron
+    target/release/usar sweep scenarios/sweeps/readings.ron
+    target/release/usar sweep scenarios/sweeps/readings-calibrated.ron
+
+# The search that found scenarios/paper-calibrated.ron, step by step (docs/calibration.md): about an hour on two cores
+calibrate:
+    cargo build --release --package experiments
+    bash docs/calibration/search

@@ -5,7 +5,10 @@ use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 
-use crate::commands::{calibrate, check, compare, estimate, explain, group, merge, readings, report, reproduce, run, sweep, trust, verify};
+use crate::commands::{
+    calibrate, check, compare, estimate, explain, group, merge, readings, report, reproduce, run, sweep,
+    trust, verify,
+};
 use crate::failure::Failure;
 
 /// Which robots should team up? A laboratory for trust and grouping policies in mixed robot teams.

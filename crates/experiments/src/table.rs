@@ -115,7 +115,11 @@ pub(crate) fn claims_table(judged: &Judged, trials: u32) -> Table {
                 difference(all),
                 right(&interval(all.interval)),
                 right(&all.differences.len().to_string()),
-                right(&format!("{} ({})", few.difference.map_or("-".to_owned(), short), interval(few.interval))),
+                right(&format!(
+                    "{} ({})",
+                    few.difference.map_or("-".to_owned(), short),
+                    interval(few.interval)
+                )),
             ]);
         }
     }
@@ -209,7 +213,17 @@ pub(crate) fn likeness_table(policies: &[(String, [Likeness; 3])]) -> Table {
 pub(crate) fn levels_table(levels: &[GroupLevels]) -> Table {
     let mut table = Table::new();
     table.load_style(UTF8_FULL_CONDENSED);
-    table.set_header(["policy", "round", "n", "energy hard", "easy", "difference", "HP hard", "easy", "difference"]);
+    table.set_header([
+        "policy",
+        "round",
+        "n",
+        "energy hard",
+        "easy",
+        "difference",
+        "HP hard",
+        "easy",
+        "difference",
+    ]);
     let level = |level: f64| right(&format!("{level:.1}"));
     let mut last = "";
     for row in levels {
@@ -243,7 +257,8 @@ fn signed(value: f64) -> String {
 
 /// The titles of the metrics that readings are compared in.
 fn shown() -> impl Iterator<Item = Cell> {
-    let title = |name: &str| METRICS.iter().find(|metric| metric.name == name).map_or("", |metric| metric.title);
+    let title =
+        |name: &str| METRICS.iter().find(|metric| metric.name == name).map_or("", |metric| metric.title);
     SHOWN.into_iter().map(move |name| Cell::new(title(name)))
 }
 

@@ -172,13 +172,19 @@ mod tests {
         let settings: Vec<_> = speed.settings(3.0).collect();
         assert_eq!(settings, [("roles.a.v", "3.0".to_owned()), ("roles.b.v", "2.0".to_owned())]);
         let radius = free("zones[*].r=2..8").unwrap();
-        assert_eq!(radius.settings(5.0).map(|(path, _)| path).collect::<Vec<_>>(), ["zones[0].r", "zones[1].r"]);
+        assert_eq!(
+            radius.settings(5.0).map(|(path, _)| path).collect::<Vec<_>>(),
+            ["zones[0].r", "zones[1].r"]
+        );
     }
 
     #[test]
     fn a_range_is_mirrored_at_its_ends() {
         let linear = free("roles.a.v=1..3").unwrap();
-        assert_eq!([-0.25, 0.0, 0.5, 1.0, 1.25, 2.5].map(|x| linear.value(x)), [1.5, 1.0, 2.0, 3.0, 2.5, 2.0]);
+        assert_eq!(
+            [-0.25, 0.0, 0.5, 1.0, 1.25, 2.5].map(|x| linear.value(x)),
+            [1.5, 1.0, 2.0, 3.0, 2.5, 2.0]
+        );
         assert_eq!(linear.place(2.0), 0.5);
         let log = free("roles.a.v=0.01..1 log").unwrap();
         assert_eq!(log.value(0.5), 0.1);

@@ -87,7 +87,8 @@ impl Log {
         let failure = evaluation.failure.iter().cloned();
         let row: Vec<String> = cells.chain(values).chain(spreads).chain(failure).collect();
         let written = self.file.write_all(line(&row)?.as_bytes()).and_then(|()| self.file.sync_data());
-        written.map_err(|error| Failure::storage(format!("cannot write {}: {error}", self.path.display())))?;
+        written
+            .map_err(|error| Failure::storage(format!("cannot write {}: {error}", self.path.display())))?;
         self.evaluations.push(evaluation);
         Ok(())
     }
@@ -113,12 +114,23 @@ fn read(path: &Path, calibration: &Calibration) -> Result<Vec<Evaluation>, Failu
     let text = fs::read_to_string(path).map_err(trouble)?;
     let whole = text.rfind('\n').map_or(0, |end| end + 1);
     if whole < text.len() {
-        File::options().write(true).open(path).and_then(|file| file.set_len(whole as u64)).map_err(trouble)?;
+        File::options()
+            .write(true)
+            .open(path)
+            .and_then(|file| file.set_len(whole as u64))
+            .map_err(trouble)?;
     }
-    let mut rows = csv::ReaderBuilder::new().flexible(true).has_headers(false).from_reader(text[..whole].as_bytes());
+    let mut rows =
+        csv::ReaderBuilder::new().flexible(true).has_headers(false).from_reader(&text.as_bytes()[..whole]);
     let mut evaluations = Vec::new();
     for (i, row) in rows.records().enumerate() {
-        let bad = || Failure::input(format!("{}:{}: is not a line of a log; --fresh starts over", path.display(), i + 1));
+        let bad = || {
+            Failure::input(format!(
+                "{}:{}: is not a line of a log; --fresh starts over",
+                path.display(),
+                i + 1
+            ))
+        };
         let row = row.map_err(|_| bad())?;
         if i > 0 {
             evaluations.push(evaluation(&row, calibration).ok_or_else(bad)?);

@@ -77,8 +77,9 @@ impl Calibration {
     pub fn scenario(&self, values: &[f64]) -> Result<Scenario, String> {
         let mut file: ScenarioFile = (*self.base).clone();
         self.free.iter().zip(values).try_for_each(|(free, value)| free.set(&mut file, *value))?;
-        Scenario::try_from(file)
-            .map_err(|problems| format!("{} {}, found {}", problems[0].field, problems[0].rule, problems[0].found))
+        Scenario::try_from(file).map_err(|problems| {
+            format!("{} {}, found {}", problems[0].field, problems[0].rule, problems[0].found)
+        })
     }
 
     /// The text of the scenario with these values in their places, and a name that says so; all else, comments too, is as it was.
@@ -105,7 +106,10 @@ impl Calibration {
                 free.set(&mut file, end).map_err(|error| Failure::input(format!("--free: {error}")))?;
                 Scenario::try_from(file).map_err(|problems| {
                     let problem = &problems[0];
-                    Failure::input(format!("--free: {} {}, found {}", problem.field, problem.rule, problem.found))
+                    Failure::input(format!(
+                        "--free: {} {}, found {}",
+                        problem.field, problem.rule, problem.found
+                    ))
                 })?;
             }
         }
@@ -125,8 +129,10 @@ impl Calibration {
         let scenario = self.scenario(values)?;
         let policy = the_policy()?;
         let trial = |seed| run_trial(&scenario, &*policy, seed, false, stop).map_err(|fault| fault.reason);
-        let rows: Result<Vec<Vec<f64>>, String> =
-            seeds.into_par_iter().map(|seed| trial(seed).map(|trial| self.target.measure(&trial.record))).collect();
+        let rows: Result<Vec<Vec<f64>>, String> = seeds
+            .into_par_iter()
+            .map(|seed| trial(seed).map(|trial| self.target.measure(&trial.record)))
+            .collect();
         if stop.load(Ordering::Relaxed) {
             return Ok(None);
         }
@@ -139,7 +145,8 @@ impl Calibration {
         match self.measure(&values, seeds, stop) {
             Ok(None) => None,
             Ok(Some(quantities)) => {
-                let spreads: Vec<Spread> = quantities.iter().filter_map(|values| Spread::of(values)).collect();
+                let spreads: Vec<Spread> =
+                    quantities.iter().filter_map(|values| Spread::of(values)).collect();
                 Some(Evaluation { misfit: self.target.misfit(&spreads), values, spreads, failure: None })
             }
             Err(reason) => {
@@ -180,7 +187,8 @@ impl Calibration {
             misfit.unwrap_or(WORST)
         };
         let options = CMAESOptions::new(start, FIRST_STEP).seed(self.seed).max_function_evals(evaluations);
-        let mut search = options.build(objective).map_err(|_| Failure::run("the search has no free parameter"))?;
+        let mut search =
+            options.build(objective).map_err(|_| Failure::run("the search has no free parameter"))?;
         while search.next().is_none() {
             if let Some(failure) = trouble.take() {
                 return Err(failure);
@@ -205,7 +213,9 @@ pub fn with_written(text: &str, settings: &[(String, String)]) -> Result<String,
     let fields = Fields::of(text);
     let place = |(path, value): &(String, String)| {
         let place = fields.value(path).ok_or_else(|| {
-            format!("{path}: is not written in the scenario; write it there, so that its value can take its place")
+            format!(
+                "{path}: is not written in the scenario; write it there, so that its value can take its place"
+            )
         })?;
         Ok((place, value.clone()))
     };
@@ -231,6 +241,10 @@ mod tests {
         let set = [("b.c[1]".to_owned(), "9.5".to_owned()), ("a".to_owned(), "0.25".to_owned())];
         let expected = "(\n    a: 0.25, // one\n    b: (c: [2.0, 9.5]), // two\n)";
         assert_eq!(with_written(text, &set).unwrap(), expected);
-        assert!(with_written(text, &[("d".to_owned(), "1".to_owned())]).unwrap_err().starts_with("d: is not written"));
+        assert!(
+            with_written(text, &[("d".to_owned(), "1".to_owned())])
+                .unwrap_err()
+                .starts_with("d: is not written")
+        );
     }
 }

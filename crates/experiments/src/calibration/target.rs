@@ -100,7 +100,10 @@ impl Target {
         }
         let spread = |(quantity, values): (&&Quantity, &Vec<f64>)| {
             Spread::of(values).filter(|spread| spread.sd > 0.0).ok_or_else(|| {
-                bad(format!("{} must differ between trials: distances are measured by its spread", quantity.name))
+                bad(format!(
+                    "{} must differ between trials: distances are measured by its spread",
+                    quantity.name
+                ))
             })
         };
         let quantities: Vec<&Quantity> = found.iter().map(|(quantity, _)| *quantity).collect();
@@ -122,6 +125,7 @@ impl Target {
 }
 
 #[cfg(test)]
+#[expect(clippy::float_cmp, reason = "small whole numbers are exact")]
 mod tests {
     use super::*;
 

@@ -51,7 +51,8 @@ fn example(name: &'static str, words: &'static str, [trusting, doubting]: [f64; 
 fn rne(from: &[[f64; 3]], to: &[[f64; 3]]) -> Result<f64, Failure> {
     let weights = NeedWeights::new(WEIGHTS.to_vec()).map_err(Failure::run)?;
     let distribution = |group: &[[f64; 3]]| {
-        let members: Result<Vec<NeedVector>, _> = group.iter().map(|needs| NeedVector::new(needs.to_vec())).collect();
+        let members: Result<Vec<NeedVector>, _> =
+            group.iter().map(|needs| NeedVector::new(needs.to_vec())).collect();
         members.and_then(|members| NeedDistribution::of_group(&members, &weights)).map_err(Failure::run)
     };
     let rne = relative_entropy(&distribution(from)?, &distribution(to)?).map_err(Failure::run)?;
@@ -65,7 +66,10 @@ mod tests {
     #[test]
     fn two_examples_hold_and_the_third_is_the_other_way_round() {
         let [one, two, three] = examples().unwrap();
-        assert_eq!([one.verdict, two.verdict, three.verdict], [Verdict::Holds, Verdict::Holds, Verdict::DoesNotHold]);
+        assert_eq!(
+            [one.verdict, two.verdict, three.verdict],
+            [Verdict::Holds, Verdict::Holds, Verdict::DoesNotHold]
+        );
         assert!((one.trusting - 0.000_504_442_597_037_169_6).abs() < 1e-12);
         assert!((three.trusting - 0.009_534_892_308_733_986).abs() < 1e-12);
         assert!((three.doubting - 0.009_418_613_384_441_856).abs() < 1e-12);

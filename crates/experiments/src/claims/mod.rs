@@ -180,7 +180,8 @@ fn part_finding(part: &Part, differences: Vec<(u32, f64)>, count: usize) -> Part
 
 /// First less second, trial by trial, where both are defined.
 fn differences(folder: &Folder, part: &Part, trials: u32) -> Result<Vec<(u32, f64)>, Failure> {
-    let place = |[policy, metric]: [&str; 2]| Ok::<_, Failure>((place_of(folder, policy)?, metric_named(metric)?));
+    let place =
+        |[policy, metric]: [&str; 2]| Ok::<_, Failure>((place_of(folder, policy)?, metric_named(metric)?));
     let (a, b) = (place(part.a)?, place(part.b)?);
     let value = |(policy, metric): (usize, usize), trial: u32| {
         folder.results().get(&(0, policy, trial))?.metrics.as_ref()?[metric]
@@ -197,7 +198,8 @@ impl Part {
     /// What is compared, in words.
     #[must_use]
     pub fn words(&self) -> String {
-        let title = |name: &str| METRICS.iter().find(|metric| metric.name == name).map_or("", |metric| metric.title);
+        let title =
+            |name: &str| METRICS.iter().find(|metric| metric.name == name).map_or("", |metric| metric.title);
         let [policy, metric] = self.a;
         if self.a[1] == self.b[1] {
             format!("{}: {policy} {} {}", title(metric), self.claimed.sign(), self.b[0])

@@ -48,7 +48,12 @@ const RNE_IN_EASY: &[Part] = &[less(["RNE", "rescuees.easy"], ["DIS", "rescuees.
 const RESULTS: &str = "results";
 const TASKS: &str = "cooperation";
 
-const fn claim(name: &'static str, section: &'static str, words: &'static str, parts: &'static [Part]) -> Claim {
+const fn claim(
+    name: &'static str,
+    section: &'static str,
+    words: &'static str,
+    parts: &'static [Part],
+) -> Claim {
     Claim { name, words, section, parts }
 }
 

@@ -55,8 +55,10 @@ pub fn power(finding: &Finding, few: usize, seed: u64) -> Option<Power> {
         of_few.count(verdict(&claimed, |part| t_of(chosen.iter().map(|trial| trial[part])), few));
     }
     let effects: Vec<f64> = (0..claimed.len()).map(|part| effect(&trials, part)).collect();
-    let is_claimed = |(effect, side): (&f64, &Side)| if *side == Side::More { *effect > 0.0 } else { *effect < 0.0 };
-    let leans_to = if effects.iter().zip(&claimed).all(is_claimed) { Verdict::Holds } else { Verdict::DoesNotHold };
+    let is_claimed =
+        |(effect, side): (&f64, &Side)| if *side == Side::More { *effect > 0.0 } else { *effect < 0.0 };
+    let leans_to =
+        if effects.iter().zip(&claimed).all(is_claimed) { Verdict::Holds } else { Verdict::DoesNotHold };
     let noise = noise(&trials, &mut draws);
     let reaches = |pairs: u32| {
         let root = f64::from(pairs).sqrt();
@@ -98,7 +100,13 @@ fn trials_of(finding: &Finding) -> Vec<Vec<f64>> {
 fn t_of(values: impl Iterator<Item = f64>) -> f64 {
     let values: Vec<f64> = values.collect();
     let Moments { mean: Some(mean), sd: Some(sd), .. } = Moments::of(&values) else { return 0.0 };
-    if sd > 0.0 { mean / sd * (values.len() as f64).sqrt() } else if mean == 0.0 { 0.0 } else { mean.signum() * f64::MAX }
+    if sd > 0.0 {
+        mean / sd * (values.len() as f64).sqrt()
+    } else if mean == 0.0 {
+        0.0
+    } else {
+        mean.signum() * f64::MAX
+    }
 }
 
 /// Mean over standard deviation of one part.

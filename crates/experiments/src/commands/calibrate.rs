@@ -8,7 +8,7 @@ use rayon::prelude::*;
 use usar_sim::scenario::{Fields, Scenario};
 
 use super::{STOP, default_jobs, load, progress_bar, stop_on_ctrl_c};
-use crate::calibration::{Calibration, Evaluation, Fit, Free, Log, POLICY, Spread, Target, with_written, write_fit};
+use crate::calibration::{Calibration, Fit, Free, Log, POLICY, Spread, Target, with_written, write_fit};
 use crate::comparison::short;
 use crate::failure::Failure;
 use crate::sweep::NewFile;
@@ -109,7 +109,7 @@ impl Arguments {
         let text = calibration.text_with(&best.values).map_err(Failure::run)?;
         NewFile::write(&folder, CALIBRATED, text.as_bytes())?;
         write_fit(&folder, &rows)?;
-        self.print(out, &calibration, best, &rows, log.evaluations().len())?;
+        self.print(out, &calibration, &log, &rows)?;
         if !self.quiet {
             eprintln!("results in {}", folder.display());
         }
@@ -157,10 +157,10 @@ impl Arguments {
         &self,
         out: &mut dyn Write,
         calibration: &Calibration,
-        best: &Evaluation,
+        log: &Log,
         rows: &[Fit],
-        evaluations: usize,
     ) -> Result<(), Failure> {
+        let (Some(best), evaluations) = (log.best(), log.evaluations().len()) else { return Ok(()) };
         for (free, value) in calibration.free.iter().zip(&best.values) {
             let [low, high] = free.ends();
             writeln!(out, "{} = {value} (searched from {low} to {high})", free.name)?;

@@ -51,7 +51,8 @@ impl Arguments {
             return Err(Failure::input(format!("--case: must be from 1 to {cases}, found {}", self.case)));
         }
         let case = self.case - 1;
-        let labels: Vec<String> = folder.experiment().policies.iter().map(|policy| policy.label.clone()).collect();
+        let labels: Vec<String> =
+            folder.experiment().policies.iter().map(|policy| policy.label.clone()).collect();
         let (mut likenesses, mut levels, mut example) = (Vec::new(), Vec::new(), None);
         for (policy, label) in labels.iter().enumerate() {
             let rounds = rounds_in(&mut folder, case, policy)?;
@@ -127,11 +128,17 @@ fn print(
     writeln!(out, "Mean levels of the groups when a round begins, in percent")?;
     writeln!(out, "{}", levels_table(levels))?;
     writeln!(out, "n: rounds with two groups\n")?;
-    let Some(Blindness { trial, seed, round, role, unlike, alike, misjudged }) = example else { return Ok(()) };
+    let Some(Blindness { trial, seed, round, role, unlike, alike, misjudged }) = example else {
+        return Ok(());
+    };
     let robot = |robot: &crate::sweep::Grouped| {
         format!("robot {} (energy {:.0} %, HP {:.0} %)", robot.robot, robot.energy, robot.hp)
     };
-    writeln!(out, "Blind to magnitude: trial {trial} (seed {seed}), round {round}, {}s", role.to_lowercase())?;
+    writeln!(
+        out,
+        "Blind to magnitude: trial {trial} (seed {seed}), round {round}, {}s",
+        role.to_lowercase()
+    )?;
     for (pair, what) in [(unlike, "farther apart, more trust"), (alike, "nearer, less trust")] {
         writeln!(
             out,

@@ -91,7 +91,7 @@ impl Arguments {
             return Err(Failure::input(format!("{}: has no readings to compare", self.folder.display())));
         }
         let rounds = rounds_in(&mut folder, 0, default)?;
-        let rows = self.single(&folder, default, &readings, &rounds)?;
+        let rows = single(&folder, default, &readings, &rounds)?;
         let trials = folder.experiment().trials;
         writeln!(out, "Each reading by itself against the default, over {trials} pairs")?;
         writeln!(out, "{}", readings_table(&rows))?;
@@ -103,44 +103,51 @@ impl Arguments {
         )?;
         let averaged = averaged(&folder, &readings);
         if !averaged.is_empty() {
-            writeln!(out, "Each reading averaged over all combinations of the others, against the default of its option")?;
+            writeln!(
+                out,
+                "Each reading averaged over all combinations of the others, against the default of its option"
+            )?;
             writeln!(out, "{}\n", averaged_table(&averaged))?;
         }
         let rivals = rivals(&folder, &readings);
         if !rivals.is_empty() {
-            writeln!(out, "All {} readings against each other policy: how many are above, below, neither", readings.len())?;
+            writeln!(
+                out,
+                "All {} readings against each other policy: how many are above, below, neither",
+                readings.len()
+            )?;
             writeln!(out, "{}", rivals_table(&rivals))?;
         }
         writeln!(out, "{}", distinct(&folder, &readings, &rounds)?)?;
         Ok(())
     }
+}
 
-    fn single(
-        &self,
-        folder: &Folder,
-        default: usize,
-        readings: &[usize],
-        rounds: &[Round],
-    ) -> Result<Vec<ReadingRow>, Failure> {
-        let policies = &folder.experiment().policies;
-        let alone: Vec<usize> =
-            readings.iter().copied().filter(|i| policies[*i].options().len() == 1).collect();
-        let row = |reading: &usize| {
-            let regrouped = regrouped(folder, *reading, rounds)?;
-            let differences = SHOWN.map(|metric| Difference::of(&differences(folder, metric, *reading, default)));
-            Ok(ReadingRow {
-                reading: options_in_words(&policies[*reading]),
-                regrouped,
-                trials: other_trials(folder, *reading, default),
-                differences: differences.to_vec(),
-            })
-        };
-        alone.par_iter().map(row).collect()
-    }
+/// The readings that differ from the default in one option.
+fn single(
+    folder: &Folder,
+    default: usize,
+    readings: &[usize],
+    rounds: &[Round],
+) -> Result<Vec<ReadingRow>, Failure> {
+    let policies = &folder.experiment().policies;
+    let alone: Vec<usize> = readings.iter().copied().filter(|i| policies[*i].options().len() == 1).collect();
+    let row = |reading: &usize| {
+        let regrouped = regrouped(folder, *reading, rounds)?;
+        let differences = SHOWN.map(|metric| Difference::of(&differences(folder, metric, *reading, default)));
+        Ok(ReadingRow {
+            reading: options_in_words(&policies[*reading]),
+            regrouped,
+            trials: other_trials(folder, *reading, default),
+            differences: differences.to_vec(),
+        })
+    };
+    alone.par_iter().map(row).collect()
 }
 
 fn options_in_words(policy: &PolicySpec) -> String {
-    let options: Vec<String> = policy.options().iter().map(|(option, value)| format!("{option}: {value}")).collect();
+    let options: Vec<String> =
+        policy.options().iter().map(|(option, value)| format!("{option}: {value}")).collect();
     if options.is_empty() { "default".to_owned() } else { options.join(", ") }
 }
 
@@ -150,14 +157,16 @@ fn regrouped(folder: &Folder, reading: usize, rounds: &[Round]) -> Result<[f64; 
     let policy = &case.policies[reading];
     let same = rounds.par_iter().map(|round| Ok(round.is_as(&round.grouped_by(&**policy)?)));
     let same = same.collect::<Result<Vec<[bool; 2]>, Failure>>()?;
-    let share = |which: usize| same.iter().filter(|same| !same[which]).count() as f64 / same.len().max(1) as f64;
+    let share =
+        |which: usize| same.iter().filter(|same| !same[which]).count() as f64 / same.len().max(1) as f64;
     Ok([share(0), share(1)])
 }
 
 /// Metric of a reading less that of another policy, trial by trial.
 fn differences(folder: &Folder, metric: &str, a: usize, b: usize) -> Vec<f64> {
     let Ok(metric) = metric_named(metric) else { return Vec::new() };
-    let value = |policy: usize, trial: u32| folder.results().get(&(0, policy, trial))?.metrics.as_ref()?[metric];
+    let value =
+        |policy: usize, trial: u32| folder.results().get(&(0, policy, trial))?.metrics.as_ref()?[metric];
     (1..=folder.experiment().trials).filter_map(|trial| Some(value(a, trial)? - value(b, trial)?)).collect()
 }
 
@@ -187,7 +196,8 @@ fn averaged(folder: &Folder, readings: &[usize]) -> Vec<(String, Vec<Option<Diff
         readings.iter().find(is_rest).copied()
     };
     let row = |(option, value): &(String, String)| {
-        let with = readings.iter().filter(|i| policies[**i].options().contains(&(option.clone(), value.clone())));
+        let with =
+            readings.iter().filter(|i| policies[**i].options().contains(&(option.clone(), value.clone())));
         let pairs: Vec<(usize, usize)> = with.filter_map(|i| Some((*i, without(*i, option)?))).collect();
         let differences = SHOWN.map(|metric| {
             let all: Vec<Vec<f64>> = pairs.iter().map(|(a, b)| differences(folder, metric, *a, *b)).collect();
@@ -216,8 +226,11 @@ fn rivals(folder: &Folder, readings: &[usize]) -> Vec<RivalRow> {
                 })
                 .collect();
             let count = |side: i32| found.iter().filter(|(_, difference)| difference.side() == side).count();
-            let by_mean = |a: &&(String, Difference), b: &&(String, Difference)| a.1.mean.total_cmp(&b.1.mean);
-            let (Some(least), Some(most)) = (found.iter().min_by(by_mean), found.iter().rev().max_by(by_mean)) else {
+            let by_mean =
+                |a: &&(String, Difference), b: &&(String, Difference)| a.1.mean.total_cmp(&b.1.mean);
+            let (Some(least), Some(most)) =
+                (found.iter().min_by(by_mean), found.iter().rev().max_by(by_mean))
+            else {
                 continue;
             };
             let ends = [least.clone(), most.clone()];

@@ -124,9 +124,11 @@ impl Arguments {
     }
 
     fn judge(&self, folder: &Folder) -> Result<Judged, Failure> {
-        let all = |trials| CLAIMS.iter().map(|claim| judge(folder, claim, trials)).collect::<Result<Vec<_>, _>>();
+        let all =
+            |trials| CLAIMS.iter().map(|claim| judge(folder, claim, trials)).collect::<Result<Vec<_>, _>>();
         let (of_few, of_all) = (all(PAPERS_TRIALS)?, all(self.trials)?);
-        let powers = of_all.iter().map(|finding| power(finding, PAPERS_TRIALS as usize, POWER_SEED)).collect();
+        let powers =
+            of_all.iter().map(|finding| power(finding, PAPERS_TRIALS as usize, POWER_SEED)).collect();
         Ok(Judged { scenario: folder.experiment().name.clone(), of_few, of_all, powers })
     }
 
@@ -153,7 +155,8 @@ impl Arguments {
         let path = folder.path().join("trials.csv");
         let bad = |error: csv::Error| Failure::storage(format!("{}: {error}", path.display()));
         let mut trials = csv::Reader::from_path(&path).map_err(bad)?;
-        let columns = trials.headers().map_err(bad)?.iter().position(|name| name == "policy").unwrap_or_default();
+        let columns =
+            trials.headers().map_err(bad)?.iter().position(|name| name == "policy").unwrap_or_default();
         let mut table = csv::Writer::from_writer(Vec::new());
         let header = trials.headers().map_err(bad)?.clone();
         for record in std::iter::once(Ok(header)).chain(trials.records()) {
@@ -193,7 +196,8 @@ impl Arguments {
         for scenario in judged {
             for ((claim, finding), power) in CLAIMS.iter().zip(&scenario.of_all).zip(&scenario.powers) {
                 for (part, found) in claim.parts.iter().zip(&finding.parts) {
-                    let values: Vec<f64> = found.differences.iter().map(|(_, difference)| *difference).collect();
+                    let values: Vec<f64> =
+                        found.differences.iter().map(|(_, difference)| *difference).collect();
                     let sd = Moments::of(&values).sd;
                     rows.push(PowerRow {
                         scenario: &scenario.scenario,
@@ -207,7 +211,8 @@ impl Arguments {
                         difference: found.difference,
                         sd,
                         pairs_needed: found.pairs_needed,
-                        least_difference_at_10: sd.and_then(|sd| least_difference(sd, PAPERS_TRIALS as usize)),
+                        least_difference_at_10: sd
+                            .and_then(|sd| least_difference(sd, PAPERS_TRIALS as usize)),
                     });
                 }
             }

@@ -227,7 +227,21 @@ impl Experiment {
         };
         let ids = |case| policies.iter().map(|policy| id(case, policy)).collect::<Result<Vec<_>, Failure>>();
         let ids = cases.iter().map(ids).collect::<Result<Vec<_>, Failure>>()?;
-        Ok(Self { name, given, base, axes, cases, policies, trials, seeds, is_checked, is_lean, program, ids, shared: SharedTrials::default() })
+        Ok(Self {
+            name,
+            given,
+            base,
+            axes,
+            cases,
+            policies,
+            trials,
+            seeds,
+            is_checked,
+            is_lean,
+            program,
+            ids,
+            shared: SharedTrials::new(is_checked),
+        })
     }
 
     /// What decides the numbers of a trial, as a hash of 32 hexadecimal digits: the resolved scenario, the policy with its options, the
@@ -263,7 +277,7 @@ impl Experiment {
     pub fn run(&self, key: &TrialKey, halt: &AtomicBool) -> Result<Trial, Fault> {
         let case = &self.cases[key.case];
         let policy = &*case.policies[key.policy];
-        self.shared.run((key.case, &case.scenario), policy, key.seed, self.is_checked, halt)
+        self.shared.run((key.case, &case.scenario), policy, key.seed, halt)
     }
 
     /// Simulates one trial, whatever others are known.

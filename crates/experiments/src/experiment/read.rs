@@ -157,7 +157,8 @@ fn readings(
         }
         for (i, value) in values.iter().enumerate() {
             let mut file: ScenarioFile = (**base).clone();
-            file.set(&format!("rne.{option}"), value).map_err(|error| bad(&format!("{field}[{i}]"), &error))?;
+            file.set(&format!("rne.{option}"), value)
+                .map_err(|error| bad(&format!("{field}[{i}]"), &error))?;
             if values[..i].contains(value) {
                 return Err(bad(&format!("{field}[{i}]"), &format!("must not stand twice, found {value}")));
             }

@@ -1,8 +1,6 @@
 //! Figures of how missions went: rescuees over time, who was in which group, and the trust within the team.
 
-use rne_core::{
-    NeedDistribution, NeedVector, RelativeNeedsEntropy, relative_entropy,
-};
+use rne_core::{NeedDistribution, NeedVector, RelativeNeedsEntropy, relative_entropy};
 
 use super::figure::{Figure, Panel, draw, heat_map, layout, line_panel, names, table};
 use super::gather::{Gathered, times};

@@ -60,8 +60,13 @@ pub fn blindness(rounds: &[Round], options: &RneOptions) -> Result<Option<Blindn
     for (place, round) in rounds.iter().enumerate() {
         let weights = weights_of(&round.robots, options)?;
         for role in rne_core::Role::ALL {
-            let members: Vec<&Grouped> =
-                round.robots.iter().zip(&round.roles).filter(|(_, of)| **of == role).map(|(robot, _)| robot).collect();
+            let members: Vec<&Grouped> = round
+                .robots
+                .iter()
+                .zip(&round.roles)
+                .filter(|(_, of)| **of == role)
+                .map(|(robot, _)| robot)
+                .collect();
             let distribution = |robot: &&Grouped| {
                 let needs = NeedVector::new(robot.needs.clone());
                 needs.and_then(|needs| NeedDistribution::of_agent(&needs, &weights)).map_err(Failure::run)
@@ -131,8 +136,7 @@ mod tests {
             needs: vec![hp, energy],
         };
         let robots = vec![robot(0, 90.0, 80.0), robot(1, 45.0, 40.02), robot(2, 90.0, 60.0)];
-        let rounds =
-            [Round { trial: 3, seed: 7, round: 1, roles: vec![Role::Carrier; 3], robots }];
+        let rounds = [Round { trial: 3, seed: 7, round: 1, roles: vec![Role::Carrier; 3], robots }];
         let found = blindness(&rounds, &RneOptions::default()).unwrap().unwrap();
         let mut ids = [found.unlike.from.robot, found.unlike.to.robot];
         ids.sort_unstable();

@@ -5,7 +5,9 @@ mod sorting;
 
 use std::collections::BTreeMap;
 
-use rne_core::{Difficulty, Grouping, GroupingPolicy, Member, NeedVector, NeedWeights, RneOptions, Role, Team};
+use rne_core::{
+    Difficulty, Grouping, GroupingPolicy, Member, NeedVector, NeedWeights, RneOptions, Role, Team,
+};
 
 pub use blindness::{Blindness, blindness};
 pub use sorting::{KEYS, Key, Likeness, likeness};
@@ -68,7 +70,8 @@ impl Round {
     /// # Errors
     /// It cannot.
     pub fn grouped_by(&self, policy: &dyn GroupingPolicy) -> Result<Grouping, Failure> {
-        let mut draws = usar_sim::seed::stream(self.seed, usar_sim::seed::Purpose::Grouping, u64::from(self.round));
+        let mut draws =
+            usar_sim::seed::stream(self.seed, usar_sim::seed::Purpose::Grouping, u64::from(self.round));
         policy.group(&self.team()?, &mut draws).map_err(Failure::run)
     }
 

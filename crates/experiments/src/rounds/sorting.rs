@@ -50,7 +50,9 @@ pub fn likeness(rounds: &[Round], key: &Key) -> Likeness {
         split: share(&|round| is_sorted(round, key, &Role::ALL)),
         carriers: share(&|round| is_sorted(round, key, &[Role::Carrier])),
         suppliers: share(&|round| is_sorted(round, key, &[Role::Supplier])),
-        hard_is_higher: share(&|round| mean(round, key, Difficulty::Hard) > mean(round, key, Difficulty::Easy)),
+        hard_is_higher: share(&|round| {
+            mean(round, key, Difficulty::Hard) > mean(round, key, Difficulty::Easy)
+        }),
         rounds: count,
         chance: if count == 0 { 0.0 } else { chance / count as f64 },
     }

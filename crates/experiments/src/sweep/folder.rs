@@ -356,7 +356,12 @@ impl Tables {
         let axes: Vec<String> = experiment.axes.iter().map(|axis| axis.path.clone()).collect();
         let table = |place: usize| Table::new(path, TABLES[place], axes.clone());
         let large = || {
-            Ok::<_, Failure>(Large { groups: table(2)?, robots: table(3)?, series: table(4)?, hashes: table(5)? })
+            Ok::<_, Failure>(Large {
+                groups: table(2)?,
+                robots: table(3)?,
+                series: table(4)?,
+                hashes: table(5)?,
+            })
         };
         let large = if experiment.is_lean { None } else { Some(large()?) };
         Ok(Self { trials: table(0)?, rounds: table(1)?, large })

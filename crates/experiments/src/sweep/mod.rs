@@ -11,7 +11,7 @@ mod trial;
 
 pub use journal::Place;
 pub use pool::{Limits, Run, run_all};
-pub use tables::FileHash;
 pub use shared::SharedTrials;
+pub use tables::FileHash;
 pub(crate) use tables::NewFile;
 pub use trial::{Fault, FaultKind, Grouped, Outcome, Trial, TrialKey, run_trial};

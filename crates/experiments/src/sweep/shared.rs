@@ -35,12 +35,18 @@ impl Decided {
 type OfSeed = Arc<Mutex<Vec<Arc<Decided>>>>;
 
 /// Finished trials of the cases and seeds that were run last.
-#[derive(Default)]
 pub struct SharedTrials {
+    is_checked: bool,
     latest: Mutex<VecDeque<((usize, u64), OfSeed)>>,
 }
 
 impl SharedTrials {
+    /// None yet; whether every invariant is checked at every step.
+    #[must_use]
+    pub fn new(is_checked: bool) -> Self {
+        Self { is_checked, latest: Mutex::default() }
+    }
+
     /// Runs a trial of a case, or finds it among those of other policies.
     ///
     /// # Errors
@@ -50,7 +56,6 @@ impl SharedTrials {
         (case, scenario): (usize, &Scenario),
         policy: &dyn GroupingPolicy,
         seed: u64,
-        is_checked: bool,
         halt: &AtomicBool,
     ) -> Result<Trial, Fault> {
         let of_seed = self.of_seed(case, seed);
@@ -61,7 +66,7 @@ impl SharedTrials {
             return Ok(trial);
         }
         let notes = Notes { policy, rounds: Mutex::default() };
-        let trial = run_trial(scenario, &notes, seed, is_checked, halt)?;
+        let trial = run_trial(scenario, &notes, seed, self.is_checked, halt)?;
         let rounds = notes.rounds.into_inner().unwrap_or_else(PoisonError::into_inner);
         let decided = Arc::new(Decided { rounds, trial: trial.clone() });
         of_seed.lock().unwrap_or_else(PoisonError::into_inner).push(decided);
@@ -115,20 +120,24 @@ mod tests {
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/paper.ron");
         let (scenario, _) = Scenario::load(&path).unwrap();
         let scenario = with_settings(&scenario, &["duration_s=120".to_owned()]).unwrap();
-        let (shared, halt) = (SharedTrials::default(), AtomicBool::new(false));
+        let (shared, halt) = (SharedTrials::new(false), AtomicBool::new(false));
         let two = RneOptions { log_base: rne_core::LogBase::Two, ..RneOptions::default() };
         let names = policy_names();
-        let mut policies: Vec<_> = names.iter().map(|name| policy_named(name, &scenario.rne).unwrap()).collect();
+        let mut policies: Vec<_> =
+            names.iter().map(|name| policy_named(name, &scenario.rne).unwrap()).collect();
         policies.push(policy_named("RNE", &two).unwrap());
         for seed in 1..4 {
             for policy in &policies {
-                let found = shared.run((0, &scenario), &**policy, seed, false, &halt).unwrap();
+                let found = shared.run((0, &scenario), &**policy, seed, &halt).unwrap();
                 let alone = run_trial(&scenario, &**policy, seed, false, &halt).unwrap();
                 assert_eq!(found, alone, "{} seed {seed}", policy.name());
             }
             let known = shared.of_seed(0, seed);
             let distinct = known.lock().unwrap().len();
-            assert!(distinct < policies.len(), "the base of the logarithm decides nothing: {distinct} trials");
+            assert!(
+                distinct < policies.len(),
+                "the base of the logarithm decides nothing: {distinct} trials"
+            );
         }
     }
 
@@ -138,9 +147,9 @@ mod tests {
         let (scenario, _) = Scenario::load(&path).unwrap();
         let short = with_settings(&scenario, &["duration_s=60".to_owned()]).unwrap();
         let dis = policy_named("DIS", &scenario.rne).unwrap();
-        let (shared, halt) = (SharedTrials::default(), AtomicBool::new(false));
-        let first = shared.run((0, &scenario), &*dis, 1, false, &halt).unwrap();
-        let second = shared.run((1, &short), &*dis, 1, false, &halt).unwrap();
+        let (shared, halt) = (SharedTrials::new(false), AtomicBool::new(false));
+        let first = shared.run((0, &scenario), &*dis, 1, &halt).unwrap();
+        let second = shared.run((1, &short), &*dis, 1, &halt).unwrap();
         assert!(first.record.time_s > 599.0 && second.record.time_s < 61.0);
     }
 }

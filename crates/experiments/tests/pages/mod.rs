@@ -24,7 +24,7 @@ pub fn renewed(page: &str, mut run: impl FnMut(&str) -> Option<String>) -> Strin
         let Some(answer) = command_of(line.trim_end()).and_then(&mut run) else { continue };
         assert_eq!(lines.next(), Some("```text\n"), "a block follows {line}");
         assert!(lines.any(|line| line == "```\n"), "the block after {line} ends");
-        new.push_str(&format!("```text\n{}\n```\n", answer.trim_end()));
+        new.extend(["```text\n", answer.trim_end(), "\n```\n"]);
     }
     new
 }

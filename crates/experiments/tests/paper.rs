@@ -1,0 +1,277 @@
+//! The paper put to the test: calibration, claims, readings, and the pages that tell of them.
+
+mod pages;
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+use std::sync::atomic::AtomicBool;
+
+use experiments::calibration::{Calibration, Free, Log, Spread, Target};
+use usar_sim::scenario::{Fields, Scenario};
+
+fn program() -> &'static Path {
+    Path::new(env!("CARGO_BIN_EXE_usar"))
+}
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).ancestors().nth(2).unwrap().to_owned()
+}
+
+fn usar(folder: &Path, arguments: &[&str]) -> Output {
+    Command::new(program()).args(arguments).current_dir(folder).output().expect("usar runs")
+}
+
+#[track_caller]
+fn succeeds(output: &Output) -> String {
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    String::from_utf8(output.stdout.clone()).unwrap()
+}
+
+#[track_caller]
+fn refused(output: &Output, messages: &[&str]) {
+    let stderr = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(2), "{stderr}");
+    for message in messages {
+        assert!(stderr.contains(message), "must say {message:?}, said {stderr:?}");
+    }
+}
+
+fn read(path: &Path) -> String {
+    std::fs::read_to_string(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
+}
+
+/// A folder with the paper's scenario for two minutes, and a target for it.
+fn place() -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    let text = read(&root().join("scenarios/paper.ron")).replace("duration_s: 600.0", "duration_s: 120.0");
+    std::fs::write(folder.path().join("short.ron"), text).unwrap();
+    let target = "method,rescuees_hard,energy_hard\nDIS,10,150\nDIS,14,160\nDIS,12,170\n";
+    std::fs::write(folder.path().join("target.csv"), target).unwrap();
+    folder
+}
+
+fn calibrate<'a>(out: &'a str, more: &[&'a str]) -> Vec<&'a str> {
+    let mut arguments = vec!["calibrate", "short.ron", "--target", "target.csv", "--trials", "2"];
+    arguments.extend(["--fresh-trials", "2", "--quiet", "--out", out]);
+    arguments.extend(["--free", "roles.carrier.speed_mps + roles.supplier.speed_mps=1..4"]);
+    arguments.extend([
+        "--free",
+        "radiation[*].radius_m = 2..6",
+        "--free",
+        "costs.energy.per_step=0.001..0.02 log",
+    ]);
+    arguments.extend(more);
+    arguments
+}
+
+#[test]
+fn a_calibration_that_was_broken_off_ends_as_one_that_was_not() {
+    let place = place();
+    let folder = place.path();
+    let whole = succeeds(&usar(folder, &calibrate("whole", &["--evaluations", "8", "--jobs", "1"])));
+    succeeds(&usar(folder, &calibrate("parts", &["--evaluations", "3", "--jobs", "2"])));
+    let log = folder.join("parts/evaluations.csv");
+    let text = read(&log);
+    std::fs::write(&log, &text[..text.len() - 5]).unwrap(); // killed while it wrote a line
+    let parts = succeeds(&usar(folder, &calibrate("parts", &["--evaluations", "8", "--jobs", "2"])));
+    assert_eq!(parts, whole);
+    for file in ["evaluations.csv", "calibrated.ron", "fit.csv", "calibration.json"] {
+        assert_eq!(read(&folder.join("parts").join(file)), read(&folder.join("whole").join(file)), "{file}");
+    }
+    let (scenario, text) = Scenario::load(&folder.join("whole/calibrated.ron")).unwrap();
+    assert_eq!(scenario.name, "paper-calibrated");
+    assert!(text.contains("// Places [view]"), "comments stay");
+    assert_eq!(scenario.roles.carrier.speed_mps.to_bits(), scenario.roles.supplier.speed_mps.to_bits());
+    assert!(
+        scenario
+            .radiation
+            .iter()
+            .all(|zone| zone.radius_m.to_bits() == scenario.radiation[0].radius_m.to_bits())
+    );
+    assert!(whole.contains("roles.carrier.speed_mps = ") && whole.contains("rescuees_hard"), "{whole}");
+}
+
+#[test]
+fn what_cannot_be_calibrated_is_refused() {
+    let place = place();
+    let folder = place.path();
+    let run = |more: &[&str]| usar(folder, &calibrate("out", more));
+    refused(
+        &run(&["--free", "roles.carrier.wings=1..2"]),
+        &["--free: roles.carrier.wings: is not written in the scenario"],
+    );
+    refused(
+        &run(&["--free", "mission.health_floor=0..1"]),
+        &["--free: mission.health_floor must be a number from", "found 0"],
+    );
+    refused(&run(&["--set", "mission.wings=1"]), &["--set: mission.wings: is not written in the scenario"]);
+    std::fs::write(folder.join("target.csv"), "method,rounds\nDIS,6\nRNE,7\n").unwrap();
+    refused(&run(&[]), &["line 3: method must be DIS", "\"RNE\""]);
+    std::fs::write(folder.join("target.csv"), "method,rounds\nDIS,6\nDIS,6\n").unwrap();
+    refused(&run(&[]), &["rounds must differ between trials"]);
+    assert!(!folder.join("out").exists(), "nothing was written");
+    std::fs::write(folder.join("target.csv"), "method,rounds\nDIS,6\nDIS,7\n").unwrap();
+    succeeds(&run(&["--evaluations", "2"]));
+    refused(
+        &run(&["--evaluations", "2", "--seed", "9"]),
+        &["has the calibration of something else", "seed: 1 there, 9 now"],
+    );
+    refused(
+        &run(&["--evaluations", "2", "--set", "mission.loading_s=3.0"]),
+        &["mission.loading_s: 2.0 there, 3.0 now"],
+    );
+}
+
+/// The command that made `paper-calibrated.ron` has its log in `docs/calibration/`; its best candidate is the scenario, and running it again gives the
+/// numbers of the log.
+#[test]
+fn the_calibrated_scenario_is_the_best_of_its_log() {
+    let (scenario, text) = Scenario::load(&root().join("scenarios/paper-calibrated.ron")).unwrap();
+    let fields = Fields::of(&text);
+    let log = read(&root().join("docs/calibration/chosen.csv"));
+    let mut rows = csv::Reader::from_reader(log.as_bytes());
+    let header = rows.headers().unwrap().clone();
+    let records: Vec<csv::StringRecord> = rows.records().map(Result::unwrap).collect();
+    let misfit = |record: &csv::StringRecord| record[1].parse::<f64>().unwrap();
+    let best = records.iter().min_by(|a, b| misfit(a).total_cmp(&misfit(b))).unwrap();
+    let names = || header.iter().zip(best).filter(|(name, _)| name.contains('.'));
+    assert!(names().count() >= 5, "{header:?}");
+    for (name, value) in names() {
+        let path = name.replace("[*]", "[0]");
+        let written = text[fields.value(&path).unwrap()].trim().parse::<f64>().unwrap();
+        assert_eq!(written.to_bits(), value.parse::<f64>().unwrap().to_bits(), "{path}");
+    }
+    let target = Target::load(&root().join("scenarios/reference/dis_trials.csv")).unwrap();
+    let calibration = Calibration {
+        text,
+        base: scenario,
+        free: Vec::new(),
+        target,
+        trials: 10,
+        first_seed: 100_001,
+        seed: 1,
+    };
+    let found = calibration.measure(&[], (100_001..100_011_u64).collect::<Vec<_>>(), &AtomicBool::new(false));
+    let spreads: Vec<Spread> =
+        found.unwrap().unwrap().iter().filter_map(|values| Spread::of(values)).collect();
+    let cell =
+        |name: String| best[header.iter().position(|known| known == name).unwrap()].parse::<f64>().unwrap();
+    for (quantity, spread) in calibration.target.quantities.iter().zip(&spreads) {
+        assert_eq!(
+            spread.mean.to_bits(),
+            cell(format!("{}_mean", quantity.name)).to_bits(),
+            "{}",
+            quantity.name
+        );
+        assert_eq!(spread.sd.to_bits(), cell(format!("{}_sd", quantity.name)).to_bits(), "{}", quantity.name);
+    }
+}
+
+#[test]
+fn a_log_is_held_by_one_process() {
+    let place = place();
+    let (base, text) = Scenario::load(&place.path().join("short.ron")).unwrap();
+    let free = vec![Free::parse("mission.loading_s=1..3", &Fields::of(&text)).unwrap()];
+    let target = Target::load(&place.path().join("target.csv")).unwrap();
+    let calibration = Calibration { text, base, free, target, trials: 2, first_seed: 1, seed: 1 };
+    let out = place.path().join("out");
+    let held = Log::open(&out, &calibration, false).unwrap();
+    let error = Log::open(&out, &calibration, false).err().unwrap();
+    assert!(error.to_string().contains("another process is at work"), "{error}");
+    drop(held);
+    assert!(Log::open(&out, &calibration, false).is_ok());
+}
+
+/// The claims over as many trials as the paper has; and the pages in `docs/` with the numbers of these trials.
+#[test]
+fn the_papers_experiment_and_the_pages_that_tell_of_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let arguments = ["reproduce", "--trials", "10", "--out", "results/reproduction", "--quiet"];
+    let first = succeeds(&usar(folder.path(), &arguments));
+    assert_eq!(succeeds(&usar(folder.path(), &arguments)), first, "it is all there already");
+    let results = folder.path().join("results/reproduction");
+    let authors = read(&root().join("scenarios/reference/dis_trials.csv"));
+    for scenario in ["paper", "paper-calibrated"] {
+        let columns = read(&results.join(format!("{scenario}.csv")));
+        assert_eq!(columns.lines().next(), authors.lines().next(), "the authors' columns");
+        assert_eq!(columns.lines().count(), 41);
+        assert!(results.join(scenario).join("report.html").exists());
+    }
+    let example = |n: &str, verdict: &str| {
+        let line = first.lines().find(|line| line.contains(n)).unwrap_or_default();
+        assert!(line.contains(verdict), "{line}");
+    };
+    example("Example 2", "│ holds");
+    example("Example 3", "│ does not hold");
+
+    // The verdicts over ten pairs are those of the page.
+    let page = read(&root().join("docs/reproduction.md"));
+    let verdicts = |text: &str| -> Vec<Vec<String>> {
+        let table = text.split("\nVerdicts\n").nth(1).unwrap_or_default();
+        let rows = table.lines().filter(|line| line.starts_with('│')).skip(1);
+        let cells =
+            |line: &str| line.trim_matches('│').split('┆').map(|cell| cell.trim().to_owned()).collect();
+        rows.map(cells).collect()
+    };
+    let (here, there) = (verdicts(&first), verdicts(&page));
+    assert!(here.len() >= 10 && here.len() == there.len());
+    for (here, there) in here.iter().zip(&there) {
+        assert_eq!([&here[0], &here[1], &here[3]], [&there[0], &there[1], &there[3]]);
+    }
+
+    // The page that tells why has the numbers of the paper's ten trials.
+    let page = read(&root().join("docs/why.md"));
+    let mut found = 0;
+    let renewed = pages::renewed(&page, |command| {
+        (command == "explain results/paper").then(|| {
+            found += 1;
+            pages::answer(program(), folder.path(), "explain results/reproduction/paper")
+        })
+    });
+    assert_eq!(found, 1, "docs/why.md has that command");
+    assert_eq!(
+        renewed, page,
+        "docs/why.md is not what `usar explain results/paper` prints; `just pages` makes it anew"
+    );
+    assert!(!pages::commands(&page).is_empty());
+}
+
+#[test]
+fn readings_stand_for_every_combination_and_are_named_by_what_differs() {
+    let place = place();
+    let folder = place.path();
+    let sweep = |readings: &str, policies: &str| {
+        let text = format!(
+            "(name: \"r\", scenario: \"short.ron\", set: {{\"duration_s\": 30.0}}, policies: {policies}, readings: {readings}, trials: 2, lean: true)"
+        );
+        std::fs::write(folder.join("r.ron"), text).unwrap();
+        usar(folder, &["sweep", "r.ron", "--quiet", "--out", "out", "--fresh"])
+    };
+    succeeds(&sweep(
+        "{\"hard_rule\": [IntraGroupTrust, MeanHp], \"log_base\": [E, Two]}",
+        "[\"RNE\", \"DIS\"]",
+    ));
+    let labels: Vec<String> = csv::Reader::from_path(folder.join("out/trials.csv"))
+        .unwrap()
+        .records()
+        .map(|record| record.unwrap()[0].to_owned())
+        .collect();
+    let names = [
+        "RNE",
+        "RNE(log_base: Two)",
+        "RNE(hard_rule: MeanHp)",
+        "RNE(hard_rule: MeanHp, log_base: Two)",
+        "DIS",
+    ];
+    assert_eq!(labels, names.map(|name| [name, name]).concat());
+    assert!(!folder.join("out/hashes.csv").exists() && !folder.join("out/groups.csv").exists(), "it is lean");
+    refused(&usar(folder, &["verify", "out"]), &["its sweep is lean"]);
+    let table = succeeds(&usar(folder, &["readings", "out"]));
+    let base = table.lines().find(|line| line.contains("log_base: Two")).unwrap();
+    assert!(base.matches("0.0 %").count() == 3, "the base of the logarithm decides nothing: {base}");
+    assert!(table.contains("All 4 readings against each other policy"), "{table}");
+    refused(&sweep("{\"hard_rule\": [MeanHp, MeanHp]}", "[\"RNE\"]"), &["must not stand twice", "MeanHp"]);
+    refused(&sweep("{\"wings\": [MeanHp]}", "[\"RNE\"]"), &["rne.wings", "no such field"]);
+    refused(&sweep("{\"sort\": []}", "[\"RNE\"]"), &["must have at least one value"]);
+    refused(&sweep("{\"sort\": [true]}", "[\"DIS\"]"), &["are those of the policy RNE"]);
+}
