@@ -1,4 +1,4 @@
-//! Makes the numbers of `docs/` anew: runs the command before each block and puts what it prints in its place.
+//! Makes the numbers of `docs/` anew: runs the command before each block and puts what it prints in its place; figures are copied.
 //!
 //! `cargo run --release --package experiments --example pages -- [PAGE ...]`, from the project's folder, with the results that the commands name.
 
@@ -25,6 +25,11 @@ fn main() {
             eprintln!("{}: usar {command}", path.display());
             Some(pages::answer(&usar, Path::new("."), command))
         });
+        // `<!-- copy FROM TO -->`: a figure, from the results to a place beside the page.
+        for line in page.lines().filter_map(|line| line.strip_prefix("<!-- copy ")?.strip_suffix(" -->")) {
+            let (from, to) = line.split_once(' ').expect("two names");
+            std::fs::copy(from, Path::new("docs").join(to)).expect("the figure is there");
+        }
         let is_same = new == page;
         std::fs::write(&path, new).expect("the page can be written");
         println!("{}: {}", path.display(), if is_same { "as it was" } else { "renewed" });

@@ -6,7 +6,7 @@ use usar_sim::event::ReturnCause;
 use usar_sim::record::TrialRecord;
 
 use crate::calibration::Fit;
-use crate::claims::{CLAIMS, Example, PartFinding, Shares};
+use crate::claims::{CLAIMS, Example, PartFinding, Shares, least_difference};
 use crate::commands::explain::GroupLevels;
 use crate::commands::readings::{Difference, ReadingRow, RivalRow, SHOWN};
 use crate::commands::reproduce::{Judged, PAPERS_TRIALS};
@@ -147,13 +147,22 @@ pub(crate) fn examples_table(examples: &[Example]) -> Table {
     table
 }
 
-/// What experiments of other sizes would say of each claim.
+/// What experiments of other sizes would say of each claim, and find of each of its comparisons.
 pub(crate) fn power_table(judged: &Judged) -> Table {
     let mut table = Table::new();
     table.load_style(UTF8_FULL_CONDENSED);
-    table.set_header(["claim", "leans to", "pairs for 80 %", "of 10 pairs: holds", "does not", "undecided"]);
+    table.set_header([
+        "claim",
+        "leans to",
+        "pairs for 80 %",
+        "of 10 pairs: holds",
+        "does not",
+        "undecided",
+        "difference",
+        "least found by 10",
+    ]);
     let share = |share: f64| right(&format!("{:.0} %", 100.0 * share));
-    for (claim, power) in CLAIMS.iter().zip(&judged.powers) {
+    for ((claim, power), finding) in CLAIMS.iter().zip(&judged.powers).zip(&judged.of_all) {
         let Some(power) = power else { continue };
         let Shares { holds, does_not_hold } = power.of_few;
         table.add_row([
@@ -164,6 +173,20 @@ pub(crate) fn power_table(judged: &Judged) -> Table {
             share(does_not_hold),
             share((1.0 - holds - does_not_hold).max(0.0)),
         ]);
+        for (part, found) in claim.parts.iter().zip(&finding.parts) {
+            let values: Vec<f64> = found.differences.iter().map(|(_, difference)| *difference).collect();
+            let least = Moments::of(&values).sd.and_then(|sd| least_difference(sd, PAPERS_TRIALS as usize));
+            table.add_row([
+                Cell::new(format!("  {}", part.words())),
+                Cell::new(""),
+                right(&found.pairs_needed.map_or("-".to_owned(), |pairs| pairs.to_string())),
+                Cell::new(""),
+                Cell::new(""),
+                Cell::new(""),
+                right(&found.difference.map_or("-".to_owned(), short)),
+                right(&least.map_or("-".to_owned(), short)),
+            ]);
+        }
     }
     table
 }

@@ -144,6 +144,11 @@ impl Arguments {
             writeln!(out, "{}", scenario.scenario)?;
             writeln!(out, "{}\n", power_table(scenario))?;
         }
+        writeln!(
+            out,
+            "leans to: what large experiments would say; pairs for 80 %: the fewest with which 80 % of experiments say so (of a comparison: of paired t tests at 5 %);\n\
+             of 10 pairs: verdicts of experiments of 10 pairs drawn from these; least found by 10: the difference that 80 % of experiments of 10 pairs find\n"
+        )?;
         writeln!(out, "Verdicts")?;
         writeln!(out, "{}", verdicts_table(judged, self.trials))?;
         writeln!(out, "{}", footnote())?;

@@ -7,7 +7,7 @@ use super::gather::{Gathered, times};
 use super::metrics::capitalised;
 use crate::experiment::Experiment;
 use crate::failure::Failure;
-use crate::rounds::weights_of;
+use crate::rounds::{KEYS, likeness, weights_of};
 use crate::stats::Moments;
 use crate::stats::paired::t_half_width;
 
@@ -173,6 +173,52 @@ pub(super) fn trust(
         svg: if panels.is_empty() { String::new() } else { draw(panels, 3, [400.0, 360.0]) },
         csv: table(&["from", "to", "rne_nats"], rows)?,
     }))
+}
+
+/// In which share of the rounds each policy's split is the one that sorting gives.
+pub(super) fn sorting(experiment: &Experiment, gathered: &[Gathered]) -> Result<Figure, Failure> {
+    let (mut shares, mut rows) = ([Vec::new(), Vec::new()], Vec::new());
+    for (policy, gathered) in experiment.policies.iter().zip(gathered) {
+        let found = KEYS.each_ref().map(|key| (key, likeness(&gathered.rounds, key)));
+        for (key, likeness) in &found {
+            rows.push(vec![
+                policy.label.clone(),
+                key.name.to_owned(),
+                likeness.rounds.to_string(),
+                likeness.split.to_string(),
+                likeness.chance.to_string(),
+                likeness.carriers.to_string(),
+                likeness.suppliers.to_string(),
+                likeness.hard_is_higher.to_string(),
+            ]);
+        }
+        shares[0].push(found.iter().map(|(_, likeness)| likeness.split).collect::<Vec<f64>>());
+        shares[1].push(found.iter().map(|(_, likeness)| likeness.hard_is_higher).collect::<Vec<f64>>());
+    }
+    let n = gathered.iter().map(|gathered| gathered.rounds.len()).min().unwrap_or(0);
+    let titles = ["the split is that of sorting by", "the hard task's group has the higher mean"];
+    let panel = |(data, title): (Vec<Vec<f64>>, &str)| {
+        let plots = vec![heat_map(data, 1.0)];
+        let layout = layout(&plots, title)
+            .with_x_categories(KEYS.iter().map(|key| key.name.to_owned()).collect())
+            .with_y_categories(names(experiment));
+        Panel { plots, layout }
+    };
+    let is_empty = n == 0 || shares[0].is_empty();
+    let panels: Vec<Panel> = shares.into_iter().zip(titles).map(panel).collect();
+    Ok(Figure {
+        name: "sorting".into(),
+        title: "What the groups amount to".into(),
+        caption: format!(
+            "Shares of the rounds with two groups. Left: each role is split as sorting it would, whichever half takes which task (by chance, 1 of \
+             120 for six carriers, four suppliers and two observers). n = {n} rounds or more for each policy."
+        ),
+        svg: if is_empty { String::new() } else { draw(panels, 2, [520.0, 320.0]) },
+        csv: table(
+            &["policy", "sorted_by", "rounds", "split", "chance", "carriers", "suppliers", "hard_is_higher"],
+            rows,
+        )?,
+    })
 }
 
 /// The mean levels of the groups, round by round.

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use rne_core::Difficulty;
 
 use crate::failure::Failure;
+use crate::rounds::{Round, rounds_of};
 use crate::sweep::folder::Folder;
 use crate::sweep::{Grouped, Trial};
 
@@ -24,6 +25,8 @@ pub(super) struct Gathered {
     pub first_round: Vec<Grouped>,
     /// Number of that trial.
     pub first_trial: u32,
+    /// Each round as it was grouped.
+    pub rounds: Vec<Round>,
     /// Roles of the robots.
     pub roles: Vec<&'static str>,
 }
@@ -63,6 +66,7 @@ impl Gathered {
             let [hard, easy] = [upto(0, *time), upto(1, *time)];
             [hard + easy, hard, easy]
         };
+        self.rounds.extend(rounds_of(number, trial));
         self.delivered.push(times.iter().map(point).collect());
         let mut groups: BTreeMap<(u32, usize), Vec<[f64; 2]>> = BTreeMap::new();
         for robot in &trial.grouped {

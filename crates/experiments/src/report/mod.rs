@@ -96,6 +96,7 @@ fn figures(folder: &mut Folder, case: usize, comparisons: &[&Comparison]) -> Res
     figures.push(course::over_time(experiment, case, &gathered)?);
     figures.push(course::membership(experiment, &gathered)?);
     figures.push(course::levels(experiment, &gathered)?);
+    figures.push(course::sorting(experiment, &gathered)?);
     figures.extend(course::trust(experiment, case, &gathered)?);
     figures.extend(metrics::axes(folder, case)?);
     figures.retain(|figure| !figure.svg.is_empty());
