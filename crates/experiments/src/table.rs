@@ -12,7 +12,7 @@ use crate::commands::readings::{Difference, ReadingRow, RivalRow, SHOWN};
 use crate::commands::reproduce::{Judged, PAPERS_TRIALS};
 use crate::comparison::{Comparison, digits, short, short_p};
 use crate::metric::METRICS;
-use crate::rounds::{KEYS, Likeness};
+use crate::rounds::{KEYS, Likeness, Share};
 use crate::stats::Moments;
 use crate::sweep::folder::{Folder, Measured};
 
@@ -212,20 +212,23 @@ pub(crate) fn verdicts_table(judged: &[Judged], trials: u32) -> Table {
 pub(crate) fn likeness_table(policies: &[(String, [Likeness; 3])]) -> Table {
     let mut table = Table::new();
     table.load_style(UTF8_FULL_CONDENSED);
-    table.set_header(["policy", "rounds", "sorted by", "split", "chance", "carriers", "suppliers", "higher"]);
-    let share = |share: f64| right(&format!("{:.1} %", 100.0 * share));
+    table.set_header(["policy", "rounds", "sorted by", "split", "carriers", "suppliers", "higher"]);
+    let percent = |share: f64| format!("{:.1} %", 100.0 * share);
+    let beside = |share: &Share| match (share.share(), share.chance()) {
+        (Some(share), Some(chance)) => right(&format!("{} ({})", percent(share), percent(chance))),
+        _ => right("-"),
+    };
     for (label, likenesses) in policies {
         for (i, (key, likeness)) in KEYS.iter().zip(likenesses).enumerate() {
             let first = |text: &str| if i == 0 { text.to_owned() } else { String::new() };
             table.add_row([
                 Cell::new(first(label)),
-                right(&first(&likeness.rounds.to_string())),
+                right(&first(&likeness.rounds().to_string())),
                 Cell::new(key.name),
-                share(likeness.split),
-                share(likeness.chance),
-                share(likeness.carriers),
-                share(likeness.suppliers),
-                share(likeness.hard_is_higher),
+                beside(&likeness.split),
+                beside(&likeness.carriers),
+                beside(&likeness.suppliers),
+                right(&likeness.hard_is_higher.share().map_or("-".to_owned(), percent)),
             ]);
         }
     }

@@ -11,6 +11,8 @@ use crate::sweep::{NewFile, folder};
 
 /// The log.
 const LOG: &str = "evaluations.csv";
+/// What is made of it in the end.
+const RESULTS: [&str; 2] = ["calibrated.ron", "fit.csv"];
 /// What it is of.
 const ORIGIN: &str = "calibration.json";
 
@@ -18,6 +20,8 @@ const ORIGIN: &str = "calibration.json";
 pub struct Log {
     path: PathBuf,
     file: File,
+    /// Cells of a line.
+    columns: usize,
     evaluations: Vec<Evaluation>,
     _lock: File,
 }
@@ -30,23 +34,25 @@ impl Log {
     pub fn open(folder: &Path, calibration: &Calibration, is_fresh: bool) -> Result<Self, Failure> {
         let trouble = |error: std::io::Error| Failure::storage(format!("{}: {error}", folder.display()));
         let origin = folder.join(ORIGIN);
-        if folder.exists() && !origin.exists() && fs::read_dir(folder).map_err(trouble)?.next().is_some() {
+        let has_others = |folder: &Path| -> std::io::Result<bool> {
+            let mut names = fs::read_dir(folder)?.flatten().map(|entry| entry.file_name());
+            Ok(names.any(|name| name != folder::LOCK && !name.to_string_lossy().ends_with(".new")))
+        };
+        if folder.exists() && !origin.exists() && has_others(folder).map_err(trouble)? {
             return Err(Failure::input(format!(
                 "--out: {} is not empty and not the folder of a calibration; nothing was overwritten",
                 folder.display()
             )));
         }
         let now = origin_of(calibration);
-        if let Ok(there) = fs::read_to_string(&origin)
-            && !is_fresh
-        {
-            check_continues(folder, &there, &now)?;
+        if !is_fresh && origin.exists() {
+            check_continues(folder, &fs::read_to_string(&origin).map_err(trouble)?, &now)?;
         }
         fs::create_dir_all(folder).map_err(trouble)?;
         let lock = folder::lock(folder)?;
         let path = folder.join(LOG);
-        if is_fresh && path.exists() {
-            fs::remove_file(&path).map_err(trouble)?;
+        for name in [LOG].into_iter().chain(RESULTS).filter(|name| is_fresh && folder.join(name).exists()) {
+            fs::remove_file(folder.join(name)).map_err(trouble)?;
         }
         NewFile::write(folder, ORIGIN, format!("{now:#}\n").as_bytes())?;
         let evaluations = if path.exists() { read(&path, calibration)? } else { Vec::new() };
@@ -54,7 +60,7 @@ impl Log {
         if file.metadata().map_err(trouble)?.len() == 0 {
             file.write_all(line(&header(calibration))?.as_bytes()).map_err(trouble)?;
         }
-        Ok(Self { path, file, evaluations, _lock: lock })
+        Ok(Self { path, file, columns: header(calibration).len(), evaluations, _lock: lock })
     }
 
     /// What was found for a candidate.
@@ -84,8 +90,9 @@ impl Log {
         let cells = [(self.evaluations.len() + 1).to_string(), evaluation.misfit.to_string()].into_iter();
         let values = evaluation.values.iter().map(f64::to_string);
         let spreads = evaluation.spreads.iter().flat_map(|s| [s.mean.to_string(), s.sd.to_string()]);
-        let failure = evaluation.failure.iter().cloned();
-        let row: Vec<String> = cells.chain(values).chain(spreads).chain(failure).collect();
+        let mut row: Vec<String> = cells.chain(values).chain(spreads).collect();
+        row.resize(self.columns - 1, String::new());
+        row.push(evaluation.failure.clone().unwrap_or_default());
         let written = self.file.write_all(line(&row)?.as_bytes()).and_then(|()| self.file.sync_data());
         written
             .map_err(|error| Failure::storage(format!("cannot write {}: {error}", self.path.display())))?;
@@ -98,11 +105,12 @@ fn header(calibration: &Calibration) -> Vec<String> {
     let names = calibration.free.iter().map(|free| free.name.clone());
     let quantities = calibration.target.quantities.iter();
     let spreads = quantities.flat_map(|q| [format!("{}_mean", q.name), format!("{}_sd", q.name)]);
-    ["evaluation".to_owned(), "misfit".to_owned()].into_iter().chain(names).chain(spreads).collect()
+    let first = ["evaluation", "misfit"].map(str::to_owned);
+    first.into_iter().chain(names).chain(spreads).chain(["failure".to_owned()]).collect()
 }
 
 fn line(cells: &[String]) -> Result<String, Failure> {
-    let mut writer = csv::WriterBuilder::new().flexible(true).from_writer(Vec::new());
+    let mut writer = csv::Writer::from_writer(Vec::new());
     writer.write_record(cells).map_err(Failure::run)?;
     let bytes = writer.into_inner().map_err(Failure::run)?;
     String::from_utf8(bytes).map_err(Failure::run)
@@ -120,8 +128,7 @@ fn read(path: &Path, calibration: &Calibration) -> Result<Vec<Evaluation>, Failu
             .and_then(|file| file.set_len(whole as u64))
             .map_err(trouble)?;
     }
-    let mut rows =
-        csv::ReaderBuilder::new().flexible(true).has_headers(false).from_reader(&text.as_bytes()[..whole]);
+    let mut rows = csv::ReaderBuilder::new().has_headers(false).from_reader(&text.as_bytes()[..whole]);
     let mut evaluations = Vec::new();
     for (i, row) in rows.records().enumerate() {
         let bad = || {
@@ -144,14 +151,15 @@ fn evaluation(row: &csv::StringRecord, calibration: &Calibration) -> Option<Eval
     let free = calibration.free.len();
     let values = (2..2 + free).map(number).collect::<Option<Vec<f64>>>()?;
     let misfit = number(1)?;
-    let quantities = calibration.target.quantities.len();
-    if row.len() == 3 + free {
-        let failure = row.get(2 + free).map(str::to_owned);
+    let failure = row.get(row.len() - 1).filter(|failure| !failure.is_empty()).map(str::to_owned);
+    if failure.is_some() {
         return Some(Evaluation { values, misfit, spreads: Vec::new(), failure });
     }
     let spread = |q| Some(Spread { mean: number(2 + free + 2 * q)?, sd: number(3 + free + 2 * q)? });
-    let spreads = (0..quantities).map(spread).collect::<Option<Vec<_>>>()?;
-    (row.len() == 2 + free + 2 * quantities).then_some(Evaluation { values, misfit, spreads, failure: None })
+    let spreads = (0..calibration.target.quantities.len()).map(spread).collect::<Option<Vec<_>>>()?;
+    // A line that was changed does not have the misfit of its spreads.
+    let is_sound = calibration.target.misfit(&spreads).to_bits() == misfit.to_bits();
+    is_sound.then_some(Evaluation { values, misfit, spreads, failure })
 }
 
 /// What decides the evaluations.
@@ -168,6 +176,7 @@ fn origin_of(calibration: &Calibration) -> serde_json::Value {
         "trials": calibration.trials,
         "first_seed": calibration.first_seed,
         "seed": calibration.seed,
+        "first_step": calibration.first_step,
         "scenario": calibration.base.resolved(),
     })
 }

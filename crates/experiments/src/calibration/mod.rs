@@ -11,6 +11,7 @@ mod log;
 mod target;
 
 use std::cell::Cell;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use cmaes::{CMAESOptions, DVector};
@@ -23,14 +24,12 @@ pub use free::Free;
 pub use log::Log;
 pub use target::{Quantity, Spread, Target};
 
+use crate::cli::panic_message;
 use crate::failure::Failure;
 use crate::sweep::run_trial;
 
 /// The one policy that is ever calibrated.
 pub const POLICY: &str = "DIS";
-
-/// First step of the search, in units of each parameter's range.
-const FIRST_STEP: f64 = 0.25;
 
 /// What a calibrated scenario's name ends with.
 const SUFFIX: &str = "-calibrated";
@@ -54,6 +53,8 @@ pub struct Calibration {
     pub first_seed: u64,
     /// Seed of the search.
     pub seed: u64,
+    /// Standard deviation of the first candidates, in units of each range.
+    pub first_step: f64,
 }
 
 /// One candidate and how it fared.
@@ -95,11 +96,21 @@ impl Calibration {
         with_written(&self.text, &settings)
     }
 
-    /// Checks that both ends of each range can be run, the other fields being as they are.
+    /// The values that the scenario has as it is.
+    fn present(&self) -> Result<Vec<f64>, Failure> {
+        let fields = Fields::of(&self.text);
+        let present = |free: &Free| free.present(&self.text, &fields);
+        let present = self.free.iter().map(present).collect::<Result<Vec<f64>, _>>();
+        present.map_err(|error| Failure::input(format!("--free: {error}")))
+    }
+
+    /// Checks that no field is set twice, and that both ends of each range can be run, the other fields being as they are.
     ///
     /// # Errors
     /// An end that cannot.
     pub fn check(&self) -> Result<(), Failure> {
+        let present = self.present()?;
+        self.text_with(&present).map_err(|error| Failure::input(format!("--free: {error}")))?;
         for free in &self.free {
             for end in free.ends() {
                 let mut file: ScenarioFile = (*self.base).clone();
@@ -128,15 +139,21 @@ impl Calibration {
     ) -> Result<Option<Vec<Vec<f64>>>, String> {
         let scenario = self.scenario(values)?;
         let policy = the_policy()?;
-        let trial = |seed| run_trial(&scenario, &*policy, seed, false, stop).map_err(|fault| fault.reason);
-        let rows: Result<Vec<Vec<f64>>, String> = seeds
+        let trial = |seed| {
+            let run = AssertUnwindSafe(|| run_trial(&scenario, &*policy, seed, false, stop));
+            let result =
+                catch_unwind(run).map_err(|panic| format!("internal error: {}", panic_message(&*panic)))?;
+            result.map_err(|fault| fault.reason)
+        };
+        let rows: Vec<Result<Vec<f64>, String>> = seeds
             .into_par_iter()
             .map(|seed| trial(seed).map(|trial| self.target.measure(&trial.record)))
             .collect();
         if stop.load(Ordering::Relaxed) {
             return Ok(None);
         }
-        let rows = rows?;
+        // The first failure in the order of the seeds, whatever the number of threads.
+        let rows = rows.into_iter().collect::<Result<Vec<Vec<f64>>, String>>()?;
         Ok(Some((0..self.target.spreads.len()).map(|q| rows.iter().map(|row| row[q]).collect()).collect()))
     }
 
@@ -155,7 +172,7 @@ impl Calibration {
         }
     }
 
-    /// Searches until there are so many evaluations in the log, or nothing gets better; returns whether it came to its end: not so when
+    /// Looks at the scenario as it is, and searches from there until there are so many evaluations in the log, or nothing gets better; returns whether it came to its end: not so when
     /// `stop` was set. `done` hears the number of evaluations so far and the least misfit.
     ///
     /// # Errors
@@ -167,11 +184,15 @@ impl Calibration {
         stop: &AtomicBool,
         mut done: impl FnMut(usize, f64),
     ) -> Result<bool, Failure> {
-        let fields = Fields::of(&self.text);
-        let place = |free: &Free| free.present(&self.text, &fields).map(|value| free.place(value));
-        let start = self.free.iter().map(place).collect::<Result<Vec<f64>, _>>().map_err(Failure::input)?;
+        let present = self.present()?;
+        if log.find(&present).is_none() {
+            let Some(evaluation) = self.evaluate(present.clone(), stop) else { return Ok(false) };
+            log.add(evaluation)?;
+        }
+        let start: Vec<f64> =
+            self.free.iter().zip(&present).map(|(free, value)| free.place(*value)).collect();
         let trouble = Cell::new(None);
-        let (mut asked, mut least) = (0, f64::INFINITY);
+        let (mut asked, mut least) = (1, log.find(&present).map_or(WORST, |evaluation| evaluation.misfit));
         let objective = |x: &DVector<f64>| {
             let values: Vec<f64> = self.free.iter().zip(x.iter()).map(|(free, x)| free.value(*x)).collect();
             let known = log.find(&values).map(|evaluation| evaluation.misfit);
@@ -186,7 +207,9 @@ impl Calibration {
             done(asked, least);
             misfit.unwrap_or(WORST)
         };
-        let options = CMAESOptions::new(start, FIRST_STEP).seed(self.seed).max_function_evals(evaluations);
+        let options = CMAESOptions::new(start, self.first_step)
+            .seed(self.seed)
+            .max_function_evals(evaluations.saturating_sub(1));
         let mut search =
             options.build(objective).map_err(|_| Failure::run("the search has no free parameter"))?;
         while search.next().is_none() {
@@ -221,6 +244,11 @@ pub fn with_written(text: &str, settings: &[(String, String)]) -> Result<String,
     };
     let mut places = settings.iter().map(place).collect::<Result<Vec<_>, String>>()?;
     places.sort_by_key(|(place, _)| place.start);
+    if let Some(pair) = places.windows(2).find(|pair| pair[0].0.end > pair[1].0.start) {
+        let within = |(path, _): &&(String, String)| fields.value(path).as_ref() == Some(&pair[1].0);
+        let path = settings.iter().find(within).map_or("", |(path, _)| path.as_str());
+        return Err(format!("{path}: is set twice, by itself or as a part of another field"));
+    }
     let mut text = text.to_owned();
     for (place, value) in places.into_iter().rev() {
         let old = &text[place.clone()];
@@ -241,6 +269,10 @@ mod tests {
         let set = [("b.c[1]".to_owned(), "9.5".to_owned()), ("a".to_owned(), "0.25".to_owned())];
         let expected = "(\n    a: 0.25, // one\n    b: (c: [2.0, 9.5]), // two\n)";
         assert_eq!(with_written(text, &set).unwrap(), expected);
+        let twice = [("a".to_owned(), "10.25".to_owned()), ("a".to_owned(), "12.125".to_owned())];
+        assert!(with_written(text, &twice).unwrap_err().starts_with("a: is set twice"));
+        let within = [("b".to_owned(), "(c: [])".to_owned()), ("b.c[0]".to_owned(), "1.0".to_owned())];
+        assert!(with_written(text, &within).unwrap_err().starts_with("b.c[0]: is set twice"));
         assert!(
             with_written(text, &[("d".to_owned(), "1".to_owned())])
                 .unwrap_err()

@@ -81,9 +81,9 @@ impl Target {
             return Err(bad(format!("has none of the columns {known}")));
         }
         let mut values = vec![Vec::new(); found.len()];
-        for (row, record) in table.records().enumerate() {
-            let line = row + 2;
+        for record in table.records() {
             let record = record.map_err(|error| bad(error.to_string()))?;
+            let line = record.position().map_or(0, csv::Position::line);
             if record[method].trim() != POLICY {
                 return Err(bad(format!(
                     "line {line}: method must be {POLICY}: nothing else is calibrated, found {:?}",

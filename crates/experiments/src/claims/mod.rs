@@ -4,9 +4,9 @@
 //! quantities over pairs of trials.
 //!
 //! - *Holds*: the 95 % interval of every part lies wholly on the claimed side. All must, so no correction is needed (intersection-union test, Berger
-//!   1982): a false claim is called true in at most 2.5 % of experiments.
+//!   1982): a false claim is called true in about 2.5 % of experiments at most.
 //! - *Does not hold*: the interval of some part lies wholly on the other side, at 95 % shared by the parts (Bonferroni): with three parts each interval
-//!   is one of 98.3 %. A true claim is called false in at most 2.5 % of experiments.
+//!   is one of 98.3 %. A true claim is called false in about 2.5 % of experiments at most.
 //! - *Undecided*: neither.
 
 mod examples;
@@ -27,6 +27,9 @@ use crate::stats::Moments;
 use crate::stats::bootstrap::{Width, bca_interval, resamples};
 use crate::stats::paired::pairs_needed;
 use crate::sweep::folder::Folder;
+
+/// Pairs below which nothing is decided: signs alone would do it too often.
+const LEAST_PAIRS: usize = 6;
 
 /// Something that the paper says of its experiment.
 #[derive(Debug)]
@@ -166,8 +169,10 @@ pub fn judge(folder: &Folder, claim: &Claim, trials: u32) -> Result<Finding, Fai
 fn part_finding(part: &Part, differences: Vec<(u32, f64)>, count: usize) -> PartFinding {
     let values: Vec<f64> = differences.iter().map(|(_, difference)| *difference).collect();
     let seed = xxh3_64(format!("{:?} {:?}", part.a, part.b).as_bytes());
-    let interval =
-        |confidence| bca_interval(&values, confidence, (resamples(values.len()), seed), Width::Expanded);
+    let interval = |confidence| {
+        let draws = (resamples(values.len()), seed);
+        bca_interval(&values, confidence, draws, Width::Expanded).filter(|_| values.len() >= LEAST_PAIRS)
+    };
     PartFinding {
         claimed: part.claimed,
         difference: Moments::of(&values).mean,

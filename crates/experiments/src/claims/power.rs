@@ -1,13 +1,18 @@
 //! What experiments of another size would show, were the trials at hand the truth.
 
 use rand::rngs::ChaCha8Rng;
-use rand::seq::index::sample;
 use rand::{RngExt, SeedableRng};
 use statrs::distribution::{ContinuousCDF, Normal, StudentsT};
 
 use super::{Finding, Side, Verdict};
 use crate::comparison::CONFIDENCE;
 use crate::stats::Moments;
+
+/// How many times as many trials as an experiment has are needed to draw it from them.
+const TIMES: usize = 5;
+
+/// Trials whose differences make the errors of large experiments.
+const MOST_TRIALS: usize = 2_000;
 
 /// Experiments that are drawn.
 const EXPERIMENTS: usize = 4_000;
@@ -30,46 +35,60 @@ pub struct Shares {
 /// What experiments on one claim would say.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Power {
-    /// Verdicts of experiments of few pairs, drawn from the trials at hand without putting back.
+    /// Verdicts of experiments of few pairs, drawn from the trials at hand with putting back.
     pub of_few: Shares,
-    /// What large experiments would say.
+    /// What large experiments would say, were the means of the trials at hand the truth; undecided where one of them is 0.
     pub leaning: Verdict,
     /// Pairs with which 80 % of experiments would say so; `None` where more than a million would be needed.
     pub pairs_needed: Option<u32>,
 }
 
-/// The power of experiments on one claim, drawn with this seed from the trials that `finding` was made of; `None` for fewer than `few`. Verdicts are
+/// The power of experiments on one claim, drawn with this seed from the trials that `finding` was made of; `None` where these are fewer than
+/// [`TIMES`] as many as `few`, since experiments drawn from them would be too much alike. Verdicts are
 /// those of [`super::judge`], but with paired t intervals, since thousands of bootstraps would take hours.
 #[must_use]
 pub fn power(finding: &Finding, few: usize, seed: u64) -> Option<Power> {
     let trials = trials_of(finding);
-    if few < 2 || trials.len() < few.max(3) {
+    if few < 2 || trials.len() < TIMES * few {
         return None;
     }
     let claimed: Vec<Side> = finding.parts.iter().map(|part| part.claimed).collect();
     let mut draws = ChaCha8Rng::seed_from_u64(seed);
     let mut of_few = Shares { holds: 0.0, does_not_hold: 0.0 };
+    let limits = limits(few, claimed.len());
     for _ in 0..EXPERIMENTS {
-        let chosen = sample(&mut draws, trials.len(), few);
-        let chosen: Vec<&[f64]> = chosen.into_iter().map(|i| trials[i].as_slice()).collect();
-        of_few.count(verdict(&claimed, |part| t_of(chosen.iter().map(|trial| trial[part])), few));
+        let chosen: Vec<&[f64]> = (0..few)
+            .map(|_| trials[draws.random_range(0..trials.len() as u32) as usize].as_slice())
+            .collect();
+        of_few.count(verdict(&claimed, |part| t_of(chosen.iter().map(|trial| trial[part])), limits));
     }
     let effects: Vec<f64> = (0..claimed.len()).map(|part| effect(&trials, part)).collect();
-    let is_claimed =
-        |(effect, side): (&f64, &Side)| if *side == Side::More { *effect > 0.0 } else { *effect < 0.0 };
-    let leans_to =
-        if effects.iter().zip(&claimed).all(is_claimed) { Verdict::Holds } else { Verdict::DoesNotHold };
-    let noise = noise(&trials, &mut draws);
+    let leaning = leaning(&effects, &claimed);
+    if leaning == Verdict::Undecided {
+        return Some(Power { of_few, leaning, pairs_needed: None });
+    }
+    let noise = noise(&trials[..trials.len().min(MOST_TRIALS)], &mut draws);
     let reaches = |pairs: u32| {
-        let root = f64::from(pairs).sqrt();
+        let (root, limits) = (f64::from(pairs).sqrt(), self::limits(pairs as usize, claimed.len()));
         let mut shares = Shares { holds: 0.0, does_not_hold: 0.0 };
         for errors in &noise {
-            shares.count(verdict(&claimed, |part| root * effects[part] + errors[part], pairs as usize));
+            shares.count(verdict(&claimed, |part| root * effects[part] + errors[part], limits));
         }
-        let share = if leans_to == Verdict::Holds { shares.holds } else { shares.does_not_hold };
+        let share = if leaning == Verdict::Holds { shares.holds } else { shares.does_not_hold };
         share >= WANTED
     };
-    Some(Power { of_few, leaning: leans_to, pairs_needed: least_pairs(reaches) })
+    Some(Power { of_few, leaning, pairs_needed: least_pairs(reaches) })
+}
+
+/// What effects of these sizes make of a claim.
+fn leaning(effects: &[f64], claimed: &[Side]) -> Verdict {
+    let towards = |(effect, side): (&f64, &Side)| if *side == Side::More { *effect } else { -effect };
+    let least = effects.iter().zip(claimed).map(towards).fold(f64::INFINITY, f64::min);
+    match least.partial_cmp(&0.0) {
+        Some(std::cmp::Ordering::Greater) => Verdict::Holds,
+        Some(std::cmp::Ordering::Less) => Verdict::DoesNotHold,
+        _ => Verdict::Undecided,
+    }
 }
 
 impl Shares {
@@ -135,11 +154,14 @@ fn noise(trials: &[Vec<f64>], draws: &mut ChaCha8Rng) -> Vec<Vec<f64>> {
     (0..EXPERIMENTS).map(|_| experiment()).collect()
 }
 
-/// The verdict from the t of each part in an experiment of so many pairs.
-fn verdict(claimed: &[Side], t: impl Fn(usize) -> f64, pairs: usize) -> Verdict {
-    let limit = |parts: usize| quantile(pairs, 1.0 - (1.0 - CONFIDENCE) / 2.0 / parts as f64);
+/// The t beyond which one part is decided with so many pairs: by itself, and shared by all parts.
+fn limits(pairs: usize, parts: usize) -> [f64; 2] {
+    [1, parts].map(|parts| quantile(pairs, 1.0 - (1.0 - CONFIDENCE) / 2.0 / parts as f64))
+}
+
+/// The verdict from the t of each part.
+fn verdict(claimed: &[Side], t: impl Fn(usize) -> f64, [each, shared]: [f64; 2]) -> Verdict {
     let towards = |part: usize| if claimed[part] == Side::More { t(part) } else { -t(part) };
-    let (each, shared) = (limit(1), limit(claimed.len()));
     if (0..claimed.len()).all(|part| towards(part) > each) {
         Verdict::Holds
     } else if (0..claimed.len()).any(|part| towards(part) < -shared) {
@@ -226,8 +248,12 @@ mod tests {
 
     #[test]
     fn nothing_is_said_of_experiments_larger_than_the_trials_at_hand() {
-        assert_eq!(power(&finding(0.5, 8), 10, 1), None);
+        assert_eq!(power(&finding(0.5, 49), 10, 1), None);
         assert!(power(&finding(0.0001, 200), 10, 1).unwrap().pairs_needed.is_none());
+        let mut nothing = finding(0.5, 200);
+        nothing.parts[0].differences.iter_mut().for_each(|(_, difference)| *difference = 0.0);
+        let nothing = power(&nothing, 10, 1).unwrap();
+        assert_eq!((nothing.leaning, nothing.pairs_needed), (Verdict::Undecided, None));
     }
 
     #[test]

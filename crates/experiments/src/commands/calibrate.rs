@@ -62,6 +62,9 @@ pub(crate) struct Arguments {
     /// Seed of the search
     #[arg(long, default_value_t = 1)]
     seed: u64,
+    /// How far the first candidates are from the scenario as it is, as a share of each range; small to refine what was found
+    #[arg(long, default_value_t = 0.25, value_name = "SHARE")]
+    first_step: f64,
     /// Threads [default: one per core]
     #[arg(long, value_parser = clap::value_parser!(u32).range(1..=1024))]
     jobs: Option<u32>,
@@ -101,13 +104,13 @@ impl Arguments {
             let reason = log.evaluations().first().and_then(|evaluation| evaluation.failure.clone());
             Failure::run(format!("no candidate could be run: {}", reason.unwrap_or_default()))
         })?;
+        let text = calibration.text_with(&best.values).map_err(Failure::run)?;
+        NewFile::write(&folder, CALIBRATED, text.as_bytes())?;
         let seeds = (1..=u64::from(self.fresh_trials)).into_par_iter();
         let fresh = pool.install(|| calibration.measure(&best.values, seeds, &STOP)).map_err(Failure::run)?;
         let Some(fresh) = fresh else { return Err(stopped(&log)) };
         let fresh: Vec<Spread> = fresh.iter().filter_map(|values| Spread::of(values)).collect();
         let rows = Fit::rows(&calibration, &best.spreads, &fresh);
-        let text = calibration.text_with(&best.values).map_err(Failure::run)?;
-        NewFile::write(&folder, CALIBRATED, text.as_bytes())?;
         write_fit(&folder, &rows)?;
         self.print(out, &calibration, &log, &rows)?;
         if !self.quiet {
@@ -117,6 +120,18 @@ impl Arguments {
     }
 
     fn calibration(&self) -> Result<Calibration, Failure> {
+        if !(self.first_step > 0.0 && self.first_step <= 1.0) {
+            return Err(Failure::input(format!(
+                "--first-step: must be above 0 and at most 1, found {}",
+                self.first_step
+            )));
+        }
+        if self.first_seed <= u64::from(self.fresh_trials) {
+            return Err(Failure::input(format!(
+                "--first-seed: must be beyond the fresh trials, whose seeds are 1 to {}, found {}",
+                self.fresh_trials, self.first_seed
+            )));
+        }
         let (_, text) = load(&self.file)?;
         let mut settings = Vec::new();
         for entry in &self.set {
@@ -133,8 +148,9 @@ impl Arguments {
         let free = self.free.iter().map(parse).collect::<Result<Vec<_>, _>>();
         let free = free.map_err(|error| Failure::input(format!("--free: {error}")))?;
         let target = Target::load(&self.target)?;
-        let (trials, first_seed, seed) = (self.trials, self.first_seed, self.seed);
-        let calibration = Calibration { text, base, free, target, trials, first_seed, seed };
+        let (trials, first_seed, seed, first_step) =
+            (self.trials, self.first_seed, self.seed, self.first_step);
+        let calibration = Calibration { text, base, free, target, trials, first_seed, seed, first_step };
         calibration.check()?;
         Ok(calibration)
     }

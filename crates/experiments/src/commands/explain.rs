@@ -8,7 +8,7 @@ use clap::Args;
 use rne_core::Difficulty;
 
 use crate::failure::Failure;
-use crate::rounds::{Blindness, KEYS, Likeness, Round, blindness, likeness, rounds_of};
+use crate::rounds::{Blindness, Example, Likeness, Round, likeness, rounds_of};
 use crate::sweep::folder::Folder;
 use crate::table::{levels_table, likeness_table};
 
@@ -51,20 +51,46 @@ impl Arguments {
             return Err(Failure::input(format!("--case: must be from 1 to {cases}, found {}", self.case)));
         }
         let case = self.case - 1;
-        let labels: Vec<String> =
-            folder.experiment().policies.iter().map(|policy| policy.label.clone()).collect();
-        let (mut likenesses, mut levels, mut example) = (Vec::new(), Vec::new(), None);
-        for (policy, label) in labels.iter().enumerate() {
-            let rounds = rounds_in(&mut folder, case, policy)?;
-            likenesses.push((label.clone(), KEYS.each_ref().map(|key| likeness(&rounds, key))));
-            levels.extend(levels_of(label, &rounds));
-            if example.is_none() {
-                let options = folder.experiment().cases[case].scenario.rne.clone();
-                example = blindness(&rounds, &options)?;
+        let policies = folder.experiment().policies.clone();
+        let (mut likenesses, mut levels, mut blind) = (Vec::new(), Vec::new(), Vec::new());
+        for (place, policy) in policies.iter().enumerate() {
+            let rounds = rounds_in(&mut folder, case, place)?;
+            likenesses.push((policy.label.clone(), likeness(&rounds)));
+            levels.extend(levels_of(&policy.label, &rounds));
+            if policy.name == "RNE" && blind.is_empty() {
+                let scenario =
+                    policy.options_in(&folder.experiment().cases[case].scenario).map_err(Failure::run)?;
+                let mut blindness = Blindness::default();
+                rounds.iter().try_for_each(|round| blindness.add(round, &scenario.rne))?;
+                blind.push((policy.label.clone(), rounds.len(), blindness));
             }
         }
-        print(out, &likenesses, &levels, example.as_ref())
+        if likenesses.iter().all(|(_, of)| of[0].rounds() == 0) {
+            return Err(Failure::input(format!(
+                "{}: no round of this case was split into two groups",
+                self.folder.display()
+            )));
+        }
+        print(out, &likenesses, &levels, &blind)?;
+        if let Some(gaps) = gaps(&folder, case) {
+            writeln!(out, "{gaps}")?;
+        }
+        Ok(())
     }
+}
+
+/// What is to be said of trials that failed or are missing, if there are any.
+pub(crate) fn gaps(folder: &Folder, case: usize) -> Option<String> {
+    let keys = folder.experiment().keys(None).filter(|key| key.case == case);
+    let (mut failed, mut missing) = (0, 0);
+    for key in keys {
+        match folder.results().get(&(key.case, key.policy, key.trial)) {
+            None => missing += 1,
+            Some(measured) => failed += u32::from(measured.metrics.is_none()),
+        }
+    }
+    (failed + missing > 0)
+        .then(|| format!("{failed} trials failed, {missing} are missing: these are left out"))
 }
 
 /// All rounds of one policy.
@@ -116,44 +142,57 @@ fn print(
     out: &mut dyn Write,
     likenesses: &[(String, [Likeness; 3])],
     levels: &[GroupLevels],
-    example: Option<&Blindness>,
+    blind: &[(String, usize, Blindness)],
 ) -> Result<(), Failure> {
-    writeln!(out, "In which share of the rounds a policy's split is the one that sorting each role gives")?;
+    writeln!(
+        out,
+        "In which share of the rounds a policy's split is the one that sorting each role gives (in brackets: by chance)"
+    )?;
     writeln!(out, "{}", likeness_table(likenesses))?;
     writeln!(
         out,
-        "split: in all roles, whichever half takes which task; chance: the share of all splits into halves; higher: the group of the hard task has the\n\
-         higher mean of that level\n"
+        "split: in all roles, whichever half takes which task; higher: the group of the hard task has the higher mean of that level. Ties count as sorted,\n\
+         by chance too\n"
     )?;
     writeln!(out, "Mean levels of the groups when a round begins, in percent")?;
     writeln!(out, "{}", levels_table(levels))?;
     writeln!(out, "n: rounds with two groups\n")?;
-    let Some(Blindness { trial, seed, round, role, unlike, alike, misjudged }) = example else {
-        return Ok(());
-    };
+    blind.iter().try_for_each(|(label, rounds, blindness)| print_blindness(out, label, *rounds, blindness))
+}
+
+fn print_blindness(
+    out: &mut dyn Write,
+    label: &str,
+    rounds: usize,
+    blindness: &Blindness,
+) -> Result<(), Failure> {
     let robot = |robot: &crate::sweep::Grouped| {
         format!("robot {} (energy {:.0} %, HP {:.0} %)", robot.robot, robot.energy, robot.hp)
     };
-    writeln!(
-        out,
-        "Blind to magnitude: trial {trial} (seed {seed}), round {round}, {}s",
-        role.to_lowercase()
-    )?;
-    for (pair, what) in [(unlike, "farther apart, more trust"), (alike, "nearer, less trust")] {
+    if let Some(Example { trial, seed, round, role, unlike, alike, .. }) = &blindness.plainest {
         writeln!(
             out,
-            "  {} to {}: {:.0} points apart, RNE {:.2e} nats, trust {:.6} ({what})",
-            robot(&pair.from),
-            robot(&pair.to),
-            pair.apart(),
-            pair.rne,
-            (-pair.rne).exp(),
+            "Blind to magnitude: the plainest of the {rounds} rounds of {label}: trial {trial} (seed {seed}), round {round}, {}s",
+            role.to_lowercase()
+        )?;
+        for (pair, what) in [(unlike, "farther apart, more trust"), (alike, "nearer, less trust")] {
+            writeln!(
+                out,
+                "  {} to {}: {:.0} points apart, RNE {:.2e} nats, trust {:.6} ({what})",
+                robot(&pair.from),
+                robot(&pair.to),
+                pair.apart(),
+                pair.rne,
+                (-pair.rne).exp(),
+            )?;
+        }
+    }
+    if let Some(misjudged) = blindness.misjudged() {
+        writeln!(
+            out,
+            "Of all two pairs of robots of one role and round, in {:.1} % the one whose levels are nearer to each other has the higher entropy (unrelated: 50 %).",
+            100.0 * misjudged
         )?;
     }
-    writeln!(
-        out,
-        "Of all two pairs of robots of one role and round, in {:.0} % the one whose levels are nearer to each other has the higher entropy (by chance: 50 %).",
-        100.0 * misjudged
-    )?;
     Ok(())
 }

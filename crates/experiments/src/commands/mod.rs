@@ -88,6 +88,7 @@ pub(crate) fn run_missing(
         folder.add(&outcome)
     })?;
     progress.finish_and_clear();
+    folder.experiment().forget_shared();
     if is_whole { Ok(()) } else { Err(folder.interrupted()) }
 }
 

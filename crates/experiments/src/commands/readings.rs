@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use clap::Args;
 use rayon::prelude::*;
 
-use super::explain::rounds_in;
+use super::explain::{gaps, rounds_in};
 use crate::experiment::PolicySpec;
 use crate::failure::Failure;
 use crate::metric::metric_named;
@@ -45,8 +45,10 @@ pub(crate) struct Difference {
 }
 
 impl Difference {
-    fn of(differences: &[f64]) -> Option<Self> {
-        Some(Self { mean: Moments::of(differences).mean?, half: t_half_width(differences)? })
+    /// Of the trials in which it is defined.
+    fn of(differences: &[Option<f64>]) -> Option<Self> {
+        let defined: Vec<f64> = differences.iter().flatten().copied().collect();
+        Some(Self { mean: Moments::of(&defined).mean?, half: t_half_width(&defined)? })
     }
 
     /// On which side of zero the interval lies, if on one.
@@ -82,18 +84,36 @@ pub(crate) struct RivalRow {
 impl Arguments {
     pub(crate) fn execute(&self, out: &mut dyn Write) -> Result<(), Failure> {
         let mut folder = Folder::read(&self.folder)?;
+        if folder.experiment().cases.len() > 1 {
+            return Err(Failure::input(format!(
+                "{}: has axes; readings are compared in a sweep of one case",
+                self.folder.display()
+            )));
+        }
         let policies = folder.experiment().policies.clone();
-        let default = policies.iter().position(|policy| policy.label == "RNE").ok_or_else(|| {
-            Failure::input(format!("{}: has no policy RNE to compare readings with", self.folder.display()))
-        })?;
+        let default = policies
+            .iter()
+            .position(|policy| policy.name == "RNE" && policy.options().is_empty())
+            .ok_or_else(|| {
+                Failure::input(format!(
+                    "{}: has no policy RNE without options to compare readings with",
+                    self.folder.display()
+                ))
+            })?;
         let readings: Vec<usize> = (0..policies.len()).filter(|i| policies[*i].name == "RNE").collect();
         if readings.len() < 2 {
             return Err(Failure::input(format!("{}: has no readings to compare", self.folder.display())));
         }
         let rounds = rounds_in(&mut folder, 0, default)?;
-        let rows = single(&folder, default, &readings, &rounds)?;
-        let trials = folder.experiment().trials;
-        writeln!(out, "Each reading by itself against the default, over {trials} pairs")?;
+        let trials = Trials::of(&folder);
+        if trials.numbers.is_empty() || rounds.is_empty() {
+            return Err(Failure::input(format!(
+                "{}: has no trial yet that all policies have finished",
+                self.folder.display()
+            )));
+        }
+        let rows = single(&trials, default, &readings, &rounds)?;
+        writeln!(out, "Each reading by itself against the default, over {} pairs", trials.numbers.len())?;
         writeln!(out, "{}", readings_table(&rows))?;
         writeln!(
             out,
@@ -101,7 +121,7 @@ impl Arguments {
              whichever half takes which task; trials: share that go otherwise; differences: reading less default, with 95 % paired t intervals\n",
             rounds.len()
         )?;
-        let averaged = averaged(&folder, &readings);
+        let averaged = averaged(&trials, &readings);
         if !averaged.is_empty() {
             writeln!(
                 out,
@@ -109,36 +129,92 @@ impl Arguments {
             )?;
             writeln!(out, "{}\n", averaged_table(&averaged))?;
         }
-        let rivals = rivals(&folder, &readings);
+        let distinct = trials.distinct(&readings);
+        let rivals = rivals(&trials, &distinct);
         if !rivals.is_empty() {
             writeln!(
                 out,
-                "All {} readings against each other policy: how many are above, below, neither",
+                "The {} of {} readings whose trials differ, against each other policy: how many are above, below, neither",
+                distinct.len(),
                 readings.len()
             )?;
             writeln!(out, "{}", rivals_table(&rivals))?;
+            writeln!(
+                out,
+                "95 % paired t intervals, not corrected for the number of readings; least and greatest are the extremes of so many\n"
+            )?;
         }
-        writeln!(out, "{}", distinct(&folder, &readings, &rounds)?)?;
+        writeln!(out, "{}", groupings_in_words(&folder, &readings, &rounds)?)?;
+        if let Some(gaps) = gaps(&folder, 0) {
+            writeln!(out, "{gaps}, each with its trials of the other policies")?;
+        }
         Ok(())
+    }
+}
+
+/// The trials that every policy has finished.
+struct Trials<'f> {
+    folder: &'f Folder,
+    numbers: Vec<u32>,
+}
+
+impl<'f> Trials<'f> {
+    fn of(folder: &'f Folder) -> Self {
+        let policies = folder.experiment().policies.len();
+        let has = |policy: usize, trial: u32| {
+            folder.results().get(&(0, policy, trial)).is_some_and(|measured| measured.metrics.is_some())
+        };
+        let is_whole = |trial: &u32| (0..policies).all(|policy| has(policy, *trial));
+        Self { folder, numbers: (1..=folder.experiment().trials).filter(is_whole).collect() }
+    }
+
+    fn policies(&self) -> &'f [PolicySpec] {
+        &self.folder.experiment().policies
+    }
+
+    fn metrics(&self, policy: usize, trial: u32) -> Option<&'f Vec<Option<f64>>> {
+        self.folder.results().get(&(0, policy, trial))?.metrics.as_ref()
+    }
+
+    /// Metric of one policy less that of another, trial by trial; `None` where it is not defined.
+    fn differences(&self, metric: &str, a: usize, b: usize) -> Vec<Option<f64>> {
+        let place = metric_named(metric).ok();
+        let value = |policy: usize, trial: u32| self.metrics(policy, trial)?[place?];
+        self.numbers.iter().map(|trial| Some(value(a, *trial)? - value(b, *trial)?)).collect()
+    }
+
+    /// Share of the trials of two policies that differ in any metric.
+    fn otherwise(&self, a: usize, b: usize) -> f64 {
+        let is_other = |trial: &&u32| self.metrics(a, **trial) != self.metrics(b, **trial);
+        self.numbers.iter().filter(is_other).count() as f64 / self.numbers.len() as f64
+    }
+
+    /// The readings without those whose trials are the same as an earlier one's.
+    fn distinct(&self, readings: &[usize]) -> Vec<usize> {
+        let mut distinct: Vec<usize> = Vec::new();
+        for reading in readings {
+            let is_new = distinct.iter().all(|known| self.otherwise(*known, *reading) > 0.0);
+            distinct.extend(is_new.then_some(*reading));
+        }
+        distinct
     }
 }
 
 /// The readings that differ from the default in one option.
 fn single(
-    folder: &Folder,
+    trials: &Trials,
     default: usize,
     readings: &[usize],
     rounds: &[Round],
 ) -> Result<Vec<ReadingRow>, Failure> {
-    let policies = &folder.experiment().policies;
+    let policies = trials.policies();
     let alone: Vec<usize> = readings.iter().copied().filter(|i| policies[*i].options().len() == 1).collect();
     let row = |reading: &usize| {
-        let regrouped = regrouped(folder, *reading, rounds)?;
-        let differences = SHOWN.map(|metric| Difference::of(&differences(folder, metric, *reading, default)));
+        let differences = SHOWN.map(|metric| Difference::of(&trials.differences(metric, *reading, default)));
         Ok(ReadingRow {
             reading: options_in_words(&policies[*reading]),
-            regrouped,
-            trials: other_trials(folder, *reading, default),
+            regrouped: regrouped(trials.folder, *reading, rounds)?,
+            trials: trials.otherwise(*reading, default),
             differences: differences.to_vec(),
         })
     };
@@ -162,26 +238,10 @@ fn regrouped(folder: &Folder, reading: usize, rounds: &[Round]) -> Result<[f64; 
     Ok([share(0), share(1)])
 }
 
-/// Metric of a reading less that of another policy, trial by trial.
-fn differences(folder: &Folder, metric: &str, a: usize, b: usize) -> Vec<f64> {
-    let Ok(metric) = metric_named(metric) else { return Vec::new() };
-    let value =
-        |policy: usize, trial: u32| folder.results().get(&(0, policy, trial))?.metrics.as_ref()?[metric];
-    (1..=folder.experiment().trials).filter_map(|trial| Some(value(a, trial)? - value(b, trial)?)).collect()
-}
-
-/// Share of the trials of two policies that differ in any metric.
-fn other_trials(folder: &Folder, a: usize, b: usize) -> f64 {
-    let trials = folder.experiment().trials;
-    let metrics = |policy: usize, trial: u32| folder.results().get(&(0, policy, trial)).map(|m| &m.metrics);
-    let other = (1..=trials).filter(|trial| metrics(a, *trial) != metrics(b, *trial)).count();
-    other as f64 / f64::from(trials)
-}
-
 /// For each option and value that is not the default, the mean over all combinations of the other options of the differences to the same combination
 /// with the default, trial by trial.
-fn averaged(folder: &Folder, readings: &[usize]) -> Vec<(String, Vec<Option<Difference>>)> {
-    let policies = &folder.experiment().policies;
+fn averaged(trials: &Trials, readings: &[usize]) -> Vec<(String, Vec<Option<Difference>>)> {
+    let policies = trials.policies();
     let mut values: Vec<(String, String)> = Vec::new();
     for reading in readings {
         for option in policies[*reading].options() {
@@ -200,20 +260,22 @@ fn averaged(folder: &Folder, readings: &[usize]) -> Vec<(String, Vec<Option<Diff
             readings.iter().filter(|i| policies[**i].options().contains(&(option.clone(), value.clone())));
         let pairs: Vec<(usize, usize)> = with.filter_map(|i| Some((*i, without(*i, option)?))).collect();
         let differences = SHOWN.map(|metric| {
-            let all: Vec<Vec<f64>> = pairs.iter().map(|(a, b)| differences(folder, metric, *a, *b)).collect();
-            let trials = all.iter().map(Vec::len).min().unwrap_or(0);
-            let mean = |trial: usize| all.iter().map(|of| of[trial]).sum::<f64>() / all.len() as f64;
-            let is_whole = all.iter().all(|of| of.len() == trials);
-            is_whole.then(|| Difference::of(&(0..trials).map(mean).collect::<Vec<f64>>())).flatten()
+            let all: Vec<Vec<Option<f64>>> =
+                pairs.iter().map(|(a, b)| trials.differences(metric, *a, *b)).collect();
+            let mean = |trial: usize| {
+                let of_trial = all.iter().map(|of| of[trial]).collect::<Option<Vec<f64>>>()?;
+                Moments::of(&of_trial).mean
+            };
+            Difference::of(&(0..trials.numbers.len()).map(mean).collect::<Vec<_>>())
         });
         (format!("{option}: {value} ({} pairs of readings)", pairs.len()), differences.to_vec())
     };
     values.par_iter().map(row).collect()
 }
 
-/// All readings against each policy that is none.
-fn rivals(folder: &Folder, readings: &[usize]) -> Vec<RivalRow> {
-    let policies = &folder.experiment().policies;
+/// Readings against each policy that is none.
+fn rivals(trials: &Trials, readings: &[usize]) -> Vec<RivalRow> {
+    let policies = trials.policies();
     let rivals: Vec<usize> = (0..policies.len()).filter(|i| policies[*i].name != "RNE").collect();
     let mut rows = Vec::new();
     for metric in SHOWN {
@@ -221,7 +283,7 @@ fn rivals(folder: &Folder, readings: &[usize]) -> Vec<RivalRow> {
             let found: Vec<(String, Difference)> = readings
                 .iter()
                 .filter_map(|reading| {
-                    let difference = Difference::of(&differences(folder, metric, *reading, *rival))?;
+                    let difference = Difference::of(&trials.differences(metric, *reading, *rival))?;
                     Some((options_in_words(&policies[*reading]), difference))
                 })
                 .collect();
@@ -241,8 +303,8 @@ fn rivals(folder: &Folder, readings: &[usize]) -> Vec<RivalRow> {
     rows
 }
 
-/// How many readings there are in effect.
-fn distinct(folder: &Folder, readings: &[usize], rounds: &[Round]) -> Result<String, Failure> {
+/// How many readings group otherwise.
+fn groupings_in_words(folder: &Folder, readings: &[usize], rounds: &[Round]) -> Result<String, Failure> {
     let case = &folder.experiment().cases[0];
     let groups = |reading: &usize| {
         let policy = &case.policies[*reading];

@@ -84,12 +84,15 @@ pub(crate) struct Judged {
 impl Arguments {
     pub(crate) fn execute(&self, out: &mut dyn Write) -> Result<(), Failure> {
         stop_on_ctrl_c();
+        // Both are opened first, so that a folder that cannot be used is known before the first trial.
+        let open = |(path, text): (&str, &str)| self.open(Path::new(path), text);
+        let mut folders = SCENARIOS.into_iter().map(open).collect::<Result<Vec<_>, Failure>>()?;
         let mut judged = Vec::new();
-        for (path, text) in SCENARIOS {
-            let mut folder = self.sweep(Path::new(path), text)?;
-            report::write(&mut folder, 0)?;
-            self.write_authors_columns(&folder)?;
-            judged.push(self.judge(&folder)?);
+        for folder in &mut folders {
+            self.run(folder)?;
+            report::write(folder, 0)?;
+            self.write_authors_columns(folder)?;
+            judged.push(self.judge(folder)?);
         }
         self.write_claims(&judged)?;
         self.write_power(&judged)?;
@@ -97,30 +100,33 @@ impl Arguments {
         if !self.quiet {
             eprintln!("results in {}", self.out.display());
         }
-        Ok(())
+        let failures = folders.iter().flat_map(|folder| folder.results().values());
+        let failures: Vec<&str> = failures.filter_map(|measured| measured.failure.as_deref()).collect();
+        if failures.is_empty() { Ok(()) } else { Err(Failure::run(failures.join("\n"))) }
     }
 
-    /// Runs the trials of one scenario that are not there yet.
-    fn sweep(&self, path: &Path, text: &str) -> Result<Folder, Failure> {
+    /// Opens the folder of one scenario.
+    fn open(&self, path: &Path, text: &str) -> Result<Folder, Failure> {
         let overrides = Overrides {
             policies: Some(POLICIES.map(str::to_owned).to_vec()),
             trials: Some(self.trials),
             ..Overrides::default()
         };
         let experiment = Experiment::parse(text.to_owned(), path, &overrides)?;
-        let place = self.out.join(&experiment.name);
-        if !self.quiet {
-            eprintln!("{}: {} trials of each of {} policies", experiment.name, self.trials, POLICIES.len());
-        }
         let opening = Opening { shard: None, is_fresh: self.fresh };
-        let mut folder =
-            Folder::open(&place, Arc::new(experiment), opening, &mut |note| eprintln!("note: {note}"))?;
+        let place = self.out.join(&experiment.name);
+        Folder::open(&place, Arc::new(experiment), opening, &mut |note| eprintln!("note: {note}"))
+    }
+
+    /// Runs the trials that are not there yet.
+    fn run(&self, folder: &mut Folder) -> Result<(), Failure> {
+        if !self.quiet {
+            let name = &folder.experiment().name;
+            eprintln!("{name}: {} trials of each of {} policies", self.trials, POLICIES.len());
+        }
         let jobs = self.jobs.map_or_else(default_jobs, |jobs| jobs as usize);
-        run_missing(&mut folder, None, Limits { jobs, trial: Some(TRIAL_LIMIT) }, self.quiet)?;
-        folder.finish(&STOP)?;
-        let failed: Vec<&str> =
-            folder.results().values().filter_map(|measured| measured.failure.as_deref()).collect();
-        if failed.is_empty() { Ok(folder) } else { Err(Failure::run(failed.join("\n"))) }
+        run_missing(folder, None, Limits { jobs, trial: Some(TRIAL_LIMIT) }, self.quiet)?;
+        folder.finish(&STOP)
     }
 
     fn judge(&self, folder: &Folder) -> Result<Judged, Failure> {
@@ -146,7 +152,7 @@ impl Arguments {
         }
         writeln!(
             out,
-            "leans to: what large experiments would say; pairs for 80 %: the fewest with which 80 % of experiments say so (of a comparison: of paired t tests at 5 %);\n\
+            "leans to: what large experiments would say, were the means of these trials the truth; pairs for 80 %: the fewest with which 80 % of experiments say so (of a comparison: of paired t tests at 5 %);\n\
              of 10 pairs: verdicts of experiments of 10 pairs drawn from these; least found by 10: the difference that 80 % of experiments of 10 pairs find\n"
         )?;
         writeln!(out, "Verdicts")?;
@@ -180,6 +186,7 @@ impl Arguments {
                         rows.push(ClaimRow {
                             scenario: &scenario.scenario,
                             trials,
+                            section: claim.section,
                             claim: claim.name,
                             words: claim.words,
                             verdict: finding.verdict.words(),
@@ -238,6 +245,7 @@ impl Arguments {
 struct ClaimRow<'a> {
     scenario: &'a str,
     trials: u32,
+    section: &'a str,
     claim: &'a str,
     words: &'a str,
     verdict: &'a str,
@@ -269,7 +277,7 @@ fn footnote() -> String {
     format!(
         "Paired by seed; intervals: BCa bootstrap at 95 %, widened for small n. A claim holds when the interval of each of its comparisons lies on the\n\
          claimed side, and does not when one lies on the other side (at 95 % shared by its comparisons); else it is undecided. Each verdict is\n\
-         wrong in at most 2.5 % of experiments; the {} claims are not corrected for one another. docs/reproduction.md discusses them.",
+         wrong in about 2.5 % of experiments at most; the {} claims are not corrected for one another. docs/reproduction.md discusses them.",
         CLAIMS.len()
     )
 }

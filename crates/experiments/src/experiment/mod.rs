@@ -19,7 +19,7 @@ pub use read::with_settings;
 
 use crate::failure::Failure;
 use crate::sweep::{Fault, SharedTrials, Trial, TrialKey, run_trial};
-use read::{checked, from_scenario, from_sweep_file};
+use read::{checked, from_scenario, from_sweep_file, with_readings};
 
 /// Most cases that the axes of a sweep may span.
 const MAX_CASES: usize = 100_000;
@@ -163,12 +163,16 @@ impl Experiment {
     /// Those of [`Experiment::load`].
     pub fn parse(text: String, path: &Path, overrides: &Overrides) -> Result<Self, Failure> {
         let is_sweep = Fields::of(&text).inside("").contains(&"scenario");
-        let mut parts = if is_sweep { from_sweep_file(text, path)? } else { from_scenario(text, path)? };
+        let (mut parts, readings) =
+            if is_sweep { from_sweep_file(text, path)? } else { from_scenario(text, path)? };
         parts.base = with_settings(&parts.base, &overrides.set)?;
-        let is_set = |axis: &&Axis| {
-            overrides.set.iter().any(|entry| entry.split('=').next().unwrap_or_default().trim() == axis.path)
+        let is_set = |path: &str| {
+            overrides.set.iter().any(|entry| entry.split('=').next().unwrap_or_default().trim() == path)
         };
-        if let Some(axis) = parts.axes.iter().find(is_set) {
+        if let Some((option, _)) = readings.iter().find(|(option, _)| is_set(&format!("rne.{option}"))) {
+            return Err(Failure::input(format!("--set: rne.{option} is one of this sweep's readings")));
+        }
+        if let Some(axis) = parts.axes.iter().find(|axis| is_set(&axis.path)) {
             return Err(Failure::input(format!("--set: {} is an axis of this sweep", axis.path)));
         }
         if let Some(policies) = &overrides.policies {
@@ -177,6 +181,10 @@ impl Experiment {
         if let Some(first) = overrides.first_seed {
             parts.seeds = Seeds::From(first);
         }
+        if !readings.is_empty() && !parts.policies.iter().any(|policy| policy.trim() == "RNE") {
+            return Err(Failure::input("readings: are those of the policy RNE, which the sweep has not"));
+        }
+        parts.policies = with_readings(parts.policies, &readings, &parts.base);
         parts.trials = overrides.trials.unwrap_or(parts.trials);
         parts.is_checked = overrides.is_checked;
         Self::assemble(parts)
@@ -278,6 +286,11 @@ impl Experiment {
         let case = &self.cases[key.case];
         let policy = &*case.policies[key.policy];
         self.shared.run((key.case, &case.scenario), policy, key.seed, halt)
+    }
+
+    /// Lets go of the trials that policies could share.
+    pub fn forget_shared(&self) {
+        self.shared.forget();
     }
 
     /// Simulates one trial, whatever others are known.

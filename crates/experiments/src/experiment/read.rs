@@ -32,9 +32,9 @@ pub fn with_settings(scenario: &Scenario, settings: &[String]) -> Result<Scenari
     checked(file, "--set: ")
 }
 
-pub(super) fn from_scenario(text: String, path: &Path) -> Result<Parts, Failure> {
+pub(super) fn from_scenario(text: String, path: &Path) -> Result<(Parts, Vec<Reading>), Failure> {
     let base = Scenario::parse(&text, path).map_err(Failure::input)?;
-    Ok(Parts {
+    let parts = Parts {
         name: base.name.clone(),
         given: text,
         axes: Vec::new(),
@@ -45,10 +45,11 @@ pub(super) fn from_scenario(text: String, path: &Path) -> Result<Parts, Failure>
         is_lean: false,
         program: Program::this(),
         base,
-    })
+    };
+    Ok((parts, Vec::new()))
 }
 
-pub(super) fn from_sweep_file(text: String, path: &Path) -> Result<Parts, Failure> {
+pub(super) fn from_sweep_file(text: String, path: &Path) -> Result<(Parts, Vec<Reading>), Failure> {
     let file: SweepFile = parse_ron(&text, path).map_err(Failure::input)?;
     let fields = Fields::of(&text);
     let bad = |field: &str, reason: &dyn std::fmt::Display| {
@@ -72,10 +73,12 @@ pub(super) fn from_sweep_file(text: String, path: &Path) -> Result<Parts, Failur
     let base = checked(set, &format!("{}: set: ", path.display()))?;
     let axes = axes(file.axes, &base, &bad)?;
     let readings = readings(file.readings, &base, &bad)?;
-    let policies = file.policies.unwrap_or_else(|| base.sweep.policies.clone());
-    if !readings.is_empty() && !policies.iter().any(|policy| policy.trim() == "RNE") {
-        return Err(bad("readings", &"are those of the policy RNE, which the sweep has not"));
+    if let Some((option, _)) =
+        readings.iter().find(|(option, _)| axes.iter().any(|axis| axis.path == format!("rne.{option}")))
+    {
+        return Err(bad("readings", &format!("{option} is an axis as well")));
     }
+    let policies = file.policies.unwrap_or_else(|| base.sweep.policies.clone());
     let seeds = match (file.seeds, file.first_seed) {
         (Some(_), Some(_)) => return Err(bad("seeds", &"must not stand beside first_seed")),
         (Some(list), None) if list.is_empty() => {
@@ -88,18 +91,19 @@ pub(super) fn from_sweep_file(text: String, path: &Path) -> Result<Parts, Failur
         (None, first) => Seeds::From(first.unwrap_or(base.sweep.first_seed)),
     };
     let listed = if let Seeds::Listed(list) = &seeds { Some(list.len() as u32) } else { None };
-    Ok(Parts {
+    let parts = Parts {
         name: file.name,
         given: text,
         axes,
-        policies: with_readings(policies, &readings, &base),
+        policies,
         trials: file.trials.or(listed).unwrap_or(base.sweep.trials),
         seeds,
         is_checked: false,
         is_lean: file.lean,
         program: Program::this(),
         base,
-    })
+    };
+    Ok((parts, readings))
 }
 
 type Bad<'a> = dyn Fn(&str, &dyn std::fmt::Display) -> Failure + 'a;
@@ -140,7 +144,7 @@ fn axes(map: Map<Vec<Box<ron::value::RawValue>>>, base: &Scenario, bad: &Bad) ->
 }
 
 /// An option of RNE with its values.
-type Reading = (String, Vec<String>);
+pub(super) type Reading = (String, Vec<String>);
 
 /// Checks each value of each option alone.
 fn readings(
@@ -173,7 +177,7 @@ fn readings(
 }
 
 /// The policies with every combination of the readings in the place of RNE. One is named by the options in which it differs from the scenario's.
-fn with_readings(policies: Vec<String>, readings: &[Reading], base: &Scenario) -> Vec<String> {
+pub(super) fn with_readings(policies: Vec<String>, readings: &[Reading], base: &Scenario) -> Vec<String> {
     let mut combinations = vec![Vec::new()];
     for (option, values) in readings {
         let mut longer = Vec::new();

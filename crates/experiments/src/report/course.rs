@@ -7,7 +7,7 @@ use super::gather::{Gathered, times};
 use super::metrics::capitalised;
 use crate::experiment::Experiment;
 use crate::failure::Failure;
-use crate::rounds::{KEYS, likeness, weights_of};
+use crate::rounds::{KEYS, Likeness, Share, weights_of};
 use crate::stats::Moments;
 use crate::stats::paired::t_half_width;
 
@@ -177,45 +177,65 @@ pub(super) fn trust(
 
 /// In which share of the rounds each policy's split is the one that sorting gives.
 pub(super) fn sorting(experiment: &Experiment, gathered: &[Gathered]) -> Result<Figure, Failure> {
-    let (mut shares, mut rows) = ([Vec::new(), Vec::new()], Vec::new());
-    for (policy, gathered) in experiment.policies.iter().zip(gathered) {
-        let found = KEYS.each_ref().map(|key| (key, likeness(&gathered.rounds, key)));
-        for (key, likeness) in &found {
-            rows.push(vec![
-                policy.label.clone(),
-                key.name.to_owned(),
-                likeness.rounds.to_string(),
-                likeness.split.to_string(),
-                likeness.chance.to_string(),
-                likeness.carriers.to_string(),
-                likeness.suppliers.to_string(),
-                likeness.hard_is_higher.to_string(),
-            ]);
+    let (mut shares, mut rows, mut labels, mut n) =
+        ([Vec::new(), Vec::new()], Vec::new(), Vec::new(), usize::MAX);
+    let names = names(experiment);
+    for ((policy, name), gathered) in experiment.policies.iter().zip(names).zip(gathered) {
+        let rounds = gathered.likeness[0].rounds();
+        if rounds == 0 {
+            continue;
         }
-        shares[0].push(found.iter().map(|(_, likeness)| likeness.split).collect::<Vec<f64>>());
-        shares[1].push(found.iter().map(|(_, likeness)| likeness.hard_is_higher).collect::<Vec<f64>>());
+        for (key, likeness) in KEYS.iter().zip(&gathered.likeness) {
+            let cell = |value: Option<f64>| value.map_or(String::new(), |value| value.to_string());
+            let beside = |share: &Share| [cell(share.share()), cell(share.chance())];
+            let first = [policy.label.clone(), key.name.to_owned(), rounds.to_string()];
+            let shares = [&likeness.split, &likeness.carriers, &likeness.suppliers, &likeness.hard_is_higher];
+            rows.push(first.into_iter().chain(shares.into_iter().flat_map(beside)).collect::<Vec<String>>());
+        }
+        let row = |share: fn(&Likeness) -> &Share| {
+            gathered
+                .likeness
+                .iter()
+                .map(|likeness| share(likeness).share().unwrap_or(0.0))
+                .collect::<Vec<f64>>()
+        };
+        shares[0].push(row(|likeness| &likeness.split));
+        shares[1].push(row(|likeness| &likeness.hard_is_higher));
+        labels.push(name);
+        n = n.min(rounds);
     }
-    let n = gathered.iter().map(|gathered| gathered.rounds.len()).min().unwrap_or(0);
     let titles = ["the split is that of sorting by", "the hard task's group has the higher mean"];
     let panel = |(data, title): (Vec<Vec<f64>>, &str)| {
         let plots = vec![heat_map(data, 1.0)];
         let layout = layout(&plots, title)
             .with_x_categories(KEYS.iter().map(|key| key.name.to_owned()).collect())
-            .with_y_categories(names(experiment));
+            .with_y_categories(labels.clone());
         Panel { plots, layout }
     };
-    let is_empty = n == 0 || shares[0].is_empty();
+    let is_empty = labels.is_empty();
     let panels: Vec<Panel> = shares.into_iter().zip(titles).map(panel).collect();
     Ok(Figure {
         name: "sorting".into(),
         title: "What the groups amount to".into(),
         caption: format!(
-            "Shares of the rounds with two groups. Left: each role is split as sorting it would, whichever half takes which task (by chance, 1 of \
-             120 for six carriers, four suppliers and two observers). n = {n} rounds or more for each policy."
+            "Shares of the rounds with two groups. Left: each role is split as sorting it would, whichever half takes which task (by \
+             chance in the table). n = {n} rounds or more for each policy."
         ),
         svg: if is_empty { String::new() } else { draw(panels, 2, [520.0, 320.0]) },
         csv: table(
-            &["policy", "sorted_by", "rounds", "split", "chance", "carriers", "suppliers", "hard_is_higher"],
+            &[
+                "policy",
+                "sorted_by",
+                "rounds",
+                "split",
+                "split_by_chance",
+                "carriers",
+                "carriers_by_chance",
+                "suppliers",
+                "suppliers_by_chance",
+                "hard_is_higher",
+                "hard_is_higher_by_chance",
+            ],
             rows,
         )?,
     })

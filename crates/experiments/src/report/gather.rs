@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use rne_core::Difficulty;
 
 use crate::failure::Failure;
-use crate::rounds::{Round, rounds_of};
+use crate::rounds::{KEYS, Likeness, rounds_of};
 use crate::sweep::folder::Folder;
 use crate::sweep::{Grouped, Trial};
 
@@ -25,8 +25,8 @@ pub(super) struct Gathered {
     pub first_round: Vec<Grouped>,
     /// Number of that trial.
     pub first_trial: u32,
-    /// Each round as it was grouped.
-    pub rounds: Vec<Round>,
+    /// How like its splits are to sorting.
+    pub likeness: [Likeness; 3],
     /// Roles of the robots.
     pub roles: Vec<&'static str>,
 }
@@ -66,7 +66,9 @@ impl Gathered {
             let [hard, easy] = [upto(0, *time), upto(1, *time)];
             [hard + easy, hard, easy]
         };
-        self.rounds.extend(rounds_of(number, trial));
+        for round in rounds_of(number, trial) {
+            self.likeness.iter_mut().zip(&KEYS).for_each(|(likeness, key)| likeness.add(&round, key));
+        }
         self.delivered.push(times.iter().map(point).collect());
         let mut groups: BTreeMap<(u32, usize), Vec<[f64; 2]>> = BTreeMap::new();
         for robot in &trial.grouped {

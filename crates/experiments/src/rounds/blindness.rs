@@ -27,13 +27,28 @@ impl Pair {
     /// How far their levels are apart: the distance of (energy, HP), in percent points.
     #[must_use]
     pub fn apart(&self) -> f64 {
-        (self.from.energy - self.to.energy).hypot(self.from.hp - self.to.hp)
+        apart(&self.from, &self.to)
     }
 }
 
-/// Two pairs of one round: far apart and full of trust, and near each other and less so.
-#[derive(Debug, Clone, PartialEq)]
+fn apart(a: &Grouped, b: &Grouped) -> f64 {
+    (a.energy - b.energy).hypot(a.hp - b.hp)
+}
+
+/// How blind to magnitude relative entropy was in some rounds.
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct Blindness {
+    /// The plainest example: the one pair is as many times as far apart as the other, and the other has as many times the entropy, or more.
+    pub plainest: Option<Example>,
+    /// Pairs of pairs of one role and round that differ in both.
+    compared: u64,
+    /// Those of which the one with levels nearer to each other has the higher entropy.
+    misjudged: u64,
+}
+
+/// Two pairs of one role and round.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Example {
     /// Number of the trial.
     pub trial: u32,
     /// Its seed.
@@ -42,81 +57,103 @@ pub struct Blindness {
     pub round: u32,
     /// The role of all of them.
     pub role: &'static str,
-    /// The one is far apart in its levels.
+    /// The one is farther apart in its levels.
     pub unlike: Pair,
-    /// The other is of the same role and round and nearer to each other, but has the higher entropy.
+    /// The other is nearer to each other, but has the higher entropy.
     pub alike: Pair,
-    /// Share of the pairs of pairs of one role and round in which the one with levels nearer to each other has the higher entropy.
-    pub misjudged: f64,
+    /// How plain it is: the lesser of the two ratios.
+    plain: f64,
 }
 
-/// The plainest example in these rounds: the one pair is as many times as far apart as the other, and the other has as many times the entropy, or
-/// more. `None` where no pair with levels farther apart has the lower entropy.
-///
-/// # Errors
-/// Needs or weights that cannot be used.
-pub fn blindness(rounds: &[Round], options: &RneOptions) -> Result<Option<Blindness>, Failure> {
-    let mut teams: Vec<(usize, &'static str, Vec<Pair>)> = Vec::new();
-    for (place, round) in rounds.iter().enumerate() {
+impl Blindness {
+    /// Share of the pairs of pairs of one role and round of which the one with levels nearer to each other has the higher entropy.
+    #[must_use]
+    pub fn misjudged(&self) -> Option<f64> {
+        (self.compared > 0).then(|| self.misjudged as f64 / self.compared as f64)
+    }
+
+    /// Takes a round into account. Pairs of infinite entropy are left out.
+    ///
+    /// # Errors
+    /// Needs or weights that cannot be used.
+    pub fn add(&mut self, round: &Round, options: &RneOptions) -> Result<(), Failure> {
         let weights = weights_of(&round.robots, options)?;
         for role in rne_core::Role::ALL {
-            let members: Vec<&Grouped> = round
-                .robots
-                .iter()
-                .zip(&round.roles)
-                .filter(|(_, of)| **of == role)
-                .map(|(robot, _)| robot)
-                .collect();
+            let members = round.robots.iter().zip(&round.roles).filter(|(_, of)| **of == role);
+            let members: Vec<&Grouped> = members.map(|(robot, _)| robot).collect();
             let distribution = |robot: &&Grouped| {
                 let needs = NeedVector::new(robot.needs.clone());
                 needs.and_then(|needs| NeedDistribution::of_agent(&needs, &weights)).map_err(Failure::run)
             };
             let shares = members.iter().map(distribution).collect::<Result<Vec<_>, _>>()?;
-            let mut pairs = Vec::new();
+            let mut pairs: Vec<Candidate> = Vec::new();
             for i in 0..members.len() {
                 for j in (0..members.len()).filter(|j| *j != i) {
                     let rne = relative_entropy(&shares[i], &shares[j]).map_err(Failure::run)?;
-                    let Some(rne) = rne.nats() else { continue };
-                    pairs.push(Pair { from: members[i].clone(), to: members[j].clone(), rne });
+                    pairs.extend(rne.nats().map(|rne| Candidate {
+                        i,
+                        j,
+                        apart: apart(members[i], members[j]),
+                        rne,
+                    }));
                 }
             }
-            teams.push((place, role.name(), pairs));
+            self.count(&pairs);
+            self.look_for_example(round, role.name(), &members, &pairs);
+        }
+        Ok(())
+    }
+
+    fn count(&mut self, pairs: &[Candidate]) {
+        for (at, a) in pairs.iter().enumerate() {
+            for b in &pairs[at + 1..] {
+                let (apart, rne) = (a.apart.total_cmp(&b.apart), a.rne.total_cmp(&b.rne));
+                if apart.is_ne() && rne.is_ne() {
+                    self.compared += 1;
+                    self.misjudged += u64::from(apart != rne);
+                }
+            }
         }
     }
-    let misjudged = misjudged(&teams);
-    let mut best: Option<(f64, usize, &'static str, &Pair, &Pair)> = None;
-    for (place, role, pairs) in &teams {
+
+    fn look_for_example(
+        &mut self,
+        round: &Round,
+        role: &'static str,
+        members: &[&Grouped],
+        pairs: &[Candidate],
+    ) {
         for unlike in pairs.iter().filter(|pair| pair.rne > LEAST_NATS) {
-            for alike in pairs.iter().filter(|pair| pair.apart() > LEAST_POINTS) {
-                let plain = (unlike.apart() / alike.apart()).min(alike.rne / unlike.rne);
-                if plain > best.map_or(1.0, |(most, ..)| most) {
-                    best = Some((plain, *place, role, unlike, alike));
+            for alike in pairs.iter().filter(|pair| pair.apart > LEAST_POINTS) {
+                let plain = (unlike.apart / alike.apart).min(alike.rne / unlike.rne);
+                if plain <= self.plainest.as_ref().map_or(1.0, |known| known.plain) {
+                    continue;
                 }
+                let pair = |of: &Candidate| Pair {
+                    from: members[of.i].clone(),
+                    to: members[of.j].clone(),
+                    rne: of.rne,
+                };
+                self.plainest = Some(Example {
+                    trial: round.trial,
+                    seed: round.seed,
+                    round: round.round,
+                    role,
+                    unlike: pair(unlike),
+                    alike: pair(alike),
+                    plain,
+                });
             }
         }
     }
-    Ok(best.map(|(_, place, role, unlike, alike)| Blindness {
-        trial: rounds[place].trial,
-        seed: rounds[place].seed,
-        round: rounds[place].round,
-        role,
-        unlike: unlike.clone(),
-        alike: alike.clone(),
-        misjudged,
-    }))
 }
 
-fn misjudged(teams: &[(usize, &'static str, Vec<Pair>)]) -> f64 {
-    let (mut wrong, mut all) = (0_u64, 0_u64);
-    for (_, _, pairs) in teams {
-        for (i, a) in pairs.iter().enumerate() {
-            for b in &pairs[i + 1..] {
-                all += 1;
-                wrong += u64::from((a.apart() < b.apart()) != (a.rne < b.rne));
-            }
-        }
-    }
-    if all == 0 { 0.0 } else { wrong as f64 / all as f64 }
+/// Two members by their places.
+struct Candidate {
+    i: usize,
+    j: usize,
+    apart: f64,
+    rne: f64,
 }
 
 #[cfg(test)]
@@ -136,12 +173,18 @@ mod tests {
             needs: vec![hp, energy],
         };
         let robots = vec![robot(0, 90.0, 80.0), robot(1, 45.0, 40.02), robot(2, 90.0, 60.0)];
-        let rounds = [Round { trial: 3, seed: 7, round: 1, roles: vec![Role::Carrier; 3], robots }];
-        let found = blindness(&rounds, &RneOptions::default()).unwrap().unwrap();
-        let mut ids = [found.unlike.from.robot, found.unlike.to.robot];
+        let round = Round { trial: 3, seed: 7, round: 1, roles: vec![Role::Carrier; 3], robots };
+        let mut found = Blindness::default();
+        found.add(&round, &RneOptions::default()).unwrap();
+        let example = found.plainest.clone().unwrap();
+        let mut ids = [example.unlike.from.robot, example.unlike.to.robot];
         ids.sort_unstable();
         assert_eq!(ids, [0, 1]);
-        assert!(found.unlike.rne < 1e-6 && found.alike.rne > 1e-3);
-        assert!(found.alike.apart() < found.unlike.apart());
+        assert!(example.unlike.rne < 1e-6 && example.alike.rne > 1e-3);
+        assert!(example.alike.apart() < example.unlike.apart());
+        // Of the three distances, 0-1 is the greatest and has the least entropy. The two directions of a pair are equally far apart and are not compared
+        // with each other, so that there are 12 comparisons, 4 for each two distances; those of 0-1 are all misjudged.
+        assert!(found.misjudged().unwrap() >= 8.0 / 12.0, "{:?}", found.misjudged());
+        assert_eq!(Blindness::default().misjudged(), None);
     }
 }

@@ -9,8 +9,8 @@ use rne_core::{
     Difficulty, Grouping, GroupingPolicy, Member, NeedVector, NeedWeights, RneOptions, Role, Team,
 };
 
-pub use blindness::{Blindness, blindness};
-pub use sorting::{KEYS, Key, Likeness, likeness};
+pub use blindness::{Blindness, Example, Pair};
+pub use sorting::{KEYS, Key, Likeness, Share, likeness};
 
 use crate::failure::Failure;
 use crate::sweep::{Grouped, Trial};

@@ -34,7 +34,7 @@ pub const REPORT: &str = "report.html";
 /// See [`REPORT`].
 pub const PLOTS: &str = "plots";
 /// Held by the process that writes to the folder.
-const LOCK: &str = ".lock";
+pub(crate) const LOCK: &str = ".lock";
 /// Every metric of every trial.
 const METRICS_FILE: &str = "metrics.csv";
 const TABLES: [&str; 6] = ["trials.csv", "rounds.csv", "groups.csv", "robots.csv", "series.csv", links::FILE];

@@ -14,6 +14,9 @@ use super::trial::{Fault, Trial, run_trial};
 /// Scenarios and seeds whose trials are kept. Trials are run seed by seed, so that few are needed.
 const KEPT: usize = 16;
 
+/// Trials that are kept of each.
+const KEPT_OF_SEED: usize = 256;
+
 /// A trial and how each of its rounds was grouped.
 struct Decided {
     rounds: Vec<(Team, Grouping)>,
@@ -69,8 +72,16 @@ impl SharedTrials {
         let trial = run_trial(scenario, &notes, seed, self.is_checked, halt)?;
         let rounds = notes.rounds.into_inner().unwrap_or_else(PoisonError::into_inner);
         let decided = Arc::new(Decided { rounds, trial: trial.clone() });
-        of_seed.lock().unwrap_or_else(PoisonError::into_inner).push(decided);
+        let mut known = of_seed.lock().unwrap_or_else(PoisonError::into_inner);
+        if known.len() < KEPT_OF_SEED {
+            known.push(decided);
+        }
         Ok(trial)
+    }
+
+    /// Lets go of all trials.
+    pub fn forget(&self) {
+        self.latest.lock().unwrap_or_else(PoisonError::into_inner).clear();
     }
 
     fn of_seed(&self, case: usize, seed: u64) -> OfSeed {

@@ -207,6 +207,7 @@ impl Grouping {
 /// A way to split a team over the two tasks.
 ///
 /// A policy must put each member into exactly one group and must not depend on the order in which the members were listed.
+/// It decides from the team and its draws alone: the same team and draws give the same groups, whatever it was asked before. Sweeps rely on that.
 /// `draws` is a random stream of the policy's own, seeded per trial and round; most policies leave it alone.
 pub trait GroupingPolicy: Send + Sync {
     /// Name on the command line, in scenarios and in tables.
