@@ -18,7 +18,7 @@ fn main() {
     }
     for path in chosen {
         let page = std::fs::read_to_string(&path).expect("a page");
-        if pages::commands(&page).is_empty() {
+        if !page.contains(pages::MARK) {
             continue;
         }
         let new = pages::renewed(&page, |command| {

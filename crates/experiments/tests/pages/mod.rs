@@ -4,12 +4,7 @@ use std::path::Path;
 use std::process::Command;
 
 /// What stands before a block.
-const MARK: &str = "<!-- $ usar ";
-
-/// The commands of a page, in order.
-pub fn commands(page: &str) -> Vec<String> {
-    page.lines().filter_map(command_of).map(str::to_owned).collect()
-}
+pub const MARK: &str = "<!-- $ usar ";
 
 fn command_of(line: &str) -> Option<&str> {
     Some(line.strip_prefix(MARK)?.strip_suffix(" -->")?.trim())
