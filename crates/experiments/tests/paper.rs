@@ -187,7 +187,12 @@ fn a_log_is_held_by_one_process() {
     let error = Log::open(&out, &calibration, false).err().unwrap();
     assert!(error.to_string().contains("another process is at work"), "{error}");
     drop(held);
-    assert!(Log::open(&out, &calibration, false).is_ok());
+    // A process that another test is just starting may still have the file open.
+    let opens = || Log::open(&out, &calibration, false).is_ok();
+    assert!((0..100).any(|_| opens() || {
+        std::thread::sleep(std::time::Duration::from_millis(50));
+        false
+    }));
 }
 
 /// The claims over as many trials as the paper has; and the pages in `docs/` with the numbers of these trials.
@@ -209,8 +214,8 @@ fn the_papers_experiment_and_the_pages_that_tell_of_it() {
         let line = first.lines().find(|line| line.contains(n)).unwrap_or_default();
         assert!(line.contains(verdict), "{line}");
     };
-    example("Example 2", "│ holds");
-    example("Example 3", "│ does not hold");
+    example("Example 2", "┆ holds");
+    example("Example 3", "┆ does not hold");
 
     // The verdicts over ten pairs are those of the page.
     let page = read(&root().join("docs/reproduction.md"));
