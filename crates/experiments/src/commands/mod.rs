@@ -60,6 +60,9 @@ pub(crate) fn default_jobs() -> usize {
     std::thread::available_parallelism().map_or(1, usize::from)
 }
 
+/// Seeds of which trials are run at a time.
+const SEEDS_AT_A_TIME: u32 = 8;
+
 /// Runs the trials that a folder has not got yet.
 pub(crate) fn run_missing(
     folder: &mut Folder,
@@ -69,8 +72,9 @@ pub(crate) fn run_missing(
 ) -> Result<(), Failure> {
     let all: Vec<TrialKey> = folder.experiment().keys(shard).collect();
     let mut missing: Vec<TrialKey> = all.iter().filter(|key| !folder.has(key)).cloned().collect();
-    // Seed by seed, so that a sweep that is broken off has whole pairs, and policies that decide alike share their trials.
-    missing.sort_by_key(|key| (key.case, key.trial, key.policy));
+    // A few seeds at a time, so that a sweep that is broken off has whole pairs, and policies that decide alike share their trials; within these policy by
+    // policy, so that no two threads simulate what they could share.
+    missing.sort_by_key(|key| (key.case, key.trial / SEEDS_AT_A_TIME, key.policy, key.trial));
     if !quiet && missing.len() < all.len() {
         eprintln!("{} of {} trials are there already", all.len() - missing.len(), all.len());
     }
