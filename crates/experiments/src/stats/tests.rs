@@ -88,11 +88,12 @@ fn the_plain_interval_is_scipys() {
 }
 
 /// Share of 2,000 experiments of `count` draws whose interval holds the mean, in percent.
-fn coverage(count: usize, mean: f64, draw: impl Fn(&mut ChaCha8Rng) -> f64) -> f64 {
+fn coverage(count: usize, confidence: f64, mean: f64, draw: impl Fn(&mut ChaCha8Rng) -> f64) -> f64 {
+    let resamples = if confidence > 0.95 { 5_000 } else { 2_000 };
     let mut draws = ChaCha8Rng::seed_from_u64(11);
     let holds = |seed: u64, draws: &mut ChaCha8Rng| {
         let values: Vec<f64> = (0..count).map(|_| draw(draws)).collect();
-        let [low, high] = bca_interval(&values, 0.95, (2_000, seed), Width::Expanded).unwrap();
+        let [low, high] = bca_interval(&values, confidence, (resamples, seed), Width::Expanded).unwrap();
         (low..=high).contains(&mean)
     };
     let held = (0..2_000).filter(|seed| holds(*seed, &mut draws)).count();
@@ -106,11 +107,18 @@ fn the_interval_covers_what_it_says_at_ten_and_at_fifty_pairs() {
         let z: f64 = StandardNormal.sample(draws);
         (5.0 * z).round()
     };
-    let ten = [coverage(10, 0.0, normal), coverage(10, 0.0, counts)];
-    let skewed = coverage(50, 1.0, |draws| Exp1.sample(draws));
+    let ten = [coverage(10, 0.95, 0.0, normal), coverage(10, 0.95, 0.0, counts)];
+    let skewed = coverage(50, 0.95, 1.0, |draws| Exp1.sample(draws));
     for share in [ten[0], ten[1], skewed] {
         assert!((93.5..=96.5).contains(&share), "{ten:?} {skewed}");
     }
+}
+
+/// The intervals by which a claim of three comparisons is found not to hold: 95 % shared by them.
+#[test]
+fn a_shared_interval_covers_what_it_says_at_ten_pairs() {
+    let share = coverage(10, 1.0 - 0.05 / 3.0, 0.0, |draws| StandardNormal.sample(draws));
+    assert!((97.3..=99.2).contains(&share), "{share}");
 }
 
 /// `np.median([(a + b) / 2 for i, a in enumerate(d) for b in d[i:]])`.
