@@ -1,6 +1,6 @@
 //! What is measured of a trial. A metric is one entry of [`METRICS`]: tables, comparisons, stopping rules and reports find it there.
 
-use usar_sim::record::{RobotRecord, TrialRecord};
+use usar_sim::record::TrialRecord;
 
 use crate::failure::Failure;
 
@@ -35,9 +35,9 @@ pub const METRICS: &[Metric] = &[
     papers("hp_per_rescuee.hard", "HP per rescuee hard", POINTS, "HP per rescuee", |r| ratio(r.hard.hp, r.hard.rescued)),
     papers("hp_per_rescuee.easy", "HP per rescuee easy", POINTS, "HP per rescuee", |r| ratio(r.easy.hp, r.easy.rescued)),
     papers("rounds", "rounds", "", "", |r| Some(f64::from(r.completed_rounds))),
-    other("waiting", "time waited", "s", "waiting and deadlocks", |r| Some(sum(r, |robot| robot.waiting_s))),
+    other("waiting", "time waited", "s", "waiting and deadlocks", |r| Some(r.waiting_s())),
     other("deadlocks", "deadlocks", "", "waiting and deadlocks", |r| Some(f64::from(r.deadlocks))),
-    other("longest_stall", "longest stall", "s", "waiting and deadlocks", |r| Some(longest_stall(r))),
+    other("longest_stall", "longest stall", "s", "waiting and deadlocks", |r| Some(r.longest_stall_s())),
     other("conflicts", "conflicts", "", "", |r| Some(f64::from(r.conflicts))),
     other("errands_done", "errands done", "", "", |r| Some(f64::from(r.errands_done))),
     other("time", "time to the end", "s", "", |r| Some(r.time_s)),
@@ -47,7 +47,7 @@ pub const METRICS: &[Metric] = &[
     other("turned_back", "times turned back", "", "", |r| Some(f64::from(r.turned_back))),
     other("stranded", "robots stranded", "", "", |r| Some(r.stranded() as f64)),
     other("disabled", "robots disabled", "", "", |r| Some(r.disabled() as f64)),
-    other("distance", "distance travelled", "m", "", |r| Some(sum(r, |robot| robot.distance_m))),
+    other("distance", "distance travelled", "m", "", |r| Some(r.distance_m())),
 ];
 
 type Value = fn(&TrialRecord) -> Option<f64>;
@@ -74,14 +74,6 @@ const fn other(
 
 fn ratio(cost: f64, rescuees: u32) -> Option<f64> {
     (rescuees > 0).then(|| cost / f64::from(rescuees))
-}
-
-fn sum(record: &TrialRecord, value: fn(&RobotRecord) -> f64) -> f64 {
-    record.robots.iter().map(value).sum()
-}
-
-fn longest_stall(record: &TrialRecord) -> f64 {
-    record.robots.iter().map(|robot| robot.longest_stall_s).fold(0.0, f64::max)
 }
 
 /// The place of a metric in [`METRICS`].

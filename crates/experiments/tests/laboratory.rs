@@ -439,8 +439,13 @@ fn an_estimate_says_trials_time_and_disk() {
     )))
     .unwrap();
     assert_eq!((&json["trials"], &json["cases"], &json["policies"]), (&1200.into(), &4.into(), &3.into()));
+    assert_eq!(json["measured"], 12, "all policies on four of the seeds");
     assert!(json["seconds"].as_f64().unwrap() > 0.0 && json["bytes"].as_u64().unwrap() > 1200 * 1000);
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 2, "nothing is left behind");
+    let alike =
+        ["estimate", "short.ron", "--policies", "DIS, RNE(log_base: Two), RNE(log_base: Ten)", "--json"];
+    let json: Value = serde_json::from_str(&succeeds(&usar(folder.path(), &alike))).unwrap();
+    assert_eq!((&json["measured"], &json["simulated"]), (&12.into(), &8.into()), "the base decides nothing");
 }
 
 #[test]

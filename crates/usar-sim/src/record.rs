@@ -137,6 +137,24 @@ impl TrialRecord {
         self.hard.hp + self.easy.hp + self.ungrouped_hp
     }
 
+    /// Metres that the robots moved, all together.
+    #[must_use]
+    pub fn distance_m(&self) -> f64 {
+        self.robots.iter().map(|robot| robot.distance_m).sum()
+    }
+
+    /// Seconds that robots waited for one another, all together.
+    #[must_use]
+    pub fn waiting_s(&self) -> f64 {
+        self.robots.iter().map(|robot| robot.waiting_s).sum()
+    }
+
+    /// The longest time in seconds that a robot stood still against its will.
+    #[must_use]
+    pub fn longest_stall_s(&self) -> f64 {
+        self.robots.iter().map(|robot| robot.longest_stall_s).fold(0.0, f64::max)
+    }
+
     /// Robots that ended stranded.
     #[must_use]
     pub fn stranded(&self) -> usize {

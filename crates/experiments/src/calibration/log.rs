@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use super::{Calibration, Evaluation, Free, POLICY, Spread};
 use crate::experiment::Program;
 use crate::failure::Failure;
-use crate::sweep::{NewFile, folder};
+use crate::sweep::{NewFile, disk};
 
 /// The log.
 const LOG: &str = "evaluations.csv";
@@ -36,7 +36,7 @@ impl Log {
         let origin = folder.join(ORIGIN);
         let has_others = |folder: &Path| -> std::io::Result<bool> {
             let mut names = fs::read_dir(folder)?.flatten().map(|entry| entry.file_name());
-            Ok(names.any(|name| name != folder::LOCK && !name.to_string_lossy().ends_with(".new")))
+            Ok(names.any(|name| name != disk::LOCK && !name.to_string_lossy().ends_with(".new")))
         };
         if folder.exists() && !origin.exists() && has_others(folder).map_err(trouble)? {
             return Err(Failure::input(format!(
@@ -49,7 +49,7 @@ impl Log {
             check_continues(folder, &fs::read_to_string(&origin).map_err(trouble)?, &now)?;
         }
         fs::create_dir_all(folder).map_err(trouble)?;
-        let lock = folder::lock(folder)?;
+        let lock = disk::lock(folder)?;
         let path = folder.join(LOG);
         for name in [LOG].into_iter().chain(RESULTS).filter(|name| is_fresh && folder.join(name).exists()) {
             fs::remove_file(folder.join(name)).map_err(trouble)?;

@@ -2,6 +2,7 @@
 
 use std::io::Write;
 use std::path::PathBuf;
+use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
@@ -12,15 +13,15 @@ use super::{SCHEMA_VERSION, default_jobs};
 use crate::experiment::{Experiment, Overrides, split_list};
 use crate::failure::Failure;
 use crate::sweep::TrialKey;
-use crate::sweep::folder::Folder;
+use crate::sweep::folder::{Folder, Opening};
 
-/// Trials that are run to measure.
-const CALIBRATION_TRIALS: usize = 6;
+/// Trials that are looked for at least. Policies that decide alike share theirs, so that only all policies of a seed show what a seed takes.
+const LEAST_TRIALS: usize = 12;
 
 /// How many trials, how long, and how much disk a sweep takes, from a short calibration run
 #[derive(Debug, Args)]
 #[command(after_help = "\
-Runs up to six trials, spread over the sweep's cases and policies, one after the other, and throws them away.
+Runs all policies on one or a few seeds, spread over the sweep's cases, one after the other, and throws the trials away.
 
 Examples:
   usar estimate scenarios/paper.ron --trials 1000
@@ -57,6 +58,7 @@ struct Output {
     seconds: f64,
     bytes: u64,
     measured: usize,
+    simulated: usize,
 }
 
 impl Arguments {
@@ -71,9 +73,9 @@ impl Arguments {
             ..Overrides::default()
         };
         let experiment = Experiment::load(&self.file, &overrides)?;
-        let keys: Vec<TrialKey> = experiment.keys(None).collect();
-        let count = keys.len().min(CALIBRATION_TRIALS);
-        let sample: Vec<&TrialKey> = (0..count).map(|i| &keys[i * keys.len() / count]).collect();
+        let sample = sample(&experiment);
+        let trials = experiment.cases.len() * experiment.policies.len() * experiment.trials as usize;
+        let experiment = Arc::new(experiment);
         let (seconds_each, bytes_each) = measure(&experiment, &sample)?;
         let jobs = self.jobs.map_or_else(default_jobs, |jobs| jobs as usize);
         let output = Output {
@@ -81,36 +83,53 @@ impl Arguments {
             cases: experiment.cases.len(),
             policies: experiment.policies.len(),
             trials_each: experiment.trials,
-            trials: keys.len(),
+            trials,
             jobs,
             seconds_per_trial: seconds_each,
-            seconds: seconds_each * keys.len().div_ceil(jobs) as f64,
-            bytes: bytes_each * keys.len() as u64,
-            measured: count,
+            seconds: seconds_each * trials.div_ceil(jobs) as f64,
+            bytes: bytes_each * trials as u64,
+            measured: sample.len(),
+            simulated: experiment.simulated(),
         };
         if self.json {
             return Ok(writeln!(out, "{}", serde_json::to_string(&output).map_err(Failure::run)?)?);
         }
-        let Output { cases, policies, trials_each, trials, seconds, bytes, measured, .. } = output;
+        let Output { cases, policies, trials_each, trials, seconds, bytes, measured, simulated, .. } = output;
         writeln!(out, "trials  {trials}: {cases} cases x {policies} policies x {trials_each}")?;
         writeln!(out, "time    about {} on {jobs} threads ({seconds_each:.2} s a trial)", duration(seconds))?;
         writeln!(out, "disk    about {}", size(bytes))?;
-        writeln!(out, "from {measured} trials; times depend on what else the machine does")?;
+        writeln!(
+            out,
+            "from {measured} trials, of which policies that decide alike shared {}; times depend on what else the machine does",
+            measured - simulated
+        )?;
         Ok(())
     }
 }
 
+/// All policies on a few of the cases and seeds, evenly spread.
+fn sample(experiment: &Experiment) -> Vec<TrialKey> {
+    let (policies, trials) = (experiment.policies.len(), experiment.trials as usize);
+    let count = experiment.cases.len() * trials;
+    let wanted = LEAST_TRIALS.div_ceil(policies).min(count);
+    let chosen = (0..wanted).map(|i| i * count / wanted);
+    let place = |index: usize| (index / trials, (index % trials + 1) as u32);
+    chosen
+        .map(place)
+        .flat_map(|(case, trial)| (0..policies).map(move |policy| experiment.key((case, policy, trial))))
+        .collect()
+}
+
 /// Mean time in seconds and size in bytes of these trials.
-fn measure(experiment: &Experiment, sample: &[&TrialKey]) -> Result<(f64, u64), Failure> {
+fn measure(experiment: &Arc<Experiment>, sample: &[TrialKey]) -> Result<(f64, u64), Failure> {
     let place = tempfile::tempdir()?;
     let halt = AtomicBool::new(false);
     let path = place.path().join("sweep");
-    let shared = std::sync::Arc::new(experiment.with_trials(experiment.trials)?);
-    let mut folder = Folder::open(&path, shared, crate::sweep::folder::Opening::default(), &mut |_| {})?;
+    let mut folder = Folder::open(&path, Arc::clone(experiment), Opening::default(), &mut |_| {})?;
     let start = Instant::now();
     for key in sample {
-        let result = experiment.run_alone(key, &halt);
-        folder.add(&crate::sweep::Outcome { key: (*key).clone(), result })?;
+        let result = experiment.run(key, &halt);
+        folder.add(&crate::sweep::Outcome { key: key.clone(), result })?;
     }
     let seconds = start.elapsed().as_secs_f64() / sample.len() as f64;
     folder.finish(&halt)?;

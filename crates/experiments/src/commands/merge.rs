@@ -13,7 +13,8 @@ use super::sweep::print;
 use crate::experiment::{Experiment, Program, Shard};
 use crate::failure::Failure;
 use crate::provenance::scenario_differences;
-use crate::sweep::folder::{Folder, Opening, experiment_in};
+use crate::sweep::disk::experiment_in;
+use crate::sweep::folder::{Folder, Opening};
 use crate::sweep::{Place, TrialKey};
 
 /// How many missing trials are named.

@@ -122,8 +122,7 @@ fn print(out: &mut dyn Write, scenario: &str, record: &TrialRecord) -> Result<()
         _ => format!("{:.2}", cost / f64::from(rescued)),
     };
     writeln!(out, "per rescuee  {} energy, {} HP (percent points)", per(record.energy()), per(record.hp()))?;
-    let waiting: f64 = record.robots.iter().map(|robot| robot.waiting_s).sum();
-    let stall = record.robots.iter().map(|robot| robot.longest_stall_s).fold(0.0, f64::max);
+    let (waiting, stall) = (record.waiting_s(), record.longest_stall_s());
     writeln!(
         out,
         "robots       turned back {} times, {} stranded, {} disabled",

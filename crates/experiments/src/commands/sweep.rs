@@ -12,7 +12,8 @@ use super::{STOP, default_jobs, run_missing, stop_on_ctrl_c};
 use crate::experiment::{Experiment, Overrides, Shard, split_list};
 use crate::failure::Failure;
 use crate::sweep::Limits;
-use crate::sweep::folder::{Folder, Opening, trials_in};
+use crate::sweep::disk::trials_in;
+use crate::sweep::folder::{Folder, Opening};
 use crate::table::policy_table;
 
 /// Tables of more cases than these are left to `usar compare` and `usar report`.

@@ -13,7 +13,7 @@ use super::{default_jobs, progress_bar};
 use crate::experiment::Experiment;
 use crate::failure::Failure;
 use crate::provenance::Manifest;
-use crate::sweep::folder::{broken_files, experiment_in};
+use crate::sweep::disk::{broken_files, experiment_in};
 use crate::sweep::{Limits, Outcome, Run, TrialKey, links, run_all};
 
 /// Run a finished sweep again and compare the whole state of every trial, step by step

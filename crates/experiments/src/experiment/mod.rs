@@ -1,47 +1,26 @@
 //! What a sweep runs: a scenario or a sweep file, resolved into cases, policies and trials.
 
 mod file;
+mod grid;
 mod policy;
 mod read;
 
 use std::path::Path;
-use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use rne_core::GroupingPolicy;
 use usar_sim::layout::Layout;
 use xxhash_rust::xxh3::xxh3_128;
 
 use usar_sim::scenario::{Fields, SampledCounts, Scenario, ScenarioFile, read_text};
 
+pub use grid::{Axis, Case};
 pub use policy::{PolicySpec, split_list};
 pub use read::with_settings;
 
 use crate::failure::Failure;
 use crate::sweep::{Fault, SharedTrials, Trial, TrialKey, run_trial};
+use grid::{cases, checked_policies, deciding_text};
 use read::{checked, from_scenario, from_sweep_file, with_readings};
-
-/// Most cases that the axes of a sweep may span.
-const MAX_CASES: usize = 100_000;
-
-/// A field of the scenario and the values that it takes, in RON.
-#[derive(Debug, Clone, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
-pub struct Axis {
-    /// Path of the field.
-    pub path: String,
-    /// Its values.
-    pub values: Vec<String>,
-}
-
-/// One point of the grid that the axes span.
-pub struct Case {
-    /// The value of each axis, in RON.
-    pub values: Vec<String>,
-    /// The scenario there.
-    pub scenario: Scenario,
-    /// The sweep's policies there.
-    pub policies: Vec<Arc<dyn GroupingPolicy>>,
-}
 
 /// The seeds of the trials.
 #[derive(Debug, Clone, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
@@ -288,6 +267,12 @@ impl Experiment {
         self.shared.run((key.case, &case.scenario), policy, key.seed, halt)
     }
 
+    /// How many trials were simulated by [`Experiment::run`] and not taken over.
+    #[must_use]
+    pub fn simulated(&self) -> usize {
+        self.shared.simulated()
+    }
+
     /// Lets go of the trials that policies could share.
     pub fn forget_shared(&self) {
         self.shared.forget();
@@ -410,58 +395,4 @@ impl Experiment {
             .collect();
         if places.is_empty() { String::new() } else { format!("{}: ", places.join(", ")) }
     }
-}
-
-fn checked_policies(written: &[String]) -> Result<Vec<PolicySpec>, Failure> {
-    let mut policies: Vec<PolicySpec> = Vec::new();
-    for text in written {
-        let policy = PolicySpec::parse(text).map_err(|error| Failure::input(format!("policies: {error}")))?;
-        if policies.iter().any(|known| known.label == policy.label) {
-            return Err(Failure::input(format!("policies: must not stand twice, found {:?}", policy.label)));
-        }
-        policies.push(policy);
-    }
-    if policies.is_empty() {
-        return Err(Failure::input("policies: must name at least one policy, found none"));
-    }
-    Ok(policies)
-}
-
-/// The full grid, the last axis fastest.
-fn cases(base: &Scenario, axes: &[Axis], policies: &[PolicySpec]) -> Result<Vec<Case>, Failure> {
-    let count = axes.iter().try_fold(1_usize, |count, axis| count.checked_mul(axis.values.len()));
-    if count.is_none_or(|count| count > MAX_CASES) {
-        return Err(Failure::input(format!("axes: must span at most {MAX_CASES} cases")));
-    }
-    let mut grid: Vec<Vec<&str>> = vec![Vec::new()];
-    for axis in axes {
-        grid = grid
-            .iter()
-            .flat_map(|case| {
-                axis.values.iter().map(move |value| [case.as_slice(), &[value.as_str()]].concat())
-            })
-            .collect();
-    }
-    let case = |values: Vec<&str>| {
-        let mut file: ScenarioFile = (**base).clone();
-        let places = axes.iter().zip(&values).map(|(axis, value)| format!("{}={value}: ", axis.path));
-        let place = places.collect::<Vec<_>>().concat();
-        for (axis, value) in axes.iter().zip(&values) {
-            file.set(&axis.path, value).map_err(|error| Failure::input(format!("axes: {error}")))?;
-        }
-        let scenario = checked(file, &place)?;
-        let policies = policies.iter().map(|policy| policy.make(&scenario)).collect::<Result<_, _>>();
-        let policies = policies.map_err(|error| Failure::input(format!("{place}{error}")))?;
-        Ok(Case { values: values.into_iter().map(str::to_owned).collect(), scenario, policies })
-    };
-    grid.into_iter().map(case).collect()
-}
-
-/// What of a scenario decides numbers, as text: all but its name, its description and the sweep's defaults.
-fn deciding_text(scenario: &Scenario) -> String {
-    let mut file: ScenarioFile = (**scenario).clone();
-    file.name = String::new();
-    file.description = String::new();
-    file.sweep = usar_sim::scenario::SweepDefaults::default();
-    ron::to_string(&file).unwrap_or_default()
 }

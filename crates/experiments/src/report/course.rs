@@ -3,13 +3,14 @@
 use rne_core::{NeedDistribution, NeedVector, RelativeNeedsEntropy, relative_entropy};
 
 use super::figure::{Figure, Panel, draw, heat_map, layout, line_panel, names, table};
-use super::gather::{Gathered, times};
+use super::gather::Gathered;
 use super::metrics::capitalised;
 use crate::experiment::Experiment;
 use crate::failure::Failure;
 use crate::rounds::{KEYS, Likeness, Share, weights_of};
 use crate::stats::Moments;
 use crate::stats::paired::t_half_width;
+use crate::sweep::series_times;
 
 /// Rescuees over time, with a band.
 pub(super) fn over_time(
@@ -17,7 +18,7 @@ pub(super) fn over_time(
     case: usize,
     gathered: &[Gathered],
 ) -> Result<Figure, Failure> {
-    let times = times(experiment.cases[case].scenario.duration_s);
+    let times: Vec<f64> = series_times(experiment.cases[case].scenario.duration_s).collect();
     let names = names(experiment);
     let (mut panels, mut rows) = (Vec::new(), Vec::new());
     for (part, title) in ["rescuees total", "rescuees hard", "rescuees easy"].into_iter().enumerate() {

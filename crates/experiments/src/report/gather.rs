@@ -7,10 +7,7 @@ use rne_core::Difficulty;
 use crate::failure::Failure;
 use crate::rounds::{KEYS, Likeness, rounds_of};
 use crate::sweep::folder::Folder;
-use crate::sweep::{Grouped, Trial};
-
-/// Time between two points of a series, in seconds.
-const PERIOD_S: f64 = 10.0;
+use crate::sweep::{Grouped, Trial, series_times};
 
 /// What was gathered of one policy.
 #[derive(Default)]
@@ -31,15 +28,9 @@ pub(super) struct Gathered {
     pub roles: Vec<&'static str>,
 }
 
-/// The times of the points of a series, in seconds.
-pub(super) fn times(duration_s: f64) -> Vec<f64> {
-    let times = (0..).map(|i| f64::from(i) * PERIOD_S);
-    times.take_while(|time| *time <= duration_s).collect()
-}
-
 /// Goes once over all trials of a case, policy by policy.
 pub(super) fn gather(folder: &mut Folder, case: usize) -> Result<Vec<Gathered>, Failure> {
-    let times = times(folder.experiment().cases[case].scenario.duration_s);
+    let times: Vec<f64> = series_times(folder.experiment().cases[case].scenario.duration_s).collect();
     let policies = folder.experiment().policies.len();
     let mut all = Vec::new();
     for policy in 0..policies {
@@ -61,9 +52,8 @@ pub(super) fn gather(folder: &mut Folder, case: usize) -> Result<Vec<Gathered>, 
 
 impl Gathered {
     fn add(&mut self, number: u32, trial: &Trial, times: &[f64]) {
-        let upto = |task: usize, time: f64| trial.deliveries[task].partition_point(|at| *at <= time) as f64;
         let point = |time: &f64| {
-            let [hard, easy] = [upto(0, *time), upto(1, *time)];
+            let [hard, easy] = trial.delivered(*time).map(|count| count as f64);
             [hard + easy, hard, easy]
         };
         for round in rounds_of(number, trial) {

@@ -14,7 +14,8 @@ use crate::experiment::{Axis, Seeds};
 use crate::failure::Failure;
 use crate::metric::chosen;
 use crate::sweep::NewFile;
-use crate::sweep::folder::{Folder, PLOTS, REPORT};
+use crate::sweep::disk::{PLOTS, REPORT};
+use crate::sweep::folder::Folder;
 use figure::Figure;
 
 #[derive(Template)]

@@ -1,17 +1,20 @@
 //! Many trials: which ones, on which threads, what became of them, and where they are kept.
 
+pub mod disk;
+mod file;
 pub mod folder;
 mod journal;
 pub mod links;
 mod pool;
 mod rows;
 mod shared;
+mod table;
 mod tables;
 mod trial;
 
+pub use file::FileHash;
+pub(crate) use file::NewFile;
 pub use journal::Place;
 pub use pool::{Limits, Run, run_all};
 pub use shared::SharedTrials;
-pub use tables::FileHash;
-pub(crate) use tables::NewFile;
-pub use trial::{Fault, FaultKind, Grouped, Outcome, Trial, TrialKey, run_trial};
+pub use trial::{Fault, FaultKind, Grouped, Outcome, Trial, TrialKey, run_trial, series_times};

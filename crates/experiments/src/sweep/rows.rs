@@ -1,9 +1,9 @@
 //! Rows of the tables that a sweep writes. Undefined values are empty cells.
 
 use serde::Serialize;
-use usar_sim::record::{RobotRecord, TrialRecord};
+use usar_sim::record::TrialRecord;
 
-use super::trial::{Outcome, TrialKey};
+use super::trial::{Outcome, TrialKey, series_times};
 use crate::experiment::Experiment;
 
 /// A row of `trials.csv`: the authors' columns first, under their names, then ours. `method` and `policy` say the same; the one is
@@ -54,7 +54,6 @@ impl<'a> TrialRow<'a> {
         let record = outcome.record();
         let TrialKey { label, trial, seed, .. } = &outcome.key;
         let fault = outcome.result.as_ref().err();
-        let robots = |value: fn(&RobotRecord) -> f64| record.map(|r| r.robots.iter().map(value).sum());
         Self {
             method: label,
             trial: *trial,
@@ -80,10 +79,9 @@ impl<'a> TrialRow<'a> {
             turned_back: record.map(|r| r.turned_back),
             stranded: record.map(TrialRecord::stranded),
             disabled: record.map(TrialRecord::disabled),
-            distance_m: robots(|robot| robot.distance_m),
-            waiting_s: robots(|robot| robot.waiting_s),
-            longest_stall_s: record
-                .map(|r| r.robots.iter().map(|robot| robot.longest_stall_s).fold(0.0, f64::max)),
+            distance_m: record.map(TrialRecord::distance_m),
+            waiting_s: record.map(TrialRecord::waiting_s),
+            longest_stall_s: record.map(TrialRecord::longest_stall_s),
             conflicts: record.map(|r| r.conflicts),
             deadlocks: record.map(|r| r.deadlocks),
             rotations: record.map(|r| r.rotations),
@@ -240,9 +238,6 @@ impl<'a> GroupRow<'a> {
     }
 }
 
-/// Time between two rows of `series.csv`, in seconds.
-const SERIES_PERIOD_S: f64 = 10.0;
-
 /// A row of `series.csv`: what was delivered up to a time.
 #[derive(Serialize, Default)]
 pub(super) struct SeriesRow<'a> {
@@ -258,10 +253,8 @@ pub(super) struct SeriesRow<'a> {
 impl<'a> SeriesRow<'a> {
     pub(super) fn of(outcome: &'a Outcome, duration_s: f64) -> impl Iterator<Item = Self> {
         let rows = move |trial: &'a super::Trial| {
-            let times = (0..).map(|i| f64::from(i) * SERIES_PERIOD_S);
-            times.take_while(move |time| *time <= duration_s).map(move |time_s| {
-                let [hard, easy] =
-                    [0, 1].map(|task: usize| trial.deliveries[task].partition_point(|at| *at <= time_s));
+            series_times(duration_s).map(move |time_s| {
+                let [hard, easy] = trial.delivered(time_s);
                 Self {
                     policy: &outcome.key.label,
                     trial: outcome.key.trial,

@@ -12,6 +12,9 @@ use usar_sim::simulation::Simulation;
 /// A trial looks once in this many steps whether it is to stop.
 const HALT_CHECK_STEPS: u64 = 64;
 
+/// Time between two points of a series, in seconds.
+const SERIES_PERIOD_S: f64 = 10.0;
+
 /// Names one trial of a sweep.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 pub struct TrialKey {
@@ -36,6 +39,19 @@ pub struct Trial {
     pub deliveries: [Vec<f64>; 2],
     /// The robots as each round found them.
     pub grouped: Vec<Grouped>,
+}
+
+impl Trial {
+    /// Rescuees delivered up to a time in seconds, from the hard and from the easy task.
+    #[must_use]
+    pub fn delivered(&self, time_s: f64) -> [usize; 2] {
+        [0, 1].map(|task: usize| self.deliveries[task].partition_point(|at| *at <= time_s))
+    }
+}
+
+/// The times in seconds at which series tell what was delivered.
+pub fn series_times(duration_s: f64) -> impl Iterator<Item = f64> {
+    (0..).map(|i| f64::from(i) * SERIES_PERIOD_S).take_while(move |time| *time <= duration_s)
 }
 
 /// A robot when it was grouped.

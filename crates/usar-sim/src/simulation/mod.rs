@@ -1,23 +1,24 @@
 //! One trial: a scenario, a policy and a seed in; a record out.
 
-use parry2d::math::Vector;
-use rne_core::GroupingPolicy;
-use serde::{Deserialize, Serialize};
+mod state;
 
-use crate::conflict::{Delay, Mover, PriorityKey, Resolver};
+use rne_core::GroupingPolicy;
+
+use crate::conflict::{Delay, Mover, Resolver};
 use crate::event::{Event, EventLog};
-use crate::hash::{HashChain, PARTS, PERIOD_STEPS, part};
+use crate::hash::{HashChain, PERIOD_STEPS};
 use crate::invariant::{Invariants, Overlaps};
 use crate::layout::Layout;
 use crate::metrics::Metrics;
-use crate::mission::{Activity, Ending, Mission};
-use crate::planning::{Navigator, PLANNED_BRAKING};
+use crate::mission::{Ending, Mission};
+use crate::planning::Navigator;
 use crate::record::{Status, TrialRecord};
-use crate::scenario::{LayoutError, PriorityRule, Scenario};
+use crate::scenario::{LayoutError, Scenario};
 use crate::stage::Stage;
-use crate::tally::{Tally, delay_cause};
-use crate::vitals::{energy_cost, hp_cost};
-use crate::world::{Condition, Robot, STANDING_MPS, World};
+use crate::tally::Tally;
+use crate::world::World;
+
+pub(crate) use state::State;
 
 /// A running trial.
 pub struct Simulation<'a> {
@@ -28,20 +29,6 @@ pub struct Simulation<'a> {
     invariants: Option<Invariants>,
     /// Empty between steps: its memory serves the next step.
     movers: Vec<Mover<'static>>,
-}
-
-/// All that changes in a trial: what a snapshot holds and what the hash chain covers.
-#[derive(Serialize, Deserialize)]
-pub(crate) struct State {
-    step: u64,
-    world: World,
-    mission: Mission,
-    navigator: Navigator,
-    resolver: Resolver,
-    metrics: Metrics,
-    log: EventLog,
-    tallies: Vec<Tally>,
-    chain: HashChain,
 }
 
 impl<'a> Simulation<'a> {
@@ -295,140 +282,5 @@ impl<'a> Simulation<'a> {
             chain,
             rounds: metrics.rounds,
         }
-    }
-}
-
-#[cfg(test)]
-impl State {
-    pub(crate) fn step(&self) -> u64 {
-        self.step
-    }
-
-    pub(crate) fn chain_mut(&mut self) -> &mut HashChain {
-        &mut self.chain
-    }
-}
-
-impl State {
-    /// Lets the metrics hear the events from the `from`-th of this step on; returns how many there are.
-    fn listen(&mut self, from: usize, dt_s: f64) -> usize {
-        let events = self.log.events();
-        self.metrics.listen(&events[from..], &self.world, self.step as f64 * dt_s);
-        events.len()
-    }
-
-    fn plan(&mut self) {
-        let (mission, world) = (&self.mission, &self.world);
-        let speed_of = |robot: &Robot| mission.speed_of(robot);
-        self.navigator.plan(world, |robot| mission.knowledge_of(robot), speed_of, self.step);
-    }
-
-    /// Settles who goes and who waits, and takes note of why robots stop.
-    fn resolve(&mut self, scenario: &Scenario, spare: &mut Vec<Mover<'static>>) {
-        let rule = scenario.conflicts.priority;
-        let seen_by = (&self.mission, &self.navigator);
-        let mut movers: Vec<Mover> = std::mem::take(spare);
-        movers.extend(self.world.robots.iter().map(|robot| mover(robot, rule, seen_by)));
-        let directives = self.resolver.resolve(&mut movers, &mut self.log);
-        for ((robot, directive), tally) in self.world.robots.iter().zip(directives).zip(&mut self.tallies) {
-            let traveller = self.navigator.traveller(robot.id);
-            let activity = self.mission.agents[robot.id.index()].activity;
-            let cause = delay_cause(robot, activity, traveller, *directive);
-            tally.note_delay(Delay { cause, waits_for: directive.waits_for() }, traveller.stalled_steps());
-        }
-        movers.clear();
-        *spare = movers.into_iter().map(|_| unreachable!("it is empty")).collect(); // the same memory
-    }
-
-    /// Lets each drive come as near to what it is told as its force allows.
-    fn drive(&mut self, scenario: &Scenario) {
-        for (robot, directive) in self.world.robots.iter().zip(self.resolver.directives()) {
-            let greatest_change = (robot.spec.acceleration_mps2 * scenario.dt_s) as f32;
-            let change = (directive.velocity() - robot.velocity).clamp_length_max(greatest_change);
-            self.world.physics.drive(robot.id, change);
-        }
-    }
-
-    /// Energy for moving, HP for radiation; robots that have none left stay where they are.
-    fn expose(&mut self, scenario: &Scenario) {
-        let (costs, dt) = (&scenario.costs, scenario.dt_s);
-        for (robot, tally) in self.world.robots.iter_mut().zip(&mut self.tallies) {
-            let speed = robot.velocity.length();
-            let metres = f64::from(speed) * dt;
-            tally.note_way(metres);
-            let resting = matches!(self.mission.agents[robot.id.index()].activity, Activity::Resting(_));
-            if !robot.is_able() || resting {
-                continue;
-            }
-            let zones = self.world.zones.iter().filter(|zone| zone.contains(robot.position)).count();
-            let energy = energy_cost(&costs.energy, speed > STANDING_MPS, metres, dt).min(robot.energy);
-            let hp = hp_cost(&costs.hp, zones, metres, dt).min(robot.hp);
-            robot.energy -= energy;
-            robot.hp -= hp;
-            tally.note_costs(energy, hp);
-            self.metrics.charge(robot.id.index(), energy, hp);
-            if robot.energy <= 0.0 {
-                robot.condition = Condition::Stranded;
-                self.log.push(Event::Stranded { robot: robot.id });
-            } else if robot.hp <= 0.0 {
-                robot.condition = Condition::Disabled;
-                self.log.push(Event::Disabled { robot: robot.id });
-            }
-        }
-    }
-
-    /// Adds a link to the hash chain.
-    fn add_link(&mut self) {
-        if self.chain.links().last().is_some_and(|link| link.step == self.step) {
-            return;
-        }
-        let parts = self.parts();
-        self.chain.add(self.step, parts);
-    }
-
-    /// The hash of each part of the state, in the order of [`PARTS`].
-    pub(crate) fn parts(&self) -> [u128; PARTS.len()] {
-        [
-            part(&self.world.physics.motions()),
-            part(&self.world.robots),
-            part(&(&self.world.debris, &self.world.zones)),
-            part(&self.world.rescuees),
-            part(self.mission.beliefs()),
-            part(&self.mission.course()),
-            part(&self.navigator),
-            part(&self.resolver),
-            part(&(&self.metrics, &self.tallies)),
-            part(&self.log),
-        ]
-    }
-}
-
-/// A robot as the resolver sees it.
-fn mover<'s>(
-    robot: &Robot,
-    rule: PriorityRule,
-    (mission, navigator): (&'s Mission, &'s Navigator),
-) -> Mover<'s> {
-    let speed = mission.speed_of(robot) as f32;
-    let wish = if robot.is_able() { navigator.preferred_velocity(robot, speed) } else { Vector::ZERO };
-    let route = navigator.traveller(robot.id).route();
-    let agent = &mission.agents[robot.id.index()];
-    let is_busy = matches!(agent.activity, Activity::Loading(..) | Activity::Resting(_));
-    Mover {
-        robot: robot.id,
-        aerial: robot.is_aerial(),
-        position: robot.position,
-        velocity: robot.velocity,
-        wish,
-        retreat_left: None,
-        leg_left: route.map_or(0.0, |route| (route.ahead()[0] - robot.position).length()),
-        route: route.map_or(&[], |route| route.ahead()),
-        trail: navigator.trail(robot.id),
-        radius: robot.radius(),
-        speed,
-        braking: PLANNED_BRAKING * robot.spec.acceleration_mps2 as f32,
-        priority: PriorityKey::new(rule, robot.id, agent.task, [robot.energy, robot.hp]),
-        known: (!robot.is_aerial()).then(|| mission.knowledge_of(robot.id).obstacles()),
-        can_make_room: robot.is_able() && !is_busy,
     }
 }

@@ -1,0 +1,63 @@
+//! Tables of RNE's readings.
+
+use comfy_table::{Cell, Table};
+
+use super::{headed, right};
+use crate::commands::readings::{Difference, ReadingRow, RivalRow, SHOWN};
+use crate::comparison::{digits, short};
+use crate::metric::METRICS;
+
+fn differences(differences: &[Option<Difference>]) -> impl Iterator<Item = Cell> + '_ {
+    differences.iter().map(|difference| {
+        let text = |d: &Difference| format!("{} ± {}", signed(d.mean), digits(d.half, 2));
+        right(&difference.as_ref().map_or("-".to_owned(), text))
+    })
+}
+
+fn signed(value: f64) -> String {
+    if value > 0.0 { format!("+{}", short(value)) } else { short(value) }
+}
+
+/// The titles of the metrics that readings are compared in.
+fn shown() -> impl Iterator<Item = Cell> {
+    let title =
+        |name: &str| METRICS.iter().find(|metric| metric.name == name).map_or("", |metric| metric.title);
+    SHOWN.into_iter().map(move |name| Cell::new(title(name)))
+}
+
+/// Each reading by itself.
+pub(crate) fn readings_table(rows: &[ReadingRow]) -> Table {
+    let header = ["reading", "regrouped", "split otherwise", "trials"].map(Cell::new);
+    let mut table = headed(header.into_iter().chain(shown()));
+    let share = |share: f64| right(&format!("{:.1} %", 100.0 * share));
+    for row in rows {
+        let [grouped, split] = row.regrouped;
+        let cells = [Cell::new(&row.reading), share(grouped), share(split), share(row.trials)];
+        table.add_row(cells.into_iter().chain(differences(&row.differences)));
+    }
+    table
+}
+
+/// Each reading averaged over the others.
+pub(crate) fn averaged_table(rows: &[(String, Vec<Option<Difference>>)]) -> Table {
+    let mut table = headed(std::iter::once(Cell::new("reading")).chain(shown()));
+    for (reading, row) in rows {
+        table.add_row(std::iter::once(Cell::new(reading)).chain(differences(row)));
+    }
+    table
+}
+
+/// All readings against other policies.
+pub(crate) fn rivals_table(rows: &[RivalRow]) -> Table {
+    let mut table = headed(["metric", "against", "above", "below", "neither", "least", "greatest"]);
+    for row in rows {
+        let end = |(reading, difference): &(String, Difference)| {
+            Cell::new(format!("{} ± {} ({reading})", signed(difference.mean), digits(difference.half, 2)))
+        };
+        let [least, most] = &row.ends;
+        let counts = row.counts.map(|count| right(&count.to_string()));
+        let cells = [Cell::new(row.metric), Cell::new(&row.rival)].into_iter().chain(counts);
+        table.add_row(cells.chain([end(least), end(most)]));
+    }
+    table
+}

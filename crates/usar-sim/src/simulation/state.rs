@@ -1,0 +1,164 @@
+//! All that changes in a trial, and the stages of a step that change it.
+
+use parry2d::math::Vector;
+use serde::{Deserialize, Serialize};
+
+use crate::conflict::{Delay, Mover, PriorityKey, Resolver};
+use crate::event::{Event, EventLog};
+use crate::hash::{HashChain, PARTS, part};
+use crate::metrics::Metrics;
+use crate::mission::{Activity, Mission};
+use crate::planning::{Navigator, PLANNED_BRAKING};
+use crate::scenario::{PriorityRule, Scenario};
+use crate::tally::{Tally, delay_cause};
+use crate::vitals::{energy_cost, hp_cost};
+use crate::world::{Condition, Robot, STANDING_MPS, World};
+
+/// All that changes in a trial: what a snapshot holds and what the hash chain covers.
+#[derive(Serialize, Deserialize)]
+pub(crate) struct State {
+    pub(super) step: u64,
+    pub(super) world: World,
+    pub(super) mission: Mission,
+    pub(super) navigator: Navigator,
+    pub(super) resolver: Resolver,
+    pub(super) metrics: Metrics,
+    pub(super) log: EventLog,
+    pub(super) tallies: Vec<Tally>,
+    pub(super) chain: HashChain,
+}
+
+#[cfg(test)]
+impl State {
+    pub(crate) fn step(&self) -> u64 {
+        self.step
+    }
+
+    pub(crate) fn chain_mut(&mut self) -> &mut HashChain {
+        &mut self.chain
+    }
+}
+
+impl State {
+    /// Lets the metrics hear the events from the `from`-th of this step on; returns how many there are.
+    pub(super) fn listen(&mut self, from: usize, dt_s: f64) -> usize {
+        let events = self.log.events();
+        self.metrics.listen(&events[from..], &self.world, self.step as f64 * dt_s);
+        events.len()
+    }
+
+    pub(super) fn plan(&mut self) {
+        let (mission, world) = (&self.mission, &self.world);
+        let speed_of = |robot: &Robot| mission.speed_of(robot);
+        self.navigator.plan(world, |robot| mission.knowledge_of(robot), speed_of, self.step);
+    }
+
+    /// Settles who goes and who waits, and takes note of why robots stop.
+    pub(super) fn resolve(&mut self, scenario: &Scenario, spare: &mut Vec<Mover<'static>>) {
+        let rule = scenario.conflicts.priority;
+        let seen_by = (&self.mission, &self.navigator);
+        let mut movers: Vec<Mover> = std::mem::take(spare);
+        movers.extend(self.world.robots.iter().map(|robot| mover(robot, rule, seen_by)));
+        let directives = self.resolver.resolve(&mut movers, &mut self.log);
+        for ((robot, directive), tally) in self.world.robots.iter().zip(directives).zip(&mut self.tallies) {
+            let traveller = self.navigator.traveller(robot.id);
+            let activity = self.mission.agents[robot.id.index()].activity;
+            let cause = delay_cause(robot, activity, traveller, *directive);
+            tally.note_delay(Delay { cause, waits_for: directive.waits_for() }, traveller.stalled_steps());
+        }
+        movers.clear();
+        *spare = movers.into_iter().map(|_| unreachable!("it is empty")).collect(); // the same memory
+    }
+
+    /// Lets each drive come as near to what it is told as its force allows.
+    pub(super) fn drive(&mut self, scenario: &Scenario) {
+        for (robot, directive) in self.world.robots.iter().zip(self.resolver.directives()) {
+            let greatest_change = (robot.spec.acceleration_mps2 * scenario.dt_s) as f32;
+            let change = (directive.velocity() - robot.velocity).clamp_length_max(greatest_change);
+            self.world.physics.drive(robot.id, change);
+        }
+    }
+
+    /// Energy for moving, HP for radiation; robots that have none left stay where they are.
+    pub(super) fn expose(&mut self, scenario: &Scenario) {
+        let (costs, dt) = (&scenario.costs, scenario.dt_s);
+        for (robot, tally) in self.world.robots.iter_mut().zip(&mut self.tallies) {
+            let speed = robot.velocity.length();
+            let metres = f64::from(speed) * dt;
+            tally.note_way(metres);
+            let resting = matches!(self.mission.agents[robot.id.index()].activity, Activity::Resting(_));
+            if !robot.is_able() || resting {
+                continue;
+            }
+            let zones = self.world.zones.iter().filter(|zone| zone.contains(robot.position)).count();
+            let energy = energy_cost(&costs.energy, speed > STANDING_MPS, metres, dt).min(robot.energy);
+            let hp = hp_cost(&costs.hp, zones, metres, dt).min(robot.hp);
+            robot.energy -= energy;
+            robot.hp -= hp;
+            tally.note_costs(energy, hp);
+            self.metrics.charge(robot.id.index(), energy, hp);
+            if robot.energy <= 0.0 {
+                robot.condition = Condition::Stranded;
+                self.log.push(Event::Stranded { robot: robot.id });
+            } else if robot.hp <= 0.0 {
+                robot.condition = Condition::Disabled;
+                self.log.push(Event::Disabled { robot: robot.id });
+            }
+        }
+    }
+
+    /// Adds a link to the hash chain.
+    pub(super) fn add_link(&mut self) {
+        if self.chain.links().last().is_some_and(|link| link.step == self.step) {
+            return;
+        }
+        let parts = self.parts();
+        self.chain.add(self.step, parts);
+    }
+
+    /// The hash of each part of the state, in the order of [`PARTS`].
+    pub(crate) fn parts(&self) -> [u128; PARTS.len()] {
+        [
+            part(&self.world.physics.motions()),
+            part(&self.world.robots),
+            part(&(&self.world.debris, &self.world.zones)),
+            part(&self.world.rescuees),
+            part(self.mission.beliefs()),
+            part(&self.mission.course()),
+            part(&self.navigator),
+            part(&self.resolver),
+            part(&(&self.metrics, &self.tallies)),
+            part(&self.log),
+        ]
+    }
+}
+
+/// A robot as the resolver sees it.
+fn mover<'s>(
+    robot: &Robot,
+    rule: PriorityRule,
+    (mission, navigator): (&'s Mission, &'s Navigator),
+) -> Mover<'s> {
+    let speed = mission.speed_of(robot) as f32;
+    let wish = if robot.is_able() { navigator.preferred_velocity(robot, speed) } else { Vector::ZERO };
+    let route = navigator.traveller(robot.id).route();
+    let agent = &mission.agents[robot.id.index()];
+    let is_busy = matches!(agent.activity, Activity::Loading(..) | Activity::Resting(_));
+    Mover {
+        robot: robot.id,
+        aerial: robot.is_aerial(),
+        position: robot.position,
+        velocity: robot.velocity,
+        wish,
+        retreat_left: None,
+        leg_left: route.map_or(0.0, |route| (route.ahead()[0] - robot.position).length()),
+        route: route.map_or(&[], |route| route.ahead()),
+        trail: navigator.trail(robot.id),
+        radius: robot.radius(),
+        speed,
+        braking: PLANNED_BRAKING * robot.spec.acceleration_mps2 as f32,
+        priority: PriorityKey::new(rule, robot.id, agent.task, [robot.energy, robot.hp]),
+        known: (!robot.is_aerial()).then(|| mission.knowledge_of(robot.id).obstacles()),
+        can_make_room: robot.is_able() && !is_busy,
+    }
+}
