@@ -9,11 +9,11 @@ use std::time::Instant;
 use clap::Args;
 use serde::Serialize;
 
-use super::{SCHEMA_VERSION, default_jobs};
+use super::{SCHEMA_VERSION, default_jobs, progress_bar};
 use crate::experiment::{Experiment, Overrides, split_list};
 use crate::failure::Failure;
-use crate::sweep::TrialKey;
 use crate::sweep::folder::{Folder, Opening};
+use crate::sweep::{Outcome, TrialKey};
 
 /// Trials that are looked for at least. Policies that decide alike share theirs, so that only all policies of a seed show what a seed takes.
 const LEAST_TRIALS: usize = 12;
@@ -126,12 +126,15 @@ fn measure(experiment: &Arc<Experiment>, sample: &[TrialKey]) -> Result<(f64, u6
     let halt = AtomicBool::new(false);
     let path = place.path().join("sweep");
     let mut folder = Folder::open(&path, Arc::clone(experiment), Opening::default(), &mut |_| {})?;
+    let bar = progress_bar(sample.len(), "trials to measure", 1, false);
     let start = Instant::now();
     for key in sample {
         let result = experiment.run(key, &halt);
-        folder.add(&crate::sweep::Outcome { key: key.clone(), result })?;
+        folder.add(&Outcome { key: key.clone(), result })?;
+        bar.inc(1);
     }
     let seconds = start.elapsed().as_secs_f64() / sample.len() as f64;
+    bar.finish_and_clear();
     folder.finish(&halt)?;
     let files = std::fs::read_dir(&path)?.flatten().filter_map(|entry| entry.metadata().ok());
     Ok((seconds, files.map(|file| file.len()).sum::<u64>() / sample.len() as u64))

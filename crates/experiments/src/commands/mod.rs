@@ -105,7 +105,8 @@ pub(crate) fn progress_bar(count: usize, of: &str, jobs: usize, quiet: bool) -> 
     let style = format!("{{bar:32}} {{pos}}/{{len}} {of}, {{elapsed}} gone, {{eta}} left {{msg}}");
     bar.set_style(ProgressStyle::with_template(&style).unwrap_or_else(|_| ProgressStyle::default_bar()));
     if bar.is_hidden() {
-        eprintln!("{count} {of} on {jobs} threads");
+        let plural = if jobs == 1 { "" } else { "s" };
+        eprintln!("{count} {of} on {jobs} thread{plural}");
     }
     bar.enable_steady_tick(std::time::Duration::from_millis(200));
     bar
