@@ -2,13 +2,12 @@
 
 use rayon::prelude::*;
 use serde::Serialize;
-use xxhash_rust::xxh3::xxh3_64;
 
 use crate::experiment::Experiment;
 use crate::failure::Failure;
 use crate::metric::{METRICS, Metric};
 use crate::stats::Moments;
-use crate::stats::bootstrap::{Width, bca_interval, resamples};
+use crate::stats::bootstrap::interval;
 use crate::stats::paired::{hodges_lehmann, holm, pairs_needed};
 use crate::stats::wilcoxon::{DRAWS, EXACT_PAIRS, SignedRank};
 use crate::sweep::folder::{Folder, Measured};
@@ -207,10 +206,6 @@ fn comparison(
     let differences = pairs.differences();
     let labels = [a, b].map(|policy| experiment.policies[policy].label.clone());
     let values = experiment.axes.iter().zip(&experiment.cases[case].values);
-    // The same draws whichever policy is named first.
-    let mut pair = labels.clone();
-    pair.sort();
-    let seed = xxh3_64(format!("{case} {} {pair:?}", metric.name).as_bytes());
     let test = SignedRank::of(&differences);
     let has_pairs = !differences.is_empty();
     let [label_a, label_b] = labels;
@@ -227,12 +222,7 @@ fn comparison(
         mean_a: Moments::of(&pairs.a).mean,
         mean_b: Moments::of(&pairs.b).mean,
         difference: Moments::of(&differences).mean,
-        interval: bca_interval(
-            &differences,
-            CONFIDENCE,
-            (resamples(differences.len()), seed),
-            Width::Expanded,
-        ),
+        interval: interval(&differences, CONFIDENCE),
         shift: hodges_lehmann(&differences),
         p: has_pairs.then_some(test.p),
         is_exact: test.is_exact,
@@ -283,7 +273,7 @@ fn in_words(comparison: &Comparison) -> String {
     if comparison.is_found() {
         return format!("{place}: {a} is {size} {direction} {b} ({range}; corrected {}).", p_in_words(p));
     }
-    if difference == 0.0 {
+    if size == "0" {
         return format!("{place}: no difference shows between {a} and {b}: their means are equal ({range}).");
     }
     format!(

@@ -7,6 +7,7 @@ mod commands;
 pub mod comparison;
 pub mod experiment;
 mod failure;
+mod input_table;
 pub mod metric;
 pub mod provenance;
 pub mod report;

@@ -79,7 +79,8 @@ fn a_calibration_that_was_broken_off_ends_as_one_that_was_not() {
         assert_eq!(read(&folder.join("parts").join(file)), read(&folder.join("whole").join(file)), "{file}");
     }
     let (scenario, text) = Scenario::load(&folder.join("whole/calibrated.ron")).unwrap();
-    assert_eq!(scenario.name, "paper-calibrated");
+    assert_eq!(scenario.name, "paper-fitted");
+    assert!(text.starts_with("// Fitted by usar calibrate (misfit "), "{text}");
     assert!(text.contains("// Places [view]"), "comments stay");
     assert_eq!(scenario.roles.carrier.speed_mps.to_bits(), scenario.roles.supplier.speed_mps.to_bits());
     assert!(
@@ -98,8 +99,14 @@ fn what_cannot_be_calibrated_is_refused() {
     let run = |more: &[&str]| usar(folder, &calibrate("out", more));
     refused(
         &run(&["--free", "roles.carrier.wings=1..2"]),
-        &["--free: roles.carrier.wings: is not written in the scenario"],
+        &["--free: roles.carrier.wings: no such field; roles.carrier has radius_m"],
     );
+    refused(
+        &run(&["--free", "roles.carrier.capacity=2..8"]),
+        &["--free: roles.carrier.capacity: takes whole numbers only"],
+    );
+    refused(&run(&["--free", "duration_s=60..90"]), &["--free: duration_s: is that of the recorded trials"]);
+    refused(&run(&["--set", "radiation[0].radius_m=3.0"]), &["--set: radiation[0].radius_m is free"]);
     refused(
         &run(&["--free", "mission.health_floor=0..1"]),
         &["--free: mission.health_floor must be a number from", "found 0"],
@@ -110,9 +117,34 @@ fn what_cannot_be_calibrated_is_refused() {
         &["--set: mission.loading_s: is set twice"],
     );
     refused(&run(&["--first-seed", "2"]), &["--first-seed: must be beyond the fresh trials", "found 2"]);
-    refused(&run(&["--set", "mission.wings=1"]), &["--set: mission.wings: is not written in the scenario"]);
+    refused(&run(&["--set", "mission.wings=1"]), &["--set: mission.wings: no such field; mission has"]);
     std::fs::write(folder.join("target.csv"), "method,rounds\nDIS,6\nRNE,7\n").unwrap();
-    refused(&run(&[]), &["line 3: method must be DIS", "\"RNE\""]);
+    refused(&run(&[]), &["target.csv:3: method must be DIS", "\"RNE\""]);
+    let targets = [
+        (
+            "method,rescued_hard,rounds\nDIS,6,6\n",
+            "target.csv:1: \"rescued_hard\" is no column of trials.csv",
+        ),
+        (
+            "method,rounds\r\nDIS,6\r\nDIS,six\r\n",
+            "target.csv:3: rounds must be a number from 0 on, found \"six\"",
+        ),
+        ("method,rounds\nDIS,-1\nDIS,7\n", "target.csv:2: rounds must be a number from 0 on, found \"-1\""),
+        (
+            "method,time_s,rounds\nDIS,120,6\nDIS,60,7\n",
+            "target.csv:3: time_s must be the scenario's duration_s, 120, found 60",
+        ),
+        (
+            "method,rescuees_total,rescuees_hard,rescuees_easy\nDIS,5,2,3\nDIS,9,3,4\n",
+            "target.csv:3: rescuees_total must be the sum",
+        ),
+        ("method,rounds,rounds\nDIS,6,6\n", "the column \"rounds\" stands twice"),
+        ("method,rounds\nDIS,6\n", "must have at least two trials, found 1"),
+    ];
+    for (text, says) in targets {
+        std::fs::write(folder.join("target.csv"), text).unwrap();
+        refused(&run(&[]), &[says]);
+    }
     std::fs::write(folder.join("target.csv"), "method,rounds\nDIS,6\nDIS,6\n").unwrap();
     refused(&run(&[]), &["rounds must differ between trials"]);
     assert!(!folder.join("out").exists(), "nothing was written");
@@ -122,10 +154,36 @@ fn what_cannot_be_calibrated_is_refused() {
         &run(&["--evaluations", "2", "--seed", "9"]),
         &["has the calibration of something else", "seed: 1 there, 9 now"],
     );
+    std::fs::write(folder.join("target.csv"), "method,rounds\nDIS,6\nDIS,8\n").unwrap();
+    refused(&run(&["--evaluations", "2"]), &["target.rounds: [6.5,0.70", "there, [7.0,1.41"]);
+    std::fs::write(folder.join("target.csv"), "method,rounds\nDIS,6\nDIS,7\n").unwrap();
     refused(
         &run(&["--evaluations", "2", "--set", "mission.loading_s=3.0"]),
         &["mission.loading_s: 2.0 there, 3.0 now"],
     );
+}
+
+#[test]
+fn a_search_begins_within_its_ranges() {
+    let place = place();
+    let folder = place.path();
+    let mut arguments =
+        calibrate("out", &["--free", "costs.energy.per_metre=0.1..0.2 log", "--evaluations", "1"]);
+    arguments.retain(|argument| *argument != "--quiet");
+    let output = usar(folder, &arguments);
+    let told = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(
+        told.contains("costs.energy.per_metre is 0, outside its range; the search begins at 0.1"),
+        "{told}"
+    );
+    succeeds(&output);
+    let log = read(&folder.join("out/evaluations.csv"));
+    let mut log = csv::Reader::from_reader(log.as_bytes());
+    let place = log.headers().unwrap().iter().position(|name| name == "costs.energy.per_metre").unwrap();
+    for row in log.records() {
+        let value: f64 = row.unwrap()[place].parse().unwrap();
+        assert!((0.1..=0.2).contains(&value), "{value}");
+    }
 }
 
 /// The command that made `paper-calibrated.ron` has its log in `docs/calibration/`; its best candidate is the scenario, and running it again gives the
@@ -147,7 +205,7 @@ fn the_calibrated_scenario_is_the_best_of_its_log() {
         let written = text[fields.value(&path).unwrap()].trim().parse::<f64>().unwrap();
         assert_eq!(written.to_bits(), value.parse::<f64>().unwrap().to_bits(), "{path}");
     }
-    let target = Target::load(&root().join("scenarios/reference/dis_trials.csv")).unwrap();
+    let target = Target::load(&root().join("scenarios/reference/dis_trials.csv"), 600.0).unwrap();
     let calibration = Calibration {
         text,
         base: scenario,
@@ -178,8 +236,8 @@ fn the_calibrated_scenario_is_the_best_of_its_log() {
 fn a_log_is_held_by_one_process() {
     let place = place();
     let (base, text) = Scenario::load(&place.path().join("short.ron")).unwrap();
-    let free = vec![Free::parse("mission.loading_s=1..3", &Fields::of(&text)).unwrap()];
-    let target = Target::load(&place.path().join("target.csv")).unwrap();
+    let free = vec![Free::parse("mission.loading_s=1..3", &Fields::of(&text), &Fields::of(&text)).unwrap()];
+    let target = Target::load(&place.path().join("target.csv"), 120.0).unwrap();
     let calibration =
         Calibration { text, base, free, target, trials: 2, first_seed: 1, seed: 1, first_step: 0.25 };
     let out = place.path().join("out");

@@ -20,13 +20,17 @@ pub struct Free {
 }
 
 impl Free {
-    /// Reads `PATH[*RATIO] [+ PATH[*RATIO] ...]=LOW..HIGH[ log]`; `[*]` in a path is every entry of a list. `fields` are those of `text`, in
-    /// which each path must be written.
+    /// Reads `PATH[*RATIO] [+ PATH[*RATIO] ...]=LOW..HIGH[ log]`; `[*]` in a path is every entry of a list. `fields` are those that are written
+    /// in the scenario, as each path must be; `known` are all that a scenario has.
     ///
     /// # Errors
     /// A text of another form, a path that is not in the scenario, or a range that cannot be searched; in one sentence.
-    pub fn parse(spec: &str, fields: &Fields) -> Result<Self, String> {
-        let form = || format!("must be 'PATH=LOW..HIGH' (PATH + PATH*RATIO=LOW..HIGH log), found {spec:?}");
+    pub fn parse(spec: &str, fields: &Fields, known: &Fields) -> Result<Self, String> {
+        let form = || {
+            format!(
+                "must be 'PATH=LOW..HIGH' or 'PATH + PATH*RATIO=LOW..HIGH log' with finite numbers, found {spec:?}"
+            )
+        };
         let (paths, range) = spec.rsplit_once('=').ok_or_else(form)?;
         let (range, is_log) =
             range.trim().strip_suffix("log").map_or((range.trim(), false), |range| (range.trim(), true));
@@ -55,9 +59,7 @@ impl Free {
                 .map(|(known, _)| (known.to_owned(), ratio))
                 .collect();
             if matching.is_empty() {
-                return Err(format!(
-                    "{path}: is not written in the scenario; write it there, so that what is found can take its place"
-                ));
+                return Err(not_there(path, known));
             }
             named.extend(matching);
         }
@@ -80,13 +82,17 @@ impl Free {
     /// The place of a value, kept a tenth of the range away from its ends.
     #[must_use]
     pub fn place(&self, value: f64) -> f64 {
+        self.place_of(value).clamp(0.1, 0.9)
+    }
+
+    /// The place of a value, of the nearest in the range.
+    fn place_of(&self, value: f64) -> f64 {
         let value = value.clamp(self.low, self.high);
-        let unit = if self.is_log {
+        if self.is_log {
             (value / self.low).ln() / (self.high / self.low).ln()
         } else {
             (value - self.low) / (self.high - self.low)
-        };
-        unit.clamp(0.1, 0.9)
+        }
     }
 
     /// The ends of its range.
@@ -100,6 +106,22 @@ impl Free {
         self.fields.iter().map(move |(path, ratio)| (path.as_str(), in_ron(rounded(value * ratio))))
     }
 
+    /// Whether one of its fields is at this path or within it.
+    #[must_use]
+    pub fn is_of(&self, path: &str) -> bool {
+        let is_within = |field: &str| {
+            field.strip_prefix(path).is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']))
+        };
+        self.fields.iter().any(|(field, _)| is_within(field))
+    }
+
+    /// Whether a value is within a hundredth of the range of one of its ends.
+    #[must_use]
+    pub fn is_at_end(&self, value: f64) -> bool {
+        let place = self.place_of(value);
+        !(0.01..=0.99).contains(&place)
+    }
+
     /// Its present value: that of its first field.
     ///
     /// # Errors
@@ -109,6 +131,16 @@ impl Free {
         let written = fields.value(path).map(|value| text[value].trim()).unwrap_or_default();
         let value = written.parse::<f64>();
         value.map(|value| value / ratio).map_err(|_| format!("{path}: must be a number, found {written}"))
+    }
+
+    /// What is to be said where one of its fields takes whole numbers only.
+    #[must_use]
+    pub fn whole_numbers(&self, base: &ScenarioFile) -> Option<String> {
+        let takes = |path: &str, value: &str| base.clone().set(path, value).is_ok();
+        let field = self.fields.iter().find(|(path, _)| takes(path, "1") && !takes(path, "1.5"));
+        field.map(|(path, _)| {
+            format!("{path}: takes whole numbers only, and a search tries those between as well")
+        })
     }
 
     /// Sets its fields.
@@ -126,6 +158,20 @@ impl fmt::Display for Free {
         let fields: Vec<String> = fields.collect();
         let scale = if self.is_log { " log" } else { "" };
         write!(f, "{} = {}..{}{scale}", fields.join(" + "), self.low, self.high)
+    }
+}
+
+/// Why a path cannot be free.
+fn not_there(path: &str, known: &Fields) -> String {
+    let first = path.replace("[*]", "[0]");
+    if known.leaves().any(|(field, _)| field == first) {
+        format!(
+            "{path}: is not written in the scenario; write it there, so that what is found can take its place"
+        )
+    } else if known.value(&first).is_some() {
+        format!("{path}: is not a number but has parts: {}", known.inside(&first).join(", "))
+    } else {
+        known.unknown(&first).to_string()
     }
 }
 
@@ -162,7 +208,7 @@ mod tests {
     const TEXT: &str = "(roles: (a: (v: 3.0), b: (v: 2.0)), zones: [(r: 4.5), (r: 4.5)], n: (k: 1))";
 
     fn free(spec: &str) -> Result<Free, String> {
-        Free::parse(spec, &Fields::of(TEXT))
+        Free::parse(spec, &Fields::of(TEXT), &Fields::of("(roles: (a: (v: 3.0, w: 1.0), b: (v: 2.0)))"))
     }
 
     #[test]
@@ -197,8 +243,10 @@ mod tests {
             ("roles.a.v", "must be 'PATH=LOW..HIGH'"),
             ("roles.a.v=3..1", "the lower bound must be below"),
             ("roles.a.v=0..1 log", "must be above 0"),
-            ("roles.c.v=0..1", "roles.c.v: is not written in the scenario"),
-            ("roles.a=0..1", "roles.a: is not written in the scenario"),
+            ("roles.a.v=1..x", "with finite numbers"),
+            ("roles.c.v=0..1", "roles.c.v: no such field; roles has a, b"),
+            ("roles.a.w=0..1", "roles.a.w: is not written in the scenario"),
+            ("roles.a=0..1", "roles.a: is not a number but has parts: v, w"),
         ] {
             let error = free(spec).unwrap_err();
             assert!(error.contains(says), "{spec}: {error}");

@@ -1,5 +1,6 @@
 //! `evaluations.csv`: each candidate of a calibration as it was evaluated, from which a search goes on that was broken off.
 
+use std::collections::BTreeSet;
 use std::fs::{self, File};
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -181,13 +182,26 @@ fn origin_of(calibration: &Calibration) -> serde_json::Value {
     })
 }
 
+/// What of a value is otherwise, entry by entry where it has names.
+fn differences_of(name: &str, there: &serde_json::Value, now: &serde_json::Value) -> Vec<String> {
+    match (there.as_object(), now.as_object()) {
+        (Some(old), Some(new)) => {
+            let keys: BTreeSet<&String> = old.keys().chain(new.keys()).collect();
+            let inside = |key: &String| {
+                differences_of(&format!("{name}.{key}"), &there[key.as_str()], &now[key.as_str()])
+            };
+            keys.into_iter().flat_map(inside).collect()
+        }
+        _ if there == now => Vec::new(),
+        _ => vec![format!("{name}: {there} there, {now} now")],
+    }
+}
+
 fn check_continues(folder: &Path, there: &str, now: &serde_json::Value) -> Result<(), Failure> {
     let there: serde_json::Value = serde_json::from_str(there).unwrap_or_default();
     let mut differences = Vec::new();
     for (key, value) in now.as_object().into_iter().flatten().filter(|(key, _)| *key != "scenario") {
-        if there[key] != *value {
-            differences.push(format!("{key}: {} there, {value} now", there[key]));
-        }
+        differences.extend(differences_of(key, &there[key], value));
     }
     let text = |origin: &serde_json::Value| origin["scenario"].as_str().unwrap_or_default().to_owned();
     differences.extend(crate::provenance::scenario_differences(&text(&there), &text(now)));

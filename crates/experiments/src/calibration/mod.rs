@@ -25,6 +25,7 @@ pub use log::Log;
 pub use target::{Quantity, Spread, Target};
 
 use crate::cli::panic_message;
+use crate::comparison::short;
 use crate::failure::Failure;
 use crate::sweep::run_trial;
 
@@ -32,7 +33,10 @@ use crate::sweep::run_trial;
 pub const POLICY: &str = "DIS";
 
 /// What a calibrated scenario's name ends with.
-const SUFFIX: &str = "-calibrated";
+const SUFFIX: &str = "-fitted";
+
+/// Begins the first line of a calibrated scenario.
+const ORIGIN_LINE: &str = "// Fitted by usar calibrate";
 
 /// The misfit of a candidate that cannot be run.
 const WORST: f64 = 1e9;
@@ -96,25 +100,60 @@ impl Calibration {
         with_written(&self.text, &settings)
     }
 
+    /// The same with a first line that tells what was fitted.
+    ///
+    /// # Errors
+    /// Those of [`Calibration::text_with`].
+    pub fn fitted_text(&self, evaluation: &Evaluation) -> Result<String, String> {
+        let text = self.text_with(&evaluation.values)?;
+        let text = match text.split_once('\n') {
+            Some((first, rest)) if first.starts_with(ORIGIN_LINE) => rest,
+            _ => &text,
+        };
+        let names: Vec<&str> = self.free.iter().map(|free| free.name.as_str()).collect();
+        Ok(format!(
+            "{ORIGIN_LINE} (misfit {} over {} trials of {POLICY}), whatever comments below say of them: {}\n{text}",
+            short(evaluation.misfit),
+            self.trials,
+            names.join(", "),
+        ))
+    }
+
+    /// Where the search begins: the values of the scenario as it is, or the nearest in their ranges.
+    ///
+    /// # Errors
+    /// A field is not a number.
+    pub fn start(&self) -> Result<Vec<f64>, Failure> {
+        let ends = self.free.iter().map(Free::ends);
+        Ok(self.present()?.into_iter().zip(ends).map(|(value, [low, high])| value.clamp(low, high)).collect())
+    }
+
     /// The values that the scenario has as it is.
-    fn present(&self) -> Result<Vec<f64>, Failure> {
+    ///
+    /// # Errors
+    /// A field is not a number.
+    pub fn present(&self) -> Result<Vec<f64>, Failure> {
         let fields = Fields::of(&self.text);
         let present = |free: &Free| free.present(&self.text, &fields);
         let present = self.free.iter().map(present).collect::<Result<Vec<f64>, _>>();
         present.map_err(|error| Failure::input(format!("--free: {error}")))
     }
 
-    /// Checks that no field is set twice, and that both ends of each range can be run, the other fields being as they are.
+    /// Checks that no field is set twice, that none decides how long a trial is, and that both ends of each range can be run, the other fields being as they are.
     ///
     /// # Errors
     /// An end that cannot.
     pub fn check(&self) -> Result<(), Failure> {
-        let present = self.present()?;
-        self.text_with(&present).map_err(|error| Failure::input(format!("--free: {error}")))?;
+        let bad = |error: String| Failure::input(format!("--free: {error}"));
+        self.text_with(&self.present()?).map_err(bad)?;
         for free in &self.free {
+            if free.is_of("duration_s") {
+                return Err(bad("duration_s: is that of the recorded trials".to_owned()));
+            }
             for end in free.ends() {
                 let mut file: ScenarioFile = (*self.base).clone();
-                free.set(&mut file, end).map_err(|error| Failure::input(format!("--free: {error}")))?;
+                free.set(&mut file, end)
+                    .map_err(|error| bad(free.whole_numbers(&self.base).unwrap_or(error)))?;
                 Scenario::try_from(file).map_err(|problems| {
                     let problem = &problems[0];
                     Failure::input(format!(
@@ -172,8 +211,8 @@ impl Calibration {
         }
     }
 
-    /// Looks at the scenario as it is, and searches from there until there are so many evaluations in the log, or nothing gets better; returns whether it came to its end: not so when
-    /// `stop` was set. `done` hears the number of evaluations so far and the least misfit.
+    /// Evaluates the start and searches from there until there are so many evaluations in the log, to the end of a generation of candidates, or
+    /// nothing gets better; returns whether it came to its end: not so when `stop` was set. `done` hears the number of evaluations so far and the least misfit.
     ///
     /// # Errors
     /// The disk does not take the log.
@@ -184,7 +223,7 @@ impl Calibration {
         stop: &AtomicBool,
         mut done: impl FnMut(usize, f64),
     ) -> Result<bool, Failure> {
-        let present = self.present()?;
+        let present = self.start()?;
         if log.find(&present).is_none() {
             let Some(evaluation) = self.evaluate(present.clone(), stop) else { return Ok(false) };
             log.add(evaluation)?;

@@ -6,7 +6,9 @@ use usar_sim::record::TrialRecord;
 
 use super::POLICY;
 use crate::failure::Failure;
+use crate::input_table::InputTable;
 use crate::stats::Moments;
+use crate::sweep::trial_columns;
 
 /// A quantity of a trial that a target may have, under the authors' name.
 pub struct Quantity {
@@ -64,51 +66,50 @@ pub struct Target {
 }
 
 impl Target {
-    /// Reads a table with a column `method`, in which each row is the baseline, and one for each quantity.
+    /// Reads a table with the columns of `trials.csv`: `method`, which is the baseline's in each row, and quantities.
     ///
     /// # Errors
-    /// A table that cannot be read, of other policies, or with a quantity that has no spread; with file and line.
-    pub fn load(path: &Path) -> Result<Self, Failure> {
-        let bad = |reason: String| Failure::input(format!("{}: {reason}", path.display()));
-        let mut table = csv::Reader::from_path(path).map_err(|error| bad(error.to_string()))?;
-        let header = table.headers().map_err(|error| bad(error.to_string()))?.clone();
-        let column = |name: &str| header.iter().position(|column| column.trim() == name);
-        let method = column("method").ok_or_else(|| bad("has no column method".into()))?;
-        let found: Vec<(&Quantity, usize)> =
-            QUANTITIES.iter().filter_map(|quantity| Some((quantity, column(quantity.name)?))).collect();
-        if found.is_empty() {
-            let known = QUANTITIES.map(|quantity| quantity.name).join(", ");
-            return Err(bad(format!("has none of the columns {known}")));
-        }
+    /// A table that cannot be read, has a column of another name, is of other policies or other missions than those of `duration_s` seconds, or
+    /// has a quantity that is no number or has no spread; with file and line, all at once.
+    pub fn load(path: &Path, duration_s: f64) -> Result<Self, Failure> {
+        let shown = path.display();
+        let table = InputTable::read(path)?;
+        let (found, mut problems) = columns_of(&table);
         let mut values = vec![Vec::new(); found.len()];
-        for record in table.records() {
-            let record = record.map_err(|error| bad(error.to_string()))?;
-            let line = record.position().map_or(0, csv::Position::line);
-            if record[method].trim() != POLICY {
-                return Err(bad(format!(
-                    "line {line}: method must be {POLICY}: nothing else is calibrated, found {:?}",
-                    &record[method]
-                )));
+        for (line, row) in &table.rows {
+            let cells = Cells { table: &table, row };
+            problems.extend(cells.check(duration_s).into_iter().map(|problem| format!("{line}: {problem}")));
+            for (quantity, values) in found.iter().zip(&mut values) {
+                match cells.number(quantity.name) {
+                    Ok(value) => values.extend(value),
+                    Err(problem) => problems.push(format!("{line}: {problem}")),
+                }
             }
-            for ((quantity, column), values) in found.iter().zip(&mut values) {
-                let cell = record[*column].trim();
-                let value = cell.parse::<f64>().ok().filter(|value| value.is_finite());
-                values.push(value.ok_or_else(|| {
-                    bad(format!("line {line}: {} must be a number, found {cell:?}", quantity.name))
-                })?);
-            }
+        }
+        if problems.is_empty() && table.rows.len() < 2 {
+            problems.push(format!(" must have at least two trials, found {}", table.rows.len()));
+        }
+        if !problems.is_empty() {
+            let lines: Vec<String> = problems.iter().map(|problem| format!("{shown}:{problem}")).collect();
+            return Err(Failure::Input(lines.join("\n")));
         }
         let spread = |(quantity, values): (&&Quantity, &Vec<f64>)| {
             Spread::of(values).filter(|spread| spread.sd > 0.0).ok_or_else(|| {
-                bad(format!(
-                    "{} must differ between trials: distances are measured by its spread",
+                Failure::input(format!(
+                    "{shown}: {} must differ between trials: distances are measured by its spread",
                     quantity.name
                 ))
             })
         };
-        let quantities: Vec<&Quantity> = found.iter().map(|(quantity, _)| *quantity).collect();
-        let spreads = quantities.iter().zip(&values).map(spread).collect::<Result<Vec<_>, _>>()?;
-        Ok(Self { quantities, spreads, trials: values[0].len() })
+        let spreads = found.iter().zip(&values).map(spread).collect::<Result<Vec<_>, _>>()?;
+        Ok(Self { quantities: found, spreads, trials: table.rows.len() })
+    }
+
+    /// The quantities that the data have not.
+    #[must_use]
+    pub fn missing(&self) -> Vec<&'static str> {
+        let has = |name: &str| self.quantities.iter().any(|quantity| quantity.name == name);
+        QUANTITIES.iter().map(|quantity| quantity.name).filter(|name| !has(name)).collect()
     }
 
     /// The quantities of a trial.
@@ -121,6 +122,69 @@ impl Target {
     #[must_use]
     pub fn misfit(&self, model: &[Spread]) -> f64 {
         self.spreads.iter().zip(model).flat_map(|(data, model)| data.misfit(model)).sum()
+    }
+}
+
+/// The quantities that a table has, and what is wrong with its header.
+fn columns_of(table: &InputTable) -> (Vec<&'static Quantity>, Vec<String>) {
+    let mut problems = Vec::new();
+    let known = trial_columns();
+    for unknown in table.columns().filter(|name| !known.iter().any(|column| column == name)) {
+        let quantities = QUANTITIES.iter().map(|quantity| quantity.name).collect::<Vec<_>>().join(", ");
+        problems.push(format!("1: {unknown:?} is no column of trials.csv; what can be fitted: {quantities}"));
+    }
+    if table.column("method").is_none() {
+        problems.push("1: has no column method".to_owned());
+    }
+    let found: Vec<&Quantity> =
+        QUANTITIES.iter().filter(|quantity| table.column(quantity.name).is_some()).collect();
+    if found.is_empty() && problems.is_empty() {
+        let known = QUANTITIES.map(|quantity| quantity.name).join(", ");
+        problems.push(format!("1: has none of the columns {known}"));
+    }
+    (found, problems)
+}
+
+/// A row by the names of its cells.
+struct Cells<'t> {
+    table: &'t InputTable,
+    row: &'t csv::StringRecord,
+}
+
+impl Cells<'_> {
+    fn text(&self, name: &str) -> Option<&str> {
+        self.row.get(self.table.column(name)?)
+    }
+
+    /// A number from 0 on; `None` where there is no such column.
+    fn number(&self, name: &str) -> Result<Option<f64>, String> {
+        let Some(cell) = self.text(name) else { return Ok(None) };
+        let value = cell.parse::<f64>().ok().filter(|value| value.is_finite() && *value >= 0.0);
+        value.map(Some).ok_or_else(|| format!("{name} must be a number from 0 on, found {cell:?}"))
+    }
+
+    /// What is wrong with what is not fitted.
+    fn check(&self, duration_s: f64) -> Vec<String> {
+        let mut problems = Vec::new();
+        if let Some(method) = self.text("method").filter(|method| *method != POLICY) {
+            problems.push(format!("method must be {POLICY}: nothing else is calibrated, found {method:?}"));
+        }
+        match self.number("time_s") {
+            Ok(Some(time_s)) if time_s.total_cmp(&duration_s).is_ne() => problems
+                .push(format!("time_s must be the scenario's duration_s, {duration_s}, found {time_s}")),
+            Ok(_) => {}
+            Err(problem) => problems.push(problem),
+        }
+        let rescuees = ["total", "hard", "easy"].map(|which| self.number(&format!("rescuees_{which}")));
+        if let [Ok(Some(total)), Ok(Some(hard)), Ok(Some(easy))] = rescuees
+            && (total - hard - easy).abs() > 1e-6
+        {
+            problems.push(format!(
+                "rescuees_total must be the sum of hard and easy, {}, found {total}",
+                hard + easy
+            ));
+        }
+        problems
     }
 }
 
@@ -143,7 +207,7 @@ mod tests {
     #[test]
     fn the_authors_table_is_read() {
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/reference/dis_trials.csv");
-        let target = Target::load(&path).unwrap();
+        let target = Target::load(&path, 600.0).unwrap();
         assert_eq!((target.trials, target.quantities.len()), (10, 7));
         // numpy: mean and std(ddof=1) of rescuees_hard
         assert!((target.spreads[0].mean - 52.8).abs() < 1e-12);
@@ -155,7 +219,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("target.csv");
         std::fs::write(&path, "method,rounds\nDIS,6\nRNE,7\n").unwrap();
-        let error = Target::load(&path).err().unwrap().to_string();
-        assert!(error.contains("line 3: method must be DIS") && error.contains("\"RNE\""), "{error}");
+        let error = Target::load(&path, 600.0).err().unwrap().to_string();
+        assert!(error.contains(":3: method must be DIS") && error.contains("\"RNE\""), "{error}");
     }
 }

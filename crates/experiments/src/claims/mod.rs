@@ -14,17 +14,16 @@ mod papers;
 mod power;
 
 use serde::Serialize;
-use xxhash_rust::xxh3::xxh3_64;
 
 pub use examples::{Example, examples};
 pub use papers::CLAIMS;
-pub use power::{Power, Shares, least_difference, power};
+pub use power::{Power, Shares, TIMES, least_difference, power};
 
 use crate::comparison::CONFIDENCE;
 use crate::failure::Failure;
 use crate::metric::{METRICS, metric_named};
 use crate::stats::Moments;
-use crate::stats::bootstrap::{Width, bca_interval, resamples};
+use crate::stats::bootstrap::interval;
 use crate::stats::paired::pairs_needed;
 use crate::sweep::folder::Folder;
 
@@ -168,11 +167,7 @@ pub fn judge(folder: &Folder, claim: &Claim, trials: u32) -> Result<Finding, Fai
 
 fn part_finding(part: &Part, differences: Vec<(u32, f64)>, count: usize) -> PartFinding {
     let values: Vec<f64> = differences.iter().map(|(_, difference)| *difference).collect();
-    let seed = xxh3_64(format!("{:?} {:?}", part.a, part.b).as_bytes());
-    let interval = |confidence| {
-        let draws = (resamples(values.len()), seed);
-        bca_interval(&values, confidence, draws, Width::Expanded).filter(|_| values.len() >= LEAST_PAIRS)
-    };
+    let interval = |confidence| interval(&values, confidence).filter(|_| values.len() >= LEAST_PAIRS);
     PartFinding {
         claimed: part.claimed,
         difference: Moments::of(&values).mean,

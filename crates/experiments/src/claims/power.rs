@@ -9,7 +9,7 @@ use crate::comparison::CONFIDENCE;
 use crate::stats::Moments;
 
 /// How many times as many trials as an experiment has are needed to draw it from them.
-const TIMES: usize = 5;
+pub const TIMES: usize = 5;
 
 /// Trials whose differences make the errors of large experiments.
 const MOST_TRIALS: usize = 2_000;
@@ -54,14 +54,13 @@ pub fn power(finding: &Finding, few: usize, seed: u64) -> Option<Power> {
     }
     let claimed: Vec<Side> = finding.parts.iter().map(|part| part.claimed).collect();
     let mut draws = ChaCha8Rng::seed_from_u64(seed);
-    let mut of_few = Shares { holds: 0.0, does_not_hold: 0.0 };
-    let limits = limits(few, claimed.len());
-    for _ in 0..EXPERIMENTS {
+    let few_limits = limits(few, claimed.len());
+    let of_few = Shares::of((0..EXPERIMENTS).map(|_| {
         let chosen: Vec<&[f64]> = (0..few)
             .map(|_| trials[draws.random_range(0..trials.len() as u32) as usize].as_slice())
             .collect();
-        of_few.count(verdict(&claimed, |part| t_of(chosen.iter().map(|trial| trial[part])), limits));
-    }
+        verdict(&claimed, |part| t_of(chosen.iter().map(|trial| trial[part])), few_limits)
+    }));
     let effects: Vec<f64> = (0..claimed.len()).map(|part| effect(&trials, part)).collect();
     let leaning = leaning(&effects, &claimed);
     if leaning == Verdict::Undecided {
@@ -69,11 +68,10 @@ pub fn power(finding: &Finding, few: usize, seed: u64) -> Option<Power> {
     }
     let noise = noise(&trials[..trials.len().min(MOST_TRIALS)], &mut draws);
     let reaches = |pairs: u32| {
-        let (root, limits) = (f64::from(pairs).sqrt(), self::limits(pairs as usize, claimed.len()));
-        let mut shares = Shares { holds: 0.0, does_not_hold: 0.0 };
-        for errors in &noise {
-            shares.count(verdict(&claimed, |part| root * effects[part] + errors[part], limits));
-        }
+        let (root, limits) = (f64::from(pairs).sqrt(), limits(pairs as usize, claimed.len()));
+        let of_noise =
+            |errors: &Vec<f64>| verdict(&claimed, |part| root * effects[part] + errors[part], limits);
+        let shares = Shares::of(noise.iter().map(of_noise));
         let share = if leaning == Verdict::Holds { shares.holds } else { shares.does_not_hold };
         share >= WANTED
     };
@@ -92,12 +90,15 @@ fn leaning(effects: &[f64], claimed: &[Side]) -> Verdict {
 }
 
 impl Shares {
-    fn count(&mut self, verdict: Verdict) {
-        match verdict {
-            Verdict::Holds => self.holds += 1.0 / EXPERIMENTS as f64,
-            Verdict::DoesNotHold => self.does_not_hold += 1.0 / EXPERIMENTS as f64,
-            Verdict::Undecided => {}
+    /// Of [`EXPERIMENTS`] verdicts.
+    fn of(verdicts: impl Iterator<Item = Verdict>) -> Self {
+        let mut counts = [0_u32; 2];
+        for verdict in verdicts {
+            counts[0] += u32::from(verdict == Verdict::Holds);
+            counts[1] += u32::from(verdict == Verdict::DoesNotHold);
         }
+        let [holds, does_not_hold] = counts.map(|count| f64::from(count) / EXPERIMENTS as f64);
+        Self { holds, does_not_hold }
     }
 }
 

@@ -47,7 +47,7 @@ pub(crate) struct Arguments {
     /// Set a field that is not free; may stand several times
     #[arg(long, value_name = "PATH=VALUE")]
     set: Vec<String>,
-    /// Candidates to evaluate
+    /// Least number of candidates to evaluate, the start among them; whole generations are
     #[arg(long, default_value_t = 400, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     evaluations: u32,
     /// Trials of a candidate
@@ -104,7 +104,7 @@ impl Arguments {
             let reason = log.evaluations().first().and_then(|evaluation| evaluation.failure.clone());
             Failure::run(format!("no candidate could be run: {}", reason.unwrap_or_default()))
         })?;
-        let text = calibration.text_with(&best.values).map_err(Failure::run)?;
+        let text = calibration.fitted_text(best).map_err(Failure::run)?;
         NewFile::write(&folder, CALIBRATED, text.as_bytes())?;
         let seeds = (1..=u64::from(self.fresh_trials)).into_par_iter();
         let fresh = pool.install(|| calibration.measure(&best.values, seeds, &STOP)).map_err(Failure::run)?;
@@ -132,22 +132,31 @@ impl Arguments {
                 self.fresh_trials, self.first_seed
             )));
         }
-        let (_, text) = load(&self.file)?;
+        let (given, text) = load(&self.file)?;
+        let known = given.resolved();
+        let known = Fields::of(&known);
         let mut settings = Vec::new();
         for entry in &self.set {
             let pair = entry.split_once('=');
             let (path, value) =
                 pair.ok_or_else(|| Failure::input(format!("--set: must be path=value, found {entry:?}")))?;
-            settings.push((path.trim().to_owned(), value.to_owned()));
+            let path = path.trim();
+            if known.value(path).is_none() {
+                return Err(Failure::input(format!("--set: {}", known.unknown(path))));
+            }
+            settings.push((path.to_owned(), value.to_owned()));
         }
         let text =
             with_written(&text, &settings).map_err(|error| Failure::input(format!("--set: {error}")))?;
         let base = Scenario::parse(&text, &self.file).map_err(Failure::input)?;
         let fields = Fields::of(&text);
-        let parse = |spec: &String| Free::parse(spec, &fields);
+        let parse = |spec: &String| Free::parse(spec, &fields, &known);
         let free = self.free.iter().map(parse).collect::<Result<Vec<_>, _>>();
         let free = free.map_err(|error| Failure::input(format!("--free: {error}")))?;
-        let target = Target::load(&self.target)?;
+        if let Some((path, _)) = settings.iter().find(|(path, _)| free.iter().any(|free| free.is_of(path))) {
+            return Err(Failure::input(format!("--set: {path} is free")));
+        }
+        let target = Target::load(&self.target, base.duration_s)?;
         let (trials, first_seed, seed, first_step) =
             (self.trials, self.first_seed, self.seed, self.first_step);
         let calibration = Calibration { text, base, free, target, trials, first_seed, seed, first_step };
@@ -159,6 +168,9 @@ impl Arguments {
         let there = log.evaluations().len();
         if there > 0 && !self.quiet {
             eprintln!("{there} evaluations are there already");
+        }
+        if there == 0 && !self.quiet {
+            say_what_is_moved(calibration)?;
         }
         let progress = progress_bar(self.evaluations as usize, "evaluations", jobs, self.quiet);
         let is_whole = calibration.search(self.evaluations as usize, log, &STOP, |asked, least| {
@@ -179,7 +191,11 @@ impl Arguments {
         let (Some(best), evaluations) = (log.best(), log.evaluations().len()) else { return Ok(()) };
         for (free, value) in calibration.free.iter().zip(&best.values) {
             let [low, high] = free.ends();
-            writeln!(out, "{} = {value} (searched from {low} to {high})", free.name)?;
+            let end = if free.is_at_end(*value) { "; it is at the end of its range" } else { "" };
+            writeln!(out, "{} = {value} (searched from {low} to {high}{end})", free.name)?;
+        }
+        if log.evaluations().first().is_some_and(|first| first.values == best.values) {
+            writeln!(out, "no candidate is nearer to the data than the start")?;
         }
         writeln!(out, "{}", fit_table(rows))?;
         let (trials, first) = (self.trials, self.first_seed);
@@ -192,6 +208,21 @@ impl Arguments {
             self.fresh_trials,
             calibration.target.trials,
         )?;
+        let missing = calibration.target.missing();
+        if !missing.is_empty() {
+            writeln!(out, "not in the data, and not looked at: {}", missing.join(", "))?;
+        }
         Ok(())
     }
+}
+
+/// Where the search begins otherwise than the scenario is.
+fn say_what_is_moved(calibration: &Calibration) -> Result<(), Failure> {
+    let values = calibration.present()?.into_iter().zip(calibration.start()?);
+    for (free, (is, begins)) in
+        calibration.free.iter().zip(values).filter(|(_, (is, begins))| is.to_bits() != begins.to_bits())
+    {
+        eprintln!("note: {} is {is}, outside its range; the search begins at {begins}", free.name);
+    }
+    Ok(())
 }

@@ -10,7 +10,7 @@ use super::SCHEMA_VERSION;
 use crate::comparison::{CONFIDENCE, Comparison, LEVEL, compare, limit_of_correction, test_in_words};
 use crate::failure::Failure;
 use crate::metric::chosen;
-use crate::stats::bootstrap::{RESAMPLES, resamples};
+use crate::stats::bootstrap::resamples;
 use crate::sweep::folder::Folder;
 use crate::table::comparison_table;
 
@@ -90,10 +90,11 @@ fn footnote(comparisons: &[Comparison]) -> String {
     let count = comparisons.iter().filter(|c| c.p.is_some()).count();
     let sum = |value: fn(&Comparison) -> usize| comparisons.iter().map(value).sum::<usize>();
     let (failed, missing, undefined) = (sum(|c| c.failed), sum(|c| c.missing), sum(|c| c.undefined));
-    let most = comparisons.iter().map(|c| resamples(c.n)).min().unwrap_or(RESAMPLES);
+    let drawn_from = comparisons.iter().map(|c| resamples(c.n));
+    let least = drawn_from.min().unwrap_or(resamples(0));
     let drawn = test_in_words(comparisons);
     format!(
-        "Paired by seed. Interval: BCa bootstrap of the mean difference, widened for small n, {most} resamples, fixed seed. {drawn}; two-sided;\n\
+        "Paired by seed. Interval: BCa bootstrap of the mean difference, widened for small n, {least} resamples, fixed seed. {drawn}; two-sided;\n\
          Holm's correction over the {count} comparisons above. Pairs left out, over all comparisons: {failed} with a failed trial, {missing} with\n\
          a missing one, {undefined} in which the metric is not defined (no rescuee). docs/experiments.md explains each figure."
     )

@@ -15,6 +15,7 @@ use serde::de::DeserializeOwned;
 
 use super::{SCHEMA_VERSION, numbers};
 use crate::failure::Failure;
+use crate::input_table::InputTable;
 
 /// Split a team from a table over the easy and the hard task
 #[derive(Debug, Args)]
@@ -195,14 +196,8 @@ fn point(flag: &str, text: &str) -> Result<[f64; 2], Failure> {
 /// Reads the table; says all that is wrong with it at once.
 fn read_team(path: &Path) -> Result<Vec<Member>, Failure> {
     let shown = path.display();
-    if path.is_dir() {
-        return Err(Failure::input(format!("{shown}: is a folder, not a table")));
-    }
-    let text = std::fs::read_to_string(path)
-        .map_err(|error| Failure::input(format!("{shown}: cannot be read: {error}")))?;
-    let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(text.as_bytes());
-    let header = reader.headers().map_err(|error| Failure::input(format!("{shown}: {error}")))?.clone();
-    let column = |name: &str| header.iter().position(|found| found == name);
+    let table = InputTable::read(path)?;
+    let column = |name: &str| table.column(name);
     let missing: Vec<&str> = ["id", "role", "x", "y"]
         .into_iter()
         .chain(NEED_NAMES)
@@ -212,10 +207,8 @@ fn read_team(path: &Path) -> Result<Vec<Member>, Failure> {
         return Err(Failure::input(format!("{shown}:1: the header lacks {}", missing.join(", "))));
     }
     let (mut members, mut problems) = (Vec::new(), Vec::new());
-    for row in reader.records() {
-        let row = row.map_err(|error| Failure::input(format!("{shown}: {error}")))?;
-        let line = row.position().map_or(0, csv::Position::line);
-        match member(&row, &column) {
+    for (line, row) in &table.rows {
+        match member(row, &column) {
             Ok(member) => members.push(member),
             Err(problem) => problems.push(format!("{shown}:{line}: {problem}")),
         }

@@ -8,12 +8,13 @@ use clap::Args;
 use rayon::prelude::*;
 
 use super::explain::{gaps, rounds_in};
+use crate::comparison::CONFIDENCE;
 use crate::experiment::PolicySpec;
 use crate::failure::Failure;
 use crate::metric::metric_named;
 use crate::rounds::Round;
 use crate::stats::Moments;
-use crate::stats::paired::t_half_width;
+use crate::stats::paired::t_half_width_at;
 use crate::sweep::folder::Folder;
 use crate::table::{averaged_table, readings_table, rivals_table};
 
@@ -47,8 +48,13 @@ pub(crate) struct Difference {
 impl Difference {
     /// Of the trials in which it is defined.
     fn of(differences: &[Option<f64>]) -> Option<Self> {
+        Self::at(differences, CONFIDENCE)
+    }
+
+    /// With an interval of another confidence.
+    fn at(differences: &[Option<f64>], confidence: f64) -> Option<Self> {
         let defined: Vec<f64> = differences.iter().flatten().copied().collect();
-        Some(Self { mean: Moments::of(&defined).mean?, half: t_half_width(&defined)? })
+        Some(Self { mean: Moments::of(&defined).mean?, half: t_half_width_at(&defined, confidence)? })
     }
 
     /// On which side of zero the interval lies, if on one.
@@ -69,16 +75,18 @@ pub(crate) struct ReadingRow {
     pub differences: Vec<Option<Difference>>,
 }
 
-/// How many readings are above, below or neither against another policy.
+/// How many readings are above, below or neither against another policy, or against all others at once.
 pub(crate) struct RivalRow {
-    /// The other policy.
-    pub rival: String,
+    /// The other policy; `None` for all.
+    pub rival: Option<String>,
     /// The metric.
     pub metric: &'static str,
     /// Readings whose interval lies above zero, below, and around it.
     pub counts: [usize; 3],
-    /// The least and the greatest mean difference, with the reading.
-    pub ends: [(String, Difference); 2],
+    /// The first two by intervals at 95 % shared by all readings.
+    pub corrected: [usize; 2],
+    /// The least and the greatest mean difference, with the reading; none against all.
+    pub ends: Option<[(String, Difference); 2]>,
 }
 
 impl Arguments {
@@ -141,7 +149,8 @@ impl Arguments {
             writeln!(out, "{}", rivals_table(&rivals))?;
             writeln!(
                 out,
-                "95 % paired t intervals, not corrected for the number of readings; least and greatest are the extremes of so many\n"
+                "95 % paired t intervals; corrected: at 95 % shared by these readings (Bonferroni); all: above, or below, each of the others; least and\n\
+                 greatest are the extremes of so many\n"
             )?;
         }
         writeln!(out, "{}", groupings_in_words(&folder, &readings, &rounds)?)?;
@@ -273,34 +282,67 @@ fn averaged(trials: &Trials, readings: &[usize]) -> Vec<(String, Vec<Option<Diff
     values.par_iter().map(row).collect()
 }
 
-/// Readings against each policy that is none.
+/// On which side of a rival each reading is: by its own interval, and by one shared by all readings.
+type Sides = Vec<[i32; 2]>;
+
+/// Readings against each policy that is none, and against all of these at once.
 fn rivals(trials: &Trials, readings: &[usize]) -> Vec<RivalRow> {
     let policies = trials.policies();
     let rivals: Vec<usize> = (0..policies.len()).filter(|i| policies[*i].name != "RNE").collect();
+    let shared = 1.0 - (1.0 - CONFIDENCE) / readings.len() as f64;
     let mut rows = Vec::new();
     for metric in SHOWN {
+        let mut all: Vec<Sides> = Vec::new();
         for rival in &rivals {
-            let found: Vec<(String, Difference)> = readings
-                .iter()
-                .filter_map(|reading| {
-                    let difference = Difference::of(&trials.differences(metric, *reading, *rival))?;
-                    Some((options_in_words(&policies[*reading]), difference))
-                })
-                .collect();
-            let count = |side: i32| found.iter().filter(|(_, difference)| difference.side() == side).count();
-            let by_mean =
-                |a: &&(String, Difference), b: &&(String, Difference)| a.1.mean.total_cmp(&b.1.mean);
-            let (Some(least), Some(most)) =
-                (found.iter().min_by(by_mean), found.iter().rev().max_by(by_mean))
-            else {
-                continue;
+            let differences: Vec<_> =
+                readings.par_iter().map(|reading| trials.differences(metric, *reading, *rival)).collect();
+            let side = |differences: &Vec<Option<f64>>| {
+                [CONFIDENCE, shared].map(|at| Difference::at(differences, at).map_or(0, |found| found.side()))
             };
-            let ends = [least.clone(), most.clone()];
-            let counts = [count(1), count(-1), count(0)];
-            rows.push(RivalRow { rival: policies[*rival].label.clone(), metric, counts, ends });
+            let sides: Sides = differences.iter().map(side).collect();
+            let in_words = |reading: &usize| options_in_words(&policies[*reading]);
+            let found = readings.iter().zip(&differences);
+            let found: Vec<(String, Difference)> =
+                found.filter_map(|(reading, of)| Some((in_words(reading), Difference::of(of)?))).collect();
+            let Some(ends) = ends(&found) else { continue };
+            rows.push(RivalRow {
+                rival: Some(policies[*rival].label.clone()),
+                metric,
+                counts: [1, -1, 0].map(|side| count(&sides, 0, side)),
+                corrected: [1, -1].map(|side| count(&sides, 1, side)),
+                ends: Some(ends),
+            });
+            all.push(sides);
+        }
+        if all.len() > 1 {
+            let sides = together(&all);
+            let counts = [1, -1, 0].map(|side| count(&sides, 0, side));
+            let corrected = [1, -1].map(|side| count(&sides, 1, side));
+            rows.push(RivalRow { rival: None, metric, counts, corrected, ends: None });
         }
     }
     rows
+}
+
+fn count(sides: &Sides, which: usize, side: i32) -> usize {
+    sides.iter().filter(|of| of[which] == side).count()
+}
+
+/// The side that a reading is on against all rivals; 0 where these differ.
+fn together(all: &[Sides]) -> Sides {
+    let of = |reading: usize, which: usize| {
+        let mut sides = all.iter().map(|sides| sides[reading][which]);
+        let first = sides.next().unwrap_or(0);
+        if sides.all(|side| side == first) { first } else { 0 }
+    };
+    (0..all[0].len()).map(|reading| [of(reading, 0), of(reading, 1)]).collect()
+}
+
+/// The least and the greatest; the first of equals.
+fn ends(found: &[(String, Difference)]) -> Option<[(String, Difference); 2]> {
+    let by_mean = |a: &&(String, Difference), b: &&(String, Difference)| a.1.mean.total_cmp(&b.1.mean);
+    let (least, most) = (found.iter().min_by(by_mean)?, found.iter().rev().max_by(by_mean)?);
+    Some([least.clone(), most.clone()])
 }
 
 /// How many readings group otherwise.
@@ -321,4 +363,27 @@ fn groupings_in_words(folder: &Folder, readings: &[usize], rounds: &[Round]) -> 
         "Of {} readings, {distinct} differ in how they group at least one of these rounds; a round is grouped in {per_round:.1} different ways on average.",
         readings.len()
     ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_reading_is_above_all_when_it_is_above_each() {
+        let (dis, eng) = (vec![[1, 1], [1, 0], [-1, -1], [0, 0]], vec![[1, 1], [1, 1], [-1, 0], [1, 1]]);
+        let all = together(&[dis, eng]);
+        assert_eq!(all, [[1, 1], [1, 0], [-1, 0], [0, 0]]);
+        assert_eq!([1, -1, 0].map(|side| count(&all, 0, side)), [2, 1, 1]);
+    }
+
+    #[test]
+    fn the_first_of_equal_ends_is_named() {
+        let found: Vec<(String, Difference)> = [("a", 1.0), ("b", 3.0), ("c", 3.0), ("d", 1.0)]
+            .map(|(name, mean)| (name.to_owned(), Difference { mean, half: 0.5 }))
+            .to_vec();
+        let [least, most] = ends(&found).unwrap();
+        assert_eq!((least.0.as_str(), most.0.as_str()), ("a", "b"));
+        assert_eq!(ends(&[]), None);
+    }
 }

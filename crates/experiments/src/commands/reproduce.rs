@@ -9,11 +9,12 @@ use clap::Args;
 use serde::Serialize;
 
 use super::{STOP, default_jobs, run_missing, stop_on_ctrl_c};
-use crate::claims::{CLAIMS, Finding, Power, examples, judge, least_difference, power};
+use crate::claims::{CLAIMS, Example, Finding, Power, TIMES, examples, judge, least_difference, power};
 use crate::experiment::{Experiment, Overrides};
 use crate::failure::Failure;
 use crate::report;
 use crate::stats::Moments;
+use crate::sweep::disk::is_sweeps;
 use crate::sweep::folder::{Folder, Opening};
 use crate::sweep::{Limits, NewFile};
 use crate::table::{claims_table, examples_table, power_table, verdicts_table};
@@ -33,6 +34,9 @@ const SCENARIOS: [(&str, &str); 2] = [
 /// Longest time of one trial.
 const TRIAL_LIMIT: Duration = Duration::from_mins(10);
 
+/// Trials below which nothing is said of the power.
+const LEAST_TRIALS: u32 = PAPERS_TRIALS * TIMES as u32;
+
 /// Seed of the experiments that are drawn for the power.
 const POWER_SEED: u64 = 1;
 
@@ -45,8 +49,8 @@ says of each of the paper's claims whether it holds: over the first 10 trials, a
 A claim holds when the 95 % interval of each of its comparisons lies on the claimed side; it does not when one lies on the other side, at 95 % \
 shared by its comparisons; else it is undecided. The last table says how many paired trials each claim would need, and what 10 could have shown.
 
-The folder gets a sweep's folder for each scenario, with report.html; claims.csv and power.csv; and for each scenario a CSV with exactly the \
-authors' columns. A broken-off run goes on with the same command; more --trials only add.
+The folder gets a sweep's folder for each scenario, with report.html; claims.csv, power.csv and examples.csv; and for each scenario a CSV with \
+exactly the authors' columns. docs/experiments.md says what is in each. A broken-off run goes on with the same command; more --trials only add.
 
 Examples:
   usar reproduce
@@ -84,6 +88,12 @@ pub(crate) struct Judged {
 impl Arguments {
     pub(crate) fn execute(&self, out: &mut dyn Write) -> Result<(), Failure> {
         stop_on_ctrl_c();
+        if is_sweeps(&self.out) {
+            return Err(Failure::input(format!(
+                "--out: {} is the folder of one sweep; the folders of both scenarios would be put into it",
+                self.out.display()
+            )));
+        }
         // Both are opened first, so that a folder that cannot be used is known before the first trial.
         let open = |(path, text): (&str, &str)| self.open(Path::new(path), text);
         let mut folders = SCENARIOS.into_iter().map(open).collect::<Result<Vec<_>, Failure>>()?;
@@ -96,7 +106,9 @@ impl Arguments {
         }
         self.write_claims(&judged)?;
         self.write_power(&judged)?;
-        self.print(out, &judged)?;
+        let examples = examples()?;
+        self.write_examples(&examples)?;
+        self.print(out, &judged, &examples)?;
         if !self.quiet {
             eprintln!("results in {}", self.out.display());
         }
@@ -138,17 +150,25 @@ impl Arguments {
         Ok(Judged { scenario: folder.experiment().name.clone(), of_few, of_all, powers })
     }
 
-    fn print(&self, out: &mut dyn Write, judged: &[Judged]) -> Result<(), Failure> {
+    fn print(&self, out: &mut dyn Write, judged: &[Judged], examples: &[Example]) -> Result<(), Failure> {
         for scenario in judged {
             writeln!(out, "{}", scenario.scenario)?;
             writeln!(out, "{}\n", claims_table(scenario, self.trials))?;
         }
         writeln!(out, "The paper's numerical examples, with exact values (nats)")?;
-        writeln!(out, "{}\n", examples_table(&examples()?))?;
+        writeln!(out, "{}\n", examples_table(examples))?;
         writeln!(out, "Power: what 10 pairs could have shown, and how many pairs it takes")?;
         for scenario in judged {
             writeln!(out, "{}", scenario.scenario)?;
-            writeln!(out, "{}\n", power_table(scenario))?;
+            let table = power_table(scenario).map(|table| table.to_string());
+            writeln!(
+                out,
+                "{}\n",
+                table.unwrap_or_else(|| format!(
+                    "not said: it takes {LEAST_TRIALS} trials, there are {}",
+                    self.trials
+                ))
+            )?;
         }
         writeln!(
             out,
@@ -195,12 +215,25 @@ impl Arguments {
                             difference: found.difference,
                             low: found.interval.map(|[low, _]| low),
                             high: found.interval.map(|[_, high]| high),
+                            shared_low: found.shared_interval.map(|[low, _]| low),
+                            shared_high: found.shared_interval.map(|[_, high]| high),
                         });
                     }
                 }
             }
         }
         self.write("claims.csv", &rows)
+    }
+
+    fn write_examples(&self, examples: &[Example]) -> Result<(), Failure> {
+        let row = |example: &Example| ExampleRow {
+            example: example.name,
+            words: example.words,
+            trusting_nats: example.trusting,
+            doubting_nats: example.doubting,
+            verdict: example.verdict.words(),
+        };
+        self.write("examples.csv", &examples.iter().map(row).collect::<Vec<_>>())
     }
 
     fn write_power(&self, judged: &[Judged]) -> Result<(), Failure> {
@@ -254,6 +287,18 @@ struct ClaimRow<'a> {
     difference: Option<f64>,
     low: Option<f64>,
     high: Option<f64>,
+    shared_low: Option<f64>,
+    shared_high: Option<f64>,
+}
+
+/// A row of `examples.csv`: one of the paper's numerical examples.
+#[derive(Serialize)]
+struct ExampleRow<'a> {
+    example: &'a str,
+    words: &'a str,
+    trusting_nats: f64,
+    doubting_nats: f64,
+    verdict: &'a str,
 }
 
 /// A row of `power.csv`: one comparison of one claim.
@@ -276,7 +321,7 @@ struct PowerRow<'a> {
 fn footnote() -> String {
     format!(
         "Paired by seed; intervals: BCa bootstrap at 95 %, widened for small n. A claim holds when the interval of each of its comparisons lies on the\n\
-         claimed side, and does not when one lies on the other side (at 95 % shared by its comparisons); else it is undecided. Each verdict is\n\
+         claimed side, and does not when one lies on the other side (by the shared interval: 95 % for all its comparisons together); else it is undecided. Each verdict is\n\
          wrong in about 2.5 % of experiments at most; the {} claims are not corrected for one another. docs/reproduction.md discusses them.",
         CLAIMS.len()
     )

@@ -9,15 +9,27 @@ use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 use statrs::distribution::{ContinuousCDF, Normal, StudentsT};
 
-/// Resamples of an interval.
-pub const RESAMPLES: usize = 10_000;
-/// Draws after which an interval has enough: many pairs need fewer resamples.
-const MAX_DRAWS: usize = 20_000_000;
+/// Resamples of an interval; a tenfold where there are few pairs, which take little time and ask for extreme quantiles.
+const RESAMPLES: [usize; 2] = [10_000, 100_000];
+/// Draws that an interval may take for the more of them, and at all.
+const DRAWS: [usize; 2] = [20_000_000, 2_000_000];
+/// The least resamples of an interval.
+const LEAST_RESAMPLES: usize = 2_000;
+/// The same draws for every interval: the same differences have the same interval wherever they stand, and its mirror image with the sign turned.
+const SEED: u64 = 1;
 
-/// Resamples for so many pairs: [`RESAMPLES`] to 2,000 pairs, beyond down to 2,000.
+/// Resamples for so many pairs: 100,000 to 20 pairs, then fewer, 10,000 from 200 to 2,000 pairs, beyond down to 2,000.
 #[must_use]
 pub fn resamples(pairs: usize) -> usize {
-    (MAX_DRAWS / pairs.max(1)).clamp(2_000, RESAMPLES)
+    let within = |draws: usize| draws / pairs.max(1);
+    let few = within(DRAWS[1]).min(RESAMPLES[1]);
+    few.max(within(DRAWS[0]).clamp(LEAST_RESAMPLES, RESAMPLES[0]))
+}
+
+/// The interval of the mean at this confidence that all results have: bias-corrected and accelerated, widened for small samples. `None` for fewer than two values.
+#[must_use]
+pub fn interval(values: &[f64], confidence: f64) -> Option<[f64; 2]> {
+    bca_interval(values, confidence, (resamples(values.len()), SEED), Width::Expanded)
 }
 
 /// Which quantiles the interval is made of.

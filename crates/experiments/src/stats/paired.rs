@@ -79,8 +79,14 @@ pub fn pairs_needed(differences: &[f64]) -> Option<u64> {
 /// Half the width of the 95 % paired t interval; `None` for fewer than two differences.
 #[must_use]
 pub fn t_half_width(differences: &[f64]) -> Option<f64> {
+    t_half_width_at(differences, 0.95)
+}
+
+/// The same at another confidence.
+#[must_use]
+pub fn t_half_width_at(differences: &[f64], confidence: f64) -> Option<f64> {
     let count = differences.len() as f64;
     let sd = Moments::of(differences).sd?;
-    let t = StudentsT::new(0.0, 1.0, count - 1.0).ok()?.inverse_cdf(0.975);
+    let t = StudentsT::new(0.0, 1.0, count - 1.0).ok()?.inverse_cdf(f64::midpoint(1.0, confidence));
     Some(t * sd / count.sqrt())
 }

@@ -4,7 +4,7 @@ use rand::SeedableRng;
 use rand::rngs::ChaCha8Rng;
 use rand_distr::{Distribution, Exp1, StandardNormal};
 
-use super::bootstrap::{Width, bca_interval};
+use super::bootstrap::{Width, bca_interval, interval, resamples};
 use super::paired::{hodges_lehmann, holm, pairs_needed, t_half_width};
 use super::wilcoxon::{EXACT_PAIRS, SignedRank};
 
@@ -85,6 +85,21 @@ fn the_plain_interval_is_scipys() {
     let again = |seed| bca_interval(&MIXED, 0.95, (1000, seed), Width::Expanded);
     assert_eq!(again(5), again(5));
     assert_ne!(again(5), again(6));
+}
+
+#[test]
+fn the_same_differences_have_one_interval_and_its_mirror_image() {
+    let turned: Vec<f64> = PLANTS.iter().map(|difference| -difference).collect();
+    for confidence in [0.95, 0.99] {
+        let [low, high] = interval(&PLANTS, confidence).unwrap();
+        assert_eq!(interval(&PLANTS, confidence), Some([low, high]));
+        let mirrored = interval(&turned, confidence).unwrap();
+        assert!((mirrored[0] + high).abs() < 1e-9 && (mirrored[1] + low).abs() < 1e-9, "{mirrored:?}");
+    }
+    assert_eq!(
+        [1, 10, 40, 200, 2_000, 10_000, 100_000].map(resamples),
+        [100_000, 100_000, 50_000, 10_000, 10_000, 2_000, 2_000]
+    );
 }
 
 /// Share of 2,000 experiments of `count` draws whose interval holds the mean, in percent.

@@ -203,6 +203,21 @@ pub fn experiment_in(path: &Path) -> Result<(Experiment, Manifest), Failure> {
     Ok((experiment_of(path, &manifest)?, manifest))
 }
 
+/// Whether a folder is that of a sweep, whatever program made it.
+#[must_use]
+pub fn is_sweeps(path: &Path) -> bool {
+    path.join(MANIFEST).is_file()
+}
+
+/// The folders of sweeps that are in a folder, by name.
+pub(super) fn sweeps_in(path: &Path) -> Vec<String> {
+    let entries = fs::read_dir(path).into_iter().flatten().flatten().map(|entry| entry.path());
+    let mut sweeps: Vec<String> =
+        entries.filter(|entry| is_sweeps(entry)).map(|entry| entry.display().to_string()).collect();
+    sweeps.sort();
+    sweeps
+}
+
 /// How many trials a folder's sweep has, if there is one.
 #[must_use]
 pub fn trials_in(path: &Path) -> Option<u32> {

@@ -11,7 +11,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::disk::{
     MANIFEST, broken_files, check_continues, check_is_ours, clear, experiment_of, lock, read_manifest,
-    sync_folder, write_manifest, write_start,
+    sweeps_in, sync_folder, write_manifest, write_start,
 };
 use super::file::{FileHash, file_hash};
 use super::journal::{self, Damage, Journal, Place};
@@ -127,7 +127,11 @@ impl Folder {
         if !path.is_dir() {
             return Err(not_one(&"there is no such folder"));
         }
-        let manifest = read_manifest(path)?.ok_or_else(|| not_one(&format!("{MANIFEST} is missing")))?;
+        let missing = || match sweeps_in(path) {
+            sweeps if sweeps.is_empty() => not_one(&format!("{MANIFEST} is missing")),
+            sweeps => not_one(&format!("these in it are: {}", sweeps.join(", "))),
+        };
+        let manifest = read_manifest(path)?.ok_or_else(missing)?;
         if manifest.schema_version != SCHEMA_VERSION {
             return Err(not_one(&format!(
                 "its layout has version {}; this program reads version {SCHEMA_VERSION}",

@@ -17,4 +17,5 @@ pub(crate) use file::NewFile;
 pub use journal::Place;
 pub use pool::{Limits, Run, run_all};
 pub use shared::SharedTrials;
+pub(crate) use tables::trial_columns;
 pub use trial::{Fault, FaultKind, Grouped, Outcome, Trial, TrialKey, run_trial, series_times};

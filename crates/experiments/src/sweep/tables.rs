@@ -35,6 +35,11 @@ struct Large {
     hashes: Table,
 }
 
+/// The names of the columns of `trials.csv`.
+pub(crate) fn trial_columns() -> Vec<String> {
+    columns::<TrialRow>().unwrap_or_default()
+}
+
 impl Tables {
     pub(super) fn new(path: &Path, experiment: &Experiment) -> Result<Self, Failure> {
         let axes: Vec<String> = experiment.axes.iter().map(|axis| axis.path.clone()).collect();

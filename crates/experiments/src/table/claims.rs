@@ -12,7 +12,8 @@ use crate::stats::Moments;
 pub(crate) fn claims_table(judged: &Judged, trials: u32) -> Table {
     let few = format!("first {PAPERS_TRIALS} pairs");
     let all = format!("{trials} pairs");
-    let mut table = headed(["claim", &few, &all, "difference", "95 % interval", "n", "first 10"]);
+    let mut table =
+        headed(["claim", &few, &all, "difference", "95 % interval", "shared interval", "n", "first 10"]);
     let difference = |found: &PartFinding| right(&found.difference.map_or("-".to_owned(), short));
     for ((claim, few), all) in CLAIMS.iter().zip(&judged.of_few).zip(&judged.of_all) {
         table.add_row([
@@ -27,6 +28,7 @@ pub(crate) fn claims_table(judged: &Judged, trials: u32) -> Table {
                 Cell::new(""),
                 difference(all),
                 right(&interval(all.interval)),
+                right(&interval(all.shared_interval)),
                 right(&all.differences.len().to_string()),
                 right(&format!(
                     "{} ({})",
@@ -58,8 +60,8 @@ pub(crate) fn examples_table(examples: &[Example]) -> Table {
     table
 }
 
-/// What experiments of other sizes would say of each claim, and find of each of its comparisons.
-pub(crate) fn power_table(judged: &Judged) -> Table {
+/// What experiments of other sizes would say of each claim, and find of each of its comparisons; none where the trials are too few to say.
+pub(crate) fn power_table(judged: &Judged) -> Option<Table> {
     let mut table = headed([
         "claim",
         "leans to",
@@ -71,6 +73,9 @@ pub(crate) fn power_table(judged: &Judged) -> Table {
         "least found by 10",
     ]);
     let share = |share: f64| right(&format!("{:.0} %", 100.0 * share));
+    if judged.powers.iter().all(Option::is_none) {
+        return None;
+    }
     for ((claim, power), finding) in CLAIMS.iter().zip(&judged.powers).zip(&judged.of_all) {
         let Some(power) = power else { continue };
         let Shares { holds, does_not_hold } = power.of_few;
@@ -97,7 +102,7 @@ pub(crate) fn power_table(judged: &Judged) -> Table {
             ]);
         }
     }
-    table
+    Some(table)
 }
 
 /// All verdicts side by side.

@@ -49,15 +49,24 @@ pub(crate) fn averaged_table(rows: &[(String, Vec<Option<Difference>>)]) -> Tabl
 
 /// All readings against other policies.
 pub(crate) fn rivals_table(rows: &[RivalRow]) -> Table {
-    let mut table = headed(["metric", "against", "above", "below", "neither", "least", "greatest"]);
+    let mut table = headed([
+        "metric",
+        "against",
+        "above",
+        "below",
+        "neither",
+        "corrected: above",
+        "below",
+        "least",
+        "greatest",
+    ]);
     for row in rows {
         let end = |(reading, difference): &(String, Difference)| {
             Cell::new(format!("{} ± {} ({reading})", signed(difference.mean), digits(difference.half, 2)))
         };
-        let [least, most] = &row.ends;
-        let counts = row.counts.map(|count| right(&count.to_string()));
-        let cells = [Cell::new(row.metric), Cell::new(&row.rival)].into_iter().chain(counts);
-        table.add_row(cells.chain([end(least), end(most)]));
+        let names = [row.metric, row.rival.as_deref().unwrap_or("all")].map(Cell::new);
+        let counts = row.counts.iter().chain(&row.corrected).map(|count| right(&count.to_string()));
+        table.add_row(names.into_iter().chain(counts).chain(row.ends.iter().flatten().map(end)));
     }
     table
 }

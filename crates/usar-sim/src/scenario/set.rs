@@ -43,7 +43,7 @@ impl ScenarioFile {
         };
         let text = ron::to_string(self).map_err(|error| malformed(error.to_string()))?;
         let fields = Fields::of(&text);
-        let place = fields.value(path).ok_or_else(|| unknown(path, &fields))?;
+        let place = fields.value(path).ok_or_else(|| fields.unknown(path))?;
         if !is_one_value(value) {
             return Err(malformed("must be one value in RON".into()));
         }
@@ -60,20 +60,24 @@ fn is_one_value(text: &str) -> bool {
     value.is_some_and(|value| wrapped[value].trim() == text.trim())
 }
 
-fn unknown(path: &str, fields: &Fields) -> SetError {
-    let mut within = path;
-    let known = loop {
-        within = within.rfind(['.', '[']).map_or("", |end| &within[..end]);
-        if let Some(count) = fields.entries(within).filter(|_| path[within.len()..].starts_with('[')) {
-            break format!("{count} entries, from [0] on");
-        }
-        let known = fields.inside(within);
-        if !known.is_empty() || within.is_empty() {
-            break known.join(", ");
-        }
-    };
-    let within = if within.is_empty() { "a scenario".to_owned() } else { within.to_owned() };
-    SetError::Unknown { path: path.to_owned(), within, known }
+impl Fields {
+    /// What is to be said of a path that is none of these fields.
+    #[must_use]
+    pub fn unknown(&self, path: &str) -> SetError {
+        let mut within = path;
+        let known = loop {
+            within = within.rfind(['.', '[']).map_or("", |end| &within[..end]);
+            if let Some(count) = self.entries(within).filter(|_| path[within.len()..].starts_with('[')) {
+                break format!("{count} entries, from [0] on");
+            }
+            let known = self.inside(within);
+            if !known.is_empty() || within.is_empty() {
+                break known.join(", ");
+            }
+        };
+        let within = if within.is_empty() { "a scenario".to_owned() } else { within.to_owned() };
+        SetError::Unknown { path: path.to_owned(), within, known }
+    }
 }
 
 #[cfg(test)]

@@ -1,0 +1,101 @@
+//! Tables that users write: CSV with a header.
+
+use std::path::Path;
+
+use csv::StringRecord;
+
+use crate::failure::Failure;
+
+/// A table with its rows, each with its line in the file.
+#[derive(Debug)]
+pub(crate) struct InputTable {
+    header: StringRecord,
+    /// Lines, from 1, and rows.
+    pub rows: Vec<(usize, StringRecord)>,
+}
+
+impl InputTable {
+    /// Reads a table; cells are trimmed.
+    ///
+    /// # Errors
+    /// It cannot be read, a row has another number of cells than the header, or a column stands twice.
+    pub fn read(path: &Path) -> Result<Self, Failure> {
+        let shown = path.display();
+        let bad = |reason: &dyn std::fmt::Display| Failure::input(format!("{shown}: {reason}"));
+        if path.is_dir() {
+            return Err(bad(&"is a folder, not a table"));
+        }
+        let text = std::fs::read_to_string(path).map_err(|error| bad(&format!("cannot be read: {error}")))?;
+        let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
+        let mut reader =
+            csv::ReaderBuilder::new().trim(csv::Trim::All).flexible(true).from_reader(text.as_bytes());
+        let header = reader.headers().map_err(|error| bad(&error))?.clone();
+        let mut rows = Vec::new();
+        for row in reader.records() {
+            let row = row.map_err(|error| bad(&error))?;
+            let line = line_of(text, &row);
+            if row.len() != header.len() {
+                let (cells, columns) = (row.len(), header.len());
+                return Err(Failure::input(format!(
+                    "{shown}:{line}: must have a cell for each of the {columns} columns, found {cells}"
+                )));
+            }
+            rows.push((line, row));
+        }
+        let table = Self { header, rows };
+        let is_twice = |(i, name): &(usize, &str)| table.header.iter().take(*i).any(|other| other == *name);
+        match table.header.iter().enumerate().find(is_twice) {
+            Some((_, name)) => Err(Failure::input(format!("{shown}:1: the column {name:?} stands twice"))),
+            None => Ok(table),
+        }
+    }
+
+    /// The names of its columns.
+    pub fn columns(&self) -> impl Iterator<Item = &str> {
+        self.header.iter()
+    }
+
+    /// The place of a column.
+    pub fn column(&self, name: &str) -> Option<usize> {
+        self.header.iter().position(|column| column == name)
+    }
+}
+
+/// The line on which a row begins. The reader's own count is one behind where lines end with CR LF.
+fn line_of(text: &str, row: &StringRecord) -> usize {
+    let begin = row.position().map_or(0, |position| position.byte() as usize);
+    let blank = text.as_bytes()[begin..].iter().take_while(|byte| matches!(byte, b'\r' | b'\n')).count();
+    text[..begin + blank].matches('\n').count() + 1
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn read(text: &str) -> Result<InputTable, Failure> {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("table.csv");
+        std::fs::write(&path, text).unwrap();
+        InputTable::read(&path)
+    }
+
+    #[test]
+    fn rows_know_their_lines_whatever_the_line_ends() {
+        for text in ["a,b\n1,2\n\n3,4\n", "a,b\r\n1,2\r\n\r\n3,4\r\n", "\u{feff}a,b\n1,2\n\n3,4"] {
+            let table = read(text).unwrap();
+            let lines: Vec<usize> = table.rows.iter().map(|(line, _)| *line).collect();
+            assert_eq!(lines, [2, 4], "{text:?}");
+            assert_eq!(table.column("b"), Some(1));
+        }
+        let error = read("a,b\r\n1,2\r\n3\r\n").unwrap_err().to_string();
+        assert!(
+            error.contains("table.csv:3: must have a cell for each of the 2 columns, found 1"),
+            "{error}"
+        );
+    }
+
+    #[test]
+    fn a_column_that_stands_twice_is_refused() {
+        assert!(read("a,b,a\n").unwrap_err().to_string().contains(":1: the column \"a\" stands twice"));
+    }
+}
