@@ -38,13 +38,14 @@ pages *pages:
     cargo build --release --package experiments
     cargo run --release --package experiments --example pages -- {{pages}}
 
-# The results that the pages in docs/ are made of: about an hour on two cores, 4 GB of disk; goes on where it was broken off
+# The results that the pages in docs/ are made of: about an hour on two cores, 5 GB of disk; goes on where it was broken off
 results:
     cargo build --release --package experiments
     target/release/usar sweep scenarios/paper.ron
     target/release/usar reproduce
     target/release/usar sweep scenarios/sweeps/turning-back.ron
     target/release/usar sweep scenarios/sweeps/turning-back-calibrated.ron
+    target/release/usar sweep scenarios/sweeps/best-reading.ron
     target/release/usar sweep scenarios/sweeps/readings.ron
     target/release/usar sweep scenarios/sweeps/readings-calibrated.ron
 
