@@ -10,6 +10,7 @@ mod failure;
 mod input_table;
 pub mod metric;
 pub mod provenance;
+pub mod readings;
 pub mod report;
 pub mod rounds;
 pub mod stats;

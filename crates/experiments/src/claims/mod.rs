@@ -10,14 +10,17 @@
 //! - *Undecided*: neither.
 
 mod examples;
+mod files;
 mod papers;
 mod power;
 
 use serde::Serialize;
 
 pub use examples::{Example, examples};
+pub use files::{write_authors_columns, write_claims, write_examples, write_power};
 pub use papers::CLAIMS;
-pub use power::{Power, Shares, TIMES, least_difference, power};
+use power::TIMES;
+pub use power::{Power, Shares, least_difference, power};
 
 use crate::comparison::CONFIDENCE;
 use crate::failure::Failure;
@@ -149,6 +152,44 @@ pub struct Finding {
     pub verdict: Verdict,
     /// Its parts, in the order of the claim's.
     pub parts: Vec<PartFinding>,
+}
+
+/// Trials of the paper.
+pub const PAPERS_TRIALS: u32 = 10;
+
+/// Trials below which nothing is said of the power.
+pub const LEAST_TRIALS: u32 = PAPERS_TRIALS * TIMES as u32;
+
+/// Seed of the experiments that are drawn for the power.
+const POWER_SEED: u64 = 1;
+
+/// What a scenario's trials say of each claim.
+pub struct Judged {
+    /// Name of the scenario.
+    pub scenario: String,
+    /// Over as many trials as the paper has.
+    pub of_few: Vec<Finding>,
+    /// How many are all.
+    pub trials: u32,
+    /// Over all.
+    pub of_all: Vec<Finding>,
+    /// What experiments of other sizes would say.
+    pub powers: Vec<Option<Power>>,
+}
+
+impl Judged {
+    /// Of the first trials of a folder's sweep.
+    ///
+    /// # Errors
+    /// The sweep has not the policies of a claim.
+    pub fn of(folder: &Folder, trials: u32) -> Result<Self, Failure> {
+        let all =
+            |trials| CLAIMS.iter().map(|claim| judge(folder, claim, trials)).collect::<Result<Vec<_>, _>>();
+        let (of_few, of_all) = (all(PAPERS_TRIALS)?, all(trials)?);
+        let powers =
+            of_all.iter().map(|finding| power(finding, PAPERS_TRIALS as usize, POWER_SEED)).collect();
+        Ok(Self { scenario: folder.experiment().name.clone(), of_few, trials, of_all, powers })
+    }
 }
 
 /// What the first trials of a folder's sweep say of a claim.

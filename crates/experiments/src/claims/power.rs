@@ -9,7 +9,7 @@ use crate::comparison::CONFIDENCE;
 use crate::stats::Moments;
 
 /// How many times as many trials as an experiment has are needed to draw it from them.
-pub const TIMES: usize = 5;
+pub(super) const TIMES: usize = 5;
 
 /// Trials whose differences make the errors of large experiments.
 const MOST_TRIALS: usize = 2_000;

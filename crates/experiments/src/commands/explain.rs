@@ -1,14 +1,12 @@
 //! `usar explain`: what the policies' groups of a sweep amount to.
 
-use std::collections::BTreeMap;
 use std::io::Write;
 use std::path::PathBuf;
 
 use clap::Args;
-use rne_core::Difficulty;
 
 use crate::failure::Failure;
-use crate::rounds::{Blindness, Example, Likeness, Round, likeness, rounds_of};
+use crate::rounds::{self, Blindness, Example, GroupLevels, Likeness, likeness, rounds_in};
 use crate::sweep::folder::Folder;
 use crate::table::{levels_table, likeness_table};
 
@@ -29,20 +27,6 @@ pub(crate) struct Arguments {
     case: usize,
 }
 
-/// Mean levels of the groups of one policy in one round.
-pub(crate) struct GroupLevels {
-    /// Name of the policy.
-    pub policy: String,
-    /// Number of the round, from 1.
-    pub round: u32,
-    /// Rounds with two groups that it is over.
-    pub count: usize,
-    /// Mean energy and HP of the group of the hard task.
-    pub hard: [f64; 2],
-    /// And of the easy task.
-    pub easy: [f64; 2],
-}
-
 impl Arguments {
     pub(crate) fn execute(&self, out: &mut dyn Write) -> Result<(), Failure> {
         let mut folder = Folder::read(&self.folder)?;
@@ -56,7 +40,7 @@ impl Arguments {
         for (place, policy) in policies.iter().enumerate() {
             let rounds = rounds_in(&mut folder, case, place)?;
             likenesses.push((policy.label.clone(), likeness(&rounds)));
-            levels.extend(levels_of(&policy.label, &rounds));
+            levels.extend(rounds::levels(&policy.label, &rounds));
             if policy.name == "RNE" && blind.is_empty() {
                 let scenario =
                     policy.options_in(&folder.experiment().cases[case].scenario).map_err(Failure::run)?;
@@ -91,51 +75,6 @@ pub(crate) fn gaps(folder: &Folder, case: usize) -> Option<String> {
     }
     (failed + missing > 0)
         .then(|| format!("{failed} trials failed, {missing} are missing: these are left out"))
-}
-
-/// All rounds of one policy.
-pub(crate) fn rounds_in(folder: &mut Folder, case: usize, policy: usize) -> Result<Vec<Round>, Failure> {
-    let places: Vec<_> = folder
-        .results()
-        .range((case, policy, 0)..=(case, policy, u32::MAX))
-        .map(|(place, _)| *place)
-        .collect();
-    let mut rounds = Vec::new();
-    for place in places {
-        if let Ok(trial) = folder.outcome(place)?.result {
-            rounds.extend(rounds_of(place.2, &trial));
-        }
-    }
-    Ok(rounds)
-}
-
-fn levels_of(label: &str, rounds: &[Round]) -> Vec<GroupLevels> {
-    let mut by_round: BTreeMap<u32, Vec<[[f64; 2]; 2]>> = BTreeMap::new();
-    for round in rounds {
-        let levels = |task: Difficulty| {
-            let members: Vec<_> = round.robots.iter().filter(|robot| robot.task == task).collect();
-            let mean = |value: fn(&crate::sweep::Grouped) -> f64| {
-                members.iter().map(|robot| value(robot)).sum::<f64>() / members.len() as f64
-            };
-            (!members.is_empty()).then(|| [mean(|robot| robot.energy), mean(|robot| robot.hp)])
-        };
-        if let Some(both) = levels(Difficulty::Hard).zip(levels(Difficulty::Easy)) {
-            by_round.entry(round.round).or_default().push([both.0, both.1]);
-        }
-    }
-    let of_round = |(round, trials): (u32, Vec<[[f64; 2]; 2]>)| {
-        let mean = |task: usize, level: usize| {
-            trials.iter().map(|trial| trial[task][level]).sum::<f64>() / trials.len() as f64
-        };
-        GroupLevels {
-            policy: label.to_owned(),
-            round,
-            count: trials.len(),
-            hard: [mean(0, 0), mean(0, 1)],
-            easy: [mean(1, 0), mean(1, 1)],
-        }
-    };
-    by_round.into_iter().map(of_round).collect()
 }
 
 fn print(

@@ -6,21 +6,19 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use clap::Args;
-use serde::Serialize;
 
 use super::{STOP, default_jobs, run_missing, stop_on_ctrl_c};
-use crate::claims::{CLAIMS, Example, Finding, Power, TIMES, examples, judge, least_difference, power};
+use crate::claims::{
+    CLAIMS, Example, Judged, LEAST_TRIALS, PAPERS_TRIALS, examples, write_authors_columns, write_claims,
+    write_examples, write_power,
+};
 use crate::experiment::{Experiment, Overrides};
 use crate::failure::Failure;
 use crate::report;
-use crate::stats::Moments;
+use crate::sweep::Limits;
 use crate::sweep::disk::is_sweeps;
 use crate::sweep::folder::{Folder, Opening};
-use crate::sweep::{Limits, NewFile};
 use crate::table::{claims_table, examples_table, power_table, verdicts_table};
-
-/// Trials of the paper.
-pub(crate) const PAPERS_TRIALS: u32 = 10;
 
 /// Policies of the paper.
 const POLICIES: [&str; 4] = ["RNE", "DIS", "ENG", "HP_DIS"];
@@ -33,12 +31,6 @@ const SCENARIOS: [(&str, &str); 2] = [
 
 /// Longest time of one trial.
 const TRIAL_LIMIT: Duration = Duration::from_mins(10);
-
-/// Trials below which nothing is said of the power.
-const LEAST_TRIALS: u32 = PAPERS_TRIALS * TIMES as u32;
-
-/// Seed of the experiments that are drawn for the power.
-const POWER_SEED: u64 = 1;
 
 /// Put the paper's claims to the test: four policies, two scenarios, paired trials
 #[derive(Debug, Args)]
@@ -73,18 +65,6 @@ pub(crate) struct Arguments {
     quiet: bool,
 }
 
-/// What a scenario's trials say of each claim.
-pub(crate) struct Judged {
-    /// Name of the scenario.
-    pub scenario: String,
-    /// Over as many trials as the paper has.
-    pub of_few: Vec<Finding>,
-    /// Over all.
-    pub of_all: Vec<Finding>,
-    /// What experiments of other sizes would say.
-    pub powers: Vec<Option<Power>>,
-}
-
 impl Arguments {
     pub(crate) fn execute(&self, out: &mut dyn Write) -> Result<(), Failure> {
         stop_on_ctrl_c();
@@ -101,13 +81,13 @@ impl Arguments {
         for folder in &mut folders {
             self.run(folder)?;
             report::write(folder, 0)?;
-            self.write_authors_columns(folder)?;
-            judged.push(self.judge(folder)?);
+            write_authors_columns(&self.out, folder)?;
+            judged.push(Judged::of(folder, self.trials)?);
         }
-        self.write_claims(&judged)?;
-        self.write_power(&judged)?;
+        write_claims(&self.out, &judged)?;
+        write_power(&self.out, &judged)?;
         let examples = examples()?;
-        self.write_examples(&examples)?;
+        write_examples(&self.out, &examples)?;
         self.print(out, &judged, &examples)?;
         if !self.quiet {
             eprintln!("results in {}", self.out.display());
@@ -141,19 +121,10 @@ impl Arguments {
         folder.finish(&STOP)
     }
 
-    fn judge(&self, folder: &Folder) -> Result<Judged, Failure> {
-        let all =
-            |trials| CLAIMS.iter().map(|claim| judge(folder, claim, trials)).collect::<Result<Vec<_>, _>>();
-        let (of_few, of_all) = (all(PAPERS_TRIALS)?, all(self.trials)?);
-        let powers =
-            of_all.iter().map(|finding| power(finding, PAPERS_TRIALS as usize, POWER_SEED)).collect();
-        Ok(Judged { scenario: folder.experiment().name.clone(), of_few, of_all, powers })
-    }
-
     fn print(&self, out: &mut dyn Write, judged: &[Judged], examples: &[Example]) -> Result<(), Failure> {
         for scenario in judged {
             writeln!(out, "{}", scenario.scenario)?;
-            writeln!(out, "{}\n", claims_table(scenario, self.trials))?;
+            writeln!(out, "{}\n", claims_table(scenario))?;
         }
         writeln!(out, "The paper's numerical examples, with exact values (nats)")?;
         writeln!(out, "{}\n", examples_table(examples))?;
@@ -176,146 +147,10 @@ impl Arguments {
              of 10 pairs: verdicts of experiments of 10 pairs drawn from these; least found by 10: the difference that 80 % of experiments of 10 pairs find\n"
         )?;
         writeln!(out, "Verdicts")?;
-        writeln!(out, "{}", verdicts_table(judged, self.trials))?;
+        writeln!(out, "{}", verdicts_table(judged))?;
         writeln!(out, "{}", footnote())?;
         Ok(())
     }
-
-    /// The columns of the authors' tables, and no others.
-    fn write_authors_columns(&self, folder: &Folder) -> Result<(), Failure> {
-        let path = folder.path().join("trials.csv");
-        let bad = |error: csv::Error| Failure::storage(format!("{}: {error}", path.display()));
-        let mut trials = csv::Reader::from_path(&path).map_err(bad)?;
-        let columns =
-            trials.headers().map_err(bad)?.iter().position(|name| name == "policy").unwrap_or_default();
-        let mut table = csv::Writer::from_writer(Vec::new());
-        let header = trials.headers().map_err(bad)?.clone();
-        for record in std::iter::once(Ok(header)).chain(trials.records()) {
-            table.write_record(record.map_err(bad)?.iter().take(columns)).map_err(Failure::run)?;
-        }
-        let bytes = table.into_inner().map_err(Failure::run)?;
-        NewFile::write(&self.out, &format!("{}.csv", folder.experiment().name), &bytes).map(drop)
-    }
-
-    fn write_claims(&self, judged: &[Judged]) -> Result<(), Failure> {
-        let mut rows = Vec::new();
-        for scenario in judged {
-            for (trials, findings) in [(PAPERS_TRIALS, &scenario.of_few), (self.trials, &scenario.of_all)] {
-                for (claim, finding) in CLAIMS.iter().zip(findings) {
-                    for (part, found) in claim.parts.iter().zip(&finding.parts) {
-                        rows.push(ClaimRow {
-                            scenario: &scenario.scenario,
-                            trials,
-                            section: claim.section,
-                            claim: claim.name,
-                            words: claim.words,
-                            verdict: finding.verdict.words(),
-                            comparison: part.words(),
-                            n: found.differences.len(),
-                            difference: found.difference,
-                            low: found.interval.map(|[low, _]| low),
-                            high: found.interval.map(|[_, high]| high),
-                            shared_low: found.shared_interval.map(|[low, _]| low),
-                            shared_high: found.shared_interval.map(|[_, high]| high),
-                        });
-                    }
-                }
-            }
-        }
-        self.write("claims.csv", &rows)
-    }
-
-    fn write_examples(&self, examples: &[Example]) -> Result<(), Failure> {
-        let row = |example: &Example| ExampleRow {
-            example: example.name,
-            words: example.words,
-            trusting_nats: example.trusting,
-            doubting_nats: example.doubting,
-            verdict: example.verdict.words(),
-        };
-        self.write("examples.csv", &examples.iter().map(row).collect::<Vec<_>>())
-    }
-
-    fn write_power(&self, judged: &[Judged]) -> Result<(), Failure> {
-        let mut rows = Vec::new();
-        for scenario in judged {
-            for ((claim, finding), power) in CLAIMS.iter().zip(&scenario.of_all).zip(&scenario.powers) {
-                for (part, found) in claim.parts.iter().zip(&finding.parts) {
-                    let values: Vec<f64> =
-                        found.differences.iter().map(|(_, difference)| *difference).collect();
-                    let sd = Moments::of(&values).sd;
-                    rows.push(PowerRow {
-                        scenario: &scenario.scenario,
-                        claim: claim.name,
-                        leaning: power.map(|power| power.leaning.words()),
-                        claim_pairs_needed: power.and_then(|power| power.pairs_needed),
-                        holds_at_10: power.map(|power| power.of_few.holds),
-                        does_not_hold_at_10: power.map(|power| power.of_few.does_not_hold),
-                        comparison: part.words(),
-                        n: values.len(),
-                        difference: found.difference,
-                        sd,
-                        pairs_needed: found.pairs_needed,
-                        least_difference_at_10: sd
-                            .and_then(|sd| least_difference(sd, PAPERS_TRIALS as usize)),
-                    });
-                }
-            }
-        }
-        self.write("power.csv", &rows)
-    }
-
-    fn write(&self, name: &str, rows: &[impl Serialize]) -> Result<(), Failure> {
-        let mut table = csv::Writer::from_writer(Vec::new());
-        rows.iter().try_for_each(|row| table.serialize(row)).map_err(Failure::run)?;
-        let bytes = table.into_inner().map_err(Failure::run)?;
-        NewFile::write(&self.out, name, &bytes).map(drop)
-    }
-}
-
-/// A row of `claims.csv`: one comparison of one claim, over so many trials.
-#[derive(Serialize)]
-struct ClaimRow<'a> {
-    scenario: &'a str,
-    trials: u32,
-    section: &'a str,
-    claim: &'a str,
-    words: &'a str,
-    verdict: &'a str,
-    comparison: String,
-    n: usize,
-    difference: Option<f64>,
-    low: Option<f64>,
-    high: Option<f64>,
-    shared_low: Option<f64>,
-    shared_high: Option<f64>,
-}
-
-/// A row of `examples.csv`: one of the paper's numerical examples.
-#[derive(Serialize)]
-struct ExampleRow<'a> {
-    example: &'a str,
-    words: &'a str,
-    trusting_nats: f64,
-    doubting_nats: f64,
-    verdict: &'a str,
-}
-
-/// A row of `power.csv`: one comparison of one claim.
-#[derive(Serialize)]
-struct PowerRow<'a> {
-    scenario: &'a str,
-    claim: &'a str,
-    leaning: Option<&'a str>,
-    claim_pairs_needed: Option<u32>,
-    holds_at_10: Option<f64>,
-    does_not_hold_at_10: Option<f64>,
-    comparison: String,
-    n: usize,
-    difference: Option<f64>,
-    sd: Option<f64>,
-    pairs_needed: Option<u64>,
-    least_difference_at_10: Option<f64>,
 }
 
 fn footnote() -> String {

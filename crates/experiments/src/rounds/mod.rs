@@ -1,6 +1,7 @@
 //! Rounds as their policies found and split them: what a split amounts to, and how another policy would have split the same team.
 
 mod blindness;
+mod levels;
 mod sorting;
 
 use std::collections::BTreeMap;
@@ -10,9 +11,11 @@ use rne_core::{
 };
 
 pub use blindness::{Blindness, Example, Pair};
+pub use levels::{GroupLevels, levels};
 pub use sorting::{KEYS, Key, Likeness, Share, likeness};
 
 use crate::failure::Failure;
+use crate::sweep::folder::Folder;
 use crate::sweep::{Grouped, Trial};
 
 /// One round of one trial.
@@ -43,6 +46,25 @@ pub fn rounds_of(number: u32, trial: &Trial) -> Vec<Round> {
         Round { trial: number, seed: trial.record.seed, round, robots, roles }
     };
     rounds.into_iter().map(of_round).collect()
+}
+
+/// All rounds of one policy of a sweep.
+///
+/// # Errors
+/// The journal cannot be read.
+pub fn rounds_in(folder: &mut Folder, case: usize, policy: usize) -> Result<Vec<Round>, Failure> {
+    let places: Vec<_> = folder
+        .results()
+        .range((case, policy, 0)..=(case, policy, u32::MAX))
+        .map(|(place, _)| *place)
+        .collect();
+    let mut rounds = Vec::new();
+    for place in places {
+        if let Ok(trial) = folder.outcome(place)?.result {
+            rounds.extend(rounds_of(place.2, &trial));
+        }
+    }
+    Ok(rounds)
 }
 
 impl Round {

@@ -3,15 +3,14 @@
 use comfy_table::{Cell, Table};
 
 use super::{headed, right};
-use crate::claims::{CLAIMS, Example, PartFinding, Shares, least_difference};
-use crate::commands::reproduce::{Judged, PAPERS_TRIALS};
+use crate::claims::{CLAIMS, Example, Judged, PAPERS_TRIALS, PartFinding, Shares, least_difference};
 use crate::comparison::{digits, short};
 use crate::stats::Moments;
 
 /// What a scenario's trials say of each claim: a row for each of its comparisons.
-pub(crate) fn claims_table(judged: &Judged, trials: u32) -> Table {
+pub(crate) fn claims_table(judged: &Judged) -> Table {
     let few = format!("first {PAPERS_TRIALS} pairs");
-    let all = format!("{trials} pairs");
+    let all = format!("{} pairs", judged.trials);
     let mut table =
         headed(["claim", &few, &all, "difference", "95 % interval", "shared interval", "n", "first 10"]);
     let difference = |found: &PartFinding| right(&found.difference.map_or("-".to_owned(), short));
@@ -106,9 +105,10 @@ pub(crate) fn power_table(judged: &Judged) -> Option<Table> {
 }
 
 /// All verdicts side by side.
-pub(crate) fn verdicts_table(judged: &[Judged], trials: u32) -> Table {
+pub(crate) fn verdicts_table(judged: &[Judged]) -> Table {
     let header = judged.iter().flat_map(|scenario| {
-        [PAPERS_TRIALS, trials].map(|trials| Cell::new(format!("{}, {trials} pairs", scenario.scenario)))
+        [PAPERS_TRIALS, scenario.trials]
+            .map(|trials| Cell::new(format!("{}, {trials} pairs", scenario.scenario)))
     });
     let mut table = headed(std::iter::once(Cell::new("claim")).chain(header));
     for (i, claim) in CLAIMS.iter().enumerate() {

@@ -3,8 +3,7 @@
 use comfy_table::{Cell, Table};
 
 use super::{headed, right};
-use crate::commands::explain::GroupLevels;
-use crate::rounds::{KEYS, Likeness, Share};
+use crate::rounds::{GroupLevels, KEYS, Likeness, Share};
 
 /// How often each policy's split is that of sorting.
 pub(crate) fn likeness_table(policies: &[(String, [Likeness; 3])]) -> Table {

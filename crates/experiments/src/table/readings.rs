@@ -3,9 +3,9 @@
 use comfy_table::{Cell, Table};
 
 use super::{headed, right};
-use crate::commands::readings::{Difference, ReadingRow, RivalRow, SHOWN};
 use crate::comparison::{digits, short};
 use crate::metric::METRICS;
+use crate::readings::{Difference, ReadingRow, RivalRow, SHOWN};
 
 fn differences(differences: &[Option<Difference>]) -> impl Iterator<Item = Cell> + '_ {
     differences.iter().map(|difference| {
