@@ -268,6 +268,21 @@ fn the_papers_experiment_and_the_pages_that_tell_of_it() {
         assert_eq!(columns.lines().count(), 41);
         assert!(results.join(scenario).join("report.html").exists());
     }
+    let report = read(&results.join("report.html"));
+    assert_eq!(
+        report.matches("<tr class=\"claim\">").count(),
+        10 + 2 * 10 + 3,
+        "verdicts, claims and examples"
+    );
+    assert!(report.contains("Not said: it takes 50 trials, there are 10."));
+    refused(
+        &usar(folder.path(), &["compare", "results/reproduction"]),
+        &["these in it are: results/reproduction/paper, results/reproduction/paper-calibrated"],
+    );
+    refused(
+        &usar(folder.path(), &["reproduce", "--out", "results/reproduction/paper"]),
+        &["--out: results/reproduction/paper is the folder of one sweep"],
+    );
     let example = |n: &str, verdict: &str| {
         let line = first.lines().find(|line| line.contains(n)).unwrap_or_default();
         assert!(line.contains(verdict), "{line}");
@@ -275,13 +290,21 @@ fn the_papers_experiment_and_the_pages_that_tell_of_it() {
     example("Example 2", "┆ holds");
     example("Example 3", "┆ does not hold");
 
-    // The verdicts over ten pairs are those of the page.
+    // The verdicts over ten pairs are those of the page, and so is what stands under "first 10".
     let page = read(&root().join("docs/reproduction.md"));
+    let cells = |line: &str| -> Vec<String> {
+        line.trim_matches('│').split('┆').map(|cell| cell.trim().to_owned()).collect()
+    };
+    let comparisons = |text: &str| -> Vec<[String; 2]> {
+        let rows = text.lines().filter(|line| line.starts_with('│')).map(cells);
+        let rows = rows.filter(|row| row.len() == 8 && row[7].ends_with(')'));
+        rows.map(|mut row| [row.remove(0), row.remove(6)]).collect()
+    };
+    assert_eq!(comparisons(&first).len(), 2 * 30);
+    assert_eq!(comparisons(&first), comparisons(&page), "`just pages` makes it anew");
     let verdicts = |text: &str| -> Vec<Vec<String>> {
         let table = text.split("\nVerdicts\n").nth(1).unwrap_or_default();
         let rows = table.lines().filter(|line| line.starts_with('│')).skip(1);
-        let cells =
-            |line: &str| line.trim_matches('│').split('┆').map(|cell| cell.trim().to_owned()).collect();
         rows.map(cells).collect()
     };
     let (here, there) = (verdicts(&first), verdicts(&page));

@@ -9,16 +9,14 @@ use clap::Args;
 
 use super::{STOP, default_jobs, run_missing, stop_on_ctrl_c};
 use crate::claims::{
-    CLAIMS, Example, Judged, LEAST_TRIALS, PAPERS_TRIALS, examples, write_authors_columns, write_claims,
-    write_examples, write_power,
+    Judged, PAPERS_TRIALS, examples, write_authors_columns, write_claims, write_examples, write_power,
 };
 use crate::experiment::{Experiment, Overrides};
 use crate::failure::Failure;
-use crate::report;
+use crate::report::{self, claims::Section};
 use crate::sweep::Limits;
 use crate::sweep::disk::is_sweeps;
 use crate::sweep::folder::{Folder, Opening};
-use crate::table::{claims_table, examples_table, power_table, verdicts_table};
 
 /// Policies of the paper.
 const POLICIES: [&str; 4] = ["RNE", "DIS", "ENG", "HP_DIS"];
@@ -41,7 +39,7 @@ says of each of the paper's claims whether it holds: over the first 10 trials, a
 A claim holds when the 95 % interval of each of its comparisons lies on the claimed side; it does not when one lies on the other side, at 95 % \
 shared by its comparisons; else it is undecided. The last table says how many paired trials each claim would need, and what 10 could have shown.
 
-The folder gets a sweep's folder for each scenario, with report.html; claims.csv, power.csv and examples.csv; and for each scenario a CSV with \
+The folder gets report.html, the verdicts as a page; a sweep's folder for each scenario, with a report.html of its own; claims.csv, power.csv and examples.csv; and for each scenario a CSV with \
 exactly the authors' columns. docs/experiments.md says what is in each. A broken-off run goes on with the same command; more --trials only add.
 
 Examples:
@@ -88,9 +86,15 @@ impl Arguments {
         write_power(&self.out, &judged)?;
         let examples = examples()?;
         write_examples(&self.out, &examples)?;
-        self.print(out, &judged, &examples)?;
+        let sections = report::claims::sections(&judged, &examples);
+        let page = report::claims::write(&self.out, &judged, &sections)?;
+        for Section { title, table, note } in &sections {
+            writeln!(out, "{title}")?;
+            table.iter().try_for_each(|table| writeln!(out, "{table}"))?;
+            writeln!(out, "{note}{}", if note.is_empty() { "" } else { "\n" })?;
+        }
         if !self.quiet {
-            eprintln!("results in {}", self.out.display());
+            eprintln!("results in {}, all of this as {}", self.out.display(), page.display());
         }
         let failures = folders.iter().flat_map(|folder| folder.results().values());
         let failures: Vec<&str> = failures.filter_map(|measured| measured.failure.as_deref()).collect();
@@ -120,44 +124,4 @@ impl Arguments {
         run_missing(folder, None, Limits { jobs, trial: Some(TRIAL_LIMIT) }, self.quiet)?;
         folder.finish(&STOP)
     }
-
-    fn print(&self, out: &mut dyn Write, judged: &[Judged], examples: &[Example]) -> Result<(), Failure> {
-        for scenario in judged {
-            writeln!(out, "{}", scenario.scenario)?;
-            writeln!(out, "{}\n", claims_table(scenario))?;
-        }
-        writeln!(out, "The paper's numerical examples, with exact values (nats)")?;
-        writeln!(out, "{}\n", examples_table(examples))?;
-        writeln!(out, "Power: what 10 pairs could have shown, and how many pairs it takes")?;
-        for scenario in judged {
-            writeln!(out, "{}", scenario.scenario)?;
-            let table = power_table(scenario).map(|table| table.to_string());
-            writeln!(
-                out,
-                "{}\n",
-                table.unwrap_or_else(|| format!(
-                    "not said: it takes {LEAST_TRIALS} trials, there are {}",
-                    self.trials
-                ))
-            )?;
-        }
-        writeln!(
-            out,
-            "leans to: what large experiments would say, were the means of these trials the truth; pairs for 80 %: the fewest with which 80 % of experiments say so (of a comparison: of paired t tests at 5 %);\n\
-             of 10 pairs: verdicts of experiments of 10 pairs drawn from these; least found by 10: the difference that 80 % of experiments of 10 pairs find\n"
-        )?;
-        writeln!(out, "Verdicts")?;
-        writeln!(out, "{}", verdicts_table(judged))?;
-        writeln!(out, "{}", footnote())?;
-        Ok(())
-    }
-}
-
-fn footnote() -> String {
-    format!(
-        "Paired by seed; intervals: BCa bootstrap at 95 %, widened for small n. A claim holds when the interval of each of its comparisons lies on the\n\
-         claimed side, and does not when one lies on the other side (by the shared interval: 95 % for all its comparisons together); else it is undecided. Each verdict is\n\
-         wrong in about 2.5 % of experiments at most; the {} claims are not corrected for one another. docs/reproduction.md discusses them.",
-        CLAIMS.len()
-    )
 }

@@ -1,5 +1,6 @@
 //! `report.html`, one file that opens from disk, and the figures in it with the numbers behind each.
 
+pub mod claims;
 mod course;
 mod figure;
 mod gather;
