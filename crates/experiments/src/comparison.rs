@@ -143,17 +143,22 @@ impl Pairs {
     }
 }
 
+/// Which policies are compared, by their labels.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Choice<'a> {
+    /// Each with this one only.
+    pub baseline: Option<&'a str>,
+    /// None but these.
+    pub policies: Option<&'a [&'a str]>,
+}
+
 /// All comparisons of these metrics: of each pair of policies, or of each with the baseline.
 ///
 /// # Errors
-/// An unknown baseline, or a sweep of one policy.
-pub fn compare(
-    folder: &Folder,
-    metrics: &[usize],
-    baseline: Option<&str>,
-) -> Result<Vec<Comparison>, Failure> {
+/// An unknown policy, or fewer than two.
+pub fn compare(folder: &Folder, metrics: &[usize], choice: Choice) -> Result<Vec<Comparison>, Failure> {
     let experiment = folder.experiment();
-    let pairs = policy_pairs(experiment, baseline)?;
+    let pairs = policy_pairs(experiment, choice)?;
     let cases = 0..experiment.cases.len();
     let all: Vec<(usize, usize, [usize; 2])> = cases
         .flat_map(|case| metrics.iter().map(move |metric| (case, *metric)))
@@ -175,25 +180,29 @@ pub fn compare(
     Ok(comparisons)
 }
 
-fn policy_pairs(experiment: &Experiment, baseline: Option<&str>) -> Result<Vec<[usize; 2]>, Failure> {
+fn policy_pairs(experiment: &Experiment, choice: Choice) -> Result<Vec<[usize; 2]>, Failure> {
     let labels: Vec<&str> = experiment.policies.iter().map(|policy| policy.label.as_str()).collect();
-    let count = labels.len();
-    if count < 2 {
-        return Err(Failure::input(format!(
-            "there is nothing to compare: the sweep is of {} only",
-            labels[0]
-        )));
-    }
-    let Some(baseline) = baseline else {
-        return Ok((0..count).flat_map(|a| (a + 1..count).map(move |b| [a, b])).collect());
+    let place = |option: &str, wanted: &str| {
+        labels.iter().position(|label| *label == wanted).ok_or_else(|| {
+            let known = labels.join(", ");
+            Failure::input(format!("{option}: must be a policy of the sweep ({known}), found {wanted:?}"))
+        })
     };
-    let place = labels.iter().position(|label| *label == baseline).ok_or_else(|| {
-        Failure::input(format!(
-            "--baseline: must be a policy of the sweep ({}), found {baseline:?}",
-            labels.join(", ")
-        ))
-    })?;
-    Ok((0..count).filter(|a| *a != place).map(|a| [a, place]).collect())
+    let baseline = choice.baseline.map(|baseline| place("--baseline", baseline)).transpose()?;
+    let mut chosen = (0..labels.len()).collect::<Vec<_>>();
+    if let Some(policies) = choice.policies {
+        let places = policies.iter().map(|policy| place("--policies", policy));
+        let places = places.collect::<Result<Vec<_>, _>>()?;
+        chosen.retain(|policy| places.contains(policy) || baseline == Some(*policy));
+    }
+    if let [only] = chosen[..] {
+        return Err(Failure::input(format!("there is nothing to compare: {} only", labels[only])));
+    }
+    let pairs = |(i, a): (usize, &usize)| chosen[i + 1..].iter().map(|b| [*a, *b]).collect::<Vec<_>>();
+    Ok(match baseline {
+        None => chosen.iter().enumerate().flat_map(pairs).collect(),
+        Some(baseline) => chosen.iter().filter(|a| **a != baseline).map(|a| [*a, baseline]).collect(),
+    })
 }
 
 fn comparison(

@@ -31,9 +31,10 @@ impl InputTable {
             csv::ReaderBuilder::new().trim(csv::Trim::All).flexible(true).from_reader(text.as_bytes());
         let header = reader.headers().map_err(|error| bad(&error))?.clone();
         let mut rows = Vec::new();
+        let mut lines = Lines { text, upto: 0, line: 1 };
         for row in reader.records() {
             let row = row.map_err(|error| bad(&error))?;
-            let line = line_of(text, &row);
+            let line = lines.of(&row);
             if row.len() != header.len() {
                 let (cells, columns) = (row.len(), header.len());
                 return Err(Failure::input(format!(
@@ -61,11 +62,24 @@ impl InputTable {
     }
 }
 
-/// The line on which a row begins. The reader's own count is one behind where lines end with CR LF.
-fn line_of(text: &str, row: &StringRecord) -> usize {
-    let begin = row.position().map_or(0, |position| position.byte() as usize);
-    let blank = text.as_bytes()[begin..].iter().take_while(|byte| matches!(byte, b'\r' | b'\n')).count();
-    text[..begin + blank].matches('\n').count() + 1
+/// Counts lines on the way through a text. The reader's own count is one behind where lines end with CR LF.
+struct Lines<'t> {
+    text: &'t str,
+    /// Bytes that are counted.
+    upto: usize,
+    line: usize,
+}
+
+impl Lines<'_> {
+    /// The line on which a row begins; rows come in their order.
+    fn of(&mut self, row: &StringRecord) -> usize {
+        let begin = row.position().map_or(0, |position| position.byte() as usize);
+        let blank =
+            self.text.as_bytes()[begin..].iter().take_while(|byte| matches!(byte, b'\r' | b'\n')).count();
+        self.line += self.text[self.upto..begin + blank].matches('\n').count();
+        self.upto = begin + blank;
+        self.line
+    }
 }
 
 #[cfg(test)]
@@ -87,6 +101,9 @@ mod tests {
             assert_eq!(lines, [2, 4], "{text:?}");
             assert_eq!(table.column("b"), Some(1));
         }
+        let table = read("a,b\n\"x\ny\",2\n3,4\n").unwrap();
+        let lines: Vec<usize> = table.rows.iter().map(|(line, _)| *line).collect();
+        assert_eq!(lines, [2, 4], "a cell may have lines of its own");
         let error = read("a,b\r\n1,2\r\n3\r\n").unwrap_err().to_string();
         assert!(
             error.contains("table.csv:3: must have a cell for each of the 2 columns, found 1"),

@@ -16,12 +16,12 @@ use crate::sweep::folder::Folder;
 /// The metrics whose differences are shown.
 pub const SHOWN: [&str; 4] = ["rescuees.total", "rescuees.hard", "rescuees.easy", "energy_per_rescuee.total"];
 
-/// A mean difference with the ends of its 95 % interval.
+/// A mean difference with its interval.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Difference {
     /// Mean.
     pub mean: f64,
-    /// Half the width of the paired t interval.
+    /// Half the width of the paired t interval, of 95 % where nothing else is said.
     pub half: f64,
 }
 
@@ -235,7 +235,7 @@ pub fn rivals(trials: &Trials, readings: &[usize]) -> Vec<RivalRow> {
             });
             all.push(sides);
         }
-        if all.len() > 1 {
+        if all.len() > 1 && all.len() == rivals.len() {
             let sides = together(&all);
             let counts = [1, -1, 0].map(|side| count(&sides, 0, side));
             let corrected = [1, -1].map(|side| count(&sides, 1, side));

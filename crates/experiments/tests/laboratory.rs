@@ -403,6 +403,16 @@ fn comparisons_are_paired_and_say_what_they_stand_on() {
         &["compare", "results/paper", "--baseline", "RANDOM"],
         &["must be a policy of the sweep (RNE, DIS, ENG)"],
     );
+    refused(
+        here,
+        2,
+        &["compare", "results/paper", "--policies", "RNE,RANDOM"],
+        &["--policies: must be a policy of the sweep (RNE, DIS, ENG), found \"RANDOM\""],
+    );
+    refused(here, 2, &["compare", "results/paper", "--policies", "RNE"], &["nothing to compare: RNE only"]);
+    let two = ["compare", "results/paper", "--policies", "ENG, RNE", "--metric", "rescuees.hard"];
+    let two = succeeds(&usar(here, &two));
+    assert!(two.contains("┆ RNE - ENG ┆") && !two.contains("DIS"), "{two}");
     refused(here, 2, &["compare", "results"], &["results: is not the folder of a sweep"]);
 }
 
@@ -439,13 +449,20 @@ fn an_estimate_says_trials_time_and_disk() {
     )))
     .unwrap();
     assert_eq!((&json["trials"], &json["cases"], &json["policies"]), (&1200.into(), &4.into(), &3.into()));
-    assert_eq!(json["measured"], 12, "all policies on four of the seeds");
+    assert_eq!(json["measured"], 24, "all policies on eight of the seeds");
     assert!(json["seconds"].as_f64().unwrap() > 0.0 && json["bytes"].as_u64().unwrap() > 1200 * 1000);
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 2, "nothing is left behind");
-    let alike =
-        ["estimate", "short.ron", "--policies", "DIS, RNE(log_base: Two), RNE(log_base: Ten)", "--json"];
+    let alike = [
+        "estimate",
+        "short.ron",
+        "--policies",
+        "DIS, RNE(log_base: Two), RNE(log_base: Ten)",
+        "--trials",
+        "100",
+        "--json",
+    ];
     let json: Value = serde_json::from_str(&succeeds(&usar(folder.path(), &alike))).unwrap();
-    assert_eq!((&json["measured"], &json["simulated"]), (&12.into(), &8.into()), "the base decides nothing");
+    assert_eq!((&json["measured"], &json["simulated"]), (&24.into(), &16.into()), "the base decides nothing");
 }
 
 #[test]

@@ -7,6 +7,10 @@ use std::process::{Command, Output};
 use std::sync::atomic::AtomicBool;
 
 use experiments::calibration::{Calibration, Free, Log, Spread, Target};
+use experiments::metric::metric_named;
+use experiments::readings::{Trials, rivals};
+use experiments::sweep::folder::Folder;
+use statrs::distribution::{ContinuousCDF, StudentsT};
 use usar_sim::scenario::{Fields, Scenario};
 
 fn program() -> &'static Path {
@@ -138,6 +142,10 @@ fn what_cannot_be_calibrated_is_refused() {
             "method,rescuees_total,rescuees_hard,rescuees_easy\nDIS,5,2,3\nDIS,9,3,4\n",
             "target.csv:3: rescuees_total must be the sum",
         ),
+        (
+            "method,rescuees_total,rounds\nDIS,-5,6\nDIS,9,7\n",
+            "target.csv:2: rescuees_total must be a number from 0 on",
+        ),
         ("method,rounds,rounds\nDIS,6,6\n", "the column \"rounds\" stands twice"),
         ("method,rounds\nDIS,6\n", "must have at least two trials, found 1"),
     ];
@@ -163,6 +171,52 @@ fn what_cannot_be_calibrated_is_refused() {
     );
 }
 
+/// `rivals` counts by intervals: here they are made once more, from the differences.
+#[test]
+fn readings_are_counted_against_each_rival_and_against_all() {
+    let place = place();
+    let folder = place.path();
+    let text = "(name: \"r\", scenario: \"short.ron\", set: {\"duration_s\": 300.0}, policies: [\"RNE\", \"DIS\", \"HP_DIS\"],
+        readings: {\"hard_rule\": [IntraGroupTrust, MeanHp], \"merge\": [Apart, Together]}, trials: 8, lean: true)";
+    std::fs::write(folder.join("r.ron"), text).unwrap();
+    succeeds(&usar(folder, &["sweep", "r.ron", "--quiet", "--out", "out"]));
+    let sweep = Folder::read(&folder.join("out")).unwrap();
+    let rows = rivals(&Trials::of(&sweep), &[0, 1, 2, 3]);
+    let sides = |metric: &str, rival: usize, tail: f64| -> Vec<i32> {
+        let metric = metric_named(metric).unwrap();
+        let value = |policy: usize, trial: u32| {
+            sweep.results()[&(0, policy, trial)].metrics.as_ref().unwrap()[metric].unwrap()
+        };
+        let t = StudentsT::new(0.0, 1.0, 7.0).unwrap().inverse_cdf(1.0 - tail);
+        let side = |reading: usize| {
+            let differences: Vec<f64> =
+                (1..=8).map(|trial| value(reading, trial) - value(rival, trial)).collect();
+            let mean = differences.iter().sum::<f64>() / 8.0;
+            let variance = differences.iter().map(|d| (d - mean).powi(2)).sum::<f64>() / 7.0;
+            let half = t * (variance / 8.0).sqrt();
+            i32::from(mean - half > 0.0) - i32::from(mean + half < 0.0)
+        };
+        (0..4).map(side).collect()
+    };
+    let count = |sides: &[i32], side: i32| sides.iter().filter(|found| **found == side).count();
+    let mut decided = 0;
+    for row in &rows {
+        let both = |tail: f64| [4, 5].map(|rival| sides(row.metric, rival, tail));
+        let [own, shared] = [0.025, 0.025 / 4.0].map(|tail| match row.rival.as_deref() {
+            Some("DIS") => both(tail)[0].clone(),
+            Some(_) => both(tail)[1].clone(),
+            None => {
+                both(tail)[0].iter().zip(&both(tail)[1]).map(|(a, b)| if a == b { *a } else { 0 }).collect()
+            }
+        });
+        assert_eq!(row.counts, [1, -1, 0].map(|side| count(&own, side)), "{} {:?}", row.metric, row.rival);
+        assert_eq!(row.corrected, [1, -1].map(|side| count(&shared, side)), "{} {:?}", row.metric, row.rival);
+        decided += row.counts[0] + row.counts[1];
+    }
+    assert_eq!(rows.len(), 4 * 3);
+    assert!(decided > 0, "nothing to count");
+}
+
 #[test]
 fn a_search_begins_within_its_ranges() {
     let place = place();
@@ -176,7 +230,10 @@ fn a_search_begins_within_its_ranges() {
         told.contains("costs.energy.per_metre is 0, outside its range; the search begins at 0.1"),
         "{told}"
     );
-    succeeds(&output);
+    let printed = succeeds(&output);
+    assert!(printed.contains(
+        "not in the data, and not looked at: rescuees_easy, energy_easy, hp_hard, hp_easy, rounds"
+    ));
     let log = read(&folder.join("out/evaluations.csv"));
     let mut log = csv::Reader::from_reader(log.as_bytes());
     let place = log.headers().unwrap().iter().position(|name| name == "costs.energy.per_metre").unwrap();
@@ -205,7 +262,7 @@ fn the_calibrated_scenario_is_the_best_of_its_log() {
         let written = text[fields.value(&path).unwrap()].trim().parse::<f64>().unwrap();
         assert_eq!(written.to_bits(), value.parse::<f64>().unwrap().to_bits(), "{path}");
     }
-    let target = Target::load(&root().join("scenarios/reference/dis_trials.csv"), 600.0).unwrap();
+    let target = Target::load(&root().join("scenarios/reference/dis_trials.csv"), &scenario).unwrap();
     let calibration = Calibration {
         text,
         base: scenario,
@@ -237,7 +294,7 @@ fn a_log_is_held_by_one_process() {
     let place = place();
     let (base, text) = Scenario::load(&place.path().join("short.ron")).unwrap();
     let free = vec![Free::parse("mission.loading_s=1..3", &Fields::of(&text), &Fields::of(&text)).unwrap()];
-    let target = Target::load(&place.path().join("target.csv"), 120.0).unwrap();
+    let target = Target::load(&place.path().join("target.csv"), &base).unwrap();
     let calibration =
         Calibration { text, base, free, target, trials: 2, first_seed: 1, seed: 1, first_step: 0.25 };
     let out = place.path().join("out");
@@ -268,12 +325,24 @@ fn the_papers_experiment_and_the_pages_that_tell_of_it() {
         assert_eq!(columns.lines().count(), 41);
         assert!(results.join(scenario).join("report.html").exists());
     }
-    let report = read(&results.join("report.html"));
+    let rows = |name: &str| {
+        let mut table = csv::Reader::from_path(results.join(name)).unwrap();
+        table
+            .deserialize::<std::collections::BTreeMap<String, String>>()
+            .map(Result::unwrap)
+            .collect::<Vec<_>>()
+    };
     assert_eq!(
-        report.matches("<tr class=\"claim\">").count(),
-        10 + 2 * 10 + 3,
-        "verdicts, claims and examples"
+        rows("examples.csv").iter().map(|row| row["verdict"].as_str()).collect::<Vec<_>>(),
+        ["holds", "holds", "does not hold"]
     );
+    for row in rows("claims.csv").iter().filter(|row| !row["low"].is_empty()) {
+        let [low, high, shared_low, shared_high] =
+            ["low", "high", "shared_low", "shared_high"].map(|name| row[name].parse::<f64>().unwrap());
+        assert!(shared_low <= low && low <= high && high <= shared_high, "{row:?}");
+    }
+    let report = read(&results.join("report.html"));
+    assert_eq!(report.matches("<tr class=\"claim\">").count(), 2 * 10, "the claims on both scenarios");
     assert!(report.contains("Not said: it takes 50 trials, there are 10."));
     refused(
         &usar(folder.path(), &["compare", "results/reproduction"]),

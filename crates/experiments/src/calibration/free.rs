@@ -50,6 +50,9 @@ impl Free {
                 Some(at) => (part[..at].trim(), number(&part[at + 1..]).ok_or_else(form)?),
                 None => (part.trim(), 1.0),
             };
+            if ratio <= 0.0 {
+                return Err(format!("a ratio must be above 0, found {spec:?}"));
+            }
             if name.is_empty() {
                 path.clone_into(&mut name);
             }
@@ -232,6 +235,10 @@ mod tests {
             [1.5, 1.0, 2.0, 3.0, 2.5, 2.0]
         );
         assert_eq!(linear.place(2.0), 0.5);
+        assert_eq!(
+            [1.0, 1.01, 1.5, 2.5, 2.99, 9.0].map(|value| linear.is_at_end(value)),
+            [true, true, false, false, true, true]
+        );
         let log = free("roles.a.v=0.01..1 log").unwrap();
         assert_eq!(log.value(0.5), 0.1);
         assert!((log.place(0.1) - 0.5).abs() < 1e-12);
@@ -244,6 +251,7 @@ mod tests {
             ("roles.a.v=3..1", "the lower bound must be below"),
             ("roles.a.v=0..1 log", "must be above 0"),
             ("roles.a.v=1..x", "with finite numbers"),
+            ("roles.a.v*0=1..2", "a ratio must be above 0"),
             ("roles.c.v=0..1", "roles.c.v: no such field; roles has a, b"),
             ("roles.a.w=0..1", "roles.a.w: is not written in the scenario"),
             ("roles.a=0..1", "roles.a: is not a number but has parts: v, w"),

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use usar_sim::record::TrialRecord;
+use usar_sim::scenario::Scenario;
 
 use super::POLICY;
 use crate::failure::Failure;
@@ -69,16 +70,16 @@ impl Target {
     /// Reads a table with the columns of `trials.csv`: `method`, which is the baseline's in each row, and quantities.
     ///
     /// # Errors
-    /// A table that cannot be read, has a column of another name, is of other policies or other missions than those of `duration_s` seconds, or
+    /// A table that cannot be read, has a column of another name, is of other policies, of trials that are not as long as the scenario's, or
     /// has a quantity that is no number or has no spread; with file and line, all at once.
-    pub fn load(path: &Path, duration_s: f64) -> Result<Self, Failure> {
+    pub fn load(path: &Path, scenario: &Scenario) -> Result<Self, Failure> {
         let shown = path.display();
         let table = InputTable::read(path)?;
         let (found, mut problems) = columns_of(&table);
         let mut values = vec![Vec::new(); found.len()];
         for (line, row) in &table.rows {
             let cells = Cells { table: &table, row };
-            problems.extend(cells.check(duration_s).into_iter().map(|problem| format!("{line}: {problem}")));
+            problems.extend(cells.check(scenario).into_iter().map(|problem| format!("{line}: {problem}")));
             for (quantity, values) in found.iter().zip(&mut values) {
                 match cells.number(quantity.name) {
                     Ok(value) => values.extend(value),
@@ -128,9 +129,8 @@ impl Target {
 /// The quantities that a table has, and what is wrong with its header.
 fn columns_of(table: &InputTable) -> (Vec<&'static Quantity>, Vec<String>) {
     let mut problems = Vec::new();
-    let known = trial_columns();
+    let (known, quantities) = (trial_columns(), QUANTITIES.map(|quantity| quantity.name).join(", "));
     for unknown in table.columns().filter(|name| !known.iter().any(|column| column == name)) {
-        let quantities = QUANTITIES.iter().map(|quantity| quantity.name).collect::<Vec<_>>().join(", ");
         problems.push(format!("1: {unknown:?} is no column of trials.csv; what can be fitted: {quantities}"));
     }
     if table.column("method").is_none() {
@@ -139,8 +139,7 @@ fn columns_of(table: &InputTable) -> (Vec<&'static Quantity>, Vec<String>) {
     let found: Vec<&Quantity> =
         QUANTITIES.iter().filter(|quantity| table.column(quantity.name).is_some()).collect();
     if found.is_empty() && problems.is_empty() {
-        let known = QUANTITIES.map(|quantity| quantity.name).join(", ");
-        problems.push(format!("1: has none of the columns {known}"));
+        problems.push(format!("1: has none of the columns {quantities}"));
     }
     (found, problems)
 }
@@ -164,19 +163,25 @@ impl Cells<'_> {
     }
 
     /// What is wrong with what is not fitted.
-    fn check(&self, duration_s: f64) -> Vec<String> {
+    fn check(&self, scenario: &Scenario) -> Vec<String> {
         let mut problems = Vec::new();
         if let Some(method) = self.text("method").filter(|method| *method != POLICY) {
             problems.push(format!("method must be {POLICY}: nothing else is calibrated, found {method:?}"));
         }
-        match self.number("time_s") {
-            Ok(Some(time_s)) if time_s.total_cmp(&duration_s).is_ne() => problems
-                .push(format!("time_s must be the scenario's duration_s, {duration_s}, found {time_s}")),
-            Ok(_) => {}
-            Err(problem) => problems.push(problem),
+        let mut number = |name: &str| {
+            let value = self.number(name);
+            value.unwrap_or_else(|problem| {
+                problems.push(problem);
+                None
+            })
+        };
+        let (time_s, total) = (number("time_s"), number("rescuees_total"));
+        let (duration_s, dt_s) = (scenario.duration_s, scenario.dt_s);
+        if let Some(time_s) = time_s.filter(|time_s| (time_s - duration_s).abs() > dt_s / 2.0) {
+            problems.push(format!("time_s must be the scenario's duration_s, {duration_s}, found {time_s}"));
         }
-        let rescuees = ["total", "hard", "easy"].map(|which| self.number(&format!("rescuees_{which}")));
-        if let [Ok(Some(total)), Ok(Some(hard)), Ok(Some(easy))] = rescuees
+        let parts = ["rescuees_hard", "rescuees_easy"].map(|name| self.number(name));
+        if let ([Ok(Some(hard)), Ok(Some(easy))], Some(total)) = (parts, total)
             && (total - hard - easy).abs() > 1e-6
         {
             problems.push(format!(
@@ -204,10 +209,18 @@ mod tests {
         assert!((misfit(100.0, 0.0)[1] - 20_f64.ln().powi(2)).abs() < 1e-12, "no spread at all is finite");
     }
 
+    fn papers() -> Scenario {
+        Scenario::load(&scenarios().join("paper.ron")).unwrap().0
+    }
+
+    fn scenarios() -> std::path::PathBuf {
+        Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios")
+    }
+
     #[test]
     fn the_authors_table_is_read() {
-        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/reference/dis_trials.csv");
-        let target = Target::load(&path, 600.0).unwrap();
+        let path = scenarios().join("reference/dis_trials.csv");
+        let target = Target::load(&path, &papers()).unwrap();
         assert_eq!((target.trials, target.quantities.len()), (10, 7));
         // numpy: mean and std(ddof=1) of rescuees_hard
         assert!((target.spreads[0].mean - 52.8).abs() < 1e-12);
@@ -219,7 +232,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("target.csv");
         std::fs::write(&path, "method,rounds\nDIS,6\nRNE,7\n").unwrap();
-        let error = Target::load(&path, 600.0).err().unwrap().to_string();
+        let error = Target::load(&path, &papers()).err().unwrap().to_string();
         assert!(error.contains(":3: method must be DIS") && error.contains("\"RNE\""), "{error}");
     }
 }

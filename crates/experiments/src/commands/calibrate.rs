@@ -47,7 +47,7 @@ pub(crate) struct Arguments {
     /// Set a field that is not free; may stand several times
     #[arg(long, value_name = "PATH=VALUE")]
     set: Vec<String>,
-    /// Least number of candidates to evaluate, the start among them; whole generations are
+    /// Candidates to ask for, the start among them; the last generation is finished, and there are fewer when nothing gets better
     #[arg(long, default_value_t = 400, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     evaluations: u32,
     /// Trials of a candidate
@@ -156,7 +156,7 @@ impl Arguments {
         if let Some((path, _)) = settings.iter().find(|(path, _)| free.iter().any(|free| free.is_of(path))) {
             return Err(Failure::input(format!("--set: {path} is free")));
         }
-        let target = Target::load(&self.target, base.duration_s)?;
+        let target = Target::load(&self.target, &base)?;
         let (trials, first_seed, seed, first_step) =
             (self.trials, self.first_seed, self.seed, self.first_step);
         let calibration = Calibration { text, base, free, target, trials, first_seed, seed, first_step };

@@ -7,7 +7,8 @@ use clap::Args;
 use serde::Serialize;
 
 use super::SCHEMA_VERSION;
-use crate::comparison::{CONFIDENCE, Comparison, LEVEL, compare, limit_of_correction, test_in_words};
+use crate::comparison::{CONFIDENCE, Choice, Comparison, LEVEL, compare, limit_of_correction, test_in_words};
+use crate::experiment::split_list;
 use crate::failure::Failure;
 use crate::metric::chosen;
 use crate::stats::bootstrap::resamples;
@@ -24,6 +25,7 @@ would be needed for 80 % power, and one sentence. Choose metrics before looking:
 Examples:
   usar compare results/paper
   usar compare results/paper --metric rescuees.hard --metric rescuees.easy --baseline DIS
+  usar compare results/paper --policies RNE,ENG
   usar compare results/paper --metric all --json")]
 pub(crate) struct Arguments {
     /// Folder of a sweep
@@ -34,6 +36,9 @@ pub(crate) struct Arguments {
     /// Compare each policy with this one only
     #[arg(long)]
     baseline: Option<String>,
+    /// Compare these policies only, by their labels, separated by commas
+    #[arg(long)]
+    policies: Option<String>,
     /// Print one JSON object
     #[arg(long)]
     json: bool,
@@ -53,7 +58,9 @@ struct Output<'a> {
 impl Arguments {
     pub(crate) fn execute(&self, out: &mut dyn Write) -> Result<(), Failure> {
         let folder = Folder::read(&self.folder)?;
-        let comparisons = compare(&folder, &chosen(&self.metric)?, self.baseline.as_deref())?;
+        let policies = self.policies.as_deref().map(split_list);
+        let choice = Choice { baseline: self.baseline.as_deref(), policies: policies.as_deref() };
+        let comparisons = compare(&folder, &chosen(&self.metric)?, choice)?;
         let experiment = folder.experiment();
         if self.json {
             let output = Output {

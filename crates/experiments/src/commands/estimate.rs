@@ -1,5 +1,6 @@
 //! `usar estimate`: what a sweep would take, from a short calibration run.
 
+use std::collections::BTreeSet;
 use std::io::Write;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -15,13 +16,16 @@ use crate::failure::Failure;
 use crate::sweep::folder::{Folder, Opening};
 use crate::sweep::{Outcome, TrialKey};
 
-/// Trials that are looked for at least. Policies that decide alike share theirs, so that only all policies of a seed show what a seed takes.
-const LEAST_TRIALS: usize = 12;
+/// About how many trials are measured, in whole seeds: policies that decide alike share theirs, so that only all policies of a seed show what it takes.
+const TRIALS: usize = 24;
+
+/// Places that this is added to, again and again, are spread without a pattern that a grid of cases could have as well.
+const GOLDEN_RATIO: f64 = 0.618_033_988_749_895;
 
 /// How many trials, how long, and how much disk a sweep takes, from a short calibration run
 #[derive(Debug, Args)]
 #[command(after_help = "\
-Runs all policies on one or a few seeds, spread over the sweep's cases, one after the other, and throws the trials away.
+Runs all policies on one or a few seeds of one or a few of the sweep's cases (about 24 trials, or all policies once), and throws the trials away.
 
 Examples:
   usar estimate scenarios/paper.ron --trials 1000
@@ -107,14 +111,16 @@ impl Arguments {
     }
 }
 
-/// All policies on a few of the cases and seeds, evenly spread.
+/// All policies on a few of the cases and seeds, spread over all.
 fn sample(experiment: &Experiment) -> Vec<TrialKey> {
     let (policies, trials) = (experiment.policies.len(), experiment.trials as usize);
     let count = experiment.cases.len() * trials;
-    let wanted = LEAST_TRIALS.div_ceil(policies).min(count);
-    let chosen = (0..wanted).map(|i| i * count / wanted);
+    let wanted = (TRIALS / policies).clamp(1, count);
+    let chosen = (0..wanted).map(|i| ((0.5 + i as f64 * GOLDEN_RATIO).fract() * count as f64) as usize);
+    let chosen: BTreeSet<usize> = chosen.collect();
     let place = |index: usize| (index / trials, (index % trials + 1) as u32);
     chosen
+        .into_iter()
         .map(place)
         .flat_map(|(case, trial)| (0..policies).map(move |policy| experiment.key((case, policy, trial))))
         .collect()

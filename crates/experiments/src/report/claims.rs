@@ -75,12 +75,14 @@ struct Shown {
     title: String,
     header: Vec<String>,
     rows: Vec<Row>,
+    /// Whether rows are claims and their comparisons.
+    has_parts: bool,
     note: String,
 }
 
 struct Row {
-    /// Not one of its comparisons, which are indented.
-    is_claim: bool,
+    /// One of the comparisons of the claim above, which are indented.
+    is_part: bool,
     cells: Vec<String>,
 }
 
@@ -89,14 +91,15 @@ impl Shown {
         let text =
             |row: &comfy_table::Row| row.cell_iter().map(|cell| cell.content().trim().to_owned()).collect();
         let row = |row: &comfy_table::Row| Row {
-            is_claim: row.cell_iter().next().is_some_and(|first| !first.content().starts_with(' ')),
+            is_part: row.cell_iter().next().is_some_and(|first| first.content().starts_with(' ')),
             cells: text(row),
         };
         let table = section.table.as_ref();
         let header: Vec<String> = table.and_then(Table::header).map(text).unwrap_or_default();
         let mut rows: Vec<Row> = table.map(|table| table.row_iter().map(row).collect()).unwrap_or_default();
         rows.iter_mut().for_each(|row| row.cells.resize(header.len(), String::new()));
-        Self { title: section.title.clone(), header, rows, note: section.note.clone() }
+        let has_parts = rows.iter().any(|row| row.is_part);
+        Self { title: section.title.clone(), header, rows, has_parts, note: section.note.clone() }
     }
 }
 

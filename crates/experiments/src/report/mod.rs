@@ -10,7 +10,9 @@ use std::path::PathBuf;
 
 use askama::Template;
 
-use crate::comparison::{Comparison, compare, digits, limit_of_correction, short, short_p, test_in_words};
+use crate::comparison::{
+    Choice, Comparison, compare, digits, limit_of_correction, short, short_p, test_in_words,
+};
 use crate::experiment::{Axis, Seeds};
 use crate::failure::Failure;
 use crate::metric::chosen;
@@ -70,7 +72,7 @@ struct Row {
 /// The folder cannot be written to, or its journal cannot be read.
 pub fn write(folder: &mut Folder, case: usize) -> Result<PathBuf, Failure> {
     let policies = folder.experiment().policies.len();
-    let all = if policies > 1 { compare(folder, &chosen(&[])?, None)? } else { Vec::new() };
+    let all = if policies > 1 { compare(folder, &chosen(&[])?, Choice::default())? } else { Vec::new() };
     let here: Vec<&Comparison> = all.iter().filter(|comparison| comparison.case == case + 1).collect();
     let figures = figures(folder, case, &here)?;
     let page = page(folder, case, &here, &all, &figures).render().map_err(Failure::run)?;

@@ -9,10 +9,14 @@ use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 use statrs::distribution::{ContinuousCDF, Normal, StudentsT};
 
-/// Resamples of an interval; a tenfold where there are few pairs, which take little time and ask for extreme quantiles.
-const RESAMPLES: [usize; 2] = [10_000, 100_000];
-/// Draws that an interval may take for the more of them, and at all.
-const DRAWS: [usize; 2] = [20_000_000, 2_000_000];
+/// Resamples of an interval.
+const RESAMPLES: usize = 10_000;
+/// Those of few pairs, which take little time and ask for extreme quantiles.
+const RESAMPLES_OF_FEW: usize = 100_000;
+/// Draws that go into more than [`RESAMPLES`].
+const DRAWS_OF_FEW: usize = 2_000_000;
+/// Draws beyond which there are fewer than [`RESAMPLES`].
+const MOST_DRAWS: usize = 20_000_000;
 /// The least resamples of an interval.
 const LEAST_RESAMPLES: usize = 2_000;
 /// The same draws for every interval: the same differences have the same interval wherever they stand, and its mirror image with the sign turned.
@@ -21,9 +25,9 @@ const SEED: u64 = 1;
 /// Resamples for so many pairs: 100,000 to 20 pairs, then fewer, 10,000 from 200 to 2,000 pairs, beyond down to 2,000.
 #[must_use]
 pub fn resamples(pairs: usize) -> usize {
-    let within = |draws: usize| draws / pairs.max(1);
-    let few = within(DRAWS[1]).min(RESAMPLES[1]);
-    few.max(within(DRAWS[0]).clamp(LEAST_RESAMPLES, RESAMPLES[0]))
+    let pairs = pairs.max(1);
+    let of_few = (DRAWS_OF_FEW / pairs).min(RESAMPLES_OF_FEW);
+    of_few.max((MOST_DRAWS / pairs).clamp(LEAST_RESAMPLES, RESAMPLES))
 }
 
 /// The interval of the mean at this confidence that all results have: bias-corrected and accelerated, widened for small samples. `None` for fewer than two values.

@@ -70,9 +70,7 @@ pub(super) fn check_is_ours(path: &Path) -> Result<(), Failure> {
     if !path.is_dir() {
         return Err(Failure::input(format!("--out: {} is a file, not a folder", path.display())));
     }
-    let manifest = fs::read(path.join(MANIFEST)).unwrap_or_default();
-    let manifest: serde_json::Value = serde_json::from_slice(&manifest).unwrap_or_default();
-    if manifest["program"] == "usar" || journal::is_one(path) {
+    if is_sweeps(path) || journal::is_one(path) {
         return Ok(());
     }
     let entries = fs::read_dir(path)
@@ -206,7 +204,9 @@ pub fn experiment_in(path: &Path) -> Result<(Experiment, Manifest), Failure> {
 /// Whether a folder is that of a sweep, whatever program made it.
 #[must_use]
 pub fn is_sweeps(path: &Path) -> bool {
-    path.join(MANIFEST).is_file()
+    let manifest = fs::read(path.join(MANIFEST)).unwrap_or_default();
+    let manifest: serde_json::Value = serde_json::from_slice(&manifest).unwrap_or_default();
+    manifest["program"] == "usar"
 }
 
 /// The folders of sweeps that are in a folder, by name.

@@ -24,9 +24,17 @@ pub fn renewed(page: &str, mut run: impl FnMut(&str) -> Option<String>) -> Strin
     new
 }
 
+/// The words of a command, of which some stand in single quotes.
+fn words(command: &str) -> Vec<&str> {
+    let parts = command.split('\'').enumerate();
+    parts
+        .flat_map(|(i, part)| if i % 2 == 1 { vec![part] } else { part.split_whitespace().collect() })
+        .collect()
+}
+
 /// What `usar` prints when it is run in this folder.
 pub fn answer(usar: &Path, folder: &Path, arguments: &str) -> String {
-    let output = Command::new(usar).args(arguments.split_whitespace()).current_dir(folder).output();
+    let output = Command::new(usar).args(words(arguments)).current_dir(folder).output();
     let output = output.expect("usar runs");
     assert!(output.status.success(), "usar {arguments}: {}", String::from_utf8_lossy(&output.stderr));
     String::from_utf8(output.stdout).expect("text")
