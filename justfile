@@ -38,7 +38,7 @@ pages *pages:
     cargo build --release --package experiments
     cargo run --release --package experiments --example pages -- {{pages}}
 
-# The results that the pages in docs/ are made of: about an hour and a half on two cores, 5 GB of disk; goes on where it was broken off
+# The results that the pages in docs/ are made of: over an hour on two cores, 5 GB of disk; goes on where it was broken off
 results:
     cargo build --release --package experiments
     target/release/usar sweep scenarios/paper.ron

@@ -310,14 +310,8 @@ fn a_log_is_held_by_one_process() {
     }));
 }
 
-/// The claims over as many trials as the paper has; and the pages in `docs/` with the numbers of these trials.
-#[test]
-fn the_papers_experiment_and_the_pages_that_tell_of_it() {
-    let folder = tempfile::tempdir().unwrap();
-    let arguments = ["reproduce", "--trials", "10", "--out", "results/reproduction", "--quiet"];
-    let first = succeeds(&usar(folder.path(), &arguments));
-    assert_eq!(succeeds(&usar(folder.path(), &arguments)), first, "it is all there already");
-    let results = folder.path().join("results/reproduction");
+/// What `usar reproduce` writes.
+fn has_the_files(results: &Path) {
     let authors = read(&root().join("scenarios/reference/dis_trials.csv"));
     for scenario in ["paper", "paper-calibrated"] {
         let columns = read(&results.join(format!("{scenario}.csv")));
@@ -336,11 +330,50 @@ fn the_papers_experiment_and_the_pages_that_tell_of_it() {
         rows("examples.csv").iter().map(|row| row["verdict"].as_str()).collect::<Vec<_>>(),
         ["holds", "holds", "does not hold"]
     );
-    for row in rows("claims.csv").iter().filter(|row| !row["low"].is_empty()) {
+    let claims = rows("claims.csv");
+    assert_eq!(claims.len(), 2 * 2 * 30);
+    for row in &claims {
         let [low, high, shared_low, shared_high] =
             ["low", "high", "shared_low", "shared_high"].map(|name| row[name].parse::<f64>().unwrap());
         assert!(shared_low <= low && low <= high && high <= shared_high, "{row:?}");
     }
+}
+
+/// What `usar reproduce` prints of ten trials stands in its page.
+fn agrees_with_its_page(first: &str) {
+    // The verdicts over ten pairs are those of the page, and so is what stands under "first 10".
+    let page = read(&root().join("docs/reproduction.md"));
+    let cells = |line: &str| -> Vec<String> {
+        line.trim_matches('│').split('┆').map(|cell| cell.trim().to_owned()).collect()
+    };
+    let comparisons = |text: &str| -> Vec<[String; 2]> {
+        let rows = text.lines().filter(|line| line.starts_with('│')).map(cells);
+        let rows = rows.filter(|row| row.len() == 8 && row[7].ends_with(')'));
+        rows.map(|mut row| [row.remove(0), row.remove(6)]).collect()
+    };
+    assert_eq!(comparisons(first).len(), 2 * 30);
+    assert_eq!(comparisons(first), comparisons(&page), "`just pages` makes it anew");
+    let verdicts = |text: &str| -> Vec<Vec<String>> {
+        let table = text.split("\nVerdicts\n").nth(1).unwrap_or_default();
+        let rows = table.lines().filter(|line| line.starts_with('│')).skip(1);
+        rows.map(cells).collect()
+    };
+    let (here, there) = (verdicts(first), verdicts(&page));
+    assert!(here.len() >= 10 && here.len() == there.len());
+    for (here, there) in here.iter().zip(&there) {
+        assert_eq!([&here[0], &here[1], &here[3]], [&there[0], &there[1], &there[3]]);
+    }
+}
+
+/// The claims over as many trials as the paper has; and the pages in `docs/` with the numbers of these trials.
+#[test]
+fn the_papers_experiment_and_the_pages_that_tell_of_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let arguments = ["reproduce", "--trials", "10", "--out", "results/reproduction", "--quiet"];
+    let first = succeeds(&usar(folder.path(), &arguments));
+    assert_eq!(succeeds(&usar(folder.path(), &arguments)), first, "it is all there already");
+    let results = folder.path().join("results/reproduction");
+    has_the_files(&results);
     let report = read(&results.join("report.html"));
     assert_eq!(report.matches("<tr class=\"claim\">").count(), 2 * 10, "the claims on both scenarios");
     assert!(report.contains("Not said: it takes 50 trials, there are 10."));
@@ -359,28 +392,7 @@ fn the_papers_experiment_and_the_pages_that_tell_of_it() {
     example("Example 2", "┆ holds");
     example("Example 3", "┆ does not hold");
 
-    // The verdicts over ten pairs are those of the page, and so is what stands under "first 10".
-    let page = read(&root().join("docs/reproduction.md"));
-    let cells = |line: &str| -> Vec<String> {
-        line.trim_matches('│').split('┆').map(|cell| cell.trim().to_owned()).collect()
-    };
-    let comparisons = |text: &str| -> Vec<[String; 2]> {
-        let rows = text.lines().filter(|line| line.starts_with('│')).map(cells);
-        let rows = rows.filter(|row| row.len() == 8 && row[7].ends_with(')'));
-        rows.map(|mut row| [row.remove(0), row.remove(6)]).collect()
-    };
-    assert_eq!(comparisons(&first).len(), 2 * 30);
-    assert_eq!(comparisons(&first), comparisons(&page), "`just pages` makes it anew");
-    let verdicts = |text: &str| -> Vec<Vec<String>> {
-        let table = text.split("\nVerdicts\n").nth(1).unwrap_or_default();
-        let rows = table.lines().filter(|line| line.starts_with('│')).skip(1);
-        rows.map(cells).collect()
-    };
-    let (here, there) = (verdicts(&first), verdicts(&page));
-    assert!(here.len() >= 10 && here.len() == there.len());
-    for (here, there) in here.iter().zip(&there) {
-        assert_eq!([&here[0], &here[1], &here[3]], [&there[0], &there[1], &there[3]]);
-    }
+    agrees_with_its_page(&first);
 
     // The page that tells why has the numbers of the paper's ten trials.
     let page = read(&root().join("docs/why.md"));

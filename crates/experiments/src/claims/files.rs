@@ -4,9 +4,8 @@ use std::path::Path;
 
 use serde::Serialize;
 
-use super::{CLAIMS, Example, Judged, PAPERS_TRIALS, least_difference};
+use super::{CLAIMS, Example, Judged, PAPERS_TRIALS};
 use crate::failure::Failure;
-use crate::stats::Moments;
 use crate::sweep::NewFile;
 use crate::sweep::folder::Folder;
 
@@ -84,8 +83,6 @@ pub fn write_power(out: &Path, judged: &[Judged]) -> Result<(), Failure> {
     for scenario in judged {
         for ((claim, finding), power) in CLAIMS.iter().zip(&scenario.of_all).zip(&scenario.powers) {
             for (part, found) in claim.parts.iter().zip(&finding.parts) {
-                let values: Vec<f64> = found.differences.iter().map(|(_, difference)| *difference).collect();
-                let sd = Moments::of(&values).sd;
                 rows.push(PowerRow {
                     scenario: &scenario.scenario,
                     claim: claim.name,
@@ -94,11 +91,11 @@ pub fn write_power(out: &Path, judged: &[Judged]) -> Result<(), Failure> {
                     holds_at_10: power.map(|power| power.of_few.holds),
                     does_not_hold_at_10: power.map(|power| power.of_few.does_not_hold),
                     comparison: part.words(),
-                    n: values.len(),
+                    n: found.differences.len(),
                     difference: found.difference,
-                    sd,
+                    sd: found.sd(),
                     pairs_needed: found.pairs_needed,
-                    least_difference_at_10: sd.and_then(|sd| least_difference(sd, PAPERS_TRIALS as usize)),
+                    least_difference_at_10: found.least_found(),
                 });
             }
         }

@@ -19,8 +19,8 @@ use serde::Serialize;
 pub use examples::{Example, examples};
 pub use files::{write_authors_columns, write_claims, write_examples, write_power};
 pub use papers::CLAIMS;
-use power::TIMES;
-pub use power::{Power, Shares, least_difference, power};
+pub use power::{Power, Shares, power};
+use power::{TIMES, least_difference};
 
 use crate::comparison::CONFIDENCE;
 use crate::failure::Failure;
@@ -143,6 +143,21 @@ pub struct PartFinding {
     pub shared_interval: Option<[f64; 2]>,
     /// Pairs that a paired t test would need for 80 % power, were the difference what was observed.
     pub pairs_needed: Option<u64>,
+}
+
+impl PartFinding {
+    /// Standard deviation of the differences.
+    #[must_use]
+    pub fn sd(&self) -> Option<f64> {
+        let values: Vec<f64> = self.differences.iter().map(|(_, difference)| *difference).collect();
+        Moments::of(&values).sd
+    }
+
+    /// The difference that 80 % of experiments of as many trials as the paper's find.
+    #[must_use]
+    pub fn least_found(&self) -> Option<f64> {
+        least_difference(self.sd()?, PAPERS_TRIALS as usize)
+    }
 }
 
 /// What trials say of a claim.

@@ -35,12 +35,7 @@ pub(super) fn gather(folder: &mut Folder, case: usize) -> Result<Vec<Gathered>, 
     let mut all = Vec::new();
     for policy in 0..policies {
         let mut gathered = Gathered::default();
-        let places: Vec<_> = folder
-            .results()
-            .range((case, policy, 0)..=(case, policy, u32::MAX))
-            .map(|(place, _)| *place)
-            .collect();
-        for place in places {
+        for place in folder.places(case, policy) {
             if let Ok(trial) = folder.outcome(place)?.result {
                 gathered.add(place.2, &trial, &times);
             }

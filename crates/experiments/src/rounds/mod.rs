@@ -53,13 +53,8 @@ pub fn rounds_of(number: u32, trial: &Trial) -> Vec<Round> {
 /// # Errors
 /// The journal cannot be read.
 pub fn rounds_in(folder: &mut Folder, case: usize, policy: usize) -> Result<Vec<Round>, Failure> {
-    let places: Vec<_> = folder
-        .results()
-        .range((case, policy, 0)..=(case, policy, u32::MAX))
-        .map(|(place, _)| *place)
-        .collect();
     let mut rounds = Vec::new();
-    for place in places {
+    for place in folder.places(case, policy) {
         if let Ok(trial) = folder.outcome(place)?.result {
             rounds.extend(rounds_of(place.2, &trial));
         }

@@ -217,6 +217,12 @@ impl Folder {
         &self.results
     }
 
+    /// The finished trials of one case and policy, in their order.
+    #[must_use]
+    pub fn places(&self, case: usize, policy: usize) -> Vec<Place> {
+        self.results.range((case, policy, 0)..=(case, policy, u32::MAX)).map(|(place, _)| *place).collect()
+    }
+
     /// Whether a trial is finished.
     #[must_use]
     pub fn has(&self, key: &TrialKey) -> bool {

@@ -3,9 +3,8 @@
 use comfy_table::{Cell, Table};
 
 use super::{headed, right};
-use crate::claims::{CLAIMS, Example, Judged, PAPERS_TRIALS, PartFinding, Shares, least_difference};
+use crate::claims::{CLAIMS, Example, Judged, PAPERS_TRIALS, PartFinding, Shares};
 use crate::comparison::{digits, short};
-use crate::stats::Moments;
 
 /// What a scenario's trials say of each claim: a row for each of its comparisons.
 pub(crate) fn claims_table(judged: &Judged) -> Table {
@@ -87,8 +86,6 @@ pub(crate) fn power_table(judged: &Judged) -> Option<Table> {
             share((1.0 - holds - does_not_hold).max(0.0)),
         ]);
         for (part, found) in claim.parts.iter().zip(&finding.parts) {
-            let values: Vec<f64> = found.differences.iter().map(|(_, difference)| *difference).collect();
-            let least = Moments::of(&values).sd.and_then(|sd| least_difference(sd, PAPERS_TRIALS as usize));
             table.add_row([
                 Cell::new(format!("  {}", part.words())),
                 Cell::new(""),
@@ -97,7 +94,7 @@ pub(crate) fn power_table(judged: &Judged) -> Option<Table> {
                 Cell::new(""),
                 Cell::new(""),
                 right(&found.difference.map_or("-".to_owned(), short)),
-                right(&least.map_or("-".to_owned(), short)),
+                right(&found.least_found().map_or("-".to_owned(), short)),
             ]);
         }
     }
