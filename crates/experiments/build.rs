@@ -26,7 +26,7 @@ fn main() {
 /// A hash of the manifests, the lock file and all sources of the crates, by path and content.
 fn source_hash(root: &Path) -> u64 {
     let mut files = vec![root.join("Cargo.lock"), root.join("Cargo.toml")];
-    for name in ["rne-core", "frozen-physics", "usar-sim", "experiments"] {
+    for name in ["ron-fields", "rne-core", "frozen-physics", "usar-sim", "experiments"] {
         files.push(root.join("crates").join(name).join("Cargo.toml"));
         collect(&root.join("crates").join(name).join("src"), &mut files);
     }

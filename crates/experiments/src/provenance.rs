@@ -1,7 +1,7 @@
 //! Where results come from: enough to make them again, and to refuse to mix them with others.
 
+use ron_fields::Fields;
 use serde::{Deserialize, Serialize};
-use usar_sim::scenario::Fields;
 use xxhash_rust::xxh3::xxh3_128;
 
 use crate::experiment::{Axis, Experiment, Seeds, Shard};

@@ -2,7 +2,8 @@
 
 use std::fmt;
 
-use usar_sim::scenario::{Fields, ScenarioFile};
+use ron_fields::Fields;
+use usar_sim::scenario::ScenarioFile;
 
 /// Significant digits of a candidate value, so that the log and the calibrated scenario hold what was run, to the bit.
 const DIGITS: usize = 4;
@@ -174,7 +175,7 @@ fn not_there(path: &str, known: &Fields) -> String {
     } else if known.value(&first).is_some() {
         format!("{path}: is not a number but has parts: {}", known.inside(&first).join(", "))
     } else {
-        known.unknown(&first).to_string()
+        known.unknown(&first, "a scenario").to_string()
     }
 }
 

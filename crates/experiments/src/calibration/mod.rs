@@ -17,7 +17,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use cmaes::{CMAESOptions, DVector};
 use rayon::prelude::*;
 use rne_core::{GroupingPolicy, policy_named};
-use usar_sim::scenario::{Fields, Scenario, ScenarioFile};
+use ron_fields::{Fields, with_values};
+use usar_sim::scenario::{Scenario, ScenarioFile};
 
 pub use fit::{Fit, write_fit};
 pub use free::Free;
@@ -97,7 +98,7 @@ impl Calibration {
         if !self.base.name.ends_with(SUFFIX) {
             settings.push(("name".to_owned(), format!("{:?}", format!("{}{SUFFIX}", self.base.name))));
         }
-        with_written(&self.text, &settings)
+        with_values(&self.text, &settings).map_err(|error| error.to_string())
     }
 
     /// The same with a first line that tells what was fitted.
@@ -265,57 +266,4 @@ impl Calibration {
 
 fn the_policy() -> Result<Box<dyn GroupingPolicy>, String> {
     policy_named(POLICY, &rne_core::RneOptions::default()).map_err(|error| error.to_string())
-}
-
-/// The text of a scenario with the values of these fields replaced.
-///
-/// # Errors
-/// A field that is not written in it.
-pub fn with_written(text: &str, settings: &[(String, String)]) -> Result<String, String> {
-    let fields = Fields::of(text);
-    let place = |(path, value): &(String, String)| {
-        let place = fields.value(path).ok_or_else(|| {
-            format!(
-                "{path}: is not written in the scenario; write it there, so that its value can take its place"
-            )
-        })?;
-        Ok((place, value.clone()))
-    };
-    let mut places = settings.iter().map(place).collect::<Result<Vec<_>, String>>()?;
-    places.sort_by_key(|(place, _)| place.start);
-    if let Some(pair) = places.windows(2).find(|pair| pair[0].0.end > pair[1].0.start) {
-        let within = |(path, _): &&(String, String)| fields.value(path).as_ref() == Some(&pair[1].0);
-        let path = settings.iter().find(within).map_or("", |(path, _)| path.as_str());
-        return Err(format!("{path}: is set twice, by itself or as a part of another field"));
-    }
-    let mut text = text.to_owned();
-    for (place, value) in places.into_iter().rev() {
-        let old = &text[place.clone()];
-        let end = place.start + old.trim_end().len();
-        let start = place.end - old.trim_start().len();
-        text.replace_range(start..end, value.trim());
-    }
-    Ok(text)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn values_take_their_places_and_comments_stay() {
-        let text = "(\n    a: 1.0, // one\n    b: (c: [2.0, 3.0]), // two\n)";
-        let set = [("b.c[1]".to_owned(), "9.5".to_owned()), ("a".to_owned(), "0.25".to_owned())];
-        let expected = "(\n    a: 0.25, // one\n    b: (c: [2.0, 9.5]), // two\n)";
-        assert_eq!(with_written(text, &set).unwrap(), expected);
-        let twice = [("a".to_owned(), "10.25".to_owned()), ("a".to_owned(), "12.125".to_owned())];
-        assert!(with_written(text, &twice).unwrap_err().starts_with("a: is set twice"));
-        let within = [("b".to_owned(), "(c: [])".to_owned()), ("b.c[0]".to_owned(), "1.0".to_owned())];
-        assert!(with_written(text, &within).unwrap_err().starts_with("b.c[0]: is set twice"));
-        assert!(
-            with_written(text, &[("d".to_owned(), "1".to_owned())])
-                .unwrap_err()
-                .starts_with("d: is not written")
-        );
-    }
 }

@@ -5,10 +5,11 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use rayon::prelude::*;
-use usar_sim::scenario::{Fields, Scenario};
+use ron_fields::{Fields, with_values};
+use usar_sim::scenario::Scenario;
 
 use super::{STOP, default_jobs, load, progress_bar, stop_on_ctrl_c};
-use crate::calibration::{Calibration, Fit, Free, Log, POLICY, Spread, Target, with_written, write_fit};
+use crate::calibration::{Calibration, Fit, Free, Log, POLICY, Spread, Target, write_fit};
 use crate::comparison::short;
 use crate::failure::Failure;
 use crate::sweep::NewFile;
@@ -142,12 +143,12 @@ impl Arguments {
                 pair.ok_or_else(|| Failure::input(format!("--set: must be path=value, found {entry:?}")))?;
             let path = path.trim();
             if known.value(path).is_none() {
-                return Err(Failure::input(format!("--set: {}", known.unknown(path))));
+                return Err(Failure::input(format!("--set: {}", known.unknown(path, "a scenario"))));
             }
             settings.push((path.to_owned(), value.to_owned()));
         }
         let text =
-            with_written(&text, &settings).map_err(|error| Failure::input(format!("--set: {error}")))?;
+            with_values(&text, &settings).map_err(|error| Failure::input(format!("--set: {error}")))?;
         let base = Scenario::parse(&text, &self.file).map_err(Failure::input)?;
         let fields = Fields::of(&text);
         let parse = |spec: &String| Free::parse(spec, &fields, &known);

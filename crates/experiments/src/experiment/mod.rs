@@ -11,7 +11,8 @@ use std::sync::atomic::AtomicBool;
 use usar_sim::layout::Layout;
 use xxhash_rust::xxh3::xxh3_128;
 
-use usar_sim::scenario::{Fields, SampledCounts, Scenario, ScenarioFile, read_text};
+use ron_fields::Fields;
+use usar_sim::scenario::{SampledCounts, Scenario, ScenarioFile, read_text};
 
 pub use grid::{Axis, Case};
 pub use policy::{PolicySpec, split_list};

@@ -3,7 +3,8 @@
 use std::sync::Arc;
 
 use rne_core::{GroupingPolicy, policy_named, policy_names};
-use usar_sim::scenario::{Fields, Scenario, ScenarioFile};
+use ron_fields::Fields;
+use usar_sim::scenario::{Scenario, ScenarioFile};
 
 /// A policy with its options.
 #[derive(Debug, Clone, PartialEq, Eq)]

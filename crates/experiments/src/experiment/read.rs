@@ -2,7 +2,8 @@
 
 use std::path::Path;
 
-use usar_sim::scenario::{Fields, Problem, Scenario, ScenarioFile, parse_ron};
+use ron_fields::Fields;
+use usar_sim::scenario::{Problem, Scenario, ScenarioFile, parse_ron};
 
 use super::file::{Map, SweepFile};
 use super::{Axis, Parts, Program, Seeds};

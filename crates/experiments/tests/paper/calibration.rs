@@ -3,7 +3,8 @@
 use std::sync::atomic::AtomicBool;
 
 use experiments::calibration::{Calibration, Free, Log, Spread, Target};
-use usar_sim::scenario::{Fields, Scenario};
+use ron_fields::Fields;
+use usar_sim::scenario::Scenario;
 
 use super::{place, read, refused, root, succeeds, usar};
 

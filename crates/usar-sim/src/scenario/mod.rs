@@ -3,7 +3,6 @@
 mod defaults;
 mod error;
 mod file;
-mod locate;
 mod set;
 mod validate;
 
@@ -11,12 +10,11 @@ use std::ops::Deref;
 use std::path::Path;
 
 use ron::extensions::Extensions;
+use ron_fields::Fields;
 use serde::de::DeserializeOwned;
 
 pub use error::{LayoutError, Problem, Problems, ScenarioError};
 pub use file::*;
-pub use locate::Fields;
-pub use set::SetError;
 
 /// Greatest size of a scenario file, in bytes.
 const MAX_FILE_BYTES: u64 = 4 << 20;

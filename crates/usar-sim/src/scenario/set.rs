@@ -1,33 +1,8 @@
 //! Setting one field of a scenario by its path.
 
-use thiserror::Error;
+use ron_fields::SetError;
 
-use super::{Fields, ScenarioFile, ron_options};
-
-/// A field that cannot be set.
-#[derive(Debug, Clone, PartialEq, Error)]
-pub enum SetError {
-    /// There is no such field.
-    #[error("{path}: no such field; {within} has {known}")]
-    Unknown {
-        /// The path that was asked for.
-        path: String,
-        /// What is there of it, in words.
-        within: String,
-        /// The fields there.
-        known: String,
-    },
-    /// The value does not fit the field.
-    #[error("{path}: {reason}, found {found}")]
-    Malformed {
-        /// The path.
-        path: String,
-        /// Why it does not fit.
-        reason: String,
-        /// The value as given.
-        found: String,
-    },
-}
+use super::ScenarioFile;
 
 impl ScenarioFile {
     /// Sets the field at a path such as `costs.energy.per_step` or `tasks.hard.grid[0]` to a value in RON. Rules are not checked: that
@@ -36,54 +11,15 @@ impl ScenarioFile {
     /// # Errors
     /// There is no such field, or the value is not of its type.
     pub fn set(&mut self, path: &str, value: &str) -> Result<(), SetError> {
-        let malformed = |reason: String| SetError::Malformed {
-            path: path.to_owned(),
-            reason,
-            found: value.trim().to_owned(),
-        };
-        let text = ron::to_string(self).map_err(|error| malformed(error.to_string()))?;
-        let fields = Fields::of(&text);
-        let place = fields.value(path).ok_or_else(|| fields.unknown(path))?;
-        if !is_one_value(value) {
-            return Err(malformed("must be one value in RON".into()));
-        }
-        let text = [&text[..place.start], value, &text[place.end..]].concat();
-        *self = ron_options().from_str(&text).map_err(|error| malformed(error.code.to_string()))?;
+        *self = ron_fields::set(self, path, value, "a scenario")?;
         Ok(())
-    }
-}
-
-/// Whether a text is one value: whatever closes a bracket or opens a comment would change more than one field.
-fn is_one_value(text: &str) -> bool {
-    let wrapped = format!("[{text}]");
-    let value = Fields::of(&wrapped).value("[0]");
-    value.is_some_and(|value| wrapped[value].trim() == text.trim())
-}
-
-impl Fields {
-    /// What is to be said of a path that is none of these fields.
-    #[must_use]
-    pub fn unknown(&self, path: &str) -> SetError {
-        let mut within = path;
-        let known = loop {
-            within = within.rfind(['.', '[']).map_or("", |end| &within[..end]);
-            if let Some(count) = self.entries(within).filter(|_| path[within.len()..].starts_with('[')) {
-                break format!("{count} entries, from [0] on");
-            }
-            let known = self.inside(within);
-            if !known.is_empty() || within.is_empty() {
-                break known.join(", ");
-            }
-        };
-        let within = if within.is_empty() { "a scenario".to_owned() } else { within.to_owned() };
-        SetError::Unknown { path: path.to_owned(), within, known }
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scenario::DebrisShape;
+    use crate::scenario::{DebrisShape, ron_options};
 
     fn file() -> ScenarioFile {
         let row = "(role: Carrier, count: 2, center: (5, 5), width_m: 2)";

@@ -1,0 +1,176 @@
+//! Setting one field of a value by its path.
+
+use ron::extensions::Extensions;
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+use thiserror::Error;
+
+use crate::Fields;
+
+/// A field that cannot be set.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+pub enum SetError {
+    /// There is no such field.
+    #[error("{path}: no such field; {within} has {known}")]
+    Unknown {
+        /// The path that was asked for.
+        path: String,
+        /// What is there of it, in words.
+        within: String,
+        /// The fields there.
+        known: String,
+    },
+    /// The value does not fit the field.
+    #[error("{path}: {reason}, found {found}")]
+    Malformed {
+        /// The path.
+        path: String,
+        /// Why it does not fit.
+        reason: String,
+        /// The value as given.
+        found: String,
+    },
+}
+
+/// A value with the field at a path such as `costs.energy` or `tasks.hard.grid[0]` set to `new`, in RON. `what` is the words for the whole value
+/// in messages, such as `a scenario`. A field that serde leaves out when it writes the value cannot be set.
+///
+/// # Errors
+/// There is no such field, or the new value is not of its type.
+pub fn set<T: Serialize + DeserializeOwned>(
+    value: &T,
+    path: &str,
+    new: &str,
+    what: &str,
+) -> Result<T, SetError> {
+    let malformed =
+        |reason: String| SetError::Malformed { path: path.to_owned(), reason, found: new.trim().to_owned() };
+    let text = ron::to_string(value).map_err(|error| malformed(error.to_string()))?;
+    let fields = Fields::of(&text);
+    let place = fields.value(path).ok_or_else(|| fields.unknown(path, what))?;
+    if !is_one_value(new) {
+        return Err(malformed("must be one value in RON".into()));
+    }
+    let text = [&text[..place.start], new, &text[place.end..]].concat();
+    options().from_str(&text).map_err(|error| malformed(error.code.to_string()))
+}
+
+fn options() -> ron::Options {
+    ron::Options::default().with_default_extension(Extensions::IMPLICIT_SOME)
+}
+
+/// Whether a text is one value: whatever closes a bracket or opens a comment would change more than one field.
+pub(crate) fn is_one_value(text: &str) -> bool {
+    let wrapped = format!("[{text}]");
+    let value = Fields::of(&wrapped).value("[0]");
+    value.is_some_and(|value| wrapped[value].trim() == text.trim())
+}
+
+#[cfg(test)]
+mod tests {
+    use serde::Deserialize;
+
+    use super::*;
+
+    #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+    struct Mission {
+        duration_s: f64,
+        arena_m: [f64; 2],
+        order: Order,
+        levels: Option<Levels>,
+        tasks: Vec<Task>,
+    }
+
+    #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+    struct Levels {
+        energy: f64,
+    }
+
+    #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+    enum Order {
+        Near,
+        Ring(f64, f64),
+    }
+
+    #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+    struct Task {
+        name: String,
+        grid: [u32; 2],
+        steps: Vec<Step>,
+    }
+
+    #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+    struct Step {
+        name: String,
+        cost: f64,
+    }
+
+    fn mission() -> Mission {
+        let step = |name: &str, cost| Step { name: name.to_owned(), cost };
+        let task = |name: &str, grid| Task {
+            name: name.to_owned(),
+            grid,
+            steps: vec![step("go", 1.0), step("lift", 2.0)],
+        };
+        Mission {
+            duration_s: 60.0,
+            arena_m: [20.0, 20.0],
+            order: Order::Near,
+            levels: None,
+            tasks: vec![task("hard", [3, 4]), task("easy", [1, 1]), task("hard", [7, 8])],
+        }
+    }
+
+    #[test]
+    fn one_field_is_set_and_no_other() {
+        let mut found = mission();
+        for (path, new) in [
+            ("duration_s", " 90 "),
+            ("arena_m[1]", "30"),
+            ("order", "Ring(3, 1)"),
+            ("levels", "(energy: 50)"),
+            ("levels.energy", "55"),
+            ("tasks[1].grid[1]", "2"),
+            ("tasks.hard.grid[0]", "9"),
+            ("tasks.easy.steps.lift.cost", "0.5"),
+        ] {
+            found = set(&found, path, new, "a mission").unwrap();
+        }
+        let mut expected = mission();
+        expected.duration_s = 90.0;
+        expected.arena_m[1] = 30.0;
+        expected.order = Order::Ring(3.0, 1.0);
+        expected.levels = Some(Levels { energy: 55.0 });
+        expected.tasks[1].grid[1] = 2;
+        expected.tasks[0].grid[0] = 9;
+        expected.tasks[1].steps[1].cost = 0.5;
+        assert_eq!(found, expected);
+    }
+
+    #[test]
+    fn an_entry_can_be_named_anew() {
+        let mission = set(&mission(), "tasks.easy.name", "\"light\"", "a mission").unwrap();
+        assert_eq!(mission.tasks[1].name, "light");
+        assert!(set(&mission, "tasks.easy.name", "\"easy\"", "a mission").is_err());
+    }
+
+    #[test]
+    fn what_cannot_be_set_is_named() {
+        let refused =
+            |path: &str, new: &str| set(&mission(), path, new, "a mission").unwrap_err().to_string();
+        for (path, says) in [
+            ("duration", "a mission has duration_s, arena_m, order, levels, tasks"),
+            ("arena_m[2]", "arena_m has 2 entries, from [0] on"),
+            ("tasks.medium", "tasks has hard, easy (or [0] to [2])"),
+            ("tasks.hard.steps.fly.cost", "tasks.hard.steps has go, lift (or [0] to [1])"),
+        ] {
+            assert_eq!(refused(path, "1"), format!("{path}: no such field; {says}"));
+        }
+        assert!(refused("duration_s", "\"long\"").ends_with(", found \"long\""));
+        assert!(refused("order", "Far").starts_with("order: "));
+        for new in ["1, dt_s: 1", "1) //", "1 /* ", "", "(1", "a: 1"] {
+            let error = refused("duration_s", new);
+            assert!(error.starts_with("duration_s: must be one value in RON, found"), "{new}: {error}");
+        }
+    }
+}

@@ -1,0 +1,215 @@
+//! The walk over a text that notes where each field and list entry stands.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use crate::cursor::{Cursor, is_of_name};
+use crate::fields::{Fields, Node, ROOT};
+use crate::path::is_segment;
+
+/// Brackets within brackets that are followed.
+const MAX_DEPTH: usize = 128;
+
+pub(crate) struct Walker<'a> {
+    cursor: Cursor<'a>,
+    nodes: Vec<Node>,
+    index: BTreeMap<Arc<str>, usize>,
+    /// Open brackets.
+    depth: usize,
+}
+
+impl<'a> Walker<'a> {
+    /// Walks a whole text.
+    pub(crate) fn fields(text: &'a str) -> Fields {
+        let nodes = vec![Node::new(Arc::from(""), 1, 0)];
+        let mut walker = Self { cursor: Cursor::new(text), nodes, index: BTreeMap::new(), depth: 0 };
+        walker.cursor.skip_attributes();
+        walker.value(ROOT);
+        Fields { nodes: walker.nodes, index: walker.index }
+    }
+
+    /// A value, whose fields and entries become those of a node.
+    fn value(&mut self, node: usize) {
+        self.cursor.skip_blank();
+        match self.cursor.peek() {
+            Some(b'(' | b'[' | b'{') => self.entries(node),
+            Some(quote @ (b'"' | b'\'')) => self.cursor.quoted(quote),
+            Some(byte) if is_of_name(byte) && !byte.is_ascii_digit() => self.named_value(node),
+            _ => self.cursor.word(),
+        }
+    }
+
+    /// A value that begins with a name: `true`, `Some(1)`, `Disc(0.5)`, `b"bytes"`, `r"raw"`.
+    fn named_value(&mut self, node: usize) {
+        let name = self.cursor.identifier();
+        match (name, self.cursor.peek()) {
+            ("r" | "br", Some(b'"' | b'#')) => return self.cursor.raw_string(),
+            ("b", Some(quote @ (b'"' | b'\''))) => return self.cursor.quoted(quote),
+            _ => {}
+        }
+        let end = self.cursor.at();
+        self.cursor.skip_blank();
+        match self.cursor.peek() {
+            // `Some(..)` is the value itself; any other name is a struct or a variant with fields.
+            Some(b'(') if name == "Some" => self.wrapped_value(node),
+            Some(b'(') => self.entries(node),
+            _ => self.cursor.go_back(end),
+        }
+    }
+
+    fn wrapped_value(&mut self, node: usize) {
+        self.depth += 1;
+        self.cursor.advance();
+        if self.depth > MAX_DEPTH {
+            self.cursor.end(); // RON itself refuses such a text
+        }
+        self.value(node);
+        self.cursor.skip_blank();
+        self.cursor.advance();
+        self.depth -= 1;
+    }
+
+    /// Fields or elements between brackets.
+    fn entries(&mut self, parent: usize) {
+        self.nodes[parent].is_list = self.cursor.peek() == Some(b'[');
+        self.cursor.advance();
+        self.depth += 1;
+        if self.depth > MAX_DEPTH {
+            self.cursor.end(); // RON itself refuses such a text
+        }
+        let mut number = 0;
+        loop {
+            self.cursor.skip_blank();
+            match self.cursor.peek() {
+                None => return,
+                Some(b')' | b']' | b'}') => {
+                    self.cursor.advance();
+                    self.depth -= 1;
+                    return;
+                }
+                Some(b',') => self.cursor.advance(),
+                Some(_) => {
+                    self.entry(parent, number);
+                    number += 1;
+                }
+            }
+        }
+    }
+
+    /// One field or element.
+    fn entry(&mut self, parent: usize, number: usize) {
+        let line = self.cursor.line();
+        let name = self.field_name();
+        let around = &self.nodes[parent].path;
+        let path: Arc<str> = match name {
+            Some(name) if around.is_empty() => name.into(),
+            Some(name) => format!("{around}.{name}").into(),
+            None => format!("{around}[{number}]").into(),
+        };
+        self.cursor.skip_blank();
+        let (start, node) = (self.cursor.at(), self.nodes.len());
+        self.nodes[parent].children.push(node);
+        self.index.entry(Arc::clone(&path)).or_insert(node);
+        self.nodes.push(Node::new(path, line, start));
+        self.value(node);
+        if self.cursor.at() == start {
+            self.cursor.advance(); // never stands still, whatever the text
+        }
+        self.nodes[node].value.end = self.cursor.at();
+        match name {
+            Some("name") => self.note_name(parent, start),
+            Some(_) => {}
+            None => self.note_entry(parent, node),
+        }
+    }
+
+    /// Keeps the value of a node's field `name`, for the list that the node may be an entry of.
+    fn note_name(&mut self, node: usize, start: usize) {
+        let value = self.cursor.since(start);
+        let name = value.strip_prefix('"').and_then(|value| value.strip_suffix('"'));
+        let node = &mut self.nodes[node];
+        node.name = node.name.take().or(name.filter(|name| is_segment(name)).map(Into::into));
+    }
+
+    /// Makes an entry known by its name, if no entry before it has the same.
+    fn note_entry(&mut self, list: usize, entry: usize) {
+        if let Some(name) = self.nodes[entry].name.take() {
+            self.nodes[list].named.entry(name).or_insert(entry);
+        }
+    }
+
+    /// The name before a `:`, which is skipped; or nothing, and nothing is skipped.
+    fn field_name(&mut self) -> Option<&'a str> {
+        let start = self.cursor.at();
+        let name = if self.cursor.peek() == Some(b'"') {
+            self.cursor.quoted(b'"'); // the key of a map
+            self.cursor.since(start)
+        } else {
+            self.cursor.identifier()
+        };
+        self.cursor.skip_blank();
+        if !name.is_empty() && self.cursor.peek() == Some(b':') {
+            self.cursor.advance();
+            return Some(name);
+        }
+        self.cursor.go_back(start);
+        None
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::Fields;
+
+    #[test]
+    fn broken_text_ends_the_walk() {
+        for text in [
+            "(",
+            "(a: \"",
+            "(a: r##\"",
+            "/* /*",
+            "(a: [",
+            ")))",
+            "(,,:,)",
+            "(a: '",
+            "(a: '\\",
+            "(a: '日')",
+            "(a: \"\\日",
+            "(a: /)",
+            "(r#: 1)",
+            "(r#a",
+            "#!",
+            "#![",
+            "b'",
+            "(日: 日",
+            "(name: \")",
+            "[(name: \"",
+            "Some(",
+        ] {
+            let fields = Fields::of(text);
+            fields.leaves().for_each(|(_, value)| assert!(text.get(value).is_some(), "{text}"));
+        }
+        let _ = Fields::of(&"([{".repeat(100_000));
+        let _ = Fields::of(&"Some(".repeat(100_000));
+    }
+
+    #[test]
+    fn a_value_ends_before_what_follows_it() {
+        let text = "(a: Fast /* as can be */, b: 1.5/* m */, c: 2// last\n, d: Slow // at the end\n)";
+        let fields = Fields::of(text);
+        for (path, value) in [("a", "Fast"), ("b", "1.5"), ("c", "2"), ("d", "Slow")] {
+            assert_eq!(&text[fields.value(path).unwrap()], value);
+        }
+    }
+
+    #[test]
+    fn every_form_of_name_and_string_is_followed() {
+        let text = "#![enable(implicit_some)] // all of it\nRoot(größe: b\"(\", r#type: br#\")\"#, k: b'(', r#a-b: r\"]\", end: 1)";
+        let fields = Fields::of(text);
+        assert_eq!(fields.inside(""), ["größe", "type", "k", "a-b", "end"]);
+        for (path, value) in [("größe", "b\"(\""), ("type", "br#\")\"#"), ("a-b", "r\"]\""), ("end", "1")] {
+            assert_eq!(&text[fields.value(path).unwrap()], value);
+        }
+        assert_eq!(fields.line("end"), Some(2));
+    }
+}
