@@ -5,7 +5,7 @@ use serde::Serialize;
 
 use crate::experiment::Experiment;
 use crate::failure::Failure;
-use crate::metric::{METRICS, Metric};
+use crate::metric::{Catalogue, Metric};
 use crate::stats::Moments;
 use crate::stats::bootstrap::interval;
 use crate::stats::paired::{hodges_lehmann, holm, pairs_needed};
@@ -25,7 +25,7 @@ pub struct Comparison {
     /// Values of the axes there, in RON.
     pub axes: Vec<(String, String)>,
     /// Name of the metric.
-    pub metric: &'static str,
+    pub metric: String,
     /// The first policy.
     pub a: String,
     /// The second.
@@ -166,7 +166,7 @@ pub fn compare(folder: &Folder, metrics: &[usize], choice: Choice) -> Result<Vec
         .collect();
     let one = |(case, metric, pair): &(usize, usize, [usize; 2])| {
         let pairs = Pairs::of(folder, *case, *metric, *pair);
-        comparison(experiment, *case, &METRICS[*metric], *pair, &pairs)
+        comparison(experiment, *case, &experiment.metrics[*metric], *pair, &pairs)
     };
     let mut comparisons: Vec<Comparison> = all.par_iter().map(one).collect();
     let tested: Vec<usize> = (0..comparisons.len()).filter(|i| comparisons[*i].p.is_some()).collect();
@@ -175,7 +175,7 @@ pub fn compare(folder: &Folder, metrics: &[usize], choice: Choice) -> Result<Vec
         comparisons[i].p_holm = Some(p);
     }
     for comparison in &mut comparisons {
-        comparison.in_words = in_words(comparison);
+        comparison.in_words = in_words(comparison, &experiment.metrics);
     }
     Ok(comparisons)
 }
@@ -221,7 +221,7 @@ fn comparison(
     Comparison {
         case: case + 1,
         axes: values.map(|(axis, value)| (axis.path.clone(), value.clone())).collect(),
-        metric: metric.name,
+        metric: metric.name.clone(),
         a: label_a,
         b: label_b,
         n: differences.len(),
@@ -243,12 +243,10 @@ fn comparison(
 }
 
 /// The finding as one sentence.
-fn in_words(comparison: &Comparison) -> String {
+fn in_words(comparison: &Comparison, metrics: &Catalogue) -> String {
     let Comparison { a, b, n, .. } = comparison;
-    let title =
-        METRICS.iter().find(|metric| metric.name == comparison.metric).map_or("", |metric| metric.title);
     let place = comparison.axes.iter().map(|(path, value)| format!("{path}={value}"));
-    let place = place.chain([title.to_owned()]).collect::<Vec<_>>().join(", ");
+    let place = place.chain([metrics.title(&comparison.metric).to_owned()]).collect::<Vec<_>>().join(", ");
     let (Some(difference), Some(p)) = (comparison.difference, comparison.p_holm) else {
         return format!(
             "{place}: nothing can be said of {a} and {b}: there is no pair of trials in which both have a value."

@@ -1,128 +1,293 @@
-//! What is measured of a trial. A metric is one entry of [`METRICS`]: tables, comparisons, stopping rules and reports find it there.
+//! What is measured of a trial. Each metric is declared once, in [`DECLARATIONS`]; an experiment has a [`Catalogue`] of them, with those of
+//! its tasks. `trials.csv`, comparisons, stopping rules, reports and calibrations find them there.
 
+use std::ops::Deref;
+
+use rne_core::Difficulty;
+use usar_sim::metrics::TaskTotals;
 use usar_sim::record::TrialRecord;
+use usar_sim::scenario::Scenario;
 
 use crate::failure::Failure;
 
-/// A quantity of a trial.
-pub struct Metric {
-    /// Name on the command line and in tables that programs read.
-    pub name: &'static str,
-    /// In words.
-    pub title: &'static str,
-    /// Unit; empty for a count.
-    pub unit: &'static str,
-    /// The report's figure of box plots that shows it beside others of the same figure; empty for none.
-    pub figure: &'static str,
-    /// Whether it is one of the paper's, which are shown unless others are asked for.
-    pub is_papers: bool,
-    /// Its value; `None` where it is undefined.
-    pub value: fn(&TrialRecord) -> Option<f64>,
+/// What the metric of all tasks together is called, where others name their task.
+pub const TOTAL: &str = "total";
+
+type Value = fn(&TrialRecord) -> Option<f64>;
+type TaskValue = fn(&TaskTotals) -> Option<f64>;
+
+/// How a metric is computed.
+#[derive(Clone, Copy)]
+enum Scope {
+    /// From the whole trial.
+    Whole(Value),
+    /// For all tasks together, and for each task.
+    PerTask { total: Value, task: TaskValue },
 }
 
-const POINTS: &str = "percent points per rescuee";
+/// A metric, whatever the tasks are.
+#[derive(Clone, Copy)]
+struct Declaration {
+    name: &'static str,
+    title: &'static str,
+    unit: &'static str,
+    figure: &'static str,
+    is_primary: bool,
+    scope: Scope,
+}
+
+const POINTS: &str = "percent points";
+const RATIO: &str = "percent points per rescuee";
 
 /// All metrics.
 #[rustfmt::skip]
-pub const METRICS: &[Metric] = &[
-    papers("rescuees.total", "rescuees total", "", "rescuees", |r| Some(f64::from(r.rescued()))),
-    papers("rescuees.hard", "rescuees hard", "", "rescuees", |r| Some(f64::from(r.hard.rescued))),
-    papers("rescuees.easy", "rescuees easy", "", "rescuees", |r| Some(f64::from(r.easy.rescued))),
-    papers("energy_per_rescuee.total", "energy per rescuee total", POINTS, "energy per rescuee", |r| ratio(r.energy(), r.rescued())),
-    papers("energy_per_rescuee.hard", "energy per rescuee hard", POINTS, "energy per rescuee", |r| ratio(r.hard.energy, r.hard.rescued)),
-    papers("energy_per_rescuee.easy", "energy per rescuee easy", POINTS, "energy per rescuee", |r| ratio(r.easy.energy, r.easy.rescued)),
-    papers("hp_per_rescuee.total", "HP per rescuee total", POINTS, "HP per rescuee", |r| ratio(r.hp(), r.rescued())),
-    papers("hp_per_rescuee.hard", "HP per rescuee hard", POINTS, "HP per rescuee", |r| ratio(r.hard.hp, r.hard.rescued)),
-    papers("hp_per_rescuee.easy", "HP per rescuee easy", POINTS, "HP per rescuee", |r| ratio(r.easy.hp, r.easy.rescued)),
-    papers("rounds", "rounds", "", "", |r| Some(f64::from(r.completed_rounds))),
-    other("waiting", "time waited", "s", "waiting and deadlocks", |r| Some(r.waiting_s())),
-    other("deadlocks", "deadlocks", "", "waiting and deadlocks", |r| Some(f64::from(r.deadlocks))),
-    other("longest_stall", "longest stall", "s", "waiting and deadlocks", |r| Some(r.longest_stall_s())),
-    other("conflicts", "conflicts", "", "", |r| Some(f64::from(r.conflicts))),
-    other("errands_done", "errands done", "", "", |r| Some(f64::from(r.errands_done))),
-    other("time", "time to the end", "s", "", |r| Some(r.time_s)),
-    other("secured", "secured", "", "", |r| Some(f64::from(r.hard.secured + r.easy.secured))),
-    other("energy.total", "energy spent", "percent points", "", |r| Some(r.energy())),
-    other("hp.total", "HP lost", "percent points", "", |r| Some(r.hp())),
-    other("turned_back", "times turned back", "", "", |r| Some(f64::from(r.turned_back))),
-    other("stranded", "robots stranded", "", "", |r| Some(r.stranded() as f64)),
-    other("disabled", "robots disabled", "", "", |r| Some(r.disabled() as f64)),
-    other("distance", "distance travelled", "m", "", |r| Some(r.distance_m())),
+const DECLARATIONS: &[Declaration] = &[
+    per_task("rescuees", "rescuees", "", |r| Some(f64::from(r.rescued())), |t| Some(f64::from(t.rescued))).primary().in_figure("rescuees"),
+    per_task("energy_per_rescuee", "energy per rescuee", RATIO, |r| ratio(r.energy(), r.rescued()), |t| ratio(t.energy, t.rescued)).primary().in_figure("energy per rescuee"),
+    per_task("hp_per_rescuee", "HP per rescuee", RATIO, |r| ratio(r.hp(), r.rescued()), |t| ratio(t.hp, t.rescued)).primary().in_figure("HP per rescuee"),
+    whole("rounds", "rounds", "", |r| Some(f64::from(r.completed_rounds))).primary(),
+    whole("waiting", "time waited", "s", |r| Some(r.waiting_s())).in_figure("waiting and deadlocks"),
+    whole("deadlocks", "deadlocks", "", |r| Some(f64::from(r.deadlocks))).in_figure("waiting and deadlocks"),
+    whole("longest_stall", "longest stall", "s", |r| Some(r.longest_stall_s())).in_figure("waiting and deadlocks"),
+    whole("conflicts", "conflicts", "", |r| Some(f64::from(r.conflicts))),
+    whole("rotations", "turns passed on", "", |r| Some(f64::from(r.rotations))),
+    whole("retreats", "times room was made", "", |r| Some(f64::from(r.retreats))),
+    whole("back_offs", "times backed off", "", |r| Some(f64::from(r.back_offs))),
+    whole("unreachable", "places given up on", "", |r| Some(f64::from(r.unreachable))),
+    whole("errands_done", "errands done", "", |r| Some(f64::from(r.errands_done))),
+    whole("time", "time to the end", "s", |r| Some(r.time_s)),
+    per_task("secured", "secured", "", |r| Some(f64::from(secured(r))), |t| Some(f64::from(t.secured))),
+    per_task("energy", "energy spent", POINTS, |r| Some(r.energy()), |t| Some(t.energy)),
+    whole("energy.ungrouped", "energy spent outside groups", POINTS, |r| Some(r.ungrouped_energy)),
+    per_task("hp", "HP lost", POINTS, |r| Some(r.hp()), |t| Some(t.hp)),
+    whole("hp.ungrouped", "HP lost outside groups", POINTS, |r| Some(r.ungrouped_hp)),
+    whole("turned_back", "times turned back", "", |r| Some(f64::from(r.turned_back))),
+    whole("stranded", "robots stranded", "", |r| Some(r.stranded() as f64)),
+    whole("disabled", "robots disabled", "", |r| Some(r.disabled() as f64)),
+    whole("distance", "distance travelled", "m", |r| Some(r.distance_m())),
 ];
 
-type Value = fn(&TrialRecord) -> Option<f64>;
-
-const fn papers(
-    name: &'static str,
-    title: &'static str,
-    unit: &'static str,
-    figure: &'static str,
-    value: Value,
-) -> Metric {
-    Metric { name, title, unit, figure, is_papers: true, value }
+const fn whole(name: &'static str, title: &'static str, unit: &'static str, value: Value) -> Declaration {
+    Declaration { name, title, unit, figure: "", is_primary: false, scope: Scope::Whole(value) }
 }
 
-const fn other(
+const fn per_task(
     name: &'static str,
     title: &'static str,
     unit: &'static str,
-    figure: &'static str,
-    value: Value,
-) -> Metric {
-    Metric { name, title, unit, figure, is_papers: false, value }
+    total: Value,
+    task: TaskValue,
+) -> Declaration {
+    Declaration { name, title, unit, figure: "", is_primary: false, scope: Scope::PerTask { total, task } }
+}
+
+impl Declaration {
+    const fn primary(self) -> Self {
+        Self { is_primary: true, ..self }
+    }
+
+    const fn in_figure(self, figure: &'static str) -> Self {
+        Self { figure, ..self }
+    }
+
+    /// The metrics that it stands for: of all tasks together and of each, or of the whole trial.
+    fn metrics(self, tasks: &[String]) -> Vec<Metric> {
+        match self.scope {
+            Scope::Whole(value) => vec![self.metric(None, Source::Trial(value))],
+            Scope::PerTask { total, task } => {
+                let each = tasks.iter().map(|name| self.metric(Some(name), Source::Task(task)));
+                std::iter::once(self.metric(Some(TOTAL), Source::Trial(total))).chain(each).collect()
+            }
+        }
+    }
+
+    fn metric(self, part: Option<&str>, source: Source) -> Metric {
+        let Self { name, title, unit, figure, is_primary, .. } = self;
+        let with_part =
+            |text: &str, between: char| part.map_or(text.to_owned(), |part| format!("{text}{between}{part}"));
+        Metric {
+            name: with_part(name, '.'),
+            title: with_part(title, ' '),
+            unit,
+            figure,
+            is_primary,
+            declared: name,
+            part: part.unwrap_or_default().to_owned(),
+            source,
+        }
+    }
 }
 
 fn ratio(cost: f64, rescuees: u32) -> Option<f64> {
     (rescuees > 0).then(|| cost / f64::from(rescuees))
 }
 
-/// The place of a metric in [`METRICS`].
-///
-/// # Errors
-/// An unknown name, with the known ones.
-pub fn metric_named(name: &str) -> Result<usize, Failure> {
-    METRICS.iter().position(|metric| metric.name == name).ok_or_else(|| {
-        let known: Vec<&str> = METRICS.iter().map(|metric| metric.name).collect();
-        Failure::input(format!("unknown metric {name:?}; known metrics: {}", known.join(", ")))
-    })
+fn secured(record: &TrialRecord) -> u32 {
+    Difficulty::ALL.iter().filter_map(|task| task_totals(record, task.name())).map(|task| task.secured).sum()
 }
 
-/// The places of the paper's metrics, or of those that were asked for by name; `all` for all.
-///
-/// # Errors
-/// Those of [`metric_named`].
-pub fn chosen(names: &[String]) -> Result<Vec<usize>, Failure> {
-    if names.is_empty() {
-        return Ok((0..METRICS.len()).filter(|place| METRICS[*place].is_papers).collect());
-    }
-    if names.iter().any(|name| name == "all") {
-        return Ok((0..METRICS.len()).collect());
-    }
-    let mut places = Vec::new();
-    for name in names {
-        let place = metric_named(name)?;
-        if !places.contains(&place) {
-            places.push(place);
-        }
-    }
-    Ok(places)
-}
-
-/// The figures of the report in their order, each with the places of its metrics.
+/// The names of a scenario's tasks, in the order of tables.
 #[must_use]
-pub fn figures() -> Vec<(&'static str, Vec<usize>)> {
-    let mut figures: Vec<(&str, Vec<usize>)> = Vec::new();
-    for (place, metric) in METRICS.iter().enumerate().filter(|(_, metric)| !metric.figure.is_empty()) {
-        match figures.iter_mut().find(|(name, _)| *name == metric.figure) {
-            Some((_, places)) => places.push(place),
-            None => figures.push((metric.figure, vec![place])),
-        }
-    }
-    figures
+pub fn task_names(_: &Scenario) -> Vec<String> {
+    Difficulty::ALL.iter().map(|task| task.name().to_owned()).collect()
 }
 
-/// Values of all metrics of a trial, in the order of [`METRICS`].
-#[must_use]
-pub fn measure(record: &TrialRecord) -> Vec<Option<f64>> {
-    METRICS.iter().map(|metric| (metric.value)(record).filter(|value| value.is_finite())).collect()
+/// What was done and spent for a task.
+fn task_totals<'r>(record: &'r TrialRecord, task: &str) -> Option<&'r TaskTotals> {
+    let totals = Difficulty::ALL.into_iter().zip([&record.hard, &record.easy]);
+    totals.into_iter().find(|(known, _)| known.name() == task).map(|(_, totals)| totals)
 }
+
+/// Where a value comes from.
+#[derive(Debug, Clone, Copy)]
+enum Source {
+    /// The trial.
+    Trial(Value),
+    /// The task that the metric names.
+    Task(TaskValue),
+}
+
+/// A quantity of a trial.
+#[derive(Debug, Clone)]
+pub struct Metric {
+    /// Name on the command line and in the tables of comparisons.
+    pub name: String,
+    /// In words.
+    pub title: String,
+    /// Unit; empty for a count.
+    pub unit: &'static str,
+    /// The report's figure of box plots that shows it beside others of the same figure; empty for none.
+    pub figure: &'static str,
+    /// Whether it is one of those that are shown unless others are asked for.
+    pub is_primary: bool,
+    declared: &'static str,
+    part: String,
+    source: Source,
+}
+
+impl Metric {
+    /// The name of its column in `trials.csv`, which ends with the unit of a time or a length.
+    #[must_use]
+    pub fn column(&self) -> String {
+        let column = self.name.replace('.', "_");
+        let unit = match self.unit {
+            "s" => "_s",
+            "m" => "_m",
+            _ => "",
+        };
+        if column.ends_with(unit) { column } else { column + unit }
+    }
+
+    /// Its value; `None` where it is undefined.
+    #[must_use]
+    pub fn value(&self, record: &TrialRecord) -> Option<f64> {
+        let value = match self.source {
+            Source::Trial(value) => value(record),
+            Source::Task(value) => value(task_totals(record, &self.part)?),
+        };
+        value.filter(|value| value.is_finite())
+    }
+
+    /// The task that it is of, or [`TOTAL`]; empty for a metric that is not told by task.
+    #[must_use]
+    pub fn part(&self) -> &str {
+        &self.part
+    }
+
+    /// Whether it is that of all tasks together.
+    #[must_use]
+    pub fn is_total(&self) -> bool {
+        self.part == TOTAL
+    }
+}
+
+/// The metrics of an experiment, in the order of tables.
+#[derive(Debug, Clone)]
+pub struct Catalogue {
+    metrics: Vec<Metric>,
+}
+
+/// A catalogue is read as the list of its metrics.
+impl Deref for Catalogue {
+    type Target = [Metric];
+
+    fn deref(&self) -> &[Metric] {
+        &self.metrics
+    }
+}
+
+impl Catalogue {
+    /// All metrics for tasks of these names.
+    #[must_use]
+    pub fn of(tasks: &[String]) -> Self {
+        Self { metrics: DECLARATIONS.iter().flat_map(|declaration| declaration.metrics(tasks)).collect() }
+    }
+
+    /// The place of a metric. A name that is told by task means the total.
+    ///
+    /// # Errors
+    /// An unknown name, with the known ones.
+    pub fn named(&self, name: &str) -> Result<usize, Failure> {
+        let is_named =
+            |metric: &Metric| metric.name == name || (metric.is_total() && metric.declared == name);
+        self.iter().position(is_named).ok_or_else(|| {
+            let known: Vec<&str> = self.iter().map(|metric| metric.name.as_str()).collect();
+            Failure::input(format!("unknown metric {name:?}; known metrics: {}", known.join(", ")))
+        })
+    }
+
+    /// A metric in words; nothing for an unknown one.
+    #[must_use]
+    pub fn title(&self, name: &str) -> &str {
+        self.iter().find(|metric| metric.name == name).map_or("", |metric| &metric.title)
+    }
+
+    /// The metrics that are declared under one name: the total, then that of each task; or the only one.
+    #[must_use]
+    pub fn declared(&self, name: &str) -> Vec<usize> {
+        (0..self.len()).filter(|place| self[*place].declared == name).collect()
+    }
+
+    /// The places of the primary metrics, or of those that were asked for by name; `all` for all.
+    ///
+    /// # Errors
+    /// Those of [`Catalogue::named`].
+    pub fn chosen(&self, names: &[String]) -> Result<Vec<usize>, Failure> {
+        if names.is_empty() {
+            return Ok((0..self.len()).filter(|place| self[*place].is_primary).collect());
+        }
+        if names.iter().any(|name| name == "all") {
+            return Ok((0..self.len()).collect());
+        }
+        let mut places = Vec::new();
+        for name in names {
+            let place = self.named(name)?;
+            if !places.contains(&place) {
+                places.push(place);
+            }
+        }
+        Ok(places)
+    }
+
+    /// The figures of the report in their order, each with the places of its metrics.
+    #[must_use]
+    pub fn figures(&self) -> Vec<(&'static str, Vec<usize>)> {
+        let mut figures: Vec<(&str, Vec<usize>)> = Vec::new();
+        for (place, metric) in self.iter().enumerate().filter(|(_, metric)| !metric.figure.is_empty()) {
+            match figures.iter_mut().find(|(name, _)| *name == metric.figure) {
+                Some((_, places)) => places.push(place),
+                None => figures.push((metric.figure, vec![place])),
+            }
+        }
+        figures
+    }
+
+    /// The values of all metrics of a trial, in their order.
+    #[must_use]
+    pub fn measure(&self, record: &TrialRecord) -> Vec<Option<f64>> {
+        self.iter().map(|metric| metric.value(record)).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -7,14 +7,18 @@ use rayon::prelude::*;
 use crate::comparison::CONFIDENCE;
 use crate::experiment::PolicySpec;
 use crate::failure::Failure;
-use crate::metric::metric_named;
+use crate::metric::Catalogue;
 use crate::rounds::Round;
 use crate::stats::Moments;
 use crate::stats::paired::t_half_width_at;
 use crate::sweep::folder::Folder;
 
-/// The metrics whose differences are shown.
-pub const SHOWN: [&str; 4] = ["rescuees.total", "rescuees.hard", "rescuees.easy", "energy_per_rescuee.total"];
+/// The metrics whose differences are shown: rescuees, of all tasks and of each, and energy per rescuee.
+#[must_use]
+pub fn shown(metrics: &Catalogue) -> Vec<usize> {
+    let energy = metrics.named("energy_per_rescuee.total").ok();
+    metrics.declared("rescuees").into_iter().chain(energy).collect()
+}
 
 /// A mean difference with its interval.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -53,7 +57,7 @@ pub struct ReadingRow {
     pub regrouped: [f64; 2],
     /// Share of the trials that go otherwise.
     pub trials: f64,
-    /// Differences of the metrics of [`SHOWN`], reading less default.
+    /// Differences of the metrics that are [`shown`], reading less default.
     pub differences: Vec<Option<Difference>>,
 }
 
@@ -63,7 +67,7 @@ pub struct RivalRow {
     /// The other policy; `None` for all.
     pub rival: Option<String>,
     /// The metric.
-    pub metric: &'static str,
+    pub metric: String,
     /// Readings whose interval lies above zero, below, and around it.
     pub counts: [usize; 3],
     /// The first two by intervals at 95 % shared by all readings.
@@ -96,14 +100,17 @@ impl<'f> Trials<'f> {
         &self.folder.experiment().policies
     }
 
+    fn catalogue(&self) -> &'f Catalogue {
+        &self.folder.experiment().metrics
+    }
+
     fn metrics(&self, policy: usize, trial: u32) -> Option<&'f Vec<Option<f64>>> {
         self.folder.results().get(&(0, policy, trial))?.metrics.as_ref()
     }
 
     /// Metric of one policy less that of another, trial by trial; `None` where it is not defined.
-    fn differences(&self, metric: &str, a: usize, b: usize) -> Vec<Option<f64>> {
-        let place = metric_named(metric).ok();
-        let value = |policy: usize, trial: u32| self.metrics(policy, trial)?[place?];
+    fn differences(&self, metric: usize, a: usize, b: usize) -> Vec<Option<f64>> {
+        let value = |policy: usize, trial: u32| self.metrics(policy, trial)?[metric];
         self.numbers.iter().map(|trial| Some(value(a, *trial)? - value(b, *trial)?)).collect()
     }
 
@@ -135,15 +142,15 @@ pub fn single(
     readings: &[usize],
     rounds: &[Round],
 ) -> Result<Vec<ReadingRow>, Failure> {
-    let policies = trials.policies();
+    let (policies, shown) = (trials.policies(), shown(trials.catalogue()));
     let alone: Vec<usize> = readings.iter().copied().filter(|i| policies[*i].options().len() == 1).collect();
     let row = |reading: &usize| {
-        let differences = SHOWN.map(|metric| Difference::of(&trials.differences(metric, *reading, default)));
+        let difference = |metric: &usize| Difference::of(&trials.differences(*metric, *reading, default));
         Ok(ReadingRow {
             reading: options_in_words(&policies[*reading]),
             regrouped: regrouped(trials.folder, *reading, rounds)?,
             trials: trials.otherwise(*reading, default),
-            differences: differences.to_vec(),
+            differences: shown.iter().map(difference).collect(),
         })
     };
     alone.par_iter().map(row).collect()
@@ -170,7 +177,7 @@ fn regrouped(folder: &Folder, reading: usize, rounds: &[Round]) -> Result<[f64; 
 /// with the default, trial by trial.
 #[must_use]
 pub fn averaged(trials: &Trials, readings: &[usize]) -> Vec<(String, Vec<Option<Difference>>)> {
-    let policies = trials.policies();
+    let (policies, shown) = (trials.policies(), shown(trials.catalogue()));
     let mut values: Vec<(String, String)> = Vec::new();
     for reading in readings {
         for option in policies[*reading].options() {
@@ -188,16 +195,19 @@ pub fn averaged(trials: &Trials, readings: &[usize]) -> Vec<(String, Vec<Option<
         let with =
             readings.iter().filter(|i| policies[**i].options().contains(&(option.clone(), value.clone())));
         let pairs: Vec<(usize, usize)> = with.filter_map(|i| Some((*i, without(*i, option)?))).collect();
-        let differences = SHOWN.map(|metric| {
+        let difference = |metric: &usize| {
             let all: Vec<Vec<Option<f64>>> =
-                pairs.iter().map(|(a, b)| trials.differences(metric, *a, *b)).collect();
+                pairs.iter().map(|(a, b)| trials.differences(*metric, *a, *b)).collect();
             let mean = |trial: usize| {
                 let of_trial = all.iter().map(|of| of[trial]).collect::<Option<Vec<f64>>>()?;
                 Moments::of(&of_trial).mean
             };
             Difference::of(&(0..trials.numbers.len()).map(mean).collect::<Vec<_>>())
-        });
-        (format!("{option}: {value} ({} pairs of readings)", pairs.len()), differences.to_vec())
+        };
+        (
+            format!("{option}: {value} ({} pairs of readings)", pairs.len()),
+            shown.iter().map(difference).collect(),
+        )
     };
     values.par_iter().map(row).collect()
 }
@@ -212,7 +222,8 @@ pub fn rivals(trials: &Trials, readings: &[usize]) -> Vec<RivalRow> {
     let rivals: Vec<usize> = (0..policies.len()).filter(|i| policies[*i].name != "RNE").collect();
     let shared = 1.0 - (1.0 - CONFIDENCE) / readings.len() as f64;
     let mut rows = Vec::new();
-    for metric in SHOWN {
+    for metric in shown(trials.catalogue()) {
+        let name = &trials.catalogue()[metric].name;
         let mut all: Vec<Sides> = Vec::new();
         for rival in &rivals {
             let differences: Vec<_> =
@@ -228,7 +239,7 @@ pub fn rivals(trials: &Trials, readings: &[usize]) -> Vec<RivalRow> {
             let Some(ends) = ends(&found) else { continue };
             rows.push(RivalRow {
                 rival: Some(policies[*rival].label.clone()),
-                metric,
+                metric: name.clone(),
                 counts: [1, -1, 0].map(|side| count(&sides, 0, side)),
                 corrected: [1, -1].map(|side| count(&sides, 1, side)),
                 ends: Some(ends),
@@ -239,7 +250,7 @@ pub fn rivals(trials: &Trials, readings: &[usize]) -> Vec<RivalRow> {
             let sides = together(&all);
             let counts = [1, -1, 0].map(|side| count(&sides, 0, side));
             let corrected = [1, -1].map(|side| count(&sides, 1, side));
-            rows.push(RivalRow { rival: None, metric, counts, corrected, ends: None });
+            rows.push(RivalRow { rival: None, metric: name.clone(), counts, corrected, ends: None });
         }
     }
     rows

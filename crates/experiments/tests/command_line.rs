@@ -253,7 +253,6 @@ fn a_sweep_writes_the_same_bytes_on_any_number_of_threads() {
         "hashes.csv",
         "journal.jsonl",
         "manifest.json",
-        "metrics.csv",
         "resolved.ron",
         "robots.csv",
         "rounds.csv",

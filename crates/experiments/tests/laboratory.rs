@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
+use experiments::sweep::folder::Folder;
 use kills::{files, kill_sweeps};
 use serde_json::Value;
 
@@ -38,6 +39,12 @@ fn place() -> tempfile::TempDir {
 )";
     std::fs::write(folder.path().join("grid.ron"), grid).unwrap();
     folder
+}
+
+/// The place of a column in a folder's `trials.csv`.
+fn column(results: &Path, name: &str) -> usize {
+    let mut table = csv::Reader::from_path(results.join("trials.csv")).unwrap();
+    table.headers().unwrap().iter().position(|column| column == name).unwrap()
 }
 
 #[track_caller]
@@ -151,10 +158,7 @@ fn a_sweep_file_spans_its_grid_and_any_field_can_be_an_axis() {
     let trials = rows(&results, "trials.csv");
     assert_eq!(trials.len(), 2 * 2 * 3 * 2);
     assert_eq!(trials[23].iter().take(4).collect::<Vec<_>>(), ["4", "3.0", "MeanEnergy", "DIS"]);
-    let column = |name: &str| {
-        let mut table = csv::Reader::from_path(results.join("trials.csv")).unwrap();
-        table.headers().unwrap().iter().position(|column| column == name).unwrap()
-    };
+    let column = |name: &str| column(&results, name);
     let distance = |row: &csv::StringRecord| row[column("distance_m")].parse::<f64>().unwrap();
     assert!(distance(&trials[18]) > 1.2 * distance(&trials[0]), "faster carriers go farther");
     assert_eq!(succeeds(&usar(here, &["verify", "results/grid"])), "24 of 24 trials match, step by step\n");
@@ -341,11 +345,14 @@ fn trials_that_give_nothing_are_rows_that_can_be_run_again() {
     assert!(String::from_utf8_lossy(&late.stderr).contains("trial 1 of RNE (seed 1) timed out"));
     let late = rows(&here.join("results/paper"), "trials.csv");
     let last = |row: &csv::StringRecord| row.iter().next_back().unwrap().to_owned();
-    assert!(late.len() == 4 && late.iter().all(|row| &row[15] == "timed_out" && row[3].is_empty()));
+    let [status, rescuees] =
+        ["status", "rescuees_total"].map(|name| column(&here.join("results/paper"), name));
+    let is_late = |row: &csv::StringRecord| &row[status] == "timed_out" && row[rescuees].is_empty();
+    assert!(late.len() == 4 && late.iter().all(is_late));
     assert_eq!(last(&late[3]), "usar run resolved.ron --policy DIS --seed 2");
     // That may have been the machine's fault, so they are run again.
     succeeds(&usar(here, &sweep));
-    assert!(rows(&here.join("results/paper"), "trials.csv").iter().all(|row| &row[15] == "completed"));
+    assert!(rows(&here.join("results/paper"), "trials.csv").iter().all(|row| &row[status] == "completed"));
 }
 
 #[test]
@@ -374,8 +381,9 @@ fn comparisons_are_paired_and_say_what_they_stand_on() {
     let comparisons = json["comparisons"].as_array().unwrap();
     assert_eq!(comparisons.len(), 4);
     let trials = rows(&here.join("results/paper"), "trials.csv");
+    let distance = column(&here.join("results/paper"), "distance_m");
     let distances = |policy: &str| -> Vec<f64> {
-        trials.iter().filter(|row| &row[0] == policy).map(|row| row[24].parse().unwrap()).collect()
+        trials.iter().filter(|row| &row[0] == policy).map(|row| row[distance].parse().unwrap()).collect()
     };
     let (rne, dis) = (distances("RNE"), distances("DIS"));
     let mean = rne.iter().zip(&dis).map(|(a, b)| a - b).sum::<f64>() / 6.0;
@@ -517,6 +525,19 @@ fn a_report_is_one_file_with_figures_and_the_numbers_behind_them() {
     succeeds(&usar(here, &["sweep", "grid.ron", "--set", "duration_s=120", "--trials", "3"]));
 }
 
+/// The table of trials has each metric of each trial, to the bit.
+fn every_metric_is_a_column(results: &Path, trials: &[csv::StringRecord]) {
+    let sweep = Folder::read(results).unwrap();
+    let metrics = &sweep.experiment().metrics;
+    let places: Vec<usize> = metrics.iter().map(|metric| column(results, &metric.column())).collect();
+    assert_eq!(trials.len(), sweep.results().len());
+    for (row, measured) in trials.iter().zip(sweep.results().values()) {
+        let cells = places.iter().map(|place| row[*place].parse().ok().map(f64::to_bits));
+        let values = measured.metrics.as_ref().unwrap().iter().map(|value| value.map(f64::to_bits));
+        assert!(cells.eq(values), "{row:?}");
+    }
+}
+
 /// The numbers of a figure are those of the tables.
 #[test]
 fn the_reports_numbers_are_those_of_the_trials() {
@@ -529,8 +550,10 @@ fn the_reports_numbers_are_those_of_the_trials() {
     succeeds(&usar(here, &["report", "results/paper"]));
     let results = here.join("results/paper");
     let trials = rows(&results, "trials.csv");
+    every_metric_is_a_column(&results, &trials);
+    let rescuees = column(&results, "rescuees_total");
     let rescued: Vec<f64> =
-        trials.iter().filter(|row| &row[0] == "DIS").map(|row| row[3].parse().unwrap()).collect();
+        trials.iter().filter(|row| &row[0] == "DIS").map(|row| row[rescuees].parse().unwrap()).collect();
     let last = rows(&results.join("plots"), "rescuees-over-time.csv")
         .into_iter()
         .rfind(|row| &row[0] == "rescuees.total" && &row[1] == "DIS")
@@ -571,7 +594,7 @@ fn the_sweep_file_in_the_folder_makes_it_again() {
 
 /// The tables of a folder.
 fn files_but(folder: &Path) -> Vec<(String, Vec<u8>)> {
-    let names = ["trials.csv", "rounds.csv", "hashes.csv", "metrics.csv", "journal.jsonl", "resolved.ron"];
+    let names = ["trials.csv", "rounds.csv", "hashes.csv", "journal.jsonl", "resolved.ron"];
     names.iter().map(|name| ((*name).to_owned(), std::fs::read(folder.join(name)).unwrap())).collect()
 }
 

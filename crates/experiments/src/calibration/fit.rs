@@ -12,7 +12,7 @@ use crate::sweep::NewFile;
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Fit {
     /// Name of the quantity.
-    pub quantity: &'static str,
+    pub quantity: String,
     /// Mean of the data.
     pub data_mean: f64,
     /// Its standard deviation.
@@ -39,7 +39,7 @@ impl Fit {
         let models = fitted.iter().zip(fresh);
         let rows = target.quantities.iter().zip(&target.spreads).zip(models);
         rows.map(|((quantity, data), (fitted, fresh))| Self {
-            quantity: quantity.name,
+            quantity: quantity.name.clone(),
             data_mean: data.mean,
             data_sd: data.sd,
             fitted_mean: fitted.mean,

@@ -168,7 +168,7 @@ fn origin_of(calibration: &Calibration) -> serde_json::Value {
     let Program { version, source } = Program::this();
     let spreads = calibration.target.quantities.iter().zip(&calibration.target.spreads);
     let target: serde_json::Map<String, serde_json::Value> =
-        spreads.map(|(q, s)| (q.name.to_owned(), serde_json::json!([s.mean, s.sd]))).collect();
+        spreads.map(|(q, s)| (q.name.clone(), serde_json::json!([s.mean, s.sd]))).collect();
     serde_json::json!({
         "program": format!("usar {version} with source {source}"),
         "policy": POLICY,

@@ -185,10 +185,8 @@ impl Calibration {
                 catch_unwind(run).map_err(|panic| format!("internal error: {}", panic_message(&*panic)))?;
             result.map_err(|fault| fault.reason)
         };
-        let rows: Vec<Result<Vec<f64>, String>> = seeds
-            .into_par_iter()
-            .map(|seed| trial(seed).map(|trial| self.target.measure(&trial.record)))
-            .collect();
+        let rows: Vec<Result<Vec<f64>, String>> =
+            seeds.into_par_iter().map(|seed| self.target.measure(&trial(seed)?.record)).collect();
         if stop.load(Ordering::Relaxed) {
             return Ok(None);
         }

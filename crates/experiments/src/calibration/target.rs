@@ -8,26 +8,28 @@ use usar_sim::scenario::Scenario;
 use super::POLICY;
 use crate::failure::Failure;
 use crate::input_table::InputTable;
+use crate::metric::{Catalogue, Metric, task_names};
 use crate::stats::Moments;
 use crate::sweep::trial_columns;
 
 /// A quantity of a trial that a target may have, under the authors' name.
 pub struct Quantity {
     /// Name of its column.
-    pub name: &'static str,
-    value: fn(&TrialRecord) -> f64,
+    pub name: String,
+    metric: Metric,
 }
 
-/// All of them, in the authors' order.
-const QUANTITIES: [Quantity; 7] = [
-    Quantity { name: "rescuees_hard", value: |r| f64::from(r.hard.rescued) },
-    Quantity { name: "rescuees_easy", value: |r| f64::from(r.easy.rescued) },
-    Quantity { name: "energy_hard", value: |r| r.hard.energy },
-    Quantity { name: "energy_easy", value: |r| r.easy.energy },
-    Quantity { name: "hp_hard", value: |r| r.hard.hp },
-    Quantity { name: "hp_easy", value: |r| r.easy.hp },
-    Quantity { name: "rounds", value: |r| f64::from(r.completed_rounds) },
-];
+/// The metrics that can be fitted, in the authors' order: each task's where they are told by task, since totals follow from these.
+const FITTED: [&str; 4] = ["rescuees", "energy", "hp", "rounds"];
+
+impl Quantity {
+    /// All of them.
+    fn all(metrics: &Catalogue) -> Vec<Self> {
+        let places = FITTED.iter().flat_map(|name| metrics.declared(name));
+        let parts = places.map(|place| &metrics[place]).filter(|metric| !metric.is_total());
+        parts.map(|metric| Self { name: metric.column(), metric: metric.clone() }).collect()
+    }
+}
 
 /// Mean and sample standard deviation of one quantity.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -59,11 +61,13 @@ impl Spread {
 /// Recorded trials of the baseline.
 pub struct Target {
     /// The quantities that it has.
-    pub quantities: Vec<&'static Quantity>,
+    pub quantities: Vec<Quantity>,
     /// Their means and spreads.
     pub spreads: Vec<Spread>,
     /// Number of trials.
     pub trials: usize,
+    /// Names of the quantities that it has not.
+    pub missing: Vec<String>,
 }
 
 impl Target {
@@ -75,13 +79,16 @@ impl Target {
     pub fn load(path: &Path, scenario: &Scenario) -> Result<Self, Failure> {
         let shown = path.display();
         let table = InputTable::read(path)?;
-        let (found, mut problems) = columns_of(&table);
+        let metrics = Catalogue::of(&task_names(scenario));
+        let Columns { found, missing, mut problems } = Columns::of(&table, &metrics);
         let mut values = vec![Vec::new(); found.len()];
         for (line, row) in &table.rows {
             let cells = Cells { table: &table, row };
-            problems.extend(cells.check(scenario).into_iter().map(|problem| format!("{line}: {problem}")));
+            problems.extend(
+                cells.check(scenario, &metrics).into_iter().map(|problem| format!("{line}: {problem}")),
+            );
             for (quantity, values) in found.iter().zip(&mut values) {
-                match cells.number(quantity.name) {
+                match cells.number(&quantity.name) {
                     Ok(value) => values.extend(value),
                     Err(problem) => problems.push(format!("{line}: {problem}")),
                 }
@@ -94,7 +101,7 @@ impl Target {
             let lines: Vec<String> = problems.iter().map(|problem| format!("{shown}:{problem}")).collect();
             return Err(Failure::Input(lines.join("\n")));
         }
-        let spread = |(quantity, values): (&&Quantity, &Vec<f64>)| {
+        let spread = |(quantity, values): (&Quantity, &Vec<f64>)| {
             Spread::of(values).filter(|spread| spread.sd > 0.0).ok_or_else(|| {
                 Failure::input(format!(
                     "{shown}: {} must differ between trials: distances are measured by its spread",
@@ -103,20 +110,19 @@ impl Target {
             })
         };
         let spreads = found.iter().zip(&values).map(spread).collect::<Result<Vec<_>, _>>()?;
-        Ok(Self { quantities: found, spreads, trials: table.rows.len() })
-    }
-
-    /// The quantities that the data have not.
-    #[must_use]
-    pub fn missing(&self) -> Vec<&'static str> {
-        let has = |name: &str| self.quantities.iter().any(|quantity| quantity.name == name);
-        QUANTITIES.iter().map(|quantity| quantity.name).filter(|name| !has(name)).collect()
+        Ok(Self { quantities: found, spreads, trials: table.rows.len(), missing })
     }
 
     /// The quantities of a trial.
-    #[must_use]
-    pub fn measure(&self, record: &TrialRecord) -> Vec<f64> {
-        self.quantities.iter().map(|quantity| (quantity.value)(record)).collect()
+    ///
+    /// # Errors
+    /// One that the trial has not, in one sentence.
+    pub fn measure(&self, record: &TrialRecord) -> Result<Vec<f64>, String> {
+        let value = |quantity: &Quantity| {
+            let value = quantity.metric.value(record);
+            value.ok_or_else(|| format!("{} is not defined in a trial", quantity.name))
+        };
+        self.quantities.iter().map(value).collect()
     }
 
     /// How far a model is from the target: the sum over all quantities; smaller is nearer.
@@ -126,22 +132,33 @@ impl Target {
     }
 }
 
-/// The quantities that a table has, and what is wrong with its header.
-fn columns_of(table: &InputTable) -> (Vec<&'static Quantity>, Vec<String>) {
-    let mut problems = Vec::new();
-    let (known, quantities) = (trial_columns(), QUANTITIES.map(|quantity| quantity.name).join(", "));
-    for unknown in table.columns().filter(|name| !known.iter().any(|column| column == name)) {
-        problems.push(format!("1: {unknown:?} is no column of trials.csv; what can be fitted: {quantities}"));
+/// What the columns of a table are.
+struct Columns {
+    found: Vec<Quantity>,
+    missing: Vec<String>,
+    /// What is wrong with its header.
+    problems: Vec<String>,
+}
+
+impl Columns {
+    fn of(table: &InputTable, metrics: &Catalogue) -> Self {
+        let mut problems = Vec::new();
+        let (known, all) = (trial_columns(metrics), Quantity::all(metrics));
+        let names: Vec<&str> = all.iter().map(|quantity| quantity.name.as_str()).collect();
+        let names = names.join(", ");
+        for unknown in table.columns().filter(|name| !known.iter().any(|column| column == name)) {
+            problems.push(format!("1: {unknown:?} is no column of trials.csv; what can be fitted: {names}"));
+        }
+        if table.column("method").is_none() {
+            problems.push("1: has no column method".to_owned());
+        }
+        let (found, missing): (Vec<_>, Vec<_>) =
+            all.into_iter().partition(|quantity| table.column(&quantity.name).is_some());
+        if found.is_empty() && problems.is_empty() {
+            problems.push(format!("1: has none of the columns {names}"));
+        }
+        Self { found, missing: missing.into_iter().map(|quantity| quantity.name).collect(), problems }
     }
-    if table.column("method").is_none() {
-        problems.push("1: has no column method".to_owned());
-    }
-    let found: Vec<&Quantity> =
-        QUANTITIES.iter().filter(|quantity| table.column(quantity.name).is_some()).collect();
-    if found.is_empty() && problems.is_empty() {
-        problems.push(format!("1: has none of the columns {quantities}"));
-    }
-    (found, problems)
 }
 
 /// A row by the names of its cells.
@@ -163,7 +180,7 @@ impl Cells<'_> {
     }
 
     /// What is wrong with what is not fitted.
-    fn check(&self, scenario: &Scenario) -> Vec<String> {
+    fn check(&self, scenario: &Scenario, metrics: &Catalogue) -> Vec<String> {
         let mut problems = Vec::new();
         if let Some(method) = self.text("method").filter(|method| *method != POLICY) {
             problems.push(format!("method must be {POLICY}: nothing else is calibrated, found {method:?}"));
@@ -180,14 +197,13 @@ impl Cells<'_> {
         if let Some(time_s) = time_s.filter(|time_s| (time_s - duration_s).abs() > dt_s / 2.0) {
             problems.push(format!("time_s must be the scenario's duration_s, {duration_s}, found {time_s}"));
         }
-        let parts = ["rescuees_hard", "rescuees_easy"].map(|name| self.number(name));
-        if let ([Ok(Some(hard)), Ok(Some(easy))], Some(total)) = (parts, total)
-            && (total - hard - easy).abs() > 1e-6
-        {
-            problems.push(format!(
-                "rescuees_total must be the sum of hard and easy, {}, found {total}",
-                hard + easy
-            ));
+        let tasks = metrics.declared("rescuees").into_iter().map(|place| &metrics[place]);
+        let parts = tasks.filter(|metric| !metric.is_total()).map(|metric| self.number(&metric.column()));
+        if let (Ok(Some(parts)), Some(total)) = (parts.collect::<Result<Option<Vec<f64>>, _>>(), total) {
+            let sum: f64 = parts.iter().sum();
+            if (total - sum).abs() > 1e-6 {
+                problems.push(format!("rescuees_total must be the sum over the tasks, {sum}, found {total}"));
+            }
         }
         problems
     }
@@ -221,7 +237,10 @@ mod tests {
     fn the_authors_table_is_read() {
         let path = scenarios().join("reference/dis_trials.csv");
         let target = Target::load(&path, &papers()).unwrap();
-        assert_eq!((target.trials, target.quantities.len()), (10, 7));
+        let names: Vec<&str> = target.quantities.iter().map(|quantity| quantity.name.as_str()).collect();
+        let expected =
+            ["rescuees_hard", "rescuees_easy", "energy_hard", "energy_easy", "hp_hard", "hp_easy", "rounds"];
+        assert_eq!((target.trials, names), (10, expected.to_vec()));
         // numpy: mean and std(ddof=1) of rescuees_hard
         assert!((target.spreads[0].mean - 52.8).abs() < 1e-12);
         assert!((target.spreads[0].sd - 4.211_096_452_627_46).abs() < 1e-9, "{}", target.spreads[0].sd);

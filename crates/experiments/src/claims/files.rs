@@ -4,6 +4,7 @@ use std::path::Path;
 
 use serde::Serialize;
 
+use super::papers::AUTHORS_COLUMNS;
 use super::{CLAIMS, Example, Judged, PAPERS_TRIALS};
 use crate::failure::Failure;
 use crate::sweep::NewFile;
@@ -17,11 +18,15 @@ pub fn write_authors_columns(out: &Path, folder: &Folder) -> Result<(), Failure>
     let path = folder.path().join("trials.csv");
     let bad = |error: csv::Error| Failure::storage(format!("{}: {error}", path.display()));
     let mut trials = csv::Reader::from_path(&path).map_err(bad)?;
-    let columns = trials.headers().map_err(bad)?.iter().position(|name| name == "policy").unwrap_or_default();
-    let mut table = csv::Writer::from_writer(Vec::new());
     let header = trials.headers().map_err(bad)?.clone();
-    for record in std::iter::once(Ok(header)).chain(trials.records()) {
-        table.write_record(record.map_err(bad)?.iter().take(columns)).map_err(Failure::run)?;
+    let missing = |name: &str| Failure::storage(format!("{}: has no column {name}", path.display()));
+    let place = |name: &&str| header.iter().position(|known| known == *name).ok_or_else(|| missing(name));
+    let places = AUTHORS_COLUMNS.iter().map(place).collect::<Result<Vec<_>, _>>()?;
+    let mut table = csv::Writer::from_writer(Vec::new());
+    table.write_record(AUTHORS_COLUMNS).map_err(Failure::run)?;
+    for record in trials.records() {
+        let record = record.map_err(bad)?;
+        table.write_record(places.iter().map(|place| &record[*place])).map_err(Failure::run)?;
     }
     let bytes = table.into_inner().map_err(Failure::run)?;
     NewFile::write(out, &format!("{}.csv", folder.experiment().name), &bytes).map(drop)
@@ -44,7 +49,7 @@ pub fn write_claims(out: &Path, judged: &[Judged]) -> Result<(), Failure> {
                         claim: claim.name,
                         words: claim.words,
                         verdict: finding.verdict.words(),
-                        comparison: part.words(),
+                        comparison: part.words(&scenario.metrics),
                         n: found.differences.len(),
                         difference: found.difference,
                         low: found.interval.map(|[low, _]| low),
@@ -90,7 +95,7 @@ pub fn write_power(out: &Path, judged: &[Judged]) -> Result<(), Failure> {
                     claim_pairs_needed: power.and_then(|power| power.pairs_needed),
                     holds_at_10: power.map(|power| power.of_few.holds),
                     does_not_hold_at_10: power.map(|power| power.of_few.does_not_hold),
-                    comparison: part.words(),
+                    comparison: part.words(&scenario.metrics),
                     n: found.differences.len(),
                     difference: found.difference,
                     sd: found.sd(),

@@ -24,7 +24,7 @@ use power::{TIMES, least_difference};
 
 use crate::comparison::CONFIDENCE;
 use crate::failure::Failure;
-use crate::metric::{METRICS, metric_named};
+use crate::metric::Catalogue;
 use crate::stats::Moments;
 use crate::stats::bootstrap::interval;
 use crate::stats::paired::pairs_needed;
@@ -182,6 +182,8 @@ const POWER_SEED: u64 = 1;
 pub struct Judged {
     /// Name of the scenario.
     pub scenario: String,
+    /// What is measured there.
+    pub metrics: Catalogue,
     /// Over as many trials as the paper has.
     pub of_few: Vec<Finding>,
     /// How many are all.
@@ -203,7 +205,8 @@ impl Judged {
         let (of_few, of_all) = (all(PAPERS_TRIALS)?, all(trials)?);
         let powers =
             of_all.iter().map(|finding| power(finding, PAPERS_TRIALS as usize, POWER_SEED)).collect();
-        Ok(Self { scenario: folder.experiment().name.clone(), of_few, trials, of_all, powers })
+        let (scenario, metrics) = (folder.experiment().name.clone(), folder.experiment().metrics.clone());
+        Ok(Self { scenario, metrics, of_few, trials, of_all, powers })
     }
 }
 
@@ -236,8 +239,9 @@ fn part_finding(part: &Part, differences: Vec<(u32, f64)>, count: usize) -> Part
 
 /// First less second, trial by trial, where both are defined.
 fn differences(folder: &Folder, part: &Part, trials: u32) -> Result<Vec<(u32, f64)>, Failure> {
+    let metrics = &folder.experiment().metrics;
     let place =
-        |[policy, metric]: [&str; 2]| Ok::<_, Failure>((place_of(folder, policy)?, metric_named(metric)?));
+        |[policy, metric]: [&str; 2]| Ok::<_, Failure>((place_of(folder, policy)?, metrics.named(metric)?));
     let (a, b) = (place(part.a)?, place(part.b)?);
     let value = |(policy, metric): (usize, usize), trial: u32| {
         folder.results().get(&(0, policy, trial))?.metrics.as_ref()?[metric]
@@ -253,10 +257,9 @@ fn place_of(folder: &Folder, policy: &str) -> Result<usize, Failure> {
 impl Part {
     /// What is compared, in words.
     #[must_use]
-    pub fn words(&self) -> String {
-        let title =
-            |name: &str| METRICS.iter().find(|metric| metric.name == name).map_or("", |metric| metric.title);
+    pub fn words(&self, metrics: &Catalogue) -> String {
         let [policy, metric] = self.a;
+        let title = |name| metrics.title(name);
         if self.a[1] == self.b[1] {
             format!("{}: {policy} {} {}", title(metric), self.claimed.sign(), self.b[0])
         } else {
@@ -267,7 +270,10 @@ impl Part {
 
 #[cfg(test)]
 mod tests {
+    use usar_sim::scenario::Scenario;
+
     use super::*;
+    use crate::metric::task_names;
 
     fn parts(intervals: &[[f64; 4]], claimed: Side) -> Vec<PartFinding> {
         let part = |[low, high, wide_low, wide_high]: &[f64; 4]| PartFinding {
@@ -299,9 +305,11 @@ mod tests {
 
     #[test]
     fn every_claim_is_of_metrics_and_policies_that_exist() {
+        let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/paper.ron");
+        let metrics = Catalogue::of(&task_names(&Scenario::load(&path).unwrap().0));
         for part in CLAIMS.iter().flat_map(|claim| claim.parts) {
             for [policy, metric] in [part.a, part.b] {
-                assert!(metric_named(metric).is_ok(), "{metric}");
+                assert!(metrics.named(metric).is_ok(), "{metric}");
                 assert!(rne_core::policy_names().contains(&policy), "{policy}");
             }
         }

@@ -209,7 +209,7 @@ impl Arguments {
             self.fresh_trials,
             calibration.target.trials,
         )?;
-        let missing = calibration.target.missing();
+        let missing = &calibration.target.missing;
         if !missing.is_empty() {
             writeln!(out, "not in the data, and not looked at: {}", missing.join(", "))?;
         }

@@ -10,7 +10,6 @@ use super::SCHEMA_VERSION;
 use crate::comparison::{CONFIDENCE, Choice, Comparison, LEVEL, compare, limit_of_correction, test_in_words};
 use crate::experiment::split_list;
 use crate::failure::Failure;
-use crate::metric::chosen;
 use crate::stats::bootstrap::resamples;
 use crate::sweep::folder::Folder;
 use crate::table::comparison_table;
@@ -58,10 +57,10 @@ struct Output<'a> {
 impl Arguments {
     pub(crate) fn execute(&self, out: &mut dyn Write) -> Result<(), Failure> {
         let folder = Folder::read(&self.folder)?;
+        let experiment = folder.experiment();
         let policies = self.policies.as_deref().map(split_list);
         let choice = Choice { baseline: self.baseline.as_deref(), policies: policies.as_deref() };
-        let comparisons = compare(&folder, &chosen(&self.metric)?, choice)?;
-        let experiment = folder.experiment();
+        let comparisons = compare(&folder, &experiment.metrics.chosen(&self.metric)?, choice)?;
         if self.json {
             let output = Output {
                 schema_version: SCHEMA_VERSION,

@@ -8,7 +8,6 @@
 use crate::comparison::{Pairs, short};
 use crate::experiment::Experiment;
 use crate::failure::Failure;
-use crate::metric::{METRICS, metric_named};
 use crate::stats::paired::t_half_width;
 use crate::stats::stopping::{FIRST_LOOK, next_look};
 use crate::sweep::folder::Folder;
@@ -28,8 +27,8 @@ impl Precision {
         let form = "must be 'METRIC: A-B: BOUND'";
         let (metric, rest) = text.split_once(':').ok_or_else(|| bad(form))?;
         let (pair, bound) = rest.rsplit_once(':').ok_or_else(|| bad(form))?;
-        let metric =
-            metric_named(metric.trim()).map_err(|error| Failure::input(format!("--precision: {error}")))?;
+        let metric = experiment.metrics.named(metric.trim());
+        let metric = metric.map_err(|error| Failure::input(format!("--precision: {error}")))?;
         let bound: f64 = bound.trim().parse().map_err(|_| bad("the bound must be a number"))?;
         if !(bound.is_finite() && bound > 0.0) {
             return Err(bad("the bound must be a number above 0"));
@@ -72,7 +71,8 @@ impl Precision {
 
     /// What came of it, in words.
     pub(super) fn verdict(&self, folder: &Folder) -> String {
-        let (metric, [a, b], bound) = (METRICS[self.metric].name, &self.labels, short(self.bound));
+        let (metric, [a, b], bound) =
+            (&folder.experiment().metrics[self.metric].name, &self.labels, short(self.bound));
         match self.state(folder) {
             Some(State { half_width, pairs }) if half_width <= self.bound => format!(
                 "precision reached: the 95 % interval of {metric}, {a} less {b}, is its mean ± {} or narrower ({pairs} pairs, bound {bound})",

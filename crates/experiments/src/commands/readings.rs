@@ -59,7 +59,7 @@ impl Arguments {
         }
         let rows = single(&trials, default, &readings, &rounds)?;
         writeln!(out, "Each reading by itself against the default, over {} pairs", trials.numbers.len())?;
-        writeln!(out, "{}", readings_table(&rows))?;
+        writeln!(out, "{}", readings_table(&rows, &folder.experiment().metrics))?;
         writeln!(
             out,
             "regrouped: share of the {} rounds of the default's trials that the reading would group otherwise, and of those that it would split otherwise\n\
@@ -72,7 +72,7 @@ impl Arguments {
                 out,
                 "Each reading averaged over all combinations of the others, against the default of its option"
             )?;
-            writeln!(out, "{}\n", averaged_table(&averaged))?;
+            writeln!(out, "{}\n", averaged_table(&averaged, &folder.experiment().metrics))?;
         }
         let distinct = trials.distinct(&readings);
         let rivals = rivals(&trials, &distinct);

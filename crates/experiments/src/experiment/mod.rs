@@ -19,6 +19,7 @@ pub use policy::{PolicySpec, split_list};
 pub use read::with_settings;
 
 use crate::failure::Failure;
+use crate::metric::{Catalogue, task_names};
 use crate::sweep::{Fault, SharedTrials, Trial, TrialKey, run_trial};
 use grid::{cases, checked_policies, deciding_text};
 use read::{checked, from_scenario, from_sweep_file, with_readings};
@@ -99,6 +100,8 @@ pub struct Experiment {
     pub cases: Vec<Case>,
     /// The policies to compare.
     pub policies: Vec<PolicySpec>,
+    /// What is measured of each trial.
+    pub metrics: Catalogue,
     /// Paired trials for each case and policy.
     pub trials: u32,
     /// Their seeds.
@@ -218,6 +221,7 @@ impl Experiment {
         Ok(Self {
             name,
             given,
+            metrics: Catalogue::of(&task_names(&base)),
             base,
             axes,
             cases,

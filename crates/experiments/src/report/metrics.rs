@@ -7,7 +7,7 @@ use super::figure::{Figure, Panel, colour, draw, layout, line_panel, names, rang
 use crate::comparison::{Comparison, short};
 use crate::experiment::Experiment;
 use crate::failure::Failure;
-use crate::metric::{METRICS, figures, metric_named};
+use crate::metric::Metric;
 use crate::stats::Moments;
 use crate::stats::paired::t_half_width;
 use crate::sweep::folder::Folder;
@@ -19,38 +19,33 @@ const MAX_POINTS: usize = 300;
 const PANEL: [f64; 2] = [360.0, 320.0];
 
 /// A title with its unit.
-fn with_unit(metric: usize) -> String {
-    let metric = &METRICS[metric];
-    if metric.unit.is_empty() {
-        metric.title.to_owned()
-    } else {
-        format!("{} ({})", metric.title, metric.unit)
-    }
+fn with_unit(metric: &Metric) -> String {
+    if metric.unit.is_empty() { metric.title.clone() } else { format!("{} ({})", metric.title, metric.unit) }
 }
 
 /// Box plots with points, a figure for each group of metrics.
 pub(super) fn boxes(folder: &Folder, case: usize) -> Result<Vec<Figure>, Failure> {
-    figures().into_iter().map(|(name, metrics)| box_figure(folder, case, name, &metrics)).collect()
+    let figures = folder.experiment().metrics.figures().into_iter();
+    figures.map(|(name, metrics)| box_figure(folder, case, name, &metrics)).collect()
 }
 
-fn box_figure(folder: &Folder, case: usize, name: &str, metrics: &[usize]) -> Result<Figure, Failure> {
-    let policies = &folder.experiment().policies;
+fn box_figure(folder: &Folder, case: usize, name: &str, places: &[usize]) -> Result<Figure, Failure> {
+    let Experiment { policies, metrics, .. } = folder.experiment();
     let names = names(folder.experiment());
     let has_points = folder.experiment().trials as usize <= MAX_POINTS;
     let (mut panels, mut rows, mut counts) = (Vec::new(), Vec::new(), Vec::new());
-    for metric in metrics {
+    for place in places {
+        let metric = &metrics[*place];
         let mut plot = BoxPlot::new().with_width(0.6);
         if has_points {
             plot = plot.with_strip(0.2).with_overlay_size(2.5).with_overlay_color("#333333");
         }
         let (mut colours, mut all) = (Vec::new(), Vec::new());
         for (i, policy) in policies.iter().enumerate() {
-            let values = values(folder, case, i, *metric);
+            let values = values(folder, case, i, *place);
             counts.push(values.len());
             rows.extend(
-                values
-                    .iter()
-                    .map(|value| vec![METRICS[*metric].name.into(), policy.label.clone(), value.to_string()]),
+                values.iter().map(|value| vec![metric.name.clone(), policy.label.clone(), value.to_string()]),
             );
             all.extend_from_slice(&values);
             if !values.is_empty() {
@@ -63,8 +58,8 @@ fn box_figure(folder: &Folder, case: usize, name: &str, metrics: &[usize]) -> Re
         }
         let plots = vec![Plot::Box(plot.with_group_colors(colours))];
         let [low, high] = range(all);
-        let layout = layout(&plots, METRICS[*metric].title)
-            .with_y_label(METRICS[*metric].unit)
+        let layout = layout(&plots, &metric.title)
+            .with_y_label(metric.unit)
             .with_y_axis_min(low)
             .with_y_axis_max(high);
         panels.push(Panel { plots, layout });
@@ -106,12 +101,12 @@ pub(super) fn capitalised(text: &str) -> String {
 
 /// Energy against HP per rescuee: what a rescue costs.
 pub(super) fn costs(folder: &Folder, case: usize) -> Result<Figure, Failure> {
-    let policies = &folder.experiment().policies;
+    let Experiment { policies, metrics, .. } = folder.experiment();
     let names = names(folder.experiment());
     let (mut panels, mut rows, mut counts) = (Vec::new(), Vec::new(), Vec::new());
-    for part in ["total", "hard", "easy"] {
-        let [energy, hp] = ["energy", "hp"].map(|cost| metric_named(&format!("{cost}_per_rescuee.{part}")));
-        let (energy, hp) = (energy?, hp?);
+    let [energies, hps] = ["energy_per_rescuee", "hp_per_rescuee"].map(|name| metrics.declared(name));
+    for (energy, hp) in energies.into_iter().zip(hps) {
+        let part = metrics[energy].part();
         let (mut plots, mut all) = (Vec::new(), Vec::new());
         for (i, policy) in policies.iter().enumerate() {
             let trials = (case, i, 0)..=(case, i, u32::MAX);
@@ -168,11 +163,11 @@ pub(super) fn forest(experiment: &Experiment, comparisons: &[&Comparison]) -> Re
         let place = experiment.policies.iter().position(|policy| policy.label == *label);
         place.map_or("", |place| names[place].as_str())
     };
-    let mut metrics: Vec<&str> = comparisons.iter().map(|comparison| comparison.metric).collect();
+    let mut metrics: Vec<&str> = comparisons.iter().map(|comparison| comparison.metric.as_str()).collect();
     metrics.dedup();
     let mut panels = Vec::new();
     for metric in metrics {
-        let place = metric_named(metric)?;
+        let Metric { title, unit, .. } = &experiment.metrics[experiment.metrics.named(metric)?];
         let mut plot = ForestPlot::new().with_null_value(0.0).with_cap_size(4.0);
         let mut ends = vec![0.0];
         for comparison in comparisons.iter().filter(|comparison| comparison.metric == metric) {
@@ -186,8 +181,7 @@ pub(super) fn forest(experiment: &Experiment, comparisons: &[&Comparison]) -> Re
         if ends.len() > 1 {
             let plots = vec![Plot::Forest(plot)];
             let [low, high] = forest_range(&ends);
-            let unit = METRICS[place].unit;
-            let layout = layout(&plots, METRICS[place].title)
+            let layout = layout(&plots, title)
                 .with_x_label(if unit.is_empty() { "difference" } else { unit })
                 .with_ticks(4)
                 .with_x_axis_min(low)
@@ -198,7 +192,7 @@ pub(super) fn forest(experiment: &Experiment, comparisons: &[&Comparison]) -> Re
     let row = |c: &&Comparison| {
         let number = |value: Option<f64>| value.map_or(String::new(), |value| value.to_string());
         vec![
-            c.metric.to_owned(),
+            c.metric.clone(),
             c.a.clone(),
             c.b.clone(),
             c.n.to_string(),
@@ -233,7 +227,7 @@ fn forest_range(ends: &[f64]) -> [f64; 2] {
 pub(super) fn axes(folder: &Folder, case: usize) -> Result<Vec<Figure>, Failure> {
     let experiment = folder.experiment();
     let names = names(experiment);
-    let metrics = figures().into_iter().next().map_or(Vec::new(), |(_, metrics)| metrics);
+    let metrics = experiment.metrics.figures().into_iter().next().map_or(Vec::new(), |(_, metrics)| metrics);
     let mut all = Vec::new();
     for (i, axis) in experiment.axes.iter().enumerate() {
         let numbers: Vec<f64> = axis.values.iter().filter_map(|value| value.parse().ok()).collect();
@@ -260,7 +254,7 @@ pub(super) fn axes(folder: &Folder, case: usize) -> Result<Vec<Figure>, Failure>
                         half.unwrap_or(0.0),
                     ));
                     rows.push(vec![
-                        METRICS[*metric].name.into(),
+                        experiment.metrics[*metric].name.clone(),
                         policy.label.clone(),
                         axis.values[at].clone(),
                         values.len().to_string(),
@@ -271,7 +265,7 @@ pub(super) fn axes(folder: &Folder, case: usize) -> Result<Vec<Figure>, Failure>
                 points.sort_by(|a, b| a.0.total_cmp(&b.0));
                 lines.push((p, names[p].as_str(), points));
             }
-            panels.extend(line_panel(&lines, [&with_unit(*metric), &axis.path, ""]));
+            panels.extend(line_panel(&lines, [&with_unit(&experiment.metrics[*metric]), &axis.path, ""]));
         }
         let n = experiment.trials;
         let places: Vec<String> =
@@ -299,7 +293,7 @@ pub(super) fn axes(folder: &Folder, case: usize) -> Result<Vec<Figure>, Failure>
 
 /// The policy table as rows of text, for the report.
 pub(super) fn summary(folder: &Folder, case: usize) -> Vec<Vec<String>> {
-    let policies = &folder.experiment().policies;
+    let Experiment { policies, metrics, .. } = folder.experiment();
     let cell = |policy: usize, metric: usize| {
         let values = values(folder, case, policy, metric);
         let moments = Moments::of(&values);
@@ -312,11 +306,11 @@ pub(super) fn summary(folder: &Folder, case: usize) -> Vec<Vec<String>> {
         };
         format!("{}{sd}{partly}", crate::comparison::digits(mean, 4))
     };
-    let papers = (0..METRICS.len()).filter(|metric| METRICS[*metric].is_papers);
-    papers
-        .map(|metric| {
+    let primary = metrics.iter().enumerate().filter(|(_, metric)| metric.is_primary);
+    primary
+        .map(|(place, metric)| {
             std::iter::once(with_unit(metric))
-                .chain((0..policies.len()).map(|policy| cell(policy, metric)))
+                .chain((0..policies.len()).map(|policy| cell(policy, place)))
                 .collect()
         })
         .collect()

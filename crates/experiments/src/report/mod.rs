@@ -13,9 +13,8 @@ use askama::Template;
 use crate::comparison::{
     Choice, Comparison, compare, digits, limit_of_correction, short, short_p, test_in_words,
 };
-use crate::experiment::{Axis, Seeds};
+use crate::experiment::{Axis, Experiment, Seeds};
 use crate::failure::Failure;
-use crate::metric::chosen;
 use crate::sweep::NewFile;
 use crate::sweep::disk::{PLOTS, REPORT};
 use crate::sweep::folder::Folder;
@@ -51,7 +50,7 @@ struct Page<'a> {
 
 /// A comparison as text.
 struct Row {
-    metric: &'static str,
+    metric: String,
     pair: String,
     n: usize,
     left_out: usize,
@@ -71,8 +70,10 @@ struct Row {
 /// # Errors
 /// The folder cannot be written to, or its journal cannot be read.
 pub fn write(folder: &mut Folder, case: usize) -> Result<PathBuf, Failure> {
-    let policies = folder.experiment().policies.len();
-    let all = if policies > 1 { compare(folder, &chosen(&[])?, Choice::default())? } else { Vec::new() };
+    let Experiment { policies, metrics, .. } = folder.experiment();
+    let is_compared = policies.len() > 1;
+    let all =
+        if is_compared { compare(folder, &metrics.chosen(&[])?, Choice::default())? } else { Vec::new() };
     let here: Vec<&Comparison> = all.iter().filter(|comparison| comparison.case == case + 1).collect();
     let figures = figures(folder, case, &here)?;
     let page = page(folder, case, &here, &all, &figures).render().map_err(Failure::run)?;
@@ -172,7 +173,7 @@ fn row(c: &Comparison) -> Row {
     let number = |value: Option<f64>| value.map_or("-".to_owned(), short);
     let mean = |value: Option<f64>| value.map_or("-".to_owned(), |value| digits(value, 4));
     Row {
-        metric: c.metric,
+        metric: c.metric.clone(),
         pair: format!("{} - {}", c.a, c.b),
         n: c.n,
         left_out: c.failed + c.missing + c.undefined,

@@ -7,7 +7,7 @@ use usar_sim::scenario::Scenario;
 
 use super::file::{FileHash, NewFile, file_hash};
 use super::journal;
-use super::tables::{METRICS_FILE, TABLES};
+use super::tables::TABLES;
 use crate::experiment::{Experiment, Parts, Program, Shard};
 use crate::failure::Failure;
 use crate::provenance::{Manifest, scenario_differences};
@@ -59,7 +59,7 @@ pub(super) fn sync_folder(path: &Path) -> Result<(), Failure> {
 
 /// The names of all files that a sweep writes.
 fn known_names() -> impl Iterator<Item = &'static str> {
-    [MANIFEST, LOCK, journal::FILE, REPORT].into_iter().chain(INPUTS).chain(TABLES).chain([METRICS_FILE])
+    [MANIFEST, LOCK, journal::FILE, REPORT].into_iter().chain(INPUTS).chain(TABLES)
 }
 
 /// Refuses a folder that is not a sweep's: one with a manifest or a journal of this program, or with nothing but what a sweep writes first.

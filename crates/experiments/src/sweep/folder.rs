@@ -15,11 +15,11 @@ use super::disk::{
 };
 use super::file::{FileHash, file_hash};
 use super::journal::{self, Damage, Journal, Place};
-use super::tables::{Tables, metrics_table};
+use super::tables::Tables;
 use super::trial::{Outcome, TrialKey};
 use crate::experiment::{Experiment, Shard};
 use crate::failure::Failure;
-use crate::metric::measure;
+use crate::metric::Catalogue;
 use crate::provenance::{Manifest, SCHEMA_VERSION};
 
 /// Damaged lines of a journal that are named.
@@ -41,15 +41,16 @@ pub struct Folder {
 pub struct Measured {
     /// Its status in one word.
     pub status: &'static str,
-    /// Values of all metrics, in the order of [`crate::metric::METRICS`]; `None` for a trial without numbers.
+    /// Values of all metrics, in the order of the experiment's catalogue; `None` for a trial without numbers.
     pub metrics: Option<Vec<Option<f64>>>,
     /// Why it gave nothing.
     pub failure: Option<String>,
 }
 
 impl Measured {
-    fn of(outcome: &Outcome) -> Self {
-        Self { status: outcome.status(), metrics: outcome.record().map(measure), failure: outcome.failure() }
+    fn of(outcome: &Outcome, metrics: &Catalogue) -> Self {
+        let metrics = outcome.record().map(|record| metrics.measure(record));
+        Self { status: outcome.status(), metrics, failure: outcome.failure() }
     }
 }
 
@@ -163,7 +164,7 @@ impl Folder {
         let mut results = BTreeMap::new();
         let (journal, damages) = Journal::open(path, &experiment, is_writable, |outcome| {
             let TrialKey { case, policy, trial, .. } = outcome.key;
-            results.insert((case, policy, trial), Measured::of(&outcome));
+            results.insert((case, policy, trial), Measured::of(&outcome, &experiment.metrics));
         })?;
         // A sweep that is under way may be writing its last line.
         let may_write = !is_writable && !manifest.is_complete;
@@ -252,7 +253,7 @@ impl Folder {
     pub fn add(&mut self, outcome: &Outcome) -> Result<(), Failure> {
         self.journal.add(&self.experiment, outcome)?;
         let TrialKey { case, policy, trial, .. } = outcome.key;
-        self.results.insert((case, policy, trial), Measured::of(outcome));
+        self.results.insert((case, policy, trial), Measured::of(outcome, &self.experiment.metrics));
         Ok(())
     }
 
@@ -302,7 +303,6 @@ impl Folder {
         let journal = self.path.join(journal::FILE);
         let hash = file_hash(&journal)
             .map_err(|error| Failure::storage(format!("{}: {error}", journal.display())))?;
-        self.manifest.files.push(metrics_table(&self.path, &self.experiment, &self.results)?);
         self.manifest.files.push(FileHash { name: journal::FILE.into(), xxh3_128: hash });
         self.manifest.is_complete = true;
         write_manifest(&self.path, &self.manifest)

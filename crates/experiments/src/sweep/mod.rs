@@ -16,6 +16,6 @@ pub use file::FileHash;
 pub(crate) use file::NewFile;
 pub use journal::Place;
 pub use pool::{Limits, Run, run_all};
+pub(crate) use rows::trial_columns;
 pub use shared::SharedTrials;
-pub(crate) use tables::trial_columns;
 pub use trial::{Fault, FaultKind, Grouped, Outcome, Trial, TrialKey, run_trial, series_times};

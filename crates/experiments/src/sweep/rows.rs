@@ -1,99 +1,36 @@
 //! Rows of the tables that a sweep writes. Undefined values are empty cells.
 
 use serde::Serialize;
-use usar_sim::record::TrialRecord;
 
-use super::trial::{Outcome, TrialKey, series_times};
+use super::trial::{Outcome, Trial, TrialKey, series_times};
 use crate::experiment::Experiment;
+use crate::metric::{Catalogue, Metric};
 
-/// A row of `trials.csv`: the authors' columns first, under their names, then ours. `method` and `policy` say the same; the one is
+/// The columns of `trials.csv`: which trial it is, every metric, and what else is kept of it. `method` and `policy` say the same; the one is
 /// there so that the authors' files and ours can be stacked, the other for the words of this project.
-#[derive(Serialize, Default)]
-pub(super) struct TrialRow<'a> {
-    method: &'a str,
-    trial: u32,
-    time_s: Option<f64>,
-    rescuees_total: Option<u32>,
-    rescuees_hard: Option<u32>,
-    rescuees_easy: Option<u32>,
-    energy_hard: Option<f64>,
-    energy_easy: Option<f64>,
-    energy_total: Option<f64>,
-    hp_hard: Option<f64>,
-    hp_easy: Option<f64>,
-    hp_total: Option<f64>,
-    rounds: Option<u32>,
-    policy: &'a str,
-    seed: u64,
-    status: &'a str,
-    energy_ungrouped: Option<f64>,
-    hp_ungrouped: Option<f64>,
-    secured_total: Option<u32>,
-    secured_hard: Option<u32>,
-    secured_easy: Option<u32>,
-    turned_back: Option<u32>,
-    stranded: Option<usize>,
-    disabled: Option<usize>,
-    distance_m: Option<f64>,
-    waiting_s: Option<f64>,
-    longest_stall_s: Option<f64>,
-    conflicts: Option<u32>,
-    deadlocks: Option<u32>,
-    rotations: Option<u32>,
-    retreats: Option<u32>,
-    back_offs: Option<u32>,
-    unreachable: Option<u32>,
-    errands_done: Option<u32>,
-    state_hash: &'a str,
-    failure: Option<&'a str>,
-    replay: Option<String>,
+pub(crate) fn trial_columns(metrics: &Catalogue) -> Vec<String> {
+    let names = |names: &[&str]| names.iter().map(|name| (*name).to_owned()).collect::<Vec<_>>();
+    let mut columns = names(&["method", "trial", "policy", "seed", "status"]);
+    columns.extend(metrics.iter().map(Metric::column));
+    columns.extend(names(&["state_hash", "failure", "replay"]));
+    columns
 }
 
-impl<'a> TrialRow<'a> {
-    pub(super) fn new(outcome: &'a Outcome, experiment: &Experiment) -> Self {
-        let record = outcome.record();
-        let TrialKey { label, trial, seed, .. } = &outcome.key;
-        let fault = outcome.result.as_ref().err();
-        Self {
-            method: label,
-            trial: *trial,
-            time_s: record.map(|r| r.time_s),
-            rescuees_total: record.map(TrialRecord::rescued),
-            rescuees_hard: record.map(|r| r.hard.rescued),
-            rescuees_easy: record.map(|r| r.easy.rescued),
-            energy_hard: record.map(|r| r.hard.energy),
-            energy_easy: record.map(|r| r.easy.energy),
-            energy_total: record.map(TrialRecord::energy),
-            hp_hard: record.map(|r| r.hard.hp),
-            hp_easy: record.map(|r| r.easy.hp),
-            hp_total: record.map(TrialRecord::hp),
-            rounds: record.map(|r| r.completed_rounds),
-            policy: label,
-            seed: *seed,
-            status: outcome.status(),
-            energy_ungrouped: record.map(|r| r.ungrouped_energy),
-            hp_ungrouped: record.map(|r| r.ungrouped_hp),
-            secured_total: record.map(|r| r.hard.secured + r.easy.secured),
-            secured_hard: record.map(|r| r.hard.secured),
-            secured_easy: record.map(|r| r.easy.secured),
-            turned_back: record.map(|r| r.turned_back),
-            stranded: record.map(TrialRecord::stranded),
-            disabled: record.map(TrialRecord::disabled),
-            distance_m: record.map(TrialRecord::distance_m),
-            waiting_s: record.map(TrialRecord::waiting_s),
-            longest_stall_s: record.map(TrialRecord::longest_stall_s),
-            conflicts: record.map(|r| r.conflicts),
-            deadlocks: record.map(|r| r.deadlocks),
-            rotations: record.map(|r| r.rotations),
-            retreats: record.map(|r| r.retreats),
-            back_offs: record.map(|r| r.back_offs),
-            unreachable: record.map(|r| r.unreachable),
-            errands_done: record.map(|r| r.errands_done),
-            state_hash: record.map_or("", |r| &r.state_hash),
-            failure: fault.map(|fault| fault.reason.as_str()),
-            replay: fault.map(|_| experiment.replay_command(&outcome.key)),
-        }
-    }
+/// A row of `trials.csv`. Numbers are printed so that they read back exactly.
+pub(super) fn trial_row(outcome: &Outcome, experiment: &Experiment) -> Vec<String> {
+    let TrialKey { label, trial, seed, .. } = &outcome.key;
+    let (record, fault) = (outcome.record(), outcome.result.as_ref().err());
+    let number = |metric: &Metric| {
+        let value = record.and_then(|record| metric.value(record));
+        value.map_or(String::new(), |value| value.to_string())
+    };
+    let status = outcome.status().to_owned();
+    let mut row = vec![label.clone(), trial.to_string(), label.clone(), seed.to_string(), status];
+    row.extend(experiment.metrics.iter().map(number));
+    row.push(record.map_or(String::new(), |record| record.state_hash.clone()));
+    row.push(fault.map_or(String::new(), |fault| fault.reason.clone()));
+    row.push(fault.map_or(String::new(), |_| experiment.replay_command(&outcome.key)));
+    row
 }
 
 /// A row of `rounds.csv`: one group in one round.
@@ -238,34 +175,22 @@ impl<'a> GroupRow<'a> {
     }
 }
 
-/// A row of `series.csv`: what was delivered up to a time.
-#[derive(Serialize, Default)]
-pub(super) struct SeriesRow<'a> {
-    policy: &'a str,
-    trial: u32,
-    seed: u64,
-    time_s: f64,
-    rescuees_total: usize,
-    rescuees_hard: usize,
-    rescuees_easy: usize,
+/// The columns of `series.csv`: what was delivered up to a time, from all tasks and from each.
+pub(super) fn series_columns(metrics: &Catalogue) -> Vec<String> {
+    let rescuees = metrics.declared("rescuees").into_iter().map(|place| metrics[place].column());
+    ["policy", "trial", "seed", "time_s"].into_iter().map(str::to_owned).chain(rescuees).collect()
 }
 
-impl<'a> SeriesRow<'a> {
-    pub(super) fn of(outcome: &'a Outcome, duration_s: f64) -> impl Iterator<Item = Self> {
-        let rows = move |trial: &'a super::Trial| {
-            series_times(duration_s).map(move |time_s| {
-                let [hard, easy] = trial.delivered(time_s);
-                Self {
-                    policy: &outcome.key.label,
-                    trial: outcome.key.trial,
-                    seed: outcome.key.seed,
-                    time_s,
-                    rescuees_total: hard + easy,
-                    rescuees_hard: hard,
-                    rescuees_easy: easy,
-                }
-            })
-        };
-        outcome.result.as_ref().ok().into_iter().flat_map(rows)
-    }
+/// The rows of `series.csv` of a trial.
+pub(super) fn series_rows(outcome: &Outcome, duration_s: f64) -> impl Iterator<Item = Vec<String>> {
+    let TrialKey { label, trial, seed, .. } = &outcome.key;
+    let row = move |found: &Trial, time_s: f64| {
+        let delivered = found.delivered(time_s);
+        let mut row = vec![label.clone(), trial.to_string(), seed.to_string(), time_s.to_string()];
+        row.push(delivered.iter().sum::<usize>().to_string());
+        row.extend(delivered.iter().map(usize::to_string));
+        row
+    };
+    let rows = move |found| series_times(duration_s).map(move |time_s| row(found, time_s));
+    outcome.result.as_ref().ok().into_iter().flat_map(rows)
 }

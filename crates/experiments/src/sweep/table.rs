@@ -35,18 +35,18 @@ impl Table {
             return self.writer.serialize(row).map_err(|error| table_trouble(&self.path, &error));
         }
         let [header, row] = header_and_row(row)?;
-        self.add_record(case, &header.iter().collect::<Vec<_>>(), row.iter())
+        self.add_record(case, &header.iter().collect::<Vec<_>>(), &row)
     }
 
     /// Adds a row of a case as texts.
     ///
     /// # Errors
     /// The disk does not take it.
-    pub fn add_record<'t>(
+    pub fn add_record(
         &mut self,
-        (case, values): (usize, &'t [String]),
-        header: &[&str],
-        row: impl Iterator<Item = &'t str>,
+        (case, values): (usize, &[String]),
+        header: &[impl AsRef<str>],
+        row: impl IntoIterator<Item = impl AsRef<str>>,
     ) -> Result<(), Failure> {
         self.write_header(header)?;
         let mut record = csv::StringRecord::new();
@@ -58,13 +58,13 @@ impl Table {
         self.writer.write_record(&record).map_err(|error| table_trouble(&self.path, &error))
     }
 
-    fn write_header(&mut self, header: &[&str]) -> Result<(), Failure> {
+    fn write_header(&mut self, header: &[impl AsRef<str>]) -> Result<(), Failure> {
         if std::mem::replace(&mut self.has_header, true) {
             return Ok(());
         }
         let before = if self.axes.is_empty() { None } else { Some("case") };
         let before = before.into_iter().chain(self.axes.iter().map(String::as_str));
-        let header = before.chain(header.iter().copied());
+        let header = before.chain(header.iter().map(AsRef::as_ref));
         self.writer.write_record(header).map_err(|error| table_trouble(&self.path, &error))
     }
 
@@ -73,8 +73,7 @@ impl Table {
     /// # Errors
     /// The disk does not take it.
     pub fn finish(mut self, header: &[impl AsRef<str>]) -> Result<FileHash, Failure> {
-        let header: Vec<&str> = header.iter().map(AsRef::as_ref).collect();
-        self.write_header(&header)?;
+        self.write_header(header)?;
         let Self { writer, path, .. } = self;
         let file = writer.into_inner().map_err(|error| trouble(&path, error.error()))?;
         file.finish()

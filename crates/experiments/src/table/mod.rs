@@ -15,23 +15,23 @@ pub(crate) use readings::{averaged_table, readings_table, rivals_table};
 
 use crate::calibration::Fit;
 use crate::comparison::{Comparison, digits, short, short_p};
-use crate::metric::METRICS;
+use crate::experiment::Experiment;
 use crate::stats::Moments;
 use crate::sweep::folder::{Folder, Measured};
 
 /// Metrics down, policies across: mean ± sample standard deviation of one case.
 pub(crate) fn policy_table(folder: &Folder, case: usize) -> Table {
-    let policies = &folder.experiment().policies;
+    let Experiment { policies, metrics, trials, .. } = folder.experiment();
     let header = std::iter::once(Cell::new("policy"));
     let mut table = headed(header.chain(policies.iter().map(|policy| right(&policy.label))));
     let mut last = "";
-    for (i, metric) in METRICS.iter().enumerate().filter(|(_, metric)| metric.is_papers) {
+    for (i, metric) in metrics.iter().enumerate().filter(|(_, metric)| metric.is_primary) {
         let cells = (0..policies.len()).map(|policy| {
             let values = values(folder, case, policy, i);
-            right(&moments(&Moments::of(&values), folder.experiment().trials as usize))
+            right(&moments(&Moments::of(&values), *trials as usize))
         });
-        table.add_row(std::iter::once(Cell::new(indented(metric.title, last))).chain(cells));
-        last = metric.title;
+        table.add_row(std::iter::once(Cell::new(indented(&metric.title, last))).chain(cells));
+        last = &metric.title;
     }
     table
 }
@@ -75,7 +75,7 @@ pub(crate) fn comparison_table(comparisons: &[&Comparison]) -> Table {
             c.interval.map_or("-".to_owned(), |[low, high]| format!("{} to {}", short(low), short(high)));
         let p = |p: Option<f64>| right(&p.map_or("-".to_owned(), short_p));
         table.add_row([
-            Cell::new(c.metric),
+            Cell::new(&c.metric),
             Cell::new(format!("{} - {}", c.a, c.b)),
             right(&c.n.to_string()),
             mean(c.mean_a),
@@ -98,7 +98,7 @@ pub(crate) fn fit_table(rows: &[Fit]) -> Table {
     let spread = |mean: f64, sd: f64| right(&format!("{} ± {}", digits(mean, 4), digits(sd, 2)));
     for row in rows {
         table.add_row([
-            Cell::new(row.quantity),
+            Cell::new(&row.quantity),
             spread(row.data_mean, row.data_sd),
             spread(row.fitted_mean, row.fitted_sd),
             spread(row.fresh_mean, row.fresh_sd),

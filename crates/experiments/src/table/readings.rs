@@ -4,8 +4,8 @@ use comfy_table::{Cell, Table};
 
 use super::{headed, right};
 use crate::comparison::{digits, short};
-use crate::metric::METRICS;
-use crate::readings::{Difference, ReadingRow, RivalRow, SHOWN};
+use crate::metric::Catalogue;
+use crate::readings::{Difference, ReadingRow, RivalRow, shown};
 
 fn differences(differences: &[Option<Difference>]) -> impl Iterator<Item = Cell> + '_ {
     differences.iter().map(|difference| {
@@ -19,16 +19,14 @@ fn signed(value: f64) -> String {
 }
 
 /// The titles of the metrics that readings are compared in.
-fn shown() -> impl Iterator<Item = Cell> {
-    let title =
-        |name: &str| METRICS.iter().find(|metric| metric.name == name).map_or("", |metric| metric.title);
-    SHOWN.into_iter().map(move |name| Cell::new(title(name)))
+fn titles(metrics: &Catalogue) -> impl Iterator<Item = Cell> {
+    shown(metrics).into_iter().map(|place| Cell::new(&metrics[place].title))
 }
 
 /// Each reading by itself.
-pub(crate) fn readings_table(rows: &[ReadingRow]) -> Table {
+pub(crate) fn readings_table(rows: &[ReadingRow], metrics: &Catalogue) -> Table {
     let header = ["reading", "regrouped", "split otherwise", "trials"].map(Cell::new);
-    let mut table = headed(header.into_iter().chain(shown()));
+    let mut table = headed(header.into_iter().chain(titles(metrics)));
     let share = |share: f64| right(&format!("{:.1} %", 100.0 * share));
     for row in rows {
         let [grouped, split] = row.regrouped;
@@ -39,8 +37,8 @@ pub(crate) fn readings_table(rows: &[ReadingRow]) -> Table {
 }
 
 /// Each reading averaged over the others.
-pub(crate) fn averaged_table(rows: &[(String, Vec<Option<Difference>>)]) -> Table {
-    let mut table = headed(std::iter::once(Cell::new("reading")).chain(shown()));
+pub(crate) fn averaged_table(rows: &[(String, Vec<Option<Difference>>)], metrics: &Catalogue) -> Table {
+    let mut table = headed(std::iter::once(Cell::new("reading")).chain(titles(metrics)));
     for (reading, row) in rows {
         table.add_row(std::iter::once(Cell::new(reading)).chain(differences(row)));
     }
@@ -64,7 +62,7 @@ pub(crate) fn rivals_table(rows: &[RivalRow]) -> Table {
         let end = |(reading, difference): &(String, Difference)| {
             Cell::new(format!("{} ± {} ({reading})", signed(difference.mean), digits(difference.half, 2)))
         };
-        let names = [row.metric, row.rival.as_deref().unwrap_or("all")].map(Cell::new);
+        let names = [&row.metric, row.rival.as_deref().unwrap_or("all")].map(Cell::new);
         let counts = row.counts.iter().chain(&row.corrected).map(|count| right(&count.to_string()));
         table.add_row(names.into_iter().chain(counts).chain(row.ends.iter().flatten().map(end)));
     }

@@ -7,7 +7,6 @@ mod pages;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-use experiments::metric::metric_named;
 use experiments::readings::{Trials, rivals};
 use experiments::sweep::folder::Folder;
 use statrs::distribution::{ContinuousCDF, StudentsT};
@@ -65,7 +64,7 @@ fn readings_are_counted_against_each_rival_and_against_all() {
     let sweep = Folder::read(&folder.join("out")).unwrap();
     let rows = rivals(&Trials::of(&sweep), &[0, 1, 2, 3]);
     let sides = |metric: &str, rival: usize, tail: f64| -> Vec<i32> {
-        let metric = metric_named(metric).unwrap();
+        let metric = sweep.experiment().metrics.named(metric).unwrap();
         let value = |policy: usize, trial: u32| {
             sweep.results()[&(0, policy, trial)].metrics.as_ref().unwrap()[metric].unwrap()
         };
@@ -83,7 +82,7 @@ fn readings_are_counted_against_each_rival_and_against_all() {
     let count = |sides: &[i32], side: i32| sides.iter().filter(|found| **found == side).count();
     let mut decided = 0;
     for row in &rows {
-        let both = |tail: f64| [4, 5].map(|rival| sides(row.metric, rival, tail));
+        let both = |tail: f64| [4, 5].map(|rival| sides(&row.metric, rival, tail));
         let [own, shared] = [0.025, 0.025 / 4.0].map(|tail| match row.rival.as_deref() {
             Some("DIS") => both(tail)[0].clone(),
             Some(_) => both(tail)[1].clone(),
