@@ -11,7 +11,7 @@ fn check_trial(scenario: &Scenario, policy: &str, seed: u64) -> TrialRecord {
     let spent: f64 = record.robots.iter().map(|robot| robot.energy_spent).sum();
     let lost: f64 = record.robots.iter().map(|robot| robot.hp_lost).sum();
     assert!((record.energy() - spent).abs() < 1e-6 && (record.hp() - lost).abs() < 1e-6);
-    assert!(record.hard.rescued <= record.hard.secured && record.easy.rescued <= record.easy.secured);
+    assert!(record.tasks.iter().all(|task| task.totals.rescued <= task.totals.secured));
     record
 }
 

@@ -5,37 +5,39 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use experiments::experiment::{Experiment, Overrides};
-use experiments::sweep::{Limits, Run, TrialKey, run_all};
+use experiments::run::{Limits, Run, TrialKey, run_all};
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
-use rne_core::{GroupingPolicy, policy_named};
-use usar_sim::record::TrialRecord;
+use rne_core::{Policy, Question};
+use usar_sim::record::{Status, TrialRecord};
 use usar_sim::scenario::Scenario;
-use usar_sim::simulation::Simulation;
+use usar_sim::simulation::{Advance, AssignError, Simulation};
+use usar_sim::snapshot::Identity;
 
 use crate::golden;
-use crate::support::{self, paper, paper_with};
+use crate::support::{self, paper, paper_with, policy};
+
+/// A record that may be compared: no failed trial is as good as another.
+fn sound(record: TrialRecord) -> TrialRecord {
+    assert_eq!(record.status, Status::Completed);
+    record
+}
 
 /// Runs a trial and restores it from its own snapshot wherever `when` says so.
-fn restored(
-    scenario: &Scenario,
-    policy: &dyn GroupingPolicy,
-    mut when: impl FnMut(u64) -> bool,
-) -> TrialRecord {
-    let mut trial = Simulation::new(scenario, policy, 1).unwrap();
-    while trial.ending().is_none() {
-        trial.step().unwrap();
+fn restored(scenario: &Scenario, policy: &dyn Policy, mut when: impl FnMut(u64) -> bool) -> TrialRecord {
+    let mut trial = Simulation::new(scenario, 1).unwrap();
+    while trial.step(policy).is_none() {
         if when(trial.steps()) {
-            trial = Simulation::restore(scenario, policy, &trial.snapshot()).unwrap();
+            trial = Simulation::restore(scenario, &trial.snapshot("RNE")).unwrap();
         }
     }
-    trial.finish()
+    sound(trial.finish())
 }
 
 #[test]
 fn a_trial_restored_at_every_step_of_1200_ends_as_if_it_had_not_been() {
     let scenario = paper_with(&[("duration_s: 600.0", "duration_s: 24.0")]);
-    let policy = policy_named("RNE", &scenario.rne).unwrap();
+    let policy = policy("RNE");
     let whole = restored(&scenario, &*policy, |_| false);
     let pieces = restored(&scenario, &*policy, |_| true);
     assert_eq!(whole.chain.links().len(), 24);
@@ -46,7 +48,7 @@ fn a_trial_restored_at_every_step_of_1200_ends_as_if_it_had_not_been() {
 fn a_trial_restored_at_random_steps_ends_as_if_it_had_not_been() {
     let scenario = paper();
     for (seed, name) in ["RANDOM", "RNE"].into_iter().enumerate() {
-        let policy = policy_named(name, &scenario.rne).unwrap();
+        let policy = policy(name);
         let mut draws = ChaCha8Rng::seed_from_u64(seed as u64);
         let whole = restored(&scenario, &*policy, |_| false);
         let pieces = restored(&scenario, &*policy, |_| draws.random_range(0..1000_u32) == 0);
@@ -57,15 +59,122 @@ fn a_trial_restored_at_random_steps_ends_as_if_it_had_not_been() {
 #[test]
 fn checking_and_listening_change_nothing() {
     let scenario = paper_with(&[("duration_s: 600.0", "duration_s: 60.0")]);
-    let policy = policy_named("ENG", &scenario.rne).unwrap();
-    let trial = || Simulation::new(&scenario, &*policy, 3).unwrap();
+    let policy = policy("ENG");
+    let trial = || Simulation::new(&scenario, 3).unwrap();
     let mut heard = 0;
-    let plain = trial().run(|_, _, _| {});
-    let listened = trial().run(|_, events, _| heard += events.len());
-    let checked = trial().checked().run(|_, _, _| {});
+    let plain = trial().run(&*policy, |_, _, _| {});
+    let listened = trial().run(&*policy, |_, events, _| heard += events.len());
+    let checked = trial().checked().run(&*policy, |_, _, _| {});
     assert!(heard > 0);
     assert_eq!(plain.chain, listened.chain);
     assert_eq!(plain.chain, checked.chain);
+}
+
+/// The question that a trial asks now.
+#[track_caller]
+fn asked(trial: &mut Simulation) -> Question {
+    match trial.advance() {
+        Advance::Asks(question) => question.clone(),
+        other => panic!("nothing is asked: {other:?}"),
+    }
+}
+
+/// Runs a trial by hand: `answer` is shown each question in its trial, answers it, and may put another trial in its place.
+fn by_hand(scenario: &Scenario, mut answer: impl FnMut(&mut Simulation, Question)) -> TrialRecord {
+    let mut trial = Simulation::new(scenario, 1).unwrap();
+    loop {
+        let question = match trial.advance() {
+            Advance::Running => None,
+            Advance::Asks(question) => Some(question.clone()),
+            Advance::Over(_) => break,
+        };
+        question.into_iter().for_each(|question| answer(&mut trial, question));
+    }
+    sound(trial.finish())
+}
+
+/// Long enough for three rounds.
+fn three_rounds() -> Scenario {
+    paper_with(&[("duration_s: 600.0", "duration_s: 300.0")])
+}
+
+fn undisturbed(scenario: &Scenario, name: &str) -> TrialRecord {
+    let record = sound(Simulation::new(scenario, 1).unwrap().run(&*policy(name), |_, _, _| {}));
+    assert!(record.decisions.len() >= 3, "{} decisions", record.decisions.len());
+    record
+}
+
+#[test]
+fn a_trial_restored_whenever_it_asks_ends_as_if_it_had_not_been() {
+    let scenario = three_rounds();
+    for name in ["RNE", "RANDOM"] {
+        let policy = policy(name);
+        let pieces = by_hand(&scenario, |trial, question| {
+            *trial = Simulation::restore(&scenario, &trial.snapshot(name)).unwrap();
+            assert_eq!(trial.ending(), None);
+            assert_eq!(asked(trial), question, "it asks the same again, history included");
+            *trial = Simulation::restore(&scenario, &trial.snapshot(name)).unwrap();
+            // Without another advance: a restored trial knows what it asks.
+            trial.assign(policy.decide(&question).unwrap()).unwrap();
+            // Answered, and not gone on yet.
+            *trial = Simulation::restore(&scenario, &trial.snapshot(name)).unwrap();
+        });
+        assert_eq!(pieces, undisturbed(&scenario, name), "{name}");
+    }
+}
+
+#[test]
+fn decisions_by_hand_are_as_good_as_a_policy_s_and_questions_can_be_read_back() {
+    let scenario = three_rounds();
+    let policy = policy("RNE");
+    let mut live = Vec::new();
+    let record = by_hand(&scenario, |trial, question| {
+        let decision = policy.decide(&question).unwrap();
+        assert_eq!(asked(trial), question, "asking twice changes nothing");
+        let mut refused = decision.clone();
+        refused.assignment.groups.pop();
+        assert!(matches!(trial.assign(refused), Err(AssignError::Refused(_))));
+        let mut reversed = decision.clone();
+        reversed.assignment.groups.iter_mut().for_each(|group| group.reverse());
+        trial.assign(reversed).unwrap();
+        assert_eq!(trial.assign(decision), Err(AssignError::NotAsked));
+        live.push(question);
+    });
+    assert_eq!(record, undisturbed(&scenario, "RNE"));
+    assert_eq!(record.decisions.len(), live.len());
+    for (decision, question) in record.decisions.iter().zip(&live) {
+        assert_eq!(question.history.len(), question.round as usize - 1);
+        assert_eq!(record.question(decision), *question, "round {}", question.round);
+        assert_eq!(policy.decide(question).unwrap(), decision.decision);
+    }
+    let last = &live[live.len() - 1].history;
+    assert!(last.iter().all(|round| round.duration_s > 0.0 && round.groups.len() == 2));
+    assert!(last.iter().flat_map(|round| &round.groups).any(|group| group.rescued > 0));
+}
+
+#[test]
+fn another_policy_may_go_on_from_a_snapshot() {
+    let scenario = three_rounds();
+    let (rne, eng) = (policy("RNE"), policy("ENG"));
+    let mut trial = Simulation::new(&scenario, 1).unwrap();
+    while trial.decisions().len() < 2 {
+        assert_eq!(trial.step(&*rne), None);
+    }
+    let bytes = trial.snapshot("RNE");
+    assert_eq!(Identity::of(&bytes).unwrap().policy, "RNE");
+    let go_on = |policy: &dyn Policy| {
+        let trial = Simulation::restore(&scenario, &bytes).unwrap();
+        sound(trial.run(policy, |_, _, _| {}))
+    };
+    let whole = undisturbed(&scenario, "RNE");
+    assert_eq!(go_on(&*rne), whole);
+    let mixed = go_on(&*eng);
+    assert_eq!(mixed.decisions[..2], whole.decisions[..2]);
+    assert!(mixed.decisions.len() > 2);
+    for decision in &mixed.decisions[2..] {
+        assert_eq!(decision.decision, eng.decide(&mixed.question(decision)).unwrap());
+    }
+    assert_ne!(mixed.state_hash, whole.state_hash);
 }
 
 #[test]

@@ -3,6 +3,7 @@
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
+use rne_core::Registry;
 use usar_sim::scenario::Scenario;
 use usar_sim::simulation::Simulation;
 
@@ -23,12 +24,13 @@ pub fn hashes() -> String {
         .map(|entry| entry.expect("readable").path())
         .collect();
     files.sort();
+    let rne = Registry::standard().parse("RNE").expect("known");
     let mut text = String::new();
     for path in files {
         let (scenario, _) = Scenario::load(&path).unwrap_or_else(|error| panic!("{error}"));
-        let policy = rne_core::policy_named("RNE", &scenario.rne).expect("known");
-        let trial = Simulation::new(&scenario, &*policy, 1).expect("drawn");
-        writeln!(text, "{} {}", scenario.name, trial.run(|_, _, _| {}).state_hash).expect("memory");
+        let trial = Simulation::new(&scenario, 1).expect("drawn");
+        let record = trial.run(&*rne.policy, |_, _, _| {});
+        writeln!(text, "{} {}", scenario.name, record.state_hash).expect("memory");
     }
     text
 }

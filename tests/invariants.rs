@@ -4,10 +4,11 @@ use parry2d::math::Vector;
 use usar_sim::event::{Event, Place};
 use usar_sim::ids::{RescueeId, RobotId};
 use usar_sim::invariant::Invariants;
+use usar_sim::record::Status;
 use usar_sim::simulation::Simulation;
 use usar_sim::world::{RescueeState, World};
 
-use crate::support::paper;
+use crate::support::{paper, policy};
 
 /// What a fault can tamper with: the time, the events and the world that the checker is shown.
 struct Shown<'a> {
@@ -73,12 +74,12 @@ const FAULTS: [Fault; 25] = [
 #[test]
 fn each_of_25_faults_is_caught_within_one_step() {
     let scenario = paper();
-    let policy = rne_core::policy_named("RNE", &scenario.rne).unwrap();
+    let policy = policy("RNE");
     for (said, fault) in FAULTS {
-        let mut trial = Simulation::new(&scenario, &*policy, 1).unwrap();
+        let mut trial = Simulation::new(&scenario, 1).unwrap();
         let mut check = Invariants::new(&scenario, trial.world());
         let robot = loop {
-            trial.step().unwrap();
+            assert_eq!(trial.step(&*policy), None);
             check.listen(trial.time_s(), trial.events(), trial.world()).unwrap();
             let carries = |robot: &&usar_sim::world::Robot| {
                 !robot.load.is_empty() && robot.velocity.length() > 1.0 && robot.hp < 99.0
@@ -87,7 +88,7 @@ fn each_of_25_faults_is_caught_within_one_step() {
                 break robot.id.index();
             }
         };
-        trial.step().unwrap();
+        assert_eq!(trial.step(&*policy), None);
         let (time_s, events) = (trial.time_s(), trial.events().to_vec());
         let mut shown = Shown { time_s, events, world: trial.world_mut(), robot };
         fault(&mut shown);
@@ -99,12 +100,12 @@ fn each_of_25_faults_is_caught_within_one_step() {
 #[test]
 fn a_violation_ends_the_trial_as_failed_with_robot_step_and_values() {
     let scenario = paper();
-    let policy = rne_core::policy_named("RNE", &scenario.rne).unwrap();
-    let mut trial = Simulation::new(&scenario, &*policy, 1).unwrap().checked();
+    let policy = policy("RNE");
+    let mut trial = Simulation::new(&scenario, 1).unwrap().checked();
     for _ in 0..100 {
-        trial.step().unwrap();
+        assert_eq!(trial.step(&*policy), None);
     }
     trial.world_mut().robots[3].energy = 150.0;
-    let reason = trial.step().unwrap_err();
+    let Some(Status::Failed(reason)) = trial.step(&*policy) else { panic!("the trial goes on") };
     assert!(reason.starts_with("invariant violated at 2.02 s: robot 3: energy 1"), "{reason}");
 }

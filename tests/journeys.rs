@@ -1,7 +1,8 @@
 //! What is asked of every trial of the random worlds, and how it is counted.
 
+use rne_core::Registry;
 use usar_sim::conflict::DelayCause;
-use usar_sim::record::TrialRecord;
+use usar_sim::record::{Status, TrialRecord};
 use usar_sim::scenario::Scenario;
 use usar_sim::simulation::Simulation;
 use usar_sim::world::STANDING_MPS;
@@ -22,14 +23,14 @@ pub struct Journeys {
 
 impl Journeys {
     /// Runs a world with every check on.
-    pub fn run(scenario: &Scenario) -> Result<Self, String> {
-        let policy = rne_core::policy_named(&scenario.sweep.policies[0], &scenario.rne).expect("known");
-        let mut trial = Simulation::new(scenario, &*policy, scenario.sweep.first_seed)
-            .map_err(|error| error.to_string())?
-            .checked();
+    pub fn run(scenario: &Scenario, seed: u64) -> Result<Self, String> {
+        let random = Registry::standard().parse("RANDOM").expect("known");
+        let mut trial = Simulation::new(scenario, seed).map_err(|error| error.to_string())?.checked();
         let (mut still, mut longest) = (0_u64, 0_u64);
         while trial.ending().is_none() {
-            trial.step()?;
+            if let Some(Status::Failed(reason)) = trial.step(&*random.policy) {
+                return Err(reason);
+            }
             let moves = trial.world().robots.iter().any(|robot| robot.velocity.length() > STANDING_MPS);
             let holds_up = |cause| !matches!(cause, DelayCause::NothingToDo | DelayCause::NoRoute);
             let wants = trial.world().robots.iter().zip(trial.delays()).any(|(robot, delay)| {

@@ -3,12 +3,13 @@
 use std::fmt::Write;
 
 use parry2d::math::Vector;
-use usar_sim::planning::{Knowledge, Planner, Query};
+use usar_sim::belief::{Inflation, Knowledge};
+use usar_sim::planning::{Planner, Query};
 use usar_sim::record::{Status, TrialRecord};
-use usar_sim::scenario::{PriorityRule, Scenario, ScenarioFile};
+use usar_sim::scenario::{PriorityRule, RoleKind, Scenario, ScenarioFile};
 use usar_sim::simulation::Simulation;
 
-use crate::support::root;
+use crate::support::{policy, root};
 
 const NAMES: [&str; 9] =
     ["closed_road", "crossing", "dead_end", "doorway", "head_on", "parked", "pushed", "ring", "stranded"];
@@ -21,11 +22,13 @@ fn load(name: &str) -> ScenarioFile {
 
 fn run(file: ScenarioFile) -> (TrialRecord, f64) {
     let scenario = Scenario::try_from(file).unwrap();
-    let policy = rne_core::policy_named("RNE", &scenario.rne).unwrap();
-    let mut trial = Simulation::new(&scenario, &*policy, 1).unwrap().checked();
+    let policy = policy("RNE");
+    let mut trial = Simulation::new(&scenario, 1).unwrap().checked();
     let free_path_s = free_path_s(&scenario, &trial);
     while trial.ending().is_none() {
-        trial.step().unwrap_or_else(|reason| panic!("{}: {reason}", scenario.name));
+        if let Some(Status::Failed(reason)) = trial.step(&*policy) {
+            panic!("{}: {reason}", scenario.name);
+        }
     }
     (trial.finish(), free_path_s)
 }
@@ -33,8 +36,9 @@ fn run(file: ScenarioFile) -> (TrialRecord, f64) {
 /// The longest time that a robot would need for its errands if it were alone and knew everything, at full speed.
 fn free_path_s(scenario: &Scenario, trial: &Simulation) -> f64 {
     let world = trial.world();
-    let radius = scenario.ground_radius_m() as f32;
-    let mut known = Knowledge::nothing(world, radius, scenario.planning.clearance_m as f32);
+    let radius = scenario.largest_radius_m(RoleKind::Ground) as f32;
+    let inflation = Inflation { radius, clearance: scenario.planning.clearance_m as f32 };
+    let mut known = Knowledge::nothing(world, inflation);
     (0..world.debris.len()).filter(|i| world.debris[*i].is_fixed).for_each(|i| known.learn_debris(world, i));
     let mut planner = Planner::new(scenario);
     let mut time = |errand: &usar_sim::scenario::Errand| {

@@ -1,8 +1,8 @@
 //! Common random numbers: what one choice must leave alone.
 
-use usar_sim::layout::Layout;
+use usar_sim::model::{Layout, RobotStart};
 
-use crate::support::{paper, paper_with, trial};
+use crate::support::{SAMPLED, paper, paper_with, trial};
 
 #[test]
 fn the_policy_leaves_initial_levels_alone() {
@@ -19,14 +19,13 @@ fn the_policy_leaves_initial_levels_alone() {
 
 #[test]
 fn one_more_robot_leaves_the_others_levels_and_the_layout_alone() {
-    let sampled = "sampled: (hard: (debris: 10, radiation: 4), easy: (debris: 4, radiation: 1)),";
-    let uncomment = (format!("// {sampled}"), sampled);
-    let as_it_is = paper_with(&[(&uncomment.0, uncomment.1)]);
+    let as_it_is = paper_with(&SAMPLED);
     let one_more = paper_with(&[
-        (&uncomment.0, uncomment.1),
+        SAMPLED[0],
+        SAMPLED[1],
         (
             "center: (46.4, 18.2), width_m: 1.0),",
-            "center: (46.4, 18.2), width_m: 1.0),\n(role: Carrier, count: 1, center: (30.0, 20.0), width_m: 0.0),",
+            "center: (46.4, 18.2), width_m: 1.0),\n(role: \"carrier\", count: 1, center: (30.0, 20.0), width_m: 0.0),",
         ),
     ]);
     let (before, after) = (Layout::sample(&as_it_is, 5).unwrap(), Layout::sample(&one_more, 5).unwrap());
@@ -39,9 +38,7 @@ fn one_more_robot_leaves_the_others_levels_and_the_layout_alone() {
 fn initial_levels_follow_their_distributions() {
     let scenario = paper();
     let starts: Vec<_> = (0..500).flat_map(|seed| Layout::sample(&scenario, seed).unwrap().robots).collect();
-    let mean = |level: fn(&usar_sim::layout::RobotStart) -> f64| {
-        starts.iter().map(level).sum::<f64>() / starts.len() as f64
-    };
+    let mean = |level: fn(&RobotStart) -> f64| starts.iter().map(level).sum::<f64>() / starts.len() as f64;
     // Clamping N(80, 20) at 100 takes 1.67 off its mean, clamping N(90, 10) takes 0.83 (numerical integration).
     assert!((mean(|start| start.energy) - 78.33).abs() < 0.8, "{}", mean(|start| start.energy));
     assert!((mean(|start| start.hp) - 89.17).abs() < 0.4, "{}", mean(|start| start.hp));

@@ -38,7 +38,8 @@ fn three_seeds_and_five_policies_rescue_exactly_as_many() {
                 "{policy}, seed {seed}: {:?}",
                 record.status
             );
-            (*seed, *policy, record.hard.rescued, record.easy.rescued, record.completed_rounds)
+            let rescued = |task| record.task(task).unwrap().rescued;
+            (*seed, *policy, rescued("hard"), rescued("easy"), record.completed_rounds)
         })
         .collect();
     assert_eq!(found, EXPECTED);

@@ -14,7 +14,8 @@ fn in_30_random_worlds_nobody_stands_still_for_good_and_no_invariant_is_violated
             let mut file = (*world(seed)).clone();
             file.duration_s = 100.0; // the recipe runs them to their end
             let scenario = Scenario::try_from(file).unwrap();
-            let journeys = Journeys::run(&scenario).unwrap_or_else(|reason| panic!("world {seed}: {reason}"));
+            let journeys =
+                Journeys::run(&scenario, seed).unwrap_or_else(|reason| panic!("world {seed}: {reason}"));
             (seed, journeys)
         })
         .collect();

@@ -6,12 +6,13 @@
 use parry2d::math::Vector;
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
-use usar_sim::layout::Layout;
-use usar_sim::planning::{
-    Goal, Knowledge, KnownObstacle, Navigator, ObstacleKey, ObstacleMap, Planner, Query, Route,
-};
+use usar_sim::belief::{Inflation, Knowledge};
+use usar_sim::geometry::{Outline, RadiationZone};
+use usar_sim::model::Model;
+use usar_sim::navigation::{Goal, Navigator};
+use usar_sim::planning::{KnownObstacle, ObstacleKey, ObstacleMap, Planner, Query, Route};
 use usar_sim::scenario::{DebrisFile, DebrisShape, Scenario};
-use usar_sim::world::{Outline, RadiationZone, World, debris_outline};
+use usar_sim::world::World;
 
 use crate::support::{paper, paper_with};
 
@@ -92,7 +93,7 @@ fn random_debris(draws: &mut ChaCha8Rng) -> Vec<Outline> {
             };
             let at = [draws.random_range(25.0..65.0), draws.random_range(20.0..50.0)];
             let rotation_deg = draws.random_range(-180.0..180.0);
-            debris_outline(&DebrisFile { shape, at, rotation_deg, movable: None })
+            DebrisFile { shape, at, rotation_deg, movable: None }.outline()
         })
         .collect()
 }
@@ -194,12 +195,9 @@ fn a_detour_round_radiation_is_made_where_it_is_cheaper_and_no_further() {
 #[test]
 fn observers_fly_over_debris() {
     let scenario = paper();
-    let wall = debris_outline(&DebrisFile {
-        shape: DebrisShape::Box(1.0, 60.0),
-        at: [45.0, 35.0],
-        rotation_deg: 0.0,
-        movable: None,
-    });
+    let wall =
+        DebrisFile { shape: DebrisShape::Box(1.0, 60.0), at: [45.0, 35.0], rotation_deg: 0.0, movable: None }
+            .outline();
     let obstacles = known(&[wall], 1);
     let length = |aerial| {
         let query = Query {
@@ -220,7 +218,7 @@ fn observers_fly_over_debris() {
 /// A wall whose only gap, 2 m wide, is closed by a crate; the way round the wall is long.
 const CLOSED_GAP: &str = r#"(
     name: "closed-gap", description: "", duration_s: 60.0, dt_s: 0.02, arena_m: (30.0, 30.0),
-    team: [(role: Carrier, count: 1, center: (10.0, 5.0), width_m: 0.0)],
+    team: [(role: "robot", count: 1, center: (10.0, 5.0), width_m: 0.0)],
     errands: [(robot: 0, to: [(20.0, 5.0)])],
     debris: [
         (shape: Box(0.4, 4.0), at: (15.0, 2.0)),
@@ -233,9 +231,8 @@ const CLOSED_GAP: &str = r#"(
 fn a_way_that_a_pushed_piece_leaves_free_is_taken_once_it_is_noticed_and_others_do_not_count() {
     let scenario = Scenario::parse(CLOSED_GAP, "closed_gap.ron".as_ref()).unwrap();
     let length_after_move = |by: [f32; 2]| {
-        let layout = Layout::sample(&scenario, 1).unwrap();
-        let mut world = World::build(&scenario, &layout);
-        let mut known = Knowledge::nothing(&world, 0.4, 0.15);
+        let mut world = World::build(&Model::compile(&scenario, 1).unwrap());
+        let mut known = Knowledge::nothing(&world, Inflation { radius: 0.4, clearance: 0.15 });
         (0..3).for_each(|piece| known.learn_debris(&world, piece));
         let mut navigator = Navigator::new(&scenario, 1);
         let robot = world.robots[0].id;

@@ -1,58 +1,77 @@
 //! Every scenario of the repository loads; every broken one gives its exact message.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use experiments::experiment::{Experiment, Overrides};
-use usar_sim::layout::Layout;
-use usar_sim::scenario::Scenario;
+use rne_core::Registry;
+use usar_sim::model::Layout;
+use usar_sim::scenario::{RoleFile, Scenario};
 
-use crate::support::{paper, paper_text, paper_with, root};
+use crate::support::{SAMPLED, paper, paper_text, paper_with, root};
 
 #[test]
 fn every_scenario_loads() {
     let mut found = 0;
-    let files = |folder| std::fs::read_dir(root().join(folder)).unwrap();
-    for entry in files("scenarios").chain(files("scenarios/minimal")) {
-        let path = entry.unwrap().path();
-        if path.extension().is_some_and(|extension| extension == "ron") {
+    for path in files("scenarios").into_iter().chain(files("scenarios/minimal")) {
+        if is_scenario(&path) {
             let (scenario, _) = Scenario::load(&path).unwrap_or_else(|error| panic!("{error}"));
-            Layout::sample(&scenario, scenario.sweep.first_seed).unwrap();
+            Layout::sample(&scenario, 1).unwrap();
             found += 1;
         }
     }
-    assert!(found > 0);
+    assert!(found > 9 + 3);
+}
+
+/// Whether a file is a scenario, and not one's sweep file.
+fn is_scenario(path: &Path) -> bool {
+    path.is_file() && !path.to_str().unwrap().ends_with(".sweep.ron")
+}
+
+/// The files of a folder of the repository.
+fn files(folder: &str) -> Vec<PathBuf> {
+    std::fs::read_dir(root().join(folder)).unwrap().map(|entry| entry.unwrap().path()).collect()
 }
 
 #[test]
-fn every_sweep_file_loads() {
+fn every_sweep_file_loads_and_every_mission_has_one() {
+    let companions = files("scenarios").into_iter().filter(|path| path.is_file() && !is_scenario(path));
     let mut found = 0;
-    for entry in std::fs::read_dir(root().join("scenarios/sweeps")).unwrap() {
-        let path = entry.unwrap().path();
+    for path in files("scenarios/sweeps").into_iter().chain(companions) {
         let sweep = Experiment::load(&path, &Overrides::default()).unwrap_or_else(|error| panic!("{error}"));
         assert!(sweep.keys(None).count() > 0);
         found += 1;
     }
     assert!(found > 0);
+    for path in files("scenarios").into_iter().filter(|path| is_scenario(path)) {
+        assert!(path.with_extension("sweep.ron").is_file(), "{}", path.display());
+    }
 }
+
+/// A scenario that says no more than it must.
+const SMALL: &str = r#"(
+    name: "s", duration_s: 10.0, dt_s: 0.02, arena_m: (10.0, 10.0),
+    team: [(role: "robot", count: 1, center: (5.0, 5.0), width_m: 0.0)],
+    tasks: [(name: "t", difficulty: 1, center: (2.0, 2.0), size_m: (1.0, 1.0), grid: (1, 1), rest: (8.0, 8.0))],
+)"#;
 
 #[test]
 fn the_defaults_are_those_of_the_paper_s_scenario() {
-    use usar_sim::scenario::{
-        ConflictRules, Costs, InitialLevels, MissionRules, PlanningRules, Roles, Sampled,
-    };
     let paper = paper();
-    assert_eq!(paper.roles, Roles::default());
-    assert_eq!(paper.initial_levels, InitialLevels::default());
-    assert_eq!(paper.costs, Costs::default());
-    assert_eq!(paper.mission, MissionRules::default());
-    assert_eq!(paper.planning, PlanningRules::default());
-    assert_eq!(paper.conflicts, ConflictRules::default());
-    assert_eq!(paper.sampled, Sampled::default());
+    let small = Scenario::parse(SMALL, Path::new("s.ron")).unwrap();
+    assert_eq!(RoleFile { name: "carrier".to_owned(), ..small.roles[0].clone() }, paper.roles[0]);
+    assert_eq!(small.roles.len(), 1);
+    assert_eq!(small.needs, paper.needs);
+    assert_eq!(small.initial_levels, paper.initial_levels);
+    assert_eq!(small.costs, paper.costs);
+    assert_eq!(small.mission, paper.mission);
+    assert_eq!(small.planning, paper.planning);
+    assert_eq!(small.conflicts, paper.conflicts);
+    assert_eq!(small.sampled, paper.sampled);
 }
 
 #[test]
 fn a_scenario_needs_tasks_or_errands_and_errands_need_robots_and_places() {
-    let small = "(name: \"s\", duration_s: 10.0, dt_s: 0.02, arena_m: (10.0, 10.0), team: [(role: Carrier, count: 1, center: (5.0, 5.0), width_m: 0.0)],";
+    let small = "(name: \"s\", duration_s: 10.0, dt_s: 0.02, arena_m: (10.0, 10.0), team: [(role: \"robot\", count: 1, center: (5.0, 5.0), width_m: 0.0)],";
     let error = |rest: &str| {
         let text = format!("{small}{rest})");
         Scenario::parse(&text, Path::new("s.ron")).unwrap_err().to_string()
@@ -144,47 +163,129 @@ fn unknown_fields_wrong_types_and_missing_fields_are_named_with_their_place() {
     let missing = error_of("rest_s: 30.0,", "");
     assert!(missing.contains("rest_s"), "{missing}");
 
-    let variant = error_of("hard_rule: IntraGroupTrust", "hard_rule: Best");
+    let line = line_of("kind: Aerial");
+    let variant = error_of("kind: Aerial", "kind: Flying");
+    assert!(variant.starts_with(&format!("s.ron:{line}:")), "{variant}");
+    assert!(variant.contains("Flying") && variant.contains("Aerial"), "{variant}");
+}
+
+#[test]
+fn an_option_of_a_policy_that_is_not_there_is_named_with_the_known_ones() {
+    let variant = Registry::standard().parse("RNE(hard_rule: Best)").unwrap_err().to_string();
     assert!(variant.contains("Best") && variant.contains("Capability"), "{variant}");
 }
 
 #[test]
-fn an_unknown_policy_in_a_scenario_lists_the_known_ones() {
-    let line = line_of("policies: [");
-    assert_eq!(
-        error_of("\"DIS\"", "\"NEAREST\""),
-        format!(
-            "s.ron:{line}: sweep.policies[1] must be a known policy, found unknown policy \"NEAREST\"; known policies: RNE, DIS, ENG, HP_DIS, RANDOM"
-        )
+fn an_unknown_policy_in_a_sweep_file_lists_the_known_ones() {
+    let path = root().join("scenarios/paper.sweep.ron");
+    let text = std::fs::read_to_string(&path).unwrap();
+    assert!(text.contains("\"DIS\""));
+    let text = text.replacen("\"DIS\"", "\"NEAREST\"", 1);
+    let error = Experiment::parse(text, &path, &Overrides::default()).err().unwrap().to_string();
+    let expected = "unknown policy \"NEAREST\"; known policies: RNE, DIS, ENG, HP_DIS, RANDOM";
+    assert!(error.contains(expected), "{error}");
+}
+
+#[test]
+fn tables_of_tasks_roles_and_needs_are_checked_and_named_by_their_entries() {
+    let refused = |from: &str, to: &str, expected: &str| {
+        let error = error_of(from, to);
+        assert!(error.ends_with(expected), "{error}");
+        assert!(error.starts_with(&format!("s.ron:{}: ", line_of(from))), "{error}");
+    };
+    refused(
+        "grid: (20, 10), rest: (27",
+        "grid: (1001, 10), rest: (27",
+        "tasks.hard.grid[0] must be a count from 0 to 1000, found 1001",
+    );
+    refused(
+        "rest: (27.0, 14.5)",
+        "rest: (27.0, 94.5)",
+        "tasks.hard.rest must lie in the arena, at least 0 m from its walls, found (27, 94.5)",
+    );
+    refused("(name: \"easy\"", "(name: \"hard\"", "tasks[1].name must not be listed twice, found \"hard\"");
+    refused(
+        "(name: \"easy\"",
+        "(name: \"e.s\"",
+        "tasks[1].name must be a name of at most 64 letters, digits, `-` and `_`, found \"e.s\"",
+    );
+    refused(
+        "rest: (66.0, 14.5)",
+        "rest: (66.0, 14.5), quota: {\"walker\": 2}",
+        "tasks.easy.quota must name roles of the scenario, found \"walker\"",
+    );
+    refused(
+        "(role: \"supplier\"",
+        "(role: \"walker\"",
+        "team[1].role must be one of the roles (carrier, supplier, observer), found \"walker\"",
+    );
+    refused(
+        "(name: \"obs\", level: Capability, measures: Observing)",
+        "(name: \"obs\", level: Capability, measures: Constant)",
+        "needs.obs measures Constant, so that each role must have `constants: {\"obs\": ...}`, found role \"carrier\" without it",
     );
 }
 
+/// A file in the former format, part by part: where its words stand, and what is said of it.
 #[test]
-fn extensions_that_change_what_a_file_means_are_refused() {
-    let error = error_of("// The experiment", "#![enable(unwrap_newtypes)]\n// The experiment");
-    assert!(error.contains("not allowed"), "{error}");
-}
-
-#[test]
-fn debris_on_a_home_and_a_concave_polygon_are_refused() {
-    let error = error_of("at: (17.1, 49.4)", "at: (40.1, 13.8)");
-    assert!(error.contains("debris[0].at must leave every robot's home free"), "{error}");
-    let error = error_of("(1.2, 1.5), ", "(0.0, 0.0), ");
-    assert!(error.contains("must be convex"), "{error}");
-}
-
-#[test]
-fn debris_that_closes_every_way_is_refused() {
-    let wall = "debris: [ (shape: Box(89.0, 1.0), at: (44.75, 40.0)),";
-    let scenario = paper_with(&[("debris: [", wall)]);
-    let error = Layout::sample(&scenario, 1).unwrap_err().to_string();
-    assert!(error.contains("no way from home to the hard task"), "{error}");
-}
-
-#[test]
-fn sampled_layouts_keep_clear_and_differ_by_seed_alone() {
-    let sampled = "sampled: (hard: (debris: 10, radiation: 4), easy: (debris: 4, radiation: 1)),";
-    let scenario = paper_with(&[(&format!("// {sampled}"), sampled)]);
+fn a_file_in_the_former_format_is_refused_with_the_change_that_it_needs() {
+    let text = paper_text();
+    let former = |from: &str, to: &str| {
+        assert!(text.contains(from), "{from:?} is not in paper.ron");
+        let text = text.replacen(from, to, 1);
+        Scenario::parse(&text, Path::new("s.ron")).unwrap_err().to_string()
+    };
+    let sweep = "sweep: (policies: [\"RNE\", \"DIS\", \"ENG\", \"HP_DIS\"], trials: 10, first_seed: 1),\n";
+    assert_eq!(
+        former("duration_s: 600.0", &format!("{sweep}duration_s: 600.0")),
+        format!(
+            "s.ron:{}: sweep: belongs in a sweep file now: move it to NAME.sweep.ron beside NAME.ron, as \
+             `(scenario: \"NAME.ron\", policies: [...], trials: ...)`",
+            line_of("duration_s: 600.0")
+        )
+    );
+    let rne = "rne: (\nlog_base: E, sort: false, score: MaxOfBoth,\n),\n";
+    assert_eq!(
+        former("duration_s: 600.0", &format!("{rne}duration_s: 600.0")),
+        format!(
+            "s.ron:{}: rne: belongs to the policy now: write `policies: [\"RNE(score: Sum)\"]` in a sweep file, or \
+             `--policy 'RNE(score: Sum)'`",
+            line_of("duration_s: 600.0")
+        )
+    );
+    let roles = "roles: (carrier: (radius_m: 0.4, mass_kg: 50.0), observer: (radius_m: 0.4)),\n";
+    let tasks = "tasks: (\nhard: (center: (15.6, 64.2), size_m: (11.0, 5.7), grid: (20, 10), rest: (27.0, 14.5)),\n),\n";
+    let (start, end) = (text.find("    roles: [").unwrap(), text.find("    // What robots report").unwrap());
+    let with_roles = format!("{}{roles}{}", &text[..start], &text[end..]);
+    let error = Scenario::parse(&with_roles, Path::new("s.ron")).unwrap_err().to_string();
+    assert_eq!(
+        error,
+        format!(
+            "s.ron:{}: roles: is a list now: write `roles: [(name: \"...\", kind: Ground, ...), ...]`; `kind: Aerial` for \
+             robots that fly, `guides: true` for those whose loss slows their group",
+            line_of("    roles: [")
+        )
+    );
+    let (start, end) =
+        (text.find("    tasks: [").unwrap(), text.find("    // Places [view]; pieces").unwrap());
+    let with_tasks = format!("{}{tasks}{}", &text[..start], &text[end..]);
+    let error = Scenario::parse(&with_tasks, Path::new("s.ron")).unwrap_err().to_string();
+    assert_eq!(
+        error,
+        format!(
+            "s.ron:{}: tasks: is a list now: write `tasks: [(name: \"...\", difficulty: 2, center: ...), ...]`; the harder \
+             a task, the higher its difficulty",
+            line_of("    tasks: [")
+        )
+    );
+    assert_eq!(
+        former("(role: \"carrier\"", "(role: Carrier"),
+        format!(
+            "s.ron:{}: team[0].role: is the name of a role now: write it in quotes, as in `roles`",
+            line_of("(role: \"carrier\"")
+        )
+    );
+    let scenario = paper_with(&SAMPLED);
     let (one, again) = (Layout::sample(&scenario, 3).unwrap(), Layout::sample(&scenario, 3).unwrap());
     let other = Layout::sample(&scenario, 4).unwrap();
     assert_eq!(one, again);
@@ -195,8 +296,8 @@ fn sampled_layouts_keep_clear_and_differ_by_seed_alone() {
 
 #[test]
 fn a_layout_without_room_says_so() {
-    let crowded = "sampled: (hard: (debris: 5000)),";
-    let scenario = paper_with(&[("// For random debris", &format!("{crowded}\n// For random debris"))]);
+    let crowded = "rest: (27.0, 14.5), sampled: (debris: 5000)";
+    let scenario = paper_with(&[("rest: (27.0, 14.5)", crowded)]);
     let error = Layout::sample(&scenario, 1).unwrap_err().to_string();
-    assert!(error.starts_with("sampled.hard: no room for debris "), "{error}");
+    assert!(error.starts_with("tasks.hard.sampled: no room for debris "), "{error}");
 }

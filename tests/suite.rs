@@ -2,18 +2,17 @@
 
 mod golden;
 mod journeys;
+mod laws;
 mod support;
 mod worlds;
 
 mod conservation;
 mod determinism;
-mod errata;
-mod grouping;
 mod invariants;
 mod minimal;
+mod missions;
 mod pairing;
 mod paper_counts;
 mod random_worlds;
 mod routes;
 mod scenarios;
-mod trust;

@@ -1,8 +1,9 @@
 //! What several tests need.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
-use rne_core::policy_named;
+use rne_core::{Policy, Registry};
 use usar_sim::record::TrialRecord;
 use usar_sim::scenario::Scenario;
 use usar_sim::simulation::Simulation;
@@ -22,6 +23,12 @@ pub fn paper() -> Scenario {
     Scenario::parse(&paper_text(), "paper.ron".as_ref()).unwrap_or_else(|error| panic!("{error}"))
 }
 
+/// What makes the tasks of paper.ron ask for sampled debris and radiation: texts and what takes their place.
+pub const SAMPLED: [(&str, &str); 2] = [
+    ("rest: (27.0, 14.5)", "rest: (27.0, 14.5), sampled: (debris: 10, radiation: 4)"),
+    ("rest: (66.0, 14.5)", "rest: (66.0, 14.5), sampled: (debris: 4, radiation: 1)"),
+];
+
 /// `scenarios/paper.ron` with this text replaced by that; the text must be there.
 #[track_caller]
 pub fn paper_with(replacements: &[(&str, &str)]) -> Scenario {
@@ -33,8 +40,12 @@ pub fn paper_with(replacements: &[(&str, &str)]) -> Scenario {
     Scenario::parse(&text, "paper.ron".as_ref()).unwrap_or_else(|error| panic!("{error}"))
 }
 
+/// The policy of that name, with options where they are given: `RNE(score: Sum)`.
+pub fn policy(text: &str) -> Arc<dyn Policy> {
+    Registry::standard().parse(text).unwrap_or_else(|error| panic!("{error}")).policy
+}
+
 /// One trial, with every invariant checked at every step.
-pub fn trial(scenario: &Scenario, policy: &str, seed: u64) -> TrialRecord {
-    let policy = policy_named(policy, &scenario.rne).unwrap();
-    Simulation::new(scenario, &*policy, seed).unwrap().checked().run(|_, _, _| {})
+pub fn trial(scenario: &Scenario, name: &str, seed: u64) -> TrialRecord {
+    Simulation::new(scenario, seed).unwrap().checked().run(&*policy(name), |_, _, _| {})
 }

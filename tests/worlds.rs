@@ -3,18 +3,24 @@
 //! Feasibility is found out by a flood fill of its own, not by the planner under test: of the points on a fine grid that keep a robot's
 //! radius and clearance from all debris and walls, those that hang together with the first robot's home.
 
+use std::collections::BTreeMap;
+
 use parry2d::bounding_volume::{Aabb, BoundingVolume};
 use parry2d::math::Vector;
 use rand::RngExt;
 use rand::SeedableRng;
 use rand::rngs::ChaCha8Rng;
-use rne_core::Role;
+use rne_core::TaskId;
+use usar_sim::geometry::Outline;
+use usar_sim::ids::RobotId;
+use usar_sim::model::rest_slot;
 use usar_sim::scenario::{
     ConflictRules, Costs, DebrisFile, DebrisShape, Errand, InitialLevels, MissionRules, Movable, Normal,
-    PlanningRules, Point, Roles, Row, Sampled, Scenario, ScenarioFile, SweepDefaults, TaskFile, Tasks,
-    ZoneFile,
+    PlanningRules, Point, Row, Sampled, SampledCounts, Scenario, ScenarioFile, TaskFile, ZoneFile,
 };
-use usar_sim::world::{Outline, debris_outline, rest_slot};
+
+/// The scenario whose roles and needs the robots have.
+const PAPER: &str = include_str!("../scenarios/paper.ron");
 
 /// Distance between the points of the flood fill, in metres.
 const CELL_M: f64 = 0.15;
@@ -47,13 +53,13 @@ fn errands(seed: u64, draws: &mut ChaCha8Rng) -> Option<ScenarioFile> {
     let mut team = Vec::new();
     for _ in 0..robots {
         let role = match draws.random_range(0..8_u32) {
-            0 => Role::Observer,
-            1..4 => Role::Supplier,
-            _ => Role::Carrier,
+            0 => "observer",
+            1..4 => "supplier",
+            _ => "carrier",
         };
         let center = free.draw(draws, &taken)?;
         taken.push(center);
-        team.push(Row { role, count: 1, center, width_m: 0.0, levels: None });
+        team.push(Row { role: role.to_owned(), count: 1, center, width_m: 0.0, levels: None });
     }
     let mut errands = Vec::new();
     for robot in 0..robots {
@@ -83,24 +89,28 @@ fn mission(seed: u64, draws: &mut ChaCha8Rng) -> Option<ScenarioFile> {
     let side = 30.0 + f64::from(robots).sqrt() * draws.random_range(2.0..5.0);
     let arena = [side * 1.3, side];
     let spacing = draws.random_range(1.2..2.2);
-    let row = |role, count: u32, y: f64| Row {
-        role,
+    let row = |role: &str, count: u32, y: f64| Row {
+        role: role.to_owned(),
         count,
         center: [arena[0] / 2.0, y],
         width_m: spacing * f64::from(count.saturating_sub(1)),
         levels: None,
     };
-    let mut team = vec![row(Role::Carrier, carriers, 2.0), row(Role::Supplier, suppliers, 4.0)];
+    let mut team = vec![row("carrier", carriers, 2.0), row("supplier", suppliers, 4.0)];
     if observers > 0 {
-        team.push(row(Role::Observer, observers, 6.0));
+        team.push(row("observer", observers, 6.0));
     }
-    let task = |x: f64| TaskFile {
+    let task = |name: &str, difficulty: u32, x: f64| TaskFile {
+        name: name.to_owned(),
+        difficulty,
         center: [x, arena[1] - 5.0],
         size_m: [6.0, 3.0],
         grid: [8, 5],
         rest: [x, arena[1] * 0.35 + 2.0],
+        quota: BTreeMap::new(),
+        sampled: SampledCounts::default(),
     };
-    let tasks = Tasks { hard: task(arena[0] * 0.2), easy: task(arena[0] * 0.8) };
+    let tasks = vec![task("hard", 2, arena[0] * 0.2), task("easy", 1, arena[0] * 0.8)];
     let debris = debris(draws, arena, (8.0, robots), [0.01, 0.08]);
     let radiation = (0..draws.random_range(0..4_u32))
         .map(|_| ZoneFile {
@@ -111,12 +121,10 @@ fn mission(seed: u64, draws: &mut ChaCha8Rng) -> Option<ScenarioFile> {
     let file = ScenarioFile { team, tasks, debris, radiation, ..base(seed, arena, 300.0) };
     let free = FreeSpace::new(arena, &file.debris);
     let scenario = Scenario::try_from(file.clone()).ok()?;
-    let slots = (0..robots).flat_map(|i| {
-        rne_core::Difficulty::ALL.map(|task| rest_slot(&scenario, task, usar_sim::ids::RobotId(i), robots))
-    });
+    let slots = (0..robots).flat_map(|i| [0, 1].map(|task| rest_slot(&scenario, TaskId(task), RobotId(i))));
     let slots = slots.map(|slot| [f64::from(slot.x), f64::from(slot.y)]);
-    let homes = file.team.iter().flat_map(usar_sim::world::row_positions);
-    let centers = [tasks.hard.center, tasks.easy.center];
+    let homes = file.team.iter().flat_map(Row::places);
+    let centers = file.tasks.iter().map(|task| task.center);
     let reachable = slots.chain(homes).chain(centers).all(|place| free.contains(place));
     reachable.then_some(file)
 }
@@ -164,7 +172,7 @@ fn debris(
         // No debris in the door: its lanes would not be free.
         let doorway = Aabb::new(Vector::new(x as f32, at as f32), Vector::new(x as f32, (at + door) as f32));
         debris.retain(|piece| {
-            let outline = debris_outline(piece);
+            let outline = piece.outline();
             let bounds = outline.shape.compute_aabb(&outline.pose);
             !bounds.intersects(&doorway.loosened(APRON_M))
         });
@@ -181,20 +189,21 @@ fn debris(
 }
 
 fn base(seed: u64, arena_m: Point, duration_s: f64) -> ScenarioFile {
+    let paper = Scenario::parse(PAPER, "paper.ron".as_ref()).unwrap_or_else(|error| panic!("{error}"));
     ScenarioFile {
         name: format!("world-{seed}"),
         description: String::new(),
-        sweep: SweepDefaults { policies: vec!["RANDOM".into()], trials: 1, first_seed: seed },
         duration_s,
         dt_s: 0.02,
         arena_m,
         team: Vec::new(),
-        roles: Roles::default(),
+        roles: paper.roles.clone(),
+        needs: paper.needs.clone(),
         initial_levels: InitialLevels {
             energy: Normal { mean: 90.0, sd: 5.0 },
             hp: Normal { mean: 90.0, sd: 10.0 },
         },
-        tasks: Tasks::default(),
+        tasks: Vec::new(),
         errands: Vec::new(),
         debris: Vec::new(),
         radiation: Vec::new(),
@@ -203,7 +212,6 @@ fn base(seed: u64, arena_m: Point, duration_s: f64) -> ScenarioFile {
         mission: MissionRules::default(),
         planning: PlanningRules::default(),
         conflicts: ConflictRules::default(),
-        rne: rne_core::RneOptions::default(),
     }
 }
 
@@ -216,7 +224,7 @@ pub struct FreeSpace {
 impl FreeSpace {
     /// The free plane among this debris, connected to a middle that is as large as possible.
     pub fn new(arena: Point, debris: &[DebrisFile]) -> Self {
-        let outlines: Vec<Outline> = debris.iter().map(debris_outline).collect();
+        let outlines: Vec<Outline> = debris.iter().map(DebrisFile::outline).collect();
         let (columns, rows) = ((arena[0] / CELL_M) as usize, (arena[1] / CELL_M) as usize);
         let point = |i: usize| [(i % columns) as f64 * CELL_M, (i / columns) as f64 * CELL_M];
         let free: Vec<bool> = (0..columns * rows)

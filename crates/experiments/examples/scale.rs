@@ -7,7 +7,8 @@ mod density;
 
 use std::time::Instant;
 
-use rne_core::policy_named;
+use rne_core::Registry;
+use usar_sim::record::Status;
 use usar_sim::simulation::Simulation;
 
 fn main() {
@@ -15,26 +16,21 @@ fn main() {
     let robots = arguments.next().unwrap_or(10_000);
     let seconds = arguments.next().unwrap_or(60);
     let scenario = density::mission(robots, f64::from(seconds), None);
-    let policy = policy_named("ENG", &scenario.rne).expect("known");
+    let eng = Registry::standard().parse("ENG").expect("known");
     let start = Instant::now();
-    let mut trial = Simulation::new(&scenario, &*policy, 1).expect("drawn");
+    let mut trial = Simulation::new(&scenario, 1).expect("drawn");
     println!(
         "{robots} robots, {} pieces of debris: built in {:.1} s",
         scenario.debris.len(),
         start.elapsed().as_secs_f64()
     );
     let start = Instant::now();
-    while trial.ending().is_none() {
-        trial.step().expect("sound");
-    }
+    while trial.step(&*eng.policy).is_none() {}
     let steps = trial.steps();
     let us = start.elapsed().as_secs_f64() * 1e6 / steps as f64;
     let record = trial.finish();
-    println!(
-        "{} s simulated, {us:.0} us a step, {} rescued",
-        record.time_s,
-        record.hard.rescued + record.easy.rescued
-    );
+    assert!(!matches!(record.status, Status::Failed(_)), "{:?}", record.status);
+    println!("{} s simulated, {us:.0} us a step, {} rescued", record.time_s, record.rescued());
     if let Some(peak) = peak_memory() {
         println!("peak memory: {peak}");
     }

@@ -8,8 +8,8 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use experiments::experiment::{Experiment, Overrides};
-use experiments::sweep::{Limits, Outcome, run_all};
-use rne_core::policy_names;
+use experiments::run::{Limits, Outcome, run_all};
+use rne_core::Registry;
 use usar_sim::invariant::Overlaps;
 use usar_sim::record::TrialRecord;
 
@@ -20,7 +20,7 @@ fn main() -> ExitCode {
     let path = arguments.next().unwrap_or_else(|| "scenarios/paper.ron".into());
     let seeds = arguments.next().and_then(|seeds| seeds.parse().ok()).unwrap_or(100);
     let overrides = Overrides {
-        policies: Some(policy_names().into_iter().map(str::to_owned).collect()),
+        policies: Some(Registry::standard().names().into_iter().map(str::to_owned).collect()),
         trials: Some(seeds),
         is_checked: true,
         ..Overrides::default()
@@ -89,8 +89,10 @@ fn summarise(outcomes: &[Outcome]) {
         record.rounds.iter().filter(|round| round.end_s.is_some()).count().max(1) as f64
     };
     line("complete rounds", each(&|r| f64::from(r.completed_rounds)));
-    line("rescued, hard task", each(&|r| f64::from(r.hard.rescued)));
-    line("rescued, easy task", each(&|r| f64::from(r.easy.rescued)));
+    for task in records.first().map_or(&[][..], |record| &record.tasks) {
+        let rescued = |r: &TrialRecord| r.task(&task.task).map_or(f64::NAN, |totals| totals.rescued.into());
+        line(&format!("rescued, {} task", task.task), each(&rescued));
+    }
     line(
         "share of complete group rounds that deliver",
         each(&|r| {

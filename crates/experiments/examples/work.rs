@@ -5,9 +5,9 @@
 #[path = "../../usar-sim/benches/team.rs"]
 mod team;
 
-use rand::SeedableRng;
-use rand::rngs::ChaCha8Rng;
-use rne_core::{RneOptions, policy_named};
+use std::sync::Arc;
+
+use rne_core::{Policy, Registry};
 use usar_sim::scenario::Scenario;
 use usar_sim::simulation::Simulation;
 
@@ -24,17 +24,21 @@ fn main() {
 
 fn trial() {
     let (scenario, _) = Scenario::load("scenarios/paper.ron".as_ref()).expect("run from the project's root");
-    let policy = policy_named("RNE", &scenario.rne).expect("known");
-    let mut trial = Simulation::new(&scenario, &*policy, 1).expect("drawn");
-    (0..STEPS).for_each(|_| trial.step().expect("sound"));
+    let rne = rne();
+    let mut trial = Simulation::new(&scenario, 1).expect("drawn");
+    (0..STEPS).for_each(|_| assert_eq!(trial.step(&*rne), None));
     println!("{}", trial.finish().state_hash);
+}
+
+fn rne() -> Arc<dyn Policy> {
+    Registry::standard().parse("RNE").expect("known").policy
 }
 
 /// The search for the best split of 20 robots of one role, the largest that is exact, and by local search of 60.
 fn grouping() {
-    let policy = policy_named("RNE", &RneOptions::default()).expect("known");
+    let rne = rne();
     for carriers in [20, 60] {
-        let grouping = policy.group(&team::team([carriers, 0, 0]), &mut ChaCha8Rng::seed_from_u64(1));
-        println!("{:?}", grouping.expect("a grouping"));
+        let decision = rne.decide(&team::question([carriers, 0, 0]));
+        println!("{:?}", decision.expect("a decision").assignment);
     }
 }

@@ -20,7 +20,7 @@ fn main() -> ExitCode {
     let mut totals = Totals::default();
     for start in (first..first + count).step_by(CHUNK) {
         let seeds = start..(start + CHUNK as u64).min(first + count);
-        let run = |seed: u64| (seed, Journeys::run(&worlds::world(seed)));
+        let run = |seed: u64| (seed, Journeys::run(&worlds::world(seed), seed));
         let results: Vec<(u64, Result<Journeys, String>)> = seeds.into_par_iter().map(run).collect();
         results.iter().for_each(|(seed, result)| totals.add(*seed, result));
     }

@@ -4,12 +4,14 @@ use std::io::Write;
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
+use rne_core::Registry;
 
 use crate::commands::{
-    calibrate, check, compare, estimate, explain, group, merge, readings, report, reproduce, run, sweep,
-    trust, verify,
+    calibrate, check, compare, estimate, explain, group, merge, readings, report, reproduce, run, schema,
+    sweep, trust, verify,
 };
-use crate::failure::Failure;
+use crate::experiment::set_registry;
+use crate::failure::{Failure, panic_message};
 
 /// Which robots should team up? A laboratory for trust and grouping policies in mixed robot teams.
 #[derive(Debug, Parser)]
@@ -51,6 +53,25 @@ enum Command {
     Check(check::Arguments),
     Trust(trust::Arguments),
     Group(group::Arguments),
+    Schema(schema::Arguments),
+}
+
+/// Runs the command that the process was called with, with policies of the caller's own beside the built-in ones: the `main` of a program that
+/// adds policies.
+///
+/// ```no_run
+/// # fn my_policy() -> rne_core::PolicyKind { rne_core::policies::random::kind() }
+/// fn main() -> std::process::ExitCode {
+///     let mut policies = rne_core::Registry::standard();
+///     policies.add(my_policy()).expect("a new name");
+///     experiments::main_with(policies)
+/// }
+/// ```
+#[must_use]
+pub fn main_with(policies: Registry) -> ExitCode {
+    // A program that calls this twice keeps its first policies.
+    let _ = set_registry(policies);
+    main()
 }
 
 /// Runs the command that the process was called with. The exit status is 0 for a result, else
@@ -90,12 +111,7 @@ impl Command {
             Self::Check(arguments) => arguments.execute(out),
             Self::Trust(arguments) => arguments.execute(out),
             Self::Group(arguments) => arguments.execute(out),
+            Self::Schema(arguments) => arguments.execute(out),
         }
     }
-}
-
-/// What a panic said.
-pub(crate) fn panic_message(panic: &(dyn std::any::Any + Send)) -> String {
-    let text = panic.downcast_ref::<String>().map(String::as_str);
-    text.or_else(|| panic.downcast_ref::<&str>().copied()).unwrap_or("a defect without a message").to_owned()
 }

@@ -1,9 +1,8 @@
-//! What is measured of a trial. Each metric is declared once, in [`DECLARATIONS`]; an experiment has a [`Catalogue`] of them, with those of
+//! What is measured of a trial. Each metric is declared once, in `DECLARATIONS`; an experiment has a [`Catalogue`] of them, with those of
 //! its tasks. `trials.csv`, comparisons, stopping rules, reports and calibrations find them there.
 
 use std::ops::Deref;
 
-use rne_core::Difficulty;
 use usar_sim::metrics::TaskTotals;
 use usar_sim::record::TrialRecord;
 use usar_sim::scenario::Scenario;
@@ -56,7 +55,7 @@ const DECLARATIONS: &[Declaration] = &[
     whole("unreachable", "places given up on", "", |r| Some(f64::from(r.unreachable))),
     whole("errands_done", "errands done", "", |r| Some(f64::from(r.errands_done))),
     whole("time", "time to the end", "s", |r| Some(r.time_s)),
-    per_task("secured", "secured", "", |r| Some(f64::from(secured(r))), |t| Some(f64::from(t.secured))),
+    per_task("secured", "secured", "", |r| Some(f64::from(r.secured())), |t| Some(f64::from(t.secured))),
     per_task("energy", "energy spent", POINTS, |r| Some(r.energy()), |t| Some(t.energy)),
     whole("energy.ungrouped", "energy spent outside groups", POINTS, |r| Some(r.ungrouped_energy)),
     per_task("hp", "HP lost", POINTS, |r| Some(r.hp()), |t| Some(t.hp)),
@@ -122,20 +121,10 @@ fn ratio(cost: f64, rescuees: u32) -> Option<f64> {
     (rescuees > 0).then(|| cost / f64::from(rescuees))
 }
 
-fn secured(record: &TrialRecord) -> u32 {
-    Difficulty::ALL.iter().filter_map(|task| task_totals(record, task.name())).map(|task| task.secured).sum()
-}
-
-/// The names of a scenario's tasks, in the order of tables.
+/// The names of a scenario's tasks, in the order of their table.
 #[must_use]
-pub fn task_names(_: &Scenario) -> Vec<String> {
-    Difficulty::ALL.iter().map(|task| task.name().to_owned()).collect()
-}
-
-/// What was done and spent for a task.
-fn task_totals<'r>(record: &'r TrialRecord, task: &str) -> Option<&'r TaskTotals> {
-    let totals = Difficulty::ALL.into_iter().zip([&record.hard, &record.easy]);
-    totals.into_iter().find(|(known, _)| known.name() == task).map(|(_, totals)| totals)
+pub fn task_names(scenario: &Scenario) -> Vec<String> {
+    scenario.tasks.iter().map(|task| task.name.clone()).collect()
 }
 
 /// Where a value comes from.
@@ -183,7 +172,7 @@ impl Metric {
     pub fn value(&self, record: &TrialRecord) -> Option<f64> {
         let value = match self.source {
             Source::Trial(value) => value(record),
-            Source::Task(value) => value(task_totals(record, &self.part)?),
+            Source::Task(value) => value(record.task(&self.part)?),
         };
         value.filter(|value| value.is_finite())
     }

@@ -2,14 +2,15 @@
 
 use ron_fields::Fields;
 use serde::{Deserialize, Serialize};
+use usar_sim::physics::ENGINE_FEATURES;
 use xxhash_rust::xxh3::xxh3_128;
 
 use crate::experiment::{Axis, Experiment, Seeds, Shard};
 use crate::failure::Failure;
-use crate::sweep::FileHash;
+use crate::files::FileHash;
 
 /// Version of the folder's layout.
-pub const SCHEMA_VERSION: u32 = 3;
+pub const SCHEMA_VERSION: u32 = 4;
 
 /// `manifest.json`. Holds nothing that differs between two runs of the same sweep: no time of day, no number of threads.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -59,7 +60,7 @@ impl Manifest {
             version: experiment.program.version.clone(),
             commit: env!("USAR_COMMIT").into(),
             source: experiment.program.source.clone(),
-            features: vec!["rapier2d/enhanced-determinism".into()],
+            features: ENGINE_FEATURES.map(str::to_owned).to_vec(),
             name: experiment.name.clone(),
             policies: experiment.policies.iter().map(|policy| policy.written().to_owned()).collect(),
             axes: experiment.axes.clone(),
@@ -149,13 +150,11 @@ impl Manifest {
     }
 }
 
-/// The fields in which two resolved scenarios differ, but for what a sweep runs by default, one sentence each.
+/// The fields in which two resolved scenarios differ, one sentence each.
 #[must_use]
 pub fn scenario_differences(there: &str, now: &str) -> Vec<String> {
     let (there_fields, now_fields) = (Fields::of(there), Fields::of(now));
-    let decides = |path: &str| {
-        !(path.starts_with("sweep.") || path == "sweep" || path == "name" || path == "description")
-    };
+    let decides = |path: &str| path != "name" && path != "description";
     let value = |text: &str, fields: &Fields, path: &str| {
         fields.value(path).map(|value| text[value].trim().to_owned())
     };
@@ -182,8 +181,8 @@ mod tests {
 
     #[test]
     fn fields_that_differ_are_named() {
-        let there = "(name: \"a\", sweep: (trials: 1), costs: (hp: 1.0), debris: [(at: (1.0, 2.0))])";
-        let now = "(name: \"b\", sweep: (trials: 2), costs: (hp: 2.0), debris: [(at: (1.0, 2.0)), (at: (3.0, 2.0))])";
+        let there = "(name: \"a\", costs: (hp: 1.0), debris: [(at: (1.0, 2.0))])";
+        let now = "(name: \"b\", costs: (hp: 2.0), debris: [(at: (1.0, 2.0)), (at: (3.0, 2.0))])";
         let differences = scenario_differences(there, now);
         assert_eq!(differences[0], "costs.hp: 1.0 there, 2.0 now");
         assert_eq!(differences[1], "debris[1].at[0]: nothing there, 3.0 now");

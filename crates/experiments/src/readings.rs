@@ -285,8 +285,8 @@ pub fn groupings_in_words(folder: &Folder, readings: &[usize], rounds: &[Round])
     let case = &folder.experiment().cases[0];
     let groups = |reading: &usize| {
         let policy = &case.policies[*reading];
-        let groups = rounds.iter().map(|round| Ok(round.grouped_by(&**policy)?.hard));
-        groups.collect::<Result<Vec<Vec<u32>>, Failure>>()
+        let groups = rounds.iter().map(|round| Ok(round.grouped_by(&**policy)?.groups));
+        groups.collect::<Result<Vec<Vec<Vec<u32>>>, Failure>>()
     };
     let all = readings.par_iter().map(groups).collect::<Result<Vec<_>, Failure>>()?;
     let distinct = all.iter().collect::<BTreeSet<_>>().len();

@@ -1,6 +1,8 @@
-//! Relative entropy between distributions, its symmetric relatives, and mutual information (paper: Eqs. 1, 2 and 7).
+//! Relative entropy between distributions, its symmetric relatives, and mutual information (paper: Eqs. 1, 2
+//! and 7).
 //!
-//! Checked against `SciPy` 1.17 (`scipy.stats.entropy`, `scipy.spatial.distance.jensenshannon` squared). All in nats.
+//! Checked against `SciPy` 1.17 (`scipy.stats.entropy`, `scipy.spatial.distance.jensenshannon` squared). All
+//! in nats.
 
 use nalgebra::DMatrix;
 
@@ -31,7 +33,8 @@ pub fn jeffreys(p: &NeedDistribution, q: &NeedDistribution) -> Result<RelativeNe
     Ok(RelativeNeedsEntropy::from_nats(both))
 }
 
-/// Jensen-Shannon divergence: the mean relative entropy to the midpoint of the two; in [0, ln 2], never infinite.
+/// Jensen-Shannon divergence: the mean relative entropy to the midpoint of the two; in [0, ln 2], never
+/// infinite.
 ///
 /// # Errors
 /// Distributions over different numbers of needs.
@@ -40,11 +43,12 @@ pub fn jensen_shannon(p: &NeedDistribution, q: &NeedDistribution) -> Result<f64,
     Ok(jensen_shannon_nats(p.shares(), q.shares()))
 }
 
-/// Mutual information `I(X;Y)` of a joint distribution (rows x, columns y), in nats: the relative entropy between the
-/// joint and the product of its margins (Eq. 2).
+/// Mutual information `I(X;Y)` of a joint distribution (rows x, columns y), in nats: the relative entropy
+/// between the joint and the product of its margins (Eq. 2).
 ///
 /// # Errors
-/// An empty matrix, an entry that is NaN, infinite or negative, or entries that do not add up to 1 (to within 1e-9).
+/// An empty matrix, an entry that is NaN, infinite or negative, or entries that do not add up to 1 (to within
+/// 1e-9).
 pub fn mutual_information(joint: &DMatrix<f64>) -> Result<f64, NeedsError> {
     check_entries("joint distribution", joint.as_slice())?;
     let sum: f64 = joint.iter().sum();
@@ -58,7 +62,8 @@ pub fn mutual_information(joint: &DMatrix<f64>) -> Result<f64, NeedsError> {
         for (y, column) in columns.iter().enumerate() {
             let p = joint[(x, y)];
             if p > 0.0 {
-                // As a difference of logarithms: the product of two small margins could vanish, their logarithms cannot.
+                // As a difference of logarithms: the product of two small margins could vanish, their
+                // logarithms cannot.
                 information += p * (libm::log(p) - libm::log(*row) - libm::log(*column));
             }
         }

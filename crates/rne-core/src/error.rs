@@ -1,4 +1,5 @@
-//! Errors of the trust maths and of the grouping policies: one sentence each, for the person who can fix the input.
+//! Errors of the trust maths, of questions and of policies: one sentence each, for the person who can fix the
+//! input.
 
 use thiserror::Error;
 
@@ -53,16 +54,45 @@ pub enum NeedsError {
     },
 }
 
-/// A team that a policy cannot group, or a policy that does not exist.
+/// A question that cannot be asked.
 #[derive(Debug, Clone, PartialEq, Error)]
-pub enum GroupingError {
-    /// No policy of that name.
-    #[error("unknown policy {found:?}; known policies: {}", known.join(", "))]
-    UnknownPolicy {
-        /// The name that was asked for.
-        found: String,
-        /// All names of the registry.
-        known: Vec<&'static str>,
+#[non_exhaustive]
+pub enum QuestionError {
+    /// Another version of the JSON form.
+    #[error("schema_version must be {}, found {found}", crate::schema::SCHEMA_VERSION)]
+    Version {
+        /// The version that was found.
+        found: u32,
+    },
+    /// Text that is not the JSON of what is expected.
+    #[error("not the JSON of a {what}: {reason}")]
+    Json {
+        /// What was expected.
+        what: &'static str,
+        /// Why it is not.
+        reason: String,
+    },
+    /// No task, or too many.
+    #[error("a question must have 1 to {} tasks, found {found}", crate::schema::MAX_TASKS)]
+    Tasks {
+        /// Number of tasks.
+        found: usize,
+    },
+    /// A place that is NaN or infinite.
+    #[error("the place of task {task:?} must be two finite numbers, found {found:?}")]
+    Place {
+        /// The task.
+        task: String,
+        /// Its place.
+        found: [f64; 2],
+    },
+    /// A weight that is NaN, infinite or negative.
+    #[error("the weight of need {need:?} must be a finite number >= 0, found {found}")]
+    Weight {
+        /// The need.
+        need: String,
+        /// The weight.
+        found: f64,
     },
     /// The same id twice.
     #[error("robot id {id} stands twice in the team; ids must be unique")]
@@ -70,15 +100,23 @@ pub enum GroupingError {
         /// The id.
         id: u32,
     },
-    /// The policy needs a fact that the team does not carry.
-    #[error("policy {policy} needs {what}, which is missing{}", robot.map(|id| format!(" for robot {id}")).unwrap_or_default())]
-    MissingFact {
-        /// Name of the policy.
-        policy: &'static str,
-        /// The fact ("the energy level", ...).
-        what: &'static str,
-        /// The robot without it, where it is one robot's.
-        robot: Option<u32>,
+    /// A role that is not in the table.
+    #[error("robot {id}: its role must be a row of the table of {roles} roles (from 0), found {found}")]
+    Role {
+        /// The robot.
+        id: u32,
+        /// Its role.
+        found: u16,
+        /// Rows of the table.
+        roles: usize,
+    },
+    /// A robot's needs cannot be used.
+    #[error("robot {id}: {source}")]
+    Needs {
+        /// The robot.
+        id: u32,
+        /// What is wrong with its needs.
+        source: NeedsError,
     },
     /// A fact that must be a finite number is not.
     #[error("{what} of robot {id} must be a finite number, found {found}")]
@@ -90,7 +128,43 @@ pub enum GroupingError {
         /// The value.
         found: f64,
     },
-    /// A robot's needs cannot be used.
+    /// There must be a quota for each role.
+    #[error("there must be a quota for each of the {roles} roles, found {found}")]
+    Quotas {
+        /// Number of quotas.
+        found: usize,
+        /// Number of roles.
+        roles: usize,
+    },
+    /// A quota does not share out the members of its role.
+    #[error(
+        "the quota of role {role:?} must share its {members} members out over all tasks, found {found:?}"
+    )]
+    Quota {
+        /// The role.
+        role: String,
+        /// The quota.
+        found: Vec<usize>,
+        /// Members of the role.
+        members: usize,
+    },
+}
+
+/// A question that a policy cannot answer.
+#[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
+pub enum PolicyError {
+    /// The policy needs a fact that the question does not carry.
+    #[error("policy {policy} needs {what}, which is missing{}", for_robot(*robot))]
+    MissingFact {
+        /// Name of the policy.
+        policy: String,
+        /// The fact ("the energy level", ...).
+        what: &'static str,
+        /// The robot without it, where it is one robot's.
+        robot: Option<u32>,
+    },
+    /// A robot's needs cannot be used by the policy.
     #[error("robot {id}: {source}")]
     Needs {
         /// The robot.
@@ -98,7 +172,94 @@ pub enum GroupingError {
         /// What is wrong with its needs.
         source: NeedsError,
     },
-    /// The options of the policy cannot be used.
+    /// The policy's options do not fit the question.
     #[error("options of the policy: {0}")]
     Options(NeedsError),
+    /// The policy gave up, in its own words.
+    #[error("{0}")]
+    Other(String),
+}
+
+/// A policy that cannot be made.
+#[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
+pub enum RegistryError {
+    /// No policy of that name.
+    #[error("unknown policy {found:?}; known policies: {}", known.join(", "))]
+    UnknownPolicy {
+        /// The name that was asked for.
+        found: String,
+        /// All names of the registry.
+        known: Vec<String>,
+    },
+    /// A name that the registry has already.
+    #[error("policy {name:?} is in the registry already")]
+    DuplicateName {
+        /// The name.
+        name: String,
+    },
+    /// Options that the policy does not have, or values that they cannot take.
+    #[error("policy {policy}: {reason}, found {found:?}{}", known_options(options))]
+    Options {
+        /// Name of the policy.
+        policy: String,
+        /// What is wrong.
+        reason: String,
+        /// The options as given.
+        found: String,
+        /// The policy's options with their defaults.
+        options: String,
+    },
+}
+
+/// An assignment that does not answer its question.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+#[non_exhaustive]
+pub enum AssignmentError {
+    /// There must be a group for each task.
+    #[error("an assignment must have a group for each of the {tasks} tasks, found {found}")]
+    Groups {
+        /// Number of groups.
+        found: usize,
+        /// Number of tasks.
+        tasks: usize,
+    },
+    /// A robot in two groups, or twice in one.
+    #[error("robot {robot} must be in exactly one group, found it twice")]
+    Twice {
+        /// The robot.
+        robot: u32,
+    },
+    /// A robot that was not to be grouped.
+    #[error("robot {robot} is not a member of the team that was to be grouped")]
+    Stranger {
+        /// The robot.
+        robot: u32,
+    },
+    /// A member without a group.
+    #[error("robot {robot} must be in exactly one group, found it in none")]
+    Missing {
+        /// The robot.
+        robot: u32,
+    },
+    /// A group that does not keep a binding quota.
+    #[error("task {task:?} must get {quota} members of role {role:?}, found {found}")]
+    Quota {
+        /// The task.
+        task: String,
+        /// The role.
+        role: String,
+        /// Members that it must get.
+        quota: usize,
+        /// Members that it got.
+        found: usize,
+    },
+}
+
+fn for_robot(robot: Option<u32>) -> String {
+    robot.map(|id| format!(" for robot {id}")).unwrap_or_default()
+}
+
+fn known_options(options: &str) -> String {
+    if options.is_empty() { String::new() } else { format!("; options and defaults: {options}") }
 }

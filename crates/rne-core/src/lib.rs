@@ -1,7 +1,9 @@
-//! Trust between robots as *Relative Needs Entropy* (RNE), and policies that split a mixed team over two tasks.
+//! Trust between robots as *Relative Needs Entropy* (RNE), and policies that group a mixed team over any
+//! number of tasks.
 //!
 //! The maths of Yang & Parasuraman, *How Can Robots Trust Each Other For Better Cooperation?* (IEEE SMC 2021,
-//! arXiv 2105.07443), with every ambiguity of the text as a named option. This crate knows no world, no files and no clock.
+//! arXiv 2105.07443), with every ambiguity of the text as a named option. This crate knows no world, no files
+//! and no clock.
 //!
 //! ```
 //! use rne_core::{NeedDistribution, NeedVector, NeedWeights, relative_entropy};
@@ -14,20 +16,38 @@
 //! assert!(rne.trust() > 0.996);
 //! # Ok::<(), rne_core::NeedsError>(())
 //! ```
+//!
+//! A [`Policy`] answers a [`Question`] with a [`Decision`]. Policies have names in a [`Registry`].
 
+pub mod decision;
 pub mod divergence;
 pub mod error;
-pub mod grouping;
 pub mod hierarchy;
-
+pub mod history;
+pub mod ids;
+pub mod kind;
 pub mod needs;
+pub mod policies;
+pub mod policy;
+pub mod question;
+pub mod registry;
+pub mod schema;
 pub mod trust;
 
+pub use decision::{Account, Alternative, Assignment, Decision};
 pub use divergence::{jeffreys, jensen_shannon, mutual_information, relative_entropy};
-pub use error::{GroupingError, NeedsError};
-pub use grouping::{
-    Difficulty, Grouping, GroupingPolicy, Member, RneOptions, Role, RoleQuota, TaskPositions, Team,
-    policy_named, policy_names,
-};
-pub use needs::{NEED_NAMES, NeedDistribution, NeedVector, NeedWeights};
+pub use error::{AssignmentError, NeedsError, PolicyError, QuestionError, RegistryError};
+pub use history::{GroupOutcome, MemberOutcome, RoundOutcome};
+pub use ids::{NeedId, RoleId, TaskId};
+pub use kind::PolicyKind;
+pub use needs::{NeedDistribution, NeedVector, NeedWeights};
+pub use policies::rne::RneOptions;
+pub use policy::Policy;
+pub use question::{Member, Need, Question, Quota, RandomSeed, SCHEMA_VERSION, Task};
+pub use registry::{MadePolicy, Registry};
 pub use trust::{LogBase, RelativeNeedsEntropy};
+
+/// The README's example is compiled and run.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

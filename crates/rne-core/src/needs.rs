@@ -1,15 +1,14 @@
 //! Needs vectors, weights and the distributions made of them (paper: Section III, Eqs. 8 and 9).
 
-use serde::Serialize;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 use crate::error::NeedsError;
 
-/// The paper's seven needs, in the order of its Eqs. 15 to 17: health, speed and sensing range (safety needs), energy (basic
-/// need), rescue resources, carrying capacity and observing range (capability needs).
-pub const NEED_NAMES: [&str; 7] = ["hp", "v", "sen", "eng", "res", "cap", "obs"];
-
-/// The current state of one robot's needs: any number (>= 1) of finite values >= 0, each in a unit of its own.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+/// The current state of one robot's needs: any number (>= 1) of finite values >= 0, each in a unit of its
+/// own.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(try_from = "Vec<f64>")]
 pub struct NeedVector(Vec<f64>);
 
 /// The weight of each need: finite values >= 0, at least one above 0. Only their ratios matter.
@@ -34,7 +33,8 @@ impl NeedVector {
     /// probabilities 1, the default in the absence of any published value, this is the state itself.
     ///
     /// # Errors
-    /// As [`NeedVector::new`]; or a probability outside [0, 1], or another number of probabilities than needs.
+    /// As [`NeedVector::new`]; or a probability outside [0, 1], or another number of probabilities than
+    /// needs.
     pub fn expected(state: &[f64], probabilities: &[f64]) -> Result<Self, NeedsError> {
         check_length("probabilities", state.len(), probabilities.len())?;
         check_probabilities(probabilities)?;
@@ -45,6 +45,14 @@ impl NeedVector {
     #[must_use]
     pub fn values(&self) -> &[f64] {
         &self.0
+    }
+}
+
+impl TryFrom<Vec<f64>> for NeedVector {
+    type Error = NeedsError;
+
+    fn try_from(values: Vec<f64>) -> Result<Self, NeedsError> {
+        Self::new(values)
     }
 }
 
@@ -94,7 +102,7 @@ impl NeedDistribution {
                 *sum += need * weight;
             }
         }
-        Self::normalise("weighted needs", sums)
+        Self::normalise("weighted needs", &sums)
     }
 
     /// Takes shares that already add up to 1 (to within 1e-9).
@@ -111,18 +119,16 @@ impl NeedDistribution {
     }
 
     /// Divides each value by their sum.
-    pub(crate) fn normalise(what: &'static str, mut values: Vec<f64>) -> Result<Self, NeedsError> {
-        let sum: f64 = values.iter().sum();
-        if sum == 0.0 {
-            return Err(NeedsError::AllZero { what });
+    pub(crate) fn normalise(what: &'static str, values: &[f64]) -> Result<Self, NeedsError> {
+        let mut shares = Vec::with_capacity(values.len());
+        let sum = shares_into(values, &mut shares);
+        if sum.is_normal() {
+            Ok(Self(shares))
+        } else if sum == 0.0 {
+            Err(NeedsError::AllZero { what })
+        } else {
+            Err(NeedsError::Overflow { found: sum })
         }
-        if !sum.is_normal() {
-            return Err(NeedsError::Overflow { found: sum });
-        }
-        for value in &mut values {
-            *value /= sum;
-        }
-        Ok(Self(values))
     }
 
     /// The shares, one a need.
@@ -137,6 +143,22 @@ impl NeedDistribution {
         self.0.sort_by(f64::total_cmp);
         self
     }
+}
+
+/// Writes the share of each value in their sum to `shares` (Eqs. 8 and 9) and returns the sum. The one place where sums of weighted needs become
+/// shares.
+pub(crate) fn shares_into(values: &[f64], shares: &mut Vec<f64>) -> f64 {
+    let sum: f64 = values.iter().sum();
+    shares.clear();
+    shares.extend(values.iter().map(|value| value / sum));
+    sum
+}
+
+/// The share of each value in their sum.
+pub(crate) fn shares_of(values: &[f64]) -> Vec<f64> {
+    let mut shares = Vec::with_capacity(values.len());
+    shares_into(values, &mut shares);
+    shares
 }
 
 /// Every entry finite and >= 0, and at least one entry.

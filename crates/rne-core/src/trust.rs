@@ -1,15 +1,18 @@
-//! The value of trust: Relative Needs Entropy with an explicit infinity, its logarithm's base, and trust as a share.
+//! The value of trust: Relative Needs Entropy with an explicit infinity, its logarithm's base, and trust as a
+//! share.
 
 use std::cmp::Ordering;
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Relative Needs Entropy of one robot or group towards another, in nats. Lower means more trust; it is not symmetric.
+/// Relative Needs Entropy of one robot or group towards another, in nats. Lower means more trust; it is not
+/// symmetric.
 ///
-/// Users should know two properties. RNE is blind to magnitude: proportional needs give 0, so that a nearly dead robot and a
-/// fresh one can trust each other fully. And between robots of one type whose speed and ranges scale with HP it sees
-/// little but the ratio of energy to HP.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+/// Users should know two properties. RNE is blind to magnitude: proportional needs give 0, so that a nearly
+/// dead robot and a fresh one can trust each other fully. And between robots of one type whose speed and
+/// ranges scale with HP it sees little but the ratio of energy to HP.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub enum RelativeNeedsEntropy {
     /// A finite value >= 0, in nats.
     Finite(f64),
@@ -20,8 +23,10 @@ pub enum RelativeNeedsEntropy {
 impl RelativeNeedsEntropy {
     /// Wraps a value in nats; `f64::INFINITY` becomes [`RelativeNeedsEntropy::Infinite`].
     ///
-    /// Relative entropy is never negative; the tiny negative values that rounding can produce are returned as 0.
+    /// Relative entropy is never negative; the tiny negative values that rounding can produce are returned as
+    /// 0.
     pub(crate) fn from_nats(nats: f64) -> Self {
+        debug_assert!(!nats.is_nan());
         if nats == f64::INFINITY { Self::Infinite } else { Self::Finite(nats.max(0.0)) }
     }
 

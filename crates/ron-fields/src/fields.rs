@@ -5,7 +5,6 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use crate::path::split;
-use crate::walker::Walker;
 
 /// The node of the whole text.
 pub(crate) const ROOT: usize = 0;
@@ -68,12 +67,6 @@ pub(crate) struct Step {
 }
 
 impl Fields {
-    /// Walks the whole text.
-    #[must_use]
-    pub fn of(text: &str) -> Self {
-        Walker::fields(text)
-    }
-
     /// The path with numbers for names, `tasks[0].grid[1]` for `tasks.hard.grid[1]`, if there is such a field.
     #[must_use]
     pub fn canonical(&self, path: &str) -> Option<String> {

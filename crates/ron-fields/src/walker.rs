@@ -10,7 +10,15 @@ use crate::path::is_segment;
 /// Brackets within brackets that are followed.
 const MAX_DEPTH: usize = 128;
 
-pub(crate) struct Walker<'a> {
+impl Fields {
+    /// Walks the whole text.
+    #[must_use]
+    pub fn of(text: &str) -> Self {
+        Walker::fields(text)
+    }
+}
+
+struct Walker<'a> {
     cursor: Cursor<'a>,
     nodes: Vec<Node>,
     index: BTreeMap<Arc<str>, usize>,
@@ -20,7 +28,7 @@ pub(crate) struct Walker<'a> {
 
 impl<'a> Walker<'a> {
     /// Walks a whole text.
-    pub(crate) fn fields(text: &'a str) -> Fields {
+    fn fields(text: &'a str) -> Fields {
         let nodes = vec![Node::new(Arc::from(""), 1, 0)];
         let mut walker = Self { cursor: Cursor::new(text), nodes, index: BTreeMap::new(), depth: 0 };
         walker.cursor.skip_attributes();

@@ -1,13 +1,17 @@
 //! Worlds of any size at one density: 5 boxes a robot in a walled square of 40 sqrt(N / 12) m, ten ground robots to two aerial ones, for the
 //! raw physics and for the full simulator alike.
 
+use std::collections::BTreeMap;
+
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
-use rne_core::{Difficulty, Role};
 use usar_sim::scenario::{
     ConflictRules, Costs, DebrisFile, DebrisShape, InitialLevels, MissionRules, Normal, PlanningRules, Point,
-    RoleSpec, Roles, Row, Sampled, Scenario, ScenarioFile, SweepDefaults, TaskFile, Tasks,
+    RoleFile, Row, Sampled, SampledCounts, Scenario, ScenarioFile, TaskFile,
 };
+
+/// The scenario whose roles and needs the robots have, but for their size and speed.
+const PAPER: &str = include_str!("../../../scenarios/paper.ron");
 
 /// Radius of all robots, in metres.
 pub const RADIUS_M: f64 = 0.25;
@@ -53,46 +57,50 @@ pub fn mission(robots: u32, duration_s: f64, to_tasks_m: Option<f64>) -> Scenari
     let mut team = Vec::new();
     let mut y = 1.5;
     for (role, count) in
-        [(Role::Carrier, robots - suppliers - aerial), (Role::Supplier, suppliers), (Role::Observer, aerial)]
+        [("carrier", robots - suppliers - aerial), ("supplier", suppliers), ("observer", aerial)]
     {
         let mut left = count;
         while left > 0 {
             let count = left.min(per_row);
             let width_m = spacing * f64::from(count - 1);
-            team.push(Row { role, count, center: [side / 2.0, y], width_m, levels: None });
+            team.push(Row { role: role.to_owned(), count, center: [side / 2.0, y], width_m, levels: None });
             left -= count;
             y += spacing;
         }
     }
     let block = f64::from(robots).sqrt() * (2.0 * RADIUS_M + 1.2) / 2.0 + 2.5;
-    let task = |x: f64| TaskFile {
+    let task = |name: &str, difficulty: u32, x: f64| TaskFile {
+        name: name.to_owned(),
+        difficulty,
         center: [x, to_tasks_m.map_or(0.85 * side, |gap| y + gap + 0.05 * side)],
         size_m: [0.2 * side, 0.1 * side],
         grid: [robots.min(100), 5],
         rest: [x, to_tasks_m.map_or(0.5 * side, |gap| y + gap + 0.1 * side + block)],
+        quota: BTreeMap::new(),
+        sampled: SampledCounts::default(),
     };
-    let tasks = Tasks { hard: task(0.25 * side), easy: task(0.75 * side) };
+    let tasks = vec![task("hard", 2, 0.25 * side), task("easy", 1, 0.75 * side)];
     let is_taken = |[x, at]: Point| {
         let at_rest = |task: &TaskFile| (x - task.rest[0]).abs() < block && (at - task.rest[1]).abs() < block;
-        at < y + 1.5 || Difficulty::ALL.iter().any(|task| at_rest(tasks.of(*task)))
+        at < y + 1.5 || tasks.iter().any(at_rest)
     };
-    let role = |spec: RoleSpec| RoleSpec {
+    let paper = Scenario::parse(PAPER, "paper.ron".as_ref()).unwrap_or_else(|error| panic!("{error}"));
+    let role = |role: &RoleFile| RoleFile {
         radius_m: RADIUS_M,
         speed_mps: SPEED_MPS,
         acceleration_mps2: 2.0,
-        ..spec
+        ..role.clone()
     };
-    let Roles { carrier, supplier, observer } = Roles::default();
     let file = ScenarioFile {
         name: format!("density-{robots}"),
         description: String::new(),
-        sweep: SweepDefaults { policies: vec!["ENG".into()], trials: 1, first_seed: 1 },
         duration_s,
         dt_s: DT_S,
         arena_m: [side, side],
         debris: boxes(robots, is_taken),
         team,
-        roles: Roles { carrier: role(carrier), supplier: role(supplier), observer: role(observer) },
+        roles: paper.roles.iter().map(role).collect(),
+        needs: paper.needs.clone(),
         initial_levels: InitialLevels {
             energy: Normal { mean: 80.0, sd: 20.0 },
             hp: Normal { mean: 90.0, sd: 10.0 },
@@ -105,7 +113,6 @@ pub fn mission(robots: u32, duration_s: f64, to_tasks_m: Option<f64>) -> Scenari
         mission: MissionRules::default(),
         planning: PlanningRules::default(),
         conflicts: ConflictRules::default(),
-        rne: rne_core::RneOptions::default(),
     };
     Scenario::try_from(file).unwrap_or_else(|problems| panic!("{problems:?}"))
 }

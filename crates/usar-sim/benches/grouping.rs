@@ -2,11 +2,9 @@
 
 use std::time::Instant;
 
-use rand::SeedableRng;
-use rand::rngs::ChaCha8Rng;
-use rne_core::{RneOptions, Team, policy_named};
+use rne_core::{Question, Registry};
 
-use crate::team::team;
+use crate::team::question;
 
 /// Groupings of one team; the median is printed.
 const TURNS: usize = 9;
@@ -23,17 +21,16 @@ const TEAMS: [(&str, [u32; 3]); 4] = [
 pub fn print_table() {
     println!("\n{:<32}{:>12}", "grouping by RNE", "ms");
     for (name, counts) in TEAMS {
-        println!("{name:<32}{:>12.3}", 1e3 * seconds(&team(counts)));
+        println!("{name:<32}{:>12.3}", 1e3 * seconds(&question(counts)));
     }
 }
 
-fn seconds(team: &Team) -> f64 {
-    let policy = policy_named("RNE", &RneOptions::default()).expect("known");
+fn seconds(question: &Question) -> f64 {
+    let rne = Registry::standard().parse("RNE").expect("known");
     let mut turns: Vec<f64> = (0..TURNS)
         .map(|_| {
-            let mut draws = ChaCha8Rng::seed_from_u64(1);
             let start = Instant::now();
-            std::hint::black_box(policy.group(team, &mut draws).expect("a grouping"));
+            std::hint::black_box(rne.policy.decide(question).expect("a decision"));
             start.elapsed().as_secs_f64()
         })
         .collect();

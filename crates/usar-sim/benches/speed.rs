@@ -10,9 +10,10 @@ mod grouping;
 mod raw;
 mod team;
 
+use std::sync::Arc;
 use std::time::Instant;
 
-use rne_core::policy_named;
+use rne_core::{Policy, Registry};
 use usar_sim::scenario::Scenario;
 use usar_sim::simulation::Simulation;
 use usar_sim::stage::Stage;
@@ -73,26 +74,30 @@ fn raw_us(robots: u32, steps: u64) -> f64 {
     start.elapsed().as_secs_f64() * 1e6 / steps as f64
 }
 
+fn made(policy: &str) -> Arc<dyn Policy> {
+    Registry::standard().parse(policy).expect("known").policy
+}
+
 fn full_us(scenario: &Scenario, policy: &str, steps: u64) -> f64 {
-    let policy = policy_named(policy, &scenario.rne).expect("known");
+    let policy = made(policy);
     let start = Instant::now();
-    let mut trial = Simulation::new(scenario, &*policy, 1).expect("drawn");
-    (0..steps).for_each(|_| trial.step().expect("sound"));
+    let mut trial = Simulation::new(scenario, 1).expect("drawn");
+    (0..steps).for_each(|_| assert_eq!(trial.step(&*policy), None));
     start.elapsed().as_secs_f64() * 1e6 / steps as f64
 }
 
 fn stages_us(scenario: &Scenario, policy: &str, steps: u64) -> [f64; Stage::ALL.len()] {
-    let policy = policy_named(policy, &scenario.rne).expect("known");
-    let mut trial = Simulation::new(scenario, &*policy, 1).expect("drawn");
+    let policy = made(policy);
+    let mut trial = Simulation::new(scenario, 1).expect("drawn");
     let mut spent = [0.0; Stage::ALL.len()];
     for _ in 0..steps {
         let mut last = Instant::now();
-        let step = trial.step_watched(|stage| {
+        let step = trial.step_watched(&*policy, |stage| {
             let now = Instant::now();
             spent[stage as usize] += (now - last).as_secs_f64();
             last = now;
         });
-        step.expect("sound");
+        assert_eq!(step, None);
     }
     spent.map(|seconds| seconds * 1e6 / steps as f64)
 }

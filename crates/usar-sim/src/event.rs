@@ -1,6 +1,6 @@
 //! Events: what happened, in order. Mechanics publish them; metrics and recorders only listen.
 
-use rne_core::Difficulty;
+use rne_core::TaskId;
 use serde::{Deserialize, Serialize};
 
 use crate::hash::part;
@@ -24,8 +24,8 @@ pub enum ReturnCause {
     ResourcesUsed,
     /// All members searched the whole area and know of nobody who is left.
     NothingLeft,
-    /// Nobody who can carry is left in the field.
-    NoCarrier,
+    /// No robot that can carry is left in the field.
+    NobodyCanCarry,
 }
 
 impl ReturnCause {
@@ -36,7 +36,7 @@ impl ReturnCause {
             Self::CapacityUsed => "capacity used",
             Self::ResourcesUsed => "resources used",
             Self::NothingLeft => "nothing left",
-            Self::NoCarrier => "no carrier",
+            Self::NobodyCanCarry => "nobody can carry",
         }
     }
 }
@@ -53,14 +53,12 @@ pub enum Place {
 /// Something that happened.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Event {
-    /// The team was grouped and a round began.
+    /// The team was grouped and a round began. The trial's record has the whole decision.
     RoundStarted {
         /// Number of the round, from 1.
         round: u32,
-        /// Members of the group for the hard task.
-        hard: Vec<RobotId>,
-        /// Members of the group for the easy task.
-        easy: Vec<RobotId>,
+        /// For each task, the members of its group.
+        groups: Vec<Vec<RobotId>>,
     },
     /// Every robot that can still move is home again.
     RoundEnded {
@@ -70,7 +68,7 @@ pub enum Event {
     /// A group went home.
     GroupReturned {
         /// Its task.
-        task: Difficulty,
+        task: TaskId,
         /// Why.
         cause: ReturnCause,
     },

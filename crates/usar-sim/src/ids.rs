@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 macro_rules! id {
     ($(#[$doc:meta])* $name:ident) => {
         $(#[$doc])*
-        #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default, Serialize, Deserialize)]
         pub struct $name(pub u32);
 
         impl $name {
@@ -29,6 +29,6 @@ id!(
     RobotId
 );
 id!(
-    /// A person or valuable to rescue, from 0: first those of the hard task, then those of the easy one.
+    /// A person or valuable to rescue, from 0: task by task, in the order of the table of tasks.
     RescueeId
 );

@@ -1,14 +1,15 @@
 //! A physics-backed simulator of mixed robot teams on a rescue mission among debris and radiation.
 //!
-//! A scenario (RON) becomes a [`scenario::Scenario`], a [`simulation::Simulation`] and at last a [`record::TrialRecord`]:
+//! A scenario (RON) becomes a [`scenario::Scenario`]; with a seed it becomes a [`model::Model`]; a [`simulation::Simulation`] changes the
+//! state step by step, asks how the team is to be grouped, and leaves a [`record::TrialRecord`]:
 //!
 //! ```no_run
-//! use rne_core::{RneOptions, policy_named};
+//! use rne_core::Registry;
 //! use usar_sim::{scenario::Scenario, simulation::Simulation};
 //!
 //! let (scenario, _text) = Scenario::load("scenarios/paper.ron".as_ref())?;
-//! let policy = policy_named("RNE", &RneOptions::default())?;
-//! let record = Simulation::new(&scenario, &*policy, 1)?.run(|_time, _events, _world| {});
+//! let rne = Registry::standard().parse("RNE")?;
+//! let record = Simulation::new(&scenario, 1)?.run(&*rne.policy, |_time, _events, _world| {});
 //! println!("{} rescued", record.rescued());
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
@@ -16,20 +17,22 @@
 //! One seed, one result, bit for bit: random streams are named by trial, purpose and entity, transcendental functions come from
 //! `libm`, and nothing iterates over a hash map or looks at a clock.
 
+pub mod belief;
 pub mod conflict;
 pub mod event;
+pub mod geometry;
 pub mod hash;
 pub mod ids;
 pub mod invariant;
-pub mod layout;
 pub mod metrics;
 pub mod mission;
+pub mod model;
+pub mod navigation;
 pub mod physics;
 pub mod planning;
 pub mod record;
 pub mod scenario;
 pub mod seed;
-pub mod sensing;
 pub mod simulation;
 pub mod snapshot;
 pub mod stage;

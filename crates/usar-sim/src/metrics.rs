@@ -1,10 +1,10 @@
-//! The paper's metrics and what explains them, gathered by listening to events and charges.
+//! What is counted and added up in a trial, gathered by listening to events and charges.
 
-use rne_core::Difficulty;
+use rne_core::{GroupOutcome, MemberOutcome, RoundOutcome, TaskId};
 use serde::{Deserialize, Serialize};
 
 use crate::event::{Event, ReturnCause};
-use crate::mission::task_index;
+use crate::ids::RobotId;
 use crate::world::World;
 
 /// What one group did in one round.
@@ -13,13 +13,13 @@ pub struct RoundRecord {
     /// Number of the round, from 1.
     pub round: u32,
     /// The group's task.
-    pub task: Difficulty,
+    pub task: TaskId,
     /// When the round began, in seconds.
     pub start_s: f64,
     /// When every robot was home again, in seconds; `None` for a round that the end of the trial cut short.
     pub end_s: Option<f64>,
-    /// Ids of the members.
-    pub members: Vec<u32>,
+    /// The members, by id, and what each of them did.
+    pub members: Vec<MemberOutcome>,
     /// Rescuees taken on board.
     pub secured: u32,
     /// Rescuees delivered.
@@ -50,8 +50,8 @@ pub struct TaskTotals {
 /// The metrics of a trial as it goes on.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub struct Metrics {
-    /// Totals of the hard and of the easy task.
-    pub tasks: [TaskTotals; 2],
+    /// Totals of each task.
+    pub tasks: Vec<TaskTotals>,
     /// Percent points of energy and HP that robots spent outside any group, on their way to rest and back.
     pub ungrouped: [f64; 2],
     /// Rounds, each with one record per task.
@@ -75,29 +75,33 @@ pub struct Metrics {
     /// Places that robots gave up on.
     pub unreachable: u32,
     /// The task of each robot's group in the current round.
-    task_of: Vec<Option<Difficulty>>,
+    task_of: Vec<Option<TaskId>>,
 }
 
 impl Metrics {
     /// Nothing yet.
     #[must_use]
-    pub fn new(robots: usize) -> Self {
-        Self { task_of: vec![None; robots], ..Self::default() }
+    pub fn new(tasks: usize, robots: usize) -> Self {
+        Self { tasks: vec![TaskTotals::default(); tasks], task_of: vec![None; robots], ..Self::default() }
     }
 
     /// Charges what a robot spent in this step.
-    pub fn charge(&mut self, robot: usize, energy: f64, hp: f64) {
-        if let Some(task) = self.task_of[robot] {
-            let totals = &mut self.tasks[task_index(task)];
-            totals.energy += energy;
-            totals.hp += hp;
-            if let Some(round) = self.current(task) {
-                round.energy += energy;
-                round.hp += hp;
-            }
-        } else {
+    pub fn charge(&mut self, robot: RobotId, energy: f64, hp: f64) {
+        let Some(task) = self.task_of[robot.index()] else {
             self.ungrouped[0] += energy;
             self.ungrouped[1] += hp;
+            return;
+        };
+        let totals = &mut self.tasks[task.index()];
+        totals.energy += energy;
+        totals.hp += hp;
+        if let Some(round) = self.current(task) {
+            round.energy += energy;
+            round.hp += hp;
+            if let Some(member) = round.member(robot) {
+                member.energy += energy;
+                member.hp += hp;
+            }
         }
     }
 
@@ -105,14 +109,7 @@ impl Metrics {
     pub fn listen(&mut self, events: &[Event], world: &World, time_s: f64) {
         for event in events {
             match event {
-                Event::RoundStarted { round, hard, easy } => {
-                    self.task_of.fill(None);
-                    for (task, members) in [(Difficulty::Hard, hard), (Difficulty::Easy, easy)] {
-                        members.iter().for_each(|id| self.task_of[id.index()] = Some(task));
-                        let members = members.iter().map(|id| id.0).collect();
-                        self.rounds.push(RoundRecord::new(*round, task, time_s, members));
-                    }
-                }
+                Event::RoundStarted { round, groups } => self.begin_round(*round, groups, time_s),
                 Event::RoundEnded { round } => {
                     self.completed_rounds += 1;
                     let ended = self.rounds.iter_mut().filter(|record| record.round == *round);
@@ -125,19 +122,24 @@ impl Metrics {
                 }
                 Event::Loaded { rescuee, .. } => {
                     let task = world.rescuees[rescuee.index()].task;
-                    self.tasks[task_index(task)].secured += 1;
+                    self.tasks[task.index()].secured += 1;
                     self.current(task).into_iter().for_each(|round| round.secured += 1);
                 }
-                Event::Delivered { rescuee, .. } => {
+                Event::Delivered { robot, rescuee, .. } => {
                     let task = world.rescuees[rescuee.index()].task;
-                    self.tasks[task_index(task)].rescued += 1;
+                    self.tasks[task.index()].rescued += 1;
                     self.current(task).into_iter().for_each(|round| round.rescued += 1);
+                    self.note_member(*robot, |member| member.rescued += 1);
                 }
                 Event::TurnedBack { robot, .. } => {
                     self.turned_back += 1;
                     if let Some(round) = self.task_of[robot.index()].and_then(|task| self.current(task)) {
                         round.turned_back += 1;
                     }
+                    self.note_member(*robot, |member| member.turned_back = true);
+                }
+                Event::Stranded { robot } | Event::Disabled { robot } => {
+                    self.note_member(*robot, |member| member.lost = true);
                 }
                 Event::ConflictStarted { .. } => self.conflicts += 1,
                 Event::Deadlocked { .. } => self.deadlocks += 1,
@@ -146,25 +148,51 @@ impl Metrics {
                 Event::BackedOff { .. } => self.back_offs += 1,
                 Event::ErrandDone { .. } => self.errands_done += 1,
                 Event::Unreachable { .. } => self.unreachable += 1,
-                _ => {}
+                // Nothing to count; a new kind of event must be placed here or above.
+                Event::Restocked { .. }
+                | Event::DebrisDiscovered { .. }
+                | Event::ZoneDiscovered { .. }
+                | Event::Sighted { .. }
+                | Event::RestStarted { .. }
+                | Event::RestEnded { .. }
+                | Event::ErrandsOver
+                | Event::MissionOver => {}
             }
         }
     }
 
+    fn begin_round(&mut self, round: u32, groups: &[Vec<RobotId>], time_s: f64) {
+        self.task_of.fill(None);
+        for (task, members) in (0..).map(TaskId).zip(groups) {
+            members.iter().for_each(|id| self.task_of[id.index()] = Some(task));
+            self.rounds.push(RoundRecord::new(round, task, time_s, members));
+        }
+    }
+
+    fn note_member(&mut self, robot: RobotId, note: impl FnOnce(&mut MemberOutcome)) {
+        let round = self.task_of[robot.index()].and_then(|task| self.current(task));
+        if let Some(member) = round.and_then(|round| round.member(robot)) {
+            note(member);
+        }
+    }
+
     /// The record of a task in the current round.
-    fn current(&mut self, task: Difficulty) -> Option<&mut RoundRecord> {
-        self.rounds.iter_mut().rev().take(2).find(|record| record.task == task)
+    fn current(&mut self, task: TaskId) -> Option<&mut RoundRecord> {
+        let tasks = self.tasks.len();
+        let first = self.rounds.len().checked_sub(tasks)?;
+        self.rounds.get_mut(first + task.index())
     }
 }
 
 impl RoundRecord {
-    fn new(round: u32, task: Difficulty, start_s: f64, members: Vec<u32>) -> Self {
+    fn new(round: u32, task: TaskId, start_s: f64, members: &[RobotId]) -> Self {
+        let member = |id: &RobotId| MemberOutcome { id: id.0, ..MemberOutcome::default() };
         Self {
             round,
             task,
             start_s,
             end_s: None,
-            members,
+            members: members.iter().map(member).collect(),
             secured: 0,
             rescued: 0,
             energy: 0.0,
@@ -173,4 +201,31 @@ impl RoundRecord {
             return_cause: None,
         }
     }
+
+    fn member(&mut self, robot: RobotId) -> Option<&mut MemberOutcome> {
+        let place = self.members.binary_search_by_key(&robot.0, |member| member.id).ok()?;
+        Some(&mut self.members[place])
+    }
+}
+
+/// What the rounds before this one came to, as questions tell it.
+#[must_use]
+pub fn history(rounds: &[RoundRecord], before: u32) -> Vec<RoundOutcome> {
+    let mut history: Vec<RoundOutcome> = Vec::new();
+    for record in rounds.iter().filter(|record| record.round < before) {
+        if history.last().is_none_or(|last| last.round != record.round) {
+            let duration_s = record.end_s.map_or(0.0, |end| end - record.start_s);
+            history.push(RoundOutcome { round: record.round, duration_s, groups: Vec::new() });
+        }
+        if let Some(round) = history.last_mut() {
+            round.groups.push(GroupOutcome {
+                task: record.task,
+                rescued: record.rescued,
+                energy: record.energy,
+                hp: record.hp,
+                members: record.members.clone(),
+            });
+        }
+    }
+    history
 }

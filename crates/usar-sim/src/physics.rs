@@ -11,9 +11,11 @@ use rapier2d::geometry::{ColliderBuilder, Group, InteractionGroups, InteractionT
 use rapier2d::pipeline::PhysicsWorld;
 use serde::{Deserialize, Serialize};
 
+use crate::geometry::Outline;
 use crate::ids::RobotId;
-use crate::scenario::{DebrisFile, Scenario};
-use crate::world::{Debris, Robot};
+
+/// Features of the engine that change numbers, for the manifests of results.
+pub const ENGINE_FEATURES: [&str; 1] = ["rapier2d/enhanced-determinism"];
 
 const GROUND: Group = Group::GROUP_1;
 const AERIAL: Group = Group::GROUP_2;
@@ -38,6 +40,32 @@ const GRAVITY: f32 = 9.806_65;
 /// How hard the ground opposes the sliding of debris, per second, up to the limit of friction: stiff against any slow push.
 const GROUND_GRIP: f32 = 1.0e3;
 
+/// What the engine needs to know of a robot.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct RobotBody {
+    /// Centre, in metres.
+    pub position: Vector,
+    /// Whether it flies over debris and ground robots.
+    pub is_aerial: bool,
+    /// Radius of its disc, in metres.
+    pub radius: f32,
+    /// Mass, in kilograms.
+    pub mass: f32,
+    /// Top speed, in metres per second.
+    pub top_speed: f32,
+}
+
+/// What the engine needs to know of a piece of debris.
+#[derive(Clone, Copy)]
+pub(crate) struct DebrisBody<'d> {
+    /// Its shape and place.
+    pub outline: &'d Outline,
+    /// Mass, in kilograms; `None` for a fixed piece.
+    pub mass: Option<f32>,
+    /// Mass times the coefficient of friction with the ground, in kilograms.
+    pub friction_mass: f32,
+}
+
 /// The rigid bodies of one trial.
 #[derive(Serialize, Deserialize)]
 pub struct Physics {
@@ -49,26 +77,16 @@ pub struct Physics {
 }
 
 impl Physics {
-    /// Builds all bodies.
-    pub(crate) fn new(
-        scenario: &Scenario,
-        robots: &[Robot],
-        files: &[DebrisFile],
-        debris: &[Debris],
-    ) -> Self {
+    /// Builds all bodies in an arena of this width and height, in metres, for steps of `dt` seconds.
+    pub(crate) fn new(dt: f32, arena: [f32; 2], robots: &[RobotBody], debris: &[DebrisBody]) -> Self {
         let mut world = PhysicsWorld::new();
         world.gravity = Vector::ZERO;
-        world.integration_parameters = parameters(scenario.dt_s as f32);
+        world.integration_parameters = parameters(dt);
         world.broad_phase.adaptive_change_detection_margin = true; // fewer updates of the tree of boxes
-        insert_walls(&mut world, scenario.arena_m.map(|size| size as f32));
+        insert_walls(&mut world, arena);
         let ground = world.insert_body(RigidBodyBuilder::fixed());
-        let debris = files
-            .iter()
-            .zip(debris)
-            .map(|(file, piece)| insert_debris(&mut world, ground, file, piece))
-            .collect();
-        let robots =
-            robots.iter().map(|robot| insert_robot(&mut world, robot, scenario.dt_s as f32)).collect();
+        let debris = debris.iter().map(|piece| insert_debris(&mut world, ground, piece)).collect();
+        let robots = robots.iter().map(|robot| insert_robot(&mut world, robot, dt)).collect();
         Self { world, robots, debris }
     }
 
@@ -180,20 +198,17 @@ fn insert_walls(world: &mut PhysicsWorld, [width, height]: [f32; 2]) {
     }
 }
 
-fn insert_robot(world: &mut PhysicsWorld, robot: &Robot, dt: f32) -> RigidBodyHandle {
-    let collision = if robot.is_aerial() {
-        groups(AERIAL, AERIAL | WALL)
-    } else {
-        groups(GROUND, GROUND | DEBRIS | WALL)
-    };
+fn insert_robot(world: &mut PhysicsWorld, robot: &RobotBody, dt: f32) -> RigidBodyHandle {
+    let collision =
+        if robot.is_aerial { groups(AERIAL, AERIAL | WALL) } else { groups(GROUND, GROUND | DEBRIS | WALL) };
     let body = RigidBodyBuilder::dynamic()
         .translation(robot.position)
         .lock_rotations()
         .can_sleep(false)
-        .soft_ccd_prediction(APPROACH_STEPS * robot.spec.speed_mps as f32 * dt)
+        .soft_ccd_prediction(APPROACH_STEPS * robot.top_speed * dt)
         .build();
-    let collider = ColliderBuilder::ball(robot.radius())
-        .mass(robot.spec.mass_kg as f32)
+    let collider = ColliderBuilder::ball(robot.radius)
+        .mass(robot.mass)
         .friction(BODY_FRICTION)
         .restitution(0.0)
         .collision_groups(collision);
@@ -203,24 +218,22 @@ fn insert_robot(world: &mut PhysicsWorld, robot: &Robot, dt: f32) -> RigidBodyHa
 fn insert_debris(
     world: &mut PhysicsWorld,
     ground: RigidBodyHandle,
-    file: &DebrisFile,
-    piece: &Debris,
+    piece: &DebrisBody,
 ) -> Option<RigidBodyHandle> {
-    let outline = &piece.outline;
-    let builder =
-        if file.movable.is_some() { RigidBodyBuilder::dynamic() } else { RigidBodyBuilder::fixed() };
+    let outline = piece.outline;
+    let builder = if piece.mass.is_some() { RigidBodyBuilder::dynamic() } else { RigidBodyBuilder::fixed() };
     let mut collider = ColliderBuilder::new(outline.shape.clone())
         .friction(BODY_FRICTION)
         .restitution(0.0)
         .collision_groups(groups(DEBRIS, GROUND | DEBRIS | WALL));
-    if let Some(movable) = file.movable {
-        collider = collider.mass(movable.mass_kg as f32);
+    if let Some(mass) = piece.mass {
+        collider = collider.mass(mass);
     }
     let (handle, _) = world.insert(builder.pose(outline.pose), collider);
-    let movable = file.movable?;
+    piece.mass?;
     // Friction with the ground: motors that hold still in x, y and rotation, up to the force mu m g. The solver treats x and y apart,
     // so the limit is exact along them and up to 1.41 times larger on the diagonal.
-    let limit = (movable.friction * movable.mass_kg) as f32 * GRAVITY;
+    let limit = piece.friction_mass * GRAVITY;
     let arm = 2.0 / 3.0 * outline.shape.compute_local_bounding_sphere().radius;
     let mut joint = GenericJointBuilder::new(JointAxesMask::empty()).local_anchor1(outline.pose.translation);
     for (axis, limit) in [(JointAxis::LinX, limit), (JointAxis::LinY, limit), (JointAxis::AngX, limit * arm)]
@@ -233,49 +246,48 @@ fn insert_debris(
 
 #[cfg(test)]
 mod tests {
-    use super::*;
-    use crate::layout::Layout;
-    use crate::world::World;
+    use parry2d::math::Rotation;
+    use parry2d::shape::SharedShape;
 
-    /// A robot of `speed` m/s at (5, 5) and one piece of debris.
-    fn world(speed: f32, debris: &str) -> World {
-        let text = format!(
-            r#"(name: "physics", description: "", duration_s: 10.0, dt_s: 0.02, arena_m: (40.0, 10.0),
-            team: [(role: Carrier, count: 1, center: (5.0, 5.0), width_m: 0.0)],
-            roles: (
-                carrier: (radius_m: 0.4, mass_kg: 50.0, hp: 100.0, energy: 150.0, speed_mps: {speed:?},
-                    acceleration_mps2: 100.0, sensing_m: 3.0, observing_m: 1.0, capacity: 1, resources: 1),
-            ),
-            errands: [(robot: 0, to: [(35.0, 5.0)])],
-            debris: [{debris}])"#
-        );
-        let scenario =
-            Scenario::parse(&text, "physics.ron".as_ref()).unwrap_or_else(|error| panic!("{error}"));
-        World::build(&scenario, &Layout::sample(&scenario, 1).unwrap())
+    use super::*;
+
+    const DT: f32 = 0.02;
+    const RADIUS: f32 = 0.4;
+
+    fn cuboid(size: [f32; 2], at: [f32; 2]) -> Outline {
+        let pose = Pose::from_parts(at.into(), Rotation::identity());
+        Outline { shape: SharedShape::cuboid(size[0] / 2.0, size[1] / 2.0), pose }
     }
 
-    /// Drives the robot at this velocity, as far as the strongest drive can, and lets `look` see every step.
-    fn drive(world: &mut World, velocity: Vector, steps: u32, mut look: impl FnMut(&World)) {
-        for _ in 0..steps {
-            let robot = &world.robots[0];
-            let change = (velocity - robot.velocity).clamp_length_max(100.0 * 0.02);
-            let id = robot.id;
-            world.physics.drive(id, change);
-            world.integrate();
-            look(world);
-        }
+    /// A robot of `top_speed` m/s at (5, 5) and one piece of debris; movable with its mass and friction.
+    fn world(top_speed: f32, outline: &Outline, movable: Option<[f32; 2]>) -> Physics {
+        let robot = RobotBody {
+            position: Vector::splat(5.0),
+            is_aerial: false,
+            radius: RADIUS,
+            mass: 50.0,
+            top_speed,
+        };
+        let mass = movable.map(|[mass, _]| mass);
+        let friction_mass = movable.map_or(0.0, |[mass, friction]| mass * friction);
+        Physics::new(DT, [40.0, 10.0], &[robot], &[DebrisBody { outline, mass, friction_mass }])
     }
 
     #[test]
     fn nobody_gets_through_the_thinnest_wall_at_the_highest_speed() {
         let (thinnest, fastest) = (0.1, 20.0); // a rule of scenarios: speed times step is at most the radius
-        let wall = format!("(shape: Box({thinnest:?}, 9.9), at: (20.0, 5.0))");
+        let wall = cuboid([thinnest, 9.9], [20.0, 5.0]);
         for angle in [0.0, 0.5, 1.2] {
-            let mut world = world(fastest, &wall);
-            let velocity = Vector::new(libm::cosf(angle), libm::sinf(angle)) * fastest;
+            let mut world = world(fastest, &wall, None);
+            let wished = Vector::new(libm::cosf(angle), libm::sinf(angle)) * fastest;
             let mut farthest: f32 = 0.0;
-            drive(&mut world, velocity, 500, |world| farthest = farthest.max(world.robots[0].position.x));
-            let touching = 20.0 - thinnest / 2.0 - 0.4;
+            for _ in 0..500 {
+                let (_, velocity) = world.robot_motion(RobotId(0));
+                world.drive(RobotId(0), (wished - velocity).clamp_length_max(100.0 * DT));
+                world.integrate();
+                farthest = farthest.max(world.robot_motion(RobotId(0)).0.x);
+            }
+            let touching = 20.0 - thinnest / 2.0 - RADIUS;
             assert!((touching - 0.01..touching + 0.05).contains(&farthest), "{angle}: {farthest}");
         }
     }
@@ -283,15 +295,12 @@ mod tests {
     #[test]
     fn a_piece_that_slides_is_braked_by_friction_whatever_its_mass() {
         for (mass, friction) in [(10.0, 0.5), (200.0, 0.5), (30.0, 0.2)] {
-            let piece = format!(
-                "(shape: Box(1.0, 1.0), at: (15.0, 5.0), movable: (mass_kg: {mass:?}, friction: {friction:?}))"
-            );
-            let mut world = world(1.0, &piece);
-            let handle = world.physics.debris[0].unwrap();
+            let mut world = world(1.0, &cuboid([1.0, 1.0], [15.0, 5.0]), Some([mass, friction]));
+            let handle = world.debris[0].unwrap();
             let speed: f32 = 3.0;
-            world.physics.world.bodies[handle].set_linvel(Vector::new(speed, 0.0), true);
+            world.world.bodies[handle].set_linvel(Vector::new(speed, 0.0), true);
             (0..200).for_each(|_| world.integrate());
-            let way = world.debris[0].outline.pose.translation.x - 15.0;
+            let way = world.debris_poses().next().unwrap().1.translation.x - 15.0;
             let expected = speed * speed / (2.0 * friction * GRAVITY);
             assert!((way - expected).abs() < 0.05 * expected + 0.02, "{mass} kg: {way} m, not {expected} m");
         }
@@ -300,14 +309,11 @@ mod tests {
     #[test]
     fn a_piece_is_pushed_by_more_than_its_friction_only() {
         let way_pushed_by = |newton: f32| {
-            let mut world = world(
-                1.0,
-                "(shape: Box(1.0, 1.0), at: (15.0, 5.0), movable: (mass_kg: 20.0, friction: 0.5))",
-            );
-            let handle = world.physics.debris[0].unwrap();
-            world.physics.world.bodies[handle].add_force(Vector::new(newton, 0.0), true);
+            let mut world = world(1.0, &cuboid([1.0, 1.0], [15.0, 5.0]), Some([20.0, 0.5]));
+            let handle = world.debris[0].unwrap();
+            world.world.bodies[handle].add_force(Vector::new(newton, 0.0), true);
             (0..100).for_each(|_| world.integrate());
-            world.debris[0].outline.pose.translation.x - 15.0
+            world.debris_poses().next().unwrap().1.translation.x - 15.0
         };
         let limit = 0.5 * 20.0 * GRAVITY;
         assert!(way_pushed_by(0.9 * limit) < 0.01);

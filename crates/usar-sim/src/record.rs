@@ -1,12 +1,12 @@
 //! The record of a trial: what is left when it is over.
 
-use rne_core::Role;
+use rne_core::{Decision, Question};
 use serde::{Deserialize, Serialize};
 
 use crate::conflict::Delay;
 use crate::hash::HashChain;
 use crate::invariant::Overlaps;
-use crate::metrics::{RoundRecord, TaskTotals};
+use crate::metrics::{RoundRecord, TaskTotals, history};
 
 /// How a trial ended.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -14,7 +14,7 @@ pub enum Status {
     /// The time was over.
     Completed,
     /// No robot that can carry was left before the time was over.
-    NoCarrierLeft,
+    NobodyCanCarry,
     /// All errands were done or given up before the time was over.
     ErrandsOver,
     /// Something went wrong; the numbers are those up to then and must not be used.
@@ -27,7 +27,7 @@ impl Status {
     pub fn name(&self) -> &'static str {
         match self {
             Self::Completed => "completed",
-            Self::NoCarrierLeft => "no_carrier_left",
+            Self::NobodyCanCarry => "nobody_can_carry",
             Self::ErrandsOver => "errands_over",
             Self::Failed(_) => "failed",
         }
@@ -39,8 +39,8 @@ impl Status {
 pub struct RobotRecord {
     /// Identity.
     pub robot: u32,
-    /// What it is for.
-    pub role: Role,
+    /// Name of its role.
+    pub role: String,
     /// Battery level at the start, in percent.
     pub initial_energy: f64,
     /// Health level at the start, in percent.
@@ -67,21 +67,36 @@ pub struct RobotRecord {
     pub disabled: bool,
 }
 
+/// One task's part in a trial.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct TaskRecord {
+    /// Name of the task.
+    pub task: String,
+    /// What was done and spent for it.
+    #[serde(flatten)]
+    pub totals: TaskTotals,
+}
+
+/// One grouping of the team.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct DecisionRecord {
+    /// What was asked, without its history: that is in [`TrialRecord::rounds`], and [`TrialRecord::question`] puts it back.
+    pub question: Question,
+    /// What was answered.
+    pub decision: Decision,
+}
+
 /// One trial.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct TrialRecord {
-    /// Name of the grouping policy.
-    pub policy: String,
     /// Seed of the trial.
     pub seed: u64,
     /// How it ended.
     pub status: Status,
     /// Simulated time, in seconds.
     pub time_s: f64,
-    /// Totals of the hard task.
-    pub hard: TaskTotals,
-    /// Totals of the easy task.
-    pub easy: TaskTotals,
+    /// What was done and spent for each task, in the order of their table.
+    pub tasks: Vec<TaskRecord>,
     /// Percent points of energy spent outside any group.
     pub ungrouped_energy: f64,
     /// Percent points of HP lost outside any group.
@@ -90,6 +105,8 @@ pub struct TrialRecord {
     pub completed_rounds: u32,
     /// Rounds, each with one record per task.
     pub rounds: Vec<RoundRecord>,
+    /// How the team was grouped, round by round.
+    pub decisions: Vec<DecisionRecord>,
     /// Robots, by id.
     pub robots: Vec<RobotRecord>,
     /// Times that a robot turned back to rest.
@@ -119,22 +136,40 @@ pub struct TrialRecord {
 }
 
 impl TrialRecord {
-    /// Rescuees delivered, both tasks.
+    /// A question as it was asked, with its history.
+    #[must_use]
+    pub fn question(&self, asked: &DecisionRecord) -> Question {
+        Question { history: history(&self.rounds, asked.question.round), ..asked.question.clone() }
+    }
+
+    /// What was done and spent for the task of that name.
+    #[must_use]
+    pub fn task(&self, name: &str) -> Option<&TaskTotals> {
+        self.tasks.iter().find(|task| task.task == name).map(|task| &task.totals)
+    }
+
+    /// Rescuees taken on board, delivered or not, all tasks.
+    #[must_use]
+    pub fn secured(&self) -> u32 {
+        self.tasks.iter().map(|task| task.totals.secured).sum()
+    }
+
+    /// Rescuees delivered, all tasks.
     #[must_use]
     pub fn rescued(&self) -> u32 {
-        self.hard.rescued + self.easy.rescued
+        self.tasks.iter().map(|task| task.totals.rescued).sum()
     }
 
     /// Percent points of energy spent by the whole team.
     #[must_use]
     pub fn energy(&self) -> f64 {
-        self.hard.energy + self.easy.energy + self.ungrouped_energy
+        self.tasks.iter().fold(0.0, |sum, task| sum + task.totals.energy) + self.ungrouped_energy
     }
 
     /// Percent points of HP lost by the whole team.
     #[must_use]
     pub fn hp(&self) -> f64 {
-        self.hard.hp + self.easy.hp + self.ungrouped_hp
+        self.tasks.iter().fold(0.0, |sum, task| sum + task.totals.hp) + self.ungrouped_hp
     }
 
     /// Metres that the robots moved, all together.

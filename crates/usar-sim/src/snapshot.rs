@@ -3,10 +3,10 @@
 //! Layout, numbers in little-endian order: eight bytes `USARSNAP`; the format's version (u32); length (u64) and XXH3-128 (u128) of the
 //! payload; the payload, in postcard's format: what the trial is of, then its whole state.
 
-use rne_core::GroupingPolicy;
 use serde::{Deserialize, Serialize};
 use xxhash_rust::xxh3::xxh3_128;
 
+use crate::model::Model;
 use crate::scenario::Scenario;
 use crate::simulation::{Simulation, State};
 
@@ -14,7 +14,7 @@ use crate::simulation::{Simulation, State};
 const MAGIC: &[u8; 8] = b"USARSNAP";
 
 /// Version of the format: one more whenever the state changes its shape.
-pub const VERSION: u32 = 2;
+pub const VERSION: u32 = 3;
 
 const HEADER_BYTES: usize = 8 + 4 + 8 + 16;
 
@@ -60,18 +60,18 @@ pub struct Identity {
     pub scenario: String,
     /// XXH3-128 of all that the scenario says.
     pub scenario_hash: u128,
-    /// Name of the policy.
+    /// The policy that decided so far, as it was asked for; another one may go on.
     pub policy: String,
     /// Seed of the trial.
     pub seed: u64,
 }
 
 impl Identity {
-    fn new(scenario: &Scenario, policy: &dyn GroupingPolicy, seed: u64) -> Self {
+    fn new(scenario: &Scenario, policy: &str, seed: u64) -> Self {
         Self {
             scenario: scenario.name.clone(),
             scenario_hash: crate::hash::part(&**scenario),
-            policy: policy.name().to_owned(),
+            policy: policy.to_owned(),
             seed,
         }
     }
@@ -91,8 +91,7 @@ impl Identity {
         };
         mismatch("scenario", self.scenario.clone(), expected.scenario.clone())?;
         let hash = |identity: &Self| format!("one with hash {:032x}", identity.scenario_hash);
-        mismatch("version of the scenario", hash(self), hash(expected))?;
-        mismatch("policy", self.policy.clone(), expected.policy.clone())
+        mismatch("version of the scenario", hash(self), hash(expected))
     }
 }
 
@@ -117,14 +116,14 @@ fn payload(bytes: &[u8]) -> Result<&[u8], SnapshotError> {
     Ok(payload)
 }
 
-impl<'a> Simulation<'a> {
-    /// The whole trial as it is now.
+impl Simulation {
+    /// The whole trial as it is now, and which policy decided so far.
     ///
     /// # Panics
     /// Never: the state is of types that postcard can write to memory.
     #[must_use]
-    pub fn snapshot(&self) -> Vec<u8> {
-        let identity = Identity::new(self.scenario(), self.policy(), self.seed());
+    pub fn snapshot(&self, policy: &str) -> Vec<u8> {
+        let identity = Identity::new(self.scenario(), policy, self.seed());
         let payload =
             postcard::to_stdvec(&(identity, self.state())).expect("the state can be written to memory");
         let mut bytes = Vec::with_capacity(HEADER_BYTES + payload.len());
@@ -139,23 +138,20 @@ impl<'a> Simulation<'a> {
     /// The trial that a snapshot was taken of, at the step where it was taken. Unchecked, until [`Simulation::checked`] is called.
     ///
     /// # Errors
-    /// The bytes are no sound snapshot, or one of another scenario or policy.
-    pub fn restore(
-        scenario: &'a Scenario,
-        policy: &'a dyn GroupingPolicy,
-        bytes: &[u8],
-    ) -> Result<Self, SnapshotError> {
+    /// The bytes are no sound snapshot, or one of another scenario.
+    pub fn restore(scenario: &Scenario, bytes: &[u8]) -> Result<Self, SnapshotError> {
         let found = Identity::of(bytes)?;
-        found.check(&Identity::new(scenario, policy, found.seed))?;
+        found.check(&Identity::new(scenario, &found.policy, found.seed))?;
         let (identity, state): (Identity, State) =
             postcard::from_bytes(payload(bytes)?).map_err(|_| SnapshotError::Damaged)?;
-        Ok(Self::from_state(scenario, policy, identity.seed, state))
+        let model = Model::compile(scenario, identity.seed).map_err(|_| SnapshotError::Damaged)?;
+        Ok(Self::from_state(model, state))
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use rne_core::policy_named;
+    use rne_core::Registry;
 
     use super::*;
     use crate::hash::HashChain;
@@ -164,15 +160,19 @@ mod tests {
     fn scenario() -> Scenario {
         let text = r#"(
             name: "fields", description: "", duration_s: 60.0, dt_s: 0.02, arena_m: (24.0, 16.0),
-            team: [
-                (role: Carrier, count: 2, center: (12.0, 2.0), width_m: 1.5),
-                (role: Supplier, count: 2, center: (12.0, 4.0), width_m: 1.5),
-                (role: Observer, count: 2, center: (12.0, 6.0), width_m: 1.5),
+            roles: [
+                (name: "walker"),
+                (name: "flyer", kind: Aerial, mass_kg: 5.0, sensing_m: 18.0, observing_m: 6.0, capacity: 0, guides: true),
             ],
-            tasks: (
-                hard: (center: (5.0, 12.0), size_m: (2.0, 1.0), grid: (3, 2), rest: (5.0, 5.0)),
-                easy: (center: (19.0, 12.0), size_m: (2.0, 1.0), grid: (3, 2), rest: (19.0, 5.0)),
-            ),
+            team: [
+                (role: "walker", count: 2, center: (12.0, 2.0), width_m: 1.5),
+                (role: "walker", count: 2, center: (12.0, 4.0), width_m: 1.5),
+                (role: "flyer", count: 2, center: (12.0, 6.0), width_m: 1.5),
+            ],
+            tasks: [
+                (name: "far", difficulty: 2, center: (5.0, 12.0), size_m: (2.0, 1.0), grid: (3, 2), rest: (5.0, 5.0)),
+                (name: "near", difficulty: 1, center: (19.0, 12.0), size_m: (2.0, 1.0), grid: (3, 2), rest: (19.0, 5.0)),
+            ],
             debris: [
                 (shape: Box(1.0, 0.6), at: (9.0, 7.0), rotation_deg: 20.0, movable: (mass_kg: 5.0, friction: 0.3)),
                 (shape: Disc(0.5), at: (16.0, 8.0)),
@@ -182,18 +182,19 @@ mod tests {
         Scenario::parse(text, "fields.ron".as_ref()).unwrap_or_else(|error| panic!("{error}"))
     }
 
-    fn after<'a>(scenario: &'a Scenario, policy: &'a dyn GroupingPolicy, steps: u64) -> Simulation<'a> {
-        let mut trial = Simulation::new(scenario, policy, 1).unwrap();
-        (0..steps).for_each(|_| trial.step().unwrap());
+    fn after(scenario: &Scenario, steps: u64) -> Simulation {
+        let rne = Registry::standard().parse("RNE").unwrap();
+        let mut trial = Simulation::new(scenario, 1).unwrap();
+        (0..steps).for_each(|_| assert_eq!(trial.step(&*rne.policy), None));
         trial
     }
 
     #[test]
     fn every_field_of_the_state_counts_in_the_hash() {
         let scenario = scenario();
-        let policy = policy_named("RNE", &scenario.rne).unwrap();
-        let mut trial = after(&scenario, &*policy, 340);
+        let mut trial = after(&scenario, 340);
         *trial.state_mut().chain_mut() = HashChain::default();
+        trial.state_mut().forget_decisions(); // They act on nothing, and are no part of the hash.
         let digest = |state: &State| {
             let mut chain = HashChain::default();
             chain.add(state.step(), state.parts());
@@ -220,9 +221,8 @@ mod tests {
     #[test]
     fn a_cut_or_flipped_snapshot_is_refused_by_name() {
         let scenario = scenario();
-        let policy = policy_named("RNE", &scenario.rne).unwrap();
-        let bytes = after(&scenario, &*policy, 40).snapshot();
-        let refuse = |bytes: &[u8]| Simulation::restore(&scenario, &*policy, bytes).err().unwrap();
+        let bytes = after(&scenario, 40).snapshot("RNE");
+        let refuse = |bytes: &[u8]| Simulation::restore(&scenario, bytes).err().unwrap();
         for length in [0, 7, 8, 11, 20, 35, 36, bytes.len() / 2, bytes.len() - 1] {
             let error = refuse(&bytes[..length]);
             let expected = matches!(error, SnapshotError::Length { .. })
@@ -247,17 +247,13 @@ mod tests {
     }
 
     #[test]
-    fn a_snapshot_of_another_scenario_or_policy_is_refused_by_name() {
+    fn a_snapshot_of_another_scenario_is_refused_by_name() {
         let scenario = scenario();
-        let policy = policy_named("RNE", &scenario.rne).unwrap();
-        let bytes = after(&scenario, &*policy, 3).snapshot();
-        let other = policy_named("RANDOM", &scenario.rne).unwrap();
-        let error = Simulation::restore(&scenario, &*other, &bytes).err().unwrap().to_string();
-        assert_eq!(error, "is of another policy: RNE instead of RANDOM");
+        let bytes = after(&scenario, 3).snapshot("RNE");
         let mut file = (*scenario).clone();
         file.debris[1].at[0] += 0.01;
         let moved = Scenario::try_from(file).unwrap();
-        let error = Simulation::restore(&moved, &*policy, &bytes).err().unwrap().to_string();
+        let error = Simulation::restore(&moved, &bytes).err().unwrap().to_string();
         assert!(error.starts_with("is of another version of the scenario: one with hash "), "{error}");
     }
 }

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use crate::conflict::{Delay, DelayCause, Directive};
 use crate::ids::RobotId;
 use crate::mission::Activity;
-use crate::planning::Traveller;
+use crate::navigation::Traveller;
 use crate::record::RobotRecord;
 use crate::world::{Condition, Robot};
 
@@ -73,7 +73,7 @@ impl Tally {
         let seconds = |steps: u64| steps as f64 * dt_s;
         RobotRecord {
             robot: robot.id.0,
-            role: robot.role,
+            role: robot.spec.name.clone(),
             initial_energy: self.initial[0],
             initial_hp: self.initial[1],
             final_energy: robot.energy,

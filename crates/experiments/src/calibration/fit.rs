@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::{Calibration, Spread};
 use crate::failure::Failure;
-use crate::sweep::NewFile;
+use crate::files::NewFile;
 
 /// One quantity: the data, the model over the seeds that it was fitted on, and over seeds that it was not fitted on.
 #[derive(Debug, Clone, PartialEq, Serialize)]

@@ -57,10 +57,11 @@ impl Free {
             if name.is_empty() {
                 path.clone_into(&mut name);
             }
+            let place = fields.canonical(path).unwrap_or_else(|| path.to_owned());
             let matching: Vec<(String, f64)> = fields
                 .leaves()
-                .filter(|(known, _)| matches(path, known))
-                .map(|(known, _)| (known.to_owned(), ratio))
+                .filter(|(known, _)| matches(&place, known))
+                .map(|(known, _)| (if *known == place { path.to_owned() } else { known.to_owned() }, ratio))
                 .collect();
             if matching.is_empty() {
                 return Err(not_there(path, known));

@@ -8,7 +8,8 @@ use std::path::{Path, PathBuf};
 use super::{Calibration, Evaluation, Free, POLICY, Spread};
 use crate::experiment::Program;
 use crate::failure::Failure;
-use crate::sweep::{NewFile, disk};
+use crate::files::NewFile;
+use crate::sweep::disk;
 
 /// The log.
 const LOG: &str = "evaluations.csv";

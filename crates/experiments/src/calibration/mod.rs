@@ -12,11 +12,12 @@ mod target;
 
 use std::cell::Cell;
 use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use cmaes::{CMAESOptions, DVector};
 use rayon::prelude::*;
-use rne_core::{GroupingPolicy, policy_named};
+use rne_core::Policy;
 use ron_fields::{Fields, with_values};
 use usar_sim::scenario::{Scenario, ScenarioFile};
 
@@ -25,10 +26,10 @@ pub use free::Free;
 pub use log::Log;
 pub use target::{Quantity, Spread, Target};
 
-use crate::cli::panic_message;
 use crate::comparison::short;
-use crate::failure::Failure;
-use crate::sweep::run_trial;
+use crate::experiment::registry;
+use crate::failure::{Failure, panic_message};
+use crate::run::run_trial;
 
 /// The one policy that is ever calibrated.
 pub const POLICY: &str = "DIS";
@@ -262,6 +263,6 @@ impl Calibration {
     }
 }
 
-fn the_policy() -> Result<Box<dyn GroupingPolicy>, String> {
-    policy_named(POLICY, &rne_core::RneOptions::default()).map_err(|error| error.to_string())
+fn the_policy() -> Result<Arc<dyn Policy>, String> {
+    registry().parse(POLICY).map(|made| made.policy).map_err(|error| error.to_string())
 }

@@ -7,7 +7,7 @@ use serde::Serialize;
 use super::papers::AUTHORS_COLUMNS;
 use super::{CLAIMS, Example, Judged, PAPERS_TRIALS};
 use crate::failure::Failure;
-use crate::sweep::NewFile;
+use crate::files::NewFile;
 use crate::sweep::folder::Folder;
 
 /// A CSV of a folder's trials with the columns of the authors' tables, and no others.

@@ -44,7 +44,7 @@ pub struct Power {
 }
 
 /// The power of experiments on one claim, drawn with this seed from the trials that `finding` was made of; `None` where these are fewer than
-/// [`TIMES`] as many as `few`, since experiments drawn from them would be too much alike. Verdicts are
+/// `TIMES` as many as `few`, since experiments drawn from them would be too much alike. Verdicts are
 /// those of [`super::judge`], but with paired t intervals, since thousands of bootstraps would take hours.
 #[must_use]
 pub fn power(finding: &Finding, few: usize, seed: u64) -> Option<Power> {

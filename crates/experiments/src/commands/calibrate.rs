@@ -12,7 +12,7 @@ use super::{STOP, default_jobs, load, progress_bar, stop_on_ctrl_c};
 use crate::calibration::{Calibration, Fit, Free, Log, POLICY, Spread, Target, write_fit};
 use crate::comparison::short;
 use crate::failure::Failure;
-use crate::sweep::NewFile;
+use crate::files::NewFile;
 use crate::table::fit_table;
 
 /// The scenario with what was found.

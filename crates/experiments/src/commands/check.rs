@@ -21,7 +21,7 @@ impl Arguments {
         let mut problems = Vec::new();
         for file in &self.files {
             let checked = Experiment::load(file, &Overrides::default())
-                .and_then(|experiment| experiment.with_trials(1)?.check_layouts(file));
+                .and_then(|experiment| experiment.with_trials(1)?.check_start(file));
             match checked {
                 Ok(()) => writeln!(out, "{}: ok", file.display())?,
                 Err(failure) => problems.push(failure.to_string()),

@@ -13,8 +13,8 @@ use serde::Serialize;
 use super::{SCHEMA_VERSION, default_jobs, progress_bar};
 use crate::experiment::{Experiment, Overrides, split_list};
 use crate::failure::Failure;
+use crate::run::{Outcome, TrialKey};
 use crate::sweep::folder::{Folder, Opening};
-use crate::sweep::{Outcome, TrialKey};
 
 /// About how many trials are measured, in whole seeds: policies that decide alike share theirs, so that only all policies of a seed show what it takes.
 const TRIALS: usize = 24;

@@ -4,8 +4,12 @@ use std::io::Write;
 use std::path::PathBuf;
 
 use clap::Args;
+use rne_core::Member;
+use rne_core::policies::rne::Rne;
+use usar_sim::scenario::Scenario;
 
 use crate::failure::Failure;
+use crate::metric::task_names;
 use crate::rounds::{self, Blindness, Example, GroupLevels, Likeness, likeness, rounds_in};
 use crate::sweep::folder::Folder;
 use crate::table::{levels_table, likeness_table};
@@ -42,10 +46,10 @@ impl Arguments {
             likenesses.push((policy.label.clone(), likeness(&rounds)));
             levels.extend(rounds::levels(&policy.label, &rounds));
             if policy.name == "RNE" && blind.is_empty() {
-                let scenario =
-                    policy.options_in(&folder.experiment().cases[case].scenario).map_err(Failure::run)?;
+                let options = policy.rne_options().unwrap_or_default();
+                let rne = Rne::new(options).map_err(Failure::run)?;
                 let mut blindness = Blindness::default();
-                rounds.iter().try_for_each(|round| blindness.add(round, &scenario.rne))?;
+                rounds.iter().try_for_each(|round| blindness.add(round, &rne))?;
                 blind.push((policy.label.clone(), rounds.len(), blindness));
             }
         }
@@ -55,7 +59,7 @@ impl Arguments {
                 self.folder.display()
             )));
         }
-        print(out, &likenesses, &levels, &blind)?;
+        print(out, &likenesses, (&levels, &folder.experiment().cases[case].scenario), &blind)?;
         if let Some(gaps) = gaps(&folder, case) {
             writeln!(out, "{gaps}")?;
         }
@@ -80,9 +84,10 @@ pub(crate) fn gaps(folder: &Folder, case: usize) -> Option<String> {
 fn print(
     out: &mut dyn Write,
     likenesses: &[(String, [Likeness; 3])],
-    levels: &[GroupLevels],
+    (levels, scenario): (&[GroupLevels], &Scenario),
     blind: &[(String, usize, Blindness)],
 ) -> Result<(), Failure> {
+    let hardest = scenario.hardest_first().first().map_or("", |task| &scenario.tasks[task.index()].name);
     writeln!(
         out,
         "In which share of the rounds a policy's split is the one that sorting each role gives (in brackets: by chance)"
@@ -90,11 +95,11 @@ fn print(
     writeln!(out, "{}", likeness_table(likenesses))?;
     writeln!(
         out,
-        "split: in all roles, whichever half takes which task; higher: the group of the hard task has the higher mean of that level. Ties count as sorted,\n\
+        "split: in all roles, whichever half takes which task; higher: the group of the {hardest} task has the higher mean of that level. Ties count as sorted,\n\
          by chance too\n"
     )?;
     writeln!(out, "Mean levels of the groups when a round begins, in percent")?;
-    writeln!(out, "{}", levels_table(levels))?;
+    writeln!(out, "{}", levels_table(levels, &task_names(scenario)))?;
     writeln!(out, "n: rounds with two groups\n")?;
     blind.iter().try_for_each(|(label, rounds, blindness)| print_blindness(out, label, *rounds, blindness))
 }
@@ -105,8 +110,10 @@ fn print_blindness(
     rounds: usize,
     blindness: &Blindness,
 ) -> Result<(), Failure> {
-    let robot = |robot: &crate::sweep::Grouped| {
-        format!("robot {} (energy {:.0} %, HP {:.0} %)", robot.robot, robot.energy, robot.hp)
+    let robot = |robot: &Member| {
+        let level = |level: Option<f64>| level.unwrap_or(0.0);
+        let (energy, hp) = (level(robot.energy_level), level(robot.hp_level));
+        format!("robot {} (energy {energy:.0} %, HP {hp:.0} %)", robot.id)
     };
     if let Some(Example { trial, seed, round, role, unlike, alike, .. }) = &blindness.plainest {
         writeln!(

@@ -1,226 +1,223 @@
-//! `usar group`: splits a team from a table over the two tasks, by any policy.
+//! `usar group`: groups a team from a table, or answers a question in JSON, by any policy.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
 use csv::StringRecord;
-use rand::SeedableRng;
-use rand::rngs::ChaCha8Rng;
+use rne_core::question::hardest_first;
 use rne_core::{
-    Grouping, Member, NEED_NAMES, NeedVector, RneOptions, Role, TaskPositions, Team, policy_named,
+    Decision, Member, Need, NeedVector, Question, Quota, RandomSeed, RoleId, SCHEMA_VERSION, Task,
 };
 use serde::Serialize;
-use serde::de::DeserializeOwned;
 
-use super::{SCHEMA_VERSION, numbers};
+use super::numbers;
+use crate::experiment::PolicySpec;
 use crate::failure::Failure;
 use crate::input_table::InputTable;
 
-/// Split a team from a table over the easy and the hard task
+/// Group a team from a table, or answer a question in JSON, by any policy
 #[derive(Debug, Args)]
 #[command(after_help = "\
-The table (CSV with a header) has the columns id, role (Carrier, Supplier or Observer), x, y (metres) and the needs
-hp, v, sen, eng, res, cap, obs; also energy_level for ENG and hp_level for HP_DIS (percent). Other columns are ignored.
+The table (CSV with a header) has the columns id, role, x, y (metres), and optionally energy_level and hp_level (percent), which ENG and HP_DIS \
+need. Every other column is a need. Roles are merged in the order in which the table names them first.
+
+A file that ends with .json is a question (docs/decisions.md). --json prints the decision in its JSON form.
 
 Examples:
   usar group robots.csv --policy RNE
-  usar group robots.csv --policy DIS --easy 73.4,51.6 --hard 15.6,64.2 --json
-  usar group robots.csv --policy RNE --score JensenShannon --hard-rule Capability")]
+  usar group robots.csv --policy 'RNE(score: JensenShannon, hard_rule: Capability)' --weights 6,4,2
+  usar group robots.csv --policy DIS --task far,2,15.6,64.2 --task near,1,73.4,51.6 --json
+  usar group robots.csv --task a,3 --task b,2 --task c,1           three tasks by difficulty
+  usar group question.json --policy ENG --json")]
 pub(crate) struct Arguments {
-    /// The team (CSV)
+    /// The team (CSV), or a question (JSON)
     file: PathBuf,
-    /// Grouping policy
+    /// Grouping policy, with its options in brackets
     #[arg(long, default_value = "RNE")]
     policy: String,
-    /// Position `x,y` of the easy task, in metres (needed by DIS)
-    #[arg(long, allow_hyphen_values = true)]
-    easy: Option<String>,
-    /// Position `x,y` of the hard task, in metres (needed by DIS)
-    #[arg(long, allow_hyphen_values = true)]
-    hard: Option<String>,
-    /// Seed of the RANDOM policy
-    #[arg(long, default_value_t = 1)]
-    seed: u64,
-    /// RNE: weight of each need, separated by commas [default: all 1]
+    /// A task: name, difficulty and, for policies that need it, its place `x,y` in metres [default: first,2 and second,1]
+    #[arg(long = "task", value_name = "NAME,DIFFICULTY[,X,Y]", allow_hyphen_values = true)]
+    tasks: Vec<String>,
+    /// Weight of each need, separated by commas [default: all 1]
     #[arg(long, allow_hyphen_values = true)]
     weights: Option<String>,
-    /// RNE: do not divide each need by its maximum over the team
-    #[arg(long)]
-    no_scale: bool,
-    /// RNE: base of the logarithm in which the score is given: E, Two or Ten
-    #[arg(long, default_value = "E")]
-    base: String,
-    /// RNE: sort distributions before comparing them
-    #[arg(long)]
-    sort: bool,
-    /// RNE: what is maximised: `MaxOfBoth`, `FirstToSecond`, Sum or `JensenShannon`
-    #[arg(long, default_value = "MaxOfBoth")]
-    score: String,
-    /// RNE: how halves are merged: Apart or Together
-    #[arg(long, default_value = "Apart")]
-    merge: String,
-    /// RNE: which group takes the hard task: `IntraGroupTrust`, Capability, `MeanEnergy` or `MeanHp`
-    #[arg(long, default_value = "IntraGroupTrust")]
-    hard_rule: String,
-    /// Print one JSON object
+    /// Seed of the policy's draws
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Print the decision as one JSON object
     #[arg(long)]
     json: bool,
 }
 
 #[derive(Serialize)]
 struct Output<'a> {
-    schema_version: u32,
     policy: &'a str,
-    easy: &'a [u32],
-    hard: &'a [u32],
-    /// RNE between the groups in nats, by the chosen score; null for policies without one, or where it is infinite.
-    score: Option<f64>,
-    score_in_base: Option<f64>,
-    score_is_infinite: bool,
-    proven_optimal: bool,
-    options: &'a RneOptions,
+    /// The names of the tasks, in the order of the decision's groups.
+    tasks: Vec<&'a str>,
+    #[serde(flatten)]
+    decision: &'a Decision,
 }
 
 impl Arguments {
     pub(crate) fn execute(&self, out: &mut dyn Write) -> Result<(), Failure> {
-        let options = self.options()?;
-        let policy = policy_named(&self.policy, &options).map_err(Failure::input)?;
-        let tasks = match (&self.easy, &self.hard) {
-            (Some(easy), Some(hard)) => {
-                Some(TaskPositions { easy: point("--easy", easy)?, hard: point("--hard", hard)? })
-            }
-            (None, None) => None,
-            _ => return Err(Failure::input("--easy and --hard must be given together")),
-        };
-        let members = read_team(&self.file)?;
-        let named = |error| Failure::input(format!("{}: {error}", self.file.display()));
-        let team = Team::new(members, tasks).map_err(named)?;
-        let grouping = policy.group(&team, &mut ChaCha8Rng::seed_from_u64(self.seed)).map_err(named)?;
+        let spec = PolicySpec::parse(&self.policy);
+        let spec = spec.map_err(|error| Failure::input(format!("--policy: {error}")))?;
+        let question = self.question()?;
+        let named =
+            |error: &dyn std::fmt::Display| Failure::input(format!("{}: {error}", self.file.display()));
+        let policy = spec.make().map_err(Failure::input)?.policy;
+        let decision = policy.decide(&question).map_err(|error| named(&error))?;
+        decision.assignment.check(&question).map_err(|error| named(&error))?;
         if self.json {
-            self.print_json(out, &grouping, &options)
-        } else {
-            print_text(out, &grouping, &options, &team)
+            let tasks = question.tasks.iter().map(|task| task.name.as_str()).collect();
+            let output = Output { policy: &spec.label, tasks, decision: &decision };
+            return Ok(writeln!(out, "{}", serde_json::to_string(&output).map_err(Failure::run)?)?);
         }
+        print_text(out, &question, &decision, &spec)
     }
 
-    fn options(&self) -> Result<RneOptions, Failure> {
-        Ok(RneOptions {
-            log_base: variant("--base", &self.base)?,
-            sort: self.sort,
-            score: variant("--score", &self.score)?,
-            weights: self.weights.as_ref().map(|text| numbers("--weights", text)).transpose()?,
-            scale: !self.no_scale,
-            merge: variant("--merge", &self.merge)?,
-            hard_rule: variant("--hard-rule", &self.hard_rule)?,
-        })
-    }
-
-    fn print_json(
-        &self,
-        out: &mut dyn Write,
-        grouping: &Grouping,
-        options: &RneOptions,
-    ) -> Result<(), Failure> {
-        let output = Output {
-            schema_version: SCHEMA_VERSION,
-            policy: &self.policy,
-            easy: &grouping.easy,
-            hard: &grouping.hard,
-            score: grouping.score.and_then(rne_core::RelativeNeedsEntropy::nats),
-            score_in_base: grouping.score.and_then(|score| score.in_base(options.log_base)),
-            score_is_infinite: grouping.score.is_some_and(rne_core::RelativeNeedsEntropy::is_infinite),
-            proven_optimal: grouping.proven_optimal,
-            options,
+    fn question(&self) -> Result<Question, Failure> {
+        if self.file.extension().is_some_and(|kind| kind == "json") {
+            if !self.tasks.is_empty() || self.weights.is_some() {
+                return Err(Failure::input("--task and --weights are for tables: a question has its own"));
+            }
+            let shown = self.file.display();
+            let text = std::fs::read_to_string(&self.file)
+                .map_err(|error| Failure::input(format!("{shown}: cannot be read: {error}")))?;
+            return Question::from_json(&text).map_err(|error| Failure::input(format!("{shown}: {error}")));
+        }
+        let Team { roles, needs, members } = read_team(&self.file)?;
+        let weights = match &self.weights {
+            Some(text) => numbers("--weights", text)?,
+            None => vec![1.0; needs.len()],
         };
-        Ok(writeln!(out, "{}", serde_json::to_string(&output).map_err(Failure::run)?)?)
+        if weights.len() != needs.len() {
+            let (found, names) = (weights.len(), needs.join(", "));
+            return Err(Failure::input(format!(
+                "--weights: must have one entry for each need ({names}), found {found}"
+            )));
+        }
+        let tasks = self.tasks()?;
+        let order = hardest_first(tasks.iter().map(|task| task.difficulty));
+        let count = |role: usize| members.iter().filter(|member| member.role.index() == role).count();
+        let counts: Vec<usize> = (0..roles.len()).map(count).collect();
+        let question = Question {
+            schema_version: SCHEMA_VERSION,
+            round: 1,
+            roles,
+            needs: needs.into_iter().zip(weights).map(|(name, weight)| Need { name, weight }).collect(),
+            quotas: Quota::equal(&counts, &order),
+            tasks,
+            members,
+            history: Vec::new(),
+            random_seed: RandomSeed::from(self.seed),
+        };
+        question.checked().map_err(|error| Failure::input(format!("{}: {error}", self.file.display())))
     }
+
+    fn tasks(&self) -> Result<Vec<Task>, Failure> {
+        if self.tasks.is_empty() {
+            let task = |name: &str, difficulty| Task { name: name.to_owned(), difficulty, place: None };
+            return Ok(vec![task("first", 2), task("second", 1)]);
+        }
+        self.tasks.iter().map(|text| task(text)).collect()
+    }
+}
+
+fn task(text: &str) -> Result<Task, Failure> {
+    let bad =
+        || Failure::input(format!("--task: must be NAME,DIFFICULTY or NAME,DIFFICULTY,X,Y, found {text:?}"));
+    let parts: Vec<&str> = text.split(',').map(str::trim).collect();
+    let (name, difficulty, place) = match parts[..] {
+        [name, difficulty] => (name, difficulty, None),
+        [name, difficulty, x, y] => {
+            let number = |text: &str| text.parse::<f64>().ok().filter(|x| x.is_finite()).ok_or_else(bad);
+            (name, difficulty, Some([number(x)?, number(y)?]))
+        }
+        _ => return Err(bad()),
+    };
+    let difficulty = difficulty.parse().map_err(|_| bad())?;
+    if name.is_empty() { Err(bad()) } else { Ok(Task { name: name.to_owned(), difficulty, place }) }
 }
 
 fn print_text(
     out: &mut dyn Write,
-    grouping: &Grouping,
-    options: &RneOptions,
-    team: &Team,
+    question: &Question,
+    decision: &Decision,
+    spec: &PolicySpec,
 ) -> Result<(), Failure> {
-    for (task, ids) in [("hard", &grouping.hard), ("easy", &grouping.easy)] {
-        let of_role = |role| -> Vec<String> {
-            let members = team.of_role(role).filter(|member| ids.contains(&member.id));
-            members.map(|member| member.id.to_string()).collect()
+    let width = question.tasks.iter().map(|task| task.name.len()).max().unwrap_or(0);
+    for task in question.task_ids() {
+        let group = decision.assignment.of(task);
+        let of_role = |role: RoleId| {
+            let members = question.of_role(role).filter(|member| group.contains(&member.id));
+            let ids: Vec<String> = members.map(|member| member.id.to_string()).collect();
+            format!("{} {}", question.roles[role.index()], ids.join(" "))
         };
-        let roles =
-            Role::ALL.map(|role| format!("{}s {}", role.name().to_lowercase(), of_role(role).join(" ")));
-        writeln!(out, "{task}:  {}", roles.join(" | "))?;
+        let roles: Vec<String> = question.role_ids().map(of_role).collect();
+        writeln!(out, "{:<width$}  {}", question.tasks[task.index()].name, roles.join(" | "))?;
     }
-    if let Some(score) = grouping.score {
-        let value =
-            score.in_base(options.log_base).map_or("infinite".to_owned(), |value| format!("{value:.9}"));
-        writeln!(
-            out,
-            "RNE between the groups: {value} ({:?}, log base {:?})",
-            options.score, options.log_base
-        )?;
-        writeln!(
-            out,
-            "options: scale {}, sort {}, merge {:?}, hard rule {:?}, weights {}",
-            options.scale,
-            options.sort,
-            options.merge,
-            options.hard_rule,
-            options.weights.as_ref().map_or("all 1".to_owned(), |weights| format!("{weights:?}"))
-        )?;
+    let made = spec.make().map_err(Failure::input)?;
+    if let Some(score) = decision.score {
+        let base = spec.rne_options().unwrap_or_default().log_base;
+        let value = score.in_base(base).map_or("infinite".to_owned(), |value| format!("{value:.9}"));
+        writeln!(out, "score   {value} (log base {base:?})")?;
     }
-    if !grouping.proven_optimal {
+    if !made.options.is_empty() {
+        writeln!(out, "options {}", made.options)?;
+    }
+    if !decision.proven_optimal {
         writeln!(
             out,
-            "note: a role has more than {} robots; the split was found by local search and is not proven optimal",
-            rne_core::grouping::EXACT_ROLE_SIZE
+            "note: the team is too large to look at every grouping; this one was found by local search and is not proven optimal"
         )?;
     }
     Ok(())
 }
 
-/// A variant of an enum by its name, as in a scenario.
-fn variant<T: DeserializeOwned>(flag: &str, name: &str) -> Result<T, Failure> {
-    ron::from_str(name).map_err(|error| Failure::input(format!("{flag}: {}", error.code)))
+/// A team as a table has it.
+struct Team {
+    /// Names of the roles, in the order in which the table names them first.
+    roles: Vec<String>,
+    /// Names of the needs.
+    needs: Vec<String>,
+    members: Vec<Member>,
 }
 
-fn point(flag: &str, text: &str) -> Result<[f64; 2], Failure> {
-    let numbers = numbers(flag, text)?;
-    <[f64; 2]>::try_from(numbers.as_slice())
-        .ok()
-        .filter(|point| point.iter().all(|x| x.is_finite()))
-        .ok_or_else(|| Failure::input(format!("{flag} must be two finite numbers `x,y`, found {text:?}")))
-}
+/// Columns that are no needs.
+const OTHER_COLUMNS: [&str; 6] = ["id", "role", "x", "y", "energy_level", "hp_level"];
 
 /// Reads the table; says all that is wrong with it at once.
-fn read_team(path: &Path) -> Result<Vec<Member>, Failure> {
+fn read_team(path: &Path) -> Result<Team, Failure> {
     let shown = path.display();
     let table = InputTable::read(path)?;
-    let column = |name: &str| table.column(name);
-    let missing: Vec<&str> = ["id", "role", "x", "y"]
-        .into_iter()
-        .chain(NEED_NAMES)
-        .filter(|name| column(name).is_none())
-        .collect();
+    let missing: Vec<&str> =
+        ["id", "role", "x", "y"].into_iter().filter(|name| table.column(name).is_none()).collect();
     if !missing.is_empty() {
         return Err(Failure::input(format!("{shown}:1: the header lacks {}", missing.join(", "))));
     }
-    let (mut members, mut problems) = (Vec::new(), Vec::new());
+    let is_need = |name: &&str| !OTHER_COLUMNS.contains(name);
+    let needs: Vec<String> = table.columns().filter(is_need).map(str::to_owned).collect();
+    if needs.is_empty() {
+        return Err(Failure::input(format!("{shown}:1: the header lacks needs: columns of any other name")));
+    }
+    let mut team = Team { roles: Vec::new(), needs, members: Vec::new() };
+    let mut problems = Vec::new();
     for (line, row) in &table.rows {
-        match member(row, &column) {
-            Ok(member) => members.push(member),
+        match member(row, &table, &mut team) {
+            Ok(member) => team.members.push(member),
             Err(problem) => problems.push(format!("{shown}:{line}: {problem}")),
         }
     }
-    if members.is_empty() && problems.is_empty() {
+    if team.members.is_empty() && problems.is_empty() {
         problems.push(format!("{shown}: has no robots"));
     }
-    if problems.is_empty() { Ok(members) } else { Err(Failure::Input(problems.join("\n"))) }
+    if problems.is_empty() { Ok(team) } else { Err(Failure::Input(problems.join("\n"))) }
 }
 
-fn member(row: &StringRecord, column: &dyn Fn(&str) -> Option<usize>) -> Result<Member, String> {
-    let cell = |name: &str| column(name).and_then(|i| row.get(i)).unwrap_or_default();
+fn member(row: &StringRecord, table: &InputTable, team: &mut Team) -> Result<Member, String> {
+    let cell = |name: &str| table.column(name).and_then(|i| row.get(i)).unwrap_or_default();
     let number = |name: &str| {
         let found = cell(name);
         let value = found.parse::<f64>().ok().filter(|value| value.is_finite());
@@ -233,21 +230,25 @@ fn member(row: &StringRecord, column: &dyn Fn(&str) -> Option<usize>) -> Result<
             _ => Err(format!("{name} must be a percentage from 0 to 100, found {found}")),
         },
     };
-    let role = cell("role");
-    let needs = NEED_NAMES.iter().map(|name| match number(name)? {
+    let needs = team.needs.iter().map(|name| match number(name)? {
         need if need >= 0.0 => Ok(need),
         need => Err(format!("{name} must be a number >= 0, found {need}")),
     });
+    let needs = NeedVector::new(needs.collect::<Result<_, String>>()?).map_err(|error| error.to_string())?;
+    let role = match cell("role") {
+        "" => return Err("role must be a name, found nothing".to_owned()),
+        name => team.roles.iter().position(|known| known == name).unwrap_or_else(|| {
+            team.roles.push(name.to_owned());
+            team.roles.len() - 1
+        }),
+    };
     Ok(Member {
         id: cell("id")
             .parse()
             .map_err(|_| format!("id must be a whole number >= 0, found {:?}", cell("id")))?,
-        role: Role::ALL
-            .into_iter()
-            .find(|known| known.name().eq_ignore_ascii_case(role))
-            .ok_or_else(|| format!("role must be Carrier, Supplier or Observer, found {role:?}"))?,
-        position: [number("x")?, number("y")?],
-        needs: NeedVector::new(needs.collect::<Result<_, _>>()?).map_err(|error| error.to_string())?,
+        role: RoleId(u16::try_from(role).map_err(|_| "there are too many roles".to_owned())?),
+        home: [number("x")?, number("y")?],
+        needs,
         energy_level: level("energy_level")?,
         hp_level: level("hp_level")?,
     })

@@ -13,9 +13,10 @@ use super::sweep::print;
 use crate::experiment::{Experiment, Program, Shard};
 use crate::failure::Failure;
 use crate::provenance::scenario_differences;
+use crate::run::TrialKey;
+use crate::sweep::Place;
 use crate::sweep::disk::experiment_in;
 use crate::sweep::folder::{Folder, Opening};
-use crate::sweep::{Place, TrialKey};
 
 /// How many missing trials are named.
 const MAX_NAMED: usize = 5;

@@ -12,6 +12,7 @@ pub(crate) mod readings;
 pub(crate) mod report;
 pub(crate) mod reproduce;
 pub(crate) mod run;
+pub(crate) mod schema;
 mod snapshot;
 pub(crate) mod sweep;
 pub(crate) mod trust;
@@ -26,8 +27,8 @@ use usar_sim::scenario::Scenario;
 
 use crate::experiment::Shard;
 use crate::failure::Failure;
+use crate::run::{Limits, Run, TrialKey, run_all};
 use crate::sweep::folder::Folder;
-use crate::sweep::{Limits, Run, TrialKey, run_all};
 
 /// Version of the JSON that the commands print.
 pub(crate) const SCHEMA_VERSION: u32 = 1;

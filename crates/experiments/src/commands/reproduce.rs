@@ -14,7 +14,7 @@ use crate::claims::{
 use crate::experiment::{Experiment, Overrides};
 use crate::failure::Failure;
 use crate::report::{self, claims::Section};
-use crate::sweep::Limits;
+use crate::run::Limits;
 use crate::sweep::disk::is_sweeps;
 use crate::sweep::folder::{Folder, Opening};
 

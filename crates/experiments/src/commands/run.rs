@@ -4,14 +4,13 @@ use std::io::Write;
 use std::path::PathBuf;
 
 use clap::Args;
-use rne_core::policy_named;
 use serde::Serialize;
 use usar_sim::record::{Status, TrialRecord};
 use usar_sim::simulation::Simulation;
 
 use super::snapshot::{Snapshot, save};
 use super::{SCHEMA_VERSION, load};
-use crate::experiment::with_settings;
+use crate::experiment::{PolicySpec, defaults, with_settings};
 use crate::failure::Failure;
 use crate::table::rounds_table;
 
@@ -22,16 +21,17 @@ Examples:
   usar run scenarios/paper.ron
   usar run scenarios/paper.ron --policy DIS --seed 7 --json
   usar run scenarios/minimal/head_on.ron --check
-  usar run scenarios/paper.ron --policy RNE --set rne.hard_rule=MeanEnergy --set duration_s=300
+  usar run scenarios/paper.ron --policy 'RNE(hard_rule: MeanEnergy)' --set duration_s=300
   usar run scenarios/paper.ron --seed 3 --save half.snapshot --save-at 300    the trial, and a snapshot of it on the way
-  usar run scenarios/paper.ron --from half.snapshot                           the rest of that trial, with the same result")]
+  usar run scenarios/paper.ron --from half.snapshot                           the rest of that trial, with the same result
+  usar run scenarios/paper.ron --from half.snapshot --policy DIS              another policy goes on from there")]
 pub(crate) struct Arguments {
     /// Scenario file (RON)
     file: PathBuf,
-    /// Grouping policy [default: the scenario's first]
+    /// Grouping policy, with its options in brackets [default: the first of FILE's sweep file, or of the snapshot]
     #[arg(long)]
     policy: Option<String>,
-    /// Seed of the trial [default: the scenario's first]
+    /// Seed of the trial [default: the first of FILE's sweep file]
     #[arg(long)]
     seed: Option<u64>,
     /// Write a snapshot of the whole trial to this file, at --save-at; the file must not exist yet
@@ -41,7 +41,7 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "SECONDS", requires = "save")]
     save_at: Option<f64>,
     /// Go on from a snapshot of a trial of this scenario
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["policy", "seed"])]
+    #[arg(long, value_name = "FILE", conflicts_with = "seed")]
     from: Option<PathBuf>,
     /// Check every invariant at every step; a violation ends the trial as failed
     #[arg(long)]
@@ -58,6 +58,7 @@ pub(crate) struct Arguments {
 struct Output<'a> {
     schema_version: u32,
     scenario: &'a str,
+    policy: &'a str,
     rescuees: u32,
     #[serde(flatten)]
     record: &'a TrialRecord,
@@ -68,54 +69,60 @@ impl Arguments {
         let (scenario, _) = load(&self.file)?;
         let scenario = with_settings(&scenario, &self.set)?;
         let snapshot = self.from.as_deref().map(Snapshot::read).transpose()?;
-        let name = match &snapshot {
-            Some(snapshot) => &snapshot.identity.policy,
-            None => self.policy.as_ref().unwrap_or(&scenario.sweep.policies[0]),
+        let (first_policy, first_seed) = defaults(&self.file)?;
+        let asked = match (&self.policy, &snapshot) {
+            (Some(policy), _) => policy,
+            (None, Some(snapshot)) => &snapshot.identity.policy,
+            (None, None) => &first_policy,
         };
-        let policy = policy_named(name, &scenario.rne).map_err(Failure::input)?;
+        let spec = PolicySpec::parse(asked).map_err(|error| Failure::input(format!("--policy: {error}")))?;
+        let policy = spec.make().map_err(Failure::input)?.policy;
         let simulation = match &snapshot {
-            Some(snapshot) => snapshot.restore(&scenario, &*policy)?,
-            None => Simulation::new(&scenario, &*policy, self.seed.unwrap_or(scenario.sweep.first_seed))
+            Some(snapshot) => snapshot.restore(&scenario)?,
+            None => Simulation::new(&scenario, self.seed.unwrap_or(first_seed))
                 .map_err(|error| Failure::input(format!("{}: {error}", self.file.display())))?,
         };
         let seed = simulation.seed();
         let mut simulation = if self.check { simulation.checked() } else { simulation };
         if let (Some(path), Some(seconds)) = (&self.save, self.save_at) {
-            save(&mut simulation, path, seconds)?;
+            save(&mut simulation, &spec, (path, seconds))?;
         }
-        let record = simulation.run(|_, _, _| {});
+        let record = simulation.run(&*policy, |_, _, _| {});
         if let Status::Failed(reason) = &record.status {
-            return Err(Failure::run(format!("trial of {name} with seed {seed} failed: {reason}")));
+            return Err(Failure::run(format!("trial of {} with seed {seed} failed: {reason}", spec.label)));
         }
         if self.json {
             let output = Output {
                 schema_version: SCHEMA_VERSION,
                 scenario: &scenario.name,
+                policy: &spec.label,
                 rescuees: record.rescued(),
                 record: &record,
             };
             return Ok(writeln!(out, "{}", serde_json::to_string(&output).map_err(Failure::run)?)?);
         }
-        print(out, &scenario.name, &record)
+        print(out, [&scenario.name, &spec.label], &record)
     }
 }
 
-fn print(out: &mut dyn Write, scenario: &str, record: &TrialRecord) -> Result<(), Failure> {
+fn print(out: &mut dyn Write, [scenario, policy]: [&str; 2], record: &TrialRecord) -> Result<(), Failure> {
     writeln!(
         out,
-        "{scenario}, policy {}, seed {}: {} s simulated, {}",
-        record.policy,
+        "{scenario}, policy {policy}, seed {}: {} s simulated, {}",
         record.seed,
         record.time_s,
         record.status.name().replace('_', " ")
     )?;
     writeln!(out, "{}", rounds_table(record))?;
-    let (rescued, hard, easy) = (record.rescued(), record.hard.rescued, record.easy.rescued);
+    let rescued = record.rescued();
+    let by_task = record.tasks.iter().map(|task| format!("{} {}", task.task, task.totals.rescued));
+    let by_task = by_task.collect::<Vec<_>>().join(", ");
+    let by_task = if by_task.is_empty() { by_task } else { format!(" ({by_task})") };
     writeln!(
         out,
-        "rescued      {rescued} (hard {hard}, easy {easy}) in {} complete rounds; on board at the end {}",
+        "rescued      {rescued}{by_task} in {} complete rounds; on board at the end {}",
         record.completed_rounds,
-        record.hard.secured + record.easy.secured - rescued
+        record.secured() - rescued
     )?;
     let per = |cost: f64| match rescued {
         0 => "-".to_owned(),

@@ -3,11 +3,12 @@
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use rne_core::GroupingPolicy;
+use usar_sim::record::Status;
 use usar_sim::scenario::Scenario;
 use usar_sim::simulation::Simulation;
 use usar_sim::snapshot::Identity;
 
+use crate::experiment::PolicySpec;
 use crate::failure::Failure;
 
 /// A snapshot that was read from a file.
@@ -29,18 +30,19 @@ impl Snapshot {
     }
 
     /// The trial, at the step where the snapshot was taken.
-    pub(super) fn restore<'a>(
-        &self,
-        scenario: &'a Scenario,
-        policy: &'a dyn GroupingPolicy,
-    ) -> Result<Simulation<'a>, Failure> {
-        Simulation::restore(scenario, policy, &self.bytes)
+    pub(super) fn restore(&self, scenario: &Scenario) -> Result<Simulation, Failure> {
+        Simulation::restore(scenario, &self.bytes)
             .map_err(|error| Failure::input(format!("{}: {error}", self.path.display())))
     }
 }
 
 /// Runs a trial up to a time, in seconds, and writes a snapshot of it: whole or not at all.
-pub(super) fn save(simulation: &mut Simulation, path: &Path, seconds: f64) -> Result<(), Failure> {
+pub(super) fn save(
+    simulation: &mut Simulation,
+    spec: &PolicySpec,
+    (path, seconds): (&Path, f64),
+) -> Result<(), Failure> {
+    let policy = spec.make().map_err(Failure::input)?.policy;
     let (now, end) = (simulation.time_s(), simulation.scenario().duration_s);
     if !(now..=end).contains(&seconds) {
         return Err(Failure::input(format!("--save-at: must be from {now} to {end} s, found {seconds}")));
@@ -53,15 +55,17 @@ pub(super) fn save(simulation: &mut Simulation, path: &Path, seconds: f64) -> Re
         |error: std::io::Error| Failure::input(format!("--save: cannot write {}: {error}", path.display()));
     let mut file = tempfile::NamedTempFile::new_in(folder).map_err(trouble)?;
     while simulation.time_s() < seconds {
-        if let Some(status) = simulation.ending() {
+        if let Some(status) = simulation.step(&*policy) {
+            if let Status::Failed(reason) = status {
+                return Err(Failure::run(reason));
+            }
             let (status, time_s) = (status.name().replace('_', " "), simulation.time_s());
             return Err(Failure::input(format!(
                 "--save-at: the trial ended at {time_s} s already: {status}"
             )));
         }
-        simulation.step().map_err(Failure::run)?;
     }
-    file.write_all(&simulation.snapshot()).map_err(trouble)?;
+    file.write_all(&simulation.snapshot(&spec.plain())).map_err(trouble)?;
     file.as_file().sync_all().map_err(trouble)?;
     file.persist_noclobber(path).map_err(|error| trouble(error.error))?;
     Ok(())

@@ -11,7 +11,7 @@ use super::precision::Precision;
 use super::{STOP, default_jobs, run_missing, stop_on_ctrl_c};
 use crate::experiment::{Experiment, Overrides, Shard, split_list};
 use crate::failure::Failure;
-use crate::sweep::Limits;
+use crate::run::Limits;
 use crate::sweep::disk::trials_in;
 use crate::sweep::folder::{Folder, Opening};
 use crate::table::policy_table;
@@ -104,7 +104,7 @@ impl Arguments {
             let first = Precision::first_look(experiment.trials, self.most(&experiment));
             experiment = experiment.with_trials(first)?;
         }
-        experiment.check_layouts(&self.file)?;
+        experiment.check_start(&self.file)?;
 
         stop_on_ctrl_c();
         let opening = Opening { shard: self.shard, is_fresh: self.fresh };

@@ -13,8 +13,9 @@ use super::{default_jobs, progress_bar};
 use crate::experiment::Experiment;
 use crate::failure::Failure;
 use crate::provenance::Manifest;
+use crate::run::{Limits, Outcome, Run, TrialKey, run_all};
 use crate::sweep::disk::{broken_files, experiment_in};
-use crate::sweep::{Limits, Outcome, Run, TrialKey, links, run_all};
+use crate::sweep::links;
 
 /// Run a finished sweep again and compare the whole state of every trial, step by step
 #[derive(Debug, Args)]

@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
-use rne_core::GroupingPolicy;
-use usar_sim::scenario::{Scenario, ScenarioFile, SweepDefaults};
+use rne_core::Policy;
+use usar_sim::scenario::{Scenario, ScenarioFile};
 
 use super::policy::PolicySpec;
 use super::read::checked;
@@ -28,7 +28,7 @@ pub struct Case {
     /// The scenario there.
     pub scenario: Scenario,
     /// The sweep's policies there.
-    pub policies: Vec<Arc<dyn GroupingPolicy>>,
+    pub policies: Vec<Arc<dyn Policy>>,
 }
 
 /// The policies of a sweep, each once.
@@ -40,7 +40,10 @@ pub(super) fn checked_policies(written: &[String]) -> Result<Vec<PolicySpec>, Fa
     for text in written {
         let policy = PolicySpec::parse(text).map_err(|error| Failure::input(format!("policies: {error}")))?;
         if policies.iter().any(|known| known.label == policy.label) {
-            return Err(Failure::input(format!("policies: must not stand twice, found {:?}", policy.label)));
+            return Err(Failure::input(format!(
+                "policies: must not be listed twice, found {:?}",
+                policy.label
+            )));
         }
         policies.push(policy);
     }
@@ -76,18 +79,18 @@ pub(super) fn cases(base: &Scenario, axes: &[Axis], policies: &[PolicySpec]) -> 
             file.set(&axis.path, value).map_err(|error| Failure::input(format!("axes: {error}")))?;
         }
         let scenario = checked(file, &place)?;
-        let policies = policies.iter().map(|policy| policy.make(&scenario)).collect::<Result<_, _>>();
-        let policies = policies.map_err(|error| Failure::input(format!("{place}{error}")))?;
+        let made = policies.iter().map(|policy| policy.make().map(|made| made.policy));
+        let policies =
+            made.collect::<Result<_, _>>().map_err(|error| Failure::input(format!("{place}{error}")))?;
         Ok(Case { values: values.into_iter().map(str::to_owned).collect(), scenario, policies })
     };
     grid.into_iter().map(case).collect()
 }
 
-/// What of a scenario decides numbers, as text: all but its name, its description and the sweep's defaults.
+/// What of a scenario decides numbers, as text: all but its name and its description.
 pub(super) fn deciding_text(scenario: &Scenario) -> String {
     let mut file: ScenarioFile = (**scenario).clone();
     file.name = String::new();
     file.description = String::new();
-    file.sweep = SweepDefaults::default();
     ron::to_string(&file).unwrap_or_default()
 }

@@ -8,21 +8,21 @@ mod read;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
-use usar_sim::layout::Layout;
+use usar_sim::simulation::{Advance, Simulation};
 use xxhash_rust::xxh3::xxh3_128;
 
 use ron_fields::Fields;
-use usar_sim::scenario::{SampledCounts, Scenario, ScenarioFile, read_text};
+use usar_sim::scenario::{SampledCounts, Scenario, read_text};
 
 pub use grid::{Axis, Case};
-pub use policy::{PolicySpec, split_list};
-pub use read::with_settings;
+pub use policy::{PolicySpec, registry, set_registry, split_list};
+pub use read::{companion, defaults, with_settings};
 
 use crate::failure::Failure;
 use crate::metric::{Catalogue, task_names};
-use crate::sweep::{Fault, SharedTrials, Trial, TrialKey, run_trial};
+use crate::run::{Fault, SharedTrials, Trial, TrialKey, run_trial};
 use grid::{cases, checked_policies, deciding_text};
-use read::{checked, from_scenario, from_sweep_file, with_readings};
+use read::{canonical, from_scenario, from_sweep_file, with_readings};
 
 /// The seeds of the trials.
 #[derive(Debug, Clone, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
@@ -150,11 +150,10 @@ impl Experiment {
             if is_sweep { from_sweep_file(text, path)? } else { from_scenario(text, path)? };
         parts.base = with_settings(&parts.base, &overrides.set)?;
         let is_set = |path: &str| {
-            overrides.set.iter().any(|entry| entry.split('=').next().unwrap_or_default().trim() == path)
+            let set = overrides.set.iter().map(|entry| entry.split('=').next().unwrap_or_default().trim());
+            let here = canonical(&parts.base, path);
+            set.into_iter().any(|path| canonical(&parts.base, path) == here)
         };
-        if let Some((option, _)) = readings.iter().find(|(option, _)| is_set(&format!("rne.{option}"))) {
-            return Err(Failure::input(format!("--set: rne.{option} is one of this sweep's readings")));
-        }
         if let Some(axis) = parts.axes.iter().find(|axis| is_set(&axis.path)) {
             return Err(Failure::input(format!("--set: {} is an axis of this sweep", axis.path)));
         }
@@ -165,9 +164,11 @@ impl Experiment {
             parts.seeds = Seeds::From(first);
         }
         if !readings.is_empty() && !parts.policies.iter().any(|policy| policy.trim() == "RNE") {
-            return Err(Failure::input("readings: are those of the policy RNE, which the sweep has not"));
+            return Err(Failure::input(
+                "`readings` vary the policy RNE, but this sweep does not run RNE. Add it to `policies`.",
+            ));
         }
-        parts.policies = with_readings(parts.policies, &readings, &parts.base);
+        parts.policies = with_readings(parts.policies, &readings);
         parts.trials = overrides.trials.unwrap_or(parts.trials);
         parts.is_checked = overrides.is_checked;
         Self::assemble(parts)
@@ -195,25 +196,11 @@ impl Experiment {
                 "seeds: {trials} from {first} on go beyond the greatest seed"
             )));
         }
-        let mut file: ScenarioFile = (*base).clone();
-        file.sweep.trials = trials;
-        if let Seeds::From(first) = seeds {
-            file.sweep.first_seed = first;
-        }
-        let mut plain: Vec<String> = policies.iter().map(|policy| policy.name.clone()).collect();
-        let mut seen = Vec::new();
-        plain.retain(|name| {
-            !seen.contains(name) && {
-                seen.push(name.clone());
-                true
-            }
-        });
-        file.sweep.policies = plain;
-        let base = checked(file, "")?;
         let cases = cases(&base, &axes, &policies)?;
         let id = |case: &Case, policy: &PolicySpec| {
-            let scenario = policy.options_in(&case.scenario).map_err(Failure::input)?;
-            let text = format!("{program:?} {is_checked} {} {}", policy.name, deciding_text(&scenario));
+            let made = policy.make().map_err(Failure::input)?;
+            let scenario = deciding_text(&case.scenario);
+            let text = format!("{program:?} {is_checked} {} {} {scenario}", made.name, made.options);
             Ok(xxh3_128(text.as_bytes()))
         };
         let ids = |case| policies.iter().map(|policy| id(case, policy)).collect::<Result<Vec<_>, Failure>>();
@@ -302,10 +289,13 @@ impl Experiment {
             format!("--set '{}={}'", path, value.replace('\'', "'\\''"))
         };
         let axes = axes.map(|(axis, value)| set(&axis.path, value));
-        let options = policy.options().iter().map(|(option, value)| set(&format!("rne.{option}"), value));
-        let command = format!("usar run resolved.ron --policy {} --seed {}", policy.name, key.seed);
+        let quoted = match policy.plain() {
+            plain if plain == policy.name => plain,
+            plain => format!("'{}'", plain.replace('\'', "'\\''")),
+        };
+        let command = format!("usar run resolved.ron --policy {quoted} --seed {}", key.seed);
         let check = self.is_checked.then(|| "--check".to_owned());
-        std::iter::once(command).chain(axes).chain(options).chain(check).collect::<Vec<_>>().join(" ")
+        std::iter::once(command).chain(axes).chain(check).collect::<Vec<_>>().join(" ")
     }
 
     /// The same sweep with another number of trials.
@@ -370,21 +360,32 @@ impl Experiment {
         }
     }
 
-    /// Draws every layout, so that a scenario without room fails before the first trial runs.
+    /// Draws every layout and lets every policy answer the first question, so that a scenario without room and a policy that cannot group
+    /// this team fail before the first trial runs.
     ///
     /// # Errors
-    /// A layout that cannot be drawn, with its seed.
-    pub fn check_layouts(&self, path: &Path) -> Result<(), Failure> {
+    /// A layout that cannot be drawn, or a question that a policy cannot answer, with the seed.
+    pub fn check_start(&self, path: &Path) -> Result<(), Failure> {
         for case in &self.cases {
-            let sampled = &case.scenario.sampled;
-            let drawn = sampled.hard != SampledCounts::default() || sampled.easy != SampledCounts::default();
-            let trials = if drawn { self.trials } else { 1 };
+            let is_drawn = case.scenario.tasks.iter().any(|task| task.sampled != SampledCounts::default());
+            let trials = if is_drawn { self.trials } else { 1 };
             for seed in (1..=trials).map(|trial| self.seed(trial)) {
-                Layout::sample(&case.scenario, seed).map_err(|error| {
-                    let place = self.describe(case);
-                    Failure::input(format!("{}: {place}seed {seed}: {error}", path.display()))
-                })?;
+                self.check_case(case, seed)
+                    .map_err(|reason| Failure::input(format!("{}: {reason}", path.display())))?;
             }
+        }
+        Ok(())
+    }
+
+    fn check_case(&self, case: &Case, seed: u64) -> Result<(), String> {
+        let place = self.describe(case);
+        let mut trial =
+            Simulation::new(&case.scenario, seed).map_err(|error| format!("{place}seed {seed}: {error}"))?;
+        let Advance::Asks(question) = trial.advance() else { return Ok(()) };
+        for (policy, spec) in case.policies.iter().zip(&self.policies) {
+            let refused = |error: &dyn std::fmt::Display| format!("{place}policy {}: {error}", spec.label);
+            let decision = policy.decide(question).map_err(|error| refused(&error))?;
+            decision.assignment.check(question).map_err(|error| refused(&error))?;
         }
         Ok(())
     }

@@ -1,10 +1,24 @@
 //! Policies as a sweep names them: `RNE`, `RNE(score: Sum)`, or `label=RNE(score: Sum, sort: true)`.
 
-use std::sync::Arc;
+use std::sync::OnceLock;
 
-use rne_core::{GroupingPolicy, policy_named, policy_names};
+use rne_core::{MadePolicy, Registry, RneOptions};
 use ron_fields::Fields;
-use usar_sim::scenario::{Scenario, ScenarioFile};
+
+static REGISTRY: OnceLock<Registry> = OnceLock::new();
+
+/// The policies that this program knows: the built-in ones, unless it was given others by [`set_registry`].
+pub fn registry() -> &'static Registry {
+    REGISTRY.get_or_init(Registry::standard)
+}
+
+/// Gives this program its policies, before any is asked for.
+///
+/// # Errors
+/// The registry, when the program has one already.
+pub fn set_registry(registry: Registry) -> Result<(), Registry> {
+    REGISTRY.set(registry)
+}
 
 /// A policy with its options.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -13,7 +27,7 @@ pub struct PolicySpec {
     pub label: String,
     /// Its name in the registry.
     pub name: String,
-    /// Options that differ from the scenario's, with their values in RON.
+    /// The options that are written, with their values in RON.
     options: Vec<(String, String)>,
     /// As it can be written.
     written: String,
@@ -23,7 +37,7 @@ impl PolicySpec {
     /// Reads one.
     ///
     /// # Errors
-    /// An unknown name, an option of a policy that has none, or brackets that do not close; in one sentence.
+    /// An unknown name, options that the policy does not have, or brackets that do not close; in one sentence.
     pub fn parse(text: &str) -> Result<Self, String> {
         let text = text.trim();
         let open = text.find('(').unwrap_or(text.len());
@@ -33,14 +47,14 @@ impl PolicySpec {
         };
         let (name, options) = rest.split_at(rest.find('(').unwrap_or(rest.len()));
         let name = name.trim();
-        policy_named(name, &rne_core::RneOptions::default()).map_err(|error| error.to_string())?;
-        let options = Self::parse_options(name, options)?;
-        let named: Vec<String> = options.iter().map(|(option, value)| format!("{option}: {value}")).collect();
-        let plain = if named.is_empty() { name.to_owned() } else { format!("{name}({})", named.join(", ")) };
+        registry().make(name, "").map_err(|error| error.to_string())?;
+        let options = parse_options(options)?;
+        let plain = plain(name, &options);
+        registry().parse(&plain).map_err(|error| error.to_string())?;
         if label.is_some_and(|label| label.is_empty() || label.chars().any(char::is_control)) {
             return Err(format!("the label before `=` must be visible characters, found {text:?}"));
         }
-        if label.is_some_and(|label| label != name && policy_names().contains(&label)) {
+        if label.is_some_and(|label| label != name && registry().names().contains(&label)) {
             return Err(format!(
                 "the label before `=` must not be the name of another policy, found {text:?}"
             ));
@@ -50,57 +64,31 @@ impl PolicySpec {
         Ok(Self { label, name: name.to_owned(), options, written })
     }
 
-    fn parse_options(name: &str, text: &str) -> Result<Vec<(String, String)>, String> {
-        if text.is_empty() {
-            return Ok(Vec::new());
-        }
-        if name != "RNE" {
-            return Err(format!("policy {name} has no options, found {text:?}"));
-        }
-        let fields = Fields::of(text);
-        let value = |option: &str| fields.value(option).map(|value| text[value].trim().to_owned());
-        let names = fields.inside("");
-        let options: Vec<(String, String)> =
-            names.iter().filter_map(|option| Some(((*option).to_owned(), value(option)?))).collect();
-        let stands_twice = (1..names.len()).any(|i| names[..i].contains(&names[i]));
-        let written: Vec<String> =
-            options.iter().map(|(option, value)| format!("{option}:{value}")).collect();
-        let without_blanks = |text: &str| text.split_whitespace().collect::<String>();
-        let rebuilt = without_blanks(&format!("({})", written.join(",")));
-        if stands_twice || without_blanks(text).replace(",)", ")") != rebuilt {
-            return Err(format!(
-                "options must be written as (name: value, name: value), each once, found {text:?}"
-            ));
-        }
-        Ok(options)
-    }
-
-    /// The policy in a scenario: the scenario's options, and its own over them.
+    /// The policy.
     ///
     /// # Errors
-    /// Options that cannot be used, in one sentence.
-    pub fn make(&self, scenario: &Scenario) -> Result<Arc<dyn GroupingPolicy>, String> {
-        let options = self.options_in(scenario)?.rne.clone();
-        policy_named(&self.name, &options).map(Arc::from).map_err(|error| error.to_string())
+    /// None: a spec that was read can be made.
+    pub fn make(&self) -> Result<MadePolicy, String> {
+        registry().parse(&self.plain()).map_err(|error| error.to_string())
     }
 
-    /// The scenario as this policy sees it.
-    ///
-    /// # Errors
-    /// Those of [`PolicySpec::make`].
-    pub fn options_in(&self, scenario: &Scenario) -> Result<Scenario, String> {
-        let mut file: ScenarioFile = (**scenario).clone();
-        for (option, value) in &self.options {
-            file.set(&format!("rne.{option}"), value)
-                .map_err(|error| format!("policy {}: {error}", self.label))?;
-        }
-        Scenario::try_from(file).map_err(|problems| {
-            let problem = &problems[0];
-            format!("policy {}: {} {}, found {}", self.label, problem.field, problem.rule, problem.found)
-        })
+    /// Name and options without the label: reads to the same policy.
+    #[must_use]
+    pub fn plain(&self) -> String {
+        plain(&self.name, &self.options)
     }
 
-    /// Options that differ from the scenario's, with their values in RON.
+    /// The options of an RNE policy, the defaults included; `None` for another policy.
+    #[must_use]
+    pub fn rne_options(&self) -> Option<RneOptions> {
+        let all = self.make().ok().filter(|_| self.name == "RNE")?.options;
+        ron::Options::default()
+            .with_default_extension(ron::extensions::Extensions::IMPLICIT_SOME)
+            .from_str(&all)
+            .ok()
+    }
+
+    /// The options that are written, with their values in RON.
     #[must_use]
     pub fn options(&self) -> &[(String, String)] {
         &self.options
@@ -111,6 +99,32 @@ impl PolicySpec {
     pub fn written(&self) -> &str {
         &self.written
     }
+}
+
+fn plain(name: &str, options: &[(String, String)]) -> String {
+    let named: Vec<String> = options.iter().map(|(option, value)| format!("{option}: {value}")).collect();
+    if named.is_empty() { name.to_owned() } else { format!("{name}({})", named.join(", ")) }
+}
+
+fn parse_options(text: &str) -> Result<Vec<(String, String)>, String> {
+    if text.is_empty() {
+        return Ok(Vec::new());
+    }
+    let fields = Fields::of(text);
+    let value = |option: &str| fields.value(option).map(|value| text[value].trim().to_owned());
+    let names = fields.inside("");
+    let options: Vec<(String, String)> =
+        names.iter().filter_map(|option| Some(((*option).to_owned(), value(option)?))).collect();
+    let is_listed_twice = (1..names.len()).any(|i| names[..i].contains(&names[i]));
+    let written: Vec<String> = options.iter().map(|(option, value)| format!("{option}:{value}")).collect();
+    let without_blanks = |text: &str| text.split_whitespace().collect::<String>();
+    let rebuilt = without_blanks(&format!("({})", written.join(",")));
+    if is_listed_twice || without_blanks(text).replace(",)", ")") != rebuilt {
+        return Err(format!(
+            "options must be written as (name: value, name: value), each once, found {text:?}"
+        ));
+    }
+    Ok(options)
 }
 
 /// The entries of a list whose commas may stand in brackets as well.
@@ -143,7 +157,8 @@ mod tests {
     fn bad_policies_are_refused() {
         let refused = |text| PolicySpec::parse(text).unwrap_err();
         assert!(refused("NEAREST").contains("unknown policy"));
-        assert!(refused("DIS(score: Sum)").contains("policy DIS has no options"));
+        assert!(refused("DIS(score: Sum)").contains("policy DIS: it has no options"));
+        assert!(refused("RNE(luck: 3)").contains("policy RNE: "));
         assert!(refused("=RNE").contains("label"));
         for text in
             ["RNE(", "RNE(Sum)", "RNE(sort: true", "RNE(sort: true, sort: false)", "RNE(sort: true) x"]

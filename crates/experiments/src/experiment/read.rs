@@ -1,11 +1,12 @@
 //! Scenarios and sweep files as parts of an experiment, with the line of whatever is wrong.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use ron_fields::Fields;
-use usar_sim::scenario::{Problem, Scenario, ScenarioFile, parse_ron};
+use usar_sim::scenario::{Problem, Scenario, ScenarioFile, parse_ron, read_text};
 
 use super::file::{Map, SweepFile};
+use super::policy::registry;
 use super::{Axis, Parts, Program, Seeds};
 use crate::failure::Failure;
 
@@ -33,15 +34,50 @@ pub fn with_settings(scenario: &Scenario, settings: &[String]) -> Result<Scenari
     checked(file, "--set: ")
 }
 
+/// The sweep file that belongs to a scenario: `paper.sweep.ron` beside `paper.ron`.
+#[must_use]
+pub fn companion(scenario: &Path) -> PathBuf {
+    scenario.with_extension("sweep.ron")
+}
+
+/// The policy and the seed with which a scenario's sweep begins.
+///
+/// # Errors
+/// A scenario or a companion that cannot be used.
+pub fn defaults(scenario: &Path) -> Result<(String, u64), Failure> {
+    let (parts, _) = from_scenario(read_text(scenario).map_err(Failure::input)?, scenario)?;
+    let seed = match &parts.seeds {
+        Seeds::From(first) => *first,
+        Seeds::Listed(list) => list.first().copied().unwrap_or(1),
+    };
+    Ok((parts.policies.into_iter().next().unwrap_or_default(), seed))
+}
+
+/// The sweep that a scenario stands for: that of its companion, or one trial of RNE.
 pub(super) fn from_scenario(text: String, path: &Path) -> Result<(Parts, Vec<Reading>), Failure> {
+    let companion = companion(path);
+    if companion.is_file() {
+        Scenario::parse(&text, path).map_err(Failure::input)?;
+        let sweep = read_text(&companion).map_err(Failure::input)?;
+        let file: SweepFile = parse_ron(&sweep, &companion).map_err(Failure::input)?;
+        if Path::new(&file.scenario).file_name() != path.file_name() {
+            return Err(Failure::input(format!(
+                "{}: scenario: must be \"{}\", whose sweep this is, found {:?}",
+                companion.display(),
+                path.file_name().unwrap_or_default().display(),
+                file.scenario
+            )));
+        }
+        return from_sweep_file(sweep, &companion);
+    }
     let base = Scenario::parse(&text, path).map_err(Failure::input)?;
     let parts = Parts {
         name: base.name.clone(),
         given: text,
         axes: Vec::new(),
-        policies: base.sweep.policies.clone(),
-        trials: base.sweep.trials,
-        seeds: Seeds::From(base.sweep.first_seed),
+        policies: vec!["RNE".to_owned()],
+        trials: 1,
+        seeds: Seeds::From(1),
         is_checked: false,
         is_lean: false,
         program: Program::this(),
@@ -73,15 +109,10 @@ pub(super) fn from_sweep_file(text: String, path: &Path) -> Result<(Parts, Vec<R
     }
     let base = checked(set, &format!("{}: set: ", path.display()))?;
     let axes = axes(file.axes, &base, &bad)?;
-    let readings = readings(file.readings, &base, &bad)?;
-    if let Some((option, _)) =
-        readings.iter().find(|(option, _)| axes.iter().any(|axis| axis.path == format!("rne.{option}")))
-    {
-        return Err(bad("readings", &format!("{option} is an axis as well")));
-    }
-    let policies = file.policies.unwrap_or_else(|| base.sweep.policies.clone());
+    let readings = readings(file.readings, &bad)?;
+    let policies = file.policies.unwrap_or_else(|| vec!["RNE".to_owned()]);
     let seeds = match (file.seeds, file.first_seed) {
-        (Some(_), Some(_)) => return Err(bad("seeds", &"must not stand beside first_seed")),
+        (Some(_), Some(_)) => return Err(bad("seeds", &"must not be given beside first_seed")),
         (Some(list), None) if list.is_empty() => {
             return Err(bad("seeds", &"must have at least one, found none"));
         }
@@ -89,7 +120,7 @@ pub(super) fn from_sweep_file(text: String, path: &Path) -> Result<(Parts, Vec<R
             return Err(bad("seeds", &"must differ: trials of one seed are one trial"));
         }
         (Some(list), None) => Seeds::Listed(list),
-        (None, first) => Seeds::From(first.unwrap_or(base.sweep.first_seed)),
+        (None, first) => Seeds::From(first.unwrap_or(1)),
     };
     let listed = if let Seeds::Listed(list) = &seeds { Some(list.len() as u32) } else { None };
     let parts = Parts {
@@ -97,7 +128,7 @@ pub(super) fn from_sweep_file(text: String, path: &Path) -> Result<(Parts, Vec<R
         given: text,
         axes,
         policies,
-        trials: file.trials.or(listed).unwrap_or(base.sweep.trials),
+        trials: file.trials.or(listed).unwrap_or(1),
         seeds,
         is_checked: false,
         is_lean: file.lean,
@@ -105,6 +136,11 @@ pub(super) fn from_sweep_file(text: String, path: &Path) -> Result<(Parts, Vec<R
         base,
     };
     Ok((parts, readings))
+}
+
+/// The path of a field with numbers for the names of list entries: `roles[0].speed_mps` for `roles.carrier.speed_mps`.
+pub(super) fn canonical(scenario: &Scenario, path: &str) -> String {
+    Fields::of(&scenario.resolved()).canonical(path).unwrap_or_else(|| path.to_owned())
 }
 
 type Bad<'a> = dyn Fn(&str, &dyn std::fmt::Display) -> Failure + 'a;
@@ -124,9 +160,12 @@ fn axes(map: Map<Vec<Box<ron::value::RawValue>>>, base: &Scenario, bad: &Bad) ->
         let holds = |outer: &str, inner: &str| {
             inner.strip_prefix(outer).is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']))
         };
-        if let Some(Axis { path: other, .. }) =
-            axes.iter().find(|axis: &&Axis| holds(&axis.path, &path) || holds(&path, &axis.path))
-        {
+        let here = canonical(base, &path);
+        let overlaps = |axis: &&Axis| {
+            let there = canonical(base, &axis.path);
+            holds(&there, &here) || holds(&here, &there)
+        };
+        if let Some(Axis { path: other, .. }) = axes.iter().find(overlaps) {
             return Err(bad(&field, &format!("must not be a part of another axis, found {other}")));
         }
         let mut files: Vec<ScenarioFile> = Vec::new();
@@ -135,7 +174,7 @@ fn axes(map: Map<Vec<Box<ron::value::RawValue>>>, base: &Scenario, bad: &Bad) ->
             let mut file: ScenarioFile = (**base).clone();
             file.set(&path, value).map_err(|error| bad(&entry, &error))?;
             if files.contains(&file) {
-                return Err(bad(&entry, &format!("must not stand twice, found {value}")));
+                return Err(bad(&entry, &format!("must not be listed twice, found {value}")));
             }
             files.push(file);
         }
@@ -148,11 +187,7 @@ fn axes(map: Map<Vec<Box<ron::value::RawValue>>>, base: &Scenario, bad: &Bad) ->
 pub(super) type Reading = (String, Vec<String>);
 
 /// Checks each value of each option alone.
-fn readings(
-    map: Map<Vec<Box<ron::value::RawValue>>>,
-    base: &Scenario,
-    bad: &Bad,
-) -> Result<Vec<Reading>, Failure> {
+fn readings(map: Map<Vec<Box<ron::value::RawValue>>>, bad: &Bad) -> Result<Vec<Reading>, Failure> {
     let mut readings: Vec<Reading> = Vec::new();
     for (option, values) in map.0 {
         let field = format!("readings.{option:?}");
@@ -161,11 +196,14 @@ fn readings(
             return Err(bad(&field, &"must have at least one value, found none"));
         }
         for (i, value) in values.iter().enumerate() {
-            let mut file: ScenarioFile = (**base).clone();
-            file.set(&format!("rne.{option}"), value)
+            registry()
+                .make("RNE", &format!("({option}: {value})"))
                 .map_err(|error| bad(&format!("{field}[{i}]"), &error))?;
             if values[..i].contains(value) {
-                return Err(bad(&format!("{field}[{i}]"), &format!("must not stand twice, found {value}")));
+                return Err(bad(
+                    &format!("{field}[{i}]"),
+                    &format!("must not be listed twice, found {value}"),
+                ));
             }
         }
         readings.push((option, values));
@@ -177,15 +215,17 @@ fn readings(
     Ok(readings)
 }
 
-/// The policies with every combination of the readings in the place of RNE. One is named by the options in which it differs from the scenario's.
-pub(super) fn with_readings(policies: Vec<String>, readings: &[Reading], base: &Scenario) -> Vec<String> {
+/// The policies with every combination of the readings in the place of RNE. One is named by the options in which it differs from the
+/// default.
+pub(super) fn with_readings(policies: Vec<String>, readings: &[Reading]) -> Vec<String> {
+    let all_options = |text: &str| registry().make("RNE", text).ok().map(|made| made.options);
+    let default = all_options("");
     let mut combinations = vec![Vec::new()];
     for (option, values) in readings {
         let mut longer = Vec::new();
         for combination in &combinations {
             for value in values {
-                let mut file: ScenarioFile = (**base).clone();
-                let is_default = file.set(&format!("rne.{option}"), value).is_ok() && file == **base;
+                let is_default = all_options(&format!("({option}: {value})")) == default;
                 let mut next: Vec<String> = combination.clone();
                 next.extend((!is_default).then(|| format!("{option}: {value}")));
                 longer.push(next);
@@ -209,8 +249,8 @@ pub(super) fn checked(file: ScenarioFile, prefix: &str) -> Result<Scenario, Fail
     })
 }
 
-/// Whether a field decides numbers: all do but the scenario's name, its description and what a sweep runs by default.
+/// Whether a field decides numbers: all do but the scenario's name and its description.
 fn decides(path: &str) -> bool {
     let first = path.split(['.', '[']).next().unwrap_or_default();
-    !["name", "description", "sweep"].contains(&first)
+    !["name", "description"].contains(&first)
 }

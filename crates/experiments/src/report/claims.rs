@@ -8,7 +8,7 @@ use comfy_table::Table;
 use crate::claims::{CLAIMS, Example, Judged, LEAST_TRIALS};
 use crate::experiment::Program;
 use crate::failure::Failure;
-use crate::sweep::NewFile;
+use crate::files::NewFile;
 use crate::sweep::disk::REPORT;
 use crate::table::{claims_table, examples_table, power_table, verdicts_table};
 

@@ -1,16 +1,18 @@
 //! Figures of how missions went: rescuees over time, who was in which group, and the trust within the team.
 
-use rne_core::{NeedDistribution, NeedVector, RelativeNeedsEntropy, relative_entropy};
+use rne_core::policies::rne::Rne;
+use rne_core::{Member, NeedDistribution, NeedWeights, PolicyError, RelativeNeedsEntropy, relative_entropy};
 
 use super::figure::{Figure, Panel, draw, heat_map, layout, line_panel, names, table};
 use super::gather::Gathered;
 use super::metrics::capitalised;
 use crate::experiment::Experiment;
 use crate::failure::Failure;
-use crate::rounds::{KEYS, Likeness, Share, weights_of};
+use crate::metric::task_names;
+use crate::rounds::{KEYS, Likeness, Share};
+use crate::run::series_times;
 use crate::stats::Moments;
 use crate::stats::paired::t_half_width;
-use crate::sweep::series_times;
 
 /// Rescuees over time, with a band.
 pub(super) fn over_time(
@@ -20,8 +22,11 @@ pub(super) fn over_time(
 ) -> Result<Figure, Failure> {
     let times: Vec<f64> = series_times(experiment.cases[case].scenario.duration_s).collect();
     let names = names(experiment);
+    let metrics = &experiment.metrics;
+    let titles: Vec<String> =
+        metrics.declared("rescuees").into_iter().map(|place| metrics[place].title.clone()).collect();
     let (mut panels, mut rows) = (Vec::new(), Vec::new());
-    for (part, title) in ["rescuees total", "rescuees hard", "rescuees easy"].into_iter().enumerate() {
+    for (part, title) in titles.iter().map(String::as_str).enumerate() {
         let mut lines = Vec::new();
         for (i, (policy, gathered)) in experiment.policies.iter().zip(gathered).enumerate() {
             let mut points = Vec::new();
@@ -55,36 +60,38 @@ pub(super) fn over_time(
     })
 }
 
-/// In which share of the trials each robot is sent to the hard task, round by round.
-pub(super) fn membership(experiment: &Experiment, gathered: &[Gathered]) -> Result<Figure, Failure> {
+/// In which share of the trials each robot is sent to the hardest task, round by round.
+pub(super) fn membership(
+    experiment: &Experiment,
+    case: usize,
+    gathered: &[Gathered],
+) -> Result<Figure, Failure> {
+    let scenario = &experiment.cases[case].scenario;
+    let hardest = scenario.hardest_first().first().map_or(0, |task| task.index());
+    let task = scenario.tasks.get(hardest).map_or("", |task| &task.name);
     let (mut panels, mut rows, mut least) = (Vec::new(), Vec::new(), u32::MAX);
     for ((policy, name), gathered) in experiment.policies.iter().zip(&names(experiment)).zip(gathered) {
-        for ((round, robot), [hard, easy]) in &gathered.groups {
-            let role = gathered.roles[*robot as usize].to_owned();
-            rows.push(vec![
-                policy.label.clone(),
-                round.to_string(),
-                robot.to_string(),
-                role,
-                hard.to_string(),
-                easy.to_string(),
-            ]);
+        for ((round, robot), tasks) in &gathered.groups {
+            let role = gathered.roles[*robot as usize].clone();
+            let first = [policy.label.clone(), round.to_string(), robot.to_string(), role];
+            rows.push(first.into_iter().chain(tasks.iter().map(u32::to_string)).collect::<Vec<String>>());
         }
         // A round counts as far as each robot was grouped in some trial.
         let robots = gathered.roles.len() as u32;
-        let count = |round, robot| gathered.groups.get(&(round, robot)).copied().unwrap_or([0, 0]);
-        let is_full = |round: &u32| (0..robots).all(|robot| count(*round, robot) != [0, 0]);
+        let nothing = vec![0; scenario.tasks.len()];
+        let count = |round, robot| gathered.groups.get(&(round, robot)).unwrap_or(&nothing);
+        let grouped = |round, robot| count(round, robot).iter().sum::<u32>();
+        let is_full = |round: &u32| (0..robots).all(|robot| grouped(*round, robot) > 0);
         let rounds: Vec<u32> = (1..u32::MAX).take_while(is_full).collect();
         if rounds.is_empty() || robots == 0 {
             continue;
         }
         let share = |round: u32, robot: u32| {
-            let [hard, easy] = count(round, robot);
-            f64::from(hard) / f64::from(hard + easy)
+            f64::from(count(round, robot)[hardest]) / f64::from(grouped(round, robot))
         };
         least = rounds
             .iter()
-            .flat_map(|round| (0..robots).map(|robot| count(*round, robot).iter().sum()))
+            .flat_map(|round| (0..robots).map(|robot| grouped(*round, robot)))
             .chain([least])
             .min()
             .unwrap_or(0);
@@ -99,34 +106,34 @@ pub(super) fn membership(experiment: &Experiment, gathered: &[Gathered]) -> Resu
             .with_y_categories(names.collect());
         panels.push(Panel { plots, layout });
     }
+    let columns = ["policy", "round", "robot", "role"].into_iter();
+    let columns: Vec<&str> = columns.chain(scenario.tasks.iter().map(|task| task.name.as_str())).collect();
     Ok(Figure {
         name: "groups".into(),
         title: "Groups over rounds".into(),
         caption: format!(
-            "Share of trials in which a robot was sent to the hard task, of those in which it was grouped (n = {} or more a cell). \
+            "Share of trials in which a robot was sent to task {task}, of those in which it was grouped (n = {} or more a cell). \
              Rounds that not every robot saw are in the table only.",
             if least == u32::MAX { 0 } else { least }
         ),
         svg: if panels.is_empty() { String::new() } else { draw(panels, 2, [520.0, 380.0]) },
-        csv: table(&["policy", "round", "robot", "role", "hard", "easy"], rows)?,
+        csv: table(&columns, rows)?,
     })
 }
 
-/// RNE from each robot to each other of its role, in the first round of the first trial.
-pub(super) fn trust(
-    experiment: &Experiment,
-    case: usize,
-    gathered: &[Gathered],
-) -> Result<Option<Figure>, Failure> {
-    let mut with_rounds =
-        experiment.policies.iter().zip(gathered).filter(|(_, gathered)| !gathered.first_round.is_empty());
-    let Some((policy, gathered)) = with_rounds.next() else { return Ok(None) };
-    let team = &gathered.first_round;
-    let options = &experiment.cases[case].scenario.rne;
-    let weights = weights_of(team, options)?;
-    let distribution = |robot: &crate::sweep::Grouped| {
-        NeedDistribution::of_agent(&NeedVector::new(robot.needs.clone())?, &weights)
-    };
+/// RNE from each robot to each other of its role, in the first round of the first trial, with the weights of the question.
+pub(super) fn trust(experiment: &Experiment, gathered: &[Gathered]) -> Result<Option<Figure>, Failure> {
+    let mut with_rounds = experiment.policies.iter().zip(gathered);
+    let first = with_rounds
+        .find_map(|(policy, gathered)| Some((policy, gathered.first_question.as_ref()?, gathered)));
+    let Some((policy, question, gathered)) = first else { return Ok(None) };
+    let options = policy.rne_options().unwrap_or_default();
+    let rne = Rne::new(options).map_err(Failure::run)?;
+    let weights =
+        rne.weights(question).and_then(|weights| NeedWeights::new(weights).map_err(PolicyError::Options));
+    let Ok(weights) = weights else { return Ok(None) };
+    let team = &question.members;
+    let distribution = |member: &Member| NeedDistribution::of_agent(&member.needs, &weights);
     let distributions = team.iter().map(distribution).collect::<Result<Vec<_>, _>>().map_err(Failure::run)?;
     let rne =
         |i: usize, j: usize| relative_entropy(&distributions[i], &distributions[j]).map_err(Failure::run);
@@ -134,41 +141,26 @@ pub(super) fn trust(
     for i in 0..team.len() {
         for j in 0..team.len() {
             let value = rne(i, j)?.nats().map_or("infinite".to_owned(), |nats| nats.to_string());
-            rows.push(vec![team[i].robot.to_string(), team[j].robot.to_string(), value]);
+            rows.push(vec![team[i].id.to_string(), team[j].id.to_string(), value]);
         }
     }
     let mut panels = Vec::new();
-    for role in ["Carrier", "Supplier", "Observer"] {
-        let members: Vec<usize> =
-            (0..team.len()).filter(|i| gathered.roles[team[*i].robot as usize] == role).collect();
+    for role in question.role_ids() {
+        let members: Vec<usize> = (0..team.len()).filter(|i| team[*i].role == role).collect();
         if members.len() < 2 {
             continue;
         }
-        let mut data = Vec::new();
-        for i in &members {
-            let row =
-                members.iter().map(|j| rne(*i, *j)).collect::<Result<Vec<RelativeNeedsEntropy>, _>>()?;
-            data.push(
-                row.iter().map(|rne| rne.nats().map_or(0.0, |nats| 1000.0 * nats)).collect::<Vec<f64>>(),
-            );
-        }
-        let most = data.iter().flatten().copied().fold(0.0, f64::max);
-        let plots = vec![heat_map(data, most)];
-        let names: Vec<String> = members.iter().map(|i| team[*i].robot.to_string()).collect();
-        let layout = layout(&plots, &format!("{}s", role.to_lowercase()))
-            .with_x_categories(names.clone())
-            .with_y_categories(names)
-            .with_x_label("to robot")
-            .with_y_label("from robot");
-        panels.push(Panel { plots, layout });
+        let row = |i: &usize| members.iter().map(|j| rne(*i, *j)).collect::<Result<Vec<_>, _>>();
+        let data = members.iter().map(row).collect::<Result<Vec<Vec<RelativeNeedsEntropy>>, _>>()?;
+        panels.push(trust_panel(&data, &question.roles[role.index()], members.iter().map(|i| team[*i].id)));
     }
     Ok(Some(Figure {
         name: "trust".into(),
         title: "Relative Needs Entropy within each role".into(),
         caption: format!(
             "RNE from each robot to each other of its role when the first round of trial {} under {} was grouped, in thousandths of a nat; lower is \
-             more trust. The weights are the scenario's. Between roles it is infinite wherever one lacks a need that the other has; the table \
-             has all pairs. n = 1 trial.",
+             more trust. It is infinite wherever one robot lacks a need that the other has: such cells have the darkest colour, beyond the scale, \
+             and the table says so. The table has all pairs, those between roles too. n = 1 trial.",
             gathered.first_trial, policy.label
         ),
         svg: if panels.is_empty() { String::new() } else { draw(panels, 3, [400.0, 360.0]) },
@@ -176,10 +168,29 @@ pub(super) fn trust(
     }))
 }
 
+/// A heat map of one role. An infinite value is drawn above every finite one: it is no trust at all.
+fn trust_panel(data: &[Vec<RelativeNeedsEntropy>], role: &str, ids: impl Iterator<Item = u32>) -> Panel {
+    let finite = data.iter().flatten().filter_map(|rne| rne.nats());
+    let most = 1000.0 * finite.fold(0.0, f64::max);
+    let beyond = if most > 0.0 { 1.25 * most } else { 1.0 };
+    let is_infinite = data.iter().flatten().any(|rne| rne.is_infinite());
+    let shown = |rne: &RelativeNeedsEntropy| rne.nats().map_or(beyond, |nats| 1000.0 * nats);
+    let cells = data.iter().map(|row| row.iter().map(shown).collect()).collect();
+    let plots = vec![heat_map(cells, if is_infinite { beyond } else { most })];
+    let names: Vec<String> = ids.map(|id| id.to_string()).collect();
+    let layout = layout(&plots, &format!("{role}s"))
+        .with_x_categories(names.clone())
+        .with_y_categories(names)
+        .with_x_label("to robot")
+        .with_y_label("from robot");
+    Panel { plots, layout }
+}
+
 /// In which share of the rounds each policy's split is the one that sorting gives.
 pub(super) fn sorting(experiment: &Experiment, gathered: &[Gathered]) -> Result<Figure, Failure> {
     let (mut shares, mut rows, mut labels, mut n) =
         ([Vec::new(), Vec::new()], Vec::new(), Vec::new(), usize::MAX);
+    let mut roles_of_all: Vec<String> = Vec::new();
     let names = names(experiment);
     for ((policy, name), gathered) in experiment.policies.iter().zip(names).zip(gathered) {
         let rounds = gathered.likeness[0].rounds();
@@ -190,8 +201,10 @@ pub(super) fn sorting(experiment: &Experiment, gathered: &[Gathered]) -> Result<
             let cell = |value: Option<f64>| value.map_or(String::new(), |value| value.to_string());
             let beside = |share: &Share| [cell(share.share()), cell(share.chance())];
             let first = [policy.label.clone(), key.name.to_owned(), rounds.to_string()];
-            let shares = [&likeness.split, &likeness.carriers, &likeness.suppliers, &likeness.hard_is_higher];
-            rows.push(first.into_iter().chain(shares.into_iter().flat_map(beside)).collect::<Vec<String>>());
+            let roles = likeness.roles.iter().map(|role| &role.share);
+            let shares = [&likeness.split].into_iter().chain(roles).chain([&likeness.harder_is_higher]);
+            roles_of_all = likeness.roles.iter().map(|role| role.role.clone()).collect();
+            rows.push(first.into_iter().chain(shares.flat_map(beside)).collect::<Vec<String>>());
         }
         let row = |share: fn(&Likeness) -> &Share| {
             gathered
@@ -201,11 +214,11 @@ pub(super) fn sorting(experiment: &Experiment, gathered: &[Gathered]) -> Result<
                 .collect::<Vec<f64>>()
         };
         shares[0].push(row(|likeness| &likeness.split));
-        shares[1].push(row(|likeness| &likeness.hard_is_higher));
+        shares[1].push(row(|likeness| &likeness.harder_is_higher));
         labels.push(name);
         n = n.min(rounds);
     }
-    let titles = ["the split is that of sorting by", "the hard task's group has the higher mean"];
+    let titles = ["the split is that of sorting by", "the harder task's group has the higher mean"];
     let panel = |(data, title): (Vec<Vec<f64>>, &str)| {
         let plots = vec![heat_map(data, 1.0)];
         let layout = layout(&plots, title)
@@ -215,6 +228,11 @@ pub(super) fn sorting(experiment: &Experiment, gathered: &[Gathered]) -> Result<
     };
     let is_empty = labels.is_empty();
     let panels: Vec<Panel> = shares.into_iter().zip(titles).map(panel).collect();
+    let shares = ["split".to_owned()].into_iter().chain(roles_of_all).chain(["harder_is_higher".to_owned()]);
+    let shares = shares.flat_map(|share| [share.clone(), format!("{share}_by_chance")]);
+    let columns: Vec<String> =
+        ["policy", "sorted_by", "rounds"].map(str::to_owned).into_iter().chain(shares).collect();
+    let columns: Vec<&str> = columns.iter().map(String::as_str).collect();
     Ok(Figure {
         name: "sorting".into(),
         title: "What the groups amount to".into(),
@@ -223,31 +241,17 @@ pub(super) fn sorting(experiment: &Experiment, gathered: &[Gathered]) -> Result<
              chance in the table). n = {n} rounds or more for each policy."
         ),
         svg: if is_empty { String::new() } else { draw(panels, 2, [520.0, 320.0]) },
-        csv: table(
-            &[
-                "policy",
-                "sorted_by",
-                "rounds",
-                "split",
-                "split_by_chance",
-                "carriers",
-                "carriers_by_chance",
-                "suppliers",
-                "suppliers_by_chance",
-                "hard_is_higher",
-                "hard_is_higher_by_chance",
-            ],
-            rows,
-        )?,
+        csv: table(&columns, rows)?,
     })
 }
 
 /// The mean levels of the groups, round by round.
-pub(super) fn levels(experiment: &Experiment, gathered: &[Gathered]) -> Result<Figure, Failure> {
+pub(super) fn levels(experiment: &Experiment, case: usize, gathered: &[Gathered]) -> Result<Figure, Failure> {
+    let tasks = task_names(&experiment.cases[case].scenario);
     let names = names(experiment);
     let (mut panels, mut rows) = (Vec::new(), Vec::new());
     for (level, name) in ["energy", "HP"].into_iter().enumerate() {
-        for (task, task_name) in ["hard", "easy"].into_iter().enumerate() {
+        for (task, task_name) in tasks.iter().enumerate() {
             let mut lines = Vec::new();
             for (i, (policy, gathered)) in experiment.policies.iter().zip(gathered).enumerate() {
                 let mut points = Vec::new();
@@ -257,7 +261,7 @@ pub(super) fn levels(experiment: &Experiment, gathered: &[Gathered]) -> Result<F
                     let half = t_half_width(&values);
                     rows.push(vec![
                         name.to_lowercase(),
-                        task_name.into(),
+                        task_name.clone(),
                         policy.label.clone(),
                         round.to_string(),
                         values.len().to_string(),

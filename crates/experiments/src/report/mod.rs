@@ -15,7 +15,7 @@ use crate::comparison::{
 };
 use crate::experiment::{Axis, Experiment, Seeds};
 use crate::failure::Failure;
-use crate::sweep::NewFile;
+use crate::files::NewFile;
 use crate::sweep::disk::{PLOTS, REPORT};
 use crate::sweep::folder::Folder;
 use figure::Figure;
@@ -99,10 +99,10 @@ fn figures(folder: &mut Folder, case: usize, comparisons: &[&Comparison]) -> Res
         figures.push(metrics::forest(experiment, comparisons)?);
     }
     figures.push(course::over_time(experiment, case, &gathered)?);
-    figures.push(course::membership(experiment, &gathered)?);
-    figures.push(course::levels(experiment, &gathered)?);
+    figures.push(course::membership(experiment, case, &gathered)?);
+    figures.push(course::levels(experiment, case, &gathered)?);
     figures.push(course::sorting(experiment, &gathered)?);
-    figures.extend(course::trust(experiment, case, &gathered)?);
+    figures.extend(course::trust(experiment, &gathered)?);
     figures.extend(metrics::axes(folder, case)?);
     figures.retain(|figure| !figure.svg.is_empty());
     Ok(figures)

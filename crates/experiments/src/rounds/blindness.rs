@@ -1,10 +1,10 @@
 //! Relative entropy compares proportions: robots that differ in everything can trust each other fully. An example from real trials.
 
-use rne_core::{NeedDistribution, NeedVector, RneOptions, relative_entropy};
+use rne_core::policies::rne::Rne;
+use rne_core::{Member, NeedDistribution, NeedWeights, relative_entropy};
 
-use super::{Round, weights_of};
+use super::{Round, energy, hp};
 use crate::failure::Failure;
-use crate::sweep::Grouped;
 
 /// Entropies below this, in nats, are rounding.
 const LEAST_NATS: f64 = 1e-9;
@@ -16,9 +16,9 @@ const LEAST_POINTS: f64 = 2.0;
 #[derive(Debug, Clone, PartialEq)]
 pub struct Pair {
     /// The one that trusts.
-    pub from: Grouped,
+    pub from: Member,
     /// The one that is trusted.
-    pub to: Grouped,
+    pub to: Member,
     /// Relative needs entropy, in nats.
     pub rne: f64,
 }
@@ -31,8 +31,8 @@ impl Pair {
     }
 }
 
-fn apart(a: &Grouped, b: &Grouped) -> f64 {
-    (a.energy - b.energy).hypot(a.hp - b.hp)
+fn apart(a: &Member, b: &Member) -> f64 {
+    (energy(a) - energy(b)).hypot(hp(a) - hp(b))
 }
 
 /// How blind to magnitude relative entropy was in some rounds.
@@ -56,7 +56,7 @@ pub struct Example {
     /// Number of the round.
     pub round: u32,
     /// The role of all of them.
-    pub role: &'static str,
+    pub role: String,
     /// The one is farther apart in its levels.
     pub unlike: Pair,
     /// The other is nearer to each other, but has the higher entropy.
@@ -76,15 +76,13 @@ impl Blindness {
     ///
     /// # Errors
     /// Needs or weights that cannot be used.
-    pub fn add(&mut self, round: &Round, options: &RneOptions) -> Result<(), Failure> {
-        let weights = weights_of(&round.robots, options)?;
-        for role in rne_core::Role::ALL {
-            let members = round.robots.iter().zip(&round.roles).filter(|(_, of)| **of == role);
-            let members: Vec<&Grouped> = members.map(|(robot, _)| robot).collect();
-            let distribution = |robot: &&Grouped| {
-                let needs = NeedVector::new(robot.needs.clone());
-                needs.and_then(|needs| NeedDistribution::of_agent(&needs, &weights)).map_err(Failure::run)
-            };
+    pub fn add(&mut self, round: &Round, rne: &Rne) -> Result<(), Failure> {
+        let weights = rne.weights(&round.question).map_err(Failure::run)?;
+        let weights = NeedWeights::new(weights).map_err(Failure::run)?;
+        for role in round.question.role_ids() {
+            let members: Vec<&Member> = round.question.of_role(role).collect();
+            let distribution =
+                |member: &&Member| NeedDistribution::of_agent(&member.needs, &weights).map_err(Failure::run);
             let shares = members.iter().map(distribution).collect::<Result<Vec<_>, _>>()?;
             let mut pairs: Vec<Candidate> = Vec::new();
             for i in 0..members.len() {
@@ -99,7 +97,7 @@ impl Blindness {
                 }
             }
             self.count(&pairs);
-            self.look_for_example(round, role.name(), &members, &pairs);
+            self.look_for_example(round, &round.question.roles[role.index()], &members, &pairs);
         }
         Ok(())
     }
@@ -116,13 +114,7 @@ impl Blindness {
         }
     }
 
-    fn look_for_example(
-        &mut self,
-        round: &Round,
-        role: &'static str,
-        members: &[&Grouped],
-        pairs: &[Candidate],
-    ) {
+    fn look_for_example(&mut self, round: &Round, role: &str, members: &[&Member], pairs: &[Candidate]) {
         for unlike in pairs.iter().filter(|pair| pair.rne > LEAST_NATS) {
             for alike in pairs.iter().filter(|pair| pair.apart > LEAST_POINTS) {
                 let plain = (unlike.apart / alike.apart).min(alike.rne / unlike.rne);
@@ -137,8 +129,8 @@ impl Blindness {
                 self.plainest = Some(Example {
                     trial: round.trial,
                     seed: round.seed,
-                    round: round.round,
-                    role,
+                    round: round.question.round,
+                    role: role.to_owned(),
                     unlike: pair(unlike),
                     alike: pair(alike),
                     plain,
@@ -158,26 +150,18 @@ struct Candidate {
 
 #[cfg(test)]
 mod tests {
-    use rne_core::{Difficulty, Role};
+    use rne_core::RneOptions;
 
+    use super::super::testing;
     use super::*;
 
     #[test]
     fn proportional_needs_are_full_trust_however_far_apart() {
-        let robot = |id: u32, energy: f64, hp: f64| Grouped {
-            round: 1,
-            robot: id,
-            task: Difficulty::Hard,
-            energy,
-            hp,
-            needs: vec![hp, energy],
-        };
-        let robots = vec![robot(0, 90.0, 80.0), robot(1, 45.0, 40.02), robot(2, 90.0, 60.0)];
-        let round = Round { trial: 3, seed: 7, round: 1, roles: vec![Role::Carrier; 3], robots };
+        let round = testing::round(&[(90.0, 80.0, 0), (45.0, 40.02, 0), (90.0, 60.0, 0)]);
         let mut found = Blindness::default();
-        found.add(&round, &RneOptions::default()).unwrap();
+        found.add(&round, &Rne::new(RneOptions::default()).unwrap()).unwrap();
         let example = found.plainest.clone().unwrap();
-        let mut ids = [example.unlike.from.robot, example.unlike.to.robot];
+        let mut ids = [example.unlike.from.id, example.unlike.to.id];
         ids.sort_unstable();
         assert_eq!(ids, [0, 1]);
         assert!(example.unlike.rne < 1e-6 && example.alike.rne > 1e-3);

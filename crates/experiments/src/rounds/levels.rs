@@ -2,10 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use rne_core::Difficulty;
-
-use super::Round;
-use crate::sweep::Grouped;
+use super::{Round, energy, hp};
 
 /// Mean levels of the groups of one policy in one round.
 #[derive(Debug, Clone, PartialEq)]
@@ -14,31 +11,23 @@ pub struct GroupLevels {
     pub policy: String,
     /// Number of the round, from 1.
     pub round: u32,
-    /// Rounds with two groups that it is over.
+    /// Rounds in which each task's group had members: what the means are over.
     pub count: usize,
-    /// Mean energy and HP of the group of the hard task.
-    pub hard: [f64; 2],
-    /// And of the easy task.
-    pub easy: [f64; 2],
+    /// Mean energy and HP of each task's group, in the order of the table of tasks.
+    pub groups: Vec<[f64; 2]>,
 }
 
-/// Of all rounds of one policy, the means for each round that has two groups.
+/// Of all rounds of one policy, the means for each round in which each task's group had members.
 #[must_use]
 pub fn levels(label: &str, rounds: &[Round]) -> Vec<GroupLevels> {
-    let mut by_round: BTreeMap<u32, Vec<[[f64; 2]; 2]>> = BTreeMap::new();
+    let mut by_round: BTreeMap<u32, Vec<Vec<[f64; 2]>>> = BTreeMap::new();
     for round in rounds {
-        let of_task = |task: Difficulty| {
-            let members: Vec<_> = round.robots.iter().filter(|robot| robot.task == task).collect();
-            let mean = |value: fn(&Grouped) -> f64| {
-                members.iter().map(|robot| value(robot)).sum::<f64>() / members.len() as f64
-            };
-            (!members.is_empty()).then(|| [mean(|robot| robot.energy), mean(|robot| robot.hp)])
-        };
-        if let Some(both) = of_task(Difficulty::Hard).zip(of_task(Difficulty::Easy)) {
-            by_round.entry(round.round).or_default().push([both.0, both.1]);
+        let groups = round.question.task_ids().map(|task| mean_levels(round, task));
+        if let Some(groups) = groups.collect::<Option<Vec<[f64; 2]>>>() {
+            by_round.entry(round.question.round).or_default().push(groups);
         }
     }
-    let of_round = |(round, trials): (u32, Vec<[[f64; 2]; 2]>)| {
+    let of_round = |(round, trials): (u32, Vec<Vec<[f64; 2]>>)| {
         let mean = |task: usize, level: usize| {
             trials.iter().map(|trial| trial[task][level]).sum::<f64>() / trials.len() as f64
         };
@@ -46,9 +35,17 @@ pub fn levels(label: &str, rounds: &[Round]) -> Vec<GroupLevels> {
             policy: label.to_owned(),
             round,
             count: trials.len(),
-            hard: [mean(0, 0), mean(0, 1)],
-            easy: [mean(1, 0), mean(1, 1)],
+            groups: (0..trials[0].len()).map(|task| [mean(task, 0), mean(task, 1)]).collect(),
         }
     };
     by_round.into_iter().map(of_round).collect()
+}
+
+/// Mean energy and HP of a task's group; `None` where it is empty.
+pub(crate) fn mean_levels(round: &Round, task: rne_core::TaskId) -> Option<[f64; 2]> {
+    let members: Vec<_> = round.group(task).collect();
+    let mean = |value: fn(&rne_core::Member) -> f64| {
+        members.iter().map(|member| value(member)).sum::<f64>() / members.len() as f64
+    };
+    (!members.is_empty()).then(|| [mean(energy), mean(hp)])
 }

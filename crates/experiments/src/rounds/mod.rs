@@ -1,22 +1,19 @@
-//! Rounds as their policies found and split them: what a split amounts to, and how another policy would have split the same team.
+//! Rounds as they were asked and answered: what a split amounts to, and how another policy would have split the same team.
 
 mod blindness;
 mod levels;
 mod sorting;
 
-use std::collections::BTreeMap;
-
-use rne_core::{
-    Difficulty, Grouping, GroupingPolicy, Member, NeedVector, NeedWeights, RneOptions, Role, Team,
-};
+use rne_core::{Assignment, Decision, Member, Policy, Question, TaskId};
 
 pub use blindness::{Blindness, Example, Pair};
+pub(crate) use levels::mean_levels;
 pub use levels::{GroupLevels, levels};
 pub use sorting::{KEYS, Key, Likeness, Share, likeness};
 
 use crate::failure::Failure;
+use crate::run::Trial;
 use crate::sweep::folder::Folder;
-use crate::sweep::{Grouped, Trial};
 
 /// One round of one trial.
 #[derive(Debug, Clone, PartialEq)]
@@ -25,27 +22,20 @@ pub struct Round {
     pub trial: u32,
     /// Seed of the trial.
     pub seed: u64,
-    /// Number of the round, from 1.
-    pub round: u32,
-    /// The robots that were grouped, by id.
-    pub robots: Vec<Grouped>,
-    /// Their roles.
-    pub roles: Vec<Role>,
+    /// What was asked.
+    pub question: Question,
+    /// What was answered.
+    pub decision: Decision,
 }
 
 /// The rounds of a trial.
-#[must_use]
-pub fn rounds_of(number: u32, trial: &Trial) -> Vec<Round> {
-    let mut rounds: BTreeMap<u32, Vec<Grouped>> = BTreeMap::new();
-    for robot in &trial.grouped {
-        rounds.entry(robot.round).or_default().push(robot.clone());
-    }
-    let of_round = |(round, mut robots): (u32, Vec<Grouped>)| {
-        robots.sort_by_key(|robot| robot.robot);
-        let roles = robots.iter().map(|robot| trial.record.robots[robot.robot as usize].role).collect();
-        Round { trial: number, seed: trial.record.seed, round, robots, roles }
-    };
-    rounds.into_iter().map(of_round).collect()
+pub fn rounds_of(number: u32, trial: &Trial) -> impl Iterator<Item = Round> + '_ {
+    trial.record.decisions.iter().map(move |asked| Round {
+        trial: number,
+        seed: trial.record.seed,
+        question: trial.record.question(asked),
+        decision: asked.decision.clone(),
+    })
 }
 
 /// All rounds of one policy of a sweep.
@@ -63,62 +53,87 @@ pub fn rounds_in(folder: &mut Folder, case: usize, policy: usize) -> Result<Vec<
 }
 
 impl Round {
-    /// The team as the policy saw it, but for positions, which only distance-based policies look at.
-    ///
-    /// # Errors
-    /// None: it was a team.
-    pub fn team(&self) -> Result<Team, Failure> {
-        let member = |(robot, role): (&Grouped, &Role)| {
-            Ok(Member {
-                id: robot.robot,
-                role: *role,
-                position: [0.0, 0.0],
-                needs: NeedVector::new(robot.needs.clone()).map_err(Failure::run)?,
-                energy_level: Some(robot.energy),
-                hp_level: Some(robot.hp),
-            })
-        };
-        let members = self.robots.iter().zip(&self.roles).map(member).collect::<Result<Vec<_>, Failure>>()?;
-        Team::new(members, None).map_err(Failure::run)
-    }
-
-    /// How another policy, one that needs neither positions nor draws, would have grouped this team.
+    /// How another policy would have grouped this team.
     ///
     /// # Errors
     /// It cannot.
-    pub fn grouped_by(&self, policy: &dyn GroupingPolicy) -> Result<Grouping, Failure> {
-        let mut draws =
-            usar_sim::seed::stream(self.seed, usar_sim::seed::Purpose::Grouping, u64::from(self.round));
-        policy.group(&self.team()?, &mut draws).map_err(Failure::run)
+    pub fn grouped_by(&self, policy: &dyn Policy) -> Result<Assignment, Failure> {
+        Ok(policy.decide(&self.question).map_err(Failure::run)?.assignment)
     }
 
-    /// Ids of a task's group.
-    #[must_use]
-    pub fn group(&self, task: Difficulty) -> Vec<u32> {
-        self.robots.iter().filter(|robot| robot.task == task).map(|robot| robot.robot).collect()
+    /// The members of a task's group, by id.
+    pub fn group(&self, task: TaskId) -> impl Iterator<Item = &Member> {
+        let group = self.decision.assignment.of(task);
+        self.question.members.iter().filter(move |member| group.contains(&member.id))
     }
 
-    /// Whether a grouping is this round's: with the same tasks, and as a split, whichever half takes which task.
+    /// The tasks whose groups have members, from the hardest to the easiest.
     #[must_use]
-    pub fn is_as(&self, grouping: &Grouping) -> [bool; 2] {
-        let (hard, easy) = (self.group(Difficulty::Hard), self.group(Difficulty::Easy));
-        let same = hard == grouping.hard && easy == grouping.easy;
-        [same, same || hard == grouping.easy && easy == grouping.hard]
+    pub fn tasks(&self) -> Vec<TaskId> {
+        let has_members = |task: &TaskId| !self.decision.assignment.of(*task).is_empty();
+        self.question.hardest_first().into_iter().filter(has_members).collect()
+    }
+
+    /// Whether an assignment is this round's: with the same tasks, and as a split, whichever group takes which task.
+    #[must_use]
+    pub fn is_as(&self, assignment: &Assignment) -> [bool; 2] {
+        let sorted = |assignment: &Assignment| {
+            let mut groups = assignment.groups.clone();
+            groups.sort();
+            groups
+        };
+        let own = &self.decision.assignment;
+        [own == assignment, sorted(own) == sorted(assignment)]
     }
 }
 
-/// The weights that RNE gives to the needs of a team.
-///
-/// # Errors
-/// Weights that cannot be used.
-pub fn weights_of(robots: &[Grouped], options: &RneOptions) -> Result<NeedWeights, Failure> {
-    let needs = robots.first().map_or(0, |robot| robot.needs.len());
-    let mut weights = options.weights.clone().unwrap_or_else(|| vec![1.0; needs]);
-    if options.scale {
-        for (k, weight) in weights.iter_mut().enumerate() {
-            let most = robots.iter().map(|robot| robot.needs[k]).fold(0.0, f64::max);
-            *weight = if most > 0.0 { *weight / most } else { 0.0 };
-        }
+/// Battery level of a member, in percent.
+pub(crate) fn energy(member: &Member) -> f64 {
+    member.energy_level.unwrap_or(0.0)
+}
+
+/// Health level of a member, in percent.
+pub(crate) fn hp(member: &Member) -> f64 {
+    member.hp_level.unwrap_or(0.0)
+}
+
+#[cfg(test)]
+pub(crate) mod testing {
+    use rne_core::question::hardest_first;
+    use rne_core::{
+        Decision, Member, Need, NeedVector, Question, Quota, RandomSeed, RoleId, SCHEMA_VERSION, Task,
+    };
+
+    use super::Round;
+
+    /// Robots of one role with these levels (energy, HP), and the number of each one's task; the first task is the harder one.
+    pub(crate) fn round(robots: &[(f64, f64, usize)]) -> Round {
+        let member = |(id, (energy, hp, _)): (u32, &(f64, f64, usize))| Member {
+            id,
+            role: RoleId(0),
+            home: [0.0, 0.0],
+            needs: NeedVector::new(vec![*hp, *energy]).unwrap(),
+            energy_level: Some(*energy),
+            hp_level: Some(*hp),
+        };
+        let ids = |task: usize| {
+            let of_task = (0..).zip(robots).filter(|(_, robot)| robot.2 == task);
+            of_task.map(|(id, _)| id).collect::<Vec<u32>>()
+        };
+        let task = |name: &str, difficulty| Task { name: name.into(), difficulty, place: None };
+        let tasks = vec![task("far", 2), task("near", 1)];
+        let order = hardest_first(tasks.iter().map(|task| task.difficulty));
+        let question = Question {
+            schema_version: SCHEMA_VERSION,
+            round: 1,
+            roles: vec!["walker".into()],
+            needs: ["hp", "eng"].map(|name| Need { name: name.into(), weight: 1.0 }).to_vec(),
+            tasks,
+            quotas: Quota::equal(&[robots.len()], &order),
+            members: (0..).zip(robots).map(member).collect(),
+            history: Vec::new(),
+            random_seed: RandomSeed::from(1),
+        };
+        Round { trial: 3, seed: 7, question, decision: Decision::unscored(vec![ids(0), ids(1)]) }
     }
-    NeedWeights::new(weights).map_err(Failure::run)
 }

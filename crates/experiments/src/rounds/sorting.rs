@@ -1,22 +1,21 @@
 //! How like splits are to sorting: each role sorted by a level, the upper half against the lower half.
 
-use rne_core::{Difficulty, Role};
+use rne_core::{Member, RoleId, TaskId};
 
-use super::Round;
-use crate::sweep::Grouped;
+use super::{Round, energy, hp};
 
 /// What robots may be sorted by.
 pub struct Key {
     /// In words.
     pub name: &'static str,
-    value: fn(&Grouped) -> f64,
+    value: fn(&Member) -> f64,
 }
 
 /// Battery level, health level, and their ratio.
 pub const KEYS: [Key; 3] = [
-    Key { name: "energy", value: |robot| robot.energy },
-    Key { name: "HP", value: |robot| robot.hp },
-    Key { name: "energy : HP", value: |robot| robot.energy / robot.hp.max(f64::MIN_POSITIVE) },
+    Key { name: "energy", value: energy },
+    Key { name: "HP", value: hp },
+    Key { name: "energy : HP", value: |robot| energy(robot) / hp(robot).max(f64::MIN_POSITIVE) },
 ];
 
 /// How often something was so, beside how often chance would have it so.
@@ -47,36 +46,49 @@ impl Share {
     }
 }
 
-/// Rounds of a policy against sorting by one key. Ties count as sorted either way, by chance as well.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
+/// Rounds of a policy with two groups against sorting by one key. Ties count as sorted either way, by chance as well.
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct Likeness {
-    /// The whole split is that of sorting, whichever half takes which task.
+    /// The whole split is that of sorting, whichever group takes which task.
     pub split: Share,
-    /// So are the carriers, of rounds in which both groups have some.
-    pub carriers: Share,
-    /// So are the suppliers, likewise.
-    pub suppliers: Share,
-    /// The group of the hard task has the higher mean; by chance, half of them.
-    pub hard_is_higher: Share,
+    /// So is that of each role, in rounds in which both groups have some of it.
+    pub roles: Vec<RoleShare>,
+    /// The group of the harder task has the higher mean; by chance, half of them.
+    pub harder_is_higher: Share,
+}
+
+/// One role against sorting by one key.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct RoleShare {
+    /// Name of the role.
+    pub role: String,
+    /// Most members that it had in a round. A role of two has only one split.
+    pub most: usize,
+    /// How often its split was that of sorting.
+    pub share: Share,
 }
 
 impl Likeness {
-    /// Takes a round into account, unless one of its groups is empty.
+    /// Takes a round into account, unless it has another number of groups than two.
     pub fn add(&mut self, round: &Round, key: &Key) {
-        let is_split = |role: Option<Role>| {
-            Difficulty::ALL.iter().all(|task| members(round, role).any(|robot| robot.task == *task))
-        };
-        if !is_split(None) {
-            return;
-        }
-        self.split.add(is_sorted(round, key, &Role::ALL), chance(round, key, &Role::ALL));
-        for (role, share) in [(Role::Carrier, &mut self.carriers), (Role::Supplier, &mut self.suppliers)] {
-            if is_split(Some(role)) {
-                share.add(is_sorted(round, key, &[role]), chance(round, key, &[role]));
+        let Ok(tasks) = <[TaskId; 2]>::try_from(round.tasks()) else { return };
+        let roles: Vec<RoleId> = round.question.role_ids().collect();
+        self.split.add(is_sorted(round, tasks, key, &roles), chance(round, tasks, key, &roles));
+        self.roles.resize(roles.len(), RoleShare::default());
+        for (role, of_role) in roles.iter().zip(&mut self.roles) {
+            of_role.role.clone_from(&round.question.roles[role.index()]);
+            of_role.most = of_role.most.max(round.question.of_role(*role).count());
+            if tasks.iter().all(|task| members(round, *task, *role).next().is_some()) {
+                let chance = chance(round, tasks, key, &[*role]);
+                of_role.share.add(is_sorted(round, tasks, key, &[*role]), chance);
             }
         }
-        let higher = mean(round, key, Difficulty::Hard) > mean(round, key, Difficulty::Easy);
-        self.hard_is_higher.add(higher, 0.5);
+        self.harder_is_higher.add(mean(round, key, tasks[0]) > mean(round, key, tasks[1]), 0.5);
+    }
+
+    /// The roles that had more than two members in some round.
+    pub fn splittable_roles(&self) -> impl Iterator<Item = &RoleShare> {
+        self.roles.iter().filter(|role| role.most > 2)
     }
 
     /// Rounds with two groups.
@@ -88,50 +100,45 @@ impl Likeness {
 
 /// How like these rounds are to sorting by each of [`KEYS`].
 pub fn likeness<'r>(rounds: impl IntoIterator<Item = &'r Round>) -> [Likeness; 3] {
-    let mut all = [Likeness::default(); 3];
+    let mut all: [Likeness; 3] = Default::default();
     for round in rounds {
         all.iter_mut().zip(&KEYS).for_each(|(likeness, key)| likeness.add(round, key));
     }
     all
 }
 
-fn members(round: &Round, role: Option<Role>) -> impl Iterator<Item = &Grouped> {
-    let of_role = move |(_, of): &(&Grouped, &Role)| role.is_none_or(|role| **of == role);
-    round.robots.iter().zip(&round.roles).filter(of_role).map(|(robot, _)| robot)
+fn members(round: &Round, task: TaskId, role: RoleId) -> impl Iterator<Item = &Member> {
+    round.group(task).filter(move |member| member.role == role)
 }
 
 /// Whether one group holds the upper robots of each of these roles, and the other the lower ones.
-fn is_sorted(round: &Round, key: &Key, roles: &[Role]) -> bool {
-    let holds = |upper: Difficulty| {
+fn is_sorted(round: &Round, [a, b]: [TaskId; 2], key: &Key, roles: &[RoleId]) -> bool {
+    let holds = |upper: TaskId, lower: TaskId| {
         roles.iter().all(|role| {
-            let values = |is_upper: bool| {
-                let of = members(round, Some(*role)).filter(move |robot| (robot.task == upper) == is_upper);
-                of.map(key.value)
-            };
-            let least = values(true).fold(f64::INFINITY, f64::min);
-            let most = values(false).fold(f64::NEG_INFINITY, f64::max);
+            let least = members(round, upper, *role).map(key.value).fold(f64::INFINITY, f64::min);
+            let most = members(round, lower, *role).map(key.value).fold(f64::NEG_INFINITY, f64::max);
             least >= most
         })
     };
-    holds(Difficulty::Hard) || holds(Difficulty::Easy)
+    holds(a, b) || holds(b, a)
 }
 
 /// The share of all splits into groups of these sizes of which [`is_sorted`] would say so.
-fn chance(round: &Round, key: &Key, roles: &[Role]) -> f64 {
-    let (mut all, mut hard_up, mut easy_up, mut both) = (1.0, 1.0, 1.0, 1.0);
+fn chance(round: &Round, [a, _]: [TaskId; 2], key: &Key, roles: &[RoleId]) -> f64 {
+    let (mut all, mut first_up, mut second_up, mut both) = (1.0, 1.0, 1.0, 1.0);
     for role in roles {
-        let mut values: Vec<f64> = members(round, Some(*role)).map(key.value).collect();
+        let mut values: Vec<f64> = round.question.of_role(*role).map(key.value).collect();
         values.sort_by(|a, b| b.total_cmp(a));
-        let hard = members(round, Some(*role)).filter(|robot| robot.task == Difficulty::Hard).count();
-        let splits = choose(values.len(), hard);
+        let first = members(round, a, *role).count();
+        let splits = choose(values.len(), first);
         all *= splits;
-        hard_up *= ways(&values, hard);
-        easy_up *= ways(&values, values.len() - hard);
+        first_up *= ways(&values, first);
+        second_up *= ways(&values, values.len() - first);
         let is_one_value = values.windows(2).all(|pair| pair[0].total_cmp(&pair[1]).is_eq());
-        let is_one_group = hard == 0 || hard == values.len();
+        let is_one_group = first == 0 || first == values.len();
         both *= if is_one_value || is_one_group { splits } else { 0.0 };
     }
-    (hard_up + easy_up - both) / all
+    (first_up + second_up - both) / all
 }
 
 /// Ways to choose the upper `upper` of values in falling order: more than one where values are tied at the border.
@@ -150,8 +157,8 @@ fn choose(of: usize, count: usize) -> f64 {
     (0..count).map(|i| (of - i) as f64 / (i + 1) as f64).product::<f64>().round()
 }
 
-fn mean(round: &Round, key: &Key, task: Difficulty) -> f64 {
-    let values: Vec<f64> = round.robots.iter().filter(|robot| robot.task == task).map(key.value).collect();
+fn mean(round: &Round, key: &Key, task: TaskId) -> f64 {
+    let values: Vec<f64> = round.group(task).map(key.value).collect();
     values.iter().sum::<f64>() / values.len() as f64
 }
 
@@ -159,18 +166,11 @@ fn mean(round: &Round, key: &Key, task: Difficulty) -> f64 {
 mod tests {
     use super::*;
 
-    /// Carriers of these battery levels; `h` takes the hard task.
+    /// Robots of one role with these battery levels; `h` takes the harder task.
     fn round(robots: &[(f64, char)]) -> Round {
-        let robot = |(i, (energy, task)): (usize, &(f64, char))| Grouped {
-            round: 1,
-            robot: i as u32,
-            task: if *task == 'h' { Difficulty::Hard } else { Difficulty::Easy },
-            energy: *energy,
-            hp: 50.0,
-            needs: vec![1.0],
-        };
-        let robots: Vec<Grouped> = robots.iter().enumerate().map(robot).collect();
-        Round { trial: 1, seed: 1, round: 1, roles: vec![Role::Carrier; robots.len()], robots }
+        let robots: Vec<(f64, f64, usize)> =
+            robots.iter().map(|(energy, task)| (*energy, 50.0, usize::from(*task != 'h'))).collect();
+        super::super::testing::round(&robots)
     }
 
     fn is(share: Option<f64>, expected: f64) -> bool {
@@ -178,15 +178,15 @@ mod tests {
     }
 
     #[test]
-    fn a_split_by_sorting_is_one_whichever_half_takes_the_hard_task() {
+    fn a_split_by_sorting_is_one_whichever_group_takes_the_harder_task() {
         let sorted = [(90.0, 'h'), (20.0, 'e'), (80.0, 'h'), (30.0, 'e')];
         let turned = [(90.0, 'e'), (20.0, 'h'), (80.0, 'e'), (30.0, 'h')];
         let mixed = [(90.0, 'h'), (20.0, 'h'), (80.0, 'e'), (30.0, 'e')];
         let [found, ..] = likeness(&[round(&sorted), round(&turned), round(&mixed), round(&mixed)]);
-        assert!(is(found.split.share(), 0.5) && is(found.carriers.share(), 0.5));
-        assert!(is(found.hard_is_higher.share(), 0.25), "{found:?}");
-        assert!(is(found.split.chance(), 1.0 / 3.0), "four carriers have three splits");
-        assert_eq!(found.suppliers.share(), None, "there are none");
+        assert!(is(found.split.share(), 0.5) && is(found.roles[0].share.share(), 0.5));
+        assert!(is(found.harder_is_higher.share(), 0.25), "{found:?}");
+        assert!(is(found.split.chance(), 1.0 / 3.0), "four robots have three splits");
+        assert_eq!(found.splittable_roles().count(), 1);
     }
 
     /// Counts all splits one by one.

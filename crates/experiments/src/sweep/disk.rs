@@ -5,11 +5,11 @@ use std::path::Path;
 
 use usar_sim::scenario::Scenario;
 
-use super::file::{FileHash, NewFile, file_hash};
 use super::journal;
 use super::tables::TABLES;
 use crate::experiment::{Experiment, Parts, Program, Shard};
 use crate::failure::Failure;
+use crate::files::{FileHash, NewFile, file_hash};
 use crate::provenance::{Manifest, scenario_differences};
 
 pub(super) const MANIFEST: &str = "manifest.json";

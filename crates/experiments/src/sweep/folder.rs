@@ -13,14 +13,14 @@ use super::disk::{
     MANIFEST, broken_files, check_continues, check_is_ours, clear, experiment_of, lock, read_manifest,
     sweeps_in, sync_folder, write_manifest, write_start,
 };
-use super::file::{FileHash, file_hash};
 use super::journal::{self, Damage, Journal, Place};
 use super::tables::Tables;
-use super::trial::{Outcome, TrialKey};
 use crate::experiment::{Experiment, Shard};
 use crate::failure::Failure;
+use crate::files::{FileHash, file_hash};
 use crate::metric::Catalogue;
 use crate::provenance::{Manifest, SCHEMA_VERSION};
+use crate::run::{Outcome, TrialKey};
 
 /// Damaged lines of a journal that are named.
 const MAX_DAMAGES: usize = 5;

@@ -6,13 +6,14 @@ use std::fs::{File, OpenOptions};
 use std::io::{BufRead, BufReader, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
+use rne_core::Account;
 use serde::{Deserialize, Serialize};
 use xxhash_rust::xxh3::xxh3_64;
 
 use super::links;
-use super::trial::{Fault, FaultKind, Outcome, Trial, TrialKey};
 use crate::experiment::Experiment;
 use crate::failure::Failure;
+use crate::run::{Fault, FaultKind, Outcome, Trial, TrialKey};
 
 /// Name of the file.
 pub const FILE: &str = "journal.jsonl";
@@ -227,7 +228,12 @@ fn line_of(experiment: &Experiment, outcome: &Outcome) -> Result<Vec<u8>, Failur
     let stored = match &outcome.result {
         Ok(trial) => {
             let links = if experiment.is_lean { &[] } else { trial.record.chain.links() };
-            Stored::Ended { links: links::encode(links), trial: Box::new(trial.clone()) }
+            let links = links::encode(links);
+            let mut trial = Box::new(trial.clone());
+            if experiment.is_lean {
+                trial.record.decisions.iter_mut().for_each(|asked| asked.decision.account = Account::None);
+            }
+            Stored::Ended { links, trial }
         }
         Err(fault) => Stored::Fault(fault.clone()),
     };

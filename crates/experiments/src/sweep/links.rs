@@ -6,8 +6,8 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 use usar_sim::hash::{HashChain, Link, PARTS};
 
-use super::trial::Outcome;
 use crate::failure::Failure;
+use crate::run::Outcome;
 
 /// Name of the table.
 pub const FILE: &str = "hashes.csv";

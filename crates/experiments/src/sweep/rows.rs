@@ -1,10 +1,13 @@
 //! Rows of the tables that a sweep writes. Undefined values are empty cells.
 
+use rne_core::TaskId;
 use serde::Serialize;
+use usar_sim::record::DecisionRecord;
+use usar_sim::scenario::NeedFile;
 
-use super::trial::{Outcome, Trial, TrialKey, series_times};
 use crate::experiment::Experiment;
 use crate::metric::{Catalogue, Metric};
+use crate::run::{Outcome, Trial, TrialKey, series_times};
 
 /// The columns of `trials.csv`: which trial it is, every metric, and what else is kept of it. `method` and `policy` say the same; the one is
 /// there so that the authors' files and ours can be stacked, the other for the words of this project.
@@ -54,22 +57,31 @@ pub(super) struct RoundRow<'a> {
 
 impl<'a> RoundRow<'a> {
     pub(super) fn of(outcome: &'a Outcome) -> impl Iterator<Item = Self> {
-        outcome.record().into_iter().flat_map(|record| &record.rounds).map(|round| Self {
-            policy: &outcome.key.label,
-            trial: outcome.key.trial,
-            seed: outcome.key.seed,
-            round: round.round,
-            task: round.task.name(),
-            start_s: round.start_s,
-            end_s: round.end_s,
-            members: round.members.iter().map(u32::to_string).collect::<Vec<_>>().join(" "),
-            secured: round.secured,
-            rescued: round.rescued,
-            energy: round.energy,
-            hp: round.hp,
-            turned_back: round.turned_back,
-            return_cause: round.return_cause.map(usar_sim::event::ReturnCause::name),
-        })
+        outcome
+            .record()
+            .into_iter()
+            .flat_map(|record| record.rounds.iter().map(move |round| (record, round)))
+            .map(|(record, round)| Self {
+                policy: &outcome.key.label,
+                trial: outcome.key.trial,
+                seed: outcome.key.seed,
+                round: round.round,
+                task: &record.tasks[round.task.index()].task,
+                start_s: round.start_s,
+                end_s: round.end_s,
+                members: round
+                    .members
+                    .iter()
+                    .map(|member| member.id.to_string())
+                    .collect::<Vec<_>>()
+                    .join(" "),
+                secured: round.secured,
+                rescued: round.rescued,
+                energy: round.energy,
+                hp: round.hp,
+                turned_back: round.turned_back,
+                return_cause: round.return_cause.map(usar_sim::event::ReturnCause::name),
+            })
     }
 }
 
@@ -103,7 +115,7 @@ impl<'a> RobotRow<'a> {
             trial: outcome.key.trial,
             seed: outcome.key.seed,
             robot: robot.robot,
-            role: robot.role.name(),
+            role: &robot.role,
             initial_energy: robot.initial_energy,
             initial_hp: robot.initial_hp,
             final_energy: robot.final_energy,
@@ -121,58 +133,37 @@ impl<'a> RobotRow<'a> {
     }
 }
 
-/// A row of `groups.csv`: one robot when it was grouped, with the needs that the policy saw.
-#[derive(Serialize, Default)]
-pub(super) struct GroupRow<'a> {
-    policy: &'a str,
-    trial: u32,
-    seed: u64,
-    round: u32,
-    robot: u32,
-    role: &'a str,
-    task: &'a str,
-    energy: f64,
-    hp: f64,
-    need_hp: f64,
-    need_v: f64,
-    need_sen: f64,
-    need_eng: f64,
-    need_res: f64,
-    need_cap: f64,
-    need_obs: f64,
+/// The columns of `groups.csv`: a robot when it was grouped, with the needs that the policy saw.
+pub(super) fn group_columns(needs: &[NeedFile]) -> Vec<String> {
+    let first = ["policy", "trial", "seed", "round", "robot", "role", "task", "energy", "hp"];
+    let needs = needs.iter().map(|need| format!("need_{}", need.name));
+    first.into_iter().map(str::to_owned).chain(needs).collect()
 }
 
-impl<'a> GroupRow<'a> {
-    pub(super) fn of(outcome: &'a Outcome) -> impl Iterator<Item = Self> {
-        let trial = outcome.result.as_ref().ok();
-        trial.into_iter().flat_map(|trial| trial.grouped.iter().map(move |robot| (trial, robot))).filter_map(
-            |(trial, robot)| {
-                let [need_hp, need_v, need_sen, need_eng, need_res, need_cap, need_obs] =
-                    *robot.needs.as_slice()
-                else {
-                    return None;
-                };
-                Some(Self {
-                    policy: &outcome.key.label,
-                    trial: outcome.key.trial,
-                    seed: outcome.key.seed,
-                    round: robot.round,
-                    robot: robot.robot,
-                    role: trial.record.robots[robot.robot as usize].role.name(),
-                    task: robot.task.name(),
-                    energy: robot.energy,
-                    hp: robot.hp,
-                    need_hp,
-                    need_v,
-                    need_sen,
-                    need_eng,
-                    need_res,
-                    need_cap,
-                    need_obs,
-                })
-            },
-        )
-    }
+/// The rows of `groups.csv` of one trial.
+pub(super) fn group_rows(outcome: &Outcome) -> impl Iterator<Item = Vec<String>> + '_ {
+    let decisions = outcome.record().into_iter().flat_map(|record| &record.decisions);
+    decisions
+        .flat_map(move |asked| asked.question.task_ids().flat_map(move |task| group_of(outcome, asked, task)))
+}
+
+fn group_of<'a>(
+    outcome: &'a Outcome,
+    DecisionRecord { question, decision }: &'a DecisionRecord,
+    task: TaskId,
+) -> impl Iterator<Item = Vec<String>> + 'a {
+    let TrialKey { label, trial, seed, .. } = &outcome.key;
+    let group = decision.assignment.of(task);
+    let level = |level: Option<f64>| level.map_or(String::new(), |level| level.to_string());
+    question.members.iter().filter(|member| group.contains(&member.id)).map(move |member| {
+        let mut row = vec![label.clone(), trial.to_string(), seed.to_string(), question.round.to_string()];
+        row.push(member.id.to_string());
+        row.push(question.roles[member.role.index()].clone());
+        row.push(question.tasks[task.index()].name.clone());
+        row.extend([level(member.energy_level), level(member.hp_level)]);
+        row.extend(member.needs.values().iter().map(f64::to_string));
+        row
+    })
 }
 
 /// The columns of `series.csv`: what was delivered up to a time, from all tasks and from each.

@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
-use super::file::{FileHash, NewFile, trouble};
 use crate::failure::Failure;
+use crate::files::{FileHash, NewFile, trouble};
 
 /// A table whose columns are those of the serialised rows, after the number of the case and the values of the axes where there are any.
 pub struct Table {

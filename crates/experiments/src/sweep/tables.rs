@@ -2,13 +2,15 @@
 
 use std::path::Path;
 
-use super::file::FileHash;
 use super::links::{self, LinkRow};
-use super::rows::{GroupRow, RobotRow, RoundRow, series_columns, series_rows, trial_columns, trial_row};
+use super::rows::{
+    RobotRow, RoundRow, group_columns, group_rows, series_columns, series_rows, trial_columns, trial_row,
+};
 use super::table::{Table, columns};
-use super::trial::Outcome;
 use crate::experiment::Experiment;
 use crate::failure::Failure;
+use crate::files::FileHash;
+use crate::run::Outcome;
 
 /// Their names.
 pub(super) const TABLES: [&str; 6] =
@@ -25,6 +27,7 @@ pub(super) struct Tables {
 /// The tables that a lean sweep leaves out.
 struct Large {
     groups: Table,
+    group_columns: Vec<String>,
     robots: Table,
     series: Table,
     series_columns: Vec<String>,
@@ -38,6 +41,7 @@ impl Tables {
         let large = || {
             Ok::<_, Failure>(Large {
                 groups: table(2)?,
+                group_columns: group_columns(&experiment.base.needs),
                 robots: table(3)?,
                 series: table(4)?,
                 series_columns: series_columns(&experiment.metrics),
@@ -56,7 +60,9 @@ impl Tables {
         RoundRow::of(outcome).try_for_each(|row| self.rounds.add(case, &row))?;
         let Some(large) = &mut self.large else { return Ok(()) };
         let duration_s = experiment.cases[number].scenario.duration_s;
-        GroupRow::of(outcome).try_for_each(|row| large.groups.add(case, &row))?;
+        for row in group_rows(outcome) {
+            large.groups.add_record(case, &large.group_columns, row)?;
+        }
         RobotRow::of(outcome).try_for_each(|row| large.robots.add(case, &row))?;
         for row in series_rows(outcome, duration_s) {
             large.series.add_record(case, &large.series_columns, row)?;
@@ -68,7 +74,7 @@ impl Tables {
         let mut files =
             vec![self.trials.finish(&self.trial_columns)?, self.rounds.finish(&columns::<RoundRow>()?)?];
         if let Some(large) = self.large {
-            files.push(large.groups.finish(&columns::<GroupRow>()?)?);
+            files.push(large.groups.finish(&large.group_columns)?);
             files.push(large.robots.finish(&columns::<RobotRow>()?)?);
             files.push(large.series.finish(&large.series_columns)?);
             files.push(large.hashes.finish(&columns::<LinkRow>()?)?);

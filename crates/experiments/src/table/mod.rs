@@ -125,10 +125,10 @@ pub(crate) fn rounds_table(record: &TrialRecord) -> Table {
         "went home: why",
     ]);
     for round in &record.rounds {
-        let members: Vec<String> = round.members.iter().map(u32::to_string).collect();
+        let members: Vec<String> = round.members.iter().map(|member| member.id.to_string()).collect();
         table.add_row([
             right(&round.round.to_string()),
-            Cell::new(round.task.name()),
+            Cell::new(&record.tasks[round.task.index()].task),
             right(&format!("{:.1}", round.start_s)),
             right(&round.end_s.map_or("-".to_owned(), |end| format!("{end:.1}"))),
             Cell::new(members.join(" ")),

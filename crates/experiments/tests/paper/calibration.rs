@@ -40,7 +40,7 @@ fn a_calibration_that_was_broken_off_ends_as_one_that_was_not() {
     assert_eq!(scenario.name, "paper-fitted");
     assert!(text.starts_with("// Fitted by usar calibrate (misfit "), "{text}");
     assert!(text.contains("// Places [view]"), "comments stay");
-    assert_eq!(scenario.roles.carrier.speed_mps.to_bits(), scenario.roles.supplier.speed_mps.to_bits());
+    assert_eq!(scenario.roles[0].speed_mps.to_bits(), scenario.roles[1].speed_mps.to_bits());
     assert!(
         scenario
             .radiation
@@ -57,7 +57,7 @@ fn what_cannot_be_calibrated_is_refused() {
     let run = |more: &[&str]| usar(folder, &calibrate("out", more));
     refused(
         &run(&["--free", "roles.carrier.wings=1..2"]),
-        &["--free: roles.carrier.wings: no such field; roles.carrier has radius_m"],
+        &["--free: roles.carrier.wings: no such field; roles.carrier has name, kind, radius_m"],
     );
     refused(
         &run(&["--free", "roles.carrier.capacity=2..8"]),

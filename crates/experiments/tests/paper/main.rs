@@ -238,14 +238,16 @@ fn readings_stand_for_every_combination_and_are_named_by_what_differs() {
         "the hard rule decides something: {by_hp}"
     );
     let set = |more: &[&str]| usar(folder, &[&["sweep", "r.ron", "--quiet", "--out", "new"], more].concat());
-    refused(
-        &set(&["--set", "rne.hard_rule=MeanHp"]),
-        &["--set: rne.hard_rule is one of this sweep's readings"],
-    );
-    refused(&set(&["--policies", "DIS,ENG"]), &["are those of the policy RNE"]);
+    refused(&set(&["--policies", "DIS,ENG"]), &["this sweep does not run RNE. Add it to `policies`."]);
     assert!(!folder.join("new").exists());
-    refused(&sweep("{\"hard_rule\": [MeanHp, MeanHp]}", "[\"RNE\"]"), &["must not stand twice", "MeanHp"]);
-    refused(&sweep("{\"wings\": [MeanHp]}", "[\"RNE\"]"), &["rne.wings", "no such field"]);
+    refused(
+        &sweep("{\"hard_rule\": [MeanHp, MeanHp]}", "[\"RNE\"]"),
+        &["must not be listed twice", "MeanHp"],
+    );
+    refused(&sweep("{\"wings\": [MeanHp]}", "[\"RNE\"]"), &["readings.\"wings\"[0]: policy RNE: ", "wings"]);
     refused(&sweep("{\"sort\": []}", "[\"RNE\"]"), &["must have at least one value"]);
-    refused(&sweep("{\"sort\": [true]}", "[\"DIS\"]"), &["are those of the policy RNE"]);
+    refused(
+        &sweep("{\"sort\": [true]}", "[\"DIS\"]"),
+        &["this sweep does not run RNE. Add it to `policies`."],
+    );
 }

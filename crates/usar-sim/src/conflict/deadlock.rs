@@ -25,7 +25,7 @@ pub(super) struct Observation {
 }
 
 /// When a set is given up on, in steps.
-#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Patience {
     /// Without motion.
     pub(super) deadlock: u32,

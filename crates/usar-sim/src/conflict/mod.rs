@@ -3,7 +3,7 @@
 //! Robots whose next moves would bring them into each other's safety distance form a conflict set. The head of the set moves,
 //! passing the others at a tangent; the others yield until it is out of the set; then the next one is the head. A set in which nobody
 //! moves, or whose head moves but comes no nearer, is deadlocked. Then, in this order: the robot in the way of the head makes room
-//! ([`retreat`]), another member is the head, and after a full cycle in vain the whole set backs off sideways.
+//! (`retreat`), another member is the head, and after a full cycle in vain the whole set backs off sideways.
 //!
 //! Pure: positions and wishes in, directives out; the only state is the order of the sets that persist and who makes room for whom.
 
@@ -63,8 +63,11 @@ const SQUEEZE_SPEED: f32 = 0.4;
 /// The conflict resolver of one trial.
 #[derive(Serialize, Deserialize)]
 pub struct Resolver {
+    #[serde(skip)]
     rules: ConflictRules,
+    #[serde(skip)]
     patience: Patience,
+    #[serde(skip)]
     ask_again: u32,
     sets: Vec<ConflictSet>,
     retreats: Retreats,
@@ -90,24 +93,12 @@ impl Resolver {
     /// No conflicts yet.
     #[must_use]
     pub fn new(scenario: &Scenario) -> Self {
-        let rules = scenario.conflicts;
-        let steps = |seconds: f64| (seconds / scenario.dt_s).round() as u32;
-        let limits = Limits {
-            underway: steps(RETREAT_PATIENCE_S),
-            at_place: steps(ROOM_PATIENCE_S),
-            respite: steps(RESPITE_S),
-        };
-        let arena = Vector::new(scenario.arena_m[0] as f32, scenario.arena_m[1] as f32);
-        Self {
-            rules,
-            patience: Patience {
-                deadlock: rules.deadlock_steps,
-                livelock: steps(LIVELOCK_S),
-                back_off: steps(BACK_OFF_S),
-            },
-            ask_again: steps(ASK_AGAIN_S).max(1),
+        let mut resolver = Self {
+            rules: scenario.conflicts,
+            patience: Patience::default(),
+            ask_again: 0,
             sets: Vec::new(),
-            retreats: Retreats::new(limits, rules.margin_m as f32, arena),
+            retreats: Retreats::default(),
             neighbours: Neighbours::default(),
             conflicts: Conflicts::default(),
             set_of: Vec::new(),
@@ -115,7 +106,28 @@ impl Resolver {
             directives: Vec::new(),
             headings: Vec::new(),
             blocked_steps: Vec::new(),
-        }
+        };
+        resolver.restore(scenario);
+        resolver
+    }
+
+    /// Makes what a snapshot leaves out because it follows from the scenario or from the rest.
+    pub(crate) fn restore(&mut self, scenario: &Scenario) {
+        let steps = |seconds: f64| (seconds / scenario.dt_s).round() as u32;
+        self.rules = scenario.conflicts;
+        self.patience = Patience {
+            deadlock: self.rules.deadlock_steps,
+            livelock: steps(LIVELOCK_S),
+            back_off: steps(BACK_OFF_S),
+        };
+        self.ask_again = steps(ASK_AGAIN_S).max(1);
+        let limits = Limits {
+            underway: steps(RETREAT_PATIENCE_S),
+            at_place: steps(ROOM_PATIENCE_S),
+            respite: steps(RESPITE_S),
+        };
+        let arena = Vector::new(scenario.arena_m[0] as f32, scenario.arena_m[1] as f32);
+        self.retreats.restore(limits, self.rules.margin_m as f32, arena);
     }
 
     /// One directive for each mover, in their order. The wishes of those who make room are replaced.
@@ -141,11 +153,6 @@ impl Resolver {
         }
         self.ask_for_room(movers, log);
         &self.directives
-    }
-
-    /// Makes anew what a snapshot leaves out because it follows from the rest.
-    pub(crate) fn restore(&mut self) {
-        self.retreats.restore();
     }
 
     /// The directives of the last step, by robot.

@@ -2,8 +2,6 @@
 
 use std::cmp::Ordering;
 
-use rne_core::Difficulty;
-
 use crate::ids::RobotId;
 use crate::scenario::PriorityRule;
 
@@ -19,17 +17,18 @@ pub struct PriorityKey {
 }
 
 impl PriorityKey {
-    /// The key of a robot with these levels, in percent, whose group has this task.
+    /// The key of a robot with these levels, in percent. `class` is the rank of its group's task, 0 for the hardest, and more than any task's
+    /// for a robot without a group.
     ///
     /// - `LowestEnergyFirst`, because the robot with the least left can least afford to wait.
-    /// - `TaskThenEnergy`: robots of the hard task, whose way is the longest, then those of the easy one, then those without a group.
+    /// - `TaskThenEnergy`: robots of the hardest task, whose way is the longest, then those of the next, then those without a group.
     /// - `HighestEnergyFirst`, the opposite of the first: what the order is worth shows between the two.
     /// - `LowestHpFirst`, because the robot that can bear the least radiation should stand in it the least.
     #[must_use]
-    pub fn new(rule: PriorityRule, robot: RobotId, task: Option<Difficulty>, [energy, hp]: [f64; 2]) -> Self {
+    pub fn new(rule: PriorityRule, robot: RobotId, class: u8, [energy, hp]: [f64; 2]) -> Self {
         let (class, level) = match rule {
             PriorityRule::LowestEnergyFirst => (0, energy),
-            PriorityRule::TaskThenEnergy => (task_rank(task), energy),
+            PriorityRule::TaskThenEnergy => (class, energy),
             PriorityRule::HighestEnergyFirst => (0, -energy),
             PriorityRule::LowestHpFirst => (0, hp),
         };
@@ -44,14 +43,6 @@ impl PriorityKey {
     }
 }
 
-fn task_rank(task: Option<Difficulty>) -> u8 {
-    match task {
-        Some(Difficulty::Hard) => 0,
-        Some(Difficulty::Easy) => 1,
-        None => 2,
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -59,15 +50,11 @@ mod tests {
     #[test]
     fn each_rule_has_its_first() {
         let first = |rule| {
-            let robots = [
-                (Some(Difficulty::Easy), [20.0, 90.0]),
-                (Some(Difficulty::Hard), [50.0, 80.0]),
-                (None, [70.0, 60.0]),
-            ];
+            let robots = [(1, [20.0, 90.0]), (0, [50.0, 80.0]), (2, [70.0, 60.0])];
             let keys = robots
                 .iter()
                 .zip(0..)
-                .map(|((task, levels), id)| PriorityKey::new(rule, RobotId(id), *task, *levels));
+                .map(|((class, levels), id)| PriorityKey::new(rule, RobotId(id), *class, *levels));
             keys.min_by(PriorityKey::precedence).unwrap().robot.0
         };
         assert_eq!(first(PriorityRule::LowestEnergyFirst), 0);
@@ -78,7 +65,7 @@ mod tests {
 
     #[test]
     fn the_lowest_id_settles_ties() {
-        let key = |id| PriorityKey::new(PriorityRule::LowestEnergyFirst, RobotId(id), None, [50.0, 50.0]);
+        let key = |id| PriorityKey::new(PriorityRule::LowestEnergyFirst, RobotId(id), 0, [50.0, 50.0]);
         assert_eq!(key(1).precedence(&key(2)), Ordering::Less);
     }
 }

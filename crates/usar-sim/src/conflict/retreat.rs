@@ -38,7 +38,7 @@ const PLATOON_M: f32 = 5.0;
 const PLATOON_COS: f32 = 0.5;
 
 /// How long robots try, in steps.
-#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Limits {
     /// On the way to the place, without coming nearer to it.
     pub(super) underway: u32,
@@ -66,7 +66,7 @@ pub(super) struct Retreat {
 }
 
 /// All retreats, by robot.
-#[derive(Serialize, Deserialize)]
+#[derive(Default, Serialize, Deserialize)]
 pub(super) struct Retreats {
     of: BTreeMap<usize, Retreat>,
     /// For whom, and who makes room: the retreats by their heads. Follows from `of`.
@@ -74,16 +74,15 @@ pub(super) struct Retreats {
     served: BTreeSet<(usize, usize)>,
     /// Steps for which a robot is not asked again.
     respite: Vec<u32>,
+    #[serde(skip)]
     limits: Limits,
+    #[serde(skip)]
     margin: f32,
+    #[serde(skip)]
     arena: Vector,
 }
 
 impl Retreats {
-    pub(super) fn new(limits: Limits, margin: f32, arena: Vector) -> Self {
-        Self { of: BTreeMap::new(), served: BTreeSet::new(), respite: Vec::new(), limits, margin, arena }
-    }
-
     /// The robots that make room, in order.
     pub(super) fn iter(&self) -> impl Iterator<Item = (usize, &Retreat)> {
         self.of.iter().map(|(i, retreat)| (*i, retreat))
@@ -105,8 +104,9 @@ impl Retreats {
         self.of.get(&i).is_some_and(|retreat| retreat.path.is_empty())
     }
 
-    /// Makes anew what a snapshot leaves out because it follows from the rest.
-    pub(super) fn restore(&mut self) {
+    /// Makes what a snapshot leaves out because it is fixed or follows from the rest.
+    pub(super) fn restore(&mut self, limits: Limits, margin: f32, arena: Vector) {
+        (self.limits, self.margin, self.arena) = (limits, margin, arena);
         self.served = self.of.iter().map(|(i, retreat)| (retreat.head, *i)).collect();
     }
 

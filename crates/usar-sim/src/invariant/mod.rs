@@ -188,9 +188,10 @@ impl Invariants {
             }
             Event::RestEnded { robot } => {
                 let robot = &world.robots[robot.index()];
-                let apart = robot.rest.map(|place| (place - robot.position).length());
-                if apart.iter().all(|metres| *metres > AT_REST_M + robot.radius()) {
-                    let what = format!("rested {:.2} m from its rest place", apart[0].min(apart[1]));
+                let apart = robot.rest.iter().map(|place| (*place - robot.position).length());
+                let nearest = apart.fold(f32::INFINITY, f32::min);
+                if nearest > AT_REST_M + robot.radius() {
+                    let what = format!("rested {nearest:.2} m from its rest place");
                     return Err(self.violation(Some(robot.id), what));
                 }
             }

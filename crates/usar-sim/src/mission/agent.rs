@@ -1,7 +1,7 @@
 //! What each robot is doing in the mission.
 
 use parry2d::math::Vector;
-use rne_core::Difficulty;
+use rne_core::TaskId;
 use serde::{Deserialize, Serialize};
 
 use crate::ids::RescueeId;
@@ -52,9 +52,9 @@ pub struct Agent {
     /// What it is doing.
     pub activity: Activity,
     /// The task of its group in this round; `None` for a robot that is not grouped.
-    pub task: Option<Difficulty>,
+    pub task: Option<TaskId>,
     /// The task at whose rest place it rests.
-    pub rest_at: Difficulty,
+    pub rest_at: TaskId,
     /// Places still to pass on its sweep of the task area or its errand, the next one last.
     pub sweep: Vec<Vector>,
     /// Where it waits when there is nothing to do.
@@ -74,7 +74,7 @@ impl Agent {
         Self {
             activity: Activity::Home,
             task: None,
-            rest_at: Difficulty::Easy,
+            rest_at: TaskId::default(),
             sweep: Vec::new(),
             muster: Vector::ZERO,
             levels_at_start: None,

@@ -2,12 +2,11 @@
 
 use parry2d::math::Vector;
 
-use super::{Activity, Ending, Mission};
-use crate::event::{Event, EventLog};
+use super::{Activity, Ending, Mission, Scene};
+use crate::event::Event;
 use crate::ids::RobotId;
-use crate::planning::Navigator;
 use crate::scenario::Scenario;
-use crate::world::{Robot, World};
+use crate::world::Robot;
 
 impl Mission {
     /// Hands out the errands of a scenario.
@@ -21,24 +20,27 @@ impl Mission {
     }
 
     /// Ticks off the places where robots have arrived, gives up on those to which there is no way, and says when all is over.
-    pub(super) fn follow_errands(&mut self, world: &World, navigator: &Navigator, log: &mut EventLog) {
-        for robot in &world.robots {
-            if robot.is_able() && self.agents[robot.id.index()].activity == Activity::OnErrand {
-                self.follow_errand(robot, navigator, log);
+    pub(super) fn follow_errands(&mut self, scene: &mut Scene) {
+        for robot in 0..scene.world.robots.len() {
+            if self.is_on_errand(&scene.world.robots[robot]) {
+                self.follow_errand(RobotId(robot as u32), scene);
             }
         }
-        let is_busy =
-            |robot: &Robot| robot.is_able() && self.agents[robot.id.index()].activity == Activity::OnErrand;
-        if !world.robots.iter().any(is_busy) {
+        if !scene.world.robots.iter().any(|robot| self.is_on_errand(robot)) {
             self.ending = Some(Ending::ErrandsOver);
-            log.push(Event::ErrandsOver);
+            scene.log.push(Event::ErrandsOver);
         }
     }
 
-    fn follow_errand(&mut self, robot: &Robot, navigator: &Navigator, log: &mut EventLog) {
-        let traveller = navigator.traveller(robot.id);
-        let gives_up = self.gives_up(robot.id, navigator);
-        let agent = &mut self.agents[robot.id.index()];
+    fn is_on_errand(&self, robot: &Robot) -> bool {
+        robot.is_able() && self.agents[robot.id.index()].activity == Activity::OnErrand
+    }
+
+    fn follow_errand(&mut self, id: RobotId, scene: &mut Scene) {
+        let traveller = scene.navigator.traveller(id);
+        let robot = &scene.world.robots[id.index()];
+        let gives_up = scene.gives_up(id);
+        let agent = &mut self.agents[id.index()];
         let Some(place) = agent.sweep.last().copied() else { return };
         if traveller.goal().is_none_or(|goal| goal.point != place) {
             return; // not yet on its way
@@ -46,10 +48,10 @@ impl Mission {
         let apart = (place - robot.position).length();
         if traveller.has_arrived(robot.position) && apart <= robot.radius() {
             agent.muster = place;
-            log.push(Event::ErrandDone { robot: robot.id });
+            scene.log.push(Event::ErrandDone { robot: id });
         } else if gives_up || traveller.has_arrived(robot.position) {
             agent.muster = robot.position;
-            log.push(Event::Unreachable { robot: robot.id, place: place.into() });
+            scene.log.push(Event::Unreachable { robot: id, place: place.into() });
         } else {
             return;
         }
@@ -57,10 +59,5 @@ impl Mission {
         if agent.sweep.is_empty() {
             agent.activity = Activity::Standby;
         }
-    }
-
-    /// Whether a robot has known no way to its goal for so long that it gives up on it.
-    pub(super) fn gives_up(&self, robot: RobotId, navigator: &Navigator) -> bool {
-        navigator.traveller(robot).lost_steps() >= self.steps(super::GIVE_UP_S)
     }
 }

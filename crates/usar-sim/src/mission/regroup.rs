@@ -1,11 +1,13 @@
-//! Between rounds: who is home, who is fit, the grouping, and the way out.
+//! Between rounds: who is home, who is fit, the question, and the way out.
 
-use rne_core::{Difficulty, Grouping, GroupingPolicy, Member, Team};
+use rne_core::{Assignment, Member, Need, Question, Quota, RandomSeed, SCHEMA_VERSION, Task, TaskId};
 
 use super::round::{Fitness, unfit_cause};
-use super::{Activity, Agent, Group, HOME, Mission, task_index};
-use crate::event::{Event, EventLog, TurnBackCause};
+use super::{Activity, Agent, Group, Mission, Pending, Scene};
+use crate::event::{Event, TurnBackCause};
 use crate::ids::RobotId;
+use crate::model::Model;
+use crate::scenario::{MissionRules, Scenario};
 use crate::seed::{Purpose, stream};
 use crate::world::{Robot, World};
 
@@ -18,14 +20,13 @@ impl Mission {
     }
 
     /// Pools what the groups know, and notes what the round cost each robot.
-    pub(super) fn end_round(&mut self, world: &World, log: &mut EventLog) {
+    pub(super) fn end_round(&mut self, scene: &mut Scene) {
         if self.round == 0 {
             return;
         }
-        log.push(Event::RoundEnded { round: self.round });
-        let [hard, easy, home] = &mut self.knowledge;
-        home.pool(world, [hard, easy]);
-        for (agent, robot) in self.agents.iter_mut().zip(&world.robots) {
+        scene.log.push(Event::RoundEnded { round: self.round });
+        self.knowledge_at_home.pool(scene.world, &self.knowledge);
+        for (agent, robot) in self.agents.iter_mut().zip(&scene.world.robots) {
             agent.task = None;
             if let Some([energy, hp]) = agent.levels_at_start {
                 let [most_energy, most_hp] = agent.costliest_round;
@@ -34,92 +35,68 @@ impl Mission {
         }
     }
 
-    /// Groups the robots that are fit, sends the groups out and the others to rest.
-    pub(super) fn begin_round(
-        &mut self,
-        world: &mut World,
-        policy: &dyn GroupingPolicy,
-        log: &mut EventLog,
-    ) -> Result<(), String> {
+    /// Restocks the robots that are home and asks how those that are fit are to be grouped. Where none is, there is nothing to ask.
+    pub(super) fn open_round(&mut self, scene: &mut Scene) {
         self.round += 1;
         self.unreachable.fill(false);
         let is_home: Vec<bool> = self.agents.iter().map(|a| a.activity == Activity::Home).collect();
         let takes_part = |robot: &Robot| robot.is_able() && is_home[robot.id.index()];
-        for robot in world.robots.iter_mut().filter(|robot| takes_part(robot)) {
+        for robot in scene.world.robots.iter_mut().filter(|robot| takes_part(robot)) {
             if robot.resources < robot.spec.resources {
                 robot.resources = robot.spec.resources;
-                log.push(Event::Restocked { robot: robot.id, resources: robot.resources });
+                scene.log.push(Event::Restocked { robot: robot.id, resources: robot.resources });
             }
             self.agents[robot.id.index()].levels_at_start = Some([robot.energy, robot.hp]);
         }
-        let able: Vec<RobotId> =
-            world.robots.iter().filter(|robot| takes_part(robot)).map(|robot| robot.id).collect();
         let (mut fit, mut unfit) = (Vec::new(), Vec::new());
-        for id in able {
-            match self.unfit_cause(&world.robots[id.index()]) {
-                None => fit.push(id),
-                Some(cause) => unfit.push((id, cause)),
+        for robot in scene.world.robots.iter().filter(|robot| takes_part(robot)) {
+            match self.unfit_cause(&scene.model.scenario.mission, robot) {
+                None => fit.push(robot),
+                Some(cause) => unfit.push((robot.id, cause)),
             }
         }
-        let grouping = self.group(world, policy, &fit)?;
-        let ids = |group: &[u32]| group.iter().map(|id| RobotId(*id)).collect::<Vec<_>>();
-        let (hard, easy) = (ids(&grouping.hard), ids(&grouping.easy));
-        log.push(Event::RoundStarted { round: self.round, hard: hard.clone(), easy: easy.clone() });
-        self.send_out(Difficulty::Hard, hard, world);
-        self.send_out(Difficulty::Easy, easy, world);
-        for (id, cause) in unfit {
-            let robot = &world.robots[id.index()];
-            let way = |task| (robot.rest_slot(task) - robot.position).length();
-            let hard_is_nearer = way(Difficulty::Hard) < way(Difficulty::Easy);
-
-            let agent = self.agent(id);
-            agent.rest_at = if hard_is_nearer { Difficulty::Hard } else { Difficulty::Easy };
-            agent.activity = Activity::ToRest;
-            agent.levels_at_start = None;
-            log.push(Event::TurnedBack { robot: id, cause });
+        let question = question(scene.model, self.round, &fit);
+        let is_empty = question.members.is_empty();
+        self.pending = Some(Pending { question, unfit });
+        if is_empty {
+            self.assign(&Assignment { groups: vec![Vec::new(); self.groups.len()] }, scene);
         }
-        Ok(())
     }
 
-    fn unfit_cause(&self, robot: &Robot) -> Option<TurnBackCause> {
+    fn unfit_cause(&self, rules: &MissionRules, robot: &Robot) -> Option<TurnBackCause> {
         let Agent { costliest_round, has_rested, .. } = self.agents[robot.id.index()];
         let fitness = Fitness { energy: robot.energy, hp: robot.hp, costliest_round, has_rested };
-        unfit_cause(&self.rules, &fitness)
+        unfit_cause(rules, &fitness)
     }
 
-    fn group(&self, world: &World, policy: &dyn GroupingPolicy, fit: &[RobotId]) -> Result<Grouping, String> {
-        let members = fit.iter().map(|id| {
-            let robot = &world.robots[id.index()];
-            Ok(Member {
-                id: id.0,
-                role: robot.role,
-                position: [f64::from(robot.home.x), f64::from(robot.home.y)],
-                needs: robot.needs().map_err(|error| format!("robot {id}: {error}"))?,
-                energy_level: Some(robot.energy),
-                hp_level: Some(robot.hp),
-            })
-        });
-        let members = members.collect::<Result<Vec<_>, String>>()?;
-        let mut draws = stream(self.trial_seed, Purpose::Grouping, u64::from(self.round));
-        let grouping = Team::new(members, Some(self.tasks))
-            .and_then(|team| policy.group(&team, &mut draws))
-            .map_err(|error| format!("policy {}: {error}", policy.name()))?;
-        let mut grouped: Vec<u32> = grouping.easy.iter().chain(&grouping.hard).copied().collect();
-        grouped.sort_unstable();
-        if grouped.iter().copied().ne(fit.iter().map(|id| id.0)) {
-            return Err(format!(
-                "policy {} must put each robot into exactly one group; it was given {fit:?} and formed {grouped:?}",
-                policy.name()
-            ));
+    /// Sends the groups out and the robots that are not fit to rest. The assignment must answer the question that waits for one.
+    pub fn assign(&mut self, assignment: &Assignment, scene: &mut Scene) {
+        let Some(Pending { unfit, .. }) = self.pending.take() else { return };
+        let ids = |group: &Vec<u32>| group.iter().map(|id| RobotId(*id)).collect::<Vec<_>>();
+        let groups: Vec<Vec<RobotId>> = assignment.groups.iter().map(ids).collect();
+        scene.log.push(Event::RoundStarted { round: self.round, groups: groups.clone() });
+        for (task, members) in scene.model.task_ids().zip(groups) {
+            self.send_out(task, members, scene.model, scene.world);
         }
-        Ok(grouping)
+        for (id, cause) in unfit {
+            let robot = &scene.world.robots[id.index()];
+            let way = |task: &TaskId| (robot.rest_slot(*task) - robot.position).length();
+            // Of rest places that are equally far, the one of the last task.
+            let nearest = scene.model.task_ids().rev().min_by(|a, b| way(a).total_cmp(&way(b)));
+            let agent = self.agent(id);
+            agent.rest_at = nearest.unwrap_or_default();
+            agent.activity = Activity::ToRest;
+            agent.levels_at_start = None;
+            scene.log.push(Event::TurnedBack { robot: id, cause });
+        }
+        self.look_for_guides(scene.world);
     }
 
     /// Sends a group to its task, unless nobody in it can carry: then it stays home.
-    fn send_out(&mut self, task: Difficulty, members: Vec<RobotId>, world: &World) {
+    fn send_out(&mut self, task: TaskId, members: Vec<RobotId>, model: &Model, world: &World) {
         let at_work = members.iter().any(|id| world.robots[id.index()].can_carry());
-        self.knowledge[task_index(task)] = self.knowledge[HOME].clone();
-        let area = self.areas[task_index(task)];
+        self.knowledge[task.index()] = self.knowledge_at_home.clone();
+        let area = &model.tasks[task.index()].area;
         let (mut ground, mut aerial) = (0, 0);
         let flying = members.iter().filter(|id| world.robots[id.index()].is_aerial()).count();
         for id in &members {
@@ -136,6 +113,53 @@ impl Mission {
             agent.activity = if at_work { Activity::Searching } else { Activity::Home };
             *rank += 1;
         }
-        self.groups[task_index(task)] = Group { members, at_work };
+        self.groups[task.index()] = Group { members, at_work };
     }
+}
+
+/// How these robots are to be grouped. What they report is what they are.
+fn question(model: &Model, round: u32, fit: &[&Robot]) -> Question {
+    let scenario = &model.scenario;
+    let member = |robot: &&Robot| {
+        Some(Member {
+            id: robot.id.0,
+            role: robot.role,
+            home: [f64::from(robot.home.x), f64::from(robot.home.y)],
+            needs: robot.needs(&scenario.needs).ok()?, // of a validated scenario: every value is finite and >= 0
+            energy_level: Some(robot.energy),
+            hp_level: Some(robot.hp),
+        })
+    };
+    let count = |role: usize| fit.iter().filter(|robot| robot.role.index() == role).count();
+    Question {
+        schema_version: SCHEMA_VERSION,
+        round,
+        roles: scenario.roles.iter().map(|role| role.name.clone()).collect(),
+        needs: scenario
+            .needs
+            .iter()
+            .map(|need| Need { name: need.name.clone(), weight: need.weight })
+            .collect(),
+        tasks: scenario
+            .tasks
+            .iter()
+            .map(|task| Task {
+                name: task.name.clone(),
+                difficulty: task.difficulty,
+                place: Some(task.center),
+            })
+            .collect(),
+        quotas: (0..scenario.roles.len())
+            .map(|role| Quota::share(count(role), &asked(scenario, role), &model.hardest_first))
+            .collect(),
+        members: fit.iter().filter_map(member).collect(),
+        history: Vec::new(),
+        random_seed: RandomSeed(stream(model.seed, Purpose::Grouping, u64::from(round)).get_seed()),
+    }
+}
+
+/// How many robots of a role each task asks for.
+fn asked(scenario: &Scenario, role: usize) -> Vec<Option<usize>> {
+    let name = &scenario.roles[role].name;
+    scenario.tasks.iter().map(|task| task.quota.get(name).map(|quota| *quota as usize)).collect()
 }

@@ -1,106 +1,100 @@
 //! What robots cause in the world: loading, delivering, resting, and what is lost with a robot that can no longer act.
 
-use rne_core::Difficulty;
+use rne_core::TaskId;
+use rne_core::question::MAX_TASKS;
 
-use super::{Activity, Mission, task_index};
+use super::{Activity, Mission, Scene};
 use crate::event::{Event, EventLog, Place};
 use crate::ids::{RescueeId, RobotId};
-use crate::planning::Navigator;
+use crate::model::Model;
 use crate::world::{RescueeState, World};
 
 /// For each task, the member that shares its resources, once it was looked for and until it gives one away.
-type Sharing = [Option<Option<RobotId>>; 2];
+type Sharing = [Option<Option<RobotId>>; MAX_TASKS];
 
 impl Mission {
     /// Settles what robots do at the places where they have arrived.
-    pub fn settle(&mut self, world: &mut World, navigator: &Navigator, step: u64, log: &mut EventLog) {
-        let mut sharing = [None; 2];
-        for id in 0..world.robots.len() {
+    pub fn settle(&mut self, scene: &mut Scene) {
+        let mut sharing = [None; MAX_TASKS];
+        for id in 0..scene.world.robots.len() {
             let robot = RobotId(id as u32);
-            if !world.robots[id].is_able() {
-                self.lose(robot, world);
-                continue;
-            }
-            let arrived = || navigator.traveller(robot).has_arrived(world.robots[id].position);
-            match self.agents[id].activity {
-                Activity::Approaching(rescuee)
-                    if self.can_reach(robot, rescuee, world)
-                        && self.resource_holder(robot, world, &mut sharing).is_some() =>
-                {
-                    let done = step + self.steps(self.rules.loading_s);
-                    self.agents[id].activity = Activity::Loading(rescuee, done);
-                }
-                Activity::Loading(rescuee, done) if step >= done => {
-                    self.load(robot, rescuee, world, &mut sharing, log);
-                }
-                Activity::Returning if arrived() => {
-                    deliver(robot, Place::Home, world, log);
-                    self.agents[id].activity = Activity::Home;
-                }
-                Activity::ToRest if arrived() => {
-                    deliver(robot, Place::Rest, world, log);
-                    self.agents[id].activity = Activity::Resting(step + self.steps(self.rules.rest_s));
-                    log.push(Event::RestStarted { robot });
-                }
-                Activity::Resting(done) if step >= done => {
-                    world.robots[id].energy = 100.0;
-                    world.robots[id].hp = 100.0;
-                    self.agents[id].activity = Activity::Returning;
-                    self.agents[id].has_rested = true;
-                    log.push(Event::RestEnded { robot });
-                }
-                _ => {}
+            if scene.world.robots[id].is_able() {
+                self.settle_robot(robot, scene, &mut sharing);
+            } else {
+                self.lose(robot, scene.world);
             }
         }
     }
 
-    pub(super) fn steps(&self, seconds: f64) -> u64 {
-        (seconds / self.dt).round() as u64
-    }
-
-    fn can_reach(&self, robot: RobotId, rescuee: RescueeId, world: &World) -> bool {
-        let apart = world.rescuees[rescuee.index()].position - world.robots[robot.index()].position;
-        apart.length() <= self.rules.reach_m as f32
+    fn settle_robot(&mut self, robot: RobotId, scene: &mut Scene, sharing: &mut Sharing) {
+        let (id, step, rules) = (robot.index(), scene.step, &scene.model.scenario.mission);
+        let arrived = || scene.navigator.traveller(robot).has_arrived(scene.world.robots[id].position);
+        match self.agents[id].activity {
+            Activity::Approaching(rescuee)
+                if can_reach(robot, rescuee, scene)
+                    && self.resource_holder(robot, scene.model, scene.world, sharing).is_some() =>
+            {
+                let done = step + scene.model.steps(rules.loading_s);
+                self.agents[id].activity = Activity::Loading(rescuee, done);
+            }
+            Activity::Loading(rescuee, done) if step >= done => self.load(robot, rescuee, scene, sharing),
+            Activity::Returning if arrived() => {
+                deliver(robot, Place::Home, scene.world, scene.log);
+                self.agents[id].activity = Activity::Home;
+            }
+            Activity::ToRest if arrived() => {
+                deliver(robot, Place::Rest, scene.world, scene.log);
+                self.agents[id].activity = Activity::Resting(step + scene.model.steps(rules.rest_s));
+                scene.log.push(Event::RestStarted { robot });
+            }
+            Activity::Resting(done) if step >= done => {
+                scene.world.robots[id].energy = 100.0;
+                scene.world.robots[id].hp = 100.0;
+                self.agents[id].activity = Activity::Returning;
+                self.agents[id].has_rested = true;
+                scene.log.push(Event::RestEnded { robot });
+            }
+            _ => {}
+        }
     }
 
     /// Takes a rescuee on board, for one unit of capacity and one resource. When the resource is gone by now, the robot waits for
     /// another one.
-    #[expect(clippy::too_many_arguments, reason = "those of `settle`, and what it remembers")]
-    fn load(
-        &mut self,
-        robot: RobotId,
-        rescuee: RescueeId,
-        world: &mut World,
-        sharing: &mut Sharing,
-        log: &mut EventLog,
-    ) {
-        let can_reach = self.can_reach(robot, rescuee, world);
-        let Some(resource_of) = self.resource_holder(robot, world, sharing).filter(|_| can_reach) else {
+    fn load(&mut self, robot: RobotId, rescuee: RescueeId, scene: &mut Scene, sharing: &mut Sharing) {
+        let can_reach = can_reach(robot, rescuee, scene);
+        let holder = self.resource_holder(robot, scene.model, scene.world, sharing);
+        let Some(resource_of) = holder.filter(|_| can_reach) else {
             self.agents[robot.index()].activity = Activity::Approaching(rescuee);
             return;
         };
-        world.robots[resource_of.index()].resources -= 1;
-        *sharing = [None; 2];
-        world.robots[robot.index()].load.push(rescuee);
-        let state = &mut world.rescuees[rescuee.index()];
+        scene.world.robots[resource_of.index()].resources -= 1;
+        *sharing = [None; MAX_TASKS];
+        scene.world.robots[robot.index()].load.push(rescuee);
+        let state = &mut scene.world.rescuees[rescuee.index()];
         state.state = RescueeState::OnBoard(robot);
         state.claimed_by = None;
         self.agents[robot.index()].activity = Activity::Searching;
-        log.push(Event::Loaded { robot, rescuee, resource_of });
+        scene.log.push(Event::Loaded { robot, rescuee, resource_of });
     }
 
     /// The member whose resource a robot would use: itself, or the one that shares.
-    fn resource_holder(&self, robot: RobotId, world: &World, sharing: &mut Sharing) -> Option<RobotId> {
+    fn resource_holder(
+        &self,
+        robot: RobotId,
+        model: &Model,
+        world: &World,
+        sharing: &mut Sharing,
+    ) -> Option<RobotId> {
         if world.robots[robot.index()].resources > 0 {
             return Some(robot);
         }
         let task = self.agents[robot.index()].task?;
-        *sharing[task_index(task)].get_or_insert_with(|| self.sharing_member(task, world))
+        *sharing[task.index()].get_or_insert_with(|| self.sharing_member(task, model, world))
     }
 
     /// The member in the task area with the most resources left (the lowest id among equals).
-    fn sharing_member(&self, task: Difficulty, world: &World) -> Option<RobotId> {
-        let area = &self.areas[task_index(task)];
+    fn sharing_member(&self, task: TaskId, model: &Model, world: &World) -> Option<RobotId> {
+        let area = &model.tasks[task.index()].area;
         let shares = |id: &RobotId| {
             let member = &world.robots[id.index()];
             member.resources > 0 && area.contains(member.position)
@@ -125,4 +119,9 @@ fn deliver(robot: RobotId, place: Place, world: &mut World, log: &mut EventLog) 
         world.rescuees[rescuee.index()].state = RescueeState::Rescued;
         log.push(Event::Delivered { robot, rescuee, place });
     }
+}
+
+fn can_reach(robot: RobotId, rescuee: RescueeId, scene: &Scene) -> bool {
+    let apart = scene.world.rescuees[rescuee.index()].position - scene.world.robots[robot.index()].position;
+    apart.length() <= scene.model.scenario.mission.reach_m as f32
 }

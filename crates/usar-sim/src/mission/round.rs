@@ -67,7 +67,7 @@ pub struct FieldState {
 #[must_use]
 pub fn return_cause(field: &FieldState) -> Option<ReturnCause> {
     if field.carrying_members == 0 {
-        Some(ReturnCause::NoCarrier)
+        Some(ReturnCause::NobodyCanCarry)
     } else if field.free_capacity == 0 {
         Some(ReturnCause::CapacityUsed)
     } else if field.resources == 0 {
@@ -115,8 +115,11 @@ mod tests {
             (FieldState { known_rescuees: 0, still_searching: 0, ..at_work }, Some(ReturnCause::NothingLeft)),
             (FieldState { resources: 0, ..at_work }, Some(ReturnCause::ResourcesUsed)),
             (FieldState { free_capacity: 0, ..at_work }, Some(ReturnCause::CapacityUsed)),
-            (FieldState { carrying_members: 0, free_capacity: 0, ..at_work }, Some(ReturnCause::NoCarrier)),
-            (FieldState::default(), Some(ReturnCause::NoCarrier)),
+            (
+                FieldState { carrying_members: 0, free_capacity: 0, ..at_work },
+                Some(ReturnCause::NobodyCanCarry),
+            ),
+            (FieldState::default(), Some(ReturnCause::NobodyCanCarry)),
         ];
         for (field, cause) in table {
             assert_eq!(return_cause(&field), cause, "{field:?}");

@@ -1,13 +1,14 @@
 //! Work in the field: claims on rescuees, and the search for more.
 
 use parry2d::math::Vector;
-use rne_core::Difficulty;
+use rne_core::TaskId;
 
-use super::{Activity, Mission, task_index};
-use crate::event::{Event, EventLog};
+use super::{Activity, Mission, Scene};
+use crate::belief::SENSING_PERIOD_STEPS;
+use crate::event::Event;
 use crate::ids::{RescueeId, RobotId};
-use crate::planning::Navigator;
-use crate::sensing::{RescueeBlock, SENSING_PERIOD_STEPS};
+use crate::model::Model;
+use crate::navigation::Navigator;
 use crate::world::{RescueeState, Robot, World};
 
 /// What a group can still claim in a step.
@@ -41,66 +42,48 @@ impl Mission {
     /// Rescuees that a group knows of and that nobody has claimed.
     pub(super) fn available<'w>(
         &'w self,
-        task: Difficulty,
+        task: TaskId,
+        model: &Model,
         world: &'w World,
-    ) -> impl Iterator<Item = RescueeId> + 'w {
-        let known = &self.knowledge[task_index(task)].rescuees;
-        let block = self.blocks.iter().find(|block| block.task() == task);
-        block
-            .map(RescueeBlock::ids)
-            .unwrap_or_default()
-            .filter(move |i| {
-                let rescuee = &world.rescuees[*i];
-                known[*i]
-                    && rescuee.state == RescueeState::Waiting
-                    && rescuee.claimed_by.is_none()
-                    && !self.unreachable[*i]
-            })
-            .map(|i| RescueeId(i as u32))
+    ) -> impl Iterator<Item = RescueeId> + use<'w> {
+        let known = &self.knowledge[task.index()].rescuees;
+        let is_available = move |i: &usize| {
+            let rescuee = &world.rescuees[*i];
+            known[*i]
+                && rescuee.state == RescueeState::Waiting
+                && rescuee.claimed_by.is_none()
+                && !self.unreachable[*i]
+        };
+        model.tasks[task.index()].rescuees.clone().filter(is_available).map(|i| RescueeId(i as u32))
     }
 
     /// A robot's next activity, where it is free to choose.
-    pub(super) fn choose_activity(
-        &mut self,
-        id: RobotId,
-        world: &mut World,
-        (navigator, step): (&Navigator, u64),
-        log: &mut EventLog,
-    ) {
-        let robot = &world.robots[id.index()];
+    pub(super) fn choose_activity(&mut self, id: RobotId, scene: &mut Scene) {
+        let robot = &scene.world.robots[id.index()];
         let activity = self.agents[id.index()].activity;
         let Some(task) = self.agents[id.index()].task.filter(|_| robot.is_able()) else { return };
         match activity {
-            Activity::Approaching(rescuee) if self.is_out_of_reach(id, rescuee, world, navigator) => {
+            Activity::Approaching(rescuee) if is_out_of_reach(id, rescuee, scene) => {
                 self.unreachable[rescuee.index()] = true;
-                let place = world.rescuees[rescuee.index()].position.into();
-                log.push(Event::Unreachable { robot: id, place });
-                self.release_claim(id, world);
-                self.supplies[task_index(task)].forget();
+                let place = scene.world.rescuees[rescuee.index()].position.into();
+                scene.log.push(Event::Unreachable { robot: id, place });
+                self.release_claim(id, scene.world);
+                self.supplies[task.index()].forget();
                 self.agent(id).activity = Activity::Searching;
             }
-            Activity::Searching | Activity::Standby if self.groups[task_index(task)].at_work => {
-                let looks_for_work =
-                    (step + id.0 as u64).is_multiple_of(SENSING_PERIOD_STEPS) && robot.free_capacity() > 0;
-                if looks_for_work && let Some(rescuee) = self.nearest_available(task, id, world) {
-                    self.supplies[task_index(task)].note_claim(rescuee);
-                    world.rescuees[rescuee.index()].claimed_by = Some(id);
+            Activity::Searching | Activity::Standby if self.groups[task.index()].at_work => {
+                let looks_for_work = (scene.step + u64::from(id.0)).is_multiple_of(SENSING_PERIOD_STEPS)
+                    && robot.free_capacity() > 0;
+                if looks_for_work && let Some(rescuee) = self.nearest_available(task, id, scene) {
+                    self.supplies[task.index()].note_claim(rescuee);
+                    scene.world.rescuees[rescuee.index()].claimed_by = Some(id);
                     self.agent(id).activity = Activity::Approaching(rescuee);
                     return;
                 }
-                self.go_on_searching(id, &world.robots[id.index()], navigator);
+                self.go_on_searching(id, &scene.world.robots[id.index()], scene.navigator);
             }
             _ => {}
         }
-    }
-
-    /// Whether a robot's route ends, or there is none, before the rescuee is within reach.
-    fn is_out_of_reach(&self, id: RobotId, rescuee: RescueeId, world: &World, navigator: &Navigator) -> bool {
-        let traveller = navigator.traveller(id);
-        let robot = &world.robots[id.index()];
-        let apart = (world.rescuees[rescuee.index()].position - robot.position).length();
-        let at_end = traveller.has_arrived(robot.position) && apart > self.rules.reach_m as f32;
-        at_end || traveller.leads_nowhere()
     }
 
     fn go_on_searching(&mut self, id: RobotId, robot: &Robot, navigator: &Navigator) {
@@ -118,22 +101,32 @@ impl Mission {
     }
 
     /// The nearest rescuee that a robot may claim: there must be a resource for it in the field that no other claim needs.
-    fn nearest_available(&mut self, task: Difficulty, id: RobotId, world: &World) -> Option<RescueeId> {
-        if !self.supplies[task_index(task)].is_known {
-            self.take_stock(task, world);
+    fn nearest_available(&mut self, task: TaskId, id: RobotId, scene: &Scene) -> Option<RescueeId> {
+        if !self.supplies[task.index()].is_known {
+            self.take_stock(task, scene.model, scene.world);
         }
-        self.supplies[task_index(task)].nearest(world.robots[id.index()].position, world)
+        self.supplies[task.index()].nearest(scene.world.robots[id.index()].position, scene.world)
     }
 
-    fn take_stock(&mut self, task: Difficulty, world: &World) {
+    fn take_stock(&mut self, task: TaskId, model: &Model, world: &World) {
         let resources = |id: RobotId| i64::from(world.robots[id.index()].resources);
         let claims = |id: RobotId| i64::from(self.agents[id.index()].activity.claim().is_some());
         let spare = self.in_field(task, world).map(|id| resources(id) - claims(id)).sum();
-        let mut rescuees = std::mem::take(&mut self.supplies[task_index(task)].rescuees);
+        let mut rescuees = std::mem::take(&mut self.supplies[task.index()].rescuees);
         rescuees.clear();
         if spare > 0 {
-            rescuees.extend(self.available(task, world));
+            rescuees.extend(self.available(task, model, world));
         }
-        self.supplies[task_index(task)] = Supply { is_known: true, spare, rescuees };
+        self.supplies[task.index()] = Supply { is_known: true, spare, rescuees };
     }
+}
+
+/// Whether a robot's route ends, or there is none, before the rescuee is within reach.
+fn is_out_of_reach(id: RobotId, rescuee: RescueeId, scene: &Scene) -> bool {
+    let traveller = scene.navigator.traveller(id);
+    let robot = &scene.world.robots[id.index()];
+    let apart = (scene.world.rescuees[rescuee.index()].position - robot.position).length();
+    let reach = scene.model.scenario.mission.reach_m as f32;
+    let at_end = traveller.has_arrived(robot.position) && apart > reach;
+    at_end || traveller.leads_nowhere()
 }

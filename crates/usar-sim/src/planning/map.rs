@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use parry2d::math::Vector;
 
 use super::obstacles::{KnownObstacle, ObstacleKey, contains};
-use crate::world::Places;
+use crate::geometry::Places;
 
 /// Obstacles, one for each key. What is found by place comes in no particular order: whoever depends on an order sorts by key.
 #[derive(Debug, Clone, Default)]
@@ -80,8 +80,8 @@ impl FromIterator<KnownObstacle> for ObstacleMap {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geometry::Outline;
     use crate::planning::obstacles::crosses;
-    use crate::world::Outline;
 
     fn disc(number: u32, at: [f32; 2]) -> KnownObstacle {
         KnownObstacle::new(ObstacleKey::Debris(number), 1, &Outline::disc(at.into(), 1.0), 0.4, 0.15)

@@ -10,38 +10,31 @@
 //! gone round: starting from the route that ignores all zones, each zone that is crossed is closed for a try, and stays closed when the
 //! new route costs less.
 
-mod knowledge;
 mod map;
-mod navigator;
 mod obstacles;
 mod route;
 mod search;
-mod trail;
 
-pub use knowledge::Knowledge;
 pub use map::ObstacleMap;
-pub use navigator::{Goal, Navigator, PLANNED_BRAKING, Traveller};
 pub use obstacles::{
     KnownObstacle, ObstacleKey, contains as polygon_contains, crosses as polygon_crossed, outward_normal,
 };
 pub use route::Route;
 
 use parry2d::math::Vector;
-use serde::{Deserialize, Serialize};
 
-use crate::scenario::Scenario;
-use crate::world::{Outline, RadiationZone};
+use crate::geometry::{Outline, RadiationZone};
+use crate::scenario::{RoleKind, Scenario};
 use obstacles::ZONE_MARGIN_M;
 use search::{Meshes, Search};
 
-/// Planner of one trial.
-#[derive(Serialize, Deserialize)]
+/// Planner of one trial: it has settings and a cache, and no state.
+#[derive(Default)]
 pub struct Planner {
     arena: Vector,
     /// Distance of ground and of aerial routes from obstacles, in metres.
     offsets: [f32; 2],
     exposure_price_m: f32,
-    #[serde(skip)]
     meshes: Meshes,
 }
 
@@ -73,8 +66,11 @@ impl Planner {
         let clearance = scenario.planning.clearance_m;
         Self {
             arena: Vector::new(scenario.arena_m[0] as f32, scenario.arena_m[1] as f32),
-            offsets: [scenario.ground_radius_m() + clearance, scenario.aerial_radius_m() + clearance]
-                .map(|offset| offset as f32),
+            offsets: [
+                scenario.largest_radius_m(RoleKind::Ground) + clearance,
+                scenario.largest_radius_m(RoleKind::Aerial) + clearance,
+            ]
+            .map(|offset| offset as f32),
             exposure_price_m: scenario.planning.exposure_price_m as f32,
             meshes: Meshes::default(),
         }

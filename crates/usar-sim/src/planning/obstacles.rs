@@ -4,7 +4,7 @@ use parry2d::bounding_volume::Aabb;
 use parry2d::math::Vector;
 use parry2d::shape::SharedShape;
 
-use crate::world::Outline;
+use crate::geometry::Outline;
 use serde::{Deserialize, Serialize};
 
 /// Zones that are closed to a route are left by this much, in metres, so that the route does not graze them.
@@ -51,14 +51,14 @@ impl KnownObstacle {
     }
 
     /// Whether the way from `a` to `b` is cut by it.
-    pub(super) fn cuts(&self, a: Vector, b: Vector) -> bool {
+    pub(crate) fn cuts(&self, a: Vector, b: Vector) -> bool {
         let Aabb { mins, maxs } = self.bounds;
         let beside = a.max(b).cmplt(mins).any() || a.min(b).cmpgt(maxs).any();
         !beside && crosses(&self.tight, a, b)
     }
 
     /// Middle of the corners of `planned`, and the distance of the farthest from it, in metres.
-    pub(super) fn middle_and_reach(&self) -> (Vector, f32) {
+    pub(crate) fn middle_and_reach(&self) -> (Vector, f32) {
         let middle = self.planned.iter().copied().sum::<Vector>() / self.planned.len() as f32;
         let distance = |corner: &Vector| (*corner - middle).length();
         (middle, self.planned.iter().map(distance).fold(0.0, f32::max))

@@ -3,7 +3,7 @@
 use parry2d::math::Vector;
 use serde::{Deserialize, Serialize};
 
-use crate::world::RadiationZone;
+use crate::geometry::RadiationZone;
 
 /// A waypoint counts as passed within this distance, in metres.
 const PASSED_M: f32 = 0.25;

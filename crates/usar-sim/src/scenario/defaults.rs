@@ -1,21 +1,44 @@
 //! What a scenario file need not say. Robots, costs and rules are those of `scenarios/paper.ron`, which gives them all and explains
-//! each; a test compares the two. There is no default for the team, the arena and the duration.
+//! each; a test compares the two. There is no default for the team, the arena, the duration and the tasks of a mission.
+
+use rne_core::hierarchy::NeedLevel;
 
 use super::file::{
-    ConflictRules, Costs, InitialLevels, MissionRules, Normal, PlanningRules, PriorityRule, ResolverRule,
-    RoleSpec, Roles, SweepDefaults, TaskFile, Tasks, TurnBack,
+    ConflictRules, Costs, InitialLevels, Measure, MissionRules, NeedFile, Normal, PlanningRules,
+    PriorityRule, ResolverRule, RoleFile, RoleKind, TurnBack,
 };
 use crate::vitals::Rates;
 
-impl Default for SweepDefaults {
-    fn default() -> Self {
-        Self { policies: vec!["RNE".to_owned()], trials: 1, first_seed: 1 }
-    }
+/// One role, for scenarios in which all robots are alike.
+pub(super) fn roles() -> Vec<RoleFile> {
+    vec![RoleFile { name: "robot".to_owned(), ..RoleFile::default() }]
 }
 
-impl Default for Roles {
+/// The seven needs of the paper: safety needs, a basic need, capability needs.
+pub(super) fn needs() -> Vec<NeedFile> {
+    let need =
+        |name: &str, level, measures| NeedFile { name: name.to_owned(), level, measures, weight: weight() };
+    vec![
+        need("hp", NeedLevel::Safety, Measure::Health),
+        need("v", NeedLevel::Safety, Measure::Speed),
+        need("sen", NeedLevel::Safety, Measure::Sensing),
+        need("eng", NeedLevel::Basic, Measure::Energy),
+        need("res", NeedLevel::Capability, Measure::Resources),
+        need("cap", NeedLevel::Capability, Measure::Capacity),
+        need("obs", NeedLevel::Capability, Measure::Observing),
+    ]
+}
+
+/// Weight of a need of which nothing else is said.
+pub(super) fn weight() -> f64 {
+    1.0
+}
+
+impl Default for RoleFile {
     fn default() -> Self {
-        let carrier = RoleSpec {
+        Self {
+            name: String::new(),
+            kind: RoleKind::Ground,
             radius_m: 0.4,
             mass_kg: 50.0,
             hp: 100.0,
@@ -26,33 +49,15 @@ impl Default for Roles {
             observing_m: 0.006,
             capacity: 6,
             resources: 1,
-        };
-        let observer = RoleSpec {
-            mass_kg: 5.0,
-            hp: 50.0,
-            energy: 100.0,
-            speed_mps: 1.5,
-            sensing_m: 18.0,
-            observing_m: 6.0,
-            capacity: 0,
-            resources: 0,
-            ..carrier
-        };
-        Self { carrier, supplier: RoleSpec { capacity: 1, resources: 10, ..carrier }, observer }
+            guides: false,
+            constants: std::collections::BTreeMap::new(),
+        }
     }
 }
 
 impl Default for InitialLevels {
     fn default() -> Self {
         Self { energy: Normal { mean: 80.0, sd: 20.0 }, hp: Normal { mean: 90.0, sd: 10.0 } }
-    }
-}
-
-/// Nobody to rescue: for scenarios with errands.
-impl Default for Tasks {
-    fn default() -> Self {
-        let nobody = TaskFile { center: [1.0, 1.0], size_m: [0.0, 0.0], grid: [0, 0], rest: [1.0, 1.0] };
-        Self { hard: nobody, easy: nobody }
     }
 }
 

@@ -8,7 +8,7 @@ use thiserror::Error;
 /// One value that breaks a rule.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Problem {
-    /// Path of the field, e.g. `tasks.hard.grid[0]`.
+    /// Path of the field, e.g. `tasks.village.grid[0]`.
     pub field: String,
     /// Line of the field in its file, where it is known.
     pub line: Option<usize>,
@@ -64,6 +64,16 @@ pub enum ScenarioError {
         /// What is wrong.
         message: String,
     },
+    /// A file in the former format.
+    #[error("{}:{line}: {change}", path.display())]
+    Former {
+        /// The file.
+        path: PathBuf,
+        /// Line of the field, from 1.
+        line: usize,
+        /// The field, and what to write instead.
+        change: String,
+    },
     /// Values break rules.
     #[error("{0}")]
     Invalid(Problems),
@@ -74,11 +84,11 @@ pub enum ScenarioError {
 pub enum LayoutError {
     /// No room for one more sampled thing.
     #[error(
-        "sampled.{task}: no room for {what} {number} of {count} after {tries} tries; lower the count, the radius or gap_m"
+        "tasks.{task}.sampled: no room for {what} {number} of {count} after {tries} tries; lower the count, the radius or gap_m"
     )]
     NoRoom {
-        /// `hard` or `easy`.
-        task: &'static str,
+        /// Name of the task.
+        task: String,
         /// `debris` or `radiation`.
         what: &'static str,
         /// Which of them, from 1.
@@ -94,7 +104,7 @@ pub enum LayoutError {
     )]
     NoPassage {
         /// Where to.
-        to: &'static str,
+        to: String,
         /// Radius of the largest ground robot, in metres.
         radius_m: f64,
     },

@@ -2,7 +2,9 @@
 //!
 //! SI units; points are `(x, y)` in metres from the arena's lower left corner; levels are percent of a robot's own maximum.
 
-use rne_core::{Difficulty, RneOptions, Role};
+use std::collections::BTreeMap;
+
+use rne_core::hierarchy::NeedLevel;
 use serde::{Deserialize, Serialize};
 
 use crate::vitals::Rates;
@@ -19,9 +21,6 @@ pub struct ScenarioFile {
     /// What the scenario is for.
     #[serde(default)]
     pub description: String,
-    /// What `usar sweep` runs when the command line does not say otherwise.
-    #[serde(default)]
-    pub sweep: SweepDefaults,
     /// Simulated time of a trial, in seconds.
     pub duration_s: f64,
     /// Length of a simulation step, in seconds.
@@ -30,15 +29,18 @@ pub struct ScenarioFile {
     pub arena_m: Point,
     /// The team, row by row: ids are given in this order, from 0. Each robot's place in its row is its home.
     pub team: Vec<Row>,
-    /// What a robot of each role is and can do.
-    #[serde(default)]
-    pub roles: Roles,
+    /// What a robot of each role is and can do. Policies merge roles in this order.
+    #[serde(default = "super::defaults::roles")]
+    pub roles: Vec<RoleFile>,
+    /// The needs that robots report and policies compare.
+    #[serde(default = "super::defaults::needs")]
+    pub needs: Vec<NeedFile>,
     /// Distribution of the initial levels.
     #[serde(default)]
     pub initial_levels: InitialLevels,
-    /// The two tasks.
+    /// The tasks. A mission has at least one.
     #[serde(default)]
-    pub tasks: Tasks,
+    pub tasks: Vec<TaskFile>,
     /// Places that robots are to go to: when there are any, they take the place of the mission, and the trial is over when all are
     /// done. Robots without an errand stand at home.
     #[serde(default)]
@@ -49,7 +51,7 @@ pub struct ScenarioFile {
     /// Radiation zones at known places.
     #[serde(default)]
     pub radiation: Vec<ZoneFile>,
-    /// Debris and radiation zones drawn at random for each trial, in addition.
+    /// What the debris and radiation zones are like that tasks ask for.
     #[serde(default)]
     pub sampled: Sampled,
     /// What moving and radiation cost.
@@ -64,29 +66,14 @@ pub struct ScenarioFile {
     /// Rules of right of way.
     #[serde(default)]
     pub conflicts: ConflictRules,
-    /// Options of the RNE policy.
-    #[serde(default)]
-    pub rne: RneOptions,
-}
-
-/// What a sweep runs by default.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct SweepDefaults {
-    /// Names of the grouping policies to compare.
-    pub policies: Vec<String>,
-    /// Paired trials per policy.
-    pub trials: u32,
-    /// Seed of the first trial; the next trials count up.
-    pub first_seed: u64,
 }
 
 /// Robots of one role side by side.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Row {
-    /// Role of the whole row.
-    pub role: Role,
+    /// Name of the role of the whole row.
+    pub role: String,
     /// Number of robots.
     pub count: u32,
     /// Centre of the row.
@@ -118,54 +105,84 @@ pub struct Errand {
     pub to: Vec<Point>,
 }
 
-/// One description for each role; the default for a role that is not described.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+/// What a robot of a role is and can do, at full health.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
-pub struct Roles {
-    /// Ground robot that carries many rescuees.
-    pub carrier: RoleSpec,
-    /// Ground robot that brings many resources.
-    pub supplier: RoleSpec,
-    /// Aerial robot that sees far.
-    pub observer: RoleSpec,
-}
-
-impl Roles {
-    /// The description of one role.
-    #[must_use]
-    pub fn of(&self, role: Role) -> &RoleSpec {
-        match role {
-            Role::Carrier => &self.carrier,
-            Role::Supplier => &self.supplier,
-            Role::Observer => &self.observer,
-        }
-    }
-}
-
-/// What a robot is and can do, at full health.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct RoleSpec {
+pub struct RoleFile {
+    /// Name of the role.
+    pub name: String,
+    /// Whether robots of this role drive or fly.
+    pub kind: RoleKind,
     /// Radius of the disc, in metres.
     pub radius_m: f64,
     /// Mass, in kilograms.
     pub mass_kg: f64,
-    /// Health points at 100 %: the need `hp`.
+    /// Health points at 100 %.
     pub hp: f64,
-    /// Battery capacity at 100 %: the need `eng`.
+    /// Battery capacity at 100 %.
     pub energy: f64,
-    /// Top speed, in metres per second: the need `v`.
+    /// Top speed, in metres per second.
     pub speed_mps: f64,
     /// Greatest acceleration and braking of the drive, in metres per second squared.
     pub acceleration_mps2: f64,
-    /// Range within which debris and radiation are noticed, in metres: the need `sen`.
+    /// Range within which debris and radiation are noticed, in metres.
     pub sensing_m: f64,
-    /// Range within which rescuees are seen, in metres: the need `obs`.
+    /// Range within which rescuees are seen, in metres.
     pub observing_m: f64,
-    /// Rescuees that it can have on board: the need `cap`.
+    /// Rescuees that it can have on board.
     pub capacity: u32,
-    /// Rescuing resources that it takes along each round: the need `res`.
+    /// Rescuing resources that it takes along each round.
     pub resources: u32,
+    /// Whether it guides its group: a group without a guide that can act is slower, by `mission.blind_speed_loss`.
+    pub guides: bool,
+    /// Values of the needs that measure a constant of the role, by the name of the need.
+    pub constants: BTreeMap<String, f64>,
+}
+
+/// Where robots of a role move.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub enum RoleKind {
+    /// On the ground: walls, debris and other ground robots are in the way. The default.
+    #[default]
+    Ground,
+    /// In the air, over debris and ground robots; walls and other aerial robots are in the way.
+    Aerial,
+}
+
+/// A need that robots report and policies compare.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct NeedFile {
+    /// Name of the need.
+    pub name: String,
+    /// Its level in the hierarchy of needs.
+    pub level: NeedLevel,
+    /// What it measures.
+    pub measures: Measure,
+    /// Its weight. Only the ratios of weights matter.
+    #[serde(default = "super::defaults::weight")]
+    pub weight: f64,
+}
+
+/// What a need measures of a robot as it is now.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Measure {
+    /// Health points.
+    Health,
+    /// Top speed at its present health, in metres per second.
+    Speed,
+    /// Sensing range at its present health, in metres.
+    Sensing,
+    /// Battery charge.
+    Energy,
+    /// Rescuing resources left.
+    Resources,
+    /// Room for rescuees.
+    Capacity,
+    /// Observing range at its present health, in metres.
+    Observing,
+    /// The constant of its role that has the need's name.
+    Constant,
 }
 
 /// Normal distributions of the initial levels, in percent, clamped to [1, 100].
@@ -188,31 +205,14 @@ pub struct Normal {
     pub sd: f64,
 }
 
-/// The two tasks.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Tasks {
-    /// The hard task.
-    pub hard: TaskFile,
-    /// The easy task.
-    pub easy: TaskFile,
-}
-
-impl Tasks {
-    /// The task of one difficulty.
-    #[must_use]
-    pub fn of(&self, task: Difficulty) -> &TaskFile {
-        match task {
-            Difficulty::Hard => &self.hard,
-            Difficulty::Easy => &self.easy,
-        }
-    }
-}
-
 /// A block of rescuees and the rest place that belongs to it.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct TaskFile {
+    /// Name of the task.
+    pub name: String,
+    /// Its rank: the harder the task, the higher. Of two tasks of one rank, the first counts as harder.
+    pub difficulty: u32,
     /// Centre of the block of rescuees.
     pub center: Point,
     /// Width and height of the block, in metres.
@@ -221,6 +221,13 @@ pub struct TaskFile {
     pub grid: [u32; 2],
     /// Centre of the rest place.
     pub rest: Point,
+    /// How many robots of a role its group gets, by the name of the role. Without it, tasks share a role as equally as possible, and
+    /// harder tasks get the extra robots.
+    #[serde(default)]
+    pub quota: BTreeMap<String, u32>,
+    /// Debris and radiation zones drawn between home and this task, in addition.
+    #[serde(default)]
+    pub sampled: SampledCounts,
 }
 
 /// A piece of debris.
@@ -270,14 +277,10 @@ pub struct ZoneFile {
     pub radius_m: f64,
 }
 
-/// Random debris and radiation. All counts 0 by default.
+/// What is drawn where a task asks for sampled debris or radiation.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Sampled {
-    /// Between home and the hard task.
-    pub hard: SampledCounts,
-    /// Between home and the easy task.
-    pub easy: SampledCounts,
     /// Least and greatest radius of a sampled disc of debris, in metres.
     pub debris_radius_m: [f64; 2],
     /// Least and greatest radius of a sampled radiation zone, in metres.
@@ -290,25 +293,7 @@ pub struct Sampled {
 
 impl Default for Sampled {
     fn default() -> Self {
-        Self {
-            hard: SampledCounts::default(),
-            easy: SampledCounts::default(),
-            debris_radius_m: [0.4, 0.8],
-            zone_radius_m: [2.0, 4.0],
-            gap_m: 2.0,
-            strip_m: 12.0,
-        }
-    }
-}
-
-impl Sampled {
-    /// The counts of one task.
-    #[must_use]
-    pub fn of(&self, task: Difficulty) -> SampledCounts {
-        match task {
-            Difficulty::Hard => self.hard,
-            Difficulty::Easy => self.easy,
-        }
+        Self { debris_radius_m: [0.4, 0.8], zone_radius_m: [2.0, 4.0], gap_m: 2.0, strip_m: 12.0 }
     }
 }
 
@@ -368,7 +353,7 @@ pub struct MissionRules {
     pub reach_m: f64,
     /// How far a task's area extends beyond its block of rescuees, in metres. Resources are shared within it.
     pub area_margin_m: f64,
-    /// Share of its speed that a robot loses when its group has no live observer.
+    /// Share of its speed that a robot loses when its group has no guide that can act.
     pub blind_speed_loss: f64,
     /// Factor on speed, sensing and observing range at health 0 %; it rises linearly to 1 at 100 %.
     pub health_floor: f64,
@@ -408,7 +393,7 @@ pub enum PriorityRule {
     /// The robot with the lowest battery level. The default.
     #[default]
     LowestEnergyFirst,
-    /// Robots of the hard task, then of the easy task, then those without a group; among them the lowest battery level.
+    /// Robots of the hardest task, then of the next, and at last those without a group; among them the lowest battery level.
     TaskThenEnergy,
     /// The robot with the highest battery level.
     HighestEnergyFirst,

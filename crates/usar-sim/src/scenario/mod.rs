@@ -3,12 +3,16 @@
 mod defaults;
 mod error;
 mod file;
+mod former;
+mod places;
 mod set;
 mod validate;
 
 use std::ops::Deref;
 use std::path::Path;
 
+use rne_core::question::hardest_first;
+use rne_core::{RoleId, TaskId};
 use ron::extensions::Extensions;
 use ron_fields::Fields;
 use serde::de::DeserializeOwned;
@@ -115,6 +119,9 @@ impl Scenario {
     /// # Errors
     /// A text that is not a scenario, or values that break rules.
     pub fn parse(text: &str, path: &Path) -> Result<Self, ScenarioError> {
+        if let Some((line, change)) = former::change_needed(text) {
+            return Err(ScenarioError::Former { path: path.to_owned(), line, change });
+        }
         let file: ScenarioFile = parse_ron(text, path)?;
         Self::try_from(file).map_err(|mut list| {
             let fields = Fields::of(text);
@@ -141,20 +148,29 @@ impl Scenario {
         (self.duration_s / self.dt_s).round() as u64
     }
 
-    /// Radius of the largest ground robot of the team, in metres.
+    /// Number of robots.
     #[must_use]
-    pub fn ground_radius_m(&self) -> f64 {
-        self.radius_of(|role| role != rne_core::Role::Observer)
+    pub fn robots(&self) -> u32 {
+        self.team.iter().map(|row| row.count).sum()
     }
 
-    /// Radius of the largest aerial robot of the team, in metres.
+    /// The role of a row of the team.
     #[must_use]
-    pub fn aerial_radius_m(&self) -> f64 {
-        self.radius_of(|role| role == rne_core::Role::Observer)
+    pub fn role_of(&self, row: &Row) -> RoleId {
+        let place = self.roles.iter().position(|role| role.name == row.role);
+        RoleId(place.unwrap_or_default() as u16)
     }
 
-    fn radius_of(&self, wanted: impl Fn(rne_core::Role) -> bool) -> f64 {
-        let rows = self.team.iter().filter(|row| wanted(row.role));
-        rows.map(|row| self.roles.of(row.role).radius_m).fold(0.0, f64::max)
+    /// The tasks from the hardest to the easiest.
+    #[must_use]
+    pub fn hardest_first(&self) -> Vec<TaskId> {
+        hardest_first(self.tasks.iter().map(|task| task.difficulty))
+    }
+
+    /// Radius of the largest robot of the team that moves there, in metres; 0 where there is none.
+    #[must_use]
+    pub fn largest_radius_m(&self, kind: RoleKind) -> f64 {
+        let roles = self.team.iter().map(|row| &self.roles[self.role_of(row).index()]);
+        roles.filter(|role| role.kind == kind).map(|role| role.radius_m).fold(0.0, f64::max)
     }
 }

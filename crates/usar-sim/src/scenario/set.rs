@@ -5,7 +5,7 @@ use ron_fields::SetError;
 use super::ScenarioFile;
 
 impl ScenarioFile {
-    /// Sets the field at a path such as `costs.energy.per_step` or `tasks.hard.grid[0]` to a value in RON. Rules are not checked: that
+    /// Sets the field at a path such as `costs.energy.per_step` or `tasks.village.grid[0]` to a value in RON. Rules are not checked: that
     /// is done when the file becomes a scenario.
     ///
     /// # Errors
@@ -22,7 +22,7 @@ mod tests {
     use crate::scenario::{DebrisShape, ron_options};
 
     fn file() -> ScenarioFile {
-        let row = "(role: Carrier, count: 2, center: (5, 5), width_m: 2)";
+        let row = "(role: \"robot\", count: 2, center: (5, 5), width_m: 2)";
         let debris = "(shape: Box(1, 2), at: (8, 8)), (shape: Disc(0.5), at: (3, 3))";
         let text = format!(
             "(name: \"t\", duration_s: 60, dt_s: 0.02, arena_m: (20, 20), team: [{row}], debris: [{debris}])"
@@ -34,13 +34,13 @@ mod tests {
     fn one_field_is_set_and_no_other() {
         let mut set = file();
         set.set("costs.energy.per_step", "0.009").unwrap();
-        set.set("rne.hard_rule", "MeanEnergy").unwrap();
+        set.set("roles.robot.speed_mps", "3").unwrap();
         set.set("debris[0].shape", "Box(3, 1)").unwrap();
         set.set("team[0].levels", "(energy: 50, hp: 60)").unwrap();
         set.set("arena_m[1]", "30").unwrap();
         let mut expected = file();
         expected.costs.energy.per_step = 0.009;
-        expected.rne.hard_rule = rne_core::grouping::rne::HardRule::MeanEnergy;
+        expected.roles[0].speed_mps = 3.0;
         expected.debris[0].shape = DebrisShape::Box(3.0, 1.0);
         expected.team[0].levels = Some(crate::scenario::Levels { energy: 50.0, hp: 60.0 });
         expected.arena_m[1] = 30.0;
@@ -59,13 +59,13 @@ mod tests {
             refused("costs.energy.per_stop", "1"),
             "costs.energy.per_stop: no such field; costs.energy has per_step, per_metre, per_second"
         );
-        assert!(refused("cots.energy", "1").contains("a scenario has name, description, sweep"));
+        assert!(refused("cots.energy", "1").contains("a scenario has name, description, duration_s"));
         assert_eq!(
             refused("debris[7].at", "(1, 1)"),
             "debris[7].at: no such field; debris has 2 entries, from [0] on"
         );
         assert!(refused("duration_s", "\"long\"").contains("found \"long\""));
-        assert!(refused("rne.hard_rule", "Luck").contains("IntraGroupTrust"));
+        assert!(refused("conflicts.resolver", "Luck").contains("Rotation"));
         for value in ["1, dt_s: 1", "1) //", "1 /* ", "", "(1"] {
             assert!(refused("duration_s", value).starts_with("duration_s: "), "{value}");
         }

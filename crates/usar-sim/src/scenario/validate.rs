@@ -3,12 +3,20 @@
 use std::fmt::Display;
 use std::ops::RangeInclusive;
 
-use rne_core::{Difficulty, NEED_NAMES, Role, policy_named};
+use rne_core::question::MAX_TASKS;
 
 use super::error::Problem;
-use super::file::{DebrisShape, Normal, Point, RoleSpec, SampledCounts, ScenarioFile, TaskFile, Tasks};
+use super::file::{
+    DebrisShape, Measure, NeedFile, Normal, Point, RoleFile, RoleKind, Row, SampledCounts, ScenarioFile,
+    TaskFile,
+};
 use crate::vitals::Rates;
-use crate::world::{debris_outline, row_positions};
+
+/// Most roles that a scenario may have.
+const MAX_ROLES: usize = 64;
+
+/// Most needs that a scenario may have.
+const MAX_NEEDS: usize = 64;
 
 /// All broken rules, in the order of the fields.
 pub(super) fn problems(file: &ScenarioFile) -> Vec<Problem> {
@@ -25,7 +33,7 @@ pub(super) fn problems(file: &ScenarioFile) -> Vec<Problem> {
     debris(&mut check, file);
     sampled(&mut check, file);
     rules(&mut check, file);
-    policies(&mut check, file);
+    needs(&mut check, file);
     if check.problems.is_empty() {
         homes_are_free(&mut check, file); // needs sound shapes and places
     }
@@ -72,10 +80,6 @@ fn general(check: &mut Checker, file: &ScenarioFile) {
         let rule = "must be a name of letters, digits, `-`, `_` and `.` that does not start with `.`";
         check.fail("name", rule, format!("{:?}", file.name));
     }
-    check.count("sweep.trials", file.sweep.trials, 1..=1_000_000);
-    if file.sweep.policies.is_empty() {
-        check.fail("sweep.policies", "must name at least one policy", "none");
-    }
     check.number("duration_s", file.duration_s, 1.0..=86_400.0);
     check.number("dt_s", file.dt_s, 0.001..=0.05);
     check.number("arena_m[0]", file.arena_m[0], 2.0..=20_000.0);
@@ -90,7 +94,13 @@ fn team(check: &mut Checker, file: &ScenarioFile) {
     }
     for (i, row) in file.team.iter().enumerate() {
         let field = format!("team[{i}]");
-        let radius = file.roles.of(row.role).radius_m;
+        let Some(role) = role_of(file, row) else {
+            let known: Vec<&str> = file.roles.iter().map(|role| role.name.as_str()).collect();
+            let rule = format!("must be one of the roles ({})", known.join(", "));
+            check.fail(format!("{field}.role"), rule, format!("{:?}", row.role));
+            continue;
+        };
+        let radius = role.radius_m;
         check.number(format!("{field}.width_m"), row.width_m, 0.0..=20_000.0);
         if let Some(levels) = row.levels {
             check.number(format!("{field}.levels.energy"), levels.energy, 0.01..=100.0);
@@ -101,28 +111,88 @@ fn team(check: &mut Checker, file: &ScenarioFile) {
     }
 }
 
-fn roles(check: &mut Checker, file: &ScenarioFile) {
-    for (name, spec) in [
-        ("carrier", &file.roles.carrier),
-        ("supplier", &file.roles.supplier),
-        ("observer", &file.roles.observer),
-    ] {
-        role(check, &format!("roles.{name}"), spec, file.dt_s);
+/// The role of a row, if it is one of the scenario's.
+fn role_of<'f>(file: &'f ScenarioFile, row: &Row) -> Option<&'f RoleFile> {
+    file.roles.iter().find(|role| role.name == row.role)
+}
+
+/// Names of a table: each plain, and each once.
+fn names<'n>(check: &mut Checker, table: &str, most: usize, names: impl Iterator<Item = &'n str>) {
+    let plain = |c: char| c.is_ascii_alphanumeric() || "-_".contains(c);
+    let mut seen: Vec<&str> = Vec::new();
+    for (i, name) in names.enumerate() {
+        if name.is_empty() || name.len() > 64 || !name.chars().all(plain) {
+            let rule = "must be a name of at most 64 letters, digits, `-` and `_`";
+            check.fail(format!("{table}[{i}].name"), rule, format!("{name:?}"));
+        } else if seen.contains(&name) {
+            check.fail(format!("{table}[{i}].name"), "must not be listed twice", format!("{name:?}"));
+        }
+        seen.push(name);
     }
-    for name in ["capacity", "resources"] {
-        let found =
-            if name == "capacity" { file.roles.observer.capacity } else { file.roles.observer.resources };
-        if found != 0 {
-            check.fail(
-                format!("roles.observer.{name}"),
-                "must be 0: aerial robots see, they do not carry",
-                found,
-            );
+    if seen.is_empty() || seen.len() > most {
+        check.fail(table, format!("must have 1 to {most} entries"), seen.len());
+    }
+}
+
+/// Path of an entry of a table: by its name, which is how people find it.
+fn entry(table: &str, name: &str) -> String {
+    format!("{table}.{name}")
+}
+
+fn roles(check: &mut Checker, file: &ScenarioFile) {
+    names(check, "roles", MAX_ROLES, file.roles.iter().map(|role| role.name.as_str()));
+    for spec in &file.roles {
+        role(check, &entry("roles", &spec.name), spec, file.dt_s);
+        for name in spec.constants.keys() {
+            let is_need = |need: &NeedFile| need.name == *name && need.measures == Measure::Constant;
+            if !file.needs.iter().any(is_need) {
+                let field = format!("{}.constants", entry("roles", &spec.name));
+                check.fail(field, "must name needs that measure Constant", format!("{name:?}"));
+            }
         }
     }
 }
 
-fn role(check: &mut Checker, field: &str, spec: &RoleSpec, dt: f64) {
+fn needs(check: &mut Checker, file: &ScenarioFile) {
+    names(check, "needs", MAX_NEEDS, file.needs.iter().map(|need| need.name.as_str()));
+    for need in &file.needs {
+        let field = entry("needs", &need.name);
+        check.number(format!("{field}.weight"), need.weight, 0.0..=1e9);
+        let lacks = |role: &&RoleFile| !role.constants.contains_key(&need.name);
+        if need.measures == Measure::Constant
+            && let Some(role) = file.roles.iter().find(lacks)
+        {
+            let rule = format!(
+                "measures Constant, so that each role must have `constants: {{{:?}: ...}}`",
+                need.name
+            );
+            check.fail(field, rule, format!("role {:?} without it", role.name));
+        }
+    }
+    for row in &file.team {
+        let Some(role) = role_of(file, row) else { continue };
+        if file.needs.iter().all(|need| need.weight * at_best(role, need) == 0.0) {
+            let must = format!("must weigh a need that a {} has", role.name);
+            check.fail("needs", must, "weights of 0 for all of them");
+        }
+    }
+}
+
+/// The value of a need of a fresh robot.
+fn at_best(role: &RoleFile, need: &NeedFile) -> f64 {
+    match need.measures {
+        Measure::Health => role.hp,
+        Measure::Speed => role.speed_mps,
+        Measure::Sensing => role.sensing_m,
+        Measure::Energy => role.energy,
+        Measure::Resources => f64::from(role.resources),
+        Measure::Capacity => f64::from(role.capacity),
+        Measure::Observing => role.observing_m,
+        Measure::Constant => role.constants.get(&need.name).copied().unwrap_or(0.0),
+    }
+}
+
+fn role(check: &mut Checker, field: &str, spec: &RoleFile, dt: f64) {
     check.number(format!("{field}.radius_m"), spec.radius_m, 0.05..=5.0);
     check.number(format!("{field}.mass_kg"), spec.mass_kg, 0.1..=10_000.0);
     check.number(format!("{field}.hp"), spec.hp, 0.001..=1e6);
@@ -133,6 +203,9 @@ fn role(check: &mut Checker, field: &str, spec: &RoleSpec, dt: f64) {
     check.number(format!("{field}.observing_m"), spec.observing_m, 0.0..=1000.0);
     check.count(format!("{field}.capacity"), spec.capacity, 0..=10_000);
     check.count(format!("{field}.resources"), spec.resources, 0..=10_000);
+    for (name, value) in &spec.constants {
+        check.number(format!("{field}.constants.{name:?}"), *value, 0.0..=1e9);
+    }
     if spec.speed_mps * dt > spec.radius_m {
         let rule = format!(
             "times dt_s ({dt} s) must be at most radius_m ({} m), or contacts are missed",
@@ -152,11 +225,22 @@ fn levels(check: &mut Checker, file: &ScenarioFile) {
 }
 
 fn tasks(check: &mut Checker, file: &ScenarioFile) {
-    if file.tasks == Tasks::default() {
+    if file.tasks.is_empty() {
         return check.fail("tasks", "must be given when there are no errands", "neither");
     }
-    for task in Difficulty::ALL {
-        task_area(check, &format!("tasks.{}", task.name()), file.tasks.of(task));
+    names(check, "tasks", MAX_TASKS, file.tasks.iter().map(|task| task.name.as_str()));
+    for task in &file.tasks {
+        let field = entry("tasks", &task.name);
+        task_area(check, &field, task);
+        check.count(format!("{field}.difficulty"), task.difficulty, 0..=1_000_000);
+        check.count(format!("{field}.sampled.debris"), task.sampled.debris, 0..=10_000);
+        check.count(format!("{field}.sampled.radiation"), task.sampled.radiation, 0..=10_000);
+        for (role, quota) in &task.quota {
+            check.count(format!("{field}.quota.{role:?}"), *quota, 0..=20_000);
+            if !file.roles.iter().any(|known| known.name == *role) {
+                check.fail(format!("{field}.quota"), "must name roles of the scenario", format!("{role:?}"));
+            }
+        }
     }
 }
 
@@ -178,9 +262,10 @@ fn errands(check: &mut Checker, file: &ScenarioFile) {
             None => check.fail(format!("errands[{i}].to"), "must name at least one place", "none"),
         }
     }
-    if file.sampled.hard != SampledCounts::default() || file.sampled.easy != SampledCounts::default() {
+    let samples = |task: &&TaskFile| task.sampled != SampledCounts::default();
+    if let Some(task) = file.tasks.iter().find(samples) {
         check.fail(
-            "sampled",
+            format!("{}.sampled", entry("tasks", &task.name)),
             "must be absent where there are errands: it fills the ways to tasks",
             "counts above 0",
         );
@@ -251,11 +336,6 @@ fn polygon(check: &mut Checker, field: &str, corners: &[Point]) {
 
 fn sampled(check: &mut Checker, file: &ScenarioFile) {
     let sampled = &file.sampled;
-    for task in Difficulty::ALL {
-        let counts = sampled.of(task);
-        check.count(format!("sampled.{}.debris", task.name()), counts.debris, 0..=10_000);
-        check.count(format!("sampled.{}.radiation", task.name()), counts.radiation, 0..=10_000);
-    }
     for (name, [least, greatest]) in
         [("debris_radius_m", sampled.debris_radius_m), ("zone_radius_m", sampled.zone_radius_m)]
     {
@@ -280,7 +360,7 @@ fn rules(check: &mut Checker, file: &ScenarioFile) {
     check.number("mission.rest_reserve", mission.rest_reserve, 0.0..=10.0);
     check.number("mission.rest_s", mission.rest_s, 0.0..=86_400.0);
     check.number("mission.loading_s", mission.loading_s, 0.0..=3600.0);
-    let least_reach = file.ground_reach_m();
+    let least_reach = file.least_reach_m();
     check.number("mission.reach_m", mission.reach_m, least_reach..=20.0);
     check.number("mission.area_margin_m", mission.area_margin_m, least_reach..=1000.0);
     check.number("mission.blind_speed_loss", mission.blind_speed_loss, 0.0..=0.95);
@@ -294,55 +374,27 @@ fn rules(check: &mut Checker, file: &ScenarioFile) {
 
 impl ScenarioFile {
     /// Least reach that lets a robot load a rescuee next to another robot: its own radius.
-    fn ground_reach_m(&self) -> f64 {
-        self.roles.carrier.radius_m.max(self.roles.supplier.radius_m)
+    fn least_reach_m(&self) -> f64 {
+        let carrying = self.roles.iter().filter(|role| role.capacity > 0);
+        carrying.map(|role| role.radius_m).fold(0.0, f64::max)
     }
 }
 
-fn policies(check: &mut Checker, file: &ScenarioFile) {
-    for (i, name) in file.sweep.policies.iter().enumerate() {
-        if let Err(error) = policy_named(name, &rne_core::RneOptions::default()) {
-            check.fail(format!("sweep.policies[{i}]"), "must be a known policy", error);
-        } else if file.sweep.policies[..i].contains(name) {
-            check.fail(format!("sweep.policies[{i}]"), "must not stand twice", format!("{name:?}"));
-        }
-    }
-    if let Err(error) = policy_named("RNE", &file.rne) {
-        check.fail("rne.weights", "must be usable weights", error);
-    }
-    if let Some(weights) = file.rne.weights.as_ref().filter(|weights| weights.len() != NEED_NAMES.len()) {
-        let rule = format!("must have {} entries ({})", NEED_NAMES.len(), NEED_NAMES.join(", "));
-        check.fail("rne.weights", rule, weights.len());
-    }
-    let weights = file.rne.weights.clone().unwrap_or_else(|| vec![1.0; NEED_NAMES.len()]);
-    for row in &file.team {
-        let spec = file.roles.of(row.role);
-        let (resources, capacity) = (f64::from(spec.resources), f64::from(spec.capacity));
-        let needs =
-            [spec.hp, spec.speed_mps, spec.sensing_m, spec.energy, resources, capacity, spec.observing_m];
-        if needs.iter().zip(&weights).all(|(need, weight)| need * weight == 0.0) {
-            let rule = format!("must weigh a need that a {} has", row.role.name());
-            check.fail("rne.weights", rule, format!("{weights:?}"));
-        }
-    }
-}
-
-/// No home on another home of its layer, nor inside debris (observers fly over it).
+/// No home on another home of its layer, nor inside debris (aerial robots fly over it).
 fn homes_are_free(check: &mut Checker, file: &ScenarioFile) {
-    let mut homes: Vec<(usize, Role, Point)> = Vec::new();
+    let mut homes: Vec<(usize, &RoleFile, Point)> = Vec::new();
     for (i, row) in file.team.iter().enumerate() {
-        homes.extend(row_positions(row).map(|at| (i, row.role, at)));
+        homes.extend(
+            role_of(file, row).into_iter().flat_map(|role| row.places().map(move |at| (i, role, at))),
+        );
     }
     homes.sort_by(|a, b| a.2[0].total_cmp(&b.2[0]));
-    let layer = |role| role == Role::Observer;
-    let radius = |role| file.roles.of(role).radius_m;
-    let widest =
-        file.roles.carrier.radius_m.max(file.roles.supplier.radius_m).max(file.roles.observer.radius_m);
+    let widest = file.roles.iter().map(|role| role.radius_m).fold(0.0, f64::max);
     for (i, (row, role, at)) in homes.iter().enumerate() {
         let near = homes[i + 1..].iter().take_while(|other| other.2[0] - at[0] < 2.0 * widest);
-        for (_, other_role, other) in near.filter(|other| layer(other.1) == layer(*role)) {
+        for (_, other_role, other) in near.filter(|other| other.1.kind == role.kind) {
             let distance = libm::hypot(at[0] - other[0], at[1] - other[1]);
-            let needed = radius(*role) + radius(*other_role);
+            let needed = role.radius_m + other_role.radius_m;
             if distance < needed {
                 let rule = format!("must leave at least {needed} m between the centres of two robots");
                 check.fail(
@@ -354,9 +406,9 @@ fn homes_are_free(check: &mut Checker, file: &ScenarioFile) {
         }
     }
     for (i, piece) in file.debris.iter().enumerate() {
-        let outline = debris_outline(piece);
-        for (_, role, at) in homes.iter().filter(|home| !layer(home.1)) {
-            if outline.distance_to([at[0] as f32, at[1] as f32].into()) < radius(*role) as f32 {
+        let outline = piece.outline();
+        for (_, role, at) in homes.iter().filter(|home| home.1.kind == RoleKind::Ground) {
+            if outline.distance_to([at[0] as f32, at[1] as f32].into()) < role.radius_m as f32 {
                 check.fail(
                     format!("debris[{i}].at"),
                     "must leave every robot's home free",

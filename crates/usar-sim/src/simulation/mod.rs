@@ -1,18 +1,24 @@
-//! One trial: a scenario, a policy and a seed in; a record out.
+//! One trial: a scenario and a seed in, a record out, and one door for decisions.
+//!
+//! [`Simulation::advance`] does a step, or says that it [asks](Advance::Asks) how the team is to be grouped. [`Simulation::assign`] answers. Whoever
+//! answers, a policy, a program or a person, comes through this door.
 
 mod state;
 
-use rne_core::GroupingPolicy;
+use std::sync::Arc;
 
-use crate::conflict::{Delay, Mover, Resolver};
-use crate::event::{Event, EventLog};
-use crate::hash::{HashChain, PERIOD_STEPS};
+use rne_core::{Assignment, AssignmentError, Decision, Policy, Question};
+use thiserror::Error;
+
+use crate::conflict::{Delay, Mover};
+use crate::event::Event;
+use crate::hash::PERIOD_STEPS;
 use crate::invariant::{Invariants, Overlaps};
-use crate::layout::Layout;
-use crate::metrics::Metrics;
+use crate::metrics::history;
 use crate::mission::{Ending, Mission};
-use crate::planning::Navigator;
-use crate::record::{Status, TrialRecord};
+use crate::model::Model;
+use crate::navigation::Navigator;
+use crate::record::{DecisionRecord, Status, TaskRecord, TrialRecord};
 use crate::scenario::{LayoutError, Scenario};
 use crate::stage::Stage;
 use crate::tally::Tally;
@@ -21,59 +27,64 @@ use crate::world::World;
 pub(crate) use state::State;
 
 /// A running trial.
-pub struct Simulation<'a> {
-    scenario: &'a Scenario,
-    policy: &'a dyn GroupingPolicy,
-    seed: u64,
+pub struct Simulation {
+    model: Arc<Model>,
     state: State,
+    /// The question that waits for an answer, with its history.
+    question: Option<Question>,
+    failure: Option<String>,
     invariants: Option<Invariants>,
     /// Empty between steps: its memory serves the next step.
     movers: Vec<Mover<'static>>,
 }
 
-impl<'a> Simulation<'a> {
+/// What became of an advance.
+#[derive(Debug)]
+pub enum Advance<'s> {
+    /// A step was done.
+    Running,
+    /// A step was begun and goes on when this is answered: see [`Simulation::assign`].
+    Asks(&'s Question),
+    /// The trial is over.
+    Over(Status),
+}
+
+/// An answer that cannot be taken. The question still waits.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+#[non_exhaustive]
+pub enum AssignError {
+    /// Nothing was asked.
+    #[error("no question waits for an answer")]
+    NotAsked,
+    /// It does not answer the question.
+    #[error(transparent)]
+    Refused(#[from] AssignmentError),
+}
+
+impl Simulation {
     /// Draws the layout and builds the world.
     ///
     /// # Errors
     /// The layout cannot be drawn.
-    pub fn new(
-        scenario: &'a Scenario,
-        policy: &'a dyn GroupingPolicy,
-        seed: u64,
-    ) -> Result<Self, LayoutError> {
-        let layout = Layout::sample(scenario, seed)?;
-        let world = World::build(scenario, &layout);
-        let state = State {
-            step: 0,
-            mission: Mission::new(scenario, &world, seed),
-            navigator: Navigator::new(scenario, world.robots.len()),
-            resolver: Resolver::new(scenario),
-            metrics: Metrics::new(world.robots.len()),
-            log: EventLog::default(),
-            tallies: layout.robots.iter().map(|start| Tally::new(start.energy, start.hp)).collect(),
-            chain: HashChain::default(),
-            world,
-        };
-        Ok(Self { scenario, policy, seed, state, invariants: None, movers: Vec::new() })
+    pub fn new(scenario: &Scenario, seed: u64) -> Result<Self, LayoutError> {
+        let model = Model::compile(scenario, seed)?;
+        let state = State::new(&model);
+        Ok(Self { model, state, question: None, failure: None, invariants: None, movers: Vec::new() })
     }
 
     /// A trial that goes on from this state.
-    pub(crate) fn from_state(
-        scenario: &'a Scenario,
-        policy: &'a dyn GroupingPolicy,
-        seed: u64,
-        mut state: State,
-    ) -> Self {
-        state.world.restore();
-        state.resolver.restore();
-        state.mission.restore(&state.world);
-        Self { scenario, policy, seed, state, invariants: None, movers: Vec::new() }
+    pub(crate) fn from_state(model: Arc<Model>, mut state: State) -> Self {
+        state.restore(&model);
+        let mut simulation =
+            Self { model, state, question: None, failure: None, invariants: None, movers: Vec::new() };
+        simulation.take_question();
+        simulation
     }
 
     /// The same trial, with every invariant checked at every step: a violation ends it as failed.
     #[must_use]
     pub fn checked(mut self) -> Self {
-        self.invariants = Some(Invariants::new(self.scenario, &self.state.world));
+        self.invariants = Some(Invariants::new(&self.model.scenario, &self.state.world));
         self
     }
 
@@ -83,58 +94,149 @@ impl<'a> Simulation<'a> {
         self.invariants.as_ref().map(Invariants::overlaps)
     }
 
+    /// Does the next step, or the rest of one whose question was answered.
+    pub fn advance(&mut self) -> Advance<'_> {
+        self.advance_watched(|_| {})
+    }
+
+    /// An advance that reports the end of each stage of the step, to measure them.
+    pub fn advance_watched(&mut self, mut done: impl FnMut(Stage)) -> Advance<'_> {
+        if let Some(status) = self.ending() {
+            return Advance::Over(status);
+        }
+        if !self.state.is_midway {
+            self.begin_step(&mut done);
+        }
+        if self.question.is_some() {
+            return self.question.as_ref().map_or(Advance::Running, Advance::Asks);
+        }
+        match self.finish_step(&mut done) {
+            Ok(()) => Advance::Running,
+            Err(reason) => {
+                self.failure = Some(reason.clone());
+                Advance::Over(Status::Failed(reason))
+            }
+        }
+    }
+
+    /// Answers the question that [`Simulation::advance`] asked.
+    ///
+    /// # Errors
+    /// Nothing was asked, or the decision does not answer the question; nothing changes then.
+    pub fn assign(&mut self, mut decision: Decision) -> Result<(), AssignError> {
+        let question = self.question.as_ref().ok_or(AssignError::NotAsked)?;
+        // A hand-made decision may name the members of a group in any order.
+        decision.assignment = Assignment::new(decision.assignment.groups);
+        decision.assignment.check(question)?;
+        let (mission, mut scene) = self.state.scene(&self.model);
+        mission.assign(&decision.assignment, &mut scene);
+        if let Some(question) = self.question.take() {
+            let question = Question { history: Vec::new(), ..question };
+            self.state.decisions.push(DecisionRecord { question, decision });
+        }
+        Ok(())
+    }
+
+    /// Does a whole step, in which `policy` answers what is asked. The status, once the trial is over.
+    pub fn step(&mut self, policy: &dyn Policy) -> Option<Status> {
+        self.step_watched(policy, |_| {})
+    }
+
+    /// A step that reports the end of each of its stages, to measure them.
+    pub fn step_watched(&mut self, policy: &dyn Policy, mut done: impl FnMut(Stage)) -> Option<Status> {
+        loop {
+            let answer = match self.advance_watched(&mut done) {
+                Advance::Running => return None,
+                Advance::Over(status) => return Some(status),
+                Advance::Asks(question) => policy.decide(question),
+            };
+            let taken = match answer {
+                Ok(decision) => self.assign(decision).map_err(|error| error.to_string()),
+                Err(error) => Err(error.to_string()),
+            };
+            if let Err(reason) = taken {
+                self.failure = Some(format!("the policy failed: {reason}"));
+            }
+        }
+    }
+
     /// Runs to the end. `listen` hears the events of each step, with the time in seconds and the world as it is then.
-    pub fn run(mut self, mut listen: impl FnMut(f64, &[Event], &World)) -> TrialRecord {
-        let status = loop {
-            if let Some(status) = self.ending() {
-                break status;
-            }
-            if let Err(reason) = self.step() {
-                break Status::Failed(reason);
-            }
+    pub fn run(mut self, policy: &dyn Policy, mut listen: impl FnMut(f64, &[Event], &World)) -> TrialRecord {
+        while self.step(policy).is_none() {
             listen(self.time_s(), self.events(), self.world());
-        };
-        self.into_record(status)
+        }
+        self.finish()
     }
 
     /// How the trial ended, once it is over.
     #[must_use]
     pub fn ending(&self) -> Option<Status> {
-        if let Some(ending) = self.state.mission.ending {
-            Some(match ending {
-                Ending::NoCarrierLeft => Status::NoCarrierLeft,
-                Ending::ErrandsOver => Status::ErrandsOver,
-            })
-        } else if self.state.step >= self.scenario.steps() {
-            Some(Status::Completed)
-        } else {
-            None
+        if let Some(reason) = &self.failure {
+            return Some(Status::Failed(reason.clone()));
+        }
+        if self.state.is_midway {
+            return None;
+        }
+        match self.state.mission.ending {
+            Some(Ending::NobodyCanCarry) => Some(Status::NobodyCanCarry),
+            Some(Ending::ErrandsOver) => Some(Status::ErrandsOver),
+            None => (self.state.step >= self.model.scenario.steps()).then_some(Status::Completed),
         }
     }
 
-    /// The record of the trial as far as it was run, step by step.
+    /// The record of the trial as far as it was run.
     #[must_use]
-    pub fn finish(self) -> TrialRecord {
-        let status = self.ending().unwrap_or(Status::Failed("it was not run to its end".to_owned()));
-        self.into_record(status)
+    pub fn finish(mut self) -> TrialRecord {
+        let status = self.ending();
+        let status = status.unwrap_or_else(|| Status::Failed("it was not run to its end".to_owned()));
+        self.state.add_link();
+        let (time_s, overlaps, dt_s) = (self.time_s(), self.overlaps(), self.model.dt_s());
+        let State { world, metrics, decisions, tallies, chain, .. } = self.state;
+        let robots = world.robots.iter().zip(&tallies);
+        let tasks = self.model.scenario.tasks.iter().zip(&metrics.tasks);
+        TrialRecord {
+            seed: self.model.seed,
+            status,
+            time_s,
+            tasks: tasks
+                .map(|(task, totals)| TaskRecord { task: task.name.clone(), totals: *totals })
+                .collect(),
+            ungrouped_energy: metrics.ungrouped[0],
+            ungrouped_hp: metrics.ungrouped[1],
+            completed_rounds: metrics.completed_rounds,
+            decisions,
+            robots: robots.map(|(robot, tally)| tally.record(robot, dt_s)).collect(),
+            turned_back: metrics.turned_back,
+            conflicts: metrics.conflicts,
+            deadlocks: metrics.deadlocks,
+            rotations: metrics.rotations,
+            retreats: metrics.retreats,
+            back_offs: metrics.back_offs,
+            errands_done: metrics.errands_done,
+            unreachable: metrics.unreachable,
+            overlaps,
+            state_hash: chain.digest(),
+            chain,
+            rounds: metrics.rounds,
+        }
+    }
+
+    /// What is fixed in this trial.
+    #[must_use]
+    pub fn model(&self) -> &Model {
+        &self.model
     }
 
     /// The scenario.
     #[must_use]
-    pub fn scenario(&self) -> &'a Scenario {
-        self.scenario
-    }
-
-    /// The grouping policy.
-    #[must_use]
-    pub fn policy(&self) -> &'a dyn GroupingPolicy {
-        self.policy
+    pub fn scenario(&self) -> &Scenario {
+        &self.model.scenario
     }
 
     /// Seed of the trial.
     #[must_use]
     pub fn seed(&self) -> u64 {
-        self.seed
+        self.model.seed
     }
 
     /// Steps done.
@@ -146,7 +248,7 @@ impl<'a> Simulation<'a> {
     /// Simulated time, in seconds.
     #[must_use]
     pub fn time_s(&self) -> f64 {
-        self.state.step as f64 * self.scenario.dt_s
+        self.state.step as f64 * self.model.dt_s()
     }
 
     /// The world as it is now.
@@ -172,6 +274,12 @@ impl<'a> Simulation<'a> {
         &self.state.navigator
     }
 
+    /// The groupings so far.
+    #[must_use]
+    pub fn decisions(&self) -> &[DecisionRecord] {
+        &self.state.decisions
+    }
+
     /// Why each robot does not move on, as far as it does not; by id.
     pub fn delays(&self) -> impl Iterator<Item = Delay> + '_ {
         self.state.tallies.iter().map(Tally::delay)
@@ -192,52 +300,64 @@ impl<'a> Simulation<'a> {
         &mut self.state
     }
 
-    /// One step: all robots decide from the same snapshot, then all act.
-    ///
-    /// # Errors
-    /// The policy fails, the physics breaks down, or, in a checked trial, an invariant is violated.
-    pub fn step(&mut self) -> Result<(), String> {
-        self.step_watched(|_| {})
-    }
-
-    /// A step that reports the end of each of its stages, to measure them.
-    ///
-    /// # Errors
-    /// Those of [`Simulation::step`].
-    pub fn step_watched(&mut self, mut done: impl FnMut(Stage)) -> Result<(), String> {
+    /// The first part of a step: what robots notice, and what has to be asked.
+    fn begin_step(&mut self, done: &mut impl FnMut(Stage)) {
         let state = &mut self.state;
         state.log.clear();
-        state.mission.sense(&state.world, state.step, &mut state.log);
+        state.mission.sense(&self.model, &state.world, state.step, &mut state.log);
         done(Stage::Sense);
-        state.mission.decide(
-            &mut state.world,
-            &mut state.navigator,
-            self.policy,
-            state.step,
-            &mut state.log,
-        )?;
+        let (mission, mut scene) = state.scene(&self.model);
+        mission.prepare(&mut scene);
+        state.is_midway = true;
+        self.take_question();
+    }
+
+    /// The rest of a step: all robots decide from the same snapshot, then all act.
+    fn finish_step(&mut self, done: &mut impl FnMut(Stage)) -> Result<(), String> {
+        let (state, model) = (&mut self.state, &*self.model);
+        let (mission, mut scene) = state.scene(model);
+        mission.act(&mut scene);
         done(Stage::Mission);
-        let decided = state.listen(0, self.scenario.dt_s);
-        state.plan();
+        let decided = state.listen(0, model.dt_s());
+        state.plan(model);
         done(Stage::Plan);
-        state.resolve(self.scenario, &mut self.movers);
+        state.resolve(model, &mut self.movers);
         done(Stage::Resolve);
-        state.drive(self.scenario);
+        state.drive(model);
         done(Stage::Drive);
         state.world.integrate();
         state.step += 1;
+        state.is_midway = false;
         done(Stage::Integrate);
-        state.expose(self.scenario);
+        state.expose(model);
         done(Stage::Exposure);
-        state.mission.settle(&mut state.world, &state.navigator, state.step, &mut state.log);
+        let (mission, mut scene) = state.scene(model);
+        mission.settle(&mut scene);
         done(Stage::Rescue);
-        state.listen(decided, self.scenario.dt_s);
+        state.listen(decided, model.dt_s());
         if state.step.is_multiple_of(PERIOD_STEPS) {
             state.add_link();
         }
         self.check()?;
         done(Stage::Record);
         Ok(())
+    }
+
+    /// Takes the mission's question, if it has one, and tells it what earlier rounds came to.
+    fn take_question(&mut self) {
+        let asked = self.state.mission.question();
+        self.question = asked.map(|question| {
+            // The events of this step, the end of the last round among them, are not heard yet.
+            let mut question = question.clone();
+            let time_s = self.state.step as f64 * self.model.dt_s();
+            let mut rounds = self.state.metrics.rounds.clone();
+            rounds
+                .iter_mut()
+                .filter(|round| round.end_s.is_none())
+                .for_each(|round| round.end_s = Some(time_s));
+            question.history = history(&rounds, question.round);
+            question
+        });
     }
 
     fn check(&mut self) -> Result<(), String> {
@@ -250,37 +370,5 @@ impl<'a> Simulation<'a> {
             return Err(format!("the physics broke down at {time_s:.2} s: a body's state is not finite"));
         }
         Ok(())
-    }
-
-    fn into_record(mut self, status: Status) -> TrialRecord {
-        self.state.add_link();
-        let time_s = self.time_s();
-        let overlaps = self.overlaps();
-        let State { world, metrics, tallies, chain, .. } = self.state;
-        let robots = world.robots.iter().zip(&tallies);
-        TrialRecord {
-            policy: self.policy.name().to_owned(),
-            seed: self.seed,
-            status,
-            time_s,
-            hard: metrics.tasks[0],
-            easy: metrics.tasks[1],
-            ungrouped_energy: metrics.ungrouped[0],
-            ungrouped_hp: metrics.ungrouped[1],
-            completed_rounds: metrics.completed_rounds,
-            robots: robots.map(|(robot, tally)| tally.record(robot, self.scenario.dt_s)).collect(),
-            turned_back: metrics.turned_back,
-            conflicts: metrics.conflicts,
-            deadlocks: metrics.deadlocks,
-            rotations: metrics.rotations,
-            retreats: metrics.retreats,
-            back_offs: metrics.back_offs,
-            errands_done: metrics.errands_done,
-            unreachable: metrics.unreachable,
-            overlaps,
-            state_hash: chain.digest(),
-            chain,
-            rounds: metrics.rounds,
-        }
     }
 }

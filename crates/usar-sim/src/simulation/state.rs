@@ -7,9 +7,10 @@ use crate::conflict::{Delay, Mover, PriorityKey, Resolver};
 use crate::event::{Event, EventLog};
 use crate::hash::{HashChain, PARTS, part};
 use crate::metrics::Metrics;
-use crate::mission::{Activity, Mission};
-use crate::planning::{Navigator, PLANNED_BRAKING};
-use crate::scenario::{PriorityRule, Scenario};
+use crate::mission::{Activity, Mission, Scene};
+use crate::model::{Model, RobotStart};
+use crate::navigation::{Navigator, PLANNED_BRAKING};
+use crate::record::DecisionRecord;
 use crate::tally::{Tally, delay_cause};
 use crate::vitals::{energy_cost, hp_cost};
 use crate::world::{Condition, Robot, STANDING_MPS, World};
@@ -23,6 +24,10 @@ pub(crate) struct State {
     pub(super) navigator: Navigator,
     pub(super) resolver: Resolver,
     pub(super) metrics: Metrics,
+    /// The groupings so far, with what each policy said of them. They are told, and act on nothing: no part of the hash chain.
+    pub(super) decisions: Vec<DecisionRecord>,
+    /// Whether a step has begun that is not finished, because it asks something.
+    pub(super) is_midway: bool,
     pub(super) log: EventLog,
     pub(super) tallies: Vec<Tally>,
     pub(super) chain: HashChain,
@@ -34,12 +39,49 @@ impl State {
         self.step
     }
 
+    pub(crate) fn forget_decisions(&mut self) {
+        self.decisions.clear();
+    }
+
     pub(crate) fn chain_mut(&mut self) -> &mut HashChain {
         &mut self.chain
     }
 }
 
 impl State {
+    /// Everybody at home, before the first step.
+    pub(super) fn new(model: &Model) -> Self {
+        let world = World::build(model);
+        let tally = |start: &RobotStart| Tally::new(start.energy, start.hp);
+        Self {
+            step: 0,
+            mission: Mission::new(model, &world),
+            navigator: Navigator::new(&model.scenario, world.robots.len()),
+            resolver: Resolver::new(&model.scenario),
+            metrics: Metrics::new(model.tasks.len(), world.robots.len()),
+            decisions: Vec::new(),
+            is_midway: false,
+            log: EventLog::default(),
+            tallies: model.layout.robots.iter().map(tally).collect(),
+            chain: HashChain::default(),
+            world,
+        }
+    }
+
+    /// Makes what a snapshot leaves out because it is fixed or follows from the rest. The one place where that is done.
+    pub(super) fn restore(&mut self, model: &Model) {
+        self.world.restore(model);
+        self.navigator.restore(&model.scenario);
+        self.resolver.restore(&model.scenario);
+        self.mission.restore(model, &self.world);
+    }
+
+    /// What the mission decides in.
+    pub(super) fn scene<'s>(&'s mut self, model: &'s Model) -> (&'s mut Mission, Scene<'s>) {
+        let Self { mission, world, navigator, log, step, .. } = self;
+        (mission, Scene { model, world, navigator, log, step: *step })
+    }
+
     /// Lets the metrics hear the events from the `from`-th of this step on; returns how many there are.
     pub(super) fn listen(&mut self, from: usize, dt_s: f64) -> usize {
         let events = self.log.events();
@@ -47,18 +89,17 @@ impl State {
         events.len()
     }
 
-    pub(super) fn plan(&mut self) {
+    pub(super) fn plan(&mut self, model: &Model) {
         let (mission, world) = (&self.mission, &self.world);
-        let speed_of = |robot: &Robot| mission.speed_of(robot);
+        let speed_of = |robot: &Robot| mission.speed_of(model, robot);
         self.navigator.plan(world, |robot| mission.knowledge_of(robot), speed_of, self.step);
     }
 
     /// Settles who goes and who waits, and takes note of why robots stop.
-    pub(super) fn resolve(&mut self, scenario: &Scenario, spare: &mut Vec<Mover<'static>>) {
-        let rule = scenario.conflicts.priority;
+    pub(super) fn resolve(&mut self, model: &Model, spare: &mut Vec<Mover<'static>>) {
         let seen_by = (&self.mission, &self.navigator);
         let mut movers: Vec<Mover> = std::mem::take(spare);
-        movers.extend(self.world.robots.iter().map(|robot| mover(robot, rule, seen_by)));
+        movers.extend(self.world.robots.iter().map(|robot| mover(robot, model, seen_by)));
         let directives = self.resolver.resolve(&mut movers, &mut self.log);
         for ((robot, directive), tally) in self.world.robots.iter().zip(directives).zip(&mut self.tallies) {
             let traveller = self.navigator.traveller(robot.id);
@@ -71,17 +112,17 @@ impl State {
     }
 
     /// Lets each drive come as near to what it is told as its force allows.
-    pub(super) fn drive(&mut self, scenario: &Scenario) {
+    pub(super) fn drive(&mut self, model: &Model) {
         for (robot, directive) in self.world.robots.iter().zip(self.resolver.directives()) {
-            let greatest_change = (robot.spec.acceleration_mps2 * scenario.dt_s) as f32;
+            let greatest_change = (robot.spec.acceleration_mps2 * model.dt_s()) as f32;
             let change = (directive.velocity() - robot.velocity).clamp_length_max(greatest_change);
             self.world.physics.drive(robot.id, change);
         }
     }
 
     /// Energy for moving, HP for radiation; robots that have none left stay where they are.
-    pub(super) fn expose(&mut self, scenario: &Scenario) {
-        let (costs, dt) = (&scenario.costs, scenario.dt_s);
+    pub(super) fn expose(&mut self, model: &Model) {
+        let (costs, dt) = (&model.scenario.costs, model.dt_s());
         for (robot, tally) in self.world.robots.iter_mut().zip(&mut self.tallies) {
             let speed = robot.velocity.length();
             let metres = f64::from(speed) * dt;
@@ -96,7 +137,9 @@ impl State {
             robot.energy -= energy;
             robot.hp -= hp;
             tally.note_costs(energy, hp);
-            self.metrics.charge(robot.id.index(), energy, hp);
+            if energy > 0.0 || hp > 0.0 {
+                self.metrics.charge(robot.id, energy, hp);
+            }
             if robot.energy <= 0.0 {
                 robot.condition = Condition::Stranded;
                 self.log.push(Event::Stranded { robot: robot.id });
@@ -123,8 +166,8 @@ impl State {
             part(&self.world.robots),
             part(&(&self.world.debris, &self.world.zones)),
             part(&self.world.rescuees),
-            part(self.mission.beliefs()),
-            part(&self.mission.course()),
+            part(&self.mission.beliefs()),
+            part(&(self.mission.course(), self.is_midway)),
             part(&self.navigator),
             part(&self.resolver),
             part(&(&self.metrics, &self.tallies)),
@@ -134,15 +177,14 @@ impl State {
 }
 
 /// A robot as the resolver sees it.
-fn mover<'s>(
-    robot: &Robot,
-    rule: PriorityRule,
-    (mission, navigator): (&'s Mission, &'s Navigator),
-) -> Mover<'s> {
-    let speed = mission.speed_of(robot) as f32;
+fn mover<'s>(robot: &Robot, model: &Model, (mission, navigator): (&'s Mission, &'s Navigator)) -> Mover<'s> {
+    let speed = mission.speed_of(model, robot) as f32;
     let wish = if robot.is_able() { navigator.preferred_velocity(robot, speed) } else { Vector::ZERO };
     let route = navigator.traveller(robot.id).route();
     let agent = &mission.agents[robot.id.index()];
+    let no_task = model.tasks.len() as u8;
+    let class = agent.task.map_or(no_task, |task| model.tasks[task.index()].rank);
+    let rule = model.scenario.conflicts.priority;
     let is_busy = matches!(agent.activity, Activity::Loading(..) | Activity::Resting(_));
     Mover {
         robot: robot.id,
@@ -157,7 +199,7 @@ fn mover<'s>(
         radius: robot.radius(),
         speed,
         braking: PLANNED_BRAKING * robot.spec.acceleration_mps2 as f32,
-        priority: PriorityKey::new(rule, robot.id, agent.task, [robot.energy, robot.hp]),
+        priority: PriorityKey::new(rule, robot.id, class, [robot.energy, robot.hp]),
         known: (!robot.is_aerial()).then(|| mission.knowledge_of(robot.id).obstacles()),
         can_make_room: robot.is_able() && !is_busy,
     }

@@ -1,21 +1,21 @@
 //! What exists: robots, debris, radiation zones and rescuees.
 
 mod debris;
-mod places;
-mod radiation;
 mod rescuee;
 mod robot;
 
-pub use debris::{Debris, Outline, debris_outline};
-pub use places::Places;
-pub use radiation::RadiationZone;
-pub use rescuee::{Rescuee, RescueeState, Rescuees, rescuee_positions};
-pub use robot::{Condition, Robot, rest_slot, row_positions};
+use std::sync::Arc;
 
-use crate::layout::Layout;
-use crate::physics::Physics;
-use crate::scenario::Scenario;
 use serde::{Deserialize, Serialize};
+
+pub use debris::Debris;
+pub use rescuee::{Rescuee, RescueeState, Rescuees};
+pub use robot::{Condition, Robot};
+
+use crate::geometry::{Places, RadiationZone};
+use crate::model::Model;
+use crate::physics::{DebrisBody, Physics, RobotBody};
+use crate::scenario::{DebrisFile, ZoneFile};
 
 /// A robot slower than this stands, in metres per second.
 pub const STANDING_MPS: f32 = 0.05;
@@ -41,16 +41,24 @@ pub struct World {
 impl World {
     /// Everything at its initial place.
     #[must_use]
-    pub fn build(scenario: &Scenario, layout: &Layout) -> Self {
-        let robots: Vec<Robot> = layout.robots.iter().map(|start| Robot::new(scenario, start)).collect();
+    pub fn build(model: &Model) -> Self {
+        let layout = &model.layout;
+        let starts = model.robots.iter().zip(&layout.robots);
+        let robots: Vec<Robot> = starts.map(|(model, start)| Robot::new(model, start)).collect();
         let debris: Vec<Debris> = layout.debris.iter().map(Debris::new).collect();
+        let scenario = &model.scenario;
         Self {
-            physics: Physics::new(scenario, &robots, &layout.debris, &debris),
+            physics: Physics::new(
+                scenario.dt_s as f32,
+                scenario.arena_m.map(|size| size as f32),
+                &robots.iter().map(robot_body).collect::<Vec<_>>(),
+                &layout.debris.iter().zip(&debris).map(debris_body).collect::<Vec<_>>(),
+            ),
             robots,
             debris_places: debris.iter().map(Debris::bounds).collect(),
             debris,
-            zones: layout.zones.iter().map(RadiationZone::new).collect(),
-            rescuees: Rescuees::new(rescuee_positions(scenario)),
+            zones: layout.zones.iter().map(ZoneFile::zone).collect(),
+            rescuees: Rescuees::new(&model.rescuees),
         }
     }
 
@@ -73,7 +81,28 @@ impl World {
     }
 
     /// Makes anew what a snapshot leaves out because it follows from the rest.
-    pub(crate) fn restore(&mut self) {
+    pub(crate) fn restore(&mut self, model: &Model) {
+        self.robots.iter_mut().zip(&model.robots).for_each(|(robot, model)| robot.model = Arc::clone(model));
         self.debris_places = self.debris.iter().map(Debris::bounds).collect();
+    }
+}
+
+fn robot_body(robot: &Robot) -> RobotBody {
+    RobotBody {
+        position: robot.position,
+        is_aerial: robot.is_aerial(),
+        radius: robot.radius(),
+        mass: robot.spec.mass_kg as f32,
+        top_speed: robot.spec.speed_mps as f32,
+    }
+}
+
+fn debris_body<'d>((file, piece): (&DebrisFile, &'d Debris)) -> DebrisBody<'d> {
+    let movable =
+        file.movable.map(|movable| (movable.mass_kg as f32, (movable.friction * movable.mass_kg) as f32));
+    DebrisBody {
+        outline: &piece.outline,
+        mass: movable.map(|m| m.0),
+        friction_mass: movable.map_or(0.0, |m| m.1),
     }
 }

@@ -1,12 +1,15 @@
-//! Robots: what they are, where they are, and the levels that decide what they can do.
+//! Robots: where they are, and the levels that decide what they can do.
+
+use std::ops::Deref;
+use std::sync::Arc;
 
 use parry2d::math::Vector;
-use rne_core::{Difficulty, NeedVector, NeedsError, Role};
+use rne_core::{NeedVector, NeedsError};
 use serde::{Deserialize, Serialize};
 
-use crate::ids::{RescueeId, RobotId};
-use crate::layout::RobotStart;
-use crate::scenario::{RoleSpec, Row, Scenario};
+use crate::ids::RescueeId;
+use crate::model::{RobotModel, RobotStart};
+use crate::scenario::{Measure, NeedFile};
 use crate::vitals::health_factor;
 
 /// Whether a robot can still act.
@@ -20,19 +23,11 @@ pub enum Condition {
     Disabled,
 }
 
-/// A robot.
+/// The state of a robot. What is fixed of it is its [`RobotModel`], to which a robot dereferences.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Robot {
-    /// Identity.
-    pub id: RobotId,
-    /// What it is for.
-    pub role: Role,
-    /// What it is and can do at full health.
-    pub spec: RoleSpec,
-    /// Its place at home.
-    pub home: Vector,
-    /// Its place at the rest place of the hard and of the easy task.
-    pub rest: [Vector; 2],
+    #[serde(skip)]
+    pub(super) model: Arc<RobotModel>,
     /// Centre, in metres.
     pub position: Vector,
     /// Velocity, in metres per second.
@@ -49,21 +44,21 @@ pub struct Robot {
     pub condition: Condition,
     /// Where it came to stand for good, once it can no longer act.
     pub wreck_at: Option<Vector>,
-    health_floor: f64,
+}
+
+impl Deref for Robot {
+    type Target = RobotModel;
+
+    fn deref(&self) -> &RobotModel {
+        &self.model
+    }
 }
 
 impl Robot {
     /// At home, at rest, with its initial levels.
-    pub(super) fn new(scenario: &Scenario, start: &RobotStart) -> Self {
-        let spec = *scenario.roles.of(start.role);
-        let robots = scenario.team.iter().map(|row| row.count).sum();
-        let rest = Difficulty::ALL.map(|task| rest_slot(scenario, task, start.id, robots));
+    pub(super) fn new(model: &Arc<RobotModel>, start: &RobotStart) -> Self {
         Self {
-            id: start.id,
-            role: start.role,
-            spec,
-            home: start.home,
-            rest,
+            model: Arc::clone(model),
             position: start.home,
             velocity: Vector::ZERO,
             energy: start.energy,
@@ -72,7 +67,6 @@ impl Robot {
             load: Vec::new(),
             condition: Condition::Able,
             wreck_at: None,
-            health_floor: scenario.mission.health_floor,
         }
     }
 
@@ -82,28 +76,10 @@ impl Robot {
         self.condition == Condition::Able
     }
 
-    /// Whether it flies.
-    #[must_use]
-    pub fn is_aerial(&self) -> bool {
-        self.role == Role::Observer
-    }
-
-    /// Whether it can have rescuees on board at all.
-    #[must_use]
-    pub fn can_carry(&self) -> bool {
-        self.spec.capacity > 0
-    }
-
     /// Rescuees that it has room for.
     #[must_use]
     pub fn free_capacity(&self) -> u32 {
         self.spec.capacity - self.load.len() as u32
-    }
-
-    /// Radius, in metres.
-    #[must_use]
-    pub fn radius(&self) -> f32 {
-        self.spec.radius_m as f32
     }
 
     /// Top speed at its present health, in metres per second.
@@ -128,48 +104,24 @@ impl Robot {
         health_factor(self.hp, self.health_floor)
     }
 
-    /// Its place at the rest place of a task.
-    #[must_use]
-    pub fn rest_slot(&self, task: Difficulty) -> Vector {
-        self.rest[usize::from(task == Difficulty::Easy)]
-    }
-
-    /// Its seven needs, in the order of [`rne_core::NEED_NAMES`], as they are now.
+    /// Its needs as they are now, in the order of the table.
     ///
     /// # Errors
     /// None in a validated scenario: every value is finite and >= 0.
-    pub fn needs(&self) -> Result<NeedVector, NeedsError> {
-        NeedVector::new(vec![
-            self.spec.hp * self.hp / 100.0,
-            self.speed(),
-            self.sensing_range(),
-            self.spec.energy * self.energy / 100.0,
-            f64::from(self.resources),
-            f64::from(self.free_capacity()),
-            self.observing_range(),
-        ])
+    pub fn needs(&self, table: &[NeedFile]) -> Result<NeedVector, NeedsError> {
+        NeedVector::new(table.iter().map(|need| self.need(need)).collect())
     }
-}
 
-/// Places of the robots of a row, side by side.
-pub fn row_positions(row: &Row) -> impl Iterator<Item = [f64; 2]> {
-    let gaps = f64::from(row.count.saturating_sub(1).max(1));
-    let left = if row.count > 1 { row.center[0] - row.width_m / 2.0 } else { row.center[0] };
-    (0..row.count).map(move |i| [left + row.width_m * f64::from(i) / gaps, row.center[1]])
-}
-
-/// Free distance between two robots at a rest place, in metres: others can pass between them.
-const REST_GAP_M: f64 = 1.2;
-
-/// A robot's own place at a task's rest place: a square block around its centre, in order of ids.
-#[must_use]
-pub fn rest_slot(scenario: &Scenario, task: Difficulty, robot: RobotId, robots: u32) -> Vector {
-    let columns = robots.isqrt() + u32::from(robots.isqrt().pow(2) < robots);
-    let rows = robots.div_ceil(columns);
-    let spacing = 2.0 * scenario.ground_radius_m().max(scenario.aerial_radius_m()) + REST_GAP_M;
-    let offset = |i: u32, count: u32| spacing * (f64::from(i) - f64::from(count - 1) / 2.0);
-    let center = scenario.tasks.of(task).rest;
-    let x = center[0] + offset(robot.0 % columns, columns);
-    let y = center[1] + offset(robot.0 / columns, rows);
-    Vector::new(x as f32, y as f32)
+    fn need(&self, need: &NeedFile) -> f64 {
+        match need.measures {
+            Measure::Health => self.spec.hp * self.hp / 100.0,
+            Measure::Speed => self.speed(),
+            Measure::Sensing => self.sensing_range(),
+            Measure::Energy => self.spec.energy * self.energy / 100.0,
+            Measure::Resources => f64::from(self.resources),
+            Measure::Capacity => f64::from(self.free_capacity()),
+            Measure::Observing => self.observing_range(),
+            Measure::Constant => self.spec.constants.get(&need.name).copied().unwrap_or(0.0),
+        }
+    }
 }

@@ -1,0 +1,226 @@
+//! Trials on threads: one that fails, panics or takes too long is one outcome, and the others go on.
+
+use std::collections::{BTreeMap, VecDeque};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{Receiver, Sender, channel};
+use std::sync::{Arc, Mutex};
+use std::time::{Duration, Instant};
+
+use super::trial::{Fault, FaultKind, Outcome, Trial, TrialKey};
+use crate::failure::{Failure, panic_message};
+
+/// How often the time limit and the wish to stop are looked at.
+const WATCH_PERIOD: Duration = Duration::from_millis(100);
+
+/// What runs a trial; it should end soon when the flag is set.
+pub type Run = dyn Fn(&TrialKey, &AtomicBool) -> Result<Trial, Fault> + Send + Sync;
+
+/// Bounds of a run.
+#[derive(Debug, Clone, Copy)]
+pub struct Limits {
+    /// Number of threads.
+    pub jobs: usize,
+    /// Longest time of one trial.
+    pub trial: Option<Duration>,
+}
+
+enum Message {
+    Started(usize, TrialKey, Arc<AtomicBool>),
+    Ended(usize, Box<Outcome>),
+}
+
+struct Running {
+    key: TrialKey,
+    since: Instant,
+    halt: Arc<AtomicBool>,
+}
+
+struct Pool {
+    queue: Arc<Mutex<VecDeque<TrialKey>>>,
+    run: Arc<Run>,
+    sender: Sender<Message>,
+    workers: usize,
+    running: BTreeMap<usize, Running>,
+}
+
+/// Runs all trials and hands each outcome to `done` as it comes, in any order. A trial that takes too long is given up: its thread is
+/// left to itself and another takes its place. Returns whether all were run: not so when `stop` was set.
+///
+/// # Errors
+/// The threads cannot be started, or those of `done`, after which no further trial is started.
+pub fn run_all(
+    keys: impl IntoIterator<Item = TrialKey>,
+    limits: Limits,
+    run: Arc<Run>,
+    stop: &AtomicBool,
+    mut done: impl FnMut(Outcome) -> Result<(), Failure>,
+) -> Result<bool, Failure> {
+    let queue: VecDeque<TrialKey> = keys.into_iter().collect();
+    let mut left = queue.len();
+    let (sender, receiver) = channel();
+    let queue = Arc::new(Mutex::new(queue));
+    let mut pool = Pool { queue, run, sender, workers: 0, running: BTreeMap::new() };
+    for _ in 0..limits.jobs.min(left) {
+        pool.start_worker()?;
+    }
+    while left > 0 {
+        let outcomes = pool.next_outcomes(&receiver, limits.trial)?;
+        left -= outcomes.len();
+        for outcome in outcomes {
+            if let Err(failure) = done(outcome) {
+                pool.halt();
+                return Err(failure);
+            }
+        }
+        if stop.load(Ordering::Relaxed) && left > 0 {
+            pool.halt();
+            return Ok(false);
+        }
+    }
+    Ok(true)
+}
+
+impl Pool {
+    fn start_worker(&mut self) -> Result<(), Failure> {
+        let number = self.workers;
+        self.workers += 1;
+        let (queue, run, sender) = (Arc::clone(&self.queue), Arc::clone(&self.run), self.sender.clone());
+        let work = move || {
+            loop {
+                let next = queue.lock().ok().and_then(|mut queue| queue.pop_front());
+                let Some(key) = next else { return };
+                let halt = Arc::new(AtomicBool::new(false));
+                if sender.send(Message::Started(number, key.clone(), Arc::clone(&halt))).is_err() {
+                    return;
+                }
+                let result = catch_unwind(AssertUnwindSafe(|| run(&key, &halt))).unwrap_or_else(|panic| {
+                    let reason = format!("internal error: {}", panic_message(&*panic));
+                    Err(Fault { kind: FaultKind::Panicked, reason })
+                });
+                let is_given_up = halt.load(Ordering::Relaxed);
+                let sent = sender.send(Message::Ended(number, Box::new(Outcome { key, result })));
+                if is_given_up || sent.is_err() {
+                    return;
+                }
+            }
+        };
+        let started = std::thread::Builder::new().name(format!("trials-{number}")).spawn(work);
+        started.map(drop).map_err(|error| Failure::run(format!("cannot start a thread: {error}")))
+    }
+
+    /// What has come to an end since the last call, or was given up.
+    fn next_outcomes(
+        &mut self,
+        receiver: &Receiver<Message>,
+        longest: Option<Duration>,
+    ) -> Result<Vec<Outcome>, Failure> {
+        let mut outcomes = Vec::new();
+        // All that was said is heard before anybody is called late.
+        let first = receiver.recv_timeout(WATCH_PERIOD).ok();
+        for message in first.into_iter().chain(receiver.try_iter()) {
+            match message {
+                Message::Started(worker, key, halt) => {
+                    self.running.insert(worker, Running { key, since: Instant::now(), halt });
+                }
+                // The outcome of a worker that was given up comes too late.
+                Message::Ended(worker, outcome) => {
+                    outcomes.extend(self.running.remove(&worker).map(|_| *outcome));
+                }
+            }
+        }
+        let Some(longest) = longest else { return Ok(outcomes) };
+        let late = |running: &Running| running.since.elapsed() > longest;
+        let workers: Vec<usize> =
+            self.running.iter().filter(|(_, running)| late(running)).map(|(worker, _)| *worker).collect();
+        for worker in workers {
+            let Some(Running { key, halt, .. }) = self.running.remove(&worker) else { continue };
+            halt.store(true, Ordering::Relaxed);
+            self.start_worker()?;
+            let reason = format!("it took longer than {} s", longest.as_secs_f64());
+            outcomes.push(Outcome { key, result: Err(Fault { kind: FaultKind::TimedOut, reason }) });
+        }
+        Ok(outcomes)
+    }
+
+    /// Lets nobody start another trial, and those under way end soon.
+    fn halt(&self) {
+        if let Ok(mut queue) = self.queue.lock() {
+            queue.clear();
+        }
+        self.running.values().for_each(|running| running.halt.store(true, Ordering::Relaxed));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn keys_for(trials: u32) -> Vec<TrialKey> {
+        let key =
+            |i: u32| TrialKey { case: 0, policy: 0, trial: i + 1, seed: u64::from(i), label: "FAKE".into() };
+        (0..trials).map(key).collect()
+    }
+
+    fn failed(reason: String) -> Result<Trial, Fault> {
+        Err(Fault { kind: FaultKind::Failed, reason })
+    }
+
+    fn reasons(run: Arc<Run>, limits: Limits) -> Vec<String> {
+        let mut outcomes = Vec::new();
+        let all = run_all(keys_for(5), limits, run, &AtomicBool::new(false), |outcome| {
+            outcomes.push(outcome);
+            Ok(())
+        });
+        assert!(all.unwrap());
+        outcomes.sort_by_key(|outcome| outcome.key.trial);
+        outcomes.iter().filter_map(Outcome::failure).collect()
+    }
+
+    #[test]
+    fn a_trial_that_panics_fails_alone() {
+        let run = |key: &TrialKey, _: &AtomicBool| {
+            assert!(key.seed != 2, "seed two");
+            failed(format!("fake {}", key.seed))
+        };
+        let reasons = reasons(Arc::new(run), Limits { jobs: 2, trial: None });
+        assert_eq!(reasons.len(), 5);
+        assert_eq!(reasons[1], "trial 2 of FAKE (seed 1) failed: fake 1");
+        assert_eq!(reasons[2], "trial 3 of FAKE (seed 2) panicked: internal error: seed two");
+    }
+
+    #[test]
+    fn a_trial_that_never_ends_is_given_up_and_the_others_go_on() {
+        let run = |key: &TrialKey, _: &AtomicBool| {
+            if key.seed == 1 {
+                std::thread::sleep(Duration::from_hours(1)); // it does not even look at the flag
+            }
+            failed("done".to_owned())
+        };
+        let limits = Limits { jobs: 1, trial: Some(Duration::from_millis(300)) };
+        let reasons = reasons(Arc::new(run), limits);
+        assert_eq!(reasons.len(), 5);
+        assert_eq!(reasons[1], "trial 2 of FAKE (seed 1) timed out: it took longer than 0.3 s");
+        assert_eq!(reasons[4], "trial 5 of FAKE (seed 4) failed: done");
+    }
+
+    #[test]
+    fn no_further_trial_starts_when_it_is_to_stop_or_an_outcome_cannot_be_kept() {
+        let run: Arc<Run> = Arc::new(|_: &TrialKey, _: &AtomicBool| {
+            std::thread::sleep(Duration::from_millis(2));
+            failed("done".to_owned())
+        });
+        let limits = Limits { jobs: 1, trial: None };
+        let stop = AtomicBool::new(false);
+        let mut heard = 0;
+        let all = run_all(keys_for(500), limits, Arc::clone(&run), &stop, |_| {
+            heard += 1;
+            stop.store(true, Ordering::Relaxed);
+            Ok(())
+        });
+        assert!(!all.unwrap() && heard < 100, "{heard}");
+        let full =
+            run_all(keys_for(500), limits, run, &AtomicBool::new(false), |_| Err(Failure::run("full")));
+        assert_eq!(full.unwrap_err().to_string(), "full");
+    }
+}

@@ -1,0 +1,145 @@
+//! Trials that policies share. A policy acts on a mission through its assignments alone. If a policy would form the same groups in every round,
+//! it reuses the finished trial instead of simulating it again.
+
+use std::collections::VecDeque;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
+
+use rne_core::Policy;
+use usar_sim::record::DecisionRecord;
+use usar_sim::scenario::Scenario;
+
+use super::trial::{Fault, Trial, run_trial};
+
+/// Scenarios and seeds whose trials are kept. Trials are run seed by seed, so that few are needed.
+const KEPT: usize = 16;
+
+/// Trials that are kept of each.
+const KEPT_OF_SEED: usize = 256;
+
+/// The finished trial as another policy would have it: the same, but for what it says of its decisions. `None` where it would form other groups.
+fn as_decided_by(trial: &Trial, policy: &dyn Policy) -> Option<Trial> {
+    let decide = |asked: &DecisionRecord| {
+        let decision = policy.decide(&trial.record.question(asked)).ok()?;
+        let is_same = decision.assignment == asked.decision.assignment;
+        is_same.then(|| DecisionRecord { question: asked.question.clone(), decision })
+    };
+    let decisions = trial.record.decisions.iter().map(decide).collect::<Option<Vec<_>>>()?;
+    let mut trial = trial.clone();
+    trial.record.decisions = decisions;
+    Some(trial)
+}
+
+/// The trials of one case and seed.
+type OfSeed = Arc<Mutex<Vec<Arc<Trial>>>>;
+
+/// Finished trials of the cases and seeds that were run last.
+pub struct SharedTrials {
+    is_checked: bool,
+    simulated: AtomicUsize,
+    latest: Mutex<VecDeque<((usize, u64), OfSeed)>>,
+}
+
+impl SharedTrials {
+    /// None yet; whether every invariant is checked at every step.
+    #[must_use]
+    pub fn new(is_checked: bool) -> Self {
+        Self { is_checked, simulated: AtomicUsize::new(0), latest: Mutex::default() }
+    }
+
+    /// Runs a trial of a case, or finds it among those of other policies.
+    ///
+    /// # Errors
+    /// Those of [`run_trial`].
+    pub fn run(
+        &self,
+        (case, scenario): (usize, &Scenario),
+        policy: &dyn Policy,
+        seed: u64,
+        halt: &AtomicBool,
+    ) -> Result<Trial, Fault> {
+        let of_seed = self.of_seed(case, seed);
+        let known = of_seed.lock().unwrap_or_else(PoisonError::into_inner).clone();
+        if let Some(trial) = known.iter().find_map(|trial| as_decided_by(trial, policy)) {
+            return Ok(trial);
+        }
+        self.simulated.fetch_add(1, Ordering::Relaxed);
+        let trial = run_trial(scenario, policy, seed, self.is_checked, halt)?;
+        let finished = Arc::new(trial.clone());
+        let mut known = of_seed.lock().unwrap_or_else(PoisonError::into_inner);
+        if known.len() < KEPT_OF_SEED {
+            known.push(finished);
+        }
+        Ok(trial)
+    }
+
+    /// How many trials were simulated and not taken over.
+    #[must_use]
+    pub fn simulated(&self) -> usize {
+        self.simulated.load(Ordering::Relaxed)
+    }
+
+    /// Lets go of all trials.
+    pub fn forget(&self) {
+        self.latest.lock().unwrap_or_else(PoisonError::into_inner).clear();
+    }
+
+    fn of_seed(&self, case: usize, seed: u64) -> OfSeed {
+        let mut latest = self.latest.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((_, known)) = latest.iter().find(|(name, _)| *name == (case, seed)) {
+            return Arc::clone(known);
+        }
+        if latest.len() == KEPT {
+            latest.pop_front();
+        }
+        let new = OfSeed::default();
+        latest.push_back(((case, seed), Arc::clone(&new)));
+        new
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use rne_core::Registry;
+
+    use super::*;
+    use crate::experiment::with_settings;
+
+    #[test]
+    fn a_shared_trial_is_the_one_that_would_have_been_run() {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/paper.ron");
+        let (scenario, _) = Scenario::load(&path).unwrap();
+        let scenario = with_settings(&scenario, &["duration_s=120".to_owned()]).unwrap();
+        let (shared, halt) = (SharedTrials::new(false), AtomicBool::new(false));
+        let registry = Registry::standard();
+        let names = registry.names();
+        let mut policies: Vec<_> = names.iter().map(|name| registry.parse(name).unwrap()).collect();
+        policies.push(registry.parse("RNE(log_base: Two)").unwrap());
+        for seed in 1..4 {
+            for policy in &policies {
+                let found = shared.run((0, &scenario), &*policy.policy, seed, &halt).unwrap();
+                let alone = run_trial(&scenario, &*policy.policy, seed, false, &halt).unwrap();
+                assert_eq!(found, alone, "{policy:?} seed {seed}");
+            }
+        }
+        assert!(
+            shared.simulated() <= 3 * names.len(),
+            "the base of the logarithm decides nothing: {} trials",
+            shared.simulated()
+        );
+    }
+
+    #[test]
+    fn trials_of_other_cases_are_not_taken() {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/paper.ron");
+        let (scenario, _) = Scenario::load(&path).unwrap();
+        let short = with_settings(&scenario, &["duration_s=60".to_owned()]).unwrap();
+        let dis = Registry::standard().parse("DIS").unwrap().policy;
+        let (shared, halt) = (SharedTrials::new(false), AtomicBool::new(false));
+        let first = shared.run((0, &scenario), &*dis, 1, &halt).unwrap();
+        let second = shared.run((1, &short), &*dis, 1, &halt).unwrap();
+        assert!(first.record.time_s > 599.0 && second.record.time_s < 61.0);
+    }
+}

@@ -1,0 +1,261 @@
+//! The answer to a question: who goes to which task, how good the policy believes that to be, and how it came
+//! to it.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::error::AssignmentError;
+use crate::ids::{RoleId, TaskId};
+use crate::question::{Question, SCHEMA_VERSION};
+use crate::trust::RelativeNeedsEntropy;
+
+/// Who goes to which task.
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Assignment {
+    /// For each task, in the order of the table, the ids of its group, ascending.
+    pub groups: Vec<Vec<u32>>,
+}
+
+impl Assignment {
+    /// Groups with their ids in any order.
+    #[must_use]
+    pub fn new(mut groups: Vec<Vec<u32>>) -> Self {
+        groups.iter_mut().for_each(|group| group.sort_unstable());
+        Self { groups }
+    }
+
+    /// The ids of one task's group.
+    #[must_use]
+    pub fn of(&self, task: TaskId) -> &[u32] {
+        self.groups.get(task.index()).map_or(&[], Vec::as_slice)
+    }
+
+    /// The task of a robot, if it is in a group.
+    #[must_use]
+    pub fn task_of(&self, robot: u32) -> Option<TaskId> {
+        let place = self.groups.iter().position(|group| group.contains(&robot))?;
+        u16::try_from(place).ok().map(TaskId)
+    }
+
+    /// Checks that this answers a question: a group for each task, each member in exactly one, binding quotas
+    /// kept.
+    ///
+    /// # Errors
+    /// What does not fit, with the robot or the task.
+    pub fn check(&self, question: &Question) -> Result<(), AssignmentError> {
+        let (found, tasks) = (self.groups.len(), question.tasks.len());
+        if found != tasks {
+            return Err(AssignmentError::Groups { found, tasks });
+        }
+        let mut grouped: Vec<u32> = self.groups.iter().flatten().copied().collect();
+        grouped.sort_unstable();
+        if let Some(pair) = grouped.windows(2).find(|pair| pair[0] == pair[1]) {
+            return Err(AssignmentError::Twice { robot: pair[0] });
+        }
+        let is_member = |id: u32| question.members.binary_search_by_key(&id, |member| member.id).is_ok();
+        if let Some(robot) = grouped.iter().find(|id| !is_member(**id)) {
+            return Err(AssignmentError::Stranger { robot: *robot });
+        }
+        if let Some(member) = question.members.iter().find(|m| grouped.binary_search(&m.id).is_err()) {
+            return Err(AssignmentError::Missing { robot: member.id });
+        }
+        self.check_quotas(question)
+    }
+
+    fn check_quotas(&self, question: &Question) -> Result<(), AssignmentError> {
+        for (role, quota) in question.role_ids().zip(&question.quotas).filter(|(_, quota)| quota.is_binding) {
+            for (task, quota) in question.task_ids().zip(&quota.members) {
+                let group = self.of(task);
+                let found = question.of_role(role).filter(|member| group.contains(&member.id)).count();
+                if found != *quota {
+                    return Err(AssignmentError::Quota {
+                        task: question.tasks[task.index()].name.clone(),
+                        role: question.roles[role.index()].clone(),
+                        quota: *quota,
+                        found,
+                    });
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+/// A policy's answer.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Decision {
+    /// Version of the JSON form: [`SCHEMA_VERSION`].
+    pub schema_version: u32,
+    /// Who goes to which task.
+    pub assignment: Assignment,
+    /// What the policy maximised, by its own score: for RNE the sum over the pairs of groups, in nats. Absent
+    /// for a policy that computes none, or where fewer than two groups have members.
+    #[serde(default)]
+    pub score: Option<RelativeNeedsEntropy>,
+    /// Whether every choice was searched exactly.
+    #[serde(default = "yes")]
+    pub proven_optimal: bool,
+    /// The next best assignments that the policy knows of, the best first.
+    #[serde(default)]
+    pub alternatives: Vec<Alternative>,
+    /// How the policy came to its answer.
+    #[serde(default)]
+    pub account: Account,
+}
+
+fn yes() -> bool {
+    true
+}
+
+/// An assignment that was not chosen.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Alternative {
+    /// Who would have gone to which task.
+    pub assignment: Assignment,
+    /// Its score, as in [`Decision::score`].
+    #[serde(default)]
+    pub score: Option<RelativeNeedsEntropy>,
+}
+
+/// A policy's own account of its decision.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
+#[non_exhaustive]
+pub enum Account {
+    /// It gives none.
+    #[default]
+    None,
+    /// It sorted the members of each role by one key.
+    Ranking(Ranking),
+    /// It searched for the largest Relative Needs Entropy, level by level.
+    Rne(RneAccount),
+    /// In words.
+    Text(String),
+}
+
+/// Members sorted by one key; the first go to the hardest task.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Ranking {
+    /// What they were sorted by.
+    pub key: String,
+    /// For each role, its members with the key's value, in their order.
+    pub roles: Vec<Vec<Ranked>>,
+}
+
+/// A member in a ranking.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Ranked {
+    /// The robot.
+    pub id: u32,
+    /// The key's value.
+    pub value: f64,
+}
+
+/// How the RNE policy came to its groups.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct RneAccount {
+    /// The weight of each need after scaling.
+    pub weights: Vec<f64>,
+    /// The split of each role that has members.
+    pub splits: Vec<RoleSplit>,
+    /// The merge of each role after the first with the groups so far.
+    pub merges: Vec<RoleMerge>,
+    /// How well each group is suited for a hard task, by the hard rule.
+    pub suitability: Vec<Suitability>,
+}
+
+/// How the members of one role were split into parts.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct RoleSplit {
+    /// The role.
+    pub role: RoleId,
+    /// Ids of the parts, in the order of their smallest ids; empty parts last.
+    pub parts: Vec<Vec<u32>>,
+    /// Sum of the scores of all pairs of parts, in nats; absent where fewer than two have members.
+    pub score: Option<RelativeNeedsEntropy>,
+    /// The next best split that was looked at.
+    pub runner_up: Option<SplitCandidate>,
+    /// Splits that were looked at.
+    pub searched: u64,
+    /// Whether all were.
+    pub proven_optimal: bool,
+    /// No split has a larger score than this; absent where the search was exact or no bound is known.
+    pub upper_bound: Option<RelativeNeedsEntropy>,
+}
+
+/// A split that was not chosen.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct SplitCandidate {
+    /// Ids of the parts.
+    pub parts: Vec<Vec<u32>>,
+    /// Its score, in nats.
+    pub score: Option<RelativeNeedsEntropy>,
+}
+
+/// How the parts of one role were matched with the groups so far.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct RoleMerge {
+    /// The role.
+    pub role: RoleId,
+    /// For each group so far, which part of the role joined it.
+    pub matching: Vec<usize>,
+    /// The score of the matching, in nats.
+    pub score: Option<RelativeNeedsEntropy>,
+    /// The next best matching and its score.
+    pub runner_up: Option<MatchingCandidate>,
+    /// Whether all matchings were looked at.
+    pub proven_optimal: bool,
+}
+
+/// A matching that was not chosen.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct MatchingCandidate {
+    /// For each group so far, which part of the role would have joined it.
+    pub matching: Vec<usize>,
+    /// Its score, in nats.
+    pub score: Option<RelativeNeedsEntropy>,
+}
+
+/// How well one group is suited for a hard task.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Suitability {
+    /// The task that the group got.
+    pub task: TaskId,
+    /// The value: higher is better suited. Absent for an empty group, and where it is not finite.
+    pub value: Option<f64>,
+}
+
+impl Decision {
+    /// An assignment without a score.
+    #[must_use]
+    pub fn unscored(groups: Vec<Vec<u32>>) -> Self {
+        Self {
+            schema_version: SCHEMA_VERSION,
+            assignment: Assignment::new(groups),
+            score: None,
+            proven_optimal: true,
+            alternatives: Vec::new(),
+            account: Account::None,
+        }
+    }
+
+    /// Reads the JSON form; ids of a group may stand in any order.
+    ///
+    /// # Errors
+    /// Text that is not the JSON of a decision, or another version.
+    pub fn from_json(text: &str) -> Result<Self, crate::error::QuestionError> {
+        use crate::error::QuestionError;
+        let mut decision: Self = serde_json::from_str(text)
+            .map_err(|error| QuestionError::Json { what: "decision", reason: error.to_string() })?;
+        let others = decision.alternatives.iter_mut().map(|other| &mut other.assignment);
+        let all = std::iter::once(&mut decision.assignment).chain(others);
+        all.flat_map(|assignment| &mut assignment.groups).for_each(|group| group.sort_unstable());
+        if decision.schema_version == SCHEMA_VERSION {
+            Ok(decision)
+        } else {
+            Err(QuestionError::Version { found: decision.schema_version })
+        }
+    }
+}

@@ -1,0 +1,77 @@
+//! A kind of policy: what a registry knows of it before one is made.
+
+use std::fmt;
+use std::sync::Arc;
+
+use ron::extensions::Extensions;
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+
+use crate::policy::Policy;
+
+/// A kind of policy: its name, what it does, and its options.
+#[derive(Clone)]
+pub struct PolicyKind {
+    /// Name on the command line, in sweep files and in tables.
+    pub name: String,
+    /// What it does, in one line.
+    pub about: String,
+    /// Its options with their defaults in RON; empty for a policy without options.
+    pub defaults: String,
+    pub(crate) make: Arc<Make>,
+}
+
+/// Makes the policy from its options in RON; returns it with all its options in RON, the defaults included.
+pub(crate) type Make = dyn Fn(&str) -> Result<(Arc<dyn Policy>, String), String> + Send + Sync;
+
+impl fmt::Debug for PolicyKind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}{}", self.name, self.defaults)
+    }
+}
+
+impl PolicyKind {
+    /// A policy without options.
+    pub fn plain<P: Policy + Clone + 'static>(name: &str, about: &str, policy: P) -> Self {
+        let make = move |options: &str| match options.trim() {
+            "" | "()" => Ok((Arc::new(policy.clone()) as Arc<dyn Policy>, String::new())),
+            _ => Err("it has no options".to_owned()),
+        };
+        Self { name: name.into(), about: about.into(), defaults: String::new(), make: Arc::new(make) }
+    }
+
+    /// A policy that is made of options: a struct with defaults, read from RON such as `(score: Sum)`. `make`
+    /// checks them.
+    pub fn with_options<O, P, E>(
+        name: &str,
+        about: &str,
+        make: impl Fn(O) -> Result<P, E> + Send + Sync + 'static,
+    ) -> Self
+    where
+        O: Default + Serialize + DeserializeOwned,
+        P: Policy + 'static,
+        E: fmt::Display,
+    {
+        let defaults = written(&O::default());
+        let make = move |options: &str| {
+            let options: O = match options.trim() {
+                "" => O::default(),
+                text => {
+                    let ron = ron::Options::default().with_default_extension(Extensions::IMPLICIT_SOME);
+                    ron.from_str(text).map_err(|error| error.code.to_string())?
+                }
+            };
+            let all = written(&options);
+            let policy = make(options).map_err(|error| error.to_string())?;
+            Ok((Arc::new(policy) as Arc<dyn Policy>, all))
+        };
+        Self { name: name.into(), about: about.into(), defaults, make: Arc::new(make) }
+    }
+}
+
+/// A value in RON, its fields separated by a comma and a blank.
+fn written(options: &impl Serialize) -> String {
+    let ron = ron::Options::default().with_default_extension(Extensions::IMPLICIT_SOME);
+    let style = ron::ser::PrettyConfig::new().depth_limit(0).separator(" ");
+    ron.to_string_pretty(options, style).unwrap_or_default()
+}

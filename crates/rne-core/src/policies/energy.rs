@@ -1,0 +1,32 @@
+//! `ENG`: the robots with more energy take the harder tasks (paper: Section VI, after Yang et al. 2020).
+
+use super::missing;
+use super::ranking::deal_by_rank;
+use crate::decision::Decision;
+use crate::error::PolicyError;
+use crate::kind::PolicyKind;
+use crate::policy::Policy;
+use crate::question::Question;
+
+const NAME: &str = "ENG";
+
+/// Per role, sorts by battery level; the upper robots take the harder tasks. Ties go to the lower id.
+#[derive(Debug, Clone, Copy)]
+pub struct Energy;
+
+/// The registry's line.
+#[must_use]
+pub fn kind() -> PolicyKind {
+    PolicyKind::plain(NAME, "robots with more energy take the harder tasks", Energy)
+}
+
+impl Policy for Energy {
+    fn decide(&self, question: &Question) -> Result<Decision, PolicyError> {
+        deal_by_rank(
+            question,
+            ("energy level", |level: &f64| *level),
+            |member| member.energy_level.ok_or_else(|| missing(NAME, "the energy level", Some(member.id))),
+            |a, b| b.total_cmp(a),
+        )
+    }
+}

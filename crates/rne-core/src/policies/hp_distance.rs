@@ -1,0 +1,38 @@
+//! `HP_DIS`: the healthier robots take the harder tasks, ties by distance (paper: Section VI).
+
+use super::ranking::deal_by_rank;
+use super::{missing, squared_distance};
+use crate::decision::Decision;
+use crate::error::PolicyError;
+use crate::kind::PolicyKind;
+use crate::policy::Policy;
+use crate::question::Question;
+
+const NAME: &str = "HP_DIS";
+
+/// Per role, sorts by health level; the upper robots take the harder tasks. Of robots with the same level,
+/// the one whose home is nearer to the hardest task goes first (where that task's place is known), then the
+/// lower id.
+#[derive(Debug, Clone, Copy)]
+pub struct HpDistance;
+
+/// The registry's line.
+#[must_use]
+pub fn kind() -> PolicyKind {
+    PolicyKind::plain(NAME, "healthier robots take the harder tasks, ties by distance", HpDistance)
+}
+
+impl Policy for HpDistance {
+    fn decide(&self, question: &Question) -> Result<Decision, PolicyError> {
+        let hardest = question.hardest_first().first().and_then(|task| question.tasks[task.index()].place);
+        deal_by_rank(
+            question,
+            ("HP level", |key: &(f64, f64)| key.0),
+            |member| {
+                let level = member.hp_level.ok_or_else(|| missing(NAME, "the HP level", Some(member.id)))?;
+                Ok((level, hardest.map_or(0.0, |place| squared_distance(member.home, place))))
+            },
+            |a, b| b.0.total_cmp(&a.0).then(a.1.total_cmp(&b.1)),
+        )
+    }
+}

@@ -1,0 +1,43 @@
+//! Sorting: the first of each role go to the hardest task, the next to the next hardest.
+
+use std::cmp::Ordering;
+
+use crate::decision::{Account, Decision, Ranked, Ranking};
+use crate::error::PolicyError;
+use crate::question::{Member, Question};
+
+/// Per role, sorts by `better_first` and deals the members out over the tasks, the hardest first; ties by id.
+/// `key` says what they are sorted by, `value` is the part of a key that the account shows.
+pub(super) fn deal_by_rank<K>(
+    question: &Question,
+    (key_name, value): (&str, impl Fn(&K) -> f64),
+    key: impl Fn(&Member) -> Result<K, PolicyError>,
+    better_first: impl Fn(&K, &K) -> Ordering,
+) -> Result<Decision, PolicyError> {
+    let mut roles = Vec::with_capacity(question.roles.len());
+    let mut orders = Vec::with_capacity(question.roles.len());
+    for role in question.role_ids() {
+        let keyed = question.of_role(role).map(|member| Ok((key(member)?, member.id)));
+        let mut ranked = keyed.collect::<Result<Vec<_>, PolicyError>>()?;
+        ranked.sort_by(|a, b| better_first(&a.0, &b.0).then(a.1.cmp(&b.1)));
+        roles.push(ranked.iter().map(|(key, id)| Ranked { id: *id, value: value(key) }).collect());
+        orders.push(ranked.into_iter().map(|(_, id)| id).collect());
+    }
+    let account = Account::Ranking(Ranking { key: key_name.to_owned(), roles });
+    Ok(Decision { account, ..deal(question, &orders) })
+}
+
+/// Deals the members of each role, in this order, out over the tasks by their quotas, the hardest task first.
+pub(super) fn deal(question: &Question, orders: &[Vec<u32>]) -> Decision {
+    let mut groups = vec![Vec::new(); question.tasks.len()];
+    let hardest_first = question.hardest_first();
+    for (order, quota) in orders.iter().zip(&question.quotas) {
+        let mut rest = order.as_slice();
+        for task in &hardest_first {
+            let (dealt, left) = rest.split_at(quota.members[task.index()]);
+            groups[task.index()].extend(dealt);
+            rest = left;
+        }
+    }
+    Decision::unscored(groups)
+}

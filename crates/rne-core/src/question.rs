@@ -1,0 +1,344 @@
+//! The question that a policy answers: who is to be grouped, for which tasks, and what earlier rounds came
+//! to.
+//!
+//! A question is complete: a policy is a function of it, draws included. Its JSON form is documented in
+//! `docs/decisions.md`.
+
+use std::cmp::Reverse;
+use std::collections::BTreeSet;
+
+use rand::SeedableRng;
+use rand::rngs::ChaCha8Rng;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+pub use crate::schema::{MAX_TASKS, SCHEMA_VERSION};
+
+use crate::error::QuestionError;
+use crate::history::RoundOutcome;
+use crate::ids::{RoleId, TaskId, rows};
+use crate::needs::{NeedVector, check_length};
+
+/// A team to be grouped.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Question {
+    /// Version of the JSON form: [`SCHEMA_VERSION`].
+    pub schema_version: u32,
+    /// Number of the round, from 1.
+    pub round: u32,
+    /// Names of the roles, in the order of their table.
+    pub roles: Vec<String>,
+    /// The needs that members report, in the order of their table.
+    pub needs: Vec<Need>,
+    /// The tasks, in the order of their table.
+    pub tasks: Vec<Task>,
+    /// For each role, how many members each task gets.
+    pub quotas: Vec<Quota>,
+    /// The members as reported, by id.
+    pub members: Vec<Member>,
+    /// The rounds that are over, the first one first.
+    pub history: Vec<RoundOutcome>,
+    /// Seed of the policy's own draws in this round.
+    pub random_seed: RandomSeed,
+}
+
+/// A need that members report.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Need {
+    /// Its name.
+    pub name: String,
+    /// Its weight: finite and >= 0. Only the ratios of weights matter.
+    pub weight: f64,
+}
+
+/// A task that a group is to be formed for.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Task {
+    /// Its name.
+    pub name: String,
+    /// Its rank: the harder the task, the higher. Of two tasks of one rank, the first in the table counts as
+    /// harder.
+    pub difficulty: u32,
+    /// Centre of its area, in metres; absent where it is not known.
+    #[serde(default)]
+    pub place: Option<[f64; 2]>,
+}
+
+/// How many members of one role each task gets.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Quota {
+    /// Members for each task, in the order of the table. They add up to the members of the role.
+    pub members: Vec<usize>,
+    /// Whether an answer must keep these numbers task by task. Otherwise they say into parts of which sizes a
+    /// role is split, and the policy decides which task gets which part.
+    pub is_binding: bool,
+}
+
+/// What a robot reports of itself.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Member {
+    /// Unique in the team.
+    pub id: u32,
+    /// Its role.
+    pub role: RoleId,
+    /// Initial position in the plane, in metres.
+    pub home: [f64; 2],
+    /// Its needs, in the order of the table of needs.
+    pub needs: NeedVector,
+    /// Battery level in percent of the robot's own maximum.
+    pub energy_level: Option<f64>,
+    /// Health level in percent of the robot's own maximum.
+    pub hp_level: Option<f64>,
+}
+
+/// Seed of a policy's draws: 32 bytes, in JSON 64 hexadecimal digits.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(try_from = "String", into = "String")]
+pub struct RandomSeed(#[schemars(with = "String")] pub [u8; 32]);
+
+impl From<RandomSeed> for String {
+    fn from(seed: RandomSeed) -> Self {
+        let digit = |half: u8| char::from_digit(u32::from(half), 16).unwrap_or_default();
+        seed.0.iter().flat_map(|byte| [digit(byte >> 4), digit(byte & 15)]).collect()
+    }
+}
+
+impl TryFrom<String> for RandomSeed {
+    type Error = String;
+
+    fn try_from(text: String) -> Result<Self, String> {
+        let mut seed = [0; 32];
+        let is_hex = text.len() == 64 && text.bytes().all(|digit| digit.is_ascii_hexdigit());
+        for (i, byte) in seed.iter_mut().enumerate().filter(|_| is_hex) {
+            *byte = u8::from_str_radix(&text[2 * i..2 * i + 2], 16).unwrap_or_default();
+        }
+        if is_hex { Ok(Self(seed)) } else { Err("random_seed must be 64 hexadecimal digits".to_owned()) }
+    }
+}
+
+impl From<u64> for RandomSeed {
+    fn from(seed: u64) -> Self {
+        Self(ChaCha8Rng::seed_from_u64(seed).get_seed())
+    }
+}
+
+impl Question {
+    /// Puts the members in the order of their ids and checks that all parts fit each other.
+    ///
+    /// # Errors
+    /// No task or too many; an id that stands twice; a role, needs or quotas that do not fit their tables; a
+    /// number that is not finite.
+    pub fn checked(mut self) -> Result<Self, QuestionError> {
+        self.members.sort_by_key(|member| member.id);
+        if self.schema_version != SCHEMA_VERSION {
+            return Err(QuestionError::Version { found: self.schema_version });
+        }
+        if self.tasks.is_empty() || self.tasks.len() > MAX_TASKS {
+            return Err(QuestionError::Tasks { found: self.tasks.len() });
+        }
+        for task in &self.tasks {
+            if let Some(place) = task.place.filter(|place| place.iter().any(|v| !v.is_finite())) {
+                return Err(QuestionError::Place { task: task.name.clone(), found: place });
+            }
+        }
+        if let Some(need) = self.needs.iter().find(|need| !need.weight.is_finite() || need.weight < 0.0) {
+            return Err(QuestionError::Weight { need: need.name.clone(), found: need.weight });
+        }
+        let mut ids = BTreeSet::new();
+        for member in &self.members {
+            if !ids.insert(member.id) {
+                return Err(QuestionError::DuplicateId { id: member.id });
+            }
+            self.check_member(member)?;
+        }
+        self.check_quotas()?;
+        Ok(self)
+    }
+
+    fn check_member(&self, member: &Member) -> Result<(), QuestionError> {
+        let id = member.id;
+        if member.role.index() >= self.roles.len() {
+            return Err(QuestionError::Role { id, found: member.role.0, roles: self.roles.len() });
+        }
+        check_length("needs", self.needs.len(), member.needs.values().len())
+            .map_err(|source| QuestionError::Needs { id, source })?;
+        let facts = [
+            ("x", Some(member.home[0])),
+            ("y", Some(member.home[1])),
+            ("energy_level", member.energy_level),
+            ("hp_level", member.hp_level),
+        ];
+        let infinite = |(what, value): (_, Option<f64>)| Some((what, value.filter(|v| !v.is_finite())?));
+        match facts.into_iter().find_map(infinite) {
+            Some((what, found)) => Err(QuestionError::NotFinite { what, id, found }),
+            None => Ok(()),
+        }
+    }
+
+    fn check_quotas(&self) -> Result<(), QuestionError> {
+        if self.quotas.len() != self.roles.len() {
+            return Err(QuestionError::Quotas { found: self.quotas.len(), roles: self.roles.len() });
+        }
+        for (role, quota) in self.role_ids().zip(&self.quotas) {
+            let members = self.of_role(role).count();
+            let shared = quota.members.iter().try_fold(0, |sum: usize, share| sum.checked_add(*share));
+            if quota.members.len() != self.tasks.len() || shared != Some(members) {
+                let role = self.roles[role.index()].clone();
+                return Err(QuestionError::Quota { role, found: quota.members.clone(), members });
+            }
+        }
+        Ok(())
+    }
+
+    /// Reads the JSON form and checks it.
+    ///
+    /// # Errors
+    /// Text that is not the JSON of a question, or a question that [`Question::checked`] refuses.
+    pub fn from_json(text: &str) -> Result<Self, QuestionError> {
+        let question: Self = serde_json::from_str(text)
+            .map_err(|error| QuestionError::Json { what: "question", reason: error.to_string() })?;
+        question.checked()
+    }
+
+    /// The ids of all roles, in the order of their table.
+    pub fn role_ids(&self) -> impl Iterator<Item = RoleId> + use<> {
+        rows(self.roles.len()).map(RoleId)
+    }
+
+    /// The ids of all tasks, in the order of their table.
+    pub fn task_ids(&self) -> impl Iterator<Item = TaskId> + use<> {
+        rows(self.tasks.len()).map(TaskId)
+    }
+
+    /// The tasks from the hardest to the easiest.
+    #[must_use]
+    pub fn hardest_first(&self) -> Vec<TaskId> {
+        hardest_first(self.tasks.iter().map(|task| task.difficulty))
+    }
+
+    /// The members of one role, by id.
+    pub fn of_role(&self, role: RoleId) -> impl Iterator<Item = &Member> {
+        self.members.iter().filter(move |member| member.role == role)
+    }
+
+    /// The weight of each need.
+    #[must_use]
+    pub fn weights(&self) -> Vec<f64> {
+        self.needs.iter().map(|need| need.weight).collect()
+    }
+
+    /// The generator of this question's draws.
+    #[must_use]
+    pub fn draws(&self) -> ChaCha8Rng {
+        ChaCha8Rng::from_seed(self.random_seed.0)
+    }
+}
+
+/// Tasks with these difficulty ranks from the hardest to the easiest; of equal ranks, the first in the table
+/// first.
+#[must_use]
+pub fn hardest_first(difficulties: impl Iterator<Item = u32>) -> Vec<TaskId> {
+    let mut order: Vec<(Reverse<u32>, TaskId)> =
+        difficulties.zip(0..).map(|(difficulty, task)| (Reverse(difficulty), TaskId(task))).collect();
+    order.sort_unstable();
+    order.into_iter().map(|(_, task)| task).collect()
+}
+
+impl Quota {
+    /// Shares `members` out over tasks, given from the hardest to the easiest, of which some ask for a number
+    /// of their own.
+    ///
+    /// Without such numbers the shares are as equal as possible, and the harder tasks get the extra members.
+    /// With them, those tasks are served first, and the rest is shared equally over the tasks that ask for
+    /// none (over all tasks where each asks). Where there are too few members, each next one goes to the task
+    /// with the smallest filled share, the harder one of equals.
+    #[must_use]
+    pub fn share(members: usize, asked: &[Option<usize>], hardest_first: &[TaskId]) -> Self {
+        let is_binding = asked.iter().any(Option::is_some);
+        let wanted = asked.iter().flatten().copied().fold(0, usize::saturating_add);
+        let mut shares = vec![0; asked.len()];
+        if members < wanted {
+            fill_by_share(&mut shares, members, asked, hardest_first);
+            return Self { members: shares, is_binding };
+        }
+        for (share, asked) in shares.iter_mut().zip(asked) {
+            *share = asked.unwrap_or(0);
+        }
+        let open = |task: &&TaskId| asked[task.index()].is_none() || asked.iter().all(Option::is_some);
+        let receivers: Vec<TaskId> = hardest_first.iter().filter(open).copied().collect();
+        let rest = members - wanted;
+        for (rank, task) in receivers.iter().enumerate() {
+            let extra = usize::from(rank < rest % receivers.len());
+            shares[task.index()] += rest / receivers.len() + extra;
+        }
+        Self { members: shares, is_binding }
+    }
+
+    /// The quotas of a team without wishes of its tasks: as equal as possible.
+    #[must_use]
+    pub fn equal(counts: &[usize], hardest_first: &[TaskId]) -> Vec<Self> {
+        counts
+            .iter()
+            .map(|count| Self::share(*count, &vec![None; hardest_first.len()], hardest_first))
+            .collect()
+    }
+}
+
+fn fill_by_share(shares: &mut [usize], members: usize, asked: &[Option<usize>], hardest_first: &[TaskId]) {
+    for _ in 0..members {
+        let filled = |task: &TaskId| {
+            let asked = asked[task.index()].unwrap_or(0);
+            if asked == 0 { f64::INFINITY } else { shares[task.index()] as f64 / asked as f64 }
+        };
+        let next = hardest_first.iter().min_by(|a, b| filled(a).total_cmp(&filled(b)));
+        if let Some(task) = next {
+            shares[task.index()] += 1;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn shares(members: usize, asked: &[Option<usize>]) -> Vec<usize> {
+        let order = hardest_first([1, 3, 2][..asked.len()].iter().copied());
+        Quota::share(members, asked, &order).members
+    }
+
+    #[test]
+    fn quotas_are_as_equal_as_possible_and_the_harder_tasks_get_the_extra_members() {
+        assert_eq!(shares(6, &[None; 3]), [2, 2, 2]);
+        assert_eq!(shares(7, &[None; 3]), [2, 3, 2]);
+        assert_eq!(shares(8, &[None; 3]), [2, 3, 3]);
+        assert_eq!(shares(1, &[None; 2]), [0, 1]);
+        assert_eq!(shares(0, &[None; 2]), [0, 0]);
+    }
+
+    #[test]
+    fn tasks_that_ask_for_a_number_are_served_first() {
+        assert_eq!(shares(6, &[Some(1), None, None]), [1, 3, 2]);
+        assert_eq!(shares(6, &[Some(1), Some(1), Some(1)]), [2, 2, 2]);
+        assert_eq!(shares(3, &[Some(4), Some(2), None]), [2, 1, 0]);
+        assert!(Quota::share(3, &[Some(1), None], &hardest_first([1, 2].into_iter())).is_binding);
+    }
+
+    #[test]
+    fn the_hardest_task_comes_first_and_the_table_settles_ties() {
+        assert_eq!(hardest_first([2, 3, 3, 1].into_iter()), [1, 2, 0, 3].map(TaskId));
+    }
+
+    #[test]
+    fn a_seed_has_a_json_form_of_64_digits() {
+        let seed = RandomSeed::from(7);
+        let text = serde_json::to_string(&seed).unwrap();
+        assert_eq!(text.len(), 66);
+        assert_eq!(serde_json::from_str::<RandomSeed>(&text).unwrap(), seed);
+        assert!(serde_json::from_str::<RandomSeed>("\"abc\"").is_err());
+    }
+}

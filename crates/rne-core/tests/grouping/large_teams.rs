@@ -1,0 +1,126 @@
+//! Teams that are too large to look at everything: the answer says so, and how far it can be from the best.
+
+use rand::rngs::ChaCha8Rng;
+use rand::{RngExt, SeedableRng};
+use rne_core::decision::RneAccount;
+use rne_core::policies::rne::EXACT_TASKS;
+use rne_core::{Account, Decision, RneOptions};
+
+use crate::oracle::Oracle;
+use crate::support::{SCORES, decide, drawn_team, names, question, rne, team, two_tasks};
+
+fn account(decision: &Decision) -> &RneAccount {
+    match &decision.account {
+        Account::Rne(account) => account,
+        other => panic!("{other:?}"),
+    }
+}
+
+fn levels(count: usize) -> Vec<(f64, f64)> {
+    let mut draws = ChaCha8Rng::seed_from_u64(11);
+    (0..count).map(|_| (draws.random_range(5.0..100.0), draws.random_range(5.0..100.0))).collect()
+}
+
+#[test]
+fn twenty_robots_are_searched_exactly_and_more_by_local_search_that_says_so() {
+    let exact = decide("RNE", &two_tasks(team([20, 0, 0], &levels(20))));
+    assert!(exact.proven_optimal);
+    assert_eq!(account(&exact).splits[0].searched, 92_378);
+    assert_eq!(account(&exact).splits[0].upper_bound, None);
+    let question = two_tasks(team([21, 3, 2], &levels(26)));
+    let local = decide("RNE", &question);
+    assert!(!local.proven_optimal);
+    let proven: Vec<bool> = account(&local).splits.iter().map(|split| split.proven_optimal).collect();
+    assert_eq!(proven, [false, true, true]);
+    assert_eq!(local, decide("RNE", &question), "the local search is deterministic");
+}
+
+#[test]
+fn three_tasks_are_searched_exactly_for_13_robots_of_a_role_and_four_for_12() {
+    for (tasks, robots) in [(3, 13), (4, 12)] {
+        let decision = |robots| decide("RNE", &question(drawn_team(&[robots], 3), &[1, 2, 3, 4][..tasks]));
+        assert!(decision(robots).proven_optimal);
+        assert!(!decision(robots + 1).proven_optimal);
+    }
+}
+
+#[test]
+fn no_score_of_a_local_search_is_above_its_bound() {
+    for seed in 0..12 {
+        for score in SCORES {
+            for tasks in [2, 3, 4] {
+                let question = question(drawn_team(&[26 + seed, 2], seed as u64), &[1, 2, 3, 4][..tasks]);
+                let options = RneOptions { score, ..RneOptions::default() };
+                let decision = decide(&rne(&options), &question);
+                assert!(!decision.proven_optimal);
+                let split = &account(&decision).splits[0];
+                let (found, bound) = (split.score.unwrap(), split.upper_bound.unwrap());
+                assert!(found <= bound, "{score:?}, {tasks} tasks: {found:?} is above {bound:?}");
+                let exact = Oracle::new(&question, options).total(&split.parts);
+                assert!(
+                    (found.nats().unwrap() - exact).abs() < 1e-11,
+                    "{score:?}: the score is that of the parts"
+                );
+            }
+        }
+    }
+}
+
+/// The bound is of the robots, not of the search: it holds for every split of a team that contains the robots
+/// of the bound.
+#[test]
+fn no_split_at_all_is_above_the_bound() {
+    let mut draws = ChaCha8Rng::seed_from_u64(1);
+    for seed in 0..4 {
+        for score in SCORES {
+            let question = question(drawn_team(&[30], seed), &[1, 2, 3]);
+            let options = RneOptions { score, ..RneOptions::default() };
+            let decision = decide(&rne(&options), &question);
+            let bound = account(&decision).splits[0].upper_bound.unwrap().nats().unwrap();
+            let oracle = Oracle::new(&question, options);
+            for _ in 0..50 {
+                // Very uneven parts come nearest to the bound.
+                let mut parts = vec![Vec::new(); 3];
+                let uneven = draws.random_range(0..3);
+                for member in &question.members {
+                    let part = if draws.random_range(0..10) == 0 { draws.random_range(0..3) } else { uneven };
+                    parts[part].push(member.id);
+                }
+                assert!(oracle.total(&parts) <= bound, "{score:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn sorted_shares_have_no_known_bound() {
+    let decision = decide("RNE(sort: true)", &question(drawn_team(&[30], 1), &[1, 2, 3]));
+    assert_eq!(account(&decision).splits[0].upper_bound, None);
+}
+
+#[test]
+fn the_local_search_is_not_far_from_the_best_where_both_are_known() {
+    // 14 robots and three tasks: over the limit, and still few enough for the oracle.
+    let question = question(drawn_team(&[14], 8), &[1, 2, 3]);
+    let decision = decide("RNE", &question);
+    let found = decision.score.unwrap().nats().unwrap();
+    let oracle = Oracle::new(&question, RneOptions::default());
+    let best = oracle.splits(question.members[0].role).iter().map(|split| split.1).fold(0.0, f64::max);
+    let bound = account(&decision).splits[0].upper_bound.unwrap().nats().unwrap();
+    assert!(found <= best + 1e-11 && best <= bound);
+    assert!(found > 0.9 * best, "found {found}, the best is {best}");
+}
+
+#[test]
+fn many_tasks_are_matched_by_exchange_that_says_so() {
+    for tasks in [EXACT_TASKS, EXACT_TASKS + 1, 16] {
+        let difficulties: Vec<u32> = (0..).take(tasks).collect();
+        let question = question(drawn_team(&[tasks, tasks, 1], 4), &difficulties);
+        for policy in names() {
+            let decision = decide(&policy, &question);
+            if policy == "RNE" {
+                assert_eq!(decision.proven_optimal, tasks <= EXACT_TASKS, "{tasks} tasks");
+            }
+        }
+    }
+}

@@ -1,0 +1,11 @@
+//! How policies group teams: properties of every answer, and brute force for small teams.
+
+mod account;
+mod baselines;
+mod large_teams;
+mod many_tasks;
+mod oracle;
+mod properties;
+mod quotas;
+mod support;
+mod two_tasks;

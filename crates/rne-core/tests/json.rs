@@ -1,0 +1,183 @@
+//! Questions and decisions as JSON: what is written is read again, and what is no question is refused with
+//! the reason.
+
+use rne_core::{Assignment, Decision, Question, QuestionError, Registry, Task};
+
+const TEAM: &str = r#"{
+  "schema_version": 1, "round": 2,
+  "roles": ["carrier", "observer"],
+  "needs": [{"name": "hp", "weight": 1.0}, {"name": "v", "weight": 0.5}],
+  "tasks": [
+    {"name": "easy", "difficulty": 1, "place": [70.0, 50.0]},
+    {"name": "hard", "difficulty": 2, "place": [15.0, 60.0]}],
+  "quotas": [{"members": [1, 2], "is_binding": false}, {"members": [0, 1], "is_binding": true}],
+  "members": [
+    {"id": 4, "role": 0, "home": [0.0, 0.0], "needs": [90.1, 1.5], "energy_level": 33.3, "hp_level": 90.1},
+    {"id": 2, "role": 0, "home": [2.0, 0.0], "needs": [60.0, 2.0], "energy_level": 44.4, "hp_level": 60.0},
+    {"id": 3, "role": 0, "home": [4.0, 0.1], "needs": [80.0, 1.0], "energy_level": 55.5, "hp_level": 80.0},
+    {"id": 1, "role": 1, "home": [6.0, 0.0], "needs": [50.0, 0.0], "energy_level": 66.6, "hp_level": 99.9}],
+  "history": [{"round": 1, "duration_s": 99.5, "groups": [
+    {"task": 0, "rescued": 3, "energy": 12.5, "hp": 0.1, "members": [
+      {"id": 4, "rescued": 3, "energy": 12.5, "hp": 0.1, "turned_back": false, "lost": false}]},
+    {"task": 1, "rescued": 0, "energy": 0.0, "hp": 0.0, "members": []}]}],
+  "random_seed": "000102030405060708090a0b0c0d0e0f101112131415161718191a1b1c1d1eff"
+}"#;
+
+#[test]
+fn a_question_is_read_as_it_was_written() {
+    let question = Question::from_json(TEAM).unwrap();
+    let ids: Vec<u32> = question.members.iter().map(|member| member.id).collect();
+    assert_eq!(ids, [1, 2, 3, 4], "members stand in the order of their ids");
+    assert_eq!(question.random_seed.0[30..], [0x1e, 0xff]);
+    for text in [serde_json::to_string(&question), serde_json::to_string_pretty(&question)] {
+        assert_eq!(Question::from_json(&text.unwrap()).unwrap(), question);
+    }
+}
+
+#[test]
+fn every_policys_decision_is_read_as_it_was_written() {
+    let question = Question::from_json(TEAM).unwrap();
+    let registry = Registry::standard();
+    let with_options = ["RNE(score: JensenShannon)", "RNE(merge: Together, sort: true, hard_rule: MeanHp)"];
+    for policy in registry.names().into_iter().chain(with_options) {
+        let decision = registry.parse(policy).unwrap().policy.decide(&question).unwrap();
+        decision.assignment.check(&question).unwrap();
+        let text = serde_json::to_string(&decision).unwrap();
+        assert_eq!(Decision::from_json(&text).unwrap(), decision, "{policy}");
+    }
+}
+
+#[test]
+fn a_decision_needs_no_more_than_its_groups() {
+    let decision =
+        Decision::from_json(r#"{"schema_version": 1, "assignment": {"groups": [[3], [4, 1, 2]]}}"#);
+    let decision = decision.unwrap();
+    assert_eq!(decision, Decision::unscored(vec![vec![3], vec![1, 2, 4]]));
+    assert_eq!(decision.assignment, Assignment::new(vec![vec![3], vec![4, 2, 1]]));
+}
+
+#[test]
+fn what_is_no_decision_is_refused() {
+    let refused = |text: &str| Decision::from_json(text).unwrap_err().to_string();
+    assert_eq!(
+        refused(r#"{"schema_version": 2, "assignment": {"groups": []}}"#),
+        "schema_version must be 1, found 2"
+    );
+    assert_eq!(
+        refused(r#"{"schema_version": 1, "groups": []}"#),
+        "not the JSON of a decision: unknown field `groups`, expected one of `schema_version`, `assignment`, \
+         `score`, `proven_optimal`, `alternatives`, `account` at line 1 column 30"
+    );
+    assert_eq!(
+        refused(r#"{"schema_version": 1}"#),
+        "not the JSON of a decision: missing field `assignment` at line 1 column 21"
+    );
+}
+
+#[test]
+fn what_is_no_question_is_refused_with_the_reason() {
+    let not_json = |reason: &str| format!("not the JSON of a question: {reason}");
+    for (from, to, message) in [
+        ("\"schema_version\": 1", "\"schema_version\": 7", "schema_version must be 1, found 7".to_owned()),
+        (
+            "\"round\": 2",
+            "\"turn\": 2",
+            not_json(
+                "unknown field `turn`, expected one of `schema_version`, `round`, `roles`, `needs`, `tasks`, \
+                 `quotas`, `members`, `history`, `random_seed` at line 2 column 29",
+            ),
+        ),
+        (
+            "\"id\": 4, \"role\"",
+            "\"id\": 4, \"colour\": 1, \"role\"",
+            not_json(
+                "unknown field `colour`, expected one of `id`, `role`, `home`, `needs`, `energy_level`, \
+                 `hp_level` at line 10 column 22",
+            ),
+        ),
+        (" \"round\": 2,", "", not_json("missing field `round` at line 19 column 1")),
+        ("90.1, 1.5", "NaN, 1.5", not_json("expected value at line 10 column 56")),
+        ("90.1, 1.5", "1e999, 1.5", not_json("number out of range at line 10 column 60")),
+        (
+            "90.1, 1.5",
+            "-1.0, 1.5",
+            not_json("needs[0] must be a finite number >= 0, found -1 at line 10 column 65"),
+        ),
+        ("90.1, 1.5", "90.1", "robot 4: needs must have 2 entries, found 1".to_owned()),
+        ("\"id\": 3", "\"id\": 2", "robot id 2 stands twice in the team; ids must be unique".to_owned()),
+        (
+            "\"id\": 1, \"role\": 1",
+            "\"id\": 1, \"role\": 2",
+            "robot 1: its role must be a row of the table of 2 roles (from 0), found 2".to_owned(),
+        ),
+        (
+            "[1, 2], \"is_binding\"",
+            "[1, 1], \"is_binding\"",
+            "the quota of role \"carrier\" must share its 3 members out over all tasks, found [1, 1]"
+                .to_owned(),
+        ),
+        (
+            "[1, 2], \"is_binding\"",
+            "[18446744073709551615, 4], \"is_binding\"",
+            "the quota of role \"carrier\" must share its 3 members out over all tasks, \
+             found [18446744073709551615, 4]"
+                .to_owned(),
+        ),
+        (
+            "[0, 1], \"is_binding\"",
+            "[1], \"is_binding\"",
+            "the quota of role \"observer\" must share its 1 members out over all tasks, found [1]"
+                .to_owned(),
+        ),
+        (
+            ", {\"members\": [0, 1], \"is_binding\": true}",
+            "",
+            "there must be a quota for each of the 2 roles, found 1".to_owned(),
+        ),
+        (
+            "\"weight\": 0.5",
+            "\"weight\": -0.5",
+            "the weight of need \"v\" must be a finite number >= 0, found -0.5".to_owned(),
+        ),
+        ("1d1eff", "1d1e", not_json("random_seed must be 64 hexadecimal digits at line 19 column 1")),
+    ] {
+        assert!(TEAM.contains(from), "{from}");
+        let error = Question::from_json(&TEAM.replace(from, to)).unwrap_err();
+        assert_eq!(error.to_string(), message, "{from} -> {to}");
+    }
+}
+
+#[test]
+fn numbers_that_json_cannot_write_are_refused_by_name() {
+    let refused = |change: &dyn Fn(&mut Question)| {
+        let mut question = Question::from_json(TEAM).unwrap();
+        change(&mut question);
+        question.checked().unwrap_err().to_string()
+    };
+    assert_eq!(
+        refused(&|q| q.members[1].home[1] = f64::NAN),
+        "y of robot 2 must be a finite number, found NaN"
+    );
+    assert_eq!(
+        refused(&|q| q.members[0].hp_level = Some(f64::INFINITY)),
+        "hp_level of robot 1 must be a finite number, found inf"
+    );
+    assert_eq!(
+        refused(&|q| q.tasks[1].place = Some([1.0, f64::NAN])),
+        "the place of task \"hard\" must be two finite numbers, found [1.0, NaN]"
+    );
+    assert_eq!(
+        refused(&|q| q.needs[0].weight = f64::NAN),
+        "the weight of need \"hp\" must be a finite number >= 0, found NaN"
+    );
+}
+
+#[test]
+fn a_question_has_1_to_16_tasks() {
+    for tasks in [0, 17] {
+        let mut question = Question::from_json(TEAM).unwrap();
+        question.tasks =
+            (0..tasks).map(|i| Task { name: format!("{i}"), difficulty: i, place: None }).collect();
+        assert_eq!(question.checked(), Err(QuestionError::Tasks { found: tasks as usize }));
+    }
+}

@@ -1,0 +1,206 @@
+//! What a group knows of the world: shared by its members at once, pooled by the whole team at home.
+
+use parry2d::math::Vector;
+use serde::{Deserialize, Serialize};
+
+use crate::geometry::RadiationZone;
+use crate::planning::{KnownObstacle, ObstacleKey, ObstacleMap};
+use crate::world::{Robot, World};
+
+/// What was learned that concerns routes.
+#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
+pub(crate) enum News {
+    /// An obstacle is known, where it is now.
+    Obstacle(ObstacleKey),
+    /// A radiation zone is known.
+    Zone(u32),
+    /// A place is free again.
+    Opening(Opening),
+}
+
+/// A place that was found to be free again: a piece of debris was pushed away from there.
+#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
+pub(crate) struct Opening {
+    /// Middle of the place.
+    center: Vector,
+    /// No way through the place that was closed before is farther from the middle than this, in metres.
+    reach: f32,
+}
+
+impl Opening {
+    /// A lower bound for the length of any way from `a` to `b` that leads through here, in metres.
+    pub(crate) fn least_way(&self, a: Vector, b: Vector) -> f32 {
+        let to_here = |point: Vector| ((point - self.center).length() - self.reach).max(0.0);
+        to_here(a) + to_here(b)
+    }
+}
+
+/// How much of some knowledge has been taken into account.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub(crate) struct Seen {
+    pool: u32,
+    news: usize,
+}
+
+/// Knowledge of a group, or of the team at home.
+#[derive(Clone, Serialize, Deserialize)]
+pub struct Knowledge {
+    /// For each piece of debris, the number of its sightings that are known; 0 is unknown.
+    pub debris: Vec<u32>,
+    /// For each radiation zone, whether it is known.
+    pub zones: Vec<bool>,
+    /// For each rescuee, whether it was seen.
+    pub rescuees: Vec<bool>,
+    /// For each robot, whether it is known to stand for good.
+    pub wrecks: Vec<bool>,
+    /// How often the groups have pooled what they know. Between two times, what a group knows goes on from what the team knew.
+    pool: u32,
+    /// What concerns routes, in the order in which it was learned.
+    news: Vec<News>,
+    /// Follows from `debris` and `wrecks`.
+    #[serde(skip)]
+    obstacles: ObstacleMap,
+    /// Follows from `zones`.
+    #[serde(skip)]
+    known_zones: Vec<(u32, RadiationZone)>,
+    /// By how much obstacles are inflated.
+    #[serde(skip)]
+    inflation: Inflation,
+}
+
+/// By how much obstacles are inflated: the radius of the largest ground robot, and the clearance that it keeps, in metres.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Inflation {
+    /// Radius of the robots.
+    pub radius: f32,
+    /// What they keep from obstacles beyond it.
+    pub clearance: f32,
+}
+
+impl Knowledge {
+    /// Nothing is known.
+    #[must_use]
+    pub fn nothing(world: &World, inflation: Inflation) -> Self {
+        Self {
+            debris: vec![0; world.debris.len()],
+            zones: vec![false; world.zones.len()],
+            rescuees: vec![false; world.rescuees.len()],
+            wrecks: vec![false; world.robots.len()],
+            pool: 0,
+            news: Vec::new(),
+            obstacles: ObstacleMap::default(),
+            known_zones: Vec::new(),
+            inflation,
+        }
+    }
+
+    /// The known obstacles.
+    #[must_use]
+    pub fn obstacles(&self) -> &ObstacleMap {
+        &self.obstacles
+    }
+
+    /// The known radiation zones, with their numbers.
+    #[must_use]
+    pub fn known_zones(&self) -> &[(u32, RadiationZone)] {
+        &self.known_zones
+    }
+
+    /// A mark up to which everything that is known now has been seen.
+    pub(crate) fn seen(&self) -> Seen {
+        Seen { pool: self.pool, news: self.news.len() }
+    }
+
+    /// What was learned since a mark; everything, where the mark is from before the groups last pooled what they know.
+    pub(crate) fn news_since(&self, seen: Seen) -> &[News] {
+        let from = if seen.pool == self.pool { seen.news.min(self.news.len()) } else { 0 };
+        &self.news[from..]
+    }
+
+    /// Takes note of a piece of debris as it lies now.
+    pub fn learn_debris(&mut self, world: &World, number: usize) {
+        self.learn_sighting(world, number, world.debris[number].sightings.len() as u32);
+    }
+
+    fn learn_sighting(&mut self, world: &World, number: usize, sighting: u32) {
+        if sighting > self.debris[number] {
+            self.debris[number] = sighting;
+            let obstacle = self.debris_obstacle(world, number);
+            self.insert(obstacle);
+        }
+    }
+
+    /// Takes note of a radiation zone.
+    pub fn learn_zone(&mut self, world: &World, number: usize) {
+        if !std::mem::replace(&mut self.zones[number], true) {
+            let at = self.known_zones.partition_point(|(other, _)| (*other as usize) < number);
+            self.known_zones.insert(at, (number as u32, world.zones[number]));
+            self.news.push(News::Zone(number as u32));
+        }
+    }
+
+    /// Takes note of a robot that stands for good.
+    pub fn learn_wreck(&mut self, world: &World, number: usize) {
+        let robot = &world.robots[number];
+        let Some(at) = robot.wreck_at else { return };
+        if !std::mem::replace(&mut self.wrecks[number], true) && !robot.is_aerial() {
+            self.insert(self.wreck_obstacle(robot, at));
+        }
+    }
+
+    /// Takes over all that some groups know.
+    pub fn pool(&mut self, world: &World, groups: &[Self]) {
+        groups.iter().for_each(|group| self.learn_all(world, group));
+        self.pool += 1;
+    }
+
+    fn learn_all(&mut self, world: &World, other: &Self) {
+        for (number, sighting) in other.debris.iter().enumerate() {
+            self.learn_sighting(world, number, *sighting);
+        }
+        let known = |list: &[bool]| -> Vec<usize> { (0..list.len()).filter(|i| list[*i]).collect() };
+        known(&other.zones).into_iter().for_each(|number| self.learn_zone(world, number));
+        known(&other.wrecks).into_iter().for_each(|number| self.learn_wreck(world, number));
+        for (own, other) in self.rescuees.iter_mut().zip(&other.rescuees) {
+            *own |= other;
+        }
+    }
+
+    /// A piece of debris as it is known.
+    fn debris_obstacle(&self, world: &World, number: usize) -> KnownObstacle {
+        let sighting = self.debris[number];
+        let outline = &world.debris[number].sightings[sighting as usize - 1];
+        KnownObstacle::new(
+            ObstacleKey::Debris(number as u32),
+            sighting,
+            outline,
+            self.inflation.radius,
+            self.inflation.clearance,
+        )
+    }
+
+    fn wreck_obstacle(&self, robot: &Robot, at: Vector) -> KnownObstacle {
+        KnownObstacle::wreck(robot.id.0, at, robot.radius(), self.inflation.radius, self.inflation.clearance)
+    }
+
+    /// Makes anew what a snapshot leaves out because it follows from the rest.
+    pub(crate) fn restore(&mut self, world: &World, inflation: Inflation) {
+        self.inflation = inflation;
+        let known = (0..self.debris.len()).filter(|number| self.debris[*number] > 0);
+        let debris = known.map(|number| self.debris_obstacle(world, number));
+        let wrecks = world.robots.iter().filter(|robot| self.wrecks[robot.id.index()] && !robot.is_aerial());
+        let wrecks = wrecks.filter_map(|robot| Some(self.wreck_obstacle(robot, robot.wreck_at?)));
+        self.obstacles = debris.chain(wrecks).collect();
+        let known_zones = world.zones.iter().zip(0_u32..).filter(|(_, number)| self.zones[*number as usize]);
+        self.known_zones = known_zones.map(|(zone, number)| (number, *zone)).collect();
+    }
+
+    fn insert(&mut self, obstacle: KnownObstacle) {
+        let key = obstacle.key;
+        if let Some(before) = self.obstacles.insert(obstacle) {
+            let (center, reach) = before.middle_and_reach();
+            self.news.push(News::Opening(Opening { center, reach }));
+        }
+        self.news.push(News::Obstacle(key));
+    }
+}

@@ -1,0 +1,36 @@
+//! What robots decide in: the trial as it is in one step.
+
+use super::GIVE_UP_S;
+use crate::event::EventLog;
+use crate::ids::RobotId;
+use crate::model::Model;
+use crate::navigation::Navigator;
+use crate::world::World;
+
+/// The parts of a trial that decisions look at and change.
+pub struct Scene<'s> {
+    /// What is fixed.
+    pub model: &'s Model,
+    /// What exists.
+    pub world: &'s mut World,
+    /// The journeys of the robots.
+    pub navigator: &'s mut Navigator,
+    /// Takes the events.
+    pub log: &'s mut EventLog,
+    /// Steps done.
+    pub step: u64,
+}
+
+impl Scene<'_> {
+    /// Whether a robot has known no way to its goal for so long that it gives up on it.
+    pub(super) fn gives_up(&self, robot: RobotId) -> bool {
+        self.navigator.traveller(robot).lost_steps() >= self.model.steps(GIVE_UP_S)
+    }
+
+    /// Energy that a way of this length costs, in percent points.
+    pub(super) fn way_cost(&self, metres: f64, speed: f64) -> f64 {
+        let rates = &self.model.scenario.costs.energy;
+        let seconds = metres / speed.max(1e-3);
+        seconds * (rates.per_step / self.model.dt_s() + rates.per_second) + metres * rates.per_metre
+    }
+}

@@ -1,0 +1,188 @@
+//! A task's area: its block of rescuees with a margin, the lanes by which it is swept, and the places where robots wait in it.
+
+use parry2d::math::Vector;
+
+use crate::scenario::{RoleKind, Scenario, TaskFile};
+
+/// Lanes of a sweep are at least this far apart, in metres: a robot that sees a few millimetres cannot comb an area.
+const LEAST_LANE_SPACING_M: f32 = 2.0;
+
+/// Distance between the waiting places, in metres, beyond the diameter of the largest robot on the ground or in the air.
+const MUSTER_GAP_M: f32 = 0.8;
+
+/// A task's area.
+#[derive(Debug, Clone, Copy)]
+pub struct TaskArea {
+    /// Lower left corner of the block of rescuees.
+    block_min: Vector,
+    /// Upper right corner of the block of rescuees.
+    block_max: Vector,
+    margin: f32,
+    /// Distance of the first row of waiting places from the block.
+    muster_margin: f32,
+    spacing: f32,
+    /// Distance between the waiting places of robots that fly.
+    air_spacing: f32,
+    home: Vector,
+}
+
+impl TaskArea {
+    /// The area of one task; waiting places are on the side that faces `home`. The area reaches as far as the waiting places of all
+    /// `robots`, so that robots that wait share its resources.
+    #[must_use]
+    pub fn new(scenario: &Scenario, file: &TaskFile, home: Vector, robots: usize) -> Self {
+        let vector = |[x, y]: [f64; 2]| Vector::new(x as f32, y as f32);
+        let (center, half) = (vector(file.center), vector(file.size_m) / 2.0);
+        let spacing = |kind| 2.0 * scenario.largest_radius_m(kind) as f32 + MUSTER_GAP_M;
+        let mut area = Self {
+            block_min: center - half,
+            block_max: center + half,
+            margin: scenario.mission.area_margin_m as f32,
+            muster_margin: 0.6 * scenario.mission.area_margin_m as f32,
+            spacing: spacing(RoleKind::Ground),
+            air_spacing: spacing(RoleKind::Aerial),
+            home,
+        };
+        let last = area.muster(robots.saturating_sub(1));
+        let beyond = (last - last.clamp(area.block_min, area.block_max)).abs().max_element();
+        area.margin = area.margin.max(beyond + area.spacing);
+        area
+    }
+
+    /// Whether a point lies in the area.
+    #[must_use]
+    pub fn contains(&self, point: Vector) -> bool {
+        let margin = Vector::splat(self.margin);
+        point.cmpge(self.block_min - margin).all() && point.cmple(self.block_max + margin).all()
+    }
+
+    /// Centre of the block.
+    #[must_use]
+    pub fn center(&self) -> Vector {
+        (self.block_min + self.block_max) / 2.0
+    }
+
+    /// Places to pass, in order, so that a robot that sees `range` metres sees the whole block: lanes along its longer side, beginning
+    /// at the end that is nearer to home. The `rank`-th of `ranks` robots that sweep begins with another lane.
+    #[must_use]
+    pub fn sweep(&self, range: f32, rank: usize, ranks: usize) -> Vec<Vector> {
+        let size = self.block_max - self.block_min;
+        let along_x = size.x >= size.y;
+        let (length, width) = if along_x { (size.x, size.y) } else { (size.y, size.x) };
+        let spacing = (std::f32::consts::SQRT_2 * range).max(LEAST_LANE_SPACING_M);
+        let lanes = (width / spacing).ceil().max(1.0);
+        // Seen from a lane's end, the corners of its strip are within range when the lane ends this far inside.
+        let inset = (spacing / 2.0).min(length / 2.0);
+        let place = |along: f32, across: f32| {
+            self.block_min + if along_x { Vector::new(along, across) } else { Vector::new(across, along) }
+        };
+        let mut ends: Vec<[Vector; 2]> = (0..lanes as usize)
+            .map(|lane| (lane as f32 + 0.5) * width / lanes)
+            .map(|across| [place(inset, across), place(length - inset, across)])
+            .collect();
+        let distance = |ends: &[Vector; 2]| ends.map(|end| (end - self.home).length());
+        if distance(&ends[0])[0].min(distance(&ends[0])[1])
+            > distance(&ends[ends.len() - 1])[0].min(distance(&ends[ends.len() - 1])[1])
+        {
+            ends.reverse();
+        }
+        let shift = rank * ends.len() / ranks.max(1);
+        ends.rotate_left(shift);
+        let mut turn = distance(&ends[0])[0] > distance(&ends[0])[1];
+        let mut path = Vec::with_capacity(2 * ends.len());
+        for [a, b] in ends {
+            path.extend(if turn { [b, a] } else { [a, b] });
+            turn = !turn;
+        }
+        path
+    }
+
+    /// The waiting place of the `rank`-th of `ranks` aerial members: side by side over the middle of the block, in as many rows as it takes
+    /// to stay in the area, so that they share its resources.
+    #[must_use]
+    pub fn hover(&self, rank: usize, ranks: usize) -> Vector {
+        let width = self.block_max.x - self.block_min.x + 2.0 * self.margin;
+        let per_row = ((width / self.air_spacing).floor() as usize).max(1);
+        let (row, place) = (rank / per_row, rank % per_row);
+        let rows = ranks.div_ceil(per_row).max(1);
+        let in_row = ranks.saturating_sub(row * per_row).clamp(1, per_row);
+        let off_middle = |i: usize, count: usize| (i as f32 - (count - 1) as f32 / 2.0) * self.air_spacing;
+        self.center() + Vector::new(off_middle(place, in_row), off_middle(row, rows))
+    }
+
+    /// The waiting place of the `rank`-th member: rows in the margin, on the side that faces home.
+    #[must_use]
+    pub fn muster(&self, rank: usize) -> Vector {
+        let toward = self.home - self.center();
+        let half = (self.block_max - self.block_min) / 2.0;
+        let facing_y = toward.y.abs() * half.x >= toward.x.abs() * half.y;
+        let (length, depth, sign) =
+            if facing_y { (half.x, half.y, toward.y.signum()) } else { (half.y, half.x, toward.x.signum()) };
+        let per_row = (2.0 * length / self.spacing).floor().max(1.0) as usize;
+        let (row, place) = (rank / per_row, rank % per_row);
+        let along = (place as f32 - (per_row - 1) as f32 / 2.0) * self.spacing;
+        let out = sign * (depth + self.muster_margin + row as f32 * self.spacing);
+        self.center() + if facing_y { Vector::new(along, out) } else { Vector::new(out, along) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn area(size: [f32; 2]) -> TaskArea {
+        let (center, half) = (Vector::new(20.0, 60.0), Vector::from(size) / 2.0);
+        TaskArea {
+            block_min: center - half,
+            block_max: center + half,
+            margin: 4.0,
+            muster_margin: 2.4,
+            spacing: 1.6,
+            air_spacing: 2.0,
+            home: Vector::new(40.0, 10.0),
+        }
+    }
+
+    #[test]
+    fn a_sweep_sees_the_whole_block() {
+        for size in [[11.0, 5.7], [5.0, 30.0], [1.0, 1.0], [0.0, 0.0]] {
+            for range in [3.0, 5.0, 20.0] {
+                let area = area(size);
+                let path = area.sweep(range, 0, 1);
+                for step in 0..=400 {
+                    let corner = Vector::new((step % 20) as f32 / 20.0, (step / 20) as f32 / 20.0);
+                    let place = area.block_min + corner * Vector::from(size);
+                    let seen = path.windows(2).any(|leg| {
+                        (0..=100)
+                            .any(|t| (leg[0].lerp(leg[1], t as f32 / 100.0) - place).length() <= range + 0.05)
+                    });
+                    assert!(seen, "{place} is not seen from {path:?} with range {range}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn waiting_places_are_apart_in_the_area_and_face_home() {
+        let area = area([11.0, 5.7]);
+        let places: Vec<Vector> = (0..6).map(|rank| area.muster(rank)).collect();
+        for (i, place) in places.iter().enumerate() {
+            assert!(area.contains(*place) && place.y < area.block_min.y, "{place}");
+            assert!(places[..i].iter().all(|other| (*other - *place).length() > 1.5));
+        }
+    }
+
+    #[test]
+    fn waiting_places_in_the_air_are_apart_in_the_area_and_around_its_middle() {
+        let area = area([11.0, 5.7]);
+        assert_eq!(area.hover(0, 1), area.center());
+        assert_eq!(area.hover(1, 2), area.center() + Vector::new(1.0, 0.0));
+        for ranks in [3, 9, 10, 25] {
+            let places: Vec<Vector> = (0..ranks).map(|rank| area.hover(rank, ranks)).collect();
+            for (i, place) in places.iter().enumerate() {
+                assert!(area.contains(*place), "{ranks}: {place}");
+                assert!(places[..i].iter().all(|other| (*other - *place).length() > 1.9), "{ranks}: {place}");
+            }
+        }
+    }
+}

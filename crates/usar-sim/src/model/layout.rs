@@ -1,0 +1,256 @@
+//! The layout of one trial: what the scenario fixes, and what is drawn from the trial's seed.
+
+use parry2d::math::Vector;
+use rand::RngExt;
+use rand::rngs::ChaCha8Rng;
+use rne_core::{RoleId, TaskId};
+
+use super::places::{rescuee_places, rest_slot};
+use crate::ids::RobotId;
+use crate::planning::Planner;
+use crate::scenario::{
+    DebrisFile, DebrisShape, LayoutError, Normal, Point, RoleKind, SampledCounts, Scenario, TaskFile,
+    ZoneFile,
+};
+use crate::seed::{Purpose, normal, stream};
+
+/// Draws for one sampled thing before it is said that there is no room.
+const SAMPLING_TRIES: u32 = 500;
+
+/// Layouts drawn before it is said that there is no passage.
+const LAYOUT_ATTEMPTS: u32 = 20;
+
+/// Least initial level, in percent: a robot starts with something.
+const LEAST_LEVEL: f64 = 1.0;
+
+/// Where and how a robot starts.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RobotStart {
+    /// Identity.
+    pub id: RobotId,
+    /// What it is for.
+    pub role: RoleId,
+    /// Its place at home.
+    pub home: Vector,
+    /// Initial battery level, in percent.
+    pub energy: f64,
+    /// Initial health level, in percent.
+    pub hp: f64,
+}
+
+/// Everything that is decided before a trial begins. The same for every policy.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Layout {
+    /// Robots, by id.
+    pub robots: Vec<RobotStart>,
+    /// Debris: the scenario's, then the sampled.
+    pub debris: Vec<DebrisFile>,
+    /// Radiation zones: the scenario's, then the sampled.
+    pub zones: Vec<ZoneFile>,
+}
+
+impl Layout {
+    /// Draws the layout of the trial with this seed. Sampled debris that leaves no passage is drawn again.
+    ///
+    /// # Errors
+    /// No room for what is to be sampled, or no passage between home, tasks and rest places.
+    pub fn sample(scenario: &Scenario, trial_seed: u64) -> Result<Self, LayoutError> {
+        let draws_nothing = scenario.tasks.iter().all(|task| task.sampled.debris == 0);
+        let attempts = if draws_nothing { 1 } else { LAYOUT_ATTEMPTS };
+        let mut blocked = None;
+        for attempt in 0..attempts {
+            let mut layout = Self {
+                robots: robot_starts(scenario, trial_seed),
+                debris: scenario.debris.clone(),
+                zones: scenario.radiation.clone(),
+            };
+            for (number, task) in scenario.tasks.iter().enumerate() {
+                layout.sample_near(scenario, (number, task), trial_seed, attempt)?;
+            }
+            if !scenario.errands.is_empty() {
+                return Ok(layout); // an errand that leads nowhere is found out by the robot
+            }
+            match layout.check_passages(scenario) {
+                Ok(()) => return Ok(layout),
+                Err(error) => blocked = Some(error),
+            }
+        }
+        Err(blocked.unwrap_or_else(|| no_passage(scenario, "anywhere".to_owned())))
+    }
+
+    fn sample_near(
+        &mut self,
+        scenario: &Scenario,
+        (number, task): (usize, &TaskFile),
+        seed: u64,
+        attempt: u32,
+    ) -> Result<(), LayoutError> {
+        let SampledCounts { debris, radiation } = task.sampled;
+        let strip = Strip::new(scenario, task);
+        let keep_clear = KeepClear::new(scenario);
+        let no_room = |what, number: u32, count| LayoutError::NoRoom {
+            task: task.name.clone(),
+            what,
+            number: number + 1,
+            count,
+            tries: SAMPLING_TRIES,
+        };
+        // Each thing has a stream of its own: one thing more leaves the others where they are.
+        let entity = |i: u32| stream_of_task(number) | u64::from(attempt) << 32 | u64::from(i);
+        for i in 0..debris {
+            let mut draws = stream(seed, Purpose::SampledDebris, entity(i));
+            let gap = scenario.sampled.gap_m;
+            let place = strip.draw(&mut draws, scenario.sampled.debris_radius_m, |at, radius| {
+                keep_clear.allows(at, radius + gap)
+                    && self
+                        .debris
+                        .iter()
+                        .all(|other| f64::from(other.outline().distance_to(vector(at))) >= radius + gap)
+            });
+            let (at, radius) = place.ok_or_else(|| no_room("debris", i, debris))?;
+            self.debris.push(DebrisFile {
+                shape: DebrisShape::Disc(radius),
+                at,
+                rotation_deg: 0.0,
+                movable: None,
+            });
+        }
+        for i in 0..radiation {
+            let mut draws = stream(seed, Purpose::SampledRadiation, entity(i));
+            let place = strip
+                .draw(&mut draws, scenario.sampled.zone_radius_m, |at, radius| keep_clear.allows(at, radius));
+            let (at, radius_m) = place.ok_or_else(|| no_room("radiation", i, radiation))?;
+            self.zones.push(ZoneFile { at, radius_m });
+        }
+        Ok(())
+    }
+
+    /// Every place that a mission needs can be reached by the largest ground robot, from the first ground robot's home.
+    fn check_passages(&self, scenario: &Scenario) -> Result<(), LayoutError> {
+        let is_ground = |robot: &&RobotStart| scenario.roles[robot.role.index()].kind == RoleKind::Ground;
+        let ground: Vec<&RobotStart> = self.robots.iter().filter(is_ground).collect();
+        let Some(first) = ground.first() else { return Ok(()) };
+        let place = |task: &TaskFile| (format!("task {:?}", task.name), vector(task.center));
+        let mut places: Vec<(String, Vector)> = scenario.tasks.iter().map(place).collect();
+        // Neighbours one after the other: each is looked for from the one before.
+        places.extend(ground.iter().map(|robot| ("a robot's home".to_owned(), robot.home)));
+        for (number, task) in (0..).zip(&scenario.tasks) {
+            let name = format!("the rest place of task {:?}", task.name);
+            let slot = |robot: &&RobotStart| rest_slot(scenario, TaskId(number), robot.id);
+            places.extend(ground.iter().map(|robot| (name.clone(), slot(robot))));
+        }
+        let outlines: Vec<_> = self.debris.iter().map(DebrisFile::outline).collect();
+        match Planner::new(scenario).first_unreachable(&outlines, first.home, &places) {
+            Some((to, _)) => Err(no_passage(scenario, to.clone())),
+            None => Ok(()),
+        }
+    }
+}
+
+fn no_passage(scenario: &Scenario, to: String) -> LayoutError {
+    LayoutError::NoPassage { to, radius_m: scenario.largest_radius_m(RoleKind::Ground) }
+}
+
+/// The part of a sampled thing's entity that names its task. The first task has the highest bit and the second none, as they had when there
+/// were two; so the draws of published trials stay what they were.
+fn stream_of_task(number: usize) -> u64 {
+    match number {
+        0 => 1 << 63,
+        1 => 0,
+        number => (number as u64) << 56,
+    }
+}
+
+fn robot_starts(scenario: &Scenario, seed: u64) -> Vec<RobotStart> {
+    let homes = scenario.team.iter().flat_map(|row| row.places().map(move |at| (row, at)));
+    let level = |purpose, robot: u32, Normal { mean, sd }: Normal| {
+        normal(&mut stream(seed, purpose, u64::from(robot)), mean, sd).clamp(LEAST_LEVEL, 100.0)
+    };
+    homes
+        .zip(0..)
+        .map(|((row, home), id)| RobotStart {
+            id: RobotId(id),
+            role: scenario.role_of(row),
+            home: vector(home),
+            energy: row.levels.map_or_else(
+                || level(Purpose::EnergyLevel, id, scenario.initial_levels.energy),
+                |levels| levels.energy,
+            ),
+            hp: row
+                .levels
+                .map_or_else(|| level(Purpose::HpLevel, id, scenario.initial_levels.hp), |levels| levels.hp),
+        })
+        .collect()
+}
+
+/// The strip between home and a task in which things are sampled.
+struct Strip {
+    from: Point,
+    along: Point,
+    half_width: f64,
+    arena: Point,
+}
+
+impl Strip {
+    fn new(scenario: &Scenario, task: &TaskFile) -> Self {
+        let from = scenario.team[0].center;
+        let to = task.center;
+        Self {
+            from,
+            along: [to[0] - from[0], to[1] - from[1]],
+            half_width: scenario.sampled.strip_m,
+            arena: scenario.arena_m,
+        }
+    }
+
+    /// A place and a radius that are accepted, or nothing after many tries.
+    fn draw(
+        &self,
+        draws: &mut ChaCha8Rng,
+        radii: [f64; 2],
+        accept: impl Fn(Point, f64) -> bool,
+    ) -> Option<(Point, f64)> {
+        let length = libm::hypot(self.along[0], self.along[1]).max(1e-9);
+        for _ in 0..SAMPLING_TRIES {
+            let [t, u, size] = [(); 3].map(|()| draws.random::<f64>());
+            let aside = (2.0 * u - 1.0) * self.half_width / length;
+            let radius = radii[0] + (radii[1] - radii[0]) * size;
+            let at = [
+                self.from[0] + t * self.along[0] - aside * self.along[1],
+                self.from[1] + t * self.along[1] + aside * self.along[0],
+            ];
+            let inside = (0..2).all(|k| at[k] >= radius && at[k] <= self.arena[k] - radius);
+            if inside && accept(at, radius) {
+                return Some((at, radius));
+            }
+        }
+        None
+    }
+}
+
+/// Homes, places to rest and rescuees, each with the radius of what stands there.
+struct KeepClear(Vec<(Point, f64)>);
+
+impl KeepClear {
+    fn new(scenario: &Scenario) -> Self {
+        let radius = scenario.largest_radius_m(RoleKind::Ground);
+        let point = |v: Vector| [f64::from(v.x), f64::from(v.y)];
+        let mut places: Vec<(Point, f64)> =
+            scenario.team.iter().flat_map(crate::scenario::Row::places).map(|home| (home, radius)).collect();
+        for task in (0..).take(scenario.tasks.len()).map(TaskId) {
+            let slots = (0..scenario.robots()).map(|i| rest_slot(scenario, task, RobotId(i)));
+            places.extend(slots.map(|slot| (point(slot), radius)));
+        }
+        places.extend(rescuee_places(scenario).map(|(_, at)| (point(at), 0.0)));
+        Self(places)
+    }
+
+    /// None of them within `radius` metres.
+    fn allows(&self, at: Point, radius: f64) -> bool {
+        self.0.iter().all(|(place, own)| libm::hypot(at[0] - place[0], at[1] - place[1]) >= radius + own)
+    }
+}
+
+fn vector(at: Point) -> Vector {
+    Vector::new(at[0] as f32, at[1] as f32)
+}

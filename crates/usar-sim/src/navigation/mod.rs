@@ -1,0 +1,376 @@
+//! Keeps each robot on a route to its goal: plans when it has to, and says which velocity the robot would like.
+
+mod trail;
+
+use parry2d::math::Vector;
+use serde::{Deserialize, Serialize};
+
+use crate::belief::{Knowledge, News, Seen};
+use crate::ids::RobotId;
+use crate::planning::{KnownObstacle, Planner, Query, Route};
+use crate::scenario::Scenario;
+use crate::world::{Robot, STANDING_MPS, World};
+use trail::Trail;
+
+/// A robot checks this often, in steps, that the way to its next waypoint is still free.
+const ROUTE_CHECK_STEPS: u64 = 25;
+
+/// A robot that has not come nearer for this long, in seconds, plans round the robots that stand in its way; after four times as long it
+/// goes straight again, and so on in turn: robots that it does not see may close the way round as well.
+const DETOUR_AFTER_S: f64 = 4.0;
+
+/// Standing robots within this distance are planned round then, in metres.
+const DETOUR_RANGE_M: f32 = 8.0;
+
+/// Coming nearer by less than this is no progress, in metres.
+const PROGRESS_M: f32 = 0.05;
+
+/// A robot is at the end of its route within this distance, in metres.
+const ROUTE_END_M: f32 = 0.15;
+
+/// Share of the drive's acceleration that robots plan to brake with; the rest is in reserve.
+pub const PLANNED_BRAKING: f32 = 0.8;
+
+/// Where a robot wants to be.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Goal {
+    /// The place.
+    pub point: Vector,
+    /// How near is near enough, in metres.
+    pub within: f32,
+}
+
+/// What a robot tries that does not come nearer.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Attempt {
+    /// A way round the robots that stand near.
+    Detour,
+    /// The way that takes no heed of them: whoever is in the way is asked to make room.
+    Straight,
+}
+
+/// What news do to a route.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Effect {
+    /// It stays as good as it was.
+    None,
+    /// It is cut, or leads through radiation.
+    Cut,
+    /// There may be a cheaper one, or one at all.
+    Cheaper,
+}
+
+/// The journey of one robot.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct Traveller {
+    goal: Option<Goal>,
+    route: Option<Route>,
+    is_planned: bool,
+    seen: Seen,
+    /// Least length that the route ahead has had, in metres.
+    best_length: f32,
+    /// Steps since it last came nearer.
+    stalled_steps: u64,
+    /// Steps since it last knew a way.
+    lost_steps: u64,
+}
+
+impl Traveller {
+    fn to(goal: Option<Goal>) -> Self {
+        Self {
+            goal,
+            route: None,
+            is_planned: false,
+            seen: Seen::default(),
+            best_length: f32::INFINITY,
+            stalled_steps: 0,
+            lost_steps: 0,
+        }
+    }
+
+    /// Whether the robot has somewhere to go.
+    #[must_use]
+    pub fn goal(&self) -> Option<Goal> {
+        self.goal
+    }
+
+    /// The route, where there is one.
+    #[must_use]
+    pub fn route(&self) -> Option<&Route> {
+        self.route.as_ref()
+    }
+
+    /// Whether a robot at this place is where it wants to be, or as near as its route leads.
+    #[must_use]
+    pub fn has_arrived(&self, position: Vector) -> bool {
+        let near = |place: Vector, within: f32| (place - position).length_squared() <= within * within;
+        self.goal.is_some_and(|goal| near(goal.point, goal.within))
+            || self.route.as_ref().is_some_and(|route| near(route.end(), ROUTE_END_M))
+    }
+
+    /// Steps since the robot last came nearer to its goal.
+    #[must_use]
+    pub fn stalled_steps(&self) -> u64 {
+        self.stalled_steps
+    }
+
+    /// Whether a route was looked for in vain.
+    #[must_use]
+    pub fn leads_nowhere(&self) -> bool {
+        self.goal.is_some() && self.is_planned && self.route.is_none()
+    }
+
+    /// Steps for which it has known no way to its goal.
+    #[must_use]
+    pub fn lost_steps(&self) -> u64 {
+        self.lost_steps
+    }
+
+    /// What a robot that does not come nearer tries now, if it is time to try something.
+    fn attempt(&self, detour_steps: u64) -> Option<Attempt> {
+        if self.stalled_steps == 0 || !self.stalled_steps.is_multiple_of(detour_steps) {
+            return None;
+        }
+        match self.stalled_steps / detour_steps % 4 {
+            1 => Some(Attempt::Detour),
+            0 => Some(Attempt::Straight),
+            _ => None,
+        }
+    }
+
+    fn set_route(&mut self, route: Option<Route>, position: Vector, fresh: bool) {
+        if let Some(route) = route.as_ref().filter(|_| fresh) {
+            self.best_length = route.length(position);
+            self.stalled_steps = 0;
+        }
+        self.route = route;
+        self.is_planned = true;
+    }
+
+    fn note_progress(&mut self, position: Vector) {
+        self.lost_steps = if self.leads_nowhere() { self.lost_steps + 1 } else { 0 };
+        let length = self.route.as_ref().map_or(f32::INFINITY, |route| route.length(position));
+        if length < self.best_length - PROGRESS_M {
+            self.best_length = length;
+            self.stalled_steps = 0;
+        } else {
+            self.stalled_steps += 1;
+        }
+    }
+}
+
+/// The journeys of all robots.
+#[derive(Serialize, Deserialize)]
+pub struct Navigator {
+    travellers: Vec<Traveller>,
+    trails: Vec<Trail>,
+    #[serde(skip)]
+    planner: Planner,
+    #[serde(skip)]
+    detour_steps: u64,
+    #[serde(skip)]
+    clearance: f32,
+}
+
+impl Navigator {
+    /// Nobody has anywhere to go.
+    #[must_use]
+    pub fn new(scenario: &Scenario, robots: usize) -> Self {
+        let mut navigator = Self {
+            travellers: vec![Traveller::to(None); robots],
+            trails: vec![Trail::default(); robots],
+            planner: Planner::default(),
+            detour_steps: 0,
+            clearance: 0.0,
+        };
+        navigator.restore(scenario);
+        navigator
+    }
+
+    /// Makes what a snapshot leaves out because it follows from the scenario.
+    pub(crate) fn restore(&mut self, scenario: &Scenario) {
+        self.planner = Planner::new(scenario);
+        self.detour_steps = (DETOUR_AFTER_S / scenario.dt_s).round() as u64;
+        self.clearance = scenario.planning.clearance_m as f32;
+    }
+
+    /// The journey of one robot.
+    #[must_use]
+    pub fn traveller(&self, robot: RobotId) -> &Traveller {
+        &self.travellers[robot.index()]
+    }
+
+    /// Places that a robot came by, the latest last.
+    #[must_use]
+    pub fn trail(&self, robot: RobotId) -> &[Vector] {
+        self.trails[robot.index()].points()
+    }
+
+    /// Sends a robot somewhere, or nowhere. The same goal again changes nothing.
+    pub fn set_goal(&mut self, robot: RobotId, goal: Option<Goal>) {
+        let traveller = &mut self.travellers[robot.index()];
+        if traveller.goal != goal {
+            *traveller = Traveller::to(goal);
+        }
+    }
+
+    /// Plans where a robot has no route yet, where new knowledge cuts it or may make it dearer or cheaper, or where it leads nowhere. `speed_of` is a
+    /// robot's present top speed, in metres per second.
+    pub fn plan<'k>(
+        &mut self,
+        world: &World,
+        knowledge_of: impl Fn(RobotId) -> &'k Knowledge,
+        speed_of: impl Fn(&Robot) -> f64,
+        step: u64,
+    ) {
+        for robot in &world.robots {
+            self.trails[robot.id.index()].note(robot.position);
+            let traveller = &mut self.travellers[robot.id.index()];
+            let Some(goal) = traveller.goal else { continue };
+            if !robot.is_able() || traveller.has_arrived(robot.position) {
+                continue;
+            }
+            let knowledge = knowledge_of(robot.id);
+            if let Some(route) = &mut traveller.route {
+                route.advance(robot.position);
+            }
+            traveller.note_progress(robot.position);
+
+            let query = Query {
+                from: robot.position,
+                to: goal.point,
+                aerial: robot.is_aerial(),
+                speed: speed_of(robot) as f32,
+                obstacles: knowledge.obstacles(),
+                so_far: &[],
+                in_the_way: &[],
+                zones: knowledge.known_zones(),
+            };
+            let check_due = (step + robot.id.0 as u64).is_multiple_of(ROUTE_CHECK_STEPS);
+            let attempt = traveller.attempt(self.detour_steps);
+            let news = knowledge.news_since(traveller.seen);
+            traveller.seen = knowledge.seen();
+            let (replan, effect) = match &traveller.route {
+                None => (
+                    !news.is_empty() || check_due,
+                    if news.is_empty() { Effect::None } else { Effect::Cheaper },
+                ),
+                Some(route) => {
+                    let effect = effect(&self.planner, &query, route, (news, knowledge), robot);
+                    let cut_ahead = || check_due && first_leg_cut(knowledge, route, robot);
+                    (attempt.is_some() || effect != Effect::None || cut_ahead(), effect)
+                }
+            };
+            if replan || !traveller.is_planned {
+                let fresh = effect != Effect::None || !traveller.is_planned;
+                let in_the_way = match attempt {
+                    Some(Attempt::Detour) => standing_near(world, robot, self.clearance),
+                    _ => Vec::new(),
+                };
+                let cut = traveller.route.as_ref().filter(|_| effect == Effect::Cut);
+                let so_far = cut.map_or(&[][..], Route::ahead);
+                let query = Query { so_far, in_the_way: &in_the_way, ..query };
+                let route = find_route(&mut self.planner, &query);
+                traveller.set_route(route, robot.position, fresh);
+            }
+        }
+    }
+
+    /// The velocity that takes a robot along its route: at most `speed`, slower before turns and the end. Zero where it has nowhere
+    /// to go.
+    #[must_use]
+    pub fn preferred_velocity(&self, robot: &Robot, speed: f32) -> Vector {
+        let traveller = &self.travellers[robot.id.index()];
+        let Some(route) = traveller.route.as_ref().filter(|_| !traveller.has_arrived(robot.position)) else {
+            return Vector::ZERO;
+        };
+        let braking = PLANNED_BRAKING * robot.spec.acceleration_mps2 as f32;
+        let reachable = |target: f32, distance: f32| (target * target + 2.0 * braking * distance).sqrt();
+        let ahead = route.ahead();
+        let to_next = ahead[0] - robot.position;
+        let distance = to_next.length();
+        let direction = to_next.normalize_or_zero();
+        if 2.0 * braking * distance > speed * speed * 1.001 {
+            return direction * speed; // the next waypoint is farther than the way that it takes to stop
+        }
+        let mut wished = speed.min(reachable(0.0, route.length(robot.position)));
+        if let Some(after) = ahead.get(1) {
+            let turn = direction.dot((*after - ahead[0]).normalize_or_zero());
+            let in_turn = speed * f32::midpoint(1.0, turn).max(0.3);
+            wished = wished.min(reachable(in_turn, distance));
+        }
+        direction * wished
+    }
+}
+
+/// Robots of the same layer that stand near, as obstacles.
+fn standing_near(world: &World, robot: &Robot, clearance: f32) -> Vec<KnownObstacle> {
+    let stands = |other: &&Robot| {
+        other.id != robot.id
+            && other.is_aerial() == robot.is_aerial()
+            && other.velocity.length() < STANDING_MPS
+            && (other.position - robot.position).length() < DETOUR_RANGE_M
+    };
+    let obstacle = |other: &Robot| {
+        KnownObstacle::wreck(other.id.0, other.position, other.radius(), robot.radius(), clearance)
+    };
+    world.robots.iter().filter(stands).map(obstacle).collect()
+}
+
+/// The cheapest route round what is in the way; where that leaves no way, through it: robots that stand may go.
+fn find_route(planner: &mut Planner, query: &Query) -> Option<Route> {
+    let route = planner.route(query);
+    if route.is_some() || query.in_the_way.is_empty() {
+        return route;
+    }
+    planner.route(&Query { in_the_way: &[], ..*query })
+}
+
+/// What news do to a route.
+fn effect(
+    planner: &Planner,
+    query: &Query,
+    route: &Route,
+    (news, knowledge): (&[News], &Knowledge),
+    robot: &Robot,
+) -> Effect {
+    if news.iter().any(|news| concerns(*news, knowledge, route, robot)) {
+        Effect::Cut
+    } else if may_cheapen(planner, query, route, news) {
+        Effect::Cheaper
+    } else {
+        Effect::None
+    }
+}
+
+/// Whether something that was learned cuts the route ahead, or shows that it leads through radiation.
+fn concerns(news: News, knowledge: &Knowledge, route: &Route, robot: &Robot) -> bool {
+    match news {
+        News::Obstacle(key) => {
+            let obstacle = knowledge.obstacles().get(key).filter(|_| !robot.is_aerial());
+            obstacle.is_some_and(|obstacle| route.legs(robot.position).any(|(a, b)| obstacle.cuts(a, b)))
+        }
+        News::Zone(number) => {
+            let zone = knowledge.known_zones().iter().find(|(other, _)| *other == number);
+            zone.is_some_and(|(_, zone)| route.length_inside(robot.position, zone) > 0.0)
+        }
+        News::Opening(_) => false,
+    }
+}
+
+/// Whether debris was pushed from a place through which a cheaper way may lead now. Never `false` where one does that is worth it.
+fn may_cheapen(planner: &Planner, query: &Query, route: &Route, news: &[News]) -> bool {
+    !query.aerial
+        && news.iter().any(|news| match news {
+            News::Opening(opening) => {
+                opening.least_way(query.from, query.to) < planner.cost(query, route) - PROGRESS_M
+            }
+            _ => false,
+        })
+}
+
+/// Whether the way to the next waypoint is cut, for a robot that was pushed or had to step aside.
+fn first_leg_cut(knowledge: &Knowledge, route: &Route, robot: &Robot) -> bool {
+    let next = route.ahead()[0];
+    !robot.is_aerial() && knowledge.obstacles().cuts(robot.position, next)
+}
