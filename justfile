@@ -6,16 +6,16 @@ ci:
 
 # 100 seeds of paper.ron under all five policies: nobody stuck, nothing lost, no number undefined
 soak:
-    cargo run --release --package experiments --example soak
+    cargo run --release --package xtask -- soak
 
 # 500 random feasible worlds of 2 to 50 robots: who does not get there, and why
 worlds:
-    cargo run --release --package experiments --example worlds
+    cargo run --release --package xtask -- worlds
 
 # A sweep killed at 100 random moments: nothing lost, nothing done twice, the same bytes in the end
 kills *arguments:
-    cargo build --release --package experiments
-    cargo run --release --package experiments --example kills -- {{arguments}}
+    cargo build --release --package usar
+    cargo run --release --package xtask -- kills {{arguments}}
 
 # What a step costs: full simulator against raw physics, stage by stage
 bench:
@@ -27,20 +27,20 @@ instructions *arguments:
 
 # 10,000 robots for a minute: time and memory
 scale *arguments:
-    cargo run --release --package experiments --example scale -- {{arguments}}
+    cargo run --release --package xtask -- scale {{arguments}}
 
 # New golden hashes of the small worlds; say in CHANGELOG.md why numbers change
 golden:
-    cargo run --release --package experiments --example golden -- --write
+    cargo run --release --package xtask -- golden --write
 
 # The numbers in docs/, anew: the commands before each block are run; their results must be there (`just results`)
 pages *pages:
-    cargo build --release --package experiments
-    cargo run --release --package experiments --example pages -- {{pages}}
+    cargo build --release --package usar
+    cargo run --release --package xtask -- pages {{pages}}
 
 # The results that the pages in docs/ are made of: over an hour on two cores, 5 GB of disk; goes on where it was broken off
 results:
-    cargo build --release --package experiments
+    cargo build --release --package usar
     target/release/usar sweep scenarios/paper.ron
     target/release/usar reproduce
     target/release/usar sweep scenarios/sweeps/turning-back.ron
@@ -51,5 +51,5 @@ results:
 
 # The search that found scenarios/paper-calibrated.ron, step by step (docs/calibration.md): about an hour on two cores
 calibrate:
-    cargo build --release --package experiments
+    cargo build --release --package usar
     bash docs/calibration/search

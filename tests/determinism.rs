@@ -13,8 +13,8 @@ use usar_sim::record::{Status, TrialRecord};
 use usar_sim::scenario::Scenario;
 use usar_sim::simulation::{Advance, AssignError, Simulation};
 use usar_sim::snapshot::Identity;
+use xtask::golden;
 
-use crate::golden;
 use crate::support::{self, paper, paper_with, policy};
 
 /// A record that may be compared: no failed trial is as good as another.

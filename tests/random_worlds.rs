@@ -2,9 +2,8 @@
 
 use rayon::prelude::*;
 use usar_sim::scenario::Scenario;
-
-use crate::journeys::{Journeys, STANDSTILL_S};
-use crate::worlds::world;
+use xtask::journeys::{Journeys, STANDSTILL_S};
+use xtask::worlds::world;
 
 #[test]
 fn in_30_random_worlds_nobody_stands_still_for_good_and_no_invariant_is_violated() {

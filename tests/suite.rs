@@ -1,10 +1,7 @@
 //! Integration tests of the whole system, one binary.
 
-mod golden;
-mod journeys;
 mod laws;
 mod support;
-mod worlds;
 
 mod conservation;
 mod determinism;

@@ -1,5 +1,5 @@
-//! Tells the program what it was built from, for the manifest of its results: the commit, and a hash of the sources, which decide numbers
-//! whether they are committed or not.
+//! Tells the program what it was built from, for the manifest of its results: the commit, and a hash of the
+//! sources, which decide numbers whether they are committed or not.
 
 use std::collections::hash_map::DefaultHasher;
 use std::hash::{Hash, Hasher};
@@ -18,15 +18,35 @@ fn main() {
     if let Some(folder) = git(&["rev-parse", "--absolute-git-dir"]) {
         println!("cargo::rerun-if-changed={folder}/logs/HEAD");
     }
-    println!("cargo::rerun-if-changed=../");
+    for name in CRATES {
+        println!("cargo::rerun-if-changed=../{name}/Cargo.toml");
+        for folder in ["src", "templates"].map(|folder| format!("../{name}/{folder}")) {
+            if Path::new(&folder).exists() {
+                println!("cargo::rerun-if-changed={folder}");
+            }
+        }
+    }
     println!("cargo::rerun-if-changed=../../Cargo.lock");
     println!("cargo::rerun-if-changed=../../Cargo.toml");
 }
 
+/// The crates that the program is made of, those above this one too. Results are refused to a program of
+/// other sources.
+const CRATES: [&str; 8] = [
+    "ron-fields",
+    "rne-core",
+    "frozen-physics",
+    "usar-sim",
+    "experiments",
+    "reports",
+    "study-yang2021",
+    "usar",
+];
+
 /// A hash of the manifests, the lock file and all sources of the crates, by path and content.
 fn source_hash(root: &Path) -> u64 {
     let mut files = vec![root.join("Cargo.lock"), root.join("Cargo.toml")];
-    for name in ["ron-fields", "rne-core", "frozen-physics", "usar-sim", "experiments"] {
+    for name in CRATES {
         files.push(root.join("crates").join(name).join("Cargo.toml"));
         collect(&root.join("crates").join(name).join("src"), &mut files);
     }

@@ -8,7 +8,7 @@ use crate::failure::Failure;
 
 /// A table with its rows, each with its line in the file.
 #[derive(Debug)]
-pub(crate) struct InputTable {
+pub struct InputTable {
     header: StringRecord,
     /// Lines, from 1, and rows.
     pub rows: Vec<(usize, StringRecord)>,
@@ -57,6 +57,7 @@ impl InputTable {
     }
 
     /// The place of a column.
+    #[must_use]
     pub fn column(&self, name: &str) -> Option<usize> {
         self.header.iter().position(|column| column == name)
     }

@@ -1,28 +1,31 @@
-//! The laboratory behind the command `usar`: trials in parallel, tables, records, and the trust maths alone.
+//! The laboratory as a library: experiments as files, paired trials on threads, folders of results that
+//! survive anything, and statistics.
+//!
+//! It draws no figure, has no command line, and knows no single paper: those are the crates above it.
+//!
+//! ```
+//! use std::sync::atomic::AtomicBool;
+//!
+//! use experiments::experiment::{Experiment, Overrides};
+//!
+//! let scenario = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenarios/minimal/head_on.ron");
+//! let experiment = Experiment::load(scenario.as_ref(), &Overrides::default())?;
+//! let first = experiment.key((0, 0, 1)); // case, policy, trial
+//! let trial = experiment.run(&first, &AtomicBool::new(false)).expect("it runs to its end");
+//! assert_eq!(trial.record.errands_done, 2);
+//! # Ok::<(), experiments::Failure>(())
+//! ```
 
-pub mod calibration;
-pub mod claims;
-mod cli;
-mod commands;
 pub mod comparison;
 pub mod experiment;
 mod failure;
-mod files;
-mod input_table;
+pub mod files;
+pub mod input_table;
 pub mod metric;
 pub mod provenance;
-pub mod readings;
-pub mod report;
 pub mod rounds;
 pub mod run;
 pub mod stats;
 pub mod sweep;
-mod table;
 
-pub use cli::{main, main_with};
-pub use failure::Failure;
-
-/// The programs in the README compile.
-#[cfg(doctest)]
-#[doc = include_str!("../../../README.md")]
-struct Readme;
+pub use failure::{Failure, panic_message};

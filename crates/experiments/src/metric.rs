@@ -167,6 +167,12 @@ impl Metric {
         if column.ends_with(unit) { column } else { column + unit }
     }
 
+    /// Its title with its unit, if it has one.
+    #[must_use]
+    pub fn title_with_unit(&self) -> String {
+        if self.unit.is_empty() { self.title.clone() } else { format!("{} ({})", self.title, self.unit) }
+    }
+
     /// Its value; `None` where it is undefined.
     #[must_use]
     pub fn value(&self, record: &TrialRecord) -> Option<f64> {

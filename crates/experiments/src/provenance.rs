@@ -12,6 +12,9 @@ use crate::files::FileHash;
 /// Version of the folder's layout.
 pub const SCHEMA_VERSION: u32 = 4;
 
+/// Commit of the source that this program was built from, with `-dirty` where it was changed.
+pub const COMMIT: &str = env!("USAR_COMMIT");
+
 /// `manifest.json`. Holds nothing that differs between two runs of the same sweep: no time of day, no number of threads.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Manifest {
@@ -58,7 +61,7 @@ impl Manifest {
             schema_version: SCHEMA_VERSION,
             program: "usar".into(),
             version: experiment.program.version.clone(),
-            commit: env!("USAR_COMMIT").into(),
+            commit: COMMIT.into(),
             source: experiment.program.source.clone(),
             features: ENGINE_FEATURES.map(str::to_owned).to_vec(),
             name: experiment.name.clone(),

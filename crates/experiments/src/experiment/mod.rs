@@ -1,5 +1,6 @@
 //! What a sweep runs: a scenario or a sweep file, resolved into cases, policies and trials.
 
+mod again;
 mod file;
 mod grid;
 mod policy;
@@ -279,25 +280,6 @@ impl Experiment {
         run_trial(&case.scenario, &*case.policies[key.policy], key.seed, self.is_checked, halt)
     }
 
-    /// The command that runs one trial again, in the folder of the results.
-    #[must_use]
-    pub fn replay_command(&self, key: &TrialKey) -> String {
-        let policy = &self.policies[key.policy];
-        let axes = self.axes.iter().zip(&self.cases[key.case].values);
-        let set = |path: &str, value: &str| {
-            let value = value.split_whitespace().collect::<Vec<_>>().join(" ");
-            format!("--set '{}={}'", path, value.replace('\'', "'\\''"))
-        };
-        let axes = axes.map(|(axis, value)| set(&axis.path, value));
-        let quoted = match policy.plain() {
-            plain if plain == policy.name => plain,
-            plain => format!("'{}'", plain.replace('\'', "'\\''")),
-        };
-        let command = format!("usar run resolved.ron --policy {quoted} --seed {}", key.seed);
-        let check = self.is_checked.then(|| "--check".to_owned());
-        std::iter::once(command).chain(axes).chain(check).collect::<Vec<_>>().join(" ")
-    }
-
     /// The same sweep with another number of trials.
     ///
     /// # Errors
@@ -324,31 +306,6 @@ impl Experiment {
             Seeds::From(_) => u32::MAX,
             Seeds::Listed(list) => list.len() as u32,
         }
-    }
-
-    /// The same sweep as a file over its resolved scenario, which is in the same folder.
-    ///
-    /// # Errors
-    /// None: it can be written to memory.
-    pub fn as_sweep_file(&self, scenario: &str) -> Result<String, Failure> {
-        let quoted = |text: &str| ron::to_string(text).map_err(Failure::run);
-        let policies =
-            self.policies.iter().map(|policy| quoted(policy.written())).collect::<Result<Vec<_>, _>>()?;
-        let seeds = match &self.seeds {
-            Seeds::From(first) => format!("first_seed: {first}"),
-            Seeds::Listed(list) => format!("seeds: {list:?}"),
-        };
-        let line =
-            |axis: &Axis| Ok(format!("        {}: [{}],\n", quoted(&axis.path)?, axis.values.join(", ")));
-        let axes = self.axes.iter().map(line).collect::<Result<Vec<_>, Failure>>()?.concat();
-        Ok(format!(
-            "(\n    name: {},\n    scenario: {},\n    policies: [{}],\n    trials: {},\n    {seeds},\n    lean: {},\n    axes: {{\n{axes}    }},\n)\n",
-            quoted(&self.name)?,
-            quoted(scenario)?,
-            policies.join(", "),
-            self.trials,
-            self.is_lean,
-        ))
     }
 
     /// Seed of a trial, numbered from 1.

@@ -42,7 +42,8 @@ pub fn levels(label: &str, rounds: &[Round]) -> Vec<GroupLevels> {
 }
 
 /// Mean energy and HP of a task's group; `None` where it is empty.
-pub(crate) fn mean_levels(round: &Round, task: rne_core::TaskId) -> Option<[f64; 2]> {
+#[must_use]
+pub fn mean_levels(round: &Round, task: rne_core::TaskId) -> Option<[f64; 2]> {
     let members: Vec<_> = round.group(task).collect();
     let mean = |value: fn(&rne_core::Member) -> f64| {
         members.iter().map(|member| value(member)).sum::<f64>() / members.len() as f64

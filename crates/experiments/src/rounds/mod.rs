@@ -7,8 +7,7 @@ mod sorting;
 use rne_core::{Assignment, Decision, Member, Policy, Question, TaskId};
 
 pub use blindness::{Blindness, Example, Pair};
-pub(crate) use levels::mean_levels;
-pub use levels::{GroupLevels, levels};
+pub use levels::{GroupLevels, levels, mean_levels};
 pub use sorting::{KEYS, Key, Likeness, Share, likeness};
 
 use crate::failure::Failure;

@@ -24,7 +24,7 @@ pub const REPORT: &str = "report.html";
 /// See [`REPORT`].
 pub const PLOTS: &str = "plots";
 /// Held by the process that writes to the folder.
-pub(crate) const LOCK: &str = ".lock";
+pub const LOCK: &str = ".lock";
 
 /// Writes what a sweep is of.
 pub(super) fn write_start(
@@ -88,8 +88,11 @@ pub(super) fn check_is_ours(path: &Path) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Takes the folder for this process.
-pub(crate) fn lock(path: &Path) -> Result<File, Failure> {
+/// Takes the folder for this process, until the file is dropped.
+///
+/// # Errors
+/// Another process is at work in it, or it cannot be written to.
+pub fn lock(path: &Path) -> Result<File, Failure> {
     let name = path.join(LOCK);
     let trouble = |error| Failure::storage(format!("cannot write to {}: {error}", path.display()));
     let file = File::options().create(true).append(true).open(&name).map_err(trouble)?;

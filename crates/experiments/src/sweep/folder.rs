@@ -224,6 +224,14 @@ impl Folder {
         self.results.range((case, policy, 0)..=(case, policy, u32::MAX)).map(|(place, _)| *place).collect()
     }
 
+    /// The values of a metric under one case and policy, as far as trials ran to their end and it is defined.
+    #[must_use]
+    pub fn values(&self, case: usize, policy: usize, metric: usize) -> Vec<f64> {
+        let trials = self.results.range((case, policy, 0)..=(case, policy, u32::MAX));
+        let measured = trials.filter_map(|(_, Measured { metrics, .. })| metrics.as_ref());
+        measured.filter_map(|metrics| metrics[metric]).collect()
+    }
+
     /// Whether a trial is finished.
     #[must_use]
     pub fn has(&self, key: &TrialKey) -> bool {

@@ -4,9 +4,11 @@ pub mod disk;
 pub mod folder;
 mod journal;
 pub mod links;
+mod missing;
 mod rows;
 mod table;
 mod tables;
 
 pub use journal::Place;
-pub(crate) use rows::trial_columns;
+pub use missing::{missing, run_trials};
+pub use rows::trial_columns;

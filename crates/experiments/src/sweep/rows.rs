@@ -11,7 +11,8 @@ use crate::run::{Outcome, Trial, TrialKey, series_times};
 
 /// The columns of `trials.csv`: which trial it is, every metric, and what else is kept of it. `method` and `policy` say the same; the one is
 /// there so that the authors' files and ours can be stacked, the other for the words of this project.
-pub(crate) fn trial_columns(metrics: &Catalogue) -> Vec<String> {
+#[must_use]
+pub fn trial_columns(metrics: &Catalogue) -> Vec<String> {
     let names = |names: &[&str]| names.iter().map(|name| (*name).to_owned()).collect::<Vec<_>>();
     let mut columns = names(&["method", "trial", "policy", "seed", "status"]);
     columns.extend(metrics.iter().map(Metric::column));

@@ -1,7 +1,0 @@
-//! The command `usar`.
-
-use std::process::ExitCode;
-
-fn main() -> ExitCode {
-    experiments::main()
-}

@@ -1,0 +1,162 @@
+//! What figures are drawn of: panels as one SVG, and the table of the numbers in them.
+
+use std::sync::Arc;
+
+use experiments::Failure;
+use experiments::experiment::{Experiment, PolicySpec};
+use kuva::backend::svg::SvgBackend;
+use kuva::plot::{ColorMap, Heatmap, LinePlot};
+use kuva::render::figure::Figure as Panels;
+use kuva::render::layout::{Layout, TickFormat};
+use kuva::render::plots::Plot;
+
+/// Okabe and Ito's colours, which the colour-blind tell apart, in the order of the policies.
+const COLOURS: [&str; 8] =
+    ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#999999", "#000000"];
+
+/// A figure of the report.
+pub(crate) struct Figure {
+    /// Name of its files.
+    pub name: String,
+    /// Heading.
+    pub title: String,
+    /// What is shown, and on how many trials it stands.
+    pub caption: String,
+    /// The drawing.
+    pub svg: String,
+    /// The numbers, as a table.
+    pub csv: String,
+}
+
+/// One panel: what is drawn, and its axes.
+pub(crate) struct Panel {
+    pub plots: Vec<Plot>,
+    pub layout: Layout,
+}
+
+/// The colour of a policy.
+pub(crate) fn colour(policy: usize) -> &'static str {
+    COLOURS[policy % COLOURS.len()]
+}
+
+/// A layout in the report's style.
+pub(crate) fn layout(plots: &[Plot], title: &str) -> Layout {
+    Layout::auto_from_plots(plots)
+        .with_title(title)
+        .with_title_size(15)
+        .with_label_size(13)
+        .with_tick_size(11)
+        .with_tick_format(TickFormat::Custom(Arc::new(tick)))
+        .with_font_family("DejaVu Sans, Helvetica, Arial, sans-serif")
+}
+
+/// A number at an axis: as few digits as tell it from its neighbours.
+fn tick(value: f64) -> String {
+    if value != 0.0 && value.abs() < 0.001 {
+        return format!("{value:.1e}");
+    }
+    let text = format!("{value:.6}");
+    let text = text.trim_end_matches('0').trim_end_matches('.');
+    if text.is_empty() || text == "-0" { "0".to_owned() } else { text.to_owned() }
+}
+
+/// The range of an axis that shows all of these values and a little more; from 0 where they come near to it.
+pub(crate) fn range(values: impl IntoIterator<Item = f64>) -> [f64; 2] {
+    let (least, most) =
+        values.into_iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| (a.min(v), b.max(v)));
+    if least > most {
+        return [0.0, 1.0];
+    }
+    let room = if most > least { 0.06 * (most - least) } else { 0.5 * most.abs().max(1.0) };
+    let low = if least >= 0.0 && least < 0.4 * most.max(room) { 0.0 } else { least - room };
+    [low, most + room]
+}
+
+/// For each line: the policy, its label, and points of place, mean, and half the width of the band around it.
+pub(crate) type Line<'a> = (usize, &'a str, Vec<(f64, f64, f64)>);
+
+/// Lines through means, each with a band around it; nothing without any point. `words` are title and labels of the axes.
+pub(crate) fn line_panel(lines: &[Line], words: [&str; 3]) -> Option<Panel> {
+    let all = || lines.iter().flat_map(|(_, _, points)| points);
+    all().next()?;
+    let plot = |(policy, label, points): &Line| {
+        let low = points.iter().map(|(_, mean, half)| mean - half);
+        let high = points.iter().map(|(_, mean, half)| mean + half);
+        let line = LinePlot::new().with_data(points.iter().map(|(x, mean, _)| (*x, *mean)));
+        Plot::Line(
+            line.with_color(colour(*policy)).with_stroke_width(2.0).with_band(low, high).with_legend(*label),
+        )
+    };
+    let plots: Vec<Plot> = lines.iter().filter(|(_, _, points)| !points.is_empty()).map(plot).collect();
+    let [low, high] =
+        range(all().flat_map(|(_, mean, half)| [(mean - half).max(0.0_f64.min(*mean)), mean + half]));
+    let [left, right] = range(all().map(|(x, _, _)| *x));
+    let layout = layout(&plots, words[0])
+        .with_x_label(words[1])
+        .with_y_label(words[2])
+        .with_x_axis_min(left)
+        .with_x_axis_max(right)
+        .with_y_axis_min(low)
+        .with_y_axis_max(high);
+    Some(Panel { plots, layout })
+}
+
+/// A heat map with its values written in it: white at 0, blue at `most`, light enough for black figures on it. One value has one colour,
+/// whatever the range of the others.
+pub(crate) fn heat_map(data: Vec<Vec<f64>>, most: f64) -> Plot {
+    let all = || data.iter().flatten().copied();
+    let (low, high) = (all().fold(f64::INFINITY, f64::min), all().fold(f64::NEG_INFINITY, f64::max));
+    let colours = ColorMap::Custom(Arc::new(move |place: f64| {
+        let share = (low + place.clamp(0.0, 1.0) * (high - low)) / most.max(f64::MIN_POSITIVE);
+        let part = |end: f64| (255.0 + (end - 255.0) * share.clamp(0.0, 1.0)).round() as u8;
+        format!("#{:02X}{:02X}{:02X}", part(86.0), part(180.0), part(233.0))
+    }));
+    Plot::Heatmap(Heatmap::new().with_data(data).with_color_map(colours).with_values())
+}
+
+/// What figures call the policies: their labels, or where one is too long for an axis, the policy's name with its place in the list.
+pub(crate) fn names(experiment: &Experiment) -> Vec<String> {
+    let name = |(i, policy): (usize, &PolicySpec)| {
+        let is_short = policy.label.chars().count() <= LONGEST_NAME;
+        if is_short { policy.label.clone() } else { format!("{} #{}", policy.name, i + 1) }
+    };
+    experiment.policies.iter().enumerate().map(name).collect()
+}
+
+/// Characters of a policy's label that a figure has room for.
+const LONGEST_NAME: usize = 12;
+
+/// Panels in rows of this many, as one drawing.
+pub(crate) fn draw(panels: Vec<Panel>, columns: usize, [width, height]: [f64; 2]) -> String {
+    let rows = panels.len().div_ceil(columns);
+    let (plots, layouts): (Vec<_>, Vec<_>) =
+        panels.into_iter().map(|panel| (panel.plots, panel.layout)).unzip();
+    let scene = Panels::new(rows, columns)
+        .with_plots(plots)
+        .with_layouts(layouts)
+        .with_cell_size(width, height)
+        .render();
+    let svg = SvgBackend.render_scene(&scene);
+    with_view_box(&svg)
+}
+
+/// The drawing with its size as a view box too, so that it can be shown at any size.
+fn with_view_box(svg: &str) -> String {
+    let size = |name: &str| svg.split_once(&format!(" {name}=\""))?.1.split_once('"').map(|(size, _)| size);
+    match (size("width"), size("height")) {
+        (Some(width), Some(height)) if !svg.contains("viewBox") => {
+            svg.replacen("<svg ", &format!("<svg viewBox=\"0 0 {width} {height}\" "), 1)
+        }
+        _ => svg.to_owned(),
+    }
+}
+
+/// A table from its header and rows.
+pub(crate) fn table(header: &[&str], rows: impl IntoIterator<Item = Vec<String>>) -> Result<String, Failure> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    writer.write_record(header).map_err(Failure::run)?;
+    for row in rows {
+        writer.write_record(row).map_err(Failure::run)?;
+    }
+    String::from_utf8(writer.into_inner().map_err(Failure::run)?).map_err(Failure::run)
+}

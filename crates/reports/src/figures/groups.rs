@@ -1,0 +1,134 @@
+//! Figures of how policies group: the trust within each role, and how like their splits are to sorting.
+
+use experiments::Failure;
+use experiments::experiment::Experiment;
+use experiments::rounds::{KEYS, Likeness, Share};
+use rne_core::policies::rne::Rne;
+use rne_core::{Member, NeedDistribution, NeedWeights, PolicyError, RelativeNeedsEntropy, relative_entropy};
+
+use super::gather::Gathered;
+use crate::drawing::{Figure, Panel, draw, heat_map, layout, names, table};
+
+/// RNE from each robot to each other of its role, in the first round of the first trial, with the weights of the question.
+pub(super) fn trust(experiment: &Experiment, gathered: &[Gathered]) -> Result<Option<Figure>, Failure> {
+    let mut with_rounds = experiment.policies.iter().zip(gathered);
+    let first = with_rounds
+        .find_map(|(policy, gathered)| Some((policy, gathered.first_question.as_ref()?, gathered)));
+    let Some((policy, question, gathered)) = first else { return Ok(None) };
+    let options = policy.rne_options().unwrap_or_default();
+    let rne = Rne::new(options).map_err(Failure::run)?;
+    let weights =
+        rne.weights(question).and_then(|weights| NeedWeights::new(weights).map_err(PolicyError::Options));
+    let Ok(weights) = weights else { return Ok(None) };
+    let team = &question.members;
+    let distribution = |member: &Member| NeedDistribution::of_agent(&member.needs, &weights);
+    let distributions = team.iter().map(distribution).collect::<Result<Vec<_>, _>>().map_err(Failure::run)?;
+    let rne =
+        |i: usize, j: usize| relative_entropy(&distributions[i], &distributions[j]).map_err(Failure::run);
+    let mut rows = Vec::new();
+    for i in 0..team.len() {
+        for j in 0..team.len() {
+            let value = rne(i, j)?.nats().map_or("infinite".to_owned(), |nats| nats.to_string());
+            rows.push(vec![team[i].id.to_string(), team[j].id.to_string(), value]);
+        }
+    }
+    let mut panels = Vec::new();
+    for role in question.role_ids() {
+        let members: Vec<usize> = (0..team.len()).filter(|i| team[*i].role == role).collect();
+        if members.len() < 2 {
+            continue;
+        }
+        let row = |i: &usize| members.iter().map(|j| rne(*i, *j)).collect::<Result<Vec<_>, _>>();
+        let data = members.iter().map(row).collect::<Result<Vec<Vec<RelativeNeedsEntropy>>, _>>()?;
+        panels.push(trust_panel(&data, &question.roles[role.index()], members.iter().map(|i| team[*i].id)));
+    }
+    Ok(Some(Figure {
+        name: "trust".into(),
+        title: "Relative Needs Entropy within each role".into(),
+        caption: format!(
+            "RNE from each robot to each other of its role when the first round of trial {} under {} was grouped, in thousandths of a nat; lower is \
+             more trust. It is infinite wherever one robot lacks a need that the other has: such cells have the darkest colour, beyond the scale, \
+             and the table says so. The table has all pairs, those between roles too. n = 1 trial.",
+            gathered.first_trial, policy.label
+        ),
+        svg: if panels.is_empty() { String::new() } else { draw(panels, 3, [400.0, 360.0]) },
+        csv: table(&["from", "to", "rne_nats"], rows)?,
+    }))
+}
+
+/// A heat map of one role. An infinite value is drawn above every finite one: it is no trust at all.
+fn trust_panel(data: &[Vec<RelativeNeedsEntropy>], role: &str, ids: impl Iterator<Item = u32>) -> Panel {
+    let finite = data.iter().flatten().filter_map(|rne| rne.nats());
+    let most = 1000.0 * finite.fold(0.0, f64::max);
+    let beyond = if most > 0.0 { 1.25 * most } else { 1.0 };
+    let is_infinite = data.iter().flatten().any(|rne| rne.is_infinite());
+    let shown = |rne: &RelativeNeedsEntropy| rne.nats().map_or(beyond, |nats| 1000.0 * nats);
+    let cells = data.iter().map(|row| row.iter().map(shown).collect()).collect();
+    let plots = vec![heat_map(cells, if is_infinite { beyond } else { most })];
+    let names: Vec<String> = ids.map(|id| id.to_string()).collect();
+    let layout = layout(&plots, &format!("{role}s"))
+        .with_x_categories(names.clone())
+        .with_y_categories(names)
+        .with_x_label("to robot")
+        .with_y_label("from robot");
+    Panel { plots, layout }
+}
+
+/// In which share of the rounds each policy's split is the one that sorting gives.
+pub(super) fn sorting(experiment: &Experiment, gathered: &[Gathered]) -> Result<Figure, Failure> {
+    let (mut shares, mut rows, mut labels, mut n) =
+        ([Vec::new(), Vec::new()], Vec::new(), Vec::new(), usize::MAX);
+    let mut roles_of_all: Vec<String> = Vec::new();
+    let names = names(experiment);
+    for ((policy, name), gathered) in experiment.policies.iter().zip(names).zip(gathered) {
+        let rounds = gathered.likeness[0].rounds();
+        if rounds == 0 {
+            continue;
+        }
+        for (key, likeness) in KEYS.iter().zip(&gathered.likeness) {
+            let cell = |value: Option<f64>| value.map_or(String::new(), |value| value.to_string());
+            let beside = |share: &Share| [cell(share.share()), cell(share.chance())];
+            let first = [policy.label.clone(), key.name.to_owned(), rounds.to_string()];
+            let roles = likeness.roles.iter().map(|role| &role.share);
+            let shares = [&likeness.split].into_iter().chain(roles).chain([&likeness.harder_is_higher]);
+            roles_of_all = likeness.roles.iter().map(|role| role.role.clone()).collect();
+            rows.push(first.into_iter().chain(shares.flat_map(beside)).collect::<Vec<String>>());
+        }
+        let row = |share: fn(&Likeness) -> &Share| {
+            gathered
+                .likeness
+                .iter()
+                .map(|likeness| share(likeness).share().unwrap_or(0.0))
+                .collect::<Vec<f64>>()
+        };
+        shares[0].push(row(|likeness| &likeness.split));
+        shares[1].push(row(|likeness| &likeness.harder_is_higher));
+        labels.push(name);
+        n = n.min(rounds);
+    }
+    let titles = ["the split is that of sorting by", "the harder task's group has the higher mean"];
+    let panel = |(data, title): (Vec<Vec<f64>>, &str)| {
+        let plots = vec![heat_map(data, 1.0)];
+        let layout = layout(&plots, title)
+            .with_x_categories(KEYS.iter().map(|key| key.name.to_owned()).collect())
+            .with_y_categories(labels.clone());
+        Panel { plots, layout }
+    };
+    let is_empty = labels.is_empty();
+    let panels: Vec<Panel> = shares.into_iter().zip(titles).map(panel).collect();
+    let shares = ["split".to_owned()].into_iter().chain(roles_of_all).chain(["harder_is_higher".to_owned()]);
+    let shares = shares.flat_map(|share| [share.clone(), format!("{share}_by_chance")]);
+    let columns: Vec<String> =
+        ["policy", "sorted_by", "rounds"].map(str::to_owned).into_iter().chain(shares).collect();
+    let columns: Vec<&str> = columns.iter().map(String::as_str).collect();
+    Ok(Figure {
+        name: "sorting".into(),
+        title: "What the groups amount to".into(),
+        caption: format!(
+            "Shares of the rounds with two groups. Left: each role is split as sorting it would, whichever half takes which task (by \
+             chance in the table). n = {n} rounds or more for each policy."
+        ),
+        svg: if is_empty { String::new() } else { draw(panels, 2, [520.0, 320.0]) },
+        csv: table(&columns, rows)?,
+    })
+}

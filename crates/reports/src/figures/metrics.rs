@@ -1,0 +1,287 @@
+//! Figures of metrics: box plots as in the paper, energy against HP, paired differences, and metrics along an axis.
+
+use experiments::Failure;
+use experiments::comparison::Comparison;
+use experiments::experiment::Experiment;
+use experiments::metric::Metric;
+use experiments::stats::Moments;
+use experiments::stats::paired::t_half_width;
+use experiments::sweep::folder::Folder;
+use kuva::plot::{BoxPlot, ForestPlot, ScatterPlot};
+use kuva::render::plots::Plot;
+
+use crate::drawing::{Figure, Panel, colour, draw, layout, line_panel, names, range, table};
+
+/// Trials of a policy that are drawn as points; more would only blacken the figure.
+const MAX_POINTS: usize = 300;
+
+const PANEL: [f64; 2] = [360.0, 320.0];
+
+/// Box plots with points, a figure for each group of metrics.
+pub(super) fn boxes(folder: &Folder, case: usize) -> Result<Vec<Figure>, Failure> {
+    let figures = folder.experiment().metrics.figures().into_iter();
+    figures.map(|(name, metrics)| box_figure(folder, case, name, &metrics)).collect()
+}
+
+fn box_figure(folder: &Folder, case: usize, name: &str, places: &[usize]) -> Result<Figure, Failure> {
+    let Experiment { policies, metrics, .. } = folder.experiment();
+    let names = names(folder.experiment());
+    let has_points = folder.experiment().trials as usize <= MAX_POINTS;
+    let (mut panels, mut rows, mut counts) = (Vec::new(), Vec::new(), Vec::new());
+    for place in places {
+        let metric = &metrics[*place];
+        let mut plot = BoxPlot::new().with_width(0.6);
+        if has_points {
+            plot = plot.with_strip(0.2).with_overlay_size(2.5).with_overlay_color("#333333");
+        }
+        let (mut colours, mut all) = (Vec::new(), Vec::new());
+        for (i, policy) in policies.iter().enumerate() {
+            let values = folder.values(case, i, *place);
+            counts.push(values.len());
+            rows.extend(
+                values.iter().map(|value| vec![metric.name.clone(), policy.label.clone(), value.to_string()]),
+            );
+            all.extend_from_slice(&values);
+            if !values.is_empty() {
+                plot = plot.with_group(names[i].clone(), values);
+                colours.push(lighter(colour(i)));
+            }
+        }
+        if colours.is_empty() {
+            continue;
+        }
+        let plots = vec![Plot::Box(plot.with_group_colors(colours))];
+        let [low, high] = range(all);
+        let layout = layout(&plots, &metric.title)
+            .with_y_label(metric.unit)
+            .with_y_axis_min(low)
+            .with_y_axis_max(high);
+        panels.push(Panel { plots, layout });
+    }
+    Ok(Figure {
+        name: name.replace(' ', "-").to_lowercase(),
+        title: capitalised(name),
+        caption: format!(
+            "Median, quartiles, and whiskers to the last trial within 1.5 times the distance of the quartiles; {}. {}",
+            if has_points { "each point is a trial" } else { "points are left out for so many trials" },
+            per_box(&counts)
+        ),
+        svg: if panels.is_empty() { String::new() } else { draw(panels, 3, PANEL) },
+        csv: table(&["metric", "policy", "value"], rows)?,
+    })
+}
+
+/// On how many trials each policy's part of a panel stands.
+fn per_box(counts: &[usize]) -> String {
+    let (least, most) =
+        (counts.iter().min().copied().unwrap_or(0), counts.iter().max().copied().unwrap_or(0));
+    if least == most {
+        format!("n = {least} for each policy.")
+    } else {
+        format!("n = {least} to {most} for each policy: trials in which it is defined.")
+    }
+}
+
+/// Halfway to white.
+fn lighter(colour: &str) -> String {
+    let part = |at: usize| u8::from_str_radix(&colour[at..at + 2], 16).unwrap_or(0).midpoint(255);
+    format!("#{:02X}{:02X}{:02X}", part(1), part(3), part(5))
+}
+
+pub(super) fn capitalised(text: &str) -> String {
+    let mut letters = text.chars();
+    letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect())
+}
+
+/// Energy against HP per rescuee: what a rescue costs.
+pub(super) fn costs(folder: &Folder, case: usize) -> Result<Figure, Failure> {
+    let Experiment { policies, metrics, .. } = folder.experiment();
+    let names = names(folder.experiment());
+    let (mut panels, mut rows, mut counts) = (Vec::new(), Vec::new(), Vec::new());
+    let [energies, hps] = ["energy_per_rescuee", "hp_per_rescuee"].map(|name| metrics.declared(name));
+    for (energy, hp) in energies.into_iter().zip(hps) {
+        let part = metrics[energy].part();
+        let (mut plots, mut all) = (Vec::new(), Vec::new());
+        for (i, policy) in policies.iter().enumerate() {
+            let trials = (case, i, 0)..=(case, i, u32::MAX);
+            let points: Vec<(f64, f64)> = folder
+                .results()
+                .range(trials)
+                .filter_map(|(_, measured)| {
+                    let metrics = measured.metrics.as_ref()?;
+                    Some((metrics[energy]?, metrics[hp]?))
+                })
+                .collect();
+            counts.push(points.len());
+            all.extend_from_slice(&points);
+            let row = |(energy, hp): &(f64, f64)| {
+                vec![part.to_owned(), policy.label.clone(), energy.to_string(), hp.to_string()]
+            };
+            rows.extend(points.iter().map(row));
+            if !points.is_empty() {
+                let points = points.into_iter().take(MAX_POINTS);
+                let plot = ScatterPlot::new().with_data(points).with_color(colour(i)).with_size(3.5);
+                plots.push(Plot::Scatter(plot.with_legend(names[i].clone())));
+            }
+        }
+        if plots.is_empty() {
+            continue;
+        }
+        let [energies, hps] =
+            [range(all.iter().map(|(energy, _)| *energy)), range(all.iter().map(|(_, hp)| *hp))];
+        let layout = layout(&plots, part)
+            .with_x_label("energy per rescuee")
+            .with_y_label("HP per rescuee")
+            .with_x_axis_min(energies[0])
+            .with_x_axis_max(energies[1])
+            .with_y_axis_min(hps[0])
+            .with_y_axis_max(hps[1]);
+        panels.push(Panel { plots, layout });
+    }
+    Ok(Figure {
+        name: "costs".into(),
+        title: "Energy and HP per rescuee".into(),
+        caption: format!(
+            "Percent points per rescuee delivered; each point is a trial, of {MAX_POINTS} at most for each policy. {}",
+            per_box(&counts)
+        ),
+        svg: if panels.is_empty() { String::new() } else { draw(panels, 3, [400.0, 320.0]) },
+        csv: table(&["task", "policy", "energy_per_rescuee", "hp_per_rescuee"], rows)?,
+    })
+}
+
+/// Paired differences with their intervals.
+pub(super) fn forest(experiment: &Experiment, comparisons: &[&Comparison]) -> Result<Figure, Failure> {
+    let names = names(experiment);
+    let name = |label: &String| {
+        let place = experiment.policies.iter().position(|policy| policy.label == *label);
+        place.map_or("", |place| names[place].as_str())
+    };
+    let mut metrics: Vec<&str> = comparisons.iter().map(|comparison| comparison.metric.as_str()).collect();
+    metrics.dedup();
+    let mut panels = Vec::new();
+    for metric in metrics {
+        let Metric { title, unit, .. } = &experiment.metrics[experiment.metrics.named(metric)?];
+        let mut plot = ForestPlot::new().with_null_value(0.0).with_cap_size(4.0);
+        let mut ends = vec![0.0];
+        for comparison in comparisons.iter().filter(|comparison| comparison.metric == metric) {
+            let (Some(difference), Some([low, high])) = (comparison.difference, comparison.interval) else {
+                continue;
+            };
+            let label = format!("{} - {} ({})", name(&comparison.a), name(&comparison.b), comparison.n);
+            plot = plot.with_colored_row(label, difference, low, high, "#0072B2");
+            ends.extend([low, high]);
+        }
+        if ends.len() > 1 {
+            let plots = vec![Plot::Forest(plot)];
+            let [low, high] = forest_range(&ends);
+            let layout = layout(&plots, title)
+                .with_x_label(if unit.is_empty() { "difference" } else { unit })
+                .with_ticks(4)
+                .with_x_axis_min(low)
+                .with_x_axis_max(high);
+            panels.push(Panel { plots, layout });
+        }
+    }
+    let row = |c: &&Comparison| {
+        let number = |value: Option<f64>| value.map_or(String::new(), |value| value.to_string());
+        vec![
+            c.metric.clone(),
+            c.a.clone(),
+            c.b.clone(),
+            c.n.to_string(),
+            number(c.difference),
+            number(c.interval.map(|i| i[0])),
+            number(c.interval.map(|i| i[1])),
+            number(c.p),
+            number(c.p_holm),
+        ]
+    };
+    let header = ["metric", "a", "b", "n", "difference", "low", "high", "p", "p_holm"];
+    Ok(Figure {
+        name: "differences".into(),
+        title: "Paired differences".into(),
+        caption: "First policy less second over the same seeds, with the 95 % bootstrap interval of the mean; the number of pairs in brackets. \
+                  The intervals are one by one; p after correction is in the table below."
+            .into(),
+        svg: if panels.is_empty() { String::new() } else { draw(panels, 3, [420.0, 280.0]) },
+        csv: table(&header, comparisons.iter().map(row))?,
+    })
+}
+
+/// A range that shows all of these and the zero between them.
+fn forest_range(ends: &[f64]) -> [f64; 2] {
+    let most = ends.iter().fold(0.0, |most: f64, end| most.max(end.abs()));
+    let reach = |sign: f64| ends.iter().fold(0.0, |reach: f64, end| reach.max(sign * end));
+    let room = if most > 0.0 { 0.06 * most } else { 1.0 };
+    [-reach(-1.0) - room, reach(1.0) + room]
+}
+
+/// Means of the first figure's metrics along each axis of numbers, the other axes as in the case.
+pub(super) fn axes(folder: &Folder, case: usize) -> Result<Vec<Figure>, Failure> {
+    let experiment = folder.experiment();
+    let names = names(experiment);
+    let metrics = experiment.metrics.figures().into_iter().next().map_or(Vec::new(), |(_, metrics)| metrics);
+    let mut all = Vec::new();
+    for (i, axis) in experiment.axes.iter().enumerate() {
+        let numbers: Vec<f64> = axis.values.iter().filter_map(|value| value.parse().ok()).collect();
+        let is_numeric = numbers.len() == axis.values.len();
+        let same_elsewhere = |other: &[String]| {
+            let here = &experiment.cases[case].values;
+            (0..here.len()).all(|k| k == i || here[k] == other[k])
+        };
+        let cases: Vec<usize> = (0..experiment.cases.len())
+            .filter(|other| same_elsewhere(&experiment.cases[*other].values))
+            .collect();
+        let (mut panels, mut rows) = (Vec::new(), Vec::new());
+        for metric in &metrics {
+            let mut lines = Vec::new();
+            for (p, policy) in experiment.policies.iter().enumerate() {
+                let mut points: Vec<(f64, f64, f64)> = Vec::new();
+                for (at, other) in cases.iter().enumerate() {
+                    let values = folder.values(*other, p, *metric);
+                    let Some(mean) = Moments::of(&values).mean else { continue };
+                    let half = t_half_width(&values);
+                    points.push((
+                        if is_numeric { numbers[at] } else { at as f64 },
+                        mean,
+                        half.unwrap_or(0.0),
+                    ));
+                    rows.push(vec![
+                        experiment.metrics[*metric].name.clone(),
+                        policy.label.clone(),
+                        axis.values[at].clone(),
+                        values.len().to_string(),
+                        mean.to_string(),
+                        half.map_or(String::new(), |half| half.to_string()),
+                    ]);
+                }
+                points.sort_by(|a, b| a.0.total_cmp(&b.0));
+                lines.push((p, names[p].as_str(), points));
+            }
+            panels
+                .extend(line_panel(&lines, [&experiment.metrics[*metric].title_with_unit(), &axis.path, ""]));
+        }
+        let n = experiment.trials;
+        let places: Vec<String> =
+            axis.values.iter().enumerate().map(|(at, value)| format!("{at}: {value}")).collect();
+        let legend = if is_numeric { String::new() } else { format!(" Values: {}.", places.join(", ")) };
+        let others: Vec<String> = experiment
+            .axes
+            .iter()
+            .zip(&experiment.cases[case].values)
+            .enumerate()
+            .filter(|(k, _)| *k != i)
+            .map(|(_, (axis, value))| format!("{}={value}", axis.path))
+            .collect();
+        let fixed = if others.is_empty() { String::new() } else { format!(" Here {}.", others.join(", ")) };
+        all.push(Figure {
+            name: format!("along-{}", axis.path.replace(['.', '[', ']'], "-")),
+            title: format!("Along {}", axis.path),
+            caption: format!("Means of up to {n} trials with their 95 % t intervals (band).{legend}{fixed}"),
+            svg: draw(panels, 3, [420.0, 320.0]),
+            csv: table(&["metric", "policy", "value", "n", "mean", "half_width"], rows)?,
+        });
+    }
+    Ok(all)
+}

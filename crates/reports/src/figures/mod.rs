@@ -1,0 +1,35 @@
+//! The figures of a report, each with the table of its numbers.
+
+mod course;
+mod gather;
+mod groups;
+mod metrics;
+
+use experiments::Failure;
+use experiments::comparison::Comparison;
+use experiments::sweep::folder::Folder;
+
+use crate::drawing::Figure;
+
+/// All figures of a sweep's case for which there is something to draw.
+pub(crate) fn figures(
+    folder: &mut Folder,
+    case: usize,
+    comparisons: &[&Comparison],
+) -> Result<Vec<Figure>, Failure> {
+    let gathered = gather::gather(folder, case)?;
+    let experiment = folder.experiment();
+    let mut figures = metrics::boxes(folder, case)?;
+    figures.push(metrics::costs(folder, case)?);
+    if !comparisons.is_empty() {
+        figures.push(metrics::forest(experiment, comparisons)?);
+    }
+    figures.push(course::over_time(experiment, case, &gathered)?);
+    figures.push(course::membership(experiment, case, &gathered)?);
+    figures.push(course::levels(experiment, case, &gathered)?);
+    figures.push(groups::sorting(experiment, &gathered)?);
+    figures.extend(groups::trust(experiment, &gathered)?);
+    figures.extend(metrics::axes(folder, case)?);
+    figures.retain(|figure| !figure.svg.is_empty());
+    Ok(figures)
+}

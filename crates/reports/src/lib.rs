@@ -1,0 +1,14 @@
+//! Results for people: the figures and the page of a sweep, and tables for the terminal.
+//!
+//! [`write_report`] makes `report.html` in a sweep's folder; [`table`] has tables as text. A page of another
+//! crate takes its looks from [`STYLE`].
+
+mod drawing;
+mod figures;
+mod page;
+pub mod table;
+
+pub use page::write_report;
+
+/// The style sheet of all pages.
+pub const STYLE: &str = include_str!("../templates/style.css");

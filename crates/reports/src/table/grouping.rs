@@ -1,0 +1,70 @@
+//! Tables of how policies group.
+
+use comfy_table::{Cell, Table};
+use experiments::rounds::{GroupLevels, KEYS, Likeness, Share};
+
+use super::{headed, right};
+
+/// How often each policy's split is that of sorting.
+#[must_use]
+pub fn likeness_table(policies: &[(String, [Likeness; 3])]) -> Table {
+    let first = policies.iter().map(|(_, likenesses)| &likenesses[0]).find(|likeness| likeness.rounds() > 0);
+    let roles: Vec<String> = first
+        .iter()
+        .flat_map(|first| first.splittable_roles())
+        .map(|role| format!("{}s", role.role))
+        .collect();
+    let before = ["policy", "rounds", "sorted by", "split"].map(str::to_owned);
+    let header = before.into_iter().chain(roles.clone()).chain(["higher".to_owned()]);
+    let mut table = headed(header.collect::<Vec<String>>());
+    let percent = |share: f64| format!("{:.1} %", 100.0 * share);
+    let beside = |share: &Share| match (share.share(), share.chance()) {
+        (Some(share), Some(chance)) => right(&format!("{} ({})", percent(share), percent(chance))),
+        _ => right("-"),
+    };
+    for (label, likenesses) in policies {
+        for (i, (key, likeness)) in KEYS.iter().zip(likenesses).enumerate() {
+            let first = |text: &str| if i == 0 { text.to_owned() } else { String::new() };
+            let mut row = vec![
+                Cell::new(first(label)),
+                right(&first(&likeness.rounds().to_string())),
+                Cell::new(key.name),
+                beside(&likeness.split),
+            ];
+            row.extend(roles.iter().map(|name| {
+                let role = likeness.roles.iter().find(|role| format!("{}s", role.role) == *name);
+                role.map_or_else(|| right("-"), |role| beside(&role.share))
+            }));
+            row.push(right(&likeness.harder_is_higher.share().map_or("-".to_owned(), percent)));
+            table.add_row(row);
+        }
+    }
+    table
+}
+
+/// Mean levels of the groups of these tasks, round by round. The difference is that of the first and the last task.
+#[must_use]
+pub fn levels_table(levels: &[GroupLevels], tasks: &[String]) -> Table {
+    let mut header = ["policy", "round", "n"].map(str::to_owned).to_vec();
+    for level in ["energy", "HP"] {
+        let name =
+            |(i, task): (usize, &String)| if i == 0 { format!("{level} {task}") } else { task.clone() };
+        header.extend(tasks.iter().enumerate().map(name));
+        header.push("difference".to_owned());
+    }
+    let mut table = headed(header);
+    let shown = |level: f64| right(&format!("{level:.1}"));
+    let mut last = "";
+    for row in levels {
+        let label = if row.policy == last { "" } else { &row.policy };
+        last = &row.policy;
+        let mut cells = vec![Cell::new(label), right(&row.round.to_string()), right(&row.count.to_string())];
+        for level in [0, 1] {
+            cells.extend(row.groups.iter().map(|group| shown(group[level])));
+            let ends = row.groups.first().zip(row.groups.last());
+            cells.push(right(&ends.map_or("-".to_owned(), |(a, b)| format!("{:+.1}", a[level] - b[level]))));
+        }
+        table.add_row(cells);
+    }
+    table
+}

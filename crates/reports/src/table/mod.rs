@@ -1,0 +1,145 @@
+//! Tables for people.
+
+mod grouping;
+
+use comfy_table::presets::UTF8_FULL_CONDENSED;
+use comfy_table::{Cell, CellAlignment, Row, Table};
+use experiments::comparison::{Comparison, digits, short, short_p};
+use experiments::experiment::Experiment;
+use experiments::stats::Moments;
+use experiments::sweep::folder::Folder;
+use usar_sim::event::ReturnCause;
+use usar_sim::record::TrialRecord;
+
+pub use grouping::{levels_table, likeness_table};
+
+/// Metrics down, policies across: mean ± sample standard deviation of one case.
+#[must_use]
+pub fn policy_table(folder: &Folder, case: usize) -> Table {
+    let Experiment { policies, metrics, trials, .. } = folder.experiment();
+    let header = std::iter::once(Cell::new("policy"));
+    let mut table = headed(header.chain(policies.iter().map(|policy| right(&policy.label))));
+    let mut last = "";
+    for (i, metric) in metrics.iter().enumerate().filter(|(_, metric)| metric.is_primary) {
+        let cells = (0..policies.len())
+            .map(|policy| right(&moments(&Moments::of(&folder.values(case, policy, i)), *trials as usize)));
+        table.add_row(std::iter::once(Cell::new(indented(&metric.title, last))).chain(cells));
+        last = &metric.title;
+    }
+    table
+}
+
+/// A title of which only the last word is shown where the words before are those of the title above.
+fn indented(title: &str, above: &str) -> String {
+    let common = |text: &str| text.rfind(' ').map(|end| text[..end].to_owned());
+    match (common(title), common(above)) {
+        (Some(here), Some(there)) if here == there => " ".repeat(here.len()) + &title[here.len()..],
+        _ => title.to_owned(),
+    }
+}
+
+/// A row for each comparison.
+#[must_use]
+pub fn comparison_table(comparisons: &[&Comparison]) -> Table {
+    let mut table = headed([
+        "metric",
+        "A - B",
+        "n",
+        "mean A",
+        "mean B",
+        "difference",
+        "95 % interval",
+        "shift",
+        "p",
+        "p Holm",
+        "effect",
+        "pairs for 80 %",
+    ]);
+    let number = |value: Option<f64>| right(&value.map_or("-".to_owned(), short));
+    let mean = |value: Option<f64>| right(&value.map_or("-".to_owned(), |value| digits(value, 4)));
+    for c in comparisons {
+        let interval =
+            c.interval.map_or("-".to_owned(), |[low, high]| format!("{} to {}", short(low), short(high)));
+        let p = |p: Option<f64>| right(&p.map_or("-".to_owned(), short_p));
+        table.add_row([
+            Cell::new(&c.metric),
+            Cell::new(format!("{} - {}", c.a, c.b)),
+            right(&c.n.to_string()),
+            mean(c.mean_a),
+            mean(c.mean_b),
+            number(c.difference),
+            right(&interval),
+            number(c.shift),
+            p(c.p),
+            p(c.p_holm),
+            right(&c.effect.map_or("-".to_owned(), |effect| format!("{effect:.2}"))),
+            right(&c.pairs_needed.map_or("-".to_owned(), |pairs| pairs.to_string())),
+        ]);
+    }
+    table
+}
+
+/// One line per round and task.
+#[must_use]
+pub fn rounds_table(record: &TrialRecord) -> Table {
+    let mut table = headed([
+        "round",
+        "task",
+        "from s",
+        "to s",
+        "members",
+        "secured",
+        "rescued",
+        "energy",
+        "HP",
+        "turned back",
+        "went home: why",
+    ]);
+    for round in &record.rounds {
+        let members: Vec<String> = round.members.iter().map(|member| member.id.to_string()).collect();
+        table.add_row([
+            right(&round.round.to_string()),
+            Cell::new(&record.tasks[round.task.index()].task),
+            right(&format!("{:.1}", round.start_s)),
+            right(&round.end_s.map_or("-".to_owned(), |end| format!("{end:.1}"))),
+            Cell::new(members.join(" ")),
+            right(&round.secured.to_string()),
+            right(&round.rescued.to_string()),
+            right(&format!("{:.1}", round.energy)),
+            right(&format!("{:.2}", round.hp)),
+            right(&round.turned_back.to_string()),
+            Cell::new(round.return_cause.map_or("-", ReturnCause::name)),
+        ]);
+    }
+    table
+}
+
+/// A table in the style of the project, with this header.
+#[must_use]
+pub fn headed(header: impl Into<Row>) -> Table {
+    let mut table = Table::new();
+    table.load_style(UTF8_FULL_CONDENSED).set_header(header);
+    table
+}
+
+/// A cell that stands on the right.
+#[must_use]
+pub fn right(text: &str) -> Cell {
+    Cell::new(text).set_alignment(CellAlignment::Right)
+}
+
+/// `mean ± sd`; with the number of trials where not all that were asked for have it.
+fn moments(moments: &Moments, trials: usize) -> String {
+    let Some(mean) = moments.mean else { return "-".to_owned() };
+    let decimals = decimals(mean);
+    let sd = moments.sd.map_or(String::new(), |sd| format!(" ± {sd:.decimals$}"));
+    let partly = if moments.count < trials { format!(" (n = {})", moments.count) } else { String::new() };
+    format!("{mean:.decimals$}{sd}{partly}")
+}
+
+/// Decimals that show a mean with about three significant digits, and at least one.
+fn decimals(mean: f64) -> usize {
+    (1..8)
+        .find(|decimals| mean.abs() * 10_f64.powi(*decimals) >= 100.0)
+        .map_or(2, |decimals| decimals as usize)
+}

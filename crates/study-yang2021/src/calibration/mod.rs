@@ -1,0 +1,267 @@
+//! Calibration: free parameters of a scenario, searched so that the distance baseline does what recorded trials of it did.
+//!
+//! Only [`POLICY`] can be run here: how other policies fare in the calibrated world is a result, so nothing that fits it may look at them.
+//! The search is CMA-ES (Hansen 2016, "The CMA Evolution Strategy: A Tutorial", arXiv 1604.00772), from the crate `cmaes`, over a box that is
+//! mirrored at its ends. It is deterministic: a search that was broken off is repeated from its start, with the evaluations in the log instead of
+//! new trials.
+
+mod fit;
+mod free;
+mod log;
+mod target;
+
+use std::cell::Cell;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use cmaes::{CMAESOptions, DVector};
+use experiments::comparison::short;
+use experiments::experiment::registry;
+use experiments::run::run_trial;
+use experiments::{Failure, panic_message};
+use rayon::prelude::*;
+use rne_core::Policy;
+use ron_fields::{Fields, with_values};
+use usar_sim::scenario::{Scenario, ScenarioFile};
+
+pub use fit::{Fit, write_fit};
+pub use free::Free;
+pub use log::Log;
+pub use target::{Quantity, Spread, Target};
+
+/// The one policy that is ever calibrated.
+pub const POLICY: &str = "DIS";
+
+/// What a calibrated scenario's name ends with.
+const SUFFIX: &str = "-fitted";
+
+/// Begins the first line of a calibrated scenario.
+const ORIGIN_LINE: &str = "// Fitted by usar calibrate";
+
+/// The misfit of a candidate that cannot be run.
+const WORST: f64 = 1e9;
+
+/// What is fitted to what.
+pub struct Calibration {
+    /// The scenario to start from, as text in which each free field is written.
+    pub text: String,
+    /// The same, checked.
+    pub base: Scenario,
+    /// The free parameters.
+    pub free: Vec<Free>,
+    /// What to aim at.
+    pub target: Target,
+    /// Trials of an evaluation.
+    pub trials: u32,
+    /// Seed of the first of them.
+    pub first_seed: u64,
+    /// Seed of the search.
+    pub seed: u64,
+    /// Standard deviation of the first candidates, in units of each range.
+    pub first_step: f64,
+}
+
+/// One candidate and how it fared.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Evaluation {
+    /// A value for each free parameter.
+    pub values: Vec<f64>,
+    /// How far it is from the target.
+    pub misfit: f64,
+    /// Means and spreads of the target's quantities; none for a candidate that cannot be run.
+    pub spreads: Vec<Spread>,
+    /// Why it cannot be run.
+    pub failure: Option<String>,
+}
+
+impl Calibration {
+    /// The scenario with these values.
+    ///
+    /// # Errors
+    /// A value breaks a rule, in one sentence.
+    pub fn scenario(&self, values: &[f64]) -> Result<Scenario, String> {
+        let mut file: ScenarioFile = (*self.base).clone();
+        self.free.iter().zip(values).try_for_each(|(free, value)| free.set(&mut file, *value))?;
+        Scenario::try_from(file).map_err(|problems| {
+            format!("{} {}, found {}", problems[0].field, problems[0].rule, problems[0].found)
+        })
+    }
+
+    /// The text of the scenario with these values in their places, and a name that says so; all else, comments too, is as it was.
+    ///
+    /// # Errors
+    /// None: each free field is written in the text.
+    pub fn text_with(&self, values: &[f64]) -> Result<String, String> {
+        let pairs = self.free.iter().zip(values).flat_map(|(free, value)| free.settings(*value));
+        let mut settings: Vec<_> = pairs.map(|(path, value)| (path.to_owned(), value)).collect();
+        if !self.base.name.ends_with(SUFFIX) {
+            settings.push(("name".to_owned(), format!("{:?}", format!("{}{SUFFIX}", self.base.name))));
+        }
+        with_values(&self.text, &settings).map_err(|error| error.to_string())
+    }
+
+    /// The same with a first line that tells what was fitted.
+    ///
+    /// # Errors
+    /// Those of [`Calibration::text_with`].
+    pub fn fitted_text(&self, evaluation: &Evaluation) -> Result<String, String> {
+        let text = self.text_with(&evaluation.values)?;
+        let text = match text.split_once('\n') {
+            Some((first, rest)) if first.starts_with(ORIGIN_LINE) => rest,
+            _ => &text,
+        };
+        let names: Vec<&str> = self.free.iter().map(|free| free.name.as_str()).collect();
+        Ok(format!(
+            "{ORIGIN_LINE} (misfit {} over {} trials of {POLICY}), whatever comments below say of them: {}\n{text}",
+            short(evaluation.misfit),
+            self.trials,
+            names.join(", "),
+        ))
+    }
+
+    /// Where the search begins: the values of the scenario as it is, or the nearest in their ranges.
+    ///
+    /// # Errors
+    /// A field is not a number.
+    pub fn start(&self) -> Result<Vec<f64>, Failure> {
+        let ends = self.free.iter().map(Free::ends);
+        Ok(self.present()?.into_iter().zip(ends).map(|(value, [low, high])| value.clamp(low, high)).collect())
+    }
+
+    /// The values that the scenario has as it is.
+    ///
+    /// # Errors
+    /// A field is not a number.
+    pub fn present(&self) -> Result<Vec<f64>, Failure> {
+        let fields = Fields::of(&self.text);
+        let present = |free: &Free| free.present(&self.text, &fields);
+        let present = self.free.iter().map(present).collect::<Result<Vec<f64>, _>>();
+        present.map_err(|error| Failure::input(format!("--free: {error}")))
+    }
+
+    /// Checks that no field is set twice, that none decides how long a trial is, and that both ends of each range can be run, the other fields being as they are.
+    ///
+    /// # Errors
+    /// An end that cannot.
+    pub fn check(&self) -> Result<(), Failure> {
+        let bad = |error: String| Failure::input(format!("--free: {error}"));
+        self.text_with(&self.present()?).map_err(bad)?;
+        for free in &self.free {
+            if free.is_of("duration_s") {
+                return Err(bad("duration_s: is that of the recorded trials".to_owned()));
+            }
+            for end in free.ends() {
+                let mut file: ScenarioFile = (*self.base).clone();
+                free.set(&mut file, end)
+                    .map_err(|error| bad(free.whole_numbers(&self.base).unwrap_or(error)))?;
+                Scenario::try_from(file).map_err(|problems| {
+                    let problem = &problems[0];
+                    Failure::input(format!(
+                        "--free: {} {}, found {}",
+                        problem.field, problem.rule, problem.found
+                    ))
+                })?;
+            }
+        }
+        Ok(())
+    }
+
+    /// The quantities of trials with these seeds, each a list over the trials. `None` when `stop` was set.
+    ///
+    /// # Errors
+    /// A candidate that cannot be run, in one sentence.
+    pub fn measure(
+        &self,
+        values: &[f64],
+        seeds: impl IntoParallelIterator<Item = u64>,
+        stop: &AtomicBool,
+    ) -> Result<Option<Vec<Vec<f64>>>, String> {
+        let scenario = self.scenario(values)?;
+        let policy = the_policy()?;
+        let trial = |seed| {
+            let run = AssertUnwindSafe(|| run_trial(&scenario, &*policy, seed, false, stop));
+            let result =
+                catch_unwind(run).map_err(|panic| format!("internal error: {}", panic_message(&*panic)))?;
+            result.map_err(|fault| fault.reason)
+        };
+        let rows: Vec<Result<Vec<f64>, String>> =
+            seeds.into_par_iter().map(|seed| self.target.measure(&trial(seed)?.record)).collect();
+        if stop.load(Ordering::Relaxed) {
+            return Ok(None);
+        }
+        // The first failure in the order of the seeds, whatever the number of threads.
+        let rows = rows.into_iter().collect::<Result<Vec<Vec<f64>>, String>>()?;
+        Ok(Some((0..self.target.spreads.len()).map(|q| rows.iter().map(|row| row[q]).collect()).collect()))
+    }
+
+    fn evaluate(&self, values: Vec<f64>, stop: &AtomicBool) -> Option<Evaluation> {
+        let seeds = (0..self.trials).into_par_iter().map(|trial| self.first_seed + u64::from(trial));
+        match self.measure(&values, seeds, stop) {
+            Ok(None) => None,
+            Ok(Some(quantities)) => {
+                let spreads: Vec<Spread> =
+                    quantities.iter().filter_map(|values| Spread::of(values)).collect();
+                Some(Evaluation { misfit: self.target.misfit(&spreads), values, spreads, failure: None })
+            }
+            Err(reason) => {
+                Some(Evaluation { values, misfit: WORST, spreads: Vec::new(), failure: Some(reason) })
+            }
+        }
+    }
+
+    /// Evaluates the start and searches from there until there are so many evaluations in the log, to the end of a generation of candidates, or
+    /// nothing gets better; returns whether it came to its end: not so when `stop` was set. `done` hears the number of evaluations so far and the least misfit.
+    ///
+    /// # Errors
+    /// The disk does not take the log.
+    pub fn search(
+        &self,
+        evaluations: usize,
+        log: &mut Log,
+        stop: &AtomicBool,
+        mut done: impl FnMut(usize, f64),
+    ) -> Result<bool, Failure> {
+        let present = self.start()?;
+        if log.find(&present).is_none() {
+            let Some(evaluation) = self.evaluate(present.clone(), stop) else { return Ok(false) };
+            log.add(evaluation)?;
+        }
+        let start: Vec<f64> =
+            self.free.iter().zip(&present).map(|(free, value)| free.place(*value)).collect();
+        let trouble = Cell::new(None);
+        let (mut asked, mut least) = (1, log.find(&present).map_or(WORST, |evaluation| evaluation.misfit));
+        let objective = |x: &DVector<f64>| {
+            let values: Vec<f64> = self.free.iter().zip(x.iter()).map(|(free, x)| free.value(*x)).collect();
+            let known = log.find(&values).map(|evaluation| evaluation.misfit);
+            let misfit = known.or_else(|| {
+                let evaluation = self.evaluate(values, stop)?;
+                let misfit = evaluation.misfit;
+                log.add(evaluation).map_err(|failure| trouble.set(Some(failure))).ok()?;
+                Some(misfit)
+            });
+            asked += 1;
+            least = least.min(misfit.unwrap_or(WORST));
+            done(asked, least);
+            misfit.unwrap_or(WORST)
+        };
+        let options = CMAESOptions::new(start, self.first_step)
+            .seed(self.seed)
+            .max_function_evals(evaluations.saturating_sub(1));
+        let mut search =
+            options.build(objective).map_err(|_| Failure::run("the search has no free parameter"))?;
+        while search.next().is_none() {
+            if let Some(failure) = trouble.take() {
+                return Err(failure);
+            }
+            if stop.load(Ordering::Relaxed) {
+                return Ok(false);
+            }
+        }
+        trouble.take().map_or(Ok(!stop.load(Ordering::Relaxed)), Err)
+    }
+}
+
+fn the_policy() -> Result<Arc<dyn Policy>, String> {
+    registry().parse(POLICY).map(|made| made.policy).map_err(|error| error.to_string())
+}

@@ -1,0 +1,257 @@
+//! What a calibration aims at: means and spreads of recorded trials.
+
+use std::path::Path;
+
+use experiments::Failure;
+use experiments::input_table::InputTable;
+use experiments::metric::{Catalogue, Metric, task_names};
+use experiments::stats::Moments;
+use experiments::sweep::trial_columns;
+use usar_sim::record::TrialRecord;
+use usar_sim::scenario::Scenario;
+
+use super::POLICY;
+
+/// A quantity of a trial that a target may have, under the authors' name.
+pub struct Quantity {
+    /// Name of its column.
+    pub name: String,
+    metric: Metric,
+}
+
+/// The metrics that can be fitted, in the authors' order: each task's where they are told by task, since totals follow from these.
+const FITTED: [&str; 4] = ["rescuees", "energy", "hp", "rounds"];
+
+impl Quantity {
+    /// All of them.
+    fn all(metrics: &Catalogue) -> Vec<Self> {
+        let places = FITTED.iter().flat_map(|name| metrics.declared(name));
+        let parts = places.map(|place| &metrics[place]).filter(|metric| !metric.is_total());
+        parts.map(|metric| Self { name: metric.column(), metric: metric.clone() }).collect()
+    }
+}
+
+/// Mean and sample standard deviation of one quantity.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Spread {
+    /// Mean.
+    pub mean: f64,
+    /// Sample standard deviation.
+    pub sd: f64,
+}
+
+impl Spread {
+    /// Of at least two values.
+    #[must_use]
+    pub fn of(values: &[f64]) -> Option<Self> {
+        let Moments { mean, sd, .. } = Moments::of(values);
+        Some(Self { mean: mean?, sd: sd? })
+    }
+
+    /// How far a model's spread is from this one: the squared distance of the means in units of this standard deviation, plus the squared
+    /// logarithm of the ratio of the standard deviations. The model's counts as at least a twentieth of this one.
+    #[must_use]
+    pub fn misfit(&self, model: &Self) -> [f64; 2] {
+        let mean = (model.mean - self.mean) / self.sd;
+        let spread = (model.sd.max(self.sd / 20.0) / self.sd).ln();
+        [mean * mean, spread * spread]
+    }
+}
+
+/// Recorded trials of the baseline.
+pub struct Target {
+    /// The quantities that it has.
+    pub quantities: Vec<Quantity>,
+    /// Their means and spreads.
+    pub spreads: Vec<Spread>,
+    /// Number of trials.
+    pub trials: usize,
+    /// Names of the quantities that it has not.
+    pub missing: Vec<String>,
+}
+
+impl Target {
+    /// Reads a table with the columns of `trials.csv`: `method`, which is the baseline's in each row, and quantities.
+    ///
+    /// # Errors
+    /// A table that cannot be read, has a column of another name, is of other policies, of trials that are not as long as the scenario's, or
+    /// has a quantity that is no number or has no spread; with file and line, all at once.
+    pub fn load(path: &Path, scenario: &Scenario) -> Result<Self, Failure> {
+        let shown = path.display();
+        let table = InputTable::read(path)?;
+        let metrics = Catalogue::of(&task_names(scenario));
+        let Columns { found, missing, mut problems } = Columns::of(&table, &metrics);
+        let mut values = vec![Vec::new(); found.len()];
+        for (line, row) in &table.rows {
+            let cells = Cells { table: &table, row };
+            problems.extend(
+                cells.check(scenario, &metrics).into_iter().map(|problem| format!("{line}: {problem}")),
+            );
+            for (quantity, values) in found.iter().zip(&mut values) {
+                match cells.number(&quantity.name) {
+                    Ok(value) => values.extend(value),
+                    Err(problem) => problems.push(format!("{line}: {problem}")),
+                }
+            }
+        }
+        if problems.is_empty() && table.rows.len() < 2 {
+            problems.push(format!(" must have at least two trials, found {}", table.rows.len()));
+        }
+        if !problems.is_empty() {
+            let lines: Vec<String> = problems.iter().map(|problem| format!("{shown}:{problem}")).collect();
+            return Err(Failure::Input(lines.join("\n")));
+        }
+        let spread = |(quantity, values): (&Quantity, &Vec<f64>)| {
+            Spread::of(values).filter(|spread| spread.sd > 0.0).ok_or_else(|| {
+                Failure::input(format!(
+                    "{shown}: {} must differ between trials: distances are measured by its spread",
+                    quantity.name
+                ))
+            })
+        };
+        let spreads = found.iter().zip(&values).map(spread).collect::<Result<Vec<_>, _>>()?;
+        Ok(Self { quantities: found, spreads, trials: table.rows.len(), missing })
+    }
+
+    /// The quantities of a trial.
+    ///
+    /// # Errors
+    /// One that the trial has not, in one sentence.
+    pub fn measure(&self, record: &TrialRecord) -> Result<Vec<f64>, String> {
+        let value = |quantity: &Quantity| {
+            let value = quantity.metric.value(record);
+            value.ok_or_else(|| format!("{} is not defined in a trial", quantity.name))
+        };
+        self.quantities.iter().map(value).collect()
+    }
+
+    /// How far a model is from the target: the sum over all quantities; smaller is nearer.
+    #[must_use]
+    pub fn misfit(&self, model: &[Spread]) -> f64 {
+        self.spreads.iter().zip(model).flat_map(|(data, model)| data.misfit(model)).sum()
+    }
+}
+
+/// What the columns of a table are.
+struct Columns {
+    found: Vec<Quantity>,
+    missing: Vec<String>,
+    /// What is wrong with its header.
+    problems: Vec<String>,
+}
+
+impl Columns {
+    fn of(table: &InputTable, metrics: &Catalogue) -> Self {
+        let mut problems = Vec::new();
+        let (known, all) = (trial_columns(metrics), Quantity::all(metrics));
+        let names: Vec<&str> = all.iter().map(|quantity| quantity.name.as_str()).collect();
+        let names = names.join(", ");
+        for unknown in table.columns().filter(|name| !known.iter().any(|column| column == name)) {
+            problems.push(format!("1: {unknown:?} is no column of trials.csv; what can be fitted: {names}"));
+        }
+        if table.column("method").is_none() {
+            problems.push("1: has no column method".to_owned());
+        }
+        let (found, missing): (Vec<_>, Vec<_>) =
+            all.into_iter().partition(|quantity| table.column(&quantity.name).is_some());
+        if found.is_empty() && problems.is_empty() {
+            problems.push(format!("1: has none of the columns {names}"));
+        }
+        Self { found, missing: missing.into_iter().map(|quantity| quantity.name).collect(), problems }
+    }
+}
+
+/// A row by the names of its cells.
+struct Cells<'t> {
+    table: &'t InputTable,
+    row: &'t csv::StringRecord,
+}
+
+impl Cells<'_> {
+    fn text(&self, name: &str) -> Option<&str> {
+        self.row.get(self.table.column(name)?)
+    }
+
+    /// A number from 0 on; `None` where there is no such column.
+    fn number(&self, name: &str) -> Result<Option<f64>, String> {
+        let Some(cell) = self.text(name) else { return Ok(None) };
+        let value = cell.parse::<f64>().ok().filter(|value| value.is_finite() && *value >= 0.0);
+        value.map(Some).ok_or_else(|| format!("{name} must be a number from 0 on, found {cell:?}"))
+    }
+
+    /// What is wrong with what is not fitted.
+    fn check(&self, scenario: &Scenario, metrics: &Catalogue) -> Vec<String> {
+        let mut problems = Vec::new();
+        if let Some(method) = self.text("method").filter(|method| *method != POLICY) {
+            problems.push(format!("method must be {POLICY}: nothing else is calibrated, found {method:?}"));
+        }
+        let mut number = |name: &str| {
+            let value = self.number(name);
+            value.unwrap_or_else(|problem| {
+                problems.push(problem);
+                None
+            })
+        };
+        let (time_s, total) = (number("time_s"), number("rescuees_total"));
+        let (duration_s, dt_s) = (scenario.duration_s, scenario.dt_s);
+        if let Some(time_s) = time_s.filter(|time_s| (time_s - duration_s).abs() > dt_s / 2.0) {
+            problems.push(format!("time_s must be the scenario's duration_s, {duration_s}, found {time_s}"));
+        }
+        let tasks = metrics.declared("rescuees").into_iter().map(|place| &metrics[place]);
+        let parts = tasks.filter(|metric| !metric.is_total()).map(|metric| self.number(&metric.column()));
+        if let (Ok(Some(parts)), Some(total)) = (parts.collect::<Result<Option<Vec<f64>>, _>>(), total) {
+            let sum: f64 = parts.iter().sum();
+            if (total - sum).abs() > 1e-6 {
+                problems.push(format!("rescuees_total must be the sum over the tasks, {sum}, found {total}"));
+            }
+        }
+        problems
+    }
+}
+
+#[cfg(test)]
+#[expect(clippy::float_cmp, reason = "small whole numbers are exact")]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_misfit_counts_standard_deviations_and_ratios() {
+        let data = Spread { mean: 100.0, sd: 5.0 };
+        let misfit = |mean, sd| data.misfit(&Spread { mean, sd });
+        assert_eq!(misfit(100.0, 5.0), [0.0, 0.0]);
+        assert_eq!(misfit(110.0, 5.0), [4.0, 0.0]);
+        let [_, wide] = misfit(100.0, 5.0 * std::f64::consts::E);
+        assert!((wide - 1.0).abs() < 1e-12);
+        assert!((misfit(100.0, 0.0)[1] - 20_f64.ln().powi(2)).abs() < 1e-12, "no spread at all is finite");
+    }
+
+    fn papers() -> Scenario {
+        Scenario::load(&scenarios().join("paper.ron")).unwrap().0
+    }
+
+    fn scenarios() -> std::path::PathBuf {
+        Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios")
+    }
+
+    #[test]
+    fn the_authors_table_is_read() {
+        let path = scenarios().join("reference/dis_trials.csv");
+        let target = Target::load(&path, &papers()).unwrap();
+        let names: Vec<&str> = target.quantities.iter().map(|quantity| quantity.name.as_str()).collect();
+        let expected =
+            ["rescuees_hard", "rescuees_easy", "energy_hard", "energy_easy", "hp_hard", "hp_easy", "rounds"];
+        assert_eq!((target.trials, names), (10, expected.to_vec()));
+        // numpy: mean and std(ddof=1) of rescuees_hard
+        assert!((target.spreads[0].mean - 52.8).abs() < 1e-12);
+        assert!((target.spreads[0].sd - 4.211_096_452_627_46).abs() < 1e-9, "{}", target.spreads[0].sd);
+    }
+
+    #[test]
+    fn another_policy_cannot_be_a_target() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("target.csv");
+        std::fs::write(&path, "method,rounds\nDIS,6\nRNE,7\n").unwrap();
+        let error = Target::load(&path, &papers()).err().unwrap().to_string();
+        assert!(error.contains(":3: method must be DIS") && error.contains("\"RNE\""), "{error}");
+    }
+}

@@ -1,0 +1,324 @@
+//! The paper's claims, as data, and what trials say of each.
+//!
+//! A claim is one or more parts that must all be true: RNE rescues the most when it rescues more than each of the others. A part compares two
+//! quantities over pairs of trials.
+//!
+//! - *Holds*: the 95 % interval of every part lies wholly on the claimed side. All must, so no correction is needed (intersection-union test, Berger
+//!   1982): a false claim is called true in about 2.5 % of experiments at most.
+//! - *Does not hold*: the interval of some part lies wholly on the other side, at 95 % shared by the parts (Bonferroni): with three parts each interval
+//!   is one of 98.3 %. A true claim is called false in about 2.5 % of experiments at most.
+//! - *Undecided*: neither.
+
+mod examples;
+mod files;
+mod papers;
+mod power;
+
+use experiments::Failure;
+use experiments::comparison::CONFIDENCE;
+use experiments::metric::Catalogue;
+use experiments::stats::Moments;
+use experiments::stats::bootstrap::interval;
+use experiments::stats::paired::pairs_needed;
+use experiments::sweep::folder::Folder;
+use serde::Serialize;
+
+pub use examples::{Example, examples};
+pub use files::{write_authors_columns, write_claims, write_examples, write_power};
+pub use papers::CLAIMS;
+pub use power::{Power, Shares, power};
+use power::{TIMES, least_difference};
+
+/// Pairs below which nothing is decided: signs alone would do it too often.
+const LEAST_PAIRS: usize = 6;
+
+/// Something that the paper says of its experiment.
+#[derive(Debug)]
+pub struct Claim {
+    /// Short name.
+    pub name: &'static str,
+    /// What is claimed, in our words.
+    pub words: &'static str,
+    /// The section of the paper.
+    pub section: &'static str,
+    /// What must be true for it.
+    pub parts: &'static [Part],
+}
+
+/// One quantity against another.
+#[derive(Debug)]
+pub struct Part {
+    /// Policy and metric of the one.
+    pub a: [&'static str; 2],
+    /// Of the other.
+    pub b: [&'static str; 2],
+    /// What is claimed of the first.
+    pub claimed: Side,
+}
+
+/// A side of zero.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Side {
+    /// The first is more.
+    More,
+    /// The first is less.
+    Less,
+}
+
+/// What trials say of a claim.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+pub enum Verdict {
+    /// It is so.
+    #[serde(rename = "holds")]
+    Holds,
+    /// It is otherwise.
+    #[serde(rename = "does not hold")]
+    DoesNotHold,
+    /// These trials do not tell.
+    #[serde(rename = "undecided")]
+    Undecided,
+}
+
+impl Verdict {
+    /// In words.
+    #[must_use]
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::Holds => "holds",
+            Self::DoesNotHold => "does not hold",
+            Self::Undecided => "undecided",
+        }
+    }
+
+    /// From the intervals of all parts: each at 95 %, and each at 95 % shared by the parts.
+    #[must_use]
+    fn of(parts: &[PartFinding]) -> Self {
+        let on = |interval: Option<[f64; 2]>, side: Side| {
+            interval.is_some_and(|[low, high]| match side {
+                Side::More => low > 0.0,
+                Side::Less => high < 0.0,
+            })
+        };
+        if !parts.is_empty() && parts.iter().all(|part| on(part.interval, part.claimed)) {
+            Self::Holds
+        } else if parts.iter().any(|part| on(part.shared_interval, part.claimed.other())) {
+            Self::DoesNotHold
+        } else {
+            Self::Undecided
+        }
+    }
+}
+
+impl Side {
+    fn other(self) -> Self {
+        match self {
+            Self::More => Self::Less,
+            Self::Less => Self::More,
+        }
+    }
+
+    /// As a sign between the two.
+    #[must_use]
+    pub fn sign(self) -> char {
+        match self {
+            Self::More => '>',
+            Self::Less => '<',
+        }
+    }
+}
+
+/// What trials say of one part.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PartFinding {
+    /// What is claimed of the first.
+    pub claimed: Side,
+    /// Differences of the pairs in which both are defined, first less second, with the numbers of their trials.
+    pub differences: Vec<(u32, f64)>,
+    /// Their mean.
+    pub difference: Option<f64>,
+    /// Its 95 % interval.
+    pub interval: Option<[f64; 2]>,
+    /// Its interval at 95 % shared by all parts of the claim.
+    pub shared_interval: Option<[f64; 2]>,
+    /// Pairs that a paired t test would need for 80 % power, were the difference what was observed.
+    pub pairs_needed: Option<u64>,
+}
+
+impl PartFinding {
+    /// Standard deviation of the differences.
+    #[must_use]
+    pub fn sd(&self) -> Option<f64> {
+        let values: Vec<f64> = self.differences.iter().map(|(_, difference)| *difference).collect();
+        Moments::of(&values).sd
+    }
+
+    /// The difference that 80 % of experiments of as many trials as the paper's find.
+    #[must_use]
+    pub fn least_found(&self) -> Option<f64> {
+        least_difference(self.sd()?, PAPERS_TRIALS as usize)
+    }
+}
+
+/// What trials say of a claim.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Finding {
+    /// The verdict.
+    pub verdict: Verdict,
+    /// Its parts, in the order of the claim's.
+    pub parts: Vec<PartFinding>,
+}
+
+/// Trials of the paper.
+pub const PAPERS_TRIALS: u32 = 10;
+
+/// Trials below which nothing is said of the power.
+pub const LEAST_TRIALS: u32 = PAPERS_TRIALS * TIMES as u32;
+
+/// Seed of the experiments that are drawn for the power.
+const POWER_SEED: u64 = 1;
+
+/// What a scenario's trials say of each claim.
+pub struct Judged {
+    /// Name of the scenario.
+    pub scenario: String,
+    /// What is measured there.
+    pub metrics: Catalogue,
+    /// Over as many trials as the paper has.
+    pub of_few: Vec<Finding>,
+    /// How many are all.
+    pub trials: u32,
+    /// Over all.
+    pub of_all: Vec<Finding>,
+    /// What experiments of other sizes would say.
+    pub powers: Vec<Option<Power>>,
+}
+
+impl Judged {
+    /// Of the first trials of a folder's sweep.
+    ///
+    /// # Errors
+    /// The sweep has not the policies of a claim.
+    pub fn of(folder: &Folder, trials: u32) -> Result<Self, Failure> {
+        let all =
+            |trials| CLAIMS.iter().map(|claim| judge(folder, claim, trials)).collect::<Result<Vec<_>, _>>();
+        let (of_few, of_all) = (all(PAPERS_TRIALS)?, all(trials)?);
+        let powers =
+            of_all.iter().map(|finding| power(finding, PAPERS_TRIALS as usize, POWER_SEED)).collect();
+        let (scenario, metrics) = (folder.experiment().name.clone(), folder.experiment().metrics.clone());
+        Ok(Self { scenario, metrics, of_few, trials, of_all, powers })
+    }
+}
+
+/// What the first trials of a folder's sweep say of a claim.
+///
+/// # Errors
+/// The sweep has not the policies of the claim.
+pub fn judge(folder: &Folder, claim: &Claim, trials: u32) -> Result<Finding, Failure> {
+    let count = claim.parts.len();
+    let find = |part: &Part| {
+        let differences = differences(folder, part, trials)?;
+        Ok(part_finding(part, differences, count))
+    };
+    let parts = claim.parts.iter().map(find).collect::<Result<Vec<_>, Failure>>()?;
+    Ok(Finding { verdict: Verdict::of(&parts), parts })
+}
+
+fn part_finding(part: &Part, differences: Vec<(u32, f64)>, count: usize) -> PartFinding {
+    let values: Vec<f64> = differences.iter().map(|(_, difference)| *difference).collect();
+    let interval = |confidence| interval(&values, confidence).filter(|_| values.len() >= LEAST_PAIRS);
+    PartFinding {
+        claimed: part.claimed,
+        difference: Moments::of(&values).mean,
+        interval: interval(CONFIDENCE),
+        shared_interval: interval(1.0 - (1.0 - CONFIDENCE) / count as f64),
+        pairs_needed: pairs_needed(&values),
+        differences,
+    }
+}
+
+/// First less second, trial by trial, where both are defined.
+fn differences(folder: &Folder, part: &Part, trials: u32) -> Result<Vec<(u32, f64)>, Failure> {
+    let metrics = &folder.experiment().metrics;
+    let place =
+        |[policy, metric]: [&str; 2]| Ok::<_, Failure>((place_of(folder, policy)?, metrics.named(metric)?));
+    let (a, b) = (place(part.a)?, place(part.b)?);
+    let value = |(policy, metric): (usize, usize), trial: u32| {
+        folder.results().get(&(0, policy, trial))?.metrics.as_ref()?[metric]
+    };
+    Ok((1..=trials).filter_map(|trial| Some((trial, value(a, trial)? - value(b, trial)?))).collect())
+}
+
+fn place_of(folder: &Folder, policy: &str) -> Result<usize, Failure> {
+    let place = folder.experiment().policies.iter().position(|known| known.label == policy);
+    place.ok_or_else(|| Failure::input(format!("{}: has no policy {policy}", folder.path().display())))
+}
+
+impl Part {
+    /// What is compared, in words.
+    #[must_use]
+    pub fn words(&self, metrics: &Catalogue) -> String {
+        let [policy, metric] = self.a;
+        let title = |name| metrics.title(name);
+        if self.a[1] == self.b[1] {
+            format!("{}: {policy} {} {}", title(metric), self.claimed.sign(), self.b[0])
+        } else {
+            format!("{policy}: {} {} {}", title(metric), self.claimed.sign(), title(self.b[1]))
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use usar_sim::scenario::Scenario;
+
+    use super::*;
+    use experiments::metric::task_names;
+
+    fn parts(intervals: &[[f64; 4]], claimed: Side) -> Vec<PartFinding> {
+        let part = |[low, high, wide_low, wide_high]: &[f64; 4]| PartFinding {
+            claimed,
+            differences: Vec::new(),
+            difference: None,
+            interval: Some([*low, *high]),
+            shared_interval: Some([*wide_low, *wide_high]),
+            pairs_needed: None,
+        };
+        intervals.iter().map(part).collect()
+    }
+
+    #[test]
+    fn a_claim_holds_when_every_part_does_and_falls_with_one() {
+        let above = [1.0, 3.0, 0.5, 3.5];
+        let open = [-1.0, 3.0, -1.5, 3.5];
+        let below = [-3.0, -1.0, -3.5, -0.5];
+        let nearly_below = [-3.0, -0.1, -3.5, 0.2];
+        let verdict = |intervals: &[[f64; 4]], side| Verdict::of(&parts(intervals, side));
+        assert_eq!(verdict(&[above, above], Side::More), Verdict::Holds);
+        assert_eq!(verdict(&[above, open], Side::More), Verdict::Undecided);
+        assert_eq!(verdict(&[above, below], Side::More), Verdict::DoesNotHold);
+        assert_eq!(verdict(&[above, nearly_below], Side::More), Verdict::Undecided);
+        assert_eq!(verdict(&[below, below], Side::Less), Verdict::Holds);
+        assert_eq!(verdict(&[below, above], Side::Less), Verdict::DoesNotHold);
+        assert_eq!(verdict(&[], Side::More), Verdict::Undecided);
+    }
+
+    #[test]
+    fn every_claim_is_of_metrics_and_policies_that_exist() {
+        let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/paper.ron");
+        let metrics = Catalogue::of(&task_names(&Scenario::load(&path).unwrap().0));
+        for part in CLAIMS.iter().flat_map(|claim| claim.parts) {
+            for [policy, metric] in [part.a, part.b] {
+                assert!(metrics.named(metric).is_ok(), "{metric}");
+                assert!(rne_core::Registry::standard().names().contains(&policy), "{policy}");
+            }
+        }
+    }
+
+    #[test]
+    fn no_interval_is_no_verdict() {
+        let mut unknown = parts(&[[1.0, 2.0, 1.0, 2.0]], Side::More);
+        unknown[0].interval = None;
+        unknown[0].shared_interval = None;
+        assert_eq!(Verdict::of(&unknown), Verdict::Undecided);
+    }
+}

@@ -1,0 +1,127 @@
+//! The verdicts on the paper's claims, section by section: printed as text, and as a page.
+
+use std::path::{Path, PathBuf};
+
+use askama::Template;
+use comfy_table::Table;
+use experiments::Failure;
+use experiments::experiment::Program;
+use experiments::files::NewFile;
+use experiments::sweep::disk::REPORT;
+use reports::STYLE;
+
+use crate::claims::{CLAIMS, Example, Judged, LEAST_TRIALS};
+use crate::table::{claims_table, examples_table, power_table, verdicts_table};
+
+/// A part of what is to be said.
+pub struct Section {
+    /// Its title.
+    pub title: String,
+    /// Its table, where there is enough to fill one.
+    pub table: Option<Table>,
+    /// What is said below.
+    pub note: String,
+}
+
+/// All that is to be said, the verdicts last.
+#[must_use]
+pub fn sections(judged: &[Judged], examples: &[Example]) -> Vec<Section> {
+    let claims = judged.iter().map(|scenario| Section {
+        title: format!("{}: what its trials say of each claim", scenario.scenario),
+        table: Some(claims_table(scenario)),
+        note: String::new(),
+    });
+    let examples = Section {
+        title: "The paper's numerical examples, with exact values (nats)".to_owned(),
+        table: Some(examples_table(examples)),
+        note: String::new(),
+    };
+    let power = judged.iter().map(|scenario| {
+        let table = power_table(scenario);
+        let few = format!("Not said: it takes {LEAST_TRIALS} trials, there are {}.", scenario.trials);
+        let note = if table.is_some() { POWER_NOTE.to_owned() } else { few };
+        let title = format!("{}: what 10 pairs could have shown, and how many it takes", scenario.scenario);
+        Section { title, table, note }
+    });
+    let verdicts =
+        Section { title: "Verdicts".to_owned(), table: Some(verdicts_table(judged)), note: footnote() };
+    claims.chain([examples]).chain(power).chain([verdicts]).collect()
+}
+
+const POWER_NOTE: &str = "leans to: what large experiments would say, were the means of these trials the truth; pairs for 80 %: the fewest with which 80 % of\n\
+    experiments say so (of a comparison: of paired t tests at 5 %); of 10 pairs: verdicts of experiments of 10 pairs drawn from these; least found\n\
+    by 10: the difference that 80 % of experiments of 10 pairs find";
+
+fn footnote() -> String {
+    format!(
+        "Paired by seed; intervals: BCa bootstrap at 95 %, widened for small n. A claim holds when the interval of each of its comparisons lies on the\n\
+         claimed side, and does not when one lies on the other side (by the shared interval: 95 % for all its comparisons together); else it is\n\
+         undecided. Each verdict is wrong in about 2.5 % of experiments at most; the {} claims are not corrected for one another.\n\
+         docs/reproduction.md discusses them.",
+        CLAIMS.len()
+    )
+}
+
+#[derive(Template)]
+#[template(path = "claims.html")]
+struct Page<'a> {
+    style: &'a str,
+    scenarios: Vec<&'a str>,
+    sections: Vec<Shown>,
+    command: String,
+    program: String,
+}
+
+/// A section of the page.
+struct Shown {
+    title: String,
+    header: Vec<String>,
+    rows: Vec<Row>,
+    /// Whether rows are claims and their comparisons.
+    has_parts: bool,
+    note: String,
+}
+
+struct Row {
+    /// One of the comparisons of the claim above, which are indented.
+    is_part: bool,
+    cells: Vec<String>,
+}
+
+impl Shown {
+    fn of(section: &Section) -> Self {
+        let text =
+            |row: &comfy_table::Row| row.cell_iter().map(|cell| cell.content().trim().to_owned()).collect();
+        let row = |row: &comfy_table::Row| Row {
+            is_part: row.cell_iter().next().is_some_and(|first| first.content().starts_with(' ')),
+            cells: text(row),
+        };
+        let table = section.table.as_ref();
+        let header: Vec<String> = table.and_then(Table::header).map(text).unwrap_or_default();
+        let mut rows: Vec<Row> = table.map(|table| table.row_iter().map(row).collect()).unwrap_or_default();
+        rows.iter_mut().for_each(|row| row.cells.resize(header.len(), String::new()));
+        let has_parts = rows.iter().any(|row| row.is_part);
+        Self { title: section.title.clone(), header, rows, has_parts, note: section.note.clone() }
+    }
+}
+
+/// Writes the sections as `report.html`, the verdicts first, beside the folders of the scenarios; returns where it is.
+///
+/// # Errors
+/// The disk does not take it.
+pub fn write_page(out: &Path, judged: &[Judged], sections: &[Section]) -> Result<PathBuf, Failure> {
+    let mut sections: Vec<Shown> = sections.iter().map(Shown::of).collect();
+    sections.rotate_right(1);
+    let Program { version, source } = Program::this();
+    let trials = judged.first().map_or(0, |scenario| scenario.trials);
+    let page = Page {
+        style: STYLE.trim_end(),
+        scenarios: judged.iter().map(|scenario| scenario.scenario.as_str()).collect(),
+        sections,
+        command: format!("usar reproduce --trials {trials}"),
+        program: format!("usar {version}, source {source}"),
+    };
+    let page = page.render().map_err(Failure::run)?;
+    NewFile::write(out, REPORT, page.as_bytes())?;
+    Ok(out.join(REPORT))
+}

@@ -1,0 +1,118 @@
+//! Tables of the paper's claims.
+
+use comfy_table::{Cell, Table};
+use experiments::comparison::{digits, short};
+use reports::table::{headed, right};
+
+use crate::claims::{CLAIMS, Example, Judged, PAPERS_TRIALS, PartFinding, Shares};
+
+/// What a scenario's trials say of each claim: a row for each of its comparisons.
+pub(crate) fn claims_table(judged: &Judged) -> Table {
+    let few = format!("first {PAPERS_TRIALS} pairs");
+    let all = format!("{} pairs", judged.trials);
+    let mut table =
+        headed(["claim", &few, &all, "difference", "95 % interval", "shared interval", "n", "first 10"]);
+    let difference = |found: &PartFinding| right(&found.difference.map_or("-".to_owned(), short));
+    for ((claim, few), all) in CLAIMS.iter().zip(&judged.of_few).zip(&judged.of_all) {
+        table.add_row([
+            Cell::new(claim.words),
+            Cell::new(few.verdict.words()),
+            Cell::new(all.verdict.words()),
+        ]);
+        for (part, (few, all)) in claim.parts.iter().zip(few.parts.iter().zip(&all.parts)) {
+            table.add_row([
+                Cell::new(format!("  {}", part.words(&judged.metrics))),
+                Cell::new(""),
+                Cell::new(""),
+                difference(all),
+                right(&interval(all.interval)),
+                right(&interval(all.shared_interval)),
+                right(&all.differences.len().to_string()),
+                right(&format!(
+                    "{} ({})",
+                    few.difference.map_or("-".to_owned(), short),
+                    interval(few.interval)
+                )),
+            ]);
+        }
+    }
+    table
+}
+
+fn interval(interval: Option<[f64; 2]>) -> String {
+    interval.map_or("-".to_owned(), |[low, high]| format!("{} to {}", short(low), short(high)))
+}
+
+/// The paper's examples with exact values.
+pub(crate) fn examples_table(examples: &[Example]) -> Table {
+    let mut table = headed(["example", "claim", "entropy of the one", "of the other", "verdict"]);
+    for example in examples {
+        table.add_row([
+            Cell::new(example.name),
+            Cell::new(example.words),
+            right(&digits(example.trusting, 4)),
+            right(&digits(example.doubting, 4)),
+            Cell::new(example.verdict.words()),
+        ]);
+    }
+    table
+}
+
+/// What experiments of other sizes would say of each claim, and find of each of its comparisons; none where the trials are too few to say.
+pub(crate) fn power_table(judged: &Judged) -> Option<Table> {
+    let mut table = headed([
+        "claim",
+        "leans to",
+        "pairs for 80 %",
+        "of 10 pairs: holds",
+        "does not",
+        "undecided",
+        "difference",
+        "least found by 10",
+    ]);
+    let share = |share: f64| right(&format!("{:.0} %", 100.0 * share));
+    if judged.powers.iter().all(Option::is_none) {
+        return None;
+    }
+    for ((claim, power), finding) in CLAIMS.iter().zip(&judged.powers).zip(&judged.of_all) {
+        let Some(power) = power else { continue };
+        let Shares { holds, does_not_hold } = power.of_few;
+        table.add_row([
+            Cell::new(claim.words),
+            Cell::new(power.leaning.words()),
+            right(&power.pairs_needed.map_or("> 1000000".to_owned(), |pairs| pairs.to_string())),
+            share(holds),
+            share(does_not_hold),
+            share((1.0 - holds - does_not_hold).max(0.0)),
+        ]);
+        for (part, found) in claim.parts.iter().zip(&finding.parts) {
+            table.add_row([
+                Cell::new(format!("  {}", part.words(&judged.metrics))),
+                Cell::new(""),
+                right(&found.pairs_needed.map_or("-".to_owned(), |pairs| pairs.to_string())),
+                Cell::new(""),
+                Cell::new(""),
+                Cell::new(""),
+                right(&found.difference.map_or("-".to_owned(), short)),
+                right(&found.least_found().map_or("-".to_owned(), short)),
+            ]);
+        }
+    }
+    Some(table)
+}
+
+/// All verdicts side by side.
+pub(crate) fn verdicts_table(judged: &[Judged]) -> Table {
+    let header = judged.iter().flat_map(|scenario| {
+        [PAPERS_TRIALS, scenario.trials]
+            .map(|trials| Cell::new(format!("{}, {trials} pairs", scenario.scenario)))
+    });
+    let mut table = headed(std::iter::once(Cell::new("claim")).chain(header));
+    for (i, claim) in CLAIMS.iter().enumerate() {
+        let verdicts = judged.iter().flat_map(|scenario| {
+            [&scenario.of_few, &scenario.of_all].map(|findings| Cell::new(findings[i].verdict.words()))
+        });
+        table.add_row(std::iter::once(Cell::new(claim.words)).chain(verdicts));
+    }
+    table
+}

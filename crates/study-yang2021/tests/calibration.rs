@@ -1,0 +1,76 @@
+//! The calibration that made `paper-calibrated.ron`, and the log of a calibration.
+
+use std::path::{Path, PathBuf};
+use std::sync::atomic::AtomicBool;
+
+use ron_fields::Fields;
+use study_yang2021::calibration::{Calibration, Free, Log, Spread, Target};
+use usar_sim::scenario::Scenario;
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).ancestors().nth(2).unwrap().to_owned()
+}
+
+/// The command that made `paper-calibrated.ron` has its log in `docs/calibration/`; its best candidate is the scenario, and running it again gives the
+/// numbers of the log.
+#[test]
+fn the_calibrated_scenario_is_the_best_of_its_log() {
+    let (scenario, text) = Scenario::load(&root().join("scenarios/paper-calibrated.ron")).unwrap();
+    let fields = Fields::of(&text);
+    let log = std::fs::read_to_string(root().join("docs/calibration/chosen.csv")).unwrap();
+    let mut rows = csv::Reader::from_reader(log.as_bytes());
+    let header = rows.headers().unwrap().clone();
+    let records: Vec<csv::StringRecord> = rows.records().map(Result::unwrap).collect();
+    let misfit = |record: &csv::StringRecord| record[1].parse::<f64>().unwrap();
+    let best = records.iter().min_by(|a, b| misfit(a).total_cmp(&misfit(b))).unwrap();
+    let names = || header.iter().zip(best).filter(|(name, _)| name.contains('.'));
+    assert!(names().count() >= 5, "{header:?}");
+    for (name, value) in names() {
+        let path = name.replace("[*]", "[0]");
+        let written = text[fields.value(&path).unwrap()].trim().parse::<f64>().unwrap();
+        assert_eq!(written.to_bits(), value.parse::<f64>().unwrap().to_bits(), "{path}");
+    }
+    let target = Target::load(&root().join("scenarios/reference/dis_trials.csv"), &scenario).unwrap();
+    let calibration = Calibration {
+        text,
+        base: scenario,
+        free: Vec::new(),
+        target,
+        trials: 10,
+        first_seed: 100_001,
+        seed: 1,
+        first_step: 0.25,
+    };
+    let found = calibration.measure(&[], (100_001..100_011_u64).collect::<Vec<_>>(), &AtomicBool::new(false));
+    let spreads: Vec<Spread> =
+        found.unwrap().unwrap().iter().filter_map(|values| Spread::of(values)).collect();
+    let cell =
+        |name: String| best[header.iter().position(|known| known == name).unwrap()].parse::<f64>().unwrap();
+    for (quantity, spread) in calibration.target.quantities.iter().zip(&spreads) {
+        assert_eq!(
+            spread.mean.to_bits(),
+            cell(format!("{}_mean", quantity.name)).to_bits(),
+            "{}",
+            quantity.name
+        );
+        assert_eq!(spread.sd.to_bits(), cell(format!("{}_sd", quantity.name)).to_bits(), "{}", quantity.name);
+    }
+}
+
+#[test]
+fn a_log_is_held_by_one_process() {
+    let place = tempfile::tempdir().unwrap();
+    let (base, text) = Scenario::load(&root().join("scenarios/paper.ron")).unwrap();
+    let free = vec![Free::parse("mission.loading_s=1..3", &Fields::of(&text), &Fields::of(&text)).unwrap()];
+    let table = place.path().join("target.csv");
+    std::fs::write(&table, "method,rescuees_hard,energy_hard\nDIS,10,150\nDIS,14,160\nDIS,12,170\n").unwrap();
+    let target = Target::load(&table, &base).unwrap();
+    let calibration =
+        Calibration { text, base, free, target, trials: 2, first_seed: 1, seed: 1, first_step: 0.25 };
+    let out = place.path().join("out");
+    let held = Log::open(&out, &calibration, false).unwrap();
+    let error = Log::open(&out, &calibration, false).err().unwrap();
+    assert!(error.to_string().contains("another process is at work"), "{error}");
+    drop(held);
+    assert!(Log::open(&out, &calibration, false).is_ok());
+}

@@ -1,0 +1,127 @@
+//! The command line.
+
+use std::io::Write;
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+use experiments::experiment::set_registry;
+use experiments::{Failure, panic_message};
+use rne_core::Registry;
+
+use crate::commands::{
+    calibrate, check, compare, estimate, explain, group, merge, readings, report, reproduce, run, schema,
+    sweep, trust, verify,
+};
+
+/// Which robots should team up? A laboratory for trust and grouping policies in mixed robot teams.
+#[derive(Debug, Parser)]
+#[command(
+    name = "usar",
+    version,
+    about,
+    max_term_width = 110,
+    after_help = "\
+Examples:
+  usar sweep scenarios/paper.ron                       the paper's experiment: policies compared over paired trials
+  usar run scenarios/paper.ron --policy RNE --seed 3   one trial, round by round
+  usar compare results/paper                           is A better than B, by how much, how sure is that?
+  usar report results/paper                            all of it as one page, with figures
+  usar estimate scenarios/paper.ron --trials 1000      how long, and how much disk?
+  usar verify results/paper                            do the numbers come out again?
+  usar trust --weights 6,4,2 --from 86,120,30 --to 20,30,10
+  usar group robots.csv --policy RNE
+  usar check scenarios/*.ron                           is every value in its range?"
+)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    Run(run::Arguments),
+    Sweep(sweep::Arguments),
+    Estimate(estimate::Arguments),
+    Merge(merge::Arguments),
+    Compare(compare::Arguments),
+    Report(report::Arguments),
+    Reproduce(reproduce::Arguments),
+    Explain(explain::Arguments),
+    Readings(readings::Arguments),
+    Verify(verify::Arguments),
+    Calibrate(calibrate::Arguments),
+    Check(check::Arguments),
+    Trust(trust::Arguments),
+    Group(group::Arguments),
+    Schema(schema::Arguments),
+}
+
+/// Runs the command that the process was called with, with policies of the caller's own beside the built-in
+/// ones: the `main` of a program that adds policies.
+///
+/// ```no_run
+/// # fn my_policy() -> rne_core::PolicyKind { rne_core::policies::random::kind() }
+/// fn main() -> std::process::ExitCode {
+///     let mut policies = rne_core::Registry::standard();
+///     policies.add(my_policy()).expect("a new name");
+///     usar::main_with(policies)
+/// }
+/// ```
+#[must_use]
+pub fn main_with(policies: Registry) -> ExitCode {
+    // A program that calls this twice keeps its first policies.
+    let _ = set_registry(policies);
+    main()
+}
+
+/// Runs the command that the process was called with. The exit status is 0 for a result, 1 for trouble
+/// underway, 2 for input that cannot be used, 3 for trouble with the disk, and 130 after Ctrl-C.
+#[must_use]
+pub fn main() -> ExitCode {
+    // A panic is a defect of ours; it is caught and reported in one sentence, never as a backtrace.
+    std::panic::set_hook(Box::new(|_| {}));
+    let cli = Cli::parse();
+    let mut out = std::io::stdout().lock();
+    let result = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| cli.command.execute(&mut out)))
+        .unwrap_or_else(|panic| Err(Failure::run(format!("internal error: {}", panic_message(&*panic)))));
+    let result = result.and_then(|()| Ok(out.flush()?));
+    match result {
+        Ok(()) | Err(Failure::ClosedOutput) => ExitCode::SUCCESS,
+        Err(failure) => {
+            let _ = writeln!(std::io::stderr(), "error: {failure}");
+            ExitCode::from(exit_status(&failure))
+        }
+    }
+}
+
+fn exit_status(failure: &Failure) -> u8 {
+    match failure {
+        Failure::ClosedOutput => 0,
+        Failure::Run(_) => 1,
+        Failure::Input(_) => 2,
+        Failure::Storage(_) => 3,
+        Failure::Interrupted(_) => 130,
+    }
+}
+
+impl Command {
+    fn execute(&self, out: &mut dyn Write) -> Result<(), Failure> {
+        match self {
+            Self::Run(arguments) => arguments.execute(out),
+            Self::Sweep(arguments) => arguments.execute(out),
+            Self::Estimate(arguments) => arguments.execute(out),
+            Self::Merge(arguments) => arguments.execute(out),
+            Self::Compare(arguments) => arguments.execute(out),
+            Self::Reproduce(arguments) => arguments.execute(out),
+            Self::Report(arguments) => arguments.execute(out),
+            Self::Explain(arguments) => arguments.execute(out),
+            Self::Readings(arguments) => arguments.execute(out),
+            Self::Verify(arguments) => arguments.execute(out),
+            Self::Calibrate(arguments) => arguments.execute(out),
+            Self::Check(arguments) => arguments.execute(out),
+            Self::Trust(arguments) => arguments.execute(out),
+            Self::Group(arguments) => arguments.execute(out),
+            Self::Schema(arguments) => arguments.execute(out),
+        }
+    }
+}

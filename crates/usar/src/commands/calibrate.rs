@@ -1,0 +1,230 @@
+//! `usar calibrate`: free parameters of a scenario, fitted to recorded trials of the distance baseline.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use experiments::Failure;
+use experiments::comparison::short;
+use experiments::files::NewFile;
+use rayon::prelude::*;
+use ron_fields::{Fields, with_values};
+use study_yang2021::calibration::{Calibration, Fit, Free, Log, POLICY, Spread, Target, write_fit};
+use study_yang2021::table::fit_table;
+use usar_sim::scenario::Scenario;
+
+use super::load;
+use crate::running::{STOP, default_jobs, progress_bar, stop_on_ctrl_c};
+
+/// The scenario with what was found.
+const CALIBRATED: &str = "calibrated.ron";
+
+/// Fit a scenario's free parameters to recorded trials of the distance baseline (DIS)
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Only DIS is ever run: how other policies fare in the calibrated world is a result, not an aim.
+
+A parameter is a field of the scenario and its range; with `+` it sets several fields, each in a fixed ratio; `[*]` is every entry of a \
+list; `log` searches the range by factors. Each must be written in FILE: what is found takes its place there, and comments stay.
+
+The misfit is the sum, over the columns that the target shares with trials.csv (rescuees, energy, HP of each task; rounds), of the squared \
+distance of the means in standard deviations of the data, plus the squared logarithm of the ratio of the standard deviations. The search \
+is CMA-ES, seeded. Each evaluation is on disk as soon as it is done; the same command goes on where it was broken off, and more \
+--evaluations go on from there. The folder gets evaluations.csv (the log), calibrated.ron, fit.csv and calibration.json.
+
+Examples:
+  usar calibrate scenarios/paper.ron --target scenarios/reference/dis_trials.csv \\
+      --free 'costs.energy.per_metre=0.1..1 log' --free 'radiation[*].radius_m=3..14' \\
+      --free 'roles.carrier.speed_mps + roles.supplier.speed_mps + roles.observer.speed_mps*0.66667=1.5..6' \\
+      --set costs.energy.per_step=0.0 --set mission.energy_turn_back=WhenHome")]
+pub(crate) struct Arguments {
+    /// Scenario (RON)
+    file: PathBuf,
+    /// Recorded trials (CSV with a column `method` that says DIS)
+    #[arg(long, value_name = "CSV")]
+    target: PathBuf,
+    /// A free parameter; may stand several times
+    #[arg(long, value_name = "PATH=LOW..HIGH", required = true)]
+    free: Vec<String>,
+    /// Set a field that is not free; may stand several times
+    #[arg(long, value_name = "PATH=VALUE")]
+    set: Vec<String>,
+    /// Candidates to ask for, the start among them; the last generation is finished, and there are fewer when nothing gets better
+    #[arg(long, default_value_t = 400, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    evaluations: u32,
+    /// Trials of a candidate
+    #[arg(long, default_value_t = 10, value_parser = clap::value_parser!(u32).range(2..=100_000))]
+    trials: u32,
+    /// Seed of their first trial; far from those of experiments, so that these stay unseen
+    #[arg(long, default_value_t = 100_001, value_parser = clap::value_parser!(u64).range(..u64::MAX / 2))]
+    first_seed: u64,
+    /// Trials, with seeds from 1, on which what was found is looked at afterwards
+    #[arg(long, default_value_t = 100, value_parser = clap::value_parser!(u32).range(2..=100_000))]
+    fresh_trials: u32,
+    /// Seed of the search
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// How far the first candidates are from the scenario as it is, as a share of each range; small to refine what was found
+    #[arg(long, default_value_t = 0.25, value_name = "SHARE")]
+    first_step: f64,
+    /// Threads [default: one per core]
+    #[arg(long, value_parser = clap::value_parser!(u32).range(1..=1024))]
+    jobs: Option<u32>,
+    /// Folder for the log and the result [default: results/NAME-calibration]
+    #[arg(long)]
+    out: Option<PathBuf>,
+    /// Start over
+    #[arg(long)]
+    fresh: bool,
+    /// No progress on stderr
+    #[arg(long)]
+    quiet: bool,
+}
+
+impl Arguments {
+    pub(crate) fn execute(&self, out: &mut dyn Write) -> Result<(), Failure> {
+        let calibration = self.calibration()?;
+        let name = format!("{}-calibration", calibration.base.name);
+        let folder = self.out.clone().unwrap_or_else(|| Path::new("results").join(name));
+        let mut log = Log::open(&folder, &calibration, self.fresh)?;
+        stop_on_ctrl_c();
+        let jobs = self.jobs.map_or_else(default_jobs, |jobs| jobs as usize);
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(jobs).build().map_err(Failure::run)?;
+
+        let is_whole = pool.install(|| self.search(&calibration, &mut log, jobs))?;
+        let stopped = |log: &Log| {
+            let count = log.evaluations().len();
+            Failure::Interrupted(format!(
+                "stopped; {count} evaluations are in {}, and the same command goes on",
+                folder.display()
+            ))
+        };
+        if !is_whole {
+            return Err(stopped(&log));
+        }
+        let best = log.best().ok_or_else(|| {
+            let reason = log.evaluations().first().and_then(|evaluation| evaluation.failure.clone());
+            Failure::run(format!("no candidate could be run: {}", reason.unwrap_or_default()))
+        })?;
+        let text = calibration.fitted_text(best).map_err(Failure::run)?;
+        NewFile::write(&folder, CALIBRATED, text.as_bytes())?;
+        let seeds = (1..=u64::from(self.fresh_trials)).into_par_iter();
+        let fresh = pool.install(|| calibration.measure(&best.values, seeds, &STOP)).map_err(Failure::run)?;
+        let Some(fresh) = fresh else { return Err(stopped(&log)) };
+        let fresh: Vec<Spread> = fresh.iter().filter_map(|values| Spread::of(values)).collect();
+        let rows = Fit::rows(&calibration, &best.spreads, &fresh);
+        write_fit(&folder, &rows)?;
+        self.print(out, &calibration, &log, &rows)?;
+        if !self.quiet {
+            eprintln!("results in {}", folder.display());
+        }
+        Ok(())
+    }
+
+    fn calibration(&self) -> Result<Calibration, Failure> {
+        if !(self.first_step > 0.0 && self.first_step <= 1.0) {
+            return Err(Failure::input(format!(
+                "--first-step: must be above 0 and at most 1, found {}",
+                self.first_step
+            )));
+        }
+        if self.first_seed <= u64::from(self.fresh_trials) {
+            return Err(Failure::input(format!(
+                "--first-seed: must be beyond the fresh trials, whose seeds are 1 to {}, found {}",
+                self.fresh_trials, self.first_seed
+            )));
+        }
+        let (given, text) = load(&self.file)?;
+        let known = given.resolved();
+        let known = Fields::of(&known);
+        let mut settings = Vec::new();
+        for entry in &self.set {
+            let pair = entry.split_once('=');
+            let (path, value) =
+                pair.ok_or_else(|| Failure::input(format!("--set: must be path=value, found {entry:?}")))?;
+            let path = path.trim();
+            if known.value(path).is_none() {
+                return Err(Failure::input(format!("--set: {}", known.unknown(path, "a scenario"))));
+            }
+            settings.push((path.to_owned(), value.to_owned()));
+        }
+        let text =
+            with_values(&text, &settings).map_err(|error| Failure::input(format!("--set: {error}")))?;
+        let base = Scenario::parse(&text, &self.file).map_err(Failure::input)?;
+        let fields = Fields::of(&text);
+        let parse = |spec: &String| Free::parse(spec, &fields, &known);
+        let free = self.free.iter().map(parse).collect::<Result<Vec<_>, _>>();
+        let free = free.map_err(|error| Failure::input(format!("--free: {error}")))?;
+        if let Some((path, _)) = settings.iter().find(|(path, _)| free.iter().any(|free| free.is_of(path))) {
+            return Err(Failure::input(format!("--set: {path} is free")));
+        }
+        let target = Target::load(&self.target, &base)?;
+        let (trials, first_seed, seed, first_step) =
+            (self.trials, self.first_seed, self.seed, self.first_step);
+        let calibration = Calibration { text, base, free, target, trials, first_seed, seed, first_step };
+        calibration.check()?;
+        Ok(calibration)
+    }
+
+    fn search(&self, calibration: &Calibration, log: &mut Log, jobs: usize) -> Result<bool, Failure> {
+        let there = log.evaluations().len();
+        if there > 0 && !self.quiet {
+            eprintln!("{there} evaluations are there already");
+        }
+        if there == 0 && !self.quiet {
+            say_what_is_moved(calibration)?;
+        }
+        let progress = progress_bar(self.evaluations as usize, "evaluations", jobs, self.quiet);
+        let is_whole = calibration.search(self.evaluations as usize, log, &STOP, |asked, least| {
+            progress.set_position(asked as u64);
+            progress.set_message(format!("(least misfit {})", short(least)));
+        });
+        progress.finish_and_clear();
+        is_whole
+    }
+
+    fn print(
+        &self,
+        out: &mut dyn Write,
+        calibration: &Calibration,
+        log: &Log,
+        rows: &[Fit],
+    ) -> Result<(), Failure> {
+        let (Some(best), evaluations) = (log.best(), log.evaluations().len()) else { return Ok(()) };
+        for (free, value) in calibration.free.iter().zip(&best.values) {
+            let [low, high] = free.ends();
+            let end = if free.is_at_end(*value) { "; it is at the end of its range" } else { "" };
+            writeln!(out, "{} = {value} (searched from {low} to {high}{end})", free.name)?;
+        }
+        if log.evaluations().first().is_some_and(|first| first.values == best.values) {
+            writeln!(out, "no candidate is nearer to the data than the start")?;
+        }
+        writeln!(out, "{}", fit_table(rows))?;
+        let (trials, first) = (self.trials, self.first_seed);
+        let last = first + u64::from(trials) - 1;
+        writeln!(
+            out,
+            "mean ± sample standard deviation of {POLICY}; fitted: {trials} trials (seeds {first} to {last}), misfit {} after {evaluations} evaluations;\n\
+             fresh: {} trials (seeds from 1) that no candidate was judged by; data: {} trials",
+            short(best.misfit),
+            self.fresh_trials,
+            calibration.target.trials,
+        )?;
+        let missing = &calibration.target.missing;
+        if !missing.is_empty() {
+            writeln!(out, "not in the data, and not looked at: {}", missing.join(", "))?;
+        }
+        Ok(())
+    }
+}
+
+/// Where the search begins otherwise than the scenario is.
+fn say_what_is_moved(calibration: &Calibration) -> Result<(), Failure> {
+    let values = calibration.present()?.into_iter().zip(calibration.start()?);
+    for (free, (is, begins)) in
+        calibration.free.iter().zip(values).filter(|(_, (is, begins))| is.to_bits() != begins.to_bits())
+    {
+        eprintln!("note: {} is {is}, outside its range; the search begins at {begins}", free.name);
+    }
+    Ok(())
+}

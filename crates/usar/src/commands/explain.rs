@@ -1,0 +1,143 @@
+//! `usar explain`: what the policies' groups of a sweep amount to.
+
+use std::io::Write;
+use std::path::PathBuf;
+
+use clap::Args;
+use experiments::Failure;
+use experiments::metric::task_names;
+use experiments::rounds::{self, Blindness, Example, GroupLevels, Likeness, likeness, rounds_in};
+use experiments::sweep::folder::Folder;
+use reports::table::{levels_table, likeness_table};
+use rne_core::Member;
+use rne_core::policies::rne::Rne;
+use usar_sim::scenario::Scenario;
+
+/// What do the policies' groups amount to: sorting by energy, by HP, or by what?
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Prints, for each policy of a finished sweep, how often its split of the team is the one that sorting each role by energy, by HP or by their ratio \
+would give; the mean levels of the groups round by round; and an example of how blind relative entropy is to magnitude.
+
+Examples:
+  usar explain results/paper
+  usar explain results/energy --case 3")]
+pub(crate) struct Arguments {
+    /// Folder of a sweep
+    folder: PathBuf,
+    /// Number of the case, where the sweep has axes
+    #[arg(long, default_value_t = 1)]
+    case: usize,
+}
+
+impl Arguments {
+    pub(crate) fn execute(&self, out: &mut dyn Write) -> Result<(), Failure> {
+        let mut folder = Folder::read(&self.folder)?;
+        let cases = folder.experiment().cases.len();
+        if !(1..=cases).contains(&self.case) {
+            return Err(Failure::input(format!("--case: must be from 1 to {cases}, found {}", self.case)));
+        }
+        let case = self.case - 1;
+        let policies = folder.experiment().policies.clone();
+        let (mut likenesses, mut levels, mut blind) = (Vec::new(), Vec::new(), Vec::new());
+        for (place, policy) in policies.iter().enumerate() {
+            let rounds = rounds_in(&mut folder, case, place)?;
+            likenesses.push((policy.label.clone(), likeness(&rounds)));
+            levels.extend(rounds::levels(&policy.label, &rounds));
+            if policy.name == "RNE" && blind.is_empty() {
+                let options = policy.rne_options().unwrap_or_default();
+                let rne = Rne::new(options).map_err(Failure::run)?;
+                let mut blindness = Blindness::default();
+                rounds.iter().try_for_each(|round| blindness.add(round, &rne))?;
+                blind.push((policy.label.clone(), rounds.len(), blindness));
+            }
+        }
+        if likenesses.iter().all(|(_, of)| of[0].rounds() == 0) {
+            return Err(Failure::input(format!(
+                "{}: no round of this case was split into two groups",
+                self.folder.display()
+            )));
+        }
+        print(out, &likenesses, (&levels, &folder.experiment().cases[case].scenario), &blind)?;
+        if let Some(gaps) = gaps(&folder, case) {
+            writeln!(out, "{gaps}")?;
+        }
+        Ok(())
+    }
+}
+
+/// What is to be said of trials that failed or are missing, if there are any.
+pub(super) fn gaps(folder: &Folder, case: usize) -> Option<String> {
+    let keys = folder.experiment().keys(None).filter(|key| key.case == case);
+    let (mut failed, mut missing) = (0, 0);
+    for key in keys {
+        match folder.results().get(&(key.case, key.policy, key.trial)) {
+            None => missing += 1,
+            Some(measured) => failed += u32::from(measured.metrics.is_none()),
+        }
+    }
+    (failed + missing > 0)
+        .then(|| format!("{failed} trials failed, {missing} are missing: these are left out"))
+}
+
+fn print(
+    out: &mut dyn Write,
+    likenesses: &[(String, [Likeness; 3])],
+    (levels, scenario): (&[GroupLevels], &Scenario),
+    blind: &[(String, usize, Blindness)],
+) -> Result<(), Failure> {
+    let hardest = scenario.hardest_first().first().map_or("", |task| &scenario.tasks[task.index()].name);
+    writeln!(
+        out,
+        "In which share of the rounds a policy's split is the one that sorting each role gives (in brackets: by chance)"
+    )?;
+    writeln!(out, "{}", likeness_table(likenesses))?;
+    writeln!(
+        out,
+        "split: in all roles, whichever half takes which task; higher: the group of the {hardest} task has the higher mean of that level. Ties count as sorted,\n\
+         by chance too\n"
+    )?;
+    writeln!(out, "Mean levels of the groups when a round begins, in percent")?;
+    writeln!(out, "{}", levels_table(levels, &task_names(scenario)))?;
+    writeln!(out, "n: rounds with two groups\n")?;
+    blind.iter().try_for_each(|(label, rounds, blindness)| print_blindness(out, label, *rounds, blindness))
+}
+
+fn print_blindness(
+    out: &mut dyn Write,
+    label: &str,
+    rounds: usize,
+    blindness: &Blindness,
+) -> Result<(), Failure> {
+    let robot = |robot: &Member| {
+        let level = |level: Option<f64>| level.unwrap_or(0.0);
+        let (energy, hp) = (level(robot.energy_level), level(robot.hp_level));
+        format!("robot {} (energy {energy:.0} %, HP {hp:.0} %)", robot.id)
+    };
+    if let Some(Example { trial, seed, round, role, unlike, alike, .. }) = &blindness.plainest {
+        writeln!(
+            out,
+            "Blind to magnitude: the plainest of the {rounds} rounds of {label}: trial {trial} (seed {seed}), round {round}, {}s",
+            role.to_lowercase()
+        )?;
+        for (pair, what) in [(unlike, "farther apart, more trust"), (alike, "nearer, less trust")] {
+            writeln!(
+                out,
+                "  {} to {}: {:.0} points apart, RNE {:.2e} nats, trust {:.6} ({what})",
+                robot(&pair.from),
+                robot(&pair.to),
+                pair.apart(),
+                pair.rne,
+                (-pair.rne).exp(),
+            )?;
+        }
+    }
+    if let Some(misjudged) = blindness.misjudged() {
+        writeln!(
+            out,
+            "Of all two pairs of robots of one role and round, in {:.1} % the one whose levels are nearer to each other has the higher entropy (unrelated: 50 %).",
+            100.0 * misjudged
+        )?;
+    }
+    Ok(())
+}

@@ -1,0 +1,42 @@
+//! One file per verb of the command line.
+
+pub(crate) mod calibrate;
+pub(crate) mod check;
+pub(crate) mod compare;
+pub(crate) mod estimate;
+pub(crate) mod explain;
+pub(crate) mod group;
+pub(crate) mod merge;
+mod precision;
+pub(crate) mod readings;
+pub(crate) mod report;
+pub(crate) mod reproduce;
+pub(crate) mod run;
+pub(crate) mod schema;
+mod snapshot;
+pub(crate) mod sweep;
+pub(crate) mod trust;
+pub(crate) mod verify;
+
+use std::path::Path;
+
+use experiments::Failure;
+use usar_sim::scenario::Scenario;
+
+/// Version of the JSON that the commands print.
+pub(crate) const SCHEMA_VERSION: u32 = 1;
+
+/// Loads a scenario and its text, or says in full what is wrong with it.
+pub(crate) fn load(path: &Path) -> Result<(Scenario, String), Failure> {
+    Scenario::load(path).map_err(Failure::input)
+}
+
+/// Numbers separated by commas.
+pub(crate) fn numbers(flag: &str, text: &str) -> Result<Vec<f64>, Failure> {
+    let number = |(i, part): (usize, &str)| {
+        part.trim().parse::<f64>().map_err(|_| {
+            Failure::input(format!("{flag}: entry {} must be a number, found {:?}", i + 1, part.trim()))
+        })
+    };
+    text.split(',').enumerate().map(number).collect()
+}

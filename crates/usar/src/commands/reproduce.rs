@@ -1,0 +1,114 @@
+//! `usar reproduce`: the paper's experiment, and what it says of the paper's claims.
+
+use std::io::Write;
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::time::Duration;
+
+use clap::Args;
+use experiments::Failure;
+use experiments::experiment::Experiment;
+use experiments::run::Limits;
+use experiments::sweep::disk::is_sweeps;
+use experiments::sweep::folder::{Folder, Opening};
+use reports::write_report;
+use study_yang2021::claims::{
+    Judged, PAPERS_TRIALS, examples, write_authors_columns, write_claims, write_examples, write_power,
+};
+use study_yang2021::page::{Section, sections, write_page};
+use study_yang2021::scenarios::{POLICIES, experiments};
+
+use crate::running::{STOP, default_jobs, run_missing, stop_on_ctrl_c};
+
+/// Longest time of one trial.
+const TRIAL_LIMIT: Duration = Duration::from_mins(10);
+
+/// Put the paper's claims to the test: four policies, two scenarios, paired trials
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Runs RNE, DIS, ENG and HP_DIS on paper.ron (printed constants) and paper-calibrated.ron (fitted to the authors' recorded trials of DIS), and \
+says of each of the paper's claims whether it holds: over the first 10 trials, as many as the paper has, and over all.
+
+A claim holds when the 95 % interval of each of its comparisons lies on the claimed side; it does not when one lies on the other side, at 95 % \
+shared by its comparisons; else it is undecided. The last table says how many paired trials each claim would need, and what 10 could have shown.
+
+The folder gets report.html, the verdicts as a page; a sweep's folder for each scenario, with a report.html of its own; claims.csv, power.csv and examples.csv; and for each scenario a CSV with \
+exactly the authors' columns. docs/experiments.md says what is in each. A broken-off run goes on with the same command; more --trials only add.
+
+Examples:
+  usar reproduce
+  usar reproduce --trials 1000")]
+pub(crate) struct Arguments {
+    /// Paired trials of each policy and scenario
+    #[arg(long, default_value_t = 200, value_parser = clap::value_parser!(u32).range(i64::from(PAPERS_TRIALS)..=1_000_000))]
+    trials: u32,
+    /// Folder for the results
+    #[arg(long, default_value = "results/reproduction")]
+    out: PathBuf,
+    /// Threads [default: one per core]
+    #[arg(long, value_parser = clap::value_parser!(u32).range(1..=1024))]
+    jobs: Option<u32>,
+    /// Start over
+    #[arg(long)]
+    fresh: bool,
+    /// No progress on stderr
+    #[arg(long)]
+    quiet: bool,
+}
+
+impl Arguments {
+    pub(crate) fn execute(&self, out: &mut dyn Write) -> Result<(), Failure> {
+        stop_on_ctrl_c();
+        if is_sweeps(&self.out) {
+            return Err(Failure::input(format!(
+                "--out: {} is the folder of one sweep; the folders of both scenarios would be put into it",
+                self.out.display()
+            )));
+        }
+        // Both are opened first, so that a folder that cannot be used is known before the first trial.
+        let opened = experiments(self.trials)?.into_iter().map(|experiment| self.open(experiment));
+        let mut folders = opened.collect::<Result<Vec<_>, Failure>>()?;
+        let mut judged = Vec::new();
+        for folder in &mut folders {
+            self.run(folder)?;
+            write_report(folder, 0)?;
+            write_authors_columns(&self.out, folder)?;
+            judged.push(Judged::of(folder, self.trials)?);
+        }
+        write_claims(&self.out, &judged)?;
+        write_power(&self.out, &judged)?;
+        let examples = examples()?;
+        write_examples(&self.out, &examples)?;
+        let sections = sections(&judged, &examples);
+        let page = write_page(&self.out, &judged, &sections)?;
+        for Section { title, table, note } in &sections {
+            writeln!(out, "{title}")?;
+            table.iter().try_for_each(|table| writeln!(out, "{table}"))?;
+            writeln!(out, "{note}{}", if note.is_empty() { "" } else { "\n" })?;
+        }
+        if !self.quiet {
+            eprintln!("results in {}, all of this as {}", self.out.display(), page.display());
+        }
+        let failures = folders.iter().flat_map(|folder| folder.results().values());
+        let failures: Vec<&str> = failures.filter_map(|measured| measured.failure.as_deref()).collect();
+        if failures.is_empty() { Ok(()) } else { Err(Failure::run(failures.join("\n"))) }
+    }
+
+    /// Opens the folder of one scenario.
+    fn open(&self, experiment: Experiment) -> Result<Folder, Failure> {
+        let opening = Opening { shard: None, is_fresh: self.fresh };
+        let place = self.out.join(&experiment.name);
+        Folder::open(&place, Arc::new(experiment), opening, &mut |note| eprintln!("note: {note}"))
+    }
+
+    /// Runs the trials that are not there yet.
+    fn run(&self, folder: &mut Folder) -> Result<(), Failure> {
+        if !self.quiet {
+            let name = &folder.experiment().name;
+            eprintln!("{name}: {} trials of each of {} policies", self.trials, POLICIES.len());
+        }
+        let jobs = self.jobs.map_or_else(default_jobs, |jobs| jobs as usize);
+        run_missing(folder, None, Limits { jobs, trial: Some(TRIAL_LIMIT) }, self.quiet)?;
+        folder.finish(&STOP)
+    }
+}

@@ -1,0 +1,159 @@
+//! `usar run`: one trial, with a per-round account.
+
+use std::io::Write;
+use std::path::PathBuf;
+
+use clap::Args;
+use experiments::Failure;
+use experiments::experiment::{PolicySpec, defaults, with_settings};
+use reports::table::rounds_table;
+use serde::Serialize;
+use usar_sim::record::{Status, TrialRecord};
+use usar_sim::simulation::Simulation;
+
+use super::snapshot::{Snapshot, save};
+use super::{SCHEMA_VERSION, load};
+
+/// Run one trial and tell what happened, round by round
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  usar run scenarios/paper.ron
+  usar run scenarios/paper.ron --policy DIS --seed 7 --json
+  usar run scenarios/minimal/head_on.ron --check
+  usar run scenarios/paper.ron --policy 'RNE(hard_rule: MeanEnergy)' --set duration_s=300
+  usar run scenarios/paper.ron --seed 3 --save half.snapshot --save-at 300    the trial, and a snapshot of it on the way
+  usar run scenarios/paper.ron --from half.snapshot                           the rest of that trial, with the same result
+  usar run scenarios/paper.ron --from half.snapshot --policy DIS              another policy goes on from there")]
+pub(crate) struct Arguments {
+    /// Scenario file (RON)
+    file: PathBuf,
+    /// Grouping policy, with its options in brackets [default: the first of FILE's sweep file, or of the snapshot]
+    #[arg(long)]
+    policy: Option<String>,
+    /// Seed of the trial [default: the first of FILE's sweep file]
+    #[arg(long)]
+    seed: Option<u64>,
+    /// Write a snapshot of the whole trial to this file, at --save-at; the file must not exist yet
+    #[arg(long, value_name = "FILE", requires = "save_at")]
+    save: Option<PathBuf>,
+    /// When to write the snapshot, in seconds of simulated time
+    #[arg(long, value_name = "SECONDS", requires = "save")]
+    save_at: Option<f64>,
+    /// Go on from a snapshot of a trial of this scenario
+    #[arg(long, value_name = "FILE", conflicts_with = "seed")]
+    from: Option<PathBuf>,
+    /// Check every invariant at every step; a violation ends the trial as failed
+    #[arg(long)]
+    check: bool,
+    /// Set a field of the scenario, by its path, to a value in RON, e.g. `costs.energy.per_step=0.009`; may stand several times
+    #[arg(long, value_name = "PATH=VALUE")]
+    set: Vec<String>,
+    /// Print one JSON object
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Serialize)]
+struct Output<'a> {
+    schema_version: u32,
+    scenario: &'a str,
+    policy: &'a str,
+    rescuees: u32,
+    #[serde(flatten)]
+    record: &'a TrialRecord,
+}
+
+impl Arguments {
+    pub(crate) fn execute(&self, out: &mut dyn Write) -> Result<(), Failure> {
+        let (scenario, _) = load(&self.file)?;
+        let scenario = with_settings(&scenario, &self.set)?;
+        let snapshot = self.from.as_deref().map(Snapshot::read).transpose()?;
+        let (first_policy, first_seed) = defaults(&self.file)?;
+        let asked = match (&self.policy, &snapshot) {
+            (Some(policy), _) => policy,
+            (None, Some(snapshot)) => &snapshot.identity.policy,
+            (None, None) => &first_policy,
+        };
+        let spec = PolicySpec::parse(asked).map_err(|error| Failure::input(format!("--policy: {error}")))?;
+        let policy = spec.make().map_err(Failure::input)?.policy;
+        let simulation = match &snapshot {
+            Some(snapshot) => snapshot.restore(&scenario)?,
+            None => Simulation::new(&scenario, self.seed.unwrap_or(first_seed))
+                .map_err(|error| Failure::input(format!("{}: {error}", self.file.display())))?,
+        };
+        let seed = simulation.seed();
+        let mut simulation = if self.check { simulation.checked() } else { simulation };
+        if let (Some(path), Some(seconds)) = (&self.save, self.save_at) {
+            save(&mut simulation, &spec, (path, seconds))?;
+        }
+        let record = simulation.run(&*policy, |_, _, _| {});
+        if let Status::Failed(reason) = &record.status {
+            return Err(Failure::run(format!("trial of {} with seed {seed} failed: {reason}", spec.label)));
+        }
+        if self.json {
+            let output = Output {
+                schema_version: SCHEMA_VERSION,
+                scenario: &scenario.name,
+                policy: &spec.label,
+                rescuees: record.rescued(),
+                record: &record,
+            };
+            return Ok(writeln!(out, "{}", serde_json::to_string(&output).map_err(Failure::run)?)?);
+        }
+        print(out, [&scenario.name, &spec.label], &record)
+    }
+}
+
+fn print(out: &mut dyn Write, [scenario, policy]: [&str; 2], record: &TrialRecord) -> Result<(), Failure> {
+    writeln!(
+        out,
+        "{scenario}, policy {policy}, seed {}: {} s simulated, {}",
+        record.seed,
+        record.time_s,
+        record.status.name().replace('_', " ")
+    )?;
+    writeln!(out, "{}", rounds_table(record))?;
+    let rescued = record.rescued();
+    let by_task = record.tasks.iter().map(|task| format!("{} {}", task.task, task.totals.rescued));
+    let by_task = by_task.collect::<Vec<_>>().join(", ");
+    let by_task = if by_task.is_empty() { by_task } else { format!(" ({by_task})") };
+    writeln!(
+        out,
+        "rescued      {rescued}{by_task} in {} complete rounds; on board at the end {}",
+        record.completed_rounds,
+        record.secured() - rescued
+    )?;
+    let per = |cost: f64| match rescued {
+        0 => "-".to_owned(),
+        _ => format!("{:.2}", cost / f64::from(rescued)),
+    };
+    writeln!(out, "per rescuee  {} energy, {} HP (percent points)", per(record.energy()), per(record.hp()))?;
+    let (waiting, stall) = (record.waiting_s(), record.longest_stall_s());
+    writeln!(
+        out,
+        "robots       turned back {} times, {} stranded, {} disabled",
+        record.turned_back,
+        record.stranded(),
+        record.disabled()
+    )?;
+    writeln!(
+        out,
+        "conflicts    {} conflicts, {} deadlocks, {waiting:.0} s waited in all, longest stall {stall:.1} s",
+        record.conflicts, record.deadlocks
+    )?;
+    writeln!(
+        out,
+        "deadlocks    {} times a robot made room, {} times the turn passed, {} times a set backed off",
+        record.retreats, record.rotations, record.back_offs
+    )?;
+    if record.errands_done + record.unreachable > 0 {
+        let (done, unreachable) = (record.errands_done, record.unreachable);
+        writeln!(out, "places       {done} errands done, {unreachable} places given up as unreachable")?;
+    }
+    if let Some(overlaps) = record.overlaps {
+        writeln!(out, "overlaps     {overlaps}")?;
+    }
+    writeln!(out, "state hash   {}", record.state_hash)?;
+    Ok(())
+}

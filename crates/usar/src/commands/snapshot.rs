@@ -1,0 +1,71 @@
+//! Snapshots of trials as files.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use experiments::Failure;
+use experiments::experiment::PolicySpec;
+use usar_sim::record::Status;
+use usar_sim::scenario::Scenario;
+use usar_sim::simulation::Simulation;
+use usar_sim::snapshot::Identity;
+
+/// A snapshot that was read from a file.
+pub(super) struct Snapshot {
+    path: PathBuf,
+    bytes: Vec<u8>,
+    /// What it is of.
+    pub(super) identity: Identity,
+}
+
+impl Snapshot {
+    /// Reads a file and checks that it is sound.
+    pub(super) fn read(path: &Path) -> Result<Self, Failure> {
+        let refused =
+            |reason: &dyn std::fmt::Display| Failure::input(format!("{}: {reason}", path.display()));
+        let bytes = std::fs::read(path).map_err(|error| refused(&format!("cannot be read: {error}")))?;
+        let identity = Identity::of(&bytes).map_err(|error| refused(&error))?;
+        Ok(Self { path: path.to_owned(), bytes, identity })
+    }
+
+    /// The trial, at the step where the snapshot was taken.
+    pub(super) fn restore(&self, scenario: &Scenario) -> Result<Simulation, Failure> {
+        Simulation::restore(scenario, &self.bytes)
+            .map_err(|error| Failure::input(format!("{}: {error}", self.path.display())))
+    }
+}
+
+/// Runs a trial up to a time, in seconds, and writes a snapshot of it: whole or not at all.
+pub(super) fn save(
+    simulation: &mut Simulation,
+    spec: &PolicySpec,
+    (path, seconds): (&Path, f64),
+) -> Result<(), Failure> {
+    let policy = spec.make().map_err(Failure::input)?.policy;
+    let (now, end) = (simulation.time_s(), simulation.scenario().duration_s);
+    if !(now..=end).contains(&seconds) {
+        return Err(Failure::input(format!("--save-at: must be from {now} to {end} s, found {seconds}")));
+    }
+    if path.exists() {
+        return Err(Failure::input(format!("--save: {} exists; nothing was overwritten", path.display())));
+    }
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let trouble =
+        |error: std::io::Error| Failure::input(format!("--save: cannot write {}: {error}", path.display()));
+    let mut file = tempfile::NamedTempFile::new_in(folder).map_err(trouble)?;
+    while simulation.time_s() < seconds {
+        if let Some(status) = simulation.step(&*policy) {
+            if let Status::Failed(reason) = status {
+                return Err(Failure::run(reason));
+            }
+            let (status, time_s) = (status.name().replace('_', " "), simulation.time_s());
+            return Err(Failure::input(format!(
+                "--save-at: the trial ended at {time_s} s already: {status}"
+            )));
+        }
+    }
+    file.write_all(&simulation.snapshot(&spec.plain())).map_err(trouble)?;
+    file.as_file().sync_all().map_err(trouble)?;
+    file.persist_noclobber(path).map_err(|error| trouble(error.error))?;
+    Ok(())
+}

@@ -1,0 +1,196 @@
+//! `usar sweep`: paired trials of several policies, a table, and a folder of results that survives anything.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::Duration;
+
+use clap::Args;
+use experiments::Failure;
+use experiments::experiment::{Experiment, Overrides, Shard, split_list};
+use experiments::run::Limits;
+use experiments::sweep::disk::trials_in;
+use experiments::sweep::folder::{Folder, Opening};
+use reports::table::policy_table;
+
+use super::precision::Precision;
+use crate::running::{STOP, default_jobs, run_missing, stop_on_ctrl_c};
+
+/// Tables of more cases than these are left to `usar compare` and `usar report`.
+const MAX_TABLES: usize = 8;
+
+/// Compare policies over paired trials: the same initial levels for every policy
+#[derive(Debug, Args)]
+#[command(after_help = "\
+FILE is a scenario, or a sweep file: a scenario with policies, trials and axes (scenarios/sweeps/).
+
+Each trial is on disk as soon as it is done. The same command again goes on where it was broken off, and skips what is finished; more \
+--trials only adds. Nothing in the folder depends on --jobs or on interruptions. It holds trials.csv (a row per trial), rounds.csv, \
+groups.csv, robots.csv, series.csv, hashes.csv (for `usar verify`), journal.jsonl, manifest.json, the file as given (experiment.ron), \
+and its scenario as run (resolved.ron).
+
+Exit status: 0 when all trials gave numbers, 1 when one did not, 2 for bad input, 3 for trouble with the disk, 130 after Ctrl-C.
+
+Examples:
+  usar sweep scenarios/paper.ron
+  usar sweep scenarios/paper.ron --policies RNE,RANDOM --trials 100 --out results/many
+  usar sweep scenarios/paper.ron --policies 'RNE,sum=RNE(score: Sum)' --out results/sum
+  usar sweep scenarios/sweeps/energy.ron --shard 2/8     (then `usar merge`)
+  usar sweep scenarios/paper.ron --precision 'rescuees.hard: RNE-DIS: 2.0' --max-trials 500")]
+pub(crate) struct Arguments {
+    /// Scenario or sweep file (RON)
+    file: PathBuf,
+    /// Policies, separated by commas, with options in brackets [default: the file's]
+    #[arg(long)]
+    policies: Option<String>,
+    /// Trials for each policy and case [default: the file's]
+    #[arg(long, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    trials: Option<u32>,
+    /// Seed of the first trial [default: the file's]
+    #[arg(long)]
+    seed: Option<u64>,
+    /// Set a field of the scenario, by its path, to a value in RON, e.g. `costs.energy.per_step=0.009`; may stand several times
+    #[arg(long, value_name = "PATH=VALUE")]
+    set: Vec<String>,
+    /// Threads [default: one per core]
+    #[arg(long, value_parser = clap::value_parser!(u32).range(1..=1024))]
+    jobs: Option<u32>,
+    /// Folder for the results [default: results/NAME]
+    #[arg(long)]
+    out: Option<PathBuf>,
+    /// Start over: delete what a sweep has left in the folder
+    #[arg(long)]
+    fresh: bool,
+    /// Run part i of n only
+    #[arg(long, value_name = "i/n")]
+    shard: Option<Shard>,
+    /// Add trials until the 95 % interval of a difference is at most this far from its mean, e.g. 'rescuees.hard: RNE-DIS: 2.0'
+    #[arg(long, value_name = "METRIC: A-B: BOUND", conflicts_with = "shard")]
+    precision: Option<String>,
+    /// Trials at which --precision gives up
+    #[arg(long, default_value_t = 1000, requires = "precision", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    max_trials: u32,
+    /// Longest time of one trial, in seconds; one that takes longer is given up
+    #[arg(long, default_value_t = 600.0, value_name = "SECONDS")]
+    max_trial_s: f64,
+    /// Check every invariant at every step; a violation ends the trial as failed
+    #[arg(long)]
+    check: bool,
+    /// No progress on stderr
+    #[arg(long)]
+    quiet: bool,
+}
+
+impl Arguments {
+    pub(crate) fn execute(&self, out: &mut dyn Write) -> Result<(), Failure> {
+        if !(self.max_trial_s > 0.0 && self.max_trial_s <= 1e9) {
+            return Err(Failure::input(format!(
+                "--max-trial-s: must be above 0, found {}",
+                self.max_trial_s
+            )));
+        }
+        let mut experiment = Experiment::load(&self.file, &self.overrides())?;
+        let path = self.out.clone().unwrap_or_else(|| default_path(&experiment.name, self.shard));
+        if (self.trials.is_none() || self.precision.is_some())
+            && !self.fresh
+            && let Some(trials) = trials_in(&path)
+            && trials > experiment.trials
+        {
+            experiment = experiment.with_trials(trials)?;
+        }
+        let precision =
+            self.precision.as_deref().map(|text| Precision::parse(text, &experiment)).transpose()?;
+        if precision.is_some() {
+            let first = Precision::first_look(experiment.trials, self.most(&experiment));
+            experiment = experiment.with_trials(first)?;
+        }
+        experiment.check_start(&self.file)?;
+
+        stop_on_ctrl_c();
+        let opening = Opening { shard: self.shard, is_fresh: self.fresh };
+        let mut folder =
+            Folder::open(&path, Arc::new(experiment), opening, &mut |note| eprintln!("note: {note}"))?;
+        self.run(&mut folder)?;
+        let most = self.most(folder.experiment());
+        while let Some(trials) = precision.as_ref().and_then(|rule| rule.next_look(&folder, most)) {
+            folder.extend(Arc::new(folder.experiment().with_trials(trials)?))?;
+            self.run(&mut folder)?;
+        }
+        folder.finish(&STOP)?;
+        print(out, &folder)?;
+        if let Some(precision) = &precision {
+            writeln!(out, "{}", precision.verdict(&folder))?;
+        }
+        if !self.quiet {
+            eprintln!("results in {}", path.display());
+        }
+        let failed: Vec<&str> =
+            folder.results().values().filter_map(|measured| measured.failure.as_deref()).collect();
+        if failed.is_empty() { Ok(()) } else { Err(Failure::run(failed.join("\n"))) }
+    }
+
+    /// Trials at which --precision gives up.
+    fn most(&self, experiment: &Experiment) -> u32 {
+        self.max_trials.min(experiment.most_trials())
+    }
+
+    fn overrides(&self) -> Overrides {
+        let policies = self.policies.as_deref();
+        Overrides {
+            policies: policies.map(|list| split_list(list).into_iter().map(str::to_owned).collect()),
+            trials: self.trials,
+            first_seed: self.seed,
+            set: self.set.clone(),
+            is_checked: self.check,
+        }
+    }
+
+    /// Runs what is missing.
+    fn run(&self, folder: &mut Folder) -> Result<(), Failure> {
+        let jobs = self.jobs.map_or_else(default_jobs, |jobs| jobs as usize);
+        let limits = Limits { jobs, trial: Some(Duration::from_secs_f64(self.max_trial_s)) };
+        run_missing(folder, self.shard, limits, self.quiet)
+    }
+}
+
+fn default_path(name: &str, shard: Option<Shard>) -> PathBuf {
+    let part = shard.map_or(String::new(), |shard| format!("-{}-of-{}", shard.number, shard.of));
+    Path::new("results").join(format!("{name}{part}"))
+}
+
+/// The table of each case, and what it stands on.
+pub(super) fn print(out: &mut dyn Write, folder: &Folder) -> Result<(), Failure> {
+    let experiment = folder.experiment();
+    for (i, case) in experiment.cases.iter().enumerate().take(MAX_TABLES) {
+        let place = experiment.describe(case);
+        if !place.is_empty() {
+            writeln!(out, "{}", place.trim_end_matches(": "))?;
+        }
+        writeln!(out, "{}", policy_table(folder, i))?;
+    }
+    if experiment.cases.len() > MAX_TABLES {
+        writeln!(
+            out,
+            "... and {} further cases: see trials.csv, or `usar report`",
+            experiment.cases.len() - MAX_TABLES
+        )?;
+    }
+    writeln!(out, "{}", footnote(folder))?;
+    Ok(())
+}
+
+fn footnote(folder: &Folder) -> String {
+    let experiment = folder.experiment();
+    let (first, last) = (experiment.seed(1), experiment.seed(experiment.trials));
+    let failed = folder.results().values().filter(|measured| measured.metrics.is_none()).count();
+    let missing = experiment.keys(None).filter(|key| !folder.has(key)).count();
+    let gaps = match (failed, missing) {
+        (0, 0) => String::new(),
+        _ => format!("\n{failed} trials failed, {missing} are missing: these are not in the means"),
+    };
+    format!(
+        "mean ± sample standard deviation over {} paired trials (seeds {first} to {last}); energy and HP in percent points per rescuee delivered;\n\
+         totals include what robots spent outside a group, on their way to rest{gaps}",
+        experiment.trials,
+    )
+}

@@ -1,0 +1,114 @@
+//! `usar trust`: Relative Needs Entropy between robots or groups, from needs on the command line.
+
+use std::io::Write;
+
+use clap::{Args, ValueEnum};
+use experiments::Failure;
+use rne_core::{LogBase, NeedDistribution, NeedVector, NeedWeights, relative_entropy};
+use serde::Serialize;
+
+use super::{SCHEMA_VERSION, numbers};
+
+/// Relative Needs Entropy (RNE) and trust between two robots or groups
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Lower RNE means more trust. It is not symmetric: try both directions.
+
+Examples:
+  usar trust --weights 6,4,2 --from 86,120,30 --to 20,30,10
+  usar trust --weights 6,4,2 --from 86,120,30 --to 82,114,24 --to 79,117,23 --json    towards a group of two")]
+pub(crate) struct Arguments {
+    /// Weight of each need, separated by commas; only their ratios matter
+    #[arg(long, allow_hyphen_values = true)]
+    weights: String,
+    /// Needs of the robot that trusts; repeat the flag for a group
+    #[arg(long, required = true, allow_hyphen_values = true)]
+    from: Vec<String>,
+    /// Needs of the robot that is trusted; repeat the flag for a group
+    #[arg(long, required = true, allow_hyphen_values = true)]
+    to: Vec<String>,
+    /// Base of the logarithm in which the RNE is given
+    #[arg(long, default_value = "e")]
+    base: Base,
+    /// Print one JSON object
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum Base {
+    E,
+    #[value(name = "2")]
+    Two,
+    #[value(name = "10")]
+    Ten,
+}
+
+#[derive(Serialize)]
+struct Output {
+    schema_version: u32,
+    /// In nats; null where it is infinite.
+    rne: Option<f64>,
+    infinite: bool,
+    trust: f64,
+    base: &'static str,
+    /// In units of the base; null where it is infinite.
+    rne_in_base: Option<f64>,
+    from: NeedDistribution,
+    to: NeedDistribution,
+}
+
+impl Arguments {
+    pub(crate) fn execute(&self, out: &mut dyn Write) -> Result<(), Failure> {
+        let weights = NeedWeights::new(numbers("--weights", &self.weights)?)
+            .map_err(|error| Failure::input(format!("--weights: {error}")))?;
+        let from = distribution("--from", &self.from, &weights)?;
+        let to = distribution("--to", &self.to, &weights)?;
+        let rne = relative_entropy(&from, &to).map_err(Failure::input)?;
+        let (base, name, unit) = match self.base {
+            Base::E => (LogBase::E, "e", "nats"),
+            Base::Two => (LogBase::Two, "2", "bits"),
+            Base::Ten => (LogBase::Ten, "10", "bans"),
+        };
+        let output = Output {
+            schema_version: SCHEMA_VERSION,
+            rne: rne.nats(),
+            infinite: rne.is_infinite(),
+            trust: rne.trust(),
+            base: name,
+            rne_in_base: rne.in_base(base),
+            from,
+            to,
+        };
+        if self.json {
+            return writeln!(out, "{}", serde_json::to_string(&output).map_err(Failure::run)?)
+                .map_err(Failure::from);
+        }
+        let value = output.rne_in_base.map_or("infinite".to_owned(), |value| format!("{value:.6} {unit}"));
+        writeln!(out, "RNE    {value}")?;
+        writeln!(
+            out,
+            "trust  {:.6}   (exp of minus the RNE in nats: 1 is full trust, 0 none)",
+            output.trust
+        )?;
+        writeln!(out, "from   {}", shares(&output.from))?;
+        writeln!(out, "to     {}", shares(&output.to))?;
+        Ok(())
+    }
+}
+
+fn distribution(flag: &str, members: &[String], weights: &NeedWeights) -> Result<NeedDistribution, Failure> {
+    let vector = |(i, text): (usize, &String)| {
+        let flag = if members.len() == 1 { flag.to_owned() } else { format!("{flag} (number {})", i + 1) };
+        let needs = NeedVector::new(numbers(&flag, text)?)
+            .and_then(|needs| NeedDistribution::of_agent(&needs, weights).map(|_| needs));
+        needs.map_err(|error| Failure::input(format!("{flag}: {error}")))
+    };
+    let vectors = members.iter().enumerate().map(vector).collect::<Result<Vec<_>, _>>()?;
+    NeedDistribution::of_group(&vectors, weights).map_err(|error| Failure::input(format!("{flag}: {error}")))
+}
+
+fn shares(distribution: &NeedDistribution) -> String {
+    let shares: Vec<String> = distribution.shares().iter().map(|share| format!("{share:.4}")).collect();
+    format!("({})", shares.join(", "))
+}

@@ -1,0 +1,12 @@
+//! The command `usar` as a library: the `main` of a program that adds policies of its own is [`main_with`].
+
+mod cli;
+mod commands;
+mod running;
+
+pub use cli::{main, main_with};
+
+/// The programs in the README compile.
+#[cfg(doctest)]
+#[doc = include_str!("../../../README.md")]
+struct Readme;

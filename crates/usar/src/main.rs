@@ -1,0 +1,7 @@
+//! The command `usar`.
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    usar::main()
+}

@@ -1,0 +1,169 @@
+//! Calibration: what it finds, what it survives, what it refuses.
+
+use std::process::Output;
+
+use usar_sim::scenario::Scenario;
+
+use crate::support::{read, root, succeeds, usar};
+
+/// A folder with the paper's scenario for two minutes, and a target for it.
+pub fn place() -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    let text = read(&root().join("scenarios/paper.ron")).replace("duration_s: 600.0", "duration_s: 120.0");
+    std::fs::write(folder.path().join("short.ron"), text).unwrap();
+    let target = "method,rescuees_hard,energy_hard\nDIS,10,150\nDIS,14,160\nDIS,12,170\n";
+    std::fs::write(folder.path().join("target.csv"), target).unwrap();
+    folder
+}
+
+#[track_caller]
+pub fn refused(output: &Output, messages: &[&str]) {
+    let stderr = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(2), "{stderr}");
+    for message in messages {
+        assert!(stderr.contains(message), "must say {message:?}, said {stderr:?}");
+    }
+}
+
+fn calibrate<'a>(out: &'a str, more: &[&'a str]) -> Vec<&'a str> {
+    let mut arguments = vec!["calibrate", "short.ron", "--target", "target.csv", "--trials", "2"];
+    arguments.extend(["--fresh-trials", "2", "--quiet", "--out", out]);
+    arguments.extend(["--free", "roles.carrier.speed_mps + roles.supplier.speed_mps=1..4"]);
+    arguments.extend([
+        "--free",
+        "radiation[*].radius_m = 2..6",
+        "--free",
+        "costs.energy.per_step=0.001..0.02 log",
+    ]);
+    arguments.extend(more);
+    arguments
+}
+
+#[test]
+fn a_calibration_that_was_broken_off_ends_as_one_that_was_not() {
+    let place = place();
+    let folder = place.path();
+    let whole = succeeds(&usar(folder, &calibrate("whole", &["--evaluations", "8", "--jobs", "1"])));
+    succeeds(&usar(folder, &calibrate("parts", &["--evaluations", "3", "--jobs", "2"])));
+    let log = folder.join("parts/evaluations.csv");
+    let text = read(&log);
+    std::fs::write(&log, &text[..text.len() - 5]).unwrap(); // killed while it wrote a line
+    let parts = succeeds(&usar(folder, &calibrate("parts", &["--evaluations", "8", "--jobs", "2"])));
+    assert_eq!(parts, whole);
+    for file in ["evaluations.csv", "calibrated.ron", "fit.csv", "calibration.json"] {
+        assert_eq!(read(&folder.join("parts").join(file)), read(&folder.join("whole").join(file)), "{file}");
+    }
+    let (scenario, text) = Scenario::load(&folder.join("whole/calibrated.ron")).unwrap();
+    assert_eq!(scenario.name, "paper-fitted");
+    assert!(text.starts_with("// Fitted by usar calibrate (misfit "), "{text}");
+    assert!(text.contains("// Places [view]"), "comments stay");
+    assert_eq!(scenario.roles[0].speed_mps.to_bits(), scenario.roles[1].speed_mps.to_bits());
+    assert!(
+        scenario
+            .radiation
+            .iter()
+            .all(|zone| zone.radius_m.to_bits() == scenario.radiation[0].radius_m.to_bits())
+    );
+    assert!(whole.contains("roles.carrier.speed_mps = ") && whole.contains("rescuees_hard"), "{whole}");
+}
+
+#[test]
+fn what_cannot_be_calibrated_is_refused() {
+    let place = place();
+    let folder = place.path();
+    let run = |more: &[&str]| usar(folder, &calibrate("out", more));
+    refused(
+        &run(&["--free", "roles.carrier.wings=1..2"]),
+        &["--free: roles.carrier.wings: no such field; roles.carrier has name, kind, radius_m"],
+    );
+    refused(
+        &run(&["--free", "roles.carrier.capacity=2..8"]),
+        &["--free: roles.carrier.capacity: takes whole numbers only"],
+    );
+    refused(&run(&["--free", "duration_s=60..90"]), &["--free: duration_s: is that of the recorded trials"]);
+    refused(&run(&["--set", "radiation[0].radius_m=3.0"]), &["--set: radiation[0].radius_m is free"]);
+    refused(
+        &run(&["--free", "mission.health_floor=0..1"]),
+        &["--free: mission.health_floor must be a number from", "found 0"],
+    );
+    refused(&run(&["--free", "radiation[0].radius_m=2..3"]), &["radiation[0].radius_m: is set twice"]);
+    refused(
+        &run(&["--set", "mission.loading_s=1.0", "--set", "mission.loading_s=2.0"]),
+        &["--set: mission.loading_s: is set twice"],
+    );
+    refused(&run(&["--first-seed", "2"]), &["--first-seed: must be beyond the fresh trials", "found 2"]);
+    refused(&run(&["--set", "mission.wings=1"]), &["--set: mission.wings: no such field; mission has"]);
+    std::fs::write(folder.join("target.csv"), "method,rounds\nDIS,6\nRNE,7\n").unwrap();
+    refused(&run(&[]), &["target.csv:3: method must be DIS", "\"RNE\""]);
+    let targets = [
+        (
+            "method,rescued_hard,rounds\nDIS,6,6\n",
+            "target.csv:1: \"rescued_hard\" is no column of trials.csv",
+        ),
+        (
+            "method,rounds\r\nDIS,6\r\nDIS,six\r\n",
+            "target.csv:3: rounds must be a number from 0 on, found \"six\"",
+        ),
+        ("method,rounds\nDIS,-1\nDIS,7\n", "target.csv:2: rounds must be a number from 0 on, found \"-1\""),
+        (
+            "method,time_s,rounds\nDIS,120,6\nDIS,60,7\n",
+            "target.csv:3: time_s must be the scenario's duration_s, 120, found 60",
+        ),
+        (
+            "method,rescuees_total,rescuees_hard,rescuees_easy\nDIS,5,2,3\nDIS,9,3,4\n",
+            "target.csv:3: rescuees_total must be the sum",
+        ),
+        (
+            "method,rescuees_total,rounds\nDIS,-5,6\nDIS,9,7\n",
+            "target.csv:2: rescuees_total must be a number from 0 on",
+        ),
+        ("method,rounds,rounds\nDIS,6,6\n", "the column \"rounds\" stands twice"),
+        ("method,rounds\nDIS,6\n", "must have at least two trials, found 1"),
+    ];
+    for (text, says) in targets {
+        std::fs::write(folder.join("target.csv"), text).unwrap();
+        refused(&run(&[]), &[says]);
+    }
+    std::fs::write(folder.join("target.csv"), "method,rounds\nDIS,6\nDIS,6\n").unwrap();
+    refused(&run(&[]), &["rounds must differ between trials"]);
+    assert!(!folder.join("out").exists(), "nothing was written");
+    std::fs::write(folder.join("target.csv"), "method,rounds\nDIS,6\nDIS,7\n").unwrap();
+    succeeds(&run(&["--evaluations", "2"]));
+    refused(
+        &run(&["--evaluations", "2", "--seed", "9"]),
+        &["has the calibration of something else", "seed: 1 there, 9 now"],
+    );
+    std::fs::write(folder.join("target.csv"), "method,rounds\nDIS,6\nDIS,8\n").unwrap();
+    refused(&run(&["--evaluations", "2"]), &["target.rounds: [6.5,0.70", "there, [7.0,1.41"]);
+    std::fs::write(folder.join("target.csv"), "method,rounds\nDIS,6\nDIS,7\n").unwrap();
+    refused(
+        &run(&["--evaluations", "2", "--set", "mission.loading_s=3.0"]),
+        &["mission.loading_s: 2.0 there, 3.0 now"],
+    );
+}
+
+#[test]
+fn a_search_begins_within_its_ranges() {
+    let place = place();
+    let folder = place.path();
+    let mut arguments =
+        calibrate("out", &["--free", "costs.energy.per_metre=0.1..0.2 log", "--evaluations", "1"]);
+    arguments.retain(|argument| *argument != "--quiet");
+    let output = usar(folder, &arguments);
+    let told = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(
+        told.contains("costs.energy.per_metre is 0, outside its range; the search begins at 0.1"),
+        "{told}"
+    );
+    let printed = succeeds(&output);
+    assert!(printed.contains(
+        "not in the data, and not looked at: rescuees_easy, energy_easy, hp_hard, hp_easy, rounds"
+    ));
+    let log = read(&folder.join("out/evaluations.csv"));
+    let mut log = csv::Reader::from_reader(log.as_bytes());
+    let place = log.headers().unwrap().iter().position(|name| name == "costs.energy.per_metre").unwrap();
+    for row in log.records() {
+        let value: f64 = row.unwrap()[place].parse().unwrap();
+        assert!((0.1..=0.2).contains(&value), "{value}");
+    }
+}

@@ -1,0 +1,147 @@
+//! What is said of a sweep: comparisons, precision, and what it would take.
+
+use serde_json::Value;
+
+use crate::place::{column, place, refused, rows};
+use crate::support::{succeeds, usar};
+
+#[test]
+fn comparisons_are_paired_and_say_what_they_stand_on() {
+    let folder = place();
+    let here = folder.path();
+    succeeds(&usar(
+        here,
+        &["sweep", "short.ron", "--policies", "RNE,DIS,ENG", "--trials", "6", "--set", "duration_s=120"],
+    ));
+    let json: Value = serde_json::from_str(&succeeds(&usar(
+        here,
+        &[
+            "compare",
+            "results/paper",
+            "--metric",
+            "distance",
+            "--metric",
+            "rescuees.hard",
+            "--baseline",
+            "DIS",
+            "--json",
+        ],
+    )))
+    .unwrap();
+    let comparisons = json["comparisons"].as_array().unwrap();
+    assert_eq!(comparisons.len(), 4);
+    let trials = rows(&here.join("results/paper"), "trials.csv");
+    let distance = column(&here.join("results/paper"), "distance_m");
+    let distances = |policy: &str| -> Vec<f64> {
+        trials.iter().filter(|row| &row[0] == policy).map(|row| row[distance].parse().unwrap()).collect()
+    };
+    let (rne, dis) = (distances("RNE"), distances("DIS"));
+    let mean = rne.iter().zip(&dis).map(|(a, b)| a - b).sum::<f64>() / 6.0;
+    assert_eq!(
+        (&comparisons[0]["a"], &comparisons[0]["b"], &comparisons[0]["n"]),
+        (&"RNE".into(), &"DIS".into(), &6.into())
+    );
+    assert!((comparisons[0]["difference"].as_f64().unwrap() - mean).abs() < 1e-9);
+    let [low, high] = [0, 1].map(|i: usize| comparisons[0]["interval"][i].as_f64().unwrap());
+    assert!(low <= mean && mean <= high);
+    let text = succeeds(&usar(here, &["compare", "results/paper"]));
+    assert!(text.contains("Holm's correction over the 30 comparisons above"), "{text}");
+    assert!(text.contains("in which the metric is not defined"), "{text}");
+    assert!(!text.contains("NaN") && !text.contains("inf"), "{text}");
+    assert_eq!(text, succeeds(&usar(here, &["compare", "results/paper"])), "the bootstrap is seeded");
+    refused(
+        here,
+        2,
+        &["compare", "results/paper", "--metric", "luck"],
+        &["unknown metric \"luck\"; known metrics: rescuees.total"],
+    );
+    refused(
+        here,
+        2,
+        &["compare", "results/paper", "--baseline", "RANDOM"],
+        &["must be a policy of the sweep (RNE, DIS, ENG)"],
+    );
+    refused(
+        here,
+        2,
+        &["compare", "results/paper", "--policies", "RNE,RANDOM"],
+        &["--policies: must be a policy of the sweep (RNE, DIS, ENG), found \"RANDOM\""],
+    );
+    refused(here, 2, &["compare", "results/paper", "--policies", "RNE"], &["nothing to compare: RNE only"]);
+    let two = ["compare", "results/paper", "--policies", "ENG, RNE", "--metric", "rescuees.hard"];
+    let two = succeeds(&usar(here, &two));
+    assert!(two.contains("┆ RNE - ENG ┆") && !two.contains("DIS"), "{two}");
+    refused(here, 2, &["compare", "results"], &["results: is not the folder of a sweep"]);
+}
+
+#[test]
+fn trials_are_added_until_the_difference_is_known_well_enough() {
+    let folder = place();
+    let here = folder.path();
+    let sweep = |bound: &str, most: &str| {
+        let rule = format!("distance: RNE-DIS: {bound}");
+        let arguments =
+            ["sweep", "short.ron", "--policies", "RNE,DIS", "--precision", &rule, "--max-trials", most];
+        succeeds(&usar(here, &arguments))
+    };
+    let wide = sweep("1000", "100");
+    assert!(wide.contains("precision reached") && wide.contains("(20 pairs"), "{wide}");
+    let narrow = sweep("0.001", "25");
+    assert!(narrow.contains("precision NOT reached") && narrow.contains("after 25 pairs"), "{narrow}");
+    assert_eq!(rows(&here.join("results/paper"), "trials.csv").len(), 50);
+    refused(
+        here,
+        2,
+        &["sweep", "short.ron", "--precision", "distance: RNE: 2"],
+        &["A and B must be two policies"],
+    );
+    refused(here, 2, &["sweep", "short.ron", "--precision", "distance: RNE-DIS: 0"], &["a number above 0"]);
+}
+
+#[test]
+fn a_rule_of_precision_can_be_given_again_and_needs_pairs_that_differ() {
+    let folder = place();
+    let here = folder.path();
+    let sweep = |metric: &str| {
+        let rule = format!("{metric}: RNE-DIS: 0.001");
+        let arguments = ["sweep", "short.ron", "--policies", "RNE,DIS", "--trials", "20"];
+        succeeds(&usar(here, &[&arguments[..], &["--precision", &rule, "--max-trials", "25"]].concat()))
+    };
+    let first = sweep("distance");
+    assert!(first.contains("after 25 pairs"), "{first}");
+    assert_eq!(first, sweep("distance"), "the same command again");
+    // Nobody is rescued within half a minute: no pair differs from another.
+    let none = sweep("rescuees.hard");
+    assert!(none.contains("NOT reached: there are too few pairs"), "{none}");
+    let listed =
+        std::fs::read_to_string(here.join("grid.ron")).unwrap().replace("trials: 2", "seeds: [5, 6, 9]");
+    std::fs::write(here.join("listed.ron"), listed).unwrap();
+    let rule = ["--precision", "distance: RNE-DIS: 0.001", "--out", "results/listed"];
+    let said = succeeds(&usar(here, &[&["sweep", "listed.ron"], &rule[..]].concat()));
+    assert!(said.contains("after 3 pairs"), "{said}");
+}
+
+#[test]
+fn an_estimate_says_trials_time_and_disk() {
+    let folder = place();
+    let json: Value = serde_json::from_str(&succeeds(&usar(
+        folder.path(),
+        &["estimate", "grid.ron", "--trials", "100", "--json"],
+    )))
+    .unwrap();
+    assert_eq!((&json["trials"], &json["cases"], &json["policies"]), (&1200.into(), &4.into(), &3.into()));
+    assert_eq!(json["measured"], 24, "all policies on eight of the seeds");
+    assert!(json["seconds"].as_f64().unwrap() > 0.0 && json["bytes"].as_u64().unwrap() > 1200 * 1000);
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 3, "nothing is left behind");
+    let alike = [
+        "estimate",
+        "short.ron",
+        "--policies",
+        "DIS, RNE(log_base: Two), RNE(log_base: Ten)",
+        "--trials",
+        "100",
+        "--json",
+    ];
+    let json: Value = serde_json::from_str(&succeeds(&usar(folder.path(), &alike))).unwrap();
+    assert_eq!((&json["measured"], &json["simulated"]), (&24.into(), &16.into()), "the base decides nothing");
+}

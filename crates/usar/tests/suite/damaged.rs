@@ -1,0 +1,129 @@
+//! Folders of results that were changed, and disks that are full.
+
+use std::process::Command;
+
+use xtask::kills::files;
+
+use crate::place::{place, refused};
+use crate::support::{program, succeeds, usar};
+
+#[test]
+fn changed_bytes_are_named_and_made_again() {
+    let folder = place();
+    let here = folder.path();
+    let sweep = ["sweep", "short.ron", "--policies", "RNE,DIS", "--trials", "2"];
+    succeeds(&usar(here, &sweep));
+    let results = here.join("results/paper");
+    let sound = files(&results);
+    let damage = |name: &str, change: fn(&mut Vec<u8>)| {
+        let mut bytes = sound[name].clone();
+        change(&mut bytes);
+        std::fs::write(results.join(name), bytes).unwrap();
+    };
+    let mended = |message: &str| {
+        let output = usar(here, &sweep);
+        let stderr = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.success() && stderr.contains(message), "{stderr}");
+        assert!(files(&results) == sound, "{message}");
+    };
+    let flip = |bytes: &mut Vec<u8>| {
+        let middle = bytes.len() / 2;
+        bytes[middle] ^= 1;
+    };
+    damage("journal.jsonl", flip);
+    refused(here, 2, &["compare", "results/paper"], &["journal.jsonl:", "checksum does not match"]);
+    mended("the checksum does not match");
+    damage("journal.jsonl", |bytes| bytes.truncate(bytes.len() - 100));
+    refused(here, 2, &["compare", "results/paper"], &["journal.jsonl:4: the last line is cut off"]);
+    mended("journal.jsonl:4: the last line is cut off");
+    damage("trials.csv", flip);
+    refused(here, 2, &["compare", "results/paper"], &["trials.csv"]);
+    mended("trials.csv: does not have the checksum");
+    damage("hashes.csv", |bytes| bytes.truncate(1000));
+    mended("hashes.csv: does not have the checksum");
+    std::fs::remove_file(results.join("robots.csv")).unwrap();
+    mended("robots.csv: does not have the checksum");
+    damage("manifest.json", |bytes| bytes.truncate(100));
+    refused(here, 2, &sweep, &["manifest.json: is not a manifest of this program"]);
+    succeeds(&usar(here, &[&sweep[..], &["--fresh"]].concat()));
+    assert!(files(&results) == sound);
+}
+
+#[test]
+fn trouble_with_the_disk_breaks_nothing() {
+    let folder = place();
+    let here = folder.path();
+    succeeds(&usar(here, &["sweep", "short.ron", "--policies", "RNE", "--trials", "4", "--out", "whole"]));
+    // Files may not grow beyond some blocks: what a full disk does, without one.
+    for blocks in ["1", "12", "20"] {
+        let limited = format!(
+            "trap '' XFSZ; ulimit -f {blocks}; exec '{}' sweep short.ron --policies RNE --trials 4 --quiet",
+            program().display()
+        );
+        let output = Command::new("sh").args(["-c", &limited]).current_dir(here).output().unwrap();
+        let stderr = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(3), "{blocks}: {stderr}");
+        assert!(stderr.contains("File too large"), "{stderr}");
+    }
+    succeeds(&usar(here, &["sweep", "short.ron", "--policies", "RNE", "--trials", "4"]));
+    assert!(
+        files(&here.join("results/paper")) == files(&here.join("whole")),
+        "it goes on when the cause is gone"
+    );
+
+    std::fs::write(here.join("file"), "").unwrap();
+    refused(here, 3, &["sweep", "short.ron", "--out", "file/results"], &["cannot write to file/results"]);
+
+    let lock = std::fs::File::open(here.join("results/paper/.lock")).unwrap();
+    lock.lock().unwrap();
+    refused(
+        here,
+        3,
+        &["sweep", "short.ron", "--policies", "RNE", "--trials", "4"],
+        &["results/paper: another process is at work in this folder"],
+    );
+}
+
+#[test]
+fn other_peoples_files_are_left_alone() {
+    let folder = place();
+    let here = folder.path();
+    let message = &["is not empty and not the folder of a sweep; nothing was overwritten"];
+    for (name, content) in [("trials.csv", "method,trial\nDIS,1\n"), ("manifest.json", "{\"name\": \"web\"}")]
+    {
+        let results = here.join("results");
+        std::fs::create_dir_all(&results).unwrap();
+        std::fs::write(results.join(name), content).unwrap();
+        refused(here, 2, &["sweep", "short.ron", "--out", "results"], message);
+        refused(here, 2, &["sweep", "short.ron", "--out", "results", "--fresh"], message);
+        std::fs::remove_dir_all(&results).unwrap();
+    }
+}
+
+#[test]
+fn a_changed_manifest_or_a_journal_that_lacks_lines_is_noticed() {
+    let folder = place();
+    let here = folder.path();
+    let sweep = ["sweep", "short.ron", "--policies", "RNE,DIS", "--trials", "2"];
+    succeeds(&usar(here, &sweep));
+    let results = here.join("results/paper");
+    let sound = files(&results);
+    let text = |name: &str| String::from_utf8(sound[name].clone()).unwrap();
+    std::fs::write(
+        results.join("manifest.json"),
+        text("manifest.json").replace("\"trials\": 2", "\"trials\": 3"),
+    )
+    .unwrap();
+    refused(here, 2, &["compare", "results/paper"], &["manifest.json", "its checksum does not match"]);
+    std::fs::write(results.join("manifest.json"), text("manifest.json")).unwrap();
+    let journal: Vec<&str> = text("journal.jsonl").leak().lines().collect();
+    std::fs::write(results.join("journal.jsonl"), journal[..3].join("\n") + "\n").unwrap();
+    refused(
+        here,
+        2,
+        &["compare", "results/paper"],
+        &["do not have the checksums of the manifest: journal.jsonl"],
+    );
+    succeeds(&usar(here, &sweep));
+    assert!(files(&results) == sound);
+}

@@ -1,0 +1,181 @@
+//! Sweep files: their grids, their shards, and what is wrong with them.
+
+use std::path::Path;
+
+use serde_json::Value;
+use xtask::kills::files;
+
+use crate::place::{column, place, refused, rows};
+use crate::support::{succeeds, usar};
+
+#[test]
+fn a_sweep_file_spans_its_grid_and_any_field_can_be_an_axis() {
+    let folder = place();
+    let here = folder.path();
+    let said = succeeds(&usar(here, &["sweep", "grid.ron"]));
+    assert!(said.contains("roles.carrier.speed_mps=1.5, conflicts.priority=HighestEnergyFirst"), "{said}");
+    let results = here.join("results/grid");
+    let trials = rows(&results, "trials.csv");
+    assert_eq!(trials.len(), 2 * 2 * 3 * 2);
+    assert_eq!(trials[23].iter().take(4).collect::<Vec<_>>(), ["4", "3.0", "HighestEnergyFirst", "DIS"]);
+    let column = |name: &str| column(&results, name);
+    let distance = |row: &csv::StringRecord| row[column("distance_m")].parse::<f64>().unwrap();
+    assert!(distance(&trials[18]) > 1.2 * distance(&trials[0]), "faster carriers go farther");
+    assert_eq!(succeeds(&usar(here, &["verify", "results/grid"])), "24 of 24 trials match, step by step\n");
+    // A row can be run again alone.
+    let policy = "RNE(score: Sum)";
+    let arguments = ["run", "results/grid/resolved.ron", "--policy", policy, "--seed", "2", "--json"];
+    let set = ["--set", "roles.carrier.speed_mps=3.0"];
+    let run: Value = serde_json::from_str(&succeeds(&usar(here, &[&arguments[..], &set].concat()))).unwrap();
+    let row = trials.iter().find(|row| &row[0] == "3" && &row[3] == "sum" && &row[4] == "2").unwrap();
+    assert_eq!(run["state_hash"], row[column("state_hash")]);
+}
+
+#[test]
+fn bad_sweep_files_are_refused_with_their_lines() {
+    let folder = place();
+    let here = folder.path();
+    let grid = std::fs::read_to_string(here.join("grid.ron")).unwrap();
+    let refuse = |from: &str, to: &str, message: &str| {
+        assert!(grid.contains(from));
+        std::fs::write(here.join("bad.ron"), grid.replace(from, to)).unwrap();
+        refused(here, 2, &["sweep", "bad.ron"], &[message]);
+    };
+    refuse(
+        "carrier.speed_mps",
+        "carrier.speed",
+        "bad.ron:9: axes.\"roles.carrier.speed\"[0]: roles.carrier.speed: no such field; roles.carrier has ",
+    );
+    refuse("[1.5, 3.0]", "[1.5, \"fast\"]", "bad.ron:9: axes.\"roles.carrier.speed_mps\"[1]: ");
+    refuse(
+        "[1.5, 3.0]",
+        "[1.5, -3.0]",
+        "roles.carrier.speed_mps=-3.0: conflicts.priority=LowestEnergyFirst: roles.carrier.speed_mps must",
+    );
+    refuse("[1.5, 3.0]", "[1.5, 1.5]", "must not be listed twice, found 1.5");
+    refuse("[1.5, 3.0]", "[]", "must have at least one value");
+    refuse("\"mission.loading_s\"", "\"mission.loading\"", "bad.ron:5: set.\"mission.loading\": ");
+    refuse("trials: 2", "trails: 2", "bad.ron:7:");
+    refuse("short.ron", "long.ron", "long.ron: cannot be read");
+    refuse("score: Sum", "score: Most", "policies: policy RNE: ");
+    refuse("\"DIS\"", "\"RNE\"", "policies: must not be listed twice, found \"RNE\"");
+    refuse(
+        "trials: 2",
+        "trials: 3, seeds: [1, 2]",
+        "trials: must be at most the number of listed seeds, 2, found 3",
+    );
+    refuse("trials: 2", "seeds: [1, 2], first_seed: 1", "seeds: must not be given beside first_seed");
+}
+
+#[test]
+fn strange_texts_are_refused_in_words() {
+    let folder = place();
+    let here = folder.path();
+    std::fs::write(here.join("deep.ron"), "(".repeat(200_000)).unwrap();
+    refused(here, 2, &["check", "deep.ron"], &["deep.ron:"]);
+    refused(here, 2, &["sweep", "short.ron", "--policies", "RNE(score: '日')"], &["policies: policy RNE: "]);
+    refused(here, 2, &["sweep", "short.ron", "--set", "duration_s='日'"], &["--set: duration_s: "]);
+    refused(
+        here,
+        2,
+        &["sweep", "short.ron", "--set", &format!("dt_s={}", "[".repeat(100_000))],
+        &["--set: dt_s: "],
+    );
+    refused(
+        here,
+        2,
+        &["sweep", "short.ron", "--set", "description=\"more\""],
+        &["--set: description: decides no number"],
+    );
+    refused(
+        here,
+        2,
+        &["sweep", "grid.ron", "--set", "roles[0].speed_mps=2.0"],
+        &["--set: roles.carrier.speed_mps is an axis"],
+    );
+    let grid = std::fs::read_to_string(here.join("grid.ron")).unwrap();
+    let commented = grid.replace("[1.5, 3.0]", "[1.5, // as printed\n 3.0 /* twice */]");
+    std::fs::write(here.join("commented.ron"), commented).unwrap();
+    succeeds(&usar(here, &["check", "commented.ron"]));
+    for (from, to, message) in [
+        (
+            "[1.5, 3.0]",
+            "[3, 3.0]",
+            "axes.\"roles.carrier.speed_mps\"[1]: must not be listed twice, found 3.0",
+        ),
+        ("roles.carrier.speed_mps", "description", "decides no number of a trial"),
+        (
+            "conflicts.priority",
+            "roles[0]",
+            "must not be a part of another axis, found roles.carrier.speed_mps",
+        ),
+        ("sum=RNE", "DIS=RNE", "must not be the name of another policy"),
+        ("sum=RNE", "a\\nb=RNE", "must be visible characters"),
+        ("trials: 2", "seeds: [4, 4]", "seeds: must differ"),
+    ] {
+        std::fs::write(here.join("bad.ron"), grid.replace(from, to)).unwrap();
+        refused(here, 2, &["sweep", "bad.ron"], &[message]);
+    }
+}
+
+#[test]
+fn the_sweep_file_in_the_folder_makes_it_again() {
+    let folder = place();
+    let here = folder.path();
+    succeeds(&usar(here, &["sweep", "grid.ron", "--set", "duration_s=20", "--trials", "1"]));
+    let results = here.join("results/grid");
+    succeeds(&usar(&results, &["sweep", "sweep.ron", "--out", "again"]));
+    let (before, again) = (files_but(&results), files_but(&results.join("again")));
+    assert_eq!(before, again);
+}
+
+/// The tables of a folder.
+fn files_but(folder: &Path) -> Vec<(String, Vec<u8>)> {
+    let names = ["trials.csv", "rounds.csv", "hashes.csv", "journal.jsonl", "resolved.ron"];
+    names.iter().map(|name| ((*name).to_owned(), std::fs::read(folder.join(name)).unwrap())).collect()
+}
+
+#[test]
+fn shards_are_joined_to_the_bytes_of_a_single_run() {
+    let folder = place();
+    let here = folder.path();
+    succeeds(&usar(here, &["sweep", "grid.ron", "--out", "whole"]));
+    for shard in ["1/3", "2/3", "3/3"] {
+        succeeds(&usar(here, &["sweep", "grid.ron", "--shard", shard]));
+    }
+    let parts = ["results/grid-1-of-3", "results/grid-2-of-3", "results/grid-3-of-3"];
+    let merge = |parts: &[&'static str]| [&["merge"], parts, &["--out", "joined"]].concat();
+    refused(here, 2, &merge(&parts[..2]), &["shard 3/3 is not there: missing trials, 8: "]);
+    succeeds(&usar(here, &["sweep", "grid.ron", "--shard", "3/3", "--trials", "3", "--out", "results/more"]));
+    refused(
+        here,
+        2,
+        &merge(&[parts[0], "results/more"]),
+        &["are not of one sweep", "trials: 2 there, 3 now"],
+    );
+    succeeds(&usar(here, &["sweep", "short.ron", "--trials", "1", "--out", "results/other"]));
+    refused(here, 2, &merge(&[parts[0], "results/other"]), &["are not of one sweep", "axes: "]);
+    succeeds(&usar(here, &merge(&parts)));
+    assert!(files(&here.join("joined")) == files(&here.join("whole")));
+    refused(here, 2, &["sweep", "grid.ron", "--shard", "4/3"], &["must be i/n with i from 1 to n"]);
+}
+
+#[test]
+fn trials_that_took_too_long_are_counted_and_joined() {
+    let folder = place();
+    let here = folder.path();
+    let sweep = ["sweep", "short.ron", "--policies", "RNE,DIS", "--trials", "2", "--set", "duration_s=600.0"];
+    for shard in ["1/2", "2/2"] {
+        let late = usar(here, &[&sweep[..], &["--shard", shard, "--max-trial-s", "0.001"]].concat());
+        assert_eq!(late.status.code(), Some(1));
+    }
+    let parts = ["results/paper-1-of-2", "results/paper-2-of-2"];
+    let merged = usar(here, &["merge", parts[0], parts[1], "--out", "results/whole"]);
+    assert_eq!(merged.status.code(), Some(1), "{}", String::from_utf8_lossy(&merged.stderr));
+    let said = succeeds(&usar(here, &["compare", "results/whole", "--metric", "rescuees.hard"]));
+    assert!(said.contains("2 with a failed trial, 0 with"), "{said}");
+    // Joined once more, nothing changes.
+    let before = files(&here.join("results/whole"));
+    usar(here, &["merge", parts[0], parts[1], "--out", "results/whole"]);
+    assert!(files(&here.join("results/whole"))["journal.jsonl"] == before["journal.jsonl"]);
+}

@@ -1,0 +1,14 @@
+//! The program `usar`, run as a user runs it. One binary, since each takes long to link.
+
+mod place;
+mod support;
+
+mod calibrated;
+mod commands;
+mod compared;
+mod damaged;
+mod grids;
+mod reported;
+mod resumed;
+mod same_bytes;
+mod studied;

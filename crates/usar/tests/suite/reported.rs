@@ -1,0 +1,118 @@
+//! The report of a sweep.
+
+use std::path::Path;
+
+use experiments::sweep::folder::Folder;
+use serde_json::Value;
+use xtask::kills::files;
+
+use crate::place::{column, place, refused, rows};
+use crate::support::{succeeds, usar};
+
+#[test]
+fn a_report_is_one_file_with_figures_and_the_numbers_behind_them() {
+    let folder = place();
+    let here = folder.path();
+    refused(here, 2, &["report", "results"], &["results: is not the folder of a sweep"]);
+    succeeds(&usar(here, &["sweep", "grid.ron", "--set", "duration_s=120", "--trials", "3"]));
+    assert_eq!(succeeds(&usar(here, &["report", "results/grid"])), "results/grid/report.html\n");
+    let results = here.join("results/grid");
+    let page = std::fs::read_to_string(results.join("report.html")).unwrap();
+    // Nothing is fetched: the only addresses are names of formats.
+    for source in ["src=", "@import", "url(\"http", "<script", "<link"] {
+        assert!(!page.contains(source), "{source}");
+    }
+    assert!(page.replace("http://www.w3.org/", "").matches("http").count() == 0);
+    assert!(!page.contains("NaN") && !page.contains(">inf"));
+    let plots = files(&results.join("plots"));
+    for name in [
+        "rescuees",
+        "energy-per-rescuee",
+        "hp-per-rescuee",
+        "waiting-and-deadlocks",
+        "costs",
+        "differences",
+        "rescuees-over-time",
+        "groups",
+        "levels",
+        "trust",
+        "along-roles-carrier-speed_mps",
+        "along-conflicts-priority",
+    ] {
+        assert!(page.contains(&format!("<figure id=\"{name}\">")), "{name}");
+        assert!(plots[&format!("{name}.svg")].starts_with(b"<svg viewBox="), "{name}");
+        let table = csv::Reader::from_reader(&*plots[&format!("{name}.csv")]).records().count();
+        assert!(table > 0, "{name}");
+    }
+    for words in [
+        "sum",
+        "faster carriers",
+        "roles.carrier.speed_mps=1.5",
+        "usar sweep sweep.ron",
+        "duration_s: 120",
+        "Holm",
+    ] {
+        assert!(page.contains(words), "{words}");
+    }
+    succeeds(&usar(here, &["report", "results/grid"]));
+    assert_eq!(page, std::fs::read_to_string(results.join("report.html")).unwrap(), "the same bytes again");
+    refused(here, 2, &["report", "results/grid", "--case", "5"], &["--case: must be from 1 to 4, found 5"]);
+    // The sweep still goes on in a folder with a report.
+    succeeds(&usar(here, &["sweep", "grid.ron", "--set", "duration_s=120", "--trials", "3"]));
+}
+
+/// The table of trials has each metric of each trial, to the bit.
+fn every_metric_is_a_column(results: &Path, trials: &[csv::StringRecord]) {
+    let sweep = Folder::read(results).unwrap();
+    let metrics = &sweep.experiment().metrics;
+    let places: Vec<usize> = metrics.iter().map(|metric| column(results, &metric.column())).collect();
+    assert_eq!(trials.len(), sweep.results().len());
+    for (row, measured) in trials.iter().zip(sweep.results().values()) {
+        let cells = places.iter().map(|place| row[*place].parse().ok().map(f64::to_bits));
+        let values = measured.metrics.as_ref().unwrap().iter().map(|value| value.map(f64::to_bits));
+        assert!(cells.eq(values), "{row:?}");
+    }
+}
+
+/// The numbers of a figure are those of the tables.
+#[test]
+fn the_reports_numbers_are_those_of_the_trials() {
+    let folder = place();
+    let here = folder.path();
+    succeeds(&usar(
+        here,
+        &["sweep", "short.ron", "--policies", "RNE,DIS", "--trials", "3", "--set", "duration_s=120"],
+    ));
+    succeeds(&usar(here, &["report", "results/paper"]));
+    let results = here.join("results/paper");
+    let trials = rows(&results, "trials.csv");
+    every_metric_is_a_column(&results, &trials);
+    let rescuees = column(&results, "rescuees_total");
+    let rescued: Vec<f64> =
+        trials.iter().filter(|row| &row[0] == "DIS").map(|row| row[rescuees].parse().unwrap()).collect();
+    let last = rows(&results.join("plots"), "rescuees-over-time.csv")
+        .into_iter()
+        .rfind(|row| &row[0] == "rescuees.total" && &row[1] == "DIS")
+        .unwrap();
+    assert_eq!((&last[2], &last[3]), ("120", "3"));
+    assert!((last[4].parse::<f64>().unwrap() - rescued.iter().sum::<f64>() / 3.0).abs() < 1e-9);
+    // The heat map of trust is what `usar trust` says of the same needs.
+    let robots = rows(&results, "groups.csv");
+    let needs = |robot: &str| -> Vec<f64> {
+        let row = robots
+            .iter()
+            .find(|row| &row[0] == "RNE" && &row[1] == "1" && &row[3] == "1" && &row[4] == robot);
+        row.unwrap().iter().skip(9).map(|need| need.parse().unwrap()).collect()
+    };
+    let all: Vec<Vec<f64>> = (0..12).map(|robot| needs(&robot.to_string())).collect();
+    let weights: Vec<String> =
+        (0..7).map(|k| (1.0 / all.iter().map(|needs| needs[k]).fold(0.0, f64::max)).to_string()).collect();
+    let text = |needs: &[f64]| needs.iter().map(f64::to_string).collect::<Vec<_>>().join(",");
+    let (from, to, weights) = (text(&all[0]), text(&all[1]), weights.join(","));
+    let said =
+        succeeds(&usar(here, &["trust", "--weights", &weights, "--from", &from, "--to", &to, "--json"]));
+    let rne = serde_json::from_str::<Value>(&said).unwrap()["rne"].as_f64().unwrap();
+    let shown = &rows(&results.join("plots"), "trust.csv")[1];
+    assert_eq!((&shown[0], &shown[1]), ("0", "1"));
+    assert!((shown[2].parse::<f64>().unwrap() - rne).abs() < 1e-12);
+}

@@ -1,0 +1,163 @@
+//! The paper put to the test: claims, readings, and the pages that tell of them.
+
+use std::path::Path;
+
+use xtask::pages;
+
+use crate::calibrated::{place, refused};
+use crate::support::{program, read, root, succeeds, usar};
+
+/// What `usar reproduce` writes.
+fn has_the_files(results: &Path) {
+    let authors = read(&root().join("scenarios/reference/dis_trials.csv"));
+    for scenario in ["paper", "paper-calibrated"] {
+        let columns = read(&results.join(format!("{scenario}.csv")));
+        assert_eq!(columns.lines().next(), authors.lines().next(), "the authors' columns");
+        assert_eq!(columns.lines().count(), 41);
+        assert!(results.join(scenario).join("report.html").exists());
+    }
+    let rows = |name: &str| {
+        let mut table = csv::Reader::from_path(results.join(name)).unwrap();
+        table
+            .deserialize::<std::collections::BTreeMap<String, String>>()
+            .map(Result::unwrap)
+            .collect::<Vec<_>>()
+    };
+    assert_eq!(
+        rows("examples.csv").iter().map(|row| row["verdict"].as_str()).collect::<Vec<_>>(),
+        ["holds", "holds", "does not hold"]
+    );
+    let claims = rows("claims.csv");
+    assert_eq!(claims.len(), 2 * 2 * 30);
+    for row in &claims {
+        let [low, high, shared_low, shared_high] =
+            ["low", "high", "shared_low", "shared_high"].map(|name| row[name].parse::<f64>().unwrap());
+        assert!(shared_low <= low && low <= high && high <= shared_high, "{row:?}");
+    }
+}
+
+/// What `usar reproduce` prints of ten trials stands in its page.
+fn agrees_with_its_page(first: &str) {
+    // The verdicts over ten pairs are those of the page, and so is what stands under "first 10".
+    let page = read(&root().join("docs/reproduction.md"));
+    let cells = |line: &str| -> Vec<String> {
+        line.trim_matches('│').split('┆').map(|cell| cell.trim().to_owned()).collect()
+    };
+    let comparisons = |text: &str| -> Vec<[String; 2]> {
+        let rows = text.lines().filter(|line| line.starts_with('│')).map(cells);
+        let rows = rows.filter(|row| row.len() == 8 && row[7].ends_with(')'));
+        rows.map(|mut row| [row.remove(0), row.remove(6)]).collect()
+    };
+    assert_eq!(comparisons(first).len(), 2 * 30);
+    assert_eq!(comparisons(first), comparisons(&page), "`just pages` makes it anew");
+    let verdicts = |text: &str| -> Vec<Vec<String>> {
+        let table = text.split("\nVerdicts\n").nth(1).unwrap_or_default();
+        let rows = table.lines().filter(|line| line.starts_with('│')).skip(1);
+        rows.map(cells).collect()
+    };
+    let (here, there) = (verdicts(first), verdicts(&page));
+    assert!(here.len() >= 10 && here.len() == there.len());
+    for (here, there) in here.iter().zip(&there) {
+        assert_eq!([&here[0], &here[1], &here[3]], [&there[0], &there[1], &there[3]]);
+    }
+}
+
+/// The claims over as many trials as the paper has; and the pages in `docs/` with the numbers of these
+/// trials.
+#[test]
+fn the_papers_experiment_and_the_pages_that_tell_of_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let arguments = ["reproduce", "--trials", "10", "--out", "results/reproduction", "--quiet"];
+    let first = succeeds(&usar(folder.path(), &arguments));
+    assert_eq!(succeeds(&usar(folder.path(), &arguments)), first, "it is all there already");
+    let results = folder.path().join("results/reproduction");
+    has_the_files(&results);
+    let report = read(&results.join("report.html"));
+    assert_eq!(report.matches("<tr class=\"claim\">").count(), 2 * 10, "the claims on both scenarios");
+    assert!(report.contains("Not said: it takes 50 trials, there are 10."));
+    refused(
+        &usar(folder.path(), &["compare", "results/reproduction"]),
+        &["these in it are: results/reproduction/paper, results/reproduction/paper-calibrated"],
+    );
+    refused(
+        &usar(folder.path(), &["reproduce", "--out", "results/reproduction/paper"]),
+        &["--out: results/reproduction/paper is the folder of one sweep"],
+    );
+    let example = |n: &str, verdict: &str| {
+        let line = first.lines().find(|line| line.contains(n)).unwrap_or_default();
+        assert!(line.contains(verdict), "{line}");
+    };
+    example("Example 2", "┆ holds");
+    example("Example 3", "┆ does not hold");
+
+    agrees_with_its_page(&first);
+
+    // The page that tells why has the numbers of the paper's ten trials.
+    let page = read(&root().join("docs/why.md"));
+    let mut found = 0;
+    let renewed = pages::renewed(&page, |command| {
+        (command == "explain results/paper").then(|| {
+            found += 1;
+            pages::answer(program(), folder.path(), "explain results/reproduction/paper")
+        })
+    });
+    assert_eq!(found, 1, "docs/why.md has that command");
+    assert_eq!(
+        renewed, page,
+        "docs/why.md is not what `usar explain results/paper` prints; `just pages` makes it anew"
+    );
+}
+
+#[test]
+fn readings_stand_for_every_combination_and_are_named_by_what_differs() {
+    let place = place();
+    let folder = place.path();
+    let sweep = |readings: &str, policies: &str| {
+        let text = format!(
+            "(name: \"r\", scenario: \"short.ron\", set: {{\"duration_s\": 30.0}}, policies: {policies}, readings: {readings}, trials: 2, lean: true)"
+        );
+        std::fs::write(folder.join("r.ron"), text).unwrap();
+        usar(folder, &["sweep", "r.ron", "--quiet", "--out", "out", "--fresh"])
+    };
+    succeeds(&sweep(
+        "{\"hard_rule\": [IntraGroupTrust, MeanHp], \"log_base\": [E, Two]}",
+        "[\"RNE\", \"DIS\"]",
+    ));
+    let labels: Vec<String> = csv::Reader::from_path(folder.join("out/trials.csv"))
+        .unwrap()
+        .records()
+        .map(|record| record.unwrap()[0].to_owned())
+        .collect();
+    let names = [
+        "RNE",
+        "RNE(log_base: Two)",
+        "RNE(hard_rule: MeanHp)",
+        "RNE(hard_rule: MeanHp, log_base: Two)",
+        "DIS",
+    ];
+    assert_eq!(labels, names.map(|name| [name, name]).concat());
+    assert!(!folder.join("out/hashes.csv").exists() && !folder.join("out/groups.csv").exists(), "it is lean");
+    refused(&usar(folder, &["verify", "out"]), &["its sweep is lean"]);
+    let table = succeeds(&usar(folder, &["readings", "out"]));
+    let base = table.lines().find(|line| line.contains("log_base: Two")).unwrap();
+    assert!(base.matches(" 0.0 %").count() == 3, "the base of the logarithm decides nothing: {base}");
+    assert!(table.contains("The 2 of 4 readings whose trials differ, against each other policy"), "{table}");
+    let by_hp = table.lines().find(|line| line.contains("hard_rule: MeanHp")).unwrap();
+    assert!(
+        by_hp.matches(" 0.0 %").count() < 3 && !by_hp.contains("-nan"),
+        "the hard rule decides something: {by_hp}"
+    );
+    let set = |more: &[&str]| usar(folder, &[&["sweep", "r.ron", "--quiet", "--out", "new"], more].concat());
+    refused(&set(&["--policies", "DIS,ENG"]), &["this sweep does not run RNE. Add it to `policies`."]);
+    assert!(!folder.join("new").exists());
+    refused(
+        &sweep("{\"hard_rule\": [MeanHp, MeanHp]}", "[\"RNE\"]"),
+        &["must not be listed twice", "MeanHp"],
+    );
+    refused(&sweep("{\"wings\": [MeanHp]}", "[\"RNE\"]"), &["readings.\"wings\"[0]: policy RNE: ", "wings"]);
+    refused(&sweep("{\"sort\": []}", "[\"RNE\"]"), &["must have at least one value"]);
+    refused(
+        &sweep("{\"sort\": [true]}", "[\"DIS\"]"),
+        &["this sweep does not run RNE. Add it to `policies`."],
+    );
+}

@@ -1,0 +1,38 @@
+//! Grouping alone: how long RNE takes to split teams of different sizes.
+
+use std::time::Instant;
+
+use rne_core::{Question, Registry};
+use xtask::team::question;
+
+/// Groupings of one team; the median is printed.
+const TURNS: usize = 9;
+
+/// Teams by name: carriers, suppliers, observers.
+const TEAMS: [(&str, [u32; 3]); 4] = [
+    ("6/4/2 robots, exact", [6, 4, 2]),
+    ("20 robots of one role, exact", [20, 0, 0]),
+    ("100 robots, local search", [50, 33, 17]),
+    ("1000 robots, local search", [500, 333, 167]),
+];
+
+/// Prints the time that RNE takes for each team.
+pub fn print_table() {
+    println!("\n{:<32}{:>12}", "grouping by RNE", "ms");
+    for (name, counts) in TEAMS {
+        println!("{name:<32}{:>12.3}", 1e3 * seconds(&question(counts)));
+    }
+}
+
+fn seconds(question: &Question) -> f64 {
+    let rne = Registry::standard().parse("RNE").expect("known");
+    let mut turns: Vec<f64> = (0..TURNS)
+        .map(|_| {
+            let start = Instant::now();
+            std::hint::black_box(rne.policy.decide(question).expect("a decision"));
+            start.elapsed().as_secs_f64()
+        })
+        .collect();
+    turns.sort_by(f64::total_cmp);
+    turns[TURNS / 2]
+}

@@ -1,0 +1,16 @@
+//! One file per task.
+
+pub mod golden;
+pub mod kills;
+pub mod pages;
+pub mod scale;
+pub mod soak;
+pub mod work;
+pub mod worlds;
+
+use std::path::PathBuf;
+
+/// The program `usar` that was built into the same folder as this one.
+fn usar() -> PathBuf {
+    std::env::current_exe().expect("this program has a path").with_file_name("usar")
+}

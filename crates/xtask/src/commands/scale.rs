@@ -1,0 +1,43 @@
+//! A large team at the usual density: does it run, how long does a step take, and how much memory does it need?
+//!
+//! `scale [ROBOTS] [SECONDS]`
+
+use std::process::ExitCode;
+use std::time::Instant;
+
+use rne_core::Registry;
+use usar_sim::record::Status;
+use usar_sim::simulation::Simulation;
+use xtask::density;
+
+pub fn run(arguments: &[String]) -> ExitCode {
+    let mut arguments = arguments.iter().map(|text| text.parse::<u32>().expect("a whole number"));
+    let robots = arguments.next().unwrap_or(10_000);
+    let seconds = arguments.next().unwrap_or(60);
+    let scenario = density::mission(robots, f64::from(seconds), None);
+    let eng = Registry::standard().parse("ENG").expect("known");
+    let start = Instant::now();
+    let mut trial = Simulation::new(&scenario, 1).expect("drawn");
+    println!(
+        "{robots} robots, {} pieces of debris: built in {:.1} s",
+        scenario.debris.len(),
+        start.elapsed().as_secs_f64()
+    );
+    let start = Instant::now();
+    while trial.step(&*eng.policy).is_none() {}
+    let steps = trial.steps();
+    let us = start.elapsed().as_secs_f64() * 1e6 / steps as f64;
+    let record = trial.finish();
+    assert!(!matches!(record.status, Status::Failed(_)), "{:?}", record.status);
+    println!("{} s simulated, {us:.0} us a step, {} rescued", record.time_s, record.rescued());
+    if let Some(peak) = peak_memory() {
+        println!("peak memory: {peak}");
+    }
+    ExitCode::SUCCESS
+}
+
+/// The largest resident size so far, as the system says it, where it does.
+fn peak_memory() -> Option<String> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    Some(status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?.trim().to_owned())
+}

@@ -1,0 +1,65 @@
+//! What is asked of every trial of the random worlds, and how it is counted.
+
+use rne_core::Registry;
+use usar_sim::conflict::DelayCause;
+use usar_sim::record::{Status, TrialRecord};
+use usar_sim::scenario::Scenario;
+use usar_sim::simulation::Simulation;
+use usar_sim::world::STANDING_MPS;
+
+/// A robot that has somewhere to go and does not come nearer for longer than this is counted, in seconds.
+pub const STALL_S: f64 = 30.0;
+
+/// A fleet that stands for longer than this although somebody has somewhere to go is a fault, in seconds.
+pub const STANDSTILL_S: f64 = 60.0;
+
+/// One world's trial.
+pub struct Journeys {
+    /// Its record.
+    pub record: TrialRecord,
+    /// The longest time in which nobody moved although somebody had somewhere to go and knew a way, in seconds.
+    pub standstill_s: f64,
+}
+
+impl Journeys {
+    /// Runs a world with every check on.
+    ///
+    /// # Errors
+    /// Why the trial failed, in words.
+    pub fn run(scenario: &Scenario, seed: u64) -> Result<Self, String> {
+        let random = Registry::standard().parse("RANDOM").expect("known");
+        let mut trial = Simulation::new(scenario, seed).map_err(|error| error.to_string())?.checked();
+        let (mut still, mut longest) = (0_u64, 0_u64);
+        while trial.ending().is_none() {
+            if let Some(Status::Failed(reason)) = trial.step(&*random.policy) {
+                return Err(reason);
+            }
+            let moves = trial.world().robots.iter().any(|robot| robot.velocity.length() > STANDING_MPS);
+            let holds_up = |cause| !matches!(cause, DelayCause::NothingToDo | DelayCause::NoRoute);
+            let wants = trial.world().robots.iter().zip(trial.delays()).any(|(robot, delay)| {
+                let traveller = trial.navigator().traveller(robot.id);
+                traveller.route().is_some()
+                    && !traveller.has_arrived(robot.position)
+                    && robot.is_able()
+                    && holds_up(delay.cause)
+            });
+            still = if wants && !moves { still + 1 } else { 0 };
+            longest = longest.max(still);
+        }
+        let record = trial.finish();
+        Ok(Self { record, standstill_s: longest as f64 * scenario.dt_s })
+    }
+
+    /// Robots that did not come on, with cause.
+    pub fn stalls(&self) -> impl Iterator<Item = String> + '_ {
+        self.record.robots.iter().filter(|robot| robot.longest_stall_s > STALL_S).map(|robot| {
+            let waits_for = robot.stall.waits_for.map(|id| format!(" robot {id}")).unwrap_or_default();
+            format!(
+                "robot {}: {:.1} s, {}{waits_for}",
+                robot.robot,
+                robot.longest_stall_s,
+                robot.stall.cause.name()
+            )
+        })
+    }
+}

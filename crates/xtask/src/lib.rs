@@ -1,0 +1,16 @@
+//! What tasks of the project share with its tests and benchmarks: worlds to run, teams to group, and checks
+//! that both make, the tests on few and the tasks on many.
+
+#![expect(
+    clippy::missing_panics_doc,
+    clippy::must_use_candidate,
+    reason = "these are parts of tests: they panic where something is not as it must be"
+)]
+
+pub mod density;
+pub mod golden;
+pub mod journeys;
+pub mod kills;
+pub mod pages;
+pub mod team;
+pub mod worlds;

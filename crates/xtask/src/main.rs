@@ -1,0 +1,27 @@
+//! Tasks of the project itself: `cargo run --release --package xtask -- TASK [ARGUMENT ...]`, from the
+//! project's folder. The justfile has them with their arguments.
+
+mod commands;
+
+use std::process::ExitCode;
+
+use commands::{golden, kills, pages, scale, soak, work, worlds};
+
+fn main() -> ExitCode {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let (task, arguments) =
+        arguments.split_first().map_or(("", &[][..]), |(task, rest)| (task.as_str(), rest));
+    match task {
+        "golden" => golden::run(arguments),
+        "kills" => kills::run(arguments),
+        "pages" => pages::run(arguments),
+        "scale" => scale::run(arguments),
+        "soak" => soak::run(arguments),
+        "work" => work::run(arguments),
+        "worlds" => worlds::run(arguments),
+        _ => {
+            eprintln!("xtask: no task {task:?}. Tasks: golden, kills, pages, scale, soak, work, worlds");
+            ExitCode::from(2)
+        }
+    }
+}
