@@ -12,6 +12,10 @@ soak:
 worlds:
     cargo run --release --package xtask -- worlds
 
+# How well robots pass one another: 33 problems of the literature, 20 seeds each; `--help` for options
+navigation *arguments:
+    cargo run --release --package xtask -- navigation {{arguments}}
+
 # A sweep killed at 100 random moments: nothing lost, nothing done twice, the same bytes in the end
 kills *arguments:
     cargo build --release --package usar

@@ -11,8 +11,19 @@ use usar_sim::simulation::Simulation;
 
 use crate::support::{policy, root};
 
-const NAMES: [&str; 9] =
-    ["closed_road", "crossing", "dead_end", "doorway", "head_on", "parked", "pushed", "ring", "stranded"];
+const NAMES: [&str; 11] = [
+    "closed_road",
+    "crossing",
+    "dead_end",
+    "detour",
+    "doorway",
+    "head_on",
+    "parked",
+    "pushed",
+    "ring",
+    "row",
+    "stranded",
+];
 
 fn load(name: &str) -> ScenarioFile {
     let path = root().join(format!("scenarios/minimal/{name}.ron"));

@@ -5,21 +5,21 @@ use std::path::{Path, PathBuf};
 use experiments::experiment::{Experiment, Overrides};
 use rne_core::Registry;
 use usar_sim::model::Layout;
-use usar_sim::scenario::{RoleFile, Scenario};
+use usar_sim::scenario::{ConflictRules, ResolverRule, RoleFile, Scenario};
 
 use crate::support::{SAMPLED, paper, paper_text, paper_with, root};
 
 #[test]
 fn every_scenario_loads() {
     let mut found = 0;
-    for path in files("scenarios").into_iter().chain(files("scenarios/minimal")) {
+    for path in ["scenarios", "scenarios/minimal", "scenarios/navigation"].into_iter().flat_map(files) {
         if is_scenario(&path) {
             let (scenario, _) = Scenario::load(&path).unwrap_or_else(|error| panic!("{error}"));
             Layout::sample(&scenario, 1).unwrap();
             found += 1;
         }
     }
-    assert!(found > 9 + 3);
+    assert!(found > 9 + 3 + 30);
 }
 
 /// Whether a file is a scenario, and not one's sweep file.
@@ -65,7 +65,11 @@ fn the_defaults_are_those_of_the_paper_s_scenario() {
     assert_eq!(small.costs, paper.costs);
     assert_eq!(small.mission, paper.mission);
     assert_eq!(small.planning, paper.planning);
-    assert_eq!(small.conflicts, paper.conflicts);
+    assert_eq!(
+        (small.conflicts.resolver, paper.conflicts.resolver),
+        (ResolverRule::Reciprocal, ResolverRule::Rotation)
+    );
+    assert_eq!(ConflictRules { resolver: ResolverRule::Rotation, ..small.conflicts }, paper.conflicts);
     assert_eq!(small.sampled, paper.sampled);
 }
 

@@ -8,6 +8,7 @@ mod determinism;
 mod invariants;
 mod minimal;
 mod missions;
+mod navigation;
 mod pairing;
 mod paper_counts;
 mod random_worlds;

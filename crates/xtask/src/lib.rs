@@ -11,6 +11,7 @@ pub mod density;
 pub mod golden;
 pub mod journeys;
 pub mod kills;
+pub mod navigation;
 pub mod pages;
 pub mod team;
 pub mod worlds;

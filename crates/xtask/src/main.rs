@@ -14,13 +14,16 @@ fn main() -> ExitCode {
     match task {
         "golden" => golden::run(arguments),
         "kills" => kills::run(arguments),
+        "navigation" => xtask::navigation::main(),
         "pages" => pages::run(arguments),
         "scale" => scale::run(arguments),
         "soak" => soak::run(arguments),
         "work" => work::run(arguments),
         "worlds" => worlds::run(arguments),
         _ => {
-            eprintln!("xtask: no task {task:?}. Tasks: golden, kills, pages, scale, soak, work, worlds");
+            eprintln!(
+                "xtask: no task {task:?}. Tasks: golden, kills, navigation, pages, scale, soak, work, worlds"
+            );
             ExitCode::from(2)
         }
     }

@@ -13,6 +13,7 @@ mod mover;
 mod passing;
 mod predict;
 mod priority;
+mod reciprocal;
 mod retreat;
 mod room;
 #[cfg(test)]
@@ -34,6 +35,7 @@ pub use passing::PASSING_RANGE_M;
 use passing::{Surroundings, nearest_in_the_way, passing_direction};
 use predict::{Conflicts, Neighbours};
 pub use priority::PriorityKey;
+use reciprocal::Entry;
 use retreat::{Limits, Retreats};
 
 /// How long a deadlocked set backs off, in seconds.
@@ -69,6 +71,8 @@ pub struct Resolver {
     patience: Patience,
     #[serde(skip)]
     ask_again: u32,
+    #[serde(skip)]
+    arena: Vector,
     sets: Vec<ConflictSet>,
     retreats: Retreats,
     /// Found anew in every step, as are the following.
@@ -87,6 +91,14 @@ pub struct Resolver {
     headings: Vec<Vector>,
     /// For each robot, steps since its way was last free.
     blocked_steps: Vec<u32>,
+    /// For each robot, how it stands at the narrow passage that it is at.
+    entries: Vec<Entry>,
+    /// Steps without coming nearer after which a robot is stuck.
+    #[serde(skip)]
+    stuck_steps: u32,
+    /// Steps after which a robot that waits before a passage ends the turn of the others.
+    #[serde(skip)]
+    turn_steps: u32,
 }
 
 impl Resolver {
@@ -97,6 +109,7 @@ impl Resolver {
             rules: scenario.conflicts,
             patience: Patience::default(),
             ask_again: 0,
+            arena: Vector::ZERO,
             sets: Vec::new(),
             retreats: Retreats::default(),
             neighbours: Neighbours::default(),
@@ -106,6 +119,9 @@ impl Resolver {
             directives: Vec::new(),
             headings: Vec::new(),
             blocked_steps: Vec::new(),
+            entries: Vec::new(),
+            stuck_steps: 0,
+            turn_steps: 0,
         };
         resolver.restore(scenario);
         resolver
@@ -121,13 +137,15 @@ impl Resolver {
             back_off: steps(BACK_OFF_S),
         };
         self.ask_again = steps(ASK_AGAIN_S).max(1);
+        self.stuck_steps = steps(reciprocal::STUCK_S);
+        self.turn_steps = steps(reciprocal::TURN_S);
         let limits = Limits {
             underway: steps(RETREAT_PATIENCE_S),
             at_place: steps(ROOM_PATIENCE_S),
             respite: steps(RESPITE_S),
         };
-        let arena = Vector::new(scenario.arena_m[0] as f32, scenario.arena_m[1] as f32);
-        self.retreats.restore(limits, self.rules.margin_m as f32, arena);
+        self.arena = Vector::new(scenario.arena_m[0] as f32, scenario.arena_m[1] as f32);
+        self.retreats.restore(limits, self.rules.margin_m as f32, self.arena);
     }
 
     /// One directive for each mover, in their order. The wishes of those who make room are replaced.
@@ -142,6 +160,10 @@ impl Resolver {
         self.directives.resize(movers.len(), Directive::Stand);
         self.neighbours.sort(movers);
         self.retreats.follow(movers, &self.neighbours);
+        if self.rules.resolver == ResolverRule::Reciprocal {
+            self.reciprocate(movers, log);
+            return &self.directives;
+        }
         let (margin, horizon) = (self.rules.margin_m as f32, self.rules.horizon_s as f32);
         self.neighbours.pair(movers, margin, horizon);
         self.conflicts.find(movers, &self.neighbours, margin, horizon);

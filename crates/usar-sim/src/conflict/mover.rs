@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::PriorityKey;
 use crate::ids::RobotId;
-use crate::planning::ObstacleMap;
+use crate::planning::{ObstacleMap, Passage};
 
 /// A robot as the resolver sees it.
 #[derive(Debug, Clone, Copy)]
@@ -22,10 +22,14 @@ pub struct Mover<'a> {
     pub wish: Vector,
     /// Way that is left to where it makes room, in metres; none for a robot on its own way.
     pub retreat_left: Option<f32>,
+    /// Steps since it last came nearer to its goal.
+    pub stalled_steps: u32,
     /// Way that is left to its next waypoint, in metres.
     pub leg_left: f32,
     /// Waypoints ahead.
     pub route: &'a [Vector],
+    /// Narrow passages of the route.
+    pub passages: &'a [Passage],
     /// Places that it came by, the latest last.
     pub trail: &'a [Vector],
     /// Radius, in metres.
@@ -73,6 +77,8 @@ pub enum Directive {
     },
     /// Make room sideways with this velocity: the whole set is deadlocked.
     BackOff(Vector),
+    /// Move out of the way of others with this velocity: there is nowhere to go.
+    GiveWay(Vector),
     /// Stop: no direction is free at the moment.
     Blocked {
         /// The robot in the way, where it is one.
@@ -92,7 +98,10 @@ impl Directive {
     #[must_use]
     pub fn velocity(self) -> Vector {
         match self {
-            Self::Proceed(velocity) | Self::BackOff(velocity) | Self::Retreat { velocity, .. } => velocity,
+            Self::Proceed(velocity)
+            | Self::BackOff(velocity)
+            | Self::GiveWay(velocity)
+            | Self::Retreat { velocity, .. } => velocity,
             Self::Yield { .. } | Self::Blocked { .. } | Self::Stand => Vector::ZERO,
         }
     }

@@ -15,12 +15,14 @@ pub(super) fn mover(id: u32, at: [f32; 2], wish: [f32; 2]) -> Mover<'static> {
         velocity: Vector::ZERO,
         wish,
         retreat_left: None,
+        stalled_steps: 0,
         leg_left: 10.0,
         route: if wish == Vector::ZERO {
             &[]
         } else {
             Box::leak(Box::new([position + 10.0 * wish.normalize()]))
         },
+        passages: &[],
         trail: &[],
         radius: 0.4,
         speed: 2.0,

@@ -7,8 +7,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::belief::{Knowledge, News, Seen};
 use crate::ids::RobotId;
-use crate::planning::{KnownObstacle, Planner, Query, Route};
-use crate::scenario::Scenario;
+use crate::planning::{KnownObstacle, Passage, Planner, Query, Route, Walls, polygon_contains};
+use crate::scenario::{ResolverRule, Scenario};
 use crate::world::{Robot, STANDING_MPS, World};
 use trail::Trail;
 
@@ -65,6 +65,8 @@ enum Effect {
 pub struct Traveller {
     goal: Option<Goal>,
     route: Option<Route>,
+    /// Narrow passages of the route, as it was planned.
+    passages: Vec<Passage>,
     is_planned: bool,
     seen: Seen,
     /// Least length that the route ahead has had, in metres.
@@ -80,6 +82,7 @@ impl Traveller {
         Self {
             goal,
             route: None,
+            passages: Vec::new(),
             is_planned: false,
             seen: Seen::default(),
             best_length: f32::INFINITY,
@@ -98,6 +101,12 @@ impl Traveller {
     #[must_use]
     pub fn route(&self) -> Option<&Route> {
         self.route.as_ref()
+    }
+
+    /// The narrow passages of the route.
+    #[must_use]
+    pub fn passages(&self) -> &[Passage] {
+        &self.passages
     }
 
     /// Whether a robot at this place is where it wants to be, or as near as its route leads.
@@ -170,6 +179,9 @@ pub struct Navigator {
     detour_steps: u64,
     #[serde(skip)]
     clearance: f32,
+    /// Width and height of the arena, in metres, where narrow passages are looked for; none where nobody asks for them.
+    #[serde(skip)]
+    narrow_in: Option<Vector>,
 }
 
 impl Navigator {
@@ -182,6 +194,7 @@ impl Navigator {
             planner: Planner::default(),
             detour_steps: 0,
             clearance: 0.0,
+            narrow_in: None,
         };
         navigator.restore(scenario);
         navigator
@@ -192,6 +205,8 @@ impl Navigator {
         self.planner = Planner::new(scenario);
         self.detour_steps = (DETOUR_AFTER_S / scenario.dt_s).round() as u64;
         self.clearance = scenario.planning.clearance_m as f32;
+        let arena = Vector::new(scenario.arena_m[0] as f32, scenario.arena_m[1] as f32);
+        self.narrow_in = (scenario.conflicts.resolver == ResolverRule::Reciprocal).then_some(arena);
     }
 
     /// The journey of one robot.
@@ -264,7 +279,13 @@ impl Navigator {
             if replan || !traveller.is_planned {
                 let fresh = effect != Effect::None || !traveller.is_planned;
                 let in_the_way = match attempt {
-                    Some(Attempt::Detour) => standing_near(world, robot, self.clearance),
+                    Some(Attempt::Detour) => {
+                        let mut standing = standing_near(world, robot, self.clearance);
+                        if self.narrow_in.is_some() {
+                            standing.retain(|other| !polygon_contains(&other.planned, goal.point));
+                        }
+                        standing
+                    }
                     _ => Vec::new(),
                 };
                 let cut = traveller.route.as_ref().filter(|_| effect == Effect::Cut);
@@ -272,6 +293,12 @@ impl Navigator {
                 let query = Query { so_far, in_the_way: &in_the_way, ..query };
                 let route = find_route(&mut self.planner, &query);
                 traveller.set_route(route, robot.position, fresh);
+                if let (Some(arena), Some(route), false) =
+                    (self.narrow_in, &traveller.route, robot.is_aerial())
+                {
+                    let walls = Walls { known: knowledge.obstacles(), arena, radius: robot.radius() };
+                    traveller.passages = walls.passages(robot.position, route);
+                }
             }
         }
     }

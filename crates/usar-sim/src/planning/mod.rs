@@ -12,13 +12,16 @@
 
 mod map;
 mod obstacles;
+mod passage;
 mod route;
 mod search;
 
 pub use map::ObstacleMap;
 pub use obstacles::{
-    KnownObstacle, ObstacleKey, contains as polygon_contains, crosses as polygon_crossed, outward_normal,
+    KnownObstacle, ObstacleKey, contains as polygon_contains, crosses as polygon_crossed,
+    nearest_border_point, outward_normal,
 };
+pub use passage::{Passage, Walls};
 pub use route::Route;
 
 use parry2d::math::Vector;

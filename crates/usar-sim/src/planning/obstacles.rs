@@ -162,6 +162,17 @@ pub fn outward_normal(polygon: &[Vector], point: Vector) -> Vector {
     nearest_edge(polygon, point).0
 }
 
+/// The point of a polygon's border that is nearest to a point.
+#[must_use]
+pub fn nearest_border_point(polygon: &[Vector], point: Vector) -> Vector {
+    let on_edge = |(a, b): (Vector, Vector)| {
+        let edge = b - a;
+        a + edge * ((point - a).dot(edge) / edge.length_squared().max(1e-9)).clamp(0.0, 1.0)
+    };
+    let distance = |p: &Vector| (*p - point).length_squared();
+    edges(polygon).map(on_edge).min_by(|a, b| distance(a).total_cmp(&distance(b))).unwrap_or(point)
+}
+
 /// Outward normal of the nearest edge, and the depth of the point below it, in metres.
 fn nearest_edge(polygon: &[Vector], point: Vector) -> (Vector, f32) {
     let mut nearest = (Vector::ZERO, f32::INFINITY);

@@ -99,7 +99,7 @@ impl Default for ConflictRules {
             horizon_s: 0.8,
             deadlock_steps: 10,
             priority: PriorityRule::LowestEnergyFirst,
-            resolver: ResolverRule::Rotation,
+            resolver: ResolverRule::Reciprocal,
         }
     }
 }

@@ -404,10 +404,13 @@ pub enum PriorityRule {
 /// What resolves conflicts and deadlocks.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum ResolverRule {
-    /// Right of way; the order of a deadlocked set is rotated, head to tail. The default.
+    /// Reciprocal avoidance in the open, right of way in narrow passages, and pushing where a robot is stuck. The default. It keeps margins
+    /// and horizons of its own: `margin_m`, `horizon_s` and `deadlock_steps` are those of the paper's rule.
     #[default]
+    Reciprocal,
+    /// The paper's rule: the head of a conflict set goes, the others stop. The order of a deadlocked set is rotated, head to tail.
     Rotation,
-    /// Right of way; the head of a deadlocked set changes places with the next in line, then with the one after: the paper's
+    /// The paper's rule; the head of a deadlocked set changes places with the next in line, then with the one after: the paper's
     /// Algorithm 6, literally.
     Swap,
     /// Nothing: robots drive as they wish and bump into each other. For comparison.

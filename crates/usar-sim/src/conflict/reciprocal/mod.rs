@@ -1,0 +1,167 @@
+//! The default rule: reciprocal avoidance in the open, right of way at once in narrow passages, and pushing where a robot is stuck.
+//!
+//! - *Open*: each robot takes its share in avoiding the others, idle robots included ([`velocity`]).
+//! - *Narrow*: where two robots do not fit side by side, one direction goes, the others wait outside and make room ([`passage`]).
+//! - *Stuck*: a robot that has come no nearer for a while asks the robot in its way to make room, which inherits its claim
+//!   (`super::retreat`). The longer a robot is stuck, the better its claim. Robots that are parked are asked at once.
+
+mod half_planes;
+mod passage;
+mod velocity;
+
+use super::passing::nearest_in_the_way;
+use super::{Directive, Mover, Resolver};
+use crate::event::{Event, EventLog};
+pub(super) use passage::Entry;
+use passage::{Entrant, decide};
+use velocity::{HORIZON_S, MARGIN_M, Neighbour, avoiding_velocity};
+
+/// A robot that has come no nearer for this long, in seconds, is stuck.
+pub(super) const STUCK_S: f64 = 4.0;
+
+/// A robot that has waited this long before a passage, in seconds, ends the turn of the other direction.
+pub(super) const TURN_S: f64 = 10.0;
+
+/// Robots wait this far from a passage, beyond their radius, in metres.
+const WAIT_AT_M: f32 = 0.3;
+
+/// Robots within this distance of where they wait make room for those that come out, in metres.
+const MAKE_ROOM_M: f32 = 1.0;
+
+/// Share in avoiding each other of the robot that goes first at a passage; the other one has the rest.
+const SHARE_OF_THE_FIRST: f32 = 0.3;
+
+/// Share in avoiding each other in the open of the robot with the better claim.
+const SHARE_OF_PRIORITY: f32 = 0.2;
+
+/// A robot asks a moving one to make room only where their directions differ by more than this (cosine): others get on by themselves.
+const ALONG: f32 = 0.3;
+
+/// Slower than this is no motion, in metres per second.
+const STILL_MPS: f32 = 0.005;
+
+impl Resolver {
+    /// One directive for each mover, by the default rule.
+    pub(super) fn reciprocate(&mut self, movers: &mut [Mover], log: &mut EventLog) {
+        self.neighbours.pair(movers, MARGIN_M, HORIZON_S);
+        self.hold_before_passages(movers, log);
+        for i in 0..movers.len() {
+            self.directives[i] = self.steer(i, movers);
+        }
+        for i in 0..movers.len() {
+            self.push(i, movers, log);
+        }
+    }
+
+    /// Lets robots wait before narrow passages in which others have the right of way, and make room for them there.
+    fn hold_before_passages(&mut self, movers: &mut [Mover], log: &mut EventLog) {
+        self.entries.resize(movers.len(), Entry::default());
+        for entry in &mut self.entries {
+            (entry.rank, entry.waits_for) = (None, None);
+        }
+        let entrants: Vec<Entrant> =
+            movers.iter().enumerate().filter_map(|(i, me)| Entrant::new(i, me)).collect();
+        decide(&entrants, movers, &mut self.entries, self.turn_steps);
+        for entry in &mut self.entries {
+            entry.is_granted = entry.rank.is_some() && entry.waits_for.is_none();
+            entry.waited_steps = if entry.waits_for.is_some() { entry.waited_steps + 1 } else { 0 };
+        }
+        let waiting =
+            |entrant: &Entrant| Some((entrant.i, self.entries[entrant.i].waits_for?, entrant.ahead));
+        let waiting: Vec<(usize, usize, f32)> = entrants.iter().filter_map(waiting).collect();
+        for (i, first, ahead) in &waiting {
+            if self.entries[*i].waited_steps == 1 {
+                log.push(Event::ConflictStarted { robots: vec![movers[*first].robot, movers[*i].robot] });
+            }
+            let is_near = *ahead < movers[*i].radius + WAIT_AT_M + MAKE_ROOM_M;
+            if is_near && self.retreats.depth(*i) == 0 {
+                self.make_room(*first, *i, movers, log);
+            }
+        }
+        for (i, _, ahead) in waiting {
+            let me = &mut movers[i];
+            let stops_in: f32 = (ahead - me.radius - WAIT_AT_M).max(0.0);
+            me.wish = me.wish.clamp_length_max((2.0 * me.braking * stops_in).sqrt());
+        }
+    }
+
+    /// The velocity that a robot takes among the others.
+    fn steer(&self, i: usize, movers: &[Mover]) -> Directive {
+        let me = &movers[i];
+        if !me.can_make_room {
+            return Directive::Stand;
+        }
+        let neighbours = self.neighbours.of(i).iter().map(|j| self.neighbour(i, *j, movers)).collect();
+        let velocity = avoiding_velocity(me, neighbours, self.arena, self.entries[i].rank.is_none());
+        let is_still = velocity.length() < STILL_MPS;
+        if let Some((_, retreat)) = self.retreats.iter().find(|(maker, _)| *maker == i) {
+            return Directive::Retreat { velocity, room_for: movers[retreat.head].robot };
+        }
+        match self.entries[i].waits_for {
+            Some(first) if is_still => Directive::Yield { to: movers[first].robot },
+            _ if me.wishes_to_move() && is_still => {
+                Directive::Blocked { by: self.robot_in_the_way(i, movers).map(|j| movers[j].robot) }
+            }
+            _ if me.wishes_to_move() => Directive::Proceed(velocity),
+            _ if is_still => Directive::Stand,
+            _ => Directive::GiveWay(velocity),
+        }
+    }
+
+    fn neighbour(&self, i: usize, j: usize, movers: &[Mover]) -> Neighbour {
+        let (me, other) = (&movers[i], &movers[j]);
+        let share = match (self.entries[i].rank, self.entries[j].rank) {
+            _ if !other.can_make_room => 1.0,
+            (Some(mine), Some(its)) if mine < its => SHARE_OF_THE_FIRST,
+            (Some(_), Some(_)) => 1.0 - SHARE_OF_THE_FIRST,
+            _ if me.priority.precedence(&other.priority).is_lt() => SHARE_OF_PRIORITY,
+            _ => 1.0 - SHARE_OF_PRIORITY,
+        };
+        Neighbour {
+            offset: other.position - me.position,
+            velocity: other.velocity,
+            apart: me.radius + other.radius + MARGIN_M,
+            share,
+        }
+    }
+
+    /// Lets a robot that comes no nearer ask the one in its way to make room.
+    fn push(&mut self, i: usize, movers: &[Mover], log: &mut EventLog) {
+        let me = &movers[i];
+        let is_due = me.stalled_steps > 0
+            && (me.stalled_steps.is_multiple_of(self.ask_again) || me.stalled_steps == self.stuck_steps);
+        if !is_due || !me.wishes_to_move() || self.entries[i].waits_for.is_some() {
+            return;
+        }
+        let Some(blocker) = self.robot_in_the_way(i, movers) else { return };
+        if me.stalled_steps == self.stuck_steps {
+            log.push(Event::Deadlocked { robots: vec![me.robot, movers[blocker].robot] });
+        }
+        if !movers[blocker].wishes_to_move() || self.may_push(i, blocker, movers) {
+            self.make_room(i, blocker, movers, log);
+        }
+    }
+
+    /// Whether a robot may have another one make room that is on its own way.
+    fn may_push(&self, i: usize, blocker: usize, movers: &[Mover]) -> bool {
+        let (me, other) = (&movers[i], &movers[blocker]);
+        let goes_after = match (self.entries[i].rank, self.entries[blocker].rank) {
+            (Some(mine), Some(its)) => its < mine,
+            _ => false,
+        };
+        let has_better_claim = || {
+            let longest_first = other.stalled_steps.cmp(&me.stalled_steps);
+            longest_first.then(me.priority.precedence(&other.priority)).is_lt()
+        };
+        me.stalled_steps >= self.stuck_steps
+            && !goes_after
+            && me.wish.normalize_or_zero().dot(other.wish.normalize_or_zero()) < ALONG
+            && has_better_claim()
+    }
+
+    fn robot_in_the_way(&self, i: usize, movers: &[Mover]) -> Option<usize> {
+        let (me, near) = (&movers[i], self.neighbours.of(i));
+        let discs = near.iter().map(|j| (movers[*j].position - me.position, me.radius + movers[*j].radius));
+        nearest_in_the_way(me.wish, &self.surroundings(i, me, discs)).map(|at| near[at])
+    }
+}

@@ -1,0 +1,279 @@
+//! Right of way in narrow passages: which robots may enter, and which wait outside.
+//!
+//! Robots inside go first. Then those that are about to enter and may, those that have waited too long, those that follow a robot inside in
+//! the same direction, and the others, the nearest first. So robots go through in platoons, and the turn of a direction ends when a robot
+//! of another one has waited for [`super::TURN_S`].
+
+use std::cmp::Ordering;
+
+use parry2d::math::Vector;
+
+use crate::conflict::Mover;
+use crate::planning::Passage;
+
+/// Robots within this distance of a passage, and the way that it takes them to stop, ask for it, in metres.
+const ASK_FROM_M: f32 = 2.5;
+
+/// A robot that may enter and is within this distance of a passage is not stopped any more, in metres.
+const COMMITTED_M: f32 = 0.4;
+
+/// A robot that may enter keeps its place before those that are nearer by no more than this, in metres.
+const KEPT_PLACE_M: f32 = 1.0;
+
+/// Robots whose directions in a passage differ by less than this (cosine) go the same way.
+const SAME_WAY: f32 = 0.5;
+
+/// Passages meet where they come nearer than this share of the distance at which the robots touch. Less than 1: a bay between two passages
+/// keeps them apart.
+const MEETING: f32 = 0.5;
+
+/// A robot in a narrow passage, or soon in one.
+pub(super) struct Entrant<'a> {
+    /// Number of the robot.
+    pub(super) i: usize,
+    /// Way to the passage, in metres; negative inside.
+    pub(super) ahead: f32,
+    passage: &'a Passage,
+    /// Way to the end of the passage, in metres.
+    to_exit: f32,
+    radius: f32,
+    /// The box that holds the passage.
+    low: Vector,
+    high: Vector,
+}
+
+/// What is remembered of a robot at a passage.
+#[derive(Debug, Clone, Copy, Default, serde::Serialize, serde::Deserialize)]
+pub(in crate::conflict) struct Entry {
+    /// Steps for which it has waited.
+    pub(super) waited_steps: u32,
+    /// Whether it may enter, or is inside.
+    pub(super) is_granted: bool,
+    /// Its place in the order of all robots at passages, in this step; none for a robot at none.
+    #[serde(skip)]
+    pub(super) rank: Option<usize>,
+    /// The robot that it waits for, in this step.
+    #[serde(skip)]
+    pub(super) waits_for: Option<usize>,
+}
+
+/// How two robots stand to each other whose passages meet.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Meeting {
+    /// One follows the other.
+    SameWay,
+    /// Only one can be inside.
+    Opposed,
+}
+
+/// The claim to a passage. The smaller one goes first.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Class {
+    Inside,
+    Committed,
+    WaitedTooLong,
+    Follows,
+    Comes,
+}
+
+impl<'a> Entrant<'a> {
+    /// A robot that is in a narrow passage of its route, or near the next one.
+    pub(super) fn new(i: usize, me: &Mover<'a>) -> Option<Self> {
+        if !me.wishes_to_move() || me.retreat_left.is_some() || me.passages.is_empty() {
+            return None;
+        }
+        let left = me.way_left();
+        let passage = me.passages.iter().find(|passage| left > passage.leaves_at - me.radius)?;
+        let ahead = left - passage.enters_at;
+        let stopping = me.speed * me.speed / (2.0 * me.braking);
+        let corner = |pick: fn(Vector, Vector) -> Vector| passage.points.iter().copied().reduce(pick);
+        let border = Vector::splat(me.radius);
+        (ahead <= ASK_FROM_M + stopping).then_some(Self {
+            i,
+            ahead,
+            passage,
+            to_exit: left - passage.leaves_at,
+            radius: me.radius,
+            low: corner(Vector::min)? - border,
+            high: corner(Vector::max)? + border,
+        })
+    }
+
+    fn is_inside(&self) -> bool {
+        self.ahead <= 0.0
+    }
+
+    /// How the robots stand to each other where their passages come nearest, if they meet.
+    fn meets(&self, other: &Self) -> Option<Meeting> {
+        if self.low.cmpgt(other.high).any() || self.high.cmplt(other.low).any() {
+            return None;
+        }
+        let touch = MEETING * (self.radius + other.radius);
+        let (mut nearest, mut at) = (touch * touch, None);
+        for (a, here) in self.passage.points.iter().enumerate() {
+            for (b, there) in other.passage.points.iter().enumerate() {
+                let apart = (*here - *there).length_squared();
+                if apart < nearest {
+                    (nearest, at) = (apart, Some((a, b)));
+                }
+            }
+        }
+        let (a, b) = at?;
+        let is_same = self.direction(a).dot(other.direction(b)) > SAME_WAY;
+        Some(if is_same { Meeting::SameWay } else { Meeting::Opposed })
+    }
+
+    fn direction(&self, at: usize) -> Vector {
+        let points = &self.passage.points;
+        let (from, to) = (at.saturating_sub(1), (at + 1).min(points.len() - 1));
+        (points[to] - points[from]).normalize_or_zero()
+    }
+}
+
+/// Which robots at passages meet, and how.
+struct Meetings {
+    count: usize,
+    of: Vec<Option<Meeting>>,
+}
+
+impl Meetings {
+    fn new(entrants: &[Entrant]) -> Self {
+        let count = entrants.len();
+        let mut of = vec![None; count * count];
+        for a in 0..count {
+            for b in a + 1..count {
+                let meeting = entrants[a].meets(&entrants[b]);
+                of[a * count + b] = meeting;
+                of[b * count + a] = meeting;
+            }
+        }
+        Self { count, of }
+    }
+
+    fn between(&self, a: usize, b: usize) -> Option<Meeting> {
+        self.of[a * self.count + b]
+    }
+}
+
+/// Decides which robots may enter their passages, and notes it in their entries. A robot has waited too long after `turn_steps`.
+pub(super) fn decide(entrants: &[Entrant], movers: &[Mover], entries: &mut [Entry], turn_steps: u32) {
+    let meetings = Meetings::new(entrants);
+    let claims: Vec<(Class, f32)> =
+        (0..entrants.len()).map(|a| claim(a, entrants, &meetings, entries, turn_steps)).collect();
+    let mut order: Vec<usize> = (0..entrants.len()).collect();
+    order.sort_by(|a, b| precedence(*a, *b, &claims, entrants, movers));
+    let waited_too_long = |claim: &(Class, f32)| claim.0 == Class::WaitedTooLong;
+    for (rank, a) in order.iter().enumerate() {
+        // A robot that has waited too long stops those behind it even while it waits for those inside.
+        let stops = |b: &&usize| {
+            meetings.between(*a, **b) == Some(Meeting::Opposed)
+                && (entries[entrants[**b].i].waits_for.is_none() || waited_too_long(&claims[**b]))
+        };
+        let waits_for = order[..rank].iter().find(stops).map(|b| entrants[*b].i);
+        let entry = &mut entries[entrants[*a].i];
+        entry.rank = Some(rank);
+        entry.waits_for = waits_for;
+    }
+}
+
+fn claim(
+    a: usize,
+    entrants: &[Entrant],
+    meetings: &Meetings,
+    entries: &[Entry],
+    turn_steps: u32,
+) -> (Class, f32) {
+    let entrant = &entrants[a];
+    let entry = &entries[entrant.i];
+    let follows =
+        |b: usize| b != a && entrants[b].is_inside() && meetings.between(a, b) == Some(Meeting::SameWay);
+    if entrant.is_inside() {
+        (Class::Inside, entrant.to_exit)
+    } else if entry.is_granted && entrant.ahead < COMMITTED_M {
+        (Class::Committed, entrant.ahead)
+    } else if entry.waited_steps >= turn_steps {
+        (Class::WaitedTooLong, -(entry.waited_steps as f32))
+    } else if (0..entrants.len()).any(follows) {
+        (Class::Follows, entrant.ahead)
+    } else {
+        (Class::Comes, if entry.is_granted { entrant.ahead - KEPT_PLACE_M } else { entrant.ahead })
+    }
+}
+
+fn precedence(
+    a: usize,
+    b: usize,
+    claims: &[(Class, f32)],
+    entrants: &[Entrant],
+    movers: &[Mover],
+) -> Ordering {
+    let (x, y) = (claims[a], claims[b]);
+    let by_priority = || movers[entrants[a].i].priority.precedence(&movers[entrants[b].i].priority);
+    x.0.cmp(&y.0).then(x.1.total_cmp(&y.1)).then_with(by_priority)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::conflict::testing::mover;
+
+    /// A passage along the x axis between these places, for a robot that is `left` metres from the end of its route.
+    fn passage(from: f32, to: f32, enters_at: f32) -> Passage {
+        let points =
+            (0..=10_u8).map(|i| Vector::new(from + (to - from) * f32::from(i) / 10.0, 0.0)).collect();
+        Passage { points, enters_at, leaves_at: enters_at - (to - from).abs() }
+    }
+
+    /// Robots at these places with these wishes, whose routes lead 10 m on through a passage between x = 10 and x = 12.
+    fn decided(robots: &[(f32, f32)], before: &[Entry]) -> Vec<Entry> {
+        let passages: Vec<[Passage; 1]> = robots
+            .iter()
+            .map(|(x, wish)| {
+                let way = if *wish > 0.0 { 10.0 - x } else { x - 12.0 };
+                let (from, to) = if *wish > 0.0 { (10.0, 12.0) } else { (12.0, 10.0) };
+                [passage(from, to, 10.0 - way)]
+            })
+            .collect();
+        let movers: Vec<Mover> = (0..)
+            .zip(robots)
+            .zip(&passages)
+            .map(|((i, (x, wish)), passages)| Mover { passages, ..mover(i, [*x, 0.0], [*wish, 0.0]) })
+            .collect();
+        let entrants: Vec<Entrant> =
+            movers.iter().enumerate().filter_map(|(i, me)| Entrant::new(i, me)).collect();
+        let mut entries = before.to_vec();
+        entries.resize(robots.len(), Entry::default());
+        decide(&entrants, &movers, &mut entries, 100);
+        entries
+    }
+
+    fn waits(entries: &[Entry]) -> Vec<Option<usize>> {
+        entries.iter().map(|entry| entry.waits_for).collect()
+    }
+
+    #[test]
+    fn the_nearest_of_two_that_meet_enters_and_a_robot_inside_is_before_all() {
+        assert_eq!(waits(&decided(&[(9.0, 1.0), (12.8, -1.0)], &[])), [Some(1), None]);
+        assert_eq!(waits(&decided(&[(10.5, 1.0), (12.1, -1.0)], &[])), [None, Some(0)]);
+    }
+
+    #[test]
+    fn robots_of_one_direction_go_through_together() {
+        let entries = decided(&[(10.5, 1.0), (9.0, 1.0), (12.5, -1.0)], &[]);
+        assert_eq!(waits(&entries), [None, None, Some(0)]);
+        assert_eq!(entries[1].rank, Some(1), "the follower is before the one that is nearer");
+    }
+
+    #[test]
+    fn a_robot_that_has_waited_too_long_ends_the_turn_of_the_others() {
+        let waited = Entry { waited_steps: 100, ..Entry::default() };
+        let entries =
+            decided(&[(10.5, 1.0), (9.0, 1.0), (12.5, -1.0)], &[Entry::default(), Entry::default(), waited]);
+        assert_eq!(waits(&entries), [None, Some(2), Some(0)]);
+    }
+
+    #[test]
+    fn a_robot_far_from_any_passage_is_none_of_its_business() {
+        assert_eq!(decided(&[(2.0, 1.0)], &[])[0].rank, None);
+    }
+}

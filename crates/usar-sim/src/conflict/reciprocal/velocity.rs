@@ -1,0 +1,185 @@
+//! Reciprocal avoidance (ORCA): the velocity nearest to the preferred one that keeps a robot clear of all others for a while, provided that
+//! each does its share.
+//!
+//! After van den Berg, Guy, Lin & Manocha, "Reciprocal n-Body Collision Avoidance", 2011. What differs: shares need not be equal; walls and
+//! debris are one half-plane each, because outlines are convex; and robots look no farther ahead than their route goes straight.
+
+use parry2d::math::Vector;
+use smallvec::SmallVec;
+
+use super::half_planes::{HalfPlane, best_velocity};
+use crate::conflict::Mover;
+use crate::planning::{ObstacleMap, nearest_border_point, outward_normal, polygon_contains};
+
+/// Robots avoid what would bring them together within this time, in seconds. Longer: they keep farther apart than crowds allow.
+/// Shorter: they swerve late and in vain.
+pub(super) const HORIZON_S: f32 = 1.5;
+
+/// The least horizon, in seconds, just before a bend of the route.
+const LEAST_HORIZON_S: f32 = 0.3;
+
+/// Robots that are too close part within this time, in seconds.
+const PART_WITHIN_S: f32 = 0.5;
+
+/// Robots brake for walls and debris that they would reach within this time, in seconds.
+const WALL_HORIZON_S: f32 = 0.5;
+
+/// Robots may come this much nearer to walls and debris than their routes do, in metres, when they are pressed.
+const WALL_SLACK_M: f32 = 0.04;
+
+/// Distance that robots keep from one another, in metres.
+pub(super) const MARGIN_M: f32 = 0.01;
+
+/// A robot heeds this many others at most: the nearest.
+const HEEDED: usize = 12;
+
+/// In the open, preferred velocities that others are in the way of are turned to the right by this much (tangent): symmetry is broken, and
+/// traffic keeps to one side.
+const KEEP_RIGHT: f32 = 0.35;
+
+/// Half-planes of one robot.
+type Planes = SmallVec<[HalfPlane; 24]>;
+
+/// Another robot as one sees it that avoids it.
+#[derive(Clone, Copy)]
+pub(super) struct Neighbour {
+    /// Its centre, relative to the robot's, in metres.
+    pub(super) offset: Vector,
+    /// Its velocity, in metres per second.
+    pub(super) velocity: Vector,
+    /// Distance that the two keep between their centres, in metres.
+    pub(super) apart: f32,
+    /// The robot's share in avoiding it: 0.5 where both do the same, 1 where the other does nothing.
+    pub(super) share: f32,
+}
+
+/// The velocity that a robot takes among these neighbours. `is_open` tells that it is at no narrow passage.
+pub(super) fn avoiding_velocity(
+    me: &Mover,
+    mut neighbours: SmallVec<[Neighbour; 16]>,
+    arena: Vector,
+    is_open: bool,
+) -> Vector {
+    if neighbours.len() > HEEDED {
+        let gap = |other: &Neighbour| other.offset.length() - other.apart;
+        neighbours.sort_by(|a, b| gap(a).total_cmp(&gap(b)));
+        neighbours.truncate(HEEDED);
+    }
+    let mut planes = Planes::new();
+    border_planes(me, arena, &mut planes);
+    if let Some(known) = me.known {
+        debris_planes(me, known, &mut planes);
+    }
+    let walls = planes.len();
+    let straight_for_s = me.leg_left / me.speed.max(0.01);
+    let horizon = HORIZON_S.min(straight_for_s.max(LEAST_HORIZON_S));
+    planes.extend(neighbours.iter().map(|other| robot_plane(me.velocity, other, horizon)));
+    let is_in_the_way = |plane: &HalfPlane| !plane.holds(me.wish);
+    let keeps_right = is_open && planes[walls..].iter().any(is_in_the_way);
+    let preferred = if keeps_right { me.wish - me.wish.perp() * KEEP_RIGHT } else { me.wish };
+    best_velocity(&planes, walls, preferred, me.speed)
+}
+
+/// The velocities that keep clear of another robot, as far as that is this robot's share.
+fn robot_plane(velocity: Vector, other: &Neighbour, horizon: f32) -> HalfPlane {
+    let Neighbour { offset, apart, share, .. } = *other;
+    let relative = velocity - other.velocity;
+    let distance_squared = offset.length_squared();
+    let (direction, change) = if distance_squared <= apart * apart {
+        out_of_disc(relative - offset / PART_WITHIN_S, apart / PART_WITHIN_S)
+    } else {
+        let from_center = relative - offset / horizon;
+        let ahead = from_center.dot(offset);
+        if ahead < 0.0 && ahead * ahead > apart * apart * from_center.length_squared() {
+            out_of_disc(from_center, apart / horizon)
+        } else {
+            let leg = (distance_squared - apart * apart).sqrt();
+            let along = if offset.perp_dot(from_center) > 0.0 { leg } else { -leg };
+            let direction = (offset * along + offset.perp() * apart) / distance_squared;
+            (direction, direction * relative.dot(direction) - relative)
+        }
+    };
+    HalfPlane { point: velocity + change * share, direction }
+}
+
+/// The way out of a disc of relative velocities that lead to a collision: the direction of its border there, and the change to it.
+fn out_of_disc(from_center: Vector, radius: f32) -> (Vector, Vector) {
+    let length = from_center.length();
+    let outward = if length > 1e-6 { from_center / length } else { Vector::X };
+    (-outward.perp(), outward * (radius - length))
+}
+
+/// The velocities that keep a robot within the arena.
+fn border_planes(me: &Mover, arena: Vector, planes: &mut Planes) {
+    let gaps = [
+        (me.position.x - me.radius, Vector::X),
+        (arena.x - me.position.x - me.radius, -Vector::X),
+        (me.position.y - me.radius, Vector::Y),
+        (arena.y - me.position.y - me.radius, -Vector::Y),
+    ];
+    planes.extend(gaps.into_iter().filter_map(|(gap, inward)| wall_plane(me, gap.max(0.0), inward)));
+}
+
+/// The velocities that keep clear of the debris that a robot knows.
+fn debris_planes(me: &Mover, known: &ObstacleMap, planes: &mut Planes) {
+    let mut near: SmallVec<[_; 8]> = known.near(me.position, me.speed * WALL_HORIZON_S).collect();
+    near.sort_unstable_by_key(|obstacle| obstacle.key);
+    planes.extend(near.into_iter().filter_map(|obstacle| {
+        let to_border = nearest_border_point(&obstacle.tight, me.position) - me.position;
+        let (gap, away) = if polygon_contains(&obstacle.tight, me.position) {
+            (-to_border.length(), outward_normal(&obstacle.tight, me.position))
+        } else {
+            (to_border.length(), -to_border.normalize_or(Vector::X))
+        };
+        wall_plane(me, gap + WALL_SLACK_M, away)
+    }));
+}
+
+/// The velocities that brake for a wall at this distance in time; none for one that is too far to matter.
+fn wall_plane(me: &Mover, gap: f32, away: Vector) -> Option<HalfPlane> {
+    (gap < me.speed * WALL_HORIZON_S).then(|| HalfPlane::at_least(-gap / WALL_HORIZON_S, away))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::conflict::testing::mover;
+
+    /// A robot at the origin that drives east with 1 m/s, and this one.
+    fn among(offset: [f32; 2], velocity: [f32; 2], share: f32) -> Vector {
+        let me = Mover { velocity: Vector::X, speed: 1.0, ..mover(0, [10.0, 10.0], [1.0, 0.0]) };
+        let (offset, velocity) = (Vector::from(offset), Vector::from(velocity));
+        let other = Neighbour { offset, velocity, apart: 0.8, share };
+        avoiding_velocity(&me, SmallVec::from_slice(&[other]), Vector::splat(20.0), true)
+    }
+
+    /// How near two robots come within the horizon that keep their velocities.
+    fn nearest(offset: [f32; 2], mine: Vector, other: Vector) -> f32 {
+        let gaps =
+            (0..=150_u8).map(|i| (Vector::from(offset) + (other - mine) * (f32::from(i) * 0.01)).length());
+        gaps.fold(f32::INFINITY, f32::min)
+    }
+
+    #[test]
+    fn a_robot_that_meets_nobody_keeps_its_velocity() {
+        assert_eq!(among([-1.0, 0.0], [0.0, 0.0], 1.0), Vector::X, "behind");
+        assert_eq!(among([1.0, 2.0], [1.0, 0.0], 0.5), Vector::X, "abreast");
+        assert_eq!(among([5.0, 0.0], [0.0, 0.0], 1.0), Vector::X, "beyond the horizon");
+    }
+
+    #[test]
+    fn two_robots_that_do_their_halves_keep_apart_and_so_does_one_that_does_all() {
+        for aside in [-0.5, -0.1, 0.1, 0.5] {
+            let mine = among([2.0, aside], [-1.0, 0.0], 0.5);
+            // The other one sees the same, turned by half a turn.
+            assert!(nearest([2.0, aside], mine, -mine) > 0.79, "halves, {aside}: {mine}");
+            let all = among([1.4, aside], [0.0, 0.0], 1.0);
+            assert!(nearest([1.4, aside], all, Vector::ZERO) > 0.79, "all, {aside}: {all}");
+        }
+    }
+
+    #[test]
+    fn head_on_both_keep_to_the_right() {
+        assert!(among([2.0, 0.0], [-1.0, 0.0], 0.5).y < -0.05);
+    }
+}

@@ -1,0 +1,114 @@
+//! Narrow passages on a route: where two robots do not fit side by side.
+
+use parry2d::math::Vector;
+use serde::{Deserialize, Serialize};
+use smallvec::SmallVec;
+
+use super::obstacles::{KnownObstacle, contains, crosses, nearest_border_point};
+use super::{ObstacleMap, Route};
+
+/// Distance between two places of a route at which its width is looked at, at least, in metres.
+const SAMPLE_M: f32 = 0.15;
+
+/// Room that two robots side by side need beyond their diameters, in metres.
+const SPARE_M: f32 = 0.05;
+
+/// A recess beside the route in which a robot finds room is a bay if it ends within this distance, in metres: what goes on is another way, on
+/// which others may come.
+const BAY_DEPTH_M: f32 = 2.0;
+
+/// Obstacles whose direction has less than this (sine) to the route's lie ahead or behind, and make it no narrower.
+const ASIDE: f32 = 0.5;
+
+/// A part of a route where two robots do not fit side by side.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Passage {
+    /// The way through it, from its beginning to its end.
+    pub points: Vec<Vector>,
+    /// Way that is left to the end of the route where it begins, in metres.
+    pub enters_at: f32,
+    /// Way that is left to the end of the route where it ends, in metres.
+    pub leaves_at: f32,
+}
+
+/// What makes a route narrow.
+pub struct Walls<'a> {
+    /// The obstacles that are known.
+    pub known: &'a ObstacleMap,
+    /// Width and height of the arena, in metres.
+    pub arena: Vector,
+    /// The robot's radius, in metres.
+    pub radius: f32,
+}
+
+impl Walls<'_> {
+    /// The narrow passages of a route from a position, in order.
+    #[must_use]
+    pub fn passages(&self, from: Vector, route: &Route) -> Vec<Passage> {
+        let mut passages: Vec<Passage> = Vec::new();
+        let mut left = route.length(from);
+        for (a, b) in route.legs(from) {
+            let length = (b - a).length();
+            let along = (b - a).normalize_or_zero();
+            let mut at = 0.0;
+            while at < length {
+                let point = a + along * at;
+                let (is_narrow, skip) = self.look(point, along);
+                if is_narrow {
+                    Self::add(&mut passages, point, left - at);
+                }
+                at += skip.max(SAMPLE_M);
+            }
+            left -= length;
+        }
+        passages
+    }
+
+    /// Adds a narrow point to the last passage, or begins another one after a place that is wide.
+    fn add(passages: &mut Vec<Passage>, point: Vector, left: f32) {
+        match passages.last_mut() {
+            Some(last) if last.leaves_at - left < 1.5 * SAMPLE_M => {
+                last.points.push(point);
+                last.leaves_at = left;
+            }
+            _ => passages.push(Passage { points: vec![point], enters_at: left, leaves_at: left }),
+        }
+    }
+
+    /// Whether a route in this direction is narrow at a point, and how far on it is wide at least, in metres.
+    fn look(&self, point: Vector, along: Vector) -> (bool, f32) {
+        let needed = 2.0 * self.radius + SPARE_M;
+        let mut gaps = [f32::INFINITY; 2];
+        let mut nearest = f32::INFINITY;
+        let mut note = |offset: Vector| {
+            let gap = offset.length();
+            nearest = nearest.min(gap);
+            let aside = along.perp_dot(offset / gap.max(1e-6));
+            if aside.abs() > ASIDE {
+                let side = &mut gaps[usize::from(aside > 0.0)];
+                *side = side.min(gap);
+            }
+        };
+        let (low, high) = (Vector::splat(self.radius), self.arena - Vector::splat(self.radius));
+        note(Vector::new(low.x - point.x, 0.0));
+        note(Vector::new(high.x - point.x, 0.0));
+        note(Vector::new(0.0, low.y - point.y));
+        note(Vector::new(0.0, high.y - point.y));
+        let mut near: SmallVec<[&KnownObstacle; 8]> =
+            self.known.near(point, (2.0 * needed).max(BAY_DEPTH_M)).collect();
+        near.sort_unstable_by_key(|obstacle| obstacle.key);
+        near.iter().for_each(|obstacle| note(offset(obstacle, point)));
+        let is_inside = |to: Vector| to.cmpge(low).all() && to.cmple(high).all();
+        let is_free =
+            |to: Vector| is_inside(to) && !near.iter().any(|obstacle| crosses(&obstacle.tight, point, to));
+        let is_bay = |side: Vector| is_free(point + side * needed) && !is_free(point + side * BAY_DEPTH_M);
+        let is_narrow = gaps[0] + gaps[1] < needed && !is_bay(along.perp()) && !is_bay(-along.perp());
+        (is_narrow, nearest.min(2.0 * needed) - needed)
+    }
+}
+
+/// From a point to the border of an obstacle; from a point inside, a short way towards its middle.
+fn offset(obstacle: &KnownObstacle, point: Vector) -> Vector {
+    let to_border = nearest_border_point(&obstacle.tight, point) - point;
+    if contains(&obstacle.tight, point) { -to_border.normalize_or_zero() * 1e-3 } else { to_border }
+}

@@ -1,0 +1,147 @@
+//! A benchmark of right of way on the problems that the literature uses, and the files in `scenarios/navigation/` that show them.
+
+pub mod problems;
+mod table;
+pub mod trial;
+mod world;
+
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use clap::Parser;
+use rayon::prelude::*;
+
+use problems::{PROBLEMS, Problem};
+use table::Table;
+use trial::Outcome;
+
+/// The seed of the instances in `scenarios/navigation/`.
+pub const FILE_SEED: u64 = 1;
+
+/// How well robots pass one another: problems of the literature, each with several seeds.
+#[derive(Parser)]
+#[command(name = "navigation", after_help = AFTER_HELP)]
+struct Options {
+    /// Seeds 1 to N of each problem
+    #[arg(long, value_name = "N", default_value_t = 20)]
+    seeds: u64,
+    /// This seed only
+    #[arg(long, value_name = "SEED", conflicts_with = "seeds")]
+    seed: Option<u64>,
+    /// Only these problems; `circle*` stands for all that begin like this
+    #[arg(long, value_name = "NAME", num_args = 1..)]
+    problem: Vec<String>,
+    /// Sets `conflicts.resolver`
+    #[arg(long, value_name = "R")]
+    resolver: Option<String>,
+    /// Sets a field of every scenario, as in `conflicts.margin_m=0.1`
+    #[arg(long, value_name = "FIELD=VALUE")]
+    set: Vec<String>,
+    /// Writes a line for every trial
+    #[arg(long, value_name = "FILE")]
+    csv: Option<PathBuf>,
+    /// Threads [default: one for each core]
+    #[arg(long, value_name = "N", default_value_t = 0, hide_default_value = true)]
+    threads: usize,
+    /// Lists the robots that did not arrive, where they ended and why
+    #[arg(long)]
+    verbose: bool,
+    /// Writes `scenarios/navigation/` instead: seed 1 of each problem
+    #[arg(long)]
+    write: bool,
+    /// Lists the problems instead
+    #[arg(long)]
+    list: bool,
+}
+
+const AFTER_HELP: &str = "\
+flow: the sum of arrival times by the sum of the times that each robot needs alone. A robot that does not arrive counts with the limit, \
+five times the longest time alone and half a minute.
+ok: share of the trials in which all arrived and no bodies overlapped by more than a centimetre.
+given up: places given up as unreachable, in all trials.
+touches: times that a robot came to touch another, for each robot.
+
+Examples:
+  navigation --problem circle_16 doorway* --seeds 5
+  navigation --problem parked_across --seed 3 --verbose
+  navigation --resolver None --csv none.csv";
+
+/// Runs the command with the arguments of the program.
+#[must_use]
+pub fn main() -> ExitCode {
+    let options = Options::parse_from(std::env::args().skip(1));
+    match options.run() {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(reason) => {
+            eprintln!("navigation: {reason}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+/// The folder of the instances of seed 1.
+#[must_use]
+pub fn folder() -> PathBuf {
+    let manifest = Path::new(env!("CARGO_MANIFEST_DIR"));
+    manifest.ancestors().nth(2).unwrap_or(manifest).join("scenarios/navigation")
+}
+
+impl Options {
+    fn run(&self) -> Result<(), String> {
+        let problems = self.problems()?;
+        if self.list {
+            problems.iter().for_each(|problem| println!("{:16} {}", problem.name, problem.what));
+            return Ok(());
+        }
+        if self.write {
+            return write(&problems);
+        }
+        let mut changes = Vec::new();
+        for change in &self.set {
+            let parts =
+                change.split_once('=').ok_or_else(|| format!("--set {change}: expected FIELD=VALUE"))?;
+            changes.push((parts.0.to_owned(), parts.1.to_owned()));
+        }
+        changes.extend(self.resolver.iter().map(|name| ("conflicts.resolver".to_owned(), name.clone())));
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(self.threads).build();
+        let pool = pool.map_err(|error| error.to_string())?;
+        let mut table = Table::new(self.csv.as_deref())?;
+        for problem in problems {
+            let seeds = self.seed.map_or(1..=self.seeds, |seed| seed..=seed);
+            let run = |seed| trial::run(problem, seed, &changes);
+            let outcomes =
+                pool.install(|| seeds.into_par_iter().map(run).collect::<Result<Vec<Outcome>, String>>())?;
+            table.add(problem, &outcomes)?;
+            if self.verbose {
+                outcomes.iter().for_each(table::explain);
+            }
+        }
+        table.finish();
+        Ok(())
+    }
+
+    fn problems(&self) -> Result<Vec<&'static Problem>, String> {
+        let is_named = |problem: &Problem, name: &String| match name.strip_suffix('*') {
+            Some(start) => problem.name.starts_with(start),
+            None => problem.name == name,
+        };
+        let unknown = |name: &&String| !PROBLEMS.iter().any(|problem| is_named(problem, name));
+        if let Some(name) = self.problem.iter().find(unknown) {
+            return Err(format!("no problem {name:?}; `--list` lists them"));
+        }
+        let is_wanted = |problem: &&Problem| {
+            self.problem.is_empty() || self.problem.iter().any(|name| is_named(problem, name))
+        };
+        Ok(PROBLEMS.iter().filter(is_wanted).collect())
+    }
+}
+
+fn write(problems: &[&Problem]) -> Result<(), String> {
+    std::fs::create_dir_all(folder()).map_err(|error| error.to_string())?;
+    for problem in problems {
+        let path = folder().join(format!("{}.ron", problem.name));
+        std::fs::write(&path, problem.text(FILE_SEED))
+            .map_err(|error| format!("{}: {error}", path.display()))?;
+    }
+    Ok(())
+}

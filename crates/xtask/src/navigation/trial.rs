@@ -1,0 +1,215 @@
+//! One trial of a problem: the robots together, measured against each robot alone.
+
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+use usar_sim::conflict::Delay;
+use usar_sim::event::Event;
+use usar_sim::ids::RobotId;
+use usar_sim::invariant::RARE_OVERLAP_M;
+use usar_sim::record::Status;
+use usar_sim::scenario::{Point, Row, Scenario, ScenarioFile};
+use usar_sim::simulation::{Advance, Simulation};
+use usar_sim::stage::Stage;
+use usar_sim::world::World;
+
+use super::problems::Problem;
+
+/// Robots touch at this distance between their bodies, and touch again only after they were farther apart than the second, in metres.
+const TOUCH_M: [f32; 2] = [0.002, 0.02];
+
+/// What a trial came to.
+pub struct Outcome {
+    /// The seed.
+    pub seed: u64,
+    /// Robots with a goal.
+    pub robots: usize,
+    /// Those that arrived.
+    pub arrived: usize,
+    /// Sum of the arrival times by the sum of the times that each robot needs alone. A robot that does not arrive counts with the limit.
+    pub flow: f64,
+    /// The limit, in seconds: five times the longest time alone, and half a minute.
+    pub limit_s: f64,
+    /// When the last robot arrived or gave up, or the limit, in seconds.
+    pub time_s: f64,
+    /// Places given up as unreachable.
+    pub given_up: u32,
+    /// Times that a robot came to touch another, for each robot.
+    pub touches: f64,
+    /// The deepest overlap of bodies, in metres.
+    pub deepest_m: f32,
+    /// Whether bodies overlapped by more than a centimetre.
+    pub overlapped: bool,
+    /// Time that the simulator took for a step of one robot, in microseconds, checks aside.
+    pub step_us: f64,
+    /// Why the trial broke off, where it did.
+    pub failure: Option<String>,
+    /// The robots that did not arrive.
+    pub late: Vec<Late>,
+}
+
+impl Outcome {
+    /// Whether all arrived, and no bodies overlapped by more than a centimetre.
+    #[must_use]
+    pub fn is_ok(&self) -> bool {
+        self.failure.is_none() && self.late.is_empty() && !self.overlapped
+    }
+}
+
+/// A robot that did not arrive.
+pub struct Late {
+    /// Which.
+    pub robot: u32,
+    /// Where it ended.
+    pub at: [f32; 2],
+    /// Where it was to go.
+    pub goal: Point,
+    /// When it gave the goal up, in seconds, where it did.
+    pub gave_up_s: Option<f64>,
+    /// Why it does not move on in the end, and whom it waits for.
+    pub delay: Delay,
+    /// How long it has not come nearer, in seconds.
+    pub stalled_s: f64,
+}
+
+/// Fields of the scenario to set, with their values.
+pub type Changes = [(String, String)];
+
+/// Runs the instance of a seed, with these fields of its scenario set.
+///
+/// # Errors
+/// A change that is none, or a world in which a robot does not arrive although it is alone.
+pub fn run(problem: &Problem, seed: u64, changes: &Changes) -> Result<Outcome, String> {
+    let path = format!("{}.ron", problem.name);
+    let text = problem.text(seed);
+    let scenario = Scenario::parse(&text, Path::new(&path)).map_err(|error| error.to_string())?;
+    let mut file = (*scenario).clone();
+    for (field, value) in changes {
+        file.set(field, value).map_err(|error| error.to_string())?;
+    }
+    let alone = |errand: usize| {
+        alone(&file, errand, seed).map_err(|reason| format!("{}, seed {seed}: {reason}", problem.name))
+    };
+    let free: Vec<f64> = (0..file.errands.len()).map(alone).collect::<Result<_, String>>()?;
+    let limit_s = 5.0 * free.iter().copied().fold(0.0, f64::max) + 30.0;
+    file.duration_s = limit_s;
+    together(file, seed, free.iter().sum())
+}
+
+fn simulation(file: ScenarioFile, seed: u64) -> Result<Simulation, String> {
+    let scenario = Scenario::try_from(file).map_err(|problems| format!("{problems:?}"))?;
+    Simulation::new(&scenario, seed).map_err(|error| error.to_string())
+}
+
+/// Time that a robot needs for its errand when it is alone, in seconds.
+fn alone(file: &ScenarioFile, errand: usize, seed: u64) -> Result<f64, String> {
+    let mut file = file.clone();
+    let mut errand = file.errands.swap_remove(errand);
+    let robot: Row = file.team.swap_remove(errand.robot as usize);
+    let id = std::mem::take(&mut errand.robot);
+    (file.team, file.errands) = (vec![robot], vec![errand]);
+    let mut simulation = simulation(file, seed)?;
+    while let Advance::Running = simulation.advance() {
+        if simulation.events().iter().any(|event| matches!(event, Event::ErrandDone { .. })) {
+            return Ok(simulation.time_s());
+        }
+    }
+    Err(format!("robot {id} does not arrive although it is alone"))
+}
+
+/// All robots together, until the last has arrived or given up.
+fn together(file: ScenarioFile, seed: u64, free_s: f64) -> Result<Outcome, String> {
+    let limit_s = file.duration_s;
+    let goals: Vec<(u32, Point)> = file.errands.iter().map(|errand| (errand.robot, errand.to[0])).collect();
+    let mut simulation = simulation(file, seed)?.checked();
+    let all = simulation.world().robots.len();
+    let (mut arrivals, mut given_up) = (vec![None; all], vec![None; all]);
+    let (mut touches, mut clock) = (Touches::new(all), Duration::ZERO);
+    let mut failure = None;
+    loop {
+        let (start, mut end) = (Instant::now(), Duration::ZERO);
+        let advance = simulation.advance_watched(|stage| {
+            if stage != Stage::Record {
+                end = start.elapsed();
+            }
+        });
+        clock += end;
+        match advance {
+            Advance::Running => {}
+            Advance::Over(Status::Failed(reason)) => {
+                failure = Some(reason);
+                break;
+            }
+            Advance::Over(_) => break,
+            Advance::Asks(_) => return Err("a world of errands asks nothing".to_owned()),
+        }
+        for event in simulation.events() {
+            match event {
+                Event::ErrandDone { robot } => arrivals[robot.index()] = Some(simulation.time_s()),
+                Event::Unreachable { robot, .. } => given_up[robot.index()] = Some(simulation.time_s()),
+                _ => {}
+            }
+        }
+        touches.note(simulation.world());
+    }
+    let times = goals.iter().map(|(robot, _)| arrivals[*robot as usize].unwrap_or(limit_s));
+    let delays: Vec<Delay> = simulation.delays().collect();
+    let late = goals.iter().filter(|(robot, _)| arrivals[*robot as usize].is_none());
+    let late = late.map(|(robot, goal)| {
+        let traveller = simulation.navigator().traveller(RobotId(*robot));
+        Late {
+            robot: *robot,
+            at: simulation.world().robots[*robot as usize].position.into(),
+            goal: *goal,
+            gave_up_s: given_up[*robot as usize],
+            delay: delays[*robot as usize],
+            stalled_s: traveller.stalled_steps() as f64 * simulation.scenario().dt_s,
+        }
+    });
+    let overlaps = simulation.overlaps().unwrap_or_default();
+    Ok(Outcome {
+        seed,
+        robots: goals.len(),
+        arrived: arrivals.iter().flatten().count(),
+        flow: times.sum::<f64>() / free_s,
+        limit_s,
+        time_s: simulation.time_s(),
+        given_up: given_up.iter().flatten().count() as u32,
+        touches: touches.count as f64 / all as f64,
+        deepest_m: overlaps.deepest_m,
+        overlapped: overlaps.deepest_m > RARE_OVERLAP_M,
+        step_us: clock.as_secs_f64() * 1e6 / (simulation.steps() * all as u64) as f64,
+        failure,
+        late: late.collect(),
+    })
+}
+
+/// Counts how often robots come to touch one another.
+struct Touches {
+    /// For each pair, whether they touch.
+    touching: Vec<bool>,
+    /// Robots that came to touch another: each pair counts twice.
+    count: u64,
+}
+
+impl Touches {
+    fn new(robots: usize) -> Self {
+        Self { touching: vec![false; robots * robots], count: 0 }
+    }
+
+    fn note(&mut self, world: &World) {
+        let robots = &world.robots;
+        for (i, a) in robots.iter().enumerate() {
+            for (j, b) in robots.iter().enumerate().skip(i + 1) {
+                let touching = &mut self.touching[i * robots.len() + j];
+                let apart = (a.position - b.position).length() - a.radius() - b.radius();
+                if !*touching && apart < TOUCH_M[0] {
+                    self.count += 2;
+                    *touching = true;
+                } else if apart > TOUCH_M[1] {
+                    *touching = false;
+                }
+            }
+        }
+    }
+}
