@@ -187,7 +187,7 @@ mod tests {
     type Case = ([f32; 2], [f32; 2], &'static [([f32; 2], [f32; 2])], [f32; 2]);
 
     /// Robots of 0.4 m, at most 2 m/s, horizon 1.5 s, time step 0.5 s. The last figures are those of RVO2, the code that the authors of ORCA
-    /// published (PyPI's pyrvo 0.4.3).
+    /// published (`pyrvo` 0.4.3).
     #[rustfmt::skip]
     const RVO2: [Case; 14] = [
         ([-0.53, -1.05], [0.42, -1.2], &[([-2.21, 0.04], [-1.39, -0.2])], [0.4200, -1.2000]),
