@@ -88,6 +88,11 @@ impl Retreats {
         self.of.iter().map(|(i, retreat)| (*i, retreat))
     }
 
+    /// The robot for which this one makes room.
+    pub(super) fn head_of(&self, i: usize) -> Option<usize> {
+        self.of.get(&i).map(|retreat| retreat.head)
+    }
+
     /// Place in the chain of a robot: 0 for one on its own way.
     pub(super) fn depth(&self, i: usize) -> u32 {
         self.of.get(&i).map_or(0, |retreat| retreat.depth)

@@ -94,8 +94,8 @@ impl Resolver {
         let neighbours = self.neighbours.of(i).iter().map(|j| self.neighbour(i, *j, movers)).collect();
         let velocity = avoiding_velocity(me, neighbours, self.arena, self.entries[i].rank.is_none());
         let is_still = velocity.length() < STILL_MPS;
-        if let Some((_, retreat)) = self.retreats.iter().find(|(maker, _)| *maker == i) {
-            return Directive::Retreat { velocity, room_for: movers[retreat.head].robot };
+        if let Some(head) = self.retreats.head_of(i) {
+            return Directive::Retreat { velocity, room_for: movers[head].robot };
         }
         match self.entries[i].waits_for {
             Some(first) if is_still => Directive::Yield { to: movers[first].robot },
