@@ -78,13 +78,17 @@ fn free_path_s(scenario: &Scenario, trial: &Simulation) -> f64 {
 
 fn summary(record: &TrialRecord) -> String {
     let mut text = String::new();
-    let done = record.errands_done;
+    let done = record.counts.errands_done;
     writeln!(text, "{} at {:.1} s, {done} errands done", record.status.name(), record.time_s).unwrap();
-    writeln!(text, "{} given up, {} stranded", record.unreachable, record.stranded()).unwrap();
+    writeln!(text, "{} given up, {} stranded", record.counts.unreachable, record.stranded()).unwrap();
     writeln!(
         text,
         "{} conflicts, {} deadlocks: {} made room, {} turns passed, {} backed off",
-        record.conflicts, record.deadlocks, record.retreats, record.rotations, record.back_offs
+        record.counts.conflicts,
+        record.counts.deadlocks,
+        record.counts.retreats,
+        record.counts.rotations,
+        record.counts.back_offs
     )
     .unwrap();
     for robot in &record.robots {
@@ -151,7 +155,7 @@ fn rings_of_2_to_30_robots_swap_sides_in_time() {
         assert!(file.team.len() < all);
         let (record, free_path_s) = run(file);
         let limit = 3.0 * free_path_s + 30.0;
-        assert_eq!(record.errands_done, robots);
+        assert_eq!(record.counts.errands_done, robots);
         assert!(record.time_s <= limit, "{robots} robots: {} s, limit {limit} s", record.time_s);
     }
 }

@@ -12,7 +12,7 @@
 //! let experiment = Experiment::load(scenario.as_ref(), &Overrides::default())?;
 //! let first = experiment.key((0, 0, 1)); // case, policy, trial
 //! let trial = experiment.run(&first, &AtomicBool::new(false)).expect("it runs to its end");
-//! assert_eq!(trial.record.errands_done, 2);
+//! assert_eq!(trial.record.counts.errands_done, 2);
 //! # Ok::<(), experiments::Failure>(())
 //! ```
 

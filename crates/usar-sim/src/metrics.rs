@@ -47,6 +47,28 @@ pub struct TaskTotals {
     pub hp: f64,
 }
 
+/// How often things happened in a trial. What is counted here, by an arm of [`Metrics::listen`], is in the record; a line in the lab's table of
+/// metrics shows it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub struct Counts {
+    /// Times that a robot turned back to rest.
+    pub turned_back: u32,
+    /// Conflict sets that formed; under the default right of way, times that a robot began to wait before a passage.
+    pub conflicts: u32,
+    /// Times that a conflict set came to nothing; under the default right of way, times that a robot got stuck behind another.
+    pub deadlocks: u32,
+    /// Times that the turn passed to another member of a deadlocked set.
+    pub rotations: u32,
+    /// Times that a robot made room for another.
+    pub retreats: u32,
+    /// Times that a deadlocked set backed off.
+    pub back_offs: u32,
+    /// Errands done, in a scenario with errands.
+    pub errands_done: u32,
+    /// Places that robots gave up on, because they knew no way there.
+    pub unreachable: u32,
+}
+
 /// The metrics of a trial as it goes on.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub struct Metrics {
@@ -58,22 +80,8 @@ pub struct Metrics {
     pub rounds: Vec<RoundRecord>,
     /// Rounds that ended with everybody home.
     pub completed_rounds: u32,
-    /// Times that a robot turned back.
-    pub turned_back: u32,
-    /// Conflict sets that formed.
-    pub conflicts: u32,
-    /// Times that a conflict set came to nothing.
-    pub deadlocks: u32,
-    /// Times that the turn passed to another member of a deadlocked set.
-    pub rotations: u32,
-    /// Times that a robot made room for another.
-    pub retreats: u32,
-    /// Times that a deadlocked set backed off.
-    pub back_offs: u32,
-    /// Errands done.
-    pub errands_done: u32,
-    /// Places that robots gave up on.
-    pub unreachable: u32,
+    /// How often things happened.
+    pub counts: Counts,
     /// The task of each robot's group in the current round.
     task_of: Vec<Option<TaskId>>,
 }
@@ -132,7 +140,7 @@ impl Metrics {
                     self.note_member(*robot, |member| member.rescued += 1);
                 }
                 Event::TurnedBack { robot, .. } => {
-                    self.turned_back += 1;
+                    self.counts.turned_back += 1;
                     if let Some(round) = self.task_of[robot.index()].and_then(|task| self.current(task)) {
                         round.turned_back += 1;
                     }
@@ -141,13 +149,13 @@ impl Metrics {
                 Event::Stranded { robot } | Event::Disabled { robot } => {
                     self.note_member(*robot, |member| member.lost = true);
                 }
-                Event::ConflictStarted { .. } => self.conflicts += 1,
-                Event::Deadlocked { .. } => self.deadlocks += 1,
-                Event::TurnPassed { .. } => self.rotations += 1,
-                Event::MadeRoom { .. } => self.retreats += 1,
-                Event::BackedOff { .. } => self.back_offs += 1,
-                Event::ErrandDone { .. } => self.errands_done += 1,
-                Event::Unreachable { .. } => self.unreachable += 1,
+                Event::ConflictStarted { .. } => self.counts.conflicts += 1,
+                Event::Deadlocked { .. } => self.counts.deadlocks += 1,
+                Event::TurnPassed { .. } => self.counts.rotations += 1,
+                Event::MadeRoom { .. } => self.counts.retreats += 1,
+                Event::BackedOff { .. } => self.counts.back_offs += 1,
+                Event::ErrandDone { .. } => self.counts.errands_done += 1,
+                Event::Unreachable { .. } => self.counts.unreachable += 1,
                 // Nothing to count; a new kind of event must be placed here or above.
                 Event::Restocked { .. }
                 | Event::DebrisDiscovered { .. }

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use crate::conflict::Delay;
 use crate::hash::HashChain;
 use crate::invariant::Overlaps;
-use crate::metrics::{RoundRecord, TaskTotals, history};
+use crate::metrics::{Counts, RoundRecord, TaskTotals, history};
 
 /// How a trial ended.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -109,22 +109,8 @@ pub struct TrialRecord {
     pub decisions: Vec<DecisionRecord>,
     /// Robots, by id.
     pub robots: Vec<RobotRecord>,
-    /// Times that a robot turned back to rest.
-    pub turned_back: u32,
-    /// Conflict sets that formed.
-    pub conflicts: u32,
-    /// Times that a conflict set came to nothing.
-    pub deadlocks: u32,
-    /// Times that the turn passed to another member of a deadlocked set.
-    pub rotations: u32,
-    /// Times that a robot made room for another.
-    pub retreats: u32,
-    /// Times that a deadlocked set backed off.
-    pub back_offs: u32,
-    /// Errands done, in a scenario with errands.
-    pub errands_done: u32,
-    /// Places that robots gave up on, because they knew no way there.
-    pub unreachable: u32,
+    /// How often things happened.
+    pub counts: Counts,
     /// How deep bodies overlapped, in a checked trial.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub overlaps: Option<Overlaps>,

@@ -133,22 +133,22 @@ fn print(out: &mut dyn Write, [scenario, policy]: [&str; 2], record: &TrialRecor
     writeln!(
         out,
         "robots       turned back {} times, {} stranded, {} disabled",
-        record.turned_back,
+        record.counts.turned_back,
         record.stranded(),
         record.disabled()
     )?;
     writeln!(
         out,
         "conflicts    {} conflicts, {} deadlocks, {waiting:.0} s waited in all, longest stall {stall:.1} s",
-        record.conflicts, record.deadlocks
+        record.counts.conflicts, record.counts.deadlocks
     )?;
     writeln!(
         out,
         "deadlocks    {} times a robot made room, {} times the turn passed, {} times a set backed off",
-        record.retreats, record.rotations, record.back_offs
+        record.counts.retreats, record.counts.rotations, record.counts.back_offs
     )?;
-    if record.errands_done + record.unreachable > 0 {
-        let (done, unreachable) = (record.errands_done, record.unreachable);
+    if record.counts.errands_done + record.counts.unreachable > 0 {
+        let (done, unreachable) = (record.counts.errands_done, record.counts.unreachable);
         writeln!(out, "places       {done} errands done, {unreachable} places given up as unreachable")?;
     }
     if let Some(overlaps) = record.overlaps {

@@ -110,7 +110,7 @@ fn summarise(outcomes: &[Outcome]) {
                 / groups(r)
         }),
     );
-    line("turned back, per trial", each(&|r| f64::from(r.turned_back)));
+    line("turned back, per trial", each(&|r| f64::from(r.counts.turned_back)));
     line("stranded or disabled, per trial", each(&|r| (r.stranded() + r.disabled()) as f64));
     line("energy spent per robot, percent points", each(&|r| r.energy() / r.robots.len() as f64));
     line("HP lost per robot, percent points", each(&|r| r.hp() / r.robots.len() as f64));
@@ -126,6 +126,6 @@ fn summarise(outcomes: &[Outcome]) {
         deepest_m: overlaps().map(|o| o.deepest_m).fold(0.0, f32::max),
     };
     println!("overlaps: {total}");
-    line("conflicts", each(&|r| f64::from(r.conflicts)));
-    line("deadlocks", each(&|r| f64::from(r.deadlocks)));
+    line("conflicts", each(&|r| f64::from(r.counts.conflicts)));
+    line("deadlocks", each(&|r| f64::from(r.counts.deadlocks)));
 }
