@@ -311,7 +311,8 @@ impl Resolver {
         }
     }
 
-    /// Robots outside any set whose way has been blocked for a while by one that has nowhere to go, or that waits for them in the end.
+    /// Robots outside any set whose way has been blocked for a while by one that has nowhere to go, or that waits for them in the end; and those
+    /// that go to and fro before a robot without coming nearer.
     fn ask_for_room(&mut self, movers: &[Mover], log: &mut EventLog) {
         let mut due = Vec::new();
         for (i, directive) in self.directives.iter().enumerate() {
@@ -321,6 +322,13 @@ impl Resolver {
                     let steps = self.blocked_steps[i];
                     let asks = steps == self.patience.deadlock || steps.is_multiple_of(self.ask_again);
                     due.extend(by.filter(|_| asks).map(|by| (i, by.index())));
+                }
+                Directive::Proceed(_) if self.set_of[i].is_none() => {
+                    self.blocked_steps[i] = 0;
+                    let steps = movers[i].stalled_steps;
+                    if steps >= self.patience.livelock && steps.is_multiple_of(self.ask_again) {
+                        due.extend(self.who_stops(i, movers).map(|by| (i, by)));
+                    }
                 }
                 _ => self.blocked_steps[i] = 0,
             }

@@ -8,10 +8,16 @@ use serde::{Deserialize, Serialize};
 /// A convex shape in its place.
 #[derive(Clone, Serialize, Deserialize)]
 pub struct Outline {
-    /// The shape.
+    /// The shape. It never changes, so no snapshot holds it.
+    #[serde(skip, default = "no_shape")]
     pub shape: SharedShape,
     /// Its place.
     pub pose: Pose,
+}
+
+/// The shape of an outline that was read from a snapshot, until the world gives it its own again.
+fn no_shape() -> SharedShape {
+    SharedShape::ball(0.0)
 }
 
 impl Outline {

@@ -1,6 +1,7 @@
 //! The mission: rounds of grouping, searching, rescuing and returning. Robots decide here; what they cause in the world is in `rescue`.
 
 mod agent;
+mod claims;
 mod errands;
 mod regroup;
 mod rescue;
@@ -23,7 +24,6 @@ use crate::model::Model;
 use crate::navigation::Goal;
 use crate::scenario::RoleKind;
 use crate::world::{Robot, World};
-use work::Supply;
 
 /// How near a robot comes to its place at home or at a rest place, in metres.
 const SLOT_M: f32 = 0.15;
@@ -68,11 +68,9 @@ pub struct Mission {
     /// Why there is nothing left to do, once there is nothing.
     pub ending: Option<Ending>,
     pending: Option<Pending>,
-    /// For each task, whether its group has a guide that can act. Found anew in every step, as is the following.
+    /// For each task, whether its group has a guide that can act. Found anew in every step.
     #[serde(skip)]
     is_guided: Vec<bool>,
-    #[serde(skip)]
-    supplies: Vec<Supply>,
 }
 
 /// Why a mission is over before its time.
@@ -100,7 +98,6 @@ impl Mission {
             ending: None,
             pending: None,
             is_guided: vec![false; tasks],
-            supplies: (0..tasks).map(|_| Supply::default()).collect(),
         };
         mission.hand_out_errands(&model.scenario);
         mission
@@ -138,7 +135,6 @@ impl Mission {
         let all = self.knowledge.iter_mut().chain([&mut self.knowledge_at_home]);
         all.for_each(|knowledge| knowledge.restore(world, inflation));
         self.is_guided = vec![false; self.groups.len()];
-        self.supplies = (0..self.groups.len()).map(|_| Supply::default()).collect();
         self.look_for_guides(world);
     }
 
@@ -208,9 +204,10 @@ impl Mission {
             for task in scene.model.task_ids() {
                 self.call_back(task, scene);
             }
-            self.supplies.iter_mut().for_each(Supply::forget);
-            for robot in 0..scene.world.robots.len() {
-                self.choose_activity(RobotId(robot as u32), scene);
+            let mut claims = self.claims(scene).into_iter().peekable();
+            for robot in (0..scene.world.robots.len() as u32).map(RobotId) {
+                let claim = claims.next_if(|(by, _)| *by == robot).map(|(_, rescuee)| rescuee);
+                self.choose_activity(robot, claim, scene);
             }
         }
         for robot in &scene.world.robots {

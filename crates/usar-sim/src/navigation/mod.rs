@@ -279,13 +279,7 @@ impl Navigator {
             if replan || !traveller.is_planned {
                 let fresh = effect != Effect::None || !traveller.is_planned;
                 let in_the_way = match attempt {
-                    Some(Attempt::Detour) => {
-                        let mut standing = standing_near(world, robot, self.clearance);
-                        if self.narrow_in.is_some() {
-                            standing.retain(|other| !polygon_contains(&other.planned, goal.point));
-                        }
-                        standing
-                    }
+                    Some(Attempt::Detour) => standing_near(world, robot, goal, self.clearance),
                     _ => Vec::new(),
                 };
                 let cut = traveller.route.as_ref().filter(|_| effect == Effect::Cut);
@@ -330,8 +324,8 @@ impl Navigator {
     }
 }
 
-/// Robots of the same layer that stand near, as obstacles.
-fn standing_near(world: &World, robot: &Robot, clearance: f32) -> Vec<KnownObstacle> {
+/// Robots of the same layer that stand near, as obstacles; without those at the goal: the goal stays where it is.
+fn standing_near(world: &World, robot: &Robot, goal: Goal, clearance: f32) -> Vec<KnownObstacle> {
     let stands = |other: &&Robot| {
         other.id != robot.id
             && other.is_aerial() == robot.is_aerial()
@@ -341,7 +335,8 @@ fn standing_near(world: &World, robot: &Robot, clearance: f32) -> Vec<KnownObsta
     let obstacle = |other: &Robot| {
         KnownObstacle::wreck(other.id.0, other.position, other.radius(), robot.radius(), clearance)
     };
-    world.robots.iter().filter(stands).map(obstacle).collect()
+    let is_off_goal = |other: &KnownObstacle| !polygon_contains(&other.planned, goal.point);
+    world.robots.iter().filter(stands).map(obstacle).filter(is_off_goal).collect()
 }
 
 /// The cheapest route round what is in the way; where that leaves no way, through it: robots that stand may go.

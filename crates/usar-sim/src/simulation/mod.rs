@@ -305,8 +305,7 @@ impl Simulation {
         self.take_question();
     }
 
-    /// The rest of a step. Robots decide one after the other, by id: a rescuee that one has claimed is taken for the next.
-    /// Then all act.
+    /// The rest of a step. All robots decide from the same snapshot, claims on rescuees included. Then all act.
     fn finish_step(&mut self, done: &mut impl FnMut(Stage)) -> Result<(), String> {
         let (state, model) = (&mut self.state, &*self.model);
         let (mission, mut scene) = state.scene(model);

@@ -164,7 +164,7 @@ impl State {
         [
             part(&self.world.physics.motions()),
             part(&self.world.robots),
-            part(&(&self.world.debris, &self.world.zones)),
+            part(&self.world.debris),
             part(&self.world.rescuees),
             part(&self.mission.beliefs()),
             part(&(self.mission.course(), self.is_midway)),

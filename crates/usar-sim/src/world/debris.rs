@@ -16,8 +16,10 @@ pub struct Debris {
     /// Where it is.
     pub outline: Outline,
     /// Whether nothing can push it.
+    #[serde(skip)]
     pub is_fixed: bool,
     /// No point of it is farther from its centre than this, in metres.
+    #[serde(skip)]
     pub reach: f32,
     /// The outlines that robots may have seen: the initial one, and one more each time it was pushed noticeably.
     pub sightings: Vec<Outline>,
@@ -31,6 +33,14 @@ impl Debris {
         let bounds = outline.shape.compute_local_bounding_sphere();
         let reach = bounds.center.length() + bounds.radius;
         Self { is_fixed: file.movable.is_none(), sightings: vec![outline.clone()], reach, outline }
+    }
+
+    /// Makes anew what a snapshot leaves out because it is fixed.
+    pub(super) fn restore(&mut self, file: &DebrisFile) {
+        let Self { outline, is_fixed, reach, .. } = Self::new(file);
+        (self.is_fixed, self.reach) = (is_fixed, reach);
+        let places = self.sightings.iter_mut().chain([&mut self.outline]);
+        places.for_each(|place| place.shape = outline.shape.clone());
     }
 
     /// The box that holds it.

@@ -13,7 +13,7 @@ pub use rescuee::{Rescuee, RescueeState, Rescuees};
 pub use robot::{Condition, Robot};
 
 use crate::geometry::{Places, RadiationZone};
-use crate::model::Model;
+use crate::model::{Layout, Model};
 use crate::physics::{DebrisBody, Physics, RobotBody};
 use crate::scenario::{DebrisFile, ZoneFile};
 
@@ -33,6 +33,7 @@ pub struct World {
     #[serde(skip)]
     pub debris_places: Places,
     /// Radiation zones.
+    #[serde(skip)]
     pub zones: Vec<RadiationZone>,
     /// Rescuees, by id.
     pub rescuees: Rescuees,
@@ -57,7 +58,7 @@ impl World {
             robots,
             debris_places: debris.iter().map(Debris::bounds).collect(),
             debris,
-            zones: layout.zones.iter().map(ZoneFile::zone).collect(),
+            zones: zones(layout),
             rescuees: Rescuees::new(&model.rescuees),
         }
     }
@@ -80,11 +81,18 @@ impl World {
         }
     }
 
-    /// Makes anew what a snapshot leaves out because it follows from the rest.
+    /// Makes anew what a snapshot leaves out because it is fixed or follows from the rest.
     pub(crate) fn restore(&mut self, model: &Model) {
         self.robots.iter_mut().zip(&model.robots).for_each(|(robot, model)| robot.model = Arc::clone(model));
+        self.debris.iter_mut().zip(&model.layout.debris).for_each(|(piece, file)| piece.restore(file));
+        self.zones = zones(&model.layout);
+        self.rescuees.restore(&model.rescuees);
         self.debris_places = self.debris.iter().map(Debris::bounds).collect();
     }
+}
+
+fn zones(layout: &Layout) -> Vec<RadiationZone> {
+    layout.zones.iter().map(ZoneFile::zone).collect()
 }
 
 fn robot_body(robot: &Robot) -> RobotBody {

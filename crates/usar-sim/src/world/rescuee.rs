@@ -23,10 +23,13 @@ pub enum RescueeState {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Rescuee {
     /// Identity.
+    #[serde(skip)]
     pub id: RescueeId,
     /// The task that it belongs to.
+    #[serde(skip)]
     pub task: TaskId,
     /// Where it waits.
+    #[serde(skip)]
     pub position: Vector,
     /// Where it is in its rescue.
     pub state: RescueeState,
@@ -53,6 +56,13 @@ impl Rescuees {
             claimed_by: None,
         };
         Self { list: (0..).zip(places).map(waiting).collect(), changes: 0 }
+    }
+
+    /// Makes anew what a snapshot leaves out because it is fixed.
+    pub(super) fn restore(&mut self, places: &[(TaskId, Vector)]) {
+        for ((rescuee, id), (task, position)) in self.list.iter_mut().zip(0..).zip(places) {
+            (rescuee.id, rescuee.task, rescuee.position) = (RescueeId(id), *task, *position);
+        }
     }
 
     /// How often the list was lent to be changed.

@@ -1,0 +1,101 @@
+//! Claims on rescuees. All robots that look for work in a step see the same snapshot; the nearest pairs are settled first, whatever the
+//! robots' numbers.
+
+use parry2d::math::Vector;
+use rne_core::TaskId;
+
+use super::{Activity, Mission, Scene};
+use crate::belief::SENSING_PERIOD_STEPS;
+use crate::ids::{RescueeId, RobotId};
+use crate::model::Model;
+use crate::world::{RescueeState, World};
+
+/// A robot that looks for work, and the nearest rescuee that is left for it.
+struct Seeker {
+    robot: RobotId,
+    at: Vector,
+    nearest: Option<(f32, RescueeId)>,
+}
+
+impl Seeker {
+    fn new(robot: RobotId, world: &World, offers: &[RescueeId]) -> Self {
+        let mut seeker = Self { robot, at: world.robots[robot.index()].position, nearest: None };
+        seeker.look(world, offers);
+        seeker
+    }
+
+    /// Finds the nearest of the rescuees on offer; of equally near ones, that with the lowest id.
+    fn look(&mut self, world: &World, offers: &[RescueeId]) {
+        let distance = |id: &RescueeId| (world.rescuees[id.index()].position - self.at).length_squared();
+        let offers = offers.iter().map(|id| (distance(id), *id));
+        self.nearest = offers.min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+    }
+}
+
+impl Mission {
+    /// The claims of this step, by robot: for each group, as many as there are rescuees and spare resources.
+    pub(super) fn claims(&self, scene: &Scene) -> Vec<(RobotId, RescueeId)> {
+        let mut claims = Vec::new();
+        for task in scene.model.task_ids().filter(|task| self.groups[task.index()].at_work) {
+            self.settle_claims(task, scene, &mut claims);
+        }
+        claims.sort_unstable();
+        claims
+    }
+
+    fn settle_claims(&self, task: TaskId, scene: &Scene, claims: &mut Vec<(RobotId, RescueeId)>) {
+        let members = self.groups[task.index()].members.iter().copied();
+        let mut seeking = members.filter(|id| self.looks_for_work(*id, scene)).peekable();
+        if seeking.peek().is_none() {
+            return;
+        }
+        let spare = self.spare_resources(task, scene.world);
+        if spare <= 0 {
+            return;
+        }
+        let mut offers: Vec<RescueeId> = self.available(task, scene.model, scene.world).collect();
+        let mut seekers: Vec<Seeker> = seeking.map(|id| Seeker::new(id, scene.world, &offers)).collect();
+        for _ in 0..spare {
+            let pairs = seekers.iter().enumerate().filter_map(|(at, seeker)| Some((seeker.nearest?, at)));
+            // Seekers are in order of their ids: the first of equally near ones is taken.
+            let Some(((_, rescuee), at)) = pairs.min_by(|a, b| a.0.0.total_cmp(&b.0.0)) else { return };
+            claims.push((seekers.remove(at).robot, rescuee));
+            offers.retain(|offer| *offer != rescuee);
+            let losers = seekers.iter_mut().filter(|seeker| seeker.nearest.is_some_and(|(_, id)| id == rescuee));
+            losers.for_each(|seeker| seeker.look(scene.world, &offers));
+        }
+    }
+
+    /// Whether a robot may claim a rescuee in this step. Robots take turns, so that not all look in the same step.
+    fn looks_for_work(&self, id: RobotId, scene: &Scene) -> bool {
+        let robot = &scene.world.robots[id.index()];
+        let is_free = matches!(self.agents[id.index()].activity, Activity::Searching | Activity::Standby);
+        let is_due = (scene.step + u64::from(id.0)).is_multiple_of(SENSING_PERIOD_STEPS);
+        is_due && is_free && robot.is_able() && robot.free_capacity() > 0
+    }
+
+    /// Rescuees that a group knows of and that nobody has claimed.
+    pub(super) fn available<'w>(
+        &'w self,
+        task: TaskId,
+        model: &Model,
+        world: &'w World,
+    ) -> impl Iterator<Item = RescueeId> + use<'w> {
+        let known = &self.knowledge[task.index()].rescuees;
+        let is_available = move |i: &usize| {
+            let rescuee = &world.rescuees[*i];
+            known[*i]
+                && rescuee.state == RescueeState::Waiting
+                && rescuee.claimed_by.is_none()
+                && !self.unreachable[*i]
+        };
+        model.tasks[task.index()].rescuees.clone().filter(is_available).map(|i| RescueeId(i as u32))
+    }
+
+    /// Resources of a group in the field that no claim needs; negative where there are more claims than resources.
+    fn spare_resources(&self, task: TaskId, world: &World) -> i64 {
+        let resources = |id: RobotId| i64::from(world.robots[id.index()].resources);
+        let claims = |id: RobotId| i64::from(self.agents[id.index()].activity.claim().is_some());
+        self.in_field(task, world).map(|id| resources(id) - claims(id)).sum()
+    }
+}
