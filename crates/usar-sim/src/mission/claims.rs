@@ -61,7 +61,8 @@ impl Mission {
             let Some(((_, rescuee), at)) = pairs.min_by(|a, b| a.0.0.total_cmp(&b.0.0)) else { return };
             claims.push((seekers.remove(at).robot, rescuee));
             offers.retain(|offer| *offer != rescuee);
-            let losers = seekers.iter_mut().filter(|seeker| seeker.nearest.is_some_and(|(_, id)| id == rescuee));
+            let losers =
+                seekers.iter_mut().filter(|seeker| seeker.nearest.is_some_and(|(_, id)| id == rescuee));
             losers.for_each(|seeker| seeker.look(scene.world, &offers));
         }
     }

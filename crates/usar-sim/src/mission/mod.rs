@@ -312,7 +312,7 @@ impl Mission {
             return None;
         }
         match agent.activity {
-            Activity::Loading(..) | Activity::Resting(_) => None,
+            Activity::Loading(..) => None,
             Activity::OnErrand => agent.sweep.last().map(|place| Goal { point: *place, within: SLOT_M }),
             Activity::Searching => agent.sweep.last().map(|place| Goal { point: *place, within: SWEEP_M }),
             Activity::Standby => Some(Goal { point: agent.muster, within: SWEEP_M }),
@@ -321,7 +321,9 @@ impl Mission {
                 within: 0.95 * model.scenario.mission.reach_m as f32,
             }),
             Activity::Home | Activity::Returning => Some(Goal { point: robot.home, within: SLOT_M }),
-            Activity::ToRest => Some(Goal { point: robot.rest_slot(agent.rest_at), within: SLOT_M }),
+            Activity::ToRest | Activity::Resting(_) => {
+                Some(Goal { point: robot.rest_slot(agent.rest_at), within: SLOT_M })
+            }
         }
     }
 }

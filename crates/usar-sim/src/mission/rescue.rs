@@ -47,6 +47,7 @@ impl Mission {
                 self.agents[id].activity = Activity::Resting(step + scene.model.steps(rules.rest_s));
                 scene.log.push(Event::RestStarted { robot });
             }
+            Activity::Resting(done) if !arrived() => self.agents[id].activity = Activity::Resting(done + 1),
             Activity::Resting(done) if step >= done => {
                 scene.world.robots[id].energy = 100.0;
                 scene.world.robots[id].hp = 100.0;

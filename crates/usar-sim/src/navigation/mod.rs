@@ -147,6 +147,13 @@ impl Traveller {
         }
     }
 
+    /// Whether a route leads as near to the goal as the present one: no robot in the way moves the goal.
+    fn is_as_near(&self, route: Option<&Route>, goal: Goal) -> bool {
+        let apart = |route: &Route| (route.end() - goal.point).length();
+        let (found, present) = (route.map(apart), self.route.as_ref().map(apart));
+        present.is_none_or(|present| found.is_some_and(|found| found <= present + ROUTE_END_M))
+    }
+
     fn set_route(&mut self, route: Option<Route>, position: Vector, fresh: bool) {
         if let Some(route) = route.as_ref().filter(|_| fresh) {
             self.best_length = route.length(position);
@@ -286,6 +293,9 @@ impl Navigator {
                 let so_far = cut.map_or(&[][..], Route::ahead);
                 let query = Query { so_far, in_the_way: &in_the_way, ..query };
                 let route = find_route(&mut self.planner, &query);
+                if attempt == Some(Attempt::Detour) && !traveller.is_as_near(route.as_ref(), goal) {
+                    continue;
+                }
                 traveller.set_route(route, robot.position, fresh);
                 if let (Some(arena), Some(route), false) =
                     (self.narrow_in, &traveller.route, robot.is_aerial())
