@@ -1,16 +1,17 @@
 //! What of a sweep's folder is on disk besides its journal and tables: the manifest, the sweep itself, and the lock.
 
 use std::fs::{self, File, TryLockError};
+use std::io::ErrorKind;
 use std::path::Path;
 
 use usar_sim::scenario::Scenario;
 
 use super::journal;
-use super::tables::TABLES;
+use super::tables::{LEAN_TABLES, TABLES};
 use crate::experiment::{Experiment, Parts, Program, Shard};
 use crate::failure::Failure;
-use crate::files::{FileHash, NewFile, file_hash};
-use crate::provenance::{Manifest, scenario_differences};
+use crate::files::{self, FileHash, NewFile, file_hash};
+use crate::provenance::{Manifest, SCHEMA_VERSION, scenario_differences};
 
 pub(super) const MANIFEST: &str = "manifest.json";
 const GIVEN: &str = "experiment.ron";
@@ -23,6 +24,8 @@ const INPUTS: [&str; 3] = [GIVEN, RESOLVED, AGAIN];
 pub const REPORT: &str = "report.html";
 /// See [`REPORT`].
 pub const PLOTS: &str = "plots";
+/// The names of the files that a report wrote, a line each, from the folder on.
+pub const REPORTED: &str = "report.files";
 /// Held by the process that writes to the folder.
 pub const LOCK: &str = ".lock";
 
@@ -32,17 +35,31 @@ pub(super) fn write_start(
     experiment: &Experiment,
     shard: Option<Shard>,
 ) -> Result<Manifest, Failure> {
-    let files = vec![
-        NewFile::write(path, GIVEN, experiment.given.as_bytes())?,
-        NewFile::write(path, RESOLVED, experiment.base.resolved().as_bytes())?,
-        NewFile::write(path, AGAIN, experiment.as_sweep_file(RESOLVED)?.as_bytes())?,
-    ];
+    let inputs = inputs(experiment)?;
+    let files = inputs.iter().map(|(name, text)| FileHash::of(name, text.as_bytes())).collect();
+    let manifest = Manifest::new(experiment, shard, files);
+    // The manifest first: a folder that has one is ours, and nothing else is.
+    write_manifest(path, &manifest)?;
+    for (name, text) in &inputs {
+        NewFile::write(path, name, text.as_bytes())?;
+    }
     // A report would be of what was there before.
     let trouble = |error| Failure::storage(format!("cannot write to {}: {error}", path.display()));
-    remove(&path.join(REPORT)).map_err(trouble)?;
-    let manifest = Manifest::new(experiment, shard, files);
-    write_manifest(path, &manifest)?;
+    remove_report(path).map_err(trouble)?;
     Ok(manifest)
+}
+
+/// What a sweep is of, as the files of its folder.
+pub(super) fn inputs(experiment: &Experiment) -> Result<[(&'static str, String); 3], Failure> {
+    let again = experiment.as_sweep_file(RESOLVED)?;
+    Ok([(GIVEN, experiment.given.clone()), (RESOLVED, experiment.base.resolved()), (AGAIN, again)])
+}
+
+/// The names of the files that a manifest lists.
+fn listed(manifest: &Manifest) -> Vec<&'static str> {
+    let tables = if manifest.is_lean { &TABLES[..LEAN_TABLES] } else { &TABLES[..] };
+    let made = tables.iter().copied().chain([journal::FILE]).filter(|_| manifest.is_complete);
+    INPUTS.into_iter().chain(made).collect()
 }
 
 pub(super) fn write_manifest(path: &Path, manifest: &Manifest) -> Result<(), Failure> {
@@ -59,10 +76,10 @@ pub(super) fn sync_folder(path: &Path) -> Result<(), Failure> {
 
 /// The names of all files that a sweep writes.
 fn known_names() -> impl Iterator<Item = &'static str> {
-    [MANIFEST, LOCK, journal::FILE, REPORT].into_iter().chain(INPUTS).chain(TABLES)
+    [MANIFEST, LOCK, journal::FILE].into_iter().chain(INPUTS).chain(TABLES)
 }
 
-/// Refuses a folder that is not a sweep's: one with a manifest or a journal of this program, or with nothing but what a sweep writes first.
+/// Refuses a folder that is not a sweep's: one with a manifest or a journal of this program, or with nothing in it.
 pub(super) fn check_is_ours(path: &Path) -> Result<(), Failure> {
     if !path.exists() {
         return Ok(());
@@ -73,19 +90,110 @@ pub(super) fn check_is_ours(path: &Path) -> Result<(), Failure> {
     if is_sweeps(path) || journal::is_one(path) {
         return Ok(());
     }
-    let entries = fs::read_dir(path)
-        .map_err(|error| Failure::storage(format!("--out: {} cannot be read: {error}", path.display())))?;
-    let comes_first =
-        |name: &str| name == LOCK || name.strip_suffix(".new").is_some() || INPUTS.contains(&name);
-    for entry in entries.flatten() {
-        if !comes_first(&entry.file_name().to_string_lossy()) {
+    let is_first = |name: &String| name == LOCK || name == &format!("{MANIFEST}.new");
+    if names_in(path)?.iter().all(is_first) {
+        return Ok(());
+    }
+    Err(Failure::input(format!(
+        "--out: {} is not empty and not the folder of a sweep; nothing was overwritten",
+        path.display()
+    )))
+}
+
+fn names_in(path: &Path) -> Result<Vec<String>, Failure> {
+    let unreadable = |error| Failure::storage(format!("--out: {} cannot be read: {error}", path.display()));
+    let entries = fs::read_dir(path).map_err(unreadable)?;
+    let mut names: Vec<String> =
+        entries.flatten().map(|entry| entry.file_name().to_string_lossy().into_owned()).collect();
+    names.sort();
+    Ok(names)
+}
+
+/// Whether a sweep has begun in a folder: its inputs are there, or trials.
+pub(super) fn has_begun(path: &Path) -> bool {
+    [RESOLVED, journal::FILE].iter().any(|name| path.join(name).exists())
+}
+
+/// Refuses to start over in a folder with anything in it that no sweep and no report has written.
+pub(super) fn check_may_be_cleared(path: &Path) -> Result<(), Failure> {
+    let reported = reported(path);
+    let is_known = |name: &str| {
+        let name = name.strip_suffix(".new").unwrap_or(name);
+        let is_plots = name == PLOTS && path.join(PLOTS).symlink_metadata().is_ok_and(|there| there.is_dir());
+        is_plots
+            || name == REPORTED
+            || known_names().any(|known| known == name)
+            || reported.contains(&name.into())
+    };
+    let mut strangers = names_in(path)?;
+    strangers.retain(|name| !is_known(name));
+    for name in names_in(&path.join(PLOTS)).unwrap_or_default() {
+        let name = format!("{PLOTS}/{name}");
+        if !reported.contains(&name) {
+            strangers.push(name);
+        }
+    }
+    if strangers.is_empty() {
+        return Ok(());
+    }
+    Err(Failure::input(format!(
+        "--fresh: {} has files that are not the sweep's: {}; nothing was deleted",
+        path.display(),
+        strangers.join(", ")
+    )))
+}
+
+/// The files that the last report wrote, by the list that it left: report.html, and figures.
+fn reported(path: &Path) -> Vec<String> {
+    let list = files::read(&path.join(REPORTED)).unwrap_or_default();
+    let is_figure = |name: &str| {
+        let figure = name.strip_prefix(PLOTS).and_then(|name| name.strip_prefix('/'));
+        let has_kind = |kind| name.ends_with(kind);
+        figure.is_some_and(|figure| !figure.contains(['/', '\\'])) && (has_kind(".svg") || has_kind(".csv"))
+    };
+    let names = String::from_utf8_lossy(&list).lines().map(str::to_owned).collect::<Vec<_>>();
+    names.into_iter().filter(|name| name == REPORT || is_figure(name)).collect()
+}
+
+/// Writes the files of a report, by their names from the folder on: whatever is there already must be of the report before.
+///
+/// # Errors
+/// A file of this name that no report has written, or the disk does not take it.
+pub fn write_report(path: &Path, report: &[(String, Vec<u8>)]) -> Result<(), Failure> {
+    let trouble = |error| Failure::storage(format!("cannot write to {}: {error}", path.display()));
+    let before = reported(path);
+    let plots = path.join(PLOTS);
+    if plots.symlink_metadata().is_ok_and(|there| !there.is_dir()) {
+        return Err(Failure::input(format!("{}: is not a folder", plots.display())));
+    }
+    for (name, _) in report {
+        if !before.contains(name) && path.join(name).symlink_metadata().is_ok() {
+            let name = path.join(name);
             return Err(Failure::input(format!(
-                "--out: {} is not empty and not the folder of a sweep; nothing was overwritten",
-                path.display()
+                "{}: is not of a report of this program; nothing was overwritten",
+                name.display()
             )));
         }
     }
+    remove_report(path).map_err(trouble)?;
+    if report.iter().any(|(name, _)| name.starts_with(PLOTS)) {
+        fs::create_dir_all(&plots).map_err(trouble)?;
+    }
+    let names: Vec<&str> = report.iter().map(|(name, _)| name.as_str()).collect();
+    NewFile::write(path, REPORTED, (names.join("\n") + "\n").as_bytes())?;
+    for (name, content) in report {
+        NewFile::write(path, name, content)?;
+    }
     Ok(())
+}
+
+/// Deletes what a report wrote.
+fn remove_report(path: &Path) -> std::io::Result<()> {
+    for name in reported(path) {
+        files::remove(&path.join(name))?;
+    }
+    let _ = fs::remove_dir(path.join(PLOTS)); // it stays where something else is in it
+    files::remove(&path.join(REPORTED))
 }
 
 /// Takes the folder for this process, until the file is dropped.
@@ -95,6 +203,7 @@ pub(super) fn check_is_ours(path: &Path) -> Result<(), Failure> {
 pub fn lock(path: &Path) -> Result<File, Failure> {
     let name = path.join(LOCK);
     let trouble = |error| Failure::storage(format!("cannot write to {}: {error}", path.display()));
+    files::check_is_file(&name).map_err(trouble)?;
     let file = File::options().create(true).append(true).open(&name).map_err(trouble)?;
     match file.try_lock() {
         Ok(()) => Ok(file),
@@ -107,33 +216,27 @@ pub fn lock(path: &Path) -> Result<File, Failure> {
 
 /// Deletes what a sweep wrote.
 pub(super) fn clear(path: &Path) -> std::io::Result<()> {
+    remove_report(path)?;
     for name in known_names().filter(|name| *name != LOCK) {
-        remove(&path.join(name))?;
-        remove(&path.join(format!("{name}.new")))?;
+        files::remove(&path.join(name))?;
+        files::remove(&path.join(format!("{name}.new")))?;
     }
-    let plots = fs::read_dir(path.join(PLOTS)).into_iter().flatten().flatten().map(|entry| entry.path());
-    for plot in plots.filter(|plot| plot.extension().is_some_and(|kind| kind == "svg" || kind == "csv")) {
-        remove(&plot)?;
-    }
-    let _ = fs::remove_dir(path.join(PLOTS)); // it stays where something else is in it
     Ok(())
-}
-
-fn remove(file: &Path) -> std::io::Result<()> {
-    match fs::remove_file(file) {
-        Err(error) if error.kind() != std::io::ErrorKind::NotFound => Err(error),
-        _ => Ok(()),
-    }
 }
 
 pub(super) fn read_manifest(path: &Path) -> Result<Option<Manifest>, Failure> {
     let name = path.join(MANIFEST);
-    let text = match fs::read(&name) {
+    let text = match files::read(&name) {
         Ok(text) => text,
-        Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(None),
+        Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
         Err(error) => return Err(Failure::storage(format!("{}: {error}", name.display()))),
     };
-    Manifest::parse(&text).map(Some).map_err(|reason| {
+    let sound = Manifest::parse(&text).and_then(|manifest| {
+        let is_listed = manifest.files.iter().map(|file| file.name.as_str()).eq(listed(&manifest));
+        let is_ours = is_listed || manifest.schema_version != SCHEMA_VERSION;
+        if is_ours { Ok(manifest) } else { Err("it does not list the files of a sweep".to_owned()) }
+    });
+    sound.map(Some).map_err(|reason| {
         let name = name.display();
         Failure::input(format!("{name}: is not a manifest of this program: {reason}; --fresh starts over"))
     })
@@ -150,7 +253,8 @@ pub(super) fn check_continues(
     if there.shard != now.shard {
         differences.push(format!("shard: {} there, {} now", there.part(), now.part()));
     }
-    let old = fs::read_to_string(path.join(RESOLVED)).unwrap_or_default();
+    let old = files::read(&path.join(RESOLVED)).unwrap_or_default();
+    let old = String::from_utf8_lossy(&old).into_owned();
     differences.extend(scenario_differences(&old, resolved));
     if now.trials < there.trials {
         differences
@@ -179,7 +283,8 @@ pub fn broken_files(path: &Path, manifest: &Manifest) -> Vec<String> {
 /// Its resolved scenario cannot be read.
 pub fn experiment_of(path: &Path, manifest: &Manifest) -> Result<Experiment, Failure> {
     let (base, _) = Scenario::load(&path.join(RESOLVED)).map_err(Failure::input)?;
-    let given = fs::read_to_string(path.join(GIVEN)).unwrap_or_default();
+    let given = files::read(&path.join(GIVEN)).unwrap_or_default();
+    let given = String::from_utf8(given).unwrap_or_default();
     Experiment::assemble(Parts {
         name: manifest.name.clone(),
         given,
@@ -207,7 +312,7 @@ pub fn experiment_in(path: &Path) -> Result<(Experiment, Manifest), Failure> {
 /// Whether a folder is that of a sweep, whatever program made it.
 #[must_use]
 pub fn is_sweeps(path: &Path) -> bool {
-    let manifest = fs::read(path.join(MANIFEST)).unwrap_or_default();
+    let manifest = files::read(&path.join(MANIFEST)).unwrap_or_default();
     let manifest: serde_json::Value = serde_json::from_slice(&manifest).unwrap_or_default();
     manifest["program"] == "usar"
 }

@@ -1,5 +1,6 @@
 //! Where the results of a sweep are kept: its folder, its journal, and the tables made of it.
 
+pub mod audit;
 pub mod disk;
 pub mod folder;
 mod journal;

@@ -2,17 +2,21 @@
 
 use std::io::Write;
 use std::path::PathBuf;
+use std::sync::atomic::Ordering;
+use std::time::Instant;
 
 use clap::Args;
 use experiments::Failure;
 use experiments::experiment::{PolicySpec, defaults, with_settings};
 use reports::table::rounds_table;
+use rne_core::Policy;
 use serde::Serialize;
 use usar_sim::record::{Status, TrialRecord};
 use usar_sim::simulation::Simulation;
 
 use super::snapshot::{Snapshot, save};
 use super::{SCHEMA_VERSION, load};
+use crate::running::{STOP, stop_on_signals};
 
 /// Run one trial and tell what happened, round by round
 #[derive(Debug, Args)]
@@ -46,6 +50,9 @@ pub(crate) struct Arguments {
     /// Check every invariant at every step; a violation ends the trial as failed
     #[arg(long)]
     check: bool,
+    /// Longest time that the trial may take, in seconds of this machine
+    #[arg(long, default_value_t = 600.0, value_name = "SECONDS")]
+    max_trial_s: f64,
     /// Set a field of the scenario, by its path, to a value in RON, e.g. `costs.energy.per_step=0.009`; may stand several times
     #[arg(long, value_name = "PATH=VALUE")]
     set: Vec<String>,
@@ -53,6 +60,9 @@ pub(crate) struct Arguments {
     #[arg(long)]
     json: bool,
 }
+
+/// A trial looks once in this many steps whether it is to stop.
+const CLOCK_CHECK_STEPS: u64 = 64;
 
 #[derive(Serialize)]
 struct Output<'a> {
@@ -87,7 +97,7 @@ impl Arguments {
         if let (Some(path), Some(seconds)) = (&self.save, self.save_at) {
             save(&mut simulation, &spec, (path, seconds))?;
         }
-        let record = simulation.run(&*policy, |_, _, _| {});
+        let record = self.run(simulation, &*policy)?;
         if let Status::Failed(reason) = &record.status {
             return Err(Failure::run(format!("trial of {} with seed {seed} failed: {reason}", spec.label)));
         }
@@ -102,6 +112,31 @@ impl Arguments {
             return Ok(writeln!(out, "{}", serde_json::to_string(&output).map_err(Failure::run)?)?);
         }
         print(out, [&scenario.name, &spec.label], &record)
+    }
+}
+
+impl Arguments {
+    /// Runs the trial to its end, unless it takes too long or is stopped.
+    fn run(&self, mut simulation: Simulation, policy: &dyn Policy) -> Result<TrialRecord, Failure> {
+        let begun = Instant::now();
+        stop_on_signals();
+        while simulation.step(policy).is_none() {
+            if !simulation.steps().is_multiple_of(CLOCK_CHECK_STEPS) {
+                continue;
+            }
+            let at = simulation.time_s();
+            if STOP.load(Ordering::Relaxed) {
+                return Err(Failure::Interrupted(format!("stopped at {at:.0} s of simulated time")));
+            }
+            if begun.elapsed().as_secs_f64() > self.max_trial_s {
+                return Err(Failure::run(format!(
+                    "the trial took longer than {} s and had come to {at:.0} s of simulated time; \
+                     --max-trial-s gives it longer",
+                    self.max_trial_s
+                )));
+            }
+        }
+        Ok(simulation.finish())
     }
 }
 

@@ -23,7 +23,8 @@ impl Snapshot {
     pub(super) fn read(path: &Path) -> Result<Self, Failure> {
         let refused =
             |reason: &dyn std::fmt::Display| Failure::input(format!("{}: {reason}", path.display()));
-        let bytes = std::fs::read(path).map_err(|error| refused(&format!("cannot be read: {error}")))?;
+        let bytes =
+            experiments::files::read(path).map_err(|error| refused(&format!("cannot be read: {error}")))?;
         let identity = Identity::of(&bytes).map_err(|error| refused(&error))?;
         Ok(Self { path: path.to_owned(), bytes, identity })
     }
@@ -51,7 +52,7 @@ pub(super) fn save(
     }
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let trouble =
-        |error: std::io::Error| Failure::input(format!("--save: cannot write {}: {error}", path.display()));
+        |error: std::io::Error| Failure::storage(format!("--save: cannot write {}: {error}", path.display()));
     let mut file = tempfile::NamedTempFile::new_in(folder).map_err(trouble)?;
     while simulation.time_s() < seconds {
         if let Some(status) = simulation.step(&*policy) {

@@ -1,5 +1,6 @@
 //! The program `usar`, run as a user runs it. One binary, since each takes long to link.
 
+mod forged;
 mod place;
 mod support;
 
