@@ -17,7 +17,7 @@ use super::journal::{self, Damage, Journal, Place};
 use super::tables::Tables;
 use crate::experiment::{Experiment, Shard};
 use crate::failure::Failure;
-use crate::files::{FileHash, file_hash};
+use crate::files::{FileHash, check_is_file, file_hash};
 use crate::metric::Catalogue;
 use crate::provenance::{Manifest, SCHEMA_VERSION};
 use crate::run::{Outcome, TrialKey};
@@ -85,6 +85,8 @@ impl Folder {
         }
         let manifest = Manifest::new(&experiment, opening.shard, Vec::new());
         let mut finished = None;
+        let file = path.join(journal::FILE);
+        check_is_file(&file).map_err(|error| Failure::storage(format!("{}: {error}", file.display())))?;
         let has_begun = has_begun(path);
         if let Some(there) = read_manifest(path)?.filter(|_| has_begun) {
             check_continues(path, &there, &manifest, &experiment.base.resolved())?;

@@ -44,6 +44,9 @@ impl TryFrom<ScenarioFile> for Scenario {
     }
 }
 
+/// A scenario is at most this many times as long when every default is spelled out.
+const LONGEST_IN_FULL: u64 = 32;
+
 /// How all texts of the project are read.
 pub(crate) fn ron_options() -> ron::Options {
     ron::Options::default().with_default_extension(Extensions::IMPLICIT_SOME)
@@ -111,7 +114,26 @@ impl Scenario {
     /// A file that is missing, a folder, not text or too large; a text that is not a scenario; values that break rules.
     pub fn load(path: &Path) -> Result<(Self, String), ScenarioError> {
         let text = read_text(path)?;
-        Ok((Self::parse(&text, path)?, text))
+        let scenario = Self::parse(&text, path)?;
+        scenario.check_can_be_read_again(&text, path)?;
+        Ok((scenario, text))
+    }
+
+    /// Results hold the scenario with every default spelled out; that too must be a file that can be read.
+    fn check_can_be_read_again(&self, text: &str, path: &Path) -> Result<(), ScenarioError> {
+        if text.len() as u64 <= MAX_FILE_BYTES / LONGEST_IN_FULL {
+            return Ok(());
+        }
+        let in_full = self.resolved().len() as u64;
+        if in_full <= MAX_FILE_BYTES {
+            return Ok(());
+        }
+        let reason = format!(
+            "is {:.1} MiB long when every default is spelled out, as results hold it; at most {} MiB can be read again",
+            in_full as f64 / f64::from(1 << 20),
+            MAX_FILE_BYTES >> 20
+        );
+        Err(ScenarioError::Unreadable { path: path.to_owned(), reason })
     }
 
     /// Checks the text of a scenario; `path` is used in messages only.
@@ -132,13 +154,14 @@ impl Scenario {
         })
     }
 
-    /// The whole scenario with every value, as text.
+    /// The whole scenario with every value, as text: an entry of a list in a line.
     ///
     /// # Panics
     /// Never: a checked scenario can be written.
     #[must_use]
     pub fn resolved(&self) -> String {
-        let pretty = ron::ser::to_string_pretty(&self.0, ron::ser::PrettyConfig::new().new_line("\n"));
+        let layout = ron::ser::PrettyConfig::new().new_line("\n").depth_limit(2);
+        let pretty = ron::ser::to_string_pretty(&self.0, layout);
         pretty.expect("a checked scenario can be written") + "\n"
     }
 

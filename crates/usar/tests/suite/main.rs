@@ -9,6 +9,7 @@ mod commands;
 mod compared;
 mod damaged;
 mod grids;
+mod guarded;
 mod reported;
 mod resumed;
 mod same_bytes;
