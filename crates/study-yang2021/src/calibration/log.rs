@@ -52,7 +52,9 @@ impl Log {
         }
         let now = origin_of(calibration);
         if !is_fresh && origin.exists() {
-            check_continues(folder, &fs::read_to_string(&origin).map_err(trouble)?, &now)?;
+            let there = ron_fields::file::read_text(&origin)
+                .map_err(|error| Failure::input(format!("{}: {error}", origin.display())))?;
+            check_continues(folder, &there, &now)?;
         }
         fs::create_dir_all(folder).map_err(trouble)?;
         let lock = disk::lock(folder)?;

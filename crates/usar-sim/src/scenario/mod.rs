@@ -15,13 +15,11 @@ use rne_core::question::hardest_first;
 use rne_core::{RoleId, TaskId};
 use ron::extensions::Extensions;
 use ron_fields::Fields;
+use ron_fields::file::MAX_TEXT_BYTES;
 use serde::de::DeserializeOwned;
 
 pub use error::{LayoutError, Problem, Problems, ScenarioError};
 pub use file::*;
-
-/// Greatest size of a scenario file, in bytes.
-const MAX_FILE_BYTES: u64 = 4 << 20;
 
 /// A scenario whose every value was checked. Reads like the [`ScenarioFile`] that it was made from.
 #[derive(Debug, Clone, PartialEq)]
@@ -52,23 +50,13 @@ pub(crate) fn ron_options() -> ron::Options {
     ron::Options::default().with_default_extension(Extensions::IMPLICIT_SOME)
 }
 
-/// Reads a text file of reasonable size.
+/// Reads the text of a scenario or sweep file.
 ///
 /// # Errors
-/// A file that is missing, a folder, not text, empty or too large.
+/// A file that is missing, no regular file, not text, empty or larger than [`MAX_TEXT_BYTES`].
 pub fn read_text(path: &Path) -> Result<String, ScenarioError> {
     let unreadable = |reason: String| ScenarioError::Unreadable { path: path.to_owned(), reason };
-    let metadata = std::fs::metadata(path).map_err(|e| unreadable(format!("cannot be read: {e}")))?;
-    if metadata.is_dir() {
-        return Err(unreadable("is a folder, not a scenario file".into()));
-    }
-    if metadata.len() > MAX_FILE_BYTES {
-        return Err(unreadable(format!(
-            "is larger than the {} MiB that a scenario may have",
-            MAX_FILE_BYTES >> 20
-        )));
-    }
-    let text = std::fs::read_to_string(path).map_err(|e| unreadable(format!("cannot be read: {e}")))?;
+    let text = ron_fields::file::read_text(path).map_err(|error| unreadable(error.to_string()))?;
     if text.trim().is_empty() {
         return Err(unreadable("is empty; see scenarios/paper.ron for a complete scenario".into()));
     }
@@ -121,17 +109,17 @@ impl Scenario {
 
     /// Results hold the scenario with every default spelled out; that too must be a file that can be read.
     fn check_can_be_read_again(&self, text: &str, path: &Path) -> Result<(), ScenarioError> {
-        if text.len() as u64 <= MAX_FILE_BYTES / LONGEST_IN_FULL {
+        if text.len() as u64 <= MAX_TEXT_BYTES / LONGEST_IN_FULL {
             return Ok(());
         }
         let in_full = self.resolved().len() as u64;
-        if in_full <= MAX_FILE_BYTES {
+        if in_full <= MAX_TEXT_BYTES {
             return Ok(());
         }
         let reason = format!(
             "is {:.1} MiB long when every default is spelled out, as results hold it; at most {} MiB can be read again",
             in_full as f64 / f64::from(1 << 20),
-            MAX_FILE_BYTES >> 20
+            MAX_TEXT_BYTES >> 20
         );
         Err(ScenarioError::Unreadable { path: path.to_owned(), reason })
     }
@@ -195,5 +183,22 @@ impl Scenario {
     pub fn largest_radius_m(&self, kind: RoleKind) -> f64 {
         let roles = self.team.iter().map(|row| &self.roles[self.role_of(row).index()]);
         roles.filter(|role| role.kind == kind).map(|role| role.radius_m).fold(0.0, f64::max)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_scenario_that_results_could_not_hold_is_refused() {
+        let text = include_str!("../../../../scenarios/minimal/stranded.ron");
+        let mut scenario = Scenario::parse(text, "stranded.ron".as_ref()).unwrap();
+        let long = " ".repeat(1 << 20);
+        assert!(scenario.check_can_be_read_again(&long, "a.ron".as_ref()).is_ok());
+        let one = scenario.0.debris[0].clone();
+        scenario.0.debris = vec![one; 80_000];
+        let refused = scenario.check_can_be_read_again(&long, "a.ron".as_ref()).unwrap_err().to_string();
+        assert!(refused.contains("MiB long when every default is spelled out"), "{refused}");
     }
 }

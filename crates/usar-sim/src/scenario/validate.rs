@@ -122,7 +122,8 @@ fn names<'n>(check: &mut Checker, table: &str, most: usize, names: impl Iterator
     let mut seen: Vec<&str> = Vec::new();
     for (i, name) in names.enumerate() {
         if name.is_empty() || name.len() > 64 || name.starts_with('-') || !name.chars().all(plain) {
-            let rule = "must be a name of at most 64 letters, digits, `-` and `_` that does not start with `-`";
+            let rule =
+                "must be a name of at most 64 letters, digits, `-` and `_` that does not start with `-`";
             check.fail(format!("{table}[{i}].name"), rule, format!("{name:?}"));
         } else if seen.contains(&name) {
             check.fail(format!("{table}[{i}].name"), "must not be listed twice", format!("{name:?}"));

@@ -10,6 +10,9 @@ use usar_sim::scenario::Scenario;
 use usar_sim::simulation::Simulation;
 use usar_sim::snapshot::Identity;
 
+/// Bytes that a snapshot may have.
+const MAX_BYTES: u64 = 256 << 20;
+
 /// A snapshot that was read from a file.
 pub(super) struct Snapshot {
     path: PathBuf,
@@ -23,8 +26,7 @@ impl Snapshot {
     pub(super) fn read(path: &Path) -> Result<Self, Failure> {
         let refused =
             |reason: &dyn std::fmt::Display| Failure::input(format!("{}: {reason}", path.display()));
-        let bytes =
-            experiments::files::read(path).map_err(|error| refused(&format!("cannot be read: {error}")))?;
+        let bytes = ron_fields::file::read(path, MAX_BYTES).map_err(|error| refused(&error))?;
         let identity = Identity::of(&bytes).map_err(|error| refused(&error))?;
         Ok(Self { path: path.to_owned(), bytes, identity })
     }
