@@ -24,7 +24,6 @@ use crate::event::{Event, EventLog, TurnBackCause};
 use crate::ids::RobotId;
 use crate::model::Model;
 use crate::navigation::Goal;
-use crate::scenario::RoleKind;
 use crate::world::{Robot, World};
 
 /// How near a robot comes to its place at home or at a rest place, in metres.
@@ -88,7 +87,7 @@ impl Mission {
     /// Everybody is home, nothing is known.
     #[must_use]
     pub fn new(model: &Model, world: &World) -> Self {
-        let nothing = Knowledge::nothing(world, inflation(model));
+        let nothing = Knowledge::nothing(world, Inflation::of(&model.scenario));
         let tasks = model.tasks.len();
         let mut mission = Self {
             agents: vec![Agent::new(); world.robots.len()],
@@ -133,9 +132,9 @@ impl Mission {
 
     /// Makes what a snapshot leaves out because it follows from the rest.
     pub(crate) fn restore(&mut self, model: &Model, world: &World) {
-        let inflation = inflation(model);
+        let inflation = Inflation::of(&model.scenario);
         let all = self.knowledge.iter_mut().chain([&mut self.knowledge_at_home]);
-        all.for_each(|knowledge| knowledge.restore(world, inflation));
+        all.for_each(|knowledge| knowledge.restore(world, inflation.clone()));
         self.is_guided = vec![false; self.groups.len()];
         self.look_for_guides(world);
     }
@@ -300,13 +299,5 @@ impl Mission {
             Activity::Home | Activity::Returning => Some(Goal { point: robot.home, within: SLOT_M }),
             Activity::ToRest => Some(Goal { point: robot.rest_slot(agent.rest_at), within: SLOT_M }),
         }
-    }
-}
-
-/// By how much what groups know is inflated.
-fn inflation(model: &Model) -> Inflation {
-    Inflation {
-        radius: model.scenario.largest_radius_m(RoleKind::Ground) as f32,
-        clearance: model.scenario.planning.clearance_m as f32,
     }
 }

@@ -127,7 +127,8 @@ impl Navigator {
                 to: goal.point,
                 aerial: robot.is_aerial(),
                 speed: speed_of(robot) as f32,
-                obstacles: knowledge.obstacles(),
+                radius: robot.radius(),
+                obstacles: knowledge.obstacles(robot.radius()),
                 so_far: &[],
                 in_the_way: &[],
                 zones: knowledge.known_zones(),
@@ -161,7 +162,8 @@ impl Navigator {
                 if let (Some(arena), Some(route), false) =
                     (self.narrow_in, &traveller.route, robot.is_aerial())
                 {
-                    let walls = Walls { known: knowledge.obstacles(), arena, radius: robot.radius() };
+                    let walls =
+                        Walls { known: knowledge.obstacles(robot.radius()), arena, radius: robot.radius() };
                     traveller.passages = walls.passages(robot.position, route);
                 }
             }
@@ -240,7 +242,7 @@ fn effect(
 fn concerns(news: News, knowledge: &Knowledge, route: &Route, robot: &Robot) -> bool {
     match news {
         News::Obstacle(key) => {
-            let obstacle = knowledge.obstacles().get(key).filter(|_| !robot.is_aerial());
+            let obstacle = knowledge.obstacles(robot.radius()).get(key).filter(|_| !robot.is_aerial());
             obstacle.is_some_and(|obstacle| route.legs(robot.position).any(|(a, b)| obstacle.cuts(a, b)))
         }
         News::Zone(number) => {
@@ -265,5 +267,5 @@ fn may_cheapen(planner: &Planner, query: &Query, route: &Route, news: &[News]) -
 /// Whether the way to the next waypoint is cut, for a robot that was pushed or had to step aside.
 fn first_leg_cut(knowledge: &Knowledge, route: &Route, robot: &Robot) -> bool {
     let next = route.ahead()[0];
-    !robot.is_aerial() && knowledge.obstacles().cuts(robot.position, next)
+    !robot.is_aerial() && knowledge.obstacles(robot.radius()).cuts(robot.position, next)
 }

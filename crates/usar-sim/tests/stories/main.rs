@@ -1,6 +1,7 @@
 //! Small worlds, each with a story that once ended badly. One binary.
 
 mod held_up;
+mod radii;
 
 use rne_core::Registry;
 use usar_sim::event::Event;
