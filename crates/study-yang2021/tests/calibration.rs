@@ -54,7 +54,7 @@ fn the_calibrated_scenario_is_the_best_of_its_log() {
         assert!((today - mean).abs() <= sd, "{}: {today} today, {mean} ± {sd} in the log", quantity.name);
     }
     let misfit_today = calibration.target.misfit(&spreads);
-    assert!((20.9..21.0).contains(&misfit_today), "docs/calibration.md says 21.0; it is {misfit_today}");
+    assert!((20.35..20.45).contains(&misfit_today), "docs/calibration.md says 20.4; it is {misfit_today}");
 }
 
 #[test]

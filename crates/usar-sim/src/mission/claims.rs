@@ -54,6 +54,9 @@ impl Mission {
             return;
         }
         let mut offers: Vec<RescueeId> = self.available(task, scene.model, scene.world).collect();
+        if offers.is_empty() {
+            return;
+        }
         let mut seekers: Vec<Seeker> = seeking.map(|id| Seeker::new(id, scene.world, &offers)).collect();
         for _ in 0..spare {
             let pairs = seekers.iter().enumerate().filter_map(|(at, seeker)| Some((seeker.nearest?, at)));

@@ -21,6 +21,9 @@ use serde::de::DeserializeOwned;
 pub use error::{LayoutError, Problem, Problems, ScenarioError};
 pub use file::*;
 
+/// Most radii for which ways on the ground are planned apart: each costs a map of what is known.
+pub const MAX_RADIUS_CLASSES: usize = 4;
+
 /// A scenario whose every value was checked. Reads like the [`ScenarioFile`] that it was made from.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scenario(ScenarioFile);
@@ -176,6 +179,22 @@ impl Scenario {
     #[must_use]
     pub fn hardest_first(&self) -> Vec<TaskId> {
         hardest_first(self.tasks.iter().map(|task| task.difficulty))
+    }
+
+    /// Radii for which ways on the ground are planned, rising, in metres: those of the team's ground robots. Where there are more than
+    /// [`MAX_RADIUS_CLASSES`], robots share the ways of the next larger one. At least one; 0 where nobody drives.
+    #[must_use]
+    pub fn ground_radii_m(&self) -> Vec<f64> {
+        let roles = self.team.iter().map(|row| &self.roles[self.role_of(row).index()]);
+        let ground = roles.filter(|role| role.kind == RoleKind::Ground);
+        let mut radii: Vec<f64> = ground.map(|role| role.radius_m).collect();
+        radii.sort_by(f64::total_cmp);
+        radii.dedup();
+        let all = radii.len();
+        if all > MAX_RADIUS_CLASSES {
+            radii = (1..=MAX_RADIUS_CLASSES).map(|i| radii[i * all / MAX_RADIUS_CLASSES - 1]).collect();
+        }
+        if radii.is_empty() { vec![0.0] } else { radii }
     }
 
     /// Radius of the largest robot of the team that moves there, in metres; 0 where there is none.

@@ -366,6 +366,7 @@ fn rules(check: &mut Checker, file: &ScenarioFile) {
     check.number("mission.area_margin_m", mission.area_margin_m, least_reach..=1000.0);
     check.number("mission.blind_speed_loss", mission.blind_speed_loss, 0.0..=0.95);
     check.number("mission.health_floor", mission.health_floor, 0.05..=1.0);
+    check.number("mission.cut_off_s", mission.cut_off_s, 1.0..=86_400.0);
     check.number("planning.clearance_m", file.planning.clearance_m, 0.02..=10.0);
     check.number("planning.exposure_price_m", file.planning.exposure_price_m, 0.0..=1e6);
     check.number("conflicts.margin_m", file.conflicts.margin_m, 0.0..=10.0);

@@ -11,6 +11,7 @@ use experiments::experiment::{PolicySpec, defaults, with_settings};
 use reports::table::rounds_table;
 use rne_core::Policy;
 use serde::Serialize;
+use usar_sim::metrics::CutOff;
 use usar_sim::record::{Status, TrialRecord};
 use usar_sim::simulation::Simulation;
 
@@ -185,6 +186,13 @@ fn print(out: &mut dyn Write, [scenario, policy]: [&str; 2], record: &TrialRecor
     if record.counts.errands_done + record.counts.unreachable > 0 {
         let (done, unreachable) = (record.counts.errands_done, record.counts.unreachable);
         writeln!(out, "places       {done} errands done, {unreachable} places given up as unreachable")?;
+    }
+    for CutOff { robot, first_s, times, place: [x, y], cause } in &record.cut_off {
+        let why = cause.name();
+        writeln!(
+            out,
+            "cut off      robot {robot} at {first_s:.1} s, {times} times in all: it {why} to ({x:.1}, {y:.1})"
+        )?;
     }
     if let Some(overlaps) = record.overlaps {
         writeln!(out, "overlaps     {overlaps}")?;
