@@ -2,6 +2,7 @@
 
 mod cli;
 mod commands;
+mod recordings;
 mod running;
 
 pub use cli::{main, main_with};

@@ -11,6 +11,8 @@ use serde::Serialize;
 use usar_sim::record::{Status, TrialRecord};
 use usar_sim::simulation::Simulation;
 
+use crate::recordings;
+
 use super::snapshot::{Snapshot, save};
 use super::{SCHEMA_VERSION, load};
 
@@ -24,7 +26,8 @@ Examples:
   usar run scenarios/paper.ron --policy 'RNE(hard_rule: MeanEnergy)' --set duration_s=300
   usar run scenarios/paper.ron --seed 3 --save half.snapshot --save-at 300    the trial, and a snapshot of it on the way
   usar run scenarios/paper.ron --from half.snapshot                           the rest of that trial, with the same result
-  usar run scenarios/paper.ron --from half.snapshot --policy DIS              another policy goes on from there")]
+  usar run scenarios/paper.ron --from half.snapshot --policy DIS              another policy goes on from there
+  usar run scenarios/paper.ron --record paper.usrec                           then: usar view paper.usrec")]
 pub(crate) struct Arguments {
     /// Scenario file (RON)
     file: PathBuf,
@@ -49,6 +52,12 @@ pub(crate) struct Arguments {
     /// Set a field of the scenario, by its path, to a value in RON, e.g. `costs.energy.per_step=0.009`; may stand several times
     #[arg(long, value_name = "PATH=VALUE")]
     set: Vec<String>,
+    /// Write a recording of the trial to this file, for `usar view`; the file must not exist yet
+    #[arg(long, value_name = "FILE")]
+    record: Option<PathBuf>,
+    /// Frames of the recording in a second of simulated time
+    #[arg(long, value_name = "FPS", default_value_t = recording::DEFAULT_FPS, requires = "record", value_parser = recordings::fps)]
+    record_fps: f64,
     /// Print one JSON object
     #[arg(long)]
     json: bool,
@@ -87,7 +96,13 @@ impl Arguments {
         if let (Some(path), Some(seconds)) = (&self.save, self.save_at) {
             save(&mut simulation, &spec, (path, seconds))?;
         }
-        let record = simulation.run(&*policy, |_, _, _| {});
+        let record = match &self.record {
+            Some(path) => {
+                let options = recording::Options { policy: spec.label.clone(), fps: self.record_fps };
+                recordings::record_to(path, simulation, &*policy, &options)?
+            }
+            None => simulation.run(&*policy, |_, _, _| {}),
+        };
         if let Status::Failed(reason) = &record.status {
             return Err(Failure::run(format!("trial of {} with seed {seed} failed: {reason}", spec.label)));
         }
