@@ -14,10 +14,12 @@ const onePage = (): Plugin => ({
   generateBundle(_, bundle) {
     const entries = Object.entries(bundle);
     const text = (end: string): string => {
-      const texts = entries.filter(([name]) => name.endsWith(end)).map(([, file]) => {
-        const content = file.type === 'chunk' ? file.code : file.source;
-        return typeof content === 'string' ? content : new TextDecoder().decode(content);
-      });
+      const texts = entries
+        .filter(([name]) => name.endsWith(end))
+        .map(([, file]) => {
+          const content = file.type === 'chunk' ? file.code : file.source;
+          return typeof content === 'string' ? content : new TextDecoder().decode(content);
+        });
       return texts.join('').trim();
     };
     const script = text('.js').replaceAll('</script', '<\\/script');

@@ -50,7 +50,9 @@ function ask(root: HTMLElement): void {
   const input = element('input', { type: 'file', multiple: '', accept: '.usrec' });
   input.addEventListener('change', () => {
     const files = [...(input.files ?? [])];
-    const read = files.map(async (file) => [file.name, new Uint8Array(await file.arrayBuffer())] as [string, Uint8Array]);
+    const read = files.map(
+      async (file) => [file.name, new Uint8Array(await file.arrayBuffer())] as [string, Uint8Array],
+    );
     void Promise.all(read).then((all) => show(root, all));
   });
   const label = element('label', {}, 'Open recordings (.usrec): ', input);

@@ -141,6 +141,11 @@ fn percent(value: f64) -> i32 {
     (value * 1000.0).round() as i32
 }
 
+/// A number of things.
+fn count(things: usize) -> i32 {
+    (things as u32).cast_signed()
+}
+
 /// An id or none, as one number.
 fn some(id: Option<u32>) -> i32 {
     id.map_or(0, |id| id.cast_signed().wrapping_add(1))
@@ -243,8 +248,8 @@ impl RobotState {
             some(self.waits_for),
             some(self.task),
             i32::from(self.condition),
-            self.resources as i32,
-            self.load as i32,
+            self.resources.cast_signed(),
+            self.load.cast_signed(),
         ]);
     }
 
@@ -327,7 +332,7 @@ impl MovedDebris {
     }
 
     pub(crate) fn write(self, out: &mut Vec<i32>) {
-        out.extend([self.position_mm[0], self.position_mm[1], self.angle, self.sightings as i32]);
+        out.extend([self.position_mm[0], self.position_mm[1], self.angle, self.sightings.cast_signed()]);
     }
 
     pub(crate) fn read(numbers: &[i32]) -> Result<Self, NotNumbers> {
@@ -354,9 +359,11 @@ impl GroupFrame {
     }
 
     pub(crate) fn write(&self, out: &mut Vec<i32>) {
-        out.extend([i32::from(self.is_at_work), self.debris.len() as i32]);
-        out.extend(self.debris.iter().flat_map(|(number, sighting)| [*number as i32, *sighting as i32]));
-        out.extend(self.zones.iter().map(|zone| *zone as i32));
+        out.extend([i32::from(self.is_at_work), count(self.debris.len())]);
+        out.extend(
+            self.debris.iter().flat_map(|(number, sighting)| [number.cast_signed(), sighting.cast_signed()]),
+        );
+        out.extend(self.zones.iter().map(|zone| zone.cast_signed()));
     }
 
     pub(crate) fn read(numbers: &[i32]) -> Result<Self, NotNumbers> {
@@ -376,8 +383,8 @@ impl GroupFrame {
 /// The conflict sets: of each, its number of members and their ids.
 pub(crate) fn push_sets(simulation: &Simulation, out: &mut Vec<i32>) {
     for set in simulation.conflict_sets() {
-        out.push(set.len() as i32);
-        out.extend(set.iter().map(|id| *id as i32));
+        out.push(count(set.len()));
+        out.extend(set.iter().map(|id| count(*id)));
     }
 }
 

@@ -48,7 +48,7 @@ impl<'b> Numbers<'b> {
 
     pub(crate) fn signed(&mut self) -> Result<i64, NotNumbers> {
         let value = self.unsigned()?;
-        Ok((value >> 1) as i64 ^ -((value & 1) as i64))
+        Ok((value >> 1).cast_signed() ^ -(value & 1).cast_signed())
     }
 
     /// A number of things, each of which takes at least one byte of what is left.

@@ -168,19 +168,19 @@ impl Segment {
             let at = row.partition_point(|(from, _)| *from <= frame);
             at.checked_sub(1).map(|at| row[at].1.clone()).ok_or(NotNumbers)
         };
-        let robots = states.iter().zip(routes).zip(self.columns.chunks_exact(MOTION_FIELDS.len()));
-        let robot = |((state, route), columns): ((&Vec<Entry>, &Vec<Entry>), &[Vec<i32>])| {
+        let robot = |(number, columns): (usize, &[Vec<i32>])| {
             let mut motion = [0; MOTION_FIELDS.len()];
             motion.iter_mut().zip(columns).for_each(|(value, column)| *value = column[frame]);
             Ok(RobotFrame {
                 motion: Motion::from_numbers(motion),
-                state: RobotState::read(&now(state)?)?,
-                route: Route::read(&now(route)?)?,
+                state: RobotState::read(&now(&states[number])?)?,
+                route: Route::read(&now(&routes[number])?)?,
             })
         };
+        let robots = self.columns.chunks_exact(MOTION_FIELDS.len()).enumerate().map(robot);
         Ok(Frame {
             step,
-            robots: robots.map(robot).collect::<Result<_, _>>()?,
+            robots: robots.collect::<Result<_, _>>()?,
             rescuees: rescuees.iter().map(|row| RescueeFrame::read(&now(row)?)).collect::<Result<_, _>>()?,
             debris: debris.iter().map(|row| MovedDebris::read(&now(row)?)).collect::<Result<_, _>>()?,
             groups: groups.iter().map(|row| GroupFrame::read(&now(row)?)).collect::<Result<_, _>>()?,

@@ -70,9 +70,9 @@ export function routeAt({ segment, frame }: Moment, robot: number): { goal: Poin
   return { goal, ahead: points };
 }
 
-/** What a group knows: of each piece of debris which place of it, and the zones. The last group is the team at home. */
-export function knownBy({ segment, frame }: Moment, group: number): { debris: Map<number, number>; zones: Set<number> } {
-  const row = segment.row(Stream.Groups, group, frame);
+/** What a group knows: which place of each piece of debris, and the zones. The last group is the team at home. */
+export function knownBy(moment: Moment, group: number): { debris: Map<number, number>; zones: Set<number> } {
+  const row = moment.segment.row(Stream.Groups, group, moment.frame);
   const debris = new Map<number, number>();
   const end = 2 + 2 * row[1];
   for (let at = 2; at < end; at += 2) debris.set(row[at], row[at + 1]);

@@ -1,5 +1,6 @@
 /** The page: stages side by side, the time below them, panels beside them. */
 
+import { LARGE_TEAM } from '../draw/sheet';
 import { groupColour, onThemeChange } from '../draw/theme';
 import type { Moment, Recording } from '../recording/recording';
 import { Clock } from './clock';
@@ -27,7 +28,11 @@ export class App {
   private readonly play: HTMLButtonElement;
   private readonly told = element('output', { class: 'time' });
   private readonly speed = element('output', { class: 'speed' });
-  private readonly viewpoints = element('div', { class: 'viewpoints', role: 'group', 'aria-label': 'Whose knowledge' });
+  private readonly viewpoints = element('div', {
+    class: 'viewpoints',
+    role: 'group',
+    'aria-label': 'Whose knowledge',
+  });
   private readonly tabs = element('div', { class: 'tabs', role: 'group', 'aria-label': 'Recording' });
   private isDirty = true;
   private isAfresh = true;
@@ -36,40 +41,76 @@ export class App {
   /** Drawings so far, and the time that they took, in milliseconds: to measure. */
   readonly drawn = { frames: 0, milliseconds: 0 };
 
-  constructor(root: HTMLElement, readonly recordings: readonly Recording[]) {
+  constructor(
+    root: HTMLElement,
+    readonly recordings: readonly Recording[],
+  ) {
     const starts = recordings.map(({ start }) => start);
+    this.looks.routes = recordings.every(({ header }) => header.world.robots.length <= LARGE_TEAM);
     this.clock = new Clock(Math.min(...starts), Math.max(...recordings.map(({ end }) => end)));
-    const changed = (): void => { this.change(); };
-    this.stages = recordings.map((recording, number) =>
-      new Stage(recording, this.looks, changed, (robot) => { this.select(number, robot); }));
+    const changed = (): void => {
+      this.change();
+    };
+    this.stages = recordings.map(
+      (recording, number) =>
+        new Stage(recording, this.looks, changed, (robot) => {
+          this.select(number, robot);
+        }),
+    );
     this.timeline = new Timeline(this.clock, recordings, changed);
     this.curves = new Curves(this.clock, recordings, changed);
-    this.robotPanel = new RobotPanel((robot) => { this.select(this.focus, robot); }, () => { this.follow(); });
-    this.roundPanel = new RoundPanel((time) => { this.seek(time); });
-    this.play = button('▶', 'Play or pause (space)', () => { this.toggle(); }, 'play');
+    this.robotPanel = new RobotPanel(
+      (robot) => {
+        this.select(this.focus, robot);
+      },
+      () => {
+        this.follow();
+      },
+    );
+    this.roundPanel = new RoundPanel((time) => {
+      this.seek(time);
+    });
+    this.play = button(
+      '▶',
+      'Play or pause (space)',
+      () => {
+        this.toggle();
+      },
+      'play',
+    );
     root.replaceChildren(this.layout());
     document.title = recordings.map(({ header }) => `${header.policy} ${header.scenario.name}`).join(' | ');
-    window.addEventListener('keydown', (event) => { this.key(event); });
+    window.addEventListener('keydown', (event) => {
+      this.key(event);
+    });
     onThemeChange(() => {
       this.showViewpoints();
       this.refresh();
     });
     this.showViewpoints();
     this.showTabs();
-    requestAnimationFrame((now) => { this.tick(now); });
+    requestAnimationFrame((now) => {
+      this.tick(now);
+    });
   }
 
   private layout(): HTMLElement {
     const transport = element('div', { class: 'transport' });
     transport.append(
       this.play,
-      button('−', 'Slower (-)', () => { this.faster(-1); }),
+      button('−', 'Slower (-)', () => {
+        this.faster(-1);
+      }),
       this.speed,
-      button('+', 'Faster (+)', () => { this.faster(1); }),
+      button('+', 'Faster (+)', () => {
+        this.faster(1);
+      }),
       this.told,
       element('span', { class: 'gap' }),
       this.viewpoints,
-      button('?', 'Help (?)', () => { this.help.toggle(); }),
+      button('?', 'Help (?)', () => {
+        this.help.toggle();
+      }),
     );
     const stages = element('div', { class: `stages count-${Math.min(this.stages.length, 4)}` });
     stages.append(...this.stages.map(({ root }) => root));
@@ -83,23 +124,30 @@ export class App {
     const { header, cut } = this.recordings[0];
     const about = element('section', { class: 'panel about' });
     about.append(element('p', {}, header.scenario.description));
-    if (cut !== null) about.append(element('p', {}, 'The recording was cut short: this is what was whole of it.'));
+    if (cut !== null)
+      about.append(element('p', {}, 'The recording was cut short: this is what was whole of it.'));
     about.append(element('p', { class: 'hint' }, `${header.program}, scenario ${header.scenario.xxh3_128}`));
     return about;
   }
 
   private showTabs(): void {
     if (this.recordings.length < 2) return;
-    this.tabs.replaceChildren(...this.recordings.map(({ header }, number) => {
-      const tab = button(header.policy, `Show the panels of ${header.policy}, seed ${header.seed}`, () => { this.focusOn(number); });
-      tab.setAttribute('aria-pressed', String(number === this.focus));
-      return tab;
-    }));
+    this.tabs.replaceChildren(
+      ...this.recordings.map(({ header }, number) => {
+        const tab = button(header.policy, `Show the panels of ${header.policy}, seed ${header.seed}`, () => {
+          this.focusOn(number);
+        });
+        tab.setAttribute('aria-pressed', String(number === this.focus));
+        return tab;
+      }),
+    );
   }
 
   private focusOn(number: number): void {
     this.focus = number;
-    this.stages.forEach(({ root }, i) => { root.classList.toggle('focused', i === number && this.stages.length > 1); });
+    this.stages.forEach(({ root }, i) => {
+      root.classList.toggle('focused', i === number && this.stages.length > 1);
+    });
     this.showTabs();
     this.showViewpoints();
     this.refresh();
@@ -110,7 +158,14 @@ export class App {
     const { tasks } = this.recordings[this.focus].header.world;
     const of = (text: string, viewpoint: number | null, colour: string | null): HTMLElement => {
       const title = viewpoint === null ? 'Show the world as it is' : `Show what is known to ${text}`;
-      const chip = button('', title, () => { this.setViewpoint(viewpoint); }, 'chip');
+      const chip = button(
+        '',
+        title,
+        () => {
+          this.setViewpoint(viewpoint);
+        },
+        'chip',
+      );
       if (colour) chip.append(swatch(colour));
       chip.append(element('span', {}, text));
       chip.setAttribute('aria-pressed', String(this.stages[this.focus].viewpoint === viewpoint));
@@ -169,21 +224,51 @@ export class App {
     if (event.ctrlKey || event.metaKey || event.altKey) return;
     const step = event.shiftKey ? 10 : 1;
     const actions: Record<string, () => void> = {
-      ' ': () => { this.toggle(); },
-      ArrowLeft: () => { this.seek(this.clock.time - step); },
-      ArrowRight: () => { this.seek(this.clock.time + step); },
-      Home: () => { this.seek(this.clock.start); },
-      End: () => { this.seek(this.clock.end); },
-      '+': () => { this.faster(1); },
-      '=': () => { this.faster(1); },
-      '-': () => { this.faster(-1); },
-      '[': () => { this.toRound(-1); },
-      ']': () => { this.toRound(1); },
-      f: () => { this.follow(); },
-      r: () => { this.looks.routes = !this.looks.routes; },
-      w: () => { this.looks.links = !this.looks.links; },
-      Escape: () => { this.select(this.focus, null); },
-      '?': () => { this.help.toggle(); },
+      ' ': () => {
+        this.toggle();
+      },
+      ArrowLeft: () => {
+        this.seek(this.clock.time - step);
+      },
+      ArrowRight: () => {
+        this.seek(this.clock.time + step);
+      },
+      Home: () => {
+        this.seek(this.clock.start);
+      },
+      End: () => {
+        this.seek(this.clock.end);
+      },
+      '+': () => {
+        this.faster(1);
+      },
+      '=': () => {
+        this.faster(1);
+      },
+      '-': () => {
+        this.faster(-1);
+      },
+      '[': () => {
+        this.toRound(-1);
+      },
+      ']': () => {
+        this.toRound(1);
+      },
+      f: () => {
+        this.follow();
+      },
+      r: () => {
+        this.looks.routes = !this.looks.routes;
+      },
+      w: () => {
+        this.looks.links = !this.looks.links;
+      },
+      Escape: () => {
+        this.select(this.focus, null);
+      },
+      '?': () => {
+        this.help.toggle();
+      },
     };
     const action = Object.hasOwn(actions, event.key) ? actions[event.key] : undefined;
     if (!action || (this.help.root.open && event.key !== '?')) return;
@@ -206,7 +291,9 @@ export class App {
     const seconds = Math.min((now - this.last) / 1000, 0.25);
     this.last = now;
     if (this.clock.advance(seconds) || this.isDirty) this.draw(now);
-    requestAnimationFrame((next) => { this.tick(next); });
+    requestAnimationFrame((next) => {
+      this.tick(next);
+    });
   }
 
   private draw(now: number): void {

@@ -7,7 +7,10 @@ export class Clock {
   isPlaying = false;
   private place = 2;
 
-  constructor(readonly start: number, readonly end: number) {
+  constructor(
+    readonly start: number,
+    readonly end: number,
+  ) {
     this.time = start;
   }
 

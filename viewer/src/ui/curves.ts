@@ -48,8 +48,14 @@ export class Curves {
     changed: () => void,
   ) {
     this.delivered = recordings.map(deliveries);
-    this.rescued = new Sheet({ class: 'curve', role: 'img', 'aria-label': 'Rescuees delivered over time' }, changed);
-    this.levels = new Sheet({ class: 'curve', role: 'img', 'aria-label': 'Levels of the team over time' }, changed);
+    this.rescued = new Sheet(
+      { class: 'curve', role: 'img', 'aria-label': 'Rescuees delivered over time' },
+      changed,
+    );
+    this.levels = new Sheet(
+      { class: 'curve', role: 'img', 'aria-label': 'Levels of the team over time' },
+      changed,
+    );
     for (const sheet of [this.rescued, this.levels]) {
       const seek = (event: PointerEvent): void => {
         const part = (event.offsetX - LEFT) / Math.max(sheet.width - LEFT - RIGHT, 1);
@@ -81,7 +87,11 @@ export class Curves {
     return LEFT + part * (sheet.width - LEFT - RIGHT);
   }
 
-  private frame(sheet: Sheet, most: number, unit: string): { context: CanvasRenderingContext2D; y: (v: number) => number } {
+  private frame(
+    sheet: Sheet,
+    most: number,
+    unit: string,
+  ): { context: CanvasRenderingContext2D; y: (v: number) => number } {
     const context = sheet.begin();
     const colours = theme();
     const y = (value: number): number => TOP + (1 - value / most) * (sheet.height - TOP - BOTTOM);
@@ -109,7 +119,8 @@ export class Curves {
   private drawRescued(focus: number): void {
     const sheet = this.rescued;
     const longest = Math.max(1, ...this.delivered.flat().map((times) => times.length));
-    const nice = [5, 10, 20, 40, 60, 80, 100, 150, 200, 300, 400, 600, 1000].find((n) => n >= longest) ?? longest;
+    const nice =
+      [5, 10, 20, 40, 60, 80, 100, 150, 200, 300, 400, 600, 1000].find((n) => n >= longest) ?? longest;
     const { context, y } = this.frame(sheet, nice, '');
     const now: string[] = [];
     this.delivered.forEach((tasks, number) => {
@@ -148,21 +159,36 @@ export class Curves {
         if (number === focus) {
           context.globalAlpha = 0.15;
           context.beginPath();
-          levels.forEach((level) => { context.lineTo(this.x(sheet, level.time), y(level[of][0])); });
-          [...levels].reverse().forEach((level) => { context.lineTo(this.x(sheet, level.time), y(level[of][2])); });
+          levels.forEach((level) => {
+            context.lineTo(this.x(sheet, level.time), y(level[of][0]));
+          });
+          [...levels].reverse().forEach((level) => {
+            context.lineTo(this.x(sheet, level.time), y(level[of][2]));
+          });
           context.fill();
         }
         context.globalAlpha = 1;
         context.lineWidth = number === focus ? 2 : 1.25;
         context.setLineDash(DASHES[number % DASHES.length]);
         context.beginPath();
-        levels.forEach((level) => { context.lineTo(this.x(sheet, level.time), y(level[of][1])); });
+        levels.forEach((level) => {
+          context.lineTo(this.x(sheet, level.time), y(level[of][1]));
+        });
         context.stroke();
         context.setLineDash([]);
       };
       draw('energy', colours.energy);
       draw('hp', colours.hp);
-      const level: Levels = levels[Math.max(countUntil(levels.map(({ time }) => time), this.clock.time) - 1, 0)];
+      const level: Levels =
+        levels[
+          Math.max(
+            countUntil(
+              levels.map(({ time }) => time),
+              this.clock.time,
+            ) - 1,
+            0,
+          )
+        ];
       now.push(`energy ${level.energy[1].toFixed(0)} %, HP ${level.hp[1].toFixed(0)} %`);
     });
     this.cursor(sheet, context);

@@ -25,7 +25,8 @@ const SIGNS: [string, string][] = [
 
 function table(rows: [string, string][]): HTMLElement {
   const made = element('table', { class: 'facts' });
-  for (const [sign, text] of rows) made.append(element('tr', {}, element('th', {}, sign), element('td', {}, text)));
+  for (const [sign, text] of rows)
+    made.append(element('tr', {}, element('th', {}, sign), element('td', {}, text)));
   return made;
 }
 
@@ -33,7 +34,9 @@ export class Help {
   readonly root = element('dialog', { class: 'help', 'aria-label': 'Help' });
 
   constructor() {
-    const close = button('Close', 'Close the help', () => { this.root.close(); });
+    const close = button('Close', 'Close the help', () => {
+      this.root.close();
+    });
     this.root.append(element('h2', {}, 'Keys'), table(KEYS), element('h2', {}, 'Signs'), table(SIGNS), close);
     const touch = 'Drag to move the arena, pinch or turn the wheel to zoom, click twice to show all of it.';
     this.root.insertBefore(element('p', { class: 'hint' }, touch), close);

@@ -40,7 +40,9 @@ export class RoundPanel {
   private pointed: [row: number, column: number] | null = null;
 
   constructor(private readonly seek: (time: number) => void) {
-    this.sheet = new Sheet({ class: 'matrix', role: 'img', 'aria-label': 'Relative Needs Entropy' }, () => { this.drawMatrix(); });
+    this.sheet = new Sheet({ class: 'matrix', role: 'img', 'aria-label': 'Relative Needs Entropy' }, () => {
+      this.drawMatrix();
+    });
     const point = (event: PointerEvent): void => {
       const { left, top } = this.sheet.canvas.getBoundingClientRect();
       this.pointed = this.cellAt(event.clientX - left, event.clientY - top);
@@ -58,21 +60,38 @@ export class RoundPanel {
     this.pointed = null;
     const decided = recording.decisions[number] as TimedDecision | undefined;
     if (!decided) {
-      this.root.replaceChildren(element('h2', {}, 'Rounds'), element('p', { class: 'hint' }, 'No group was formed.'));
+      this.root.replaceChildren(
+        element('h2', {}, 'Rounds'),
+        element('p', { class: 'hint' }, 'No group was formed.'),
+      );
       return;
     }
-    this.root.replaceChildren(this.head(recording, number), this.groups(recording, decided), ...this.runnerUp(decided));
+    this.root.replaceChildren(
+      this.head(recording, number),
+      this.groups(recording, decided),
+      ...this.runnerUp(decided),
+    );
     if (decided.trust && decided.trust.members.length > 1) {
-      this.root.append(element('h3', {}, 'Relative Needs Entropy, from row to column'), this.sheet.canvas, this.told);
+      this.root.append(
+        element('h3', {}, 'Relative Needs Entropy, from row to column'),
+        this.sheet.canvas,
+        this.told,
+      );
       this.drawMatrix();
     }
   }
 
   private head(recording: Recording, number: number): HTMLElement {
     const { decisions, header } = recording;
-    const go = (to: number): void => { this.seek(decisions[to].step * header.dt_s); };
-    const before = button('‹', 'The round before', () => { go(number - 1); });
-    const after = button('›', 'The next round', () => { go(number + 1); });
+    const go = (to: number): void => {
+      this.seek(decisions[to].step * header.dt_s);
+    };
+    const before = button('‹', 'The round before', () => {
+      go(number - 1);
+    });
+    const after = button('›', 'The next round', () => {
+      go(number + 1);
+    });
     before.disabled = number === 0;
     after.disabled = number + 1 >= decisions.length;
     const title = element('h2', {}, `Round ${decisions[number].question.round}`);
@@ -95,14 +114,19 @@ export class RoundPanel {
   private runnerUp({ decision }: TimedDecision): HTMLElement[] {
     const lines: [string, string][] = [];
     if (decision.score !== null) {
-      lines.push(['score', scoreText(decision.score) + (decision.proven_optimal ? '' : ', not proven the best')]);
+      lines.push([
+        'score',
+        scoreText(decision.score) + (decision.proven_optimal ? '' : ', not proven the best'),
+      ]);
     }
-    const [second] = decision.alternatives as (typeof decision.alternatives[number] | undefined)[];
+    const [second] = decision.alternatives as ((typeof decision.alternatives)[number] | undefined)[];
     if (second) {
       const groups = second.assignment.groups.map((group) => group.join(' ') || 'nobody').join('  |  ');
       lines.push(['runner-up', `${scoreText(second.score)}: ${groups}`]);
     }
-    return lines.map(([name, text]) => element('p', { class: 'decision' }, element('b', {}, name), ` ${text}`));
+    return lines.map(([name, text]) =>
+      element('p', { class: 'decision' }, element('b', {}, name), ` ${text}`),
+    );
   }
 
   private decided(): TimedDecision | null {
@@ -111,7 +135,11 @@ export class RoundPanel {
 
   private layout(count: number): { cell: number; left: number; top: number } {
     const left = 26;
-    return { cell: Math.max((Math.min(this.sheet.width, 420) - left) / Math.max(count, 1), 2), left, top: 20 };
+    return {
+      cell: Math.max((Math.min(this.sheet.width, 420) - left) / Math.max(count, 1), 2),
+      left,
+      top: 20,
+    };
   }
 
   private cellAt(x: number, y: number): [number, number] | null {
@@ -128,7 +156,7 @@ export class RoundPanel {
     const order = matrixOrder(decided);
     const { robots } = decided.trust;
     const { cell, left, top } = this.layout(order.length);
-    this.sheet.canvas.style.height = `${Math.ceil(top + cell * order.length + 2)}px`;
+    this.sheet.canvas.style.height = `${Math.ceil(top + cell * order.length + 22)}px`;
     const context = this.sheet.begin();
     const colours = theme();
     const values = order.flatMap(({ at }) => order.map((column) => robots[at][column.at] ?? 0));
@@ -143,8 +171,16 @@ export class RoundPanel {
       context.fillText(String(row.id), left + (i + 0.5) * cell, top - 8);
       order.forEach((column, j) => {
         const nats = robots[row.at][column.at];
-        context.fillStyle = nats === null ? colours.ink : heat(Math.sqrt(nats / most), colours.isDark);
+        context.fillStyle = nats === null ? colours.faint : heat(Math.sqrt(nats / most), colours.isDark);
         context.fillRect(left + j * cell, top + i * cell, cell - 0.75, cell - 0.75);
+        if (nats === null) {
+          context.strokeStyle = colours.soft;
+          context.lineWidth = 1;
+          context.beginPath();
+          context.moveTo(left + j * cell + 0.25 * cell, top + (i + 0.75) * cell);
+          context.lineTo(left + (j + 0.75) * cell, top + (i + 0.25) * cell);
+          context.stroke();
+        }
       });
     });
     context.lineWidth = 2;
@@ -160,23 +196,43 @@ export class RoundPanel {
       context.strokeStyle = colours.ink;
       context.strokeRect(left + this.pointed[1] * cell, top + this.pointed[0] * cell, cell - 1, cell - 1);
     }
-    this.told.textContent = this.tell(order, robots, most);
+    const end = top + cell * order.length + 10;
+    for (let step = 0; step < 60; step++) {
+      context.fillStyle = heat(step / 59, colours.isDark);
+      context.fillRect(left + 2 * step, end, 2, 8);
+    }
+    context.fillStyle = colours.soft;
+    context.font = '11px system-ui, sans-serif';
+    context.textAlign = 'left';
+    context.fillText(`0 to ${Number(most.toPrecision(2))} nats, ⁄ infinite`, left + 128, end + 4);
+    this.told.textContent = this.tell(order, robots);
   }
 
-  private tell(order: { id: number; at: number }[], robots: (number | null)[][], most: number): string {
-    if (!this.pointed) return `Light is trust: from 0 to ${Number(most.toPrecision(3))} nats. Point at a cell for its value.`;
+  private tell(order: { id: number; at: number }[], robots: (number | null)[][]): string {
+    if (!this.pointed) return 'Light is trust. Point at a cell for its value.';
     const [from, to] = this.pointed.map((place) => order[place]);
     const nats = robots[from.at][to.at];
     if (nats === null) return `Robot ${from.id} towards ${to.id}: infinite, no trust.`;
-    return `Robot ${from.id} towards ${to.id}: ${Number(nats.toPrecision(4))} nats, trust ${Math.exp(-nats).toFixed(4)}.`;
+    const trust = `trust ${Math.exp(-nats).toFixed(4)}`;
+    return `Robot ${from.id} towards ${to.id}: ${Number(nats.toPrecision(4))} nats, ${trust}.`;
   }
 }
 
 /** A colour from light (0, trust) to strong (1); strong stands out from the page in light and in dark. */
 export function heat(part: number, isDark: boolean): string {
   const stops = isDark
-    ? [[38, 46, 56], [46, 100, 140], [120, 180, 200], [250, 236, 170]]
-    : [[243, 246, 248], [150, 190, 214], [50, 115, 165], [20, 42, 82]];
+    ? [
+        [38, 46, 56],
+        [46, 100, 140],
+        [120, 180, 200],
+        [250, 236, 170],
+      ]
+    : [
+        [243, 246, 248],
+        [150, 190, 214],
+        [50, 115, 165],
+        [20, 42, 82],
+      ];
   const at = Math.min(Math.max(part, 0), 1) * (stops.length - 1);
   const low = Math.min(Math.floor(at), stops.length - 2);
   const mixed = stops[low].map((value, i) => Math.round(value + (stops[low + 1][i] - value) * (at - low)));

@@ -1,7 +1,8 @@
 /** One recording from above: a canvas to pan, zoom and click. */
 
 import { Camera } from '../draw/camera';
-import { type Looks, drawScene } from '../draw/scene';
+import { drawScene } from '../draw/scene';
+import type { Looks } from '../draw/sheet';
 import type { Moment, Recording } from '../recording/recording';
 import { positionOf } from '../recording/state';
 import type { Point } from '../recording/types';
@@ -31,15 +32,23 @@ export class Stage {
     private readonly clicked: (robot: number | null) => void,
   ) {
     this.camera = new Camera(recording.header.world.arena_m);
-    this.sheet = new Sheet({ class: 'stage-canvas', role: 'img', 'aria-label': 'The arena from above' }, () => {
-      this.camera.resize(this.sheet.width, this.sheet.height);
-      changed();
-    });
+    this.sheet = new Sheet(
+      { class: 'stage-canvas', role: 'img', 'aria-label': 'The arena from above' },
+      () => {
+        this.camera.resize(this.sheet.width, this.sheet.height);
+        changed();
+      },
+    );
     const { policy, seed, scenario } = recording.header;
     const caption = element('div', { class: 'caption' });
     caption.append(element('strong', {}, policy), ` ${scenario.name}, seed ${seed}`);
     if (recording.cut !== null) caption.append(element('em', {}, ' (cut short)'));
-    this.root = element('section', { class: 'stage' }, this.sheet.canvas, caption);
+    this.root = element(
+      'section',
+      { class: 'stage' },
+      caption,
+      element('div', { class: 'view' }, this.sheet.canvas),
+    );
     this.listen();
   }
 
@@ -95,7 +104,9 @@ export class Stage {
       this.pointers.set(event.pointerId, this.placeIn(event));
       if (this.pointers.size === 1) this.moved = 0;
     });
-    canvas.addEventListener('pointermove', (event) => { this.drag(event); });
+    canvas.addEventListener('pointermove', (event) => {
+      this.drag(event);
+    });
     const lift = (event: PointerEvent): void => {
       const place = this.pointers.get(event.pointerId);
       this.pointers.delete(event.pointerId);
@@ -110,11 +121,15 @@ export class Stage {
       this.camera.fit();
       this.changed();
     });
-    canvas.addEventListener('wheel', (event) => {
-      event.preventDefault();
-      this.camera.zoom(Math.exp(-event.deltaY * 0.0015), this.placeIn(event));
-      this.changed();
-    }, { passive: false });
+    canvas.addEventListener(
+      'wheel',
+      (event) => {
+        event.preventDefault();
+        this.camera.zoom(Math.exp(-event.deltaY * 0.0015), this.placeIn(event));
+        this.changed();
+      },
+      { passive: false },
+    );
   }
 
   private drag(event: PointerEvent): void {

@@ -34,11 +34,21 @@ export class Timeline {
     private readonly recordings: readonly Recording[],
     private readonly changed: () => void,
   ) {
-    this.sheet = new Sheet({ class: 'timeline-canvas', role: 'slider', tabindex: '0', 'aria-label': 'Time' }, changed);
+    this.sheet = new Sheet(
+      { class: 'timeline-canvas', role: 'slider', tabindex: '0', 'aria-label': 'Time' },
+      changed,
+    );
     this.sheet.canvas.style.height = `${22 + 24 * recordings.length}px`;
     const legend = element('div', { class: 'timeline-legend' });
-    for (const [sign, text] of [['▏', 'round and decision'], ['◆', 'deadlock'], ['●', 'rest'], ['✕', 'loss']]) {
-      legend.append(element('span', {}, element('i', { class: `sign-${text.split(' ')[0]}` }, sign), ` ${text}`));
+    for (const [sign, text] of [
+      ['▏', 'round and decision'],
+      ['◆', 'deadlock'],
+      ['●', 'rest'],
+      ['✕', 'loss'],
+    ]) {
+      legend.append(
+        element('span', {}, element('i', { class: `sign-${text.split(' ')[0]}` }, sign), ` ${text}`),
+      );
     }
     this.root = element('div', { class: 'timeline' }, this.sheet.canvas, legend);
     this.listen();
@@ -77,13 +87,21 @@ export class Timeline {
     canvas.setAttribute('aria-valuetext', clockTime(this.clock.time));
     context.font = '11px system-ui, sans-serif';
     context.textBaseline = 'middle';
-    this.recordings.forEach((recording, lane) => { this.drawLane(context, recording, 2 + 24 * lane); });
+    this.recordings.forEach((recording, lane) => {
+      this.drawLane(context, recording, 2 + 24 * lane);
+    });
     context.fillStyle = colours.soft;
-    const step = [10, 30, 60, 120, 300, 600].find((s) => (this.clock.end - this.clock.start) / s <= 10) ?? 1200;
+    const labels = Math.min(Math.max(this.sheet.width / 64, 2), 12);
+    const length = this.clock.end - this.clock.start;
+    const step = [1, 2, 5, 10, 30, 60, 120, 300, 600, 1200].find((s) => length / s <= labels) ?? 3600;
     context.textAlign = 'center';
     for (let time = Math.ceil(this.clock.start / step) * step; time <= this.clock.end; time += step) {
       const label = clockTime(time).slice(0, -2);
-      context.fillText(label, Math.min(Math.max(this.x(time), LEFT + 6), this.sheet.width - LEFT - 10), height - 8);
+      context.fillText(
+        label,
+        Math.min(Math.max(this.x(time), LEFT + 6), this.sheet.width - LEFT - 10),
+        height - 8,
+      );
     }
     const x = this.x(this.clock.time);
     context.fillStyle = colours.ink;
