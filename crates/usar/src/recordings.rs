@@ -9,14 +9,12 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use experiments::Failure;
 use experiments::experiment::Experiment;
 use experiments::run::TrialKey;
+use experiments::sweep::disk::RECORDINGS;
 use experiments::sweep::folder::Folder;
-use recording::{Options, Recorder};
+use recording::{Options, Recorder, Recording};
 use rne_core::Policy;
 use usar_sim::record::{Status, TrialRecord};
 use usar_sim::simulation::Simulation;
-
-/// The folder of a sweep's recordings, in the folder of its results.
-const FOLDER: &str = "recordings";
 
 /// Bytes that are written to disk at a time.
 const BUFFER: usize = 1 << 16;
@@ -99,7 +97,7 @@ pub(crate) fn path_of(folder: &Path, experiment: &Experiment, key: &TrialKey) ->
     let plain: String = key.label.chars().map(|c| if is_plain(c) { c } else { '_' }).collect();
     // Labels that differ have names that differ.
     let label = if plain == key.label { plain } else { format!("{plain}.{}", key.policy + 1) };
-    let mut path = folder.join(FOLDER);
+    let mut path = folder.join(RECORDINGS);
     if experiment.cases.len() > 1 {
         path.push(format!("case-{}", key.case + 1));
     }
@@ -113,14 +111,14 @@ pub(crate) fn record_trials(folder: &mut Folder, which: &Recorded, stop: &Atomic
         experiment.keys(None).filter(|key| which.includes(key) && folder.has(key)).collect();
     for key in keys {
         let path = path_of(folder.path(), &experiment, &key);
-        if path.exists() {
-            continue;
-        }
         if stop.load(Ordering::Relaxed) {
             return Err(folder.interrupted());
         }
         let outcome = folder.outcome((key.case, key.policy, key.trial))?;
         let Some(before) = outcome.record() else { continue };
+        if summary_hash(&path).is_some_and(|hash| hash == before.state_hash) {
+            continue; // it is there already
+        }
         let parent = path.parent().unwrap_or(Path::new("."));
         std::fs::create_dir_all(parent).map_err(|error| trouble(parent, &error))?;
         let underway = path.with_extension("usrec.new");
@@ -143,6 +141,28 @@ pub(crate) fn record_trials(folder: &mut Folder, which: &Recorded, stop: &Atomic
     Ok(())
 }
 
+/// The hash of the last state of a whole recording in a file.
+fn summary_hash(path: &Path) -> Option<String> {
+    let recording = Recording::read(&std::fs::read(path).ok()?).ok()?;
+    recording.summary.map(|summary| summary.state_hash)
+}
+
+/// A trial of a sweep: from its recording, if there is one of this very trial, or simulated again.
+pub(crate) fn recording_of(
+    folder: &Path,
+    experiment: &Experiment,
+    key: &TrialKey,
+) -> Result<Vec<u8>, Failure> {
+    if let Ok(bytes) = std::fs::read(path_of(folder, experiment, key))
+        && let Ok(Recording { header, cut: None, .. }) = Recording::read(&bytes)
+        && header.scenario.resolved == experiment.cases[key.case].scenario.resolved()
+        && (header.seed, &header.policy) == (key.seed, &key.label)
+    {
+        return Ok(bytes);
+    }
+    recorded(simulation(experiment, key)?, &*policy(experiment, key), &options(key))
+}
+
 fn options(key: &TrialKey) -> Options {
     Options::new(&key.label)
 }
@@ -154,11 +174,6 @@ fn policy(experiment: &Experiment, key: &TrialKey) -> std::sync::Arc<dyn Policy>
 fn simulation(experiment: &Experiment, key: &TrialKey) -> Result<Simulation, Failure> {
     let scenario = &experiment.cases[key.case].scenario;
     Simulation::new(scenario, key.seed).map_err(|error| Failure::run(format!("seed {}: {error}", key.seed)))
-}
-
-/// Simulates a trial of a sweep and records it in memory.
-pub(crate) fn record_again(experiment: &Experiment, key: &TrialKey) -> Result<Vec<u8>, Failure> {
-    recorded(simulation(experiment, key)?, &*policy(experiment, key), &options(key))
 }
 
 /// Simulates a trial and records it in memory.

@@ -174,7 +174,8 @@ export function drawGroundObjects({ context, camera, recording, moment, looks, c
 /** Rescuees: waiting, claimed, gone on board (an empty place), delivered (a faint place). */
 export function drawRescuees({ context, camera, recording, moment, colours }: Sheet): void {
   const { world } = recording.header;
-  const radius = Math.min(Math.max(0.16 * camera.scale, 1.25), 6);
+  const least = world.rescuees.length > 1000 ? 0.6 : 1.25;
+  const radius = Math.min(Math.max(0.16 * camera.scale, least), 6);
   const [waiting, gone, delivered] = [new Path2D(), new Path2D(), new Path2D()];
   const claimed = new Map<number | null, Path2D>();
   world.rescuees.forEach((at, number) => {

@@ -70,7 +70,7 @@ export function routeAt({ segment, frame }: Moment, robot: number): { goal: Poin
   return { goal, ahead: points };
 }
 
-/** What a group knows: which place of each piece of debris, and the zones. The last group is the team at home. */
+/** What a group knows: places of debris, and zones. The last group is the team at home. */
 export function knownBy(moment: Moment, group: number): { debris: Map<number, number>; zones: Set<number> } {
   const row = moment.segment.row(Stream.Groups, group, moment.frame);
   const debris = new Map<number, number>();

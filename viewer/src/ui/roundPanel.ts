@@ -5,6 +5,12 @@ import type { Recording } from '../recording/recording';
 import type { Score, TimedDecision } from '../recording/types';
 import { Sheet, button, element, swatch } from './dom';
 
+/** The members of a group; of a large one, how many they are. */
+function listed(group: readonly number[]): string {
+  if (group.length === 0) return 'nobody';
+  return group.length > 40 ? `${group.length} robots` : group.join(' ');
+}
+
 export function scoreText(score: Score): string {
   if (score === null) return 'none';
   if (score === 'Infinite') return 'infinite';
@@ -104,7 +110,7 @@ export class RoundPanel {
       const name = question.tasks[task]?.name ?? String(task);
       const result = recording.summary?.rounds.find((r) => r.round === question.round && r.task === task);
       const row = element('tr', {}, element('th', { scope: 'row' }, swatch(groupColour(task)), name));
-      row.append(element('td', { class: 'members' }, group.length > 0 ? group.join(' ') : 'nobody'));
+      row.append(element('td', { class: 'members' }, listed(group)));
       row.append(element('td', { class: 'value' }, result ? `${result.rescued} rescued` : ''));
       table.append(row);
     });
@@ -121,7 +127,7 @@ export class RoundPanel {
     }
     const [second] = decision.alternatives as ((typeof decision.alternatives)[number] | undefined)[];
     if (second) {
-      const groups = second.assignment.groups.map((group) => group.join(' ') || 'nobody').join('  |  ');
+      const groups = second.assignment.groups.map(listed).join('  |  ');
       lines.push(['runner-up', `${scoreText(second.score)}: ${groups}`]);
     }
     return lines.map(([name, text]) =>

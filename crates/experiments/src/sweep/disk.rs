@@ -23,6 +23,8 @@ const INPUTS: [&str; 3] = [GIVEN, RESOLVED, AGAIN];
 pub const REPORT: &str = "report.html";
 /// See [`REPORT`].
 pub const PLOTS: &str = "plots";
+/// The folder of recordings of trials.
+pub const RECORDINGS: &str = "recordings";
 /// Held by the process that writes to the folder.
 pub const LOCK: &str = ".lock";
 
@@ -116,6 +118,19 @@ pub(super) fn clear(path: &Path) -> std::io::Result<()> {
         remove(&plot)?;
     }
     let _ = fs::remove_dir(path.join(PLOTS)); // it stays where something else is in it
+    clear_recordings(&path.join(RECORDINGS))
+}
+
+/// Deletes the recordings in a folder and in those of its cases.
+fn clear_recordings(folder: &Path) -> std::io::Result<()> {
+    for entry in fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path()) {
+        if entry.is_dir() {
+            clear_recordings(&entry)?;
+        } else if entry.extension().is_some_and(|kind| kind == "usrec") {
+            remove(&entry)?;
+        }
+    }
+    let _ = fs::remove_dir(folder); // it stays where something else is in it
     Ok(())
 }
 

@@ -17,7 +17,7 @@ use recording::{Options, Recording};
 use usar_sim::simulation::Simulation;
 
 use super::load;
-use crate::recordings::{path_of, record_again, recorded};
+use crate::recordings::{path_of, recorded, recording_of};
 
 /// The first bytes of a recording.
 const MAGIC: &[u8] = b"USREC";
@@ -127,10 +127,7 @@ impl Arguments {
         let (experiment, _) = experiment_in(folder)?;
         for key in self.keys(&experiment)? {
             let path = path_of(folder, &experiment, &key);
-            let bytes = match std::fs::read(&path) {
-                Ok(bytes) => bytes,
-                Err(_) => record_again(&experiment, &key)?,
-            };
+            let bytes = recording_of(folder, &experiment, &key)?;
             shown.push(Shown { name: path.display().to_string(), bytes });
         }
         Ok(())

@@ -12,3 +12,4 @@ mod reported;
 mod resumed;
 mod same_bytes;
 mod studied;
+mod viewed;
