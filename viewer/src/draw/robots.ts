@@ -184,6 +184,24 @@ function drawBars(
   context.fill();
 }
 
+/** The members of conflict sets in rings; that of the one with the right of way is whole. */
+export function drawConflicts({ context, moment, colours }: Sheet, places: Point[]): void {
+  const row = moment.segment.row(Stream.Conflicts, 0, moment.frame);
+  context.strokeStyle = colours.wait;
+  context.lineWidth = 1.25;
+  for (let at = 0; at < row.length; at += row[at] + 1) {
+    row.slice(at + 1, at + 1 + row[at]).forEach((robot, rank) => {
+      if (robot >= places.length) return;
+      const [x, y] = places[robot];
+      context.setLineDash(rank === 0 ? [] : [2, 2.5]);
+      context.beginPath();
+      context.arc(x, y, LEAST_RADIUS + 3.5, 0, 2 * Math.PI);
+      context.stroke();
+    });
+  }
+  context.setLineDash([]);
+}
+
 /** From each robot that waits to the robot that it waits for. */
 export function drawLinks({ context, moment, colours }: Sheet, places: Point[]): void {
   context.strokeStyle = context.fillStyle = colours.wait;

@@ -4,7 +4,7 @@ import type { Moment, Recording } from '../recording/recording';
 import { positionOf } from '../recording/state';
 import type { Camera } from './camera';
 import { drawGround, drawGroundObjects, drawNames, drawRescuees } from './ground';
-import { drawLinks, drawRobots, drawRoutes, drawTrails } from './robots';
+import { drawConflicts, drawLinks, drawRobots, drawRoutes, drawTrails } from './robots';
 import { LARGE_TEAM, type Looks, type Sheet } from './sheet';
 import { theme } from './theme';
 
@@ -29,5 +29,7 @@ export function drawScene(
   if (robots <= LARGE_TEAM) drawTrails(sheet, places);
   drawRoutes(sheet, places);
   drawRobots(sheet, places);
-  if (looks.links) drawLinks(sheet, places);
+  if (!looks.links) return;
+  drawLinks(sheet, places);
+  if (robots <= LARGE_TEAM) drawConflicts(sheet, places);
 }

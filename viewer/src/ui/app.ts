@@ -12,6 +12,9 @@ import { RoundPanel } from './roundPanel';
 import { Stage } from './stage';
 import { Timeline, rounds } from './timeline';
 
+/** Height of the line above a stage, in pixels. */
+const CAPTION = 32;
+
 /** The panels are drawn at most so often while the trial plays, in milliseconds. */
 const PANEL_PERIOD = 120;
 
@@ -114,10 +117,28 @@ export class App {
     );
     const stages = element('div', { class: `stages count-${Math.min(this.stages.length, 4)}` });
     stages.append(...this.stages.map(({ root }) => root));
+    new ResizeObserver(() => {
+      this.arrange(stages);
+    }).observe(stages);
     const main = element('div', { class: 'main' }, stages, transport, this.timeline.root);
     const side = element('aside', { class: 'side' }, this.tabs, this.robotPanel.root, this.roundPanel.root);
     side.append(this.curves.root, this.about());
     return element('div', { class: 'app' }, main, side, this.help.root);
+  }
+
+  /** Puts as many stages side by side as shows the arena the largest. */
+  private arrange(stages: HTMLElement): void {
+    const [width, height] = this.recordings[0].header.world.arena_m;
+    const count = this.stages.length;
+    const isPhone = window.matchMedia('(max-width: 860px)').matches;
+    const scale = (columns: number): number => {
+      const rows = Math.ceil(count / columns);
+      const room = stages.clientHeight / rows - CAPTION;
+      return Math.min(stages.clientWidth / columns / width, room / height);
+    };
+    let best = 1;
+    for (let columns = 2; columns <= count; columns++) if (scale(columns) > scale(best)) best = columns;
+    stages.style.gridTemplateColumns = `repeat(${isPhone ? 1 : best}, minmax(0, 1fr))`;
   }
 
   private about(): HTMLElement {
@@ -290,10 +311,10 @@ export class App {
   private tick(now: number): void {
     const seconds = Math.min((now - this.last) / 1000, 0.25);
     this.last = now;
-    if (this.clock.advance(seconds) || this.isDirty) this.draw(now);
     requestAnimationFrame((next) => {
       this.tick(next);
     });
+    if (this.clock.advance(seconds) || this.isDirty) this.draw(now);
   }
 
   private draw(now: number): void {

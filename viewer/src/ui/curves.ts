@@ -1,11 +1,11 @@
 /** The course of trials: rescuees delivered and levels over time, with a cursor. */
 
 import { groupColour, theme } from '../draw/theme';
-import type { Levels, Recording } from '../recording/recording';
+import type { Recording } from '../recording/recording';
 import type { Clock } from './clock';
-import { Sheet, element } from './dom';
+import { Sheet, element, swatch } from './dom';
 
-const [LEFT, RIGHT, TOP, BOTTOM] = [30, 8, 8, 6];
+const [LEFT, RIGHT, TOP, BOTTOM] = [38, 8, 8, 6];
 
 /** Lines of the recordings one after the other. */
 const DASHES = [[], [6, 3], [2, 2], [8, 3, 2, 3]];
@@ -122,7 +122,7 @@ export class Curves {
     const nice =
       [5, 10, 20, 40, 60, 80, 100, 150, 200, 300, 400, 600, 1000].find((n) => n >= longest) ?? longest;
     const { context, y } = this.frame(sheet, nice, '');
-    const now: string[] = [];
+    const now: (Node | string)[] = [];
     this.delivered.forEach((tasks, number) => {
       tasks.forEach((times, task) => {
         context.strokeStyle = groupColour(task);
@@ -140,18 +140,20 @@ export class Curves {
       });
       context.setLineDash([]);
       context.globalAlpha = 1;
-      const counts = tasks.map((times) => countUntil(times, this.clock.time));
-      now.push(String(counts.reduce((sum, count) => sum + count, 0)));
+      if (number !== focus) return;
+      tasks.forEach((times, task) => {
+        now.push(swatch(groupColour(task)), `${countUntil(times, this.clock.time)} `);
+      });
     });
     this.cursor(sheet, context);
-    this.rescuedTold.textContent = now.join(' | ');
+    this.rescuedTold.replaceChildren(...now);
   }
 
   private drawLevels(focus: number): void {
     const sheet = this.levels;
     const { context, y } = this.frame(sheet, 100, ' %');
     const colours = theme();
-    const now: string[] = [];
+    const now: (Node | string)[] = [];
     this.recordings.forEach(({ levels }, number) => {
       if (levels.length === 0) return;
       const draw = (of: 'energy' | 'hp', colour: string): void => {
@@ -179,19 +181,13 @@ export class Curves {
       };
       draw('energy', colours.energy);
       draw('hp', colours.hp);
-      const level: Levels =
-        levels[
-          Math.max(
-            countUntil(
-              levels.map(({ time }) => time),
-              this.clock.time,
-            ) - 1,
-            0,
-          )
-        ];
-      now.push(`energy ${level.energy[1].toFixed(0)} %, HP ${level.hp[1].toFixed(0)} %`);
+      if (number !== focus) return;
+      const times = levels.map(({ time }) => time);
+      const level = levels[Math.max(countUntil(times, this.clock.time) - 1, 0)];
+      now.push(swatch(colours.energy), `energy ${level.energy[1].toFixed(0)} % `);
+      now.push(swatch(colours.hp), `HP ${level.hp[1].toFixed(0)} %`);
     });
     this.cursor(sheet, context);
-    this.levelsTold.textContent = now[Math.min(focus, now.length - 1)] ?? '';
+    this.levelsTold.replaceChildren(...now);
   }
 }

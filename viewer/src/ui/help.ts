@@ -9,7 +9,7 @@ const KEYS: [string, string][] = [
   ['f', 'follow the selected robot, or show the whole arena'],
   ['[ ]', 'the round before, the next round'],
   ['r', 'routes on, off'],
-  ['w', 'links from waiting robots on, off'],
+  ['w', 'links from waiting robots and conflict sets on, off'],
   ['Escape', 'show the whole team'],
   ['?', 'this help'],
 ];
@@ -17,7 +17,7 @@ const KEYS: [string, string][] = [
 const SIGNS: [string, string][] = [
   ['●  ■  ▲', 'robots: the shape is the role, the colour the group; triangles fly'],
   ['▂', 'below a robot: energy, then HP; dots above it: rescuees on board'],
-  ['→', 'a robot waits for another'],
+  ['→', 'a robot waits for another; rings are conflict sets, whole around the one with the right of way'],
   ['•', 'rescuees: dots wait, ringed ones are claimed, empty ones are on board, faint ones are delivered'],
   ['◌', 'debris and radiation that the chosen group does not know are dashed'],
   ['⊙', 'debris with a dot can be pushed'],

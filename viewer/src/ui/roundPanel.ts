@@ -215,7 +215,7 @@ export class RoundPanel {
   }
 
   private tell(order: { id: number; at: number }[], robots: (number | null)[][]): string {
-    if (!this.pointed) return 'Light is trust. Point at a cell for its value.';
+    if (!this.pointed) return 'A faint cell is trust. Point at one for its value.';
     const [from, to] = this.pointed.map((place) => order[place]);
     const nats = robots[from.at][to.at];
     if (nats === null) return `Robot ${from.id} towards ${to.id}: infinite, no trust.`;
