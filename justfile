@@ -37,6 +37,11 @@ scale *arguments:
 golden:
     cargo run --release --package xtask -- golden --write
 
+# The page of `usar view` from viewer/, into crates/usar/assets/viewer.html, where the program takes it from
+viewer:
+    npm --prefix viewer ci --ignore-scripts --no-audit --no-fund
+    npm --prefix viewer run build
+
 # The numbers in docs/, anew: the commands before each block are run; their results must be there (`just results`)
 pages *pages:
     cargo build --release --package usar

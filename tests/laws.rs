@@ -8,11 +8,12 @@ use std::path::{Path, PathBuf};
 use crate::support::root;
 
 /// The crates from the bottom up. Each may use those before it, for its tests as well.
-const CRATES: [&str; 9] = [
+const CRATES: [&str; 10] = [
     "ron-fields",
     "rne-core",
     "frozen-physics",
     "usar-sim",
+    "recording",
     "experiments",
     "reports",
     "study-yang2021",
@@ -21,7 +22,8 @@ const CRATES: [&str; 9] = [
 ];
 
 /// The crates that know no single paper.
-const GENERAL: [&str; 6] = ["ron-fields", "rne-core", "frozen-physics", "usar-sim", "experiments", "reports"];
+const GENERAL: [&str; 7] =
+    ["ron-fields", "rne-core", "frozen-physics", "usar-sim", "recording", "experiments", "reports"];
 
 /// What is needed to show something to people, and the crates that may need it.
 const SCREEN: [(&str, &[&str]); 6] = [

@@ -32,11 +32,12 @@ fn main() {
 
 /// The crates that the program is made of, those above this one too. Results are refused to a program of
 /// other sources.
-const CRATES: [&str; 8] = [
+const CRATES: [&str; 9] = [
     "ron-fields",
     "rne-core",
     "frozen-physics",
     "usar-sim",
+    "recording",
     "experiments",
     "reports",
     "study-yang2021",

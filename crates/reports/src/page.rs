@@ -9,8 +9,9 @@ use experiments::comparison::{
 };
 use experiments::experiment::{Axis, Experiment, Seeds};
 use experiments::stats::Moments;
-use experiments::sweep::disk::{self, PLOTS, REPORT};
+use experiments::sweep::disk::{PLOTS, REPORT};
 use experiments::sweep::folder::Folder;
+use experiments::sweep::ours;
 
 use crate::drawing::{self, Figure};
 use crate::figures::figures;
@@ -78,7 +79,7 @@ pub fn write_report(folder: &mut Folder, case: usize) -> Result<PathBuf, Failure
         files.push((format!("{PLOTS}/{name}.svg"), svg.into_bytes()));
         files.push((format!("{PLOTS}/{name}.csv"), csv.into_bytes()));
     }
-    disk::write_report(folder.path(), &files)?;
+    ours::write_report(folder.path(), &files)?;
     Ok(folder.path().join(REPORT))
 }
 

@@ -10,7 +10,7 @@ use rne_core::Registry;
 
 use crate::commands::{
     calibrate, check, compare, estimate, explain, group, merge, readings, report, reproduce, run, schema,
-    sweep, trust, verify,
+    sweep, trust, verify, view,
 };
 use crate::printable::Printable;
 use crate::running::{status_of_signal, tell};
@@ -28,6 +28,7 @@ Examples:
   usar run scenarios/paper.ron --policy RNE --seed 3   one trial, round by round
   usar compare results/paper                           is A better than B, by how much, how sure is that?
   usar report results/paper                            all of it as one page, with figures
+  usar view scenarios/paper.ron --policy RNE,DIS       watch two trials side by side, in a browser
   usar estimate scenarios/paper.ron --trials 1000      how long, and how much disk?
   usar verify results/paper                            do the numbers come out again?
   usar trust --weights 6,4,2 --from 86,120,30 --to 20,30,10
@@ -56,6 +57,7 @@ enum Command {
     Trust(trust::Arguments),
     Group(group::Arguments),
     Schema(schema::Arguments),
+    View(view::Arguments),
 }
 
 /// Runs the command that the process was called with, with policies of the caller's own beside the built-in
@@ -125,6 +127,7 @@ impl Command {
             Self::Trust(arguments) => arguments.execute(out),
             Self::Group(arguments) => arguments.execute(out),
             Self::Schema(arguments) => arguments.execute(out),
+            Self::View(arguments) => arguments.execute(out),
         }
     }
 }

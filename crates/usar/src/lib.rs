@@ -3,6 +3,7 @@
 mod cli;
 mod commands;
 mod printable;
+mod recordings;
 mod running;
 
 pub use cli::{main, main_with};

@@ -4,6 +4,7 @@ use std::fmt::Display;
 use std::io::Write;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Arc, LazyLock};
+use std::time::Instant;
 
 use experiments::Failure;
 use experiments::experiment::Shard;
@@ -12,8 +13,12 @@ use experiments::sweep::folder::Folder;
 use experiments::sweep::{missing, run_trials};
 use indicatif::{ProgressBar, ProgressStyle};
 use signal_hook::consts::{SIGINT, SIGTERM};
+use usar_sim::simulation::Simulation;
 
 use crate::printable::printable;
+
+/// A trial looks once in this many steps whether it is to stop.
+const CLOCK_CHECK_STEPS: u64 = 64;
 
 /// Set by Ctrl-C, SIGTERM and SIGHUP.
 pub(crate) static STOP: LazyLock<Arc<AtomicBool>> = LazyLock::new(Arc::default);
@@ -38,6 +43,37 @@ pub(crate) fn status_of_signal() -> u8 {
     match SIGNAL.load(Ordering::Relaxed) {
         0 => 130,
         signal => 128_u8.wrapping_add(signal as u8),
+    }
+}
+
+/// Ends a single trial that takes too long, or that is to stop.
+pub(crate) struct Guard {
+    begun: Instant,
+    longest_s: f64,
+}
+
+impl Guard {
+    /// From now on, a trial may take this long, in seconds of this machine.
+    pub(crate) fn new(longest_s: f64) -> Self {
+        Self { begun: Instant::now(), longest_s }
+    }
+
+    /// Looks once in a while whether the trial may go on.
+    pub(crate) fn look(&self, simulation: &Simulation) -> Result<(), Failure> {
+        if !simulation.steps().is_multiple_of(CLOCK_CHECK_STEPS) {
+            return Ok(());
+        }
+        let at = simulation.time_s();
+        if STOP.load(Ordering::Relaxed) {
+            return Err(Failure::Interrupted(format!("stopped at {at:.0} s of simulated time")));
+        }
+        if self.begun.elapsed().as_secs_f64() > self.longest_s {
+            return Err(Failure::run(format!(
+                "the trial took longer than {} s and had come to {at:.0} s of simulated time; --max-trial-s gives it longer",
+                self.longest_s
+            )));
+        }
+        Ok(())
     }
 }
 

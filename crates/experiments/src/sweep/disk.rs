@@ -6,8 +6,8 @@ use std::path::Path;
 
 use usar_sim::scenario::Scenario;
 
-use super::journal;
 use super::tables::{LEAN_TABLES, TABLES};
+use super::{journal, ours};
 use crate::experiment::{Experiment, Parts, Program, Shard};
 use crate::failure::Failure;
 use crate::files::{self, FileHash, NewFile, file_hash};
@@ -19,13 +19,13 @@ const RESOLVED: &str = "resolved.ron";
 /// The sweep as a file over the resolved scenario: what makes the folder again.
 const AGAIN: &str = "sweep.ron";
 /// Written before anything else.
-const INPUTS: [&str; 3] = [GIVEN, RESOLVED, AGAIN];
+pub(super) const INPUTS: [&str; 3] = [GIVEN, RESOLVED, AGAIN];
 /// The report, and the folder of its figures.
 pub const REPORT: &str = "report.html";
 /// See [`REPORT`].
 pub const PLOTS: &str = "plots";
-/// The names of the files that a report wrote, a line each, from the folder on.
-pub const REPORTED: &str = "report.files";
+/// The folder of recordings of trials.
+pub const RECORDINGS: &str = "recordings";
 /// Held by the process that writes to the folder.
 pub const LOCK: &str = ".lock";
 
@@ -45,7 +45,7 @@ pub(super) fn write_start(
     }
     // A report would be of what was there before.
     let trouble = |error| Failure::storage(format!("cannot write to {}: {error}", path.display()));
-    remove_report(path).map_err(trouble)?;
+    ours::remove_report(path).map_err(trouble)?;
     Ok(manifest)
 }
 
@@ -74,126 +74,9 @@ pub(super) fn sync_folder(path: &Path) -> Result<(), Failure> {
     synced.map_err(|error| Failure::storage(format!("{}: {error}", path.display())))
 }
 
-/// The names of all files that a sweep writes.
-fn known_names() -> impl Iterator<Item = &'static str> {
-    [MANIFEST, LOCK, journal::FILE].into_iter().chain(INPUTS).chain(TABLES)
-}
-
-/// Refuses a folder that is not a sweep's: one with a manifest or a journal of this program, or with nothing in it.
-pub(super) fn check_is_ours(path: &Path) -> Result<(), Failure> {
-    if !path.exists() {
-        return Ok(());
-    }
-    if !path.is_dir() {
-        return Err(Failure::input(format!("--out: {} is a file, not a folder", path.display())));
-    }
-    if is_sweeps(path) || journal::is_one(path) {
-        return Ok(());
-    }
-    let is_first = |name: &String| name == LOCK || name == &format!("{MANIFEST}.new");
-    if names_in(path)?.iter().all(is_first) {
-        return Ok(());
-    }
-    Err(Failure::input(format!(
-        "--out: {} is not empty and not the folder of a sweep; nothing was overwritten",
-        path.display()
-    )))
-}
-
-fn names_in(path: &Path) -> Result<Vec<String>, Failure> {
-    let unreadable = |error| Failure::storage(format!("--out: {} cannot be read: {error}", path.display()));
-    let entries = fs::read_dir(path).map_err(unreadable)?;
-    let mut names: Vec<String> =
-        entries.flatten().map(|entry| entry.file_name().to_string_lossy().into_owned()).collect();
-    names.sort();
-    Ok(names)
-}
-
 /// Whether a sweep has begun in a folder: its inputs are there, or trials.
 pub(super) fn has_begun(path: &Path) -> bool {
     [RESOLVED, journal::FILE].iter().any(|name| path.join(name).exists())
-}
-
-/// Refuses to start over in a folder with anything in it that no sweep and no report has written.
-pub(super) fn check_may_be_cleared(path: &Path) -> Result<(), Failure> {
-    let reported = reported(path);
-    let is_known = |name: &str| {
-        let name = name.strip_suffix(".new").unwrap_or(name);
-        let is_plots = name == PLOTS && path.join(PLOTS).symlink_metadata().is_ok_and(|there| there.is_dir());
-        is_plots
-            || name == REPORTED
-            || known_names().any(|known| known == name)
-            || reported.contains(&name.into())
-    };
-    let mut strangers = names_in(path)?;
-    strangers.retain(|name| !is_known(name));
-    for name in names_in(&path.join(PLOTS)).unwrap_or_default() {
-        let name = format!("{PLOTS}/{name}");
-        if !reported.contains(&name) {
-            strangers.push(name);
-        }
-    }
-    if strangers.is_empty() {
-        return Ok(());
-    }
-    Err(Failure::input(format!(
-        "--fresh: {} has files that are not the sweep's: {}; nothing was deleted",
-        path.display(),
-        strangers.join(", ")
-    )))
-}
-
-/// The files that the last report wrote, by the list that it left: report.html, and figures.
-fn reported(path: &Path) -> Vec<String> {
-    let list = files::read(&path.join(REPORTED)).unwrap_or_default();
-    let is_figure = |name: &str| {
-        let figure = name.strip_prefix(PLOTS).and_then(|name| name.strip_prefix('/'));
-        let has_kind = |kind| name.ends_with(kind);
-        figure.is_some_and(|figure| !figure.contains(['/', '\\'])) && (has_kind(".svg") || has_kind(".csv"))
-    };
-    let names = String::from_utf8_lossy(&list).lines().map(str::to_owned).collect::<Vec<_>>();
-    names.into_iter().filter(|name| name == REPORT || is_figure(name)).collect()
-}
-
-/// Writes the files of a report, by their names from the folder on: whatever is there already must be of the report before.
-///
-/// # Errors
-/// A file of this name that no report has written, or the disk does not take it.
-pub fn write_report(path: &Path, report: &[(String, Vec<u8>)]) -> Result<(), Failure> {
-    let trouble = |error| Failure::storage(format!("cannot write to {}: {error}", path.display()));
-    let before = reported(path);
-    let plots = path.join(PLOTS);
-    if plots.symlink_metadata().is_ok_and(|there| !there.is_dir()) {
-        return Err(Failure::input(format!("{}: is not a folder", plots.display())));
-    }
-    for (name, _) in report {
-        if !before.contains(name) && path.join(name).symlink_metadata().is_ok() {
-            let name = path.join(name);
-            return Err(Failure::input(format!(
-                "{}: is not of a report of this program; nothing was overwritten",
-                name.display()
-            )));
-        }
-    }
-    remove_report(path).map_err(trouble)?;
-    if report.iter().any(|(name, _)| name.starts_with(PLOTS)) {
-        fs::create_dir_all(&plots).map_err(trouble)?;
-    }
-    let names: Vec<&str> = report.iter().map(|(name, _)| name.as_str()).collect();
-    NewFile::write(path, REPORTED, (names.join("\n") + "\n").as_bytes())?;
-    for (name, content) in report {
-        NewFile::write(path, name, content)?;
-    }
-    Ok(())
-}
-
-/// Deletes what a report wrote.
-fn remove_report(path: &Path) -> std::io::Result<()> {
-    for name in reported(path) {
-        files::remove(&path.join(name))?;
-    }
-    let _ = fs::remove_dir(path.join(PLOTS)); // it stays where something else is in it
-    files::remove(&path.join(REPORTED))
 }
 
 /// Takes the folder for this process, until the file is dropped.
@@ -212,16 +95,6 @@ pub fn lock(path: &Path) -> Result<File, Failure> {
         }
         Err(TryLockError::Error(error)) => Err(trouble(error)),
     }
-}
-
-/// Deletes what a sweep wrote.
-pub(super) fn clear(path: &Path) -> std::io::Result<()> {
-    remove_report(path)?;
-    for name in known_names().filter(|name| *name != LOCK) {
-        files::remove(&path.join(name))?;
-        files::remove(&path.join(format!("{name}.new")))?;
-    }
-    Ok(())
 }
 
 pub(super) fn read_manifest(path: &Path) -> Result<Option<Manifest>, Failure> {

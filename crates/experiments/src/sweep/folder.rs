@@ -10,10 +10,11 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::disk::{
-    MANIFEST, broken_files, check_continues, check_is_ours, check_may_be_cleared, clear, experiment_of,
-    has_begun, lock, read_manifest, sweeps_in, sync_folder, write_manifest, write_start,
+    MANIFEST, broken_files, check_continues, experiment_of, has_begun, lock, read_manifest, sweeps_in,
+    sync_folder, write_manifest, write_start,
 };
 use super::journal::{self, Damage, Journal, Place};
+use super::ours::{check_is_ours, check_may_be_cleared, clear};
 use super::tables::Tables;
 use crate::experiment::{Experiment, Shard};
 use crate::failure::Failure;

@@ -6,6 +6,7 @@ pub mod folder;
 mod journal;
 pub mod links;
 mod missing;
+pub mod ours;
 mod rows;
 mod table;
 mod tables;

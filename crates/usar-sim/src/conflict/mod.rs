@@ -183,6 +183,11 @@ impl Resolver {
         &self.directives
     }
 
+    /// The conflict sets of the last step: places of their members, in order of precedence.
+    pub fn sets(&self) -> impl Iterator<Item = &[usize]> {
+        self.sets.iter().map(|set| set.order.as_slice())
+    }
+
     /// A set continues the one of the last step with which it shares the most members: whoever is head stays it until it is out of the
     /// set. One that shares none is new.
     fn carry_over(&mut self, movers: &[Mover], log: &mut EventLog) {

@@ -113,6 +113,18 @@ impl Mission {
         }
     }
 
+    /// What the group of a task knows.
+    #[must_use]
+    pub fn knowledge_of_group(&self, task: TaskId) -> &Knowledge {
+        &self.knowledge[task.index()]
+    }
+
+    /// What the team at home knows: what all groups knew when a round last ended.
+    #[must_use]
+    pub fn knowledge_at_home(&self) -> &Knowledge {
+        &self.knowledge_at_home
+    }
+
     /// The question that waits for an assignment, if there is one.
     #[must_use]
     pub fn question(&self) -> Option<&Question> {

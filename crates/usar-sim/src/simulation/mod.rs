@@ -13,6 +13,7 @@ use thiserror::Error;
 use crate::conflict::{Delay, Mover};
 use crate::event::Event;
 use crate::hash::PERIOD_STEPS;
+use crate::ids::RobotId;
 use crate::invariant::{Invariants, Overlaps};
 use crate::metrics::history;
 use crate::mission::{Ending, Mission};
@@ -277,6 +278,17 @@ impl Simulation {
     /// Why each robot does not move on, as far as it does not; by id.
     pub fn delays(&self) -> impl Iterator<Item = Delay> + '_ {
         self.state.tallies.iter().map(Tally::delay)
+    }
+
+    /// Why a robot does not move on, as far as it does not.
+    #[must_use]
+    pub fn delay(&self, robot: RobotId) -> Delay {
+        self.state.tallies[robot.index()].delay()
+    }
+
+    /// The conflict sets of the last step: ids of their members, in order of precedence. None under the reciprocal rule.
+    pub fn conflict_sets(&self) -> impl Iterator<Item = &[usize]> {
+        self.state.resolver.sets()
     }
 
     /// The events of the last step.

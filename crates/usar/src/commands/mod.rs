@@ -17,6 +17,7 @@ mod snapshot;
 pub(crate) mod sweep;
 pub(crate) mod trust;
 pub(crate) mod verify;
+pub(crate) mod view;
 
 use std::path::Path;
 

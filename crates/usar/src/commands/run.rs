@@ -2,8 +2,6 @@
 
 use std::io::Write;
 use std::path::PathBuf;
-use std::sync::atomic::Ordering;
-use std::time::Instant;
 
 use clap::Args;
 use experiments::Failure;
@@ -15,9 +13,11 @@ use usar_sim::metrics::CutOff;
 use usar_sim::record::{Status, TrialRecord};
 use usar_sim::simulation::Simulation;
 
+use crate::recordings;
+
 use super::snapshot::{Snapshot, save};
 use super::{SCHEMA_VERSION, load};
-use crate::running::{STOP, stop_on_signals};
+use crate::running::{Guard, stop_on_signals};
 
 /// Run one trial and tell what happened, round by round
 #[derive(Debug, Args)]
@@ -29,7 +29,8 @@ Examples:
   usar run scenarios/paper.ron --policy 'RNE(hard_rule: MeanEnergy)' --set duration_s=300
   usar run scenarios/paper.ron --seed 3 --save half.snapshot --save-at 300    the trial, and a snapshot of it on the way
   usar run scenarios/paper.ron --from half.snapshot                           the rest of that trial, with the same result
-  usar run scenarios/paper.ron --from half.snapshot --policy DIS              another policy goes on from there")]
+  usar run scenarios/paper.ron --from half.snapshot --policy DIS              another policy goes on from there
+  usar run scenarios/paper.ron --record paper.usrec                           then: usar view paper.usrec")]
 pub(crate) struct Arguments {
     /// Scenario file (RON)
     file: PathBuf,
@@ -57,13 +58,16 @@ pub(crate) struct Arguments {
     /// Set a field of the scenario, by its path, to a value in RON, e.g. `costs.energy.per_step=0.009`; may stand several times
     #[arg(long, value_name = "PATH=VALUE")]
     set: Vec<String>,
+    /// Write a recording of the trial to this file, for `usar view`; the file must not exist yet
+    #[arg(long, value_name = "FILE")]
+    record: Option<PathBuf>,
+    /// Frames of the recording in a second of simulated time
+    #[arg(long, value_name = "FPS", default_value_t = recording::DEFAULT_FPS, requires = "record", value_parser = recordings::fps)]
+    record_fps: f64,
     /// Print one JSON object
     #[arg(long)]
     json: bool,
 }
-
-/// A trial looks once in this many steps whether it is to stop.
-const CLOCK_CHECK_STEPS: u64 = 64;
 
 #[derive(Serialize)]
 struct Output<'a> {
@@ -98,7 +102,15 @@ impl Arguments {
         if let (Some(path), Some(seconds)) = (&self.save, self.save_at) {
             save(&mut simulation, &spec, (path, seconds))?;
         }
-        let record = self.run(simulation, &*policy)?;
+        stop_on_signals();
+        let guard = Guard::new(self.max_trial_s);
+        let record = match &self.record {
+            Some(path) => {
+                let options = recording::Options { policy: spec.label.clone(), fps: self.record_fps };
+                recordings::record_to(path, simulation, &*policy, &options, &guard)?
+            }
+            None => run(simulation, &*policy, &guard)?,
+        };
         if let Status::Failed(reason) = &record.status {
             return Err(Failure::run(format!("trial of {} with seed {seed} failed: {reason}", spec.label)));
         }
@@ -116,29 +128,12 @@ impl Arguments {
     }
 }
 
-impl Arguments {
-    /// Runs the trial to its end, unless it takes too long or is stopped.
-    fn run(&self, mut simulation: Simulation, policy: &dyn Policy) -> Result<TrialRecord, Failure> {
-        let begun = Instant::now();
-        stop_on_signals();
-        while simulation.step(policy).is_none() {
-            if !simulation.steps().is_multiple_of(CLOCK_CHECK_STEPS) {
-                continue;
-            }
-            let at = simulation.time_s();
-            if STOP.load(Ordering::Relaxed) {
-                return Err(Failure::Interrupted(format!("stopped at {at:.0} s of simulated time")));
-            }
-            if begun.elapsed().as_secs_f64() > self.max_trial_s {
-                return Err(Failure::run(format!(
-                    "the trial took longer than {} s and had come to {at:.0} s of simulated time; \
-                     --max-trial-s gives it longer",
-                    self.max_trial_s
-                )));
-            }
-        }
-        Ok(simulation.finish())
+/// Runs a trial to its end, unless it takes too long or is stopped.
+fn run(mut simulation: Simulation, policy: &dyn Policy, guard: &Guard) -> Result<TrialRecord, Failure> {
+    while simulation.step(policy).is_none() {
+        guard.look(&simulation)?;
     }
+    Ok(simulation.finish())
 }
 
 fn print(out: &mut dyn Write, [scenario, policy]: [&str; 2], record: &TrialRecord) -> Result<(), Failure> {

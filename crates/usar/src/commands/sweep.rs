@@ -14,6 +14,7 @@ use experiments::sweep::folder::{Folder, Opening};
 use reports::table::policy_table;
 
 use super::precision::Precision;
+use crate::recordings::{Recorded, record_trials};
 use crate::running::{STOP, default_jobs, run_missing, stop_on_signals, tell};
 
 /// Tables of more cases than these are left to `usar compare` and `usar report`.
@@ -35,6 +36,7 @@ Examples:
   usar sweep scenarios/paper.ron
   usar sweep scenarios/paper.ron --policies RNE,RANDOM --trials 100 --out results/many
   usar sweep scenarios/paper.ron --policies 'RNE,sum=RNE(score: Sum)' --out results/sum
+  usar sweep scenarios/paper.ron --record 1              (then: usar view results/paper --policy RNE,DIS)
   usar sweep scenarios/sweeps/energy.ron --shard 2/8     (then `usar merge`)
   usar sweep scenarios/paper.ron --precision 'rescuees.hard: RNE-DIS: 2.0' --max-trials 500")]
 pub(crate) struct Arguments {
@@ -76,6 +78,9 @@ pub(crate) struct Arguments {
     /// Check every invariant at every step; a violation ends the trial as failed
     #[arg(long)]
     check: bool,
+    /// Record trials for `usar view`: `all`, the first N of each policy, or `seeds=3,7`; files go to the folder `recordings/` of the results
+    #[arg(long, value_name = "all|N|seeds=LIST")]
+    record: Option<Recorded>,
     /// No progress on stderr
     #[arg(long)]
     quiet: bool,
@@ -118,6 +123,9 @@ impl Arguments {
             self.run(&mut folder)?;
         }
         folder.finish(&STOP)?;
+        if let Some(which) = &self.record {
+            record_trials(&mut folder, which, &STOP)?;
+        }
         print(out, &folder)?;
         if let Some(precision) = &precision {
             writeln!(out, "{}", precision.verdict(&folder))?;

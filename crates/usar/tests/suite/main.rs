@@ -14,3 +14,4 @@ mod reported;
 mod resumed;
 mod same_bytes;
 mod studied;
+mod viewed;

@@ -1,0 +1,46 @@
+//! Why a file cannot be read as a recording.
+
+use thiserror::Error;
+
+/// Why a file cannot be read as a recording. A file that was cut short is none of these: its whole chunks are read.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+#[non_exhaustive]
+pub enum ReadError {
+    /// The first bytes are not those of a recording.
+    #[error("is not a recording: its first bytes are not \"USREC\"")]
+    NotARecording,
+    /// It was written in another version of the format.
+    #[error("has version {found} of the format; this program reads version {expected}")]
+    Version {
+        /// The version of the file.
+        found: u32,
+        /// The version that is read.
+        expected: u32,
+    },
+    /// It ends before its header does.
+    #[error("ends within its header, after {bytes} bytes: there is nothing to show")]
+    NoHeader {
+        /// Length of the file.
+        bytes: usize,
+    },
+    /// A chunk does not have its checksum, or holds what it must not hold.
+    #[error("is damaged: chunk {chunk} ({kind}), at byte {at}: {reason}")]
+    Damaged {
+        /// Number of the chunk, from 0.
+        chunk: usize,
+        /// Its kind.
+        kind: String,
+        /// Where it begins in the file.
+        at: usize,
+        /// What is wrong.
+        reason: String,
+    },
+    /// A frame was asked for that is not there.
+    #[error("has {frames} frames; there is no frame {asked}")]
+    NoFrame {
+        /// The number that was asked for, from 0.
+        asked: usize,
+        /// How many there are.
+        frames: usize,
+    },
+}

@@ -1,0 +1,400 @@
+//! The state at one moment, as a recording keeps it: whole numbers and ids.
+
+use rne_core::TaskId;
+use serde::Serialize;
+use usar_sim::conflict::DelayCause;
+use usar_sim::mission::Activity;
+use usar_sim::simulation::Simulation;
+use usar_sim::world::{Condition, RescueeState, Robot};
+
+use crate::numbers::NotNumbers;
+
+/// Names of what robots do, in the order of their numbers.
+pub(crate) const ACTIVITIES: [&str; 9] = [
+    "home",
+    "searching",
+    "approaching",
+    "loading",
+    "standby",
+    "on_errand",
+    "returning",
+    "to_rest",
+    "resting",
+];
+
+/// Names of the conditions of robots, in the order of their numbers.
+pub(crate) const CONDITIONS: [&str; 3] = ["able", "stranded", "disabled"];
+
+/// Names of the states of rescuees, in the order of their numbers.
+pub(crate) const RESCUEE_STATES: [&str; 4] = ["waiting", "claimed", "on_board", "delivered"];
+
+/// The state at one moment.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct Frame {
+    /// Steps done.
+    pub step: u64,
+    /// The robots, by id.
+    pub robots: Vec<RobotFrame>,
+    /// The rescuees, by id.
+    pub rescuees: Vec<RescueeFrame>,
+    /// The debris.
+    pub debris: Vec<MovedDebris>,
+    /// What the group of each task knows, and last what the team at home knows.
+    pub groups: Vec<GroupFrame>,
+    /// The conflict sets: ids of their members, in order of precedence.
+    pub conflict_sets: Vec<Vec<u32>>,
+}
+
+/// A robot at one moment.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct RobotFrame {
+    /// Where it is, how it moves, and its levels.
+    pub motion: Motion,
+    /// What it does and why it waits.
+    pub state: RobotState,
+    /// Where it is going.
+    pub route: Route,
+}
+
+/// Where a robot is, how it moves, and its levels.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+pub struct Motion {
+    /// Centre, in millimetres.
+    pub position_mm: [i32; 2],
+    /// Velocity, in millimetres per second.
+    pub velocity_mm_s: [i32; 2],
+    /// Battery level, in thousandths of a percent.
+    pub energy_millipercent: i32,
+    /// Health level, in thousandths of a percent.
+    pub hp_millipercent: i32,
+}
+
+/// What a robot does and why it waits. Activities, causes and conditions are numbers: the header's codes name them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+pub struct RobotState {
+    /// What it does.
+    pub activity: u8,
+    /// The rescuee that it goes to or loads.
+    pub rescuee: Option<u32>,
+    /// The step until which it loads or rests.
+    pub until_step: Option<u32>,
+    /// Why it does not move on.
+    pub delay: u8,
+    /// The robot that it waits for.
+    pub waits_for: Option<u32>,
+    /// The task of its group.
+    pub task: Option<u32>,
+    /// Whether it can still act.
+    pub condition: u8,
+    /// Rescuing resources left.
+    pub resources: u32,
+    /// Rescuees on board.
+    pub load: u32,
+}
+
+/// Where a robot is going.
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize)]
+pub struct Route {
+    /// Where it wants to be, in millimetres.
+    pub goal_mm: Option<[i32; 2]>,
+    /// Waypoints ahead, in millimetres.
+    pub ahead_mm: Vec<[i32; 2]>,
+}
+
+/// A rescuee at one moment.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+pub struct RescueeFrame {
+    /// What became of it: the header's codes name it.
+    pub state: u8,
+    /// The robot that has claimed it or has it on board.
+    pub robot: Option<u32>,
+}
+
+/// Where a piece of debris lies.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+pub struct MovedDebris {
+    /// Its place, in millimetres.
+    pub position_mm: [i32; 2],
+    /// Its rotation, in ten-thousandths of a radian anticlockwise.
+    pub angle: i32,
+    /// How many places of it there were to be noticed so far.
+    pub sightings: u32,
+}
+
+/// What a group knows.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct GroupFrame {
+    /// Whether it has work to do.
+    pub is_at_work: bool,
+    /// The debris that it knows: number, and which place of it.
+    pub debris: Vec<(u32, u32)>,
+    /// The radiation zones that it knows.
+    pub zones: Vec<u32>,
+}
+
+/// A length in metres as millimetres.
+fn milli(value: f32) -> i32 {
+    (f64::from(value) * 1000.0).round() as i32
+}
+
+fn percent(value: f64) -> i32 {
+    (value * 1000.0).round() as i32
+}
+
+/// A number of things.
+fn count(things: usize) -> i32 {
+    (things as u32).cast_signed()
+}
+
+/// An id or none, as one number.
+fn some(id: Option<u32>) -> i32 {
+    id.map_or(0, |id| id.cast_signed().wrapping_add(1))
+}
+
+/// The numbers of a row, one after the other.
+struct Row<'r>(std::slice::Iter<'r, i32>);
+
+impl Row<'_> {
+    fn next(&mut self) -> Result<i32, NotNumbers> {
+        self.0.next().copied().ok_or(NotNumbers)
+    }
+
+    fn count(&mut self) -> Result<u32, NotNumbers> {
+        u32::try_from(self.next()?).map_err(|_| NotNumbers)
+    }
+
+    fn code(&mut self, codes: usize) -> Result<u8, NotNumbers> {
+        u8::try_from(self.next()?).ok().filter(|code| usize::from(*code) < codes).ok_or(NotNumbers)
+    }
+
+    fn id(&mut self) -> Result<Option<u32>, NotNumbers> {
+        Ok(self.count()?.checked_sub(1))
+    }
+
+    fn is_over(&self) -> bool {
+        self.0.len() == 0
+    }
+}
+
+fn row<T>(numbers: &[i32], read: impl FnOnce(&mut Row) -> Result<T, NotNumbers>) -> Result<T, NotNumbers> {
+    let mut row = Row(numbers.iter());
+    let value = read(&mut row)?;
+    if row.is_over() { Ok(value) } else { Err(NotNumbers) }
+}
+
+impl Motion {
+    pub(crate) fn of(robot: &Robot) -> Self {
+        Self {
+            position_mm: [milli(robot.position.x), milli(robot.position.y)],
+            velocity_mm_s: [milli(robot.velocity.x), milli(robot.velocity.y)],
+            energy_millipercent: percent(robot.energy),
+            hp_millipercent: percent(robot.hp),
+        }
+    }
+
+    pub(crate) fn numbers(self) -> [i32; 6] {
+        let ([x, y], [vx, vy]) = (self.position_mm, self.velocity_mm_s);
+        [x, y, vx, vy, self.energy_millipercent, self.hp_millipercent]
+    }
+
+    pub(crate) fn from_numbers([x, y, vx, vy, energy, hp]: [i32; 6]) -> Self {
+        Self {
+            position_mm: [x, y],
+            velocity_mm_s: [vx, vy],
+            energy_millipercent: energy,
+            hp_millipercent: hp,
+        }
+    }
+}
+
+impl RobotState {
+    pub(crate) fn of(simulation: &Simulation, id: usize) -> Self {
+        let (robot, agent) = (&simulation.world().robots[id], &simulation.mission().agents[id]);
+        let delay = simulation.delay(robot.id);
+        let (activity, until) = match agent.activity {
+            Activity::Home => (0, None),
+            Activity::Searching => (1, None),
+            Activity::Approaching(_) => (2, None),
+            Activity::Loading(_, until) => (3, Some(until)),
+            Activity::Standby => (4, None),
+            Activity::OnErrand => (5, None),
+            Activity::Returning => (6, None),
+            Activity::ToRest => (7, None),
+            Activity::Resting(until) => (8, Some(until)),
+        };
+        Self {
+            activity,
+            rescuee: agent.activity.claim().map(|rescuee| rescuee.0),
+            until_step: until.map(|step| step as u32),
+            delay: delay.cause as u8,
+            waits_for: delay.waits_for.map(|other| other.0),
+            task: agent.task.map(|task| u32::from(task.0)),
+            condition: match robot.condition {
+                Condition::Able => 0,
+                Condition::Stranded => 1,
+                Condition::Disabled => 2,
+            },
+            resources: robot.resources,
+            load: robot.load.len() as u32,
+        }
+    }
+
+    pub(crate) fn write(&self, out: &mut Vec<i32>) {
+        out.extend([
+            i32::from(self.activity),
+            some(self.rescuee),
+            some(self.until_step),
+            i32::from(self.delay),
+            some(self.waits_for),
+            some(self.task),
+            i32::from(self.condition),
+            self.resources.cast_signed(),
+            self.load.cast_signed(),
+        ]);
+    }
+
+    pub(crate) fn read(numbers: &[i32]) -> Result<Self, NotNumbers> {
+        row(numbers, |row| {
+            Ok(Self {
+                activity: row.code(ACTIVITIES.len())?,
+                rescuee: row.id()?,
+                until_step: row.id()?,
+                delay: row.code(DelayCause::ALL.len())?,
+                waits_for: row.id()?,
+                task: row.id()?,
+                condition: row.code(CONDITIONS.len())?,
+                resources: row.count()?,
+                load: row.count()?,
+            })
+        })
+    }
+}
+
+impl Route {
+    pub(crate) fn of(simulation: &Simulation, id: usize) -> Self {
+        let robot = &simulation.world().robots[id];
+        let traveller = simulation.navigator().traveller(robot.id);
+        let ahead = traveller.route().map_or(&[][..], |route| route.ahead());
+        Self {
+            goal_mm: traveller.goal().map(|goal| [milli(goal.point.x), milli(goal.point.y)]),
+            ahead_mm: ahead.iter().map(|at| [milli(at.x), milli(at.y)]).collect(),
+        }
+    }
+
+    pub(crate) fn write(&self, out: &mut Vec<i32>) {
+        out.push(i32::from(self.goal_mm.is_some()));
+        out.extend(self.goal_mm.iter().chain(&self.ahead_mm).flatten());
+    }
+
+    pub(crate) fn read(numbers: &[i32]) -> Result<Self, NotNumbers> {
+        row(numbers, |row| {
+            let point = |row: &mut Row| Ok([row.next()?, row.next()?]);
+            let goal_mm = if row.code(2)? == 1 { Some(point(row)?) } else { None };
+            let mut ahead_mm = Vec::new();
+            while !row.is_over() {
+                ahead_mm.push(point(row)?);
+            }
+            Ok(Self { goal_mm, ahead_mm })
+        })
+    }
+}
+
+impl RescueeFrame {
+    pub(crate) fn of(simulation: &Simulation, id: usize) -> Self {
+        let rescuee = &simulation.world().rescuees[id];
+        let (state, robot) = match (rescuee.state, rescuee.claimed_by) {
+            (RescueeState::Waiting, None) => (0, None),
+            (RescueeState::Waiting, by) => (1, by),
+            (RescueeState::OnBoard(robot), _) => (2, Some(robot)),
+            (RescueeState::Rescued, _) => (3, None),
+        };
+        Self { state, robot: robot.map(|robot| robot.0) }
+    }
+
+    pub(crate) fn write(self, out: &mut Vec<i32>) {
+        out.extend([i32::from(self.state), some(self.robot)]);
+    }
+
+    pub(crate) fn read(numbers: &[i32]) -> Result<Self, NotNumbers> {
+        row(numbers, |row| Ok(Self { state: row.code(RESCUEE_STATES.len())?, robot: row.id()? }))
+    }
+}
+
+impl MovedDebris {
+    pub(crate) fn of(simulation: &Simulation, number: usize) -> Self {
+        let piece = &simulation.world().debris[number];
+        let (at, turn) = (piece.outline.pose.translation, piece.outline.pose.rotation);
+        Self {
+            position_mm: [milli(at.x), milli(at.y)],
+            angle: (libm::atan2f(turn.sin(), turn.cos()) * 10_000.0).round() as i32,
+            sightings: piece.sightings.len() as u32,
+        }
+    }
+
+    pub(crate) fn write(self, out: &mut Vec<i32>) {
+        out.extend([self.position_mm[0], self.position_mm[1], self.angle, self.sightings.cast_signed()]);
+    }
+
+    pub(crate) fn read(numbers: &[i32]) -> Result<Self, NotNumbers> {
+        row(numbers, |row| {
+            Ok(Self { position_mm: [row.next()?, row.next()?], angle: row.next()?, sightings: row.count()? })
+        })
+    }
+}
+
+impl GroupFrame {
+    pub(crate) fn of(simulation: &Simulation, number: usize) -> Self {
+        let mission = simulation.mission();
+        let group = mission.groups.get(number);
+        let known = match group {
+            Some(_) => mission.knowledge_of_group(TaskId(number as u16)),
+            None => mission.knowledge_at_home(),
+        };
+        let debris = (0..).zip(&known.debris).filter(|(_, sighting)| **sighting > 0);
+        Self {
+            is_at_work: group.is_some_and(|group| group.at_work),
+            debris: debris.map(|(number, sighting)| (number, *sighting)).collect(),
+            zones: known.known_zones().iter().map(|(number, _)| *number).collect(),
+        }
+    }
+
+    pub(crate) fn write(&self, out: &mut Vec<i32>) {
+        out.extend([i32::from(self.is_at_work), count(self.debris.len())]);
+        out.extend(
+            self.debris.iter().flat_map(|(number, sighting)| [number.cast_signed(), sighting.cast_signed()]),
+        );
+        out.extend(self.zones.iter().map(|zone| zone.cast_signed()));
+    }
+
+    pub(crate) fn read(numbers: &[i32]) -> Result<Self, NotNumbers> {
+        row(numbers, |row| {
+            let is_at_work = row.code(2)? == 1;
+            let pieces = row.count()?;
+            let debris = (0..pieces).map(|_| Ok((row.count()?, row.count()?))).collect::<Result<_, _>>()?;
+            let mut zones = Vec::new();
+            while !row.is_over() {
+                zones.push(row.count()?);
+            }
+            Ok(Self { is_at_work, debris, zones })
+        })
+    }
+}
+
+/// The conflict sets: of each, its number of members and their ids.
+pub(crate) fn push_sets(simulation: &Simulation, out: &mut Vec<i32>) {
+    for set in simulation.conflict_sets() {
+        out.push(count(set.len()));
+        out.extend(set.iter().map(|id| count(*id)));
+    }
+}
+
+pub(crate) fn read_sets(numbers: &[i32]) -> Result<Vec<Vec<u32>>, NotNumbers> {
+    row(numbers, |row| {
+        let mut sets = Vec::new();
+        while !row.is_over() {
+            let members = row.count()?;
+            sets.push((0..members).map(|_| row.count()).collect::<Result<_, _>>()?);
+        }
+        Ok(sets)
+    })
+}

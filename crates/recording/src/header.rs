@@ -1,0 +1,226 @@
+//! The header: what is recorded, and everything that does not change.
+
+use serde::{Deserialize, Serialize};
+use usar_sim::conflict::DelayCause;
+use usar_sim::scenario::{DebrisFile, NeedFile, Point, RoleFile, ZoneFile};
+use usar_sim::simulation::Simulation;
+use xxhash_rust::xxh3::xxh3_128;
+
+use crate::frame::{ACTIVITIES, CONDITIONS, RESCUEE_STATES};
+use crate::rows::{MOTION_FIELDS, STREAMS};
+
+/// Version of the format.
+pub const VERSION: u32 = 1;
+
+/// What is recorded, and everything that does not change.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Header {
+    /// Version of the format: [`VERSION`].
+    pub version: u32,
+    /// The program that wrote it.
+    pub program: String,
+    /// The scenario.
+    pub scenario: ScenarioText,
+    /// What the policy is called.
+    pub policy: String,
+    /// Seed of the trial.
+    pub seed: u64,
+    /// Length of a step, in seconds.
+    pub dt_s: f64,
+    /// Simulated time at which the trial ends at the latest, in seconds.
+    pub duration_s: f64,
+    /// Steps that were done when the recording began.
+    pub first_step: u64,
+    /// Steps from one frame to the next.
+    pub steps_per_frame: u64,
+    /// Frames in a segment; the last one may have fewer.
+    pub frames_per_segment: usize,
+    /// Names of the numbers of each robot that stand in every frame.
+    pub motion_fields: Vec<String>,
+    /// Names of the streams that have a row only where something changes, in their order, with their numbers of rows.
+    pub streams: Vec<(String, usize)>,
+    /// What the numbers of states mean.
+    pub codes: Codes,
+    /// The world, as far as it does not change.
+    pub world: World,
+}
+
+/// The scenario of a trial.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ScenarioText {
+    /// Its name.
+    pub name: String,
+    /// What it is for.
+    pub description: String,
+    /// The whole scenario with every value, in RON.
+    pub resolved: String,
+    /// XXH3-128 of that text, in hexadecimal digits.
+    pub xxh3_128: String,
+}
+
+/// Names of states; a state's number is its place in the list.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Codes {
+    /// What a robot does.
+    pub activities: Vec<String>,
+    /// Why a robot does not move on.
+    pub delays: Vec<String>,
+    /// Whether a robot can still act.
+    pub conditions: Vec<String>,
+    /// What became of a rescuee.
+    pub rescuees: Vec<String>,
+}
+
+/// The world, as far as it does not change.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct World {
+    /// Width and height of the arena, in metres.
+    pub arena_m: Point,
+    /// The roles.
+    pub roles: Vec<RoleFile>,
+    /// The needs that robots report.
+    pub needs: Vec<NeedFile>,
+    /// Factor on speed and ranges at 0 % health.
+    pub health_floor: f64,
+    /// The tasks.
+    pub tasks: Vec<TaskPlace>,
+    /// The robots, by id.
+    pub robots: Vec<RobotPlace>,
+    /// Places of the rescuees, in metres: task by task, in the order of the table of tasks.
+    pub rescuees: Vec<Point>,
+    /// The debris, the scenario's and the sampled, as it lies at the start.
+    pub debris: Vec<DebrisFile>,
+    /// The radiation zones, the scenario's and the sampled.
+    pub zones: Vec<ZoneFile>,
+}
+
+/// A task's place.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct TaskPlace {
+    /// Its name.
+    pub name: String,
+    /// Its rank: the harder the task, the higher.
+    pub difficulty: u32,
+    /// Centre of its block of rescuees, in metres.
+    pub center: Point,
+    /// Width and height of the block, in metres.
+    pub size_m: Point,
+    /// Centre of its rest place, in metres.
+    pub rest: Point,
+    /// Number of its first rescuee.
+    pub first_rescuee: usize,
+    /// How many rescuees it has.
+    pub rescuees: usize,
+}
+
+/// What is fixed of a robot.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct RobotPlace {
+    /// Its role: a row of the table.
+    pub role: usize,
+    /// Its place at home, in metres.
+    pub home: Point,
+    /// Its place at the rest place of each task, in metres.
+    pub rest: Vec<Point>,
+}
+
+fn names(names: &[&str]) -> Vec<String> {
+    names.iter().map(|name| (*name).to_owned()).collect()
+}
+
+impl Codes {
+    pub(crate) fn of_this_version() -> Self {
+        Self {
+            activities: names(&ACTIVITIES),
+            delays: DelayCause::ALL.iter().map(|cause| cause.name().to_owned()).collect(),
+            conditions: names(&CONDITIONS),
+            rescuees: names(&RESCUEE_STATES),
+        }
+    }
+}
+
+impl Header {
+    /// The header of a recording that begins now.
+    pub(crate) fn of(
+        simulation: &Simulation,
+        policy: &str,
+        (steps_per_frame, frames_per_segment): (u64, usize),
+    ) -> Self {
+        let scenario = simulation.scenario();
+        let resolved = scenario.resolved();
+        let world = World::of(simulation);
+        let rows = world.rows();
+        Self {
+            version: VERSION,
+            program: format!("usar {}", env!("CARGO_PKG_VERSION")),
+            scenario: ScenarioText {
+                name: scenario.name.clone(),
+                description: scenario.description.clone(),
+                xxh3_128: format!("{:032x}", xxh3_128(resolved.as_bytes())),
+                resolved,
+            },
+            policy: policy.to_owned(),
+            seed: simulation.seed(),
+            dt_s: scenario.dt_s,
+            duration_s: scenario.duration_s,
+            first_step: simulation.steps(),
+            steps_per_frame,
+            frames_per_segment,
+            motion_fields: names(&MOTION_FIELDS),
+            streams: STREAMS.iter().map(|name| (*name).to_owned()).zip(rows).collect(),
+            codes: Codes::of_this_version(),
+            world,
+        }
+    }
+
+    /// The step of a frame.
+    #[must_use]
+    pub fn step_of(&self, frame: usize) -> u64 {
+        self.first_step + frame as u64 * self.steps_per_frame
+    }
+
+    /// The simulated time of a frame, in seconds.
+    #[must_use]
+    pub fn time_s_of(&self, frame: usize) -> f64 {
+        self.step_of(frame) as f64 * self.dt_s
+    }
+}
+
+impl World {
+    fn of(simulation: &Simulation) -> Self {
+        let (model, scenario) = (simulation.model(), simulation.scenario());
+        let task = |(task, model): (&usar_sim::scenario::TaskFile, &usar_sim::model::TaskModel)| TaskPlace {
+            name: task.name.clone(),
+            difficulty: task.difficulty,
+            center: task.center,
+            size_m: task.size_m,
+            rest: task.rest,
+            first_rescuee: model.rescuees.start,
+            rescuees: model.rescuees.len(),
+        };
+        let metres = |x: f32, y: f32| [x, y].map(|value| (f64::from(value) * 1000.0).round() / 1000.0);
+        let robots = model.robots.iter().map(|robot| RobotPlace {
+            role: robot.role.index(),
+            home: metres(robot.home.x, robot.home.y),
+            rest: robot.rest.iter().map(|at| metres(at.x, at.y)).collect(),
+        });
+        Self {
+            arena_m: scenario.arena_m,
+            roles: scenario.roles.clone(),
+            needs: scenario.needs.clone(),
+            health_floor: scenario.mission.health_floor,
+            tasks: scenario.tasks.iter().zip(&model.tasks).map(task).collect(),
+            robots: robots.collect(),
+            rescuees: model.rescuees.iter().map(|(_, at)| metres(at.x, at.y)).collect(),
+            debris: model.layout.debris.clone(),
+            zones: model.layout.zones.clone(),
+        }
+    }
+
+    /// Numbers of rows of the streams, in their order.
+    pub(crate) fn rows(&self) -> [usize; STREAMS.len()] {
+        let robots = self.robots.len();
+        // The groups of the tasks, then the team at home; one row for all conflict sets.
+        [robots, robots, self.rescuees.len(), self.debris.len(), self.tasks.len() + 1, 1]
+    }
+}

@@ -1,0 +1,42 @@
+//! Recordings of trials: what was where, who did what and why, ten times a second, in a small file.
+//!
+//! A [`Recorder`] listens to a simulation and writes; [`record()`] runs a whole trial with one. [`Recording::read`] reads the file
+//! back, also if it was cut short, and [`Recording::frame`] gives the state at any of its frames. The format is documented in
+//! `docs/recordings.md`: a magic number and chunks, each with checksums; positions are integers in millimetres, as differences
+//! from frame to frame; every few seconds the state stands in full.
+//!
+//! Recording only listens: a trial has the same result with and without it.
+//!
+//! ```no_run
+//! use recording::{Options, Recording, record};
+//! use rne_core::Registry;
+//! use usar_sim::{scenario::Scenario, simulation::Simulation};
+//!
+//! let (scenario, _text) = Scenario::load("scenarios/paper.ron".as_ref())?;
+//! let policy = Registry::standard().parse("RNE")?.policy;
+//! let simulation = Simulation::new(&scenario, 1)?;
+//! let mut bytes = Vec::new();
+//! record(simulation, &*policy, &Options::new("RNE"), &mut bytes)?;
+//! let recording = Recording::read(&bytes)?;
+//! let halfway = recording.frame(recording.frames() / 2)?;
+//! println!("robot 0 is at {:?} mm", halfway.robots[0].motion.position_mm);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod chunk;
+mod error;
+mod frame;
+mod header;
+mod numbers;
+mod reader;
+mod rows;
+mod segment;
+mod trust;
+mod writer;
+
+pub use error::ReadError;
+pub use frame::{Frame, GroupFrame, Motion, MovedDebris, RescueeFrame, RobotFrame, RobotState, Route};
+pub use header::{Codes, Header, RobotPlace, ScenarioText, TaskPlace, VERSION, World};
+pub use reader::{Recording, TimedDecision};
+pub use trust::Trust;
+pub use writer::{DEFAULT_FPS, Options, Recorder, record};

@@ -1,0 +1,158 @@
+//! Reads recordings.
+
+use rne_core::{Decision, Question};
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
+use usar_sim::event::Event;
+use usar_sim::record::TrialRecord;
+
+use crate::chunk::{Chunk, Chunks, Kind};
+use crate::error::ReadError;
+use crate::frame::Frame;
+use crate::header::{Codes, Header, VERSION};
+use crate::rows::{MOTION_FIELDS, STREAMS};
+use crate::segment::Segment;
+use crate::trust::Trust;
+
+/// A recording that was read.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Recording {
+    /// What is recorded.
+    pub header: Header,
+    /// What happened, each with the step at whose end it had happened.
+    pub events: Vec<(u64, Event)>,
+    /// How the team was grouped.
+    pub decisions: Vec<TimedDecision>,
+    /// The record of the trial, without its decisions; none of a recording that was cut short.
+    pub summary: Option<TrialRecord>,
+    /// How many bytes at the end of a recording that was cut short belong to no whole chunk.
+    pub cut: Option<usize>,
+    segments: Vec<Segment>,
+}
+
+/// A decision with its time.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct TimedDecision {
+    /// The step in which it was made.
+    pub step: u64,
+    /// What was asked, without its history.
+    pub question: Question,
+    /// What was answered.
+    pub decision: Decision,
+    /// Who would have trusted whom.
+    pub trust: Option<Trust>,
+}
+
+#[derive(Deserialize)]
+struct Events {
+    events: Vec<(u64, Event)>,
+}
+
+/// The version alone: read before anything that another version may have otherwise.
+#[derive(Deserialize)]
+struct Version {
+    version: u32,
+}
+
+fn json<T: DeserializeOwned>(chunk: &Chunk, content: &[u8]) -> Result<T, ReadError> {
+    serde_json::from_slice(content).map_err(|error| chunk.damaged(error.to_string()))
+}
+
+impl Recording {
+    /// Reads a recording. One that was cut short gives all its whole chunks.
+    ///
+    /// # Errors
+    /// It is not a recording, is of another version, has nothing but a part of its header, or is damaged.
+    pub fn read(bytes: &[u8]) -> Result<Self, ReadError> {
+        let mut chunks = Chunks::new(bytes)?;
+        let first = chunks.next()?.ok_or(ReadError::NoHeader { bytes: bytes.len() })?;
+        let mut recording = Self {
+            header: header(&first)?,
+            events: Vec::new(),
+            decisions: Vec::new(),
+            summary: None,
+            cut: None,
+            segments: Vec::new(),
+        };
+        while let Some(chunk) = chunks.next()? {
+            recording.add(&chunk)?;
+        }
+        let rest = bytes.len() - chunks.at();
+        recording.cut = (rest > 0 || recording.summary.is_none()).then_some(rest);
+        Ok(recording)
+    }
+
+    fn add(&mut self, chunk: &Chunk) -> Result<(), ReadError> {
+        let content = chunk.content()?;
+        if self.summary.is_some() {
+            return Err(chunk.damaged("comes after the end of the recording"));
+        }
+        match chunk.kind {
+            Kind::Header => return Err(chunk.damaged("is a second header")),
+            Kind::Events => self.events.extend(json::<Events>(chunk, &content)?.events),
+            Kind::Decision => self.decisions.push(json(chunk, &content)?),
+            Kind::Segment => {
+                let world = &self.header.world;
+                let segment = Segment::read(&content, world.robots.len(), world.rows());
+                let segment = segment.ok().filter(|segment| segment.first_frame == self.frames());
+                self.segments.push(segment.ok_or_else(|| chunk.damaged("does not hold the next frames"))?);
+            }
+            Kind::Summary => self.summary = Some(json(chunk, &content)?),
+        }
+        Ok(())
+    }
+
+    /// Number of frames.
+    #[must_use]
+    pub fn frames(&self) -> usize {
+        self.segments.last().map_or(0, |last| last.first_frame + last.frames)
+    }
+
+    /// The state at a frame, numbered from 0.
+    ///
+    /// # Errors
+    /// There is no such frame, or its numbers make no sense.
+    pub fn frame(&self, number: usize) -> Result<Frame, ReadError> {
+        let at = self.segments.partition_point(|segment| segment.first_frame <= number);
+        let segment = at.checked_sub(1).map(|at| &self.segments[at]);
+        let segment = segment.filter(|segment| number < segment.first_frame + segment.frames);
+        let segment = segment.ok_or(ReadError::NoFrame { asked: number, frames: self.frames() })?;
+        segment.frame(number - segment.first_frame, self.header.step_of(number)).map_err(|_| {
+            ReadError::Damaged {
+                chunk: at,
+                kind: "SEGM".to_owned(),
+                at: 0,
+                reason: format!("frame {number} holds numbers that have no meaning"),
+            }
+        })
+    }
+
+    /// The last frame at or before a simulated time in seconds, as far as there is one.
+    #[must_use]
+    pub fn frame_at(&self, time_s: f64) -> usize {
+        let Header { dt_s, first_step, steps_per_frame, .. } = self.header;
+        let steps = (time_s / dt_s + 1e-6).floor() - first_step as f64;
+        let frame = (steps / steps_per_frame as f64).floor().max(0.0) as usize;
+        frame.min(self.frames().saturating_sub(1))
+    }
+}
+
+fn header(chunk: &Chunk) -> Result<Header, ReadError> {
+    if chunk.kind != Kind::Header {
+        return Err(chunk.damaged("must be the header"));
+    }
+    let content = chunk.content()?;
+    let Version { version } = json(chunk, &content)?;
+    if version != VERSION {
+        return Err(ReadError::Version { found: version, expected: VERSION });
+    }
+    let header: Header = json(chunk, &content)?;
+    let rows: Vec<usize> = header.streams.iter().map(|(_, rows)| *rows).collect();
+    let streams = header.streams.iter().map(|(name, _)| name.as_str()).eq(STREAMS);
+    let fields = header.motion_fields.iter().map(String::as_str).eq(MOTION_FIELDS);
+    let is_known = streams && fields && header.codes == Codes::of_this_version();
+    let has_roles = header.world.robots.iter().all(|robot| robot.role < header.world.roles.len());
+    let is_counted = header.dt_s > 0.0 && header.steps_per_frame > 0 && header.frames_per_segment > 0;
+    let is_sound = is_counted && has_roles && rows == header.world.rows();
+    if is_known && is_sound { Ok(header) } else { Err(chunk.damaged("its tables do not fit each other")) }
+}

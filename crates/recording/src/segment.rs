@@ -1,0 +1,219 @@
+//! A segment: some seconds of frames. It begins with the whole state, so that it is read without the segments before it.
+
+use usar_sim::simulation::Simulation;
+
+use crate::frame::{
+    Frame, GroupFrame, Motion, MovedDebris, RescueeFrame, RobotFrame, RobotState, Route, read_sets,
+};
+use crate::numbers::{NotNumbers, Numbers, write_signed, write_unsigned};
+use crate::rows::{MOTION_FIELDS, POSITIONS, RESCUEES, STREAMS, motion, write_row};
+
+/// A number that stands in every frame, as differences from what the frames before let expect.
+#[derive(Default)]
+struct Column {
+    bytes: Vec<u8>,
+    before: [i32; 2],
+}
+
+impl Column {
+    fn push(&mut self, value: i32, frame: usize, is_position: bool) {
+        let [last, before_last] = self.before.map(i64::from);
+        let expected = match frame {
+            0 => 0,
+            1 => last,
+            _ if is_position => 2 * last - before_last,
+            _ => last,
+        };
+        write_signed(&mut self.bytes, i64::from(value) - expected);
+        self.before = [value, self.before[0]];
+    }
+}
+
+/// A row, with the frames in which it changed.
+#[derive(Default)]
+struct ChangingRow {
+    bytes: Vec<u8>,
+    entries: u64,
+    changed_at: usize,
+    now: Vec<i32>,
+}
+
+impl ChangingRow {
+    fn note(&mut self, row: &[i32], frame: usize) {
+        if self.entries > 0 && self.now == row {
+            return;
+        }
+        write_unsigned(&mut self.bytes, (frame - self.changed_at) as u64);
+        write_unsigned(&mut self.bytes, row.len() as u64);
+        row.iter().for_each(|value| write_signed(&mut self.bytes, i64::from(*value)));
+        (self.entries, self.changed_at) = (self.entries + 1, frame);
+        self.now.clear();
+        self.now.extend(row);
+    }
+}
+
+/// The segment that is being written.
+pub(crate) struct Draft {
+    first_frame: usize,
+    frames: usize,
+    columns: Vec<Column>,
+    rows: Vec<Vec<ChangingRow>>,
+    /// How often the rescuees had changed when they were last looked at.
+    rescuee_changes: Option<u64>,
+    row: Vec<i32>,
+}
+
+impl Draft {
+    /// An empty segment of a world with so many robots, and so many rows of each stream.
+    pub(crate) fn new(robots: usize, rows: [usize; STREAMS.len()]) -> Self {
+        let columns = || (0..robots * MOTION_FIELDS.len()).map(|_| Column::default()).collect();
+        let stream = |rows: usize| (0..rows).map(|_| ChangingRow::default()).collect();
+        Self {
+            first_frame: 0,
+            frames: 0,
+            columns: columns(),
+            rows: rows.map(stream).into(),
+            rescuee_changes: None,
+            row: Vec::new(),
+        }
+    }
+
+    pub(crate) fn frames(&self) -> usize {
+        self.frames
+    }
+
+    /// Adds the state as it is now.
+    pub(crate) fn push(&mut self, simulation: &Simulation) {
+        for (robot, columns) in self.columns.chunks_exact_mut(MOTION_FIELDS.len()).enumerate() {
+            for ((field, column), value) in columns.iter_mut().enumerate().zip(motion(simulation, robot)) {
+                column.push(value, self.frames, field < POSITIONS);
+            }
+        }
+        let changes = Some(simulation.world().rescuees.changes());
+        for (stream, rows) in self.rows.iter_mut().enumerate() {
+            if stream == RESCUEES && self.rescuee_changes == changes {
+                continue;
+            }
+            for (number, row) in rows.iter_mut().enumerate() {
+                self.row.clear();
+                write_row(simulation, stream, number, &mut self.row);
+                row.note(&self.row, self.frames);
+            }
+        }
+        self.rescuee_changes = changes;
+        self.frames += 1;
+    }
+
+    /// The segment as bytes; the next one begins.
+    pub(crate) fn take(&mut self) -> Vec<u8> {
+        let mut out = Vec::new();
+        write_unsigned(&mut out, self.first_frame as u64);
+        write_unsigned(&mut out, self.frames as u64);
+        for column in &mut self.columns {
+            out.append(&mut column.bytes);
+        }
+        for row in self.rows.iter_mut().flatten() {
+            write_unsigned(&mut out, row.entries);
+            out.append(&mut row.bytes);
+            (row.entries, row.changed_at) = (0, 0);
+        }
+        self.first_frame += self.frames;
+        (self.frames, self.rescuee_changes) = (0, None);
+        out
+    }
+}
+
+/// A row as it was from some frame on.
+type Entry = (usize, Vec<i32>);
+
+/// A segment that was read.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct Segment {
+    pub(crate) first_frame: usize,
+    pub(crate) frames: usize,
+    columns: Vec<Vec<i32>>,
+    rows: Vec<Vec<Vec<Entry>>>,
+}
+
+impl Segment {
+    /// Reads the bytes of a segment of a world with so many robots, and so many rows of each stream.
+    pub(crate) fn read(
+        bytes: &[u8],
+        robots: usize,
+        rows: [usize; STREAMS.len()],
+    ) -> Result<Self, NotNumbers> {
+        let mut numbers = Numbers::new(bytes);
+        let first_frame = usize::try_from(numbers.unsigned()?).map_err(|_| NotNumbers)?;
+        let frames = numbers.count()?;
+        let count = robots.checked_mul(MOTION_FIELDS.len()).ok_or(NotNumbers)?;
+        if frames == 0 || count.saturating_mul(frames) > numbers.left() {
+            return Err(NotNumbers);
+        }
+        let column = |i: usize| read_column(&mut numbers, frames, i % MOTION_FIELDS.len() < POSITIONS);
+        let columns = (0..count).map(column).collect::<Result<_, _>>()?;
+        let mut stream = |rows: usize| (0..rows).map(|_| read_row(&mut numbers, frames)).collect();
+        let rows = rows.iter().map(|rows| stream(*rows)).collect::<Result<_, _>>()?;
+        if numbers.left() > 0 {
+            return Err(NotNumbers);
+        }
+        Ok(Self { first_frame, frames, columns, rows })
+    }
+
+    /// The state at a frame of this segment, numbered from its first.
+    pub(crate) fn frame(&self, frame: usize, step: u64) -> Result<Frame, NotNumbers> {
+        let [states, routes, rescuees, debris, groups, conflicts] = &self.rows[..] else {
+            return Err(NotNumbers);
+        };
+        let now = |row: &Vec<Entry>| {
+            let at = row.partition_point(|(from, _)| *from <= frame);
+            at.checked_sub(1).map(|at| row[at].1.clone()).ok_or(NotNumbers)
+        };
+        let robot = |(number, columns): (usize, &[Vec<i32>])| {
+            let mut motion = [0; MOTION_FIELDS.len()];
+            motion.iter_mut().zip(columns).for_each(|(value, column)| *value = column[frame]);
+            Ok(RobotFrame {
+                motion: Motion::from_numbers(motion),
+                state: RobotState::read(&now(&states[number])?)?,
+                route: Route::read(&now(&routes[number])?)?,
+            })
+        };
+        let robots = self.columns.chunks_exact(MOTION_FIELDS.len()).enumerate().map(robot);
+        Ok(Frame {
+            step,
+            robots: robots.collect::<Result<_, _>>()?,
+            rescuees: rescuees.iter().map(|row| RescueeFrame::read(&now(row)?)).collect::<Result<_, _>>()?,
+            debris: debris.iter().map(|row| MovedDebris::read(&now(row)?)).collect::<Result<_, _>>()?,
+            groups: groups.iter().map(|row| GroupFrame::read(&now(row)?)).collect::<Result<_, _>>()?,
+            conflict_sets: read_sets(&now(conflicts.first().ok_or(NotNumbers)?)?)?,
+        })
+    }
+}
+
+fn read_column(numbers: &mut Numbers, frames: usize, is_position: bool) -> Result<Vec<i32>, NotNumbers> {
+    let mut values: Vec<i32> = Vec::with_capacity(frames);
+    for frame in 0..frames {
+        let back = |by: usize| i64::from(values[frame - by]);
+        let expected = match frame {
+            0 => 0,
+            1 => back(1),
+            _ if is_position => 2 * back(1) - back(2),
+            _ => back(1),
+        };
+        let value = numbers.signed()?.checked_add(expected).ok_or(NotNumbers)?;
+        values.push(i32::try_from(value).map_err(|_| NotNumbers)?);
+    }
+    Ok(values)
+}
+
+fn read_row(numbers: &mut Numbers, frames: usize) -> Result<Vec<Entry>, NotNumbers> {
+    let entries = numbers.count()?;
+    let mut row = Vec::new();
+    let mut at = 0_usize;
+    for _ in 0..entries {
+        let gap = usize::try_from(numbers.unsigned()?).map_err(|_| NotNumbers)?;
+        at = at.checked_add(gap).filter(|at| *at < frames).ok_or(NotNumbers)?;
+        let length = numbers.count()?;
+        row.push((at, (0..length).map(|_| numbers.small()).collect::<Result<_, _>>()?));
+    }
+    if row.first().is_some_and(|(at, _)| *at == 0) { Ok(row) } else { Err(NotNumbers) }
+}

@@ -1,0 +1,164 @@
+//! Writes a recording while a trial runs.
+
+use std::io::{self, Write};
+
+use rne_core::Policy;
+use serde::Serialize;
+use usar_sim::event::Event;
+use usar_sim::record::{DecisionRecord, TrialRecord};
+use usar_sim::simulation::Simulation;
+
+use crate::chunk::{self, Kind, MAGIC};
+use crate::header::Header;
+use crate::segment::Draft;
+use crate::trust::Trust;
+
+/// Frames in a second of simulated time, unless something else is asked for.
+pub const DEFAULT_FPS: f64 = 10.0;
+
+/// Simulated time of a segment, in seconds.
+const SEGMENT_S: f64 = 10.0;
+
+/// How hard chunks are compressed, from 1 to 9. Higher levels cost more time than the trial may be slowed down, for a few percent.
+const LEVEL: u32 = 1;
+
+/// What to record.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Options {
+    /// What the policy is called.
+    pub policy: String,
+    /// Frames in a second of simulated time. There is at most one in a step.
+    pub fps: f64,
+}
+
+impl Options {
+    /// A recording with [`DEFAULT_FPS`].
+    #[must_use]
+    pub fn new(policy: &str) -> Self {
+        Self { policy: policy.to_owned(), fps: DEFAULT_FPS }
+    }
+}
+
+#[derive(Serialize)]
+struct Events<'e> {
+    /// Each with the step at whose end it had happened.
+    events: &'e [(u64, Event)],
+}
+
+#[derive(Serialize)]
+struct TimedDecision<'d> {
+    /// The step in which it was made.
+    step: u64,
+    #[serde(flatten)]
+    decided: &'d DecisionRecord,
+    trust: Option<Trust>,
+}
+
+/// Listens to a simulation and writes what it hears.
+pub struct Recorder<W> {
+    out: W,
+    steps_per_frame: u64,
+    frames_per_segment: usize,
+    next_frame: u64,
+    draft: Draft,
+    events: Vec<(u64, Event)>,
+    decisions: usize,
+}
+
+impl<W: Write> Recorder<W> {
+    /// Begins a recording with the state as it is now.
+    ///
+    /// # Errors
+    /// It cannot be written.
+    pub fn begin(mut out: W, simulation: &Simulation, options: &Options) -> io::Result<Self> {
+        let dt_s = simulation.scenario().dt_s;
+        let steps_per_frame = (1.0 / (options.fps * dt_s)).round().max(1.0) as u64;
+        let frames_per_segment = (SEGMENT_S / (dt_s * steps_per_frame as f64)).round().max(1.0) as usize;
+        let header = Header::of(simulation, &options.policy, (steps_per_frame, frames_per_segment));
+        out.write_all(&MAGIC)?;
+        write_json(&mut out, Kind::Header, &header)?;
+        let mut recorder = Self {
+            out,
+            steps_per_frame,
+            frames_per_segment,
+            next_frame: simulation.steps(),
+            draft: Draft::new(header.world.robots.len(), header.world.rows()),
+            events: Vec::new(),
+            decisions: simulation.decisions().len(),
+        };
+        recorder.note_frame(simulation)?;
+        Ok(recorder)
+    }
+
+    /// Takes note of a step. To be called after each.
+    ///
+    /// # Errors
+    /// It cannot be written.
+    pub fn listen(&mut self, simulation: &Simulation) -> io::Result<()> {
+        let step = simulation.steps();
+        self.events.extend(simulation.events().iter().map(|event| (step, event.clone())));
+        for decided in &simulation.decisions()[self.decisions..] {
+            let timed = TimedDecision { step: step - 1, decided, trust: Trust::of(decided) };
+            write_json(&mut self.out, Kind::Decision, &timed)?;
+            self.decisions += 1;
+        }
+        self.note_frame(simulation)
+    }
+
+    fn note_frame(&mut self, simulation: &Simulation) -> io::Result<()> {
+        if simulation.steps() < self.next_frame {
+            return Ok(());
+        }
+        self.draft.push(simulation);
+        self.next_frame += self.steps_per_frame;
+        if self.draft.frames() == self.frames_per_segment { self.end_segment() } else { Ok(()) }
+    }
+
+    /// Writes what has happened since the last segment, and the segment.
+    fn end_segment(&mut self) -> io::Result<()> {
+        if !self.events.is_empty() {
+            write_json(&mut self.out, Kind::Events, &Events { events: &self.events })?;
+            self.events.clear();
+        }
+        if self.draft.frames() > 0 {
+            let segment = self.draft.take();
+            chunk::write(&mut self.out, Kind::Segment, &segment, LEVEL)?;
+        }
+        self.out.flush()
+    }
+
+    /// Ends a whole recording with the record of the trial.
+    ///
+    /// # Errors
+    /// It cannot be written.
+    pub fn finish(mut self, record: &TrialRecord) -> io::Result<W> {
+        self.end_segment()?;
+        let summary = TrialRecord { decisions: Vec::new(), ..record.clone() };
+        write_json(&mut self.out, Kind::Summary, &summary)?;
+        self.out.flush()?;
+        Ok(self.out)
+    }
+}
+
+fn write_json(out: &mut impl Write, kind: Kind, value: &impl Serialize) -> io::Result<()> {
+    chunk::write(out, kind, &serde_json::to_vec(value)?, LEVEL)
+}
+
+/// Runs a trial to its end and records it. The trial has the result that it has without a recording.
+///
+/// # Errors
+/// The recording cannot be written.
+pub fn record(
+    mut simulation: Simulation,
+    policy: &dyn Policy,
+    options: &Options,
+    out: impl Write,
+) -> io::Result<TrialRecord> {
+    let mut recorder = Recorder::begin(out, &simulation, options)?;
+    while simulation.step(policy).is_none() {
+        recorder.listen(&simulation)?;
+    }
+    let record = simulation.finish();
+    recorder.finish(&record)?;
+    Ok(record)
+}

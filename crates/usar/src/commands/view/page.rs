@@ -1,0 +1,92 @@
+//! The page: the viewer, with the recordings in it.
+
+use std::io::Read;
+use std::path::Path;
+
+use experiments::Failure;
+use experiments::files::NewFile;
+
+use super::Shown;
+
+/// The viewer: built from the folder `viewer`.
+const VIEWER: &str = include_str!("../../../assets/viewer.html");
+
+/// Where the recordings go.
+const PLACE: &str = "<!--recordings-->";
+
+/// How every page of ours begins.
+const START: &str = "<!doctype html><!-- usar view -->";
+
+/// Writes a page whole or not at all. A page that is there is replaced; another file is not.
+pub(super) fn write(path: &Path, shown: &[Shown]) -> Result<(), Failure> {
+    if let Ok(file) = std::fs::File::open(path) {
+        let mut start = Vec::new();
+        let _ = file.take(START.len() as u64).read_to_end(&mut start); // what cannot be read is not ours
+        if start != START.as_bytes() {
+            return Err(Failure::input(format!(
+                "--out: {} exists and is not a page of `usar view`; nothing was overwritten",
+                path.display()
+            )));
+        }
+    }
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let name = path.file_name().and_then(|name| name.to_str());
+    let name =
+        name.ok_or_else(|| Failure::input(format!("--out: {} is not the name of a file", path.display())))?;
+    NewFile::write(folder, name, page(shown).as_bytes()).map(drop)
+}
+
+fn page(shown: &[Shown]) -> String {
+    let (before, after) = VIEWER.split_once(PLACE).unwrap_or((VIEWER, ""));
+    let mut page = before.to_owned();
+    for Shown { name, bytes } in shown {
+        page.push_str("<script type=\"application/x-usrec\" data-name=\"");
+        page.push_str(&escaped(name));
+        page.push_str("\">");
+        base64(&mut page, bytes);
+        page.push_str("</script>\n");
+    }
+    page + after
+}
+
+/// A text as the value of an attribute.
+fn escaped(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+}
+
+/// Appends bytes as text (RFC 4648, section 4).
+fn base64(out: &mut String, bytes: &[u8]) {
+    const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    out.reserve(bytes.len().div_ceil(3) * 4);
+    for three in bytes.chunks(3) {
+        let bits = (0..3).fold(0_u32, |bits, i| bits << 8 | u32::from(three.get(i).copied().unwrap_or(0)));
+        for digit in 0..4 {
+            let is_padding = digit > three.len();
+            let value = bits >> (18 - 6 * digit) & 63;
+            out.push(if is_padding { '=' } else { char::from(DIGITS[value as usize]) });
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bytes_become_the_texts_of_the_rfc() {
+        let text = |bytes: &str| {
+            let mut text = String::new();
+            base64(&mut text, bytes.as_bytes());
+            text
+        };
+        let expected = ["", "Zg==", "Zm8=", "Zm9v", "Zm9vYg==", "Zm9vYmE=", "Zm9vYmFy"];
+        assert!((0..=6).all(|length| text(&"foobar"[..length]) == expected[length]));
+    }
+
+    #[test]
+    fn the_page_has_a_place_for_recordings_and_names_are_no_markup() {
+        assert!(VIEWER.starts_with(START) && VIEWER.matches(PLACE).count() == 1);
+        let shown = Shown { name: "<script>\"&".into(), bytes: vec![1, 2, 3] };
+        assert!(page(&[shown]).contains("data-name=\"&lt;script&gt;&quot;&amp;\">AQID</script>"));
+    }
+}

@@ -1,0 +1,214 @@
+//! Recordings as files: of one trial, and of the trials of a sweep's folder.
+
+use std::fs::File;
+use std::io::{self, BufWriter};
+use std::path::{Path, PathBuf};
+use std::str::FromStr;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use experiments::Failure;
+use experiments::experiment::Experiment;
+use experiments::run::TrialKey;
+use experiments::sweep::disk::RECORDINGS;
+use experiments::sweep::folder::Folder;
+use recording::{Options, Recorder, Recording};
+use rne_core::Policy;
+use usar_sim::record::{Status, TrialRecord};
+use usar_sim::simulation::Simulation;
+
+use crate::running::Guard;
+
+/// Bytes that are written to disk at a time.
+const BUFFER: usize = 1 << 16;
+
+/// Frames in a second of simulated time, from the command line.
+pub(crate) fn fps(text: &str) -> Result<f64, String> {
+    let fps = text.parse::<f64>().ok().filter(|fps| (0.01..=1000.0).contains(fps));
+    fps.ok_or_else(|| format!("must be a number from 0.01 to 1000, found {text:?}"))
+}
+
+fn trouble(path: &Path, error: &io::Error) -> Failure {
+    match error.kind() {
+        io::ErrorKind::AlreadyExists => {
+            Failure::input(format!("--record: {} exists; nothing was overwritten", path.display()))
+        }
+        _ => Failure::storage(format!("cannot write {}: {error}", path.display())),
+    }
+}
+
+/// Runs a trial to its end and records it in a new file. If it is broken off, the file has the trial up to then.
+pub(crate) fn record_to(
+    path: &Path,
+    mut simulation: Simulation,
+    policy: &dyn Policy,
+    options: &Options,
+    guard: &Guard,
+) -> Result<TrialRecord, Failure> {
+    let trouble = |error: io::Error| trouble(path, &error);
+    let file = BufWriter::with_capacity(BUFFER, File::create_new(path).map_err(trouble)?);
+    let mut recorder = Recorder::begin(file, &simulation, options).map_err(trouble)?;
+    while simulation.step(policy).is_none() {
+        recorder.listen(&simulation).map_err(trouble)?;
+        guard.look(&simulation)?;
+    }
+    let record = simulation.finish();
+    recorder.finish(&record).map_err(trouble)?;
+    Ok(record)
+}
+
+/// Which trials of a sweep are recorded.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) enum Recorded {
+    /// All.
+    All,
+    /// So many of each policy and case, the first ones.
+    First(u32),
+    /// Those with these seeds.
+    Seeds(Vec<u64>),
+}
+
+impl FromStr for Recorded {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let wrong = || format!("must be `all`, a number of trials, or `seeds=` and a list, found {text:?}");
+        if text == "all" {
+            return Ok(Self::All);
+        }
+        match text.strip_prefix("seeds=") {
+            Some(list) => {
+                let seeds = list.split(',').map(|seed| seed.trim().parse().map_err(|_| wrong()));
+                seeds.collect::<Result<_, _>>().map(Self::Seeds)
+            }
+            None => text.parse().ok().filter(|count| *count > 0).map(Self::First).ok_or_else(wrong),
+        }
+    }
+}
+
+impl Recorded {
+    fn includes(&self, key: &TrialKey) -> bool {
+        match self {
+            Self::All => true,
+            Self::First(count) => key.trial <= *count,
+            Self::Seeds(seeds) => seeds.contains(&key.seed),
+        }
+    }
+}
+
+/// Where the recording of a trial is, in the folder of its sweep.
+pub(crate) fn path_of(folder: &Path, experiment: &Experiment, key: &TrialKey) -> PathBuf {
+    let is_plain = |c: char| c.is_ascii_alphanumeric() || "-_.".contains(c);
+    let plain: String = key.label.chars().map(|c| if is_plain(c) { c } else { '_' }).collect();
+    // Labels that differ have names that differ.
+    let label = if plain == key.label { plain } else { format!("{plain}.{}", key.policy + 1) };
+    let mut path = folder.join(RECORDINGS);
+    if experiment.cases.len() > 1 {
+        path.push(format!("case-{}", key.case + 1));
+    }
+    path.join(format!("{label}-{}.usrec", key.seed))
+}
+
+/// Records trials that a folder has the results of: each is simulated again, and its recording is kept if its result is the same.
+pub(crate) fn record_trials(folder: &mut Folder, which: &Recorded, stop: &AtomicBool) -> Result<(), Failure> {
+    let experiment = folder.shared_experiment();
+    let keys: Vec<TrialKey> =
+        experiment.keys(None).filter(|key| which.includes(key) && folder.has(key)).collect();
+    for key in keys {
+        let path = path_of(folder.path(), &experiment, &key);
+        if stop.load(Ordering::Relaxed) {
+            return Err(folder.interrupted());
+        }
+        let outcome = folder.outcome((key.case, key.policy, key.trial))?;
+        let Some(before) = outcome.record() else { continue };
+        if summary_hash(&path).is_some_and(|hash| hash == before.state_hash) {
+            continue; // it is there already
+        }
+        let parent = path.parent().unwrap_or(Path::new("."));
+        std::fs::create_dir_all(parent).map_err(|error| trouble(parent, &error))?;
+        let underway = path.with_extension("usrec.new");
+        let _ = std::fs::remove_file(&underway); // of a run that was broken off
+        let record = record_to(
+            &underway,
+            simulation(&experiment, &key)?,
+            &*policy(&experiment, &key),
+            &options(&key),
+            &Guard::new(f64::INFINITY),
+        )?;
+        if record.state_hash != before.state_hash {
+            let _ = std::fs::remove_file(&underway);
+            let TrialKey { label, seed, .. } = key;
+            return Err(Failure::run(format!(
+                "the trial of {label} with seed {seed} came out differently when it was recorded; `usar verify` says where"
+            )));
+        }
+        std::fs::rename(&underway, &path).map_err(|error| trouble(&path, &error))?;
+    }
+    Ok(())
+}
+
+/// The hash of the last state of a whole recording in a file.
+fn summary_hash(path: &Path) -> Option<String> {
+    let recording = Recording::read(&std::fs::read(path).ok()?).ok()?;
+    recording.summary.map(|summary| summary.state_hash)
+}
+
+/// A trial of a sweep: from its recording, if there is one of this very trial, or simulated again.
+pub(crate) fn recording_of(
+    folder: &Path,
+    experiment: &Experiment,
+    key: &TrialKey,
+) -> Result<Vec<u8>, Failure> {
+    if let Ok(bytes) = std::fs::read(path_of(folder, experiment, key))
+        && let Ok(Recording { header, cut: None, .. }) = Recording::read(&bytes)
+        && header.scenario.resolved == experiment.cases[key.case].scenario.resolved()
+        && (header.seed, &header.policy) == (key.seed, &key.label)
+    {
+        return Ok(bytes);
+    }
+    recorded(simulation(experiment, key)?, &*policy(experiment, key), &options(key))
+}
+
+fn options(key: &TrialKey) -> Options {
+    Options::new(&key.label)
+}
+
+fn policy(experiment: &Experiment, key: &TrialKey) -> std::sync::Arc<dyn Policy> {
+    std::sync::Arc::clone(&experiment.cases[key.case].policies[key.policy])
+}
+
+fn simulation(experiment: &Experiment, key: &TrialKey) -> Result<Simulation, Failure> {
+    let scenario = &experiment.cases[key.case].scenario;
+    Simulation::new(scenario, key.seed).map_err(|error| Failure::run(format!("seed {}: {error}", key.seed)))
+}
+
+/// Simulates a trial and records it in memory.
+pub(crate) fn recorded(
+    simulation: Simulation,
+    policy: &dyn Policy,
+    options: &Options,
+) -> Result<Vec<u8>, Failure> {
+    let mut bytes = Vec::new();
+    let record = recording::record(simulation, policy, options, &mut bytes).map_err(Failure::run)?;
+    match record.status {
+        Status::Failed(reason) => {
+            Err(Failure::run(format!("the trial of {} failed: {reason}", options.policy)))
+        }
+        _ => Ok(bytes),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn trials_to_record_are_all_the_first_or_listed() {
+        assert_eq!("all".parse(), Ok(Recorded::All));
+        assert_eq!("3".parse(), Ok(Recorded::First(3)));
+        assert_eq!("seeds=3, 7".parse(), Ok(Recorded::Seeds(vec![3, 7])));
+        for text in ["", "0", "seeds=", "3,7", "-1"] {
+            assert!(text.parse::<Recorded>().unwrap_err().contains("must be `all`"), "{text}");
+        }
+        assert!(fps("0").is_err() && fps("x").is_err() && fps("nan").is_err() && fps("25") == Ok(25.0));
+    }
+}

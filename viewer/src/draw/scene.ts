@@ -1,0 +1,35 @@
+/** Draws the state at a moment from above. */
+
+import type { Moment, Recording } from '../recording/recording';
+import { positionOf } from '../recording/state';
+import type { Camera } from './camera';
+import { drawGround, drawGroundObjects, drawNames, drawRescuees } from './ground';
+import { drawConflicts, drawLinks, drawRobots, drawRoutes, drawTrails } from './robots';
+import { LARGE_TEAM, type Looks, type Sheet } from './sheet';
+import { theme } from './theme';
+
+export function drawScene(
+  context: CanvasRenderingContext2D,
+  ratio: number,
+  camera: Camera,
+  recording: Recording,
+  moment: Moment,
+  looks: Looks,
+): void {
+  const sheet: Sheet = { context, ratio, camera, recording, moment, looks, colours: theme() };
+  context.setTransform(ratio, 0, 0, ratio, 0, 0);
+  context.clearRect(0, 0, camera.width, camera.height);
+  drawGround(sheet);
+  drawGroundObjects(sheet);
+  context.setTransform(ratio, 0, 0, ratio, 0, 0);
+  drawNames(sheet);
+  drawRescuees(sheet);
+  const robots = recording.header.world.robots.length;
+  const places = Array.from({ length: robots }, (_, i) => camera.toScreen(positionOf(recording, moment, i)));
+  if (robots <= LARGE_TEAM) drawTrails(sheet, places);
+  drawRoutes(sheet, places);
+  drawRobots(sheet, places);
+  if (!looks.links) return;
+  drawLinks(sheet, places);
+  if (robots <= LARGE_TEAM) drawConflicts(sheet, places);
+}

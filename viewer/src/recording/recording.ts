@@ -1,0 +1,185 @@
+/** A recording: what does not change at once, segments when they are needed. */
+
+import { type Chunk, ReadError, chunksOf, inflate, inflateJson } from './chunks';
+import { Segment } from './segment';
+import type { EventJson, Header, Summary, TimedDecision } from './types';
+
+const VERSION = 1;
+
+/** Numbers that decoded segments may take in memory, over all segments of a recording. */
+const BUDGET = 24e6;
+
+/** Something that happened. */
+export interface Happening {
+  time: number;
+  kind: string;
+  fields: Record<string, unknown>;
+}
+
+/** Where the state at a time is found: a segment, and a frame of it. */
+export interface Moment {
+  segment: Segment;
+  frame: number;
+  /** How far the time is on its way to the next frame, from 0 to 1. */
+  part: number;
+}
+
+/** Levels of the team at one time. */
+export interface Levels {
+  time: number;
+  energy: [least: number, mean: number, most: number];
+  hp: [least: number, mean: number, most: number];
+}
+
+function happening(event: EventJson, time: number): Happening {
+  if (typeof event === 'string') return { time, kind: event, fields: {} };
+  const [kind, fields] = Object.entries(event)[0];
+  return { time, kind, fields };
+}
+
+export class Recording {
+  readonly frames: number;
+  levels: Levels[] = [];
+  private readonly segments = new Map<number, Segment>();
+  private readonly pending = new Map<number, Promise<Segment>>();
+
+  private constructor(
+    readonly name: string,
+    readonly header: Header,
+    readonly happenings: Happening[],
+    readonly decisions: TimedDecision[],
+    readonly summary: Summary | null,
+    /** Bytes at the end of a recording that was cut short; null for a whole one. */
+    readonly cut: number | null,
+    private readonly chunks: Chunk[],
+    lastSegment: Segment | null,
+  ) {
+    this.frames = lastSegment ? lastSegment.firstFrame + lastSegment.frames : 0;
+  }
+
+  static async read(name: string, bytes: Uint8Array): Promise<Recording> {
+    const { chunks, rest } = chunksOf(bytes);
+    if (chunks.length === 0 || chunks[0].kind !== 'HEAD') {
+      throw new ReadError('The recording ends within its header: there is nothing to show.');
+    }
+    const header = await inflateJson<Header>(chunks[0]);
+    if (header.version !== VERSION) {
+      throw new ReadError(`The recording has version ${header.version} of the format, not ${VERSION}.`);
+    }
+    const happenings: Happening[] = [];
+    const decisions: TimedDecision[] = [];
+    let summary: Summary | null = null;
+    for (const chunk of chunks) {
+      if (chunk.kind === 'EVNT') {
+        const { events } = await inflateJson<{ events: [number, EventJson][] }>(chunk);
+        for (const [step, event] of events) happenings.push(happening(event, step * header.dt_s));
+      } else if (chunk.kind === 'DECI') {
+        decisions.push(await inflateJson<TimedDecision>(chunk));
+      } else if (chunk.kind === 'DONE') {
+        summary = await inflateJson<Summary>(chunk);
+      }
+    }
+    const segments = chunks.filter((chunk) => chunk.kind === 'SEGM');
+    const last = segments.length > 0 ? await decode(segments[segments.length - 1], header) : null;
+    if (!last) throw new ReadError('The recording was cut short before its first frames.');
+    const cut = summary && rest === 0 ? null : rest;
+    return new Recording(name, header, happenings, decisions, summary, cut, segments, last);
+  }
+
+  /** The simulated time of a frame, in seconds. */
+  timeOf(frame: number): number {
+    return (this.header.first_step + frame * this.header.steps_per_frame) * this.header.dt_s;
+  }
+
+  get start(): number {
+    return this.timeOf(0);
+  }
+
+  get end(): number {
+    return this.timeOf(this.frames - 1);
+  }
+
+  /** Where the state at a time is, if its segment is decoded; if not, it is decoded and `ready` is called. */
+  at(time: number, ready: () => void): Moment | null {
+    const perFrame = this.header.steps_per_frame * this.header.dt_s;
+    const exact = Math.min(Math.max((time - this.start) / perFrame, 0), this.frames - 1);
+    const frame = Math.floor(exact + 1e-6);
+    const number = Math.floor(frame / this.header.frames_per_segment);
+    const segment = this.segment(number, ready);
+    if (!segment) return null;
+    this.segment(Math.min(number + 1, this.chunks.length - 1), () => undefined);
+    return { segment, frame: frame - segment.firstFrame, part: Math.max(exact - frame, 0) };
+  }
+
+  /** The segment with a frame, if it is decoded. */
+  segmentOf(frame: number): Segment | null {
+    return this.segments.get(Math.floor(frame / this.header.frames_per_segment)) ?? null;
+  }
+
+  /** Decodes all segments once, for the curves of the levels; those that the memory allows stay. */
+  async survey(progress: (part: number) => void): Promise<void> {
+    const every = Math.max(1, Math.round(this.frames / 600));
+    for (let number = 0; number < this.chunks.length; number++) {
+      const segment = await this.decoded(number);
+      for (let frame = 0; frame < segment.frames; frame++) {
+        if ((segment.firstFrame + frame) % every === 0) this.levels.push(this.levelsAt(segment, frame));
+      }
+      progress((number + 1) / this.chunks.length);
+    }
+  }
+
+  private levelsAt(segment: Segment, frame: number): Levels {
+    const robots = this.header.world.robots.length;
+    const range = (field: number): [number, number, number] => {
+      let [least, sum, most] = [Infinity, 0, -Infinity];
+      for (let robot = 0; robot < robots; robot++) {
+        const level = segment.motion(robot, field, frame) / 1000;
+        [least, sum, most] = [Math.min(least, level), sum + level, Math.max(most, level)];
+      }
+      return [least, sum / robots, most];
+    };
+    return { time: this.timeOf(segment.firstFrame + frame), energy: range(4), hp: range(5) };
+  }
+
+  private segment(number: number, ready: () => void): Segment | null {
+    const segment = this.segments.get(number);
+    if (segment) return segment;
+    void this.decoded(number).then(ready);
+    return null;
+  }
+
+  private decoded(number: number): Promise<Segment> {
+    const known = this.segments.get(number);
+    if (known) return Promise.resolve(known);
+    let pending = this.pending.get(number);
+    if (!pending) {
+      pending = decode(this.chunks[number], this.header).then((segment) => {
+        this.pending.delete(number);
+        this.keep(number, segment);
+        return segment;
+      });
+      this.pending.set(number, pending);
+    }
+    return pending;
+  }
+
+  /** Keeps a segment; the ones that were decoded first make room for it. */
+  private keep(number: number, segment: Segment): void {
+    this.segments.set(number, segment);
+    const most = Math.max(4, Math.floor(BUDGET / segment.size));
+    for (const oldest of this.segments.keys()) {
+      if (this.segments.size <= most) return;
+      this.segments.delete(oldest);
+    }
+  }
+}
+
+async function decode(chunk: Chunk, header: Header): Promise<Segment> {
+  const rows = header.streams.map(([, count]) => count);
+  try {
+    return new Segment(await inflate(chunk), header.world.robots.length, rows);
+  } catch (error) {
+    if (error instanceof ReadError) throw error;
+    throw new ReadError(`The recording is damaged: chunk ${chunk.number} does not hold frames.`);
+  }
+}

@@ -1,0 +1,110 @@
+/** The state at a moment, in words and metres. */
+
+import type { Moment, Recording } from './recording';
+import { Stream } from './segment';
+import type { Need, Point, Role } from './types';
+
+export interface RobotState {
+  id: number;
+  role: Role;
+  activity: string;
+  rescuee: number | null;
+  until: number | null;
+  delay: string;
+  waitsFor: number | null;
+  task: number | null;
+  condition: string;
+  resources: number;
+  load: number;
+  energy: number;
+  hp: number;
+  /** Metres per second. */
+  velocity: Point;
+}
+
+const id = (number: number): number | null => (number > 0 ? number - 1 : null);
+
+/** Where a robot is, in metres, between two frames too. */
+export function positionOf(recording: Recording, { segment, frame, part }: Moment, robot: number): Point {
+  const [x, y] = [segment.motion(robot, 0, frame), segment.motion(robot, 1, frame)];
+  if (part === 0) return [x / 1000, y / 1000];
+  let [next, at] = [segment as typeof segment | null, frame + 1];
+  if (at >= segment.frames) {
+    next = recording.segmentOf(segment.firstFrame + at);
+    at = 0;
+  }
+  if (!next || next.frames <= at) return [x / 1000, y / 1000];
+  const between = (a: number, b: number): number => (a + (b - a) * part) / 1000;
+  return [between(x, next.motion(robot, 0, at)), between(y, next.motion(robot, 1, at))];
+}
+
+export function robotAt(recording: Recording, { segment, frame }: Moment, robot: number): RobotState {
+  const { world, codes, dt_s } = recording.header;
+  const row = segment.row(Stream.Robots, robot, frame);
+  const until = id(row[2]);
+  const motion = (field: number): number => segment.motion(robot, field, frame) / 1000;
+  return {
+    id: robot,
+    role: world.roles[world.robots[robot].role],
+    activity: codes.activities[row[0]],
+    rescuee: id(row[1]),
+    until: until === null ? null : until * dt_s,
+    delay: codes.delays[row[3]],
+    waitsFor: id(row[4]),
+    task: id(row[5]),
+    condition: codes.conditions[row[6]],
+    resources: row[7],
+    load: row[8],
+    energy: motion(4),
+    hp: motion(5),
+    velocity: [motion(2), motion(3)],
+  };
+}
+
+/** A robot's goal and the waypoints ahead, in metres. */
+export function routeAt({ segment, frame }: Moment, robot: number): { goal: Point | null; ahead: Point[] } {
+  const row = segment.row(Stream.Routes, robot, frame);
+  const points: Point[] = [];
+  for (let at = 1; at + 1 < row.length; at += 2) points.push([row[at] / 1000, row[at + 1] / 1000]);
+  const goal = row[0] === 1 ? (points.shift() ?? null) : null;
+  return { goal, ahead: points };
+}
+
+/** What a group knows: places of debris, and zones. The last group is the team at home. */
+export function knownBy(moment: Moment, group: number): { debris: Map<number, number>; zones: Set<number> } {
+  const row = moment.segment.row(Stream.Groups, group, moment.frame);
+  const debris = new Map<number, number>();
+  const end = 2 + 2 * row[1];
+  for (let at = 2; at < end; at += 2) debris.set(row[at], row[at + 1]);
+  return { debris, zones: new Set(row.slice(end)) };
+}
+
+/** What a need measures of a robot. */
+export function needOf(need: Need, robot: RobotState, healthFloor: number): number {
+  const { role, hp, energy } = robot;
+  const factor = healthFloor + (1 - healthFloor) * Math.min(Math.max(hp / 100, 0), 1);
+  switch (need.measures) {
+    case 'Health':
+      return (role.hp * hp) / 100;
+    case 'Speed':
+      return role.speed_mps * factor;
+    case 'Sensing':
+      return role.sensing_m * factor;
+    case 'Energy':
+      return (role.energy * energy) / 100;
+    case 'Resources':
+      return robot.resources;
+    case 'Capacity':
+      return role.capacity - robot.load;
+    case 'Observing':
+      return role.observing_m * factor;
+    case 'Constant':
+      return role.constants[need.name] ?? 0;
+  }
+}
+
+/** Most that a need can be for a role, to draw it as a share; null where that is not known. */
+export function mostOf(need: Need, role: Role): number {
+  const full = { role, hp: 100, energy: 100, resources: role.resources, load: 0 } as RobotState;
+  return needOf(need, full, 1);
+}
