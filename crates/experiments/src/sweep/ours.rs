@@ -55,8 +55,8 @@ pub(super) fn check_may_be_cleared(path: &Path) -> Result<(), Failure> {
     let reported = reported(path);
     let is_known = |name: &str| {
         let name = name.strip_suffix(".new").unwrap_or(name);
-        let is_plots = name == PLOTS && path.join(PLOTS).symlink_metadata().is_ok_and(|there| there.is_dir());
-        is_plots
+        let is_folder = path.join(name).symlink_metadata().is_ok_and(|there| there.is_dir());
+        is_folder && [PLOTS, RECORDINGS].contains(&name)
             || name == REPORTED
             || known_names().any(|known| known == name)
             || reported.contains(&name.into())
