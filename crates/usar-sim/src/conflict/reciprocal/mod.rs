@@ -10,7 +10,7 @@ mod passage;
 mod velocity;
 
 use super::passing::nearest_in_the_way;
-use super::{Directive, Mover, Resolver};
+use super::{Directive, Mover, Resolver, wait_cycles};
 use crate::event::{Event, EventLog};
 pub(super) use passage::Entry;
 use passage::{Entrant, decide};
@@ -48,9 +48,27 @@ impl Resolver {
         for i in 0..movers.len() {
             self.directives[i] = self.steer(i, movers);
         }
+        let leaders = self.leaders_of_jams(movers);
         for i in 0..movers.len() {
-            self.push(i, movers, log);
+            self.push(i, movers, &leaders, log);
         }
+    }
+
+    /// Of each ring of stuck robots, in which every one is in the way of another, the one with the best claim: it may push the next
+    /// whatever their directions, since none of them can get on by itself.
+    fn leaders_of_jams(&self, movers: &[Mover]) -> Vec<usize> {
+        let is_stuck = |i: &usize| movers[*i].stalled_steps >= self.stuck_steps && movers[*i].wishes_to_move();
+        if !(0..movers.len()).any(|i| is_stuck(&i)) {
+            return Vec::new();
+        }
+        let in_the_way = |i: usize| Some(i).filter(is_stuck).and_then(|i| self.robot_in_the_way(i, movers));
+        let waits_for: Vec<Option<usize>> = (0..movers.len()).map(in_the_way).collect();
+        let claim = |a: &usize, b: &usize| {
+            let longest_first = movers[*b].stalled_steps.cmp(&movers[*a].stalled_steps);
+            longest_first.then(movers[*a].priority.precedence(&movers[*b].priority))
+        };
+        let rings = wait_cycles(&waits_for);
+        rings.iter().filter_map(|ring| ring.iter().copied().min_by(claim)).collect()
     }
 
     /// Lets robots wait before narrow passages in which others have the right of way, and make room for them there.
@@ -126,7 +144,7 @@ impl Resolver {
     }
 
     /// Lets a robot that comes no nearer ask the one in its way to make room.
-    fn push(&mut self, i: usize, movers: &[Mover], log: &mut EventLog) {
+    fn push(&mut self, i: usize, movers: &[Mover], leaders: &[usize], log: &mut EventLog) {
         let me = &movers[i];
         let is_due = me.stalled_steps > 0
             && (me.stalled_steps.is_multiple_of(self.ask_again) || me.stalled_steps == self.stuck_steps);
@@ -137,7 +155,7 @@ impl Resolver {
         if me.stalled_steps == self.stuck_steps {
             log.push(Event::Deadlocked { robots: vec![me.robot, movers[blocker].robot] });
         }
-        if !movers[blocker].wishes_to_move() || self.may_push(i, blocker, movers) {
+        if !movers[blocker].wishes_to_move() || leaders.contains(&i) || self.may_push(i, blocker, movers) {
             self.make_room(i, blocker, movers, log);
         }
     }
