@@ -2,6 +2,7 @@
 
 mod held_up;
 mod radii;
+mod rooms;
 
 use rne_core::Registry;
 use usar_sim::event::Event;
