@@ -1,5 +1,6 @@
 //! Scenarios: read from RON, checked, and then known to be usable.
 
+mod debris;
 mod defaults;
 mod error;
 mod file;
@@ -17,8 +18,10 @@ use ron::extensions::Extensions;
 use ron_fields::Fields;
 use serde::de::DeserializeOwned;
 
+pub use debris::LEAST_POLYGON_WIDTH_M;
 pub use error::{LayoutError, Problem, Problems, ScenarioError};
 pub use file::*;
+pub use validate::MAX_ARENA_M;
 
 /// Greatest size of a scenario file, in bytes.
 const MAX_FILE_BYTES: u64 = 4 << 20;
