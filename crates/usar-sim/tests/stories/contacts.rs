@@ -1,7 +1,8 @@
 //! Contacts as the invariants see them.
 
-use usar_sim::record::{Status, TrialRecord};
+use usar_sim::record::Status;
 use usar_sim::scenario::Scenario;
+use usar_sim::simulation::Simulation;
 
 use crate::{scenario, trial};
 
@@ -26,46 +27,41 @@ fn a_contact_of_unequal_radii_is_seen_with_a_robot_between_them() {
     assert!(overlaps.contacts > 100 && overlaps.deepest_m < 0.05, "{overlaps}");
 }
 
-/// Two robots head-on at this speed, without right of way.
-fn head_on(speed: f64, acceleration: f64, dt: f64) -> TrialRecord {
-    let text = format!(
-        r#"(name: "head_on", duration_s: 20.0, dt_s: {dt:?}, arena_m: (60.0, 10.0),
-        roles: [(name: "fast", radius_m: 1.0, speed_mps: {speed:?}, acceleration_mps2: {acceleration:?})],
-        conflicts: (margin_m: 0.0, horizon_s: 0.0, deadlock_steps: 10, resolver: None),
-        team: [
-            (role: "fast", count: 1, center: (5.0, 5.0), width_m: 0.0),
-            (role: "fast", count: 1, center: (55.0, 5.3), width_m: 0.0),
-        ],
-        errands: [(robot: 0, to: [(55.0, 5.0)]), (robot: 1, to: [(5.0, 5.0)])])"#
-    );
-    trial(&Scenario::parse(&text, "head_on.ron".as_ref()).unwrap(), |_, _, _| {})
+/// A scenario of the repository with these fields set to these values.
+fn with(path: &str, fields: &[(&str, &str)]) -> Scenario {
+    let path = format!("{}/../../scenarios/{path}", env!("CARGO_MANIFEST_DIR"));
+    let mut file = (*Scenario::load(path.as_ref()).unwrap().0).clone();
+    fields.iter().for_each(|(field, value)| file.set(field, value).unwrap());
+    file.try_into().unwrap()
 }
 
 #[test]
 fn the_engine_may_brake_robots_just_before_they_touch() {
-    for (speed, acceleration, dt) in
-        [(2.0, 4.0, 0.05), (20.0, 10.0, 0.05), (20.0, 20.0, 0.02), (10.0, 4.0, 0.01)]
-    {
-        let record = head_on(speed, acceleration, dt);
-        assert!(!matches!(record.status, Status::Failed(_)), "{speed} m/s, {dt} s: {:?}", record.status);
-        assert!(record.overlaps.unwrap().contacts > 0, "{speed} m/s, {dt} s: they meet");
+    let fields = ["roles.carrier.speed_mps", "roles.supplier.speed_mps", "roles.observer.speed_mps"];
+    let mut fields = fields.map(|field| (field, "20.0")).to_vec();
+    fields.push(("duration_s", "100.0"));
+    let scenario = with("paper.ron", &fields);
+    let rne = rne_core::Registry::standard().parse("RNE").unwrap();
+    for seed in [1, 2, 3] {
+        let record = Simulation::new(&scenario, seed).unwrap().checked().run(&*rne.policy, |_, _, _| {});
+        assert_eq!(record.status, Status::Completed, "seed {seed}");
     }
-}
-
-/// `scenarios/minimal/pushed.ron` at these speeds.
-fn pushed([heavy, light]: [f64; 2]) -> TrialRecord {
-    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenarios/minimal/pushed.ron");
-    let mut file = (*Scenario::load(path.as_ref()).unwrap().0).clone();
-    file.set("roles.heavy.speed_mps", &format!("{heavy:?}")).unwrap();
-    file.set("roles.light.speed_mps", &format!("{light:?}")).unwrap();
-    trial(&file.try_into().unwrap(), |_, _, _| {})
 }
 
 #[test]
 fn a_thin_piece_that_a_fast_robot_pushes_does_not_enter_the_next_robot() {
-    for speeds in [[5.0, 2.25], [5.0, 5.0], [10.0, 2.25], [20.0, 20.0]] {
-        let record = pushed(speeds);
-        let overlaps = record.overlaps.unwrap();
-        assert_eq!(record.status, Status::ErrandsOver, "{speeds:?} m/s: {overlaps}");
+    for [heavy, light] in [["5.0", "2.25"], ["5.0", "5.0"], ["10.0", "2.25"], ["20.0", "20.0"]] {
+        for resolver in ["Rotation", "None"] {
+            let fields = [
+                ("roles.heavy.speed_mps", heavy),
+                ("roles.light.speed_mps", light),
+                ("conflicts.resolver", resolver),
+                ("duration_s", "20.0"),
+            ];
+            let record = trial(&with("minimal/pushed.ron", &fields), |_, _, _| {});
+            let is_sound = !matches!(record.status, Status::Failed(_));
+            assert!(is_sound, "{heavy} m/s, {light} m/s, {resolver}: {:?}", record.status);
+            assert!(record.overlaps.unwrap().contacts > 0, "{heavy} m/s, {light} m/s, {resolver}");
+        }
     }
 }
