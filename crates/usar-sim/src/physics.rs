@@ -34,6 +34,9 @@ const CORRECTION_MPS: f32 = 0.04;
 /// Contacts are foreseen as many steps ahead at top speed, so that robots that meet head-on touch instead of overlapping first.
 const APPROACH_STEPS: f32 = 2.0;
 
+/// Movable debris is thin if the fastest robot goes farther in a step than this share of the piece's narrower side.
+const THIN_SHARE: f32 = 0.125;
+
 /// Standard gravity, in metres per second squared: the weight with which movable debris rubs on the ground.
 const GRAVITY: f32 = 9.806_65;
 
@@ -85,7 +88,10 @@ impl Physics {
         world.broad_phase.adaptive_change_detection_margin = true; // fewer updates of the tree of boxes
         insert_walls(&mut world, arena);
         let ground = world.insert_body(RigidBodyBuilder::fixed());
-        let debris = debris.iter().map(|piece| insert_debris(&mut world, ground, piece)).collect();
+        let drivers = robots.iter().filter(|robot| !robot.is_aerial);
+        let longest_step = drivers.map(|robot| robot.top_speed).fold(0.0, f32::max) * dt;
+        let insert = |piece| insert_debris(&mut world, ground, piece, longest_step);
+        let debris = debris.iter().map(insert).collect();
         let robots = robots.iter().map(|robot| insert_robot(&mut world, robot, dt)).collect();
         Self { world, robots, debris }
     }
@@ -219,9 +225,15 @@ fn insert_debris(
     world: &mut PhysicsWorld,
     ground: RigidBodyHandle,
     piece: &DebrisBody,
+    longest_step: f32,
 ) -> Option<RigidBodyHandle> {
     let outline = piece.outline;
     let builder = if piece.mass.is_some() { RigidBodyBuilder::dynamic() } else { RigidBodyBuilder::fixed() };
+    // A thin piece that a fast robot pushes would be well inside the next body before the contact is noticed.
+    let bounds = outline.shape.compute_local_aabb();
+    let is_thin = longest_step > THIN_SHARE * bounds.extents().min_element();
+    let foresight = if is_thin { APPROACH_STEPS * longest_step } else { 0.0 };
+    let builder = builder.soft_ccd_prediction(foresight);
     let mut collider = ColliderBuilder::new(outline.shape.clone())
         .friction(BODY_FRICTION)
         .restitution(0.0)

@@ -12,10 +12,10 @@ use crate::world::{Robot, World};
 /// Overlap that one contact in a thousand may exceed, in metres.
 pub const RARE_OVERLAP_M: f32 = 0.01;
 
-/// Robots nearer than this touch something for the purpose of limits on acceleration, in metres.
+/// Robots nearer than this touch something for the purpose of limits on speed, in metres.
 const CONTACT_M: f32 = 0.02;
 
-/// Debris farther than this from a robot is not measured, in metres.
+/// Debris farther than this from a robot is not measured, in metres: more than any way of one step.
 const LOOK_M: f32 = 2.0;
 
 /// Rounding of a distance in an arena, in metres: added to every way that is taken off a distance.
@@ -65,6 +65,15 @@ impl Look {
 /// Measures overlaps from step to step.
 pub(super) struct Gauge {
     arena: Vector,
+    dt: f32,
+    /// Radius of the largest robot, in metres.
+    largest: f32,
+    /// For each robot, the way that it may go in the next step, in metres.
+    reach: Vec<f32>,
+    /// The greatest of these ways, in metres.
+    longest_reach: f32,
+    /// For each robot, whether it may touch something within a step: the engine brakes it before it does.
+    may_touch: Vec<bool>,
     /// Numbers of the debris that has not moved yet, and where each piece is.
     still: Vec<(usize, Pose)>,
     /// Numbers of the debris that was pushed.
@@ -86,6 +95,11 @@ impl Gauge {
         by_x.sort_by(|a, b| x(a).total_cmp(&x(b)));
         Self {
             arena: Vector::new(scenario.arena_m[0] as f32, scenario.arena_m[1] as f32),
+            dt: scenario.dt_s as f32,
+            largest: world.robots.iter().map(|robot| robot.radius()).fold(0.0, f32::max),
+            reach: vec![0.0; world.robots.len()],
+            longest_reach: 0.0,
+            may_touch: vec![false; world.robots.len()],
             still: world.debris.iter().map(|piece| piece.outline.pose).enumerate().collect(),
             pushed: Vec::new(),
             looks: vec![Look::never(); world.robots.len()],
@@ -115,6 +129,20 @@ impl Gauge {
         self.of(robot) > -CONTACT_M
     }
 
+    /// Whether a robot touches something, or may within a step at the speeds of the last one.
+    pub(super) fn may_touch(&self, robot: RobotId) -> bool {
+        self.may_touch[robot.index()]
+    }
+
+    /// Takes note of the ways that robots may go in a step: at their speed, and at what their drives add to it.
+    fn note_reach(&mut self, robots: &[Robot]) {
+        for (reach, robot) in self.reach.iter_mut().zip(robots) {
+            let gain = robot.spec.acceleration_mps2 as f32 * self.dt;
+            *reach = CONTACT_M + (robot.velocity.length() + gain) * self.dt;
+        }
+        self.longest_reach = self.reach.iter().copied().fold(0.0, f32::max);
+    }
+
     /// Takes note of the pieces that were pushed for the first time. Number of a fixed one that is not where it was, if there is one.
     pub(super) fn note_pushed(&mut self, world: &World) -> Option<usize> {
         while let Some(at) =
@@ -134,6 +162,8 @@ impl Gauge {
     pub(super) fn measure(&mut self, world: &World) {
         let robots = &world.robots;
         self.overlap.fill(f32::NEG_INFINITY);
+        self.may_touch.fill(false);
+        self.note_reach(robots);
         // By insertion: they are nearly sorted since the last step.
         for end in 1..self.by_x.len() {
             let mut at = end;
@@ -146,21 +176,27 @@ impl Gauge {
             let a = &robots[*i];
             for j in &self.by_x[at + 1..] {
                 let b = &robots[*j];
-                if b.position.x - a.position.x > 2.0 * a.radius().max(b.radius()) + CONTACT_M {
+                let farthest = a.radius() + self.largest + self.reach[*i] + self.longest_reach;
+                if b.position.x - a.position.x > farthest {
                     break;
                 }
                 if a.is_aerial() == b.is_aerial() {
                     let overlap = a.radius() + b.radius() - (a.position - b.position).length();
                     self.overlap[*i] = self.overlap[*i].max(overlap);
                     self.overlap[*j] = self.overlap[*j].max(overlap);
+                    let is_near = -overlap < self.reach[*i] + self.reach[*j];
+                    self.may_touch[*i] |= is_near;
+                    self.may_touch[*j] |= is_near;
                 }
             }
         }
         for robot in robots {
             let to_wall = robot.position.min(self.arena - robot.position).min_element();
             let with_debris = self.with_debris(robot, world);
+            let fixed = with_debris.max(robot.radius() - to_wall);
             let overlap = &mut self.overlap[robot.id.index()];
-            *overlap = overlap.max(robot.radius() - to_wall).max(with_debris);
+            *overlap = overlap.max(fixed);
+            self.may_touch[robot.id.index()] |= -fixed < self.reach[robot.id.index()];
             if *overlap > 0.0 {
                 self.total.contacts += 1;
                 self.total.rare += u64::from(*overlap > RARE_OVERLAP_M);
@@ -184,9 +220,10 @@ impl Gauge {
         let look = &mut self.looks[robot.id.index()];
         look.gap -= (robot.position - look.last).length() + ROUNDING_M;
         look.last = robot.position;
-        let is_far = look.gap > CONTACT_M; // false where a position is not finite
+        let reach = self.reach[robot.id.index()];
+        let is_far = look.gap > reach; // false where a position is not finite
         if !is_far {
-            let may_meet_others = (robot.position - look.at).length() > LOOK_M - CONTACT_M;
+            let may_meet_others = (robot.position - look.at).length() > LOOK_M - reach;
             if look.gap == f32::NEG_INFINITY || may_meet_others {
                 look.at = robot.position;
                 look.near.clear();
@@ -199,9 +236,11 @@ impl Gauge {
         }
         let mut least = look.gap;
         for piece in self.pushed.iter().map(|number| &world.debris[*number]) {
-            let reach = piece.reach + robot.radius() + CONTACT_M;
-            if (piece.outline.pose.translation - robot.position).length_squared() < reach * reach {
-                least = least.min(piece.outline.signed_distance(robot.position) - robot.radius());
+            let far = piece.reach + robot.radius() + reach + self.longest_reach;
+            if (piece.outline.pose.translation - robot.position).length_squared() < far * far {
+                let gap = piece.outline.signed_distance(robot.position) - robot.radius();
+                self.may_touch[robot.id.index()] |= gap < reach + self.longest_reach;
+                least = least.min(gap);
             }
         }
         -least

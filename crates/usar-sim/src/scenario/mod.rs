@@ -1,5 +1,6 @@
 //! Scenarios: read from RON, checked, and then known to be usable.
 
+mod debris;
 mod defaults;
 mod error;
 mod file;
@@ -18,8 +19,10 @@ use ron_fields::Fields;
 use ron_fields::file::MAX_TEXT_BYTES;
 use serde::de::DeserializeOwned;
 
+pub use debris::LEAST_POLYGON_WIDTH_M;
 pub use error::{LayoutError, Problem, Problems, ScenarioError};
 pub use file::*;
+pub use validate::MAX_ARENA_M;
 
 /// Most radii for which ways on the ground are planned apart: each costs a map of what is known.
 pub const MAX_RADIUS_CLASSES: usize = 4;

@@ -5,15 +5,19 @@ use std::ops::RangeInclusive;
 
 use rne_core::question::MAX_TASKS;
 
+use super::debris::debris;
 use super::error::Problem;
 use super::file::{
-    DebrisShape, Measure, NeedFile, Normal, Point, RoleFile, RoleKind, Row, SampledCounts, ScenarioFile,
-    TaskFile,
+    Measure, NeedFile, Normal, Point, RoleFile, RoleKind, Row, SampledCounts, ScenarioFile, TaskFile,
 };
 use crate::vitals::Rates;
 
 /// Most roles that a scenario may have.
 const MAX_ROLES: usize = 64;
+
+/// Greatest width and height of an arena, in metres. Positions are numbers of single precision: at 8,000 m they are 0.5 mm apart, which
+/// is what contacts and the routes between them bear.
+pub const MAX_ARENA_M: f64 = 8_000.0;
 
 /// Most needs that a scenario may have.
 const MAX_NEEDS: usize = 64;
@@ -40,18 +44,18 @@ pub(super) fn problems(file: &ScenarioFile) -> Vec<Problem> {
     check.problems
 }
 
-struct Checker {
+pub(super) struct Checker {
     problems: Vec<Problem>,
     arena: Point,
 }
 
 impl Checker {
-    fn fail(&mut self, field: impl Into<String>, rule: impl Into<String>, found: impl Display) {
+    pub(super) fn fail(&mut self, field: impl Into<String>, rule: impl Into<String>, found: impl Display) {
         let (field, rule, found) = (field.into(), rule.into(), found.to_string());
         self.problems.push(Problem { field, line: None, rule, found });
     }
 
-    fn number(&mut self, field: impl Into<String>, value: f64, range: RangeInclusive<f64>) {
+    pub(super) fn number(&mut self, field: impl Into<String>, value: f64, range: RangeInclusive<f64>) {
         if !range.contains(&value) {
             let rule = format!("must be a number from {} to {}", range.start(), range.end());
             self.fail(field, rule, value);
@@ -65,7 +69,7 @@ impl Checker {
     }
 
     /// A point at least `margin` metres inside the arena.
-    fn inside(&mut self, field: impl Into<String>, point: Point, margin: f64) {
+    pub(super) fn inside(&mut self, field: impl Into<String>, point: Point, margin: f64) {
         let fits = |x: f64, size: f64| x >= margin && x <= size - margin;
         if !fits(point[0], self.arena[0]) || !fits(point[1], self.arena[1]) {
             let rule = format!("must lie in the arena, at least {margin} m from its walls");
@@ -82,8 +86,8 @@ fn general(check: &mut Checker, file: &ScenarioFile) {
     }
     check.number("duration_s", file.duration_s, 1.0..=86_400.0);
     check.number("dt_s", file.dt_s, 0.001..=0.05);
-    check.number("arena_m[0]", file.arena_m[0], 2.0..=20_000.0);
-    check.number("arena_m[1]", file.arena_m[1], 2.0..=20_000.0);
+    check.number("arena_m[0]", file.arena_m[0], 2.0..=MAX_ARENA_M);
+    check.number("arena_m[1]", file.arena_m[1], 2.0..=MAX_ARENA_M);
 }
 
 fn team(check: &mut Checker, file: &ScenarioFile) {
@@ -101,7 +105,7 @@ fn team(check: &mut Checker, file: &ScenarioFile) {
             continue;
         };
         let radius = role.radius_m;
-        check.number(format!("{field}.width_m"), row.width_m, 0.0..=20_000.0);
+        check.number(format!("{field}.width_m"), row.width_m, 0.0..=MAX_ARENA_M);
         if let Some(levels) = row.levels {
             check.number(format!("{field}.levels.energy"), levels.energy, 0.01..=100.0);
             check.number(format!("{field}.levels.hp"), levels.hp, 0.01..=100.0);
@@ -284,55 +288,6 @@ fn task_area(check: &mut Checker, field: &str, task: &TaskFile) {
         check.inside(format!("{field}.center"), corner, 0.0);
     }
     check.inside(format!("{field}.rest"), task.rest, 0.0);
-}
-
-fn debris(check: &mut Checker, file: &ScenarioFile) {
-    if file.debris.len() > 100_000 {
-        check.fail("debris", "must have at most 100000 entries", file.debris.len());
-        return;
-    }
-    for (i, piece) in file.debris.iter().enumerate() {
-        let field = format!("debris[{i}]");
-        match &piece.shape {
-            DebrisShape::Disc(radius) => check.number(format!("{field}.shape"), *radius, 0.05..=100.0),
-            DebrisShape::Box(width, height) => {
-                check.number(format!("{field}.shape"), *width, 0.1..=1000.0);
-                check.number(format!("{field}.shape"), *height, 0.1..=1000.0);
-            }
-            DebrisShape::Polygon(corners) => polygon(check, &format!("{field}.shape"), corners),
-        }
-        check.inside(format!("{field}.at"), piece.at, 0.0);
-        check.number(format!("{field}.rotation_deg"), piece.rotation_deg, -360.0..=360.0);
-        if let Some(movable) = piece.movable {
-            check.number(format!("{field}.movable.mass_kg"), movable.mass_kg, 0.1..=100_000.0);
-            check.number(format!("{field}.movable.friction"), movable.friction, 0.0..=10.0);
-        }
-    }
-    for (i, zone) in file.radiation.iter().enumerate() {
-        check.inside(format!("radiation[{i}].at"), zone.at, 0.0);
-        check.number(format!("radiation[{i}].radius_m"), zone.radius_m, 0.01..=1000.0);
-    }
-}
-
-fn polygon(check: &mut Checker, field: &str, corners: &[Point]) {
-    if !(3..=64).contains(&corners.len()) {
-        return check.fail(field, "must have 3 to 64 corners", corners.len());
-    }
-    if let Some(bad) = corners.iter().flatten().find(|x| !(-1000.0..=1000.0).contains(*x)) {
-        return check.fail(field, "must have corners within 1000 m of its origin", bad);
-    }
-    for i in 0..corners.len() {
-        let [a, b, c] = [0, 1, 2].map(|k| corners[(i + k) % corners.len()]);
-        let turn = (b[0] - a[0]) * (c[1] - b[1]) - (b[1] - a[1]) * (c[0] - b[0]);
-        if turn < 1e-4 {
-            let rule = "must be convex, with its corners anticlockwise and none on a straight line";
-            return check.fail(
-                field,
-                rule,
-                format!("corner {} at ({}, {})", (i + 1) % corners.len(), b[0], b[1]),
-            );
-        }
-    }
 }
 
 fn sampled(check: &mut Checker, file: &ScenarioFile) {

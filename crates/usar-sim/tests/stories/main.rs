@@ -1,7 +1,10 @@
 //! Small worlds, each with a story that once ended badly. One binary.
 
+mod contacts;
 mod held_up;
 mod radii;
+mod rooms;
+mod shapes;
 
 use rne_core::Registry;
 use usar_sim::event::Event;

@@ -1,11 +1,12 @@
 //! `usar check`: validates scenarios and sweep files without running them.
 
 use std::io::Write;
-use std::path::PathBuf;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::{Path, PathBuf};
 
 use clap::Args;
-use experiments::Failure;
 use experiments::experiment::{Experiment, Overrides};
+use experiments::{Failure, panic_message};
 
 /// Validate scenarios and sweep files without running them
 #[derive(Debug, Args)]
@@ -16,13 +17,23 @@ pub(crate) struct Arguments {
     files: Vec<PathBuf>,
 }
 
+/// Checks one file. Trouble of the program's own is a problem of this file: the others are still checked.
+fn check(file: &Path) -> Result<(), Failure> {
+    let check = || {
+        let experiment = Experiment::load(file, &Overrides::default())?;
+        experiment.with_trials(1)?.check_start(file)
+    };
+    catch_unwind(AssertUnwindSafe(check)).unwrap_or_else(|panic| {
+        let reason = panic_message(&*panic);
+        Err(Failure::Input(format!("{}: internal error: {reason}", file.display())))
+    })
+}
+
 impl Arguments {
     pub(crate) fn execute(&self, out: &mut dyn Write) -> Result<(), Failure> {
         let mut problems = Vec::new();
         for file in &self.files {
-            let checked = Experiment::load(file, &Overrides::default())
-                .and_then(|experiment| experiment.with_trials(1)?.check_start(file));
-            match checked {
+            match check(file) {
                 Ok(()) => writeln!(out, "{}: ok", file.display())?,
                 Err(failure) => problems.push(failure.to_string()),
             }

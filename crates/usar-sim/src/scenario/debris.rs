@@ -1,0 +1,75 @@
+//! The rules of debris and radiation zones.
+
+use super::file::{DebrisShape, Point, ScenarioFile};
+use super::validate::Checker;
+
+/// Least width of a polygon in every direction, in metres: less is flat in single precision.
+pub const LEAST_POLYGON_WIDTH_M: f64 = 0.01;
+
+pub(super) fn debris(check: &mut Checker, file: &ScenarioFile) {
+    if file.debris.len() > 100_000 {
+        check.fail("debris", "must have at most 100000 entries", file.debris.len());
+        return;
+    }
+    for (i, piece) in file.debris.iter().enumerate() {
+        let field = format!("debris[{i}]");
+        match &piece.shape {
+            DebrisShape::Disc(radius) => check.number(format!("{field}.shape"), *radius, 0.05..=100.0),
+            DebrisShape::Box(width, height) => {
+                check.number(format!("{field}.shape"), *width, 0.1..=1000.0);
+                check.number(format!("{field}.shape"), *height, 0.1..=1000.0);
+            }
+            DebrisShape::Polygon(corners) => polygon(check, &format!("{field}.shape"), corners),
+        }
+        check.inside(format!("{field}.at"), piece.at, 0.0);
+        check.number(format!("{field}.rotation_deg"), piece.rotation_deg, -360.0..=360.0);
+        if let Some(movable) = piece.movable {
+            check.number(format!("{field}.movable.mass_kg"), movable.mass_kg, 0.1..=100_000.0);
+            check.number(format!("{field}.movable.friction"), movable.friction, 0.0..=10.0);
+        }
+    }
+    for (i, zone) in file.radiation.iter().enumerate() {
+        check.inside(format!("radiation[{i}].at"), zone.at, 0.0);
+        check.number(format!("radiation[{i}].radius_m"), zone.radius_m, 0.01..=1000.0);
+    }
+}
+
+fn polygon(check: &mut Checker, field: &str, corners: &[Point]) {
+    if !(3..=64).contains(&corners.len()) {
+        return check.fail(field, "must have 3 to 64 corners", corners.len());
+    }
+    if let Some(bad) = corners.iter().flatten().find(|x| !(-1000.0..=1000.0).contains(*x)) {
+        return check.fail(field, "must have corners within 1000 m of its origin", bad);
+    }
+    let edges = || (0..corners.len()).map(|i| [corners[i], corners[(i + 1) % corners.len()]]);
+    // How far a corner lies to the left of an edge, in metres.
+    let left_of = |[a, b]: [Point; 2], c: &Point| {
+        let turn = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+        turn / libm::hypot(b[0] - a[0], b[1] - a[1])
+    };
+    for i in 0..corners.len() {
+        let [a, b, c] = [0, 1, 2].map(|k| corners[(i + k) % corners.len()]);
+        let turn = (b[0] - a[0]) * (c[1] - b[1]) - (b[1] - a[1]) * (c[0] - b[0]);
+        if turn < 1e-4 {
+            let rule = "must be convex, with its corners anticlockwise and none on a straight line";
+            return check.fail(
+                field,
+                rule,
+                format!("corner {} at ({}, {})", (i + 1) % corners.len(), b[0], b[1]),
+            );
+        }
+    } // Each corner turns left, so that one to the right of an edge is on another turn round the middle.
+    let is_right = |edge| corners.iter().any(|corner| left_of(edge, corner) < -1e-9);
+    if let Some([a, b]) = edges().find(|edge| is_right(*edge)) {
+        let rule = "must go round once: no corner may lie to the right of an edge";
+        let found =
+            format!("a corner to the right of the edge from ({}, {}) to ({}, {})", a[0], a[1], b[0], b[1]);
+        return check.fail(field, rule, found);
+    }
+    let depth = |edge| corners.iter().map(|corner| left_of(edge, corner)).fold(0.0, f64::max);
+    let width = edges().map(depth).fold(f64::INFINITY, f64::min);
+    if width < LEAST_POLYGON_WIDTH_M {
+        let rule = format!("must be at least {LEAST_POLYGON_WIDTH_M} m wide in every direction");
+        check.fail(field, rule, format!("{width} m"));
+    }
+}
