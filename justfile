@@ -21,6 +21,11 @@ kills *arguments:
     cargo build --release --package usar
     cargo run --release --package xtask -- kills {{arguments}}
 
+# A finished sweep's folder with 1,000 flipped bits and 100 forged numbers, one at a time: each is found, each flip is mended
+damage *arguments:
+    cargo build --release --package usar
+    cargo run --release --package xtask -- damage {{arguments}}
+
 # What a step costs: full simulator against raw physics, stage by stage
 bench:
     cargo bench --bench speed

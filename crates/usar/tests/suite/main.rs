@@ -1,6 +1,5 @@
 //! The program `usar`, run as a user runs it. One binary, since each takes long to link.
 
-mod forged;
 mod place;
 mod support;
 

@@ -57,7 +57,8 @@ impl Resolver {
     /// Of each ring of stuck robots, in which every one is in the way of another, the one with the best claim: it may push the next
     /// whatever their directions, since none of them can get on by itself.
     fn leaders_of_jams(&self, movers: &[Mover]) -> Vec<usize> {
-        let is_stuck = |i: &usize| movers[*i].stalled_steps >= self.stuck_steps && movers[*i].wishes_to_move();
+        let is_stuck =
+            |i: &usize| movers[*i].stalled_steps >= self.stuck_steps && movers[*i].wishes_to_move();
         if !(0..movers.len()).any(|i| is_stuck(&i)) {
             return Vec::new();
         }

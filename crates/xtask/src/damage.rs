@@ -1,0 +1,206 @@
+//! Folders of results that are damaged: by flipped bits, and by somebody who forges numbers and computes every checksum anew.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
+use experiments::provenance::Manifest;
+use experiments::run::{Limits, Outcome, TrialKey};
+use experiments::sweep::audit::{difference, strange_files};
+use experiments::sweep::folder::{Folder, Opening};
+use experiments::sweep::{missing, run_trials};
+use rand::rngs::ChaCha8Rng;
+use rand::{RngExt, SeedableRng};
+use xxhash_rust::xxh3::{xxh3_64, xxh3_128};
+
+use crate::kills::files;
+
+/// What became of damaged folders.
+#[derive(Debug, Default, PartialEq, Eq)]
+pub struct Report {
+    /// Folders that were damaged.
+    pub damaged: u32,
+    /// Those of which verifying said so.
+    pub found: u32,
+    /// Those that were refused by all that reads results.
+    pub refused: u32,
+    /// Those that the sweep's command made whole again, to the byte, or refused with a sentence.
+    pub mended: u32,
+}
+
+/// The finished sweep in a folder, with its trials as they come out again.
+pub struct Sound {
+    folder: PathBuf,
+    again: Vec<Outcome>,
+    forged: Forged,
+}
+
+impl Sound {
+    /// Runs the trials of a finished sweep again.
+    pub fn of(path: &Path) -> Self {
+        let folder = Folder::read(path).expect("a sound folder");
+        let experiment = folder.shared_experiment();
+        let keys: Vec<TrialKey> = experiment.keys(None).collect();
+        let halt = AtomicBool::new(false);
+        let run = |key: TrialKey| Outcome { result: experiment.run_alone(&key, &halt), key };
+        let again = keys.into_iter().map(run).collect();
+        Self { folder: path.to_owned(), again, forged: Forged::of(path) }
+    }
+
+    /// Flips one bit of one file, again and again, and looks whether that is found and mended.
+    pub fn flip(&self, times: u32, seed: u64) -> Report {
+        let mut draws = ChaCha8Rng::seed_from_u64(seed);
+        let names: Vec<&String> =
+            self.forged.sound.keys().filter(|name| !name.starts_with(".lock")).collect();
+        let mut report = Report::default();
+        for _ in 0..times {
+            self.forged.restore();
+            let name = names[draws.random_range(0..names.len())];
+            let mut bytes = self.forged.sound[name].clone();
+            let at = draws.random_range(0..bytes.len());
+            bytes[at] ^= 1 << draws.random_range(0..8);
+            std::fs::write(self.folder.join(name), bytes).expect("the file can be written");
+            self.judge(&mut report, &format!("{name}, byte {at}"), true);
+        }
+        self.forged.restore();
+        report
+    }
+
+    /// Changes one digit of one number in the journal or in a table and computes every checksum anew, again and again.
+    pub fn forge(&self, times: u32, seed: u64) -> Report {
+        let mut draws = ChaCha8Rng::seed_from_u64(seed);
+        let mut report = Report::default();
+        for round in 0..times {
+            let pick = draws.random::<u64>();
+            let change = move |text: &str| other_digit(text, pick);
+            if round % 4 == 0 {
+                self.forged.file("trials.csv", |text| change(&text));
+            } else {
+                let key = &self.again[draws.random_range(0..self.again.len())].key;
+                let with = format!("\"policy\":\"{}\",\"trial\":{},", key.label, key.trial);
+                self.forged.line(&with, |line| *line = change(line));
+            }
+            self.judge(&mut report, &format!("forgery {round}"), false);
+        }
+        self.forged.restore();
+        report
+    }
+
+    fn judge(&self, report: &mut Report, what: &str, is_to_be_mended: bool) {
+        report.damaged += 1;
+        report.refused += u32::from(Folder::read(&self.folder).is_err());
+        if self.is_found() {
+            report.found += 1;
+        } else {
+            eprintln!("not found: {what}");
+        }
+        if is_to_be_mended {
+            if self.is_mended() {
+                report.mended += 1;
+            } else {
+                eprintln!("not mended: {what}");
+            }
+        }
+    }
+
+    /// Whether verifying says that something is not as it was.
+    fn is_found(&self) -> bool {
+        let Ok((mut folder, damages)) = Folder::read_damaged(&self.folder) else { return true };
+        let differs = |outcome| difference(&mut folder, outcome).is_ok_and(|difference| difference.is_some());
+        !damages.is_empty()
+            || self.again.iter().any(differs)
+            || !strange_files(&mut folder).is_ok_and(|strange| strange.is_empty())
+    }
+
+    /// Whether the sweep's command refuses the folder, or leaves it as it was before the damage.
+    fn is_mended(&self) -> bool {
+        let experiment = Arc::clone(&self.experiment());
+        let Ok(mut folder) = Folder::open(&self.folder, experiment, Opening::default(), &mut |_| {}) else {
+            return true;
+        };
+        let (limits, stop) = (Limits { jobs: 1, trial: None }, AtomicBool::new(false));
+        let left = missing(&folder, None);
+        run_trials(&mut folder, left, limits, &stop, |_| {}).expect("the trials run");
+        folder.finish(&stop).expect("the folder can be finished");
+        files(&self.folder) == self.forged.sound
+    }
+
+    fn experiment(&self) -> Arc<experiments::experiment::Experiment> {
+        let place = tempfile::tempdir().expect("a temporary folder");
+        for (name, bytes) in &self.forged.sound {
+            std::fs::write(place.path().join(name), bytes).expect("the file can be written");
+        }
+        Folder::read(place.path()).expect("a sound folder").shared_experiment()
+    }
+}
+
+/// The text with another digit instead of one of its digits.
+fn other_digit(text: &str, pick: u64) -> String {
+    let places: Vec<usize> =
+        text.bytes().enumerate().filter(|(_, c)| c.is_ascii_digit()).map(|(i, _)| i).collect();
+    let at = places[(pick % places.len() as u64) as usize];
+    let digit = (text.as_bytes()[at] - b'0' + 1 + (pick >> 32) as u8 % 9) % 10;
+    format!("{}{digit}{}", &text[..at], &text[at + 1..])
+}
+
+/// A finished sweep's folder, and what was in it.
+pub struct Forged {
+    folder: PathBuf,
+    sound: BTreeMap<String, Vec<u8>>,
+}
+
+impl Forged {
+    /// Remembers what is in a finished sweep's folder.
+    pub fn of(folder: &Path) -> Self {
+        Self { folder: folder.to_owned(), sound: files(folder) }
+    }
+
+    /// Everything as it was.
+    pub fn restore(&self) {
+        for (name, bytes) in &self.sound {
+            std::fs::write(self.folder.join(name), bytes).unwrap();
+        }
+    }
+
+    fn text(&self, name: &str) -> String {
+        String::from_utf8(self.sound[name].clone()).unwrap()
+    }
+
+    /// Changes one file alone, and the manifest's checksums.
+    pub fn file(&self, name: &str, change: impl FnOnce(String) -> String) {
+        self.restore();
+        let text = change(self.text(name));
+        assert!(text != self.text(name), "{name} is changed");
+        std::fs::write(self.folder.join(name), &text).unwrap();
+        let hash = format!("{:032x}", xxh3_128(text.as_bytes()));
+        self.write_manifest(|manifest| {
+            let listed = manifest.files.iter_mut().filter(|file| file.name == name);
+            listed.for_each(|file| file.xxh3_128.clone_from(&hash));
+        });
+    }
+
+    /// Changes the line of the journal that has this in it, and every checksum.
+    pub fn line(&self, with: &str, change: impl FnOnce(&mut String)) {
+        self.file("journal.jsonl", |text| {
+            let line = text.lines().find(|line| line.contains(with)).unwrap();
+            let (_, entry) = line.split_once(",\"trial\":").unwrap();
+            let mut entry = entry.strip_suffix('}').unwrap().to_owned();
+            change(&mut entry);
+            let sum = xxh3_64(entry.as_bytes());
+            text.replace(line, &format!("{{\"xxh3_64\":\"{sum:016x}\",\"trial\":{entry}}}"))
+        });
+    }
+
+    /// Changes the manifest alone, and its checksum.
+    pub fn manifest(&self, change: impl FnOnce(&mut Manifest)) {
+        self.restore();
+        self.write_manifest(change);
+    }
+
+    fn write_manifest(&self, change: impl FnOnce(&mut Manifest)) {
+        let mut manifest = Manifest::parse(&self.sound["manifest.json"]).unwrap();
+        change(&mut manifest);
+        std::fs::write(self.folder.join("manifest.json"), manifest.text().unwrap()).unwrap();
+    }
+}
