@@ -13,5 +13,6 @@ pub mod journeys;
 pub mod kills;
 pub mod navigation;
 pub mod pages;
+pub mod rooms;
 pub mod team;
 pub mod worlds;
