@@ -250,7 +250,10 @@ impl Invariants {
     /// Steps, speeds, accelerations and overlaps within their limits.
     fn check_motion(&self, robot: &Robot, before: &Before, now: &Before) -> Result<(), String> {
         let touches = now.in_contact || before.in_contact;
-        let top = self.fastest[usize::from(robot.is_aerial())] * if touches { PUSHED } else { 1.0 };
+        let fastest = self.fastest[usize::from(robot.is_aerial())];
+        // A robot that was pushed gets slower as its drive brakes it, not at once.
+        let pushed = if touches { fastest * PUSHED } else { before.velocity.length().min(fastest * PUSHED) };
+        let top = fastest.max(pushed);
         let step = robot.position - before.position;
         let longest = top * self.dt + STEP_SLACK_M;
         if step.length_squared() > longest * longest {
