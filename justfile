@@ -8,7 +8,7 @@ ci:
 soak:
     cargo run --release --package xtask -- soak
 
-# 500 random feasible worlds of 2 to 50 robots: who does not get there, and why
+# 500 random worlds in the open and 500 with rooms: violations, internal errors, fleets and robots that do not get on
 worlds:
     cargo run --release --package xtask -- worlds
 

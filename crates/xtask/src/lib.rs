@@ -14,5 +14,6 @@ pub mod journeys;
 pub mod kills;
 pub mod navigation;
 pub mod pages;
+pub mod rooms;
 pub mod team;
 pub mod worlds;

@@ -188,7 +188,7 @@ fn debris(
     debris
 }
 
-fn base(seed: u64, arena_m: Point, duration_s: f64) -> ScenarioFile {
+pub(crate) fn base(seed: u64, arena_m: Point, duration_s: f64) -> ScenarioFile {
     let paper = Scenario::parse(PAPER, "paper.ron".as_ref()).unwrap_or_else(|error| panic!("{error}"));
     ScenarioFile {
         name: format!("world-{seed}"),
@@ -224,15 +224,20 @@ pub struct FreeSpace {
 impl FreeSpace {
     /// The free plane among this debris, connected to a middle that is as large as possible.
     pub fn new(arena: Point, debris: &[DebrisFile]) -> Self {
+        Self::keeping_off(arena, debris, KEEP_OFF_M)
+    }
+
+    /// The free plane for robots whose centres keep this far off debris and walls, in metres.
+    pub fn keeping_off(arena: Point, debris: &[DebrisFile], keep_off_m: f64) -> Self {
         let outlines: Vec<Outline> = debris.iter().map(DebrisFile::outline).collect();
         let (columns, rows) = ((arena[0] / CELL_M) as usize, (arena[1] / CELL_M) as usize);
         let point = |i: usize| [(i % columns) as f64 * CELL_M, (i / columns) as f64 * CELL_M];
         let free: Vec<bool> = (0..columns * rows)
             .map(|i| {
                 let [x, y] = point(i);
-                let off_walls = x.min(y).min(arena[0] - x).min(arena[1] - y) >= KEEP_OFF_M;
+                let off_walls = x.min(y).min(arena[0] - x).min(arena[1] - y) >= keep_off_m;
                 let at = Vector::new(x as f32, y as f32);
-                off_walls && outlines.iter().all(|outline| outline.distance_to(at) >= KEEP_OFF_M as f32)
+                off_walls && outlines.iter().all(|outline| outline.distance_to(at) >= keep_off_m as f32)
             })
             .collect();
         let mut part = vec![usize::MAX; free.len()];
@@ -267,7 +272,7 @@ impl FreeSpace {
     }
 
     /// A place that keeps off those taken.
-    fn draw(&self, draws: &mut ChaCha8Rng, taken: &[Point]) -> Option<Point> {
+    pub fn draw(&self, draws: &mut ChaCha8Rng, taken: &[Point]) -> Option<Point> {
         (0..300).find_map(|_| {
             let i = draws.random_range(0..self.inside.len());
             let place = [(i % self.columns) as f64 * CELL_M, (i / self.columns) as f64 * CELL_M];

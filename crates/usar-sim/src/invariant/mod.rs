@@ -249,8 +249,12 @@ impl Invariants {
 
     /// Steps, speeds, accelerations and overlaps within their limits.
     fn check_motion(&self, robot: &Robot, before: &Before, now: &Before) -> Result<(), String> {
-        let touches = now.in_contact || before.in_contact;
-        let top = self.fastest[usize::from(robot.is_aerial())] * if touches { PUSHED } else { 1.0 };
+        // The engine foresees contacts, and pushes or brakes a robot in the step before it would touch something.
+        let touches = [now, before].iter().any(|state| state.in_contact || state.may_touch);
+        let fastest = self.fastest[usize::from(robot.is_aerial())];
+        // A robot that was pushed gets slower as its drive brakes it, not at once.
+        let pushed = if touches { fastest * PUSHED } else { before.velocity.length().min(fastest * PUSHED) };
+        let top = fastest.max(pushed);
         let step = robot.position - before.position;
         let longest = top * self.dt + STEP_SLACK_M;
         if step.length_squared() > longest * longest {
@@ -265,9 +269,7 @@ impl Invariants {
         let change = (robot.velocity - before.velocity) / self.dt;
         let greatest = robot.spec.acceleration_mps2 as f32;
         let limit = greatest * 1.01 + 1e-3;
-        // The engine foresees contacts and brakes a robot in the step before it would touch something.
-        let is_braked = touches || now.may_touch || before.may_touch;
-        if change.length_squared() > limit * limit && !is_braked {
+        if change.length_squared() > limit * limit && !touches {
             let change = change.length();
             return Err(format!(
                 "acceleration {change:.3} m/s^2 without contact, more than {greatest:.3} m/s^2"

@@ -3,12 +3,16 @@
 
 use parry2d::math::Vector;
 use rne_core::TaskId;
+use smallvec::SmallVec;
 
 use super::{Activity, Mission, Scene};
 use crate::belief::SENSING_PERIOD_STEPS;
 use crate::ids::{RescueeId, RobotId};
 use crate::model::Model;
 use crate::world::{RescueeState, World};
+
+/// Who claims which rescuee. Taken from the stack in teams and tasks of usual size, like all that claims need.
+pub(super) type Claims = SmallVec<[(RobotId, RescueeId); 16]>;
 
 /// A robot that looks for work, and the nearest rescuee that is left for it.
 struct Seeker {
@@ -34,8 +38,8 @@ impl Seeker {
 
 impl Mission {
     /// The claims of this step, by robot: for each group, as many as there are rescuees and spare resources.
-    pub(super) fn claims(&self, scene: &Scene) -> Vec<(RobotId, RescueeId)> {
-        let mut claims = Vec::new();
+    pub(super) fn claims(&self, scene: &Scene) -> Claims {
+        let mut claims = Claims::new();
         for task in scene.model.task_ids().filter(|task| self.groups[task.index()].at_work) {
             self.settle_claims(task, scene, &mut claims);
         }
@@ -43,7 +47,7 @@ impl Mission {
         claims
     }
 
-    fn settle_claims(&self, task: TaskId, scene: &Scene, claims: &mut Vec<(RobotId, RescueeId)>) {
+    fn settle_claims(&self, task: TaskId, scene: &Scene, claims: &mut Claims) {
         let members = self.groups[task.index()].members.iter().copied();
         let mut seeking = members.filter(|id| self.looks_for_work(*id, scene)).peekable();
         if seeking.peek().is_none() {
@@ -53,11 +57,12 @@ impl Mission {
         if spare <= 0 {
             return;
         }
-        let mut offers: Vec<RescueeId> = self.available(task, scene.model, scene.world).collect();
+        let mut offers: SmallVec<[RescueeId; 256]> = self.available(task, scene.model, scene.world).collect();
         if offers.is_empty() {
             return;
         }
-        let mut seekers: Vec<Seeker> = seeking.map(|id| Seeker::new(id, scene.world, &offers)).collect();
+        let mut seekers: SmallVec<[Seeker; 16]> =
+            seeking.map(|id| Seeker::new(id, scene.world, &offers)).collect();
         for _ in 0..spare {
             let pairs = seekers.iter().enumerate().filter_map(|(at, seeker)| Some((seeker.nearest?, at)));
             // Seekers are in order of their ids: the first of equally near ones is taken.

@@ -1,42 +1,67 @@
 //! Random feasible worlds: does everybody get there? Fails when a fleet stands still for a minute, more than one robot in a hundred does
-//! not come on for half a minute, or an invariant is violated.
+//! not come on for half a minute, an invariant is violated, or something panics.
 //!
-//! `worlds [FIRST_SEED] [WORLDS]`
+//! `worlds [FIRST_SEED] [WORLDS] [open|rooms]`: worlds in the open, and rooms whose walls meet; without a word, both.
 
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::process::ExitCode;
 
 use rayon::prelude::*;
+use usar_sim::scenario::Scenario;
 use xtask::journeys::{Journeys, STANDSTILL_S};
-use xtask::worlds;
+use xtask::{rooms, worlds};
+
+/// A family of worlds: its name, and the world of a seed.
+type Family = (&'static str, fn(u64) -> Scenario);
+
+const FAMILIES: [Family; 2] = [("open", worlds::world), ("rooms", rooms::rooms)];
 
 pub fn run(arguments: &[String]) -> ExitCode {
-    let mut arguments = arguments.iter().map(|text| text.parse::<u64>().expect("a number"));
-    let first = arguments.next().unwrap_or(0);
-    let count = arguments.next().unwrap_or(500);
-    let mut totals = Totals::default();
-    for start in (first..first + count).step_by(CHUNK) {
-        let seeds = start..(start + CHUNK as u64).min(first + count);
-        let run = |seed: u64| (seed, Journeys::run(&worlds::world(seed), seed));
-        let results: Vec<(u64, Result<Journeys, String>)> = seeds.into_par_iter().map(run).collect();
+    let is_number = |text: &&String| text.parse::<u64>().is_ok();
+    let numbers: Vec<u64> =
+        arguments.iter().filter(is_number).map(|text| text.parse().expect("a number")).collect();
+    let (first, count) = (numbers.first().copied().unwrap_or(0), numbers.get(1).copied().unwrap_or(500));
+    let chosen = arguments.iter().find(|text| !is_number(text));
+    let is_chosen = |family: &&Family| chosen.is_none_or(|name| name == family.0);
+    let families: Vec<&Family> = FAMILIES.iter().filter(is_chosen).collect();
+    assert!(!families.is_empty(), "the last word is open or rooms");
+    std::panic::set_hook(Box::new(|_| {})); // a panic is counted, and told in one line
+    let sound =
+        families.iter().map(|family| run_family(family, first..first + count)).filter(|is_sound| *is_sound);
+    ExitCode::from(u8::from(sound.count() < families.len()))
+}
+
+/// Runs a family's worlds; whether they are sound.
+fn run_family((name, world): &Family, seeds: std::ops::Range<u64>) -> bool {
+    let mut totals = Totals { family: name, ..Totals::default() };
+    for start in seeds.clone().step_by(CHUNK) {
+        let chunk = start..(start + CHUNK as u64).min(seeds.end);
+        let run = |seed: u64| {
+            let result = catch_unwind(AssertUnwindSafe(|| Journeys::run(&world(seed), seed)));
+            (seed, result.unwrap_or_else(|_| Err(INTERNAL.to_owned())))
+        };
+        let results: Vec<(u64, Result<Journeys, String>)> = chunk.into_par_iter().map(run).collect();
         results.iter().for_each(|(seed, result)| totals.add(*seed, result));
     }
-    let Totals { robots, stalls, faults, undone, longest } = totals;
-    let share = 100.0 * f64::from(stalls) / robots as f64;
-    println!(
-        "{count} worlds, {robots} robots: {faults} faults, longest standstill {longest:.1} s, {stalls} robots ({share:.2} %) \
-         without progress for 30 s, {undone} worlds with errands left"
-    );
-    ExitCode::from(u8::from(faults > 0 || share > 1.0))
+    totals.print(seeds.end - seeds.start)
 }
+
+/// What is said of a world in which something panicked.
+const INTERNAL: &str = "internal error";
 
 /// Worlds between two outputs.
 const CHUNK: usize = 10;
 
 #[derive(Default)]
 struct Totals {
+    family: &'static str,
     robots: usize,
     stalls: u32,
-    faults: u32,
+    violations: u32,
+    internal: u32,
+    refused: u32,
+    standstills: u32,
+    cut_off: usize,
     undone: u32,
     longest: f64,
 }
@@ -47,30 +72,43 @@ impl Totals {
         let journeys = match result {
             Ok(journeys) => journeys,
             Err(reason) => {
-                self.faults += 1;
-                println!("world {seed}: {reason}");
+                match reason {
+                    _ if reason == INTERNAL => self.internal += 1,
+                    _ if reason.starts_with("invariant violated") => self.violations += 1,
+                    _ => self.refused += 1,
+                }
+                println!("{} {seed}: {reason}", self.family);
                 return;
             }
         };
         let record = &journeys.record;
         self.robots += record.robots.len();
+        self.cut_off += record.cut_off.len();
         for stall in journeys.stalls() {
             self.stalls += 1;
-            println!("world {seed}: {stall}");
+            println!("{} {seed}: {stall}", self.family);
         }
         self.longest = self.longest.max(journeys.standstill_s);
         if journeys.standstill_s > STANDSTILL_S {
-            self.faults += 1;
-            println!("world {seed}: all stood for {:.1} s", journeys.standstill_s);
+            self.standstills += 1;
+            println!("{} {seed}: all stood for {:.1} s", self.family, journeys.standstill_s);
         }
         if seed.is_multiple_of(2) && record.status.name() != "errands_over" {
             self.undone += 1;
-            println!("world {seed}: {} robots, errands not over in time", record.robots.len());
+            println!("{} {seed}: {} robots, errands not over in time", self.family, record.robots.len());
         }
-        let Self { robots, stalls, .. } = self;
+    }
+
+    /// Prints what was counted; whether the worlds are sound.
+    fn print(&self, count: u64) -> bool {
+        let Self { family, robots, stalls, violations, internal, refused, standstills, .. } = self;
+        let share = 100.0 * f64::from(*stalls) / (*robots).max(1) as f64;
         println!(
-            "world {seed}: {} robots; {stalls} of {robots} so far did not come nearer for 30 s",
-            record.robots.len()
+            "{family}: {count} worlds, {robots} robots: {violations} violations, {internal} internal errors, {refused} \
+             other failures, {standstills} fleets that stood for {STANDSTILL_S} s (longest {:.1} s), {stalls} robots \
+             ({share:.2} %) without progress for 30 s, {} cut off, {} worlds with errands left",
+            self.longest, self.cut_off, self.undone
         );
+        violations + internal + refused + standstills == 0 && share <= 1.0
     }
 }
