@@ -116,6 +116,11 @@ fn a_recording_is_the_trial_at_a_hundred_random_times_and_changes_no_result() {
         let whole = record(simulation, &*policy, &Options::new("RNE"), &mut bytes).unwrap();
         assert_eq!(alone, whole, "{file}: recording changed the trial");
 
+        let mut again = Vec::new();
+        let simulation = Simulation::new(&scenario, 3).unwrap();
+        record(simulation, &*policy, &Options::new("RNE"), &mut again).unwrap();
+        assert!(again == bytes, "{file}: one trial, one recording");
+
         let recording = Recording::read(&bytes).unwrap();
         assert_eq!(recording.cut, None);
         assert_eq!(recording.frames(), 1 + (duration_s * 10.0) as usize);
