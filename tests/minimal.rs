@@ -6,7 +6,7 @@ use parry2d::math::Vector;
 use usar_sim::belief::{Inflation, Knowledge};
 use usar_sim::planning::{Planner, Query};
 use usar_sim::record::{Status, TrialRecord};
-use usar_sim::scenario::{PriorityRule, RoleKind, Scenario, ScenarioFile};
+use usar_sim::scenario::{PriorityRule, Scenario, ScenarioFile};
 use usar_sim::simulation::Simulation;
 
 use crate::support::{policy, root};
@@ -47,9 +47,7 @@ fn run(file: ScenarioFile) -> (TrialRecord, f64) {
 /// The longest time that a robot would need for its errands if it were alone and knew everything, at full speed.
 fn free_path_s(scenario: &Scenario, trial: &Simulation) -> f64 {
     let world = trial.world();
-    let radius = scenario.largest_radius_m(RoleKind::Ground) as f32;
-    let inflation = Inflation { radius, clearance: scenario.planning.clearance_m as f32 };
-    let mut known = Knowledge::nothing(world, inflation);
+    let mut known = Knowledge::nothing(world, Inflation::of(scenario));
     (0..world.debris.len()).filter(|i| world.debris[*i].is_fixed).for_each(|i| known.learn_debris(world, i));
     let mut planner = Planner::new(scenario);
     let mut time = |errand: &usar_sim::scenario::Errand| {
@@ -63,7 +61,8 @@ fn free_path_s(scenario: &Scenario, trial: &Simulation) -> f64 {
                 to,
                 aerial: robot.is_aerial(),
                 speed: 1.0,
-                obstacles: known.obstacles(),
+                radius: robot.radius(),
+                obstacles: known.obstacles(robot.radius()),
                 so_far: &[],
                 in_the_way: &[],
                 zones: &[],

@@ -110,7 +110,17 @@ fn vector(p: P) -> Vector {
 /// A ground robot's query at its usual speed.
 fn query<'a>(obstacles: &'a ObstacleMap, from: P, to: P, so_far: &'a [Vector]) -> Query<'a> {
     let (from, to) = (vector(from), vector(to));
-    Query { from, to, aerial: false, speed: 2.25, obstacles, so_far, in_the_way: &[], zones: &[] }
+    Query {
+        from,
+        to,
+        aerial: false,
+        radius: 0.4,
+        speed: 2.25,
+        obstacles,
+        so_far,
+        in_the_way: &[],
+        zones: &[],
+    }
 }
 
 #[test]
@@ -171,6 +181,7 @@ fn a_detour_round_radiation_is_made_where_it_is_cheaper_and_no_further() {
             from,
             to: Vector::new(50.0, 30.0),
             aerial: false,
+            radius: 0.4,
             speed: 2.0,
             obstacles: &ObstacleMap::default(),
             so_far: &[],
@@ -204,6 +215,7 @@ fn observers_fly_over_debris() {
             from: Vector::new(30.0, 30.0),
             to: Vector::new(60.0, 30.0),
             aerial,
+            radius: 0.4,
             speed: 1.5,
             obstacles: &obstacles,
             so_far: &[],
@@ -232,7 +244,7 @@ fn a_way_that_a_pushed_piece_leaves_free_is_taken_once_it_is_noticed_and_others_
     let scenario = Scenario::parse(CLOSED_GAP, "closed_gap.ron".as_ref()).unwrap();
     let length_after_move = |by: [f32; 2]| {
         let mut world = World::build(&Model::compile(&scenario, 1).unwrap());
-        let mut known = Knowledge::nothing(&world, Inflation { radius: 0.4, clearance: 0.15 });
+        let mut known = Knowledge::nothing(&world, Inflation { radii: vec![0.4], clearance: 0.15 });
         (0..3).for_each(|piece| known.learn_debris(&world, piece));
         let mut navigator = Navigator::new(&scenario, 1);
         let robot = world.robots[0].id;

@@ -211,7 +211,7 @@ fn tables_of_tasks_roles_and_needs_are_checked_and_named_by_their_entries() {
     refused(
         "(name: \"easy\"",
         "(name: \"e.s\"",
-        "tasks[1].name must be a name of at most 64 letters, digits, `-` and `_`, found \"e.s\"",
+        "tasks[1].name must be a name of at most 64 letters, digits, `-` and `_` that does not start with `-`, found \"e.s\"",
     );
     refused(
         "rest: (66.0, 14.5)",

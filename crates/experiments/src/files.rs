@@ -1,11 +1,11 @@
 //! Files that take their name when they are whole, and the hashes of their bytes.
 
-use std::fs::File;
-use std::io::{self, BufWriter, Write};
+use std::fs::{self, File};
+use std::io::{self, BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
-use xxhash_rust::xxh3::Xxh3;
+use xxhash_rust::xxh3::{Xxh3, xxh3_128};
 
 use crate::failure::Failure;
 
@@ -26,6 +26,14 @@ pub struct FileHash {
     pub xxh3_128: String,
 }
 
+impl FileHash {
+    /// What a file of these bytes is listed as.
+    #[must_use]
+    pub fn of(name: &str, content: &[u8]) -> Self {
+        Self { name: name.to_owned(), xxh3_128: format!("{:032x}", xxh3_128(content)) }
+    }
+}
+
 impl NewFile {
     /// Begins a file of this name.
     ///
@@ -33,7 +41,7 @@ impl NewFile {
     /// The folder cannot be written to.
     pub fn new(folder: &Path, name: &str) -> Result<Self, Failure> {
         let path = folder.join(name);
-        let file = File::create(new_path(&path)).map_err(|error| trouble(&path, &error))?;
+        let file = create(&new_path(&path)).map_err(|error| trouble(&path, &error))?;
         Ok(Self { name: name.to_owned(), path, file: BufWriter::new(file), hash: Xxh3::new() })
     }
 
@@ -83,6 +91,58 @@ pub(crate) fn trouble(path: &Path, error: &io::Error) -> Failure {
     Failure::storage(format!("cannot write {}: {error}", path.display()))
 }
 
+/// Opens a file to read it; whatever is no regular file, such as a folder, a pipe or a device, is refused and not waited for.
+///
+/// # Errors
+/// It is not there, no file, or cannot be read.
+pub fn open(path: &Path) -> io::Result<File> {
+    if fs::metadata(path)?.is_file() { File::open(path) } else { Err(no_file()) }
+}
+
+/// The bytes of a file that [`open`] opens.
+///
+/// # Errors
+/// Those of [`open`].
+pub fn read(path: &Path) -> io::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    io::copy(&mut open(path)?, &mut bytes)?;
+    Ok(bytes)
+}
+
+/// Makes a new file to write and read it, in the place of a file that may have its name; no link is followed.
+pub(crate) fn create(path: &Path) -> io::Result<File> {
+    remove(path)?;
+    File::options().read(true).write(true).create_new(true).open(path)
+}
+
+/// Refuses to write to what is there under this name, unless it is a regular file of this folder: a link is none.
+///
+/// # Errors
+/// It is something else.
+pub fn check_is_file(path: &Path) -> io::Result<()> {
+    match fs::symlink_metadata(path) {
+        Err(error) if error.kind() == ErrorKind::NotFound => Ok(()),
+        Err(error) => Err(error),
+        Ok(there) if there.is_file() => Ok(()),
+        Ok(_) => Err(no_file()),
+    }
+}
+
+fn no_file() -> io::Error {
+    io::Error::new(ErrorKind::InvalidInput, "is not a regular file")
+}
+
+/// Deletes a file, if it is there; of a link, the link.
+///
+/// # Errors
+/// It cannot be deleted.
+pub fn remove(path: &Path) -> io::Result<()> {
+    match fs::remove_file(path) {
+        Err(error) if error.kind() != ErrorKind::NotFound => Err(error),
+        _ => Ok(()),
+    }
+}
+
 struct HashWriter(Xxh3);
 
 impl std::io::Write for HashWriter {
@@ -102,6 +162,6 @@ impl std::io::Write for HashWriter {
 /// It cannot be read.
 pub(crate) fn file_hash(path: &Path) -> std::io::Result<String> {
     let mut hash = HashWriter(Xxh3::new());
-    std::io::copy(&mut File::open(path)?, &mut hash)?;
+    io::copy(&mut open(path)?, &mut hash)?;
     Ok(format!("{:032x}", hash.0.digest128()))
 }

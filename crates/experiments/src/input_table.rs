@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use csv::StringRecord;
+use ron_fields::file::read_text;
 
 use crate::failure::Failure;
 
@@ -22,11 +23,8 @@ impl InputTable {
     pub fn read(path: &Path) -> Result<Self, Failure> {
         let shown = path.display();
         let bad = |reason: &dyn std::fmt::Display| Failure::input(format!("{shown}: {reason}"));
-        if path.is_dir() {
-            return Err(bad(&"is a folder, not a table"));
-        }
-        let text = std::fs::read_to_string(path).map_err(|error| bad(&format!("cannot be read: {error}")))?;
-        let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
+        let text = read_text(path).map_err(|error| bad(&error))?;
+        let text = text.as_str();
         let mut reader =
             csv::ReaderBuilder::new().trim(csv::Trim::All).flexible(true).from_reader(text.as_bytes());
         let header = reader.headers().map_err(|error| bad(&error))?.clone();

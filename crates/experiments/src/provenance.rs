@@ -12,6 +12,9 @@ use crate::files::FileHash;
 /// Version of the folder's layout.
 pub const SCHEMA_VERSION: u32 = 4;
 
+/// Trials that a sweep may have for each case and policy.
+const MAX_TRIALS: u32 = 1_000_000;
+
 /// Commit of the source that this program was built from, with `-dirty` where it was changed.
 pub const COMMIT: &str = env!("USAR_COMMIT");
 
@@ -98,6 +101,12 @@ impl Manifest {
         let again = manifest.text().map_err(|error| error.to_string())?;
         if manifest.schema_version == SCHEMA_VERSION && again.as_bytes() != text {
             return Err("its checksum does not match: it was changed".to_owned());
+        }
+        if manifest.shard.is_some_and(|shard| !(1..=shard.of).contains(&shard.number)) {
+            return Err(format!("it is of {}, which no sweep has", manifest.part()));
+        }
+        if !(1..=MAX_TRIALS).contains(&manifest.trials) {
+            return Err(format!("trials: must be from 1 to {MAX_TRIALS}, found {}", manifest.trials));
         }
         manifest.checksum.clear();
         Ok(manifest)

@@ -8,10 +8,10 @@ use experiments::comparison::{
     Choice, Comparison, compare, digits, limit_of_correction, short, short_p, test_in_words,
 };
 use experiments::experiment::{Axis, Experiment, Seeds};
-use experiments::files::NewFile;
 use experiments::stats::Moments;
 use experiments::sweep::disk::{PLOTS, REPORT};
 use experiments::sweep::folder::Folder;
+use experiments::sweep::ours;
 
 use crate::drawing::{self, Figure};
 use crate::figures::figures;
@@ -74,16 +74,13 @@ pub fn write_report(folder: &mut Folder, case: usize) -> Result<PathBuf, Failure
     let figures = figures(folder, case, &here)?;
     let page = page(folder, case, &here, &all, &figures).render().map_err(Failure::run)?;
 
-    let path = folder.path().to_owned();
-    let plots = path.join(PLOTS);
-    let trouble = |error| Failure::storage(format!("cannot write to {}: {error}", plots.display()));
-    std::fs::create_dir_all(&plots).map_err(trouble)?;
-    for figure in &figures {
-        NewFile::write(&plots, &format!("{}.svg", figure.name), figure.svg.as_bytes())?;
-        NewFile::write(&plots, &format!("{}.csv", figure.name), figure.csv.as_bytes())?;
+    let mut files = vec![(REPORT.to_owned(), page.into_bytes())];
+    for Figure { name, svg, csv, .. } in figures {
+        files.push((format!("{PLOTS}/{name}.svg"), svg.into_bytes()));
+        files.push((format!("{PLOTS}/{name}.csv"), csv.into_bytes()));
     }
-    NewFile::write(&path, REPORT, page.as_bytes())?;
-    Ok(path.join(REPORT))
+    ours::write_report(folder.path(), &files)?;
+    Ok(folder.path().join(REPORT))
 }
 
 fn page<'a>(

@@ -2,6 +2,7 @@
 
 mod cursor;
 mod fields;
+pub mod file;
 mod path;
 mod set;
 mod unknown;

@@ -6,8 +6,8 @@ use askama::Template;
 use comfy_table::Table;
 use experiments::Failure;
 use experiments::experiment::Program;
-use experiments::files::NewFile;
 use experiments::sweep::disk::REPORT;
+use experiments::sweep::ours;
 use reports::STYLE;
 
 use crate::claims::{CLAIMS, Example, Judged, LEAST_TRIALS};
@@ -122,6 +122,6 @@ pub fn write_page(out: &Path, judged: &[Judged], sections: &[Section]) -> Result
         program: format!("usar {version}, source {source}"),
     };
     let page = page.render().map_err(Failure::run)?;
-    NewFile::write(out, REPORT, page.as_bytes())?;
+    ours::write_report(out, &[(REPORT.to_owned(), page.into_bytes())])?;
     Ok(out.join(REPORT))
 }

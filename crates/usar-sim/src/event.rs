@@ -41,6 +41,26 @@ impl ReturnCause {
     }
 }
 
+/// Why the team no longer waits for a robot.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum CutOffCause {
+    /// It knows no way to the place.
+    NoWay,
+    /// It came no nearer for `mission.cut_off_s`.
+    NoProgress,
+}
+
+impl CutOffCause {
+    /// The cause in words.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::NoWay => "knows no way",
+            Self::NoProgress => "comes no nearer",
+        }
+    }
+}
+
 /// Where a rescuee was delivered.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Place {
@@ -177,12 +197,21 @@ pub enum Event {
         /// The robot.
         robot: RobotId,
     },
-    /// A robot gave up on a place to which it knows no way: the rescuee, the errand or the rest place there.
+    /// A robot gave up on a place to which it knows no way, or to which it came no nearer: the rescuee, the errand or the rest place there.
     Unreachable {
         /// The robot.
         robot: RobotId,
         /// The place, in metres.
         place: [f32; 2],
+    },
+    /// The team no longer waits for a robot that does not get home or to rest, until it comes nearer.
+    CutOff {
+        /// The robot.
+        robot: RobotId,
+        /// Where it does not get, in metres.
+        place: [f32; 2],
+        /// Why.
+        cause: CutOffCause,
     },
     /// All errands are done or given up.
     ErrandsOver,

@@ -3,7 +3,7 @@
 use rne_core::{GroupOutcome, MemberOutcome, RoundOutcome, TaskId};
 use serde::{Deserialize, Serialize};
 
-use crate::event::{Event, ReturnCause};
+use crate::event::{CutOffCause, Event, ReturnCause};
 use crate::ids::RobotId;
 use crate::world::World;
 
@@ -65,8 +65,23 @@ pub struct Counts {
     pub back_offs: u32,
     /// Errands done, in a scenario with errands.
     pub errands_done: u32,
-    /// Places that robots gave up on, because they knew no way there.
+    /// Places that robots gave up on, because they knew no way there or came no nearer.
     pub unreachable: u32,
+}
+
+/// A robot that the team did not wait for, because it did not get home or to rest.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct CutOff {
+    /// The robot.
+    pub robot: u32,
+    /// When it was cut off first, in seconds.
+    pub first_s: f64,
+    /// How often it was cut off.
+    pub times: u32,
+    /// Where it did not get the first time, in metres.
+    pub place: [f32; 2],
+    /// Why, the first time.
+    pub cause: CutOffCause,
 }
 
 /// The metrics of a trial as it goes on.
@@ -82,6 +97,8 @@ pub struct Metrics {
     pub completed_rounds: u32,
     /// How often things happened.
     pub counts: Counts,
+    /// Robots that were cut off, in the order in which it happened to them first.
+    pub cut_off: Vec<CutOff>,
     /// The task of each robot's group in the current round.
     task_of: Vec<Option<TaskId>>,
 }
@@ -156,6 +173,7 @@ impl Metrics {
                 Event::BackedOff { .. } => self.counts.back_offs += 1,
                 Event::ErrandDone { .. } => self.counts.errands_done += 1,
                 Event::Unreachable { .. } => self.counts.unreachable += 1,
+                Event::CutOff { robot, place, cause } => self.note_cut_off(*robot, *place, *cause, time_s),
                 // Nothing to count; a new kind of event must be placed here or above.
                 Event::Restocked { .. }
                 | Event::DebrisDiscovered { .. }
@@ -166,6 +184,14 @@ impl Metrics {
                 | Event::ErrandsOver
                 | Event::MissionOver => {}
             }
+        }
+    }
+
+    fn note_cut_off(&mut self, robot: RobotId, place: [f32; 2], cause: CutOffCause, first_s: f64) {
+        self.counts.unreachable += u32::from(cause == CutOffCause::NoWay);
+        match self.cut_off.iter_mut().find(|other| other.robot == robot.0) {
+            Some(known) => known.times += 1,
+            None => self.cut_off.push(CutOff { robot: robot.0, first_s, times: 1, place, cause }),
         }
     }
 

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use crate::conflict::Delay;
 use crate::hash::HashChain;
 use crate::invariant::Overlaps;
-use crate::metrics::{Counts, RoundRecord, TaskTotals, history};
+use crate::metrics::{Counts, CutOff, RoundRecord, TaskTotals, history};
 
 /// How a trial ended.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -111,6 +111,9 @@ pub struct TrialRecord {
     pub robots: Vec<RobotRecord>,
     /// How often things happened.
     pub counts: Counts,
+    /// What the watchdog found: robots that the team did not wait for. Absent where there were none.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub cut_off: Vec<CutOff>,
     /// How deep bodies overlapped, in a checked trial.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub overlaps: Option<Overlaps>,

@@ -14,7 +14,7 @@ use crate::simulation::{Simulation, State};
 const MAGIC: &[u8; 8] = b"USARSNAP";
 
 /// Version of the format: one more whenever the state changes its shape.
-pub const VERSION: u32 = 4;
+pub const VERSION: u32 = 5;
 
 const HEADER_BYTES: usize = 8 + 4 + 8 + 16;
 

@@ -12,6 +12,8 @@ use crate::commands::{
     calibrate, check, compare, estimate, explain, group, merge, readings, report, reproduce, run, schema,
     sweep, trust, verify, view,
 };
+use crate::printable::Printable;
+use crate::running::{status_of_signal, tell};
 
 /// Which robots should team up? A laboratory for trust and grouping policies in mixed robot teams.
 #[derive(Debug, Parser)]
@@ -77,20 +79,21 @@ pub fn main_with(policies: Registry) -> ExitCode {
 }
 
 /// Runs the command that the process was called with. The exit status is 0 for a result, 1 for trouble
-/// underway, 2 for input that cannot be used, 3 for trouble with the disk, and 130 after Ctrl-C.
+/// underway, 2 for input that cannot be used, 3 for trouble with the disk, 130 after Ctrl-C, 143 after SIGTERM
+/// and 129 after SIGHUP.
 #[must_use]
 pub fn main() -> ExitCode {
     // A panic is a defect of ours; it is caught and reported in one sentence, never as a backtrace.
     std::panic::set_hook(Box::new(|_| {}));
     let cli = Cli::parse();
-    let mut out = std::io::stdout().lock();
+    let mut out = Printable::new(std::io::stdout().lock());
     let result = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| cli.command.execute(&mut out)))
         .unwrap_or_else(|panic| Err(Failure::run(format!("internal error: {}", panic_message(&*panic)))));
     let result = result.and_then(|()| Ok(out.flush()?));
     match result {
         Ok(()) | Err(Failure::ClosedOutput) => ExitCode::SUCCESS,
         Err(failure) => {
-            let _ = writeln!(std::io::stderr(), "error: {failure}");
+            tell(format_args!("error: {failure}"));
             ExitCode::from(exit_status(&failure))
         }
     }
@@ -102,7 +105,7 @@ fn exit_status(failure: &Failure) -> u8 {
         Failure::Run(_) => 1,
         Failure::Input(_) => 2,
         Failure::Storage(_) => 3,
-        Failure::Interrupted(_) => 130,
+        Failure::Interrupted(_) => status_of_signal(),
     }
 }
 

@@ -2,6 +2,7 @@
 
 mod cli;
 mod commands;
+mod printable;
 mod recordings;
 mod running;
 

@@ -16,6 +16,8 @@ use rne_core::Policy;
 use usar_sim::record::{Status, TrialRecord};
 use usar_sim::simulation::Simulation;
 
+use crate::running::Guard;
+
 /// Bytes that are written to disk at a time.
 const BUFFER: usize = 1 << 16;
 
@@ -40,12 +42,14 @@ pub(crate) fn record_to(
     mut simulation: Simulation,
     policy: &dyn Policy,
     options: &Options,
+    guard: &Guard,
 ) -> Result<TrialRecord, Failure> {
     let trouble = |error: io::Error| trouble(path, &error);
     let file = BufWriter::with_capacity(BUFFER, File::create_new(path).map_err(trouble)?);
     let mut recorder = Recorder::begin(file, &simulation, options).map_err(trouble)?;
     while simulation.step(policy).is_none() {
         recorder.listen(&simulation).map_err(trouble)?;
+        guard.look(&simulation)?;
     }
     let record = simulation.finish();
     recorder.finish(&record).map_err(trouble)?;
@@ -128,6 +132,7 @@ pub(crate) fn record_trials(folder: &mut Folder, which: &Recorded, stop: &Atomic
             simulation(&experiment, &key)?,
             &*policy(&experiment, &key),
             &options(&key),
+            &Guard::new(f64::INFINITY),
         )?;
         if record.state_hash != before.state_hash {
             let _ = std::fs::remove_file(&underway);

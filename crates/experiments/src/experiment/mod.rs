@@ -237,11 +237,25 @@ impl Experiment {
         let (cases, policies) = (self.cases.len(), self.policies.len());
         let places = (0..cases).flat_map(move |case| (0..policies).map(move |policy| (case, policy)));
         let trials = move |(case, policy)| (1..=self.trials).map(move |trial| (case, policy, trial));
-        let is_ours = move |(case, policy, trial): &(usize, usize, u32)| {
-            let index = (*trial as usize - 1) * cases * policies + case * policies + policy;
-            shard.is_none_or(|shard| index % shard.of as usize == shard.number as usize - 1)
-        };
+        let is_ours = move |place: &(usize, usize, u32)| self.is_in_shard(*place, shard);
         places.flat_map(trials).filter(is_ours).map(|place| self.key(place))
+    }
+
+    /// Whether the sweep, or a shard of it, has a trial at this place, with this seed.
+    #[must_use]
+    pub fn has(&self, place: (usize, usize, u32), seed: u64, shard: Option<Shard>) -> bool {
+        let (case, policy, trial) = place;
+        case < self.cases.len()
+            && policy < self.policies.len()
+            && (1..=self.trials).contains(&trial)
+            && self.seed(trial) == seed
+            && self.is_in_shard(place, shard)
+    }
+
+    fn is_in_shard(&self, (case, policy, trial): (usize, usize, u32), shard: Option<Shard>) -> bool {
+        let (cases, policies) = (self.cases.len(), self.policies.len());
+        let index = (trial as usize - 1) * cases * policies + case * policies + policy;
+        shard.is_none_or(|shard| index % shard.of as usize == shard.number as usize - 1)
     }
 
     /// The name of a trial.

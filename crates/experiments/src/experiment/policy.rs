@@ -54,6 +54,11 @@ impl PolicySpec {
         if label.is_some_and(|label| label.is_empty() || label.chars().any(char::is_control)) {
             return Err(format!("the label before `=` must be visible characters, found {text:?}"));
         }
+        if label.is_some_and(|label| label.starts_with(['=', '+', '-', '@'])) {
+            return Err(format!(
+                "the label before `=` must not begin like a formula, with =, +, - or @, found {text:?}"
+            ));
+        }
         if label.is_some_and(|label| label != name && registry().names().contains(&label)) {
             return Err(format!(
                 "the label before `=` must not be the name of another policy, found {text:?}"
@@ -160,6 +165,8 @@ mod tests {
         assert!(refused("DIS(score: Sum)").contains("policy DIS: it has no options"));
         assert!(refused("RNE(luck: 3)").contains("policy RNE: "));
         assert!(refused("=RNE").contains("label"));
+        assert!(refused("@x=RNE").contains("must not begin like a formula"));
+        assert!(refused("-1=RNE").contains("must not begin like a formula"));
         for text in
             ["RNE(", "RNE(Sum)", "RNE(sort: true", "RNE(sort: true, sort: false)", "RNE(sort: true) x"]
         {

@@ -94,8 +94,9 @@ pub(super) fn from_sweep_file(text: String, path: &Path) -> Result<(Parts, Vec<R
         Failure::input(format!("{}{line}: {field}: {reason}", path.display()))
     };
     let usable = |c: char| c.is_ascii_alphanumeric() || "-_.".contains(c);
-    if file.name.is_empty() || file.name.starts_with('.') || !file.name.chars().all(usable) {
-        return Err(bad("name", &format!("must be letters, digits, -, _ and ., found {:?}", file.name)));
+    if file.name.is_empty() || file.name.starts_with(['.', '-']) || !file.name.chars().all(usable) {
+        let rule = "must be letters, digits, -, _ and ., the first no . and no -";
+        return Err(bad("name", &format!("{rule}, found {:?}", file.name)));
     }
     let scenario = path.parent().unwrap_or(Path::new("")).join(&file.scenario);
     let (base, _) = Scenario::load(&scenario).map_err(Failure::input)?;

@@ -1,16 +1,17 @@
 //! What of a sweep's folder is on disk besides its journal and tables: the manifest, the sweep itself, and the lock.
 
 use std::fs::{self, File, TryLockError};
+use std::io::ErrorKind;
 use std::path::Path;
 
 use usar_sim::scenario::Scenario;
 
-use super::journal;
-use super::tables::TABLES;
+use super::tables::{LEAN_TABLES, TABLES};
+use super::{journal, ours};
 use crate::experiment::{Experiment, Parts, Program, Shard};
 use crate::failure::Failure;
-use crate::files::{FileHash, NewFile, file_hash};
-use crate::provenance::{Manifest, scenario_differences};
+use crate::files::{self, FileHash, NewFile, file_hash};
+use crate::provenance::{Manifest, SCHEMA_VERSION, scenario_differences};
 
 pub(super) const MANIFEST: &str = "manifest.json";
 const GIVEN: &str = "experiment.ron";
@@ -18,7 +19,7 @@ const RESOLVED: &str = "resolved.ron";
 /// The sweep as a file over the resolved scenario: what makes the folder again.
 const AGAIN: &str = "sweep.ron";
 /// Written before anything else.
-const INPUTS: [&str; 3] = [GIVEN, RESOLVED, AGAIN];
+pub(super) const INPUTS: [&str; 3] = [GIVEN, RESOLVED, AGAIN];
 /// The report, and the folder of its figures.
 pub const REPORT: &str = "report.html";
 /// See [`REPORT`].
@@ -34,17 +35,31 @@ pub(super) fn write_start(
     experiment: &Experiment,
     shard: Option<Shard>,
 ) -> Result<Manifest, Failure> {
-    let files = vec![
-        NewFile::write(path, GIVEN, experiment.given.as_bytes())?,
-        NewFile::write(path, RESOLVED, experiment.base.resolved().as_bytes())?,
-        NewFile::write(path, AGAIN, experiment.as_sweep_file(RESOLVED)?.as_bytes())?,
-    ];
+    let inputs = inputs(experiment)?;
+    let files = inputs.iter().map(|(name, text)| FileHash::of(name, text.as_bytes())).collect();
+    let manifest = Manifest::new(experiment, shard, files);
+    // The manifest first: a folder that has one is ours, and nothing else is.
+    write_manifest(path, &manifest)?;
+    for (name, text) in &inputs {
+        NewFile::write(path, name, text.as_bytes())?;
+    }
     // A report would be of what was there before.
     let trouble = |error| Failure::storage(format!("cannot write to {}: {error}", path.display()));
-    remove(&path.join(REPORT)).map_err(trouble)?;
-    let manifest = Manifest::new(experiment, shard, files);
-    write_manifest(path, &manifest)?;
+    ours::remove_report(path).map_err(trouble)?;
     Ok(manifest)
+}
+
+/// What a sweep is of, as the files of its folder.
+pub(super) fn inputs(experiment: &Experiment) -> Result<[(&'static str, String); 3], Failure> {
+    let again = experiment.as_sweep_file(RESOLVED)?;
+    Ok([(GIVEN, experiment.given.clone()), (RESOLVED, experiment.base.resolved()), (AGAIN, again)])
+}
+
+/// The names of the files that a manifest lists.
+fn listed(manifest: &Manifest) -> Vec<&'static str> {
+    let tables = if manifest.is_lean { &TABLES[..LEAN_TABLES] } else { &TABLES[..] };
+    let made = tables.iter().copied().chain([journal::FILE]).filter(|_| manifest.is_complete);
+    INPUTS.into_iter().chain(made).collect()
 }
 
 pub(super) fn write_manifest(path: &Path, manifest: &Manifest) -> Result<(), Failure> {
@@ -59,35 +74,9 @@ pub(super) fn sync_folder(path: &Path) -> Result<(), Failure> {
     synced.map_err(|error| Failure::storage(format!("{}: {error}", path.display())))
 }
 
-/// The names of all files that a sweep writes.
-fn known_names() -> impl Iterator<Item = &'static str> {
-    [MANIFEST, LOCK, journal::FILE, REPORT].into_iter().chain(INPUTS).chain(TABLES)
-}
-
-/// Refuses a folder that is not a sweep's: one with a manifest or a journal of this program, or with nothing but what a sweep writes first.
-pub(super) fn check_is_ours(path: &Path) -> Result<(), Failure> {
-    if !path.exists() {
-        return Ok(());
-    }
-    if !path.is_dir() {
-        return Err(Failure::input(format!("--out: {} is a file, not a folder", path.display())));
-    }
-    if is_sweeps(path) || journal::is_one(path) {
-        return Ok(());
-    }
-    let entries = fs::read_dir(path)
-        .map_err(|error| Failure::storage(format!("--out: {} cannot be read: {error}", path.display())))?;
-    let comes_first =
-        |name: &str| name == LOCK || name.strip_suffix(".new").is_some() || INPUTS.contains(&name);
-    for entry in entries.flatten() {
-        if !comes_first(&entry.file_name().to_string_lossy()) {
-            return Err(Failure::input(format!(
-                "--out: {} is not empty and not the folder of a sweep; nothing was overwritten",
-                path.display()
-            )));
-        }
-    }
-    Ok(())
+/// Whether a sweep has begun in a folder: its inputs are there, or trials.
+pub(super) fn has_begun(path: &Path) -> bool {
+    [RESOLVED, journal::FILE].iter().any(|name| path.join(name).exists())
 }
 
 /// Takes the folder for this process, until the file is dropped.
@@ -97,6 +86,7 @@ pub(super) fn check_is_ours(path: &Path) -> Result<(), Failure> {
 pub fn lock(path: &Path) -> Result<File, Failure> {
     let name = path.join(LOCK);
     let trouble = |error| Failure::storage(format!("cannot write to {}: {error}", path.display()));
+    files::check_is_file(&name).map_err(trouble)?;
     let file = File::options().create(true).append(true).open(&name).map_err(trouble)?;
     match file.try_lock() {
         Ok(()) => Ok(file),
@@ -107,48 +97,19 @@ pub fn lock(path: &Path) -> Result<File, Failure> {
     }
 }
 
-/// Deletes what a sweep wrote.
-pub(super) fn clear(path: &Path) -> std::io::Result<()> {
-    for name in known_names().filter(|name| *name != LOCK) {
-        remove(&path.join(name))?;
-        remove(&path.join(format!("{name}.new")))?;
-    }
-    let plots = fs::read_dir(path.join(PLOTS)).into_iter().flatten().flatten().map(|entry| entry.path());
-    for plot in plots.filter(|plot| plot.extension().is_some_and(|kind| kind == "svg" || kind == "csv")) {
-        remove(&plot)?;
-    }
-    let _ = fs::remove_dir(path.join(PLOTS)); // it stays where something else is in it
-    clear_recordings(&path.join(RECORDINGS))
-}
-
-/// Deletes the recordings in a folder and in those of its cases.
-fn clear_recordings(folder: &Path) -> std::io::Result<()> {
-    for entry in fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path()) {
-        if entry.is_dir() {
-            clear_recordings(&entry)?;
-        } else if entry.extension().is_some_and(|kind| kind == "usrec") {
-            remove(&entry)?;
-        }
-    }
-    let _ = fs::remove_dir(folder); // it stays where something else is in it
-    Ok(())
-}
-
-fn remove(file: &Path) -> std::io::Result<()> {
-    match fs::remove_file(file) {
-        Err(error) if error.kind() != std::io::ErrorKind::NotFound => Err(error),
-        _ => Ok(()),
-    }
-}
-
 pub(super) fn read_manifest(path: &Path) -> Result<Option<Manifest>, Failure> {
     let name = path.join(MANIFEST);
-    let text = match fs::read(&name) {
+    let text = match files::read(&name) {
         Ok(text) => text,
-        Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(None),
+        Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
         Err(error) => return Err(Failure::storage(format!("{}: {error}", name.display()))),
     };
-    Manifest::parse(&text).map(Some).map_err(|reason| {
+    let sound = Manifest::parse(&text).and_then(|manifest| {
+        let is_listed = manifest.files.iter().map(|file| file.name.as_str()).eq(listed(&manifest));
+        let is_ours = is_listed || manifest.schema_version != SCHEMA_VERSION;
+        if is_ours { Ok(manifest) } else { Err("it does not list the files of a sweep".to_owned()) }
+    });
+    sound.map(Some).map_err(|reason| {
         let name = name.display();
         Failure::input(format!("{name}: is not a manifest of this program: {reason}; --fresh starts over"))
     })
@@ -165,7 +126,8 @@ pub(super) fn check_continues(
     if there.shard != now.shard {
         differences.push(format!("shard: {} there, {} now", there.part(), now.part()));
     }
-    let old = fs::read_to_string(path.join(RESOLVED)).unwrap_or_default();
+    let old = files::read(&path.join(RESOLVED)).unwrap_or_default();
+    let old = String::from_utf8_lossy(&old).into_owned();
     differences.extend(scenario_differences(&old, resolved));
     if now.trials < there.trials {
         differences
@@ -194,7 +156,8 @@ pub fn broken_files(path: &Path, manifest: &Manifest) -> Vec<String> {
 /// Its resolved scenario cannot be read.
 pub fn experiment_of(path: &Path, manifest: &Manifest) -> Result<Experiment, Failure> {
     let (base, _) = Scenario::load(&path.join(RESOLVED)).map_err(Failure::input)?;
-    let given = fs::read_to_string(path.join(GIVEN)).unwrap_or_default();
+    let given = files::read(&path.join(GIVEN)).unwrap_or_default();
+    let given = String::from_utf8(given).unwrap_or_default();
     Experiment::assemble(Parts {
         name: manifest.name.clone(),
         given,
@@ -222,7 +185,7 @@ pub fn experiment_in(path: &Path) -> Result<(Experiment, Manifest), Failure> {
 /// Whether a folder is that of a sweep, whatever program made it.
 #[must_use]
 pub fn is_sweeps(path: &Path) -> bool {
-    let manifest = fs::read(path.join(MANIFEST)).unwrap_or_default();
+    let manifest = files::read(&path.join(MANIFEST)).unwrap_or_default();
     let manifest: serde_json::Value = serde_json::from_slice(&manifest).unwrap_or_default();
     manifest["program"] == "usar"
 }

@@ -10,14 +10,15 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::disk::{
-    MANIFEST, broken_files, check_continues, check_is_ours, clear, experiment_of, lock, read_manifest,
-    sweeps_in, sync_folder, write_manifest, write_start,
+    MANIFEST, broken_files, check_continues, experiment_of, has_begun, lock, read_manifest, sweeps_in,
+    sync_folder, write_manifest, write_start,
 };
 use super::journal::{self, Damage, Journal, Place};
+use super::ours::{check_is_ours, check_may_be_cleared, clear};
 use super::tables::Tables;
 use crate::experiment::{Experiment, Shard};
 use crate::failure::Failure;
-use crate::files::{FileHash, file_hash};
+use crate::files::{FileHash, check_is_file, file_hash};
 use crate::metric::Catalogue;
 use crate::provenance::{Manifest, SCHEMA_VERSION};
 use crate::run::{Outcome, TrialKey};
@@ -80,11 +81,15 @@ impl Folder {
         path.parent().map_or(Ok(()), sync_folder)?;
         let lock = lock(path)?;
         if opening.is_fresh {
+            check_may_be_cleared(path)?;
             clear(path).map_err(trouble)?;
         }
         let manifest = Manifest::new(&experiment, opening.shard, Vec::new());
         let mut finished = None;
-        if let Some(there) = read_manifest(path)? {
+        let file = path.join(journal::FILE);
+        check_is_file(&file).map_err(|error| Failure::storage(format!("{}: {error}", file.display())))?;
+        let has_begun = has_begun(path);
+        if let Some(there) = read_manifest(path)?.filter(|_| has_begun) {
             check_continues(path, &there, &manifest, &experiment.base.resolved())?;
             let broken = broken_files(path, &there);
             for name in &broken {
@@ -96,7 +101,7 @@ impl Folder {
             }
             let is_same = there.is_complete && there.started() == manifest;
             finished = (is_same && broken.is_empty()).then_some(there);
-        } else if path.join(journal::FILE).exists() {
+        } else if has_begun {
             return Err(Failure::storage(format!(
                 "{}: has a journal but no {MANIFEST}, so what it is of is not known; --fresh starts over",
                 path.display()
@@ -122,6 +127,15 @@ impl Folder {
     /// # Errors
     /// It is not the folder of a sweep, or its files are damaged.
     pub fn read(path: &Path) -> Result<Self, Failure> {
+        let (folder, damages) = Self::read_damaged(path)?;
+        if damages.is_empty() { Ok(folder) } else { Err(Failure::input(damages.join("\n"))) }
+    }
+
+    /// Reads a folder as far as it is sound, and says what of it is damaged.
+    ///
+    /// # Errors
+    /// It is not the folder of a sweep.
+    pub fn read_damaged(path: &Path) -> Result<(Self, Vec<String>), Failure> {
         let not_one = |reason: &dyn std::fmt::Display| {
             Failure::input(format!("{}: is not the folder of a sweep: {reason}", path.display()))
         };
@@ -151,7 +165,7 @@ impl Folder {
                 broken.join(", ")
             ));
         }
-        if damages.is_empty() { Ok(folder) } else { Err(Failure::input(damages.join("\n"))) }
+        Ok((folder, damages))
     }
 
     fn with_journal(
@@ -162,10 +176,11 @@ impl Folder {
         say: &mut dyn FnMut(String),
     ) -> Result<Self, Failure> {
         let mut results = BTreeMap::new();
-        let (journal, damages) = Journal::open(path, &experiment, is_writable, |outcome| {
-            let TrialKey { case, policy, trial, .. } = outcome.key;
-            results.insert((case, policy, trial), Measured::of(&outcome, &experiment.metrics));
-        })?;
+        let (journal, damages) =
+            Journal::open(path, (&experiment, manifest.shard), is_writable, |outcome| {
+                let TrialKey { case, policy, trial, .. } = outcome.key;
+                results.insert((case, policy, trial), Measured::of(&outcome, &experiment.metrics));
+            })?;
         // A sweep that is under way may be writing its last line.
         let may_write = !is_writable && !manifest.is_complete;
         let damages: Vec<Damage> =
@@ -254,6 +269,14 @@ impl Folder {
         self.journal.line(place)
     }
 
+    /// Whether its journal is nothing but its trials, in order.
+    ///
+    /// # Errors
+    /// The journal cannot be looked at.
+    pub fn is_tidy(&self) -> Result<bool, Failure> {
+        self.journal.is_tidy()
+    }
+
     /// Takes a trial: when this returns, it is on disk.
     ///
     /// # Errors
@@ -284,10 +307,10 @@ impl Folder {
         ))
     }
 
-    /// Makes all tables from the journal.
-    fn tables(&mut self, stop: &AtomicBool) -> Result<Vec<FileHash>, Failure> {
+    /// Makes all tables from the journal, in a folder.
+    pub(super) fn tables_in(&mut self, path: &Path, stop: &AtomicBool) -> Result<Vec<FileHash>, Failure> {
         let experiment = Arc::clone(&self.experiment);
-        let mut tables = Tables::new(&self.path, &experiment)?;
+        let mut tables = Tables::new(path, &experiment)?;
         for place in self.journal.places().collect::<Vec<_>>() {
             if stop.load(Ordering::Relaxed) {
                 return Err(self.interrupted());
@@ -306,7 +329,7 @@ impl Folder {
             return Ok(());
         }
         self.journal.tidy()?;
-        let finished = self.tables(stop)?;
+        let finished = self.tables_in(&self.path.clone(), stop)?;
         self.manifest.files.extend(finished);
         let journal = self.path.join(journal::FILE);
         let hash = file_hash(&journal)

@@ -11,8 +11,9 @@ use serde::{Deserialize, Serialize};
 use xxhash_rust::xxh3::xxh3_64;
 
 use super::links;
-use crate::experiment::Experiment;
+use crate::experiment::{Experiment, Shard};
 use crate::failure::Failure;
+use crate::files;
 use crate::run::{Fault, FaultKind, Outcome, Trial, TrialKey};
 
 /// Name of the file.
@@ -49,7 +50,7 @@ pub struct Damage {
 #[must_use]
 pub fn is_one(folder: &Path) -> bool {
     let mut head = [0; HEAD.len()];
-    let read = File::open(folder.join(FILE)).and_then(|mut file| file.read_exact(&mut head));
+    let read = files::open(&folder.join(FILE)).and_then(|mut file| file.read_exact(&mut head));
     read.is_ok() && head == *HEAD.as_bytes()
 }
 
@@ -70,19 +71,20 @@ enum Stored {
 }
 
 impl Journal {
-    /// Opens the journal of a folder and hands each finished trial to `found`, in the order of the file. For one who writes, trials that timed
+    /// Opens the journal of a folder, of the whole sweep or one shard, and hands each finished trial to `found`, in the order of the file. For one who writes, trials that timed
     /// out count as not run. A last line that is cut off is what a killed process was writing.
     ///
     /// # Errors
     /// The file cannot be read.
     pub fn open(
         folder: &Path,
-        experiment: &Experiment,
+        (experiment, shard): (&Experiment, Option<Shard>),
         is_writable: bool,
         mut found: impl FnMut(Outcome),
     ) -> Result<(Self, Vec<Damage>), Failure> {
         let path = folder.join(FILE);
         let trouble = |error| Failure::storage(format!("{}: {error}", path.display()));
+        files::check_is_file(&path).map_err(trouble)?;
         let mut options = OpenOptions::new();
         options.read(true).write(is_writable).create(is_writable);
         let file = options.open(&path).map_err(trouble)?;
@@ -103,7 +105,7 @@ impl Journal {
                 damages.push(Damage { what, is_cut_off: true });
                 break;
             }
-            match outcome_of(&line, experiment) {
+            match outcome_of(&line, experiment, shard) {
                 Ok(outcome) => {
                     let TrialKey { case, policy, trial, .. } = outcome.key;
                     let timed_out =
@@ -176,6 +178,22 @@ impl Journal {
         Ok(line)
     }
 
+    /// Whether the file is its lines in order and nothing else.
+    ///
+    /// # Errors
+    /// The file cannot be looked at.
+    pub fn is_tidy(&self) -> Result<bool, Failure> {
+        let mut end = 0;
+        let in_order = self.lines.values().all(|(start, size)| {
+            let follows = *start == end;
+            end += *size as u64;
+            follows
+        });
+        let there = self.file.metadata();
+        let there = there.map_err(|error| Failure::storage(format!("{}: {error}", self.path.display())))?;
+        Ok(in_order && end == there.len())
+    }
+
     /// A finished trial, with its hash chain.
     ///
     /// # Errors
@@ -183,7 +201,7 @@ impl Journal {
     pub fn outcome(&mut self, place: Place, experiment: &Experiment) -> Result<Outcome, Failure> {
         let line = self.line(place)?;
         let changed = |reason| Failure::storage(format!("{}: {reason}", self.path.display()));
-        outcome_of(&line, experiment).map_err(changed)
+        outcome_of(&line, experiment, None).map_err(changed)
     }
 
     /// Puts the lines in order and drops those that cannot be used.
@@ -191,19 +209,13 @@ impl Journal {
     /// # Errors
     /// The disk does not take it; the journal is as it was.
     pub fn tidy(&mut self) -> Result<(), Failure> {
-        let mut end = 0;
-        let in_order = self.lines.values().all(|(start, size)| {
-            let follows = *start == end;
-            end += *size as u64;
-            follows
-        });
-        if in_order && end == self.length {
+        if self.is_tidy()? {
             return Ok(());
         }
         let places: Vec<Place> = self.places().collect();
         let new = self.path.with_extension("jsonl.new");
-        let mut file = std::io::BufWriter::new(create(&new)?);
         let trouble = |error| Failure::storage(format!("{}: {error}", new.display()));
+        let mut file = std::io::BufWriter::new(files::create(&new).map_err(trouble)?);
         let (mut lines, mut length) = (BTreeMap::new(), 0);
         for place in places {
             let line = self.line(place)?;
@@ -218,12 +230,11 @@ impl Journal {
     }
 }
 
-fn create(path: &Path) -> Result<File, Failure> {
-    let options = OpenOptions::new().read(true).write(true).create(true).truncate(true).open(path);
-    options.map_err(|error| Failure::storage(format!("{}: {error}", path.display())))
-}
-
-fn line_of(experiment: &Experiment, outcome: &Outcome) -> Result<Vec<u8>, Failure> {
+/// The line of a trial.
+///
+/// # Errors
+/// None: a trial can be written to memory.
+pub(super) fn line_of(experiment: &Experiment, outcome: &Outcome) -> Result<Vec<u8>, Failure> {
     let key = &outcome.key;
     let stored = match &outcome.result {
         Ok(trial) => {
@@ -249,12 +260,13 @@ fn line_of(experiment: &Experiment, outcome: &Outcome) -> Result<Vec<u8>, Failur
     Ok(format!("{HEAD}{:016x}{MIDDLE}{entry}}}\n", xxh3_64(entry.as_bytes())).into_bytes())
 }
 
-fn outcome_of(line: &[u8], experiment: &Experiment) -> Result<Outcome, String> {
+fn outcome_of(line: &[u8], experiment: &Experiment, shard: Option<Shard>) -> Result<Outcome, String> {
     let entry = sound(line).ok_or("the checksum does not match: the line was changed or cut")?;
     let entry: Entry = serde_json::from_slice(entry).map_err(|error| format!("is no trial: {error}"))?;
     let policy = experiment.policies.iter().position(|policy| policy.label == entry.policy);
     let name = format!("trial {} of {} (seed {})", entry.trial, entry.policy, entry.seed);
-    let policy = policy.filter(|_| entry.case < experiment.cases.len());
+    let policy =
+        policy.filter(|policy| experiment.has((entry.case, *policy, entry.trial), entry.seed, shard));
     let policy = policy.ok_or_else(|| format!("{name} is not of this sweep"))?;
     let key =
         TrialKey { case: entry.case, policy, trial: entry.trial, seed: entry.seed, label: entry.policy };

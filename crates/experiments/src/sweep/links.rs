@@ -1,12 +1,8 @@
 //! `hashes.csv`: the hash chains of all trials, written by a sweep and compared when it is verified.
 
-use std::collections::BTreeMap;
-use std::path::Path;
-
 use serde::{Deserialize, Serialize};
 use usar_sim::hash::{HashChain, Link, PARTS};
 
-use crate::failure::Failure;
 use crate::run::Outcome;
 
 /// Name of the table.
@@ -24,13 +20,6 @@ pub(super) struct LinkRow {
     parts: String,
 }
 
-/// The column that tells cases apart, where there are several.
-#[derive(Debug, Deserialize)]
-struct CaseColumn {
-    #[serde(default)]
-    case: Option<usize>,
-}
-
 impl LinkRow {
     pub(super) fn of(outcome: &Outcome) -> impl Iterator<Item = Self> {
         let links = outcome.record().map(|record| record.chain.links()).unwrap_or_default();
@@ -41,10 +30,6 @@ impl LinkRow {
             digest: format!("{:032x}", link.digest),
             parts: link.parts.map(|part| format!("{part:04x}")).concat(),
         })
-    }
-
-    fn link(&self) -> Option<Link> {
-        link_of(self.step, &self.digest, &self.parts)
     }
 }
 
@@ -74,35 +59,4 @@ pub(super) fn decode(text: &str) -> Option<HashChain> {
         link_of(step.parse().ok()?, digest, parts)
     };
     Some(HashChain::of(text.split_whitespace().map(link).collect::<Option<Vec<Link>>>()?))
-}
-
-/// The chains by case, policy and number of the trial.
-pub type Chains = BTreeMap<(usize, String, u32), Vec<Link>>;
-
-/// Reads the table of a sweep's folder.
-///
-/// # Errors
-/// It is missing, or not such a table.
-pub fn read(folder: &Path) -> Result<Chains, Failure> {
-    let path = folder.join(FILE);
-    let mut reader = csv::Reader::from_path(&path).map_err(|error| {
-        Failure::input(format!(
-            "{}: is not the folder of a finished sweep: {FILE}: {error}",
-            folder.display()
-        ))
-    })?;
-    let bad = |line: u64, reason: String| Failure::input(format!("{}:{line}: {reason}", path.display()));
-    let header = reader.headers().map_err(|error| bad(1, error.to_string()))?.clone();
-    let mut chains = Chains::new();
-    for (record, line) in reader.records().zip(2..) {
-        let record = record.map_err(|error| bad(line, error.to_string()))?;
-        let row = record.deserialize::<LinkRow>(Some(&header));
-        let row = row.map_err(|error| bad(line, error.to_string()))?;
-        let case = record.deserialize::<CaseColumn>(Some(&header));
-        let case =
-            case.map_err(|error| bad(line, error.to_string()))?.case.map_or(0, |case| case.saturating_sub(1));
-        let wrong = || bad(line, "digest and parts must be hexadecimal digits, 32 and 40".into());
-        chains.entry((case, row.policy.clone(), row.trial)).or_default().push(row.link().ok_or_else(wrong)?);
-    }
-    Ok(chains)
 }

@@ -1,10 +1,12 @@
 //! Where the results of a sweep are kept: its folder, its journal, and the tables made of it.
 
+pub mod audit;
 pub mod disk;
 pub mod folder;
 mod journal;
 pub mod links;
 mod missing;
+pub mod ours;
 mod rows;
 mod table;
 mod tables;

@@ -16,6 +16,9 @@ use crate::run::Outcome;
 pub(super) const TABLES: [&str; 6] =
     ["trials.csv", "rounds.csv", "groups.csv", "robots.csv", "series.csv", links::FILE];
 
+/// How many of them a lean sweep has: the first.
+pub(super) const LEAN_TABLES: usize = 2;
+
 /// The tables on their way; of a lean sweep the first two only.
 pub(super) struct Tables {
     trials: Table,

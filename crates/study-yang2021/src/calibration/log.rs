@@ -7,8 +7,9 @@ use std::path::{Path, PathBuf};
 
 use experiments::Failure;
 use experiments::experiment::Program;
-use experiments::files::NewFile;
+use experiments::files::{self, NewFile};
 use experiments::sweep::disk;
+use xxhash_rust::xxh3::Xxh3;
 
 use super::{Calibration, Evaluation, Free, POLICY, Spread};
 
@@ -16,6 +17,8 @@ use super::{Calibration, Evaluation, Free, POLICY, Spread};
 const LOG: &str = "evaluations.csv";
 /// What is made of it in the end.
 const RESULTS: [&str; 2] = ["calibrated.ron", "fit.csv"];
+/// The last column of the log.
+const CHECKSUM: &str = "xxh3_64";
 /// What it is of.
 const ORIGIN: &str = "calibration.json";
 
@@ -49,7 +52,9 @@ impl Log {
         }
         let now = origin_of(calibration);
         if !is_fresh && origin.exists() {
-            check_continues(folder, &fs::read_to_string(&origin).map_err(trouble)?, &now)?;
+            let there = ron_fields::file::read_text(&origin)
+                .map_err(|error| Failure::input(format!("{}: {error}", origin.display())))?;
+            check_continues(folder, &there, &now)?;
         }
         fs::create_dir_all(folder).map_err(trouble)?;
         let lock = disk::lock(folder)?;
@@ -58,6 +63,8 @@ impl Log {
             fs::remove_file(folder.join(name)).map_err(trouble)?;
         }
         NewFile::write(folder, ORIGIN, format!("{now:#}\n").as_bytes())?;
+        files::check_is_file(&path)
+            .map_err(|error| Failure::storage(format!("{}: {error}", path.display())))?;
         let evaluations = if path.exists() { read(&path, calibration)? } else { Vec::new() };
         let mut file = File::options().create(true).append(true).open(&path).map_err(trouble)?;
         if file.metadata().map_err(trouble)?.len() == 0 {
@@ -94,8 +101,9 @@ impl Log {
         let values = evaluation.values.iter().map(f64::to_string);
         let spreads = evaluation.spreads.iter().flat_map(|s| [s.mean.to_string(), s.sd.to_string()]);
         let mut row: Vec<String> = cells.chain(values).chain(spreads).collect();
-        row.resize(self.columns - 1, String::new());
+        row.resize(self.columns - 2, String::new());
         row.push(evaluation.failure.clone().unwrap_or_default());
+        row.push(checksum(row.iter().map(String::as_str)));
         let written = self.file.write_all(line(&row)?.as_bytes()).and_then(|()| self.file.sync_data());
         written
             .map_err(|error| Failure::storage(format!("cannot write {}: {error}", self.path.display())))?;
@@ -109,7 +117,17 @@ fn header(calibration: &Calibration) -> Vec<String> {
     let quantities = calibration.target.quantities.iter();
     let spreads = quantities.flat_map(|q| [format!("{}_mean", q.name), format!("{}_sd", q.name)]);
     let first = ["evaluation", "misfit"].map(str::to_owned);
-    first.into_iter().chain(names).chain(spreads).chain(["failure".to_owned()]).collect()
+    first.into_iter().chain(names).chain(spreads).chain(["failure", CHECKSUM].map(str::to_owned)).collect()
+}
+
+/// The checksum of a line's other cells, in 16 hexadecimal digits.
+fn checksum<'a>(cells: impl IntoIterator<Item = &'a str>) -> String {
+    let mut hash = Xxh3::new();
+    for cell in cells {
+        hash.update(&(cell.len() as u64).to_le_bytes());
+        hash.update(cell.as_bytes());
+    }
+    format!("{:016x}", hash.digest())
 }
 
 fn line(cells: &[String]) -> Result<String, Failure> {
@@ -136,12 +154,15 @@ fn read(path: &Path, calibration: &Calibration) -> Result<Vec<Evaluation>, Failu
     for (i, row) in rows.records().enumerate() {
         let bad = || {
             Failure::input(format!(
-                "{}:{}: is not a line of a log; --fresh starts over",
+                "{}:{}: is not a line of a log, or was changed; --fresh starts over",
                 path.display(),
                 i + 1
             ))
         };
         let row = row.map_err(|_| bad())?;
+        if i == 0 && !row.iter().eq(header(calibration)) {
+            return Err(bad());
+        }
         if i > 0 {
             evaluations.push(evaluation(&row, calibration).ok_or_else(bad)?);
         }
@@ -150,19 +171,21 @@ fn read(path: &Path, calibration: &Calibration) -> Result<Vec<Evaluation>, Failu
 }
 
 fn evaluation(row: &csv::StringRecord, calibration: &Calibration) -> Option<Evaluation> {
+    let others = row.iter().take(row.len().saturating_sub(1));
+    if row.iter().next_back() != Some(&checksum(others)) {
+        return None;
+    }
     let number = |cell: usize| row.get(cell)?.parse::<f64>().ok().filter(|value| value.is_finite());
     let free = calibration.free.len();
     let values = (2..2 + free).map(number).collect::<Option<Vec<f64>>>()?;
     let misfit = number(1)?;
-    let failure = row.get(row.len() - 1).filter(|failure| !failure.is_empty()).map(str::to_owned);
+    let failure = row.get(row.len() - 2).filter(|failure| !failure.is_empty()).map(str::to_owned);
     if failure.is_some() {
         return Some(Evaluation { values, misfit, spreads: Vec::new(), failure });
     }
     let spread = |q| Some(Spread { mean: number(2 + free + 2 * q)?, sd: number(3 + free + 2 * q)? });
     let spreads = (0..calibration.target.quantities.len()).map(spread).collect::<Option<Vec<_>>>()?;
-    // A line that was changed does not have the misfit of its spreads.
-    let is_sound = calibration.target.misfit(&spreads).to_bits() == misfit.to_bits();
-    is_sound.then_some(Evaluation { values, misfit, spreads, failure })
+    Some(Evaluation { values, misfit, spreads, failure })
 }
 
 /// What decides the evaluations.

@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::geometry::RadiationZone;
 use crate::planning::{KnownObstacle, ObstacleKey, ObstacleMap};
+use crate::scenario::Scenario;
 use crate::world::{Robot, World};
 
 /// What was learned that concerns routes.
@@ -57,9 +58,9 @@ pub struct Knowledge {
     pool: u32,
     /// What concerns routes, in the order in which it was learned.
     news: Vec<News>,
-    /// Follows from `debris` and `wrecks`.
+    /// One for each class of radii. Follows from `debris` and `wrecks`.
     #[serde(skip)]
-    obstacles: ObstacleMap,
+    obstacles: Vec<ObstacleMap>,
     /// Follows from `zones`.
     #[serde(skip)]
     known_zones: Vec<(u32, RadiationZone)>,
@@ -68,13 +69,24 @@ pub struct Knowledge {
     inflation: Inflation,
 }
 
-/// By how much obstacles are inflated: the radius of the largest ground robot, and the clearance that it keeps, in metres.
-#[derive(Debug, Clone, Copy, Default)]
+/// By how much obstacles are inflated: for each class of ground robots by their radius, and by the clearance that they keep.
+#[derive(Debug, Clone, Default)]
 pub struct Inflation {
-    /// Radius of the robots.
-    pub radius: f32,
-    /// What they keep from obstacles beyond it.
+    /// Radii of the classes, rising, in metres.
+    pub radii: Vec<f32>,
+    /// What robots keep from obstacles beyond their radius, in metres.
     pub clearance: f32,
+}
+
+impl Inflation {
+    /// For the robots of a scenario.
+    #[must_use]
+    pub fn of(scenario: &Scenario) -> Self {
+        Self {
+            radii: scenario.ground_radii_m().iter().map(|radius| *radius as f32).collect(),
+            clearance: scenario.planning.clearance_m as f32,
+        }
+    }
 }
 
 impl Knowledge {
@@ -88,16 +100,17 @@ impl Knowledge {
             wrecks: vec![false; world.robots.len()],
             pool: 0,
             news: Vec::new(),
-            obstacles: ObstacleMap::default(),
+            obstacles: vec![ObstacleMap::default(); inflation.radii.len()],
             known_zones: Vec::new(),
             inflation,
         }
     }
 
-    /// The known obstacles.
+    /// The known obstacles as they are in the way of a robot of this radius, in metres: of the smallest class that holds it.
     #[must_use]
-    pub fn obstacles(&self) -> &ObstacleMap {
-        &self.obstacles
+    pub fn obstacles(&self, radius: f32) -> &ObstacleMap {
+        let class = self.inflation.radii.partition_point(|other| *other < radius);
+        &self.obstacles[class.min(self.obstacles.len() - 1)]
     }
 
     /// The known radiation zones, with their numbers.
@@ -125,8 +138,7 @@ impl Knowledge {
     fn learn_sighting(&mut self, world: &World, number: usize, sighting: u32) {
         if sighting > self.debris[number] {
             self.debris[number] = sighting;
-            let obstacle = self.debris_obstacle(world, number);
-            self.insert(obstacle);
+            self.insert(|knowledge, radius| knowledge.debris_obstacle(world, number, radius));
         }
     }
 
@@ -144,7 +156,7 @@ impl Knowledge {
         let robot = &world.robots[number];
         let Some(at) = robot.wreck_at else { return };
         if !std::mem::replace(&mut self.wrecks[number], true) && !robot.is_aerial() {
-            self.insert(self.wreck_obstacle(robot, at));
+            self.insert(|knowledge, radius| knowledge.wreck_obstacle(robot, at, radius));
         }
     }
 
@@ -166,41 +178,51 @@ impl Knowledge {
         }
     }
 
-    /// A piece of debris as it is known.
-    fn debris_obstacle(&self, world: &World, number: usize) -> KnownObstacle {
+    /// A piece of debris as it is known, for robots of a radius.
+    fn debris_obstacle(&self, world: &World, number: usize, radius: f32) -> KnownObstacle {
         let sighting = self.debris[number];
         let outline = &world.debris[number].sightings[sighting as usize - 1];
         KnownObstacle::new(
             ObstacleKey::Debris(number as u32),
             sighting,
             outline,
-            self.inflation.radius,
+            radius,
             self.inflation.clearance,
         )
     }
 
-    fn wreck_obstacle(&self, robot: &Robot, at: Vector) -> KnownObstacle {
-        KnownObstacle::wreck(robot.id.0, at, robot.radius(), self.inflation.radius, self.inflation.clearance)
+    fn wreck_obstacle(&self, robot: &Robot, at: Vector, radius: f32) -> KnownObstacle {
+        KnownObstacle::wreck(robot.id.0, at, robot.radius(), radius, self.inflation.clearance)
     }
 
     /// Makes anew what a snapshot leaves out because it follows from the rest.
     pub(crate) fn restore(&mut self, world: &World, inflation: Inflation) {
         self.inflation = inflation;
-        let known = (0..self.debris.len()).filter(|number| self.debris[*number] > 0);
-        let debris = known.map(|number| self.debris_obstacle(world, number));
-        let wrecks = world.robots.iter().filter(|robot| self.wrecks[robot.id.index()] && !robot.is_aerial());
-        let wrecks = wrecks.filter_map(|robot| Some(self.wreck_obstacle(robot, robot.wreck_at?)));
-        self.obstacles = debris.chain(wrecks).collect();
+        self.obstacles = self.inflation.radii.iter().map(|radius| self.map(world, *radius)).collect();
         let known_zones = world.zones.iter().zip(0_u32..).filter(|(_, number)| self.zones[*number as usize]);
         self.known_zones = known_zones.map(|(zone, number)| (number, *zone)).collect();
     }
 
-    fn insert(&mut self, obstacle: KnownObstacle) {
-        let key = obstacle.key;
-        if let Some(before) = self.obstacles.insert(obstacle) {
-            let (center, reach) = before.middle_and_reach();
-            self.news.push(News::Opening(Opening { center, reach }));
+    /// All known obstacles, for robots of a radius.
+    fn map(&self, world: &World, radius: f32) -> ObstacleMap {
+        let known = (0..self.debris.len()).filter(|number| self.debris[*number] > 0);
+        let debris = known.map(|number| self.debris_obstacle(world, number, radius));
+        let wrecks = world.robots.iter().filter(|robot| self.wrecks[robot.id.index()] && !robot.is_aerial());
+        let wrecks = wrecks.filter_map(|robot| Some(self.wreck_obstacle(robot, robot.wreck_at?, radius)));
+        debris.chain(wrecks).collect()
+    }
+
+    /// Adds an obstacle to the maps of all classes. News of it are those of the largest robots.
+    fn insert(&mut self, obstacle: impl Fn(&Self, f32) -> KnownObstacle) {
+        let mut news = None;
+        for class in 0..self.obstacles.len() {
+            let obstacle = obstacle(self, self.inflation.radii[class]);
+            let key = obstacle.key;
+            let before = self.obstacles[class].insert(obstacle);
+            news = Some((key, before.map(|before| before.middle_and_reach())));
         }
-        self.news.push(News::Obstacle(key));
+        let Some((key, opening)) = news else { return };
+        let opening = opening.map(|(center, reach)| News::Opening(Opening { center, reach }));
+        self.news.extend(opening.into_iter().chain([News::Obstacle(key)]));
     }
 }

@@ -29,8 +29,11 @@ const PUSHED: f32 = std::f32::consts::SQRT_2;
 /// A level that changes by less than this has not risen, in percent points.
 const ROUNDING: f64 = 1.0e-9;
 
-/// How near to its rest place a robot rests, in metres.
-const AT_REST_M: f32 = 1.0;
+/// How near to its place a robot has arrived, however small it is, in metres.
+const ARRIVAL_M: f32 = 0.16;
+
+/// How far from its rest place others may have pushed a robot while it rested, in metres.
+const PUSHED_AT_REST_M: f32 = 1.0;
 
 /// A broken invariant: where, when and with which values.
 #[derive(Debug, Clone, PartialEq)]
@@ -186,18 +189,27 @@ impl Invariants {
                 self.on_board -= 1;
                 self.checked_changes = None;
             }
+            Event::RestStarted { robot } => {
+                let robot = &world.robots[robot.index()];
+                self.check_rest(robot, robot.radius().max(ARRIVAL_M))?;
+            }
             Event::RestEnded { robot } => {
                 let robot = &world.robots[robot.index()];
-                let apart = robot.rest.iter().map(|place| (*place - robot.position).length());
-                let nearest = apart.fold(f32::INFINITY, f32::min);
-                if nearest > AT_REST_M + robot.radius() {
-                    let what = format!("rested {nearest:.2} m from its rest place");
-                    return Err(self.violation(Some(robot.id), what));
-                }
+                self.check_rest(robot, PUSHED_AT_REST_M + robot.radius())?;
             }
             _ => {}
         }
         Ok(())
+    }
+
+    /// A robot that rests is within this many metres of its own slot at a rest place.
+    fn check_rest(&self, robot: &Robot, within: f32) -> Result<(), Violation> {
+        let apart = robot.rest.iter().map(|slot| (*slot - robot.position).length());
+        let nearest = apart.fold(f32::INFINITY, f32::min);
+        if nearest <= within {
+            return Ok(());
+        }
+        Err(self.violation(Some(robot.id), format!("rested {nearest:.2} m from its rest place")))
     }
 
     fn check_robot(&mut self, robot: &Robot, events: &[Event]) -> Result<(), Violation> {

@@ -4,6 +4,7 @@ use parry2d::math::Vector;
 use rne_core::TaskId;
 use serde::{Deserialize, Serialize};
 
+use super::watch::Watch;
 use crate::ids::RescueeId;
 
 /// What a robot is doing.
@@ -36,6 +37,12 @@ impl Activity {
         matches!(self, Self::Searching | Self::Approaching(_) | Self::Loading(..) | Self::Standby)
     }
 
+    /// Whether it is on its way home or to rest, or home: where the team may wait for it.
+    #[must_use]
+    pub fn is_way_back(self) -> bool {
+        matches!(self, Self::Home | Self::Returning | Self::ToRest)
+    }
+
     /// The rescuee that it has claimed.
     #[must_use]
     pub fn claim(self) -> Option<RescueeId> {
@@ -63,8 +70,12 @@ pub struct Agent {
     pub levels_at_start: Option<[f64; 2]>,
     /// Whether it has rested since it last was in a group.
     pub has_rested: bool,
-    /// Whether it knows no way to where it should be, and the team does not wait for it.
+    /// Whether it does not get home or to rest, and the team does not wait for it.
     pub is_cut_off: bool,
+    /// The rest places that it has given up on in this round, a bit for each task.
+    pub rests_given_up: u16,
+    /// How it comes on towards its goal.
+    pub watch: Watch,
     /// The most energy and HP that one round has cost it, in percent points.
     pub costliest_round: [f64; 2],
 }
@@ -80,7 +91,23 @@ impl Agent {
             levels_at_start: None,
             has_rested: false,
             is_cut_off: false,
+            rests_given_up: 0,
+            watch: Watch::default(),
             costliest_round: [0.0; 2],
         }
+    }
+
+    /// Sends it to its rest place; what the round costs it no longer counts.
+    pub(super) fn go_to_rest(&mut self) {
+        self.activity = Activity::ToRest;
+        self.levels_at_start = None;
+    }
+
+    pub(super) fn has_given_up_rest(&self, task: TaskId) -> bool {
+        self.rests_given_up & (1 << task.0) != 0
+    }
+
+    pub(super) fn has_given_up_all_rests(&self, tasks: u16) -> bool {
+        (0..tasks).all(|task| self.has_given_up_rest(TaskId(task)))
     }
 }

@@ -54,6 +54,9 @@ impl Mission {
             return;
         }
         let mut offers: Vec<RescueeId> = self.available(task, scene.model, scene.world).collect();
+        if offers.is_empty() {
+            return;
+        }
         let mut seekers: Vec<Seeker> = seeking.map(|id| Seeker::new(id, scene.world, &offers)).collect();
         for _ in 0..spare {
             let pairs = seekers.iter().enumerate().filter_map(|(at, seeker)| Some((seeker.nearest?, at)));
@@ -61,7 +64,8 @@ impl Mission {
             let Some(((_, rescuee), at)) = pairs.min_by(|a, b| a.0.0.total_cmp(&b.0.0)) else { return };
             claims.push((seekers.remove(at).robot, rescuee));
             offers.retain(|offer| *offer != rescuee);
-            let losers = seekers.iter_mut().filter(|seeker| seeker.nearest.is_some_and(|(_, id)| id == rescuee));
+            let losers =
+                seekers.iter_mut().filter(|seeker| seeker.nearest.is_some_and(|(_, id)| id == rescuee));
             losers.for_each(|seeker| seeker.look(scene.world, &offers));
         }
     }

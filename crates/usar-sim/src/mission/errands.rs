@@ -39,14 +39,13 @@ impl Mission {
     fn follow_errand(&mut self, id: RobotId, scene: &mut Scene) {
         let traveller = scene.navigator.traveller(id);
         let robot = &scene.world.robots[id.index()];
-        let gives_up = scene.gives_up(id);
+        let (gives_up, is_at_place) = (scene.gives_up(id), scene.is_at_place(robot));
         let agent = &mut self.agents[id.index()];
         let Some(place) = agent.sweep.last().copied() else { return };
         if traveller.goal().is_none_or(|goal| goal.point != place) {
             return; // not yet on its way
         }
-        let apart = (place - robot.position).length();
-        if traveller.has_arrived(robot.position) && apart <= robot.radius() {
+        if is_at_place {
             agent.muster = place;
             scene.log.push(Event::ErrandDone { robot: id });
         } else if gives_up || traveller.has_arrived(robot.position) {

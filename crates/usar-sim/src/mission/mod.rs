@@ -7,6 +7,7 @@ mod regroup;
 mod rescue;
 mod round;
 mod scene;
+mod watch;
 mod work;
 
 use rne_core::{Question, TaskId};
@@ -16,13 +17,13 @@ use smallvec::SmallVec;
 pub use agent::{Activity, Agent};
 pub use round::{FieldState, Fitness, return_cause, turn_back_cause, unfit_cause};
 pub use scene::Scene;
+pub use watch::Watch;
 
 use crate::belief::{Inflation, Knowledge, SENSING_PERIOD_STEPS, look_around};
 use crate::event::{Event, EventLog, TurnBackCause};
 use crate::ids::RobotId;
 use crate::model::Model;
 use crate::navigation::Goal;
-use crate::scenario::RoleKind;
 use crate::world::{Robot, World};
 
 /// How near a robot comes to its place at home or at a rest place, in metres.
@@ -86,7 +87,7 @@ impl Mission {
     /// Everybody is home, nothing is known.
     #[must_use]
     pub fn new(model: &Model, world: &World) -> Self {
-        let nothing = Knowledge::nothing(world, inflation(model));
+        let nothing = Knowledge::nothing(world, Inflation::of(&model.scenario));
         let tasks = model.tasks.len();
         let mut mission = Self {
             agents: vec![Agent::new(); world.robots.len()],
@@ -143,9 +144,9 @@ impl Mission {
 
     /// Makes what a snapshot leaves out because it follows from the rest.
     pub(crate) fn restore(&mut self, model: &Model, world: &World) {
-        let inflation = inflation(model);
+        let inflation = Inflation::of(&model.scenario);
         let all = self.knowledge.iter_mut().chain([&mut self.knowledge_at_home]);
-        all.for_each(|knowledge| knowledge.restore(world, inflation));
+        all.for_each(|knowledge| knowledge.restore(world, inflation.clone()));
         self.is_guided = vec![false; self.groups.len()];
         self.look_for_guides(world);
     }
@@ -192,14 +193,14 @@ impl Mission {
         }
     }
 
-    /// Begins to decide: notes who is cut off, and ends and begins rounds. A new round waits for its assignment: see [`Mission::question`].
+    /// Begins to decide: looks which robots are cut off, and ends and begins rounds. A new round waits for its assignment: see [`Mission::question`].
     pub fn prepare(&mut self, scene: &mut Scene) {
         self.look_for_guides(scene.world);
         if !scene.model.scenario.errands.is_empty() {
             self.follow_errands(scene);
         } else if scene.world.robots.iter().any(|robot| robot.is_able() && robot.can_carry()) {
-            self.note_cut_off(scene);
-            if self.everybody_is_home(scene.world) {
+            self.watch(scene);
+            if self.everybody_is_home(scene.world) && self.can_begin_round(scene) {
                 self.end_round(scene);
                 self.open_round(scene);
             }
@@ -228,29 +229,6 @@ impl Mission {
         }
     }
 
-    /// Robots that know no way to their rest place try the next one; the team does not wait for those that know no way home.
-    fn note_cut_off(&mut self, scene: &mut Scene) {
-        let tasks = self.groups.len() as u16;
-        for robot in scene.world.robots.iter().filter(|robot| robot.is_able()) {
-            let gives_up = scene.gives_up(robot.id);
-            let agent = &mut self.agents[robot.id.index()];
-            let was_cut_off = std::mem::replace(&mut agent.is_cut_off, gives_up);
-            if !gives_up || was_cut_off {
-                continue;
-            }
-            let place = match agent.activity {
-                Activity::ToRest => {
-                    let place = robot.rest_slot(agent.rest_at);
-                    agent.rest_at = TaskId((agent.rest_at.0 + 1) % tasks);
-                    place
-                }
-                Activity::Returning | Activity::Home => robot.home,
-                _ => continue,
-            };
-            scene.log.push(Event::Unreachable { robot: robot.id, place: place.into() });
-        }
-    }
-
     /// Sends robots to rest that must leave the field.
     fn turn_back(&mut self, scene: &mut Scene) {
         for id in 0..self.agents.len() {
@@ -265,9 +243,7 @@ impl Mission {
             let rules = &scene.model.scenario.mission;
             if let Some(cause) = turn_back_cause(rules, robot.energy, robot.hp, way_cost) {
                 self.release_claim(RobotId(id as u32), scene.world);
-                let agent = &mut self.agents[id];
-                agent.activity = Activity::ToRest;
-                agent.levels_at_start = None;
+                self.agents[id].go_to_rest();
                 scene.log.push(Event::TurnedBack { robot: RobotId(id as u32), cause });
             }
         }
@@ -324,7 +300,7 @@ impl Mission {
             return None;
         }
         match agent.activity {
-            Activity::Loading(..) | Activity::Resting(_) => None,
+            Activity::Loading(..) => None,
             Activity::OnErrand => agent.sweep.last().map(|place| Goal { point: *place, within: SLOT_M }),
             Activity::Searching => agent.sweep.last().map(|place| Goal { point: *place, within: SWEEP_M }),
             Activity::Standby => Some(Goal { point: agent.muster, within: SWEEP_M }),
@@ -333,15 +309,9 @@ impl Mission {
                 within: 0.95 * model.scenario.mission.reach_m as f32,
             }),
             Activity::Home | Activity::Returning => Some(Goal { point: robot.home, within: SLOT_M }),
-            Activity::ToRest => Some(Goal { point: robot.rest_slot(agent.rest_at), within: SLOT_M }),
+            Activity::ToRest | Activity::Resting(_) => {
+                Some(Goal { point: robot.rest_slot(agent.rest_at), within: SLOT_M })
+            }
         }
-    }
-}
-
-/// By how much what groups know is inflated.
-fn inflation(model: &Model) -> Inflation {
-    Inflation {
-        radius: model.scenario.largest_radius_m(RoleKind::Ground) as f32,
-        clearance: model.scenario.planning.clearance_m as f32,
     }
 }

@@ -49,13 +49,17 @@ impl Mission {
             self.agents[robot.id.index()].levels_at_start = Some([robot.energy, robot.hp]);
         }
         let (mut fit, mut unfit) = (Vec::new(), Vec::new());
+        let tasks = self.groups.len() as u16;
         for robot in scene.world.robots.iter().filter(|robot| takes_part(robot)) {
+            let agent = &self.agents[robot.id.index()];
             match self.unfit_cause(&scene.model.scenario.mission, robot) {
                 None => fit.push(robot),
+                Some(_) if agent.has_given_up_all_rests(tasks) => {} // it stays home this time
                 Some(cause) => unfit.push((robot.id, cause)),
             }
         }
         let question = question(scene.model, self.round, &fit);
+        self.agents.iter_mut().for_each(|agent| agent.rests_given_up = 0);
         let is_empty = question.members.is_empty();
         self.pending = Some(Pending { question, unfit });
         if is_empty {
@@ -63,7 +67,7 @@ impl Mission {
         }
     }
 
-    fn unfit_cause(&self, rules: &MissionRules, robot: &Robot) -> Option<TurnBackCause> {
+    pub(super) fn unfit_cause(&self, rules: &MissionRules, robot: &Robot) -> Option<TurnBackCause> {
         let Agent { costliest_round, has_rested, .. } = self.agents[robot.id.index()];
         let fitness = Fitness { energy: robot.energy, hp: robot.hp, costliest_round, has_rested };
         unfit_cause(rules, &fitness)
@@ -85,8 +89,7 @@ impl Mission {
             let nearest = scene.model.task_ids().rev().min_by(|a, b| way(a).total_cmp(&way(b)));
             let agent = self.agent(id);
             agent.rest_at = nearest.unwrap_or_default();
-            agent.activity = Activity::ToRest;
-            agent.levels_at_start = None;
+            agent.go_to_rest();
             scene.log.push(Event::TurnedBack { robot: id, cause });
         }
         self.look_for_guides(scene.world);

@@ -29,6 +29,7 @@ impl Mission {
     fn settle_robot(&mut self, robot: RobotId, scene: &mut Scene, sharing: &mut Sharing) {
         let (id, step, rules) = (robot.index(), scene.step, &scene.model.scenario.mission);
         let arrived = || scene.navigator.traveller(robot).has_arrived(scene.world.robots[id].position);
+        let is_at_slot = || scene.is_at_place(&scene.world.robots[id]);
         match self.agents[id].activity {
             Activity::Approaching(rescuee)
                 if can_reach(robot, rescuee, scene)
@@ -42,10 +43,13 @@ impl Mission {
                 deliver(robot, Place::Home, scene.world, scene.log);
                 self.agents[id].activity = Activity::Home;
             }
-            Activity::ToRest if arrived() => {
+            Activity::ToRest if is_at_slot() => {
                 deliver(robot, Place::Rest, scene.world, scene.log);
                 self.agents[id].activity = Activity::Resting(step + scene.model.steps(rules.rest_s));
                 scene.log.push(Event::RestStarted { robot });
+            }
+            Activity::Resting(done) if !is_at_slot() => {
+                self.agents[id].activity = Activity::Resting(done + 1)
             }
             Activity::Resting(done) if step >= done => {
                 scene.world.robots[id].energy = 100.0;

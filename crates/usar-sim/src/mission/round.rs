@@ -96,6 +96,7 @@ mod tests {
             area_margin_m: 4.0,
             blind_speed_loss: 0.3,
             health_floor: 0.5,
+            cut_off_s: 60.0,
         }
     }
 

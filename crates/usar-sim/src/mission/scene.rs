@@ -4,8 +4,8 @@ use super::GIVE_UP_S;
 use crate::event::EventLog;
 use crate::ids::RobotId;
 use crate::model::Model;
-use crate::navigation::Navigator;
-use crate::world::World;
+use crate::navigation::{Goal, Navigator};
+use crate::world::{Robot, World};
 
 /// The parts of a trial that decisions look at and change.
 pub struct Scene<'s> {
@@ -25,6 +25,14 @@ impl Scene<'_> {
     /// Whether a robot has known no way to its goal for so long that it gives up on it.
     pub(super) fn gives_up(&self, robot: RobotId) -> bool {
         self.navigator.traveller(robot).lost_steps() >= self.model.steps(GIVE_UP_S)
+    }
+
+    /// Whether a robot is where it wants to be: at the end of its route, and on the place. The route may end beside a place that debris
+    /// covers.
+    pub(super) fn is_at_place(&self, robot: &Robot) -> bool {
+        let traveller = self.navigator.traveller(robot.id);
+        let covers = |goal: Goal| (goal.point - robot.position).length() <= robot.radius().max(goal.within);
+        traveller.has_arrived(robot.position) && traveller.goal().is_some_and(covers)
     }
 
     /// Energy that a way of this length costs, in percent points.

@@ -3,8 +3,6 @@
 use super::{Activity, Mission, Scene};
 use crate::event::Event;
 use crate::ids::{RescueeId, RobotId};
-use crate::navigation::Navigator;
-use crate::world::Robot;
 
 impl Mission {
     /// A robot's next activity, where it is free to choose; `claim` is the rescuee that it may go for, if there is one.
@@ -12,8 +10,9 @@ impl Mission {
         let robot = &scene.world.robots[id.index()];
         let activity = self.agents[id.index()].activity;
         let Some(task) = self.agents[id.index()].task.filter(|_| robot.is_able()) else { return };
+        let is_held_up = activity.is_in_field() && self.is_held_up(robot, scene);
         match activity {
-            Activity::Approaching(rescuee) if is_out_of_reach(id, rescuee, scene) => {
+            Activity::Approaching(rescuee) if is_held_up || is_out_of_reach(id, rescuee, scene) => {
                 self.unreachable[rescuee.index()] = true;
                 let place = scene.world.rescuees[rescuee.index()].position.into();
                 scene.log.push(Event::Unreachable { robot: id, place });
@@ -26,19 +25,20 @@ impl Mission {
                     self.agent(id).activity = Activity::Approaching(rescuee);
                     return;
                 }
-                self.go_on_searching(id, &scene.world.robots[id.index()], scene.navigator);
+                self.go_on_searching(id, scene, is_held_up);
             }
             _ => {}
         }
     }
 
-    fn go_on_searching(&mut self, id: RobotId, robot: &Robot, navigator: &Navigator) {
+    /// Goes on to the next place of the sweep from one that was reached, or that cannot be reached.
+    fn go_on_searching(&mut self, id: RobotId, scene: &Scene, is_held_up: bool) {
         let agent = &mut self.agents[id.index()];
-        let traveller = navigator.traveller(id);
+        let (robot, traveller) = (&scene.world.robots[id.index()], scene.navigator.traveller(id));
         if robot.can_carry() && robot.free_capacity() == 0 {
             agent.sweep.clear();
         } else if agent.activity == Activity::Searching
-            && (traveller.has_arrived(robot.position) || traveller.leads_nowhere())
+            && (is_held_up || traveller.has_arrived(robot.position) || traveller.leads_nowhere())
             && traveller.goal().map(|goal| goal.point) == agent.sweep.last().copied()
         {
             agent.sweep.pop();

@@ -6,6 +6,7 @@ use rand::rngs::ChaCha8Rng;
 use rne_core::{RoleId, TaskId};
 
 use super::places::{rescuee_places, rest_slot};
+use crate::geometry::Outline;
 use crate::ids::RobotId;
 use crate::planning::Planner;
 use crate::scenario::{
@@ -75,7 +76,8 @@ impl Layout {
                 Err(error) => blocked = Some(error),
             }
         }
-        Err(blocked.unwrap_or_else(|| no_passage(scenario, "anywhere".to_owned())))
+        let radius_m = scenario.largest_radius_m(RoleKind::Ground);
+        Err(blocked.unwrap_or_else(|| LayoutError::NoPassage { to: "anywhere".to_owned(), radius_m }))
     }
 
     fn sample_near(
@@ -125,10 +127,30 @@ impl Layout {
         Ok(())
     }
 
-    /// Every place that a mission needs can be reached by the largest ground robot, from the first ground robot's home.
+    /// Every place that a mission needs can be reached by each ground robot. Robots of one radius are looked at together, the largest
+    /// first.
     fn check_passages(&self, scenario: &Scenario) -> Result<(), LayoutError> {
-        let is_ground = |robot: &&RobotStart| scenario.roles[robot.role.index()].kind == RoleKind::Ground;
-        let ground: Vec<&RobotStart> = self.robots.iter().filter(is_ground).collect();
+        let outlines: Vec<_> = self.debris.iter().map(DebrisFile::outline).collect();
+        let mut planner = Planner::new(scenario);
+        for radius_m in scenario.ground_radii_m().into_iter().rev() {
+            self.check_passages_of(scenario, radius_m, (&mut planner, &outlines))?;
+        }
+        Ok(())
+    }
+
+    fn check_passages_of(
+        &self,
+        scenario: &Scenario,
+        radius_m: f64,
+        (planner, outlines): (&mut Planner, &[Outline]),
+    ) -> Result<(), LayoutError> {
+        let radii = scenario.ground_radii_m();
+        let is_of_class = |robot: &&RobotStart| {
+            let role = &scenario.roles[robot.role.index()];
+            let class = radii.iter().find(|radius| **radius >= role.radius_m);
+            role.kind == RoleKind::Ground && class == Some(&radius_m)
+        };
+        let ground: Vec<&RobotStart> = self.robots.iter().filter(is_of_class).collect();
         let Some(first) = ground.first() else { return Ok(()) };
         let place = |task: &TaskFile| (format!("task {:?}", task.name), vector(task.center));
         let mut places: Vec<(String, Vector)> = scenario.tasks.iter().map(place).collect();
@@ -139,16 +161,11 @@ impl Layout {
             let slot = |robot: &&RobotStart| rest_slot(scenario, TaskId(number), robot.id);
             places.extend(ground.iter().map(|robot| (name.clone(), slot(robot))));
         }
-        let outlines: Vec<_> = self.debris.iter().map(DebrisFile::outline).collect();
-        match Planner::new(scenario).first_unreachable(&outlines, first.home, &places) {
-            Some((to, _)) => Err(no_passage(scenario, to.clone())),
+        match planner.first_unreachable(radius_m as f32, outlines, first.home, &places) {
+            Some((to, _)) => Err(LayoutError::NoPassage { to: to.clone(), radius_m }),
             None => Ok(()),
         }
     }
-}
-
-fn no_passage(scenario: &Scenario, to: String) -> LayoutError {
-    LayoutError::NoPassage { to, radius_m: scenario.largest_radius_m(RoleKind::Ground) }
 }
 
 /// The part of a sampled thing's entity that names its task. The first task has the highest bit and the second none, as they had when there

@@ -1,16 +1,19 @@
 //! Keeps each robot on a route to its goal: plans when it has to, and says which velocity the robot would like.
 
 mod trail;
+mod traveller;
 
 use parry2d::math::Vector;
 use serde::{Deserialize, Serialize};
 
-use crate::belief::{Knowledge, News, Seen};
+use crate::belief::{Knowledge, News};
 use crate::ids::RobotId;
-use crate::planning::{KnownObstacle, Passage, Planner, Query, Route, Walls, polygon_contains};
+use crate::planning::{KnownObstacle, Planner, Query, Route, Walls, polygon_contains};
 use crate::scenario::{ResolverRule, Scenario};
 use crate::world::{Robot, STANDING_MPS, World};
 use trail::Trail;
+use traveller::{Attempt, PROGRESS_M};
+pub use traveller::{Goal, Traveller};
 
 /// A robot checks this often, in steps, that the way to its next waypoint is still free.
 const ROUTE_CHECK_STEPS: u64 = 25;
@@ -22,32 +25,8 @@ const DETOUR_AFTER_S: f64 = 4.0;
 /// Standing robots within this distance are planned round then, in metres.
 const DETOUR_RANGE_M: f32 = 8.0;
 
-/// Coming nearer by less than this is no progress, in metres.
-const PROGRESS_M: f32 = 0.05;
-
-/// A robot is at the end of its route within this distance, in metres.
-const ROUTE_END_M: f32 = 0.15;
-
 /// Share of the drive's acceleration that robots plan to brake with; the rest is in reserve.
 pub const PLANNED_BRAKING: f32 = 0.8;
-
-/// Where a robot wants to be.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Goal {
-    /// The place.
-    pub point: Vector,
-    /// How near is near enough, in metres.
-    pub within: f32,
-}
-
-/// What a robot tries that does not come nearer.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Attempt {
-    /// A way round the robots that stand near.
-    Detour,
-    /// The way that takes no heed of them: whoever is in the way is asked to make room.
-    Straight,
-}
 
 /// What news do to a route.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -58,114 +37,6 @@ enum Effect {
     Cut,
     /// There may be a cheaper one, or one at all.
     Cheaper,
-}
-
-/// The journey of one robot.
-#[derive(Debug, Clone, Serialize, Deserialize)]
-pub struct Traveller {
-    goal: Option<Goal>,
-    route: Option<Route>,
-    /// Narrow passages of the route, as it was planned.
-    passages: Vec<Passage>,
-    is_planned: bool,
-    seen: Seen,
-    /// Least length that the route ahead has had, in metres.
-    best_length: f32,
-    /// Steps since it last came nearer.
-    stalled_steps: u64,
-    /// Steps since it last knew a way.
-    lost_steps: u64,
-}
-
-impl Traveller {
-    fn to(goal: Option<Goal>) -> Self {
-        Self {
-            goal,
-            route: None,
-            passages: Vec::new(),
-            is_planned: false,
-            seen: Seen::default(),
-            best_length: f32::INFINITY,
-            stalled_steps: 0,
-            lost_steps: 0,
-        }
-    }
-
-    /// Whether the robot has somewhere to go.
-    #[must_use]
-    pub fn goal(&self) -> Option<Goal> {
-        self.goal
-    }
-
-    /// The route, where there is one.
-    #[must_use]
-    pub fn route(&self) -> Option<&Route> {
-        self.route.as_ref()
-    }
-
-    /// The narrow passages of the route.
-    #[must_use]
-    pub fn passages(&self) -> &[Passage] {
-        &self.passages
-    }
-
-    /// Whether a robot at this place is where it wants to be, or as near as its route leads.
-    #[must_use]
-    pub fn has_arrived(&self, position: Vector) -> bool {
-        let near = |place: Vector, within: f32| (place - position).length_squared() <= within * within;
-        self.goal.is_some_and(|goal| near(goal.point, goal.within))
-            || self.route.as_ref().is_some_and(|route| near(route.end(), ROUTE_END_M))
-    }
-
-    /// Steps since the robot last came nearer to its goal.
-    #[must_use]
-    pub fn stalled_steps(&self) -> u64 {
-        self.stalled_steps
-    }
-
-    /// Whether a route was looked for in vain.
-    #[must_use]
-    pub fn leads_nowhere(&self) -> bool {
-        self.goal.is_some() && self.is_planned && self.route.is_none()
-    }
-
-    /// Steps for which it has known no way to its goal.
-    #[must_use]
-    pub fn lost_steps(&self) -> u64 {
-        self.lost_steps
-    }
-
-    /// What a robot that does not come nearer tries now, if it is time to try something.
-    fn attempt(&self, detour_steps: u64) -> Option<Attempt> {
-        if self.stalled_steps == 0 || !self.stalled_steps.is_multiple_of(detour_steps) {
-            return None;
-        }
-        match self.stalled_steps / detour_steps % 4 {
-            1 => Some(Attempt::Detour),
-            0 => Some(Attempt::Straight),
-            _ => None,
-        }
-    }
-
-    fn set_route(&mut self, route: Option<Route>, position: Vector, fresh: bool) {
-        if let Some(route) = route.as_ref().filter(|_| fresh) {
-            self.best_length = route.length(position);
-            self.stalled_steps = 0;
-        }
-        self.route = route;
-        self.is_planned = true;
-    }
-
-    fn note_progress(&mut self, position: Vector) {
-        self.lost_steps = if self.leads_nowhere() { self.lost_steps + 1 } else { 0 };
-        let length = self.route.as_ref().map_or(f32::INFINITY, |route| route.length(position));
-        if length < self.best_length - PROGRESS_M {
-            self.best_length = length;
-            self.stalled_steps = 0;
-        } else {
-            self.stalled_steps += 1;
-        }
-    }
 }
 
 /// The journeys of all robots.
@@ -256,7 +127,8 @@ impl Navigator {
                 to: goal.point,
                 aerial: robot.is_aerial(),
                 speed: speed_of(robot) as f32,
-                obstacles: knowledge.obstacles(),
+                radius: robot.radius(),
+                obstacles: knowledge.obstacles(robot.radius()),
                 so_far: &[],
                 in_the_way: &[],
                 zones: knowledge.known_zones(),
@@ -286,11 +158,15 @@ impl Navigator {
                 let so_far = cut.map_or(&[][..], Route::ahead);
                 let query = Query { so_far, in_the_way: &in_the_way, ..query };
                 let route = find_route(&mut self.planner, &query);
+                if attempt == Some(Attempt::Detour) && !traveller.is_as_near(route.as_ref(), goal) {
+                    continue;
+                }
                 traveller.set_route(route, robot.position, fresh);
                 if let (Some(arena), Some(route), false) =
                     (self.narrow_in, &traveller.route, robot.is_aerial())
                 {
-                    let walls = Walls { known: knowledge.obstacles(), arena, radius: robot.radius() };
+                    let walls =
+                        Walls { known: knowledge.obstacles(robot.radius()), arena, radius: robot.radius() };
                     traveller.passages = walls.passages(robot.position, route);
                 }
             }
@@ -369,7 +245,7 @@ fn effect(
 fn concerns(news: News, knowledge: &Knowledge, route: &Route, robot: &Robot) -> bool {
     match news {
         News::Obstacle(key) => {
-            let obstacle = knowledge.obstacles().get(key).filter(|_| !robot.is_aerial());
+            let obstacle = knowledge.obstacles(robot.radius()).get(key).filter(|_| !robot.is_aerial());
             obstacle.is_some_and(|obstacle| route.legs(robot.position).any(|(a, b)| obstacle.cuts(a, b)))
         }
         News::Zone(number) => {
@@ -394,5 +270,5 @@ fn may_cheapen(planner: &Planner, query: &Query, route: &Route, news: &[News]) -
 /// Whether the way to the next waypoint is cut, for a robot that was pushed or had to step aside.
 fn first_leg_cut(knowledge: &Knowledge, route: &Route, robot: &Robot) -> bool {
     let next = route.ahead()[0];
-    !robot.is_aerial() && knowledge.obstacles().cuts(robot.position, next)
+    !robot.is_aerial() && knowledge.obstacles(robot.radius()).cuts(robot.position, next)
 }

@@ -35,8 +35,10 @@ use search::{Meshes, Search};
 #[derive(Default)]
 pub struct Planner {
     arena: Vector,
-    /// Distance of ground and of aerial routes from obstacles, in metres.
-    offsets: [f32; 2],
+    /// Radii of the classes of ground robots, rising, and the distance of their routes from obstacles, in metres.
+    ground: Vec<(f32, f32)>,
+    /// Distance of aerial routes from the arena's walls, in metres.
+    aerial_offset: f32,
     exposure_price_m: f32,
     meshes: Meshes,
 }
@@ -50,9 +52,11 @@ pub struct Query<'a> {
     pub to: Vector,
     /// Whether it flies over debris.
     pub aerial: bool,
+    /// Its radius, in metres.
+    pub radius: f32,
     /// Its speed, in metres per second, for the price of exposure.
     pub speed: f32,
-    /// The obstacles that it knows; those that fly pass over them.
+    /// The obstacles that it knows, inflated for its radius; robots that fly pass over them.
     pub obstacles: &'a ObstacleMap,
     /// Waypoints of the route so far where it was cut, to plan the faster; none otherwise.
     pub so_far: &'a [Vector],
@@ -69,20 +73,21 @@ impl Planner {
         let clearance = scenario.planning.clearance_m;
         Self {
             arena: Vector::new(scenario.arena_m[0] as f32, scenario.arena_m[1] as f32),
-            offsets: [
-                scenario.largest_radius_m(RoleKind::Ground) + clearance,
-                scenario.largest_radius_m(RoleKind::Aerial) + clearance,
-            ]
-            .map(|offset| offset as f32),
+            ground: scenario
+                .ground_radii_m()
+                .into_iter()
+                .map(|radius| (radius as f32, (radius + clearance) as f32))
+                .collect(),
+            aerial_offset: (scenario.largest_radius_m(RoleKind::Aerial) + clearance) as f32,
             exposure_price_m: scenario.planning.exposure_price_m as f32,
             meshes: Meshes::default(),
         }
     }
 
-    /// Distance of routes from obstacles, in metres.
-    #[must_use]
-    pub fn offset(&self, aerial: bool) -> f32 {
-        self.offsets[usize::from(aerial)]
+    /// Distance of the routes of ground robots of a radius from obstacles, in metres: of the smallest class that holds it.
+    fn ground_offset(&self, radius: f32) -> f32 {
+        let class = self.ground.partition_point(|(other, _)| *other < radius);
+        self.ground.get(class).or(self.ground.last()).map_or(0.0, |(_, offset)| *offset)
     }
 
     /// The cheapest route, or `None` where there is none. Its last waypoint is the goal, or the nearest free point to it where the
@@ -117,15 +122,17 @@ impl Planner {
         Some(best)
     }
 
-    /// The first of these places that the largest ground robot cannot reach from `from`, nor from a place before it, among these outlines.
+    /// The first of these places that a ground robot of this radius cannot reach from `from`, nor from a place before it, among these
+    /// outlines.
     #[must_use]
     pub fn first_unreachable<'p, T>(
         &mut self,
+        radius: f32,
         outlines: &[Outline],
         from: Vector,
         places: &'p [(T, Vector)],
     ) -> Option<&'p (T, Vector)> {
-        let offset = self.offset(false);
+        let offset = self.ground_offset(radius);
         let obstacle =
             |(outline, number)| KnownObstacle::new(ObstacleKey::Debris(number), 1, outline, offset, 0.0);
         let known: ObstacleMap = outlines.iter().zip(0..).map(obstacle).collect();
@@ -155,7 +162,7 @@ impl Planner {
         let in_the_way = query.in_the_way.iter().map(|obstacle| &obstacle.planned);
         let search = Search {
             arena: self.arena,
-            offset: self.offset(query.aerial),
+            offset: if query.aerial { self.aerial_offset } else { self.ground_offset(query.radius) },
             known: (!query.aerial).then_some(query.obstacles),
             always: zones.iter().chain(in_the_way).map(Vec::as_slice).collect(),
             numbers: query.in_the_way.is_empty().then_some(closed),

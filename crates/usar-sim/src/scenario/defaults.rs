@@ -34,6 +34,11 @@ pub(super) fn weight() -> f64 {
     1.0
 }
 
+/// Time without progress after which the team no longer waits for a robot, in seconds.
+pub(super) fn cut_off_s() -> f64 {
+    60.0
+}
+
 impl Default for RoleFile {
     fn default() -> Self {
         Self {
@@ -82,6 +87,7 @@ impl Default for MissionRules {
             area_margin_m: 4.0,
             blind_speed_loss: 0.3,
             health_floor: 0.5,
+            cut_off_s: cut_off_s(),
         }
     }
 }

@@ -98,14 +98,14 @@ pub enum LayoutError {
         /// Draws made.
         tries: u32,
     },
-    /// Debris and walls leave no way for the largest ground robot.
+    /// Debris and walls leave no way for a ground robot.
     #[error(
         "debris leaves no way from home to {to} that is wide enough for a robot of radius {radius_m} m with clearance"
     )]
     NoPassage {
         /// Where to.
         to: String,
-        /// Radius of the largest ground robot, in metres.
+        /// Radius of the robot, in metres.
         radius_m: f64,
     },
 }

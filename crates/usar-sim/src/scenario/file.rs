@@ -357,6 +357,10 @@ pub struct MissionRules {
     pub blind_speed_loss: f64,
     /// Factor on speed, sensing and observing range at health 0 %; it rises linearly to 1 at 100 %.
     pub health_floor: f64,
+    /// A robot that comes no nearer to its home, its rest place or its work for this long, in seconds, gives up on the place: the team
+    /// does not wait for it. A detour adds the time that it takes.
+    #[serde(default = "super::defaults::cut_off_s")]
+    pub cut_off_s: f64,
 }
 
 /// Rules of route planning.

@@ -15,13 +15,14 @@ use rne_core::question::hardest_first;
 use rne_core::{RoleId, TaskId};
 use ron::extensions::Extensions;
 use ron_fields::Fields;
+use ron_fields::file::MAX_TEXT_BYTES;
 use serde::de::DeserializeOwned;
 
 pub use error::{LayoutError, Problem, Problems, ScenarioError};
 pub use file::*;
 
-/// Greatest size of a scenario file, in bytes.
-const MAX_FILE_BYTES: u64 = 4 << 20;
+/// Most radii for which ways on the ground are planned apart: each costs a map of what is known.
+pub const MAX_RADIUS_CLASSES: usize = 4;
 
 /// A scenario whose every value was checked. Reads like the [`ScenarioFile`] that it was made from.
 #[derive(Debug, Clone, PartialEq)]
@@ -44,28 +45,21 @@ impl TryFrom<ScenarioFile> for Scenario {
     }
 }
 
+/// A scenario is at most this many times as long when every default is spelled out.
+const LONGEST_IN_FULL: u64 = 32;
+
 /// How all texts of the project are read.
 pub(crate) fn ron_options() -> ron::Options {
     ron::Options::default().with_default_extension(Extensions::IMPLICIT_SOME)
 }
 
-/// Reads a text file of reasonable size.
+/// Reads the text of a scenario or sweep file.
 ///
 /// # Errors
-/// A file that is missing, a folder, not text, empty or too large.
+/// A file that is missing, no regular file, not text, empty or larger than [`MAX_TEXT_BYTES`].
 pub fn read_text(path: &Path) -> Result<String, ScenarioError> {
     let unreadable = |reason: String| ScenarioError::Unreadable { path: path.to_owned(), reason };
-    let metadata = std::fs::metadata(path).map_err(|e| unreadable(format!("cannot be read: {e}")))?;
-    if metadata.is_dir() {
-        return Err(unreadable("is a folder, not a scenario file".into()));
-    }
-    if metadata.len() > MAX_FILE_BYTES {
-        return Err(unreadable(format!(
-            "is larger than the {} MiB that a scenario may have",
-            MAX_FILE_BYTES >> 20
-        )));
-    }
-    let text = std::fs::read_to_string(path).map_err(|e| unreadable(format!("cannot be read: {e}")))?;
+    let text = ron_fields::file::read_text(path).map_err(|error| unreadable(error.to_string()))?;
     if text.trim().is_empty() {
         return Err(unreadable("is empty; see scenarios/paper.ron for a complete scenario".into()));
     }
@@ -111,7 +105,26 @@ impl Scenario {
     /// A file that is missing, a folder, not text or too large; a text that is not a scenario; values that break rules.
     pub fn load(path: &Path) -> Result<(Self, String), ScenarioError> {
         let text = read_text(path)?;
-        Ok((Self::parse(&text, path)?, text))
+        let scenario = Self::parse(&text, path)?;
+        scenario.check_can_be_read_again(&text, path)?;
+        Ok((scenario, text))
+    }
+
+    /// Results hold the scenario with every default spelled out; that too must be a file that can be read.
+    fn check_can_be_read_again(&self, text: &str, path: &Path) -> Result<(), ScenarioError> {
+        if text.len() as u64 <= MAX_TEXT_BYTES / LONGEST_IN_FULL {
+            return Ok(());
+        }
+        let in_full = self.resolved().len() as u64;
+        if in_full <= MAX_TEXT_BYTES {
+            return Ok(());
+        }
+        let reason = format!(
+            "is {:.1} MiB long when every default is spelled out, as results hold it; at most {} MiB can be read again",
+            in_full as f64 / f64::from(1 << 20),
+            MAX_TEXT_BYTES >> 20
+        );
+        Err(ScenarioError::Unreadable { path: path.to_owned(), reason })
     }
 
     /// Checks the text of a scenario; `path` is used in messages only.
@@ -132,13 +145,14 @@ impl Scenario {
         })
     }
 
-    /// The whole scenario with every value, as text.
+    /// The whole scenario with every value, as text: an entry of a list in a line.
     ///
     /// # Panics
     /// Never: a checked scenario can be written.
     #[must_use]
     pub fn resolved(&self) -> String {
-        let pretty = ron::ser::to_string_pretty(&self.0, ron::ser::PrettyConfig::new().new_line("\n"));
+        let layout = ron::ser::PrettyConfig::new().new_line("\n").depth_limit(2);
+        let pretty = ron::ser::to_string_pretty(&self.0, layout);
         pretty.expect("a checked scenario can be written") + "\n"
     }
 
@@ -167,10 +181,43 @@ impl Scenario {
         hardest_first(self.tasks.iter().map(|task| task.difficulty))
     }
 
+    /// Radii for which ways on the ground are planned, rising, in metres: those of the team's ground robots. Where there are more than
+    /// [`MAX_RADIUS_CLASSES`], robots share the ways of the next larger one. At least one; 0 where nobody drives.
+    #[must_use]
+    pub fn ground_radii_m(&self) -> Vec<f64> {
+        let roles = self.team.iter().map(|row| &self.roles[self.role_of(row).index()]);
+        let ground = roles.filter(|role| role.kind == RoleKind::Ground);
+        let mut radii: Vec<f64> = ground.map(|role| role.radius_m).collect();
+        radii.sort_by(f64::total_cmp);
+        radii.dedup();
+        let all = radii.len();
+        if all > MAX_RADIUS_CLASSES {
+            radii = (1..=MAX_RADIUS_CLASSES).map(|i| radii[i * all / MAX_RADIUS_CLASSES - 1]).collect();
+        }
+        if radii.is_empty() { vec![0.0] } else { radii }
+    }
+
     /// Radius of the largest robot of the team that moves there, in metres; 0 where there is none.
     #[must_use]
     pub fn largest_radius_m(&self, kind: RoleKind) -> f64 {
         let roles = self.team.iter().map(|row| &self.roles[self.role_of(row).index()]);
         roles.filter(|role| role.kind == kind).map(|role| role.radius_m).fold(0.0, f64::max)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_scenario_that_results_could_not_hold_is_refused() {
+        let text = include_str!("../../../../scenarios/minimal/stranded.ron");
+        let mut scenario = Scenario::parse(text, "stranded.ron".as_ref()).unwrap();
+        let long = " ".repeat(1 << 20);
+        assert!(scenario.check_can_be_read_again(&long, "a.ron".as_ref()).is_ok());
+        let one = scenario.0.debris[0].clone();
+        scenario.0.debris = vec![one; 80_000];
+        let refused = scenario.check_can_be_read_again(&long, "a.ron".as_ref()).unwrap_err().to_string();
+        assert!(refused.contains("MiB long when every default is spelled out"), "{refused}");
     }
 }

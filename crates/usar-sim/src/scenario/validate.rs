@@ -76,8 +76,8 @@ impl Checker {
 
 fn general(check: &mut Checker, file: &ScenarioFile) {
     let plain = |c: char| c.is_ascii_alphanumeric() || "-_.".contains(c);
-    if file.name.is_empty() || file.name.starts_with('.') || !file.name.chars().all(plain) {
-        let rule = "must be a name of letters, digits, `-`, `_` and `.` that does not start with `.`";
+    if file.name.is_empty() || file.name.starts_with(['.', '-']) || !file.name.chars().all(plain) {
+        let rule = "must be a name of letters, digits, `-`, `_` and `.` that does not start with `.` or `-`";
         check.fail("name", rule, format!("{:?}", file.name));
     }
     check.number("duration_s", file.duration_s, 1.0..=86_400.0);
@@ -121,8 +121,9 @@ fn names<'n>(check: &mut Checker, table: &str, most: usize, names: impl Iterator
     let plain = |c: char| c.is_ascii_alphanumeric() || "-_".contains(c);
     let mut seen: Vec<&str> = Vec::new();
     for (i, name) in names.enumerate() {
-        if name.is_empty() || name.len() > 64 || !name.chars().all(plain) {
-            let rule = "must be a name of at most 64 letters, digits, `-` and `_`";
+        if name.is_empty() || name.len() > 64 || name.starts_with('-') || !name.chars().all(plain) {
+            let rule =
+                "must be a name of at most 64 letters, digits, `-` and `_` that does not start with `-`";
             check.fail(format!("{table}[{i}].name"), rule, format!("{name:?}"));
         } else if seen.contains(&name) {
             check.fail(format!("{table}[{i}].name"), "must not be listed twice", format!("{name:?}"));
@@ -365,6 +366,7 @@ fn rules(check: &mut Checker, file: &ScenarioFile) {
     check.number("mission.area_margin_m", mission.area_margin_m, least_reach..=1000.0);
     check.number("mission.blind_speed_loss", mission.blind_speed_loss, 0.0..=0.95);
     check.number("mission.health_floor", mission.health_floor, 0.05..=1.0);
+    check.number("mission.cut_off_s", mission.cut_off_s, 1.0..=86_400.0);
     check.number("planning.clearance_m", file.planning.clearance_m, 0.02..=10.0);
     check.number("planning.exposure_price_m", file.planning.exposure_price_m, 0.0..=1e6);
     check.number("conflicts.margin_m", file.conflicts.margin_m, 0.0..=10.0);

@@ -208,6 +208,7 @@ impl Simulation {
             decisions,
             robots: robots.map(|(robot, tally)| tally.record(robot, dt_s)).collect(),
             counts: metrics.counts,
+            cut_off: metrics.cut_off,
             overlaps,
             state_hash: chain.digest(),
             chain,

@@ -202,7 +202,7 @@ fn mover<'s>(robot: &Robot, model: &Model, (mission, navigator): (&'s Mission, &
         speed,
         braking: PLANNED_BRAKING * robot.spec.acceleration_mps2 as f32,
         priority: PriorityKey::new(rule, robot.id, class, [robot.energy, robot.hp]),
-        known: (!robot.is_aerial()).then(|| mission.knowledge_of(robot.id).obstacles()),
+        known: (!robot.is_aerial()).then(|| mission.knowledge_of(robot.id).obstacles(robot.radius())),
         can_make_room: robot.is_able() && !is_busy,
     }
 }

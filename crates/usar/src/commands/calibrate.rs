@@ -14,7 +14,7 @@ use study_yang2021::table::fit_table;
 use usar_sim::scenario::Scenario;
 
 use super::load;
-use crate::running::{STOP, default_jobs, progress_bar, stop_on_ctrl_c};
+use crate::running::{STOP, default_jobs, progress_bar, stop_on_signals, tell};
 
 /// The scenario with what was found.
 const CALIBRATED: &str = "calibrated.ron";
@@ -87,7 +87,7 @@ impl Arguments {
         let name = format!("{}-calibration", calibration.base.name);
         let folder = self.out.clone().unwrap_or_else(|| Path::new("results").join(name));
         let mut log = Log::open(&folder, &calibration, self.fresh)?;
-        stop_on_ctrl_c();
+        stop_on_signals();
         let jobs = self.jobs.map_or_else(default_jobs, |jobs| jobs as usize);
         let pool = rayon::ThreadPoolBuilder::new().num_threads(jobs).build().map_err(Failure::run)?;
 
@@ -116,7 +116,7 @@ impl Arguments {
         write_fit(&folder, &rows)?;
         self.print(out, &calibration, &log, &rows)?;
         if !self.quiet {
-            eprintln!("results in {}", folder.display());
+            tell(format_args!("results in {}", folder.display()));
         }
         Ok(())
     }
@@ -169,7 +169,7 @@ impl Arguments {
     fn search(&self, calibration: &Calibration, log: &mut Log, jobs: usize) -> Result<bool, Failure> {
         let there = log.evaluations().len();
         if there > 0 && !self.quiet {
-            eprintln!("{there} evaluations are there already");
+            tell(format_args!("{there} evaluations are there already"));
         }
         if there == 0 && !self.quiet {
             say_what_is_moved(calibration)?;
@@ -224,7 +224,7 @@ fn say_what_is_moved(calibration: &Calibration) -> Result<(), Failure> {
     for (free, (is, begins)) in
         calibration.free.iter().zip(values).filter(|(_, (is, begins))| is.to_bits() != begins.to_bits())
     {
-        eprintln!("note: {} is {is}, outside its range; the search begins at {begins}", free.name);
+        tell(format_args!("note: {} is {is}, outside its range; the search begins at {begins}", free.name));
     }
     Ok(())
 }

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::io::Write;
 use std::path::PathBuf;
 use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::Ordering;
 use std::time::Instant;
 
 use clap::Args;
@@ -15,7 +15,7 @@ use experiments::sweep::folder::{Folder, Opening};
 use serde::Serialize;
 
 use super::SCHEMA_VERSION;
-use crate::running::{default_jobs, progress_bar};
+use crate::running::{STOP, default_jobs, progress_bar, stop_on_signals};
 
 /// About how many trials are measured, in whole seeds: policies that decide alike share theirs, so that only all policies of a seed show what it takes.
 const TRIALS: usize = 24;
@@ -129,20 +129,27 @@ fn sample(experiment: &Experiment) -> Vec<TrialKey> {
 
 /// Mean time in seconds and size in bytes of these trials.
 fn measure(experiment: &Arc<Experiment>, sample: &[TrialKey]) -> Result<(f64, u64), Failure> {
+    stop_on_signals();
+    let stopped = || Failure::Interrupted("stopped; nothing was written".to_owned());
     let place = tempfile::tempdir()?;
-    let halt = AtomicBool::new(false);
     let path = place.path().join("sweep");
     let mut folder = Folder::open(&path, Arc::clone(experiment), Opening::default(), &mut |_| {})?;
     let bar = progress_bar(sample.len(), "trials to measure", 1, false);
     let start = Instant::now();
     for key in sample {
-        let result = experiment.run(key, &halt);
+        let result = experiment.run(key, &STOP);
+        if STOP.load(Ordering::Relaxed) {
+            return Err(stopped());
+        }
         folder.add(&Outcome { key: key.clone(), result })?;
         bar.inc(1);
     }
     let seconds = start.elapsed().as_secs_f64() / sample.len() as f64;
     bar.finish_and_clear();
-    folder.finish(&halt)?;
+    folder.finish(&STOP).map_err(|failure| match failure {
+        Failure::Interrupted(_) => stopped(),
+        other => other,
+    })?;
     let files = std::fs::read_dir(&path)?.flatten().filter_map(|entry| entry.metadata().ok());
     Ok((seconds, files.map(|file| file.len()).sum::<u64>() / sample.len() as u64))
 }

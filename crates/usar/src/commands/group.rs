@@ -83,8 +83,8 @@ impl Arguments {
                 return Err(Failure::input("--task and --weights are for tables: a question has its own"));
             }
             let shown = self.file.display();
-            let text = std::fs::read_to_string(&self.file)
-                .map_err(|error| Failure::input(format!("{shown}: cannot be read: {error}")))?;
+            let text = ron_fields::file::read_text(&self.file)
+                .map_err(|error| Failure::input(format!("{shown}: {error}")))?;
             return Question::from_json(&text).map_err(|error| Failure::input(format!("{shown}: {error}")));
         }
         let Team { roles, needs, members } = read_team(&self.file)?;

@@ -4,7 +4,6 @@ use std::collections::BTreeMap;
 use std::io::Write;
 use std::path::PathBuf;
 use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
 
 use clap::Args;
 use experiments::Failure;
@@ -17,6 +16,7 @@ use experiments::sweep::folder::{Folder, Opening};
 use xxhash_rust::xxh3::xxh3_128;
 
 use super::sweep::print;
+use crate::running::{STOP, stop_on_signals, tell};
 
 /// How many missing trials are named.
 const MAX_NAMED: usize = 5;
@@ -41,13 +41,14 @@ pub(crate) struct Arguments {
 
 impl Arguments {
     pub(crate) fn execute(&self, out: &mut dyn Write) -> Result<(), Failure> {
+        stop_on_signals();
         let mut shards = self.folders.iter().map(|path| Folder::read(path)).collect::<Result<Vec<_>, _>>()?;
         check_same_sweep(&shards)?;
         let sources = sources(&mut shards)?;
         let (experiment, _) = experiment_in(&self.folders[0])?;
         check_complete(&experiment, &sources, &shards)?;
         let mut whole = Folder::open(&self.out, Arc::new(experiment), Opening::default(), &mut |note| {
-            eprintln!("note: {note}");
+            tell(format_args!("note: {note}"));
         })?;
         for (place, (source, _)) in sources {
             if !whole.has(&whole.experiment().key(place)) {
@@ -55,7 +56,7 @@ impl Arguments {
                 whole.add_line(&shards[source].line(place)?, place, measured)?;
             }
         }
-        whole.finish(&AtomicBool::new(false))?;
+        whole.finish(&STOP)?;
         print(out, &whole)?;
         let failed: Vec<&str> =
             whole.results().values().filter_map(|measured| measured.failure.as_deref()).collect();

@@ -18,7 +18,7 @@ use study_yang2021::claims::{
 use study_yang2021::page::{Section, sections, write_page};
 use study_yang2021::scenarios::{POLICIES, experiments};
 
-use crate::running::{STOP, default_jobs, run_missing, stop_on_ctrl_c};
+use crate::running::{STOP, default_jobs, run_missing, stop_on_signals, tell};
 
 /// Longest time of one trial.
 const TRIAL_LIMIT: Duration = Duration::from_mins(10);
@@ -58,7 +58,7 @@ pub(crate) struct Arguments {
 
 impl Arguments {
     pub(crate) fn execute(&self, out: &mut dyn Write) -> Result<(), Failure> {
-        stop_on_ctrl_c();
+        stop_on_signals();
         if is_sweeps(&self.out) {
             return Err(Failure::input(format!(
                 "--out: {} is the folder of one sweep; the folders of both scenarios would be put into it",
@@ -87,7 +87,7 @@ impl Arguments {
             writeln!(out, "{note}{}", if note.is_empty() { "" } else { "\n" })?;
         }
         if !self.quiet {
-            eprintln!("results in {}, all of this as {}", self.out.display(), page.display());
+            tell(format_args!("results in {}, all of this as {}", self.out.display(), page.display()));
         }
         let failures = folders.iter().flat_map(|folder| folder.results().values());
         let failures: Vec<&str> = failures.filter_map(|measured| measured.failure.as_deref()).collect();
@@ -98,14 +98,14 @@ impl Arguments {
     fn open(&self, experiment: Experiment) -> Result<Folder, Failure> {
         let opening = Opening { shard: None, is_fresh: self.fresh };
         let place = self.out.join(&experiment.name);
-        Folder::open(&place, Arc::new(experiment), opening, &mut |note| eprintln!("note: {note}"))
+        Folder::open(&place, Arc::new(experiment), opening, &mut |note| tell(format_args!("note: {note}")))
     }
 
     /// Runs the trials that are not there yet.
     fn run(&self, folder: &mut Folder) -> Result<(), Failure> {
         if !self.quiet {
             let name = &folder.experiment().name;
-            eprintln!("{name}: {} trials of each of {} policies", self.trials, POLICIES.len());
+            tell(format_args!("{name}: {} trials of each of {} policies", self.trials, POLICIES.len()));
         }
         let jobs = self.jobs.map_or_else(default_jobs, |jobs| jobs as usize);
         run_missing(folder, None, Limits { jobs, trial: Some(TRIAL_LIMIT) }, self.quiet)?;

@@ -7,7 +7,9 @@ use clap::Args;
 use experiments::Failure;
 use experiments::experiment::{PolicySpec, defaults, with_settings};
 use reports::table::rounds_table;
+use rne_core::Policy;
 use serde::Serialize;
+use usar_sim::metrics::CutOff;
 use usar_sim::record::{Status, TrialRecord};
 use usar_sim::simulation::Simulation;
 
@@ -15,6 +17,7 @@ use crate::recordings;
 
 use super::snapshot::{Snapshot, save};
 use super::{SCHEMA_VERSION, load};
+use crate::running::{Guard, stop_on_signals};
 
 /// Run one trial and tell what happened, round by round
 #[derive(Debug, Args)]
@@ -49,6 +52,9 @@ pub(crate) struct Arguments {
     /// Check every invariant at every step; a violation ends the trial as failed
     #[arg(long)]
     check: bool,
+    /// Longest time that the trial may take, in seconds of this machine
+    #[arg(long, default_value_t = 600.0, value_name = "SECONDS")]
+    max_trial_s: f64,
     /// Set a field of the scenario, by its path, to a value in RON, e.g. `costs.energy.per_step=0.009`; may stand several times
     #[arg(long, value_name = "PATH=VALUE")]
     set: Vec<String>,
@@ -96,12 +102,14 @@ impl Arguments {
         if let (Some(path), Some(seconds)) = (&self.save, self.save_at) {
             save(&mut simulation, &spec, (path, seconds))?;
         }
+        stop_on_signals();
+        let guard = Guard::new(self.max_trial_s);
         let record = match &self.record {
             Some(path) => {
                 let options = recording::Options { policy: spec.label.clone(), fps: self.record_fps };
-                recordings::record_to(path, simulation, &*policy, &options)?
+                recordings::record_to(path, simulation, &*policy, &options, &guard)?
             }
-            None => simulation.run(&*policy, |_, _, _| {}),
+            None => run(simulation, &*policy, &guard)?,
         };
         if let Status::Failed(reason) = &record.status {
             return Err(Failure::run(format!("trial of {} with seed {seed} failed: {reason}", spec.label)));
@@ -118,6 +126,14 @@ impl Arguments {
         }
         print(out, [&scenario.name, &spec.label], &record)
     }
+}
+
+/// Runs a trial to its end, unless it takes too long or is stopped.
+fn run(mut simulation: Simulation, policy: &dyn Policy, guard: &Guard) -> Result<TrialRecord, Failure> {
+    while simulation.step(policy).is_none() {
+        guard.look(&simulation)?;
+    }
+    Ok(simulation.finish())
 }
 
 fn print(out: &mut dyn Write, [scenario, policy]: [&str; 2], record: &TrialRecord) -> Result<(), Failure> {
@@ -165,6 +181,13 @@ fn print(out: &mut dyn Write, [scenario, policy]: [&str; 2], record: &TrialRecor
     if record.counts.errands_done + record.counts.unreachable > 0 {
         let (done, unreachable) = (record.counts.errands_done, record.counts.unreachable);
         writeln!(out, "places       {done} errands done, {unreachable} places given up as unreachable")?;
+    }
+    for CutOff { robot, first_s, times, place: [x, y], cause } in &record.cut_off {
+        let why = cause.name();
+        writeln!(
+            out,
+            "cut off      robot {robot} at {first_s:.1} s, {times} times in all: it {why} to ({x:.1}, {y:.1})"
+        )?;
     }
     if let Some(overlaps) = record.overlaps {
         writeln!(out, "overlaps     {overlaps}")?;

@@ -10,6 +10,9 @@ use usar_sim::scenario::Scenario;
 use usar_sim::simulation::Simulation;
 use usar_sim::snapshot::Identity;
 
+/// Bytes that a snapshot may have.
+const MAX_BYTES: u64 = 256 << 20;
+
 /// A snapshot that was read from a file.
 pub(super) struct Snapshot {
     path: PathBuf,
@@ -23,7 +26,7 @@ impl Snapshot {
     pub(super) fn read(path: &Path) -> Result<Self, Failure> {
         let refused =
             |reason: &dyn std::fmt::Display| Failure::input(format!("{}: {reason}", path.display()));
-        let bytes = std::fs::read(path).map_err(|error| refused(&format!("cannot be read: {error}")))?;
+        let bytes = ron_fields::file::read(path, MAX_BYTES).map_err(|error| refused(&error))?;
         let identity = Identity::of(&bytes).map_err(|error| refused(&error))?;
         Ok(Self { path: path.to_owned(), bytes, identity })
     }
@@ -51,7 +54,7 @@ pub(super) fn save(
     }
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let trouble =
-        |error: std::io::Error| Failure::input(format!("--save: cannot write {}: {error}", path.display()));
+        |error: std::io::Error| Failure::storage(format!("--save: cannot write {}: {error}", path.display()));
     let mut file = tempfile::NamedTempFile::new_in(folder).map_err(trouble)?;
     while simulation.time_s() < seconds {
         if let Some(status) = simulation.step(&*policy) {

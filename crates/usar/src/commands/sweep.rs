@@ -15,7 +15,7 @@ use reports::table::policy_table;
 
 use super::precision::Precision;
 use crate::recordings::{Recorded, record_trials};
-use crate::running::{STOP, default_jobs, run_missing, stop_on_ctrl_c};
+use crate::running::{STOP, default_jobs, run_missing, stop_on_signals, tell};
 
 /// Tables of more cases than these are left to `usar compare` and `usar report`.
 const MAX_TABLES: usize = 8;
@@ -111,10 +111,11 @@ impl Arguments {
         }
         experiment.check_start(&self.file)?;
 
-        stop_on_ctrl_c();
+        stop_on_signals();
         let opening = Opening { shard: self.shard, is_fresh: self.fresh };
-        let mut folder =
-            Folder::open(&path, Arc::new(experiment), opening, &mut |note| eprintln!("note: {note}"))?;
+        let mut folder = Folder::open(&path, Arc::new(experiment), opening, &mut |note| {
+            tell(format_args!("note: {note}"))
+        })?;
         self.run(&mut folder)?;
         let most = self.most(folder.experiment());
         while let Some(trials) = precision.as_ref().and_then(|rule| rule.next_look(&folder, most)) {
@@ -130,7 +131,7 @@ impl Arguments {
             writeln!(out, "{}", precision.verdict(&folder))?;
         }
         if !self.quiet {
-            eprintln!("results in {}", path.display());
+            tell(format_args!("results in {}", path.display()));
         }
         let failed: Vec<&str> =
             folder.results().values().filter_map(|measured| measured.failure.as_deref()).collect();

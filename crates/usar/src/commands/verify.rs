@@ -3,25 +3,24 @@
 use std::io::Write;
 use std::path::PathBuf;
 use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
 use clap::Args;
 use experiments::Failure;
-use experiments::experiment::{Experiment, Program};
+use experiments::experiment::Program;
 use experiments::provenance::{COMMIT, Manifest};
-use experiments::run::{Limits, Outcome, Run, TrialKey, run_all};
-use experiments::sweep::disk::{broken_files, experiment_in};
-use experiments::sweep::links;
-use usar_sim::hash::Link;
+use experiments::run::{Limits, Run, TrialKey, run_all};
+use experiments::sweep::audit::{difference, strange_files};
+use experiments::sweep::folder::Folder;
 
-use crate::running::{default_jobs, progress_bar};
+use crate::running::{STOP, default_jobs, progress_bar, stop_on_signals, tell};
 
-/// Run a finished sweep again and compare the whole state of every trial, step by step
+/// Run a finished sweep again and compare every state, every number and every table
 #[derive(Debug, Args)]
 #[command(after_help = "\
-Exit status 0 only when every trial that was run again has the same hash chain. Otherwise the first trial, step and part of the state that
-differ are named: bodies, robots, debris, rescuees, beliefs, mission, routes, resolver, metrics or events.
+Exit status 0 only when every trial that was run again has the same hash chain and the same line in the journal, byte for byte, and every
+table is what the journal gives. Otherwise the first trial, step and part of the state that differ are named (bodies, robots, debris,
+rescuees, beliefs, mission, routes, resolver, metrics or events), or the number, or the file.
 
 Examples:
   usar verify results/paper
@@ -45,58 +44,65 @@ const LONGEST_TRIAL: Duration = Duration::from_hours(1);
 
 impl Arguments {
     pub(crate) fn execute(&self, out: &mut dyn Write) -> Result<(), Failure> {
-        let (experiment, manifest) = experiment_in(&self.folder)?;
-        let experiment = Arc::new(experiment);
-        if manifest.is_lean {
+        let (mut folder, damages) = Folder::read_damaged(&self.folder)?;
+        let (experiment, manifest) = (folder.shared_experiment(), folder.manifest().clone());
+        let all: Vec<TrialKey> = experiment.keys(manifest.shard).collect();
+        if !manifest.is_complete {
             return Err(Failure::input(format!(
-                "{}: its sweep is lean: it has no hashes to compare with",
-                self.folder.display()
+                "{}: its sweep is not finished: it has {} of {} trials; the sweep's command goes on with it",
+                self.folder.display(),
+                folder.results().len(),
+                all.len()
             )));
         }
-        let recorded = links::read(&self.folder)?;
-        let all: Vec<TrialKey> = experiment.keys(manifest.shard).collect();
+        damages.iter().for_each(|damage| tell(damage));
         let chosen = self.choose(&all);
-        let jobs = self.jobs.map_or_else(default_jobs, |jobs| jobs as usize);
+        let count = chosen.len();
         self.mention_other_version(&manifest);
-        let progress = progress_bar(chosen.len(), "trials", jobs, self.quiet);
-        let mut outcomes = Vec::new();
-        let again = Arc::clone(&experiment);
-        let run: Arc<Run> = Arc::new(move |key, halt| again.run_alone(key, halt));
-        run_all(
-            chosen,
-            Limits { jobs, trial: Some(LONGEST_TRIAL) },
-            run,
-            &AtomicBool::new(false),
-            |outcome| {
-                progress.inc(1);
-                outcomes.push(outcome);
-                Ok(())
-            },
-        )?;
-        outcomes.sort_by(|a, b| a.key.cmp(&b.key));
-        progress.finish_and_clear();
-
-        let nothing = Vec::new();
-        let recorded =
-            |key: &TrialKey| recorded.get(&(key.case, key.label.clone(), key.trial)).unwrap_or(&nothing);
-        let differences: Vec<String> = outcomes
-            .iter()
-            .filter_map(|outcome| difference(outcome, recorded(&outcome.key), &experiment))
-            .collect();
-        let count = outcomes.len();
+        let mut differences = self.run_again(&mut folder, chosen)?;
+        differences.sort();
+        let strange = strange_files(&mut folder)?;
         let of_all = if count < all.len() { format!(" (of {})", all.len()) } else { String::new() };
-        for name in broken_files(&self.folder, &manifest) {
-            eprintln!("{}: does not have the checksum of the manifest", self.folder.join(name).display());
+        let verdict = match differences.first() {
+            None => format!("{count} of {count} trials{of_all} match, step by step and number by number"),
+            Some((_, first)) => {
+                format!("{} of {count} trials{of_all} do not match\n{first}", differences.len())
+            }
+        };
+        match strange.first() {
+            None if differences.is_empty() && damages.is_empty() => {
+                Ok(writeln!(out, "{verdict}; every table is what they give")?)
+            }
+            None => Err(Failure::run(verdict)),
+            Some(_) => {
+                Err(Failure::run(format!("{verdict}; but files were changed\n{}", strange.join("\n"))))
+            }
         }
-        match differences.first() {
-            None if !broken_files(&self.folder, &manifest).is_empty() => Err(Failure::run(format!(
-                "{count} of {count} trials{of_all} match, but files were changed since"
-            ))),
-            None => Ok(writeln!(out, "{count} of {count} trials{of_all} match, step by step")?),
-            Some(first) => Err(Failure::run(format!(
-                "{} of {count} trials{of_all} do not match\n{first}",
-                differences.len()
-            ))),
+    }
+
+    /// Runs trials again; returns where they differ from the folder's.
+    fn run_again(
+        &self,
+        folder: &mut Folder,
+        chosen: Vec<TrialKey>,
+    ) -> Result<Vec<(TrialKey, String)>, Failure> {
+        let jobs = self.jobs.map_or_else(default_jobs, |jobs| jobs as usize);
+        let progress = progress_bar(chosen.len(), "trials", jobs, self.quiet);
+        let experiment = folder.shared_experiment();
+        let run: Arc<Run> = Arc::new(move |key, halt| experiment.run_alone(key, halt));
+        let mut differences = Vec::new();
+        stop_on_signals();
+        let limits = Limits { jobs, trial: Some(LONGEST_TRIAL) };
+        let is_whole = run_all(chosen, limits, run, &STOP, |outcome| {
+            progress.inc(1);
+            differences.extend(difference(folder, &outcome)?.map(|what| (outcome.key, what)));
+            Ok(())
+        })?;
+        progress.finish_and_clear();
+        if is_whole {
+            Ok(differences)
+        } else {
+            Err(Failure::Interrupted("stopped; nothing was written".into()))
         }
     }
 
@@ -109,31 +115,10 @@ impl Arguments {
     fn mention_other_version(&self, manifest: &Manifest) {
         let Program { version, source } = Program::this();
         if !self.quiet && (manifest.version != version || manifest.source != source) {
-            eprintln!(
+            tell(format_args!(
                 "note: the sweep is of usar {} ({}), this is usar {version} ({COMMIT})",
                 manifest.version, manifest.commit
-            );
+            ));
         }
-    }
-}
-
-/// Where a trial first differs from its recorded chain.
-fn difference(outcome: &Outcome, recorded: &[Link], experiment: &Experiment) -> Option<String> {
-    let TrialKey { case, label, trial, seed, .. } = &outcome.key;
-    let case = &experiment.cases[*case];
-    let name = format!("{}trial {trial} of {label} (seed {seed})", experiment.describe(case));
-    let again = outcome.record().map(|record| record.chain.links()).unwrap_or_default();
-    let pairs = recorded.iter().zip(again);
-    if let Some((before, now)) = pairs.clone().find(|(before, now)| before != now) {
-        let time_s = now.step as f64 * case.scenario.dt_s;
-        let parts = before.differing_parts(now).join(", ");
-        let parts = if parts.is_empty() { "the chain only".to_owned() } else { parts };
-        return Some(format!("{name} differs first at step {} ({time_s:.2} s), in: {parts}", now.step));
-    }
-    match (recorded.len(), again.len()) {
-        (before, now) if before == now => None,
-        (0, _) => Some(format!("{name} has no hashes in the folder: it failed then, and does not now")),
-        (_, 0) => outcome.failure(),
-        (before, now) => Some(format!("{name} has {before} links in the folder and {now} now")),
     }
 }

@@ -18,6 +18,7 @@ use usar_sim::simulation::Simulation;
 
 use super::load;
 use crate::recordings::{path_of, recorded, recording_of};
+use crate::running::tell;
 
 /// The first bytes of a recording.
 const MAGIC: &[u8] = b"USREC";
@@ -82,7 +83,10 @@ impl Arguments {
         }
         for shown in &shown {
             if let Some(rest) = read(shown)?.cut {
-                eprintln!("note: {}: was cut short; {rest} bytes at its end were left out", shown.name);
+                tell(format_args!(
+                    "note: {}: was cut short; {rest} bytes at its end were left out",
+                    shown.name
+                ));
             }
         }
         let path = self.out.clone().unwrap_or_else(|| default_path(&self.files[0]));
@@ -176,6 +180,6 @@ fn open_page(path: &Path) {
     let opened =
         Command::new(program).args(first).arg(path).stdout(Stdio::null()).stderr(Stdio::null()).status();
     if !opened.is_ok_and(|status| status.success()) {
-        eprintln!("note: {program} did not open it; open {} in a browser", path.display());
+        tell(format_args!("note: {program} did not open it; open {} in a browser", path.display()));
     }
 }

@@ -53,6 +53,15 @@ fn a_calibration_that_was_broken_off_ends_as_one_that_was_not() {
     for file in ["evaluations.csv", "calibrated.ron", "fit.csv", "calibration.json"] {
         assert_eq!(read(&folder.join("parts").join(file)), read(&folder.join("whole").join(file)), "{file}");
     }
+    // One bit of any cell of a line is noticed: no number of a log can change in silence.
+    let line = text.lines().nth(2).unwrap();
+    for at in (0..line.len()).step_by(7) {
+        let mut changed = text.clone().into_bytes();
+        changed[text.find(line).unwrap() + at] ^= 1;
+        std::fs::write(&log, changed).unwrap();
+        let output = usar(folder, &calibrate("parts", &["--evaluations", "8", "--jobs", "2"]));
+        refused(&output, &["evaluations.csv:"]);
+    }
     let (scenario, text) = Scenario::load(&folder.join("whole/calibrated.ron")).unwrap();
     assert_eq!(scenario.name, "paper-fitted");
     assert!(text.starts_with("// Fitted by usar calibrate (misfit "), "{text}");

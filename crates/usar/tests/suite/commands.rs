@@ -192,7 +192,7 @@ fn bad_files_are_refused() {
     let here = folder.path().to_str().unwrap();
     for verb in ["check", "run", "sweep"] {
         refused(&[verb, "missing.ron"], "missing.ron: cannot be read");
-        refused(&[verb, here], "is a folder, not a scenario file");
+        refused(&[verb, here], "is a folder, not a file");
         refused(&[verb, &empty], "empty.ron: is empty");
         refused(&[verb, &blank], "blank.ron: is empty");
         refused(&[verb, &broken], "broken.ron:1:");

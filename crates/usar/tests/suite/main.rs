@@ -1,5 +1,6 @@
 //! The program `usar`, run as a user runs it. One binary, since each takes long to link.
 
+mod forged;
 mod place;
 mod support;
 
@@ -8,6 +9,7 @@ mod commands;
 mod compared;
 mod damaged;
 mod grids;
+mod guarded;
 mod reported;
 mod resumed;
 mod same_bytes;

@@ -5,7 +5,10 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::process::Command;
 
+use experiments::experiment::Shard;
+
 use crate::commands::paper_text;
+use crate::forged::Forged;
 use crate::support::{program, succeeds, usar};
 
 /// A folder with `short.ron`: the paper's scenario, a minute long.
@@ -81,28 +84,71 @@ fn a_sweep_is_verified_and_the_first_difference_is_named() {
         &["sweep", "short.ron", "--trials", "2", "--policies", "RNE,DIS", "--out", "done"],
     ));
     let verify = |more: &[&str]| usar(folder.path(), &[&["verify", "done"], more].concat());
-    assert_eq!(succeeds(&verify(&[])), "4 of 4 trials match, step by step\n");
-    assert_eq!(succeeds(&verify(&["--sample", "3"])), "3 of 3 trials (of 4) match, step by step\n");
+    let all = "match, step by step and number by number; every table is what they give\n";
+    assert_eq!(succeeds(&verify(&[])), format!("4 of 4 trials {all}"));
+    assert_eq!(succeeds(&verify(&["--sample", "3"])), format!("3 of 3 trials (of 4) {all}"));
 
-    let table = folder.path().join("done/hashes.csv");
-    let text = std::fs::read_to_string(&table).unwrap();
-    let line = text.lines().find(|line| line.starts_with("DIS,2,1500,")).unwrap();
-    let part = line.len() - 4 * 10 + 4; // "robots", the second of ten
-    let other = if line.as_bytes()[part] == b'0' { "1" } else { "0" };
-    let mut changed = line.to_owned();
-    changed.replace_range(part..=part, other);
-    std::fs::write(&table, text.replace(line, &changed)).unwrap();
-    let output = verify(&[]);
-    let stderr = String::from_utf8_lossy(&output.stderr);
-    assert_eq!(output.status.code(), Some(1));
-    assert!(stderr.contains("1 of 4 trials do not match"), "{stderr}");
-    let where_ = "trial 2 of DIS (seed 2) differs first at step 1500 (30.00 s), in: robots";
-    assert!(stderr.contains(where_), "{stderr}");
+    let refused = |what: &[&str]| {
+        let output = verify(&[]);
+        let stderr = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(1), "{stderr}");
+        what.iter().for_each(|what| assert!(stderr.contains(what), "{what}: {stderr}"));
+    };
+    let done = folder.path().join("done");
+    let forged = Forged::of(&done);
+    forged.line("\"policy\":\"DIS\",\"trial\":2,", |line| {
+        let at = line.find("1500:").unwrap();
+        let part = at + "1500:".len() + 32 + 1 + 4; // "robots", the second of ten
+        let other = if line.as_bytes()[part] == b'0' { "1" } else { "0" };
+        line.replace_range(part..=part, other);
+    });
+    refused(&[
+        "1 of 4 trials do not match",
+        "trial 2 of DIS (seed 2) differs first at step 1500 (30.00 s), in: robots",
+    ]);
 
-    std::fs::remove_file(&table).unwrap();
+    forged.line("\"policy\":\"RNE\",\"trial\":1,", |line| {
+        let at = line.find("\"rescued\":").unwrap() + "\"rescued\":".len();
+        let end = at + line[at..].find([',', '}']).unwrap();
+        line.replace_range(at..end, "9999");
+    });
+    refused(&[
+        "trial 1 of RNE (seed 1) has the same states, but not the same numbers:",
+        ".rescued is 9999 in the folder",
+    ]);
+
+    forged.file("trials.csv", |text| text.replacen("RNE,1,RNE,1,completed,", "RNE,1,RNE,1,completed,9", 1));
+    refused(&["4 of 4 trials match", "trials.csv: is not what the trials in the journal give"]);
+
+    forged.file("journal.jsonl", |text| {
+        let (first, rest) = text.split_once('\n').unwrap();
+        format!("{rest}{first}\n")
+    });
+    refused(&["journal.jsonl: is not its trials in order"]);
+
+    forged.restore();
+    std::fs::remove_file(done.join("hashes.csv")).unwrap();
+    refused(&["hashes.csv: does not have the checksum of the manifest"]);
+    forged.restore();
+    succeeds(&verify(&[]));
+    for (number, trials) in [("0", "0"), ("4294967295", "4294967295")] {
+        forged.line("\"policy\":\"RNE\",\"trial\":1,", |line| {
+            *line = line.replacen("\"trial\":1,", &format!("\"trial\":{number},"), 1);
+        });
+        refused(&[
+            &format!("trial {trials} of RNE (seed 1) is not of this sweep"),
+            "trial 1 of RNE (seed 1) is not in the journal",
+        ]);
+    }
+    forged.restore();
+    forged.manifest(|manifest| manifest.files.clear());
     let output = verify(&[]);
     assert_eq!(output.status.code(), Some(2));
-    assert!(String::from_utf8_lossy(&output.stderr).contains("is not the folder of a finished sweep"));
+    assert!(String::from_utf8_lossy(&output.stderr).contains("it does not list the files of a sweep"));
+    forged.manifest(|manifest| manifest.shard = Some(Shard { number: 1, of: 0 }));
+    let output = verify(&[]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&output.stderr).contains("it is of shard 1/0, which no sweep has"));
 }
 
 #[test]
@@ -130,5 +176,5 @@ fn a_trial_goes_on_from_a_snapshot_in_a_new_process() {
     refused(&["--from", "cut"], "cut: should have ");
     bytes[8] += 1;
     std::fs::write(folder.path().join("later"), &bytes).unwrap();
-    refused(&["--from", "later"], "later: is a snapshot of format 4; this program reads format 3");
+    refused(&["--from", "later"], "later: is a snapshot of format 6; this program reads format 5");
 }

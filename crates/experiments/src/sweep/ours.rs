@@ -1,0 +1,178 @@
+//! What in a folder is a sweep's or a report's: nothing else is deleted or written over, and no link is followed.
+
+use std::fs;
+use std::path::Path;
+
+use super::disk::{INPUTS, LOCK, MANIFEST, PLOTS, RECORDINGS, REPORT, is_sweeps};
+use super::journal;
+use super::tables::TABLES;
+use crate::failure::Failure;
+use crate::files::{self, NewFile};
+
+/// The names of the files that a report wrote, a line each, from the folder on.
+const REPORTED: &str = "report.files";
+
+/// What the file of a recording ends with.
+const RECORDING: &str = ".usrec";
+
+/// The names of all files that a sweep writes.
+fn known_names() -> impl Iterator<Item = &'static str> {
+    [MANIFEST, LOCK, journal::FILE].into_iter().chain(INPUTS).chain(TABLES)
+}
+
+/// Refuses a folder that is not a sweep's: one with a manifest or a journal of this program, or with nothing in it.
+pub(super) fn check_is_ours(path: &Path) -> Result<(), Failure> {
+    if !path.exists() {
+        return Ok(());
+    }
+    if !path.is_dir() {
+        return Err(Failure::input(format!("--out: {} is a file, not a folder", path.display())));
+    }
+    if is_sweeps(path) || journal::is_one(path) {
+        return Ok(());
+    }
+    let is_first = |name: &String| name == LOCK || name == &format!("{MANIFEST}.new");
+    if names_in(path)?.iter().all(is_first) {
+        return Ok(());
+    }
+    Err(Failure::input(format!(
+        "--out: {} is not empty and not the folder of a sweep; nothing was overwritten",
+        path.display()
+    )))
+}
+
+fn names_in(path: &Path) -> Result<Vec<String>, Failure> {
+    let unreadable = |error| Failure::storage(format!("--out: {} cannot be read: {error}", path.display()));
+    let entries = fs::read_dir(path).map_err(unreadable)?;
+    let mut names: Vec<String> =
+        entries.flatten().map(|entry| entry.file_name().to_string_lossy().into_owned()).collect();
+    names.sort();
+    Ok(names)
+}
+
+/// Refuses to start over in a folder with anything in it that no sweep and no report has written.
+pub(super) fn check_may_be_cleared(path: &Path) -> Result<(), Failure> {
+    let reported = reported(path);
+    let is_known = |name: &str| {
+        let name = name.strip_suffix(".new").unwrap_or(name);
+        let is_folder = path.join(name).symlink_metadata().is_ok_and(|there| there.is_dir());
+        is_folder && [PLOTS, RECORDINGS].contains(&name)
+            || name == REPORTED
+            || known_names().any(|known| known == name)
+            || reported.contains(&name.into())
+    };
+    let mut strangers = names_in(path)?;
+    strangers.retain(|name| !is_known(name));
+    for name in names_in(&path.join(PLOTS)).unwrap_or_default() {
+        let name = format!("{PLOTS}/{name}");
+        if !reported.contains(&name) {
+            strangers.push(name);
+        }
+    }
+    let recordings = files_in(&path.join(RECORDINGS)).into_iter();
+    let others = recordings.filter(|name| !is_recording(name));
+    strangers.extend(others.map(|name| format!("{RECORDINGS}/{name}")));
+    if strangers.is_empty() {
+        return Ok(());
+    }
+    Err(Failure::input(format!(
+        "--fresh: {} has files that are not the sweep's: {}; nothing was deleted",
+        path.display(),
+        strangers.join(", ")
+    )))
+}
+
+/// The files that the last report wrote, by the list that it left: report.html, and figures.
+fn reported(path: &Path) -> Vec<String> {
+    let list = files::read(&path.join(REPORTED)).unwrap_or_default();
+    let is_figure = |name: &str| {
+        let figure = name.strip_prefix(PLOTS).and_then(|name| name.strip_prefix('/'));
+        let has_kind = |kind| name.ends_with(kind);
+        figure.is_some_and(|figure| !figure.contains(['/', '\\'])) && (has_kind(".svg") || has_kind(".csv"))
+    };
+    let names = String::from_utf8_lossy(&list).lines().map(str::to_owned).collect::<Vec<_>>();
+    names.into_iter().filter(|name| name == REPORT || is_figure(name)).collect()
+}
+
+/// Writes the files of a report, by their names from the folder on: whatever is there already must be of the report before.
+///
+/// # Errors
+/// A file of this name that no report has written, or the disk does not take it.
+pub fn write_report(path: &Path, report: &[(String, Vec<u8>)]) -> Result<(), Failure> {
+    let trouble = |error| Failure::storage(format!("cannot write to {}: {error}", path.display()));
+    let before = reported(path);
+    let plots = path.join(PLOTS);
+    if plots.symlink_metadata().is_ok_and(|there| !there.is_dir()) {
+        return Err(Failure::input(format!("{}: is not a folder", plots.display())));
+    }
+    for (name, _) in report {
+        if !before.contains(name) && path.join(name).symlink_metadata().is_ok() {
+            let name = path.join(name);
+            return Err(Failure::input(format!(
+                "{}: is not of a report of this program; nothing was overwritten",
+                name.display()
+            )));
+        }
+    }
+    remove_report(path).map_err(trouble)?;
+    if report.iter().any(|(name, _)| name.starts_with(PLOTS)) {
+        fs::create_dir_all(&plots).map_err(trouble)?;
+    }
+    let names: Vec<&str> = report.iter().map(|(name, _)| name.as_str()).collect();
+    NewFile::write(path, REPORTED, (names.join("\n") + "\n").as_bytes())?;
+    for (name, content) in report {
+        NewFile::write(path, name, content)?;
+    }
+    Ok(())
+}
+
+/// Deletes what a report wrote.
+pub(super) fn remove_report(path: &Path) -> std::io::Result<()> {
+    for name in reported(path) {
+        files::remove(&path.join(name))?;
+    }
+    let _ = fs::remove_dir(path.join(PLOTS)); // it stays where something else is in it
+    files::remove(&path.join(REPORTED))
+}
+
+fn is_recording(name: &str) -> bool {
+    name.strip_suffix(".new").unwrap_or(name).ends_with(RECORDING)
+}
+
+/// Deletes recordings.
+fn remove_recordings(path: &Path) -> std::io::Result<()> {
+    let folder = path.join(RECORDINGS);
+    for name in files_in(&folder).iter().filter(|name| is_recording(name)) {
+        files::remove(&folder.join(name))?;
+    }
+    for entry in fs::read_dir(&folder).into_iter().flatten().flatten() {
+        let _ = fs::remove_dir(entry.path()); // it stays where something else is in it
+    }
+    let _ = fs::remove_dir(folder);
+    Ok(())
+}
+
+/// The files in a folder and in the folders in it, by their names from the folder on; of a link to a folder, the link.
+fn files_in(folder: &Path) -> Vec<String> {
+    let mut found = Vec::new();
+    for name in names_in(folder).unwrap_or_default() {
+        let path = folder.join(&name);
+        if path.symlink_metadata().is_ok_and(|there| there.is_dir()) {
+            found.extend(names_in(&path).unwrap_or_default().iter().map(|inner| format!("{name}/{inner}")));
+        } else {
+            found.push(name);
+        }
+    }
+    found
+}
+
+/// Deletes what a sweep wrote.
+pub(super) fn clear(path: &Path) -> std::io::Result<()> {
+    remove_report(path)?;
+    remove_recordings(path)?;
+    for name in known_names().filter(|name| *name != LOCK) {
+        files::remove(&path.join(name))?;
+        files::remove(&path.join(format!("{name}.new")))?;
+    }
+    Ok(())
+}

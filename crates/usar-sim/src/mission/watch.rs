@@ -1,0 +1,180 @@
+//! The watchdog: the team does not wait for a robot that comes no nearer to its home or its rest place.
+
+use parry2d::math::Vector;
+use rne_core::TaskId;
+use serde::{Deserialize, Serialize};
+
+use super::{Activity, Mission, Scene};
+use crate::event::{CutOffCause, Event};
+use crate::ids::RobotId;
+use crate::world::Robot;
+
+/// A robot comes nearer when the way that is left shrinks by this much, in metres: less may be a push by another robot.
+const NEARER_M: f32 = 0.5;
+
+/// How a robot comes on towards one goal.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+pub struct Watch {
+    goal: Option<Vector>,
+    /// The shortest way left so far, in metres; none before the first route.
+    nearest_m: Option<f32>,
+    /// The longest way left since the robot last came nearer, in metres.
+    longest_m: f32,
+    /// Steps since the robot last came nearer or stood at its goal.
+    pub held_up_steps: u64,
+}
+
+impl Watch {
+    /// Takes note of the way that is left to the goal. Returns whether the robot came nearer.
+    fn note(&mut self, goal: Option<Vector>, left_m: Option<f32>) -> bool {
+        if self.goal != goal {
+            *self = Self { goal, ..Self::default() };
+        }
+        self.held_up_steps += 1;
+        let Some(left_m) = left_m else { return false };
+        self.longest_m = self.longest_m.max(left_m);
+        let is_nearer = self.nearest_m.is_some_and(|nearest| left_m <= nearest - NEARER_M);
+        if is_nearer || self.nearest_m.is_none() {
+            *self = Self { goal, nearest_m: Some(left_m), longest_m: left_m, held_up_steps: 0 };
+        }
+        is_nearer
+    }
+
+    /// The way by which the robot may go before it has to come nearer, in metres: the whole of a detour.
+    fn allowed_way_m(&self) -> f32 {
+        self.longest_m - self.nearest_m.unwrap_or(self.longest_m) + NEARER_M
+    }
+}
+
+impl Mission {
+    /// Looks how each robot comes on. Robots that do not get to their rest place try the next one; the team does not wait for robots
+    /// that do not get home.
+    pub(super) fn watch(&mut self, scene: &mut Scene) {
+        for id in (0..scene.world.robots.len() as u32).map(RobotId) {
+            let robot = &scene.world.robots[id.index()];
+            if !robot.is_able() {
+                continue;
+            }
+            let is_nearer = self.note_way(robot, scene);
+            let agent = &mut self.agents[id.index()];
+            if is_nearer || !agent.activity.is_way_back() {
+                agent.is_cut_off = false;
+            }
+            match agent.activity {
+                Activity::ToRest | Activity::Resting(_) => self.watch_way_to_rest(id, scene),
+                Activity::Returning | Activity::Home => {
+                    if let Some(cause) = self.held_up_cause(id, scene) {
+                        let home = scene.world.robots[id.index()].home;
+                        self.cut_off(id, home, cause, scene);
+                    }
+                }
+                _ => {}
+            }
+        }
+    }
+
+    /// Takes note of the way that a robot has left. Returns whether it came nearer, or is where it wants to be.
+    fn note_way(&mut self, robot: &Robot, scene: &Scene) -> bool {
+        let traveller = scene.navigator.traveller(robot.id);
+        let left_m = traveller.route().map(|route| route.length(robot.position));
+        let watch = &mut self.agents[robot.id.index()].watch;
+        let is_nearer = watch.note(traveller.goal().map(|goal| goal.point), left_m);
+        let is_there = traveller.goal().is_none() || traveller.has_arrived(robot.position);
+        if is_there {
+            watch.held_up_steps = 0;
+        }
+        is_nearer || is_there
+    }
+
+    /// Whether a robot has come no nearer to its goal for `mission.cut_off_s`, and for as long as its longest detour takes.
+    pub(super) fn is_held_up(&self, robot: &Robot, scene: &Scene) -> bool {
+        let watch = &self.agents[robot.id.index()].watch;
+        let limit_s = scene.model.scenario.mission.cut_off_s;
+        if watch.held_up_steps <= scene.model.steps(limit_s) {
+            return false;
+        }
+        let detour_s = f64::from(watch.allowed_way_m()) / self.speed_of(scene.model, robot).max(1e-6);
+        watch.held_up_steps > scene.model.steps(limit_s + detour_s)
+    }
+
+    /// Why a robot does not get to its goal, if it does not.
+    fn held_up_cause(&self, id: RobotId, scene: &Scene) -> Option<CutOffCause> {
+        let robot = &scene.world.robots[id.index()];
+        if scene.navigator.traveller(id).has_arrived(robot.position) {
+            None
+        } else if scene.gives_up(id) {
+            Some(CutOffCause::NoWay)
+        } else if self.is_held_up(robot, scene) {
+            Some(CutOffCause::NoProgress)
+        } else {
+            None
+        }
+    }
+
+    /// Gives up on a rest place that a robot does not get to, or not to its own slot, and sends it to the next one; home after the last.
+    fn watch_way_to_rest(&mut self, id: RobotId, scene: &mut Scene) {
+        let (robot, traveller) = (&scene.world.robots[id.index()], scene.navigator.traveller(id));
+        let agent = &self.agents[id.index()];
+        let slot = robot.rest_slot(agent.rest_at);
+        let is_for_slot = traveller.goal().is_some_and(|goal| goal.point == slot);
+        let is_beside_slot = traveller.has_arrived(robot.position) && !scene.is_at_place(robot);
+        let cause = if is_beside_slot { Some(CutOffCause::NoWay) } else { self.held_up_cause(id, scene) };
+        let Some(cause) = cause.filter(|_| is_for_slot) else { return };
+        scene.log.push(Event::Unreachable { robot: id, place: slot.into() });
+        if cause == CutOffCause::NoProgress {
+            self.cut_off(id, slot, cause, scene);
+        }
+        let agent = &mut self.agents[id.index()];
+        agent.rests_given_up |= 1 << agent.rest_at.0;
+        let tasks = self.groups.len() as u16;
+        let mut others = (1..tasks).map(|step| TaskId((agent.rest_at.0 + step) % tasks));
+        match others.find(|task| !agent.has_given_up_rest(*task)) {
+            Some(next) => agent.rest_at = next,
+            None => agent.activity = Activity::Returning,
+        }
+    }
+
+    /// The team no longer waits for a robot, until it comes nearer. Said once.
+    fn cut_off(&mut self, id: RobotId, place: Vector, cause: CutOffCause, scene: &mut Scene) {
+        if !std::mem::replace(&mut self.agents[id.index()].is_cut_off, true) {
+            scene.log.push(Event::CutOff { robot: id, place: place.into(), cause });
+        }
+    }
+
+    /// Whether a round can come to anything: a robot at home can go out and carry, or can go to rest.
+    pub(super) fn can_begin_round(&self, scene: &Scene) -> bool {
+        let rules = &scene.model.scenario.mission;
+        let tasks = scene.model.tasks.len() as u16;
+        scene.world.robots.iter().any(|robot| {
+            let agent = &self.agents[robot.id.index()];
+            robot.is_able()
+                && agent.activity == Activity::Home
+                && match self.unfit_cause(rules, robot) {
+                    None => robot.can_carry(),
+                    Some(_) => !agent.has_given_up_all_rests(tasks),
+                }
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn coming_nearer_counts_and_driving_to_and_fro_does_not() {
+        let goal = Some(Vector::ZERO);
+        let mut watch = Watch::default();
+        assert!(!watch.note(goal, Some(20.0)), "the first route");
+        assert!(!watch.note(goal, Some(19.8)) && watch.note(goal, Some(19.5)));
+        for _ in 0..10 {
+            assert!(
+                !watch.note(goal, Some(40.0)) && !watch.note(goal, Some(19.4)) && !watch.note(goal, None)
+            );
+        }
+        assert_eq!(watch.held_up_steps, 30);
+        assert!((watch.allowed_way_m() - 21.0).abs() < 1e-6, "the detour from 19.5 m to 40 m and back");
+        assert!(!watch.note(Some(Vector::X), Some(90.0)), "another goal");
+        assert_eq!(watch.held_up_steps, 0);
+    }
+}

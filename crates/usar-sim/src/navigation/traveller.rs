@@ -1,0 +1,149 @@
+//! The journey of one robot: where it wants to be, by which route, and how it comes on.
+
+use parry2d::math::Vector;
+use serde::{Deserialize, Serialize};
+
+use crate::belief::Seen;
+use crate::planning::{Passage, Route};
+
+/// Coming nearer by less than this is no progress, in metres.
+pub(super) const PROGRESS_M: f32 = 0.05;
+
+/// A robot is at the end of its route within this distance, in metres.
+const ROUTE_END_M: f32 = 0.15;
+
+/// Where a robot wants to be.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Goal {
+    /// The place.
+    pub point: Vector,
+    /// How near is near enough, in metres.
+    pub within: f32,
+}
+
+/// What a robot tries that does not come nearer.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Attempt {
+    /// A way round the robots that stand near.
+    Detour,
+    /// The way that takes no heed of them: whoever is in the way is asked to make room.
+    Straight,
+}
+
+/// The journey of one robot.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct Traveller {
+    pub(super) goal: Option<Goal>,
+    pub(super) route: Option<Route>,
+    /// Narrow passages of the route, as it was planned.
+    pub(super) passages: Vec<Passage>,
+    pub(super) is_planned: bool,
+    pub(super) seen: Seen,
+    /// Least length that the route ahead has had, in metres.
+    best_length: f32,
+    /// Steps since it last came nearer.
+    stalled_steps: u64,
+    /// Steps since it last knew a way.
+    lost_steps: u64,
+}
+
+impl Traveller {
+    pub(super) fn to(goal: Option<Goal>) -> Self {
+        Self {
+            goal,
+            route: None,
+            passages: Vec::new(),
+            is_planned: false,
+            seen: Seen::default(),
+            best_length: f32::INFINITY,
+            stalled_steps: 0,
+            lost_steps: 0,
+        }
+    }
+
+    /// Whether the robot has somewhere to go.
+    #[must_use]
+    pub fn goal(&self) -> Option<Goal> {
+        self.goal
+    }
+
+    /// The route, where there is one.
+    #[must_use]
+    pub fn route(&self) -> Option<&Route> {
+        self.route.as_ref()
+    }
+
+    /// The narrow passages of the route.
+    #[must_use]
+    pub fn passages(&self) -> &[Passage] {
+        &self.passages
+    }
+
+    /// Whether a robot at this place is where it wants to be, or as near as its route leads.
+    #[must_use]
+    pub fn has_arrived(&self, position: Vector) -> bool {
+        self.goal.is_some_and(|goal| is_near(position, goal.point, goal.within))
+            || self.route.as_ref().is_some_and(|route| is_near(position, route.end(), ROUTE_END_M))
+    }
+
+    /// Steps since the robot last came nearer to its goal.
+    #[must_use]
+    pub fn stalled_steps(&self) -> u64 {
+        self.stalled_steps
+    }
+
+    /// Whether a route was looked for in vain.
+    #[must_use]
+    pub fn leads_nowhere(&self) -> bool {
+        self.goal.is_some() && self.is_planned && self.route.is_none()
+    }
+
+    /// Steps for which it has known no way to its goal.
+    #[must_use]
+    pub fn lost_steps(&self) -> u64 {
+        self.lost_steps
+    }
+
+    /// What a robot that does not come nearer tries now, if it is time to try something.
+    pub(super) fn attempt(&self, detour_steps: u64) -> Option<Attempt> {
+        if self.stalled_steps == 0 || !self.stalled_steps.is_multiple_of(detour_steps) {
+            return None;
+        }
+        match self.stalled_steps / detour_steps % 4 {
+            1 => Some(Attempt::Detour),
+            0 => Some(Attempt::Straight),
+            _ => None,
+        }
+    }
+
+    /// Whether a route leads as near to the goal as the present one: no robot in the way moves the goal.
+    pub(super) fn is_as_near(&self, route: Option<&Route>, goal: Goal) -> bool {
+        let apart = |route: &Route| (route.end() - goal.point).length();
+        let (found, present) = (route.map(apart), self.route.as_ref().map(apart));
+        present.is_none_or(|present| found.is_some_and(|found| found <= present + ROUTE_END_M))
+    }
+
+    pub(super) fn set_route(&mut self, route: Option<Route>, position: Vector, fresh: bool) {
+        if let Some(route) = route.as_ref().filter(|_| fresh) {
+            self.best_length = route.length(position);
+            self.stalled_steps = 0;
+        }
+        self.route = route;
+        self.is_planned = true;
+    }
+
+    pub(super) fn note_progress(&mut self, position: Vector) {
+        self.lost_steps = if self.leads_nowhere() { self.lost_steps + 1 } else { 0 };
+        let length = self.route.as_ref().map_or(f32::INFINITY, |route| route.length(position));
+        if length < self.best_length - PROGRESS_M {
+            self.best_length = length;
+            self.stalled_steps = 0;
+        } else {
+            self.stalled_steps += 1;
+        }
+    }
+}
+
+fn is_near(position: Vector, place: Vector, within: f32) -> bool {
+    (place - position).length_squared() <= within * within
+}
