@@ -6,7 +6,7 @@ use crate::frame::{
     Frame, GroupFrame, Motion, MovedDebris, RescueeFrame, RobotFrame, RobotState, Route, read_sets,
 };
 use crate::numbers::{NotNumbers, Numbers, write_signed, write_unsigned};
-use crate::rows::{MOTION_FIELDS, POSITIONS, RESCUEES, STREAMS, motion, write_row};
+use crate::rows::{MOTION_FIELDS, POSITIONS, RESCUEES, STREAMS, is_fixed, motion, write_row};
 
 /// A number that stands in every frame, as differences from what the frames before let expect.
 #[derive(Default)]
@@ -95,6 +95,9 @@ impl Draft {
                 continue;
             }
             for (number, row) in rows.iter_mut().enumerate() {
+                if row.entries > 0 && is_fixed(simulation, stream, number) {
+                    continue;
+                }
                 self.row.clear();
                 write_row(simulation, stream, number, &mut self.row);
                 row.note(&self.row, self.frames);

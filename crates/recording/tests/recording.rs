@@ -166,7 +166,7 @@ fn a_recording_can_begin_in_the_middle_and_have_any_rate() {
             recorder.listen(&simulation).unwrap();
         }
         let end = simulation.steps();
-        let bytes = recorder.finish(&simulation.finish()).unwrap();
+        let bytes = recorder.finish(&mut simulation.finish()).unwrap();
         let recording = Recording::read(&bytes).unwrap();
         let (first, every) = (recording.header.first_step, recording.header.steps_per_frame);
         assert_eq!((first, recording.frames() as u64), (37, (end - 37) / every + 1), "{fps}");
