@@ -6,6 +6,7 @@ const { Clock } = await import('../src/ui/clock');
 const { countUntil } = await import('../src/ui/curves');
 const { clockTime, words } = await import('../src/ui/dom');
 const { heat, matrixOrder, scoreText } = await import('../src/ui/roundPanel');
+const { concerns, eventText } = await import('../src/ui/eventPanel');
 const { Camera } = await import('../src/draw/camera');
 
 describe('the clock', () => {
@@ -39,6 +40,16 @@ describe('texts', () => {
       '0.01235 nats',
     ]);
     expect(words('right_of_way')).toBe('right of way');
+  });
+});
+
+describe('events', () => {
+  it('are told in words, and are about robots', () => {
+    const loaded = { time: 3, kind: 'Loaded', fields: { robot: 3, rescuee: 37, resource_of: 5 } };
+    expect(eventText(loaded)).toBe('loaded, robot 3, rescuee 37, resource of 5');
+    expect(eventText({ time: 0, kind: 'ErrandsOver', fields: {} })).toBe('errands over');
+    expect([3, 5, 37].map((robot) => concerns(loaded, robot))).toEqual([true, true, false]);
+    expect(concerns({ time: 0, kind: 'Deadlocked', fields: { robots: [1, 2] } }, 2)).toBe(true);
   });
 });
 

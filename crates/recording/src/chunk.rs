@@ -3,8 +3,7 @@
 use std::io::{self, Read, Write};
 
 use flate2::read::DeflateDecoder;
-use flate2::write::DeflateEncoder;
-use flate2::{Compression, Crc};
+use flate2::{Compress, Compression, Crc, FlushCompress, Status};
 
 use crate::error::ReadError;
 
@@ -52,19 +51,58 @@ fn checksum(bytes: &[u8]) -> [u8; 4] {
     crc.sum().to_le_bytes()
 }
 
-/// Writes a chunk.
-pub(crate) fn write(out: &mut impl Write, kind: Kind, content: &[u8], level: u32) -> io::Result<()> {
-    let mut deflated = DeflateEncoder::new(Vec::new(), Compression::new(level));
-    deflated.write_all(content)?;
-    let stored = deflated.finish()?;
-    let length = |length: usize| {
-        let fits = u32::try_from(length).ok().filter(|length| *length <= MAX_INFLATED);
-        fits.map(u32::to_le_bytes).ok_or_else(|| io::Error::other("a chunk of the recording is too large"))
-    };
-    let head = [kind.name(), length(stored.len())?, length(content.len())?, checksum(&stored)].concat();
-    out.write_all(&head)?;
-    out.write_all(&checksum(&head))?;
-    out.write_all(&stored)
+/// Writes chunks. What compresses them is made once: that takes as long as compressing one.
+pub(crate) struct ChunkWriter<W> {
+    out: W,
+    deflate: Compress,
+    stored: Vec<u8>,
+}
+
+impl<W: Write> ChunkWriter<W> {
+    /// Begins a file with the magic number.
+    pub(crate) fn new(mut out: W, level: u32) -> io::Result<Self> {
+        out.write_all(&MAGIC)?;
+        Ok(Self { out, deflate: Compress::new(Compression::new(level), false), stored: Vec::new() })
+    }
+
+    /// Writes a chunk.
+    pub(crate) fn write(&mut self, kind: Kind, content: &[u8]) -> io::Result<()> {
+        self.deflate(content)?;
+        let length = |length: usize| {
+            let fits = u32::try_from(length).ok().filter(|length| *length <= MAX_INFLATED);
+            fits.map(u32::to_le_bytes)
+                .ok_or_else(|| io::Error::other("a chunk of the recording is too large"))
+        };
+        let sizes = [length(self.stored.len())?, length(content.len())?];
+        let head = [kind.name(), sizes[0], sizes[1], checksum(&self.stored)].concat();
+        self.out.write_all(&head)?;
+        self.out.write_all(&checksum(&head))?;
+        self.out.write_all(&self.stored)
+    }
+
+    fn deflate(&mut self, content: &[u8]) -> io::Result<()> {
+        self.deflate.reset();
+        self.stored.clear();
+        loop {
+            // Enough for all but content that cannot be compressed.
+            self.stored.reserve(content.len() / 2 + 256);
+            let done = self.deflate.total_in() as usize;
+            let rest = content.get(done..).unwrap_or_default();
+            match self.deflate.compress_vec(rest, &mut self.stored, FlushCompress::Finish)? {
+                Status::StreamEnd => return Ok(()),
+                Status::Ok | Status::BufError => {}
+            }
+        }
+    }
+
+    pub(crate) fn flush(&mut self) -> io::Result<()> {
+        self.out.flush()
+    }
+
+    /// Where the chunks went.
+    pub(crate) fn into_inner(self) -> W {
+        self.out
+    }
 }
 
 /// A chunk as it stands in a file.

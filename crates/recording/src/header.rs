@@ -23,7 +23,8 @@ pub struct Header {
     pub scenario: ScenarioText,
     /// What the policy is called.
     pub policy: String,
-    /// Seed of the trial.
+    /// Seed of the trial. A text in the file: not every reader of JSON has whole numbers of 64 bits.
+    #[serde(with = "as_text")]
     pub seed: u64,
     /// Length of a step, in seconds.
     pub dt_s: f64,
@@ -126,6 +127,20 @@ pub struct RobotPlace {
 
 fn names(names: &[&str]) -> Vec<String> {
     names.iter().map(|name| (*name).to_owned()).collect()
+}
+
+/// A whole number as a text.
+mod as_text {
+    use serde::{Deserialize, Deserializer, Serializer, de};
+
+    #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde calls it so")]
+    pub(super) fn serialize<S: Serializer>(number: &u64, to: S) -> Result<S::Ok, S::Error> {
+        to.collect_str(number)
+    }
+
+    pub(super) fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<u64, D::Error> {
+        String::deserialize(from)?.parse().map_err(de::Error::custom)
+    }
 }
 
 impl Codes {

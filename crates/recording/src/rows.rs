@@ -17,14 +17,19 @@ pub(crate) const STREAMS: [&str; 6] = ["robots", "routes", "rescuees", "debris",
 /// Place of the rescuees in [`STREAMS`].
 pub(crate) const RESCUEES: usize = 2;
 
+/// Whether a row of a stream never changes.
+pub(crate) fn is_fixed(simulation: &Simulation, stream: usize, row: usize) -> bool {
+    stream == 3 && simulation.world().debris[row].is_fixed
+}
+
 /// The numbers of one row of a stream, now.
 pub(crate) fn write_row(simulation: &Simulation, stream: usize, row: usize, out: &mut Vec<i32>) {
     match stream {
         0 => RobotState::of(simulation, row).write(out),
-        1 => Route::of(simulation, row).write(out),
+        1 => Route::write_now(simulation, row, out),
         RESCUEES => RescueeFrame::of(simulation, row).write(out),
         3 => MovedDebris::of(simulation, row).write(out),
-        4 => GroupFrame::of(simulation, row).write(out),
+        4 => GroupFrame::write_now(simulation, row, out),
         _ => push_sets(simulation, out),
     }
 }

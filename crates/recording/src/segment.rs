@@ -6,7 +6,7 @@ use crate::frame::{
     Frame, GroupFrame, Motion, MovedDebris, RescueeFrame, RobotFrame, RobotState, Route, read_sets,
 };
 use crate::numbers::{NotNumbers, Numbers, write_signed, write_unsigned};
-use crate::rows::{MOTION_FIELDS, POSITIONS, RESCUEES, STREAMS, motion, write_row};
+use crate::rows::{MOTION_FIELDS, POSITIONS, RESCUEES, STREAMS, is_fixed, motion, write_row};
 
 /// A number that stands in every frame, as differences from what the frames before let expect.
 #[derive(Default)]
@@ -95,6 +95,9 @@ impl Draft {
                 continue;
             }
             for (number, row) in rows.iter_mut().enumerate() {
+                if row.entries > 0 && is_fixed(simulation, stream, number) {
+                    continue;
+                }
                 self.row.clear();
                 write_row(simulation, stream, number, &mut self.row);
                 row.note(&self.row, self.frames);
@@ -153,10 +156,29 @@ impl Segment {
         let columns = (0..count).map(column).collect::<Result<_, _>>()?;
         let mut stream = |rows: usize| (0..rows).map(|_| read_row(&mut numbers, frames)).collect();
         let rows = rows.iter().map(|rows| stream(*rows)).collect::<Result<_, _>>()?;
-        if numbers.left() > 0 {
+        let segment = Self { first_frame, frames, columns, rows };
+        if numbers.left() > 0 || segment.rows.len() != STREAMS.len() {
             return Err(NotNumbers);
         }
-        Ok(Self { first_frame, frames, columns, rows })
+        segment.check_entries()?;
+        Ok(segment)
+    }
+
+    /// Every entry has a meaning, so that every frame can be read.
+    fn check_entries(&self) -> Result<(), NotNumbers> {
+        for (stream, rows) in self.rows.iter().enumerate() {
+            for (_, entry) in rows.iter().flatten() {
+                match stream {
+                    0 => RobotState::read(entry).map(drop),
+                    1 => Route::read(entry).map(drop),
+                    RESCUEES => RescueeFrame::read(entry).map(drop),
+                    3 => MovedDebris::read(entry).map(drop),
+                    4 => GroupFrame::read(entry).map(drop),
+                    _ => read_sets(entry).map(drop),
+                }?;
+            }
+        }
+        Ok(())
     }
 
     /// The state at a frame of this segment, numbered from its first.

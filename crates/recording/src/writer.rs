@@ -8,7 +8,7 @@ use usar_sim::event::Event;
 use usar_sim::record::{DecisionRecord, TrialRecord};
 use usar_sim::simulation::Simulation;
 
-use crate::chunk::{self, Kind, MAGIC};
+use crate::chunk::{ChunkWriter, Kind};
 use crate::header::Header;
 use crate::segment::Draft;
 use crate::trust::Trust;
@@ -56,7 +56,7 @@ struct TimedDecision<'d> {
 
 /// Listens to a simulation and writes what it hears.
 pub struct Recorder<W> {
-    out: W,
+    out: ChunkWriter<W>,
     steps_per_frame: u64,
     frames_per_segment: usize,
     next_frame: u64,
@@ -70,12 +70,12 @@ impl<W: Write> Recorder<W> {
     ///
     /// # Errors
     /// It cannot be written.
-    pub fn begin(mut out: W, simulation: &Simulation, options: &Options) -> io::Result<Self> {
+    pub fn begin(out: W, simulation: &Simulation, options: &Options) -> io::Result<Self> {
         let dt_s = simulation.scenario().dt_s;
         let steps_per_frame = (1.0 / (options.fps * dt_s)).round().max(1.0) as u64;
         let frames_per_segment = (SEGMENT_S / (dt_s * steps_per_frame as f64)).round().max(1.0) as usize;
         let header = Header::of(simulation, &options.policy, (steps_per_frame, frames_per_segment));
-        out.write_all(&MAGIC)?;
+        let mut out = ChunkWriter::new(out, LEVEL)?;
         write_json(&mut out, Kind::Header, &header)?;
         let mut recorder = Self {
             out,
@@ -122,7 +122,7 @@ impl<W: Write> Recorder<W> {
         }
         if self.draft.frames() > 0 {
             let segment = self.draft.take();
-            chunk::write(&mut self.out, Kind::Segment, &segment, LEVEL)?;
+            self.out.write(Kind::Segment, &segment)?;
         }
         self.out.flush()
     }
@@ -131,17 +131,19 @@ impl<W: Write> Recorder<W> {
     ///
     /// # Errors
     /// It cannot be written.
-    pub fn finish(mut self, record: &TrialRecord) -> io::Result<W> {
+    pub fn finish(mut self, record: &mut TrialRecord) -> io::Result<W> {
         self.end_segment()?;
-        let summary = TrialRecord { decisions: Vec::new(), ..record.clone() };
-        write_json(&mut self.out, Kind::Summary, &summary)?;
+        let decisions = std::mem::take(&mut record.decisions); // they are in the recording already
+        let written = write_json(&mut self.out, Kind::Summary, record);
+        record.decisions = decisions;
+        written?;
         self.out.flush()?;
-        Ok(self.out)
+        Ok(self.out.into_inner())
     }
 }
 
-fn write_json(out: &mut impl Write, kind: Kind, value: &impl Serialize) -> io::Result<()> {
-    chunk::write(out, kind, &serde_json::to_vec(value)?, LEVEL)
+fn write_json(out: &mut ChunkWriter<impl Write>, kind: Kind, value: &impl Serialize) -> io::Result<()> {
+    out.write(kind, &serde_json::to_vec(value)?)
 }
 
 /// Runs a trial to its end and records it. The trial has the result that it has without a recording.
@@ -158,7 +160,7 @@ pub fn record(
     while simulation.step(policy).is_none() {
         recorder.listen(&simulation)?;
     }
-    let record = simulation.finish();
-    recorder.finish(&record)?;
+    let mut record = simulation.finish();
+    recorder.finish(&mut record)?;
     Ok(record)
 }

@@ -116,6 +116,11 @@ fn a_recording_is_the_trial_at_a_hundred_random_times_and_changes_no_result() {
         let whole = record(simulation, &*policy, &Options::new("RNE"), &mut bytes).unwrap();
         assert_eq!(alone, whole, "{file}: recording changed the trial");
 
+        let mut again = Vec::new();
+        let simulation = Simulation::new(&scenario, 3).unwrap();
+        record(simulation, &*policy, &Options::new("RNE"), &mut again).unwrap();
+        assert!(again == bytes, "{file}: one trial, one recording");
+
         let recording = Recording::read(&bytes).unwrap();
         assert_eq!(recording.cut, None);
         assert_eq!(recording.frames(), 1 + (duration_s * 10.0) as usize);
@@ -161,7 +166,7 @@ fn a_recording_can_begin_in_the_middle_and_have_any_rate() {
             recorder.listen(&simulation).unwrap();
         }
         let end = simulation.steps();
-        let bytes = recorder.finish(&simulation.finish()).unwrap();
+        let bytes = recorder.finish(&mut simulation.finish()).unwrap();
         let recording = Recording::read(&bytes).unwrap();
         let (first, every) = (recording.header.first_step, recording.header.steps_per_frame);
         assert_eq!((first, recording.frames() as u64), (37, (end - 37) / every + 1), "{fps}");

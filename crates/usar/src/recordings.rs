@@ -51,8 +51,8 @@ pub(crate) fn record_to(
         recorder.listen(&simulation).map_err(trouble)?;
         guard.look(&simulation)?;
     }
-    let record = simulation.finish();
-    recorder.finish(&record).map_err(trouble)?;
+    let mut record = simulation.finish();
+    recorder.finish(&mut record).map_err(trouble)?;
     Ok(record)
 }
 

@@ -61,7 +61,7 @@ export interface Header {
   program: string;
   scenario: { name: string; description: string; resolved: string; xxh3_128: string };
   policy: string;
-  seed: number;
+  seed: string;
   dt_s: number;
   duration_s: number;
   first_step: number;

@@ -6,6 +6,7 @@ import type { Moment, Recording } from '../recording/recording';
 import { Clock } from './clock';
 import { Curves } from './curves';
 import { button, clockTime, element, swatch } from './dom';
+import { EventPanel } from './eventPanel';
 import { Help } from './help';
 import { RobotPanel } from './robotPanel';
 import { RoundPanel } from './roundPanel';
@@ -27,6 +28,7 @@ export class App {
   private readonly curves: Curves;
   private readonly robotPanel: RobotPanel;
   private readonly roundPanel: RoundPanel;
+  private readonly eventPanel: EventPanel;
   private readonly help = new Help();
   private readonly play: HTMLButtonElement;
   private readonly told = element('output', { class: 'time' });
@@ -70,6 +72,9 @@ export class App {
         this.follow();
       },
     );
+    this.eventPanel = new EventPanel((time) => {
+      this.seek(time);
+    });
     this.roundPanel = new RoundPanel((time) => {
       this.seek(time);
     });
@@ -122,7 +127,7 @@ export class App {
     }).observe(stages);
     const main = element('div', { class: 'main' }, stages, transport, this.timeline.root);
     const side = element('aside', { class: 'side' }, this.tabs, this.robotPanel.root, this.roundPanel.root);
-    side.append(this.curves.root, this.about());
+    side.append(this.curves.root, this.eventPanel.root, this.about());
     return element('div', { class: 'app' }, main, side, this.help.root);
   }
 
@@ -340,6 +345,7 @@ export class App {
     if (moment) this.robotPanel.draw(recording, moment, selected, isFollowing);
     this.roundPanel.draw(recording, this.clock.time, this.isAfresh);
     this.curves.draw(this.focus);
+    this.eventPanel.draw(recording, this.clock.time, selected);
     this.isAfresh = false;
   }
 }

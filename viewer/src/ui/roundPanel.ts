@@ -75,7 +75,7 @@ export class RoundPanel {
     this.root.replaceChildren(
       this.head(recording, number),
       this.groups(recording, decided),
-      ...this.runnerUp(decided),
+      ...this.scores(decided),
     );
     if (decided.trust && decided.trust.members.length > 1) {
       this.root.append(
@@ -117,7 +117,8 @@ export class RoundPanel {
     return table;
   }
 
-  private runnerUp({ decision }: TimedDecision): HTMLElement[] {
+  private scores(decided: TimedDecision): HTMLElement[] {
+    const { decision } = decided;
     const lines: [string, string][] = [];
     if (decision.score !== null) {
       lines.push([
@@ -130,6 +131,15 @@ export class RoundPanel {
       const groups = second.assignment.groups.map(listed).join('  |  ');
       lines.push(['runner-up', `${scoreText(second.score)}: ${groups}`]);
     }
+    const { trust, question } = decided;
+    const between = (trust?.groups ?? []).flatMap((row, from) =>
+      row.flatMap((nats, to) => {
+        if (from === to || row.length > 4) return [];
+        const [a, b] = [question.tasks[from].name, question.tasks[to].name];
+        return [`${a} → ${b} ${nats === null ? 'infinite' : Number(nats.toPrecision(3))}`];
+      }),
+    );
+    if (between.length > 0) lines.push(['between groups', `${between.join(', ')} nats`]);
     return lines.map(([name, text]) =>
       element('p', { class: 'decision' }, element('b', {}, name), ` ${text}`),
     );
