@@ -59,7 +59,7 @@ pub fn read_text(path: &Path) -> Result<String, ReadError> {
     String::from_utf8(bytes).map_err(|error| {
         let sound = error.utf8_error().valid_up_to();
         let before = &error.as_bytes()[..sound];
-        let line = 1 + before.iter().filter(|byte| **byte == b'\n').count();
+        let line = before.split(|byte| *byte == b'\n').count();
         ReadError::NotText(format!("byte {} (line {line}) is of no character", sound + 1))
     })
 }

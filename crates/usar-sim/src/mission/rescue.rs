@@ -49,7 +49,7 @@ impl Mission {
                 scene.log.push(Event::RestStarted { robot });
             }
             Activity::Resting(done) if !is_at_slot() => {
-                self.agents[id].activity = Activity::Resting(done + 1)
+                self.agents[id].activity = Activity::Resting(done + 1);
             }
             Activity::Resting(done) if step >= done => {
                 scene.world.robots[id].energy = 100.0;

@@ -58,12 +58,12 @@ fn polygon(check: &mut Checker, field: &str, corners: &[Point]) {
                 format!("corner {} at ({}, {})", (i + 1) % corners.len(), b[0], b[1]),
             );
         }
-    } // Each corner turns left, so that one to the right of an edge is on another turn round the middle.
+    }
+    // Each corner turns left, so that one to the right of an edge is on another turn round the middle.
     let is_right = |edge| corners.iter().any(|corner| left_of(edge, corner) < -1e-9);
-    if let Some([a, b]) = edges().find(|edge| is_right(*edge)) {
+    if let Some([[ax, ay], [bx, by]]) = edges().find(|edge| is_right(*edge)) {
         let rule = "must go round once: no corner may lie to the right of an edge";
-        let found =
-            format!("a corner to the right of the edge from ({}, {}) to ({}, {})", a[0], a[1], b[0], b[1]);
+        let found = format!("a corner to the right of the edge from ({ax}, {ay}) to ({bx}, {by})");
         return check.fail(field, rule, found);
     }
     let depth = |edge| corners.iter().map(|corner| left_of(edge, corner)).fold(0.0, f64::max);

@@ -114,7 +114,7 @@ impl Arguments {
         stop_on_signals();
         let opening = Opening { shard: self.shard, is_fresh: self.fresh };
         let mut folder = Folder::open(&path, Arc::new(experiment), opening, &mut |note| {
-            tell(format_args!("note: {note}"))
+            tell(format_args!("note: {note}"));
         })?;
         self.run(&mut folder)?;
         let most = self.most(folder.experiment());

@@ -55,7 +55,7 @@ impl Arguments {
                 all.len()
             )));
         }
-        damages.iter().for_each(|damage| tell(damage));
+        damages.iter().for_each(tell);
         let chosen = self.choose(&all);
         let count = chosen.len();
         self.mention_other_version(&manifest);
