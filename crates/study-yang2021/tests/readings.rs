@@ -16,7 +16,7 @@ use study_yang2021::readings::{Trials, rivals};
 fn readings_are_counted_against_each_rival_and_against_all() {
     let place = tempfile::tempdir().unwrap();
     let folder = place.path();
-    let scenario = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/paper.ron");
+    let scenario = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/paper-calibrated.ron");
     std::fs::copy(scenario, folder.join("paper.ron")).unwrap();
     let text = "(name: \"r\", scenario: \"paper.ron\", set: {\"duration_s\": 300.0}, policies: [\"RNE\", \"DIS\", \"HP_DIS\"],
         readings: {\"hard_rule\": [IntraGroupTrust, MeanHp], \"merge\": [Apart, Together]}, trials: 8, lean: true)";
