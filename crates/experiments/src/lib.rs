@@ -22,10 +22,13 @@ mod failure;
 pub mod files;
 pub mod input_table;
 pub mod metric;
+pub mod oracle;
 pub mod provenance;
+pub mod regret;
 pub mod rounds;
 pub mod run;
 pub mod stats;
 pub mod sweep;
+pub mod why;
 
 pub use failure::{Failure, panic_message};

@@ -2,11 +2,10 @@
 
 use std::io::{self, Write};
 
-use rne_core::Policy;
 use serde::Serialize;
 use usar_sim::event::Event;
 use usar_sim::record::{DecisionRecord, TrialRecord};
-use usar_sim::simulation::Simulation;
+use usar_sim::simulation::{Decider, Simulation};
 
 use crate::chunk::{ChunkWriter, Kind};
 use crate::header::Header;
@@ -152,12 +151,12 @@ fn write_json(out: &mut ChunkWriter<impl Write>, kind: Kind, value: &impl Serial
 /// The recording cannot be written.
 pub fn record(
     mut simulation: Simulation,
-    policy: &dyn Policy,
+    decider: &(impl Decider + ?Sized),
     options: &Options,
     out: impl Write,
 ) -> io::Result<TrialRecord> {
     let mut recorder = Recorder::begin(out, &simulation, options)?;
-    while simulation.step(policy).is_none() {
+    while simulation.step(decider).is_none() {
         recorder.listen(&simulation)?;
     }
     let mut record = simulation.finish();

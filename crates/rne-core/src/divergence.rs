@@ -23,6 +23,30 @@ pub fn relative_entropy(
     Ok(RelativeNeedsEntropy::from_nats(kullback_leibler(p.shares(), q.shares())))
 }
 
+/// What each need adds to `T(P||Q)`, in nats: the summands of Eqs. 1 and 7. They add up to the relative entropy;
+/// a need of which `p` has the smaller share adds a negative number. `None` for the needs that make the value
+/// infinite.
+///
+/// ```
+/// use rne_core::{NeedDistribution, relative_entropy_by_need};
+///
+/// let p = NeedDistribution::from_shares(vec![0.5, 0.5])?;
+/// let q = NeedDistribution::from_shares(vec![0.25, 0.75])?;
+/// let by_need = relative_entropy_by_need(&p, &q)?;
+/// assert!(by_need[0].unwrap() > 0.0 && by_need[1].unwrap() < 0.0);
+/// # Ok::<(), rne_core::NeedsError>(())
+/// ```
+///
+/// # Errors
+/// Distributions over different numbers of needs.
+pub fn relative_entropy_by_need(
+    p: &NeedDistribution,
+    q: &NeedDistribution,
+) -> Result<Vec<Option<f64>>, NeedsError> {
+    check_length("second distribution", p.shares().len(), q.shares().len())?;
+    Ok(p.shares().iter().zip(q.shares()).map(|(p, q)| summand(*p, *q)).collect())
+}
+
 /// `T(P||Q) + T(Q||P)` (Jeffreys).
 ///
 /// # Errors
@@ -75,14 +99,20 @@ pub fn mutual_information(joint: &DMatrix<f64>) -> Result<f64, NeedsError> {
 pub(crate) fn kullback_leibler(p: &[f64], q: &[f64]) -> f64 {
     let mut sum = 0.0;
     for (p, q) in p.iter().zip(q) {
-        if *p > 0.0 {
-            if *q <= 0.0 {
-                return f64::INFINITY;
-            }
-            sum += p * log_ratio(*p, *q);
+        match summand(*p, *q) {
+            Some(summand) => sum += summand,
+            None => return f64::INFINITY,
         }
     }
     sum
+}
+
+/// `p ln(p / q)`, 0 without `p`; `None` where it is infinite.
+fn summand(p: f64, q: f64) -> Option<f64> {
+    if p <= 0.0 {
+        return Some(0.0);
+    }
+    (q > 0.0).then(|| p * log_ratio(p, q))
 }
 
 /// `ln(p / q)` for shares above zero, also where the quotient leaves the range of `f64`.
@@ -129,6 +159,18 @@ mod tests {
         assert!(mutual_information(&independent).unwrap().abs() < 1e-15);
         assert!((mutual_information(&equal).unwrap() - std::f64::consts::LN_2).abs() < 1e-15);
         assert!(mutual_information(&DMatrix::from_row_slice(1, 2, &[0.5, 0.6])).is_err());
+    }
+
+    #[test]
+    fn the_needs_add_up_to_the_relative_entropy() {
+        let (p, q) = (shares(&[0.2, 0.3, 0.5]), shares(&[0.5, 0.25, 0.25]));
+        let by_need = relative_entropy_by_need(&p, &q).unwrap();
+        let sum: f64 = by_need.iter().map(|summand| summand.unwrap()).sum();
+        assert_eq!(Some(sum), relative_entropy(&p, &q).unwrap().nats());
+        // 0.2 ln 0.4
+        assert!((by_need[0].unwrap() + 0.183_258_146_374_831_03).abs() < 1e-15);
+        let lacking = relative_entropy_by_need(&shares(&[0.5, 0.5]), &shares(&[1.0, 0.0])).unwrap();
+        assert_eq!(lacking[1], None);
     }
 
     #[test]

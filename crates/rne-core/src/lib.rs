@@ -19,6 +19,7 @@
 //!
 //! A [`Policy`] answers a [`Question`] with a [`Decision`]. Policies have names in a [`Registry`].
 
+pub mod assignments;
 pub mod decision;
 pub mod divergence;
 pub mod error;
@@ -35,7 +36,9 @@ pub mod schema;
 pub mod trust;
 
 pub use decision::{Account, Alternative, Assignment, Decision};
-pub use divergence::{jeffreys, jensen_shannon, mutual_information, relative_entropy};
+pub use divergence::{
+    jeffreys, jensen_shannon, mutual_information, relative_entropy, relative_entropy_by_need,
+};
 pub use error::{AssignmentError, NeedsError, PolicyError, QuestionError, RegistryError};
 pub use history::{GroupOutcome, MemberOutcome, RoundOutcome};
 pub use ids::{NeedId, RoleId, TaskId};

@@ -163,9 +163,8 @@ fn options_in_words(policy: &PolicySpec) -> String {
 
 /// Shares of the rounds that a reading groups otherwise, and splits otherwise.
 fn regrouped(folder: &Folder, reading: usize, rounds: &[Round]) -> Result<[f64; 2], Failure> {
-    let case = &folder.experiment().cases[0];
-    let policy = &case.policies[reading];
-    let same = rounds.par_iter().map(|round| Ok(round.is_as(&round.grouped_by(&**policy)?)));
+    let policy = folder.experiment().policies[reading].make().map_err(Failure::run)?.policy;
+    let same = rounds.par_iter().map(|round| Ok(round.is_as(&round.grouped_by(&*policy)?)));
     let same = same.collect::<Result<Vec<[bool; 2]>, Failure>>()?;
     let share =
         |which: usize| same.iter().filter(|same| !same[which]).count() as f64 / same.len().max(1) as f64;
@@ -281,10 +280,9 @@ fn ends(found: &[(String, Difference)]) -> Option<[(String, Difference); 2]> {
 /// # Errors
 /// A policy that cannot group one of the rounds.
 pub fn groupings_in_words(folder: &Folder, readings: &[usize], rounds: &[Round]) -> Result<String, Failure> {
-    let case = &folder.experiment().cases[0];
     let groups = |reading: &usize| {
-        let policy = &case.policies[*reading];
-        let groups = rounds.iter().map(|round| Ok(round.grouped_by(&**policy)?.groups));
+        let policy = folder.experiment().policies[*reading].make().map_err(Failure::run)?.policy;
+        let groups = rounds.iter().map(|round| Ok(round.grouped_by(&*policy)?.groups));
         groups.collect::<Result<Vec<Vec<Vec<u32>>>, Failure>>()
     };
     let all = readings.par_iter().map(groups).collect::<Result<Vec<_>, Failure>>()?;

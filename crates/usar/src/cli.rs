@@ -9,8 +9,8 @@ use experiments::{Failure, panic_message};
 use rne_core::Registry;
 
 use crate::commands::{
-    calibrate, check, compare, estimate, explain, group, merge, readings, report, reproduce, run, schema,
-    sweep, trust, verify, view,
+    calibrate, check, compare, estimate, explain, fork, group, merge, oracle, readings, report, reproduce,
+    run, schema, sweep, trust, verify, view, why,
 };
 use crate::printable::Printable;
 use crate::running::{status_of_signal, tell};
@@ -50,6 +50,8 @@ enum Command {
     Report(report::Arguments),
     Reproduce(reproduce::Arguments),
     Explain(explain::Arguments),
+    Fork(fork::Arguments),
+    Oracle(oracle::Arguments),
     Readings(readings::Arguments),
     Verify(verify::Arguments),
     Calibrate(calibrate::Arguments),
@@ -58,6 +60,7 @@ enum Command {
     Group(group::Arguments),
     Schema(schema::Arguments),
     View(view::Arguments),
+    Why(why::Arguments),
 }
 
 /// Runs the command that the process was called with, with policies of the caller's own beside the built-in
@@ -120,6 +123,8 @@ impl Command {
             Self::Reproduce(arguments) => arguments.execute(out),
             Self::Report(arguments) => arguments.execute(out),
             Self::Explain(arguments) => arguments.execute(out),
+            Self::Fork(arguments) => arguments.execute(out),
+            Self::Oracle(arguments) => arguments.execute(out),
             Self::Readings(arguments) => arguments.execute(out),
             Self::Verify(arguments) => arguments.execute(out),
             Self::Calibrate(arguments) => arguments.execute(out),
@@ -128,6 +133,7 @@ impl Command {
             Self::Group(arguments) => arguments.execute(out),
             Self::Schema(arguments) => arguments.execute(out),
             Self::View(arguments) => arguments.execute(out),
+            Self::Why(arguments) => arguments.execute(out),
         }
     }
 }

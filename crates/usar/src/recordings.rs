@@ -8,13 +8,12 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use experiments::Failure;
 use experiments::experiment::Experiment;
-use experiments::run::TrialKey;
+use experiments::run::{Driver, TrialKey};
 use experiments::sweep::disk::RECORDINGS;
 use experiments::sweep::folder::Folder;
 use recording::{Options, Recorder, Recording};
-use rne_core::Policy;
 use usar_sim::record::{Status, TrialRecord};
-use usar_sim::simulation::Simulation;
+use usar_sim::simulation::{Decider, Simulation};
 
 use crate::running::Guard;
 
@@ -40,14 +39,14 @@ fn trouble(path: &Path, error: &io::Error) -> Failure {
 pub(crate) fn record_to(
     path: &Path,
     mut simulation: Simulation,
-    policy: &dyn Policy,
+    decider: &(impl Decider + ?Sized),
     options: &Options,
     guard: &Guard,
 ) -> Result<TrialRecord, Failure> {
     let trouble = |error: io::Error| trouble(path, &error);
     let file = BufWriter::with_capacity(BUFFER, File::create_new(path).map_err(trouble)?);
     let mut recorder = Recorder::begin(file, &simulation, options).map_err(trouble)?;
-    while simulation.step(policy).is_none() {
+    while simulation.step(decider).is_none() {
         recorder.listen(&simulation).map_err(trouble)?;
         guard.look(&simulation)?;
     }
@@ -130,7 +129,7 @@ pub(crate) fn record_trials(folder: &mut Folder, which: &Recorded, stop: &Atomic
         let record = record_to(
             &underway,
             simulation(&experiment, &key)?,
-            &*policy(&experiment, &key),
+            driver(&experiment, &key),
             &options(&key),
             &Guard::new(f64::INFINITY),
         )?;
@@ -165,15 +164,15 @@ pub(crate) fn recording_of(
     {
         return Ok(bytes);
     }
-    recorded(simulation(experiment, key)?, &*policy(experiment, key), &options(key))
+    recorded(simulation(experiment, key)?, driver(experiment, key), &options(key))
 }
 
 fn options(key: &TrialKey) -> Options {
     Options::new(&key.label)
 }
 
-fn policy(experiment: &Experiment, key: &TrialKey) -> std::sync::Arc<dyn Policy> {
-    std::sync::Arc::clone(&experiment.cases[key.case].policies[key.policy])
+fn driver<'e>(experiment: &'e Experiment, key: &TrialKey) -> &'e Driver {
+    &experiment.cases[key.case].drivers[key.policy]
 }
 
 fn simulation(experiment: &Experiment, key: &TrialKey) -> Result<Simulation, Failure> {
@@ -184,11 +183,11 @@ fn simulation(experiment: &Experiment, key: &TrialKey) -> Result<Simulation, Fai
 /// Simulates a trial and records it in memory.
 pub(crate) fn recorded(
     simulation: Simulation,
-    policy: &dyn Policy,
+    decider: &(impl Decider + ?Sized),
     options: &Options,
 ) -> Result<Vec<u8>, Failure> {
     let mut bytes = Vec::new();
-    let record = recording::record(simulation, policy, options, &mut bytes).map_err(Failure::run)?;
+    let record = recording::record(simulation, decider, options, &mut bytes).map_err(Failure::run)?;
     match record.status {
         Status::Failed(reason) => {
             Err(Failure::run(format!("the trial of {} failed: {reason}", options.policy)))

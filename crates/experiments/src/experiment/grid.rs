@@ -1,13 +1,11 @@
 //! The grid that the axes of a sweep span, and the policies at each of its points.
 
-use std::sync::Arc;
-
-use rne_core::Policy;
 use usar_sim::scenario::{Scenario, ScenarioFile};
 
 use super::policy::PolicySpec;
 use super::read::checked;
 use crate::failure::Failure;
+use crate::run::Driver;
 
 /// Most cases that the axes of a sweep may span.
 const MAX_CASES: usize = 100_000;
@@ -27,8 +25,8 @@ pub struct Case {
     pub values: Vec<String>,
     /// The scenario there.
     pub scenario: Scenario,
-    /// The sweep's policies there.
-    pub policies: Vec<Arc<dyn Policy>>,
+    /// What answers there for each of the sweep's policies.
+    pub drivers: Vec<Driver>,
 }
 
 /// The policies of a sweep, each once.
@@ -79,10 +77,10 @@ pub(super) fn cases(base: &Scenario, axes: &[Axis], policies: &[PolicySpec]) -> 
             file.set(&axis.path, value).map_err(|error| Failure::input(format!("axes: {error}")))?;
         }
         let scenario = checked(file, &place)?;
-        let made = policies.iter().map(|policy| policy.make().map(|made| made.policy));
-        let policies =
+        let made = policies.iter().map(PolicySpec::driver);
+        let drivers =
             made.collect::<Result<_, _>>().map_err(|error| Failure::input(format!("{place}{error}")))?;
-        Ok(Case { values: values.into_iter().map(str::to_owned).collect(), scenario, policies })
+        Ok(Case { values: values.into_iter().map(str::to_owned).collect(), scenario, drivers })
     };
     grid.into_iter().map(case).collect()
 }

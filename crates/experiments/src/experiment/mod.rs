@@ -21,7 +21,7 @@ pub use read::{companion, defaults, with_settings};
 
 use crate::failure::Failure;
 use crate::metric::{Catalogue, task_names};
-use crate::run::{Fault, SharedTrials, Trial, TrialKey, run_trial};
+use crate::run::{Driver, Fault, SharedTrials, Trial, TrialKey, run_trial};
 use grid::{cases, checked_policies, deciding_text};
 use read::{canonical, from_scenario, from_sweep_file, with_readings};
 
@@ -270,8 +270,8 @@ impl Experiment {
     /// What kept it from its end.
     pub fn run(&self, key: &TrialKey, halt: &AtomicBool) -> Result<Trial, Fault> {
         let case = &self.cases[key.case];
-        let policy = &*case.policies[key.policy];
-        self.shared.run((key.case, &case.scenario), policy, key.seed, halt)
+        let driver = &case.drivers[key.policy];
+        self.shared.run((key.case, &case.scenario), driver, key.seed, halt)
     }
 
     /// How many trials were simulated by [`Experiment::run`] and not taken over.
@@ -291,7 +291,7 @@ impl Experiment {
     /// What kept it from its end.
     pub fn run_alone(&self, key: &TrialKey, halt: &AtomicBool) -> Result<Trial, Fault> {
         let case = &self.cases[key.case];
-        run_trial(&case.scenario, &*case.policies[key.policy], key.seed, self.is_checked, halt)
+        run_trial(&case.scenario, &case.drivers[key.policy], key.seed, self.is_checked, halt)
     }
 
     /// The same sweep with another number of trials.
@@ -353,7 +353,8 @@ impl Experiment {
         let mut trial =
             Simulation::new(&case.scenario, seed).map_err(|error| format!("{place}seed {seed}: {error}"))?;
         let Advance::Asks(question) = trial.advance() else { return Ok(()) };
-        for (policy, spec) in case.policies.iter().zip(&self.policies) {
+        let policies = case.drivers.iter().map(Driver::policy).zip(&self.policies);
+        for (policy, spec) in policies.filter_map(|(policy, spec)| Some((policy?, spec))) {
             let refused = |error: &dyn std::fmt::Display| format!("{place}policy {}: {error}", spec.label);
             let decision = policy.decide(question).map_err(|error| refused(&error))?;
             decision.assignment.check(question).map_err(|error| refused(&error))?;

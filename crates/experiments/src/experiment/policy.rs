@@ -4,20 +4,32 @@ use std::sync::OnceLock;
 
 use rne_core::{MadePolicy, Registry, RneOptions};
 use ron_fields::Fields;
+use serde::de::DeserializeOwned;
+
+use crate::oracle::{NotSimulated, Oracle, OracleOptions};
+use crate::run::Driver;
 
 static REGISTRY: OnceLock<Registry> = OnceLock::new();
 
-/// The policies that this program knows: the built-in ones, unless it was given others by [`set_registry`].
+/// The policies that this program knows: the built-in ones, unless it was given others by [`set_registry`], and the
+/// oracle.
 pub fn registry() -> &'static Registry {
-    REGISTRY.get_or_init(Registry::standard)
+    REGISTRY.get_or_init(|| with_oracle(Registry::standard()))
+}
+
+/// A registry with the oracle, unless it has one of its own.
+fn with_oracle(mut registry: Registry) -> Registry {
+    // A caller's policy of that name stays.
+    let _ = registry.add(NotSimulated::kind());
+    registry
 }
 
 /// Gives this program its policies, before any is asked for.
 ///
 /// # Errors
-/// The registry, when the program has one already.
+/// The registry with the oracle, when the program has one already.
 pub fn set_registry(registry: Registry) -> Result<(), Registry> {
-    REGISTRY.set(registry)
+    REGISTRY.set(with_oracle(registry))
 }
 
 /// A policy with its options.
@@ -77,6 +89,21 @@ impl PolicySpec {
         registry().parse(&self.plain()).map_err(|error| error.to_string())
     }
 
+    /// What answers for it in a trial.
+    ///
+    /// # Errors
+    /// A policy that goes on after the oracle's decision and cannot be made.
+    pub fn driver(&self) -> Result<Driver, String> {
+        let made = self.make()?;
+        if self.name != NotSimulated::NAME {
+            return Ok(Driver::Policy(made.policy));
+        }
+        let options: OracleOptions = from_ron(&made.options)?;
+        let onwards = options.onwards(|then| Self::parse(then)?.make().map(|made| made.policy));
+        let onwards = onwards.map_err(|error| format!("policy ORACLE: then: {error}"))?;
+        Ok(Driver::Oracle(Box::new(Oracle::new(options, onwards))))
+    }
+
     /// Name and options without the label: reads to the same policy.
     #[must_use]
     pub fn plain(&self) -> String {
@@ -87,10 +114,7 @@ impl PolicySpec {
     #[must_use]
     pub fn rne_options(&self) -> Option<RneOptions> {
         let all = self.make().ok().filter(|_| self.name == "RNE")?.options;
-        ron::Options::default()
-            .with_default_extension(ron::extensions::Extensions::IMPLICIT_SOME)
-            .from_str(&all)
-            .ok()
+        from_ron(&all).ok()
     }
 
     /// The options that are written, with their values in RON.
@@ -104,6 +128,12 @@ impl PolicySpec {
     pub fn written(&self) -> &str {
         &self.written
     }
+}
+
+/// Options as a registry writes them.
+fn from_ron<T: DeserializeOwned>(options: &str) -> Result<T, String> {
+    let ron = ron::Options::default().with_default_extension(ron::extensions::Extensions::IMPLICIT_SOME);
+    ron.from_str(options).map_err(|error| error.code.to_string())
 }
 
 fn plain(name: &str, options: &[(String, String)]) -> String {

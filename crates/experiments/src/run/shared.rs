@@ -9,6 +9,7 @@ use rne_core::Policy;
 use usar_sim::record::DecisionRecord;
 use usar_sim::scenario::Scenario;
 
+use super::driver::Driver;
 use super::trial::{Fault, Trial, run_trial};
 
 /// Scenarios and seeds whose trials are kept. Trials are run seed by seed, so that few are needed.
@@ -54,17 +55,18 @@ impl SharedTrials {
     pub fn run(
         &self,
         (case, scenario): (usize, &Scenario),
-        policy: &dyn Policy,
+        driver: &Driver,
         seed: u64,
         halt: &AtomicBool,
     ) -> Result<Trial, Fault> {
         let of_seed = self.of_seed(case, seed);
         let known = of_seed.lock().unwrap_or_else(PoisonError::into_inner).clone();
-        if let Some(trial) = known.iter().find_map(|trial| as_decided_by(trial, policy)) {
+        let shared = |policy| known.iter().find_map(|trial| as_decided_by(trial, policy));
+        if let Some(trial) = driver.policy().and_then(shared) {
             return Ok(trial);
         }
         self.simulated.fetch_add(1, Ordering::Relaxed);
-        let trial = run_trial(scenario, policy, seed, self.is_checked, halt)?;
+        let trial = run_trial(scenario, driver, seed, self.is_checked, halt)?;
         let finished = Arc::new(trial.clone());
         let mut known = of_seed.lock().unwrap_or_else(PoisonError::into_inner);
         if known.len() < KEPT_OF_SEED {
@@ -119,7 +121,9 @@ mod tests {
         policies.push(registry.parse("RNE(log_base: Two)").unwrap());
         for seed in 1..4 {
             for policy in &policies {
-                let found = shared.run((0, &scenario), &*policy.policy, seed, &halt).unwrap();
+                let found = shared
+                    .run((0, &scenario), &Driver::Policy(Arc::clone(&policy.policy)), seed, &halt)
+                    .unwrap();
                 let alone = run_trial(&scenario, &*policy.policy, seed, false, &halt).unwrap();
                 assert_eq!(found, alone, "{policy:?} seed {seed}");
             }
@@ -136,10 +140,10 @@ mod tests {
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/paper.ron");
         let (scenario, _) = Scenario::load(&path).unwrap();
         let short = with_settings(&scenario, &["duration_s=60".to_owned()]).unwrap();
-        let dis = Registry::standard().parse("DIS").unwrap().policy;
+        let dis = Driver::Policy(Registry::standard().parse("DIS").unwrap().policy);
         let (shared, halt) = (SharedTrials::new(false), AtomicBool::new(false));
-        let first = shared.run((0, &scenario), &*dis, 1, &halt).unwrap();
-        let second = shared.run((1, &short), &*dis, 1, &halt).unwrap();
+        let first = shared.run((0, &scenario), &dis, 1, &halt).unwrap();
+        let second = shared.run((1, &short), &dis, 1, &halt).unwrap();
         assert!(first.record.time_s > 599.0 && second.record.time_s < 61.0);
     }
 }

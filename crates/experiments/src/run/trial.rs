@@ -2,12 +2,11 @@
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use rne_core::Policy;
 use serde::{Deserialize, Serialize};
 use usar_sim::event::Event;
 use usar_sim::record::{Status, TrialRecord};
 use usar_sim::scenario::Scenario;
-use usar_sim::simulation::Simulation;
+use usar_sim::simulation::{Decider, Simulation};
 
 /// A trial looks once in this many steps whether it is to stop.
 const HALT_CHECK_STEPS: u64 = 64;
@@ -122,7 +121,7 @@ impl Outcome {
 /// Its layout cannot be drawn, something went wrong in it, or it was halted.
 pub fn run_trial(
     scenario: &Scenario,
-    policy: &dyn Policy,
+    decider: &(impl Decider + ?Sized),
     seed: u64,
     is_checked: bool,
     halt: &AtomicBool,
@@ -131,7 +130,7 @@ pub fn run_trial(
     let simulation = Simulation::new(scenario, seed).map_err(|error| failed(error.to_string()))?;
     let mut simulation = if is_checked { simulation.checked() } else { simulation };
     let mut deliveries = vec![Vec::new(); scenario.tasks.len()];
-    while simulation.step(policy).is_none() {
+    while simulation.step(decider).is_none() {
         if simulation.steps().is_multiple_of(HALT_CHECK_STEPS) && halt.load(Ordering::Relaxed) {
             return Err(failed("it was halted".to_owned()));
         }

@@ -5,6 +5,7 @@ mod baselines;
 mod large_teams;
 mod many_tasks;
 mod oracle;
+mod pairs;
 mod properties;
 mod quotas;
 mod support;

@@ -31,6 +31,22 @@ pub enum Activity {
 }
 
 impl Activity {
+    /// The activity as one word, for tables.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Home => "home",
+            Self::Searching => "searching",
+            Self::Approaching(_) => "approaching",
+            Self::Loading(..) => "loading",
+            Self::Standby => "standby",
+            Self::OnErrand => "on_errand",
+            Self::Returning => "returning",
+            Self::ToRest => "to_rest",
+            Self::Resting(_) => "resting",
+        }
+    }
+
     /// Whether it works in the field: not home, not on its way back, not resting.
     #[must_use]
     pub fn is_in_field(self) -> bool {

@@ -3,11 +3,13 @@
 //! [`Simulation::advance`] does a step, or says that it [asks](Advance::Asks) how the team is to be grouped. [`Simulation::assign`] answers. Whoever
 //! answers, a policy, a program or a person, comes through this door.
 
+mod checkpoint;
+mod decider;
 mod state;
 
 use std::sync::Arc;
 
-use rne_core::{Assignment, AssignmentError, Decision, Policy, Question};
+use rne_core::{Assignment, AssignmentError, Decision, Question};
 use thiserror::Error;
 
 use crate::conflict::{Delay, Mover};
@@ -15,7 +17,7 @@ use crate::event::Event;
 use crate::hash::PERIOD_STEPS;
 use crate::ids::RobotId;
 use crate::invariant::{Invariants, Overlaps};
-use crate::metrics::history;
+use crate::metrics::{Metrics, history};
 use crate::mission::{Ending, Mission};
 use crate::model::Model;
 use crate::navigation::Navigator;
@@ -25,6 +27,8 @@ use crate::stage::Stage;
 use crate::tally::Tally;
 use crate::world::World;
 
+pub use checkpoint::Checkpoint;
+pub use decider::Decider;
 pub(crate) use state::State;
 
 /// A running trial.
@@ -89,6 +93,12 @@ impl Simulation {
         self
     }
 
+    /// The question that waits for an answer.
+    #[must_use]
+    pub fn question(&self) -> Option<&Question> {
+        self.question.as_ref()
+    }
+
     /// How deep bodies have overlapped so far, in a checked trial.
     #[must_use]
     pub fn overlaps(&self) -> Option<Overlaps> {
@@ -138,20 +148,26 @@ impl Simulation {
         Ok(())
     }
 
-    /// Does a whole step, in which `policy` answers what is asked. The status, once the trial is over.
-    pub fn step(&mut self, policy: &dyn Policy) -> Option<Status> {
-        self.step_watched(policy, |_| {})
+    /// Does a whole step, in which a policy or another [`Decider`] answers what is asked. The status, once the trial is
+    /// over.
+    pub fn step(&mut self, decider: &(impl Decider + ?Sized)) -> Option<Status> {
+        self.step_watched(decider, |_| {})
     }
 
     /// A step that reports the end of each of its stages, to measure them.
-    pub fn step_watched(&mut self, policy: &dyn Policy, mut done: impl FnMut(Stage)) -> Option<Status> {
+    pub fn step_watched(
+        &mut self,
+        decider: &(impl Decider + ?Sized),
+        mut done: impl FnMut(Stage),
+    ) -> Option<Status> {
         loop {
-            let answer = match self.advance_watched(&mut done) {
+            match self.advance_watched(&mut done) {
                 Advance::Running => return None,
                 Advance::Over(status) => return Some(status),
-                Advance::Asks(question) => policy.decide(question),
-            };
-            let taken = match answer {
+                Advance::Asks(_) => {}
+            }
+            let Some(question) = &self.question else { continue };
+            let taken = match decider.decide(self, question) {
                 Ok(decision) => self.assign(decision).map_err(|error| error.to_string()),
                 Err(error) => Err(error.to_string()),
             };
@@ -162,8 +178,12 @@ impl Simulation {
     }
 
     /// Runs to the end. `listen` hears the events of each step, with the time in seconds and the world as it is then.
-    pub fn run(mut self, policy: &dyn Policy, mut listen: impl FnMut(f64, &[Event], &World)) -> TrialRecord {
-        while self.step(policy).is_none() {
+    pub fn run(
+        mut self,
+        decider: &(impl Decider + ?Sized),
+        mut listen: impl FnMut(f64, &[Event], &World),
+    ) -> TrialRecord {
+        while self.step(decider).is_none() {
             listen(self.time_s(), self.events(), self.world());
         }
         self.finish()
@@ -267,6 +287,12 @@ impl Simulation {
     #[must_use]
     pub fn navigator(&self) -> &Navigator {
         &self.state.navigator
+    }
+
+    /// What was counted and added up so far.
+    #[must_use]
+    pub fn metrics(&self) -> &Metrics {
+        &self.state.metrics
     }
 
     /// The groupings so far.

@@ -1,12 +1,15 @@
 //! One file per verb of the command line.
 
+mod asked;
 pub(crate) mod calibrate;
 pub(crate) mod check;
 pub(crate) mod compare;
 pub(crate) mod estimate;
 pub(crate) mod explain;
+pub(crate) mod fork;
 pub(crate) mod group;
 pub(crate) mod merge;
+pub(crate) mod oracle;
 mod precision;
 pub(crate) mod readings;
 pub(crate) mod report;
@@ -18,6 +21,7 @@ pub(crate) mod sweep;
 pub(crate) mod trust;
 pub(crate) mod verify;
 pub(crate) mod view;
+pub(crate) mod why;
 
 use std::path::Path;
 

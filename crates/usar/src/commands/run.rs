@@ -7,11 +7,10 @@ use clap::Args;
 use experiments::Failure;
 use experiments::experiment::{PolicySpec, defaults, with_settings};
 use reports::table::rounds_table;
-use rne_core::Policy;
 use serde::Serialize;
 use usar_sim::metrics::CutOff;
 use usar_sim::record::{Status, TrialRecord};
-use usar_sim::simulation::Simulation;
+use usar_sim::simulation::{Decider, Simulation};
 
 use crate::recordings;
 
@@ -91,7 +90,7 @@ impl Arguments {
             (None, None) => &first_policy,
         };
         let spec = PolicySpec::parse(asked).map_err(|error| Failure::input(format!("--policy: {error}")))?;
-        let policy = spec.make().map_err(Failure::input)?.policy;
+        let driver = spec.driver().map_err(Failure::input)?;
         let simulation = match &snapshot {
             Some(snapshot) => snapshot.restore(&scenario)?,
             None => Simulation::new(&scenario, self.seed.unwrap_or(first_seed))
@@ -107,9 +106,9 @@ impl Arguments {
         let record = match &self.record {
             Some(path) => {
                 let options = recording::Options { policy: spec.label.clone(), fps: self.record_fps };
-                recordings::record_to(path, simulation, &*policy, &options, &guard)?
+                recordings::record_to(path, simulation, &driver, &options, &guard)?
             }
-            None => run(simulation, &*policy, &guard)?,
+            None => run(simulation, &driver, &guard)?,
         };
         if let Status::Failed(reason) = &record.status {
             return Err(Failure::run(format!("trial of {} with seed {seed} failed: {reason}", spec.label)));
@@ -129,8 +128,8 @@ impl Arguments {
 }
 
 /// Runs a trial to its end, unless it takes too long or is stopped.
-fn run(mut simulation: Simulation, policy: &dyn Policy, guard: &Guard) -> Result<TrialRecord, Failure> {
-    while simulation.step(policy).is_none() {
+fn run(mut simulation: Simulation, decider: &impl Decider, guard: &Guard) -> Result<TrialRecord, Failure> {
+    while simulation.step(decider).is_none() {
         guard.look(&simulation)?;
     }
     Ok(simulation.finish())

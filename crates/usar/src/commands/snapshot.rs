@@ -44,7 +44,7 @@ pub(super) fn save(
     spec: &PolicySpec,
     (path, seconds): (&Path, f64),
 ) -> Result<(), Failure> {
-    let policy = spec.make().map_err(Failure::input)?.policy;
+    let driver = spec.driver().map_err(Failure::input)?;
     let (now, end) = (simulation.time_s(), simulation.scenario().duration_s);
     if !(now..=end).contains(&seconds) {
         return Err(Failure::input(format!("--save-at: must be from {now} to {end} s, found {seconds}")));
@@ -57,7 +57,7 @@ pub(super) fn save(
         |error: std::io::Error| Failure::storage(format!("--save: cannot write {}: {error}", path.display()));
     let mut file = tempfile::NamedTempFile::new_in(folder).map_err(trouble)?;
     while simulation.time_s() < seconds {
-        if let Some(status) = simulation.step(&*policy) {
+        if let Some(status) = simulation.step(&driver) {
             if let Status::Failed(reason) = status {
                 return Err(Failure::run(reason));
             }

@@ -118,10 +118,10 @@ impl Arguments {
         for policy in split_list(self.policy.as_deref().unwrap_or(&first_policy)) {
             let spec =
                 PolicySpec::parse(policy).map_err(|error| Failure::input(format!("--policy: {error}")))?;
-            let made = spec.make().map_err(Failure::input)?;
+            let driver = spec.driver().map_err(Failure::input)?;
             let simulation = Simulation::new(&scenario, seed)
                 .map_err(|error| Failure::input(format!("{}: {error}", file.display())))?;
-            let bytes = recorded(simulation, &*made.policy, &Options::new(&spec.label))?;
+            let bytes = recorded(simulation, &driver, &Options::new(&spec.label))?;
             shown.push(Shown { name: file.display().to_string(), bytes });
         }
         Ok(())

@@ -9,6 +9,7 @@
 mod local;
 mod merge;
 mod options;
+mod pairs;
 mod partition;
 mod quotas;
 mod scorer;
@@ -16,6 +17,7 @@ mod suitability;
 
 pub use merge::EXACT_TASKS;
 pub use options::{HardRule, MergeReading, RneOptions, ScoreDirection};
+pub use pairs::DirectedRne;
 pub use partition::EXACT_PARTITIONS;
 
 use crate::decision::{

@@ -1,0 +1,210 @@
+//! One branch of a trial: a decision, and what came of it.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use rne_core::{AssignmentError, Decision, Policy};
+use serde::{Deserialize, Serialize};
+use usar_sim::metrics::TaskTotals;
+use usar_sim::record::{Status, TrialRecord};
+use usar_sim::simulation::{Advance, AssignError, Checkpoint, Decider, Simulation};
+
+/// A branch looks once in this many steps whether it is to stop.
+const HALT_CHECK_STEPS: u64 = 64;
+
+/// What came of a decision, from the moment of the decision on.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Outcome {
+    /// For each task, what was done and spent for it.
+    pub tasks: Vec<TaskTotals>,
+    /// Percent points of energy and of HP that robots spent outside any group.
+    pub ungrouped: [f64; 2],
+    /// Simulated time in which that came about, in seconds.
+    pub duration_s: f64,
+    /// Whether the trial ended before the round did.
+    pub is_cut: bool,
+}
+
+impl Outcome {
+    /// All tasks together, with what was spent outside any group.
+    #[must_use]
+    pub fn total(&self) -> TaskTotals {
+        let [energy, hp] = self.ungrouped;
+        let start = TaskTotals { energy, hp, ..TaskTotals::default() };
+        self.tasks.iter().fold(start, |sum, task| TaskTotals {
+            rescued: sum.rescued + task.rescued,
+            secured: sum.secured + task.secured,
+            energy: sum.energy + task.energy,
+            hp: sum.hp + task.hp,
+        })
+    }
+
+    /// What was counted in a trial so far.
+    fn so_far(trial: &Simulation) -> Self {
+        let metrics = trial.metrics();
+        Self {
+            tasks: metrics.tasks.clone(),
+            ungrouped: metrics.ungrouped,
+            duration_s: trial.time_s(),
+            is_cut: false,
+        }
+    }
+
+    fn since(&self, before: &Self, is_cut: bool) -> Self {
+        let pairs = self.tasks.iter().zip(&before.tasks);
+        let difference = |(now, then): (&TaskTotals, &TaskTotals)| TaskTotals {
+            rescued: now.rescued - then.rescued,
+            secured: now.secured - then.secured,
+            energy: now.energy - then.energy,
+            hp: now.hp - then.hp,
+        };
+        Self {
+            tasks: pairs.map(difference).collect(),
+            ungrouped: [0, 1].map(|i| self.ungrouped[i] - before.ungrouped[i]),
+            duration_s: self.duration_s - before.duration_s,
+            is_cut,
+        }
+    }
+}
+
+/// A branch that came to nothing.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum BranchError {
+    /// The trial asks nothing at that moment.
+    #[error("the trial asks for no assignment")]
+    NotAsked,
+    /// The trial was over before the round began.
+    #[error("the trial is over before round {round}: it ends at {time_s:.1} s, {status}")]
+    NoSuchRound {
+        /// The round that was asked for.
+        round: u32,
+        /// When the trial ended, in seconds.
+        time_s: f64,
+        /// How it ended.
+        status: String,
+    },
+    /// The decision does not answer the question.
+    #[error(transparent)]
+    Refused(#[from] AssignmentError),
+    /// The trial failed.
+    #[error("{0}")]
+    Failed(String),
+    /// It was told to stop.
+    #[error("it was halted")]
+    Halted,
+}
+
+/// Lets a decider play a trial until the question of a round waits for its answer.
+///
+/// # Errors
+/// The trial ends before that round, fails, or is halted.
+pub fn advance_to(
+    trial: &mut Simulation,
+    decider: &(impl Decider + ?Sized),
+    round: u32,
+    halt: &AtomicBool,
+) -> Result<(), BranchError> {
+    loop {
+        // A step would let the decider answer: the question is looked at first.
+        match trial.advance() {
+            Advance::Asks(question) if question.round == round => return Ok(()),
+            Advance::Over(Status::Failed(reason)) => return Err(BranchError::Failed(reason)),
+            Advance::Over(status) => {
+                let status = status.name().replace('_', " ");
+                return Err(BranchError::NoSuchRound { round, time_s: trial.time_s(), status });
+            }
+            Advance::Running => look(trial, halt)?,
+            Advance::Asks(_) => {
+                trial.step(decider);
+            }
+        }
+    }
+}
+
+fn look(trial: &Simulation, halt: &AtomicBool) -> Result<(), BranchError> {
+    let is_halted = trial.steps().is_multiple_of(HALT_CHECK_STEPS) && halt.load(Ordering::Relaxed);
+    if is_halted { Err(BranchError::Halted) } else { Ok(()) }
+}
+
+/// A trial that goes on from a decision.
+pub struct Branch {
+    trial: Simulation,
+    /// What was counted when the decision was made.
+    before: Outcome,
+    round: u32,
+}
+
+impl Branch {
+    /// Decides in a trial whose question waits.
+    ///
+    /// # Errors
+    /// No question waits, or the decision does not answer it.
+    pub fn begin(start: &Checkpoint, decision: Decision) -> Result<Self, BranchError> {
+        let mut trial = start.resume();
+        let round = trial.question().ok_or(BranchError::NotAsked)?.round;
+        let before = Outcome::so_far(&trial);
+        trial.assign(decision).map_err(|error| match error {
+            AssignError::Refused(error) => BranchError::Refused(error),
+            _ => BranchError::NotAsked,
+        })?;
+        Ok(Self { trial, before, round })
+    }
+
+    /// Goes on to the end of the round, or of the trial where that comes first.
+    ///
+    /// # Errors
+    /// The trial fails or is halted.
+    pub fn to_round_end(&mut self, halt: &AtomicBool) -> Result<Outcome, BranchError> {
+        let is_cut = loop {
+            match self.trial.advance() {
+                Advance::Running => look(&self.trial, halt)?,
+                Advance::Asks(question) if question.round > self.round => break false,
+                Advance::Asks(_) => return Err(BranchError::NotAsked),
+                Advance::Over(Status::Failed(reason)) => return Err(BranchError::Failed(reason)),
+                Advance::Over(_) => break true,
+            }
+        };
+        Ok(Outcome::so_far(&self.trial).since(&self.before, is_cut))
+    }
+
+    /// Goes on to the end of the trial; `onwards` decides what is asked later.
+    ///
+    /// # Errors
+    /// The trial fails or is halted.
+    pub fn to_trial_end(
+        &mut self,
+        onwards: &(impl Decider + ?Sized),
+        halt: &AtomicBool,
+    ) -> Result<Outcome, BranchError> {
+        loop {
+            match self.trial.step(onwards) {
+                None => look(&self.trial, halt)?,
+                Some(Status::Failed(reason)) => return Err(BranchError::Failed(reason)),
+                Some(_) => return Ok(Outcome::so_far(&self.trial).since(&self.before, false)),
+            }
+        }
+    }
+
+    /// The record of the trial as far as it was run.
+    #[must_use]
+    pub fn finish(self) -> TrialRecord {
+        self.trial.finish()
+    }
+}
+
+/// What comes of a decision: to the end of the round, or to the end of the trial where a policy goes on.
+///
+/// # Errors
+/// The decision does not answer the question; the trial fails or is halted.
+pub fn play(
+    start: &Checkpoint,
+    decision: Decision,
+    onwards: Option<&dyn Policy>,
+    halt: &AtomicBool,
+) -> Result<Outcome, BranchError> {
+    let mut branch = Branch::begin(start, decision)?;
+    match onwards {
+        None => branch.to_round_end(halt),
+        Some(policy) => branch.to_trial_end(policy, halt),
+    }
+}

@@ -1,0 +1,178 @@
+//! What a decision is judged by.
+
+use std::fmt;
+
+use serde::{Deserialize, Serialize};
+use usar_sim::metrics::TaskTotals;
+
+use super::branch::Outcome;
+use crate::metric::TOTAL;
+
+type Value = fn(&TaskTotals, f64) -> Option<f64>;
+
+/// A quantity of what came of a decision, whatever the tasks are.
+struct Quantity {
+    name: &'static str,
+    title: &'static str,
+    unit: &'static str,
+    is_cost: bool,
+    /// From totals and the time in seconds in which they came about.
+    value: Value,
+}
+
+const POINTS: &str = "percent points";
+const RATIO: &str = "percent points per rescuee";
+
+#[rustfmt::skip]
+const QUANTITIES: [Quantity; 7] = [
+    Quantity { name: "rescuees", title: "rescuees", unit: "", is_cost: false, value: |t, _| Some(f64::from(t.rescued)) },
+    Quantity { name: "rescue_rate", title: "rescuees per minute", unit: "1/min", is_cost: false, value: rate },
+    Quantity { name: "energy_per_rescuee", title: "energy per rescuee", unit: RATIO, is_cost: true, value: |t, _| ratio(t.energy, t.rescued) },
+    Quantity { name: "hp_per_rescuee", title: "HP per rescuee", unit: RATIO, is_cost: true, value: |t, _| ratio(t.hp, t.rescued) },
+    Quantity { name: "energy", title: "energy spent", unit: POINTS, is_cost: true, value: |t, _| Some(t.energy) },
+    Quantity { name: "hp", title: "HP lost", unit: POINTS, is_cost: true, value: |t, _| Some(t.hp) },
+    Quantity { name: "time", title: "time", unit: "s", is_cost: true, value: |_, seconds| Some(seconds) },
+];
+
+fn rate(totals: &TaskTotals, seconds: f64) -> Option<f64> {
+    (seconds > 0.0).then(|| 60.0 * f64::from(totals.rescued) / seconds)
+}
+
+fn ratio(cost: f64, rescued: u32) -> Option<f64> {
+    (rescued > 0).then(|| cost / f64::from(rescued))
+}
+
+/// A quantity by which decisions are judged: `rescuees.total`, `energy_per_rescuee.hard`.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Objective {
+    name: String,
+    quantity: usize,
+    /// The task; all tasks together without one.
+    task: Option<usize>,
+}
+
+/// A name that is no objective.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("unknown metric {found:?}; decisions are judged by {}", known.join(", "))]
+pub struct UnknownObjective {
+    /// The name.
+    pub found: String,
+    /// The names that there are.
+    pub known: Vec<String>,
+}
+
+impl Objective {
+    /// An objective by its name, for tasks of these names. A name without a task means all tasks together.
+    ///
+    /// # Errors
+    /// An unknown name, with the known ones.
+    pub fn parse(name: &str, tasks: &[String]) -> Result<Self, UnknownObjective> {
+        let all = Self::all(tasks);
+        let known = || all.iter().map(|objective| objective.name.clone()).collect();
+        let total = format!("{name}.{TOTAL}");
+        let found = all.iter().find(|objective| objective.name == name || objective.name == total);
+        found.cloned().ok_or_else(|| UnknownObjective { found: name.to_owned(), known: known() })
+    }
+
+    /// All objectives for tasks of these names.
+    #[must_use]
+    pub fn all(tasks: &[String]) -> Vec<Self> {
+        let of = |quantity: usize| {
+            let name = QUANTITIES[quantity].name;
+            if name == "time" {
+                return vec![Self { name: name.to_owned(), quantity, task: None }];
+            }
+            let total = Self { name: format!("{name}.{TOTAL}"), quantity, task: None };
+            let each = tasks.iter().enumerate().map(|(task, of)| Self {
+                name: format!("{name}.{of}"),
+                quantity,
+                task: Some(task),
+            });
+            std::iter::once(total).chain(each).collect()
+        };
+        (0..QUANTITIES.len()).flat_map(of).collect()
+    }
+
+    /// Its name.
+    #[must_use]
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// In words, with the unit.
+    #[must_use]
+    pub fn title(&self) -> String {
+        let Quantity { title, unit, .. } = QUANTITIES[self.quantity];
+        let part = self.name.split_once('.').map_or(String::new(), |(_, part)| format!(" {part}"));
+        let unit = if unit.is_empty() { String::new() } else { format!(" ({unit})") };
+        format!("{title}{part}{unit}")
+    }
+
+    /// Whether less is better.
+    #[must_use]
+    pub fn is_cost(&self) -> bool {
+        QUANTITIES[self.quantity].is_cost
+    }
+
+    /// Its value; `None` where it is undefined, as a cost per rescuee without rescuees.
+    #[must_use]
+    pub fn value(&self, outcome: &Outcome) -> Option<f64> {
+        let totals = match self.task {
+            Some(task) => *outcome.tasks.get(task)?,
+            None => outcome.total(),
+        };
+        (QUANTITIES[self.quantity].value)(&totals, outcome.duration_s).filter(|value| value.is_finite())
+    }
+
+    /// Its value, turned so that more is better.
+    #[must_use]
+    pub fn score(&self, outcome: &Outcome) -> Option<f64> {
+        self.value(outcome).map(|value| if self.is_cost() { -value } else { value })
+    }
+}
+
+impl fmt::Display for Objective {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.name)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn outcome() -> Outcome {
+        let totals = |rescued, energy| TaskTotals { rescued, secured: rescued, energy, hp: 0.0 };
+        Outcome {
+            tasks: vec![totals(4, 8.0), totals(2, 3.0)],
+            ungrouped: [1.0, 0.5],
+            duration_s: 120.0,
+            is_cut: false,
+        }
+    }
+
+    #[test]
+    fn objectives_are_of_all_tasks_or_of_one() {
+        let tasks = ["hard".to_owned(), "easy".to_owned()];
+        let value = |name| Objective::parse(name, &tasks).unwrap().value(&outcome()).unwrap();
+        let values =
+            ["rescuees", "rescuees.hard", "rescue_rate", "energy_per_rescuee", "hp.total", "time"].map(value);
+        assert_eq!(values.map(|value| (value * 1e6).round()), [6e6, 4e6, 3e6, 2e6, 5e5, 120e6]);
+        let score = |name| Objective::parse(name, &tasks).unwrap().score(&outcome()).unwrap();
+        assert!(score("energy.easy") < -2.9 && score("rescuees.easy") > 1.9);
+    }
+
+    #[test]
+    fn an_unknown_objective_lists_the_known_ones() {
+        let error = Objective::parse("luck", &["hard".to_owned()]).unwrap_err();
+        let expected = "unknown metric \"luck\"; decisions are judged by rescuees.total, rescuees.hard, rescue_rate.total, ";
+        assert!(error.to_string().starts_with(expected), "{error}");
+    }
+
+    #[test]
+    fn a_cost_per_rescuee_is_undefined_without_rescuees() {
+        let mut outcome = outcome();
+        outcome.tasks.iter_mut().for_each(|task| task.rescued = 0);
+        assert_eq!(Objective::parse("energy_per_rescuee", &[]).unwrap().value(&outcome), None);
+    }
+}

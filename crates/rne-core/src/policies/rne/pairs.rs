@@ -1,0 +1,91 @@
+//! What the policy sees in an assignment: the RNE between its groups, need by need.
+
+use serde::Serialize;
+
+use super::scorer::{Scorer, add};
+use super::{Rne, as_score, weighted_needs};
+use crate::decision::Assignment;
+use crate::divergence::relative_entropy_by_need;
+use crate::error::PolicyError;
+use crate::ids::TaskId;
+use crate::needs::NeedDistribution;
+use crate::question::Question;
+use crate::trust::RelativeNeedsEntropy;
+
+/// RNE from one group to another, and what each need adds to it.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct DirectedRne {
+    /// The task of the group that trusts.
+    pub from: TaskId,
+    /// The task of the group that is trusted.
+    pub to: TaskId,
+    /// The sum of `by_need`, in nats.
+    pub rne: RelativeNeedsEntropy,
+    /// For each need, its share in the first group's weighted needs, and in the second's.
+    pub shares: Vec<[f64; 2]>,
+    /// For each need, what it adds, in nats; `None` for a need that makes the value infinite.
+    pub by_need: Vec<Option<f64>>,
+}
+
+impl Rne {
+    /// The score of an assignment as this policy computes it: the sum over all pairs of groups, in nats. `None`
+    /// where fewer than two groups have members.
+    ///
+    /// # Errors
+    /// Those of [`crate::Policy::decide`].
+    pub fn score(
+        &self,
+        question: &Question,
+        assignment: &Assignment,
+    ) -> Result<Option<RelativeNeedsEntropy>, PolicyError> {
+        let mut sums = self.sums(question, assignment)?;
+        // In the order of their smallest ids, as the policy forms them, should the score have a direction.
+        sums.sort_by_key(|(task, _)| assignment.of(*task).first().copied());
+        let sums: Vec<Vec<f64>> = sums.into_iter().map(|(_, sum)| sum).collect();
+        Ok(as_score(Scorer::new(self.options.score, self.options.sort).total(&sums, 0)))
+    }
+
+    /// RNE between all pairs of groups that have members, in both directions, need by need. With the option
+    /// `sort` the policy compares sorted shares instead, which belong to no need.
+    ///
+    /// # Errors
+    /// Those of [`crate::Policy::decide`].
+    pub fn directed(
+        &self,
+        question: &Question,
+        assignment: &Assignment,
+    ) -> Result<Vec<DirectedRne>, PolicyError> {
+        let sums = self.sums(question, assignment)?;
+        let mut found = Vec::new();
+        for (from, first) in &sums {
+            for (to, second) in sums.iter().filter(|(to, _)| to != from) {
+                let distribution =
+                    |sum| NeedDistribution::normalise("weighted needs", sum).map_err(PolicyError::Options);
+                let (p, q) = (distribution(first)?, distribution(second)?);
+                let by_need = relative_entropy_by_need(&p, &q).map_err(PolicyError::Options)?;
+                let sum = by_need.iter().try_fold(0.0, |sum, need| Some(sum + (*need)?));
+                let shares = p.shares().iter().zip(q.shares()).map(|(p, q)| [*p, *q]).collect();
+                let rne = RelativeNeedsEntropy::from_nats(sum.unwrap_or(f64::INFINITY));
+                found.push(DirectedRne { from: *from, to: *to, rne, shares, by_need });
+            }
+        }
+        Ok(found)
+    }
+
+    /// The sum of the weighted needs of each group that has members.
+    fn sums(
+        &self,
+        question: &Question,
+        assignment: &Assignment,
+    ) -> Result<Vec<(TaskId, Vec<f64>)>, PolicyError> {
+        let rows = weighted_needs(question, &self.weights(question)?)?;
+        let of_task = |task: TaskId| {
+            let mut sum = vec![0.0; question.needs.len()];
+            let group = assignment.of(task);
+            let members = question.members.iter().zip(&rows).filter(|(member, _)| group.contains(&member.id));
+            members.for_each(|(_, row)| add(&mut sum, row));
+            (!group.is_empty()).then_some((task, sum))
+        };
+        Ok(question.task_ids().filter_map(of_task).collect())
+    }
+}

@@ -1,0 +1,44 @@
+//! The RNE between the groups of an assignment, need by need.
+
+use rne_core::policies::rne::Rne;
+use rne_core::{Policy, RneOptions};
+
+use crate::support::{all_options, drawn_team, question};
+
+#[test]
+fn the_score_of_an_assignment_is_that_of_the_decision() {
+    for options in all_options() {
+        let rne = Rne::new(options).unwrap();
+        for seed in 0..4 {
+            let question = question(drawn_team(&[4, 3], seed), &[1, 2]);
+            let decision = rne.decide(&question).unwrap();
+            assert_eq!(rne.score(&question, &decision.assignment).unwrap(), decision.score, "{rne:?}");
+        }
+    }
+}
+
+#[test]
+fn the_needs_add_up_to_the_rne_between_groups_worked_out_by_hand() {
+    let question = question(drawn_team(&[4], 1), &[1, 2]);
+    let rne = Rne::new(RneOptions { scale: false, ..RneOptions::default() }).unwrap();
+    let assignment = rne.decide(&question).unwrap().assignment;
+    let directed = rne.directed(&question, &assignment).unwrap();
+    assert_eq!(directed.len(), 2);
+    for pair in &directed {
+        // The members' needs (weights are 1 and not scaled), summed and divided by their sum.
+        let shares = [pair.from, pair.to].map(|task| {
+            let group = assignment.of(task);
+            let members = || question.members.iter().filter(|member| group.contains(&member.id));
+            let sum = |k: usize| members().map(|member| member.needs.values()[k]).sum::<f64>();
+            let all: f64 = (0..5).map(sum).sum();
+            (0..5).map(|k| sum(k) / all).collect::<Vec<f64>>()
+        });
+        let mut total = 0.0;
+        for (k, found) in pair.by_need.iter().enumerate() {
+            let by_hand = shares[0][k] * (shares[0][k] / shares[1][k]).ln();
+            assert!((found.unwrap() - by_hand).abs() < 1e-12, "need {k}: {found:?}, by hand {by_hand}");
+            total += by_hand;
+        }
+        assert!((pair.rne.nats().unwrap() - total).abs() < 1e-12);
+    }
+}

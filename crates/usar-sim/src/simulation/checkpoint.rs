@@ -1,0 +1,47 @@
+//! The state of a trial in memory, to go on from as often as one likes.
+
+use std::sync::Arc;
+
+use super::{Simulation, State};
+use crate::model::Model;
+
+/// The state of a trial at one moment. Trials that go on from it share the model, and all random streams: what differs
+/// between them follows from what was decided.
+///
+/// A checkpoint stays in this process; [`Simulation::snapshot`] writes the state for others.
+#[derive(Clone)]
+pub struct Checkpoint {
+    model: Arc<Model>,
+    state: Vec<u8>,
+}
+
+impl Simulation {
+    /// The state as it is now, also while a question waits for its answer.
+    ///
+    /// # Panics
+    /// Never: the state is of types that postcard can write to memory.
+    #[must_use]
+    pub fn checkpoint(&self) -> Checkpoint {
+        let state = postcard::to_stdvec(&self.state).expect("the state can be written to memory");
+        Checkpoint { model: Arc::clone(&self.model), state }
+    }
+}
+
+impl Checkpoint {
+    /// A trial that goes on from here, with the same result bit for bit if the same is decided. Invariants are not
+    /// checked, until [`Simulation::checked`] is called.
+    ///
+    /// # Panics
+    /// Never: the bytes are those that [`Simulation::checkpoint`] wrote.
+    #[must_use]
+    pub fn resume(&self) -> Simulation {
+        let state: State = postcard::from_bytes(&self.state).expect("the state was written by this program");
+        Simulation::from_state(Arc::clone(&self.model), state)
+    }
+
+    /// Bytes of the state.
+    #[must_use]
+    pub fn size(&self) -> usize {
+        self.state.len()
+    }
+}

@@ -1,0 +1,82 @@
+//! The trial that a command is asked about: of a scenario, or of a sweep's folder.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use experiments::Failure;
+use experiments::experiment::{PolicySpec, defaults, with_settings};
+use experiments::sweep::disk::experiment_in;
+use usar_sim::scenario::Scenario;
+use usar_sim::simulation::Simulation;
+
+use super::load;
+
+/// Which trial.
+#[derive(Debug, Args)]
+pub(crate) struct TrialArguments {
+    /// Scenario file (RON), or the folder of a sweep
+    #[arg(value_name = "FILE|DIR")]
+    pub(super) file: PathBuf,
+    /// Seed of the trial [default: the first of the sweep]
+    #[arg(long)]
+    seed: Option<u64>,
+    /// Case of a sweep with axes, from 1
+    #[arg(long, default_value_t = 1)]
+    case: usize,
+    /// Set a field of the scenario, by its path, to a value in RON; may stand several times
+    #[arg(long, value_name = "PATH=VALUE")]
+    set: Vec<String>,
+}
+
+/// A trial: what decides its numbers.
+pub(super) struct AskedTrial {
+    pub scenario: Scenario,
+    /// The policy that decides in it.
+    pub spec: PolicySpec,
+    pub seed: u64,
+    /// The policies of the sweep that it is of; none for a scenario.
+    pub policies: Vec<PolicySpec>,
+}
+
+impl TrialArguments {
+    /// The trial in which this policy decides; without one, the first of the sweep does.
+    pub(super) fn open(&self, flag: &str, policy: Option<&str>) -> Result<AskedTrial, Failure> {
+        let parse =
+            |text: &str| PolicySpec::parse(text).map_err(|error| Failure::input(format!("{flag}: {error}")));
+        if !self.file.is_dir() {
+            let (scenario, _) = load(&self.file)?;
+            let scenario = with_settings(&scenario, &self.set)?;
+            let (first_policy, first_seed) = defaults(&self.file)?;
+            let spec = parse(policy.unwrap_or(&first_policy))?;
+            let seed = self.seed.unwrap_or(first_seed);
+            return Ok(AskedTrial { scenario, spec, seed, policies: Vec::new() });
+        }
+        let (experiment, _) = experiment_in(&self.file)?;
+        let cases = experiment.cases.len();
+        let Some(case) = self.case.checked_sub(1).and_then(|case| experiment.cases.get(case)) else {
+            return Err(Failure::input(format!("--case: must be from 1 to {cases}, found {}", self.case)));
+        };
+        let scenario = with_settings(&case.scenario, &self.set)?;
+        let labelled = |label: &str| experiment.policies.iter().find(|spec| spec.label == label).cloned();
+        let spec = match policy {
+            None => experiment.policies[0].clone(),
+            Some(text) => labelled(text).map_or_else(|| parse(text), Ok)?,
+        };
+        let seed = self.seed.unwrap_or_else(|| experiment.seed(1));
+        Ok(AskedTrial { scenario, spec, seed, policies: experiment.policies })
+    }
+}
+
+impl AskedTrial {
+    /// The trial before its first step.
+    pub(super) fn begin(&self) -> Result<Simulation, Failure> {
+        let Self { scenario, seed, .. } = self;
+        Simulation::new(scenario, *seed)
+            .map_err(|error| Failure::input(format!("{}, seed {seed}: {error}", scenario.name)))
+    }
+
+    /// Names of the tasks.
+    pub(super) fn tasks(&self) -> Vec<String> {
+        experiments::metric::task_names(&self.scenario)
+    }
+}

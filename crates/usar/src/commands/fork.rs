@@ -1,0 +1,279 @@
+//! `usar fork`: a trial in which one decision is made otherwise.
+
+use std::io::Write;
+
+use clap::{ArgGroup, Args};
+use experiments::Failure;
+use experiments::experiment::PolicySpec;
+use experiments::oracle::{Branch, BranchError, Outcome, advance_to};
+use experiments::run::Driver;
+use reports::table::{headed, right};
+use rne_core::{Assignment, Decision, Question};
+use serde::Serialize;
+use usar_sim::record::TrialRecord;
+use usar_sim::simulation::{Checkpoint, Decider, Simulation};
+
+use super::SCHEMA_VERSION;
+use super::asked::{AskedTrial, TrialArguments};
+use crate::running::{STOP, stop_on_signals};
+
+/// What if round N had been decided otherwise? Both trials, side by side
+#[derive(Debug, Args)]
+#[command(group(ArgGroup::new("otherwise").required(true).args(["policy", "assign"])), after_help = "\
+Plays a trial to the decision of a round, decides otherwise, and goes on with the same random streams. What differs between the two trials \
+follows from that decision.
+
+Examples:
+  usar fork scenarios/paper.ron --seed 3 --at-round 3 --policy DIS              DIS decides round 3, RNE goes on
+  usar fork scenarios/paper.ron --seed 3 --at-round 3 --policy DIS --onwards    DIS decides round 3 and all later ones
+  usar fork scenarios/paper.ron --at-round 1 --assign 'hard=0,2,5,6,8,11; easy=1,3,4,7,9,10'
+  usar fork results/paper --base ENG --seed 7 --at-round 2 --policy RNE --json")]
+pub(crate) struct Arguments {
+    #[command(flatten)]
+    trial: TrialArguments,
+    /// The round that is decided otherwise
+    #[arg(long, value_name = "N")]
+    at_round: u32,
+    /// The policy that decides all else [default: the first of the sweep]
+    #[arg(long, value_name = "POLICY")]
+    base: Option<String>,
+    /// The policy that decides that round
+    #[arg(long)]
+    policy: Option<String>,
+    /// The robots of each task in that round, as `task=ids; task=ids`
+    #[arg(long, value_name = "GROUPS")]
+    assign: Option<String>,
+    /// Let --policy decide the later rounds, too
+    #[arg(long, requires = "policy")]
+    onwards: bool,
+    /// Print one JSON object
+    #[arg(long)]
+    json: bool,
+}
+
+/// One of the two trials.
+#[derive(Serialize)]
+struct Side {
+    assignment: Assignment,
+    /// What came of the decision up to the end of its round.
+    round: Outcome,
+    /// What came of it up to the end of the trial.
+    rest: Outcome,
+    rescuees: u32,
+    state_hash: String,
+    record: TrialRecord,
+}
+
+#[derive(Serialize)]
+struct Output<'a> {
+    schema_version: u32,
+    scenario: &'a str,
+    seed: u64,
+    round: u32,
+    time_s: f64,
+    base: &'a str,
+    fork: String,
+    as_it_was: &'a Side,
+    otherwise: &'a Side,
+}
+
+impl Arguments {
+    pub(crate) fn execute(&self, out: &mut dyn Write) -> Result<(), Failure> {
+        stop_on_signals();
+        let asked = self.trial.open("--base", self.base.as_deref())?;
+        let base = asked.spec.driver().map_err(Failure::input)?;
+        let other = self.policy.as_deref().map(PolicySpec::parse).transpose();
+        let other = other.map_err(|error| Failure::input(format!("--policy: {error}")))?;
+        let mut trial = asked.begin()?;
+        advance_to(&mut trial, &base, self.at_round, &STOP)
+            .map_err(|error| failure(error, "--at-round: "))?;
+        let question = trial.question().ok_or_else(|| Failure::run("the trial asks nothing"))?;
+        let start = trial.checkpoint();
+        let was = base.decide(&trial, question).map_err(Failure::run)?;
+        let otherwise = self.decision(&trial, question, other.as_ref())?;
+        let driver = other.as_ref().filter(|_| self.onwards).map(PolicySpec::driver).transpose();
+        let onwards = driver.map_err(Failure::input)?.unwrap_or_else(|| base.clone());
+        let sides = [side(&start, was, &base)?, side(&start, otherwise, &onwards)?];
+        let fork = self.in_words(other.as_ref(), &asked.spec.label);
+        if self.json {
+            let output = Output {
+                schema_version: SCHEMA_VERSION,
+                scenario: &asked.scenario.name,
+                seed: asked.seed,
+                round: self.at_round,
+                time_s: trial.time_s(),
+                base: &asked.spec.label,
+                fork,
+                as_it_was: &sides[0],
+                otherwise: &sides[1],
+            };
+            return Ok(writeln!(out, "{}", serde_json::to_string(&output).map_err(Failure::run)?)?);
+        }
+        writeln!(
+            out,
+            "{}, seed {}, round {} at {:.1} s\nas it was  {} decides every round\nthe fork   {fork}",
+            asked.scenario.name,
+            asked.seed,
+            self.at_round,
+            trial.time_s(),
+            asked.spec.label
+        )?;
+        print(out, &asked, &sides)
+    }
+
+    /// The other decision.
+    fn decision(
+        &self,
+        trial: &Simulation,
+        question: &Question,
+        other: Option<&PolicySpec>,
+    ) -> Result<Decision, Failure> {
+        match (other, &self.assign) {
+            (Some(spec), _) => {
+                let driver = spec.driver().map_err(Failure::input)?;
+                driver.decide(trial, question).map_err(Failure::run)
+            }
+            (None, written) => {
+                let assignment = parse_groups(written.as_deref().unwrap_or_default(), question);
+                let assignment = assignment.map_err(|error| Failure::input(format!("--assign: {error}")))?;
+                assignment.check(question).map_err(|error| Failure::input(format!("--assign: {error}")))?;
+                Ok(Decision::unscored(assignment.groups))
+            }
+        }
+    }
+
+    fn in_words(&self, other: Option<&PolicySpec>, base: &str) -> String {
+        let round = self.at_round;
+        match other {
+            Some(other) if self.onwards => {
+                format!("{} decides round {round} and all later ones", other.label)
+            }
+            Some(other) => format!("{} decides round {round}, {base} all others", other.label),
+            None => format!("round {round} is decided by --assign, all others by {base}"),
+        }
+    }
+}
+
+/// A failure of a branch; `place` says which argument is to blame where the input is.
+pub(super) fn failure(error: BranchError, place: &str) -> Failure {
+    match error {
+        BranchError::Halted => Failure::Interrupted("stopped".to_owned()),
+        BranchError::NoSuchRound { .. } | BranchError::Refused(_) => {
+            Failure::input(format!("{place}{error}"))
+        }
+        error => Failure::run(error),
+    }
+}
+
+fn side(start: &Checkpoint, decision: Decision, onwards: &Driver) -> Result<Side, Failure> {
+    let refused = |error| failure(error, "");
+    let assignment = decision.assignment.clone();
+    let mut branch = Branch::begin(start, decision).map_err(refused)?;
+    let round = branch.to_round_end(&STOP).map_err(refused)?;
+    let rest = branch.to_trial_end(onwards, &STOP).map_err(refused)?;
+    let record = branch.finish();
+    Ok(Side {
+        assignment,
+        round,
+        rest,
+        rescuees: record.rescued(),
+        state_hash: record.state_hash.clone(),
+        record,
+    })
+}
+
+/// Groups as `task=0,2,5; task=1,3,4`.
+fn parse_groups(text: &str, question: &Question) -> Result<Assignment, String> {
+    let mut groups: Vec<Option<Vec<u32>>> = vec![None; question.tasks.len()];
+    for part in text.split(';').map(str::trim).filter(|part| !part.is_empty()) {
+        let (task, ids) =
+            part.split_once('=').ok_or_else(|| format!("must be `task=ids; task=ids`, found {part:?}"))?;
+        let place = question.tasks.iter().position(|known| known.name == task.trim()).ok_or_else(|| {
+            let names: Vec<&str> = question.tasks.iter().map(|task| task.name.as_str()).collect();
+            format!("unknown task {:?}; the tasks are {}", task.trim(), names.join(", "))
+        })?;
+        let id = |id: &str| {
+            id.trim().parse().map_err(|_| format!("must be numbers of robots, found {:?}", id.trim()))
+        };
+        let ids = ids.split(',').filter(|id| !id.trim().is_empty()).map(id).collect::<Result<_, String>>()?;
+        if groups[place].replace(ids).is_some() {
+            return Err(format!("task {:?} is listed twice", task.trim()));
+        }
+    }
+    Ok(Assignment::new(groups.into_iter().map(Option::unwrap_or_default).collect()))
+}
+
+/// The ids of a group, as in tables.
+pub(super) fn ids(group: &[u32]) -> String {
+    let ids: Vec<String> = group.iter().map(u32::to_string).collect();
+    if ids.is_empty() { "-".to_owned() } else { ids.join(" ") }
+}
+
+fn print(out: &mut dyn Write, asked: &AskedTrial, sides: &[Side; 2]) -> Result<(), Failure> {
+    let mut table = headed(["", "as it was", "the fork", "difference"]);
+    let tasks = asked.tasks();
+    for (place, task) in tasks.iter().enumerate() {
+        let [was, fork] = sides.each_ref().map(|side| ids(&side.assignment.groups[place]));
+        let moved = sides[1].assignment.groups[place]
+            .iter()
+            .filter(|id| !sides[0].assignment.groups[place].contains(id))
+            .count();
+        table.add_row([
+            right(&format!("group of {task}")),
+            right(&was),
+            right(&fork),
+            right(&format!("{moved} others")),
+        ]);
+    }
+    let mut row = |name: String, value: &dyn Fn(&Side) -> f64, decimals: usize| {
+        let [was, fork] = sides.each_ref().map(value);
+        let cells = [
+            format!("{was:.decimals$}"),
+            format!("{fork:.decimals$}"),
+            format!("{:+.decimals$}", fork - was),
+        ];
+        table.add_row([right(&name), right(&cells[0]), right(&cells[1]), right(&cells[2])]);
+    };
+    row("round: rescued".to_owned(), &|side| f64::from(side.round.total().rescued), 0);
+    for (place, task) in tasks.iter().enumerate() {
+        row(format!("of {task}"), &|side| f64::from(side.round.tasks[place].rescued), 0);
+    }
+    row("energy (points)".to_owned(), &|side| side.round.total().energy, 1);
+    row("HP (points)".to_owned(), &|side| side.round.total().hp, 2);
+    row("time (s)".to_owned(), &|side| side.round.duration_s, 1);
+    row("trial: rescued".to_owned(), &|side| f64::from(side.rescuees), 0);
+    for (place, task) in tasks.iter().enumerate() {
+        row(format!("of {task}"), &|side| f64::from(side.record.tasks[place].totals.rescued), 0);
+    }
+    row("energy (points)".to_owned(), &|side| side.record.energy(), 1);
+    row("HP (points)".to_owned(), &|side| side.record.hp(), 2);
+    writeln!(out, "{table}")?;
+    let [was, fork] = sides.each_ref().map(|side| &side.state_hash);
+    writeln!(out, "state hash   as it was {was}\n             the fork  {fork}")?;
+    if was == fork {
+        writeln!(out, "The fork is the same trial: round for round the same groups.")?;
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn groups_are_read_by_the_names_of_tasks() {
+        let question = serde_json::json!({
+            "schema_version": 1, "round": 1, "roles": [], "needs": [], "quotas": [], "members": [], "history": [],
+            "tasks": [{"name": "hard", "difficulty": 2}, {"name": "easy", "difficulty": 1}],
+            "random_seed": "00".repeat(32),
+        });
+        let question = Question::from_json(&question.to_string()).unwrap();
+        let groups = |text| parse_groups(text, &question).map(|assignment| assignment.groups);
+        assert_eq!(groups(" easy = 3, 1; hard=2;"), Ok(vec![vec![2], vec![1, 3]]));
+        assert_eq!(groups("hard=1"), Ok(vec![vec![1], vec![]]));
+        assert!(groups("far=1").unwrap_err().contains("the tasks are hard, easy"));
+        assert!(groups("hard=1;hard=2").unwrap_err().contains("listed twice"));
+        assert!(groups("hard=x").unwrap_err().contains("must be numbers of robots, found \"x\""));
+        assert!(groups("hard").unwrap_err().contains("must be `task=ids; task=ids`"));
+    }
+}

@@ -1,0 +1,280 @@
+//! `usar oracle`: every assignment of a round, played.
+
+mod print;
+
+use std::io::Write;
+use std::path::PathBuf;
+use std::sync::Mutex;
+use std::sync::atomic::Ordering;
+
+use clap::{Args, ValueEnum};
+use experiments::Failure;
+use experiments::experiment::{PolicySpec, registry, split_list};
+use experiments::oracle::{
+    BranchError, Coverage, DEFAULT_LIMIT, NotSimulated, Objective, Outcome, Survey, advance_to, play, survey,
+};
+use experiments::regret::{DecisionKey, OutcomeLog};
+use indicatif::ProgressBar;
+use rayon::prelude::*;
+use rne_core::{Assignment, Decision, Policy, Question, assignments};
+use usar_sim::simulation::Checkpoint;
+
+use super::asked::{AskedTrial, TrialArguments};
+use super::fork::failure;
+use crate::running::{STOP, default_jobs, progress_bar, stop_on_signals};
+
+/// Assignments that are played before their outcomes are written down.
+const CHUNK: usize = 16;
+
+/// How good was this decision? Every assignment of a round, played
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Plays each assignment that the quotas allow from the moment of the decision, with the same random streams: to the end of the round, or to the \
+end of the trial. Prints the best and the worst, and where each policy's choice stands. Regret is the best value minus that of the choice.
+
+With more assignments than --limit, it plays a random sample and goes on from the best of it by exchanging two robots at a time; the best \
+found may not be the best there is, so that regrets are lower bounds. Outcomes are kept in --cache: a broken off run goes on, and \
+`usar why` finds them there.
+
+Examples:
+  usar oracle scenarios/paper.ron --seed 1 --round 1
+  usar oracle scenarios/paper.ron --seed 1 --round 3 --metric rescue_rate --top 10
+  usar oracle scenarios/paper.ron --round 2 --horizon trial --then RNE,DIS --csv outcomes.csv
+  usar oracle results/paper --base DIS --seed 4 --round 2 --policies 'RNE,RNE(sort: true),ENG' --json")]
+pub(crate) struct Arguments {
+    #[command(flatten)]
+    trial: TrialArguments,
+    /// The round
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    round: u32,
+    /// The policy that decides the rounds before [default: the first of the sweep]
+    #[arg(long, value_name = "POLICY")]
+    base: Option<String>,
+    /// Policies whose choices are judged, separated by commas [default: those of the sweep, or all]
+    #[arg(long)]
+    policies: Option<String>,
+    /// What decisions are judged by, such as `rescuees.total`, `rescue_rate`, `energy_per_rescuee.hard`
+    #[arg(long, default_value = "rescuees.total")]
+    metric: String,
+    /// How far to play
+    #[arg(long, value_enum, default_value_t = HorizonName::Round)]
+    horizon: HorizonName,
+    /// The policies that decide the rest of the trial, separated by commas; each in turn [default: --base]
+    #[arg(long, value_name = "POLICIES")]
+    then: Option<String>,
+    /// Most assignments to play
+    #[arg(long, default_value_t = DEFAULT_LIMIT, value_parser = clap::value_parser!(u64).range(2..=1_000_000))]
+    limit: u64,
+    /// Assignments to show, from the best on
+    #[arg(long, value_name = "N", default_value_t = 5)]
+    top: usize,
+    /// Write all outcomes to this file as CSV
+    #[arg(long, value_name = "FILE")]
+    csv: Option<PathBuf>,
+    /// Folder in which outcomes are kept
+    #[arg(long, value_name = "DIR", default_value = "results/oracle")]
+    cache: PathBuf,
+    /// Number of threads [default: one per core]
+    #[arg(long)]
+    jobs: Option<usize>,
+    /// Show no progress
+    #[arg(long)]
+    quiet: bool,
+    /// Print one JSON object
+    #[arg(long)]
+    json: bool,
+}
+
+/// How far assignments are played.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum HorizonName {
+    /// To the end of the round.
+    Round,
+    /// To the end of the trial.
+    Trial,
+}
+
+/// What all assignments came to, as one policy goes on.
+struct Answer {
+    /// The policy that decided the rest of the trial; none for the end of the round.
+    then: Option<PolicySpec>,
+    survey: Survey,
+}
+
+/// The decision that is judged.
+struct Asked<'a> {
+    trial: &'a AskedTrial,
+    question: Question,
+    time_s: f64,
+    objective: Objective,
+    /// What each policy chooses.
+    choices: Vec<(String, Assignment)>,
+}
+
+impl Arguments {
+    pub(crate) fn execute(&self, out: &mut dyn Write) -> Result<(), Failure> {
+        stop_on_signals();
+        let trial = self.trial.open("--base", self.base.as_deref())?;
+        let objective = Objective::parse(&self.metric, &trial.tasks());
+        let objective = objective.map_err(|error| Failure::input(format!("--metric: {error}")))?;
+        let base = trial.spec.driver().map_err(Failure::input)?;
+        let mut simulation = trial.begin()?;
+        advance_to(&mut simulation, &base, self.round, &STOP).map_err(|error| failure(error, "--round: "))?;
+        let question =
+            simulation.question().cloned().ok_or_else(|| Failure::run("the trial asks nothing"))?;
+        let choices = self.choices(&trial, &question)?;
+        let asked = Asked { trial: &trial, question, time_s: simulation.time_s(), objective, choices };
+        let key = decision_key(&trial, self.round);
+        let mut log = OutcomeLog::open(&self.cache, &key)?;
+        let start = simulation.checkpoint();
+        let pool =
+            rayon::ThreadPoolBuilder::new().num_threads(self.jobs.unwrap_or_else(default_jobs)).build();
+        let pool = pool.map_err(Failure::run)?;
+        let mut answers = Vec::new();
+        for then in self.onwards(&trial)? {
+            let survey = pool.install(|| self.play_all(&asked, &start, then.as_ref(), &mut log))?;
+            answers.push(Answer { then, survey });
+        }
+        if let Some(path) = &self.csv {
+            print::write_csv(path, &asked, &answers)?;
+        }
+        if self.json {
+            print::json(out, &asked, &answers)
+        } else {
+            print::text(out, &asked, &answers, self.top)
+        }
+    }
+
+    /// What the policies choose that are judged.
+    fn choices(&self, trial: &AskedTrial, question: &Question) -> Result<Vec<(String, Assignment)>, Failure> {
+        let parse = |text: &str| {
+            PolicySpec::parse(text).map_err(|error| Failure::input(format!("--policies: {error}")))
+        };
+        let specs = match &self.policies {
+            Some(list) => split_list(list).into_iter().map(parse).collect::<Result<Vec<_>, _>>()?,
+            None if !trial.policies.is_empty() => trial.policies.clone(),
+            None => registry().names().into_iter().map(parse).collect::<Result<Vec<_>, _>>()?,
+        };
+        let is_policy = |spec: &&PolicySpec| spec.name != NotSimulated::NAME;
+        let choice = |spec: &PolicySpec| {
+            let policy = spec.make().map_err(Failure::input)?.policy;
+            let decision = policy.decide(question);
+            let decision =
+                decision.map_err(|error| Failure::input(format!("policy {}: {error}", spec.label)))?;
+            Ok((spec.label.clone(), decision.assignment))
+        };
+        specs.iter().filter(is_policy).map(choice).collect()
+    }
+
+    /// The policies that decide the rest of the trial, one after the other.
+    fn onwards(&self, trial: &AskedTrial) -> Result<Vec<Option<PolicySpec>>, Failure> {
+        match (self.horizon, &self.then) {
+            (HorizonName::Round, None) => Ok(vec![None]),
+            (HorizonName::Round, Some(_)) => {
+                Err(Failure::input("--then: decides the rest of the trial, which needs --horizon trial"))
+            }
+            (HorizonName::Trial, None) => Ok(vec![Some(trial.spec.clone())]),
+            (HorizonName::Trial, Some(list)) => {
+                let parse = |text: &str| {
+                    let spec = PolicySpec::parse(text);
+                    spec.map(Some).map_err(|error| Failure::input(format!("--then: {error}")))
+                };
+                split_list(list).into_iter().map(parse).collect()
+            }
+        }
+    }
+
+    fn play_all(
+        &self,
+        asked: &Asked,
+        start: &Checkpoint,
+        then: Option<&PolicySpec>,
+        log: &mut OutcomeLog,
+    ) -> Result<Survey, Failure> {
+        let policy = then.map(PolicySpec::make).transpose().map_err(Failure::input)?.map(|made| made.policy);
+        let name = then.map(PolicySpec::plain);
+        let count = assignments::count(&asked.question).min(self.limit);
+        let of = then.map_or("assignments".to_owned(), |then| format!("assignments, {} goes on", then.label));
+        let progress = progress_bar(count as usize, &of, self.jobs.unwrap_or_else(default_jobs), self.quiet);
+        let named: Vec<Assignment> = asked.choices.iter().map(|(_, choice)| choice.clone()).collect();
+        let batch = Batch { start, policy: policy.as_deref(), then: name.as_deref(), progress: &progress };
+        let survey = survey(&asked.question, (&asked.objective, self.limit), &named, |assignments| {
+            batch.play(assignments, log).map_err(Trouble)
+        });
+        progress.finish_and_clear();
+        survey.map_err(|Trouble(failure)| failure)
+    }
+}
+
+/// A failure, whose kind a survey needs not know.
+struct Trouble(Failure);
+
+impl From<BranchError> for Trouble {
+    fn from(error: BranchError) -> Self {
+        Self(failure(error, ""))
+    }
+}
+
+/// Assignments on their way.
+struct Batch<'a> {
+    start: &'a Checkpoint,
+    policy: Option<&'a dyn Policy>,
+    then: Option<&'a str>,
+    progress: &'a ProgressBar,
+}
+
+impl Batch<'_> {
+    /// Plays those that the log has not got, in parallel, and writes them down as they come.
+    fn play(&self, assignments: &[Assignment], log: &mut OutcomeLog) -> Result<Vec<Outcome>, Failure> {
+        let missing: Vec<&Assignment> =
+            assignments.iter().filter(|assignment| log.get(self.then, assignment).is_none()).collect();
+        self.progress.inc((assignments.len() - missing.len()) as u64);
+        let log = Mutex::new(log);
+        missing.par_chunks(CHUNK).try_for_each(|chunk| {
+            let played = chunk.iter().map(|assignment| self.play_one(assignment));
+            let played = played.collect::<Result<Vec<_>, Failure>>()?;
+            let mut log = log.lock().map_err(|_| Failure::run("a thread panicked"))?;
+            let mut pairs = chunk.iter().zip(&played);
+            pairs.try_for_each(|(assignment, outcome)| log.add(self.then, assignment, outcome))
+        })?;
+        let log = log.into_inner().map_err(|_| Failure::run("a thread panicked"))?;
+        let outcome = |assignment| log.get(self.then, assignment).cloned();
+        let outcomes: Option<Vec<Outcome>> = assignments.iter().map(outcome).collect();
+        outcomes.ok_or_else(|| Failure::run("an assignment was not played"))
+    }
+
+    fn play_one(&self, assignment: &Assignment) -> Result<Outcome, Failure> {
+        if STOP.load(Ordering::Relaxed) {
+            return Err(Failure::Interrupted("stopped; the same command goes on".to_owned()));
+        }
+        let decision = Decision::unscored(assignment.groups.clone());
+        let outcome = play(self.start, decision, self.policy, &STOP).map_err(|error| failure(error, ""));
+        self.progress.inc(1);
+        outcome
+    }
+}
+
+/// The key under which outcomes of a decision are kept.
+pub(super) fn decision_key(trial: &AskedTrial, round: u32) -> DecisionKey {
+    DecisionKey {
+        scenario: trial.scenario.name.clone(),
+        resolved: trial.scenario.resolved(),
+        seed: trial.seed,
+        base: trial.spec.plain(),
+        round,
+    }
+}
+
+/// How many were played, in words.
+fn coverage_in_words(survey: &Survey) -> String {
+    let played = survey.evaluations.len();
+    match survey.coverage {
+        Coverage::All => format!("all {played} assignments that the quotas allow"),
+        Coverage::Sample { of, drawn, searched } => {
+            let of = if of == u64::MAX { "more than 10^19".to_owned() } else { of.to_string() };
+            format!(
+                "{drawn} of {of} assignments, drawn at random, and {searched} of a local search: regrets are lower bounds"
+            )
+        }
+    }
+}

@@ -1,0 +1,247 @@
+//! What `usar oracle` prints and writes.
+
+use std::io::Write;
+use std::path::Path;
+
+use experiments::Failure;
+use experiments::files;
+use experiments::oracle::{Coverage, Evaluation, Objective, Outcome, Standing, Survey};
+use reports::table::{headed, right};
+use rne_core::Assignment;
+use serde::Serialize;
+
+use super::{Answer, Asked, coverage_in_words};
+use crate::commands::SCHEMA_VERSION;
+use crate::commands::fork::ids;
+
+#[derive(Serialize)]
+struct Output<'a> {
+    schema_version: u32,
+    scenario: &'a str,
+    seed: u64,
+    base: &'a str,
+    round: u32,
+    time_s: f64,
+    metric: &'a str,
+    less_is_better: bool,
+    answers: Vec<AnswerOutput<'a>>,
+}
+
+#[derive(Serialize)]
+struct AnswerOutput<'a> {
+    /// The policy that decides the rest of the trial; null for the end of the round.
+    then: Option<&'a str>,
+    /// Whether all assignments were played, so that the best of them is the best there is.
+    is_exact: bool,
+    played: usize,
+    best: Option<f64>,
+    mean: Option<f64>,
+    worst: Option<f64>,
+    policies: Vec<Choice<'a>>,
+    /// The best first.
+    ranking: Vec<Ranked<'a>>,
+}
+
+#[derive(Serialize)]
+struct Choice<'a> {
+    policy: &'a str,
+    groups: &'a [Vec<u32>],
+    rank: Option<usize>,
+    value: Option<f64>,
+    regret: Option<f64>,
+}
+
+#[derive(Serialize)]
+struct Ranked<'a> {
+    rank: Option<usize>,
+    value: Option<f64>,
+    groups: &'a [Vec<u32>],
+    outcome: &'a Outcome,
+}
+
+pub(super) fn json(out: &mut dyn Write, asked: &Asked, answers: &[Answer]) -> Result<(), Failure> {
+    let output = Output {
+        schema_version: SCHEMA_VERSION,
+        scenario: &asked.trial.scenario.name,
+        seed: asked.trial.seed,
+        base: &asked.trial.spec.label,
+        round: asked.question.round,
+        time_s: asked.time_s,
+        metric: asked.objective.name(),
+        less_is_better: asked.objective.is_cost(),
+        answers: answers.iter().map(|answer| answer_output(asked, answer)).collect(),
+    };
+    Ok(writeln!(out, "{}", serde_json::to_string(&output).map_err(Failure::run)?)?)
+}
+
+fn answer_output<'a>(asked: &'a Asked, Answer { then, survey }: &'a Answer) -> AnswerOutput<'a> {
+    let objective = &asked.objective;
+    let range = survey.range(objective);
+    let choices = asked.choices.iter();
+    let ranking = survey.ranked(objective).into_iter();
+    AnswerOutput {
+        then: then.as_ref().map(|then| then.label.as_str()),
+        is_exact: survey.coverage == Coverage::All,
+        played: survey.evaluations.len(),
+        best: range.map(|[best, _]| best),
+        mean: survey.mean(objective),
+        worst: range.map(|[_, worst]| worst),
+        policies: choices.map(|(policy, choice)| chosen(policy, choice, survey, objective)).collect(),
+        ranking: ranking.map(|found| ranked(found, survey, objective)).collect(),
+    }
+}
+
+fn chosen<'a>(policy: &'a str, choice: &'a Assignment, survey: &Survey, objective: &Objective) -> Choice<'a> {
+    let standing = survey.standing(objective, choice);
+    Choice {
+        policy,
+        groups: &choice.groups,
+        rank: standing.map(|standing| standing.rank),
+        value: standing.map(|standing| standing.value),
+        regret: standing.map(|standing| standing.regret),
+    }
+}
+
+fn ranked<'a>(found: &'a Evaluation, survey: &Survey, objective: &Objective) -> Ranked<'a> {
+    Ranked {
+        rank: survey.standing(objective, &found.assignment).map(|standing| standing.rank),
+        value: objective.value(&found.outcome),
+        groups: &found.assignment.groups,
+        outcome: &found.outcome,
+    }
+}
+
+pub(super) fn text(
+    out: &mut dyn Write,
+    asked: &Asked,
+    answers: &[Answer],
+    top: usize,
+) -> Result<(), Failure> {
+    writeln!(
+        out,
+        "{}, seed {}, round {} at {:.1} s; {} decided the rounds before",
+        asked.trial.scenario.name,
+        asked.trial.seed,
+        asked.question.round,
+        asked.time_s,
+        asked.trial.spec.label
+    )?;
+    answers.iter().try_for_each(|answer| print_answer(out, asked, answer, top))
+}
+
+fn print_answer(out: &mut dyn Write, asked: &Asked, answer: &Answer, top: usize) -> Result<(), Failure> {
+    let Answer { then, survey } = answer;
+    let objective = &asked.objective;
+    let end = then.as_ref().map_or("the end of the round".to_owned(), |then| {
+        format!("the end of the trial, in which {} goes on", then.label)
+    });
+    writeln!(out, "played to {end}: {}", coverage_in_words(survey))?;
+    let Some([best, worst]) = survey.range(objective) else {
+        return Ok(writeln!(out, "{objective} is undefined for all of them")?);
+    };
+    let better = if objective.is_cost() { "less" } else { "more" };
+    let mean = survey.mean(objective).unwrap_or(best);
+    let [best, worst, mean] = [best, worst, mean].map(short);
+    writeln!(out, "\n{objective}, {better} is better: best {best}, mean {mean}, worst {worst}")?;
+    writeln!(out, "{}", ranking(asked, survey, top))?;
+    writeln!(out, "{}", choices(asked, survey))?;
+    Ok(())
+}
+
+/// A number in a table: whole, or with two decimals.
+fn short(value: f64) -> String {
+    if value.fract() == 0.0 { format!("{value:.0}") } else { format!("{value:.2}") }
+}
+
+fn ranking(asked: &Asked, survey: &Survey, top: usize) -> impl std::fmt::Display + use<> {
+    let tasks = asked.question.tasks.iter().map(|task| format!("{} group", task.name));
+    let header = ["rank", asked.objective.name(), "rescued", "energy", "time s"].map(str::to_owned);
+    let mut table = headed(header.into_iter().chain(tasks).collect::<Vec<_>>());
+    let ranked = survey.ranked(&asked.objective);
+    let last = ranked.len().saturating_sub(1);
+    for (place, found) in ranked.iter().enumerate().filter(|(place, _)| *place < top || *place == last) {
+        let standing = survey.standing(&asked.objective, &found.assignment);
+        let rank = standing.map_or(place + 1, |standing| standing.rank);
+        let total = found.outcome.total();
+        let value = asked.objective.value(&found.outcome).map_or("-".to_owned(), short);
+        let cells = [
+            rank.to_string(),
+            value,
+            rescued(&found.outcome),
+            format!("{:.1}", total.energy),
+            format!("{:.1}", found.outcome.duration_s),
+        ];
+        let groups = found.assignment.groups.iter().map(|group| ids(group));
+        table.add_row(cells.into_iter().chain(groups).map(|cell| right(&cell)));
+    }
+    table
+}
+
+/// All rescuees, and in brackets those of each task.
+fn rescued(outcome: &Outcome) -> String {
+    let each: Vec<String> = outcome.tasks.iter().map(|task| task.rescued.to_string()).collect();
+    format!("{} ({})", outcome.total().rescued, each.join(" + "))
+}
+
+fn choices(asked: &Asked, survey: &Survey) -> impl std::fmt::Display + use<> {
+    let header = ["policy", "rank", "regret", asked.objective.name()].map(str::to_owned);
+    let tasks = asked.question.tasks.iter().map(|task| format!("{} group", task.name));
+    let mut table = headed(header.into_iter().chain(tasks).collect::<Vec<_>>());
+    let count = survey.evaluations.len();
+    for (policy, choice) in &asked.choices {
+        let cells = match survey.standing(&asked.objective, choice) {
+            Some(Standing { rank, regret, value }) => {
+                [format!("{rank} of {count}"), short(regret), short(value)]
+            }
+            None => ["-", "-", "-"].map(str::to_owned),
+        };
+        let groups = choice.groups.iter().map(|group| ids(group));
+        let cells = std::iter::once(policy.clone()).chain(cells).chain(groups);
+        table.add_row(cells.map(|cell| right(&cell)));
+    }
+    table
+}
+
+/// All outcomes, a line each, the best first.
+pub(super) fn write_csv(path: &Path, asked: &Asked, answers: &[Answer]) -> Result<(), Failure> {
+    let trouble =
+        |error: &dyn std::fmt::Display| Failure::storage(format!("--csv: {}: {error}", path.display()));
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    let tasks: Vec<&str> = asked.question.tasks.iter().map(|task| task.name.as_str()).collect();
+    let of_tasks = |what: &str| tasks.iter().map(|task| format!("{what}_{task}")).collect::<Vec<_>>();
+    let mut header =
+        ["then", "rank", asked.objective.name(), "duration_s", "is_cut"].map(str::to_owned).to_vec();
+    for what in ["group", "rescued", "secured", "energy", "hp"] {
+        header.extend(of_tasks(what));
+    }
+    header.extend(["energy_ungrouped", "hp_ungrouped"].map(str::to_owned));
+    writer.write_record(&header).map_err(|error| trouble(&error))?;
+    for Answer { then, survey } in answers {
+        for found in survey.ranked(&asked.objective) {
+            let row = csv_row(found, survey, &asked.objective);
+            let then = then.as_ref().map_or(String::new(), |then| then.label.clone());
+            writer.write_record(std::iter::once(then).chain(row)).map_err(|error| trouble(&error))?;
+        }
+    }
+    let bytes = writer.into_inner().map_err(|error| trouble(&error))?;
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let name = path.file_name().and_then(|name| name.to_str());
+    let name =
+        name.ok_or_else(|| Failure::input(format!("--csv: {} is no name of a file", path.display())))?;
+    files::NewFile::write(folder, name, &bytes).map(drop)
+}
+
+fn csv_row(found: &Evaluation, survey: &Survey, objective: &Objective) -> Vec<String> {
+    let Evaluation { assignment, outcome } = found;
+    let standing = survey.standing(objective, assignment);
+    let rank = standing.map_or(String::new(), |standing| standing.rank.to_string());
+    let value = objective.value(outcome).map_or(String::new(), |value| value.to_string());
+    let mut row = vec![rank, value, outcome.duration_s.to_string(), outcome.is_cut.to_string()];
+    row.extend(assignment.groups.iter().map(|group| ids(group)));
+    row.extend(outcome.tasks.iter().map(|task| task.rescued.to_string()));
+    row.extend(outcome.tasks.iter().map(|task| task.secured.to_string()));
+    row.extend(outcome.tasks.iter().map(|task| task.energy.to_string()));
+    row.extend(outcome.tasks.iter().map(|task| task.hp.to_string()));
+    row.extend(outcome.ungrouped.map(|points| points.to_string()));
+    row
+}

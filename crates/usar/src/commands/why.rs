@@ -1,0 +1,217 @@
+//! `usar why`: why a robot is in its group, and why it stands where it stands.
+
+mod robot;
+mod told;
+
+use std::io::Write;
+use std::path::PathBuf;
+
+use clap::Args;
+use experiments::Failure;
+use experiments::experiment::{PolicySpec, registry};
+use experiments::oracle::{Coverage, Evaluation, Objective, Survey};
+use experiments::regret::OutcomeLog;
+use experiments::why::{OtherChoice, directed, exchanges, other_choices, rne_of};
+use rne_core::policies::rne::DirectedRne;
+use rne_core::{Assignment, Decision, Question, assignments};
+use serde::Serialize;
+use usar_sim::record::{DecisionRecord, Status};
+use usar_sim::simulation::Simulation;
+
+use super::SCHEMA_VERSION;
+use super::asked::{AskedTrial, TrialArguments};
+use super::oracle::decision_key;
+use crate::running::{Guard, stop_on_signals};
+use robot::{RobotStory, Watched};
+
+/// Why is this robot in this group, and why does it stand still?
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Tells from the recorded decision of a round what drove it, need by need; how close the call was; what every other policy would have \
+decided; and, if `usar oracle` was run for it, how good it was. With --robot: why the robot is in its group, why it does not move, why it \
+turned back.
+
+Examples:
+  usar why scenarios/paper.ron --seed 3 --round 3
+  usar why scenarios/paper.ron --seed 3 --round 3 --robot 4
+  usar why scenarios/paper.ron --seed 3 --robot 4 --at 128.4
+  usar why results/paper --policy ENG --seed 7 --round 2 --json")]
+pub(crate) struct Arguments {
+    #[command(flatten)]
+    trial: TrialArguments,
+    /// The policy that decides [default: the first of the sweep]
+    #[arg(long)]
+    policy: Option<String>,
+    /// The round [default: the one at --at, or the first]
+    #[arg(long, value_name = "N")]
+    round: Option<u32>,
+    /// A robot, by its number
+    #[arg(long, value_name = "ID")]
+    robot: Option<u32>,
+    /// A moment, in seconds of simulated time [default: when the round begins]
+    #[arg(long, value_name = "SECONDS", requires = "robot")]
+    at: Option<f64>,
+    /// Folder in which `usar oracle` keeps outcomes
+    #[arg(long, value_name = "DIR", default_value = "results/oracle")]
+    cache: PathBuf,
+    /// Print one JSON object
+    #[arg(long)]
+    json: bool,
+}
+
+/// What the oracle says of a decision.
+#[derive(Debug, Serialize)]
+struct OracleSays {
+    metric: String,
+    value: f64,
+    best: f64,
+    worst: f64,
+    rank: usize,
+    played: usize,
+}
+
+/// All that is told.
+#[derive(Serialize)]
+struct Account<'a> {
+    schema_version: u32,
+    scenario: &'a str,
+    seed: u64,
+    policy: &'a str,
+    round: u32,
+    time_s: f64,
+    question: &'a Question,
+    decision: &'a Decision,
+    /// RNE between the groups, need by need; empty for a policy of another kind.
+    directed: Vec<DirectedRne>,
+    others: Vec<OtherChoice>,
+    oracle: Option<OracleSays>,
+    robot: Option<RobotStory>,
+}
+
+impl Arguments {
+    pub(crate) fn execute(&self, out: &mut dyn Write) -> Result<(), Failure> {
+        stop_on_signals();
+        let asked = self.trial.open("--policy", self.policy.as_deref())?;
+        let mut simulation = asked.begin()?;
+        let watched = self.play(&asked, &mut simulation)?;
+        let round = self.round.unwrap_or_else(|| simulation.decisions().len().max(1) as u32);
+        let found = simulation.decisions().iter().find(|asked| asked.question.round == round);
+        let Some(record) = found else {
+            return Err(Failure::input(format!(
+                "--round: no round {round} began up to {:.1} s",
+                simulation.time_s()
+            )));
+        };
+        let account = self.account(&asked, &simulation, record, watched)?;
+        if self.json {
+            return Ok(writeln!(out, "{}", serde_json::to_string(&account).map_err(Failure::run)?)?);
+        }
+        told::text(out, &account, &asked)
+    }
+
+    /// Plays the trial up to the moment that is asked about.
+    fn play(&self, asked: &AskedTrial, simulation: &mut Simulation) -> Result<Option<Watched>, Failure> {
+        let robots = simulation.world().robots.len();
+        if let Some(robot) = self.robot.filter(|robot| *robot as usize >= robots) {
+            return Err(Failure::input(format!("--robot: must be below {robots}, found {robot}")));
+        }
+        let end = asked.scenario.duration_s;
+        if let Some(at) = self.at.filter(|at| !(0.0..=end).contains(at)) {
+            return Err(Failure::input(format!("--at: must be from 0 to {end} s, found {at}")));
+        }
+        let mut watched = self.robot.map(Watched::new);
+        let (driver, guard) = (asked.spec.driver().map_err(Failure::input)?, Guard::new(f64::INFINITY));
+        let last_round = self.round.unwrap_or(1);
+        loop {
+            let is_decided = simulation.decisions().len() >= last_round as usize;
+            if is_decided && self.at.is_none_or(|at| simulation.time_s() >= at) {
+                return Ok(watched);
+            }
+            if let Some(Status::Failed(reason)) = simulation.step(&driver) {
+                return Err(Failure::run(reason));
+            }
+            if simulation.ending().is_some() {
+                return Ok(watched);
+            }
+            watched.iter_mut().for_each(|watched| watched.listen(simulation));
+            guard.look(simulation)?;
+        }
+    }
+
+    fn account<'a>(
+        &self,
+        asked: &'a AskedTrial,
+        simulation: &'a Simulation,
+        record: &'a DecisionRecord,
+        watched: Option<Watched>,
+    ) -> Result<Account<'a>, Failure> {
+        let DecisionRecord { question, decision } = record;
+        let rne = rne_of(&asked.spec);
+        let compared = rne.as_ref().filter(|_| asked.spec.rne_options().is_some_and(|options| !options.sort));
+        let directed = compared.map(|rne| directed(rne, question, decision)).transpose()?;
+        let begun = simulation.metrics().rounds.iter().find(|round| round.round == question.round);
+        let story = watched.map(|watched| {
+            let id = watched.robot();
+            let exchanges = rne.as_ref().map(|rne| exchanges(rne, question, &decision.assignment, id));
+            Ok::<_, Failure>(watched.story(
+                simulation,
+                question,
+                decision,
+                exchanges.transpose()?.unwrap_or_default(),
+            ))
+        });
+        // The record has the question without what earlier rounds came to.
+        let mut full = question.clone();
+        full.history = usar_sim::metrics::history(&simulation.metrics().rounds, question.round);
+        Ok(Account {
+            schema_version: SCHEMA_VERSION,
+            scenario: &asked.scenario.name,
+            seed: asked.seed,
+            policy: &asked.spec.label,
+            round: question.round,
+            time_s: begun.map_or(0.0, |round| round.start_s),
+            directed: directed.unwrap_or_default(),
+            others: other_choices(&full, &decision.assignment, &self.others(asked)?),
+            oracle: self.oracle(asked, question, &decision.assignment),
+            robot: story.transpose()?,
+            question,
+            decision,
+        })
+    }
+
+    /// The policies besides the one that decided.
+    fn others(&self, asked: &AskedTrial) -> Result<Vec<PolicySpec>, Failure> {
+        let all = if asked.policies.is_empty() {
+            let names = registry().names().into_iter().map(PolicySpec::parse);
+            names.collect::<Result<Vec<_>, String>>().map_err(Failure::run)?
+        } else {
+            asked.policies.clone()
+        };
+        Ok(all.into_iter().filter(|spec| spec.plain() != asked.spec.plain()).collect())
+    }
+
+    /// What the oracle said of a decision, if it was asked.
+    fn oracle(&self, asked: &AskedTrial, question: &Question, chosen: &Assignment) -> Option<OracleSays> {
+        let log = OutcomeLog::find(&self.cache, &decision_key(asked, question.round))?;
+        let evaluations: Vec<Evaluation> = log
+            .outcomes(None)
+            .map(|(assignment, outcome)| Evaluation { assignment, outcome: outcome.clone() })
+            .collect();
+        // A survey that was broken off says nothing.
+        if (evaluations.len() as u64) < assignments::count(question) {
+            return None;
+        }
+        let survey = Survey { evaluations, coverage: Coverage::All };
+        let objective = Objective::parse("rescuees", &asked.tasks()).ok()?;
+        let [best, worst] = survey.range(&objective)?;
+        let standing = survey.standing(&objective, chosen)?;
+        Some(OracleSays {
+            metric: objective.name().to_owned(),
+            value: standing.value,
+            best,
+            worst,
+            rank: standing.rank,
+            played: survey.evaluations.len(),
+        })
+    }
+}

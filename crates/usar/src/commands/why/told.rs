@@ -1,0 +1,230 @@
+//! The account in sentences.
+
+use std::io::Write;
+
+use experiments::Failure;
+use experiments::why::OtherChoice;
+use reports::table::{headed, right};
+use rne_core::decision::{Ranking, RneAccount};
+use rne_core::policies::rne::DirectedRne;
+use rne_core::{Account as PolicyAccount, Decision, Question, RelativeNeedsEntropy};
+
+use super::robot::{RobotStory, in_words};
+use super::{Account, OracleSays};
+use crate::commands::asked::AskedTrial;
+use crate::commands::fork::ids;
+
+/// A score that exceeds the next best by less than this share is called close.
+const CLOSE: f64 = 0.05;
+
+pub(super) fn text(out: &mut dyn Write, account: &Account, asked: &AskedTrial) -> Result<(), Failure> {
+    let Account { question, decision, .. } = account;
+    writeln!(
+        out,
+        "{}, seed {}: round {} began at {:.1} s, and {} decided.",
+        account.scenario, account.seed, account.round, account.time_s, account.policy
+    )?;
+    for task in question.task_ids() {
+        let name = &question.tasks[task.index()].name;
+        writeln!(out, "  {name}: robots {}", ids(decision.assignment.of(task)))?;
+    }
+    writeln!(out)?;
+    match &decision.account {
+        PolicyAccount::Rne(of_rne) => rne(out, question, of_rne)?,
+        PolicyAccount::Ranking(ranking) => ranked(out, question, ranking)?,
+        PolicyAccount::Text(text) => writeln!(out, "{} says: {text}", account.policy)?,
+        _ => writeln!(out, "{} gives no account of its decision.", account.policy)?,
+    }
+    if let Some(pair) = account.directed.first() {
+        needs(out, question, pair)?;
+    }
+    others(out, question, &account.others)?;
+    oracle(out, account, asked)?;
+    if let Some(story) = &account.robot {
+        robot(out, story, decision, asked)?;
+    }
+    Ok(())
+}
+
+fn nats(score: Option<RelativeNeedsEntropy>) -> String {
+    match score.map(RelativeNeedsEntropy::nats) {
+        None => "no score".to_owned(),
+        Some(None) => "infinite".to_owned(),
+        Some(Some(nats)) => format!("{nats:.3e} nats"),
+    }
+}
+
+/// How far the runner-up stays behind, in words.
+fn margin(best: Option<RelativeNeedsEntropy>, next: Option<RelativeNeedsEntropy>) -> String {
+    let value = |score: Option<RelativeNeedsEntropy>| score.and_then(RelativeNeedsEntropy::nats);
+    let (Some(best), Some(next)) = (value(best), value(next)) else { return String::new() };
+    if best <= 0.0 {
+        return " (a tie)".to_owned();
+    }
+    let share = (best - next) / best;
+    let close = if share < CLOSE { ", a close call" } else { "" };
+    format!(" ({:.1} % less{close})", 100.0 * share)
+}
+
+fn parts(parts: &[Vec<u32>]) -> String {
+    let parts: Vec<String> = parts.iter().map(|part| format!("{{{}}}", ids(part))).collect();
+    parts.join(" ")
+}
+
+fn rne(out: &mut dyn Write, question: &Question, account: &RneAccount) -> Result<(), Failure> {
+    writeln!(
+        out,
+        "How RNE came to it: the parts of each role that differ most, merged so that the groups differ most"
+    )?;
+    for split in &account.splits {
+        let role = &question.roles[split.role.index()];
+        let next = split.runner_up.as_ref().map_or("; there is no other split".to_owned(), |next| {
+            format!(
+                "; next best {}: {}{}",
+                parts(&next.parts),
+                nats(next.score),
+                margin(split.score, next.score)
+            )
+        });
+        writeln!(
+            out,
+            "  {role}: {} of {} splits: {}{next}",
+            parts(&split.parts),
+            split.searched,
+            nats(split.score)
+        )?;
+    }
+    for merge in &account.merges {
+        let role = &question.roles[merge.role.index()];
+        let next = merge.runner_up.as_ref().map_or(String::new(), |next| {
+            format!("; the next best way: {}{}", nats(next.score), margin(merge.score, next.score))
+        });
+        writeln!(out, "  {role} joins the groups so far: {}{next}", nats(merge.score))?;
+    }
+    for suited in &account.suitability {
+        let name = &question.tasks[suited.task.index()].name;
+        let value = suited.value.map_or("undefined".to_owned(), |value| format!("{value:.3e}"));
+        writeln!(out, "  {name} got the group with suitability {value} for a hard task")?;
+    }
+    Ok(())
+}
+
+fn ranked(out: &mut dyn Write, question: &Question, ranking: &Ranking) -> Result<(), Failure> {
+    writeln!(out, "It sorted the members of each role by {}; the first go to the hardest task", ranking.key)?;
+    for (role, members) in question.roles.iter().zip(&ranking.roles) {
+        let members: Vec<String> =
+            members.iter().map(|member| format!("{} ({:.1})", member.id, member.value)).collect();
+        writeln!(out, "  {role}: {}", members.join(", "))?;
+    }
+    Ok(())
+}
+
+/// What each need adds to the RNE between two groups, the largest first.
+fn needs(out: &mut dyn Write, question: &Question, pair: &DirectedRne) -> Result<(), Failure> {
+    let [from, to] = [pair.from, pair.to].map(|task| &question.tasks[task.index()].name);
+    writeln!(
+        out,
+        "\nWhat drove it: RNE from the {from} group to the {to} group, {}, need by need",
+        nats(Some(pair.rne))
+    )?;
+    let mut rows: Vec<usize> = (0..pair.by_need.len()).collect();
+    let size = |k: usize| pair.by_need[k].map_or(f64::INFINITY, f64::abs);
+    rows.sort_by(|a, b| size(*b).total_cmp(&size(*a)));
+    let mut table = headed([
+        "need".to_owned(),
+        format!("share in {from}"),
+        format!("share in {to}"),
+        "adds (nats)".to_owned(),
+    ]);
+    for k in rows {
+        let [p, q] = pair.shares[k].map(|share| format!("{:.3} %", 100.0 * share));
+        let adds = pair.by_need[k].map_or("infinite".to_owned(), |nats| format!("{nats:+.3e}"));
+        table.add_row([right(&question.needs[k].name), right(&p), right(&q), right(&adds)]);
+    }
+    Ok(writeln!(out, "{table}")?)
+}
+
+fn others(out: &mut dyn Write, question: &Question, others: &[OtherChoice]) -> Result<(), Failure> {
+    if others.is_empty() {
+        return Ok(());
+    }
+    writeln!(out, "\nWhat others would have decided")?;
+    for other in others {
+        let groups = question
+            .task_ids()
+            .map(|task| format!("{} {}", question.tasks[task.index()].name, ids(other.assignment.of(task))));
+        let groups = groups.collect::<Vec<_>>().join("; ");
+        let moved = match other.moved.len() {
+            0 => "the same".to_owned(),
+            count => format!("{count} robots elsewhere: {groups}"),
+        };
+        writeln!(out, "  {}: {moved}", other.policy)?;
+    }
+    Ok(())
+}
+
+fn oracle(out: &mut dyn Write, account: &Account, asked: &AskedTrial) -> Result<(), Failure> {
+    let Some(OracleSays { metric, value, best, worst, rank, played }) = &account.oracle else {
+        return Ok(writeln!(
+            out,
+            "\nHow good it was: not known; `usar oracle ... --seed {} --round {} --base '{}'` plays all assignments",
+            asked.seed,
+            account.round,
+            asked.spec.plain()
+        )?);
+    };
+    Ok(writeln!(
+        out,
+        "\nHow good it was: rank {rank} of {played} by {metric} of the round: {value}, where the best has {best} and the worst {worst}"
+    )?)
+}
+
+fn robot(
+    out: &mut dyn Write,
+    story: &RobotStory,
+    decision: &Decision,
+    asked: &AskedTrial,
+) -> Result<(), Failure> {
+    let RobotStory { robot, role, task, at_s, energy, hp, .. } = story;
+    let task = task.as_deref().unwrap_or("no");
+    writeln!(
+        out,
+        "\nRobot {robot}, {role}, in the {task} group; at {at_s:.1} s it has energy {energy:.1} % and HP {hp:.1} %"
+    )?;
+    let score = decision.score.and_then(RelativeNeedsEntropy::nats);
+    if let (Some(best), Some(score)) = (story.exchanges.first(), score) {
+        let then = best.score_nats.map_or("infinite".to_owned(), |nats| format!("{nats:.3e}"));
+        let verdict = match best.score_nats {
+            Some(nats) if nats <= score => "no exchange with a robot of its role would have raised the score",
+            _ => {
+                "an exchange would have raised the score: the roles are split one by one, and not all together"
+            }
+        };
+        writeln!(
+            out,
+            "  In its group because {verdict}:\n  in the place of robot {} the score is {then} instead of {score:.3e} nats",
+            best.with
+        )?;
+    }
+    let delay = in_words(story.delay, story.waits_for);
+    writeln!(
+        out,
+        "  At {at_s:.1} s it {delay} (since {:.1} s; {}, {:.2} m/s)",
+        story.since_s, story.activity, story.speed_mps
+    )?;
+    if let Some(turned) = &story.turned_back {
+        let (rules, level) =
+            (&asked.scenario.mission, if turned.cause == "hp" { turned.hp } else { turned.energy });
+        let (name, threshold) = match turned.cause {
+            "hp" => ("HP", rules.hp_threshold),
+            _ => ("energy", rules.energy_threshold),
+        };
+        let why = if level < threshold {
+            format!("below the threshold of {threshold} %")
+        } else {
+            "too little for the way to rest with its reserve".to_owned()
+        };
+        writeln!(out, "  It turned back at {:.1} s with {name} {level:.1} %, {why}", turned.at_s)?;
+    }
+    Ok(())
+}
