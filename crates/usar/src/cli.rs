@@ -9,8 +9,8 @@ use experiments::{Failure, panic_message};
 use rne_core::Registry;
 
 use crate::commands::{
-    calibrate, check, compare, estimate, explain, fork, group, merge, oracle, readings, report, reproduce,
-    run, schema, sweep, trust, verify, view, why,
+    calibrate, check, compare, estimate, explain, fork, group, merge, oracle, readings, regret, report,
+    reproduce, run, schema, sweep, trust, verify, view, why,
 };
 use crate::printable::Printable;
 use crate::running::{status_of_signal, tell};
@@ -53,6 +53,7 @@ enum Command {
     Fork(fork::Arguments),
     Oracle(oracle::Arguments),
     Readings(readings::Arguments),
+    Regret(regret::Arguments),
     Verify(verify::Arguments),
     Calibrate(calibrate::Arguments),
     Check(check::Arguments),
@@ -126,6 +127,7 @@ impl Command {
             Self::Fork(arguments) => arguments.execute(out),
             Self::Oracle(arguments) => arguments.execute(out),
             Self::Readings(arguments) => arguments.execute(out),
+            Self::Regret(arguments) => arguments.execute(out),
             Self::Verify(arguments) => arguments.execute(out),
             Self::Calibrate(arguments) => arguments.execute(out),
             Self::Check(arguments) => arguments.execute(out),

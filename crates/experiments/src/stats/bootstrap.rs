@@ -63,27 +63,74 @@ pub fn bca_interval(
     }
     // Added up as the resamples are, so that a resample of the same values ties with it.
     let mean = values.iter().sum::<f64>() / count as f64;
-    let normal = Normal::standard();
     let mut draws = ChaCha8Rng::seed_from_u64(seed);
-    let mut means: Vec<f64> = (0..resamples)
+    let means: Vec<f64> = (0..resamples)
         .map(|_| {
             let sum: f64 = (0..count).map(|_| values[draws.random_range(0..count as u32) as usize]).sum();
             sum / count as f64
         })
         .collect();
-    means.sort_by(f64::total_cmp);
-    let below = means.partition_point(|resampled| *resampled < mean);
-    let up_to = means.partition_point(|resampled| *resampled <= mean);
-    let share = (below + up_to) as f64 / (2 * resamples) as f64;
-    let bias = normal.inverse_cdf(share.clamp(1.0 / resamples as f64, 1.0 - 1.0 / resamples as f64));
-    let acceleration = acceleration(values, mean);
     let tail = tail(count, confidence, width)?;
+    Some(bias_corrected(mean, means, acceleration(values, mean), tail))
+}
+
+/// The interval of a ratio of sums at this confidence, from one pair of summands each: bias-corrected and accelerated, widened for small
+/// samples. A ratio of sums is not pulled by single summands whose own ratio is extreme. `None` for fewer than two
+/// pairs, or where some resample has no ratio.
+#[must_use]
+pub fn ratio_interval(pairs: &[[f64; 2]], confidence: f64) -> Option<[f64; 2]> {
+    bca_ratio_interval(pairs, confidence, (resamples(pairs.len()), SEED))
+}
+
+/// The same, from so many draws of this seed.
+#[must_use]
+pub fn bca_ratio_interval(
+    pairs: &[[f64; 2]],
+    confidence: f64,
+    (resamples, seed): (usize, u64),
+) -> Option<[f64; 2]> {
+    let count = pairs.len();
+    if count < 2 {
+        return None;
+    }
+    let ratio = |[over, under]: [f64; 2]| (under != 0.0).then(|| over / under);
+    let add = |sum: [f64; 2], pair: &[f64; 2]| [sum[0] + pair[0], sum[1] + pair[1]];
+    let sums = pairs.iter().fold([0.0; 2], add);
+    let observed = ratio(sums)?;
+    let mut draws = ChaCha8Rng::seed_from_u64(seed);
+    let mut resample = || {
+        let drawn = (0..count).map(|_| &pairs[draws.random_range(0..count as u32) as usize]);
+        ratio(drawn.fold([0.0; 2], add))
+    };
+    let ratios = (0..resamples).map(|_| resample()).collect::<Option<Vec<f64>>>()?;
+    // The jackknife: the ratio without each pair.
+    let without = |pair: &[f64; 2]| ratio([sums[0] - pair[0], sums[1] - pair[1]]);
+    let without = pairs.iter().map(without).collect::<Option<Vec<f64>>>()?;
+    let mean = without.iter().sum::<f64>() / count as f64;
+    let power = |exponent: i32| without.iter().map(|value| (mean - value).powi(exponent)).sum::<f64>();
+    if power(2) <= 0.0 {
+        return Some([observed; 2]);
+    }
+    let acceleration = power(3) / (6.0 * power(2).powf(1.5));
+    let tail = tail(count, confidence, Width::Expanded)?;
+    Some(bias_corrected(observed, ratios, acceleration, tail))
+}
+
+/// The quantiles of resampled statistics that the observed one's bias and acceleration ask for.
+fn bias_corrected(observed: f64, mut resampled: Vec<f64>, acceleration: f64, tail: f64) -> [f64; 2] {
+    let normal = Normal::standard();
+    let resamples = resampled.len() as f64;
+    resampled.sort_by(f64::total_cmp);
+    let below = resampled.partition_point(|value| *value < observed);
+    let up_to = resampled.partition_point(|value| *value <= observed);
+    let share = (below + up_to) as f64 / (2.0 * resamples);
+    let bias = normal.inverse_cdf(share.clamp(1.0 / resamples, 1.0 - 1.0 / resamples));
     let limit = |z: f64| {
         let moved = bias + z;
-        quantile(&means, normal.cdf(bias + moved / (1.0 - acceleration * moved)))
+        quantile(&resampled, normal.cdf(bias + moved / (1.0 - acceleration * moved)))
     };
     let z = normal.inverse_cdf(tail);
-    Some([limit(z), limit(-z)])
+    [limit(z), limit(-z)]
 }
 
 /// Probability of each tail.

@@ -1,6 +1,7 @@
 //! Statistics of a sweep: slices in, numbers out.
 
 pub mod bootstrap;
+mod correlation;
 pub mod paired;
 pub mod stopping;
 #[cfg(test)]
@@ -8,6 +9,7 @@ pub mod stopping;
 mod tests;
 pub mod wilcoxon;
 
+pub use correlation::rank_correlation;
 use statrs::statistics::Statistics;
 
 /// Mean and sample standard deviation of the trials in which a quantity is defined.

@@ -4,7 +4,7 @@ use rand::SeedableRng;
 use rand::rngs::ChaCha8Rng;
 use rand_distr::{Distribution, Exp1, StandardNormal};
 
-use super::bootstrap::{Width, bca_interval, interval, resamples};
+use super::bootstrap::{Width, bca_interval, bca_ratio_interval, interval, ratio_interval, resamples};
 use super::paired::{hodges_lehmann, holm, pairs_needed, t_half_width};
 use super::wilcoxon::{EXACT_PAIRS, SignedRank};
 
@@ -127,6 +127,28 @@ fn the_interval_covers_what_it_says_at_ten_and_at_fifty_pairs() {
     for share in [ten[0], ten[1], skewed] {
         assert!((93.5..=96.5).contains(&share), "{ten:?} {skewed}");
     }
+}
+
+/// Ratios of sums: the true ratio is 2, of summands whose own ratios vary from almost nothing to very much.
+#[test]
+fn the_interval_of_a_ratio_covers_what_it_says() {
+    let mut draws = ChaCha8Rng::seed_from_u64(12);
+    let mut held = 0;
+    for _ in 0..400 {
+        let pairs: Vec<[f64; 2]> = (0..40)
+            .map(|_| {
+                let under: f64 = Exp1.sample(&mut draws);
+                let noise: f64 = StandardNormal.sample(&mut draws);
+                [2.0 * under + noise, under]
+            })
+            .collect();
+        let [low, high] = bca_ratio_interval(&pairs, 0.95, (1_000, 1)).unwrap();
+        held += u32::from((low..=high).contains(&2.0));
+    }
+    let share = f64::from(held) / 4.0;
+    assert!((91.5..=98.0).contains(&share), "{share} % of 400 intervals hold the true ratio");
+    assert_eq!(ratio_interval(&[[1.0, 0.0], [2.0, 0.0]], 0.95), None);
+    assert_eq!(ratio_interval(&[[2.0, 1.0], [4.0, 2.0]], 0.95), Some([2.0, 2.0]));
 }
 
 /// The intervals by which a claim of three comparisons is found not to hold: 95 % shared by them.

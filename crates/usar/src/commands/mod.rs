@@ -12,6 +12,7 @@ pub(crate) mod merge;
 pub(crate) mod oracle;
 mod precision;
 pub(crate) mod readings;
+pub(crate) mod regret;
 pub(crate) mod report;
 pub(crate) mod reproduce;
 pub(crate) mod run;

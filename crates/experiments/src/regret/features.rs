@@ -1,0 +1,103 @@
+//! Features of an assignment that a policy can see before it decides, and that may predict what comes of it.
+
+use rne_core::policies::rne::Rne;
+use rne_core::{Assignment, Member, NeedDistribution, NeedWeights, Question, RneOptions, relative_entropy};
+
+use crate::rounds::{energy, hp};
+
+/// A feature: a number of each assignment.
+pub struct Feature {
+    /// In words.
+    pub name: &'static str,
+    value: fn(&Seen, &Assignment) -> Option<f64>,
+}
+
+/// What features are computed of.
+struct Seen<'q> {
+    question: &'q Question,
+    rne: Rne,
+}
+
+/// All features. The hardest group is the group of the hardest task.
+pub const FEATURES: [Feature; 9] = [
+    Feature { name: "mean energy of the hardest group", value: |seen, a| seen.mean(a, energy) },
+    Feature { name: "lowest energy of the hardest group", value: |seen, a| seen.lowest(a, energy) },
+    Feature { name: "spread of energy in the hardest group", value: |seen, a| seen.spread(a, energy) },
+    Feature { name: "mean HP of the hardest group", value: |seen, a| seen.mean(a, hp) },
+    Feature { name: "spread of HP in the hardest group", value: |seen, a| seen.spread(a, hp) },
+    Feature { name: "capability of the hardest group", value: |seen, a| seen.capability(a) },
+    Feature { name: "RNE between the groups", value: |seen, a| seen.between(a) },
+    Feature { name: "RNE within the groups", value: |seen, a| seen.within(a) },
+    Feature { name: "way from the homes to the tasks", value: |seen, a| seen.way(a) },
+];
+
+/// The value of each feature for each assignment; nothing where it is undefined.
+#[must_use]
+pub fn values(question: &Question, assignments: &[&Assignment]) -> Vec<Vec<Option<f64>>> {
+    let Ok(rne) = Rne::new(RneOptions::default()) else { return Vec::new() };
+    let seen = Seen { question, rne };
+    FEATURES.iter().map(|feature| assignments.iter().map(|a| (feature.value)(&seen, a)).collect()).collect()
+}
+
+impl Seen<'_> {
+    fn hardest<'a>(&'a self, assignment: &'a Assignment) -> impl Iterator<Item = &'a Member> {
+        let hardest = self.question.hardest_first().first().copied().unwrap_or_default();
+        let group = assignment.of(hardest);
+        self.question.members.iter().filter(move |member| group.contains(&member.id))
+    }
+
+    fn mean(&self, assignment: &Assignment, level: fn(&Member) -> f64) -> Option<f64> {
+        let levels: Vec<f64> = self.hardest(assignment).map(level).collect();
+        (!levels.is_empty()).then(|| levels.iter().sum::<f64>() / levels.len() as f64)
+    }
+
+    fn lowest(&self, assignment: &Assignment, level: fn(&Member) -> f64) -> Option<f64> {
+        self.hardest(assignment).map(level).reduce(f64::min)
+    }
+
+    fn spread(&self, assignment: &Assignment, level: fn(&Member) -> f64) -> Option<f64> {
+        let mean = self.mean(assignment, level)?;
+        let squares: Vec<f64> =
+            self.hardest(assignment).map(|member| (level(member) - mean).powi(2)).collect();
+        Some((squares.iter().sum::<f64>() / squares.len() as f64).sqrt())
+    }
+
+    /// The sum of the needs, each by its weight and as a share of its maximum over the team.
+    fn capability(&self, assignment: &Assignment) -> Option<f64> {
+        let weights = self.rne.weights(self.question).ok()?;
+        let of =
+            |member: &Member| member.needs.values().iter().zip(&weights).map(|(n, w)| n * w).sum::<f64>();
+        Some(self.hardest(assignment).map(of).sum())
+    }
+
+    fn between(&self, assignment: &Assignment) -> Option<f64> {
+        self.rne.score(self.question, assignment).ok()??.nats()
+    }
+
+    /// The mean over all robots of their RNE to their own group.
+    fn within(&self, assignment: &Assignment) -> Option<f64> {
+        let weights = NeedWeights::new(self.rne.weights(self.question).ok()?).ok()?;
+        let mut values = Vec::new();
+        for group in &assignment.groups {
+            let members = self.question.members.iter().filter(|member| group.contains(&member.id));
+            let needs: Vec<_> = members.map(|member| member.needs.clone()).collect();
+            let Ok(of_group) = NeedDistribution::of_group(&needs, &weights) else { continue };
+            for member in &needs {
+                let own = NeedDistribution::of_agent(member, &weights).ok()?;
+                values.push(relative_entropy(&own, &of_group).ok()?.nats()?);
+            }
+        }
+        (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
+    }
+
+    /// The sum over all robots of the way from where they are to their task, as the crow flies, in metres.
+    fn way(&self, assignment: &Assignment) -> Option<f64> {
+        let mut sum = 0.0;
+        for member in &self.question.members {
+            let task = assignment.task_of(member.id)?;
+            let place = self.question.tasks[task.index()].place?;
+            sum += (member.home[0] - place[0]).hypot(member.home[1] - place[1]);
+        }
+        Some(sum)
+    }
+}

@@ -1,0 +1,264 @@
+//! The study of regret: trials whose every decision is played in all ways, in a folder that survives being broken off.
+
+use std::fs::{self, File};
+use std::io::{BufRead, BufReader, Write};
+use std::path::{Path, PathBuf};
+use std::sync::Mutex;
+use std::sync::atomic::AtomicBool;
+
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+
+use super::decision::{Plan, PlayedDecision, play_decisions};
+use crate::experiment::{Experiment, PolicySpec, Program};
+use crate::failure::Failure;
+use crate::files::{self, NewFile};
+use crate::metric::task_names;
+use crate::oracle::{BranchError, NotSimulated, Objective};
+
+const MANIFEST: &str = "study.json";
+const JOURNAL: &str = "decisions.jsonl";
+
+/// What a study is of: all that decides its numbers.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Study {
+    /// Its name.
+    pub name: String,
+    /// Names of the tasks.
+    pub tasks: Vec<String>,
+    /// The scenario, all that it says.
+    pub scenario: String,
+    /// Policies, as they are written. Trial by trial, each in turn decides.
+    pub policies: Vec<String>,
+    /// Seeds of the trials.
+    pub seeds: Vec<u64>,
+    /// The policy that decides the rest of the trial after a decision; none to play to the end of its round.
+    pub then: Option<String>,
+    /// The rounds that are played; empty for all.
+    pub rounds: Vec<u32>,
+    /// Most assignments of one decision.
+    pub limit: u64,
+    /// Version and source of the program.
+    pub program: [String; 2],
+}
+
+/// What the command line says.
+#[derive(Debug, Clone)]
+pub struct Choices {
+    /// See [`Study::then`].
+    pub then: Option<String>,
+    /// See [`Study::rounds`].
+    pub rounds: Vec<u32>,
+    /// See [`Study::limit`].
+    pub limit: u64,
+}
+
+/// One trial and its decisions.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct PlayedTrial {
+    /// Number of the trial, from 1.
+    pub trial: u32,
+    /// Its seed.
+    pub seed: u64,
+    /// The policy that decided in it.
+    pub driver: String,
+    /// Its decisions.
+    pub decisions: Vec<PlayedDecision>,
+}
+
+impl Study {
+    /// The study that a sweep file asks for.
+    ///
+    /// # Errors
+    /// The sweep has axes, or a policy that cannot be judged.
+    pub fn of(experiment: &Experiment, choices: &Choices) -> Result<Self, Failure> {
+        if experiment.cases.len() > 1 {
+            return Err(Failure::input(format!(
+                "{}: a study of regret is of one scenario, and this sweep has {} cases",
+                experiment.name,
+                experiment.cases.len()
+            )));
+        }
+        if let Some(oracle) = experiment.policies.iter().find(|spec| spec.name == NotSimulated::NAME) {
+            return Err(Failure::input(format!(
+                "policies: {} is what the others are measured against; leave it out",
+                oracle.label
+            )));
+        }
+        let Program { version, source } = Program::this();
+        Ok(Self {
+            name: experiment.name.clone(),
+            tasks: task_names(&experiment.base),
+            scenario: experiment.cases[0].scenario.resolved(),
+            policies: experiment.policies.iter().map(|spec| spec.written().to_owned()).collect(),
+            seeds: (1..=experiment.trials).map(|trial| experiment.seed(trial)).collect(),
+            then: choices.then.clone(),
+            rounds: choices.rounds.clone(),
+            limit: choices.limit,
+            program: [version, source],
+        })
+    }
+
+    /// The policies.
+    ///
+    /// # Errors
+    /// One that this program does not know.
+    pub fn specs(&self) -> Result<Vec<PolicySpec>, Failure> {
+        let parse = |text: &String| PolicySpec::parse(text).map_err(Failure::input);
+        self.policies.iter().map(parse).collect()
+    }
+
+    /// Whether another study has the same numbers, as far as both have the same trials.
+    fn is_as(&self, other: &Self) -> bool {
+        let without_seeds = |study: &Self| Self { seeds: Vec::new(), name: String::new(), ..study.clone() };
+        let shared = self.seeds.len().min(other.seeds.len());
+        without_seeds(self) == without_seeds(other) && self.seeds[..shared] == other.seeds[..shared]
+    }
+}
+
+/// The folder of a study.
+pub struct StudyFolder {
+    path: PathBuf,
+    /// What it is of.
+    pub study: Study,
+    /// The trials that are there, by number.
+    pub trials: Vec<PlayedTrial>,
+}
+
+impl StudyFolder {
+    /// Opens the folder of a study to go on with it, or begins it.
+    ///
+    /// # Errors
+    /// The folder has another study, or one of another program.
+    pub fn open(path: &Path, study: Study) -> Result<Self, Failure> {
+        let trouble = |error| Failure::storage(format!("{}: {error}", path.display()));
+        fs::create_dir_all(path).map_err(trouble)?;
+        if path.join(MANIFEST).exists() {
+            let found = Self::read(path)?;
+            if !found.study.is_as(&study) {
+                return Err(Failure::input(format!(
+                    "{}: has another study (scenario, policies, rounds, seeds, limit or program differ); --out names another folder",
+                    path.display()
+                )));
+            }
+            let more = if study.seeds.len() > found.study.seeds.len() { study } else { found.study };
+            write_manifest(path, &more)?;
+            return Ok(Self { study: more, ..found });
+        }
+        write_manifest(path, &study)?;
+        Ok(Self { path: path.to_owned(), study, trials: Vec::new() })
+    }
+
+    /// Reads the folder of a study, whatever program made it.
+    ///
+    /// # Errors
+    /// It is not the folder of a study.
+    pub fn read(path: &Path) -> Result<Self, Failure> {
+        let bad = |error: &dyn std::fmt::Display| {
+            Failure::input(format!("{}: is not the folder of a study of regret: {error}", path.display()))
+        };
+        let manifest = files::read(&path.join(MANIFEST)).map_err(|error| bad(&error))?;
+        let study: Study = serde_json::from_slice(&manifest).map_err(|error| bad(&error))?;
+        let mut trials: Vec<PlayedTrial> = Vec::new();
+        if let Ok(journal) = files::open(&path.join(JOURNAL)) {
+            for line in BufReader::new(journal).lines() {
+                let line = line.map_err(|error| bad(&error))?;
+                // A line that was cut short is a trial that is not there.
+                let Ok(trial) = serde_json::from_str::<PlayedTrial>(&line) else { continue };
+                let place = trial.trial.checked_sub(1).map(|place| place as usize);
+                let is_ours = place.and_then(|place| study.seeds.get(place)) == Some(&trial.seed);
+                if is_ours && !trials.iter().any(|known| known.trial == trial.trial) {
+                    trials.push(trial);
+                }
+            }
+        }
+        trials.sort_by_key(|trial| trial.trial);
+        Ok(Self { path: path.to_owned(), study, trials })
+    }
+
+    /// Numbers of the trials that are not there yet.
+    #[must_use]
+    pub fn missing(&self) -> Vec<u32> {
+        let is_there = |number: &u32| self.trials.iter().any(|trial| trial.trial == *number);
+        (1..=self.study.seeds.len() as u32).filter(|number| !is_there(number)).collect()
+    }
+
+    /// Plays the trials that are not there yet, on the threads of the current pool; `done` hears of each.
+    ///
+    /// # Errors
+    /// A trial fails, the folder cannot be written, or the study is halted; what was played stays.
+    pub fn play_missing(
+        &mut self,
+        experiment: &Experiment,
+        halt: &AtomicBool,
+        done: impl Fn() + Sync,
+    ) -> Result<(), Failure> {
+        let path = self.path.join(JOURNAL);
+        let trouble = |error| Failure::storage(format!("{}: {error}", path.display()));
+        files::check_is_file(&path).map_err(trouble)?;
+        let mut journal = File::options().create(true).append(true).open(&path).map_err(trouble)?;
+        // A line that was cut short ends here.
+        if journal.metadata().map_err(trouble)?.len() > 0 {
+            journal.write_all(b"\n").map_err(trouble)?;
+        }
+        let specs = self.study.specs()?;
+        let (missing, study) = (self.missing(), &self.study);
+        let shared = Mutex::new((journal, Vec::new()));
+        missing.into_par_iter().try_for_each(|number| {
+            let trial = play_trial(study, experiment, &specs, number, halt)?;
+            let mut line = serde_json::to_vec(&trial).map_err(Failure::run)?;
+            line.push(b'\n');
+            let mut shared = shared.lock().map_err(|_| Failure::run("a thread panicked"))?;
+            shared.0.write_all(&line).map_err(trouble)?;
+            shared.1.push(trial);
+            done();
+            Ok::<(), Failure>(())
+        })?;
+        let (_, played) = shared.into_inner().map_err(|_| Failure::run("a thread panicked"))?;
+        self.trials.extend(played);
+        self.trials.sort_by_key(|trial| trial.trial);
+        Ok(())
+    }
+
+    /// Where it is.
+    #[must_use]
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+}
+
+fn write_manifest(path: &Path, study: &Study) -> Result<(), Failure> {
+    let text = serde_json::to_vec_pretty(study).map_err(Failure::run)?;
+    NewFile::write(path, MANIFEST, &text).map(drop)
+}
+
+fn play_trial(
+    study: &Study,
+    experiment: &Experiment,
+    specs: &[PolicySpec],
+    number: u32,
+    halt: &AtomicBool,
+) -> Result<PlayedTrial, Failure> {
+    let seed = study.seeds[number as usize - 1];
+    let driver = &specs[(number as usize - 1) % specs.len()];
+    let make = |spec: &PolicySpec| spec.make().map(|made| made.policy).map_err(Failure::input);
+    let named = specs.iter().map(make).collect::<Result<Vec<_>, _>>()?;
+    let named: Vec<_> = named.iter().map(|policy| &**policy).collect();
+    let then = study.then.as_deref().map(PolicySpec::parse).transpose().map_err(Failure::input)?;
+    let onwards = then.as_ref().map(make).transpose()?;
+    let objective = Objective::parse("rescuees", &study.tasks).map_err(Failure::run)?;
+    let plan = Plan {
+        objective: &objective,
+        limit: study.limit,
+        onwards: onwards.as_deref(),
+        named: &named,
+        rounds: &study.rounds,
+    };
+    let scenario = &experiment.cases[0].scenario;
+    let decisions = play_decisions((scenario, seed), &*make(driver)?, &plan, halt);
+    let decisions = decisions.map_err(|error| match error {
+        BranchError::Halted => Failure::Interrupted("stopped; the same command goes on".to_owned()),
+        error => Failure::run(format!("trial {number}: {error}")),
+    })?;
+    Ok(PlayedTrial { trial: number, seed, driver: driver.label.clone(), decisions })
+}

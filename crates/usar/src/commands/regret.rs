@@ -1,0 +1,215 @@
+//! `usar regret`: how far each policy's decisions stay behind the best ones.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use experiments::Failure;
+use experiments::experiment::{Experiment, Overrides, PolicySpec};
+use experiments::files::NewFile;
+use experiments::oracle::{DEFAULT_LIMIT, Objective};
+use experiments::regret::{Analysis, Choices, Estimate, Study, StudyFolder, analyse};
+use reports::table::{headed, right};
+
+use super::SCHEMA_VERSION;
+use crate::running::{STOP, default_jobs, progress_bar, stop_on_signals, tell};
+
+/// How far does each policy's decision stay behind the best one? A study over all rounds of many trials
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Plays every assignment at every decision of the trials of a sweep file; trial by trial, each of its policies in turn decides. Tells each \
+policy's regret, how often grouping matters at all, how much of what can be achieved each policy achieves, and which features of an \
+assignment go with its outcome. The paper's team has 240 assignments: about two minutes of one core for each trial.
+
+The folder has `decisions.jsonl` (every outcome), `regret.csv` (a row for each decision, policy and metric) and `summary.json`. A study that \
+was broken off goes on; with a folder instead of a file, only the tables are made.
+
+Examples:
+  usar regret scenarios/sweeps/regret.ron
+  usar regret scenarios/sweeps/regret.ron --trials 10 --out results/quick
+  usar regret scenarios/sweeps/regret.ron --horizon-trial RNE --rounds 2 --out results/regret-trial
+  usar regret results/regret --metric rescue_rate")]
+pub(crate) struct Arguments {
+    /// Sweep file or scenario (RON), or the folder of a study
+    #[arg(value_name = "FILE|DIR")]
+    file: PathBuf,
+    /// Trials [default: those of the file]
+    #[arg(long)]
+    trials: Option<u32>,
+    /// Play to the end of the trial, in which this policy decides the rest [default: to the end of the round]
+    #[arg(long, value_name = "POLICY")]
+    horizon_trial: Option<String>,
+    /// Rounds to play, separated by commas [default: all]
+    #[arg(long, value_delimiter = ',')]
+    rounds: Vec<u32>,
+    /// Most assignments of one decision
+    #[arg(long, default_value_t = DEFAULT_LIMIT, value_parser = clap::value_parser!(u64).range(2..=1_000_000))]
+    limit: u64,
+    /// What decisions are judged by; may stand several times [default: rescuees, rescue_rate and energy_per_rescuee]
+    #[arg(long)]
+    metric: Vec<String>,
+    /// Folder of the study [default: results/NAME]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Number of threads [default: one per core]
+    #[arg(long)]
+    jobs: Option<usize>,
+    /// Show no progress
+    #[arg(long)]
+    quiet: bool,
+    /// Print one JSON object
+    #[arg(long)]
+    json: bool,
+}
+
+impl Arguments {
+    pub(crate) fn execute(&self, out: &mut dyn Write) -> Result<(), Failure> {
+        stop_on_signals();
+        let folder = if self.file.is_dir() { StudyFolder::read(&self.file)? } else { self.play()? };
+        let objectives = self.objectives(&folder.study.tasks)?;
+        let analyses = objectives.iter().map(|objective| analyse(&folder, objective));
+        let analyses = analyses.collect::<Result<Vec<_>, Failure>>()?;
+        if !self.file.is_dir() {
+            write_tables(folder.path(), &analyses)?;
+        }
+        if self.json {
+            let output = serde_json::json!({"schema_version": SCHEMA_VERSION, "study": folder.study.name, "analyses": analyses});
+            return Ok(writeln!(out, "{output}")?);
+        }
+        print(out, &folder, &analyses)
+    }
+
+    fn objectives(&self, tasks: &[String]) -> Result<Vec<Objective>, Failure> {
+        let defaults = ["rescuees", "rescue_rate", "energy_per_rescuee"].map(str::to_owned);
+        let names = if self.metric.is_empty() { &defaults[..] } else { &self.metric };
+        let parse = |name: &String| {
+            Objective::parse(name, tasks).map_err(|error| Failure::input(format!("--metric: {error}")))
+        };
+        names.iter().map(parse).collect()
+    }
+
+    /// Plays what is missing.
+    fn play(&self) -> Result<StudyFolder, Failure> {
+        let overrides = Overrides { trials: self.trials, ..Overrides::default() };
+        let experiment = Experiment::load(&self.file, &overrides)?;
+        let then = self.horizon_trial.as_deref().map(PolicySpec::parse).transpose();
+        let then = then.map_err(|error| Failure::input(format!("--horizon-trial: {error}")))?;
+        let choices =
+            Choices { then: then.map(|spec| spec.plain()), rounds: self.rounds.clone(), limit: self.limit };
+        let study = Study::of(&experiment, &choices)?;
+        self.objectives(&study.tasks)?; // a wrong name is told before the work, not after it
+        let path = self.out.clone().unwrap_or_else(|| Path::new("results").join(&experiment.name));
+        let mut folder = StudyFolder::open(&path, study)?;
+        let (missing, jobs) = (folder.missing().len(), self.jobs.unwrap_or_else(default_jobs));
+        let there = folder.trials.len();
+        if there > 0 && missing > 0 && !self.quiet {
+            tell(format_args!("{there} trials are there already"));
+        }
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(jobs).build().map_err(Failure::run)?;
+        let progress = progress_bar(missing, "trials", jobs, self.quiet || missing == 0);
+        let played = pool.install(|| folder.play_missing(&experiment, &STOP, || progress.inc(1)));
+        progress.finish_and_clear();
+        played.map(|()| folder)
+    }
+}
+
+/// The tables of a study, into its folder.
+fn write_tables(path: &Path, analyses: &[Analysis]) -> Result<(), Failure> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    let trouble = |error: &dyn std::fmt::Display| Failure::storage(format!("{}: {error}", path.display()));
+    let header = [
+        "metric", "trial", "seed", "driver", "round", "policy", "rank", "value", "regret", "best", "mean",
+        "worst", "played", "is_exact",
+    ];
+    writer.write_record(header).map_err(|error| trouble(&error))?;
+    for analysis in analyses {
+        for row in &analysis.rows {
+            let row = [
+                analysis.metric.clone(),
+                row.trial.to_string(),
+                row.seed.to_string(),
+                row.driver.clone(),
+                row.round.to_string(),
+                row.policy.clone(),
+                row.rank.to_string(),
+                row.value.to_string(),
+                row.regret.to_string(),
+                row.best.to_string(),
+                row.mean.to_string(),
+                row.worst.to_string(),
+                row.played.to_string(),
+                row.is_exact.to_string(),
+            ];
+            writer.write_record(row).map_err(|error| trouble(&error))?;
+        }
+    }
+    let bytes = writer.into_inner().map_err(|error| trouble(&error))?;
+    NewFile::write(path, "regret.csv", &bytes)?;
+    let summary = serde_json::to_vec_pretty(analyses).map_err(Failure::run)?;
+    NewFile::write(path, "summary.json", &summary).map(drop)
+}
+
+/// A number with three significant digits, and its interval.
+fn with_interval(estimate: Option<&Estimate>, scale: f64, unit: &str) -> String {
+    let Some(Estimate { value, interval }) = estimate else { return "-".to_owned() };
+    let number = |value: f64| experiments::comparison::digits(value * scale, 3);
+    match interval {
+        None => format!("{}{unit}", number(*value)),
+        Some([low, high]) => format!("{}{unit} ({} to {})", number(*value), number(*low), number(*high)),
+    }
+}
+
+fn print(out: &mut dyn Write, folder: &StudyFolder, analyses: &[Analysis]) -> Result<(), Failure> {
+    let study = &folder.study;
+    let end = study
+        .then
+        .as_ref()
+        .map_or("of its round".to_owned(), |then| format!("of the trial, in which {then} goes on"));
+    let rounds: Vec<String> = study.rounds.iter().map(u32::to_string).collect();
+    let rounds =
+        if rounds.is_empty() { "every round".to_owned() } else { format!("round {}", rounds.join(", ")) };
+    writeln!(
+        out,
+        "{}: {} of {} trials, {rounds}; each decision played in all ways to the end {end}\n\
+         Means over trials, in brackets 95 % intervals (bootstrap over trials)",
+        study.name,
+        folder.trials.len(),
+        study.seeds.len()
+    )?;
+    analyses.iter().try_for_each(|analysis| print_analysis(out, analysis))
+}
+
+fn print_analysis(out: &mut dyn Write, analysis: &Analysis) -> Result<(), Failure> {
+    let Analysis { metric, decisions, exact, .. } = analysis;
+    writeln!(out, "\n{metric}: {decisions} decisions, {exact} of them with all assignments")?;
+    writeln!(
+        out,
+        "  grouping matters (best and worst assignment differ) in {} of the decisions",
+        with_interval(analysis.matters.as_ref(), 100.0, " %")
+    )?;
+    for (name, estimate) in
+        [("best", &analysis.best), ("fair draw", &analysis.drawn), ("worst", &analysis.worst)]
+    {
+        writeln!(out, "  {name:<9} {}", with_interval(estimate.as_ref(), 1.0, ""))?;
+    }
+    let mut table = headed(["policy", "regret", "best choice", "better ones", "achieved"]);
+    for policy in &analysis.policies {
+        table.add_row([
+            right(&policy.policy),
+            right(&with_interval(policy.regret.as_ref(), 1.0, "")),
+            right(&with_interval(policy.best.as_ref(), 100.0, " %")),
+            right(&with_interval(policy.outranked.as_ref(), 100.0, " %")),
+            right(&with_interval(policy.achieved.as_ref(), 100.0, " %")),
+        ]);
+    }
+    writeln!(out, "{table}")?;
+    let mut table = headed(["feature of an assignment", "rank correlation with the outcome", "decisions"]);
+    for row in &analysis.features {
+        table.add_row([
+            right(row.feature),
+            right(&with_interval(row.correlation.as_ref(), 1.0, "")),
+            right(&row.decisions.to_string()),
+        ]);
+    }
+    Ok(writeln!(out, "{table}")?)
+}
