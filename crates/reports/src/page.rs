@@ -13,6 +13,7 @@ use experiments::sweep::disk::{PLOTS, REPORT};
 use experiments::sweep::folder::Folder;
 use experiments::sweep::ours;
 
+use crate::decisions::{Decisions, decisions};
 use crate::drawing::{self, Figure};
 use crate::figures::figures;
 
@@ -31,6 +32,7 @@ struct Page<'a> {
     /// What figures call policies whose labels are too long for them, with these.
     abbreviations: Vec<(String, &'a str)>,
     summary: Vec<Vec<String>>,
+    decisions: Option<Decisions>,
     comparisons: Vec<Row>,
     found: Vec<&'a str>,
     open: Vec<&'a str>,
@@ -72,7 +74,10 @@ pub fn write_report(folder: &mut Folder, case: usize) -> Result<PathBuf, Failure
         if is_compared { compare(folder, &metrics.chosen(&[])?, Choice::default())? } else { Vec::new() };
     let here: Vec<&Comparison> = all.iter().filter(|comparison| comparison.case == case + 1).collect();
     let figures = figures(folder, case, &here)?;
-    let page = page(folder, case, &here, &all, &figures).render().map_err(Failure::run)?;
+    let decided = decisions(folder, case)?;
+    let mut page = page(folder, case, &here, &all, &figures);
+    page.decisions = decided;
+    let page = page.render().map_err(Failure::run)?;
 
     let mut files = vec![(REPORT.to_owned(), page.into_bytes())];
     for Figure { name, svg, csv, .. } in figures {
@@ -124,6 +129,7 @@ fn page<'a>(
         trials: experiment.trials,
         labels: experiment.policies.iter().map(|policy| policy.label.as_str()).collect(),
         summary: summary(folder, case),
+        decisions: None,
         comparisons: comparisons.iter().map(|comparison| row(comparison)).collect(),
         found: sentences(true),
         open: sentences(false),

@@ -9,8 +9,8 @@ use experiments::{Failure, panic_message};
 use rne_core::Registry;
 
 use crate::commands::{
-    calibrate, check, compare, estimate, explain, fork, group, merge, oracle, readings, regret, report,
-    reproduce, run, schema, sweep, trust, verify, view, why,
+    calibrate, check, compare, estimate, fork, group, merge, oracle, readings, regret, report, reproduce,
+    run, schema, sorting, sweep, trust, verify, view, why,
 };
 use crate::printable::Printable;
 use crate::running::{status_of_signal, tell};
@@ -43,13 +43,13 @@ struct Cli {
 #[derive(Debug, Subcommand)]
 enum Command {
     Run(run::Arguments),
+    Sorting(sorting::Arguments),
     Sweep(sweep::Arguments),
     Estimate(estimate::Arguments),
     Merge(merge::Arguments),
     Compare(compare::Arguments),
     Report(report::Arguments),
     Reproduce(reproduce::Arguments),
-    Explain(explain::Arguments),
     Fork(fork::Arguments),
     Oracle(oracle::Arguments),
     Readings(readings::Arguments),
@@ -117,13 +117,13 @@ impl Command {
     fn execute(&self, out: &mut dyn Write) -> Result<(), Failure> {
         match self {
             Self::Run(arguments) => arguments.execute(out),
+            Self::Sorting(arguments) => arguments.execute(out),
             Self::Sweep(arguments) => arguments.execute(out),
             Self::Estimate(arguments) => arguments.execute(out),
             Self::Merge(arguments) => arguments.execute(out),
             Self::Compare(arguments) => arguments.execute(out),
             Self::Reproduce(arguments) => arguments.execute(out),
             Self::Report(arguments) => arguments.execute(out),
-            Self::Explain(arguments) => arguments.execute(out),
             Self::Fork(arguments) => arguments.execute(out),
             Self::Oracle(arguments) => arguments.execute(out),
             Self::Readings(arguments) => arguments.execute(out),

@@ -7,6 +7,7 @@ use experiments::metric::Metric;
 use experiments::stats::Moments;
 use experiments::stats::paired::t_half_width;
 use experiments::sweep::folder::Folder;
+use kuva::plot::annotations::ReferenceLine;
 use kuva::plot::{BoxPlot, ForestPlot, ScatterPlot};
 use kuva::render::plots::Plot;
 
@@ -52,10 +53,13 @@ fn box_figure(folder: &Folder, case: usize, name: &str, places: &[usize]) -> Res
         }
         let plots = vec![Plot::Box(plot.with_group_colors(colours))];
         let [low, high] = range(all);
-        let layout = layout(&plots, &metric.title)
+        let mut layout = layout(&plots, &metric.title)
             .with_y_label(metric.unit)
             .with_y_axis_min(low)
             .with_y_axis_max(high);
+        for line in bounds(folder, case, *place) {
+            layout = layout.with_reference_line(line);
+        }
         panels.push(Panel { plots, layout });
     }
     Ok(Figure {
@@ -69,6 +73,17 @@ fn box_figure(folder: &Folder, case: usize, name: &str, places: &[usize]) -> Res
         svg: if panels.is_empty() { String::new() } else { draw(panels, 3, PANEL) },
         csv: table(&["metric", "policy", "value"], rows)?,
     })
+}
+
+/// Lines at the means of the oracle, the ceiling of any policy with foresight of one round, and of a fair draw, where the sweep has them.
+fn bounds(folder: &Folder, case: usize, metric: usize) -> Vec<ReferenceLine> {
+    let policies = &folder.experiment().policies;
+    let line = |name: &str, label: &str| {
+        let policy = policies.iter().position(|policy| policy.name == name)?;
+        let mean = Moments::of(&folder.values(case, policy, metric)).mean?;
+        Some(ReferenceLine::horizontal(mean).with_color("#555555").with_dasharray("4 3").with_label(label))
+    };
+    [line("ORACLE", "oracle"), line("RANDOM", "fair draw")].into_iter().flatten().collect()
 }
 
 /// On how many trials each policy's part of a panel stands.

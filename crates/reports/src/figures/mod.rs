@@ -4,12 +4,15 @@ mod course;
 mod gather;
 mod groups;
 mod metrics;
+mod regret;
 
 use experiments::Failure;
 use experiments::comparison::Comparison;
 use experiments::sweep::folder::Folder;
 
 use crate::drawing::Figure;
+
+pub(crate) use regret::regret;
 
 /// All figures of a sweep's case for which there is something to draw.
 pub(crate) fn figures(

@@ -5,7 +5,7 @@ pub(crate) mod calibrate;
 pub(crate) mod check;
 pub(crate) mod compare;
 pub(crate) mod estimate;
-pub(crate) mod explain;
+
 pub(crate) mod fork;
 pub(crate) mod group;
 pub(crate) mod merge;
@@ -18,6 +18,7 @@ pub(crate) mod reproduce;
 pub(crate) mod run;
 pub(crate) mod schema;
 mod snapshot;
+pub(crate) mod sorting;
 pub(crate) mod sweep;
 pub(crate) mod trust;
 pub(crate) mod verify;

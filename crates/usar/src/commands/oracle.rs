@@ -117,6 +117,7 @@ impl Arguments {
         let trial = self.trial.open("--base", self.base.as_deref())?;
         let objective = Objective::parse(&self.metric, &trial.tasks());
         let objective = objective.map_err(|error| Failure::input(format!("--metric: {error}")))?;
+        let onwards = self.onwards(&trial)?;
         let base = trial.spec.driver().map_err(Failure::input)?;
         let mut simulation = trial.begin()?;
         advance_to(&mut simulation, &base, self.round, &STOP).map_err(|error| failure(error, "--round: "))?;
@@ -131,7 +132,7 @@ impl Arguments {
             rayon::ThreadPoolBuilder::new().num_threads(self.jobs.unwrap_or_else(default_jobs)).build();
         let pool = pool.map_err(Failure::run)?;
         let mut answers = Vec::new();
-        for then in self.onwards(&trial)? {
+        for then in onwards {
             let survey = pool.install(|| self.play_all(&asked, &start, then.as_ref(), &mut log))?;
             answers.push(Answer { then, survey });
         }

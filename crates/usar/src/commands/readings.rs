@@ -10,7 +10,7 @@ use experiments::sweep::folder::Folder;
 use study_yang2021::readings::{Trials, averaged, groupings_in_words, rivals, single};
 use study_yang2021::table::{averaged_table, readings_table, rivals_table};
 
-use super::explain::gaps;
+use super::sorting::gaps;
 
 /// Which reading of the paper's ambiguous places decides what?
 #[derive(Debug, Args)]

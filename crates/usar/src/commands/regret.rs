@@ -9,6 +9,7 @@ use experiments::experiment::{Experiment, Overrides, PolicySpec};
 use experiments::files::NewFile;
 use experiments::oracle::{DEFAULT_LIMIT, Objective};
 use experiments::regret::{Analysis, Choices, Estimate, Study, StudyFolder, analyse};
+use reports::regret_figures;
 use reports::table::{headed, right};
 
 use super::SCHEMA_VERSION;
@@ -71,6 +72,9 @@ impl Arguments {
         let analyses = analyses.collect::<Result<Vec<_>, Failure>>()?;
         if !self.file.is_dir() {
             write_tables(folder.path(), &analyses)?;
+            for (name, content) in regret_figures(&analyses)? {
+                NewFile::write(folder.path(), &name, &content)?;
+            }
         }
         if self.json {
             let output = serde_json::json!({"schema_version": SCHEMA_VERSION, "study": folder.study.name, "analyses": analyses});

@@ -104,7 +104,7 @@ fn the_papers_experiment_and_the_pages_that_tell_of_it() {
     assert_eq!(found, 1, "docs/why.md has that command");
     assert_eq!(
         renewed, page,
-        "docs/why.md is not what `usar explain results/paper` prints; `just pages` makes it anew"
+        "docs/why.md is not what `usar sorting results/paper` prints; `just pages` makes it anew"
     );
 }
 

@@ -1,4 +1,4 @@
-//! `usar explain`: what the policies' groups of a sweep amount to.
+//! `usar sorting`: what the policies' groups of a sweep amount to.
 
 use std::io::Write;
 use std::path::PathBuf;
@@ -20,8 +20,8 @@ Prints, for each policy of a finished sweep, how often its split of the team is 
 would give; the mean levels of the groups round by round; and an example of how blind relative entropy is to magnitude.
 
 Examples:
-  usar explain results/paper
-  usar explain results/energy --case 3")]
+  usar sorting results/paper
+  usar sorting results/energy --case 3")]
 pub(crate) struct Arguments {
     /// Folder of a sweep
     folder: PathBuf,

@@ -1,0 +1,104 @@
+//! Figures of a study of regret.
+
+use std::collections::BTreeMap;
+
+use experiments::Failure;
+use experiments::regret::{Analysis, DecisionRow, Estimate};
+use experiments::stats::Moments;
+use experiments::stats::paired::t_half_width;
+use kuva::plot::ForestPlot;
+use kuva::render::plots::Plot;
+
+use crate::drawing::{Figure, Panel, draw, layout, line_panel, range, table};
+
+/// Regret round by round, and the share of the achievable that each policy achieves.
+///
+/// # Errors
+/// None: tables are written to memory.
+pub(crate) fn regret(analyses: &[Analysis]) -> Result<Vec<Figure>, Failure> {
+    Ok(vec![by_round(analyses)?, achieved(analyses)?])
+}
+
+fn by_round(analyses: &[Analysis]) -> Result<Figure, Failure> {
+    let (mut panels, mut rows) = (Vec::new(), Vec::new());
+    for analysis in analyses {
+        let labels: Vec<&str> = analysis.policies.iter().map(|policy| policy.policy.as_str()).collect();
+        let mut lines = Vec::new();
+        for (place, label) in labels.iter().enumerate() {
+            let own = analysis.rows.iter().filter(|row| row.policy == *label);
+            lines.push((place, *label, points(own.map(|row| (row.round, row.regret)))));
+        }
+        let first = || analysis.rows.iter().filter(|row| Some(&row.policy.as_str()) == labels.first());
+        let behind = |value: fn(&DecisionRow) -> f64| {
+            first().map(move |row| (row.round, (row.best - value(row)).abs()))
+        };
+        lines.push((labels.len(), "fair draw", points(behind(|row| row.mean))));
+        lines.push((labels.len() + 1, "worst", points(behind(|row| row.worst))));
+        for (_, label, points) in &lines {
+            let row = |(round, mean, half): &(f64, f64, f64)| {
+                vec![
+                    analysis.metric.clone(),
+                    (*label).to_owned(),
+                    round.to_string(),
+                    mean.to_string(),
+                    half.to_string(),
+                ]
+            };
+            rows.extend(points.iter().map(row));
+        }
+        panels.extend(line_panel(&lines, [&analysis.metric, "round", "regret"]));
+    }
+    Ok(Figure {
+        name: "regret-by-round".to_owned(),
+        title: "Regret, round by round".to_owned(),
+        caption: "Mean distance to the best assignment, with 95 % t intervals; 0 is the best, the lines `fair draw` and `worst` are those of the mean and of \
+                  the worst assignment"
+            .to_owned(),
+        svg: if panels.is_empty() { String::new() } else { draw(panels, 2, [460.0, 340.0]) },
+        csv: table(&["metric", "policy", "round", "mean", "half_width"], rows)?,
+    })
+}
+
+/// Mean and half the width of its interval for each round with two decisions or more.
+fn points(values: impl Iterator<Item = (u32, f64)>) -> Vec<(f64, f64, f64)> {
+    let mut by_round: BTreeMap<u32, Vec<f64>> = BTreeMap::new();
+    values.for_each(|(round, value)| by_round.entry(round).or_default().push(value));
+    let point = |(round, values): (u32, Vec<f64>)| {
+        let half = t_half_width(&values)?;
+        Some((f64::from(round), Moments::of(&values).mean?, half))
+    };
+    by_round.into_iter().filter_map(point).collect()
+}
+
+fn achieved(analyses: &[Analysis]) -> Result<Figure, Failure> {
+    let (mut panels, mut rows) = (Vec::new(), Vec::new());
+    for analysis in analyses {
+        let mut plot = ForestPlot::new().with_null_value(0.0).with_cap_size(4.0);
+        let mut ends = vec![0.0, 100.0];
+        for policy in &analysis.policies {
+            let Some(Estimate { value, interval: Some([low, high]) }) = policy.achieved else { continue };
+            let [value, low, high] = [value, low, high].map(|share| 100.0 * share);
+            plot = plot.with_colored_row(policy.policy.clone(), value, low, high, "#0072B2");
+            ends.extend([low, high]);
+            let numbers = [value, low, high].map(|share| share.to_string());
+            rows.push([vec![analysis.metric.clone(), policy.policy.clone()], numbers.to_vec()].concat());
+        }
+        if ends.len() > 2 {
+            let plots = vec![Plot::Forest(plot)];
+            let [low, high] = range(ends);
+            let layout = layout(&plots, &analysis.metric)
+                .with_x_label("achieved (%)")
+                .with_ticks(4)
+                .with_x_axis_min(low)
+                .with_x_axis_max(high);
+            panels.push(Panel { plots, layout });
+        }
+    }
+    Ok(Figure {
+        name: "achieved".to_owned(),
+        title: "How much of the achievable is achieved".to_owned(),
+        caption: "0 is a fair draw, 100 % the best assignment of each decision; 95 % bootstrap intervals over trials".to_owned(),
+        svg: if panels.is_empty() { String::new() } else { draw(panels, 2, [460.0, 280.0]) },
+        csv: table(&["metric", "policy", "achieved_percent", "low", "high"], rows)?,
+    })
+}

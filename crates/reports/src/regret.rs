@@ -1,0 +1,19 @@
+//! The figures of a study of regret, as files.
+
+use experiments::Failure;
+use experiments::regret::Analysis;
+
+use crate::drawing::Figure;
+use crate::figures::regret;
+
+/// The figures of a study: for each, the name of a file and its content, drawings and the numbers behind them.
+///
+/// # Errors
+/// None: all is made in memory.
+pub fn regret_figures(analyses: &[Analysis]) -> Result<Vec<(String, Vec<u8>)>, Failure> {
+    let files = |Figure { name, svg, csv, .. }: Figure| {
+        [(format!("{name}.svg"), svg.into_bytes()), (format!("{name}.csv"), csv.into_bytes())]
+    };
+    let figures = regret(analyses)?.into_iter().filter(|figure| !figure.svg.is_empty());
+    Ok(figures.flat_map(files).collect())
+}
