@@ -15,6 +15,17 @@ pub const TOTAL: &str = "total";
 type Value = fn(&TrialRecord) -> Option<f64>;
 type TaskValue = fn(&TaskTotals) -> Option<f64>;
 
+/// Which way a metric is better.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Direction {
+    /// More is better.
+    Higher,
+    /// Less is better.
+    Lower,
+    /// It is neither good nor bad.
+    Neither,
+}
+
 /// How a metric is computed.
 #[derive(Clone, Copy)]
 enum Scope {
@@ -32,6 +43,7 @@ struct Declaration {
     unit: &'static str,
     figure: &'static str,
     is_primary: bool,
+    direction: Direction,
     scope: Scope,
 }
 
@@ -41,33 +53,41 @@ const RATIO: &str = "percent points per rescuee";
 /// All metrics.
 #[rustfmt::skip]
 const DECLARATIONS: &[Declaration] = &[
-    per_task("rescuees", "rescuees", "", |r| Some(f64::from(r.rescued())), |t| Some(f64::from(t.rescued))).primary().in_figure("rescuees"),
-    per_task("energy_per_rescuee", "energy per rescuee", RATIO, |r| ratio(r.energy(), r.rescued()), |t| ratio(t.energy, t.rescued)).primary().in_figure("energy per rescuee"),
-    per_task("hp_per_rescuee", "HP per rescuee", RATIO, |r| ratio(r.hp(), r.rescued()), |t| ratio(t.hp, t.rescued)).primary().in_figure("HP per rescuee"),
-    whole("rounds", "rounds", "", |r| Some(f64::from(r.completed_rounds))).primary(),
-    whole("waiting", "time waited", "s", |r| Some(r.waiting_s())).in_figure("waiting and deadlocks"),
-    whole("deadlocks", "deadlocks", "", |r| Some(f64::from(r.counts.deadlocks))).in_figure("waiting and deadlocks"),
-    whole("longest_stall", "longest stall", "s", |r| Some(r.longest_stall_s())).in_figure("waiting and deadlocks"),
+    per_task("rescuees", "rescuees", "", |r| Some(f64::from(r.rescued())), |t| Some(f64::from(t.rescued))).primary().in_figure("rescuees").higher(),
+    per_task("energy_per_rescuee", "energy per rescuee", RATIO, |r| ratio(r.energy(), r.rescued()), |t| ratio(t.energy, t.rescued)).primary().in_figure("energy per rescuee").lower(),
+    per_task("hp_per_rescuee", "HP per rescuee", RATIO, |r| ratio(r.hp(), r.rescued()), |t| ratio(t.hp, t.rescued)).primary().in_figure("HP per rescuee").lower(),
+    whole("rounds", "rounds", "", |r| Some(f64::from(r.completed_rounds))).primary().higher(),
+    whole("waiting", "time waited", "s", |r| Some(r.waiting_s())).in_figure("waiting and deadlocks").lower(),
+    whole("deadlocks", "deadlocks", "", |r| Some(f64::from(r.counts.deadlocks))).in_figure("waiting and deadlocks").lower(),
+    whole("longest_stall", "longest stall", "s", |r| Some(r.longest_stall_s())).in_figure("waiting and deadlocks").lower(),
     whole("conflicts", "conflicts", "", |r| Some(f64::from(r.counts.conflicts))),
     whole("rotations", "turns passed on", "", |r| Some(f64::from(r.counts.rotations))),
     whole("retreats", "times room was made", "", |r| Some(f64::from(r.counts.retreats))),
     whole("back_offs", "times backed off", "", |r| Some(f64::from(r.counts.back_offs))),
-    whole("unreachable", "places given up on", "", |r| Some(f64::from(r.counts.unreachable))),
-    whole("errands_done", "errands done", "", |r| Some(f64::from(r.counts.errands_done))),
+    whole("unreachable", "places given up on", "", |r| Some(f64::from(r.counts.unreachable))).lower(),
+    whole("errands_done", "errands done", "", |r| Some(f64::from(r.counts.errands_done))).higher(),
     whole("time", "time to the end", "s", |r| Some(r.time_s)),
-    per_task("secured", "secured", "", |r| Some(f64::from(r.secured())), |t| Some(f64::from(t.secured))),
+    per_task("secured", "secured", "", |r| Some(f64::from(r.secured())), |t| Some(f64::from(t.secured))).higher(),
     per_task("energy", "energy spent", POINTS, |r| Some(r.energy()), |t| Some(t.energy)),
     whole("energy.ungrouped", "energy spent outside groups", POINTS, |r| Some(r.ungrouped_energy)),
     per_task("hp", "HP lost", POINTS, |r| Some(r.hp()), |t| Some(t.hp)),
     whole("hp.ungrouped", "HP lost outside groups", POINTS, |r| Some(r.ungrouped_hp)),
     whole("turned_back", "times turned back", "", |r| Some(f64::from(r.counts.turned_back))),
-    whole("stranded", "robots stranded", "", |r| Some(r.stranded() as f64)),
-    whole("disabled", "robots disabled", "", |r| Some(r.disabled() as f64)),
+    whole("stranded", "robots stranded", "", |r| Some(r.stranded() as f64)).lower(),
+    whole("disabled", "robots disabled", "", |r| Some(r.disabled() as f64)).lower(),
     whole("distance", "distance travelled", "m", |r| Some(r.distance_m())),
 ];
 
 const fn whole(name: &'static str, title: &'static str, unit: &'static str, value: Value) -> Declaration {
-    Declaration { name, title, unit, figure: "", is_primary: false, scope: Scope::Whole(value) }
+    Declaration {
+        name,
+        title,
+        unit,
+        figure: "",
+        is_primary: false,
+        direction: Direction::Neither,
+        scope: Scope::Whole(value),
+    }
 }
 
 const fn per_task(
@@ -77,12 +97,28 @@ const fn per_task(
     total: Value,
     task: TaskValue,
 ) -> Declaration {
-    Declaration { name, title, unit, figure: "", is_primary: false, scope: Scope::PerTask { total, task } }
+    Declaration {
+        name,
+        title,
+        unit,
+        figure: "",
+        is_primary: false,
+        direction: Direction::Neither,
+        scope: Scope::PerTask { total, task },
+    }
 }
 
 impl Declaration {
     const fn primary(self) -> Self {
         Self { is_primary: true, ..self }
+    }
+
+    const fn higher(self) -> Self {
+        Self { direction: Direction::Higher, ..self }
+    }
+
+    const fn lower(self) -> Self {
+        Self { direction: Direction::Lower, ..self }
     }
 
     const fn in_figure(self, figure: &'static str) -> Self {
@@ -101,7 +137,7 @@ impl Declaration {
     }
 
     fn metric(self, part: Option<&str>, source: Source) -> Metric {
-        let Self { name, title, unit, figure, is_primary, .. } = self;
+        let Self { name, title, unit, figure, is_primary, direction, .. } = self;
         let with_part =
             |text: &str, between: char| part.map_or(text.to_owned(), |part| format!("{text}{between}{part}"));
         Metric {
@@ -110,6 +146,7 @@ impl Declaration {
             unit,
             figure,
             is_primary,
+            direction,
             declared: name,
             part: part.unwrap_or_default().to_owned(),
             source,
@@ -149,6 +186,8 @@ pub struct Metric {
     pub figure: &'static str,
     /// Whether it is one of those that are shown unless others are asked for.
     pub is_primary: bool,
+    /// Which way it is better.
+    pub direction: Direction,
     declared: &'static str,
     part: String,
     source: Source,

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use askama::Template;
 use experiments::Failure;
 use experiments::comparison::{
-    Choice, Comparison, compare, digits, limit_of_correction, short, short_p, test_in_words,
+    Asked, Comparison, compare, digits, limit_of_correction, short, short_p, test_in_words,
 };
 use experiments::experiment::{Axis, Experiment, Seeds};
 use experiments::stats::Moments;
@@ -68,10 +68,9 @@ struct Row {
 /// # Errors
 /// The folder cannot be written to, or its journal cannot be read.
 pub fn write_report(folder: &mut Folder, case: usize) -> Result<PathBuf, Failure> {
-    let Experiment { policies, metrics, .. } = folder.experiment();
-    let is_compared = policies.len() > 1;
-    let all =
-        if is_compared { compare(folder, &metrics.chosen(&[])?, Choice::default())? } else { Vec::new() };
+    let asked = Asked::of(folder.experiment(), &[], None, &[])?;
+    let is_compared = folder.experiment().policies.len() > 1;
+    let all = if is_compared { compare(folder, &asked.metrics, asked.choice(None))? } else { Vec::new() };
     let here: Vec<&Comparison> = all.iter().filter(|comparison| comparison.case == case + 1).collect();
     let figures = figures(folder, case, &here)?;
     let decided = decisions(folder, case)?;

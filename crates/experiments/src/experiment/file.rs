@@ -38,6 +38,15 @@ pub(super) struct SweepFile {
     /// Whether to leave out what takes most of the disk: `groups.csv`, `robots.csv`, `series.csv` and the hash chains.
     #[serde(default)]
     pub lean: bool,
+    /// Metrics that the sweep is about: `compare` and `report` begin with them.
+    #[serde(default)]
+    pub primary: Vec<String>,
+    /// The policy with which `compare` and `report` compare the others.
+    #[serde(default)]
+    pub baseline: Option<String>,
+    /// For metrics, the largest difference that does not matter.
+    #[serde(default)]
+    pub margins: Map<f64>,
     /// Fields and the values that each takes: the full grid is run.
     #[serde(default)]
     pub axes: Map<Vec<Box<RawValue>>>,

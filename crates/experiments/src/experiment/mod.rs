@@ -1,6 +1,7 @@
 //! What a sweep runs: a scenario or a sweep file, resolved into cases, policies and trials.
 
 mod again;
+mod asks;
 mod file;
 mod grid;
 mod policy;
@@ -15,6 +16,7 @@ use xxhash_rust::xxh3::xxh3_128;
 use ron_fields::Fields;
 use usar_sim::scenario::{SampledCounts, Scenario, read_text};
 
+pub use asks::Asks;
 pub use grid::{Axis, Case};
 pub use policy::{PolicySpec, registry, set_registry, split_list};
 pub use read::{companion, defaults, with_settings};
@@ -172,7 +174,9 @@ impl Experiment {
         parts.policies = with_readings(parts.policies, &readings);
         parts.trials = overrides.trials.unwrap_or(parts.trials);
         parts.is_checked = overrides.is_checked;
-        Self::assemble(parts)
+        let experiment = Self::assemble(parts)?;
+        experiment.asks().map_err(|error| Failure::input(format!("{}: {error}", path.display())))?;
+        Ok(experiment)
     }
 
     /// Puts the parts together and checks them.

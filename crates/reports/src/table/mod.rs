@@ -41,7 +41,8 @@ fn indented(title: &str, above: &str) -> String {
 /// A row for each comparison.
 #[must_use]
 pub fn comparison_table(comparisons: &[&Comparison]) -> Table {
-    let mut table = headed([
+    let is_judged = comparisons.iter().any(|comparison| comparison.judged.is_some());
+    let header = [
         "metric",
         "A - B",
         "n",
@@ -54,14 +55,19 @@ pub fn comparison_table(comparisons: &[&Comparison]) -> Table {
         "p Holm",
         "effect",
         "pairs for 80 %",
-    ]);
+    ];
+    let mut table =
+        headed(header.into_iter().chain(is_judged.then_some("verdict (margin)")).collect::<Vec<_>>());
     let number = |value: Option<f64>| right(&value.map_or("-".to_owned(), short));
     let mean = |value: Option<f64>| right(&value.map_or("-".to_owned(), |value| digits(value, 4)));
     for c in comparisons {
         let interval =
             c.interval.map_or("-".to_owned(), |[low, high]| format!("{} to {}", short(low), short(high)));
         let p = |p: Option<f64>| right(&p.map_or("-".to_owned(), short_p));
-        table.add_row([
+        let verdict = c
+            .judged
+            .map_or("-".to_owned(), |judged| format!("{} ({})", judged.verdict.name(), short(judged.margin)));
+        let cells = [
             Cell::new(&c.metric),
             Cell::new(format!("{} - {}", c.a, c.b)),
             right(&c.n.to_string()),
@@ -74,7 +80,8 @@ pub fn comparison_table(comparisons: &[&Comparison]) -> Table {
             p(c.p_holm),
             right(&c.effect.map_or("-".to_owned(), |effect| format!("{effect:.2}"))),
             right(&c.pairs_needed.map_or("-".to_owned(), |pairs| pairs.to_string())),
-        ]);
+        ];
+        table.add_row(cells.into_iter().chain(is_judged.then(|| Cell::new(verdict))));
     }
     table
 }

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use clap::Args;
 use experiments::Failure;
 use experiments::comparison::{
-    CONFIDENCE, Choice, Comparison, LEVEL, compare, limit_of_correction, test_in_words,
+    Asked, CONFIDENCE, Comparison, LEVEL, compare, limit_of_correction, test_in_words,
 };
 use experiments::experiment::split_list;
 use experiments::stats::bootstrap::resamples;
@@ -21,22 +21,27 @@ use super::SCHEMA_VERSION;
 #[command(after_help = "\
 For each metric and pair of policies: mean of each, mean difference with its 95 % bootstrap interval, Hodges-Lehmann shift, Wilcoxon's \
 signed-rank test, its p after Holm's correction over all comparisons shown, effect size (matched-pairs rank-biserial), how many pairs \
-would be needed for 80 % power, and one sentence. Choose metrics before looking: the correction knows only what is shown together.
+would be needed for 80 % power, and one sentence. With a margin, two policies are equivalent if the 90 % interval of their difference lies \
+within it (two one-sided tests at 5 %). Choose metrics before looking: the correction knows only what is shown together.
 
 Examples:
   usar compare results/paper
   usar compare results/paper --metric rescuees.hard --metric rescuees.easy --baseline DIS
   usar compare results/paper --policies RNE,ENG
+  usar compare results/paper --metric rescuees --margin rescuees=3    equivalent within 3 rescuees?
   usar compare results/paper --metric all --json")]
 pub(crate) struct Arguments {
     /// Folder of a sweep
     folder: PathBuf,
-    /// Metric to compare, or `all`; may stand several times [default: the paper's]
+    /// Metric to compare, or `all`; may stand several times [default: those that the sweep file names, or the main ones]
     #[arg(long)]
     metric: Vec<String>,
-    /// Compare each policy with this one only
+    /// Compare each policy with this one only [default: the one that the sweep file names]
     #[arg(long)]
     baseline: Option<String>,
+    /// The largest difference of a metric that does not matter: says better, worse, equivalent or undecided; may stand several times
+    #[arg(long, value_name = "METRIC=VALUE")]
+    margin: Vec<String>,
     /// Compare these policies only, by their labels, separated by commas
     #[arg(long)]
     policies: Option<String>,
@@ -61,8 +66,8 @@ impl Arguments {
         let folder = Folder::read(&self.folder)?;
         let experiment = folder.experiment();
         let policies = self.policies.as_deref().map(split_list);
-        let choice = Choice { baseline: self.baseline.as_deref(), policies: policies.as_deref() };
-        let comparisons = compare(&folder, &experiment.metrics.chosen(&self.metric)?, choice)?;
+        let asked = Asked::of(experiment, &self.metric, self.baseline.as_deref(), &self.margin)?;
+        let comparisons = compare(&folder, &asked.metrics, asked.choice(policies.as_deref()))?;
         if self.json {
             let output = Output {
                 schema_version: SCHEMA_VERSION,

@@ -145,3 +145,66 @@ fn an_estimate_says_trials_time_and_disk() {
     let json: Value = serde_json::from_str(&succeeds(&usar(folder.path(), &alike))).unwrap();
     assert_eq!((&json["measured"], &json["simulated"]), (&24.into(), &16.into()), "the base decides nothing");
 }
+
+#[test]
+fn a_sweep_file_names_its_metrics_its_baseline_and_which_differences_matter() {
+    let folder = place();
+    let here = folder.path();
+    let sweep = |rest: &str| {
+        let text = format!(
+            "(name: \"asked\", scenario: \"short.ron\", policies: [\"RNE\", \"DIS\", \"ENG\"], trials: 4, {rest})"
+        );
+        std::fs::write(here.join("asked.ron"), text).unwrap();
+    };
+    sweep("primary: [\"distance\"], baseline: \"DIS\", margins: {\"distance\": 1e6}");
+    succeeds(&usar(here, &["sweep", "asked.ron", "--quiet"]));
+    let json = |rest: &[&str]| -> Value {
+        let arguments = [&["compare", "results/asked", "--json"], rest].concat();
+        serde_json::from_str(&succeeds(&usar(here, &arguments))).unwrap()
+    };
+    let told = json(&[]);
+    let comparisons = told["comparisons"].as_array().unwrap();
+    let pairs: Vec<_> =
+        comparisons.iter().map(|c| (c["a"].as_str().unwrap(), c["b"].as_str().unwrap())).collect();
+    assert_eq!(pairs, [("RNE", "DIS"), ("ENG", "DIS")]);
+    for comparison in comparisons {
+        assert_eq!(
+            (comparison["metric"].as_str(), &comparison["judged"]["margin"]),
+            (Some("distance"), &1e6.into())
+        );
+        assert_eq!(comparison["judged"]["verdict"], "equivalent");
+        let [low, high] = [0, 1].map(|i: usize| comparison["judged"]["interval_90"][i].as_f64().unwrap());
+        let [lower, higher] = [0, 1].map(|i: usize| comparison["interval"][i].as_f64().unwrap());
+        assert!(lower <= low && high <= higher, "the 90 % interval lies in the 95 % interval");
+        assert!(comparison["in_words"].as_str().unwrap().contains("are equivalent within 1000000"));
+    }
+    let tight = json(&["--metric", "distance", "--baseline", "ENG", "--margin", "distance=1e-9"]);
+    let verdicts: Vec<_> = tight["comparisons"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|c| c["judged"]["verdict"].as_str().unwrap())
+        .collect();
+    assert_eq!(verdicts, ["undecided"; 2], "four pairs decide nothing");
+    refused(
+        here,
+        2,
+        &["compare", "results/asked", "--margin", "distance=0"],
+        &["must be METRIC=VALUE with a value above 0"],
+    );
+    refused(
+        here,
+        2,
+        &["compare", "results/asked", "--margin", "luck=1"],
+        &["--margin: unknown metric \"luck\""],
+    );
+    sweep("primary: [\"luck\"]");
+    refused(here, 2, &["sweep", "asked.ron"], &["asked.ron: primary: unknown metric \"luck\""]);
+    sweep("margins: {\"distance\": -1}");
+    refused(
+        here,
+        2,
+        &["sweep", "asked.ron"],
+        &["asked.ron: margins: distance: must be a number above 0, found -1"],
+    );
+}

@@ -1,5 +1,8 @@
 //! Paired comparisons of policies: what differs, by how much, and how sure that is.
 
+mod asked;
+mod equivalence;
+
 use rayon::prelude::*;
 use serde::Serialize;
 
@@ -12,13 +15,16 @@ use crate::stats::paired::{hodges_lehmann, holm, pairs_needed};
 use crate::stats::wilcoxon::{DRAWS, EXACT_PAIRS, SignedRank};
 use crate::sweep::folder::{Folder, Measured};
 
+pub use asked::Asked;
+pub use equivalence::{Judged, TOST_CONFIDENCE, Verdict, judge};
+
 /// Level of a finding, after correction.
 pub const LEVEL: f64 = 0.05;
 /// Confidence of intervals.
 pub const CONFIDENCE: f64 = 0.95;
 
 /// Two policies over the same seeds, in one metric.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct Comparison {
     /// Number of the case, from 1.
     pub case: usize,
@@ -58,6 +64,9 @@ pub struct Comparison {
     pub effect: Option<f64>,
     /// Pairs that would be needed for 80 % power, were the effect what was observed.
     pub pairs_needed: Option<u64>,
+    /// What it says, where it is known which differences matter.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub judged: Option<Judged>,
     /// The finding in words.
     pub in_words: String,
 }
@@ -150,6 +159,8 @@ pub struct Choice<'a> {
     pub baseline: Option<&'a str>,
     /// None but these.
     pub policies: Option<&'a [&'a str]>,
+    /// For metrics, by their places, the largest difference that does not matter.
+    pub margins: &'a [(usize, f64)],
 }
 
 /// All comparisons of these metrics: of each pair of policies, or of each with the baseline.
@@ -174,7 +185,12 @@ pub fn compare(folder: &Folder, metrics: &[usize], choice: Choice) -> Result<Vec
     for (i, p) in tested.into_iter().zip(holm(&ps)) {
         comparisons[i].p_holm = Some(p);
     }
-    for comparison in &mut comparisons {
+    for (comparison, (case, metric, pair)) in comparisons.iter_mut().zip(&all) {
+        if let Some((_, margin)) = choice.margins.iter().find(|(place, _)| place == metric) {
+            let differences = Pairs::of(folder, *case, *metric, *pair).differences();
+            let direction = experiment.metrics[*metric].direction;
+            comparison.judged = Some(judge(comparison, &differences, *margin, direction));
+        }
         comparison.in_words = in_words(comparison, &experiment.metrics);
     }
     Ok(comparisons)
@@ -238,6 +254,7 @@ fn comparison(
         p_holm: None,
         effect: has_pairs.then(|| test.effect()),
         pairs_needed: pairs_needed(&differences),
+        judged: None,
         in_words: String::new(),
     }
 }
@@ -266,6 +283,14 @@ fn in_words(comparison: &Comparison, metrics: &Catalogue) -> String {
     });
     let is_clear =
         (low > 0.0 || high < 0.0) && comparison.effect.is_some_and(|effect| effect * difference > 0.0);
+    if let Some(Judged { margin, interval_90: Some([low, high]), verdict: Verdict::Equivalent }) =
+        comparison.judged
+    {
+        let (difference, margin) = (short(difference), short(margin));
+        let range =
+            format!("difference {difference}, 90 % interval {} to {}, n = {n}", short(low), short(high));
+        return format!("{place}: {a} and {b} are equivalent within {margin} ({range}).");
+    }
     if comparison.is_found() && !is_clear {
         let shift = comparison.shift.unwrap_or(0.0);
         return format!(

@@ -1,0 +1,126 @@
+//! Better, worse, equivalent or undecided: what a comparison says once it is known which differences matter.
+//!
+//! Two policies are *equivalent within a margin* if the 90 % interval of their mean difference lies inside the margin on
+//! both sides. That is the two one-sided tests (TOST, Schuirmann 1987) at 5 %. Otherwise one is *better* if a difference
+//! shows after correction and the 95 % interval excludes zero. All else is *undecided*: more trials would decide it.
+
+use serde::Serialize;
+
+use super::Comparison;
+use crate::metric::Direction;
+use crate::stats::bootstrap::interval;
+
+/// Confidence of the interval whose inclusion in the margin is two one-sided tests at 5 %.
+pub const TOST_CONFIDENCE: f64 = 0.90;
+
+/// What a comparison says of its first policy.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Verdict {
+    /// It is better than the second.
+    Better,
+    /// It is worse than the second.
+    Worse,
+    /// It is above the second, in a metric that is neither good nor bad.
+    Above,
+    /// It is below the second, in a metric that is neither good nor bad.
+    Below,
+    /// The difference is smaller than the margin.
+    Equivalent,
+    /// The trials decide neither.
+    Undecided,
+}
+
+impl Verdict {
+    /// The verdict in a word.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Better => "better",
+            Self::Worse => "worse",
+            Self::Above => "above",
+            Self::Below => "below",
+            Self::Equivalent => "equivalent",
+            Self::Undecided => "undecided",
+        }
+    }
+}
+
+/// A margin and what it makes of a comparison.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Judged {
+    /// The margin.
+    pub margin: f64,
+    /// 90 % interval of the mean difference.
+    pub interval_90: Option<[f64; 2]>,
+    /// The verdict.
+    pub verdict: Verdict,
+}
+
+/// Judges a comparison by a margin, from the differences of its pairs.
+#[must_use]
+pub fn judge(comparison: &Comparison, differences: &[f64], margin: f64, direction: Direction) -> Judged {
+    let interval_90 = interval(differences, TOST_CONFIDENCE);
+    let is_equivalent = interval_90.is_some_and(|[low, high]| -margin < low && high < margin);
+    let side = comparison.interval.map_or(0.0, |[low, high]| match (low > 0.0, high < 0.0) {
+        (true, _) => 1.0,
+        (_, true) => -1.0,
+        _ => 0.0,
+    });
+    let verdict = if is_equivalent {
+        Verdict::Equivalent
+    } else if side == 0.0 || !comparison.is_found() {
+        Verdict::Undecided
+    } else {
+        match (direction, side > 0.0) {
+            (Direction::Higher, true) | (Direction::Lower, false) => Verdict::Better,
+            (Direction::Higher, false) | (Direction::Lower, true) => Verdict::Worse,
+            (Direction::Neither, true) => Verdict::Above,
+            (Direction::Neither, false) => Verdict::Below,
+        }
+    };
+    Judged { margin, interval_90, verdict }
+}
+
+#[cfg(test)]
+mod tests {
+    use rand::SeedableRng;
+    use rand::rngs::ChaCha8Rng;
+    use rand_distr::{Distribution, Normal};
+
+    use super::*;
+    use crate::stats::bootstrap::{Width, bca_interval};
+
+    fn comparison(interval: [f64; 2], p: f64) -> Comparison {
+        Comparison { interval: Some(interval), p_holm: Some(p), ..Comparison::default() }
+    }
+
+    #[test]
+    fn a_verdict_needs_the_interval_and_the_corrected_test() {
+        let far: Vec<f64> = (0..40).map(|i| 10.0 + f64::from(i % 5)).collect();
+        let clear = comparison([9.0, 13.0], 0.001);
+        let verdict = |direction| judge(&clear, &far, 3.0, direction).verdict;
+        assert_eq!(verdict(Direction::Higher), Verdict::Better);
+        assert_eq!(verdict(Direction::Lower), Verdict::Worse);
+        assert_eq!(verdict(Direction::Neither), Verdict::Above);
+        assert_eq!(judge(&clear, &far, 20.0, Direction::Higher).verdict, Verdict::Equivalent);
+        let uncorrected = comparison([9.0, 13.0], 0.2);
+        assert_eq!(judge(&uncorrected, &far, 3.0, Direction::Higher).verdict, Verdict::Undecided);
+        let wide = comparison([-1.0, 13.0], 0.001);
+        assert_eq!(judge(&wide, &far, 3.0, Direction::Higher).verdict, Verdict::Undecided);
+    }
+
+    /// A true difference that is just the margin is called equivalent in about 5 % of experiments.
+    #[test]
+    fn a_difference_as_large_as_the_margin_is_seldom_called_equivalent() {
+        let truth = Normal::new(1.0, 2.0).unwrap();
+        let mut draws = ChaCha8Rng::seed_from_u64(3);
+        let is_called = |draws: &mut ChaCha8Rng| {
+            let values: Vec<f64> = (0..60).map(|_| truth.sample(draws)).collect();
+            let [low, high] = bca_interval(&values, TOST_CONFIDENCE, (1_000, 1), Width::Expanded).unwrap();
+            -1.0 < low && high < 1.0
+        };
+        let called = (0..1_000).filter(|_| is_called(&mut draws)).count();
+        assert!((25..=75).contains(&called), "{called} of 1,000");
+    }
+}
