@@ -17,6 +17,7 @@
 //! ```
 
 pub mod comparison;
+pub mod expect;
 pub mod experiment;
 mod failure;
 pub mod files;

@@ -10,7 +10,7 @@ use rne_core::Registry;
 
 use crate::commands::{
     calibrate, check, compare, estimate, fork, group, merge, oracle, readings, regret, report, reproduce,
-    run, schema, sorting, sweep, trust, verify, view, why,
+    run, schema, sorting, sweep, test, trust, verify, view, why,
 };
 use crate::printable::Printable;
 use crate::running::{status_of_signal, tell};
@@ -45,6 +45,7 @@ enum Command {
     Run(run::Arguments),
     Sorting(sorting::Arguments),
     Sweep(sweep::Arguments),
+    Test(test::Arguments),
     Estimate(estimate::Arguments),
     Merge(merge::Arguments),
     Compare(compare::Arguments),
@@ -119,6 +120,7 @@ impl Command {
             Self::Run(arguments) => arguments.execute(out),
             Self::Sorting(arguments) => arguments.execute(out),
             Self::Sweep(arguments) => arguments.execute(out),
+            Self::Test(arguments) => arguments.execute(out),
             Self::Estimate(arguments) => arguments.execute(out),
             Self::Merge(arguments) => arguments.execute(out),
             Self::Compare(arguments) => arguments.execute(out),

@@ -16,6 +16,8 @@ pub struct Asks {
     pub baseline: Option<String>,
     /// Differences that do not matter, up to these values.
     pub margins: Vec<(String, f64)>,
+    /// What is expected of the outcome, as it is written.
+    pub expect: Vec<String>,
 }
 
 impl Experiment {
@@ -26,7 +28,9 @@ impl Experiment {
     pub fn asks(&self) -> Result<Asks, Failure> {
         let is_sweep = Fields::of(&self.given).inside("").contains(&"scenario");
         let file: Option<SweepFile> = if is_sweep { ron_of(&self.given) } else { None };
-        let Some(SweepFile { primary, baseline, margins, .. }) = file else { return Ok(Asks::default()) };
+        let Some(SweepFile { primary, baseline, margins, expect, .. }) = file else {
+            return Ok(Asks::default());
+        };
         let named = |field: &str, name: &str| {
             let place =
                 self.metrics.named(name).map_err(|error| Failure::input(format!("{field}: {error}")))?;
@@ -41,7 +45,7 @@ impl Experiment {
         };
         let margins = margins.0.iter().map(margin).collect::<Result<Vec<_>, _>>()?;
         let has = |label: &String| self.policies.iter().any(|policy| policy.label == *label);
-        Ok(Asks { primary, baseline: baseline.filter(has), margins })
+        Ok(Asks { primary, baseline: baseline.filter(has), margins, expect })
     }
 }
 

@@ -47,6 +47,9 @@ pub(super) struct SweepFile {
     /// For metrics, the largest difference that does not matter.
     #[serde(default)]
     pub margins: Map<f64>,
+    /// What is expected of the outcome: see `usar test --help`.
+    #[serde(default)]
+    pub expect: Vec<String>,
     /// Fields and the values that each takes: the full grid is run.
     #[serde(default)]
     pub axes: Map<Vec<Box<RawValue>>>,

@@ -20,6 +20,7 @@ pub(crate) mod schema;
 mod snapshot;
 pub(crate) mod sorting;
 pub(crate) mod sweep;
+pub(crate) mod test;
 pub(crate) mod trust;
 pub(crate) mod verify;
 pub(crate) mod view;

@@ -8,6 +8,7 @@ mod commands;
 mod compared;
 mod damaged;
 mod decided;
+mod expected;
 mod grids;
 mod guarded;
 mod reported;

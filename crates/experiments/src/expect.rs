@@ -1,0 +1,217 @@
+//! Expectations of a sweep's outcome, tested with as few trials as it takes.
+//!
+//! An expectation is looked at after 10, 20, 40, ... trials. At each look an interval of the share or of the mean
+//! difference is compared with what is expected: it *holds* if the whole interval does, it *fails* if none of it does,
+//! and otherwise more trials decide. The confidence is shared over the planned looks (Bonferroni), so that a verdict is wrong
+//! with at most the stated probability however often one looks.
+
+mod parse;
+
+use serde::Serialize;
+use statrs::distribution::{Beta, ContinuousCDF};
+
+use crate::stats::bootstrap::interval;
+
+pub use parse::{Bad, parse};
+
+/// Trials at the first look.
+pub const FIRST_LOOK: u32 = 10;
+
+/// What is expected.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Expectation {
+    /// A metric of a policy is so in a share of the seeds.
+    Share {
+        /// The policy, by its place.
+        policy: usize,
+        /// The metric, by its place.
+        metric: usize,
+        /// How it compares with the value.
+        relation: Relation,
+        /// The value.
+        value: f64,
+        /// The least share of the seeds, in (0, 1].
+        share: f64,
+    },
+    /// The mean of one policy is above that of another by more than a difference.
+    Above {
+        /// The metric, by its place.
+        metric: usize,
+        /// The policy that is above, and the other, by their places.
+        policies: [usize; 2],
+        /// The difference.
+        by: f64,
+    },
+    /// The means of two policies differ by less than a margin.
+    Equal {
+        /// The metric, by its place.
+        metric: usize,
+        /// The policies, by their places.
+        policies: [usize; 2],
+        /// The margin.
+        within: f64,
+    },
+}
+
+/// How a value compares with another.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Relation {
+    /// `>=`
+    AtLeast,
+    /// `>`
+    Above,
+    /// `<=`
+    AtMost,
+    /// `<`
+    Below,
+    /// `==`
+    Equal,
+}
+
+impl Relation {
+    fn holds(self, a: f64, b: f64) -> bool {
+        match self {
+            Self::AtLeast => a >= b,
+            Self::Above => a > b,
+            Self::AtMost => a <= b,
+            Self::Below => a < b,
+            Self::Equal => a.total_cmp(&b).is_eq(),
+        }
+    }
+}
+
+/// An expectation as it is written, with its confidence.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Expected {
+    /// As it is written.
+    pub text: String,
+    /// What is expected.
+    pub what: Expectation,
+    /// Confidence of the verdict, in (0, 1).
+    pub confidence: f64,
+}
+
+/// What trials say of an expectation.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Verdict {
+    /// It holds.
+    Holds,
+    /// It does not hold.
+    Fails,
+    /// The trials decide neither.
+    Undecided,
+}
+
+/// A verdict and what it stands on.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Judgement {
+    /// The verdict.
+    pub verdict: Verdict,
+    /// Trials, or pairs of trials.
+    pub n: usize,
+    /// The observed share (0 to 1) or mean difference.
+    pub observed: Option<f64>,
+    /// Its interval.
+    pub interval: Option<[f64; 2]>,
+}
+
+/// The looks up to so many trials: 10, 20, 40, ..., and the last.
+#[must_use]
+pub fn looks(most: u32) -> Vec<u32> {
+    let doubled = std::iter::successors(Some(FIRST_LOOK), |look| look.checked_mul(2));
+    doubled.take_while(|look| *look < most).chain([most]).collect()
+}
+
+/// Judges an expectation by values of trials: `value(policy, metric)` has one value for each trial, nothing where a
+/// metric is undefined. `looks` is how many looks are planned, and `is_last` whether this is the last of them.
+#[must_use]
+pub fn judge(
+    expected: &Expected,
+    value: impl Fn(usize, usize) -> Vec<Option<f64>>,
+    looks: usize,
+    is_last: bool,
+) -> Judgement {
+    let confidence = 1.0 - (1.0 - expected.confidence) / looks.max(1) as f64;
+    match expected.what {
+        Expectation::Share { policy, metric, relation, value: bound, share } => {
+            let values = value(policy, metric);
+            // A metric that is undefined is not as expected.
+            let held = values.iter().filter(|value| value.is_some_and(|value| relation.holds(value, bound)));
+            judge_share([held.count(), values.len()], share, confidence, is_last)
+        }
+        Expectation::Above { metric, policies, by } => {
+            let differences = differences(&value, metric, policies);
+            judge_mean(&differences, confidence, |[low, high]| match (low > by, high < by) {
+                (true, _) => Verdict::Holds,
+                (_, true) => Verdict::Fails,
+                _ => Verdict::Undecided,
+            })
+        }
+        Expectation::Equal { metric, policies, within } => {
+            let differences = differences(&value, metric, policies);
+            judge_mean(&differences, confidence, |[low, high]| {
+                if -within < low && high < within {
+                    Verdict::Holds
+                } else if low > within || high < -within {
+                    Verdict::Fails
+                } else {
+                    Verdict::Undecided
+                }
+            })
+        }
+    }
+}
+
+fn differences(
+    value: &impl Fn(usize, usize) -> Vec<Option<f64>>,
+    metric: usize,
+    [a, b]: [usize; 2],
+) -> Vec<f64> {
+    let pairs = value(a, metric).into_iter().zip(value(b, metric));
+    pairs.filter_map(|(a, b)| Some(a? - b?)).collect()
+}
+
+fn judge_share([held, n]: [usize; 2], share: f64, confidence: f64, is_last: bool) -> Judgement {
+    let observed = (n > 0).then(|| held as f64 / n as f64);
+    let interval = clopper_pearson(held, n, confidence);
+    let verdict = if share >= 1.0 {
+        // Every seed: one against it decides, and no number of trials can show it for all seeds there are.
+        match (held < n, is_last) {
+            (true, _) => Verdict::Fails,
+            (false, true) if n > 0 => Verdict::Holds,
+            _ => Verdict::Undecided,
+        }
+    } else {
+        match interval {
+            Some([low, _]) if low >= share => Verdict::Holds,
+            Some([_, high]) if high < share => Verdict::Fails,
+            _ => Verdict::Undecided,
+        }
+    };
+    Judgement { verdict, n, observed, interval }
+}
+
+fn judge_mean(differences: &[f64], confidence: f64, verdict: impl Fn([f64; 2]) -> Verdict) -> Judgement {
+    let n = differences.len();
+    let observed = (n > 0).then(|| differences.iter().sum::<f64>() / n as f64);
+    let interval = (n >= FIRST_LOOK as usize).then(|| interval(differences, confidence)).flatten();
+    Judgement { verdict: interval.map_or(Verdict::Undecided, verdict), n, observed, interval }
+}
+
+/// The exact interval of a share (Clopper and Pearson 1934); `None` without any trial.
+#[must_use]
+pub fn clopper_pearson(held: usize, n: usize, confidence: f64) -> Option<[f64; 2]> {
+    let tail = (1.0 - confidence) / 2.0;
+    let (k, n) = (held as f64, n as f64);
+    if n == 0.0 {
+        return None;
+    }
+    let quantile = |a: f64, b: f64, p: f64| Some(Beta::new(a, b).ok()?.inverse_cdf(p));
+    let low = if held == 0 { 0.0 } else { quantile(k, n - k + 1.0, tail)? };
+    let high = if k >= n { 1.0 } else { quantile(k + 1.0, n - k, 1.0 - tail)? };
+    Some([low, high])
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,118 @@
+use rand::SeedableRng;
+use rand::rngs::ChaCha8Rng;
+use rand_distr::{Bernoulli, Distribution, Normal};
+
+use super::*;
+use crate::experiment::PolicySpec;
+use crate::metric::Catalogue;
+
+fn read(text: &str) -> Result<Expected, String> {
+    let metrics = Catalogue::of(&["far".to_owned()]);
+    let policies = ["RNE", "DIS"].map(|name| PolicySpec::parse(name).unwrap());
+    parse(text, &metrics, &policies).map_err(|error| error.to_string())
+}
+
+#[test]
+fn expectations_are_read() {
+    let share = read("rescuees.far >= 60 in 90 % of seeds").unwrap();
+    assert!((share.confidence - 0.95).abs() < 1e-12);
+    let Expectation::Share { policy: 0, relation: Relation::AtLeast, value, share, .. } = share.what else {
+        panic!()
+    };
+    assert!((value - 60.0).abs() < 1e-12 && (share - 0.9).abs() < 1e-12);
+    let other = read("DIS: rounds < 2 in 50% of seeds (99 %)").unwrap();
+    assert!((other.confidence - 0.99).abs() < 1e-12);
+    assert!(matches!(other.what, Expectation::Share { policy: 1, relation: Relation::Below, .. }));
+    assert!(matches!(
+        read("rescuees: RNE > DIS by 5").unwrap().what,
+        Expectation::Above { policies: [0, 1], .. }
+    ));
+    assert!(matches!(
+        read("rescuees: RNE < DIS").unwrap().what,
+        Expectation::Above { policies: [1, 0], by: 0.0, .. }
+    ));
+    assert!(matches!(read("energy: RNE = DIS within 3 (90 %)").unwrap().what, Expectation::Equal { .. }));
+}
+
+#[test]
+fn what_is_no_expectation_is_refused_in_one_sentence() {
+    for (text, reason) in [
+        ("rescuees", "must be like"),
+        ("luck > 3 in 50 % of seeds", "unknown metric \"luck\""),
+        ("rescuees > x in 50 % of seeds", "\"x\" must be a number"),
+        ("rescuees > 3 in 0 % of seeds", "with P above 0"),
+        ("rescuees > 3 in 50 seeds", "in P % of seeds"),
+        ("rescuees: RNE > ENG", "\"ENG\" must be a policy of the sweep (RNE, DIS)"),
+        ("rescuees: RNE = DIS within -1", "must be above 0"),
+        ("rescuees: RNE > DIS (100 %)", "from 50 % to below 100 %"),
+    ] {
+        let error = read(text).unwrap_err();
+        assert!(error.contains(reason) && error.starts_with("expect: "), "{text}: {error}");
+    }
+}
+
+#[test]
+fn looks_double_up_to_the_last() {
+    assert_eq!(looks(100), [10, 20, 40, 80, 100]);
+    assert_eq!(looks(10), [10]);
+    assert_eq!(looks(3), [3]);
+}
+
+/// scipy.stats.binomtest(45, 50).proportion_ci(0.95, "exact")
+#[test]
+fn the_interval_of_a_share_is_scipys() {
+    let [low, high] = clopper_pearson(45, 50, 0.95).unwrap();
+    assert!((low - 0.781_863_9).abs() < 1e-6 && (high - 0.966_724_6).abs() < 1e-6, "{low} {high}");
+    assert_eq!(clopper_pearson(0, 0, 0.95), None);
+    assert!(clopper_pearson(5, 5, 0.95).unwrap()[1] >= 1.0);
+}
+
+#[test]
+fn every_seed_is_refuted_by_one() {
+    let every = read("rescuees > 0 in 100 % of seeds").unwrap();
+    let judge = |values: Vec<Option<f64>>, is_last| judge(&every, |_, _| values.clone(), 3, is_last).verdict;
+    assert_eq!(judge(vec![Some(1.0); 10], false), Verdict::Undecided);
+    assert_eq!(judge(vec![Some(1.0); 10], true), Verdict::Holds);
+    assert_eq!(judge(vec![Some(1.0), None], false), Verdict::Fails);
+}
+
+/// The verdict of one sequential test, with up to 160 trials.
+fn sequential(expected: &Expected, mut draw: impl FnMut() -> [f64; 2]) -> Verdict {
+    let (mut a, mut b) = (Vec::new(), Vec::new());
+    let looks = looks(160);
+    for look in &looks {
+        while a.len() < *look as usize {
+            let [first, second] = draw();
+            a.push(Some(first));
+            b.push(Some(second));
+        }
+        let value = |policy, _| if policy == 0 { a.clone() } else { b.clone() };
+        let judged = judge(expected, value, looks.len(), look == looks.last().unwrap());
+        if judged.verdict != Verdict::Undecided {
+            return judged.verdict;
+        }
+    }
+    Verdict::Undecided
+}
+
+/// With the truth exactly at what is expected, either verdict is wrong, and both are rare; far from it, each is found.
+#[test]
+fn verdicts_are_seldom_wrong_and_clear_cases_are_found() {
+    let share = read("rescuees >= 1 in 80 % of seeds").unwrap();
+    let mut draws = ChaCha8Rng::seed_from_u64(8);
+    let mut wrong = 0;
+    for _ in 0..400 {
+        let truth = Bernoulli::new(0.8).unwrap();
+        let verdict = sequential(&share, || [f64::from(u8::from(truth.sample(&mut draws))), 0.0]);
+        wrong += u32::from(verdict != Verdict::Undecided);
+    }
+    assert!(wrong <= 30, "{wrong} of 400 verdicts at the edge");
+    let above = read("rescuees: RNE > DIS by 2").unwrap();
+    let noise = Normal::new(0.0, 1.0).unwrap();
+    for (truth, expected) in [(4.0, Verdict::Holds), (0.0, Verdict::Fails)] {
+        let verdict = sequential(&above, || [truth + noise.sample(&mut draws), noise.sample(&mut draws)]);
+        assert_eq!(verdict, expected);
+    }
+    assert_eq!(sequential(&share, || [1.0, 0.0]), Verdict::Holds);
+    assert_eq!(sequential(&share, || [0.0, 0.0]), Verdict::Fails);
+}

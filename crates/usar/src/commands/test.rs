@@ -1,0 +1,283 @@
+//! `usar test`: the expectations of sweep files, tested with as few trials as it takes.
+
+use std::collections::BTreeMap;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use clap::Args;
+use experiments::Failure;
+use experiments::comparison::short;
+use experiments::expect::{Expectation, Expected, Judgement, Verdict, judge, looks, parse};
+use experiments::experiment::{Experiment, Overrides};
+use experiments::files::NewFile;
+use experiments::run::{Limits, Outcome, TrialKey, run_all};
+use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
+use serde::Serialize;
+
+use super::SCHEMA_VERSION;
+use crate::running::{STOP, default_jobs, progress_bar, stop_on_signals};
+
+/// Does the outcome meet what is expected of it? Tests of your own scenarios
+#[derive(Debug, Args)]
+#[command(after_help = "\
+A sweep file says what is expected of its outcome:
+
+  expect: [
+      \"rescuees.total >= 60 in 90 % of seeds\",        the first policy of the sweep
+      \"DIS: rounds >= 5 in 100 % of seeds\",           every seed: one against it decides
+      \"rescuees.total: RNE > DIS by 5 (99 %)\",        mean difference over paired seeds
+      \"rescuees.total: RNE = ENG within 3\",
+  ]
+
+Trials are added (10, 20, 40, ...) until every expectation holds or fails at its confidence (95 % where none is named), shared over the \
+planned looks. The exit status is 0 if all hold, and 1 if one fails or is still undecided after --max-trials.
+
+Examples:
+  usar test scenarios/paper.ron
+  usar test scenarios/*.sweep.ron --max-trials 400 --junit results.xml")]
+pub(crate) struct Arguments {
+    /// Sweep files, or scenarios with a sweep file beside them
+    #[arg(required = true, value_name = "FILE")]
+    files: Vec<PathBuf>,
+    /// Most trials of each policy and case
+    #[arg(long, default_value_t = 200, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    max_trials: u32,
+    /// Number of threads [default: one per core]
+    #[arg(long)]
+    jobs: Option<usize>,
+    /// Write the results to this file as JUnit XML
+    #[arg(long, value_name = "FILE")]
+    junit: Option<PathBuf>,
+    /// Show no progress
+    #[arg(long)]
+    quiet: bool,
+    /// Print one JSON object
+    #[arg(long)]
+    json: bool,
+}
+
+/// An expectation of a case, and what came of it.
+#[derive(Serialize)]
+struct Tested {
+    file: String,
+    sweep: String,
+    /// Where on the axes the case is; empty without axes.
+    case: String,
+    expectation: String,
+    confidence: f64,
+    #[serde(flatten)]
+    judgement: Judgement,
+    /// Why a trial has no numbers, where one has none: the expectation fails then.
+    trouble: Option<String>,
+}
+
+impl Arguments {
+    pub(crate) fn execute(&self, out: &mut dyn Write) -> Result<(), Failure> {
+        stop_on_signals();
+        let mut suites = Vec::new();
+        for file in &self.files {
+            suites.push(Suite::load(file, self.max_trials)?);
+        }
+        let mut tested = Vec::new();
+        for suite in suites {
+            let found = suite.test(self.jobs.unwrap_or_else(default_jobs), self.quiet)?;
+            if !self.json {
+                found.iter().try_for_each(|tested| writeln!(out, "{}", in_words(tested)))?;
+            }
+            tested.extend(found);
+        }
+        if let Some(path) = &self.junit {
+            write_junit(path, &tested)?;
+        }
+        let wanting = tested.iter().filter(|tested| tested.judgement.verdict != Verdict::Holds).count();
+        if self.json {
+            let output = serde_json::json!({"schema_version": SCHEMA_VERSION, "expectations": tested});
+            writeln!(out, "{output}")?;
+        }
+        if wanting > 0 {
+            return Err(Failure::run(format!("{wanting} of {} expectations do not hold", tested.len())));
+        }
+        Ok(())
+    }
+}
+
+/// A sweep and what is expected of it.
+struct Suite {
+    file: String,
+    experiment: Arc<Experiment>,
+    expected: Vec<Expected>,
+    /// Values of the trials so far, by case, policy and trial; or why there are none.
+    values: BTreeMap<(usize, usize, u32), Result<Vec<Option<f64>>, String>>,
+}
+
+impl Suite {
+    fn load(file: &Path, most: u32) -> Result<Self, Failure> {
+        let overrides = Overrides { trials: None, ..Overrides::default() };
+        let experiment = Experiment::load(file, &overrides)?;
+        let expected = experiment.asks()?.expect;
+        if expected.is_empty() {
+            return Err(Failure::input(format!(
+                "{}: expects nothing: its sweep file has no `expect`",
+                file.display()
+            )));
+        }
+        let read = |text: &String| {
+            parse(text, &experiment.metrics, &experiment.policies)
+                .map_err(|error| Failure::input(format!("{}: {error}", file.display())))
+        };
+        let expected = expected.iter().map(read).collect::<Result<Vec<_>, _>>()?;
+        let experiment = experiment.with_trials(most.min(experiment.most_trials()))?;
+        experiment.check_start(file)?;
+        Ok(Self {
+            file: file.display().to_string(),
+            experiment: Arc::new(experiment),
+            expected,
+            values: BTreeMap::new(),
+        })
+    }
+
+    /// Runs trials until every expectation is decided in every case, or none are left.
+    fn test(mut self, jobs: usize, quiet: bool) -> Result<Vec<Tested>, Failure> {
+        let looks = looks(self.experiment.trials);
+        let mut open: Vec<(usize, usize)> = (0..self.experiment.cases.len())
+            .flat_map(|case| (0..self.expected.len()).map(move |place| (case, place)))
+            .collect();
+        let mut tested = BTreeMap::new();
+        for look in &looks {
+            self.run_up_to(*look, &open, jobs, quiet)?;
+            let is_last = look == looks.last().unwrap_or(look);
+            open.retain(|(case, place)| {
+                let found = self.judge((*case, *place), *look, looks.len(), is_last);
+                let is_open = found.judgement.verdict == Verdict::Undecided;
+                tested.insert((*case, *place), found);
+                is_open
+            });
+            if open.is_empty() {
+                break;
+            }
+        }
+        Ok(tested.into_values().collect())
+    }
+
+    /// The policies that an expectation is about.
+    fn policies(&self, place: usize) -> Vec<usize> {
+        match self.expected[place].what {
+            Expectation::Share { policy, .. } => vec![policy],
+            Expectation::Above { policies, .. } | Expectation::Equal { policies, .. } => policies.to_vec(),
+        }
+    }
+
+    fn run_up_to(
+        &mut self,
+        trials: u32,
+        open: &[(usize, usize)],
+        jobs: usize,
+        quiet: bool,
+    ) -> Result<(), Failure> {
+        let needed = |case, policy| {
+            open.iter().any(|(c, place)| *c == case && self.policies(*place).contains(&policy))
+        };
+        let is_missing = |key: &TrialKey| {
+            let place = (key.case, key.policy, key.trial);
+            key.trial <= trials && !self.values.contains_key(&place) && needed(key.case, key.policy)
+        };
+        let mut keys: Vec<TrialKey> = self.experiment.keys(None).filter(is_missing).collect();
+        // Seed by seed, so that policies that decide alike share their trials.
+        keys.sort_by_key(|key| (key.case, key.trial, key.policy));
+        let progress = progress_bar(keys.len(), "trials", jobs, quiet || keys.is_empty());
+        let shared = Arc::clone(&self.experiment);
+        let run = Arc::new(move |key: &TrialKey, halt: &std::sync::atomic::AtomicBool| shared.run(key, halt));
+        let limits = Limits { jobs, trial: None };
+        let is_whole = run_all(keys, limits, run, &STOP, |outcome: Outcome| {
+            let value = match outcome.record() {
+                Some(record) => Ok(self.experiment.metrics.measure(record)),
+                None => Err(outcome.failure().unwrap_or_default()),
+            };
+            self.values.insert((outcome.key.case, outcome.key.policy, outcome.key.trial), value);
+            progress.inc(1);
+            Ok(())
+        })?;
+        progress.finish_and_clear();
+        if is_whole { Ok(()) } else { Err(Failure::Interrupted("stopped".to_owned())) }
+    }
+
+    fn judge(&self, (case, place): (usize, usize), trials: u32, looks: usize, is_last: bool) -> Tested {
+        let expected = &self.expected[place];
+        let of =
+            |policy: usize| (1..=trials).filter_map(move |trial| self.values.get(&(case, policy, trial)));
+        let trouble =
+            self.policies(place).into_iter().flat_map(of).find_map(|value| value.as_ref().err().cloned());
+        let value = |policy: usize, metric: usize| {
+            of(policy).map(|value| value.as_ref().ok().and_then(|values| values[metric])).collect()
+        };
+        let mut judgement = judge(expected, value, looks, is_last);
+        if trouble.is_some() {
+            judgement.verdict = Verdict::Fails;
+        }
+        Tested {
+            file: self.file.clone(),
+            sweep: self.experiment.name.clone(),
+            case: self.experiment.describe(&self.experiment.cases[case]).trim_end_matches(": ").to_owned(),
+            expectation: expected.text.clone(),
+            confidence: expected.confidence,
+            judgement,
+            trouble,
+        }
+    }
+}
+
+fn verdict_name(verdict: Verdict) -> &'static str {
+    match verdict {
+        Verdict::Holds => "holds",
+        Verdict::Fails => "FAILS",
+        Verdict::Undecided => "UNDECIDED",
+    }
+}
+
+/// What was observed, in words.
+fn observed(tested: &Tested) -> String {
+    let Judgement { n, observed, interval, .. } = &tested.judgement;
+    let value = observed.map_or("nothing".to_owned(), short);
+    let range =
+        interval.map_or(String::new(), |[low, high]| format!(", interval {} to {}", short(low), short(high)));
+    let trouble = tested.trouble.as_ref().map_or(String::new(), |trouble| format!("; {trouble}"));
+    format!("observed {value}{range}, n = {n}{trouble}")
+}
+
+fn in_words(tested: &Tested) -> String {
+    let case = if tested.case.is_empty() { String::new() } else { format!(" [{}]", tested.case) };
+    let verdict = verdict_name(tested.judgement.verdict);
+    format!("{verdict:<9} {}{case}: {} ({})", tested.file, tested.expectation, observed(tested))
+}
+
+fn write_junit(path: &Path, tested: &[Tested]) -> Result<(), Failure> {
+    let mut report = Report::new("usar test");
+    for suite_of in tested.chunk_by(|a, b| a.file == b.file) {
+        let mut suite = TestSuite::new(suite_of[0].file.clone());
+        for one in suite_of {
+            let mut status = match one.judgement.verdict {
+                Verdict::Holds => TestCaseStatus::success(),
+                Verdict::Fails | Verdict::Undecided => TestCaseStatus::non_success(NonSuccessKind::Failure),
+            };
+            if one.judgement.verdict != Verdict::Holds {
+                status.set_message(format!("{}: {}", verdict_name(one.judgement.verdict), observed(one)));
+            }
+            let mut case = TestCase::new(one.expectation.clone(), status);
+            case.set_classname(if one.case.is_empty() {
+                one.sweep.clone()
+            } else {
+                format!("{} {}", one.sweep, one.case)
+            });
+            case.set_system_out(observed(one));
+            suite.add_test_case(case);
+        }
+        report.add_test_suite(suite);
+    }
+    let text = report.to_string().map_err(Failure::run)?;
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let name = path.file_name().and_then(|name| name.to_str());
+    let name =
+        name.ok_or_else(|| Failure::input(format!("--junit: {} is no name of a file", path.display())))?;
+    NewFile::write(folder, name, text.as_bytes()).map(drop)
+}
