@@ -8,12 +8,13 @@ use std::path::{Path, PathBuf};
 use crate::support::root;
 
 /// The crates from the bottom up. Each may use those before it, for its tests as well.
-const CRATES: [&str; 10] = [
+const CRATES: [&str; 11] = [
     "ron-fields",
     "rne-core",
     "frozen-physics",
     "usar-sim",
     "recording",
+    "pictures",
     "experiments",
     "reports",
     "study-yang2021",
@@ -22,11 +23,21 @@ const CRATES: [&str; 10] = [
 ];
 
 /// The crates that know no single paper.
-const GENERAL: [&str; 7] =
-    ["ron-fields", "rne-core", "frozen-physics", "usar-sim", "recording", "experiments", "reports"];
+const GENERAL: [&str; 8] = [
+    "ron-fields",
+    "rne-core",
+    "frozen-physics",
+    "usar-sim",
+    "recording",
+    "pictures",
+    "experiments",
+    "reports",
+];
 
 /// What is needed to show something to people, and the crates that may need it.
-const SCREEN: [(&str, &[&str]); 6] = [
+const SCREEN: [(&str, &[&str]); 8] = [
+    ("resvg", &["pictures"]),
+    ("gif", &["pictures"]),
     ("kuva", &["reports"]),
     ("askama", &["reports", "study-yang2021"]),
     ("comfy-table", &["reports", "study-yang2021"]),

@@ -9,8 +9,8 @@ use experiments::{Failure, panic_message};
 use rne_core::Registry;
 
 use crate::commands::{
-    calibrate, check, compare, estimate, explain, group, merge, readings, report, reproduce, run, schema,
-    sweep, trust, verify, view,
+    calibrate, check, compare, draw, estimate, explain, group, merge, readings, render, report, reproduce,
+    run, schema, sweep, trust, verify, view,
 };
 use crate::printable::Printable;
 use crate::running::{status_of_signal, tell};
@@ -29,6 +29,8 @@ Examples:
   usar compare results/paper                           is A better than B, by how much, how sure is that?
   usar report results/paper                            all of it as one page, with figures
   usar view scenarios/paper.ron --policy RNE,DIS       watch two trials side by side, in a browser
+  usar draw scenarios/paper.ron --out map.svg          the world before anything runs
+  usar render scenarios/paper.ron --at 120 --out frame.png
   usar estimate scenarios/paper.ron --trials 1000      how long, and how much disk?
   usar verify results/paper                            do the numbers come out again?
   usar trust --weights 6,4,2 --from 86,120,30 --to 20,30,10
@@ -58,6 +60,8 @@ enum Command {
     Group(group::Arguments),
     Schema(schema::Arguments),
     View(view::Arguments),
+    Draw(draw::Arguments),
+    Render(render::Arguments),
 }
 
 /// Runs the command that the process was called with, with policies of the caller's own beside the built-in
@@ -128,6 +132,8 @@ impl Command {
             Self::Group(arguments) => arguments.execute(out),
             Self::Schema(arguments) => arguments.execute(out),
             Self::View(arguments) => arguments.execute(out),
+            Self::Draw(arguments) => arguments.execute(out),
+            Self::Render(arguments) => arguments.execute(out),
         }
     }
 }

@@ -6,7 +6,7 @@ use std::path::Path;
 use experiments::Failure;
 use experiments::files::NewFile;
 
-use super::Shown;
+use crate::commands::trials::Shown;
 
 /// The viewer: built from the folder `viewer`.
 const VIEWER: &str = include_str!("../../../assets/viewer.html");
