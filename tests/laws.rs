@@ -8,13 +8,14 @@ use std::path::{Path, PathBuf};
 use crate::support::root;
 
 /// The crates from the bottom up. Each may use those before it, for its tests as well.
-const CRATES: [&str; 11] = [
+const CRATES: [&str; 12] = [
     "ron-fields",
     "rne-core",
     "frozen-physics",
     "usar-sim",
     "recording",
     "pictures",
+    "exports",
     "experiments",
     "reports",
     "study-yang2021",
@@ -23,13 +24,14 @@ const CRATES: [&str; 11] = [
 ];
 
 /// The crates that know no single paper.
-const GENERAL: [&str; 8] = [
+const GENERAL: [&str; 9] = [
     "ron-fields",
     "rne-core",
     "frozen-physics",
     "usar-sim",
     "recording",
     "pictures",
+    "exports",
     "experiments",
     "reports",
 ];

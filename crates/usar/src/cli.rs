@@ -9,8 +9,8 @@ use experiments::{Failure, panic_message};
 use rne_core::Registry;
 
 use crate::commands::{
-    calibrate, check, compare, draw, estimate, explain, group, merge, readings, render, report, reproduce,
-    run, schema, sweep, trust, verify, view,
+    calibrate, check, compare, draw, estimate, explain, export, group, merge, readings, render, report,
+    reproduce, run, schema, sweep, trust, verify, view,
 };
 use crate::printable::Printable;
 use crate::running::{status_of_signal, tell};
@@ -62,6 +62,7 @@ enum Command {
     View(view::Arguments),
     Draw(draw::Arguments),
     Render(render::Arguments),
+    Export(export::Arguments),
 }
 
 /// Runs the command that the process was called with, with policies of the caller's own beside the built-in
@@ -134,6 +135,7 @@ impl Command {
             Self::View(arguments) => arguments.execute(out),
             Self::Draw(arguments) => arguments.execute(out),
             Self::Render(arguments) => arguments.execute(out),
+            Self::Export(arguments) => arguments.execute(out),
         }
     }
 }

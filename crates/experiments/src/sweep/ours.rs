@@ -5,6 +5,7 @@ use std::path::Path;
 
 use super::disk::{INPUTS, LOCK, MANIFEST, PLOTS, RECORDINGS, REPORT, is_sweeps};
 use super::journal;
+use super::parquet::PARQUETS;
 use super::tables::TABLES;
 use crate::failure::Failure;
 use crate::files::{self, NewFile};
@@ -17,7 +18,7 @@ const RECORDING: &str = ".usrec";
 
 /// The names of all files that a sweep writes.
 fn known_names() -> impl Iterator<Item = &'static str> {
-    [MANIFEST, LOCK, journal::FILE].into_iter().chain(INPUTS).chain(TABLES)
+    [MANIFEST, LOCK, journal::FILE].into_iter().chain(INPUTS).chain(TABLES).chain(PARQUETS)
 }
 
 /// Refuses a folder that is not a sweep's: one with a manifest or a journal of this program, or with nothing in it.

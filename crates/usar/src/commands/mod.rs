@@ -7,6 +7,7 @@ pub(crate) mod draw;
 mod drawn;
 pub(crate) mod estimate;
 pub(crate) mod explain;
+pub(crate) mod export;
 pub(crate) mod group;
 pub(crate) mod merge;
 mod output;
@@ -35,6 +36,12 @@ pub(crate) const SCHEMA_VERSION: u32 = 1;
 /// Loads a scenario and its text, or says in full what is wrong with it.
 pub(crate) fn load(path: &Path) -> Result<(Scenario, String), Failure> {
     Scenario::load(path).map_err(Failure::input)
+}
+
+/// A time from one thing to the next, from the command line.
+pub(crate) fn seconds(text: &str) -> Result<f64, String> {
+    let seconds = text.parse().ok().filter(|seconds| (0.001..=100_000.0).contains(seconds));
+    seconds.ok_or_else(|| format!("must be a number from 0.001 to 100000, found {text:?}"))
 }
 
 /// Numbers separated by commas.

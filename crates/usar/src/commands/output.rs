@@ -27,8 +27,8 @@ pub(crate) fn place<'p>(flag: &str, path: &'p Path, force: bool) -> Result<(Path
     Ok((folder.to_owned(), name))
 }
 
-/// Makes a folder to write to, or takes an empty one; with `force`, any.
-pub(crate) fn folder(flag: &str, path: &Path, force: bool) -> Result<(), Failure> {
+/// Refuses a folder to write to that has anything in it, unless `force` is given.
+pub(crate) fn check_folder(flag: &str, path: &Path, force: bool) -> Result<(), Failure> {
     let is_empty = match std::fs::read_dir(path) {
         Ok(mut entries) => entries.next().is_none(),
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => true,
@@ -38,6 +38,11 @@ pub(crate) fn folder(flag: &str, path: &Path, force: bool) -> Result<(), Failure
         let rule = "is not empty; nothing was written; --force writes to it all the same";
         return Err(Failure::input(format!("{flag}: {} {rule}", path.display())));
     }
+    Ok(())
+}
+
+/// Makes a folder, where it is not there yet.
+pub(crate) fn make_folder(path: &Path) -> Result<(), Failure> {
     std::fs::create_dir_all(path)
         .map_err(|error| Failure::storage(format!("cannot write to {}: {error}", path.display())))
 }

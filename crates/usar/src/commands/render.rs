@@ -44,7 +44,7 @@ pub(crate) struct Arguments {
     #[arg(long, requires = "out")]
     trails: bool,
     /// Draw a picture for every so many seconds of simulated time
-    #[arg(long, value_name = "SECONDS", requires = "film", value_parser = seconds)]
+    #[arg(long, value_name = "SECONDS", requires = "film", value_parser = super::seconds)]
     every: Option<f64>,
     /// The picture to write, of --at and --trails; it must not exist yet
     #[arg(long, value_name = "FILE.svg|png", conflicts_with = "every")]
@@ -69,12 +69,6 @@ pub(crate) struct Arguments {
     to: Option<f64>,
     #[command(flatten)]
     looks: Looks,
-}
-
-/// A time between pictures.
-fn seconds(text: &str) -> Result<f64, String> {
-    let seconds = text.parse().ok().filter(|seconds| (0.001..=100_000.0).contains(seconds));
-    seconds.ok_or_else(|| format!("must be a number from 0.001 to 100000, found {text:?}"))
 }
 
 impl Arguments {

@@ -8,6 +8,7 @@ mod commands;
 mod compared;
 mod damaged;
 mod drawn;
+mod exported;
 mod grids;
 mod guarded;
 mod reported;

@@ -56,6 +56,9 @@ impl Arguments {
         let films = [("--gif", &self.gif), ("--mp4", &self.mp4)];
         let film = films.into_iter().find_map(|(flag, path)| Some((flag, path.as_ref()?)));
         let place = film.map(|(flag, path)| output::place(flag, path, force)).transpose()?;
+        if let Some(folder) = &self.frames {
+            output::check_folder("--frames", folder, force)?;
+        }
         if self.mp4.is_some() {
             video::check_program()?;
         }
@@ -102,7 +105,7 @@ impl Arguments {
     }
 
     fn write_frames(&self, folder: &Path, row: &Row, out: &mut dyn Write) -> Result<(), Failure> {
-        output::folder("--frames", folder, self.looks.force)?;
+        output::make_folder(folder)?;
         for (place, number) in row.numbers.iter().enumerate() {
             if STOP.load(std::sync::atomic::Ordering::Relaxed) {
                 return Err(Failure::Interrupted(format!("stopped after {place} pictures")));
