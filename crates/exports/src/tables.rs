@@ -109,7 +109,7 @@ impl Table {
                 }
             }
             Self::Events => {
-                events(recording).try_for_each(|event| writer.write_record(event_row(recording, &event)))?
+                events(recording).try_for_each(|event| writer.write_record(event_row(recording, &event)))?;
             }
             Self::Decisions => decision_rows(recording).try_for_each(|row| writer.write_record(row))?,
         }

@@ -44,12 +44,12 @@ impl<W: Write> Animation<W> {
     /// There is no sample, it is too large, or nothing can be written.
     pub fn begin(out: W, samples: &[Pixels], hundredths: u16) -> Result<Self, PictureError> {
         let first = samples.first().ok_or(PictureError::OtherSize)?;
-        let side = |length: u32| {
+        let pixels_of = |length: u32| {
             let (width, height) = (first.width, first.height);
             let most = u32::from(u16::MAX);
             u16::try_from(length).map_err(|_| PictureError::TooLarge { width, height, most })
         };
-        let size = [side(first.width)?, side(first.height)?];
+        let size = [pixels_of(first.width)?, pixels_of(first.height)?];
         let pixels: Vec<u8> = samples.iter().flat_map(|sample| sample.rgba.iter().copied()).collect();
         let colours = NeuQuant::new(THOROUGHNESS, COLOURS, &pixels);
         let mut encoder = Encoder::new(out, size[0], size[1], &colours.color_map_rgb())?;
@@ -104,7 +104,7 @@ impl<W: Write> Animation<W> {
     /// # Errors
     /// It cannot be written.
     pub fn finish(self) -> Result<W, PictureError> {
-        Ok(self.encoder.into_inner().map_err(gif::EncodingError::from)?)
+        Ok(self.encoder.into_inner()?)
     }
 
     fn changed(&self, now: &[u8]) -> Changed {

@@ -56,8 +56,9 @@ fn title(recording: &Recording, number: usize, frame: &Frame) -> String {
 /// The trial in words.
 pub(crate) fn name_of(recording: &Recording) -> String {
     let header = &recording.header;
-    match header.world.tasks.is_empty() {
-        true => format!("{}, seed {}", header.scenario.name, header.seed),
-        false => format!("{}, {}, seed {}", header.scenario.name, header.policy, header.seed),
+    if header.world.tasks.is_empty() {
+        format!("{}, seed {}", header.scenario.name, header.seed)
+    } else {
+        format!("{}, {}, seed {}", header.scenario.name, header.policy, header.seed)
     }
 }

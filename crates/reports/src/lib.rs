@@ -5,9 +5,11 @@
 
 mod drawing;
 mod figures;
+mod maps;
 mod page;
 pub mod table;
 
+pub use maps::ShownTrial;
 pub use page::write_report;
 
 /// The style sheet of all pages.

@@ -15,6 +15,7 @@ use experiments::sweep::ours;
 
 use crate::drawing::{self, Figure};
 use crate::figures::figures;
+use crate::maps::{Map, ShownTrial, trails_map, world_map};
 
 #[derive(Template)]
 #[template(path = "report.html")]
@@ -37,6 +38,7 @@ struct Page<'a> {
     limit: Option<String>,
     test: String,
     family: usize,
+    maps: &'a [Map],
     figures: &'a [Figure],
     axes: &'a [Axis],
     facts: Vec<(&'static str, String)>,
@@ -61,24 +63,35 @@ struct Row {
     is_found: bool,
 }
 
-/// Writes the report of a sweep's case, numbered from 0, into its folder; returns where it is.
+/// Writes the report of a sweep's case, numbered from 0, into its folder; returns where it is. The ways of all robots in `shown` trials
+/// are drawn, and their replays written beside the figures.
 ///
 /// # Errors
 /// The folder cannot be written to, or its journal cannot be read.
-pub fn write_report(folder: &mut Folder, case: usize) -> Result<PathBuf, Failure> {
+pub fn write_report(folder: &mut Folder, case: usize, shown: Vec<ShownTrial>) -> Result<PathBuf, Failure> {
     let Experiment { policies, metrics, .. } = folder.experiment();
     let is_compared = policies.len() > 1;
     let all =
         if is_compared { compare(folder, &metrics.chosen(&[])?, Choice::default())? } else { Vec::new() };
     let here: Vec<&Comparison> = all.iter().filter(|comparison| comparison.case == case + 1).collect();
     let figures = figures(folder, case, &here)?;
-    let page = page(folder, case, &here, &all, &figures).render().map_err(Failure::run)?;
+    let mut maps: Vec<Map> = world_map(folder.experiment(), case).into_iter().collect();
+    for (number, trial) in shown.iter().enumerate() {
+        maps.push(trails_map(number, trial, PLOTS)?);
+    }
+    let drawn = (&figures[..], &maps[..]);
+    let page = page(folder, case, (&here, &all), drawn).render().map_err(Failure::run)?;
 
     let mut files = vec![(REPORT.to_owned(), page.into_bytes())];
     for Figure { name, svg, csv, .. } in figures {
         files.push((format!("{PLOTS}/{name}.svg"), svg.into_bytes()));
         files.push((format!("{PLOTS}/{name}.csv"), csv.into_bytes()));
     }
+    for Map { name, svg, .. } in maps {
+        files.push((format!("{PLOTS}/{name}.svg"), svg.into_bytes()));
+    }
+    let replays = shown.into_iter().filter_map(|trial| trial.replay);
+    files.extend(replays.map(|(name, content)| (format!("{PLOTS}/{name}"), content)));
     ours::write_report(folder.path(), &files)?;
     Ok(folder.path().join(REPORT))
 }
@@ -86,9 +99,8 @@ pub fn write_report(folder: &mut Folder, case: usize) -> Result<PathBuf, Failure
 fn page<'a>(
     folder: &'a Folder,
     case: usize,
-    comparisons: &[&'a Comparison],
-    all: &[Comparison],
-    figures: &'a [Figure],
+    (comparisons, all): (&[&'a Comparison], &[Comparison]),
+    (figures, maps): (&'a [Figure], &'a [Map]),
 ) -> Page<'a> {
     let (experiment, manifest) = (folder.experiment(), folder.manifest());
     let failed = folder.results().values().filter(|measured| measured.metrics.is_none()).count();
@@ -130,6 +142,7 @@ fn page<'a>(
         limit: limit_of_correction(all),
         test: test_in_words(all),
         family: all.iter().filter(|comparison| comparison.p.is_some()).count(),
+        maps,
         figures,
         axes: &experiment.axes,
         facts,

@@ -102,7 +102,7 @@ fn debris_entity(
     let pose = |z: f64| Pose { position: vector(x, y, z), orientation: Quaternion::turned(angle) };
     match shape {
         DebrisShape::Disc(radius) => {
-            entity.cylinders.push(disc([x, y], *radius, [0.0, DEBRIS_HEIGHT_M], color))
+            entity.cylinders.push(disc([x, y], *radius, [0.0, DEBRIS_HEIGHT_M], color));
         }
         DebrisShape::Box(width, height) => {
             let size = vector(*width, *height, DEBRIS_HEIGHT_M);

@@ -29,17 +29,14 @@ pub(crate) struct Looks {
 /// A width from the command line.
 fn width(text: &str) -> Result<Width, String> {
     let wrong = || format!("must be 100 to 8000 pixels, as in `800`, or 20mm to 1000mm, found {text:?}");
-    match text.strip_suffix("mm") {
-        Some(length) => {
-            let length = length.trim().parse().ok().filter(|length| (20.0..=1000.0).contains(length));
-            length.map(Width::Millimetres)
-        }
-        None => {
-            let pixels = text.strip_suffix("px").unwrap_or(text).trim().parse().ok();
-            pixels.filter(|pixels| (100..=8000).contains(pixels)).map(Width::Pixels)
-        }
-    }
-    .ok_or_else(wrong)
+    let width = if let Some(length) = text.strip_suffix("mm") {
+        let length = length.trim().parse().ok().filter(|length| (20.0..=1000.0).contains(length));
+        length.map(Width::Millimetres)
+    } else {
+        let pixels = text.strip_suffix("px").unwrap_or(text).trim().parse().ok();
+        pixels.filter(|pixels| (100..=8000).contains(pixels)).map(Width::Pixels)
+    };
+    width.ok_or_else(wrong)
 }
 
 impl Looks {

@@ -41,6 +41,7 @@ Examples:
   usar sweep scenarios/paper.ron --parquet               (the tables as Parquet files as well)
   usar sweep scenarios/sweeps/energy.ron --shard 2/8     (then `usar merge`)
   usar sweep scenarios/paper.ron --precision 'rescuees.hard: RNE-DIS: 2.0' --max-trials 500")]
+#[expect(clippy::struct_excessive_bools, reason = "each is a switch of the command line")]
 pub(crate) struct Arguments {
     /// Scenario or sweep file (RON)
     file: PathBuf,

@@ -1,7 +1,7 @@
 //! `usar view`: a trial to watch, as one page that needs nothing but a browser.
 
 mod at;
-mod page;
+pub(crate) mod page;
 
 use std::io::Write;
 use std::path::{Path, PathBuf};

@@ -67,7 +67,7 @@ impl Arguments {
         let row = Row { numbers: self.numbers(&recording)?, recording: &recording, look };
         stop_on_signals();
         match (&self.frames, place) {
-            (Some(folder), _) => self.write_frames(folder, &row, out),
+            (Some(folder), _) => write_frames(folder, &row, out),
             (None, Some((folder, name))) => {
                 if self.gif.is_some() {
                     self.write_gif((&folder, name), &row)?;
@@ -104,18 +104,6 @@ impl Arguments {
         Ok((0..count).map(|i| recording.frame_at(from + i as f64 * every)).collect())
     }
 
-    fn write_frames(&self, folder: &Path, row: &Row, out: &mut dyn Write) -> Result<(), Failure> {
-        output::make_folder(folder)?;
-        for (place, number) in row.numbers.iter().enumerate() {
-            if STOP.load(std::sync::atomic::Ordering::Relaxed) {
-                return Err(Failure::Interrupted(format!("stopped after {place} pictures")));
-            }
-            let picture = moment(row.recording, *number, &row.look).and_then(|picture| picture.png());
-            NewFile::write(folder, &format!("{place:05}.png"), &picture.map_err(failed)?)?;
-        }
-        Ok(writeln!(out, "{} pictures in {}", row.numbers.len(), folder.display())?)
-    }
-
     fn write_gif(&self, (folder, name): (&Path, &str), row: &Row) -> Result<(), Failure> {
         let numbers = &row.numbers;
         let samples = [0, numbers.len() / 2, numbers.len() - 1].map(|place| row.pixels(numbers[place]));
@@ -128,4 +116,16 @@ impl Arguments {
         }
         gif.finish().map_err(failed)?.finish().map(drop)
     }
+}
+
+fn write_frames(folder: &Path, row: &Row, out: &mut dyn Write) -> Result<(), Failure> {
+    output::make_folder(folder)?;
+    for (place, number) in row.numbers.iter().enumerate() {
+        if STOP.load(std::sync::atomic::Ordering::Relaxed) {
+            return Err(Failure::Interrupted(format!("stopped after {place} pictures")));
+        }
+        let picture = moment(row.recording, *number, &row.look).and_then(|picture| picture.png());
+        NewFile::write(folder, &format!("{place:05}.png"), &picture.map_err(failed)?)?;
+    }
+    Ok(writeln!(out, "{} pictures in {}", row.numbers.len(), folder.display())?)
 }

@@ -43,11 +43,11 @@ struct Meeting {
     is_over: bool,
 }
 
-/// A robot that waits for another one.
+/// A robot that waits for another one: from when to when, and how long in all, in seconds.
 struct Wait {
-    from_s: f64,
-    until_s: f64,
-    waited_s: f64,
+    begun_s: f64,
+    last_s: f64,
+    waited: f64,
 }
 
 /// Something that happened, and how often.
@@ -116,9 +116,9 @@ impl Story {
 
     fn add_wait(&mut self, pair: (u32, u32), time_s: f64, dt_s: f64) {
         let waits = self.waits.entry(pair).or_default();
-        match waits.last_mut().filter(|wait| time_s - wait.until_s < BREAK_S) {
-            Some(wait) => (wait.until_s, wait.waited_s) = (time_s, wait.waited_s + dt_s),
-            None => waits.push(Wait { from_s: time_s - dt_s, until_s: time_s, waited_s: dt_s }),
+        match waits.last_mut().filter(|wait| time_s - wait.last_s < BREAK_S) {
+            Some(wait) => (wait.last_s, wait.waited) = (time_s, wait.waited + dt_s),
+            None => waits.push(Wait { begun_s: time_s - dt_s, last_s: time_s, waited: dt_s }),
         }
     }
 
@@ -136,10 +136,10 @@ impl Story {
             }));
         }
         for ((robot, other), waits) in &self.waits {
-            let told = waits.iter().filter(|wait| wait.waited_s >= SHORTEST_WAIT_S);
+            let told = waits.iter().filter(|wait| wait.waited >= SHORTEST_WAIT_S);
             sentences.extend(told.map(|wait| {
-                let Wait { from_s, waited_s, .. } = wait;
-                (*from_s, format!("robot {robot} begins to wait for robot {other}, {waited_s:.1} s in all"))
+                let Wait { begun_s, waited, .. } = wait;
+                (*begun_s, format!("robot {robot} begins to wait for robot {other}, {waited:.1} s in all"))
             }));
         }
         for (says, Happening { first_s, times }) in &self.happenings {
