@@ -8,12 +8,14 @@ use std::path::{Path, PathBuf};
 use crate::support::root;
 
 /// The crates from the bottom up. Each may use those before it, for its tests as well.
-const CRATES: [&str; 10] = [
+const CRATES: [&str; 12] = [
     "ron-fields",
     "rne-core",
     "frozen-physics",
     "usar-sim",
     "recording",
+    "pictures",
+    "exports",
     "experiments",
     "reports",
     "study-yang2021",
@@ -22,11 +24,22 @@ const CRATES: [&str; 10] = [
 ];
 
 /// The crates that know no single paper.
-const GENERAL: [&str; 7] =
-    ["ron-fields", "rne-core", "frozen-physics", "usar-sim", "recording", "experiments", "reports"];
+const GENERAL: [&str; 9] = [
+    "ron-fields",
+    "rne-core",
+    "frozen-physics",
+    "usar-sim",
+    "recording",
+    "pictures",
+    "exports",
+    "experiments",
+    "reports",
+];
 
 /// What is needed to show something to people, and the crates that may need it.
-const SCREEN: [(&str, &[&str]); 6] = [
+const SCREEN: [(&str, &[&str]); 8] = [
+    ("resvg", &["pictures"]),
+    ("gif", &["pictures"]),
     ("kuva", &["reports"]),
     ("askama", &["reports", "study-yang2021"]),
     ("comfy-table", &["reports", "study-yang2021"]),

@@ -32,12 +32,14 @@ fn main() {
 
 /// The crates that the program is made of, those above this one too. Results are refused to a program of
 /// other sources.
-const CRATES: [&str; 9] = [
+const CRATES: [&str; 11] = [
     "ron-fields",
     "rne-core",
     "frozen-physics",
     "usar-sim",
     "recording",
+    "pictures",
+    "exports",
     "experiments",
     "reports",
     "study-yang2021",

@@ -202,7 +202,9 @@ impl Header {
 }
 
 impl World {
-    fn of(simulation: &Simulation) -> Self {
+    /// The world of a trial.
+    #[must_use]
+    pub fn of(simulation: &Simulation) -> Self {
         let (model, scenario) = (simulation.model(), simulation.scenario());
         let task = |(task, model): (&usar_sim::scenario::TaskFile, &usar_sim::model::TaskModel)| TaskPlace {
             name: task.name.clone(),

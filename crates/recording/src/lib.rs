@@ -27,11 +27,13 @@ mod chunk;
 mod error;
 mod frame;
 mod header;
+mod needs;
 mod numbers;
 mod reader;
 mod rows;
 mod segment;
 mod trust;
+mod words;
 mod writer;
 
 pub use error::ReadError;
@@ -39,4 +41,5 @@ pub use frame::{Frame, GroupFrame, Motion, MovedDebris, RescueeFrame, RobotFrame
 pub use header::{Codes, Header, RobotPlace, ScenarioText, TaskPlace, VERSION, World};
 pub use reader::{Recording, TimedDecision};
 pub use trust::Trust;
+pub use words::{ToldEvent, robots_in_words};
 pub use writer::{DEFAULT_FPS, Options, Recorder, record};

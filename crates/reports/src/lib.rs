@@ -6,10 +6,12 @@
 mod decisions;
 mod drawing;
 mod figures;
+mod maps;
 mod page;
 mod regret;
 pub mod table;
 
+pub use maps::ShownTrial;
 pub use page::write_report;
 pub use regret::regret_figures;
 

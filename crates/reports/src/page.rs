@@ -16,6 +16,7 @@ use experiments::sweep::ours;
 use crate::decisions::{Decisions, decisions};
 use crate::drawing::{self, Figure};
 use crate::figures::figures;
+use crate::maps::{Map, ShownTrial, trails_map, world_map};
 
 #[derive(Template)]
 #[template(path = "report.html")]
@@ -39,6 +40,7 @@ struct Page<'a> {
     limit: Option<String>,
     test: String,
     family: usize,
+    maps: &'a [Map],
     figures: &'a [Figure],
     axes: &'a [Axis],
     facts: Vec<(&'static str, String)>,
@@ -63,18 +65,24 @@ struct Row {
     is_found: bool,
 }
 
-/// Writes the report of a sweep's case, numbered from 0, into its folder; returns where it is.
+/// Writes the report of a sweep's case, numbered from 0, into its folder; returns where it is. The ways of all robots in `shown` trials
+/// are drawn, and their replays written beside the figures.
 ///
 /// # Errors
 /// The folder cannot be written to, or its journal cannot be read.
-pub fn write_report(folder: &mut Folder, case: usize) -> Result<PathBuf, Failure> {
+pub fn write_report(folder: &mut Folder, case: usize, shown: Vec<ShownTrial>) -> Result<PathBuf, Failure> {
     let asked = Asked::of(folder.experiment(), &[], None, &[])?;
     let is_compared = folder.experiment().policies.len() > 1;
     let all = if is_compared { compare(folder, &asked.metrics, asked.choice(None))? } else { Vec::new() };
     let here: Vec<&Comparison> = all.iter().filter(|comparison| comparison.case == case + 1).collect();
     let figures = figures(folder, case, &here)?;
+    let mut maps: Vec<Map> = world_map(folder.experiment(), case).into_iter().collect();
+    for (number, trial) in shown.iter().enumerate() {
+        maps.push(trails_map(number, trial, PLOTS)?);
+    }
+    let drawn = (&figures[..], &maps[..]);
     let decided = decisions(folder, case)?;
-    let mut page = page(folder, case, &here, &all, &figures);
+    let mut page = page(folder, case, (&here, &all), drawn);
     page.decisions = decided;
     let page = page.render().map_err(Failure::run)?;
 
@@ -83,6 +91,11 @@ pub fn write_report(folder: &mut Folder, case: usize) -> Result<PathBuf, Failure
         files.push((format!("{PLOTS}/{name}.svg"), svg.into_bytes()));
         files.push((format!("{PLOTS}/{name}.csv"), csv.into_bytes()));
     }
+    for Map { name, svg, .. } in maps {
+        files.push((format!("{PLOTS}/{name}.svg"), svg.into_bytes()));
+    }
+    let replays = shown.into_iter().filter_map(|trial| trial.replay);
+    files.extend(replays.map(|(name, content)| (format!("{PLOTS}/{name}"), content)));
     ours::write_report(folder.path(), &files)?;
     Ok(folder.path().join(REPORT))
 }
@@ -90,9 +103,8 @@ pub fn write_report(folder: &mut Folder, case: usize) -> Result<PathBuf, Failure
 fn page<'a>(
     folder: &'a Folder,
     case: usize,
-    comparisons: &[&'a Comparison],
-    all: &[Comparison],
-    figures: &'a [Figure],
+    (comparisons, all): (&[&'a Comparison], &[Comparison]),
+    (figures, maps): (&'a [Figure], &'a [Map]),
 ) -> Page<'a> {
     let (experiment, manifest) = (folder.experiment(), folder.manifest());
     let failed = folder.results().values().filter(|measured| measured.metrics.is_none()).count();
@@ -135,6 +147,7 @@ fn page<'a>(
         limit: limit_of_correction(all),
         test: test_in_words(all),
         family: all.iter().filter(|comparison| comparison.p.is_some()).count(),
+        maps,
         figures,
         axes: &experiment.axes,
         facts,

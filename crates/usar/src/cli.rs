@@ -9,8 +9,8 @@ use experiments::{Failure, panic_message};
 use rne_core::Registry;
 
 use crate::commands::{
-    calibrate, check, compare, estimate, fork, group, merge, oracle, readings, regret, report, reproduce,
-    run, schema, sorting, sweep, test, trust, verify, view, why,
+    calibrate, check, compare, draw, estimate, export, fork, group, merge, oracle, readings, regret, render,
+    report, reproduce, run, schema, sorting, sweep, test, trust, verify, view, why,
 };
 use crate::printable::Printable;
 use crate::running::{status_of_signal, tell};
@@ -29,6 +29,8 @@ Examples:
   usar compare results/paper                           is A better than B, by how much, how sure is that?
   usar report results/paper                            all of it as one page, with figures
   usar view scenarios/paper.ron --policy RNE,DIS       watch two trials side by side, in a browser
+  usar draw scenarios/paper.ron --out map.svg          the world before anything runs
+  usar render scenarios/paper.ron --at 120 --out frame.png
   usar estimate scenarios/paper.ron --trials 1000      how long, and how much disk?
   usar verify results/paper                            do the numbers come out again?
   usar trust --weights 6,4,2 --from 86,120,30 --to 20,30,10
@@ -63,6 +65,9 @@ enum Command {
     Schema(schema::Arguments),
     View(view::Arguments),
     Why(why::Arguments),
+    Draw(draw::Arguments),
+    Render(render::Arguments),
+    Export(export::Arguments),
 }
 
 /// Runs the command that the process was called with, with policies of the caller's own beside the built-in
@@ -138,6 +143,9 @@ impl Command {
             Self::Schema(arguments) => arguments.execute(out),
             Self::View(arguments) => arguments.execute(out),
             Self::Why(arguments) => arguments.execute(out),
+            Self::Draw(arguments) => arguments.execute(out),
+            Self::Render(arguments) => arguments.execute(out),
+            Self::Export(arguments) => arguments.execute(out),
         }
     }
 }

@@ -35,20 +35,21 @@ fn trouble(path: &Path, error: &io::Error) -> Failure {
     }
 }
 
-/// Runs a trial to its end and records it in a new file. If it is broken off, the file has the trial up to then.
+/// Runs a trial to its end and records it in a new file. `watch` is called after each step, and may break it off:
+/// then the file has the trial up to then.
 pub(crate) fn record_to(
     path: &Path,
     mut simulation: Simulation,
     decider: &(impl Decider + ?Sized),
     options: &Options,
-    guard: &Guard,
+    watch: &mut dyn FnMut(&Simulation) -> Result<(), Failure>,
 ) -> Result<TrialRecord, Failure> {
     let trouble = |error: io::Error| trouble(path, &error);
     let file = BufWriter::with_capacity(BUFFER, File::create_new(path).map_err(trouble)?);
     let mut recorder = Recorder::begin(file, &simulation, options).map_err(trouble)?;
     while simulation.step(decider).is_none() {
         recorder.listen(&simulation).map_err(trouble)?;
-        guard.look(&simulation)?;
+        watch(&simulation)?;
     }
     let mut record = simulation.finish();
     recorder.finish(&mut record).map_err(trouble)?;
@@ -126,12 +127,13 @@ pub(crate) fn record_trials(folder: &mut Folder, which: &Recorded, stop: &Atomic
         std::fs::create_dir_all(parent).map_err(|error| trouble(parent, &error))?;
         let underway = path.with_extension("usrec.new");
         let _ = std::fs::remove_file(&underway); // of a run that was broken off
+        let guard = Guard::new(f64::INFINITY);
         let record = record_to(
             &underway,
             simulation(&experiment, &key)?,
             driver(&experiment, &key),
             &options(&key),
-            &Guard::new(f64::INFINITY),
+            &mut |simulation| guard.look(simulation),
         )?;
         if record.state_hash != before.state_hash {
             let _ = std::fs::remove_file(&underway);

@@ -7,7 +7,7 @@ use usar_sim::hash::Link;
 
 use super::disk::{broken_files, inputs};
 use super::folder::Folder;
-use super::journal;
+use super::{journal, parquet};
 use crate::experiment::Experiment;
 use crate::failure::Failure;
 use crate::files::FileHash;
@@ -107,5 +107,6 @@ pub fn strange_files(folder: &mut Folder) -> Result<Vec<String>, Failure> {
     for file in again.iter().filter(|file| !manifest.files.contains(file)) {
         strange.push(format!("{}: is not what the trials in the journal give", name(&file.name)));
     }
+    strange.extend(parquet::strange(&path, folder.experiment())?);
     Ok(strange)
 }

@@ -7,7 +7,7 @@ use std::path::Path;
 use usar_sim::scenario::Scenario;
 
 use super::tables::{LEAN_TABLES, TABLES};
-use super::{journal, ours};
+use super::{journal, ours, parquet};
 use crate::experiment::{Experiment, Parts, Program, Shard};
 use crate::failure::Failure;
 use crate::files::{self, FileHash, NewFile, file_hash};
@@ -43,9 +43,9 @@ pub(super) fn write_start(
     for (name, text) in &inputs {
         NewFile::write(path, name, text.as_bytes())?;
     }
-    // A report would be of what was there before.
+    // A report and Parquet files would be of what was there before.
     let trouble = |error| Failure::storage(format!("cannot write to {}: {error}", path.display()));
-    ours::remove_report(path).map_err(trouble)?;
+    ours::remove_report(path).and_then(|()| parquet::remove(path)).map_err(trouble)?;
     Ok(manifest)
 }
 

@@ -7,10 +7,12 @@ mod journal;
 pub mod links;
 mod missing;
 pub mod ours;
+mod parquet;
 mod rows;
 mod table;
 mod tables;
 
 pub use journal::Place;
 pub use missing::{missing, run_trials};
+pub use parquet::write_parquet;
 pub use rows::trial_columns;

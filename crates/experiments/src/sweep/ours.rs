@@ -5,6 +5,7 @@ use std::path::Path;
 
 use super::disk::{INPUTS, LOCK, MANIFEST, PLOTS, RECORDINGS, REPORT, is_sweeps};
 use super::journal;
+use super::parquet::PARQUETS;
 use super::tables::TABLES;
 use crate::failure::Failure;
 use crate::files::{self, NewFile};
@@ -17,7 +18,7 @@ const RECORDING: &str = ".usrec";
 
 /// The names of all files that a sweep writes.
 fn known_names() -> impl Iterator<Item = &'static str> {
-    [MANIFEST, LOCK, journal::FILE].into_iter().chain(INPUTS).chain(TABLES)
+    [MANIFEST, LOCK, journal::FILE].into_iter().chain(INPUTS).chain(TABLES).chain(PARQUETS)
 }
 
 /// Refuses a folder that is not a sweep's: one with a manifest or a journal of this program, or with nothing in it.
@@ -82,13 +83,14 @@ pub(super) fn check_may_be_cleared(path: &Path) -> Result<(), Failure> {
     )))
 }
 
-/// The files that the last report wrote, by the list that it left: report.html, and figures.
+/// The files that the last report wrote, by the list that it left: report.html, figures, and replays.
 fn reported(path: &Path) -> Vec<String> {
     let list = files::read(&path.join(REPORTED)).unwrap_or_default();
     let is_figure = |name: &str| {
         let figure = name.strip_prefix(PLOTS).and_then(|name| name.strip_prefix('/'));
         let has_kind = |kind| name.ends_with(kind);
-        figure.is_some_and(|figure| !figure.contains(['/', '\\'])) && (has_kind(".svg") || has_kind(".csv"))
+        figure.is_some_and(|figure| !figure.contains(['/', '\\']))
+            && (has_kind(".svg") || has_kind(".csv") || has_kind(".html"))
     };
     let names = String::from_utf8_lossy(&list).lines().map(str::to_owned).collect::<Vec<_>>();
     names.into_iter().filter(|name| name == REPORT || is_figure(name)).collect()

@@ -4,15 +4,19 @@ mod asked;
 pub(crate) mod calibrate;
 pub(crate) mod check;
 pub(crate) mod compare;
+pub(crate) mod draw;
+mod drawn;
 pub(crate) mod estimate;
-
+pub(crate) mod export;
 pub(crate) mod fork;
 pub(crate) mod group;
 pub(crate) mod merge;
 pub(crate) mod oracle;
+mod output;
 mod precision;
 pub(crate) mod readings;
 pub(crate) mod regret;
+pub(crate) mod render;
 pub(crate) mod report;
 pub(crate) mod reproduce;
 pub(crate) mod run;
@@ -21,6 +25,7 @@ mod snapshot;
 pub(crate) mod sorting;
 pub(crate) mod sweep;
 pub(crate) mod test;
+mod trials;
 pub(crate) mod trust;
 pub(crate) mod verify;
 pub(crate) mod view;
@@ -37,6 +42,12 @@ pub(crate) const SCHEMA_VERSION: u32 = 1;
 /// Loads a scenario and its text, or says in full what is wrong with it.
 pub(crate) fn load(path: &Path) -> Result<(Scenario, String), Failure> {
     Scenario::load(path).map_err(Failure::input)
+}
+
+/// A time from one thing to the next, from the command line.
+pub(crate) fn seconds(text: &str) -> Result<f64, String> {
+    let seconds = text.parse().ok().filter(|seconds| (0.001..=100_000.0).contains(seconds));
+    seconds.ok_or_else(|| format!("must be a number from 0.001 to 100000, found {text:?}"))
 }
 
 /// Numbers separated by commas.

@@ -5,16 +5,24 @@ use std::path::PathBuf;
 
 use clap::Args;
 use experiments::Failure;
+use experiments::run::TrialKey;
 use experiments::sweep::folder::Folder;
-use reports::write_report;
+use reports::{ShownTrial, write_report};
+
+use super::trials::Shown;
+use super::view::page;
+use crate::recordings::{path_of, recording_of};
 
 /// Write a report: means, comparisons, figures, and where it all comes from
 #[derive(Debug, Args)]
 #[command(after_help = "\
-Writes report.html into the folder, which opens from disk and prints, and plots/: each figure as SVG and its numbers as CSV.
+Writes report.html into the folder, which opens from disk and prints, and plots/: each figure as SVG and its numbers as CSV. With --trial, \
+the ways of all robots in the trials with this seed are drawn; with --with-replays, these trials can be watched from the report: each is a \
+page of its own in plots/, as `usar view` writes it. Both take the recordings of the sweep, or simulate again.
 
 Examples:
   usar report results/paper
+  usar report results/paper --trial 3 --with-replays
   usar report results/energy --case 3      (the third point of the grid)")]
 pub(crate) struct Arguments {
     /// Folder of a sweep
@@ -22,6 +30,12 @@ pub(crate) struct Arguments {
     /// Number of the case whose figures are drawn, where the sweep has axes
     #[arg(long, default_value_t = 1)]
     case: usize,
+    /// Draw the ways of all robots in the trials with this seed, one for each policy
+    #[arg(long, value_name = "SEED")]
+    trial: Option<u64>,
+    /// Write replays of these trials as well, linked from the report [without --trial: of the first seed]
+    #[arg(long)]
+    with_replays: bool,
 }
 
 impl Arguments {
@@ -34,7 +48,35 @@ impl Arguments {
         if folder.results().values().all(|measured| measured.metrics.is_none()) {
             return Err(Failure::input(format!("{}: no trial has given numbers yet", self.folder.display())));
         }
-        let path = write_report(&mut folder, self.case - 1)?;
+        let shown = self.shown(&folder)?;
+        let path = write_report(&mut folder, self.case - 1, shown)?;
         Ok(writeln!(out, "{}", path.display())?)
+    }
+
+    /// The trials that are drawn, with their replays where these are asked for.
+    fn shown(&self, folder: &Folder) -> Result<Vec<ShownTrial>, Failure> {
+        let experiment = folder.experiment();
+        let first = experiment.seed(1);
+        let Some(seed) = self.trial.or(self.with_replays.then_some(first)) else { return Ok(Vec::new()) };
+        let is_shown = |key: &TrialKey| key.case + 1 == self.case && key.seed == seed && folder.has(key);
+        let keys: Vec<TrialKey> = experiment.keys(None).filter(is_shown).collect();
+        if keys.is_empty() {
+            let last = experiment.seed(experiment.trials);
+            return Err(Failure::input(format!(
+                "--trial: must be the seed of a finished trial, from {first} to {last}, found {seed}"
+            )));
+        }
+        keys.iter().map(|key| self.show(folder, key)).collect()
+    }
+
+    fn show(&self, folder: &Folder, key: &TrialKey) -> Result<ShownTrial, Failure> {
+        let path = path_of(folder.path(), folder.experiment(), key);
+        let bytes = recording_of(folder.path(), folder.experiment(), key)?;
+        let shown = Shown { name: format!("{}, seed {}", key.label, key.seed), bytes };
+        let recording = shown.read()?;
+        let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+        let page = || (format!("replay-{stem}.html"), page::page(&[shown]).into_bytes());
+        let (label, seed, replay) = (key.label.clone(), key.seed, self.with_replays.then(page));
+        Ok(ShownTrial { label, seed, recording, replay })
     }
 }

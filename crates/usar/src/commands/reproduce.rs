@@ -71,7 +71,7 @@ impl Arguments {
         let mut judged = Vec::new();
         for folder in &mut folders {
             self.run(folder)?;
-            write_report(folder, 0)?;
+            write_report(folder, 0, Vec::new())?;
             write_authors_columns(&self.out, folder)?;
             judged.push(Judged::of(folder, self.trials)?);
         }

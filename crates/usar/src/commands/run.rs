@@ -1,5 +1,9 @@
 //! `usar run`: one trial, with a per-round account.
 
+mod event_lines;
+mod live;
+mod story;
+
 use std::io::Write;
 use std::path::PathBuf;
 
@@ -12,6 +16,9 @@ use usar_sim::metrics::CutOff;
 use usar_sim::record::{Status, TrialRecord};
 use usar_sim::simulation::{Decider, Simulation};
 
+use self::event_lines::EventLines;
+use self::live::Live;
+use self::story::Story;
 use crate::recordings;
 
 use super::snapshot::{Snapshot, save};
@@ -29,6 +36,7 @@ Examples:
   usar run scenarios/paper.ron --seed 3 --save half.snapshot --save-at 300    the trial, and a snapshot of it on the way
   usar run scenarios/paper.ron --from half.snapshot                           the rest of that trial, with the same result
   usar run scenarios/paper.ron --from half.snapshot --policy DIS              another policy goes on from there
+  usar run scenarios/paper.ron --events events.jsonl                          every event with its time
   usar run scenarios/paper.ron --record paper.usrec                           then: usar view paper.usrec")]
 pub(crate) struct Arguments {
     /// Scenario file (RON)
@@ -63,6 +71,12 @@ pub(crate) struct Arguments {
     /// Frames of the recording in a second of simulated time
     #[arg(long, value_name = "FPS", default_value_t = recording::DEFAULT_FPS, requires = "record", value_parser = recordings::fps)]
     record_fps: f64,
+    /// Write every event with its time to this file, a JSON object in a line; the file must not exist yet
+    #[arg(long, value_name = "FILE.jsonl")]
+    events: Option<PathBuf>,
+    /// Do not show the trial on the terminal while it runs
+    #[arg(long)]
+    quiet: bool,
     /// Print one JSON object
     #[arg(long)]
     json: bool,
@@ -102,14 +116,7 @@ impl Arguments {
             save(&mut simulation, &spec, (path, seconds))?;
         }
         stop_on_signals();
-        let guard = Guard::new(self.max_trial_s);
-        let record = match &self.record {
-            Some(path) => {
-                let options = recording::Options { policy: spec.label.clone(), fps: self.record_fps };
-                recordings::record_to(path, simulation, &driver, &options, &guard)?
-            }
-            None => run(simulation, &driver, &guard)?,
-        };
+        let (record, story) = self.run(simulation, &spec.label, &driver)?;
         if let Status::Failed(reason) = &record.status {
             return Err(Failure::run(format!("trial of {} with seed {seed} failed: {reason}", spec.label)));
         }
@@ -123,14 +130,48 @@ impl Arguments {
             };
             return Ok(writeln!(out, "{}", serde_json::to_string(&output).map_err(Failure::run)?)?);
         }
-        print(out, [&scenario.name, &spec.label], &record)
+        print(out, [&scenario.name, &spec.label], &record)?;
+        story.iter().try_for_each(|line| Ok(writeln!(out, "{line}")?))
+    }
+
+    /// Runs the trial, with whatever listens to it; returns its record, and its story where it has one.
+    fn run(
+        &self,
+        simulation: Simulation,
+        label: &str,
+        decider: &impl Decider,
+    ) -> Result<(TrialRecord, Vec<String>), Failure> {
+        let guard = Guard::new(self.max_trial_s);
+        let mut lines = self.events.as_deref().map(EventLines::begin).transpose()?;
+        let mut story = Story::of(&simulation);
+        let mut live = (!self.quiet).then(|| Live::begin(label));
+        let mut watch = |simulation: &Simulation| {
+            guard.look(simulation)?;
+            story.iter_mut().for_each(|story| story.listen(simulation));
+            live.iter_mut().for_each(|live| live.listen(simulation));
+            lines.iter_mut().try_for_each(|lines| lines.listen(simulation))
+        };
+        let record = match &self.record {
+            Some(path) => {
+                let options = recording::Options { policy: label.to_owned(), fps: self.record_fps };
+                recordings::record_to(path, simulation, decider, &options, &mut watch)
+            }
+            None => run(simulation, decider, &mut watch),
+        };
+        live.into_iter().for_each(Live::finish);
+        lines.map_or(Ok(()), EventLines::finish)?;
+        Ok((record?, story.map_or_else(Vec::new, |story| story.tell())))
     }
 }
 
-/// Runs a trial to its end, unless it takes too long or is stopped.
-fn run(mut simulation: Simulation, decider: &impl Decider, guard: &Guard) -> Result<TrialRecord, Failure> {
+/// Runs a trial to its end. `watch` is called after each step, and may break it off.
+fn run(
+    mut simulation: Simulation,
+    decider: &impl Decider,
+    watch: &mut dyn FnMut(&Simulation) -> Result<(), Failure>,
+) -> Result<TrialRecord, Failure> {
     while simulation.step(decider).is_none() {
-        guard.look(&simulation)?;
+        watch(&simulation)?;
     }
     Ok(simulation.finish())
 }
@@ -143,7 +184,9 @@ fn print(out: &mut dyn Write, [scenario, policy]: [&str; 2], record: &TrialRecor
         record.time_s,
         record.status.name().replace('_', " ")
     )?;
-    writeln!(out, "{}", rounds_table(record))?;
+    if !record.rounds.is_empty() {
+        writeln!(out, "{}", rounds_table(record))?;
+    }
     let rescued = record.rescued();
     let by_task = record.tasks.iter().map(|task| format!("{} {}", task.task, task.totals.rescued));
     let by_task = by_task.collect::<Vec<_>>().join(", ");

@@ -11,6 +11,7 @@ use experiments::experiment::{Experiment, Overrides, Shard, split_list};
 use experiments::run::Limits;
 use experiments::sweep::disk::trials_in;
 use experiments::sweep::folder::{Folder, Opening};
+use experiments::sweep::write_parquet;
 use reports::table::policy_table;
 
 use super::precision::Precision;
@@ -37,8 +38,10 @@ Examples:
   usar sweep scenarios/paper.ron --policies RNE,RANDOM --trials 100 --out results/many
   usar sweep scenarios/paper.ron --policies 'RNE,sum=RNE(score: Sum)' --out results/sum
   usar sweep scenarios/paper.ron --record 1              (then: usar view results/paper --policy RNE,DIS)
+  usar sweep scenarios/paper.ron --parquet               (the tables as Parquet files as well)
   usar sweep scenarios/sweeps/energy.ron --shard 2/8     (then `usar merge`)
   usar sweep scenarios/paper.ron --precision 'rescuees.hard: RNE-DIS: 2.0' --max-trials 500")]
+#[expect(clippy::struct_excessive_bools, reason = "each is a switch of the command line")]
 pub(crate) struct Arguments {
     /// Scenario or sweep file (RON)
     file: PathBuf,
@@ -81,6 +84,9 @@ pub(crate) struct Arguments {
     /// Record trials for `usar view`: `all`, the first N of each policy, or `seeds=3,7`; files go to the folder `recordings/` of the results
     #[arg(long, value_name = "all|N|seeds=LIST")]
     record: Option<Recorded>,
+    /// Write the tables as Parquet files as well
+    #[arg(long)]
+    parquet: bool,
     /// No progress on stderr
     #[arg(long)]
     quiet: bool,
@@ -123,6 +129,9 @@ impl Arguments {
             self.run(&mut folder)?;
         }
         folder.finish(&STOP)?;
+        if self.parquet {
+            write_parquet(&folder)?;
+        }
         if let Some(which) = &self.record {
             record_trials(&mut folder, which, &STOP)?;
         }

@@ -1,27 +1,17 @@
 //! `usar view`: a trial to watch, as one page that needs nothing but a browser.
 
 mod at;
-mod page;
+pub(crate) mod page;
 
-use std::fs::File;
-use std::io::{Read, Write};
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
 use clap::Args;
 use experiments::Failure;
-use experiments::experiment::{Experiment, PolicySpec, defaults, split_list, with_settings};
-use experiments::run::TrialKey;
-use experiments::sweep::disk::experiment_in;
-use recording::{Options, Recording};
-use usar_sim::simulation::Simulation;
 
-use super::load;
-use crate::recordings::{path_of, recorded, recording_of};
+use super::trials::{Asked, Shown};
 use crate::running::tell;
-
-/// The first bytes of a recording.
-const MAGIC: &[u8] = b"USREC";
 
 /// Watch a trial, or several side by side, in a browser
 #[derive(Debug, Args)]
@@ -42,18 +32,8 @@ pub(crate) struct Arguments {
     /// Recordings, scenarios or folders of sweeps
     #[arg(required = true, value_name = "FILE")]
     files: Vec<PathBuf>,
-    /// Policies to show, separated by commas, of a scenario or of a sweep [default: the first]
-    #[arg(long)]
-    policy: Option<String>,
-    /// Seed of the trial, of a scenario or of a sweep [default: the first]
-    #[arg(long)]
-    seed: Option<u64>,
-    /// Case of a sweep with axes, from 1
-    #[arg(long, default_value_t = 1)]
-    case: usize,
-    /// Set a field of the scenario, by its path, to a value in RON; may stand several times
-    #[arg(long, value_name = "PATH=VALUE")]
-    set: Vec<String>,
+    #[command(flatten)]
+    asked: Asked,
     /// The page to write [default: FILE.html, in this folder]
     #[arg(long, value_name = "FILE.html")]
     out: Option<PathBuf>,
@@ -65,29 +45,12 @@ pub(crate) struct Arguments {
     at: Option<f64>,
 }
 
-/// A recording on its way into a page.
-struct Shown {
-    name: String,
-    bytes: Vec<u8>,
-}
-
 impl Arguments {
     pub(crate) fn execute(&self, out: &mut dyn Write) -> Result<(), Failure> {
-        let mut shown = Vec::new();
-        for file in &self.files {
-            self.open(file, &mut shown)?;
-        }
+        let shown = self.asked.open(&self.files)?;
+        let recordings = shown.iter().map(Shown::read).collect::<Result<Vec<_>, Failure>>()?;
         if let Some(time_s) = self.at {
-            let recordings = shown.iter().map(read).collect::<Result<Vec<_>, Failure>>()?;
             return at::print(out, &recordings, time_s);
-        }
-        for shown in &shown {
-            if let Some(rest) = read(shown)?.cut {
-                tell(format_args!(
-                    "note: {}: was cut short; {rest} bytes at its end were left out",
-                    shown.name
-                ));
-            }
         }
         let path = self.out.clone().unwrap_or_else(|| default_path(&self.files[0]));
         page::write(&path, &shown)?;
@@ -97,72 +60,6 @@ impl Arguments {
         }
         Ok(())
     }
-
-    fn open(&self, file: &Path, shown: &mut Vec<Shown>) -> Result<(), Failure> {
-        if file.is_dir() {
-            return self.open_folder(file, shown);
-        }
-        let unreadable = |error| Failure::input(format!("{}: cannot be read: {error}", file.display()));
-        let mut start = Vec::new();
-        let reader = File::open(file).map_err(unreadable)?;
-        reader.take(MAGIC.len() as u64).read_to_end(&mut start).map_err(unreadable)?;
-        if start == MAGIC {
-            let bytes = std::fs::read(file).map_err(unreadable)?;
-            shown.push(Shown { name: file.display().to_string(), bytes });
-            return Ok(());
-        }
-        let (scenario, _) = load(file)?;
-        let scenario = with_settings(&scenario, &self.set)?;
-        let (first_policy, first_seed) = defaults(file)?;
-        let seed = self.seed.unwrap_or(first_seed);
-        for policy in split_list(self.policy.as_deref().unwrap_or(&first_policy)) {
-            let spec =
-                PolicySpec::parse(policy).map_err(|error| Failure::input(format!("--policy: {error}")))?;
-            let driver = spec.driver().map_err(Failure::input)?;
-            let simulation = Simulation::new(&scenario, seed)
-                .map_err(|error| Failure::input(format!("{}: {error}", file.display())))?;
-            let bytes = recorded(simulation, &driver, &Options::new(&spec.label))?;
-            shown.push(Shown { name: file.display().to_string(), bytes });
-        }
-        Ok(())
-    }
-
-    fn open_folder(&self, folder: &Path, shown: &mut Vec<Shown>) -> Result<(), Failure> {
-        let (experiment, _) = experiment_in(folder)?;
-        for key in self.keys(&experiment)? {
-            let path = path_of(folder, &experiment, &key);
-            let bytes = recording_of(folder, &experiment, &key)?;
-            shown.push(Shown { name: path.display().to_string(), bytes });
-        }
-        Ok(())
-    }
-
-    /// The trials of a sweep that are asked for.
-    fn keys(&self, experiment: &Experiment) -> Result<Vec<TrialKey>, Failure> {
-        let labels: Vec<&str> = experiment.policies.iter().map(|spec| spec.label.as_str()).collect();
-        let asked = self.policy.as_deref().map_or_else(|| vec![labels[0]], split_list);
-        let seed = self.seed.unwrap_or_else(|| experiment.seed(1));
-        let find = |label: &str| {
-            let mut keys = experiment.keys(None);
-            keys.find(|key| key.case + 1 == self.case && key.seed == seed && key.label == label)
-        };
-        let found = asked.iter().map(|label| {
-            find(label).ok_or_else(|| {
-                let (last, cases) = (experiment.seed(experiment.trials), experiment.cases.len());
-                Failure::input(format!(
-                    "no trial of policy {label:?} with seed {seed} in case {}; the sweep has {}, seeds {} to {last}, {cases} cases",
-                    self.case,
-                    labels.join(", "),
-                    experiment.seed(1),
-                ))
-            })
-        });
-        found.collect()
-    }
-}
-
-fn read(shown: &Shown) -> Result<Recording, Failure> {
-    Recording::read(&shown.bytes).map_err(|error| Failure::input(format!("{}: {error}", shown.name)))
 }
 
 fn default_path(file: &Path) -> PathBuf {

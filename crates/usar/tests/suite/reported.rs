@@ -54,11 +54,48 @@ fn a_report_is_one_file_with_figures_and_the_numbers_behind_them() {
     ] {
         assert!(page.contains(words), "{words}");
     }
+    assert!(page.contains("<figure id=\"map\"") && plots["map.svg"].starts_with(b"<svg xmlns"));
+    assert!(!page.contains("Ways of all robots"));
     succeeds(&usar(here, &["report", "results/grid"]));
     assert_eq!(page, std::fs::read_to_string(results.join("report.html")).unwrap(), "the same bytes again");
     refused(here, 2, &["report", "results/grid", "--case", "5"], &["--case: must be from 1 to 4, found 5"]);
     // The sweep still goes on in a folder with a report.
     succeeds(&usar(here, &["sweep", "grid.ron", "--set", "duration_s=120", "--trials", "3"]));
+}
+
+#[test]
+fn a_report_shows_chosen_trials_and_links_their_replays() {
+    let folder = place();
+    let here = folder.path();
+    succeeds(&usar(
+        here,
+        &["sweep", "short.ron", "--policies", "RNE,DIS", "--trials", "2", "--set", "duration_s=30"],
+    ));
+    refused(
+        here,
+        2,
+        &["report", "results/paper", "--trial", "9"],
+        &["--trial: must be the seed of a finished"],
+    );
+    succeeds(&usar(here, &["report", "results/paper", "--trial", "2", "--with-replays"]));
+    let results = here.join("results/paper");
+    let page = std::fs::read_to_string(results.join("report.html")).unwrap();
+    for (label, number) in [("RNE", 1), ("DIS", 2)] {
+        assert!(page.contains(&format!("Ways of all robots under {label}, seed 2.")));
+        assert!(page.contains(&format!("<a href=\"plots/replay-{label}-2.html\">Watch the trial</a>")));
+        assert!(results.join(format!("plots/ways-{number}.svg")).exists());
+        let replay = std::fs::read_to_string(results.join(format!("plots/replay-{label}-2.html"))).unwrap();
+        assert_eq!(replay.matches("<script type=\"application/x-usrec\"").count(), 1);
+    }
+    // The next report takes away what this one wrote, and the folder can start over.
+    succeeds(&usar(here, &["report", "results/paper"]));
+    assert!(!results.join("plots/replay-RNE-2.html").exists() && !results.join("plots/ways-1.svg").exists());
+    succeeds(&usar(here, &["report", "results/paper", "--with-replays"]));
+    succeeds(&usar(
+        here,
+        &["sweep", "short.ron", "--policies", "RNE", "--trials", "1", "--set", "duration_s=30", "--fresh"],
+    ));
+    assert!(!results.join("plots").exists());
 }
 
 /// The table of trials has each metric of each trial, to the bit.

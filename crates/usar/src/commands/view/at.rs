@@ -5,8 +5,6 @@ use std::io::Write;
 use experiments::Failure;
 use recording::{Frame, Recording};
 use serde::Serialize;
-use usar_sim::scenario::{Measure, NeedFile, RoleFile};
-use usar_sim::vitals::health_factor;
 
 use crate::commands::SCHEMA_VERSION;
 
@@ -52,11 +50,7 @@ fn output(recording: &Recording, number: usize, frame: Frame) -> Output<'_> {
         let role = &world.roles[place.role];
         let levels = [robot.motion.energy_millipercent, robot.motion.hp_millipercent];
         let [energy, hp] = levels.map(|level| f64::from(level) / 1000.0);
-        let value = |need: &NeedFile| {
-            let factor = health_factor(hp, world.health_floor);
-            let cargo = [robot.state.resources, role.capacity - robot.state.load.min(role.capacity)];
-            measure(need, role, [energy, hp, factor], cargo)
-        };
+        let needs = world.needs.iter().map(|need| need.name.as_str()).zip(world.needs_of(id, robot));
         Robot {
             id,
             role: &role.name,
@@ -65,7 +59,7 @@ fn output(recording: &Recording, number: usize, frame: Frame) -> Output<'_> {
             delay: &header.codes.delays[usize::from(robot.state.delay)],
             energy,
             hp,
-            needs: world.needs.iter().map(|need| (need.name.as_str(), value(need))).collect(),
+            needs: needs.collect(),
         }
     });
     let count = |state: usize| {
@@ -83,24 +77,5 @@ fn output(recording: &Recording, number: usize, frame: Frame) -> Output<'_> {
         robots: robots.collect(),
         rescuees: states.map(|(state, name)| (name.as_str(), count(state))).collect(),
         state: frame,
-    }
-}
-
-/// A need of a robot with these levels, as far as they were recorded.
-fn measure(
-    need: &NeedFile,
-    role: &RoleFile,
-    [energy, hp, factor]: [f64; 3],
-    [resources, room]: [u32; 2],
-) -> f64 {
-    match need.measures {
-        Measure::Health => role.hp * hp / 100.0,
-        Measure::Speed => role.speed_mps * factor,
-        Measure::Sensing => role.sensing_m * factor,
-        Measure::Energy => role.energy * energy / 100.0,
-        Measure::Resources => f64::from(resources),
-        Measure::Capacity => f64::from(room),
-        Measure::Observing => role.observing_m * factor,
-        Measure::Constant => role.constants.get(&need.name).copied().unwrap_or(0.0),
     }
 }

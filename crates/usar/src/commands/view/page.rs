@@ -6,7 +6,7 @@ use std::path::Path;
 use experiments::Failure;
 use experiments::files::NewFile;
 
-use super::Shown;
+use crate::commands::trials::Shown;
 
 /// The viewer: built from the folder `viewer`.
 const VIEWER: &str = include_str!("../../../assets/viewer.html");
@@ -36,7 +36,8 @@ pub(super) fn write(path: &Path, shown: &[Shown]) -> Result<(), Failure> {
     NewFile::write(folder, name, page(shown).as_bytes()).map(drop)
 }
 
-fn page(shown: &[Shown]) -> String {
+/// The page with these recordings in it.
+pub(crate) fn page(shown: &[Shown]) -> String {
     let (before, after) = VIEWER.split_once(PLACE).unwrap_or((VIEWER, ""));
     let mut page = before.to_owned();
     for Shown { name, bytes } in shown {

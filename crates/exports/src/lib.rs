@@ -1,0 +1,11 @@
+//! Recordings of trials for other programs: as MCAP logs for robot viewers, and as tidy tables.
+//!
+//! [`mcap`](mod@mcap) writes a log for Foxglove, Lichtblick and Rerun. [`tables`] writes the time series of robots and groups, events and decisions as CSV;
+//! [`parquet`] makes a Parquet file of any such table.
+
+mod error;
+pub mod mcap;
+pub mod parquet;
+pub mod tables;
+
+pub use error::ExportError;

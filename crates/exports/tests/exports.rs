@@ -1,0 +1,134 @@
+//! Exports of a recorded trial, read back by the libraries of their formats.
+
+use std::collections::BTreeMap;
+use std::io::Write;
+use std::path::Path;
+
+use exports::parquet::{Kind, from_csv};
+use exports::tables::Table;
+use exports::{ExportError, mcap};
+use parquet::file::reader::{FileReader, SerializedFileReader};
+use parquet::record::Field;
+use recording::{Options, Recording, record};
+use rne_core::Registry;
+use serde_json::Value;
+use usar_sim::scenario::Scenario;
+use usar_sim::simulation::Simulation;
+
+fn recorded(file: &str, duration_s: f64) -> Recording {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios").join(file);
+    let (scenario, _) = Scenario::load(&path).unwrap();
+    let mut file = (*scenario).clone();
+    file.duration_s = duration_s;
+    let simulation = Simulation::new(&Scenario::try_from(file).unwrap(), 1).unwrap();
+    let policy = Registry::standard().parse("RNE").unwrap().policy;
+    let mut bytes = Vec::new();
+    record(simulation, &*policy, &Options::new("RNE"), &mut bytes).unwrap();
+    Recording::read(&bytes).unwrap()
+}
+
+/// The messages of each topic, with their times in nanoseconds.
+fn messages(log: &[u8]) -> BTreeMap<String, Vec<(u64, Value)>> {
+    let mut topics: BTreeMap<String, Vec<(u64, Value)>> = BTreeMap::new();
+    for message in ::mcap::MessageStream::new(log).unwrap() {
+        let message = message.unwrap();
+        assert_eq!(message.channel.message_encoding, "json");
+        let schema = message.channel.schema.as_ref().unwrap();
+        assert_eq!(schema.encoding, "jsonschema");
+        let value = serde_json::from_slice(&message.data).unwrap();
+        topics.entry(message.channel.topic.clone()).or_default().push((message.log_time, value));
+    }
+    topics
+}
+
+#[test]
+fn a_log_has_what_the_recording_has() {
+    let recording = recorded("paper.ron", 60.0);
+    let log = mcap::write(&recording, 5, Vec::new()).unwrap();
+    assert_eq!(log, mcap::write(&recording, 5, Vec::new()).unwrap());
+    let topics = messages(&log);
+    let frames = recording.frames().div_ceil(5);
+    assert_eq!(topics["/tf"].len(), frames);
+    assert_eq!(topics["/events"].len(), recording.events.len());
+    assert_eq!(topics["/world"].len(), 1);
+    for (place, number) in (0..recording.frames()).step_by(5).enumerate() {
+        let frame = recording.frame(number).unwrap();
+        let (time, transforms) = &topics["/tf"][place];
+        assert_eq!(*time, (recording.header.time_s_of(number) * 1e9).round() as u64);
+        for (id, robot) in frame.robots.iter().enumerate() {
+            let transform = &transforms["transforms"][id];
+            assert_eq!(transform["child_frame_id"], format!("robot/{id}"));
+            assert_eq!(transform["translation"]["x"], f64::from(robot.motion.position_mm[0]) / 1000.0);
+            let (_, told) = &topics[&format!("/robot/{id}")][place];
+            assert_eq!(told["energy_percent"], f64::from(robot.motion.energy_millipercent) / 1000.0);
+            assert_eq!(told["needs"].as_object().unwrap().len(), recording.header.world.needs.len());
+        }
+    }
+    let (_, cloud) = &topics["/rescuees"][0];
+    assert_eq!(
+        cloud["data"].as_str().unwrap().len(),
+        (13 * recording.header.world.rescuees.len()).div_ceil(3) * 4
+    );
+    let summary = ::mcap::Summary::read(&log).unwrap().unwrap();
+    let names: Vec<&str> = summary.schemas.values().map(|schema| schema.name.as_str()).collect();
+    for name in [
+        "foxglove.SceneUpdate",
+        "foxglove.FrameTransforms",
+        "foxglove.PointCloud",
+        "foxglove.Log",
+        "usar.Robot",
+    ] {
+        assert!(names.contains(&name), "{names:?}");
+    }
+    assert!(summary.schemas.values().all(|schema| !String::from_utf8_lossy(&schema.data).contains("$ref")));
+}
+
+#[test]
+fn tables_are_tidy_and_parquet_has_the_same_cells() {
+    let recording = recorded("three-tasks.ron", 60.0);
+    let world = &recording.header.world;
+    for table in Table::ALL {
+        let csv = table.write_csv(&recording, 10, Vec::new()).unwrap();
+        let mut reader = csv::Reader::from_reader(&*csv);
+        let header = reader.headers().unwrap().clone();
+        assert!(header.iter().eq(table.columns(world).iter().map(String::as_str)), "{header:?}");
+        let rows: Vec<csv::StringRecord> = reader.records().map(Result::unwrap).collect();
+        let frames = recording.frames().div_ceil(10);
+        let expected = match table {
+            Table::Robots => frames * world.robots.len(),
+            Table::Groups => frames * world.tasks.len(),
+            Table::Events => recording.events.len(),
+            Table::Decisions => {
+                recording.decisions.iter().map(|decided| decided.question.members.len()).sum()
+            }
+        };
+        assert_eq!(rows.len(), expected, "{}", table.name());
+        let written = from_csv(&*csv, Table::kind, Vec::new()).unwrap();
+        assert_eq!(written, from_csv(&*csv, Table::kind, Vec::new()).unwrap(), "the same bytes every time");
+        let mut file = tempfile::tempfile().unwrap();
+        file.write_all(&written).unwrap();
+        let read = SerializedFileReader::new(file).unwrap();
+        for (row, cells) in read.get_row_iter(None).unwrap().zip(&rows) {
+            for ((name, field), cell) in row.unwrap().get_column_iter().zip(cells) {
+                let is_same = match (Table::kind(name), field) {
+                    (_, Field::Null) => cell.is_empty(),
+                    (Kind::Natural, Field::ULong(value)) => value.to_string() == cell,
+                    (Kind::Number, Field::Double(value)) => value.to_string() == cell,
+                    (Kind::Truth, Field::Bool(value)) => value.to_string() == cell,
+                    (Kind::Text, Field::Str(value)) => value == cell,
+                    _ => false,
+                };
+                assert!(is_same, "{}: {name}: {field:?}, {cell:?}", table.name());
+            }
+        }
+        assert_eq!(read.metadata().file_metadata().num_rows() as usize, rows.len());
+    }
+}
+
+#[test]
+fn a_cell_that_is_not_of_its_kind_is_named() {
+    let table = "a,b\n1,2\n,x\n";
+    let error = from_csv(table.as_bytes(), |_| Kind::Natural, Vec::new()).unwrap_err();
+    assert!(matches!(error, ExportError::Cell { row: 2, .. }), "{error}");
+    assert_eq!(error.to_string(), "row 2: column b: must be a whole number, found \"x\"");
+}

@@ -1,0 +1,64 @@
+//! The state at one frame of a recording.
+
+use recording::{Frame, Recording};
+
+use crate::error::PictureError;
+use crate::ground::{self, Lies};
+use crate::picture::{Look, Picture};
+use crate::sheet::Sheet;
+use crate::team;
+
+/// Draws the state at a frame of a recording, numbered from 0.
+///
+/// # Errors
+/// There is no such frame.
+pub fn moment(recording: &Recording, number: usize, look: &Look) -> Result<Picture, PictureError> {
+    let (frame, world) = (recording.frame(number)?, &recording.header.world);
+    let mut sheet = Sheet::new(look, world.arena_m, &title(recording, number, &frame));
+    ground::draw_floor(&mut sheet);
+    let [corner, size] = sheet.map();
+    sheet.svg.begin_window(corner, size);
+    ground::draw_places(&mut sheet, world);
+    ground::draw_zones(&mut sheet, &world.zones, |_| false);
+    ground::draw_debris(&mut sheet, &world.debris, &places(&frame), |_| false);
+    ground::draw_rescuees(&mut sheet, world, |rescuee| frame.rescuees[rescuee].state);
+    ground::draw_names(&mut sheet, world);
+    team::draw_routes(&mut sheet, world, &frame);
+    team::draw_claims(&mut sheet, world, &frame);
+    team::draw_robots(&mut sheet, world, &frame);
+    team::draw_links(&mut sheet, &frame);
+    sheet.svg.end_window();
+    ground::draw_walls(&mut sheet);
+    let mut entries = team::moment_entries(world, sheet.unit);
+    let sampled = [world.debris.len(), world.zones.len()];
+    entries.extend(ground::entries(world, sheet.unit, sampled, !world.rescuees.is_empty()));
+    Ok(sheet.finish(entries))
+}
+
+/// Where debris lies at a frame.
+pub(crate) fn places(frame: &Frame) -> Vec<Lies> {
+    let lies = |piece: &recording::MovedDebris| {
+        (piece.position_mm.map(|mm| f64::from(mm) / 1000.0), f64::from(piece.angle) / 10_000.0)
+    };
+    frame.debris.iter().map(lies).collect()
+}
+
+/// What is shown, and when.
+fn title(recording: &Recording, number: usize, frame: &Frame) -> String {
+    let header = &recording.header;
+    let round = recording.decisions.iter().filter(|decided| decided.step <= frame.step).count();
+    let tenths = (header.time_s_of(number) * 10.0).round() as u64;
+    let time = format!("{}:{:02}.{}", tenths / 600, tenths / 10 % 60, tenths % 10);
+    let name = name_of(recording);
+    if round == 0 { format!("{name}, {time}") } else { format!("{name}, {time}, round {round}") }
+}
+
+/// The trial in words.
+pub(crate) fn name_of(recording: &Recording) -> String {
+    let header = &recording.header;
+    if header.world.tasks.is_empty() {
+        format!("{}, seed {}", header.scenario.name, header.seed)
+    } else {
+        format!("{}, {}, seed {}", header.scenario.name, header.policy, header.seed)
+    }
+}

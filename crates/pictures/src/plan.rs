@@ -1,0 +1,114 @@
+//! The world before anything runs.
+
+use recording::World;
+use usar_sim::scenario::Errand;
+
+use crate::ground;
+use crate::legend::{Entry, Sign};
+use crate::picture::{Look, Picture};
+use crate::shapes::shapes_of;
+use crate::sheet::Sheet;
+use crate::svg::{Anchor, Num, Path};
+use crate::team::{self, colour_of, sign_radius};
+use crate::theme::{INK, PAPER, SOFT};
+
+/// A world before anything runs.
+#[derive(Debug, Clone, Copy)]
+pub struct Plan<'w> {
+    /// What stands above the map.
+    pub title: &'w str,
+    /// The world of one seed.
+    pub world: &'w World,
+    /// The places that robots are to go to, in scenarios without a mission.
+    pub errands: &'w [Errand],
+    /// The number of the first piece of debris, and of the first radiation zone, that this seed has drawn: those before are the scenario's.
+    pub first_sampled: [usize; 2],
+}
+
+/// Draws a world before anything runs: walls, debris, radiation, tasks, rest places, homes, sensing ranges and errands.
+#[must_use]
+pub fn plan(plan: &Plan, look: &Look) -> Picture {
+    let Plan { world, first_sampled: [debris, zones], .. } = *plan;
+    let mut sheet = Sheet::new(look, world.arena_m, plan.title);
+    ground::draw_floor(&mut sheet);
+    let [corner, size] = sheet.map();
+    sheet.svg.begin_window(corner, size);
+    ground::draw_places(&mut sheet, world);
+    ground::draw_zones(&mut sheet, &world.zones, |number| number >= zones);
+    draw_ranges(&mut sheet, world);
+    ground::draw_debris(&mut sheet, &world.debris, &ground::as_placed(&world.debris), |number| {
+        number >= debris
+    });
+    ground::draw_rescuees(&mut sheet, world, |_| 0);
+    draw_errands(&mut sheet, plan);
+    draw_team(&mut sheet, world);
+    ground::draw_names(&mut sheet, world);
+    sheet.svg.end_window();
+    ground::draw_walls(&mut sheet);
+    let mut entries = team::entries(world);
+    entries.retain(|entry| entry.means != "no group");
+    entries.push(Entry::new(Sign::Disc(range_looks(sheet.unit)), "sensing range"));
+    if !plan.errands.is_empty() {
+        entries.push(Entry::new(Sign::Line(errand_looks(SOFT, sheet.unit)), "errands"));
+    }
+    entries.extend(ground::entries(world, sheet.unit, [debris, zones], !world.rescuees.is_empty()));
+    sheet.finish(entries)
+}
+
+fn range_looks(unit: f64) -> String {
+    let (line, dash) = (Num(0.7 * unit), Num(1.5 * unit));
+    format!(
+        "fill=\"{SOFT}\" fill-opacity=\"0.02\" stroke=\"{SOFT}\" stroke-opacity=\"0.6\" stroke-width=\"{line}\" stroke-dasharray=\"{dash}\""
+    )
+}
+
+fn errand_looks(colour: &str, unit: f64) -> String {
+    let (line, dash) = (Num(1.1 * unit), Num(4.0 * unit));
+    format!("fill=\"none\" stroke=\"{colour}\" stroke-width=\"{line}\" stroke-dasharray=\"{dash}\"")
+}
+
+/// The ranges within which robots notice debris and radiation, at full health and at home.
+fn draw_ranges(sheet: &mut Sheet, world: &World) {
+    let looks = range_looks(sheet.unit);
+    for robot in &world.robots {
+        let (at, radius) = (sheet.at(robot.home), world.roles[robot.role].sensing_m * sheet.scale);
+        sheet.svg.disc(at, radius, &looks);
+    }
+}
+
+/// The straight lines between the places of each errand, with a ring at each place.
+fn draw_errands(sheet: &mut Sheet, plan: &Plan) {
+    for errand in plan.errands {
+        let number = errand.robot as usize;
+        let Some(robot) = plan.world.robots.get(number) else { continue };
+        let colour = colour_of(plan.world, number, None);
+        let (mut way, mut rings) = (Path::default(), Path::default());
+        let places = std::iter::once(robot.home).chain(errand.to.iter().copied());
+        way.line(places.map(|place| sheet.at(place)).collect::<Vec<_>>());
+        let radius = sign_radius(sheet, plan.world, number);
+        errand.to.iter().for_each(|place| rings.disc(sheet.at(*place), radius));
+        sheet.svg.path(&way, &errand_looks(colour, sheet.unit));
+        let line = Num(1.1 * sheet.unit);
+        let looks = format!("fill=\"{PAPER}\" stroke=\"{colour}\" stroke-width=\"{line}\"");
+        sheet.svg.path(&rings, &looks);
+    }
+}
+
+/// The robots at home, with their numbers where there is room.
+fn draw_team(sheet: &mut Sheet, world: &World) {
+    let shapes = shapes_of(&world.roles);
+    let has_numbers = world.robots.len() <= 60 && sheet.scale > 9.0 * sheet.unit;
+    for (number, robot) in world.robots.iter().enumerate() {
+        let (mut sign, at) = (Path::default(), sheet.at(robot.home));
+        let radius = sign_radius(sheet, world, number);
+        shapes[robot.role].add(at, radius, &mut sign);
+        let colour = if world.tasks.is_empty() { colour_of(world, number, None) } else { INK };
+        let looks =
+            format!("fill=\"{colour}\" stroke=\"{PAPER}\" stroke-width=\"{}\"", Num(0.7 * sheet.unit));
+        sheet.svg.path(&sign, &looks);
+        if has_numbers {
+            let place = [at[0] + radius + 3.0 * sheet.unit, at[1]];
+            sheet.svg.text(&number.to_string(), place, 9.0 * sheet.unit, (Anchor::Start, INK));
+        }
+    }
+}

@@ -1,0 +1,109 @@
+//! The ways of all robots in a trial, on one map.
+
+use geo::{Coord, LineString, Simplify};
+use recording::Recording;
+
+use crate::error::PictureError;
+use crate::ground;
+use crate::legend::{Entry, Sign};
+use crate::moment::{name_of, places};
+use crate::picture::{Look, Picture};
+use crate::shapes::shapes_of;
+use crate::sheet::Sheet;
+use crate::svg::{Num, Path};
+use crate::team::{self, colour_of};
+use crate::theme::{INK, PAPER};
+
+/// How far a line may lie beside the way that it shows, in pixels.
+const BESIDE: f64 = 0.15;
+
+/// A part of a robot's way on which it has one group.
+struct Stretch {
+    robot: usize,
+    task: Option<u32>,
+    places_mm: Vec<[i32; 2]>,
+}
+
+/// Draws the ways of all robots in a trial: thin lines in the colours of their groups, from their homes to where they ended.
+///
+/// # Errors
+/// The recording has no frames.
+pub fn trails(recording: &Recording, look: &Look) -> Result<Picture, PictureError> {
+    let world = &recording.header.world;
+    let last = recording.frame(recording.frames().saturating_sub(1))?;
+    let title = format!("{}: ways of all robots", name_of(recording));
+    let mut sheet = Sheet::new(look, world.arena_m, &title);
+    ground::draw_floor(&mut sheet);
+    let [corner, size] = sheet.map();
+    sheet.svg.begin_window(corner, size);
+    ground::draw_places(&mut sheet, world);
+    ground::draw_zones(&mut sheet, &world.zones, |_| false);
+    ground::draw_debris(&mut sheet, &world.debris, &places(&last), |_| false);
+    ground::draw_rescuees(&mut sheet, world, |_| 0);
+    for stretch in stretches(recording)? {
+        let colour = colour_of(world, stretch.robot, stretch.task);
+        let width = Num(0.8 * sheet.unit);
+        let looks = format!(
+            "fill=\"none\" stroke=\"{colour}\" stroke-opacity=\"0.5\" stroke-width=\"{width}\" stroke-linejoin=\"round\""
+        );
+        let way = way(&sheet, &stretch);
+        sheet.svg.path(&way, &looks);
+    }
+    ground::draw_names(&mut sheet, world);
+    let shapes = shapes_of(&world.roles);
+    for (number, robot) in last.robots.iter().enumerate() {
+        let mut end = Path::default();
+        let at = sheet.at_mm(robot.motion.position_mm);
+        shapes[world.robots[number].role].add(at, 2.6 * sheet.unit, &mut end);
+        sheet.svg.path(&end, &end_looks(colour_of(world, number, robot.state.task), sheet.unit));
+    }
+    sheet.svg.end_window();
+    ground::draw_walls(&mut sheet);
+    let mut entries = team::entries(world);
+    entries.push(Entry::new(Sign::Disc(end_looks(INK, sheet.unit)), "the end of a way"));
+    let sampled = [world.debris.len(), world.zones.len()];
+    entries.extend(ground::entries(world, sheet.unit, sampled, !world.rescuees.is_empty()));
+    Ok(sheet.finish(entries))
+}
+
+fn end_looks(colour: &str, unit: f64) -> String {
+    format!("fill=\"{PAPER}\" stroke=\"{colour}\" stroke-width=\"{}\"", Num(unit))
+}
+
+/// The ways of all robots, cut where their groups change.
+fn stretches(recording: &Recording) -> Result<Vec<Stretch>, PictureError> {
+    let robots = recording.header.world.robots.len();
+    let mut underway: Vec<Option<Stretch>> = (0..robots).map(|_| None).collect();
+    let mut done = Vec::new();
+    for number in 0..recording.frames() {
+        let frame = recording.frame(number)?;
+        for (robot, (now, stretch)) in frame.robots.iter().zip(&mut underway).enumerate() {
+            let (place, task) = (now.motion.position_mm, now.state.task);
+            match stretch {
+                Some(stretch) if stretch.task == task => {
+                    if stretch.places_mm.last() != Some(&place) {
+                        stretch.places_mm.push(place);
+                    }
+                }
+                _ => {
+                    let start = stretch.as_ref().and_then(|before| before.places_mm.last().copied());
+                    let places_mm = start.into_iter().chain([place]).collect();
+                    done.extend(stretch.replace(Stretch { robot, task, places_mm }));
+                }
+            }
+        }
+    }
+    done.extend(underway.into_iter().flatten());
+    Ok(done)
+}
+
+/// A stretch as a line with as few corners as show it.
+fn way(sheet: &Sheet, stretch: &Stretch) -> Path {
+    let mut way = Path::default();
+    let places = stretch.places_mm.iter().map(|place| sheet.at_mm(*place)).map(|[x, y]| Coord { x, y });
+    let line = LineString::new(places.collect());
+    if line.0.len() > 1 {
+        way.line(line.simplify(BESIDE).0.into_iter().map(|Coord { x, y }| [x, y]));
+    }
+    way
+}

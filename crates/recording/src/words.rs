@@ -1,0 +1,155 @@
+//! Events in words, and as lines of JSON.
+
+use serde::Serialize;
+use serde_json::{Map, Value};
+use usar_sim::event::{CutOffCause, Event, Place, ReturnCause, TurnBackCause};
+use usar_sim::ids::RobotId;
+
+/// An event with its time, and what it is called.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ToldEvent {
+    /// When it had happened, in seconds of simulated time.
+    pub time_s: f64,
+    /// The step at whose end it had happened.
+    pub step: u64,
+    /// Its kind in snake case, as `made_room`.
+    pub event: String,
+    /// It in a sentence.
+    pub says: String,
+    /// Whatever else is known of it, by the names of the fields of [`Event`].
+    #[serde(flatten)]
+    pub fields: Map<String, Value>,
+}
+
+impl ToldEvent {
+    /// An event that had happened at the end of a step; `tasks` are the names of the tasks.
+    #[must_use]
+    pub fn new((step, dt_s): (u64, f64), event: &Event, tasks: &[&str]) -> Self {
+        let (name, fields) = match serde_json::to_value(event) {
+            Ok(Value::Object(kinds)) => kinds.into_iter().next().unwrap_or_default(),
+            Ok(Value::String(name)) => (name, Value::Null),
+            _ => Default::default(),
+        };
+        let fields = if let Value::Object(fields) = fields { fields } else { Map::new() };
+        let time_s = (step as f64 * dt_s * 1e6).round() / 1e6;
+        Self { time_s, step, event: snake(&name), says: sentence(event, tasks), fields }
+    }
+
+    /// The robots that it is about, in its order.
+    #[must_use]
+    pub fn robots(&self) -> Vec<u64> {
+        let one = ["robot", "room_for", "resource_of"]
+            .into_iter()
+            .filter_map(|name| self.fields.get(name)?.as_u64());
+        let many = self.fields.get("robots").and_then(Value::as_array).into_iter().flatten();
+        let mut robots: Vec<u64> = one.chain(many.filter_map(Value::as_u64)).collect();
+        robots.dedup();
+        robots
+    }
+
+    /// A field that is a number.
+    #[must_use]
+    pub fn number(&self, field: &str) -> Option<u64> {
+        self.fields.get(field)?.as_u64()
+    }
+}
+
+fn snake(name: &str) -> String {
+    let mut out = String::new();
+    for (at, c) in name.char_indices() {
+        if c.is_uppercase() && at > 0 {
+            out.push('_');
+        }
+        out.extend(c.to_lowercase());
+    }
+    out
+}
+
+/// Robots by their ids, as in `robots 0, 1 and 4`.
+#[must_use]
+pub fn robots_in_words(robots: &[u32]) -> String {
+    match robots {
+        [] => "no robot".to_owned(),
+        [one] => format!("robot {one}"),
+        [first @ .., last] => {
+            let first: Vec<String> = first.iter().map(u32::to_string).collect();
+            format!("robots {} and {last}", first.join(", "))
+        }
+    }
+}
+
+fn set(robots: &[RobotId]) -> String {
+    robots_in_words(&robots.iter().map(|robot| robot.0).collect::<Vec<_>>())
+}
+
+/// An event in a sentence without its time and without a full stop; `tasks` are the names of the tasks.
+fn sentence(event: &Event, tasks: &[&str]) -> String {
+    let task = |task: usize| tasks.get(task).copied().unwrap_or("?");
+    let at = |[x, y]: [f32; 2]| format!("({x:.1}, {y:.1})");
+    match event {
+        Event::RoundStarted { round, groups } => {
+            let groups = groups.iter().enumerate().map(|(i, group)| format!("{}: {}", task(i), set(group)));
+            format!("round {round} begins; {}", groups.collect::<Vec<_>>().join("; "))
+        }
+        Event::RoundEnded { round } => format!("round {round} is over"),
+        Event::GroupReturned { task: number, cause } => {
+            let cause: &ReturnCause = cause;
+            format!("the group of {} goes home: {}", task(number.index()), cause.name())
+        }
+        Event::Restocked { robot, resources } => format!("robot {robot} takes resources: {resources}"),
+        Event::DebrisDiscovered { robot, debris } => format!("robot {robot} notices debris {debris}"),
+        Event::ZoneDiscovered { robot, zone } => format!("robot {robot} notices radiation {zone}"),
+        Event::Sighted { robot, rescuee } => format!("robot {robot} sees rescuee {}", rescuee.0),
+        Event::Loaded { robot, rescuee, .. } => format!("robot {robot} has rescuee {} on board", rescuee.0),
+        Event::Delivered { robot, rescuee, place } => {
+            let place = match place {
+                Place::Home => "home",
+                Place::Rest => "to a rest place",
+            };
+            format!("robot {robot} has brought rescuee {} {place}", rescuee.0)
+        }
+        Event::TurnedBack { robot, cause } => match cause {
+            TurnBackCause::Energy => format!("robot {robot} turns back: energy"),
+            TurnBackCause::Hp => format!("robot {robot} turns back: HP"),
+        },
+        Event::RestStarted { robot } => format!("robot {robot} begins to rest"),
+        Event::RestEnded { robot } => format!("robot {robot} has rested"),
+        Event::Stranded { robot } => format!("robot {robot} has no energy left"),
+        Event::Disabled { robot } => format!("robot {robot} has no HP left"),
+        Event::ConflictStarted { robots } => format!("{} come into conflict", set(robots)),
+        Event::Deadlocked { robots } => format!("{} are deadlocked", set(robots)),
+        Event::MadeRoom { robot, room_for } => format!("robot {robot} makes room for robot {room_for}"),
+        Event::TurnPassed { robots } => format!("the turn passes among {}", set(robots)),
+        Event::BackedOff { robots } => format!("{} back off", set(robots)),
+        Event::ErrandDone { robot } => format!("robot {robot} has arrived"),
+        Event::Unreachable { robot, place } => format!("robot {robot} gives up on the place {}", at(*place)),
+        Event::CutOff { robot, place, cause } => {
+            let cause: &CutOffCause = cause;
+            format!("the team no longer waits for robot {robot}, which {} to {}", cause.name(), at(*place))
+        }
+        Event::ErrandsOver => "all errands are over".to_owned(),
+        Event::MissionOver => "no robot that can carry is left".to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use rne_core::TaskId;
+
+    use super::*;
+
+    #[test]
+    fn an_event_is_told_with_its_fields() {
+        let event = Event::MadeRoom { robot: RobotId(3), room_for: RobotId(1) };
+        let told = ToldEvent::new((125, 0.02), &event, &[]);
+        assert_eq!((told.time_s, told.event.as_str(), told.robots()), (2.5, "made_room", vec![3, 1]));
+        let line = serde_json::to_string(&told).unwrap();
+        let expected = r#"{"time_s":2.5,"step":125,"event":"made_room","says":"robot 3 makes room for robot 1","robot":3,"room_for":1}"#;
+        assert_eq!(line, expected);
+        let returned = Event::GroupReturned { task: TaskId(0), cause: ReturnCause::NothingLeft };
+        let told = ToldEvent::new((1, 1.0), &returned, &["north"]);
+        assert_eq!(told.says, "the group of north goes home: nothing left");
+        assert_eq!(ToldEvent::new((1, 1.0), &Event::ErrandsOver, &[]).event, "errands_over");
+        assert_eq!(robots_in_words(&[0, 2, 5]), "robots 0, 2 and 5");
+    }
+}

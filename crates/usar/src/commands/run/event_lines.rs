@@ -1,0 +1,54 @@
+//! Every event of a trial as a line of JSON.
+
+use std::fs::File;
+use std::io::{self, BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+use experiments::Failure;
+use recording::ToldEvent;
+use usar_sim::simulation::Simulation;
+
+/// The file on its way.
+pub(super) struct EventLines {
+    path: PathBuf,
+    file: BufWriter<File>,
+}
+
+impl EventLines {
+    /// Begins a new file.
+    pub(super) fn begin(path: &Path) -> Result<Self, Failure> {
+        let file = File::create_new(path).map_err(|error| match error.kind() {
+            io::ErrorKind::AlreadyExists => {
+                Failure::input(format!("--events: {} exists; nothing was overwritten", path.display()))
+            }
+            _ => Failure::storage(format!("cannot write {}: {error}", path.display())),
+        })?;
+        Ok(Self { path: path.to_owned(), file: BufWriter::new(file) })
+    }
+
+    /// Takes the events of a step. To be called after each.
+    pub(super) fn listen(&mut self, simulation: &Simulation) -> Result<(), Failure> {
+        for told in told(simulation) {
+            let line = serde_json::to_string(&told).map_err(Failure::run)?;
+            writeln!(self.file, "{line}").map_err(|error| self.trouble(&error))?;
+        }
+        Ok(())
+    }
+
+    /// Puts the last lines on disk.
+    pub(super) fn finish(mut self) -> Result<(), Failure> {
+        self.file.flush().map_err(|error| self.trouble(&error))
+    }
+
+    fn trouble(&self, error: &io::Error) -> Failure {
+        Failure::storage(format!("cannot write {}: {error}", self.path.display()))
+    }
+}
+
+/// The events of the last step in words.
+pub(super) fn told(simulation: &Simulation) -> impl Iterator<Item = ToldEvent> + '_ {
+    let scenario = simulation.scenario();
+    let tasks: Vec<&str> = scenario.tasks.iter().map(|task| task.name.as_str()).collect();
+    let at = (simulation.steps(), scenario.dt_s);
+    simulation.events().iter().map(move |event| ToldEvent::new(at, event, &tasks))
+}

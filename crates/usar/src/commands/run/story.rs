@@ -1,0 +1,211 @@
+//! What happened in a small scenario with errands, in a few sentences: who met whom, who waited, who made room, who arrived.
+
+use std::collections::BTreeMap;
+
+use recording::robots_in_words;
+use usar_sim::simulation::Simulation;
+
+use super::event_lines::told;
+
+/// A team that is larger has no story.
+const LARGEST_TEAM: usize = 12;
+
+/// Robots meet when there is less than this between them, in metres, and part when there is more than that.
+const MEET_M: f32 = 0.5;
+const PART_M: f32 = 1.5;
+
+/// Waiting that goes on after a shorter break than this is one wait, in seconds; shorter waits are not told.
+const BREAK_S: f64 = 1.0;
+const SHORTEST_WAIT_S: f64 = 0.2;
+
+/// The most sentences.
+const MOST: usize = 16;
+
+/// Columns of a line.
+const COLUMNS: usize = 80;
+
+/// Events that are told.
+const TOLD: [&str; 8] = [
+    "deadlocked",
+    "made_room",
+    "turn_passed",
+    "backed_off",
+    "errand_done",
+    "unreachable",
+    "cut_off",
+    "stranded",
+];
+
+/// Two robots that come near each other.
+struct Meeting {
+    begun_s: f64,
+    nearest_m: f32,
+    is_over: bool,
+}
+
+/// A robot that waits for another one: from when to when, and how long in all, in seconds.
+struct Wait {
+    begun_s: f64,
+    last_s: f64,
+    waited: f64,
+}
+
+/// Something that happened, and how often.
+struct Happening {
+    first_s: f64,
+    times: u32,
+}
+
+/// What is heard of a trial.
+#[derive(Default)]
+pub(super) struct Story {
+    meetings: BTreeMap<(u32, u32), Vec<Meeting>>,
+    waits: BTreeMap<(u32, u32), Vec<Wait>>,
+    happenings: BTreeMap<String, Happening>,
+}
+
+impl Story {
+    /// The story of a trial that is small enough to be told.
+    pub(super) fn of(simulation: &Simulation) -> Option<Self> {
+        let is_small = simulation.world().robots.len() <= LARGEST_TEAM;
+        (is_small && !simulation.scenario().errands.is_empty()).then(Self::default)
+    }
+
+    /// Takes note of a step. To be called after each.
+    pub(super) fn listen(&mut self, simulation: &Simulation) {
+        let time_s = simulation.time_s();
+        self.listen_for_meetings(simulation, time_s);
+        for (robot, delay) in (0..).zip(simulation.delays()) {
+            if let Some(other) = delay.waits_for {
+                self.add_wait((robot, other.0), time_s, simulation.scenario().dt_s);
+            }
+        }
+        for event in told(simulation).filter(|event| TOLD.contains(&event.event.as_str())) {
+            let happening = Happening { first_s: event.time_s, times: 0 };
+            self.happenings.entry(event.says).or_insert(happening).times += 1;
+        }
+    }
+
+    fn listen_for_meetings(&mut self, simulation: &Simulation, time_s: f64) {
+        let (robots, model) = (&simulation.world().robots, simulation.model());
+        let roles = &simulation.scenario().roles;
+        let role = |robot: usize| &roles[model.robots[robot].role.index()];
+        for a in 0..robots.len() {
+            for b in a + 1..robots.len() {
+                if role(a).kind != role(b).kind {
+                    continue;
+                }
+                let radii = (role(a).radius_m + role(b).radius_m) as f32;
+                let between = (robots[a].position - robots[b].position).length() - radii;
+                self.add_distance((a as u32, b as u32), between, time_s);
+            }
+        }
+    }
+
+    fn add_distance(&mut self, pair: (u32, u32), between: f32, time_s: f64) {
+        let underway =
+            self.meetings.get_mut(&pair).and_then(|all| all.last_mut()).filter(|last| !last.is_over);
+        if let Some(meeting) = underway {
+            meeting.nearest_m = meeting.nearest_m.min(between);
+            meeting.is_over = between > PART_M;
+        } else if between < MEET_M {
+            let meeting = Meeting { begun_s: time_s, nearest_m: between, is_over: false };
+            self.meetings.entry(pair).or_default().push(meeting);
+        }
+    }
+
+    fn add_wait(&mut self, pair: (u32, u32), time_s: f64, dt_s: f64) {
+        let waits = self.waits.entry(pair).or_default();
+        match waits.last_mut().filter(|wait| time_s - wait.last_s < BREAK_S) {
+            Some(wait) => (wait.last_s, wait.waited) = (time_s, wait.waited + dt_s),
+            None => waits.push(Wait { begun_s: time_s - dt_s, last_s: time_s, waited: dt_s }),
+        }
+    }
+
+    /// The sentences, in the order of time, each in lines of at most 80 columns.
+    pub(super) fn tell(&self) -> Vec<String> {
+        let mut sentences: Vec<(f64, String)> = Vec::new();
+        for ((a, b), meetings) in &self.meetings {
+            sentences.extend(meetings.iter().map(|meeting| {
+                let pair = robots_in_words(&[*a, *b]);
+                let nearest = meeting.nearest_m.max(0.0);
+                (
+                    meeting.begun_s,
+                    format!("{pair} meet; at the nearest there are {nearest:.2} m between them"),
+                )
+            }));
+        }
+        for ((robot, other), waits) in &self.waits {
+            let told = waits.iter().filter(|wait| wait.waited >= SHORTEST_WAIT_S);
+            sentences.extend(told.map(|wait| {
+                let Wait { begun_s, waited, .. } = wait;
+                (*begun_s, format!("robot {robot} begins to wait for robot {other}, {waited:.1} s in all"))
+            }));
+        }
+        for (says, Happening { first_s, times }) in &self.happenings {
+            let often = if *times > 1 { format!(", for the first of {times} times") } else { String::new() };
+            sentences.push((*first_s, format!("{says}{often}")));
+        }
+        sentences.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let more = sentences.len().saturating_sub(MOST);
+        let mut lines: Vec<String> = sentences
+            .iter()
+            .take(MOST)
+            .flat_map(|(at, says)| fold(&format!("At {at:.1} s {says}.")))
+            .collect();
+        if more > 0 {
+            lines.push(format!("And {more} things more: --events FILE.jsonl writes all."));
+        }
+        lines
+    }
+}
+
+/// A sentence in lines; all but the first are set in.
+fn fold(sentence: &str) -> Vec<String> {
+    let mut lines = vec![String::new()];
+    for word in sentence.split(' ') {
+        let last = lines.last_mut().filter(|line| line.chars().count() + 1 + word.chars().count() <= COLUMNS);
+        match last {
+            Some(line) if line.is_empty() => line.push_str(word),
+            Some(line) => line.extend([" ", word]),
+            None => lines.push(format!("  {word}")),
+        }
+    }
+    lines
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn waits_with_short_breaks_are_one_and_sentences_are_in_order() {
+        let mut story = Story::default();
+        for step in 0..100 {
+            let time_s = 3.0 + f64::from(step) * 0.02;
+            if !(40..60).contains(&step) {
+                story.add_wait((1, 0), time_s, 0.02);
+            }
+        }
+        story.add_wait((2, 0), 9.0, 0.02);
+        for (between, time_s) in [(2.0, 0.0), (0.4, 1.0), (0.1, 2.0), (2.0, 3.0), (0.3, 8.0)] {
+            story.add_distance((0, 1), between, time_s);
+        }
+        story.happenings.insert("robot 0 has arrived".into(), Happening { first_s: 4.0, times: 2 });
+        assert_eq!(
+            story.tell(),
+            [
+                "At 1.0 s robots 0 and 1 meet; at the nearest there are 0.10 m between them.",
+                "At 3.0 s robot 1 begins to wait for robot 0, 1.6 s in all.",
+                "At 4.0 s robot 0 has arrived, for the first of 2 times.",
+                "At 8.0 s robots 0 and 1 meet; at the nearest there are 0.30 m between them.",
+            ]
+        );
+    }
+
+    #[test]
+    fn long_sentences_are_folded() {
+        let lines = fold(&"word ".repeat(40));
+        assert!(lines.len() == 3 && lines.iter().all(|line| line.chars().count() <= COLUMNS), "{lines:?}");
+    }
+}
