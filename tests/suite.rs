@@ -6,6 +6,7 @@ mod support;
 mod conservation;
 mod determinism;
 mod invariants;
+mod limits;
 mod minimal;
 mod missions;
 mod navigation;

@@ -21,6 +21,7 @@ pub mod experiment;
 mod failure;
 pub mod files;
 pub mod input_table;
+pub mod limits;
 pub mod metric;
 pub mod provenance;
 pub mod rounds;

@@ -35,8 +35,12 @@ impl Fields {
 
     /// Names of entries in the order of the list.
     fn names_of_entries(&self, node: usize) -> Vec<&str> {
-        let mut names: Vec<(usize, &str)> =
-            self.nodes[node].named.iter().map(|(name, entry)| (*entry, &**name)).collect();
+        let mut names: Vec<(usize, &str)> = self.nodes[node]
+            .named
+            .iter()
+            .flat_map(|named| named.iter())
+            .map(|(name, entry)| (*entry, &**name))
+            .collect();
         names.sort_unstable();
         names.into_iter().map(|(_, name)| name).collect()
     }

@@ -5,6 +5,7 @@ mod defaults;
 mod error;
 mod file;
 mod former;
+mod homes;
 mod places;
 mod set;
 mod validate;
@@ -15,14 +16,13 @@ use std::path::Path;
 use rne_core::question::hardest_first;
 use rne_core::{RoleId, TaskId};
 use ron::extensions::Extensions;
-use ron_fields::Fields;
 use ron_fields::file::MAX_TEXT_BYTES;
+use ron_fields::{Fields, check_size};
 use serde::de::DeserializeOwned;
 
 pub use debris::LEAST_POLYGON_WIDTH_M;
 pub use error::{LayoutError, Problem, Problems, ScenarioError};
 pub use file::*;
-pub use validate::MAX_ARENA_M;
 
 /// Most radii for which ways on the ground are planned apart: each costs a map of what is known.
 pub const MAX_RADIUS_CLASSES: usize = 4;
@@ -66,7 +66,22 @@ pub fn read_text(path: &Path) -> Result<String, ScenarioError> {
     if text.trim().is_empty() {
         return Err(unreadable("is empty; see scenarios/paper.ron for a complete scenario".into()));
     }
+    check_text(&text, path)?;
     Ok(text)
+}
+
+/// Refuses a text with more in it than is read; `path` is used in messages only.
+///
+/// # Errors
+/// The first place where it is too much.
+pub fn check_text(text: &str, path: &Path) -> Result<(), ScenarioError> {
+    check_size(text).map_err(|found| ScenarioError::Malformed {
+        path: path.to_owned(),
+        line: found.line,
+        column: found.column,
+        field: String::new(),
+        message: found.to_string(),
+    })
 }
 
 /// Reads a value from a RON text; `path` is used in messages only.
@@ -90,6 +105,7 @@ pub fn parse_ron<T: DeserializeOwned>(text: &str, path: &Path) -> Result<T, Scen
             message: "extensions change what a file means and are not allowed; remove `#![...]`".into(),
         });
     }
+    check_text(text, path)?;
     let options = ron_options();
     let mut deserializer = ron::Deserializer::from_str_with_options(text, &options)
         .map_err(|error| malformed(error, String::new()))?;
@@ -118,15 +134,17 @@ impl Scenario {
         if text.len() as u64 <= MAX_TEXT_BYTES / LONGEST_IN_FULL {
             return Ok(());
         }
-        let in_full = self.resolved().len() as u64;
-        if in_full <= MAX_TEXT_BYTES {
-            return Ok(());
-        }
-        let reason = format!(
-            "is {:.1} MiB long when every default is spelled out, as results hold it; at most {} MiB can be read again",
-            in_full as f64 / f64::from(1 << 20),
-            MAX_TEXT_BYTES >> 20
-        );
+        let in_full = self.resolved();
+        let reason = if in_full.len() as u64 > MAX_TEXT_BYTES {
+            format!(
+                "is {:.1} MiB long when every default is spelled out, as results hold it; at most {} MiB can be read again",
+                in_full.len() as f64 / f64::from(1 << 20),
+                MAX_TEXT_BYTES >> 20
+            )
+        } else {
+            let Err(found) = check_size(&in_full) else { return Ok(()) };
+            format!("{found} when every default is spelled out, as results hold it")
+        };
         Err(ScenarioError::Unreadable { path: path.to_owned(), reason })
     }
 
@@ -135,10 +153,15 @@ impl Scenario {
     /// # Errors
     /// A text that is not a scenario, or values that break rules.
     pub fn parse(text: &str, path: &Path) -> Result<Self, ScenarioError> {
-        if let Some((line, change)) = former::change_needed(text) {
-            return Err(ScenarioError::Former { path: path.to_owned(), line, change });
-        }
-        let file: ScenarioFile = parse_ron(text, path)?;
+        let file: ScenarioFile = parse_ron(text, path).map_err(|error| {
+            // A file in the former format is none of this one's, and too large a text is not looked into.
+            let former = check_size(text).ok().and_then(|()| former::change_needed(text));
+            former.map_or(error, |(line, change)| ScenarioError::Former {
+                path: path.to_owned(),
+                line,
+                change,
+            })
+        })?;
         Self::try_from(file).map_err(|mut list| {
             let fields = Fields::of(text);
             for problem in &mut list {

@@ -9,6 +9,7 @@ mod compared;
 mod damaged;
 mod grids;
 mod guarded;
+mod hostile;
 mod reported;
 mod resumed;
 mod same_bytes;
