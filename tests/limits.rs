@@ -53,9 +53,9 @@ const PLACES: &[(&str, &ron_fields::limits::Limit)] = &[
     ("mission.cut_off_s", &limits::CUT_OFF_S),
     ("planning.clearance_m", &limits::CLEARANCE_M),
     ("planning.exposure_price_m", &limits::EXPOSURE_PRICE_M),
-    ("conflicts.margin_m", &limits::MARGIN_M),
-    ("conflicts.horizon_s", &limits::HORIZON_S),
-    ("conflicts.deadlock_steps", &limits::DEADLOCK_STEPS),
+    ("conflicts.resolver.margin_m", &limits::MARGIN_M),
+    ("conflicts.resolver.horizon_s", &limits::HORIZON_S),
+    ("conflicts.resolver.deadlock_steps", &limits::DEADLOCK_STEPS),
 ];
 
 fn with(path: &str, value: &str) -> ScenarioFile {

@@ -84,6 +84,12 @@ impl Fields {
         leaves.map(|node| (&*node.path, node.value.clone()))
     }
 
+    /// The path, with numbers for names, of the field without fields of its own whose value holds a byte of the text, or ends before it.
+    #[must_use]
+    pub fn leaf_at(&self, at: usize) -> Option<&str> {
+        self.leaves().find(|(_, place)| place.start <= at && at <= place.end).map(|(path, _)| path)
+    }
+
     /// Number of entries of a list that is written down; of the whole text for an empty path.
     #[must_use]
     pub fn entries(&self, path: &str) -> Option<usize> {

@@ -95,6 +95,14 @@ ron_fields::limits! {
     PIECE_MASS_KG: "debris[*].movable.mass_kg" = 0.1, 100_000;
     /// Friction of a movable piece.
     FRICTION: "debris[*].movable.friction" = 0, 10;
+    /// Walls.
+    WALLS: "walls" = 0, 10_000;
+    /// Thickness of a wall, in metres.
+    WALL_THICKNESS_M: "walls[*].thickness_m" = 0.1, 100;
+    /// Doors of a wall.
+    DOORS: "walls[*].doors" = 0, 100;
+    /// Width of a door, in metres.
+    DOOR_WIDTH_M: "walls[*].doors[*].width_m" = 0.1, 1_000;
     /// Radiation zones at known places. Each is looked at wherever a route is planned.
     ZONES: "radiation" = 0, 1_000;
     /// Radius of a radiation zone, in metres.
@@ -131,9 +139,9 @@ ron_fields::limits! {
     /// Price of exposure, in metres.
     EXPOSURE_PRICE_M: "planning.exposure_price_m" = 0, 1e6;
     /// Distance between robots under the rules of the paper, in metres.
-    MARGIN_M: "conflicts.margin_m" = 0, 10;
+    MARGIN_M: "conflicts.resolver.margin_m" = 0, 10;
     /// How far ahead the rules of the paper look, in seconds.
-    HORIZON_S: "conflicts.horizon_s" = 0, 60;
+    HORIZON_S: "conflicts.resolver.horizon_s" = 0, 60;
     /// Steps without motion until the rules of the paper see a deadlock.
-    DEADLOCK_STEPS: "conflicts.deadlock_steps" = 1, 100_000;
+    DEADLOCK_STEPS: "conflicts.resolver.deadlock_steps" = 1, 100_000;
 }

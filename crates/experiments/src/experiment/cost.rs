@@ -26,7 +26,7 @@ impl Cost {
     #[must_use]
     pub fn of(scenario: &Scenario) -> Self {
         let sampled: u32 = scenario.tasks.iter().map(|task| task.sampled.debris).sum();
-        let bodies = scenario.robots() as usize + scenario.debris.len() + sampled as usize;
+        let bodies = scenario.robots() as usize + scenario.obstacles().len() + sampled as usize;
         Self { bodies, steps: scenario.steps(), trials: 1.0 }
     }
 

@@ -275,7 +275,7 @@ pub(super) fn with_readings(policies: Vec<String>, readings: &[Reading]) -> Vec<
 
 pub(super) fn checked(file: ScenarioFile, prefix: &str) -> Result<Scenario, Failure> {
     Scenario::try_from(file).map_err(|problems| {
-        let line = |p: &Problem| format!("{prefix}{} {}, found {}", p.field, p.rule, p.found);
+        let line = |p: &Problem| format!("{prefix}{p}");
         Failure::Input(problems.iter().map(line).collect::<Vec<_>>().join("\n"))
     })
 }

@@ -1,6 +1,6 @@
 //! The rules of debris and radiation zones.
 
-use super::file::{DebrisShape, Point, ScenarioFile};
+use super::file::{DebrisShape, Door, Point, ScenarioFile, WallFile};
 use super::validate::Checker;
 use crate::limits;
 
@@ -27,9 +27,35 @@ pub(super) fn debris(check: &mut Checker, file: &ScenarioFile) {
             check.number(format!("{field}.movable.friction"), movable.friction, limits::FRICTION);
         }
     }
+    for (i, wall) in file.walls.iter().enumerate() {
+        self::wall(check, &format!("walls[{i}]"), wall);
+    }
     for (i, zone) in file.radiation.iter().enumerate() {
         check.inside(format!("radiation[{i}].at"), zone.at, 0.0);
         check.number(format!("radiation[{i}].radius_m"), zone.radius_m, limits::ZONE_RADIUS_M);
+    }
+}
+
+fn wall(check: &mut Checker, field: &str, wall: &WallFile) {
+    check.inside(format!("{field}.from"), wall.from, 0.0);
+    check.inside(format!("{field}.to"), wall.to, 0.0);
+    check.number(format!("{field}.thickness_m"), wall.thickness_m, limits::WALL_THICKNESS_M);
+    let length = wall.length_m();
+    if length < wall.thickness_m {
+        check.fail(field, "must be at least as long as it is thick", format!("{length} m"));
+    }
+    let mut doors: Vec<(usize, &Door)> = wall.doors.iter().enumerate().collect();
+    doors.sort_by(|a, b| a.1.at_m.total_cmp(&b.1.at_m));
+    let mut free_from = 0.0;
+    for (i, door) in doors {
+        let field = format!("{field}.doors[{i}]");
+        check.number(format!("{field}.width_m"), door.width_m, limits::DOOR_WIDTH_M);
+        let [begin, end] = [door.at_m - door.width_m / 2.0, door.at_m + door.width_m / 2.0];
+        if !(begin >= free_from && end <= length) {
+            let rule = format!("must lie within the wall of {length:.3} m and clear of other doors");
+            check.fail(field, rule, format!("{begin} to {end} m"));
+        }
+        free_from = end;
     }
 }
 

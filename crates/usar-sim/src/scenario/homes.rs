@@ -3,8 +3,8 @@
 use parry2d::bounding_volume::Aabb;
 use parry2d::math::Vector;
 
-use super::file::{Point, RoleFile, RoleKind, ScenarioFile};
-use super::validate::{Checker, role_of};
+use super::file::{DebrisFile, Point, RoleFile, RoleKind, ScenarioFile};
+use super::validate::Checker;
 use crate::geometry::Places;
 
 /// A robot's home.
@@ -16,9 +16,10 @@ struct Home<'f> {
 
 /// No home on another home of its layer, nor inside debris (aerial robots fly over it). Places and shapes must be sound.
 pub(super) fn homes_are_free(check: &mut Checker, file: &ScenarioFile) {
+    let bodies: Vec<Option<RoleFile>> = file.team.iter().map(|row| file.body_of(row)).collect();
     let mut homes: Vec<Home> = Vec::new();
-    for (row, line) in file.team.iter().enumerate() {
-        let Some(role) = role_of(file, line) else { continue };
+    for (row, (line, role)) in file.team.iter().zip(&bodies).enumerate() {
+        let Some(role) = role else { continue };
         homes.extend(line.places().map(|at| Home { row, role, at }));
     }
     let boxes =
@@ -26,18 +27,25 @@ pub(super) fn homes_are_free(check: &mut Checker, file: &ScenarioFile) {
     let places: Places = homes.iter().map(boxes).collect();
     apart(check, &homes, &places);
     for (i, piece) in file.debris.iter().enumerate() {
-        let outline = piece.outline();
-        let bounds = outline.shape.compute_aabb(&outline.pose);
-        let mut near = places.near(bounds.center(), bounds.half_extents().max_element());
-        near.sort_unstable();
-        let is_in_it = |home: &&Home| {
-            home.role.kind == RoleKind::Ground
-                && outline.distance_to(vector(home.at)) < home.role.radius_m as f32
-        };
-        if let Some(Home { at, .. }) = near.iter().map(|number| &homes[*number]).find(is_in_it) {
-            let rule = "must leave every robot's home free";
-            check.fail(format!("debris[{i}].at"), rule, format!("a home at ({}, {})", at[0], at[1]));
-        }
+        outside(check, &format!("debris[{i}].at"), piece, (&homes, &places));
+    }
+    for (i, wall) in file.walls.iter().enumerate() {
+        wall.pieces().for_each(|piece| outside(check, &format!("walls[{i}]"), &piece, (&homes, &places)));
+    }
+}
+
+/// No home of a robot that drives in a piece of debris: the first that is.
+fn outside(check: &mut Checker, field: &str, piece: &DebrisFile, (homes, places): (&[Home], &Places)) {
+    let outline = piece.outline();
+    let bounds = outline.shape.compute_aabb(&outline.pose);
+    let mut near = places.near(bounds.center(), bounds.half_extents().max_element());
+    near.sort_unstable();
+    let is_in_it = |home: &&Home| {
+        home.role.kind == RoleKind::Ground && outline.distance_to(vector(home.at)) < home.role.radius_m as f32
+    };
+    if let Some(Home { at, .. }) = near.iter().map(|number| &homes[*number]).find(is_in_it) {
+        let rule = "must leave every robot's home free";
+        check.fail(field, rule, format!("a home at ({}, {})", at[0], at[1]));
     }
 }
 

@@ -6,7 +6,9 @@ use ron_fields::limits::Limit;
 
 use super::debris::debris;
 use super::error::Problem;
-use super::file::{Measure, NeedFile, Normal, Point, RoleFile, Row, SampledCounts, ScenarioFile, TaskFile};
+use super::file::{
+    Measure, NeedFile, Normal, Point, ResolverRule, RoleFile, SampledCounts, ScenarioFile, TaskFile,
+};
 use super::homes::homes_are_free;
 use crate::limits;
 use crate::vitals::Rates;
@@ -52,7 +54,7 @@ impl Checker {
             return;
         }
         let (field, rule, found) = (field.into(), rule.into(), found.to_string());
-        self.problems.push(Problem { field, line: None, rule, found });
+        self.problems.push(Problem { field, rule, found, ..Problem::default() });
     }
 
     /// Whether no more problems are taken.
@@ -120,6 +122,10 @@ fn sizes(check: &mut Checker, file: &ScenarioFile) {
     }
     check.entries("errands", file.errands.len(), limits::ERRANDS);
     check.entries("debris", file.debris.len(), limits::DEBRIS);
+    check.entries("walls", file.walls.len(), limits::WALLS);
+    for (i, wall) in file.walls.iter().enumerate() {
+        check.entries(format!("walls[{i}].doors"), wall.doors.len(), limits::DOORS);
+    }
     check.entries("radiation", file.radiation.len(), limits::ZONES);
 }
 
@@ -141,13 +147,16 @@ fn general(check: &mut Checker, file: &ScenarioFile) {
 fn team(check: &mut Checker, file: &ScenarioFile) {
     for (i, row) in file.team.iter().enumerate() {
         let field = format!("team[{i}]");
-        let Some(role) = role_of(file, row) else {
+        let Some(role) = file.body_of(row) else {
             let known: Vec<&str> = file.roles.iter().map(|role| role.name.as_str()).collect();
             let rule = format!("must be one of the roles ({})", known.join(", "));
             check.fail(format!("{field}.role"), rule, format!("{:?}", row.role));
             continue;
         };
         let radius = role.radius_m;
+        if row.body.is_some() {
+            self::role(check, &format!("{field}.body"), &role, file.dt_s);
+        }
         check.number(format!("{field}.width_m"), row.width_m, limits::ROW_WIDTH_M);
         if let Some(levels) = row.levels {
             check.number(format!("{field}.levels.energy"), levels.energy, limits::LEVEL);
@@ -156,11 +165,6 @@ fn team(check: &mut Checker, file: &ScenarioFile) {
         check.inside(format!("{field}.center"), [row.center[0] - row.width_m / 2.0, row.center[1]], radius);
         check.inside(format!("{field}.center"), [row.center[0] + row.width_m / 2.0, row.center[1]], radius);
     }
-}
-
-/// The role of a row, if it is one of the scenario's.
-pub(super) fn role_of<'f>(file: &'f ScenarioFile, row: &Row) -> Option<&'f RoleFile> {
-    file.roles.iter().find(|role| role.name == row.role)
 }
 
 /// A name as it is told: in quotes, and not longer than a line.
@@ -236,8 +240,8 @@ fn needs(check: &mut Checker, file: &ScenarioFile) {
         }
     }
     for row in &file.team {
-        let Some(role) = role_of(file, row) else { continue };
-        if file.needs.iter().all(|need| need.weight * at_best(role, need) == 0.0) {
+        let Some(role) = file.body_of(row) else { continue };
+        if file.needs.iter().all(|need| need.weight * at_best(&role, need) == 0.0) {
             let must = format!("must weigh a need that a {} has", role.name);
             check.fail("needs", must, "weights of 0 for all of them");
         }
@@ -394,15 +398,19 @@ fn rules(check: &mut Checker, file: &ScenarioFile) {
     check.number("mission.cut_off_s", mission.cut_off_s, limits::CUT_OFF_S);
     check.number("planning.clearance_m", file.planning.clearance_m, limits::CLEARANCE_M);
     check.number("planning.exposure_price_m", file.planning.exposure_price_m, limits::EXPOSURE_PRICE_M);
-    check.number("conflicts.margin_m", file.conflicts.margin_m, limits::MARGIN_M);
-    check.number("conflicts.horizon_s", file.conflicts.horizon_s, limits::HORIZON_S);
-    check.count("conflicts.deadlock_steps", file.conflicts.deadlock_steps, limits::DEADLOCK_STEPS);
+    if let ResolverRule::Rotation(rule) | ResolverRule::Swap(rule) = file.conflicts.resolver {
+        check.number("conflicts.resolver.margin_m", rule.margin_m, limits::MARGIN_M);
+        check.number("conflicts.resolver.horizon_s", rule.horizon_s, limits::HORIZON_S);
+        check.count("conflicts.resolver.deadlock_steps", rule.deadlock_steps, limits::DEADLOCK_STEPS);
+    }
 }
 
 impl ScenarioFile {
     /// Least reach that lets a robot load a rescuee next to another robot: its own radius.
     fn least_reach_m(&self) -> f64 {
-        let carrying = self.roles.iter().filter(|role| role.capacity > 0);
+        let bodies = self.team.iter().filter_map(|row| self.body_of(row));
+        let roles = self.roles.iter().cloned().chain(bodies);
+        let carrying = roles.filter(|role| role.capacity > 0);
         carrying.map(|role| role.radius_m).fold(0.0, f64::max)
     }
 }
