@@ -3,6 +3,7 @@
 mod laws;
 mod support;
 
+mod broken;
 mod conservation;
 mod determinism;
 mod invariants;

@@ -23,7 +23,7 @@ pub struct SyntaxError {
 /// # Errors
 /// The first place that is wrong.
 pub fn check_syntax(text: &str) -> Result<(), SyntaxError> {
-    let mut reader = Reader { cursor: Cursor::new(text), text };
+    let mut reader = Reader { cursor: Cursor::new(text), text, long_string: None };
     reader.blank()?;
     if reader.cursor.peek().is_none() {
         return reader.wrong(0, "has no value: only blanks and comments");
@@ -42,6 +42,8 @@ pub fn check_syntax(text: &str) -> Result<(), SyntaxError> {
 struct Reader<'t> {
     cursor: Cursor<'t>,
     text: &'t str,
+    /// Where the last string begins that goes on beyond its line.
+    long_string: Option<usize>,
 }
 
 type Checked = Result<(), SyntaxError>;
@@ -92,6 +94,9 @@ impl<'t> Reader<'t> {
             Some(b'{') => self.entries(b'}'),
             Some(b'"') => self.string(),
             Some(b'\'') => self.character(),
+            Some(b'#') => {
+                self.wrong(at, "extensions change what a file means and are not allowed; remove `#![...]`")
+            }
             Some(byte) if is_of_name(byte) && !byte.is_ascii_digit() => self.named(),
             Some(byte) if byte.is_ascii_digit() || b"+-.".contains(&byte) => self.number(),
             _ => {
@@ -106,7 +111,10 @@ impl<'t> Reader<'t> {
         self.cursor.quoted(b'"');
         let text = self.cursor.since(at);
         if text.len() < 2 || !text.ends_with('"') || ends_escaped(text) {
-            return self.wrong(at, "the string is not closed by `\"`");
+            return self.wrong(self.long_string.unwrap_or(at), "the string is not closed by `\"`");
+        }
+        if text.contains('\n') {
+            self.long_string = self.long_string.or(Some(at));
         }
         Ok(())
     }
@@ -204,6 +212,17 @@ impl<'t> Reader<'t> {
 
     fn no_comma(&self, end: usize) -> Checked {
         let found = self.here();
+        if let Some(at) = self.long_string {
+            return self.wrong(at, "the string is not closed on its line by `\"`");
+        }
+        let word = found.trim_matches('`');
+        let after =
+            self.text[self.cursor.at() + word.len().min(self.text.len() - self.cursor.at())..].trim_start();
+        let is_unit = word.len() <= 4 && word.chars().all(char::is_alphabetic) && !after.starts_with(':');
+        if is_unit && self.text[..end].ends_with(|c: char| c.is_ascii_digit()) {
+            return self
+                .wrong(self.cursor.at(), &format!("a number is written without its unit, found {found}"));
+        }
         let message = match self.cursor.peek() {
             Some(b'=') => "a field is written with a colon, as in `name: value`, found `=`".to_owned(),
             Some(b';') => "entries are separated by commas, found `;`".to_owned(),
@@ -247,7 +266,12 @@ impl<'t> Reader<'t> {
             let message = match self.cursor.peek() {
                 Some(b'=') => format!("a field is written with a colon, as in `{name}: value`, found `=`"),
                 _ if is_name => format!("`:` is missing after {}", self.shown(at)),
-                _ => format!("the name of a field is missing before {}", self.shown(at)),
+                _ => {
+                    let is_decimal = self.text[..at].ends_with(',')
+                        && self.text[at..].starts_with(|c: char| c.is_ascii_digit());
+                    let point = if is_decimal { "; decimals are written with a point" } else { "" };
+                    format!("the name of a field is missing before {}{point}", self.shown(at))
+                }
             };
             return self.wrong(if is_name { name_end } else { at }, &message);
         }

@@ -23,7 +23,7 @@ impl Misfit {
     pub fn new(error: &Error, path: &str, (text, at): (&str, usize), fields: &Fields) -> Self {
         let is_of_value = matches!(error, Error::ExpectedComma | Error::ExpectedStructLikeEnd);
         let number = if is_of_value {
-            fields.leaf_at(at).filter(|leaf| is_number(value(text, fields, leaf)))
+            fields.leaf_at(at).filter(|leaf| is_within_number(text, fields, leaf, at))
         } else {
             None
         };
@@ -73,9 +73,12 @@ impl Misfit {
                 let count: String = expected.chars().filter(char::is_ascii_digit).collect();
                 plain(&format!("must have {count} entries"))
             }
-            Error::Message(said) => match said.split_once(HINT) {
-                Some((rule, hint)) => Self { hint: hint.to_owned(), ..plain(rule) },
-                None => plain(said),
+            Error::Message(said) => match said.split(PARTS).collect::<Vec<_>>()[..] {
+                [inner, rule, found, hint] => {
+                    let field = if inner.is_empty() { field } else { within(inner) };
+                    Self { field, rule: rule.to_owned(), found: found.to_owned(), hint: hint.to_owned() }
+                }
+                _ => plain(said),
             },
             _ if number.is_some() && !is_whole => plain("must be a whole number"),
             other => plain(&in_words(other, &found)),
@@ -85,13 +88,12 @@ impl Misfit {
     /// As one text that [`Misfit::new`] takes apart again, for values that are read apart from their text.
     #[must_use]
     pub fn packed(&self) -> String {
-        let field = if self.field.is_empty() { String::new() } else { format!("{}: ", self.field) };
-        format!("{field}{}{HINT}{}", self.rule, self.hint)
+        [self.field.as_str(), &self.rule, &self.found, &self.hint].join(PARTS)
     }
 }
 
-/// What parts a rule from its hint in a packed misfit.
-const HINT: &str = "\u{1f}";
+/// What stands between the parts of a packed misfit.
+const PARTS: &str = "\u{1f}";
 
 /// What was meant by a name, and which there are.
 fn meant(name: &str, known: &[&str]) -> String {
@@ -115,6 +117,11 @@ fn written<'p>(path: &'p str, fields: &Fields) -> &'p str {
 
 fn value<'t>(text: &'t str, fields: &Fields, path: &str) -> &'t str {
     fields.value(path).and_then(|place| text.get(place)).unwrap_or_default()
+}
+
+/// Whether a byte stands in a number, behind its beginning.
+fn is_within_number(text: &str, fields: &Fields, leaf: &str, at: usize) -> bool {
+    is_number(value(text, fields, leaf)) && fields.value(leaf).is_some_and(|place| place.start < at)
 }
 
 fn is_number(text: &str) -> bool {

@@ -11,7 +11,7 @@ use xxhash_rust::xxh3::xxh3_128;
 
 use super::file::{Map, SweepFile};
 use super::grid::check_bytes;
-use super::policy::registry;
+use super::policy::{PolicySpec, registry};
 use super::{Axis, Parts, Program, Seeds};
 use crate::failure::Failure;
 use crate::limits;
@@ -131,6 +131,9 @@ pub(super) fn from_sweep_file(text: String, path: &Path) -> Result<(Parts, Vec<R
     let axes = axes(file.axes, &base, &bad)?;
     let readings = readings(file.readings, &bad)?;
     let policies = file.policies.unwrap_or_else(|| vec!["RNE".to_owned()]);
+    for (i, policy) in policies.iter().enumerate() {
+        PolicySpec::parse(policy).map_err(|error| bad(&format!("policies[{i}]"), &error))?;
+    }
     let seeds = match (file.seeds, file.first_seed) {
         (Some(_), Some(_)) => return Err(bad("seeds", &"must not be given beside first_seed")),
         (Some(list), None) if list.is_empty() => {

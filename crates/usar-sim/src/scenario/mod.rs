@@ -7,9 +7,11 @@ mod error;
 mod file;
 mod former;
 mod homes;
+mod odd;
 mod partial;
 mod places;
 mod reading;
+mod sense;
 mod set;
 mod validate;
 

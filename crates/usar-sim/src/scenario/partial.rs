@@ -1,7 +1,7 @@
 //! Sections of which a part may be left out, where what is left out depends on the place: it has the default of that place.
 
 use ron_fields::{Fields, Misfit};
-use serde::de::{Error, IgnoredAny};
+use serde::de::Error;
 use serde::ser::SerializeStructVariant;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
@@ -145,8 +145,7 @@ fn thickness_m() -> f64 {
 impl<'de> Deserialize<'de> for WallFile {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         let text = text_of(deserializer)?;
-        let is_short = ron_options().from_str::<(Point, IgnoredAny)>(&text).is_ok();
-        if is_short {
+        if text.strip_prefix('(').is_some_and(|inside| inside.trim_start().starts_with('(')) {
             let (from, to) = read(&text)?;
             return Ok(Self { from, to, thickness_m: thickness_m(), doors: Vec::new() });
         }

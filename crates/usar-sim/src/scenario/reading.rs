@@ -52,10 +52,6 @@ pub fn check_text(text: &str, path: &Path) -> Result<(), ScenarioError> {
         let (message, excerpt) = (found.to_string(), String::new());
         return Err(ScenarioError::Malformed { path: path.to_owned(), line, column, message, excerpt });
     }
-    if text.trim_start().starts_with("#!") {
-        let message = "extensions change what a file means and are not allowed; remove `#![...]`";
-        return Err(malformed(text.find("#!").unwrap_or_default(), message.to_owned()));
-    }
     check_syntax(text).map_err(|error| malformed(error.at, error.message))
 }
 

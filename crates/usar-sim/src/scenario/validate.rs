@@ -3,6 +3,7 @@
 use std::fmt::Display;
 
 use ron_fields::limits::Limit;
+use ron_fields::nearest;
 
 use super::debris::debris;
 use super::error::Problem;
@@ -10,6 +11,7 @@ use super::file::{
     Measure, NeedFile, Normal, Point, ResolverRule, RoleFile, SampledCounts, ScenarioFile, TaskFile,
 };
 use super::homes::homes_are_free;
+use super::sense::sense;
 use crate::limits;
 use crate::vitals::Rates;
 
@@ -34,7 +36,8 @@ pub(super) fn problems(file: &ScenarioFile) -> Vec<Problem> {
     rules(&mut check, file);
     needs(&mut check, file);
     if check.problems.is_empty() {
-        homes_are_free(&mut check, file); // needs sound shapes and places
+        homes_are_free(&mut check, file); // these need sound shapes and places
+        sense(&mut check, file);
     }
     check.problems
 }
@@ -50,11 +53,21 @@ pub(super) struct Checker {
 impl Checker {
     /// Notes a broken rule, unless there are [`MAX_PROBLEMS`] already.
     pub(super) fn fail(&mut self, field: impl Into<String>, rule: impl Into<String>, found: impl Display) {
+        self.fail_with(field, (rule.into(), String::new()), found);
+    }
+
+    /// Notes a broken rule with a hint.
+    pub(super) fn fail_with(
+        &mut self,
+        field: impl Into<String>,
+        (rule, hint): (String, String),
+        found: impl Display,
+    ) {
         if self.problems.len() >= MAX_PROBLEMS {
             return;
         }
-        let (field, rule, found) = (field.into(), rule.into(), found.to_string());
-        self.problems.push(Problem { field, rule, found, ..Problem::default() });
+        let (field, found) = (field.into(), found.to_string());
+        self.problems.push(Problem { field, rule, found, hint, ..Problem::default() });
     }
 
     /// Whether no more problems are taken.
@@ -65,7 +78,14 @@ impl Checker {
     pub(super) fn number(&mut self, field: impl Into<String>, value: f64, limit: Limit) {
         if !limit.range().contains(&value) {
             let rule = format!("must be a number from {} to {}", limit.least, limit.most);
-            self.fail(field, rule, value);
+            let other_unit = [value / 1000.0, value * 1000.0].into_iter().find(|other| {
+                (value > 4.0 * limit.most || value > 0.0 && value < limit.least / 4.0)
+                    && limit.range().contains(other)
+            });
+            let hint = other_unit
+                .map_or(String::new(), |other| format!("is the unit right? {other} would be in range"));
+            let found = if value.abs() < 1e15 { value.to_string() } else { format!("{value:e}") };
+            self.fail_with(field, (rule, hint), found);
         }
     }
 
@@ -150,7 +170,7 @@ fn team(check: &mut Checker, file: &ScenarioFile) {
         let Some(role) = file.body_of(row) else {
             let known: Vec<&str> = file.roles.iter().map(|role| role.name.as_str()).collect();
             let rule = format!("must be one of the roles ({})", known.join(", "));
-            check.fail(format!("{field}.role"), rule, format!("{:?}", row.role));
+            check.fail_with(format!("{field}.role"), (rule, meant(&row.role, known)), shown(&row.role));
             continue;
         };
         let radius = role.radius_m;
@@ -165,6 +185,11 @@ fn team(check: &mut Checker, file: &ScenarioFile) {
         check.inside(format!("{field}.center"), [row.center[0] - row.width_m / 2.0, row.center[1]], radius);
         check.inside(format!("{field}.center"), [row.center[0] + row.width_m / 2.0, row.center[1]], radius);
     }
+}
+
+/// The name that may have been meant, as a hint.
+fn meant<'k>(name: &str, known: impl IntoIterator<Item = &'k str>) -> String {
+    nearest(name, known).map_or(String::new(), |meant| format!("did you mean {meant}?"))
 }
 
 /// A name as it is told: in quotes, and not longer than a line.
@@ -205,7 +230,7 @@ fn names<'n>(check: &mut Checker, table: &str, names: impl Iterator<Item = &'n s
 }
 
 /// Path of an entry of a table: by its name, which is how people find it.
-fn entry(table: &str, name: &str) -> String {
+pub(super) fn entry(table: &str, name: &str) -> String {
     format!("{table}.{name}")
 }
 
@@ -217,7 +242,13 @@ fn roles(check: &mut Checker, file: &ScenarioFile) {
             let is_need = |need: &NeedFile| need.name == *name && need.measures == Measure::Constant;
             if !file.needs.iter().any(is_need) {
                 let field = format!("{}.constants", entry("roles", &spec.name));
-                check.fail(field, "must name needs that measure Constant", format!("{name:?}"));
+                let constants = file.needs.iter().filter(|need| need.measures == Measure::Constant);
+                let hint = meant(name, constants.map(|need| need.name.as_str()));
+                check.fail_with(
+                    field,
+                    ("must name needs that measure Constant".to_owned(), hint),
+                    shown(name),
+                );
             }
         }
     }
@@ -242,7 +273,7 @@ fn needs(check: &mut Checker, file: &ScenarioFile) {
     for row in &file.team {
         let Some(role) = file.body_of(row) else { continue };
         if file.needs.iter().all(|need| need.weight * at_best(&role, need) == 0.0) {
-            let must = format!("must weigh a need that a {} has", role.name);
+            let must = format!("must weigh a need that robots of the role {} have", role.name);
             check.fail("needs", must, "weights of 0 for all of them");
         }
     }
@@ -308,7 +339,9 @@ fn tasks(check: &mut Checker, file: &ScenarioFile) {
         for (role, quota) in &task.quota {
             check.count(format!("{field}.quota.{role:?}"), *quota, limits::QUOTA);
             if !file.roles.iter().any(|known| known.name == *role) {
-                check.fail(format!("{field}.quota"), "must name roles of the scenario", format!("{role:?}"));
+                let known = file.roles.iter().map(|role| role.name.as_str());
+                let rule = ("must name roles of the scenario".to_owned(), meant(role, known));
+                check.fail_with(format!("{field}.quota"), rule, shown(role));
             }
         }
     }

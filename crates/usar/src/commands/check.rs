@@ -8,6 +8,8 @@ use clap::Args;
 use experiments::experiment::{Experiment, Overrides};
 use experiments::{Failure, panic_message};
 
+use crate::running::tell;
+
 /// Validate scenarios and sweep files without running them
 #[derive(Debug, Args)]
 #[command(after_help = "Example:\n  usar check scenarios/*.ron scenarios/sweeps/*.ron")]
@@ -23,6 +25,10 @@ fn check(file: &Path) -> Result<String, Failure> {
     let check = || {
         let experiment = Experiment::load(file, &Overrides::default())?;
         experiment.with_trials(1)?.check_start(file)?;
+        for odd in experiment.base.oddities(&experiment.given) {
+            let line = odd.line.map_or(String::new(), |line| format!(":{line}"));
+            tell(format_args!("note: {}{line}: {odd}", file.display()));
+        }
         let cost = experiment.check_cost(false).err();
         Ok(cost.map_or_else(|| "ok".to_owned(), |cost| format!("ok, but expensive: {cost}")))
     };
