@@ -13,6 +13,7 @@ pub mod golden;
 pub mod journeys;
 pub mod kills;
 pub mod limits;
+pub mod mutations;
 pub mod navigation;
 pub mod pages;
 pub mod rooms;

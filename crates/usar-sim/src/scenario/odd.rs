@@ -1,4 +1,4 @@
-//! Values that are allowed but far from what is usual: perhaps their unit is another.
+//! What is allowed but not usual: values far from the defaults, perhaps of another unit, and tasks for which there is nobody.
 
 use ron_fields::Fields;
 
@@ -10,11 +10,21 @@ use super::file::{MissionRules, PlanningRules, RoleFile};
 const FACTOR: f64 = 1000.0;
 
 impl Scenario {
-    /// Values a thousand times as large or as small as the defaults, as by a unit that is another; `text` says on which lines they stand.
+    /// Values a thousand times as large or as small as the defaults, as by a unit that is another, and a team smaller than its tasks; `text`
+    /// says on which lines they stand.
     #[must_use]
     pub fn oddities(&self, text: &str) -> Vec<Problem> {
         let fields = Fields::of(text);
         let mut odd = Vec::new();
+        if (self.robots() as usize) < self.tasks.len() {
+            odd.push(Problem {
+                field: "team".to_owned(),
+                rule: format!("has fewer robots than there are tasks, {}", self.tasks.len()),
+                found: self.robots().to_string(),
+                hint: "each round leaves tasks without anybody".to_owned(),
+                ..Problem::default()
+            });
+        }
         let role = numbers(&RoleFile::default());
         for (i, own) in self.roles.iter().enumerate() {
             // Ranges and counts of roles differ by design: only what all robots have about alike is compared.

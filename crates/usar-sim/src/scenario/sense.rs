@@ -30,13 +30,8 @@ pub(super) fn sense(check: &mut Checker, file: &ScenarioFile) {
     }
 }
 
-/// Somebody can carry, somebody has resources, and no task is left without a robot.
+/// Somebody can carry, and somebody has resources.
 fn team(check: &mut Checker, file: &ScenarioFile) {
-    let robots: usize = file.team.iter().map(|row| row.count as usize).sum();
-    if robots < file.tasks.len() {
-        let rule = format!("must have a robot for each of the {} tasks", file.tasks.len());
-        check.fail("team", rule, robots);
-    }
     if file.tasks.iter().all(|task| task.grid.contains(&0)) {
         return; // nobody to rescue
     }
@@ -109,7 +104,7 @@ fn is_in_the_way(wall: &Outline, task: &TaskFile) -> bool {
 fn covers(check: &mut Checker, field: &str, piece: &DebrisFile, file: &ScenarioFile) {
     let outline = piece.outline();
     let depth = |at: Point| -f64::from(outline.signed_distance([at[0] as f32, at[1] as f32].into()));
-    let smallest = file.smallest_carrier_m();
+    let smallest = file.smallest_on_the_ground_m();
     for task in &file.tasks {
         let covered =
             [("centre", task.center), ("rest place", task.rest)].into_iter().find(|(_, at)| depth(*at) > 0.0);
@@ -155,9 +150,9 @@ fn rescuees_of(task: &TaskFile) -> impl Iterator<Item = Point> + '_ {
 
 impl ScenarioFile {
     /// Radius of the smallest robot on the ground that can carry, in metres.
-    fn smallest_carrier_m(&self) -> f64 {
+    fn smallest_on_the_ground_m(&self) -> f64 {
         let bodies = self.team.iter().filter_map(|row| self.body_of(row));
-        let carriers = bodies.filter(|body| body.kind == RoleKind::Ground && body.capacity > 0);
-        carriers.map(|body| body.radius_m).fold(limits::ROBOT_RADIUS_M.most, f64::min)
+        let able = bodies.filter(|body| body.kind == RoleKind::Ground && body.capacity > 0);
+        able.map(|body| body.radius_m).fold(limits::ROBOT_RADIUS_M.most, f64::min)
     }
 }
