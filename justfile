@@ -26,6 +26,14 @@ damage *arguments:
     cargo build --release --package usar
     cargo run --release --package xtask -- damage {{arguments}}
 
+# 100,000 damaged scenarios, sweep files, tables, snapshots and questions through their loaders: no panic, none takes a second
+mutations *arguments:
+    cargo run --release --package xtask -- mutations {{arguments}}
+
+# docs/limits.md from the constants
+limits:
+    cargo run --package xtask -- limits
+
 # What a step costs: full simulator against raw physics, stage by stage
 bench:
     cargo bench --bench speed

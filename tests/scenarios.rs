@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use experiments::experiment::{Experiment, Overrides};
 use rne_core::Registry;
 use usar_sim::model::Layout;
-use usar_sim::scenario::{ConflictRules, ResolverRule, RoleFile, Scenario};
+use usar_sim::scenario::{ResolverRule, RightOfWay, RoleFile, Scenario};
 
 use crate::support::{SAMPLED, paper, paper_text, paper_with, root};
 
@@ -67,9 +67,9 @@ fn the_defaults_are_those_of_the_paper_s_scenario() {
     assert_eq!(small.planning, paper.planning);
     assert_eq!(
         (small.conflicts.resolver, paper.conflicts.resolver),
-        (ResolverRule::Reciprocal, ResolverRule::Rotation)
+        (ResolverRule::Reciprocal, ResolverRule::Rotation(RightOfWay::default()))
     );
-    assert_eq!(ConflictRules { resolver: ResolverRule::Rotation, ..small.conflicts }, paper.conflicts);
+    assert_eq!(small.conflicts.priority, paper.conflicts.priority);
     assert_eq!(small.sampled, paper.sampled);
 }
 
@@ -158,14 +158,14 @@ fn unknown_fields_wrong_types_and_missing_fields_are_named_with_their_place() {
     let line = line_of("rest_s: 30.0");
     let unknown = error_of("rest_s: 30.0", "rest_secs: 30.0");
     assert!(unknown.starts_with(&format!("s.ron:{line}:")), "{unknown}");
-    assert!(unknown.contains("rest_secs") && unknown.contains("`rest_s`"), "{unknown}");
+    assert!(unknown.contains("rest_secs") && unknown.contains("did you mean rest_s?"), "{unknown}");
 
     let wrong_type = error_of("rest_s: 30.0", "rest_s: \"thirty\"");
     assert!(wrong_type.starts_with(&format!("s.ron:{line}:")), "{wrong_type}");
     assert!(wrong_type.contains("mission.rest_s"), "{wrong_type}");
 
-    let missing = error_of("rest_s: 30.0,", "");
-    assert!(missing.contains("rest_s"), "{missing}");
+    let missing = error_of("size_m: (11.0, 5.7), ", "");
+    assert!(missing.contains("size_m"), "{missing}");
 
     let line = line_of("kind: Aerial");
     let variant = error_of("kind: Aerial", "kind: Flying");

@@ -3,9 +3,11 @@
 mod laws;
 mod support;
 
+mod broken;
 mod conservation;
 mod determinism;
 mod invariants;
+mod limits;
 mod minimal;
 mod missions;
 mod navigation;

@@ -1,13 +1,14 @@
 //! Files that take their name when they are whole, and the hashes of their bytes.
 
 use std::fs::{self, File};
-use std::io::{self, BufWriter, ErrorKind, Write};
+use std::io::{self, BufWriter, ErrorKind, Read, Write};
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 use xxhash_rust::xxh3::{Xxh3, xxh3_128};
 
 use crate::failure::Failure;
+use crate::limits::STORED_BYTES;
 
 /// A file on its way: it takes its name when it is whole.
 pub struct NewFile {
@@ -99,14 +100,19 @@ pub fn open(path: &Path) -> io::Result<File> {
     if fs::metadata(path)?.is_file() { File::open(path) } else { Err(no_file()) }
 }
 
-/// The bytes of a file that [`open`] opens.
+/// The bytes of a file that [`open`] opens, at most [`STORED_BYTES`].
 ///
 /// # Errors
-/// Those of [`open`].
+/// Those of [`open`], or it is larger.
 pub fn read(path: &Path) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
-    io::copy(&mut open(path)?, &mut bytes)?;
-    Ok(bytes)
+    open(path)?.take(STORED_BYTES.most as u64 + 1).read_to_end(&mut bytes)?;
+    if STORED_BYTES.allows(bytes.len()) {
+        return Ok(bytes);
+    }
+    let most = STORED_BYTES.count() >> 20;
+    let reason = format!("is larger than the {most} MiB that such a file may have");
+    Err(io::Error::new(ErrorKind::FileTooLarge, reason))
 }
 
 /// Makes a new file to write and read it, in the place of a file that may have its name; no link is followed.

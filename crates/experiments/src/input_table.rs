@@ -6,6 +6,7 @@ use csv::StringRecord;
 use ron_fields::file::read_text;
 
 use crate::failure::Failure;
+use crate::limits::{COLUMNS, TABLE_ROWS};
 
 /// A table with its rows, each with its line in the file.
 #[derive(Debug)]
@@ -28,6 +29,12 @@ impl InputTable {
         let mut reader =
             csv::ReaderBuilder::new().trim(csv::Trim::All).flexible(true).from_reader(text.as_bytes());
         let header = reader.headers().map_err(|error| bad(&error))?.clone();
+        let (columns, most) = (header.len(), COLUMNS.most);
+        if columns > COLUMNS.count() {
+            return Err(Failure::input(format!(
+                "{shown}:1: must have at most {most} columns, found {columns}"
+            )));
+        }
         let mut rows = Vec::new();
         let mut lines = Lines { text, upto: 0, line: 1 };
         for row in reader.records() {
@@ -40,6 +47,9 @@ impl InputTable {
                 )));
             }
             rows.push((line, row));
+            if rows.len() > TABLE_ROWS.count() {
+                return Err(bad(&format_args!("must have at most {} rows", TABLE_ROWS.most)));
+            }
         }
         let table = Self { header, rows };
         let is_twice = |(i, name): &(usize, &str)| table.header.iter().take(*i).any(|other| other == *name);

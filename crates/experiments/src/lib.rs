@@ -22,6 +22,7 @@ pub mod experiment;
 mod failure;
 pub mod files;
 pub mod input_table;
+pub mod limits;
 pub mod metric;
 pub mod oracle;
 pub mod provenance;

@@ -123,6 +123,9 @@ pub struct RobotPlace {
     pub home: Point,
     /// Its place at the rest place of each task, in metres.
     pub rest: Vec<Point>,
+    /// What it is and can do, where it differs from its role.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub body: Option<RoleFile>,
 }
 
 fn names(names: &[&str]) -> Vec<String> {
@@ -220,6 +223,7 @@ impl World {
             role: robot.role.index(),
             home: metres(robot.home.x, robot.home.y),
             rest: robot.rest.iter().map(|at| metres(at.x, at.y)).collect(),
+            body: (*robot.spec != scenario.roles[robot.role.index()]).then(|| (*robot.spec).clone()),
         });
         Self {
             arena_m: scenario.arena_m,

@@ -2,7 +2,6 @@
 
 use std::collections::BTreeMap;
 use std::ops::Range;
-use std::sync::Arc;
 
 use crate::path::split;
 
@@ -20,23 +19,23 @@ pub(crate) const ROOT: usize = 0;
 pub struct Fields {
     /// The whole text, then its fields and entries in the order of the text, each before what is in it.
     pub(crate) nodes: Vec<Node>,
-    /// The first node of each path, but for the whole text.
-    pub(crate) index: BTreeMap<Arc<str>, usize>,
+    /// The nodes but for the whole text, sorted by path; of one path, in the order of the text.
+    pub(crate) index: Vec<u32>,
 }
 
 /// A field or an entry of a list.
 #[derive(Debug, Clone)]
 pub(crate) struct Node {
     /// Path such as `tasks[0].grid[0]`.
-    pub(crate) path: Arc<str>,
+    pub(crate) path: Box<str>,
     /// Line, from 1.
     line: usize,
     /// Bytes of its value.
     pub(crate) value: Range<usize>,
     /// Fields and entries directly in it.
-    pub(crate) children: Vec<usize>,
+    pub(crate) children: Vec<u32>,
     /// Its entries that have a name.
-    pub(crate) named: BTreeMap<Box<str>, usize>,
+    pub(crate) named: Option<Box<BTreeMap<Box<str>, usize>>>,
     /// Value of its field `name`, during the walk.
     pub(crate) name: Option<Box<str>>,
     /// Whether its value is in square brackets.
@@ -45,13 +44,13 @@ pub(crate) struct Node {
 
 impl Node {
     /// A node without a value, as yet.
-    pub(crate) fn new(path: Arc<str>, line: usize, start: usize) -> Self {
+    pub(crate) fn new(path: Box<str>, line: usize, start: usize) -> Self {
         Self {
             path,
             line,
             value: start..start,
             children: Vec::new(),
-            named: BTreeMap::new(),
+            named: None,
             name: None,
             is_list: false,
         }
@@ -70,7 +69,7 @@ impl Fields {
     /// The path with numbers for names, `tasks[0].grid[1]` for `tasks.hard.grid[1]`, if there is such a field.
     #[must_use]
     pub fn canonical(&self, path: &str) -> Option<String> {
-        self.field(path).map(|field| field.path.as_ref().to_owned())
+        self.field(path).map(|field| field.path.to_string())
     }
 
     /// The bytes of a field's value, if it is written down.
@@ -83,6 +82,12 @@ impl Fields {
     pub fn leaves(&self) -> impl Iterator<Item = (&str, Range<usize>)> {
         let leaves = self.nodes.iter().skip(1).filter(|node| node.children.is_empty());
         leaves.map(|node| (&*node.path, node.value.clone()))
+    }
+
+    /// The path, with numbers for names, of the field without fields of its own whose value holds a byte of the text, or ends before it.
+    #[must_use]
+    pub fn leaf_at(&self, at: usize) -> Option<&str> {
+        self.leaves().find(|(_, place)| place.start <= at && at <= place.end).map(|(path, _)| path)
     }
 
     /// Number of entries of a list that is written down; of the whole text for an empty path.
@@ -101,7 +106,7 @@ impl Fields {
     #[must_use]
     pub fn line(&self, path: &str) -> Option<usize> {
         let nearest = || self.trail(path).last().map_or(ROOT, |step| step.node);
-        let node = self.index.get(path).copied().unwrap_or_else(nearest);
+        let node = self.exactly(path).unwrap_or_else(nearest);
         (node != ROOT).then(|| self.nodes[node].line)
     }
 
@@ -109,10 +114,17 @@ impl Fields {
         self.find(path).filter(|node| *node != ROOT).map(|node| &self.nodes[node])
     }
 
+    /// The first node whose path is this, to the letter.
+    fn exactly(&self, path: &str) -> Option<usize> {
+        let first = self.index.partition_point(|node| *self.nodes[*node as usize].path < *path);
+        let node = *self.index.get(first)? as usize;
+        (*self.nodes[node].path == *path).then_some(node)
+    }
+
     /// The node of a path, with or without names.
     fn find(&self, path: &str) -> Option<usize> {
         let by_steps = || self.trail(path).pop().filter(|step| step.end == path.len()).map(|step| step.node);
-        self.index.get(path).copied().or_else(by_steps)
+        self.exactly(path).or_else(by_steps)
     }
 
     /// What is there of a path, from the whole text on inwards.
@@ -133,10 +145,10 @@ impl Fields {
         let around = &self.nodes[node];
         let by_name = || {
             let name = if node == ROOT { segment } else { segment.strip_prefix('.')? };
-            around.named.get(name).copied()
+            around.named.as_ref()?.get(name).copied()
         };
         let path = format!("{}{segment}", around.path);
-        self.index.get(path.as_str()).copied().or_else(by_name)
+        self.exactly(&path).or_else(by_name)
     }
 
     pub(crate) fn entries_in(&self, node: usize) -> usize {
@@ -151,7 +163,7 @@ impl Fields {
     /// What is directly in a node: `.name` or, at the root, `name`; `[0]`.
     fn keys(&self, node: usize) -> impl Iterator<Item = &str> {
         let node = &self.nodes[node];
-        node.children.iter().map(|child| &self.nodes[*child].path[node.path.len()..])
+        node.children.iter().map(|child| &self.nodes[*child as usize].path[node.path.len()..])
     }
 }
 

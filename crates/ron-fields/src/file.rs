@@ -5,7 +5,7 @@ use std::io::{self, Read};
 use std::path::Path;
 
 /// Bytes that a text of a person's may have: 4 MiB.
-pub const MAX_TEXT_BYTES: u64 = 4 << 20;
+pub const MAX_TEXT_BYTES: u64 = crate::limits::TEXT_BYTES.most as u64;
 
 /// Why a file cannot be read, as the rest of a sentence after its name.
 #[derive(Debug, thiserror::Error)]
@@ -27,21 +27,39 @@ pub enum ReadError {
     NotText(String),
 }
 
+/// Opens a regular file of at most so many bytes; returns it with its length.
+///
+/// # Errors
+/// It is not there, no regular file, too large, or cannot be opened.
+pub fn open(path: &Path, most: u64) -> Result<(fs::File, u64), ReadError> {
+    let there = fs::metadata(path)?;
+    match there.len() {
+        _ if there.is_dir() => Err(ReadError::Folder),
+        _ if !there.is_file() => Err(ReadError::NotRegular),
+        length if length > most => Err(ReadError::TooLarge(most)),
+        length => Ok((fs::File::open(path)?, length)),
+    }
+}
+
 /// Reads a file of at most so many bytes.
 ///
 /// # Errors
-/// It is not there, no regular file, too large, or cannot be read.
+/// Those of [`open`], or it cannot be read.
 pub fn read(path: &Path, most: u64) -> Result<Vec<u8>, ReadError> {
-    let there = fs::metadata(path)?;
-    match there {
-        _ if there.is_dir() => return Err(ReadError::Folder),
-        _ if !there.is_file() => return Err(ReadError::NotRegular),
-        _ if there.len() > most => return Err(ReadError::TooLarge(most)),
-        _ => {}
-    }
     let mut bytes = Vec::new();
-    fs::File::open(path)?.take(most + 1).read_to_end(&mut bytes)?;
+    open(path, most)?.0.take(most + 1).read_to_end(&mut bytes)?;
     if bytes.len() as u64 > most { Err(ReadError::TooLarge(most)) } else { Ok(bytes) }
+}
+
+/// The first bytes of a file, as many as it has of them, and its length.
+///
+/// # Errors
+/// Those of [`read`].
+pub fn read_start(path: &Path, bytes: u64, most: u64) -> Result<(Vec<u8>, u64), ReadError> {
+    let (file, length) = open(path, most)?;
+    let mut start = Vec::new();
+    file.take(bytes).read_to_end(&mut start)?;
+    Ok((start, length))
 }
 
 /// Reads a text of at most [`MAX_TEXT_BYTES`], without the byte order mark that it may begin with.

@@ -3,12 +3,21 @@
 mod cursor;
 mod fields;
 pub mod file;
+pub mod limits;
+mod nearest;
 mod path;
 mod set;
+mod size;
+mod syntax;
+mod told;
 mod unknown;
 mod walker;
 mod written;
 
 pub use fields::Fields;
+pub use nearest::nearest;
 pub use set::{SetError, set};
+pub use size::{TooMuch, check_size};
+pub use syntax::{SyntaxError, check_syntax};
+pub use told::Misfit;
 pub use written::{WriteError, with_values};

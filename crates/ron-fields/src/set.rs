@@ -5,13 +5,13 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 use thiserror::Error;
 
-use crate::Fields;
+use crate::{Fields, Misfit};
 
 /// A field that cannot be set.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum SetError {
     /// There is no such field.
-    #[error("{path}: no such field; {within} has {known}")]
+    #[error("{path}: no such field; {within} has {known}{}", asked(meant.as_deref()))]
     Unknown {
         /// The path that was asked for.
         path: String,
@@ -19,6 +19,8 @@ pub enum SetError {
         within: String,
         /// The fields there.
         known: String,
+        /// The one that may have been meant.
+        meant: Option<String>,
     },
     /// The value does not fit the field.
     #[error("{path}: {reason}, found {found}")]
@@ -30,6 +32,10 @@ pub enum SetError {
         /// The value as given.
         found: String,
     },
+}
+
+fn asked(meant: Option<&str>) -> String {
+    meant.map_or(String::new(), |meant| format!("; did you mean {meant}?"))
 }
 
 /// A value with the field at a path such as `costs.energy` or `tasks.hard.grid[0]` set to `new`, in RON. `what` is the words for the whole value
@@ -52,7 +58,14 @@ pub fn set<T: Serialize + DeserializeOwned>(
         return Err(malformed("must be one value in RON".into()));
     }
     let text = [&text[..place.start], new, &text[place.end..]].concat();
-    options().from_str(&text).map_err(|error| malformed(error.code.to_string()))
+    options().from_str(&text).map_err(|error| {
+        let Misfit { field, rule, hint, .. } =
+            Misfit::new(&error.code, path, (&text, place.start), &Fields::of(&text));
+        let inner = field.strip_prefix(path).map_or("", |rest| rest.trim_start_matches('.'));
+        let inner = if inner.is_empty() { String::new() } else { format!("{inner} ") };
+        let hint = if hint.is_empty() { hint } else { format!(" ({hint})") };
+        malformed(format!("{inner}{rule}{hint}"))
+    })
 }
 
 fn options() -> ron::Options {
@@ -164,7 +177,8 @@ mod tests {
             ("tasks.medium", "tasks has hard, easy (or [0] to [2])"),
             ("tasks.hard.steps.fly.cost", "tasks.hard.steps has go, lift (or [0] to [1])"),
         ] {
-            assert_eq!(refused(path, "1"), format!("{path}: no such field; {says}"));
+            let error = refused(path, "1");
+            assert!(error.starts_with(&format!("{path}: no such field; {says}")), "{error}");
         }
         assert!(refused("duration_s", "\"long\"").ends_with(", found \"long\""));
         assert!(refused("order", "Far").starts_with("order: "));

@@ -1,6 +1,8 @@
 //! What is said of a path that is not there.
 
-use crate::fields::Fields;
+use crate::fields::{Fields, ROOT, Step};
+use crate::nearest;
+use crate::path::split;
 use crate::set::SetError;
 
 /// Most names of entries in a message.
@@ -11,10 +13,17 @@ impl Fields {
     #[must_use]
     pub fn unknown(&self, path: &str, what: &str) -> SetError {
         let mut trail = self.trail(path).into_iter().rev();
-        let told = trail.find_map(|step| Some((step.end, self.known(step.node)?)));
-        let (end, known) = told.unwrap_or((0, "no fields".to_owned()));
+        let told = trail.find_map(|step| {
+            let known = self.known(step.node)?;
+            Some((step, known))
+        });
+        let (Step { node, end }, known) =
+            told.unwrap_or((Step { node: ROOT, end: 0 }, "no fields".to_owned()));
         let within = if end == 0 { what } else { &path[..end] };
-        SetError::Unknown { path: path.to_owned(), within: within.to_owned(), known }
+        let (word, _) = split(path[end..].trim_start_matches('.'));
+        let there = self.names_in(node).into_iter().chain(self.names_of_entries(node));
+        let meant = nearest(word, there).map(str::to_owned);
+        SetError::Unknown { path: path.to_owned(), within: within.to_owned(), known, meant }
     }
 
     /// What is in a node, in words; nothing for a number or a string.
@@ -35,8 +44,12 @@ impl Fields {
 
     /// Names of entries in the order of the list.
     fn names_of_entries(&self, node: usize) -> Vec<&str> {
-        let mut names: Vec<(usize, &str)> =
-            self.nodes[node].named.iter().map(|(name, entry)| (*entry, &**name)).collect();
+        let mut names: Vec<(usize, &str)> = self.nodes[node]
+            .named
+            .iter()
+            .flat_map(|named| named.iter())
+            .map(|(name, entry)| (*entry, &**name))
+            .collect();
         names.sort_unstable();
         names.into_iter().map(|(_, name)| name).collect()
     }
@@ -77,8 +90,10 @@ mod tests {
             ("", "the file has tasks, debris, one, none, speed"),
         ] {
             let error = fields.unknown(path, "the file").to_string();
-            assert_eq!(error, format!("{path}: no such field; {says}"));
+            assert!(error.starts_with(&format!("{path}: no such field; {says}")), "{error}");
         }
+        let error = fields.unknown("tasks.hadr.grid", "the file").to_string();
+        assert!(error.ends_with("(or [0] to [2]); did you mean hard?"), "{error}");
         let error = Fields::of("3").unknown("a", "the number").to_string();
         assert_eq!(error, "a: no such field; the number has no fields");
     }

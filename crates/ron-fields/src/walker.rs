@@ -1,39 +1,46 @@
 //! The walk over a text that notes where each field and list entry stands.
 
-use std::collections::BTreeMap;
-use std::sync::Arc;
-
 use crate::cursor::{Cursor, is_of_name};
 use crate::fields::{Fields, Node, ROOT};
 use crate::path::is_segment;
 
 /// Brackets within brackets that are followed.
-const MAX_DEPTH: usize = 128;
+const MAX_DEPTH: usize = 128; // more than any text that is read has
 
 impl Fields {
     /// Walks the whole text.
     #[must_use]
     pub fn of(text: &str) -> Self {
-        Walker::fields(text)
+        Walker::fields(text, usize::MAX)
+    }
+
+    /// Walks the whole text and keeps the outermost fields only.
+    #[must_use]
+    pub fn outer(text: &str) -> Self {
+        Walker::fields(text, 1)
     }
 }
 
 struct Walker<'a> {
     cursor: Cursor<'a>,
     nodes: Vec<Node>,
-    index: BTreeMap<Arc<str>, usize>,
     /// Open brackets.
     depth: usize,
+    /// Open brackets within which fields and entries are kept.
+    kept: usize,
 }
 
 impl<'a> Walker<'a> {
     /// Walks a whole text.
-    fn fields(text: &'a str) -> Fields {
-        let nodes = vec![Node::new(Arc::from(""), 1, 0)];
-        let mut walker = Self { cursor: Cursor::new(text), nodes, index: BTreeMap::new(), depth: 0 };
+    fn fields(text: &'a str, kept: usize) -> Fields {
+        let nodes = vec![Node::new(Box::from(""), 1, 0)];
+        let mut walker = Self { cursor: Cursor::new(text), nodes, depth: 0, kept };
         walker.cursor.skip_attributes();
         walker.value(ROOT);
-        Fields { nodes: walker.nodes, index: walker.index }
+        let nodes = walker.nodes;
+        let mut index: Vec<u32> = (1..nodes.len() as u32).collect();
+        index.sort_by(|a, b| nodes[*a as usize].path.cmp(&nodes[*b as usize].path));
+        Fields { nodes, index }
     }
 
     /// A value, whose fields and entries become those of a node.
@@ -108,16 +115,18 @@ impl<'a> Walker<'a> {
     fn entry(&mut self, parent: usize, number: usize) {
         let line = self.cursor.line();
         let name = self.field_name();
+        if self.depth > self.kept {
+            return self.left_out(parent);
+        }
         let around = &self.nodes[parent].path;
-        let path: Arc<str> = match name {
+        let path: Box<str> = match name {
             Some(name) if around.is_empty() => name.into(),
             Some(name) => format!("{around}.{name}").into(),
             None => format!("{around}[{number}]").into(),
         };
         self.cursor.skip_blank();
         let (start, node) = (self.cursor.at(), self.nodes.len());
-        self.nodes[parent].children.push(node);
-        self.index.entry(Arc::clone(&path)).or_insert(node);
+        self.nodes[parent].children.push(node as u32);
         self.nodes.push(Node::new(path, line, start));
         self.value(node);
         if self.cursor.at() == start {
@@ -128,6 +137,16 @@ impl<'a> Walker<'a> {
             Some("name") => self.note_name(parent, start),
             Some(_) => {}
             None => self.note_entry(parent, node),
+        }
+    }
+
+    /// Steps over the value of an entry that is not kept.
+    fn left_out(&mut self, parent: usize) {
+        self.cursor.skip_blank();
+        let start = self.cursor.at();
+        self.value(parent);
+        if self.cursor.at() == start {
+            self.cursor.advance(); // never stands still, whatever the text
         }
     }
 
@@ -142,7 +161,7 @@ impl<'a> Walker<'a> {
     /// Makes an entry known by its name, if no entry before it has the same.
     fn note_entry(&mut self, list: usize, entry: usize) {
         if let Some(name) = self.nodes[entry].name.take() {
-            self.nodes[list].named.entry(name).or_insert(entry);
+            self.nodes[list].named.get_or_insert_default().entry(name).or_insert(entry);
         }
     }
 

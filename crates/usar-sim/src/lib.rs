@@ -24,6 +24,7 @@ pub mod geometry;
 pub mod hash;
 pub mod ids;
 pub mod invariant;
+pub mod limits;
 pub mod metrics;
 pub mod mission;
 pub mod model;

@@ -95,8 +95,21 @@ impl Identity {
     }
 }
 
-/// The checked payload of a snapshot.
-fn payload(bytes: &[u8]) -> Result<&[u8], SnapshotError> {
+/// Bytes by whose beginning [`check_start`] knows a snapshot.
+pub const START_BYTES: u64 = HEADER_BYTES as u64;
+
+/// Checks what a snapshot of so many bytes begins with, so that a file that is none need not be read.
+///
+/// # Errors
+/// It is no snapshot, or one of another version or length.
+pub fn check_start(start: &[u8], length: u64) -> Result<(), SnapshotError> {
+    let (count, _) = header(start)?;
+    let expected = count.saturating_add(START_BYTES);
+    if expected == length { Ok(()) } else { Err(SnapshotError::Length { expected, found: length }) }
+}
+
+/// Number of bytes of the payload, and the checksum with the payload.
+fn header(bytes: &[u8]) -> Result<(u64, &[u8]), SnapshotError> {
     let Some(rest) = bytes.strip_prefix(MAGIC) else { return Err(SnapshotError::Foreign) };
     let length = |expected: u64| SnapshotError::Length { expected, found: bytes.len() as u64 };
     let (version, rest) = rest.split_first_chunk().ok_or_else(|| length(HEADER_BYTES as u64))?;
@@ -105,8 +118,14 @@ fn payload(bytes: &[u8]) -> Result<&[u8], SnapshotError> {
         return Err(SnapshotError::Version { found });
     }
     let (count, rest) = rest.split_first_chunk().ok_or_else(|| length(HEADER_BYTES as u64))?;
+    Ok((u64::from_le_bytes(*count), rest))
+}
+
+/// The checked payload of a snapshot.
+fn payload(bytes: &[u8]) -> Result<&[u8], SnapshotError> {
+    let length = |expected: u64| SnapshotError::Length { expected, found: bytes.len() as u64 };
+    let (count, rest) = header(bytes)?;
     let (checksum, payload) = rest.split_first_chunk().ok_or_else(|| length(HEADER_BYTES as u64))?;
-    let count = u64::from_le_bytes(*count);
     if count != payload.len() as u64 {
         return Err(length(count.saturating_add(HEADER_BYTES as u64)));
     }

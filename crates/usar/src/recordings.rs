@@ -8,10 +8,12 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use experiments::Failure;
 use experiments::experiment::Experiment;
+use experiments::limits::RECORDING_BYTES;
 use experiments::run::{Driver, TrialKey};
 use experiments::sweep::disk::RECORDINGS;
 use experiments::sweep::folder::Folder;
 use recording::{Options, Recorder, Recording};
+use ron_fields::file::{ReadError, read};
 use usar_sim::record::{Status, TrialRecord};
 use usar_sim::simulation::{Decider, Simulation};
 
@@ -147,9 +149,14 @@ pub(crate) fn record_trials(folder: &mut Folder, which: &Recorded, stop: &Atomic
     Ok(())
 }
 
+/// The bytes of a recording.
+fn bytes_of(path: &Path) -> Result<Vec<u8>, ReadError> {
+    read(path, RECORDING_BYTES.most as u64)
+}
+
 /// The hash of the last state of a whole recording in a file.
 fn summary_hash(path: &Path) -> Option<String> {
-    let recording = Recording::read(&std::fs::read(path).ok()?).ok()?;
+    let recording = Recording::read(&bytes_of(path).ok()?).ok()?;
     recording.summary.map(|summary| summary.state_hash)
 }
 
@@ -159,7 +166,7 @@ pub(crate) fn recording_of(
     experiment: &Experiment,
     key: &TrialKey,
 ) -> Result<Vec<u8>, Failure> {
-    if let Ok(bytes) = std::fs::read(path_of(folder, experiment, key))
+    if let Ok(bytes) = bytes_of(&path_of(folder, experiment, key))
         && let Ok(Recording { header, cut: None, .. }) = Recording::read(&bytes)
         && header.scenario.resolved == experiment.cases[key.case].scenario.resolved()
         && (header.seed, &header.policy) == (key.seed, &key.label)

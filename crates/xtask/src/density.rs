@@ -63,7 +63,14 @@ pub fn mission(robots: u32, duration_s: f64, to_tasks_m: Option<f64>) -> Scenari
         while left > 0 {
             let count = left.min(per_row);
             let width_m = spacing * f64::from(count - 1);
-            team.push(Row { role: role.to_owned(), count, center: [side / 2.0, y], width_m, levels: None });
+            team.push(Row {
+                role: role.to_owned(),
+                count,
+                center: [side / 2.0, y],
+                width_m,
+                levels: None,
+                body: None,
+            });
             left -= count;
             y += spacing;
         }
@@ -107,6 +114,7 @@ pub fn mission(robots: u32, duration_s: f64, to_tasks_m: Option<f64>) -> Scenari
         },
         tasks,
         errands: Vec::new(),
+        walls: Vec::new(),
         radiation: Vec::new(),
         sampled: Sampled::default(),
         costs: Costs::default(),

@@ -12,6 +12,8 @@ pub mod density;
 pub mod golden;
 pub mod journeys;
 pub mod kills;
+pub mod limits;
+pub mod mutations;
 pub mod navigation;
 pub mod pages;
 pub mod rooms;

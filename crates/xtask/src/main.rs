@@ -5,7 +5,7 @@ mod commands;
 
 use std::process::ExitCode;
 
-use commands::{damage, golden, kills, pages, scale, soak, work, worlds};
+use commands::{damage, golden, kills, limits, mutations, pages, scale, soak, work, worlds};
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -15,6 +15,8 @@ fn main() -> ExitCode {
         "damage" => damage::run(arguments),
         "golden" => golden::run(arguments),
         "kills" => kills::run(arguments),
+        "mutations" => mutations::run(arguments),
+        "limits" => limits::run(),
         "navigation" => xtask::navigation::main(),
         "pages" => pages::run(arguments),
         "scale" => scale::run(arguments),

@@ -65,7 +65,7 @@ fn draw(seed: u64, draws: &mut ChaCha8Rng) -> Option<Scenario> {
         let center = kinds[role.min(1)].draw(draws, &taken)?;
         taken.push(center);
         let role = file.roles[role].name.clone();
-        file.team.push(Row { role, count: 1, center, width_m: 0.0, levels: None });
+        file.team.push(Row { role, count: 1, center, width_m: 0.0, levels: None, body: None });
     }
     if seed.is_multiple_of(2) { errands(file, draws, &kinds, taken) } else { mission(file, draws, &kinds) }
 }

@@ -59,7 +59,7 @@ fn errands(seed: u64, draws: &mut ChaCha8Rng) -> Option<ScenarioFile> {
         };
         let center = free.draw(draws, &taken)?;
         taken.push(center);
-        team.push(Row { role: role.to_owned(), count: 1, center, width_m: 0.0, levels: None });
+        team.push(Row { role: role.to_owned(), count: 1, center, width_m: 0.0, levels: None, body: None });
     }
     let mut errands = Vec::new();
     for robot in 0..robots {
@@ -95,6 +95,7 @@ fn mission(seed: u64, draws: &mut ChaCha8Rng) -> Option<ScenarioFile> {
         center: [arena[0] / 2.0, y],
         width_m: spacing * f64::from(count.saturating_sub(1)),
         levels: None,
+        body: None,
     };
     let mut team = vec![row("carrier", carriers, 2.0), row("supplier", suppliers, 4.0)];
     if observers > 0 {
@@ -206,6 +207,7 @@ pub(crate) fn base(seed: u64, arena_m: Point, duration_s: f64) -> ScenarioFile {
         tasks: Vec::new(),
         errands: Vec::new(),
         debris: Vec::new(),
+        walls: Vec::new(),
         radiation: Vec::new(),
         sampled: Sampled::default(),
         costs: Costs::default(),

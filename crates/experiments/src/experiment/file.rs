@@ -1,5 +1,6 @@
 //! The sweep file as it is written.
 
+use std::collections::BTreeSet;
 use std::fmt;
 use std::marker::PhantomData;
 
@@ -76,9 +77,9 @@ impl<'de, V: Deserialize<'de>> Deserialize<'de> for Map<V> {
             }
 
             fn visit_map<A: MapAccess<'de>>(self, mut access: A) -> Result<Map<V>, A::Error> {
-                let mut entries: Vec<(String, V)> = Vec::new();
+                let (mut entries, mut keys): (Vec<(String, V)>, _) = (Vec::new(), BTreeSet::new());
                 while let Some((key, value)) = access.next_entry::<String, V>()? {
-                    if entries.iter().any(|(known, _)| *known == key) {
+                    if !keys.insert(key.clone()) {
                         return Err(A::Error::custom(format!("{key:?} stands twice")));
                     }
                     entries.push((key, value));

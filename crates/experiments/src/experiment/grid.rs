@@ -1,14 +1,14 @@
 //! The grid that the axes of a sweep span, and the policies at each of its points.
 
+use std::collections::BTreeSet;
+
 use usar_sim::scenario::{Scenario, ScenarioFile};
 
 use super::policy::PolicySpec;
 use super::read::checked;
 use crate::failure::Failure;
+use crate::limits::{CASE_BYTES, CASES, POLICIES};
 use crate::run::Driver;
-
-/// Most cases that the axes of a sweep may span.
-const MAX_CASES: usize = 100_000;
 
 /// A field of the scenario and the values that it takes, in RON.
 #[derive(Debug, Clone, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
@@ -34,10 +34,14 @@ pub struct Case {
 /// # Errors
 /// One that cannot be read, or none.
 pub(super) fn checked_policies(written: &[String]) -> Result<Vec<PolicySpec>, Failure> {
-    let mut policies: Vec<PolicySpec> = Vec::new();
+    if written.len() > POLICIES.count() {
+        let most = POLICIES.most;
+        return Err(Failure::input(format!("policies: must be at most {most}, found {}", written.len())));
+    }
+    let (mut policies, mut labels): (Vec<PolicySpec>, _) = (Vec::new(), BTreeSet::new());
     for text in written {
         let policy = PolicySpec::parse(text).map_err(|error| Failure::input(format!("policies: {error}")))?;
-        if policies.iter().any(|known| known.label == policy.label) {
+        if !labels.insert(policy.label.clone()) {
             return Err(Failure::input(format!(
                 "policies: must not be listed twice, found {:?}",
                 policy.label
@@ -57,32 +61,58 @@ pub(super) fn checked_policies(written: &[String]) -> Result<Vec<PolicySpec>, Fa
 /// It is too large, or a case cannot be used.
 pub(super) fn cases(base: &Scenario, axes: &[Axis], policies: &[PolicySpec]) -> Result<Vec<Case>, Failure> {
     let count = axes.iter().try_fold(1_usize, |count, axis| count.checked_mul(axis.values.len()));
-    if count.is_none_or(|count| count > MAX_CASES) {
-        return Err(Failure::input(format!("axes: must span at most {MAX_CASES} cases")));
+    let Some(count) = count.filter(|count| CASES.allows(*count)) else {
+        return Err(Failure::input(format!("axes: must span at most {} cases", CASES.most)));
+    };
+    check_bytes(base, count)?;
+    let mut grid = Grid { axes, policies, cases: Vec::with_capacity(count) };
+    grid.add((**base).clone(), &mut Vec::new())?;
+    Ok(grid.cases)
+}
+
+/// Refuses more cases, or values, than memory and patience hold.
+pub(super) fn check_bytes(base: &Scenario, count: usize) -> Result<(), Failure> {
+    let bytes = base.resolved().len().saturating_mul(count);
+    if count == 1 || CASE_BYTES.allows(bytes) {
+        return Ok(());
     }
-    let mut grid: Vec<Vec<&str>> = vec![Vec::new()];
-    for axis in axes {
-        grid = grid
-            .iter()
-            .flat_map(|case| {
-                axis.values.iter().map(move |value| [case.as_slice(), &[value.as_str()]].concat())
-            })
-            .collect();
-    }
-    let case = |values: Vec<&str>| {
-        let mut file: ScenarioFile = (**base).clone();
-        let places = axes.iter().zip(&values).map(|(axis, value)| format!("{}={value}: ", axis.path));
-        let place = places.collect::<Vec<_>>().concat();
-        for (axis, value) in axes.iter().zip(&values) {
+    let (most, mib) = (CASE_BYTES.count() >> 20, bytes >> 20);
+    Err(Failure::input(format!(
+        "axes: {count} cases of this scenario take {mib} MiB, at most {most} MiB: fewer cases, or a smaller scenario"
+    )))
+}
+
+/// The grid on its way: each value of an axis is set once for all cases that have the same values of the axes before.
+struct Grid<'a> {
+    axes: &'a [Axis],
+    policies: &'a [PolicySpec],
+    cases: Vec<Case>,
+}
+
+impl Grid<'_> {
+    /// Adds the cases that begin with these values, which are set in the file.
+    fn add(&mut self, file: ScenarioFile, values: &mut Vec<String>) -> Result<(), Failure> {
+        let Some(axis) = self.axes.get(values.len()) else { return self.add_case(file, values) };
+        for value in &axis.values {
+            let mut file = file.clone();
             file.set(&axis.path, value).map_err(|error| Failure::input(format!("axes: {error}")))?;
+            values.push(value.clone());
+            self.add(file, values)?;
+            values.pop();
         }
+        Ok(())
+    }
+
+    fn add_case(&mut self, file: ScenarioFile, values: &[String]) -> Result<(), Failure> {
+        let places = self.axes.iter().zip(values).map(|(axis, value)| format!("{}={value}: ", axis.path));
+        let place = places.collect::<Vec<_>>().concat();
         let scenario = checked(file, &place)?;
-        let made = policies.iter().map(PolicySpec::driver);
+        let made = self.policies.iter().map(PolicySpec::driver);
         let drivers =
             made.collect::<Result<_, _>>().map_err(|error| Failure::input(format!("{place}{error}")))?;
-        Ok(Case { values: values.into_iter().map(str::to_owned).collect(), scenario, drivers })
-    };
-    grid.into_iter().map(case).collect()
+        self.cases.push(Case { values: values.to_vec(), scenario, drivers });
+        Ok(())
+    }
 }
 
 /// What of a scenario decides numbers, as text: all but its name and its description.

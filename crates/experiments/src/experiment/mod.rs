@@ -2,6 +2,7 @@
 
 mod again;
 mod asks;
+mod cost;
 mod file;
 mod grid;
 mod policy;
@@ -14,14 +15,16 @@ use usar_sim::simulation::{Advance, Simulation};
 use xxhash_rust::xxh3::xxh3_128;
 
 use ron_fields::Fields;
-use usar_sim::scenario::{SampledCounts, Scenario, read_text};
+use usar_sim::scenario::{SampledCounts, Scenario, check_text, read_text};
 
 pub use asks::Asks;
+pub use cost::{Cost, check_cost};
 pub use grid::{Axis, Case};
 pub use policy::{PolicySpec, registry, set_registry, split_list};
 pub use read::{companion, defaults, with_settings};
 
 use crate::failure::Failure;
+use crate::limits::TRIALS;
 use crate::metric::{Catalogue, task_names};
 use crate::run::{Driver, Fault, SharedTrials, Trial, TrialKey, run_trial};
 use grid::{cases, checked_policies, deciding_text};
@@ -148,7 +151,8 @@ impl Experiment {
     /// # Errors
     /// Those of [`Experiment::load`].
     pub fn parse(text: String, path: &Path, overrides: &Overrides) -> Result<Self, Failure> {
-        let is_sweep = Fields::of(&text).inside("").contains(&"scenario");
+        check_text(&text, path).map_err(Failure::input)?;
+        let is_sweep = Fields::outer(&text).inside("").contains(&"scenario");
         let (mut parts, readings) =
             if is_sweep { from_sweep_file(text, path)? } else { from_scenario(text, path)? };
         parts.base = with_settings(&parts.base, &overrides.set)?;
@@ -200,6 +204,10 @@ impl Experiment {
             return Err(Failure::input(format!(
                 "seeds: {trials} from {first} on go beyond the greatest seed"
             )));
+        }
+        if !TRIALS.allows(trials as usize) {
+            let most = TRIALS.most;
+            return Err(Failure::input(format!("trials: must be a count from 1 to {most}, found {trials}")));
         }
         let cases = cases(&base, &axes, &policies)?;
         let id = |case: &Case, policy: &PolicySpec| {

@@ -3,7 +3,7 @@
 use std::sync::OnceLock;
 
 use rne_core::{MadePolicy, Registry, RneOptions};
-use ron_fields::Fields;
+use ron_fields::{Fields, nearest};
 use serde::de::DeserializeOwned;
 
 use crate::oracle::{NotSimulated, Oracle, OracleOptions};
@@ -59,10 +59,13 @@ impl PolicySpec {
         };
         let (name, options) = rest.split_at(rest.find('(').unwrap_or(rest.len()));
         let name = name.trim();
-        registry().make(name, "").map_err(|error| error.to_string())?;
+        registry().make(name, "").map_err(|error| {
+            let meant = nearest(name, registry().names());
+            meant.map_or(error.to_string(), |meant| format!("{error}; did you mean {meant}?"))
+        })?;
         let options = parse_options(options)?;
         let plain = plain(name, &options);
-        registry().parse(&plain).map_err(|error| error.to_string())?;
+        registry().parse(&plain).map_err(|error| with_hint(error.to_string()))?;
         if label.is_some_and(|label| label.is_empty() || label.chars().any(char::is_control)) {
             return Err(format!("the label before `=` must be visible characters, found {text:?}"));
         }
@@ -134,6 +137,18 @@ impl PolicySpec {
 fn from_ron<T: DeserializeOwned>(options: &str) -> Result<T, String> {
     let ron = ron::Options::default().with_default_extension(ron::extensions::Extensions::IMPLICIT_SOME);
     ron.from_str(options).map_err(|error| error.code.to_string())
+}
+
+/// What the deserialiser says of an option or a value that is not there, with the one that may have been meant.
+fn with_hint(message: String) -> String {
+    let quoted: Vec<&str> = message.split('`').skip(1).step_by(2).collect();
+    let Some((found, rest)) = quoted.split_first().filter(|_| message.contains("expected one of")) else {
+        return message;
+    };
+    match nearest(found, rest.iter().copied()) {
+        Some(meant) => format!("{message}; did you mean {meant}?"),
+        None => message,
+    }
 }
 
 fn plain(name: &str, options: &[(String, String)]) -> String {

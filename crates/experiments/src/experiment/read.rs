@@ -1,17 +1,20 @@
 //! Scenarios and sweep files as parts of an experiment, with the line of whatever is wrong.
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use ron_fields::Fields;
+use ron_fields::limits::Limit;
 use usar_sim::scenario::{Problem, Scenario, ScenarioFile, parse_ron, read_text};
 
+use xxhash_rust::xxh3::xxh3_128;
+
 use super::file::{Map, SweepFile};
-use super::policy::registry;
+use super::grid::check_bytes;
+use super::policy::{PolicySpec, registry};
 use super::{Axis, Parts, Program, Seeds};
 use crate::failure::Failure;
-
-/// Most combinations of readings that a sweep may have.
-const MAX_READINGS: usize = 10_000;
+use crate::limits;
 
 /// A scenario with fields set by `path=value`.
 ///
@@ -98,6 +101,22 @@ pub(super) fn from_sweep_file(text: String, path: &Path) -> Result<(Parts, Vec<R
         let rule = "must be letters, digits, -, _ and ., the first no . and no -";
         return Err(bad("name", &format!("{rule}, found {:?}", file.name)));
     }
+    let too_many = |field: &str, count: usize, limit: Limit| {
+        bad(field, &format!("must have at most {} entries, found {count}", limit.most))
+    };
+    for (field, count, limit) in [
+        ("set", file.set.0.len(), limits::SETTINGS),
+        ("axes", file.axes.0.len(), limits::AXES),
+        ("policies", file.policies.as_ref().map_or(1, Vec::len), limits::POLICIES),
+    ] {
+        if count > limit.count() {
+            return Err(too_many(field, count, limit));
+        }
+    }
+    if let Some(trials) = file.trials.filter(|trials| !limits::TRIALS.allows(*trials as usize)) {
+        let most = limits::TRIALS.most;
+        return Err(bad("trials", &format!("must be a count from 1 to {most}, found {trials}")));
+    }
     let scenario = path.parent().unwrap_or(Path::new("")).join(&file.scenario);
     let (base, _) = Scenario::load(&scenario).map_err(Failure::input)?;
     let mut set: ScenarioFile = (*base).clone();
@@ -112,12 +131,18 @@ pub(super) fn from_sweep_file(text: String, path: &Path) -> Result<(Parts, Vec<R
     let axes = axes(file.axes, &base, &bad)?;
     let readings = readings(file.readings, &bad)?;
     let policies = file.policies.unwrap_or_else(|| vec!["RNE".to_owned()]);
+    for (i, policy) in policies.iter().enumerate() {
+        PolicySpec::parse(policy).map_err(|error| bad(&format!("policies[{i}]"), &error))?;
+    }
     let seeds = match (file.seeds, file.first_seed) {
         (Some(_), Some(_)) => return Err(bad("seeds", &"must not be given beside first_seed")),
         (Some(list), None) if list.is_empty() => {
             return Err(bad("seeds", &"must have at least one, found none"));
         }
-        (Some(list), None) if (1..list.len()).any(|i| list[..i].contains(&list[i])) => {
+        (Some(list), None) if !limits::SEEDS.allows(list.len()) => {
+            return Err(too_many("seeds", list.len(), limits::SEEDS));
+        }
+        (Some(list), None) if list.iter().collect::<BTreeSet<_>>().len() < list.len() => {
             return Err(bad("seeds", &"must differ: trials of one seed are one trial"));
         }
         (Some(list), None) => Seeds::Listed(list),
@@ -155,6 +180,10 @@ fn axes(map: Map<Vec<Box<ron::value::RawValue>>>, base: &Scenario, bad: &Bad) ->
         if values.is_empty() {
             return Err(bad(&field, &"must have at least one value, found none"));
         }
+        if !limits::AXIS_VALUES.allows(values.len()) {
+            let most = limits::AXIS_VALUES.most;
+            return Err(bad(&field, &format!("must have at most {most} values, found {}", values.len())));
+        }
         if !decides(&path) {
             return Err(bad(&field, &"decides no number of a trial, so that it can be no axis"));
         }
@@ -169,15 +198,15 @@ fn axes(map: Map<Vec<Box<ron::value::RawValue>>>, base: &Scenario, bad: &Bad) ->
         if let Some(Axis { path: other, .. }) = axes.iter().find(overlaps) {
             return Err(bad(&field, &format!("must not be a part of another axis, found {other}")));
         }
-        let mut files: Vec<ScenarioFile> = Vec::new();
+        check_bytes(base, values.len())?;
+        let mut files = BTreeSet::new();
         for (i, value) in values.iter().enumerate() {
             let entry = format!("{field}[{i}]");
             let mut file: ScenarioFile = (**base).clone();
             file.set(&path, value).map_err(|error| bad(&entry, &error))?;
-            if files.contains(&file) {
+            if !files.insert(xxh3_128(ron::to_string(&file).map_err(Failure::input)?.as_bytes())) {
                 return Err(bad(&entry, &format!("must not be listed twice, found {value}")));
             }
-            files.push(file);
         }
         axes.push(Axis { path, values });
     }
@@ -196,6 +225,10 @@ fn readings(map: Map<Vec<Box<ron::value::RawValue>>>, bad: &Bad) -> Result<Vec<R
         if values.is_empty() {
             return Err(bad(&field, &"must have at least one value, found none"));
         }
+        if !limits::AXIS_VALUES.allows(values.len()) {
+            let most = limits::AXIS_VALUES.most;
+            return Err(bad(&field, &format!("must have at most {most} values, found {}", values.len())));
+        }
         for (i, value) in values.iter().enumerate() {
             registry()
                 .make("RNE", &format!("({option}: {value})"))
@@ -210,8 +243,8 @@ fn readings(map: Map<Vec<Box<ron::value::RawValue>>>, bad: &Bad) -> Result<Vec<R
         readings.push((option, values));
     }
     let count = readings.iter().map(|(_, values)| values.len()).try_fold(1_usize, usize::checked_mul);
-    if count.is_none_or(|count| count > MAX_READINGS) {
-        return Err(bad("readings", &format!("must be at most {MAX_READINGS} combinations")));
+    if count.is_none_or(|count| !limits::READINGS.allows(count)) {
+        return Err(bad("readings", &format!("must be at most {} combinations", limits::READINGS.most)));
     }
     Ok(readings)
 }
@@ -245,7 +278,7 @@ pub(super) fn with_readings(policies: Vec<String>, readings: &[Reading]) -> Vec<
 
 pub(super) fn checked(file: ScenarioFile, prefix: &str) -> Result<Scenario, Failure> {
     Scenario::try_from(file).map_err(|problems| {
-        let line = |p: &Problem| format!("{prefix}{} {}, found {}", p.field, p.rule, p.found);
+        let line = |p: &Problem| format!("{prefix}{p}");
         Failure::Input(problems.iter().map(line).collect::<Vec<_>>().join("\n"))
     })
 }

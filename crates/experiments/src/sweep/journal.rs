@@ -14,6 +14,7 @@ use super::links;
 use crate::experiment::{Experiment, Shard};
 use crate::failure::Failure;
 use crate::files;
+use crate::limits::JOURNAL_LINE_BYTES;
 use crate::run::{Fault, FaultKind, Outcome, Trial, TrialKey};
 
 /// Name of the file.
@@ -96,9 +97,14 @@ impl Journal {
         let mut line = Vec::new();
         for number in 1.. {
             line.clear();
-            let size = reader.read_until(b'\n', &mut line).map_err(trouble)?;
+            let most = JOURNAL_LINE_BYTES.most as u64;
+            let size = reader.by_ref().take(most).read_until(b'\n', &mut line).map_err(trouble)?;
             if size == 0 {
                 break;
+            }
+            if size as u64 == most && line.last() != Some(&b'\n') {
+                let reason = format!("line {number} is longer than {} MiB", most >> 20);
+                return Err(trouble(std::io::Error::new(std::io::ErrorKind::InvalidData, reason)));
             }
             if line.last() != Some(&b'\n') {
                 let what = format!("{}:{number}: the last line is cut off", path.display());

@@ -140,7 +140,8 @@ fn line(cells: &[String]) -> Result<String, Failure> {
 /// Reads the log; a last line that was cut off is taken away.
 fn read(path: &Path, calibration: &Calibration) -> Result<Vec<Evaluation>, Failure> {
     let trouble = |error: std::io::Error| Failure::storage(format!("{}: {error}", path.display()));
-    let text = fs::read_to_string(path).map_err(trouble)?;
+    let text = String::from_utf8(files::read(path).map_err(trouble)?);
+    let text = text.map_err(|error| Failure::input(format!("{}: is not text: {error}", path.display())))?;
     let whole = text.rfind('\n').map_or(0, |end| end + 1);
     if whole < text.len() {
         File::options()

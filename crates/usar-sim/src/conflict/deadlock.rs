@@ -138,7 +138,7 @@ impl ConflictSet {
         self.turns += 1;
         let cycle_is_over = self.turns >= self.order.len();
         match rule {
-            ResolverRule::Swap if !cycle_is_over => self.order.swap(0, self.turns),
+            ResolverRule::Swap(_) if !cycle_is_over => self.order.swap(0, self.turns),
             _ => self.order.rotate_left(1),
         }
         self.next_head();
@@ -167,6 +167,11 @@ impl ConflictSet {
 mod tests {
     use super::*;
     use crate::ids::RobotId;
+    use crate::scenario::RightOfWay;
+
+    const RULE: RightOfWay = RightOfWay { margin_m: 0.15, horizon_s: 0.8, deadlock_steps: 10 };
+    const ROTATION: ResolverRule = ResolverRule::Rotation(RULE);
+    const SWAP: ResolverRule = ResolverRule::Swap(RULE);
 
     const PATIENCE: Patience = Patience { deadlock: 4, livelock: 20, back_off: 2 };
 
@@ -196,7 +201,7 @@ mod tests {
 
     #[test]
     fn a_still_set_gives_everybody_a_turn_and_then_backs_off() {
-        for rule in [ResolverRule::Rotation, ResolverRule::Swap] {
+        for rule in [ROTATION, SWAP] {
             let mut set = set();
             let turns: Vec<_> = (0..12).map(|_| (stand_still(&mut set, rule), set.order[0])).collect();
             let solved: Vec<_> = turns.iter().enumerate().filter(|(_, (turn, _))| turn.is_some()).collect();
@@ -213,10 +218,10 @@ mod tests {
     #[test]
     fn rotation_sends_the_head_to_the_tail_and_the_swap_exchanges_it() {
         let (mut rotated, mut swapped) = (set(), set());
-        rotated.give_turn(ResolverRule::Rotation, PATIENCE);
-        swapped.give_turn(ResolverRule::Swap, PATIENCE);
+        rotated.give_turn(ROTATION, PATIENCE);
+        swapped.give_turn(SWAP, PATIENCE);
         assert_eq!((rotated.order, swapped.order.clone()), (vec![0, 2, 1], vec![0, 1, 2]));
-        swapped.give_turn(ResolverRule::Swap, PATIENCE);
+        swapped.give_turn(SWAP, PATIENCE);
         assert_eq!(swapped.order, [2, 1, 0]);
     }
 

@@ -26,7 +26,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::event::{Event, EventLog};
 use crate::ids::RobotId;
-use crate::scenario::{ConflictRules, ResolverRule, Scenario};
+use crate::scenario::{ConflictRules, ResolverRule, RightOfWay, Scenario};
 
 use deadlock::{ConflictSet, NextTurn, Observation, Patience, Progress};
 pub use delay::{Delay, DelayCause, wait_cycles};
@@ -68,6 +68,8 @@ pub struct Resolver {
     #[serde(skip)]
     rules: ConflictRules,
     #[serde(skip)]
+    right_of_way: RightOfWay,
+    #[serde(skip)]
     patience: Patience,
     #[serde(skip)]
     ask_again: u32,
@@ -107,6 +109,7 @@ impl Resolver {
     pub fn new(scenario: &Scenario) -> Self {
         let mut resolver = Self {
             rules: scenario.conflicts,
+            right_of_way: scenario.conflicts.right_of_way(),
             patience: Patience::default(),
             ask_again: 0,
             arena: Vector::ZERO,
@@ -131,8 +134,9 @@ impl Resolver {
     pub(crate) fn restore(&mut self, scenario: &Scenario) {
         let steps = |seconds: f64| (seconds / scenario.dt_s).round() as u32;
         self.rules = scenario.conflicts;
+        self.right_of_way = self.rules.right_of_way();
         self.patience = Patience {
-            deadlock: self.rules.deadlock_steps,
+            deadlock: self.right_of_way.deadlock_steps,
             livelock: steps(LIVELOCK_S),
             back_off: steps(BACK_OFF_S),
         };
@@ -145,7 +149,7 @@ impl Resolver {
             respite: steps(RESPITE_S),
         };
         self.arena = Vector::new(scenario.arena_m[0] as f32, scenario.arena_m[1] as f32);
-        self.retreats.restore(limits, self.rules.margin_m as f32, self.arena);
+        self.retreats.restore(limits, self.right_of_way.margin_m as f32, self.arena);
     }
 
     /// One directive for each mover, in their order. The wishes of those who make room are replaced.
@@ -164,7 +168,7 @@ impl Resolver {
             self.reciprocate(movers, log);
             return &self.directives;
         }
-        let (margin, horizon) = (self.rules.margin_m as f32, self.rules.horizon_s as f32);
+        let (margin, horizon) = (self.right_of_way.margin_m as f32, self.right_of_way.horizon_s as f32);
         self.neighbours.pair(movers, margin, horizon);
         self.conflicts.find(movers, &self.neighbours, margin, horizon);
         self.carry_over(movers, log);
@@ -281,7 +285,7 @@ impl Resolver {
         me: &Mover<'m>,
         discs: impl Iterator<Item = (Vector, f32)>,
     ) -> Surroundings<'m> {
-        let margin = self.rules.margin_m as f32;
+        let margin = self.right_of_way.margin_m as f32;
         Surroundings { discs: discs.collect(), margin, known: me.known, heading: self.headings[i] }
     }
 

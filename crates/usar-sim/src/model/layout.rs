@@ -62,7 +62,7 @@ impl Layout {
         for attempt in 0..attempts {
             let mut layout = Self {
                 robots: robot_starts(scenario, trial_seed),
-                debris: scenario.debris.clone(),
+                debris: scenario.obstacles(),
                 zones: scenario.radiation.clone(),
             };
             for (number, task) in scenario.tasks.iter().enumerate() {
@@ -145,8 +145,9 @@ impl Layout {
         (planner, outlines): (&mut Planner, &[Outline]),
     ) -> Result<(), LayoutError> {
         let radii = scenario.ground_radii_m();
+        let bodies = super::bodies(scenario);
         let is_of_class = |robot: &&RobotStart| {
-            let role = &scenario.roles[robot.role.index()];
+            let role = &bodies[robot.id.index()];
             let class = radii.iter().find(|radius| **radius >= role.radius_m);
             role.kind == RoleKind::Ground && class == Some(&radius_m)
         };

@@ -99,13 +99,13 @@ impl Model {
     /// The layout cannot be drawn.
     pub fn compile(scenario: &Scenario, seed: u64) -> Result<Arc<Self>, LayoutError> {
         let layout = Layout::sample(scenario, seed)?;
-        let specs: Vec<Arc<RoleFile>> = scenario.roles.iter().cloned().map(Arc::new).collect();
+        let specs = bodies(scenario);
         let tasks = || (0..scenario.tasks.len() as u16).map(TaskId);
         let robot = |start: &RobotStart| {
             Arc::new(RobotModel {
                 id: start.id,
                 role: start.role,
-                spec: Arc::clone(&specs[start.role.index()]),
+                spec: Arc::clone(&specs[start.id.index()]),
                 home: start.home,
                 rest: tasks().map(|task| rest_slot(scenario, task, start.id)).collect(),
                 health_floor: scenario.mission.health_floor,
@@ -149,6 +149,13 @@ impl Model {
     pub fn task_ids(&self) -> impl DoubleEndedIterator<Item = TaskId> + use<> {
         (0..self.tasks.len() as u16).map(TaskId)
     }
+}
+
+/// What each robot is and can do, by id; robots of a row share it.
+fn bodies(scenario: &Scenario) -> Vec<Arc<RoleFile>> {
+    let rows =
+        scenario.team.iter().map(|row| (Arc::new(scenario.body_of(row).unwrap_or_default()), row.count));
+    rows.flat_map(|(body, count)| (0..count).map(move |_| Arc::clone(&body))).collect()
 }
 
 fn ids_of(task: TaskId, rescuees: &[(TaskId, Vector)]) -> Range<usize> {

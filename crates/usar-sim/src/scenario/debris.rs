@@ -1,44 +1,69 @@
 //! The rules of debris and radiation zones.
 
-use super::file::{DebrisShape, Point, ScenarioFile};
+use super::file::{DebrisShape, Door, Point, ScenarioFile, WallFile};
 use super::validate::Checker;
+use crate::limits;
 
 /// Least width of a polygon in every direction, in metres: less is flat in single precision.
 pub const LEAST_POLYGON_WIDTH_M: f64 = 0.01;
 
 pub(super) fn debris(check: &mut Checker, file: &ScenarioFile) {
-    if file.debris.len() > 100_000 {
-        check.fail("debris", "must have at most 100000 entries", file.debris.len());
-        return;
-    }
     for (i, piece) in file.debris.iter().enumerate() {
         let field = format!("debris[{i}]");
         match &piece.shape {
-            DebrisShape::Disc(radius) => check.number(format!("{field}.shape"), *radius, 0.05..=100.0),
+            DebrisShape::Disc(radius) => {
+                check.number(format!("{field}.shape"), *radius, limits::DISC_RADIUS_M)
+            }
             DebrisShape::Box(width, height) => {
-                check.number(format!("{field}.shape"), *width, 0.1..=1000.0);
-                check.number(format!("{field}.shape"), *height, 0.1..=1000.0);
+                check.number(format!("{field}.shape"), *width, limits::BOX_M);
+                check.number(format!("{field}.shape"), *height, limits::BOX_M);
             }
             DebrisShape::Polygon(corners) => polygon(check, &format!("{field}.shape"), corners),
         }
         check.inside(format!("{field}.at"), piece.at, 0.0);
-        check.number(format!("{field}.rotation_deg"), piece.rotation_deg, -360.0..=360.0);
+        check.number(format!("{field}.rotation_deg"), piece.rotation_deg, limits::ROTATION_DEG);
         if let Some(movable) = piece.movable {
-            check.number(format!("{field}.movable.mass_kg"), movable.mass_kg, 0.1..=100_000.0);
-            check.number(format!("{field}.movable.friction"), movable.friction, 0.0..=10.0);
+            check.number(format!("{field}.movable.mass_kg"), movable.mass_kg, limits::PIECE_MASS_KG);
+            check.number(format!("{field}.movable.friction"), movable.friction, limits::FRICTION);
         }
+    }
+    for (i, wall) in file.walls.iter().enumerate() {
+        self::wall(check, &format!("walls[{i}]"), wall);
     }
     for (i, zone) in file.radiation.iter().enumerate() {
         check.inside(format!("radiation[{i}].at"), zone.at, 0.0);
-        check.number(format!("radiation[{i}].radius_m"), zone.radius_m, 0.01..=1000.0);
+        check.number(format!("radiation[{i}].radius_m"), zone.radius_m, limits::ZONE_RADIUS_M);
+    }
+}
+
+fn wall(check: &mut Checker, field: &str, wall: &WallFile) {
+    check.inside(format!("{field}.from"), wall.from, 0.0);
+    check.inside(format!("{field}.to"), wall.to, 0.0);
+    check.number(format!("{field}.thickness_m"), wall.thickness_m, limits::WALL_THICKNESS_M);
+    let length = wall.length_m();
+    if length < wall.thickness_m {
+        check.fail(field, "must be at least as long as it is thick", format!("{length} m"));
+    }
+    let mut doors: Vec<(usize, &Door)> = wall.doors.iter().enumerate().collect();
+    doors.sort_by(|a, b| a.1.at_m.total_cmp(&b.1.at_m));
+    let mut free_from = 0.0;
+    for (i, door) in doors {
+        let field = format!("{field}.doors[{i}]");
+        check.number(format!("{field}.width_m"), door.width_m, limits::DOOR_WIDTH_M);
+        let [begin, end] = [door.at_m - door.width_m / 2.0, door.at_m + door.width_m / 2.0];
+        if !(begin >= free_from && end <= length) {
+            let rule = format!("must lie within the wall of {length:.3} m and clear of other doors");
+            check.fail(field, rule, format!("{begin} to {end} m"));
+        }
+        free_from = end;
     }
 }
 
 fn polygon(check: &mut Checker, field: &str, corners: &[Point]) {
-    if !(3..=64).contains(&corners.len()) {
+    if !limits::CORNERS.allows(corners.len()) {
         return check.fail(field, "must have 3 to 64 corners", corners.len());
     }
-    if let Some(bad) = corners.iter().flatten().find(|x| !(-1000.0..=1000.0).contains(*x)) {
+    if let Some(bad) = corners.iter().flatten().find(|x| !limits::CORNER_M.range().contains(*x)) {
         return check.fail(field, "must have corners within 1000 m of its origin", bad);
     }
     let edges = || (0..corners.len()).map(|i| [corners[i], corners[(i + 1) % corners.len()]]);

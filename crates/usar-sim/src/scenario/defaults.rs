@@ -4,8 +4,8 @@
 use rne_core::hierarchy::NeedLevel;
 
 use super::file::{
-    ConflictRules, Costs, InitialLevels, Measure, MissionRules, NeedFile, Normal, PlanningRules,
-    PriorityRule, ResolverRule, RoleFile, RoleKind, TurnBack,
+    Costs, InitialLevels, Measure, MissionRules, Movable, NeedFile, Normal, PlanningRules, RightOfWay,
+    RoleFile, RoleKind, TurnBack,
 };
 use crate::vitals::Rates;
 
@@ -32,11 +32,6 @@ pub(super) fn needs() -> Vec<NeedFile> {
 /// Weight of a need of which nothing else is said.
 pub(super) fn weight() -> f64 {
     1.0
-}
-
-/// Time without progress after which the team no longer waits for a robot, in seconds.
-pub(super) fn cut_off_s() -> f64 {
-    60.0
 }
 
 impl Default for RoleFile {
@@ -87,7 +82,7 @@ impl Default for MissionRules {
             area_margin_m: 4.0,
             blind_speed_loss: 0.3,
             health_floor: 0.5,
-            cut_off_s: cut_off_s(),
+            cut_off_s: 60.0,
         }
     }
 }
@@ -98,14 +93,14 @@ impl Default for PlanningRules {
     }
 }
 
-impl Default for ConflictRules {
+impl Default for RightOfWay {
     fn default() -> Self {
-        Self {
-            margin_m: 0.15,
-            horizon_s: 0.8,
-            deadlock_steps: 10,
-            priority: PriorityRule::LowestEnergyFirst,
-            resolver: ResolverRule::Reciprocal,
-        }
+        Self { margin_m: 0.15, horizon_s: 0.8, deadlock_steps: 10 }
+    }
+}
+
+impl Default for Movable {
+    fn default() -> Self {
+        Self { mass_kg: 40.0, friction: 0.5 }
     }
 }

@@ -6,16 +6,29 @@ use std::path::PathBuf;
 use thiserror::Error;
 
 /// One value that breaks a rule.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct Problem {
     /// Path of the field, e.g. `tasks.village.grid[0]`.
     pub field: String,
+    /// The file that the field stands in, where it is another than the one that was read: its base.
+    pub file: Option<PathBuf>,
     /// Line of the field in its file, where it is known.
     pub line: Option<usize>,
     /// What holds for the field, e.g. `must be a number from 0 to 100`.
     pub rule: String,
-    /// What stands there.
+    /// What stands there; empty where nothing does.
     pub found: String,
+    /// What may have been meant, or what to do; empty without an idea.
+    pub hint: String,
+}
+
+impl fmt::Display for Problem {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { field, rule, found, hint, .. } = self;
+        let found = if found.is_empty() { String::new() } else { format!(", found {found}") };
+        let hint = if hint.is_empty() { String::new() } else { format!("; {hint}") };
+        write!(f, "{field} {rule}{found}{hint}")
+    }
 }
 
 /// All problems of one file, in the order of its fields.
@@ -32,8 +45,8 @@ impl fmt::Display for Problems {
         for (i, problem) in self.list.iter().enumerate() {
             let line = problem.line.map(|line| format!(":{line}")).unwrap_or_default();
             let separator = if i == 0 { "" } else { "\n" };
-            let Problem { field, rule, found, .. } = problem;
-            write!(f, "{separator}{}{line}: {field} {rule}, found {found}", self.path.display())?;
+            let path = problem.file.as_ref().unwrap_or(&self.path).display();
+            write!(f, "{separator}{path}{line}: {problem}")?;
         }
         Ok(())
     }
@@ -50,8 +63,8 @@ pub enum ScenarioError {
         /// Why.
         reason: String,
     },
-    /// The file is not the RON text of a scenario: a syntax error, an unknown or missing field, or a wrong type.
-    #[error("{}:{line}:{column}: {field}{message}", path.display())]
+    /// The text is not well-formed, or has too much in it.
+    #[error("{}:{line}:{column}: {message}{}{excerpt}", path.display(), if excerpt.is_empty() { "" } else { "\n" })]
     Malformed {
         /// The file.
         path: PathBuf,
@@ -59,10 +72,10 @@ pub enum ScenarioError {
         line: usize,
         /// Column, from 1.
         column: usize,
-        /// `field: `, or nothing where the error is not in a field.
-        field: String,
         /// What is wrong.
         message: String,
+        /// The line with a caret below the column; may be empty.
+        excerpt: String,
     },
     /// A file in the former format.
     #[error("{}:{line}: {change}", path.display())]

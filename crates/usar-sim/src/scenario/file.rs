@@ -48,6 +48,9 @@ pub struct ScenarioFile {
     /// Debris at known places.
     #[serde(default)]
     pub debris: Vec<DebrisFile>,
+    /// Walls inside the arena.
+    #[serde(default)]
+    pub walls: Vec<WallFile>,
     /// Radiation zones at known places.
     #[serde(default)]
     pub radiation: Vec<ZoneFile>,
@@ -83,6 +86,37 @@ pub struct Row {
     /// Initial levels of the whole row, instead of draws.
     #[serde(default)]
     pub levels: Option<Levels>,
+    /// What is different in this row from the robots of its role.
+    #[serde(default)]
+    pub body: Option<Body>,
+}
+
+/// Values of a row's robots in the place of their role's; what is left out is as in the role.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Body {
+    /// Radius of the disc, in metres.
+    pub radius_m: Option<f64>,
+    /// Mass, in kilograms.
+    pub mass_kg: Option<f64>,
+    /// Health points at 100 %.
+    pub hp: Option<f64>,
+    /// Battery capacity at 100 %.
+    pub energy: Option<f64>,
+    /// Top speed, in metres per second.
+    pub speed_mps: Option<f64>,
+    /// Greatest acceleration and braking of the drive, in metres per second squared.
+    pub acceleration_mps2: Option<f64>,
+    /// Range within which debris and radiation are noticed, in metres.
+    pub sensing_m: Option<f64>,
+    /// Range within which rescuees are seen, in metres.
+    pub observing_m: Option<f64>,
+    /// Rescuees that it can have on board.
+    pub capacity: Option<u32>,
+    /// Rescuing resources that it takes along each round.
+    pub resources: Option<u32>,
+    /// Whether it guides its group.
+    pub guides: Option<bool>,
 }
 
 /// Levels of a robot, in percent.
@@ -187,7 +221,7 @@ pub enum Measure {
 
 /// Normal distributions of the initial levels, in percent, clamped to [1, 100].
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, from = "super::partial::InitialLevels")]
 pub struct InitialLevels {
     /// Battery level.
     pub energy: Normal,
@@ -257,9 +291,9 @@ pub enum DebrisShape {
     Polygon(Vec<Point>),
 }
 
-/// Debris that can be pushed.
+/// Debris that can be pushed; `movable: ()` has the defaults: 40 kg, friction 0.5.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, default)]
 pub struct Movable {
     /// Mass, in kilograms.
     pub mass_kg: f64,
@@ -309,7 +343,7 @@ pub struct SampledCounts {
 
 /// What moving and radiation cost.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, from = "super::partial::Costs")]
 pub struct Costs {
     /// Battery.
     pub energy: Rates,
@@ -331,17 +365,15 @@ pub enum TurnBack {
 
 /// Rules of the mission.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, default)]
 pub struct MissionRules {
     /// Battery level below which a robot needs rest, in percent.
     pub energy_threshold: f64,
     /// Health level below which a robot needs rest, in percent.
     pub hp_threshold: f64,
     /// When a robot with little energy turns back.
-    #[serde(default)]
     pub energy_turn_back: TurnBack,
     /// When a robot with little health turns back.
-    #[serde(default)]
     pub hp_turn_back: TurnBack,
     /// A robot also turns back when its energy is less than this many times what the straight way to its rest place costs.
     pub rest_reserve: f64,
@@ -359,13 +391,12 @@ pub struct MissionRules {
     pub health_floor: f64,
     /// A robot that comes no nearer to its home, its rest place or its work for this long, in seconds, gives up on the place: the team
     /// does not wait for it. A detour adds the time that it takes.
-    #[serde(default = "super::defaults::cut_off_s")]
     pub cut_off_s: f64,
 }
 
 /// Rules of route planning.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, default)]
 pub struct PlanningRules {
     /// Distance that routes keep from known debris and walls, beyond the robot's radius, in metres.
     pub clearance_m: f64,
@@ -374,20 +405,12 @@ pub struct PlanningRules {
 }
 
 /// Rules of right of way.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
 pub struct ConflictRules {
-    /// Distance that robots keep from one another, beyond their radii, in metres.
-    pub margin_m: f64,
-    /// How far ahead a conflict is predicted, in seconds.
-    pub horizon_s: f64,
-    /// Steps without motion after which a conflict set counts as deadlocked.
-    pub deadlock_steps: u32,
     /// Who has the right of way.
-    #[serde(default)]
     pub priority: PriorityRule,
     /// What resolves conflicts and deadlocks.
-    #[serde(default)]
     pub resolver: ResolverRule,
 }
 
@@ -406,17 +429,53 @@ pub enum PriorityRule {
 }
 
 /// What resolves conflicts and deadlocks.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum ResolverRule {
     /// Reciprocal avoidance in the open, right of way in narrow passages, and pushing where a robot is stuck. The default. It keeps margins
-    /// and horizons of its own: `margin_m`, `horizon_s` and `deadlock_steps` are those of the paper's rule.
+    /// and horizons of its own.
     #[default]
     Reciprocal,
-    /// The paper's rule: the head of a conflict set goes, the others stop. The order of a deadlocked set is rotated, head to tail.
-    Rotation,
+    /// The paper's rule: the head of a conflict set goes, the others stop. The order of a deadlocked set is rotated, head to tail. Written
+    /// `Rotation`, or `Rotation(margin_m: 0.2)` with the values that differ from the defaults.
+    Rotation(RightOfWay),
     /// The paper's rule; the head of a deadlocked set changes places with the next in line, then with the one after: the paper's
-    /// Algorithm 6, literally.
-    Swap,
+    /// Algorithm 6, literally. Written like `Rotation`.
+    Swap(RightOfWay),
     /// Nothing: robots drive as they wish and bump into each other. For comparison.
     None,
+}
+
+/// Values of the paper's rule.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct RightOfWay {
+    /// Distance that robots keep from one another, beyond their radii, in metres.
+    pub margin_m: f64,
+    /// How far ahead a conflict is predicted, in seconds.
+    pub horizon_s: f64,
+    /// Steps without motion after which a conflict set counts as deadlocked.
+    pub deadlock_steps: u32,
+}
+
+/// A straight wall, with doors. Written `(from: (0, 0), to: (10, 0))`, or short `((0, 0), (10, 0))`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct WallFile {
+    /// Where its middle line begins.
+    pub from: Point,
+    /// Where its middle line ends.
+    pub to: Point,
+    /// Thickness, in metres; 0.2 where it is left out.
+    pub thickness_m: f64,
+    /// Its doors, which are gaps.
+    pub doors: Vec<Door>,
+}
+
+/// A gap in a wall.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Door {
+    /// Distance of its middle from the wall's beginning, in metres.
+    pub at_m: f64,
+    /// Width, in metres.
+    pub width_m: f64,
 }

@@ -37,6 +37,15 @@ pub(super) fn change_needed(text: &str) -> Option<(usize, String)> {
     if is_bare("team[0].role") {
         return found("team[0].role", "is the name of a role now: write it in quotes, as in `roles`");
     }
+    if let Some(name) = ["margin_m", "horizon_s", "deadlock_steps"]
+        .into_iter()
+        .find(|name| value(&format!("conflicts.{name}")).is_some())
+    {
+        let change = format!(
+            "belongs to the paper's rule now: write `conflicts: (resolver: Rotation({name}: ...))`; other resolvers have no use for it"
+        );
+        return found(&format!("conflicts.{name}"), &change);
+    }
     let moved = fields
         .inside("sampled")
         .into_iter()
@@ -59,6 +68,11 @@ mod tests {
             ("(roles: (walker: (hp: 1.0)))", 1, "roles: is a list now"),
             ("(tasks: (near: (grid: (1, 1))))", 1, "tasks: is a list now"),
             ("(team: [\n(role: Walker, count: 1)])", 2, "team[0].role: is the name of a role now"),
+            (
+                "(conflicts: (\nhorizon_s: 1.0, resolver: None))",
+                2,
+                "conflicts.horizon_s: belongs to the paper's rule now",
+            ),
             ("(sampled: (\nnear: (debris: 1), gap_m: 2.0))", 2, "sampled.near: belongs to the task now"),
         ] {
             let (found, change) = change_needed(text).unwrap();

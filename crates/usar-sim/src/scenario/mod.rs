@@ -1,11 +1,17 @@
 //! Scenarios: read from RON, checked, and then known to be usable.
 
+mod base;
 mod debris;
 mod defaults;
 mod error;
 mod file;
 mod former;
+mod homes;
+mod odd;
+mod partial;
 mod places;
+mod reading;
+mod sense;
 mod set;
 mod validate;
 
@@ -14,15 +20,14 @@ use std::path::Path;
 
 use rne_core::question::hardest_first;
 use rne_core::{RoleId, TaskId};
-use ron::extensions::Extensions;
-use ron_fields::Fields;
 use ron_fields::file::MAX_TEXT_BYTES;
-use serde::de::DeserializeOwned;
+use ron_fields::{Fields, check_size};
 
 pub use debris::LEAST_POLYGON_WIDTH_M;
 pub use error::{LayoutError, Problem, Problems, ScenarioError};
 pub use file::*;
-pub use validate::MAX_ARENA_M;
+pub(crate) use reading::ron_options;
+pub use reading::{check_text, parse_ron, read_text};
 
 /// Most radii for which ways on the ground are planned apart: each costs a map of what is known.
 pub const MAX_RADIUS_CLASSES: usize = 4;
@@ -51,56 +56,6 @@ impl TryFrom<ScenarioFile> for Scenario {
 /// A scenario is at most this many times as long when every default is spelled out.
 const LONGEST_IN_FULL: u64 = 32;
 
-/// How all texts of the project are read.
-pub(crate) fn ron_options() -> ron::Options {
-    ron::Options::default().with_default_extension(Extensions::IMPLICIT_SOME)
-}
-
-/// Reads the text of a scenario or sweep file.
-///
-/// # Errors
-/// A file that is missing, no regular file, not text, empty or larger than [`MAX_TEXT_BYTES`].
-pub fn read_text(path: &Path) -> Result<String, ScenarioError> {
-    let unreadable = |reason: String| ScenarioError::Unreadable { path: path.to_owned(), reason };
-    let text = ron_fields::file::read_text(path).map_err(|error| unreadable(error.to_string()))?;
-    if text.trim().is_empty() {
-        return Err(unreadable("is empty; see scenarios/paper.ron for a complete scenario".into()));
-    }
-    Ok(text)
-}
-
-/// Reads a value from a RON text; `path` is used in messages only.
-///
-/// # Errors
-/// A syntax error, an unknown or missing field, or a wrong type, with its line and field.
-pub fn parse_ron<T: DeserializeOwned>(text: &str, path: &Path) -> Result<T, ScenarioError> {
-    let malformed = |error: ron::error::SpannedError, field: String| ScenarioError::Malformed {
-        path: path.to_owned(),
-        line: error.span.start.line,
-        column: error.span.start.col,
-        field: if field.is_empty() || field == "." { String::new() } else { format!("{field}: ") },
-        message: error.code.to_string(),
-    };
-    if let Some(at) = text.find("#![") {
-        return Err(ScenarioError::Malformed {
-            path: path.to_owned(),
-            line: 1 + text[..at].matches('\n').count(),
-            column: 1,
-            field: String::new(),
-            message: "extensions change what a file means and are not allowed; remove `#![...]`".into(),
-        });
-    }
-    let options = ron_options();
-    let mut deserializer = ron::Deserializer::from_str_with_options(text, &options)
-        .map_err(|error| malformed(error, String::new()))?;
-    let value: T = serde_path_to_error::deserialize(&mut deserializer).map_err(|error| {
-        let field = error.path().to_string();
-        malformed(deserializer.span_error(error.into_inner()), field)
-    })?;
-    deserializer.end().map_err(|code| malformed(deserializer.span_error(code), String::new()))?;
-    Ok(value)
-}
-
 impl Scenario {
     /// Reads and checks a file; returns the scenario and its text.
     ///
@@ -118,15 +73,17 @@ impl Scenario {
         if text.len() as u64 <= MAX_TEXT_BYTES / LONGEST_IN_FULL {
             return Ok(());
         }
-        let in_full = self.resolved().len() as u64;
-        if in_full <= MAX_TEXT_BYTES {
-            return Ok(());
-        }
-        let reason = format!(
-            "is {:.1} MiB long when every default is spelled out, as results hold it; at most {} MiB can be read again",
-            in_full as f64 / f64::from(1 << 20),
-            MAX_TEXT_BYTES >> 20
-        );
+        let in_full = self.resolved();
+        let reason = if in_full.len() as u64 > MAX_TEXT_BYTES {
+            format!(
+                "is {:.1} MiB long when every default is spelled out, as results hold it; at most {} MiB can be read again",
+                in_full.len() as f64 / f64::from(1 << 20),
+                MAX_TEXT_BYTES >> 20
+            )
+        } else {
+            let Err(found) = check_size(&in_full) else { return Ok(()) };
+            format!("{found} when every default is spelled out, as results hold it")
+        };
         Err(ScenarioError::Unreadable { path: path.to_owned(), reason })
     }
 
@@ -135,17 +92,29 @@ impl Scenario {
     /// # Errors
     /// A text that is not a scenario, or values that break rules.
     pub fn parse(text: &str, path: &Path) -> Result<Self, ScenarioError> {
-        if let Some((line, change)) = former::change_needed(text) {
+        check_text(text, path)?;
+        if base::is_named_in(text) {
+            return base::Overlay::parse(text, path);
+        }
+        let fields = Fields::of(text);
+        let (file, mut list) = reading::read_all::<ScenarioFile>(text, &fields);
+        if !list.is_empty()
+            && let Some((line, change)) = former::change_needed(text)
+        {
             return Err(ScenarioError::Former { path: path.to_owned(), line, change });
         }
-        let file: ScenarioFile = parse_ron(text, path)?;
-        Self::try_from(file).map_err(|mut list| {
-            let fields = Fields::of(text);
-            for problem in &mut list {
-                problem.line = fields.line(&problem.field);
-            }
-            ScenarioError::Invalid(Problems { path: path.to_owned(), list })
-        })
+        let checked = match file {
+            Some(file) => Self::try_from(file),
+            None => Err(Vec::new()),
+        };
+        list.extend(checked.as_ref().err().into_iter().flatten().cloned());
+        for problem in list.iter_mut().filter(|problem| problem.line.is_none()) {
+            problem.line = fields.line(&problem.field);
+        }
+        checked
+            .ok()
+            .filter(|_| list.is_empty())
+            .ok_or_else(|| ScenarioError::Invalid(Problems { path: path.to_owned(), list }))
     }
 
     /// The whole scenario with every value, as text: an entry of a list in a line.
@@ -188,7 +157,7 @@ impl Scenario {
     /// [`MAX_RADIUS_CLASSES`], robots share the ways of the next larger one. At least one; 0 where nobody drives.
     #[must_use]
     pub fn ground_radii_m(&self) -> Vec<f64> {
-        let roles = self.team.iter().map(|row| &self.roles[self.role_of(row).index()]);
+        let roles = self.team.iter().filter_map(|row| self.body_of(row));
         let ground = roles.filter(|role| role.kind == RoleKind::Ground);
         let mut radii: Vec<f64> = ground.map(|role| role.radius_m).collect();
         radii.sort_by(f64::total_cmp);
@@ -203,7 +172,7 @@ impl Scenario {
     /// Radius of the largest robot of the team that moves there, in metres; 0 where there is none.
     #[must_use]
     pub fn largest_radius_m(&self, kind: RoleKind) -> f64 {
-        let roles = self.team.iter().map(|row| &self.roles[self.role_of(row).index()]);
+        let roles = self.team.iter().filter_map(|row| self.body_of(row));
         roles.filter(|role| role.kind == kind).map(|role| role.radius_m).fold(0.0, f64::max)
     }
 }

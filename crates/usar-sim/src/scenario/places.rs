@@ -3,7 +3,10 @@
 use parry2d::math::{Pose, Rotation, Vector};
 use parry2d::shape::SharedShape;
 
-use super::file::{DebrisFile, DebrisShape, Row, ZoneFile};
+use super::file::{
+    ConflictRules, DebrisFile, DebrisShape, ResolverRule, RightOfWay, RoleFile, Row, ScenarioFile, WallFile,
+    ZoneFile,
+};
 use crate::geometry::{Outline, RadiationZone};
 
 impl DebrisFile {
@@ -25,6 +28,73 @@ impl DebrisFile {
         let rotation = Rotation::from_cos_sin_unchecked(libm::cosf(angle), libm::sinf(angle));
         let at = Vector::new(self.at[0] as f32, self.at[1] as f32);
         Outline { shape, pose: Pose::from_parts(at, rotation) }
+    }
+}
+
+impl WallFile {
+    /// Length of its middle line, in metres.
+    #[must_use]
+    pub fn length_m(&self) -> f64 {
+        libm::hypot(self.to[0] - self.from[0], self.to[1] - self.from[1])
+    }
+
+    /// The parts of the wall between its doors, as fixed debris. A part shorter than its thickness is left out with the door.
+    pub fn pieces(&self) -> impl Iterator<Item = DebrisFile> + use<> {
+        let (from, length) = (self.from, self.length_m());
+        let along = [(self.to[0] - from[0]) / length, (self.to[1] - from[1]) / length];
+        let rotation_deg = libm::atan2(along[1], along[0]).to_degrees();
+        let mut doors = self.doors.clone();
+        doors.sort_by(|a, b| a.at_m.total_cmp(&b.at_m));
+        let begins =
+            std::iter::once(0.0).chain(doors.clone().into_iter().map(|door| door.at_m + door.width_m / 2.0));
+        let ends = doors.into_iter().map(|door| door.at_m - door.width_m / 2.0).chain([length]);
+        let thickness = self.thickness_m;
+        begins.zip(ends).filter(move |(begin, end)| end - begin >= thickness).map(move |(begin, end)| {
+            let middle = (begin + end) / 2.0;
+            let at = [from[0] + along[0] * middle, from[1] + along[1] * middle];
+            DebrisFile { shape: DebrisShape::Box(end - begin, thickness), at, rotation_deg, movable: None }
+        })
+    }
+}
+
+impl ScenarioFile {
+    /// Debris at known places, and after it the parts of the walls.
+    #[must_use]
+    pub fn obstacles(&self) -> Vec<DebrisFile> {
+        let mut all = self.debris.clone();
+        all.extend(self.walls.iter().flat_map(WallFile::pieces));
+        all
+    }
+
+    /// What the robots of a row are and can do: their role, with what the row says otherwise. Nothing if the role is none of the scenario's.
+    #[must_use]
+    pub fn body_of(&self, row: &Row) -> Option<RoleFile> {
+        let mut body = self.roles.iter().find(|role| role.name == row.role)?.clone();
+        if let Some(other) = row.body {
+            body.radius_m = other.radius_m.unwrap_or(body.radius_m);
+            body.mass_kg = other.mass_kg.unwrap_or(body.mass_kg);
+            body.hp = other.hp.unwrap_or(body.hp);
+            body.energy = other.energy.unwrap_or(body.energy);
+            body.speed_mps = other.speed_mps.unwrap_or(body.speed_mps);
+            body.acceleration_mps2 = other.acceleration_mps2.unwrap_or(body.acceleration_mps2);
+            body.sensing_m = other.sensing_m.unwrap_or(body.sensing_m);
+            body.observing_m = other.observing_m.unwrap_or(body.observing_m);
+            body.capacity = other.capacity.unwrap_or(body.capacity);
+            body.resources = other.resources.unwrap_or(body.resources);
+            body.guides = other.guides.unwrap_or(body.guides);
+        }
+        Some(body)
+    }
+}
+
+impl ConflictRules {
+    /// The values of the paper's rule; the defaults where another resolver is at work.
+    #[must_use]
+    pub fn right_of_way(&self) -> RightOfWay {
+        match self.resolver {
+            ResolverRule::Rotation(rule) | ResolverRule::Swap(rule) => rule,
+            ResolverRule::Reciprocal | ResolverRule::None => RightOfWay::default(),
+        }
     }
 }
 
@@ -56,6 +126,25 @@ mod tests {
 
     fn piece(shape: DebrisShape) -> Outline {
         DebrisFile { shape, at: [10.0, 5.0], rotation_deg: 30.0, movable: None }.outline()
+    }
+
+    #[test]
+    fn the_parts_of_a_wall_leave_its_doors_free() {
+        let door = |at_m| crate::scenario::Door { at_m, width_m: 1.0 };
+        let doors = vec![door(7.0), door(3.0), door(9.55)];
+        let wall = WallFile { from: [2.0, 0.0], to: [2.0, 10.0], thickness_m: 0.2, doors };
+        let pieces: Vec<(f64, f64)> = wall
+            .pieces()
+            .map(|piece| match piece.shape {
+                DebrisShape::Box(length, 0.2) => (piece.at[1], length),
+                shape => panic!("{shape:?}"),
+            })
+            .collect();
+        assert_eq!(pieces.len(), 3, "{pieces:?}");
+        for ((middle, length), (begin, end)) in pieces.iter().zip([(0.0, 2.5), (3.5, 6.5), (7.5, 9.05)]) {
+            assert!((middle - (begin + end) / 2.0).abs() < 1e-9 && (length - (end - begin)).abs() < 1e-9);
+        }
+        assert!(wall.pieces().all(|piece| (piece.rotation_deg - 90.0).abs() < 1e-9));
     }
 
     #[test]

@@ -1,30 +1,27 @@
 //! The rules of a scenario: every value in its range, and the values in keeping with one another.
 
 use std::fmt::Display;
-use std::ops::RangeInclusive;
 
-use rne_core::question::MAX_TASKS;
+use ron_fields::limits::Limit;
+use ron_fields::nearest;
 
 use super::debris::debris;
 use super::error::Problem;
 use super::file::{
-    Measure, NeedFile, Normal, Point, RoleFile, RoleKind, Row, SampledCounts, ScenarioFile, TaskFile,
+    Measure, NeedFile, Normal, Point, ResolverRule, RoleFile, SampledCounts, ScenarioFile, TaskFile,
 };
+use super::homes::homes_are_free;
+use super::sense::sense;
+use crate::limits;
 use crate::vitals::Rates;
-
-/// Most roles that a scenario may have.
-const MAX_ROLES: usize = 64;
-
-/// Greatest width and height of an arena, in metres. Positions are numbers of single precision: at 8,000 m they are 0.5 mm apart, which
-/// is what contacts and the routes between them bear.
-pub const MAX_ARENA_M: f64 = 8_000.0;
-
-/// Most needs that a scenario may have.
-const MAX_NEEDS: usize = 64;
 
 /// All broken rules, in the order of the fields.
 pub(super) fn problems(file: &ScenarioFile) -> Vec<Problem> {
     let mut check = Checker { problems: Vec::new(), arena: file.arena_m };
+    sizes(&mut check, file);
+    if !check.problems.is_empty() {
+        return check.problems; // the rules below take time with each entry
+    }
     general(&mut check, file);
     team(&mut check, file);
     roles(&mut check, file);
@@ -39,10 +36,14 @@ pub(super) fn problems(file: &ScenarioFile) -> Vec<Problem> {
     rules(&mut check, file);
     needs(&mut check, file);
     if check.problems.is_empty() {
-        homes_are_free(&mut check, file); // needs sound shapes and places
+        homes_are_free(&mut check, file); // these need sound shapes and places
+        sense(&mut check, file);
     }
     check.problems
 }
+
+/// Most problems that are told at once: the first of them are what a reader mends first.
+const MAX_PROBLEMS: usize = 100;
 
 pub(super) struct Checker {
     problems: Vec<Problem>,
@@ -50,21 +51,58 @@ pub(super) struct Checker {
 }
 
 impl Checker {
+    /// Notes a broken rule, unless there are [`MAX_PROBLEMS`] already.
     pub(super) fn fail(&mut self, field: impl Into<String>, rule: impl Into<String>, found: impl Display) {
-        let (field, rule, found) = (field.into(), rule.into(), found.to_string());
-        self.problems.push(Problem { field, line: None, rule, found });
+        self.fail_with(field, (rule.into(), String::new()), found);
     }
 
-    pub(super) fn number(&mut self, field: impl Into<String>, value: f64, range: RangeInclusive<f64>) {
-        if !range.contains(&value) {
-            let rule = format!("must be a number from {} to {}", range.start(), range.end());
-            self.fail(field, rule, value);
+    /// Notes a broken rule with a hint.
+    pub(super) fn fail_with(
+        &mut self,
+        field: impl Into<String>,
+        (rule, hint): (String, String),
+        found: impl Display,
+    ) {
+        if self.problems.len() >= MAX_PROBLEMS {
+            return;
+        }
+        let (field, found) = (field.into(), found.to_string());
+        self.problems.push(Problem { field, rule, found, hint, ..Problem::default() });
+    }
+
+    /// Whether no more problems are taken.
+    pub(super) fn is_full(&self) -> bool {
+        self.problems.len() >= MAX_PROBLEMS
+    }
+
+    pub(super) fn number(&mut self, field: impl Into<String>, value: f64, limit: Limit) {
+        if !limit.range().contains(&value) {
+            let rule = format!("must be a number from {} to {}", limit.least, limit.most);
+            let other_unit = [value / 1000.0, value * 1000.0].into_iter().find(|other| {
+                (value > 4.0 * limit.most || value > 0.0 && value < limit.least / 4.0)
+                    && limit.range().contains(other)
+            });
+            let hint = other_unit
+                .map_or(String::new(), |other| format!("is the unit right? {other} would be in range"));
+            let found = if value.abs() < 1e15 { value.to_string() } else { format!("{value:e}") };
+            self.fail_with(field, (rule, hint), found);
         }
     }
 
-    fn count(&mut self, field: impl Into<String>, value: u32, range: RangeInclusive<u32>) {
-        if !range.contains(&value) {
-            self.fail(field, format!("must be a count from {} to {}", range.start(), range.end()), value);
+    fn count(&mut self, field: impl Into<String>, value: u32, limit: Limit) {
+        if !limit.allows(value as usize) {
+            self.fail(field, format!("must be a count from {} to {}", limit.least, limit.most), value);
+        }
+    }
+
+    /// The number of entries of a table or list.
+    pub(super) fn entries(&mut self, field: impl Into<String>, count: usize, limit: Limit) {
+        if !limit.allows(count) {
+            let rule = match limit.least {
+                0.0 => format!("must have at most {} entries", limit.most),
+                least => format!("must have {least} to {} entries", limit.most),
+            };
+            self.fail(field, rule, count);
         }
     }
 
@@ -78,91 +116,149 @@ impl Checker {
     }
 }
 
+/// The number of entries of each table and list: what comes after takes time and memory with each of them.
+fn sizes(check: &mut Checker, file: &ScenarioFile) {
+    check.entries("team", file.team.len(), limits::ROWS);
+    let total: u64 = file.team.iter().map(|row| u64::from(row.count)).sum();
+    if !limits::ROBOTS.allows(total as usize) {
+        check.fail("team", format!("must have 1 to {} robots", limits::ROBOTS.most), total);
+    }
+    check.entries("roles", file.roles.len(), limits::ROLES);
+    for (i, role) in file.roles.iter().enumerate() {
+        check.entries(format!("roles[{i}].constants"), role.constants.len(), limits::CONSTANTS);
+    }
+    check.entries("needs", file.needs.len(), limits::NEEDS);
+    let tasks = Limit { least: 0.0, ..limits::TASKS };
+    check.entries("tasks", file.tasks.len(), tasks);
+    for (i, task) in file.tasks.iter().enumerate() {
+        check.entries(format!("tasks[{i}].quota"), task.quota.len(), Limit { least: 0.0, ..limits::ROLES });
+    }
+    let rescuees = file.tasks.iter().map(|task| u64::from(task.grid[0]) * u64::from(task.grid[1]));
+    let rescuees = rescuees.fold(0, u64::saturating_add);
+    let each_is_sound =
+        file.tasks.iter().flat_map(|task| task.grid).all(|side| limits::GRID.allows(side as usize));
+    if each_is_sound && !limits::RESCUEES.allows(rescuees as usize) {
+        check.fail("tasks", format!("must have at most {} rescuees in all", limits::RESCUEES.most), rescuees);
+    }
+    check.entries("errands", file.errands.len(), limits::ERRANDS);
+    check.entries("debris", file.debris.len(), limits::DEBRIS);
+    check.entries("walls", file.walls.len(), limits::WALLS);
+    for (i, wall) in file.walls.iter().enumerate() {
+        check.entries(format!("walls[{i}].doors"), wall.doors.len(), limits::DOORS);
+    }
+    check.entries("radiation", file.radiation.len(), limits::ZONES);
+}
+
 fn general(check: &mut Checker, file: &ScenarioFile) {
     let plain = |c: char| c.is_ascii_alphanumeric() || "-_.".contains(c);
-    if file.name.is_empty() || file.name.starts_with(['.', '-']) || !file.name.chars().all(plain) {
-        let rule = "must be a name of letters, digits, `-`, `_` and `.` that does not start with `.` or `-`";
-        check.fail("name", rule, format!("{:?}", file.name));
+    let is_name = limits::NAME_BYTES.allows(file.name.len()) && file.name.chars().all(plain);
+    if !is_name || file.name.starts_with(['.', '-']) || file.name.ends_with('.') {
+        let rule = "must be a name of at most 64 letters, digits, `-`, `_` and `.` that does not start with `.` or `-` nor end with `.`";
+        check.fail("name", rule, shown(&file.name));
+    } else if is_device(&file.name) {
+        check.fail("name", "must not be the name of a device on Windows", shown(&file.name));
     }
-    check.number("duration_s", file.duration_s, 1.0..=86_400.0);
-    check.number("dt_s", file.dt_s, 0.001..=0.05);
-    check.number("arena_m[0]", file.arena_m[0], 2.0..=MAX_ARENA_M);
-    check.number("arena_m[1]", file.arena_m[1], 2.0..=MAX_ARENA_M);
+    check.number("duration_s", file.duration_s, limits::DURATION_S);
+    check.number("dt_s", file.dt_s, limits::DT_S);
+    check.number("arena_m[0]", file.arena_m[0], limits::ARENA_M);
+    check.number("arena_m[1]", file.arena_m[1], limits::ARENA_M);
 }
 
 fn team(check: &mut Checker, file: &ScenarioFile) {
-    let total: u64 = file.team.iter().map(|row| u64::from(row.count)).sum();
-    if total == 0 || total > 20_000 {
-        check.fail("team", "must have 1 to 20000 robots", total);
-        return;
-    }
     for (i, row) in file.team.iter().enumerate() {
         let field = format!("team[{i}]");
-        let Some(role) = role_of(file, row) else {
+        let Some(role) = file.body_of(row) else {
             let known: Vec<&str> = file.roles.iter().map(|role| role.name.as_str()).collect();
             let rule = format!("must be one of the roles ({})", known.join(", "));
-            check.fail(format!("{field}.role"), rule, format!("{:?}", row.role));
+            check.fail_with(format!("{field}.role"), (rule, meant(&row.role, known)), shown(&row.role));
             continue;
         };
         let radius = role.radius_m;
-        check.number(format!("{field}.width_m"), row.width_m, 0.0..=MAX_ARENA_M);
+        if row.body.is_some() {
+            self::role(check, &format!("{field}.body"), &role, file.dt_s);
+        }
+        check.number(format!("{field}.width_m"), row.width_m, limits::ROW_WIDTH_M);
         if let Some(levels) = row.levels {
-            check.number(format!("{field}.levels.energy"), levels.energy, 0.01..=100.0);
-            check.number(format!("{field}.levels.hp"), levels.hp, 0.01..=100.0);
+            check.number(format!("{field}.levels.energy"), levels.energy, limits::LEVEL);
+            check.number(format!("{field}.levels.hp"), levels.hp, limits::LEVEL);
         }
         check.inside(format!("{field}.center"), [row.center[0] - row.width_m / 2.0, row.center[1]], radius);
         check.inside(format!("{field}.center"), [row.center[0] + row.width_m / 2.0, row.center[1]], radius);
     }
 }
 
-/// The role of a row, if it is one of the scenario's.
-fn role_of<'f>(file: &'f ScenarioFile, row: &Row) -> Option<&'f RoleFile> {
-    file.roles.iter().find(|role| role.name == row.role)
+/// The name that may have been meant, as a hint.
+fn meant<'k>(name: &str, known: impl IntoIterator<Item = &'k str>) -> String {
+    nearest(name, known).map_or(String::new(), |meant| format!("did you mean {meant}?"))
+}
+
+/// A name as it is told: in quotes, and not longer than a line.
+fn shown(name: &str) -> String {
+    let start: String = name.chars().take(80).collect();
+    if start.len() < name.len() {
+        format!("{start:?}... of {} bytes", name.len())
+    } else {
+        format!("{name:?}")
+    }
+}
+
+/// Whether Windows has a device of this name, with or without an extension: no file can be called that.
+fn is_device(name: &str) -> bool {
+    let stem = name.split('.').next().unwrap_or_default().to_ascii_lowercase();
+    let numbered =
+        |kind| stem.strip_prefix(kind).is_some_and(|rest| matches!(rest.as_bytes(), [b'1'..=b'9']));
+    ["con", "prn", "aux", "nul"].contains(&stem.as_str()) || numbered("com") || numbered("lpt")
 }
 
 /// Names of a table: each plain, and each once.
-fn names<'n>(check: &mut Checker, table: &str, most: usize, names: impl Iterator<Item = &'n str>) {
+fn names<'n>(check: &mut Checker, table: &str, names: impl Iterator<Item = &'n str>) {
     let plain = |c: char| c.is_ascii_alphanumeric() || "-_".contains(c);
     let mut seen: Vec<&str> = Vec::new();
     for (i, name) in names.enumerate() {
-        if name.is_empty() || name.len() > 64 || name.starts_with('-') || !name.chars().all(plain) {
+        let field = format!("{table}[{i}].name");
+        if !limits::NAME_BYTES.allows(name.len()) || name.starts_with('-') || !name.chars().all(plain) {
             let rule =
                 "must be a name of at most 64 letters, digits, `-` and `_` that does not start with `-`";
-            check.fail(format!("{table}[{i}].name"), rule, format!("{name:?}"));
+            check.fail(field, rule, shown(name));
+        } else if is_device(name) {
+            check.fail(field, "must not be the name of a device on Windows", shown(name));
         } else if seen.contains(&name) {
-            check.fail(format!("{table}[{i}].name"), "must not be listed twice", format!("{name:?}"));
+            check.fail(field, "must not be listed twice", shown(name));
         }
         seen.push(name);
-    }
-    if seen.is_empty() || seen.len() > most {
-        check.fail(table, format!("must have 1 to {most} entries"), seen.len());
     }
 }
 
 /// Path of an entry of a table: by its name, which is how people find it.
-fn entry(table: &str, name: &str) -> String {
+pub(super) fn entry(table: &str, name: &str) -> String {
     format!("{table}.{name}")
 }
 
 fn roles(check: &mut Checker, file: &ScenarioFile) {
-    names(check, "roles", MAX_ROLES, file.roles.iter().map(|role| role.name.as_str()));
+    names(check, "roles", file.roles.iter().map(|role| role.name.as_str()));
     for spec in &file.roles {
         role(check, &entry("roles", &spec.name), spec, file.dt_s);
         for name in spec.constants.keys() {
             let is_need = |need: &NeedFile| need.name == *name && need.measures == Measure::Constant;
             if !file.needs.iter().any(is_need) {
                 let field = format!("{}.constants", entry("roles", &spec.name));
-                check.fail(field, "must name needs that measure Constant", format!("{name:?}"));
+                let constants = file.needs.iter().filter(|need| need.measures == Measure::Constant);
+                let hint = meant(name, constants.map(|need| need.name.as_str()));
+                check.fail_with(
+                    field,
+                    ("must name needs that measure Constant".to_owned(), hint),
+                    shown(name),
+                );
             }
         }
     }
 }
 
 fn needs(check: &mut Checker, file: &ScenarioFile) {
-    names(check, "needs", MAX_NEEDS, file.needs.iter().map(|need| need.name.as_str()));
+    names(check, "needs", file.needs.iter().map(|need| need.name.as_str()));
     for need in &file.needs {
         let field = entry("needs", &need.name);
-        check.number(format!("{field}.weight"), need.weight, 0.0..=1e9);
+        check.number(format!("{field}.weight"), need.weight, limits::WEIGHT);
         let lacks = |role: &&RoleFile| !role.constants.contains_key(&need.name);
         if need.measures == Measure::Constant
             && let Some(role) = file.roles.iter().find(lacks)
@@ -175,9 +271,9 @@ fn needs(check: &mut Checker, file: &ScenarioFile) {
         }
     }
     for row in &file.team {
-        let Some(role) = role_of(file, row) else { continue };
-        if file.needs.iter().all(|need| need.weight * at_best(role, need) == 0.0) {
-            let must = format!("must weigh a need that a {} has", role.name);
+        let Some(role) = file.body_of(row) else { continue };
+        if file.needs.iter().all(|need| need.weight * at_best(&role, need) == 0.0) {
+            let must = format!("must weigh a need that robots of the role {} have", role.name);
             check.fail("needs", must, "weights of 0 for all of them");
         }
     }
@@ -198,18 +294,18 @@ fn at_best(role: &RoleFile, need: &NeedFile) -> f64 {
 }
 
 fn role(check: &mut Checker, field: &str, spec: &RoleFile, dt: f64) {
-    check.number(format!("{field}.radius_m"), spec.radius_m, 0.05..=5.0);
-    check.number(format!("{field}.mass_kg"), spec.mass_kg, 0.1..=10_000.0);
-    check.number(format!("{field}.hp"), spec.hp, 0.001..=1e6);
-    check.number(format!("{field}.energy"), spec.energy, 0.001..=1e6);
-    check.number(format!("{field}.speed_mps"), spec.speed_mps, 0.05..=20.0);
-    check.number(format!("{field}.acceleration_mps2"), spec.acceleration_mps2, 0.05..=100.0);
-    check.number(format!("{field}.sensing_m"), spec.sensing_m, 0.0..=1000.0);
-    check.number(format!("{field}.observing_m"), spec.observing_m, 0.0..=1000.0);
-    check.count(format!("{field}.capacity"), spec.capacity, 0..=10_000);
-    check.count(format!("{field}.resources"), spec.resources, 0..=10_000);
+    check.number(format!("{field}.radius_m"), spec.radius_m, limits::ROBOT_RADIUS_M);
+    check.number(format!("{field}.mass_kg"), spec.mass_kg, limits::ROBOT_MASS_KG);
+    check.number(format!("{field}.hp"), spec.hp, limits::HP);
+    check.number(format!("{field}.energy"), spec.energy, limits::ENERGY);
+    check.number(format!("{field}.speed_mps"), spec.speed_mps, limits::SPEED_MPS);
+    check.number(format!("{field}.acceleration_mps2"), spec.acceleration_mps2, limits::ACCELERATION_MPS2);
+    check.number(format!("{field}.sensing_m"), spec.sensing_m, limits::SENSING_M);
+    check.number(format!("{field}.observing_m"), spec.observing_m, limits::OBSERVING_M);
+    check.count(format!("{field}.capacity"), spec.capacity, limits::CAPACITY);
+    check.count(format!("{field}.resources"), spec.resources, limits::RESOURCES);
     for (name, value) in &spec.constants {
-        check.number(format!("{field}.constants.{name:?}"), *value, 0.0..=1e9);
+        check.number(format!("{field}.constants.{name:?}"), *value, limits::CONSTANT);
     }
     if spec.speed_mps * dt > spec.radius_m {
         let rule = format!(
@@ -222,8 +318,8 @@ fn role(check: &mut Checker, field: &str, spec: &RoleFile, dt: f64) {
 
 fn levels(check: &mut Checker, file: &ScenarioFile) {
     let mut normal = |field: &str, Normal { mean, sd }: Normal| {
-        check.number(format!("{field}.mean"), mean, 0.0..=100.0);
-        check.number(format!("{field}.sd"), sd, 0.0..=100.0);
+        check.number(format!("{field}.mean"), mean, limits::LEVEL_MEAN);
+        check.number(format!("{field}.sd"), sd, limits::LEVEL_SD);
     };
     normal("initial_levels.energy", file.initial_levels.energy);
     normal("initial_levels.hp", file.initial_levels.hp);
@@ -233,17 +329,19 @@ fn tasks(check: &mut Checker, file: &ScenarioFile) {
     if file.tasks.is_empty() {
         return check.fail("tasks", "must be given when there are no errands", "neither");
     }
-    names(check, "tasks", MAX_TASKS, file.tasks.iter().map(|task| task.name.as_str()));
+    names(check, "tasks", file.tasks.iter().map(|task| task.name.as_str()));
     for task in &file.tasks {
         let field = entry("tasks", &task.name);
         task_area(check, &field, task);
-        check.count(format!("{field}.difficulty"), task.difficulty, 0..=1_000_000);
-        check.count(format!("{field}.sampled.debris"), task.sampled.debris, 0..=10_000);
-        check.count(format!("{field}.sampled.radiation"), task.sampled.radiation, 0..=10_000);
+        check.count(format!("{field}.difficulty"), task.difficulty, limits::DIFFICULTY);
+        check.count(format!("{field}.sampled.debris"), task.sampled.debris, limits::SAMPLED_DEBRIS);
+        check.count(format!("{field}.sampled.radiation"), task.sampled.radiation, limits::SAMPLED_ZONES);
         for (role, quota) in &task.quota {
-            check.count(format!("{field}.quota.{role:?}"), *quota, 0..=20_000);
+            check.count(format!("{field}.quota.{role:?}"), *quota, limits::QUOTA);
             if !file.roles.iter().any(|known| known.name == *role) {
-                check.fail(format!("{field}.quota"), "must name roles of the scenario", format!("{role:?}"));
+                let known = file.roles.iter().map(|role| role.name.as_str());
+                let rule = ("must name roles of the scenario".to_owned(), meant(role, known));
+                check.fail_with(format!("{field}.quota"), rule, shown(role));
             }
         }
     }
@@ -251,20 +349,21 @@ fn tasks(check: &mut Checker, file: &ScenarioFile) {
 
 fn errands(check: &mut Checker, file: &ScenarioFile) {
     let robots: u32 = file.team.iter().map(|row| row.count).sum();
-    let mut last: Vec<(u32, Point)> = Vec::new();
+    let mut seen = std::collections::BTreeSet::new();
     for (i, errand) in file.errands.iter().enumerate() {
         if errand.robot >= robots {
             let rule = format!("must be the id of one of the {robots} robots");
             check.fail(format!("errands[{i}].robot"), rule, errand.robot);
-        } else if last.iter().any(|(robot, _)| *robot == errand.robot) {
+        } else if !seen.insert(errand.robot) {
             check.fail(format!("errands[{i}].robot"), "must not stand twice", errand.robot);
+        }
+        if errand.to.is_empty() {
+            check.fail(format!("errands[{i}].to"), "must name at least one place", "none");
+        } else {
+            check.entries(format!("errands[{i}].to"), errand.to.len(), limits::PLACES);
         }
         for (k, place) in errand.to.iter().enumerate() {
             check.inside(format!("errands[{i}].to[{k}]"), *place, 0.0);
-        }
-        match errand.to.last() {
-            Some(place) => last.push((errand.robot, *place)),
-            None => check.fail(format!("errands[{i}].to"), "must name at least one place", "none"),
         }
     }
     let samples = |task: &&TaskFile| task.sampled != SampledCounts::default();
@@ -278,10 +377,10 @@ fn errands(check: &mut Checker, file: &ScenarioFile) {
 }
 
 fn task_area(check: &mut Checker, field: &str, task: &TaskFile) {
-    check.number(format!("{field}.size_m[0]"), task.size_m[0], 0.0..=10_000.0);
-    check.number(format!("{field}.size_m[1]"), task.size_m[1], 0.0..=10_000.0);
-    check.count(format!("{field}.grid[0]"), task.grid[0], 0..=1000);
-    check.count(format!("{field}.grid[1]"), task.grid[1], 0..=1000);
+    check.number(format!("{field}.size_m[0]"), task.size_m[0], limits::BLOCK_M);
+    check.number(format!("{field}.size_m[1]"), task.size_m[1], limits::BLOCK_M);
+    check.count(format!("{field}.grid[0]"), task.grid[0], limits::GRID);
+    check.count(format!("{field}.grid[1]"), task.grid[1], limits::GRID);
     let [half_w, half_h] = task.size_m.map(|size| size / 2.0);
     for corner in [[-half_w, -half_h], [half_w, half_h]] {
         let corner = [task.center[0] + corner[0], task.center[1] + corner[1]];
@@ -295,83 +394,56 @@ fn sampled(check: &mut Checker, file: &ScenarioFile) {
     for (name, [least, greatest]) in
         [("debris_radius_m", sampled.debris_radius_m), ("zone_radius_m", sampled.zone_radius_m)]
     {
-        check.number(format!("sampled.{name}[0]"), least, 0.05..=100.0);
-        check.number(format!("sampled.{name}[1]"), greatest, least..=100.0);
+        check.number(format!("sampled.{name}[0]"), least, limits::SAMPLED_RADIUS_M);
+        check.number(
+            format!("sampled.{name}[1]"),
+            greatest,
+            Limit { least: least.min(100.0), ..limits::SAMPLED_RADIUS_M },
+        );
     }
-    check.number("sampled.gap_m", sampled.gap_m, 0.0..=100.0);
-    check.number("sampled.strip_m", sampled.strip_m, 0.1..=10_000.0);
+    check.number("sampled.gap_m", sampled.gap_m, limits::GAP_M);
+    check.number("sampled.strip_m", sampled.strip_m, limits::STRIP_M);
 }
 
 fn rules(check: &mut Checker, file: &ScenarioFile) {
     let mut rates = |field: &str, rates: &Rates| {
-        check.number(format!("{field}.per_step"), rates.per_step, 0.0..=100.0);
-        check.number(format!("{field}.per_metre"), rates.per_metre, 0.0..=100.0);
-        check.number(format!("{field}.per_second"), rates.per_second, 0.0..=100.0);
+        check.number(format!("{field}.per_step"), rates.per_step, limits::RATE);
+        check.number(format!("{field}.per_metre"), rates.per_metre, limits::RATE);
+        check.number(format!("{field}.per_second"), rates.per_second, limits::RATE);
     };
     rates("costs.energy", &file.costs.energy);
     rates("costs.hp", &file.costs.hp);
     let mission = &file.mission;
-    check.number("mission.energy_threshold", mission.energy_threshold, 0.0..=99.0);
-    check.number("mission.hp_threshold", mission.hp_threshold, 0.0..=99.0);
-    check.number("mission.rest_reserve", mission.rest_reserve, 0.0..=10.0);
-    check.number("mission.rest_s", mission.rest_s, 0.0..=86_400.0);
-    check.number("mission.loading_s", mission.loading_s, 0.0..=3600.0);
+    check.number("mission.energy_threshold", mission.energy_threshold, limits::THRESHOLD);
+    check.number("mission.hp_threshold", mission.hp_threshold, limits::THRESHOLD);
+    check.number("mission.rest_reserve", mission.rest_reserve, limits::REST_RESERVE);
+    check.number("mission.rest_s", mission.rest_s, limits::REST_S);
+    check.number("mission.loading_s", mission.loading_s, limits::LOADING_S);
     let least_reach = file.least_reach_m();
-    check.number("mission.reach_m", mission.reach_m, least_reach..=20.0);
-    check.number("mission.area_margin_m", mission.area_margin_m, least_reach..=1000.0);
-    check.number("mission.blind_speed_loss", mission.blind_speed_loss, 0.0..=0.95);
-    check.number("mission.health_floor", mission.health_floor, 0.05..=1.0);
-    check.number("mission.cut_off_s", mission.cut_off_s, 1.0..=86_400.0);
-    check.number("planning.clearance_m", file.planning.clearance_m, 0.02..=10.0);
-    check.number("planning.exposure_price_m", file.planning.exposure_price_m, 0.0..=1e6);
-    check.number("conflicts.margin_m", file.conflicts.margin_m, 0.0..=10.0);
-    check.number("conflicts.horizon_s", file.conflicts.horizon_s, 0.0..=60.0);
-    check.count("conflicts.deadlock_steps", file.conflicts.deadlock_steps, 1..=100_000);
+    check.number("mission.reach_m", mission.reach_m, Limit { least: least_reach, ..limits::REACH_M });
+    check.number(
+        "mission.area_margin_m",
+        mission.area_margin_m,
+        Limit { least: least_reach, ..limits::AREA_MARGIN_M },
+    );
+    check.number("mission.blind_speed_loss", mission.blind_speed_loss, limits::BLIND_SPEED_LOSS);
+    check.number("mission.health_floor", mission.health_floor, limits::HEALTH_FLOOR);
+    check.number("mission.cut_off_s", mission.cut_off_s, limits::CUT_OFF_S);
+    check.number("planning.clearance_m", file.planning.clearance_m, limits::CLEARANCE_M);
+    check.number("planning.exposure_price_m", file.planning.exposure_price_m, limits::EXPOSURE_PRICE_M);
+    if let ResolverRule::Rotation(rule) | ResolverRule::Swap(rule) = file.conflicts.resolver {
+        check.number("conflicts.resolver.margin_m", rule.margin_m, limits::MARGIN_M);
+        check.number("conflicts.resolver.horizon_s", rule.horizon_s, limits::HORIZON_S);
+        check.count("conflicts.resolver.deadlock_steps", rule.deadlock_steps, limits::DEADLOCK_STEPS);
+    }
 }
 
 impl ScenarioFile {
     /// Least reach that lets a robot load a rescuee next to another robot: its own radius.
     fn least_reach_m(&self) -> f64 {
-        let carrying = self.roles.iter().filter(|role| role.capacity > 0);
+        let bodies = self.team.iter().filter_map(|row| self.body_of(row));
+        let roles = self.roles.iter().cloned().chain(bodies);
+        let carrying = roles.filter(|role| role.capacity > 0);
         carrying.map(|role| role.radius_m).fold(0.0, f64::max)
-    }
-}
-
-/// No home on another home of its layer, nor inside debris (aerial robots fly over it).
-fn homes_are_free(check: &mut Checker, file: &ScenarioFile) {
-    let mut homes: Vec<(usize, &RoleFile, Point)> = Vec::new();
-    for (i, row) in file.team.iter().enumerate() {
-        homes.extend(
-            role_of(file, row).into_iter().flat_map(|role| row.places().map(move |at| (i, role, at))),
-        );
-    }
-    homes.sort_by(|a, b| a.2[0].total_cmp(&b.2[0]));
-    let widest = file.roles.iter().map(|role| role.radius_m).fold(0.0, f64::max);
-    for (i, (row, role, at)) in homes.iter().enumerate() {
-        let near = homes[i + 1..].iter().take_while(|other| other.2[0] - at[0] < 2.0 * widest);
-        for (_, other_role, other) in near.filter(|other| other.1.kind == role.kind) {
-            let distance = libm::hypot(at[0] - other[0], at[1] - other[1]);
-            let needed = role.radius_m + other_role.radius_m;
-            if distance < needed {
-                let rule = format!("must leave at least {needed} m between the centres of two robots");
-                check.fail(
-                    format!("team[{row}]"),
-                    rule,
-                    format!("{distance:.3} m at ({}, {})", at[0], at[1]),
-                );
-            }
-        }
-    }
-    for (i, piece) in file.debris.iter().enumerate() {
-        let outline = piece.outline();
-        for (_, role, at) in homes.iter().filter(|home| home.1.kind == RoleKind::Ground) {
-            if outline.distance_to([at[0] as f32, at[1] as f32].into()) < role.radius_m as f32 {
-                check.fail(
-                    format!("debris[{i}].at"),
-                    "must leave every robot's home free",
-                    format!("a home at ({}, {})", at[0], at[1]),
-                );
-            }
-        }
     }
 }

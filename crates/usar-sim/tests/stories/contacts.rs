@@ -11,7 +11,7 @@ const UNEQUAL: &str = r#"duration_s: 20.0, arena_m: (20.0, 14.0),
     roles: [(name: "large", radius_m: 1.0), (name: "small", radius_m: 0.2)],
     mission: (energy_threshold: 30.0, hp_threshold: 30.0, rest_reserve: 1.5, rest_s: 30.0, loading_s: 2.0, reach_m: 1.2,
         area_margin_m: 4.0, blind_speed_loss: 0.3, health_floor: 0.5),
-    conflicts: (margin_m: 0.15, horizon_s: 0.8, deadlock_steps: 10, resolver: None),
+    conflicts: (resolver: None),
     team: [
         (role: "small", count: 1, center: (4.0, 10.0), width_m: 0.0),
         (role: "small", count: 1, center: (9.9, 3.0), width_m: 0.0),

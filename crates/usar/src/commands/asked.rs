@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use experiments::Failure;
-use experiments::experiment::{PolicySpec, defaults, with_settings};
+use experiments::experiment::{PolicySpec, check_cost, defaults, with_settings};
 use experiments::sweep::disk::experiment_in;
 use usar_sim::scenario::Scenario;
 use usar_sim::simulation::Simulation;
@@ -26,6 +26,9 @@ pub(crate) struct TrialArguments {
     /// Set a field of the scenario, by its path, to a value in RON; may stand several times
     #[arg(long, value_name = "PATH=VALUE")]
     set: Vec<String>,
+    /// Simulate even if it takes very long: more bodies x steps than docs/limits.md has
+    #[arg(long)]
+    allow_expensive: bool,
 }
 
 /// A trial: what decides its numbers.
@@ -46,6 +49,7 @@ impl TrialArguments {
         if !self.file.is_dir() {
             let (scenario, _) = load(&self.file)?;
             let scenario = with_settings(&scenario, &self.set)?;
+            check_cost(&scenario, self.allow_expensive)?;
             let (first_policy, first_seed) = defaults(&self.file)?;
             let spec = parse(policy.unwrap_or(&first_policy))?;
             let seed = self.seed.unwrap_or(first_seed);

@@ -8,6 +8,8 @@ use clap::Args;
 use experiments::experiment::{Experiment, Overrides};
 use experiments::{Failure, panic_message};
 
+use crate::running::tell;
+
 /// Validate scenarios and sweep files without running them
 #[derive(Debug, Args)]
 #[command(after_help = "Example:\n  usar check scenarios/*.ron scenarios/sweeps/*.ron")]
@@ -18,10 +20,17 @@ pub(crate) struct Arguments {
 }
 
 /// Checks one file. Trouble of the program's own is a problem of this file: the others are still checked.
-fn check(file: &Path) -> Result<(), Failure> {
+/// What is told of a sound one.
+fn check(file: &Path) -> Result<String, Failure> {
     let check = || {
         let experiment = Experiment::load(file, &Overrides::default())?;
-        experiment.with_trials(1)?.check_start(file)
+        experiment.with_trials(1)?.check_start(file)?;
+        for odd in experiment.base.oddities(&experiment.given) {
+            let line = odd.line.map_or(String::new(), |line| format!(":{line}"));
+            tell(format_args!("note: {}{line}: {odd}", file.display()));
+        }
+        let cost = experiment.check_cost(false).err();
+        Ok(cost.map_or_else(|| "ok".to_owned(), |cost| format!("ok, but expensive: {cost}")))
     };
     catch_unwind(AssertUnwindSafe(check)).unwrap_or_else(|panic| {
         let reason = panic_message(&*panic);
@@ -34,7 +43,7 @@ impl Arguments {
         let mut problems = Vec::new();
         for file in &self.files {
             match check(file) {
-                Ok(()) => writeln!(out, "{}: ok", file.display())?,
+                Ok(told) => writeln!(out, "{}: {told}", file.display())?,
                 Err(failure) => problems.push(failure.to_string()),
             }
         }

@@ -36,12 +36,19 @@ use std::path::Path;
 use experiments::Failure;
 use usar_sim::scenario::Scenario;
 
+use crate::running::tell;
+
 /// Version of the JSON that the commands print.
 pub(crate) const SCHEMA_VERSION: u32 = 1;
 
 /// Loads a scenario and its text, or says in full what is wrong with it.
 pub(crate) fn load(path: &Path) -> Result<(Scenario, String), Failure> {
-    Scenario::load(path).map_err(Failure::input)
+    let (scenario, text) = Scenario::load(path).map_err(Failure::input)?;
+    for odd in scenario.oddities(&text) {
+        let line = odd.line.map_or(String::new(), |line| format!(":{line}"));
+        tell(format_args!("note: {}{line}: {odd}", path.display()));
+    }
+    Ok((scenario, text))
 }
 
 /// A time from one thing to the next, from the command line.

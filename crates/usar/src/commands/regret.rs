@@ -55,6 +55,9 @@ pub(crate) struct Arguments {
     /// Number of threads [default: one per core]
     #[arg(long)]
     jobs: Option<usize>,
+    /// Simulate even if it takes very long: more bodies x steps than docs/limits.md has
+    #[arg(long)]
+    allow_expensive: bool,
     /// Show no progress
     #[arg(long)]
     quiet: bool,
@@ -96,6 +99,7 @@ impl Arguments {
     fn play(&self) -> Result<StudyFolder, Failure> {
         let overrides = Overrides { trials: self.trials, ..Overrides::default() };
         let experiment = Experiment::load(&self.file, &overrides)?;
+        experiment.check_cost(self.allow_expensive)?;
         let then = self.horizon_trial.as_deref().map(PolicySpec::parse).transpose();
         let then = then.map_err(|error| Failure::input(format!("--horizon-trial: {error}")))?;
         let choices =

@@ -9,7 +9,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use experiments::Failure;
-use experiments::experiment::{PolicySpec, defaults, with_settings};
+use experiments::experiment::{PolicySpec, check_cost, defaults, with_settings};
 use reports::table::rounds_table;
 use serde::Serialize;
 use usar_sim::metrics::CutOff;
@@ -59,6 +59,9 @@ pub(crate) struct Arguments {
     /// Check every invariant at every step; a violation ends the trial as failed
     #[arg(long)]
     check: bool,
+    /// Run it even if it takes very long: more bodies x steps than docs/limits.md has
+    #[arg(long)]
+    allow_expensive: bool,
     /// Longest time that the trial may take, in seconds of this machine
     #[arg(long, default_value_t = 600.0, value_name = "SECONDS")]
     max_trial_s: f64,
@@ -96,6 +99,7 @@ impl Arguments {
     pub(crate) fn execute(&self, out: &mut dyn Write) -> Result<(), Failure> {
         let (scenario, _) = load(&self.file)?;
         let scenario = with_settings(&scenario, &self.set)?;
+        check_cost(&scenario, self.allow_expensive)?;
         let snapshot = self.from.as_deref().map(Snapshot::read).transpose()?;
         let (first_policy, first_seed) = defaults(&self.file)?;
         let asked = match (&self.policy, &snapshot) {

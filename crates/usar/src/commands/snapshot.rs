@@ -5,13 +5,12 @@ use std::path::{Path, PathBuf};
 
 use experiments::Failure;
 use experiments::experiment::PolicySpec;
+use experiments::limits::SNAPSHOT_BYTES;
+use ron_fields::file;
 use usar_sim::record::Status;
 use usar_sim::scenario::Scenario;
 use usar_sim::simulation::Simulation;
-use usar_sim::snapshot::Identity;
-
-/// Bytes that a snapshot may have.
-const MAX_BYTES: u64 = 256 << 20;
+use usar_sim::snapshot::{Identity, START_BYTES, check_start};
 
 /// A snapshot that was read from a file.
 pub(super) struct Snapshot {
@@ -26,7 +25,10 @@ impl Snapshot {
     pub(super) fn read(path: &Path) -> Result<Self, Failure> {
         let refused =
             |reason: &dyn std::fmt::Display| Failure::input(format!("{}: {reason}", path.display()));
-        let bytes = ron_fields::file::read(path, MAX_BYTES).map_err(|error| refused(&error))?;
+        let most = SNAPSHOT_BYTES.most as u64;
+        let (start, length) = file::read_start(path, START_BYTES, most).map_err(|error| refused(&error))?;
+        check_start(&start, length).map_err(|error| refused(&error))?;
+        let bytes = file::read(path, most).map_err(|error| refused(&error))?;
         let identity = Identity::of(&bytes).map_err(|error| refused(&error))?;
         Ok(Self { path: path.to_owned(), bytes, identity })
     }

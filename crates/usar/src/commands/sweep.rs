@@ -81,6 +81,9 @@ pub(crate) struct Arguments {
     /// Check every invariant at every step; a violation ends the trial as failed
     #[arg(long)]
     check: bool,
+    /// Run it even if it takes very long: more bodies x steps than docs/limits.md has
+    #[arg(long)]
+    allow_expensive: bool,
     /// Record trials for `usar view`: `all`, the first N of each policy, or `seeds=3,7`; files go to the folder `recordings/` of the results
     #[arg(long, value_name = "all|N|seeds=LIST")]
     record: Option<Recorded>,
@@ -115,6 +118,7 @@ impl Arguments {
             let first = Precision::first_look(experiment.trials, self.most(&experiment));
             experiment = experiment.with_trials(first)?;
         }
+        experiment.check_cost(self.allow_expensive)?;
         experiment.check_start(&self.file)?;
 
         stop_on_signals();

@@ -49,6 +49,9 @@ pub(crate) struct Arguments {
     /// Write the results to this file as JUnit XML
     #[arg(long, value_name = "FILE")]
     junit: Option<PathBuf>,
+    /// Simulate even if it takes very long: more bodies x steps than docs/limits.md has
+    #[arg(long)]
+    allow_expensive: bool,
     /// Show no progress
     #[arg(long)]
     quiet: bool,
@@ -77,7 +80,9 @@ impl Arguments {
         stop_on_signals();
         let mut suites = Vec::new();
         for file in &self.files {
-            suites.push(Suite::load(file, self.max_trials)?);
+            let suite = Suite::load(file, self.max_trials)?;
+            suite.experiment.check_cost(self.allow_expensive)?;
+            suites.push(suite);
         }
         let mut tested = Vec::new();
         for suite in suites {
@@ -113,8 +118,7 @@ struct Suite {
 
 impl Suite {
     fn load(file: &Path, most: u32) -> Result<Self, Failure> {
-        let overrides = Overrides { trials: None, ..Overrides::default() };
-        let experiment = Experiment::load(file, &overrides)?;
+        let experiment = Experiment::load(file, &Overrides::default())?;
         let expected = experiment.asks()?.expect;
         if expected.is_empty() {
             return Err(Failure::input(format!(

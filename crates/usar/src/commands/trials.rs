@@ -1,15 +1,15 @@
 //! Trials to look at: from recordings, from scenarios that are simulated first, and from the folders of sweeps.
 
-use std::fs::File;
-use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
 use experiments::Failure;
-use experiments::experiment::{Experiment, PolicySpec, defaults, split_list, with_settings};
+use experiments::experiment::{Experiment, PolicySpec, check_cost, defaults, split_list, with_settings};
+use experiments::limits::RECORDING_BYTES;
 use experiments::run::TrialKey;
 use experiments::sweep::disk::experiment_in;
 use recording::{Options, Recording};
+use ron_fields::file::read_start;
 use usar_sim::simulation::Simulation;
 
 use super::load;
@@ -34,6 +34,9 @@ pub(crate) struct Asked {
     /// Set a field of the scenario, by its path, to a value in RON; may stand several times
     #[arg(long, value_name = "PATH=VALUE")]
     set: Vec<String>,
+    /// Simulate even if it takes very long: more bodies x steps than docs/limits.md has
+    #[arg(long)]
+    allow_expensive: bool,
 }
 
 /// A recording, and what it is called in messages.
@@ -77,17 +80,17 @@ impl Asked {
         if file.is_dir() {
             return self.open_folder(file, shown);
         }
-        let unreadable = |error| Failure::input(format!("{}: cannot be read: {error}", file.display()));
-        let mut start = Vec::new();
-        let reader = File::open(file).map_err(unreadable)?;
-        reader.take(MAGIC.len() as u64).read_to_end(&mut start).map_err(unreadable)?;
+        let unreadable = |error| Failure::input(format!("{}: {error}", file.display()));
+        let most = RECORDING_BYTES.most as u64;
+        let (start, _) = read_start(file, MAGIC.len() as u64, most).map_err(unreadable)?;
         if start == MAGIC {
-            let bytes = std::fs::read(file).map_err(unreadable)?;
+            let bytes = ron_fields::file::read(file, most).map_err(unreadable)?;
             shown.push(Shown { name: file.display().to_string(), bytes });
             return Ok(());
         }
         let (scenario, _) = load(file)?;
         let scenario = with_settings(&scenario, &self.set)?;
+        check_cost(&scenario, self.allow_expensive)?;
         let (first_policy, first_seed) = defaults(file)?;
         let seed = self.seed.unwrap_or(first_seed);
         for policy in split_list(self.policy.as_deref().unwrap_or(&first_policy)) {

@@ -13,6 +13,7 @@ mod expected;
 mod exported;
 mod grids;
 mod guarded;
+mod hostile;
 mod reported;
 mod resumed;
 mod same_bytes;

@@ -3,6 +3,8 @@
 pub mod damage;
 pub mod golden;
 pub mod kills;
+pub mod limits;
+pub mod mutations;
 pub mod pages;
 pub mod scale;
 pub mod soak;

@@ -37,7 +37,7 @@ pub fn run(arguments: &[String]) -> ExitCode {
 }
 
 /// The largest resident size so far, as the system says it, where it does.
-fn peak_memory() -> Option<String> {
+pub(super) fn peak_memory() -> Option<String> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     Some(status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?.trim().to_owned())
 }

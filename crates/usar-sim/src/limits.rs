@@ -1,0 +1,147 @@
+//! Limits of scenarios: what each value may be. `docs/limits.md` is made from this file.
+
+use rne_core::question::MAX_TASKS;
+
+ron_fields::limits! {
+    /// Bytes of a name: a scenario's, a role's, a task's, a need's. Letters, digits, `-` and `_`, which all systems take as names of files.
+    NAME_BYTES: "*.name" = 1, 64;
+    /// Simulated time of a trial, in seconds.
+    DURATION_S: "duration_s" = 1, 86_400;
+    /// Length of a step, in seconds.
+    DT_S: "dt_s" = 0.001, 0.05;
+    /// Width and height of the arena, in metres. Positions are numbers of single precision: at 8,000 m they are 0.5 mm apart, which is what contacts and the routes between them bear.
+    ARENA_M: "arena_m[*]" = 2, 8_000;
+
+    /// Robots of a team, all rows together.
+    ROBOTS: "team" = 1, 20_000;
+    /// Rows of a team.
+    ROWS: "team" = 1, 20_000;
+    /// Distance between the first and the last robot of a row, in metres.
+    ROW_WIDTH_M: "team[*].width_m" = 0, ARENA_M.most;
+    /// A level that is given for a row, in percent.
+    LEVEL: "team[*].levels.*" = 0.01, 100;
+
+    /// Roles.
+    ROLES: "roles" = 1, 64;
+    /// Radius of a robot, in metres.
+    ROBOT_RADIUS_M: "roles.*.radius_m" = 0.05, 5;
+    /// Mass of a robot, in kilograms.
+    ROBOT_MASS_KG: "roles.*.mass_kg" = 0.1, 10_000;
+    /// Health points at 100 %.
+    HP: "roles.*.hp" = 0.001, 1e6;
+    /// Battery capacity at 100 %.
+    ENERGY: "roles.*.energy" = 0.001, 1e6;
+    /// Top speed, in metres per second; times `dt_s`, at most the robot's radius.
+    SPEED_MPS: "roles.*.speed_mps" = 0.05, 20;
+    /// Acceleration, in metres per second squared.
+    ACCELERATION_MPS2: "roles.*.acceleration_mps2" = 0.05, 100;
+    /// Range within which debris and radiation are noticed, in metres.
+    SENSING_M: "roles.*.sensing_m" = 0, 1_000;
+    /// Range within which rescuees are seen, in metres.
+    OBSERVING_M: "roles.*.observing_m" = 0, 1_000;
+    /// Rescuees on board.
+    CAPACITY: "roles.*.capacity" = 0, 10_000;
+    /// Resources of a robot.
+    RESOURCES: "roles.*.resources" = 0, 10_000;
+    /// Constants of a role.
+    CONSTANTS: "roles.*.constants" = 0, 64;
+    /// Value of a constant.
+    CONSTANT: "roles.*.constants.*" = 0, 1e9;
+
+    /// Needs.
+    NEEDS: "needs" = 1, 64;
+    /// Weight of a need.
+    WEIGHT: "needs.*.weight" = 0, 1e9;
+    /// Mean of an initial level, in percent.
+    LEVEL_MEAN: "initial_levels.*.mean" = 0, 100;
+    /// Standard deviation of an initial level, in percent points.
+    LEVEL_SD: "initial_levels.*.sd" = 0, 100;
+
+    /// Tasks; none where there are errands.
+    TASKS: "tasks" = 1, MAX_TASKS;
+    /// Difficulty of a task.
+    DIFFICULTY: "tasks.*.difficulty" = 0, 1_000_000;
+    /// Width and height of a block of rescuees, in metres.
+    BLOCK_M: "tasks.*.size_m[*]" = 0, 10_000;
+    /// Rescuees along the width or the height of a block.
+    GRID: "tasks.*.grid[*]" = 0, 1_000;
+    /// Rescuees of all tasks.
+    RESCUEES: "tasks" = 0, 1_000_000;
+    /// Members of a role that a task asks for.
+    QUOTA: "tasks.*.quota.*" = 0, ROBOTS.most;
+    /// Pieces of debris drawn for one task.
+    SAMPLED_DEBRIS: "tasks.*.sampled.debris" = 0, 10_000;
+    /// Radiation zones drawn for one task.
+    SAMPLED_ZONES: "tasks.*.sampled.radiation" = 0, 1_000;
+
+    /// Errands: at most one for each robot.
+    ERRANDS: "errands" = 0, ROBOTS.most;
+    /// Places of one errand.
+    PLACES: "errands[*].to" = 1, 10_000;
+
+    /// Pieces of debris at known places.
+    DEBRIS: "debris" = 0, 100_000;
+    /// Radius of a disc of debris, in metres.
+    DISC_RADIUS_M: "debris[*].shape" = 0.05, 100;
+    /// Width and height of a box of debris, in metres.
+    BOX_M: "debris[*].shape" = 0.1, 1_000;
+    /// Corners of a polygon.
+    CORNERS: "debris[*].shape" = 3, 64;
+    /// A coordinate of a corner, in metres from the polygon's origin.
+    CORNER_M: "debris[*].shape" = -1_000, 1_000;
+    /// Rotation of a piece of debris, in degrees.
+    ROTATION_DEG: "debris[*].rotation_deg" = -360, 360;
+    /// Mass of a movable piece, in kilograms.
+    PIECE_MASS_KG: "debris[*].movable.mass_kg" = 0.1, 100_000;
+    /// Friction of a movable piece.
+    FRICTION: "debris[*].movable.friction" = 0, 10;
+    /// Walls.
+    WALLS: "walls" = 0, 10_000;
+    /// Thickness of a wall, in metres.
+    WALL_THICKNESS_M: "walls[*].thickness_m" = 0.1, 100;
+    /// Doors of a wall.
+    DOORS: "walls[*].doors" = 0, 100;
+    /// Width of a door, in metres.
+    DOOR_WIDTH_M: "walls[*].doors[*].width_m" = 0.1, 1_000;
+    /// Radiation zones at known places. Each is looked at wherever a route is planned.
+    ZONES: "radiation" = 0, 1_000;
+    /// Radius of a radiation zone, in metres.
+    ZONE_RADIUS_M: "radiation[*].radius_m" = 0.01, 1_000;
+    /// Radius of a sampled thing, in metres.
+    SAMPLED_RADIUS_M: "sampled.*_radius_m[*]" = 0.05, 100;
+    /// Free distance between sampled pieces of debris, in metres.
+    GAP_M: "sampled.gap_m" = 0, 100;
+    /// Half the width of the strip in which things are sampled, in metres.
+    STRIP_M: "sampled.strip_m" = 0.1, 10_000;
+
+    /// A cost, in percent.
+    RATE: "costs.*.*" = 0, 100;
+    /// A threshold, in percent.
+    THRESHOLD: "mission.*_threshold" = 0, 99;
+    /// Reserve for the way to rest.
+    REST_RESERVE: "mission.rest_reserve" = 0, 10;
+    /// Time at rest, in seconds.
+    REST_S: "mission.rest_s" = 0, 86_400;
+    /// Time to load a rescuee, in seconds.
+    LOADING_S: "mission.loading_s" = 0, 3_600;
+    /// Reach of a robot, in metres; at least the radius of the largest robot that can carry.
+    REACH_M: "mission.reach_m" = 0, 20;
+    /// Margin of a task's area, in metres; at least the radius of the largest robot that can carry.
+    AREA_MARGIN_M: "mission.area_margin_m" = 0, 1_000;
+    /// Share of its speed that a group without a guide loses.
+    BLIND_SPEED_LOSS: "mission.blind_speed_loss" = 0, 0.95;
+    /// Factor on speed and ranges without health.
+    HEALTH_FLOOR: "mission.health_floor" = 0.05, 1;
+    /// Time without progress, in seconds.
+    CUT_OFF_S: "mission.cut_off_s" = 1, 86_400;
+    /// Clearance of routes, in metres.
+    CLEARANCE_M: "planning.clearance_m" = 0.02, 10;
+    /// Price of exposure, in metres.
+    EXPOSURE_PRICE_M: "planning.exposure_price_m" = 0, 1e6;
+    /// Distance between robots under the rules of the paper, in metres.
+    MARGIN_M: "conflicts.resolver.margin_m" = 0, 10;
+    /// How far ahead the rules of the paper look, in seconds.
+    HORIZON_S: "conflicts.resolver.horizon_s" = 0, 60;
+    /// Steps without motion until the rules of the paper see a deadlock.
+    DEADLOCK_STEPS: "conflicts.resolver.deadlock_steps" = 1, 100_000;
+}

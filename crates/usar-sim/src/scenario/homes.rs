@@ -1,0 +1,79 @@
+//! Homes are free: no robot begins where another robot or a piece of debris is.
+
+use parry2d::bounding_volume::Aabb;
+use parry2d::math::Vector;
+
+use super::file::{DebrisFile, Point, RoleFile, RoleKind, ScenarioFile};
+use super::validate::Checker;
+use crate::geometry::Places;
+
+/// A robot's home.
+struct Home<'f> {
+    row: usize,
+    role: &'f RoleFile,
+    at: Point,
+}
+
+/// No home on another home of its layer, nor inside debris (aerial robots fly over it). Places and shapes must be sound.
+pub(super) fn homes_are_free(check: &mut Checker, file: &ScenarioFile) {
+    let bodies: Vec<Option<RoleFile>> = file.team.iter().map(|row| file.body_of(row)).collect();
+    let mut homes: Vec<Home> = Vec::new();
+    for (row, (line, role)) in file.team.iter().zip(&bodies).enumerate() {
+        let Some(role) = role else { continue };
+        homes.extend(line.places().map(|at| Home { row, role, at }));
+    }
+    let boxes =
+        |home: &Home| Aabb::from_half_extents(vector(home.at), Vector::splat(home.role.radius_m as f32));
+    let places: Places = homes.iter().map(boxes).collect();
+    apart(check, &homes, &places);
+    for (i, piece) in file.debris.iter().enumerate() {
+        outside(check, &format!("debris[{i}].at"), piece, (&homes, &places));
+    }
+    for (i, wall) in file.walls.iter().enumerate() {
+        wall.pieces().for_each(|piece| outside(check, &format!("walls[{i}]"), &piece, (&homes, &places)));
+    }
+}
+
+/// No home of a robot that drives in a piece of debris: the first that is.
+fn outside(check: &mut Checker, field: &str, piece: &DebrisFile, (homes, places): (&[Home], &Places)) {
+    let outline = piece.outline();
+    let bounds = outline.shape.compute_aabb(&outline.pose);
+    let mut near = places.near(bounds.center(), bounds.half_extents().max_element());
+    near.sort_unstable();
+    let is_in_it = |home: &&Home| {
+        home.role.kind == RoleKind::Ground && outline.distance_to(vector(home.at)) < home.role.radius_m as f32
+    };
+    if let Some(Home { at, .. }) = near.iter().map(|number| &homes[*number]).find(is_in_it) {
+        let rule = "must leave every robot's home free";
+        check.fail(field, rule, format!("a home at ({}, {})", at[0], at[1]));
+    }
+}
+
+/// No home on another home of its layer: for each, the first that is too near.
+fn apart(check: &mut Checker, homes: &[Home], places: &Places) {
+    for (i, Home { row, role, at }) in homes.iter().enumerate() {
+        let mut near = places.near(vector(*at), role.radius_m as f32);
+        near.sort_unstable();
+        let others = near.into_iter().filter(|other| *other > i).map(|other| &homes[other]);
+        for other in others.filter(|other| other.role.kind == role.kind) {
+            let distance = libm::hypot(at[0] - other.at[0], at[1] - other.at[1]);
+            let needed = role.radius_m + other.role.radius_m;
+            if distance < needed {
+                let rule = format!("must leave at least {needed} m between the centres of two robots");
+                check.fail(
+                    format!("team[{row}]"),
+                    rule,
+                    format!("{distance:.3} m at ({}, {})", at[0], at[1]),
+                );
+                break;
+            }
+        }
+        if check.is_full() {
+            return;
+        }
+    }
+}
+
+fn vector(at: Point) -> Vector {
+    Vector::new(at[0] as f32, at[1] as f32)
+}

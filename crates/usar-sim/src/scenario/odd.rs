@@ -1,0 +1,74 @@
+//! What is allowed but not usual: values far from the defaults, perhaps of another unit, and tasks for which there is nobody.
+
+use ron_fields::Fields;
+
+use super::Scenario;
+use super::error::Problem;
+use super::file::{MissionRules, PlanningRules, RoleFile};
+
+/// A value is odd that is so many times the default, or so small a part of it.
+const FACTOR: f64 = 1000.0;
+
+impl Scenario {
+    /// Values a thousand times as large or as small as the defaults, as by a unit that is another, and a team smaller than its tasks; `text`
+    /// says on which lines they stand.
+    #[must_use]
+    pub fn oddities(&self, text: &str) -> Vec<Problem> {
+        let fields = Fields::of(text);
+        let mut odd = Vec::new();
+        if (self.robots() as usize) < self.tasks.len() {
+            odd.push(Problem {
+                field: "team".to_owned(),
+                rule: format!("has fewer robots than there are tasks, {}", self.tasks.len()),
+                found: self.robots().to_string(),
+                hint: "each round leaves tasks without anybody".to_owned(),
+                ..Problem::default()
+            });
+        }
+        let role = numbers(&RoleFile::default());
+        for (i, own) in self.roles.iter().enumerate() {
+            // Ranges and counts of roles differ by design: only what all robots have about alike is compared.
+            let usual = ["radius_m", "mass_kg", "speed_mps", "acceleration_mps2"];
+            let own = numbers(own).into_iter().filter(|(name, _)| usual.contains(&name.as_str()));
+            compare(&mut odd, &format!("roles[{i}]"), own, &role);
+        }
+        let mission = numbers(&MissionRules::default());
+        compare(&mut odd, "mission", numbers(&self.mission).into_iter(), &mission);
+        let planning = numbers(&PlanningRules::default());
+        compare(&mut odd, "planning", numbers(&self.planning).into_iter(), &planning);
+        for problem in &mut odd {
+            problem.line = fields.line(&problem.field);
+        }
+        odd
+    }
+}
+
+/// The numbers of a section, by the names of their fields.
+fn numbers(section: &impl serde::Serialize) -> Vec<(String, f64)> {
+    let text = ron::to_string(section).unwrap_or_default();
+    let fields = Fields::of(&text);
+    fields.leaves().filter_map(|(path, place)| Some((path.to_owned(), text[place].parse().ok()?))).collect()
+}
+
+fn compare(
+    odd: &mut Vec<Problem>,
+    section: &str,
+    own: impl Iterator<Item = (String, f64)>,
+    usual: &[(String, f64)],
+) {
+    for (name, value) in own {
+        let Some((_, default)) = usual.iter().find(|(known, _)| *known == name) else { continue };
+        let ratio = value / default;
+        let is_odd = value > 0.0 && *default > 0.0 && (ratio >= FACTOR || ratio <= 1.0 / FACTOR);
+        if is_odd {
+            let (times, than) = if ratio > 1.0 { (ratio, "times") } else { (1.0 / ratio, "times less than") };
+            odd.push(Problem {
+                field: format!("{section}.{name}"),
+                rule: format!("is {times:.0} {than} the default, {default}"),
+                found: value.to_string(),
+                hint: "is the unit right?".to_owned(),
+                ..Problem::default()
+            });
+        }
+    }
+}

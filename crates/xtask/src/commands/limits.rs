@@ -1,0 +1,11 @@
+//! Makes `docs/limits.md` of the constants, from the project's folder.
+
+use std::process::ExitCode;
+
+use xtask::limits;
+
+pub fn run() -> ExitCode {
+    std::fs::write(limits::path(), limits::page()).expect("the page can be written");
+    println!("written: {}", limits::path().display());
+    ExitCode::SUCCESS
+}

@@ -1,0 +1,53 @@
+//! `docs/limits.md`, made of the constants that are the limits.
+
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+
+use ron_fields::limits::Limit;
+
+const HEAD: &str = "\
+# Limits
+
+What a file may say, and how much of it. Each limit is checked before anything is built: a file that goes beyond one is refused with its line
+and field, in less than 100 ms and with less than 50 MB of memory. Only regular files are read: no folder, no pipe, no device.
+
+The constants are the source of this page: `cargo run --package xtask -- limits` makes it, and a test compares it with them. `*` stands for any entry.
+";
+
+/// Where the page is.
+pub fn path() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/limits.md")
+}
+
+/// The page.
+pub fn page() -> String {
+    let mut page = HEAD.to_owned();
+    for (title, file, limits) in [
+        ("Texts", "crates/ron-fields/src/limits.rs", ron_fields::limits::ALL),
+        ("Scenarios", "crates/usar-sim/src/limits.rs", usar_sim::limits::ALL),
+        ("Sweeps, tables and results", "crates/experiments/src/limits.rs", experiments::limits::ALL),
+    ] {
+        let _ = write!(
+            page,
+            "\n## {title}\n\n`{file}`\n\n| of | from | to | what |\n| --- | ---: | ---: | --- |\n"
+        );
+        for Limit { of, least, most, what } in limits {
+            let what = what.split_whitespace().collect::<Vec<_>>().join(" ");
+            let _ = writeln!(page, "| `{of}` | {} | {} | {what} |", number(*least), number(*most));
+        }
+    }
+    page
+}
+
+/// A number as people read it: with commas between thousands.
+fn number(value: f64) -> String {
+    let text = value.abs().to_string();
+    let (whole, rest) = text
+        .split_once('.')
+        .map_or((text.as_str(), String::new()), |(whole, rest)| (whole, format!(".{rest}")));
+    let digits = whole.char_indices().map(|(i, digit)| {
+        if i > 0 && (whole.len() - i).is_multiple_of(3) { format!(",{digit}") } else { digit.to_string() }
+    });
+    let sign = if value < 0.0 { "-" } else { "" };
+    format!("{sign}{}{rest}", digits.collect::<String>())
+}
