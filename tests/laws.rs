@@ -37,7 +37,8 @@ const GENERAL: [&str; 9] = [
 ];
 
 /// What is needed to show something to people, and the crates that may need it.
-const SCREEN: [(&str, &[&str]); 8] = [
+const SCREEN: [(&str, &[&str]); 9] = [
+    ("terminal_size", &["usar"]),
     ("resvg", &["pictures"]),
     ("gif", &["pictures"]),
     ("kuva", &["reports"]),

@@ -27,7 +27,8 @@ pub enum Kind {
     Text,
 }
 
-/// Writes a table in CSV, with a header, as Parquet; `kind` tells of each column by its name what it holds. The same table gives the same bytes.
+/// Writes a table in CSV, with a header, as Parquet; `kind` tells of each column by its name what it holds.
+/// The same table gives the same bytes.
 ///
 /// # Errors
 /// The table cannot be read, a cell is not of its column's kind, or the file cannot be written.

@@ -1,4 +1,5 @@
-//! Tidy tables of a recording: one row for each thing at each time, one header, units in the names. Undefined values are empty cells.
+//! Tidy tables of a recording: one row for each thing at each time, one header, units in the names.
+//! Undefined values are empty cells.
 
 use std::io::Write;
 

@@ -18,7 +18,8 @@ const SAME: u8 = 255;
 /// How thoroughly colours are chosen: 1 is best, 30 fastest.
 const THOROUGHNESS: i32 = 3;
 
-/// A GIF on its way, which is repeated for ever. It stores of each picture what is other than in the one before.
+/// A GIF on its way, which is repeated for ever. It stores of each picture what is other than in the one
+/// before.
 pub struct Animation<W: Write> {
     encoder: Encoder<W>,
     colours: NeuQuant,
@@ -37,7 +38,8 @@ struct Changed {
 }
 
 impl<W: Write> Animation<W> {
-    /// Begins a GIF. The `samples` are some of its pictures, from which its colours are chosen; each picture stays for some hundredths
+    /// Begins a GIF. The `samples` are some of its pictures, from which its colours are chosen; each picture
+    /// stays for some hundredths
     /// of a second.
     ///
     /// # Errors

@@ -188,7 +188,8 @@ pub(crate) fn draw_rescuees(sheet: &mut Sheet, world: &World, state: impl Fn(usi
     sheet.svg.path(&delivered, &format!("fill=\"{SOFT}\" fill-opacity=\"0.5\""));
 }
 
-/// What the signs of the ground mean, as far as the world has them. `sampled` are the first sampled pieces of debris and zones.
+/// What the signs of the ground mean, as far as the world has them. `sampled` are the first sampled pieces
+/// of debris and zones.
 pub(crate) fn entries(world: &World, unit: f64, sampled: [usize; 2], has_waiting: bool) -> Vec<Entry> {
     let mut entries = Vec::new();
     let mut add = |is_there: bool, sign: Sign, means: &str| {

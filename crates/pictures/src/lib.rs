@@ -1,7 +1,10 @@
-//! Pictures of worlds and trials without a display: maps, moments and trails as SVG, as PNG, and moments in a row as GIF.
+//! Pictures of worlds and trials without a display: maps, moments and trails as SVG, as PNG, and moments in
+//! a row as GIF.
 //!
-//! [`plan`] draws the world before anything runs, [`moment`] the state at a frame of a recording, [`trails`] the ways of all robots on
-//! one map. Each gives a [`Picture`], which is SVG and can be made pixels. The font is embedded: a picture is the same on
+//! [`plan`] draws the world before anything runs, [`moment`] the state at a frame of a recording, [`trails`]
+//! the ways of all robots on
+//! one map. Each gives a [`Picture`], which is SVG and can be made pixels. The font is embedded: a picture
+//! is the same on
 //! every machine. Colours and shapes are those of the page of `usar view`.
 //!
 //! ```no_run

@@ -21,11 +21,13 @@ pub struct Plan<'w> {
     pub world: &'w World,
     /// The places that robots are to go to, in scenarios without a mission.
     pub errands: &'w [Errand],
-    /// The number of the first piece of debris, and of the first radiation zone, that this seed has drawn: those before are the scenario's.
+    /// The number of the first piece of debris, and of the first radiation zone, that this seed has drawn:
+    /// those before are the scenario's.
     pub first_sampled: [usize; 2],
 }
 
-/// Draws a world before anything runs: walls, debris, radiation, tasks, rest places, homes, sensing ranges and errands.
+/// Draws a world before anything runs: walls, debris, radiation, tasks, rest places, homes, sensing ranges
+/// and errands.
 #[must_use]
 pub fn plan(plan: &Plan, look: &Look) -> Picture {
     let Plan { world, first_sampled: [debris, zones], .. } = *plan;

@@ -6,7 +6,8 @@ use usar_sim::scenario::{DebrisShape, Point, RoleFile, RoleKind};
 
 use crate::svg::{At, Path};
 
-/// The shape of a role's robots: a disc, or corners on the unit circle and how much larger than a disc it is drawn.
+/// The shape of a role's robots: a disc, or corners on the unit circle and how much larger than a disc it is
+/// drawn.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Shape {
     corners: u32,

@@ -103,7 +103,8 @@ impl Svg {
         let _ = writeln!(self.0, "<rect x=\"{x}\" y=\"{y}\" {size} rx=\"{round}\" {looks}/>");
     }
 
-    /// A line of text with its middle height at a place, and a halo around it, so that it is legible on anything.
+    /// A line of text with its middle height at a place, and a halo around it, so that it is legible on
+    /// anything.
     pub(crate) fn text(&mut self, text: &str, [x, y]: At, size: f64, (anchor, colour): (Anchor, &str)) {
         let anchor = match anchor {
             Anchor::Start => "start",

@@ -1,4 +1,5 @@
-//! Colours: those of the page of `usar view` in light surroundings (`viewer/src/draw/theme.ts`). Groups have the colours of Okabe and Ito.
+//! Colours: those of the page of `usar view` in light surroundings (`viewer/src/draw/theme.ts`). Groups have
+//! the colours of Okabe and Ito.
 
 pub(crate) const PAPER: &str = "#ffffff";
 pub(crate) const GROUND: &str = "#fbfbf9";

@@ -24,7 +24,8 @@ struct Stretch {
     places_mm: Vec<[i32; 2]>,
 }
 
-/// Draws the ways of all robots in a trial: thin lines in the colours of their groups, from their homes to where they ended.
+/// Draws the ways of all robots in a trial: thin lines in the colours of their groups, from their homes to
+/// where they ended.
 ///
 /// # Errors
 /// The recording has no frames.

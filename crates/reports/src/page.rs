@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use askama::Template;
 use experiments::Failure;
 use experiments::comparison::{
-    Asked, Comparison, compare, digits, limit_of_correction, short, short_p, test_in_words,
+    Asked, Comparison, answer, compare, digits, limit_of_correction, short, short_p, test_in_words,
 };
 use experiments::experiment::{Axis, Experiment, Seeds};
 use experiments::stats::Moments;
@@ -32,6 +32,10 @@ struct Page<'a> {
     labels: Vec<&'a str>,
     /// What figures call policies whose labels are too long for them, with these.
     abbreviations: Vec<(String, &'a str)>,
+    /// The answer to the first question of the sweep.
+    answer: Option<String>,
+    /// Whether the sweep file names its metrics.
+    is_declared: bool,
     summary: Vec<Vec<String>>,
     decisions: Option<Decisions>,
     comparisons: Vec<Row>,
@@ -60,6 +64,7 @@ struct Row {
     shift: String,
     p: String,
     p_holm: String,
+    verdict: String,
     effect: String,
     needed: String,
     is_found: bool,
@@ -84,6 +89,8 @@ pub fn write_report(folder: &mut Folder, case: usize, shown: Vec<ShownTrial>) ->
     let decided = decisions(folder, case)?;
     let mut page = page(folder, case, (&here, &all), drawn);
     page.decisions = decided;
+    page.answer = asked.metrics.first().and_then(|metric| answer(folder, case, *metric, &here));
+    page.is_declared = asked.is_declared;
     let page = page.render().map_err(Failure::run)?;
 
     let mut files = vec![(REPORT.to_owned(), page.into_bytes())];
@@ -139,6 +146,8 @@ fn page<'a>(
         missing: asked - folder.results().len().min(asked),
         trials: experiment.trials,
         labels: experiment.policies.iter().map(|policy| policy.label.as_str()).collect(),
+        answer: None,
+        is_declared: false,
         summary: summary(folder, case),
         decisions: None,
         comparisons: comparisons.iter().map(|comparison| row(comparison)).collect(),
@@ -177,6 +186,9 @@ fn row(c: &Comparison) -> Row {
             .map_or("-".to_owned(), |[low, high]| format!("{} to {}", short(low), short(high))),
         shift: number(c.shift),
         p: c.p.map_or("-".to_owned(), short_p),
+        verdict: c
+            .judged
+            .map_or(String::new(), |judged| format!("{} ({})", judged.verdict.name(), short(judged.margin))),
         p_holm: c.p_holm.map_or("-".to_owned(), short_p),
         effect: c.effect.map_or("-".to_owned(), |effect| format!("{effect:.2}")),
         needed: c.pairs_needed.map_or("-".to_owned(), |pairs| pairs.to_string()),

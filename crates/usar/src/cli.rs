@@ -6,7 +6,9 @@ use std::process::ExitCode;
 use clap::{Parser, Subcommand};
 use experiments::experiment::set_registry;
 use experiments::{Failure, panic_message};
+use reports::table::fold_at;
 use rne_core::Registry;
+use terminal_size::{Width, terminal_size_of};
 
 use crate::commands::{
     calibrate, check, compare, draw, estimate, export, fork, group, merge, oracle, readings, regret, render,
@@ -96,6 +98,9 @@ pub fn main() -> ExitCode {
     // A panic is a defect of ours; it is caught and reported in one sentence, never as a backtrace.
     std::panic::set_hook(Box::new(|_| {}));
     let cli = Cli::parse();
+    if let Some((Width(columns), _)) = terminal_size_of(std::io::stdout()) {
+        fold_at(columns);
+    }
     let mut out = Printable::new(std::io::stdout().lock());
     let result = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| cli.command.execute(&mut out)))
         .unwrap_or_else(|panic| Err(Failure::run(format!("internal error: {}", panic_message(&*panic)))));

@@ -1,5 +1,6 @@
 //! Paired comparisons of policies: what differs, by how much, and how sure that is.
 
+mod answer;
 mod asked;
 mod equivalence;
 
@@ -15,6 +16,7 @@ use crate::stats::paired::{hodges_lehmann, holm, pairs_needed};
 use crate::stats::wilcoxon::{DRAWS, EXACT_PAIRS, SignedRank};
 use crate::sweep::folder::{Folder, Measured};
 
+pub use answer::answer;
 pub use asked::Asked;
 pub use equivalence::{Judged, TOST_CONFIDENCE, Verdict, judge};
 
@@ -304,6 +306,13 @@ fn in_words(comparison: &Comparison, metrics: &Catalogue) -> String {
     }
     if comparison.is_found() {
         return format!("{place}: {a} is {size} {direction} {b} ({range}; corrected {}).", p_in_words(p));
+    }
+    if is_clear && !comparison.is_found() {
+        return format!(
+            "{place}: {a} is {size} {direction} {b} ({range}). Taken alone this interval excludes zero, but among so many comparisons \
+             one like it comes up by chance (corrected {}): the difference is not shown.{needed}",
+            p_in_words(p)
+        );
     }
     if size == "0" {
         return format!("{place}: no difference shows between {a} and {b}: their means are equal ({range}).");

@@ -1,4 +1,5 @@
-//! A recording as an MCAP log (<https://mcap.dev>) for Foxglove, Lichtblick and Rerun: messages in JSON, with Foxglove's schemas where there is one.
+//! A recording as an MCAP log (<https://mcap.dev>) for Foxglove, Lichtblick and Rerun: messages in JSON,
+//! with Foxglove's schemas where there is one.
 //!
 //! | topic | schema | when |
 //! | --- | --- | --- |

@@ -2,8 +2,10 @@
 
 mod grouping;
 
+use std::sync::OnceLock;
+
 use comfy_table::presets::UTF8_FULL_CONDENSED;
-use comfy_table::{Cell, CellAlignment, Row, Table};
+use comfy_table::{Cell, CellAlignment, ContentArrangement, Row, Table};
 use experiments::comparison::{Comparison, digits, short, short_p};
 use experiments::experiment::Experiment;
 use experiments::stats::Moments;
@@ -126,7 +128,18 @@ pub fn rounds_table(record: &TrialRecord) -> Table {
 pub fn headed(header: impl Into<Row>) -> Table {
     let mut table = Table::new();
     table.load_style(UTF8_FULL_CONDENSED).set_header(header);
+    if let Some(columns) = COLUMNS.get() {
+        table.set_content_arrangement(ContentArrangement::Dynamic).set_width(*columns);
+    }
     table
+}
+
+/// Columns of the terminal, where there is one.
+static COLUMNS: OnceLock<u16> = OnceLock::new();
+
+/// From now on, tables that are wider than a terminal of so many columns fold their cells. Until then they are as wide as they are.
+pub fn fold_at(columns: u16) {
+    let _ = COLUMNS.set(columns); // the terminal is the same
 }
 
 /// A cell that stands on the right.

@@ -1,11 +1,13 @@
-//! Files that a command is asked to write: whole or not at all, and not over another file unless that is asked for.
+//! Files that a command is asked to write: whole or not at all, and not over another file unless that is
+//! asked for.
 
 use std::path::{Path, PathBuf};
 
 use experiments::Failure;
 use experiments::files::NewFile;
 
-/// The folder and the name of a file to write; refused where something has the name already, unless it is a file and `force` is given.
+/// The folder and the name of a file to write; refused where something has the name already, unless it is a
+/// file and `force` is given.
 pub(crate) fn place<'p>(flag: &str, path: &'p Path, force: bool) -> Result<(PathBuf, &'p str), Failure> {
     let name = path.file_name().and_then(|name| name.to_str());
     let name =

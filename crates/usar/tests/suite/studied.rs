@@ -96,9 +96,9 @@ fn the_papers_experiment_and_the_pages_that_tell_of_it() {
     let page = read(&root().join("docs/why.md"));
     let mut found = 0;
     let renewed = pages::renewed(&page, |command| {
-        (command == "explain results/paper").then(|| {
+        (command == "sorting results/paper").then(|| {
             found += 1;
-            pages::answer(program(), folder.path(), "explain results/reproduction/paper")
+            pages::answer(program(), folder.path(), "sorting results/reproduction/paper")
         })
     });
     assert_eq!(found, 1, "docs/why.md has that command");

@@ -1,4 +1,5 @@
-//! What happened in a small scenario with errands, in a few sentences: who met whom, who waited, who made room, who arrived.
+//! What happened in a small scenario with errands, in a few sentences: who met whom, who waited, who made
+//! room, who arrived.
 
 use std::collections::BTreeMap;
 

@@ -1,0 +1,76 @@
+//! The answer to the first question of a sweep, in a sentence or two.
+
+use super::{Comparison, digits, p_in_words, short};
+use crate::metric::{Direction, Metric};
+use crate::stats::Moments;
+use crate::sweep::folder::Folder;
+
+/// What a case says of a metric: which policy has most (least, for a cost), by how much, and how sure that is. `None`
+/// without values.
+#[must_use]
+pub fn answer(folder: &Folder, case: usize, metric: usize, comparisons: &[&Comparison]) -> Option<String> {
+    let experiment = folder.experiment();
+    let declared = &experiment.metrics[metric];
+    let mut means: Vec<(f64, &str)> = Vec::new();
+    for (place, policy) in experiment.policies.iter().enumerate() {
+        means.extend(
+            Moments::of(&folder.values(case, place, metric)).mean.map(|mean| (mean, policy.label.as_str())),
+        );
+    }
+    let sign = if declared.direction == Direction::Lower { -1.0 } else { 1.0 };
+    means.sort_by(|a, b| (sign * b.0).total_cmp(&(sign * a.0)));
+    let (first, last) = (means.first()?, means.last()?);
+    let value = |mean: f64| format!("{} {}", digits(mean, 4), unit_of(declared));
+    if means.len() == 1 {
+        return Some(format!("{} has {} on average.", first.1, value(first.0).trim_end()));
+    }
+    let own: Vec<&Comparison> = comparisons.iter().filter(|c| c.metric == declared.name).copied().collect();
+    let found: Vec<&Comparison> = own.iter().filter(|c| c.is_found()).copied().collect();
+    let most = if sign > 0.0 { "highest" } else { "lowest" };
+    let lead =
+        format!("{} has the {most} mean of {}: {}", first.1, declared.title, value(first.0).trim_end());
+    if let Some(best) = found.iter().find(|c| c.a == first.1 || c.b == first.1) {
+        return Some(format!("{lead}. {}", shown(best, first.1)));
+    }
+    let range = format!("{lead}; {} has {}", last.1, value(last.0).trim_end());
+    if found.is_empty() {
+        let n = own.iter().map(|c| c.n).max().unwrap_or(0);
+        let widest =
+            own.iter().filter_map(|c| c.interval).map(|[low, high]| (high - low) / 2.0).fold(0.0, f64::max);
+        let precision =
+            if widest > 0.0 { format!(", known to about ± {} each", short(widest)) } else { String::new() };
+        return Some(format!(
+            "No policy is shown to differ in {} from those that it was compared with. {range}. The differences stand on up to {n} \
+             pairs of trials{precision}.",
+            declared.title
+        ));
+    }
+    Some(format!("{range}. {}", shown(found[0], &found[0].a)))
+}
+
+fn unit_of(metric: &Metric) -> &str {
+    if metric.unit.is_empty() { metric.title.split(' ').next().unwrap_or_default() } else { metric.unit }
+}
+
+/// A difference that shows, seen from one of its policies.
+fn shown(comparison: &Comparison, policy: &str) -> String {
+    let (Some(difference), Some([low, high]), Some(p)) =
+        (comparison.difference, comparison.interval, comparison.p_holm)
+    else {
+        return comparison.in_words.clone();
+    };
+    let (other, difference, [low, high]) = if comparison.a == policy {
+        (&comparison.b, difference, [low, high])
+    } else {
+        (&comparison.a, -difference, [-high, -low])
+    };
+    let direction = if difference > 0.0 { "more" } else { "less" };
+    format!(
+        "{policy} has {} {direction} than {other} (95 % interval of the mean difference {} to {}, {} pairs, corrected {}).",
+        short(difference.abs()),
+        short(low),
+        short(high),
+        comparison.n,
+        p_in_words(p)
+    )
+}
