@@ -9,8 +9,8 @@ use experiments::{Failure, panic_message};
 use rne_core::Registry;
 
 use crate::commands::{
-    calibrate, check, compare, estimate, explain, group, merge, readings, report, reproduce, run, schema,
-    sweep, trust, verify, view,
+    calibrate, check, compare, estimate, explain, group, list, merge, new, readings, report, reproduce,
+    resolve, run, schema, sweep, trust, verify, view,
 };
 use crate::printable::Printable;
 use crate::running::{status_of_signal, tell};
@@ -33,7 +33,10 @@ Examples:
   usar verify results/paper                            do the numbers come out again?
   usar trust --weights 6,4,2 --from 86,120,30 --to 20,30,10
   usar group robots.csv --policy RNE
-  usar check scenarios/*.ron                           is every value in its range?"
+  usar new mine                                        a commented scenario to begin with
+  usar check scenarios/*.ron                           is every value in its range?
+  usar resolve scenarios/paper.ron                     every value, and where it comes from
+  usar list policies                                   which there are: also scenarios, roles, metrics"
 )]
 struct Cli {
     #[command(subcommand)]
@@ -53,7 +56,10 @@ enum Command {
     Readings(readings::Arguments),
     Verify(verify::Arguments),
     Calibrate(calibrate::Arguments),
+    New(new::Arguments),
     Check(check::Arguments),
+    Resolve(resolve::Arguments),
+    List(list::Arguments),
     Trust(trust::Arguments),
     Group(group::Arguments),
     Schema(schema::Arguments),
@@ -123,7 +129,10 @@ impl Command {
             Self::Readings(arguments) => arguments.execute(out),
             Self::Verify(arguments) => arguments.execute(out),
             Self::Calibrate(arguments) => arguments.execute(out),
+            Self::New(arguments) => arguments.execute(out),
             Self::Check(arguments) => arguments.execute(out),
+            Self::Resolve(arguments) => arguments.execute(out),
+            Self::List(arguments) => arguments.execute(out),
             Self::Trust(arguments) => arguments.execute(out),
             Self::Group(arguments) => arguments.execute(out),
             Self::Schema(arguments) => arguments.execute(out),

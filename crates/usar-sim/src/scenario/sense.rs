@@ -2,8 +2,9 @@
 
 use parry2d::query::distance;
 
+use super::checker::Checker;
 use super::file::{DebrisFile, DebrisShape, Point, RoleFile, RoleKind, ScenarioFile, TaskFile};
-use super::validate::{Checker, entry};
+use super::validate::entry;
 use crate::geometry::Outline;
 use crate::limits;
 
@@ -49,7 +50,7 @@ fn team(check: &mut Checker, file: &ScenarioFile) {
 
 /// Whether two blocks of rescuees overlap.
 fn overlap(a: &TaskFile, b: &TaskFile) -> bool {
-    (0..2).all(|k| (a.center[k] - b.center[k]).abs() < (a.size_m[k] + b.size_m[k]) / 2.0)
+    (0..2).all(|k| (a.center[k] - b.center[k]).abs() < f64::midpoint(a.size_m[k], b.size_m[k]))
 }
 
 /// No two movable pieces on one point: the engine would throw them apart.
@@ -63,7 +64,7 @@ fn stacked(check: &mut Checker, file: &ScenarioFile) {
             .map(|(i, piece)| (i, piece.at)),
     );
     movable.sort_by(|a, b| a.1[0].total_cmp(&b.1[0]).then(a.1[1].total_cmp(&b.1[1])).then(a.0.cmp(&b.0)));
-    for pair in movable.windows(2).filter(|pair| pair[0].1 == pair[1].1) {
+    for pair in movable.windows(2).filter(|pair| pair[0].1.map(f64::to_bits) == pair[1].1.map(f64::to_bits)) {
         let rule = "must not be on the same point as another movable piece";
         check.fail(format!("debris[{}].at", pair[1].0), rule, format!("debris[{}]", pair[0].0));
     }

@@ -39,6 +39,7 @@ Examples:
   usar sweep scenarios/paper.ron --record 1              (then: usar view results/paper --policy RNE,DIS)
   usar sweep scenarios/sweeps/energy.ron --shard 2/8     (then `usar merge`)
   usar sweep scenarios/paper.ron --precision 'rescuees.hard: RNE-DIS: 2.0' --max-trials 500")]
+#[expect(clippy::struct_excessive_bools, reason = "flags of the command line")]
 pub(crate) struct Arguments {
     /// Scenario or sweep file (RON)
     file: PathBuf,

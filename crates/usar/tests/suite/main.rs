@@ -7,6 +7,7 @@ mod calibrated;
 mod commands;
 mod compared;
 mod damaged;
+mod files;
 mod grids;
 mod guarded;
 mod hostile;
