@@ -35,8 +35,8 @@ fn blocks(text: &str) -> Vec<Block> {
             }),
             (Some("< "), Some(block)) => block.edits.push((plain, String::new())),
             (Some("> "), Some(block)) => block.edits.last_mut().unwrap().1 = plain,
-            (Some("= "), Some(block)) => block.message.push_str(&format!("{rest}\n")),
-            (Some(_), Some(block)) => block.kind = line.to_owned(),
+            (Some("= "), Some(block)) => block.message.extend([rest, "\n"]),
+            (Some(_), Some(block)) => line.clone_into(&mut block.kind),
             _ => {}
         }
     }
@@ -50,7 +50,7 @@ fn written(blocks: &[Block]) -> String {
         for (from, to) in edits {
             let _ = writeln!(text, "< {}\n> {}", from.replace('\n', "\\n"), to.replace('\n', "\\n"));
         }
-        message.lines().for_each(|line| text.push_str(&format!("= {line}\n")));
+        message.lines().for_each(|line| text.extend(["= ", line, "\n"]));
         text.push('\n');
     }
     text

@@ -266,7 +266,7 @@ impl Catalogue {
             |metric: &Metric| metric.name == name || (metric.is_total() && metric.declared == name);
         self.iter().position(is_named).ok_or_else(|| {
             let known: Vec<&str> = self.iter().map(|metric| metric.name.as_str()).collect();
-            let names = known.iter().copied().chain(self.iter().map(|metric| metric.declared.as_ref()));
+            let names = known.iter().copied().chain(self.iter().map(|metric| metric.declared));
             let meant = ron_fields::nearest(name, names)
                 .map_or(String::new(), |meant| format!("; did you mean {meant}?"));
             Failure::input(format!("unknown metric {name:?}; known metrics: {}{meant}", known.join(", ")))

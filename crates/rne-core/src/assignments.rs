@@ -280,9 +280,9 @@ mod tests {
         let question = example(&[5, 2]);
         let allowed = groups(&all(&question));
         let mut draws = ChaCha8Rng::seed_from_u64(1);
-        let drawn: Vec<Assignment> = (0..2_000).map(|_| draw(&question, &mut draws)).collect();
-        assert_eq!(groups(&drawn), allowed, "2,000 draws find all {}", allowed.len());
-        for assignment in &drawn[..20] {
+        let sample: Vec<Assignment> = (0..2_000).map(|_| draw(&question, &mut draws)).collect();
+        assert_eq!(groups(&sample), allowed, "2,000 draws find all {}", allowed.len());
+        for assignment in &sample[..20] {
             let near = neighbours(&question, assignment);
             assert_eq!(near.len(), 2 * 3 + 1);
             assert!(groups(&near).is_subset(&allowed));

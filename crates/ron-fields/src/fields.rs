@@ -35,6 +35,7 @@ pub(crate) struct Node {
     /// Fields and entries directly in it.
     pub(crate) children: Vec<u32>,
     /// Its entries that have a name.
+    #[expect(clippy::box_collection, reason = "most nodes have none, and there are many nodes")]
     pub(crate) named: Option<Box<BTreeMap<Box<str>, usize>>>,
     /// Value of its field `name`, during the walk.
     pub(crate) name: Option<Box<str>>,

@@ -26,17 +26,14 @@ pub fn check_syntax(text: &str) -> Result<(), SyntaxError> {
     let mut reader = Reader { cursor: Cursor::new(text), text, long_string: None };
     reader.blank()?;
     if reader.cursor.peek().is_none() {
-        return reader.wrong(0, "has no value: only blanks and comments");
+        return wrong(0, "has no value: only blanks and comments");
     }
     reader.value("the file")?;
     reader.blank()?;
-    match reader.cursor.peek() {
-        None => Ok(()),
-        Some(_) => {
-            let message = format!("nothing may follow the end of the value, found {}", reader.here());
-            reader.wrong(reader.cursor.at(), &message)
-        }
+    if reader.cursor.peek().is_none() {
+        return Ok(());
     }
+    wrong(reader.cursor.at(), &format!("nothing may follow the end of the value, found {}", reader.here()))
 }
 
 struct Reader<'t> {
@@ -48,11 +45,11 @@ struct Reader<'t> {
 
 type Checked = Result<(), SyntaxError>;
 
-impl<'t> Reader<'t> {
-    fn wrong(&self, at: usize, message: &str) -> Checked {
-        Err(SyntaxError { at, message: message.to_owned() })
-    }
+fn wrong(at: usize, message: &str) -> Checked {
+    Err(SyntaxError { at, message: message.to_owned() })
+}
 
+impl Reader<'_> {
     /// The beginning of what comes next, as a message repeats it.
     fn here(&self) -> String {
         self.shown(self.cursor.at())
@@ -79,7 +76,7 @@ impl<'t> Reader<'t> {
         if self.cursor.peek().is_none() && skipped.contains("/*") && !skipped.trim_end().ends_with("*/") {
             let is_line = skipped.rsplit('\n').next().is_some_and(|last| last.contains("//"));
             let at = start + skipped.rfind("/*").unwrap_or_default();
-            return if is_line { Ok(()) } else { self.wrong(at, "the comment `/*` is not closed by `*/`") };
+            return if is_line { Ok(()) } else { wrong(at, "the comment `/*` is not closed by `*/`") };
         }
         Ok(())
     }
@@ -95,13 +92,13 @@ impl<'t> Reader<'t> {
             Some(b'"') => self.string(),
             Some(b'\'') => self.character(),
             Some(b'#') => {
-                self.wrong(at, "extensions change what a file means and are not allowed; remove `#![...]`")
+                wrong(at, "extensions change what a file means and are not allowed; remove `#![...]`")
             }
             Some(byte) if is_of_name(byte) && !byte.is_ascii_digit() => self.named(),
             Some(byte) if byte.is_ascii_digit() || b"+-.".contains(&byte) => self.number(),
             _ => {
                 let found = self.here();
-                self.wrong(at, &format!("a value is missing: {what} must have one, found {found}"))
+                wrong(at, &format!("a value is missing: {what} must have one, found {found}"))
             }
         }
     }
@@ -111,7 +108,7 @@ impl<'t> Reader<'t> {
         self.cursor.quoted(b'"');
         let text = self.cursor.since(at);
         if text.len() < 2 || !text.ends_with('"') || ends_escaped(text) {
-            return self.wrong(self.long_string.unwrap_or(at), "the string is not closed by `\"`");
+            return wrong(self.long_string.unwrap_or(at), "the string is not closed by `\"`");
         }
         if text.contains('\n') {
             self.long_string = self.long_string.or(Some(at));
@@ -120,7 +117,7 @@ impl<'t> Reader<'t> {
     }
 
     fn character(&mut self) -> Checked {
-        self.wrong(self.cursor.at(), "texts are written in double quotes: \"...\"")
+        wrong(self.cursor.at(), "texts are written in double quotes: \"...\"")
     }
 
     /// A name, alone or before brackets, or a string that begins with one.
@@ -129,14 +126,10 @@ impl<'t> Reader<'t> {
         let name = self.cursor.identifier();
         if matches!((name, self.cursor.peek()), ("r", Some(b'"' | b'#'))) {
             self.cursor.raw_string();
-            return if self.cursor.peek().is_none() {
-                self.wrong(at, "the string is not closed")
-            } else {
-                Ok(())
-            };
+            return if self.cursor.peek().is_none() { wrong(at, "the string is not closed") } else { Ok(()) };
         }
         if name.contains(['“', '”', '„', '‘', '’', '«', '»']) {
-            return self.wrong(at, "texts are written in straight quotes: \"...\"");
+            return wrong(at, "texts are written in straight quotes: \"...\"");
         }
         if matches!(name, "inf" | "NaN") || name.is_ascii() {
             let end = self.cursor.at();
@@ -147,7 +140,7 @@ impl<'t> Reader<'t> {
             self.cursor.go_back(end);
             return Ok(());
         }
-        self.wrong(at, &format!("{} is no value: numbers, \"texts\", names and brackets are", self.shown(at)))
+        wrong(at, &format!("{} is no value: numbers, \"texts\", names and brackets are", self.shown(at)))
     }
 
     fn number(&mut self) -> Checked {
@@ -171,7 +164,7 @@ impl<'t> Reader<'t> {
         } else {
             format!("{} is no number", self.shown(at))
         };
-        self.wrong(at, &message)
+        wrong(at, &message)
     }
 
     /// What is between brackets, up to the one that closes them.
@@ -187,7 +180,7 @@ impl<'t> Reader<'t> {
                     return Ok(());
                 }
                 Some(b')' | b']' | b'}') | None => return self.not_closed(open_at, close),
-                Some(b',') => return self.wrong(self.cursor.at(), "an entry is missing before `,`"),
+                Some(b',') => return wrong(self.cursor.at(), "an entry is missing before `,`"),
                 Some(_) => self.entry(close, &mut is_named)?,
             }
             let end = self.cursor.at();
@@ -204,7 +197,7 @@ impl<'t> Reader<'t> {
         let (open, line) = (&self.text[open_at..=open_at], self.line_of(open_at));
         let found = self.here();
         let close = close as char;
-        self.wrong(
+        wrong(
             self.cursor.at(),
             &format!("`{open}` of line {line} is not closed: `{close}` is missing, found {found}"),
         )
@@ -213,15 +206,14 @@ impl<'t> Reader<'t> {
     fn no_comma(&self, end: usize) -> Checked {
         let found = self.here();
         if let Some(at) = self.long_string {
-            return self.wrong(at, "the string is not closed on its line by `\"`");
+            return wrong(at, "the string is not closed on its line by `\"`");
         }
         let word = found.trim_matches('`');
         let after =
             self.text[self.cursor.at() + word.len().min(self.text.len() - self.cursor.at())..].trim_start();
         let is_unit = word.len() <= 4 && word.chars().all(char::is_alphabetic) && !after.starts_with(':');
         if is_unit && self.text[..end].ends_with(|c: char| c.is_ascii_digit()) {
-            return self
-                .wrong(self.cursor.at(), &format!("a number is written without its unit, found {found}"));
+            return wrong(self.cursor.at(), &format!("a number is written without its unit, found {found}"));
         }
         let message = match self.cursor.peek() {
             Some(b'=') => "a field is written with a colon, as in `name: value`, found `=`".to_owned(),
@@ -233,7 +225,7 @@ impl<'t> Reader<'t> {
             _ => format!("a comma is missing before {found}"),
         };
         let at = if message.starts_with("a comma") { end } else { self.cursor.at() };
-        self.wrong(at, &message)
+        wrong(at, &message)
     }
 
     /// A field with its name, or an entry without one: within one pair of round brackets all are of one kind.
@@ -253,7 +245,7 @@ impl<'t> Reader<'t> {
         self.blank()?;
         if is_name && self.cursor.peek() == Some(b':') {
             if *is_named == Some(false) {
-                return self.wrong(
+                return wrong(
                     at,
                     &format!("{} has a name, which the entries before it have not", self.shown(at)),
                 );
@@ -273,7 +265,7 @@ impl<'t> Reader<'t> {
                     format!("the name of a field is missing before {}{point}", self.shown(at))
                 }
             };
-            return self.wrong(if is_name { name_end } else { at }, &message);
+            return wrong(if is_name { name_end } else { at }, &message);
         }
         *is_named = Some(false);
         self.cursor.go_back(at);

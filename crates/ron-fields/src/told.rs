@@ -65,7 +65,7 @@ impl Misfit {
                 Self {
                     field,
                     rule: format!("must be one of {}", expected.join(", ")),
-                    found: name.to_string(),
+                    found: name.clone(),
                     hint,
                 }
             }

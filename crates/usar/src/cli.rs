@@ -11,8 +11,8 @@ use rne_core::Registry;
 use terminal_size::{Width, terminal_size_of};
 
 use crate::commands::{
-    calibrate, check, compare, draw, estimate, export, fork, group, merge, oracle, readings, regret, render,
-    report, reproduce, run, schema, sorting, sweep, test, trust, verify, view, why,
+    calibrate, check, compare, draw, estimate, export, fork, group, list, merge, new, oracle, readings,
+    regret, render, report, reproduce, resolve, run, schema, sorting, sweep, test, trust, verify, view, why,
 };
 use crate::printable::Printable;
 use crate::running::{status_of_signal, tell};
@@ -37,7 +37,10 @@ Examples:
   usar verify results/paper                            do the numbers come out again?
   usar trust --weights 6,4,2 --from 86,120,30 --to 20,30,10
   usar group robots.csv --policy RNE
-  usar check scenarios/*.ron                           is every value in its range?"
+  usar new mine                                        a commented scenario to begin with
+  usar check scenarios/*.ron                           is every value in its range?
+  usar resolve scenarios/paper.ron                     every value, and where it comes from
+  usar list policies                                   which there are: also scenarios, roles, metrics"
 )]
 struct Cli {
     #[command(subcommand)]
@@ -61,7 +64,10 @@ enum Command {
     Regret(regret::Arguments),
     Verify(verify::Arguments),
     Calibrate(calibrate::Arguments),
+    New(new::Arguments),
     Check(check::Arguments),
+    Resolve(resolve::Arguments),
+    List(list::Arguments),
     Trust(trust::Arguments),
     Group(group::Arguments),
     Schema(schema::Arguments),
@@ -142,7 +148,10 @@ impl Command {
             Self::Regret(arguments) => arguments.execute(out),
             Self::Verify(arguments) => arguments.execute(out),
             Self::Calibrate(arguments) => arguments.execute(out),
+            Self::New(arguments) => arguments.execute(out),
             Self::Check(arguments) => arguments.execute(out),
+            Self::Resolve(arguments) => arguments.execute(out),
+            Self::List(arguments) => arguments.execute(out),
             Self::Trust(arguments) => arguments.execute(out),
             Self::Group(arguments) => arguments.execute(out),
             Self::Schema(arguments) => arguments.execute(out),

@@ -29,11 +29,14 @@ pub struct Outcome {
     pub longest: Duration,
 }
 
+/// Whether a file of these bytes is loaded.
+type Loader = dyn Fn(&[u8]) -> bool;
+
 /// A kind of file: a good one, and its loader.
 struct Kind {
     name: &'static str,
     good: Vec<u8>,
-    loads: Box<dyn Fn(&[u8]) -> bool>,
+    loads: Box<Loader>,
 }
 
 /// Loads so many damaged files, the kinds in turn. `folder` is for those that are read from disk.
@@ -116,7 +119,7 @@ fn kinds(folder: &Path) -> Vec<Kind> {
         Scenario::parse(&String::from_utf8_lossy(bytes), &place).map_err(|error| error.to_string()).is_ok()
     };
     let question = |bytes: &[u8]| Question::from_json(&String::from_utf8_lossy(bytes)).is_ok();
-    let kind = |name, good: Vec<u8>, loads: Box<dyn Fn(&[u8]) -> bool>| Kind { name, good, loads };
+    let kind = |name, good: Vec<u8>, loads: Box<Loader>| Kind { name, good, loads };
     vec![
         kind("scenario", text("scenarios/minimal/pushed.ron"), Box::new(scenario)),
         kind("scenario with walls", walls.to_vec(), Box::new(scenario)),

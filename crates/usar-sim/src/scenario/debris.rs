@@ -1,7 +1,7 @@
 //! The rules of debris and radiation zones.
 
+use super::checker::Checker;
 use super::file::{DebrisShape, Door, Point, ScenarioFile, WallFile};
-use super::validate::Checker;
 use crate::limits;
 
 /// Least width of a polygon in every direction, in metres: less is flat in single precision.
@@ -12,7 +12,7 @@ pub(super) fn debris(check: &mut Checker, file: &ScenarioFile) {
         let field = format!("debris[{i}]");
         match &piece.shape {
             DebrisShape::Disc(radius) => {
-                check.number(format!("{field}.shape"), *radius, limits::DISC_RADIUS_M)
+                check.number(format!("{field}.shape"), *radius, limits::DISC_RADIUS_M);
             }
             DebrisShape::Box(width, height) => {
                 check.number(format!("{field}.shape"), *width, limits::BOX_M);

@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 use rne_core::hierarchy::NeedLevel;
 use serde::{Deserialize, Serialize};
 
-use crate::vitals::Rates;
+pub use super::rules::*;
 
 /// A point `(x, y)` or an extent `(width, height)`, in metres.
 pub type Point = [f64; 2];
@@ -339,122 +339,6 @@ pub struct SampledCounts {
     pub debris: u32,
     /// Radiation zones.
     pub radiation: u32,
-}
-
-/// What moving and radiation cost.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, from = "super::partial::Costs")]
-pub struct Costs {
-    /// Battery.
-    pub energy: Rates,
-    /// Health, inside radiation zones.
-    pub hp: Rates,
-}
-
-/// When a robot below the threshold turns back.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-pub enum TurnBack {
-    /// At once, wherever it is. The default; the paper's words.
-    #[default]
-    AtOnce,
-    /// Once it is home: the round is finished first.
-    WhenHome,
-    /// Before a round at whose end it would be below, judged by its costliest round so far.
-    BeforeRound,
-}
-
-/// Rules of the mission.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub struct MissionRules {
-    /// Battery level below which a robot needs rest, in percent.
-    pub energy_threshold: f64,
-    /// Health level below which a robot needs rest, in percent.
-    pub hp_threshold: f64,
-    /// When a robot with little energy turns back.
-    pub energy_turn_back: TurnBack,
-    /// When a robot with little health turns back.
-    pub hp_turn_back: TurnBack,
-    /// A robot also turns back when its energy is less than this many times what the straight way to its rest place costs.
-    pub rest_reserve: f64,
-    /// Time at a rest place, in seconds.
-    pub rest_s: f64,
-    /// Time to load one rescuee, in seconds.
-    pub loading_s: f64,
-    /// Distance from its centre within which a robot can load a rescuee, in metres.
-    pub reach_m: f64,
-    /// How far a task's area extends beyond its block of rescuees, in metres. Resources are shared within it.
-    pub area_margin_m: f64,
-    /// Share of its speed that a robot loses when its group has no guide that can act.
-    pub blind_speed_loss: f64,
-    /// Factor on speed, sensing and observing range at health 0 %; it rises linearly to 1 at 100 %.
-    pub health_floor: f64,
-    /// A robot that comes no nearer to its home, its rest place or its work for this long, in seconds, gives up on the place: the team
-    /// does not wait for it. A detour adds the time that it takes.
-    pub cut_off_s: f64,
-}
-
-/// Rules of route planning.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub struct PlanningRules {
-    /// Distance that routes keep from known debris and walls, beyond the robot's radius, in metres.
-    pub clearance_m: f64,
-    /// Price of one second inside one radiation zone, in metres of detour.
-    pub exposure_price_m: f64,
-}
-
-/// Rules of right of way.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub struct ConflictRules {
-    /// Who has the right of way.
-    pub priority: PriorityRule,
-    /// What resolves conflicts and deadlocks.
-    pub resolver: ResolverRule,
-}
-
-/// Who has the right of way in a conflict set; ties go to the lowest id.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-pub enum PriorityRule {
-    /// The robot with the lowest battery level. The default.
-    #[default]
-    LowestEnergyFirst,
-    /// Robots of the hardest task, then of the next, and at last those without a group; among them the lowest battery level.
-    TaskThenEnergy,
-    /// The robot with the highest battery level.
-    HighestEnergyFirst,
-    /// The robot with the lowest health level.
-    LowestHpFirst,
-}
-
-/// What resolves conflicts and deadlocks.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub enum ResolverRule {
-    /// Reciprocal avoidance in the open, right of way in narrow passages, and pushing where a robot is stuck. The default. It keeps margins
-    /// and horizons of its own.
-    #[default]
-    Reciprocal,
-    /// The paper's rule: the head of a conflict set goes, the others stop. The order of a deadlocked set is rotated, head to tail. Written
-    /// `Rotation`, or `Rotation(margin_m: 0.2)` with the values that differ from the defaults.
-    Rotation(RightOfWay),
-    /// The paper's rule; the head of a deadlocked set changes places with the next in line, then with the one after: the paper's
-    /// Algorithm 6, literally. Written like `Rotation`.
-    Swap(RightOfWay),
-    /// Nothing: robots drive as they wish and bump into each other. For comparison.
-    None,
-}
-
-/// Values of the paper's rule.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub struct RightOfWay {
-    /// Distance that robots keep from one another, beyond their radii, in metres.
-    pub margin_m: f64,
-    /// How far ahead a conflict is predicted, in seconds.
-    pub horizon_s: f64,
-    /// Steps without motion after which a conflict set counts as deadlocked.
-    pub deadlock_steps: u32,
 }
 
 /// A straight wall, with doors. Written `(from: (0, 0), to: (10, 0))`, or short `((0, 0), (10, 0))`.

@@ -3,8 +3,8 @@
 use parry2d::bounding_volume::Aabb;
 use parry2d::math::Vector;
 
+use super::checker::Checker;
 use super::file::{DebrisFile, Point, RoleFile, RoleKind, ScenarioFile};
-use super::validate::Checker;
 use crate::geometry::Places;
 
 /// A robot's home.
@@ -43,9 +43,9 @@ fn outside(check: &mut Checker, field: &str, piece: &DebrisFile, (homes, places)
     let is_in_it = |home: &&Home| {
         home.role.kind == RoleKind::Ground && outline.distance_to(vector(home.at)) < home.role.radius_m as f32
     };
-    if let Some(Home { at, .. }) = near.iter().map(|number| &homes[*number]).find(is_in_it) {
+    if let Some(Home { at: [x, y], .. }) = near.iter().map(|number| &homes[*number]).find(is_in_it) {
         let rule = "must leave every robot's home free";
-        check.fail(field, rule, format!("a home at ({}, {})", at[0], at[1]));
+        check.fail(field, rule, format!("a home at ({x}, {y})"));
     }
 }
 

@@ -1,6 +1,7 @@
 //! Scenarios: read from RON, checked, and then known to be usable.
 
 mod base;
+mod checker;
 mod debris;
 mod defaults;
 mod error;
@@ -11,6 +12,7 @@ mod odd;
 mod partial;
 mod places;
 mod reading;
+mod rules;
 mod sense;
 mod set;
 mod validate;

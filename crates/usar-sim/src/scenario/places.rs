@@ -50,7 +50,7 @@ impl WallFile {
         let ends = doors.into_iter().map(|door| door.at_m - door.width_m / 2.0).chain([length]);
         let thickness = self.thickness_m;
         begins.zip(ends).filter(move |(begin, end)| end - begin >= thickness).map(move |(begin, end)| {
-            let middle = (begin + end) / 2.0;
+            let middle = f64::midpoint(begin, end);
             let at = [from[0] + along[0] * middle, from[1] + along[1] * middle];
             DebrisFile { shape: DebrisShape::Box(end - begin, thickness), at, rotation_deg, movable: None }
         })
@@ -142,7 +142,9 @@ mod tests {
             .collect();
         assert_eq!(pieces.len(), 3, "{pieces:?}");
         for ((middle, length), (begin, end)) in pieces.iter().zip([(0.0, 2.5), (3.5, 6.5), (7.5, 9.05)]) {
-            assert!((middle - (begin + end) / 2.0).abs() < 1e-9 && (length - (end - begin)).abs() < 1e-9);
+            assert!(
+                (middle - f64::midpoint(begin, end)).abs() < 1e-9 && (length - (end - begin)).abs() < 1e-9
+            );
         }
         assert!(wall.pieces().all(|piece| (piece.rotation_deg - 90.0).abs() < 1e-9));
     }

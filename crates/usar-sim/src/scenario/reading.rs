@@ -98,7 +98,7 @@ pub(super) fn read_all<T: DeserializeOwned>(text: &str, fields: &Fields) -> (Opt
     loop {
         let (error, path) = match read(&rest) {
             Ok(value) => return (Some(value), problems),
-            Err(error) => error,
+            Err(error) => *error,
         };
         let at = offset(&rest, error.span.start.line, error.span.start.col);
         let misfit = Misfit::new(&error.code, &path, (&rest, at), fields);
@@ -122,13 +122,13 @@ pub(super) fn read_all<T: DeserializeOwned>(text: &str, fields: &Fields) -> (Opt
     }
 }
 
-fn read<T: DeserializeOwned>(text: &str) -> Result<T, (ron::error::SpannedError, String)> {
+fn read<T: DeserializeOwned>(text: &str) -> Result<T, Box<(ron::error::SpannedError, String)>> {
     let options = ron_options();
-    let mut deserializer =
-        ron::Deserializer::from_str_with_options(text, &options).map_err(|error| (error, String::new()))?;
+    let mut deserializer = ron::Deserializer::from_str_with_options(text, &options)
+        .map_err(|error| Box::new((error, String::new())))?;
     serde_path_to_error::deserialize(&mut deserializer).map_err(|error| {
         let path = error.path().to_string();
-        (deserializer.span_error(error.into_inner()), path)
+        Box::new((deserializer.span_error(error.into_inner()), path))
     })
 }
 

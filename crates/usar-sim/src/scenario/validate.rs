@@ -1,15 +1,11 @@
 //! The rules of a scenario: every value in its range, and the values in keeping with one another.
 
-use std::fmt::Display;
-
 use ron_fields::limits::Limit;
-use ron_fields::nearest;
 
+use super::checker::{Checker, is_device, meant, names, shown};
 use super::debris::debris;
 use super::error::Problem;
-use super::file::{
-    Measure, NeedFile, Normal, Point, ResolverRule, RoleFile, SampledCounts, ScenarioFile, TaskFile,
-};
+use super::file::{Measure, NeedFile, Normal, ResolverRule, RoleFile, SampledCounts, ScenarioFile, TaskFile};
 use super::homes::homes_are_free;
 use super::sense::sense;
 use crate::limits;
@@ -40,80 +36,6 @@ pub(super) fn problems(file: &ScenarioFile) -> Vec<Problem> {
         sense(&mut check, file);
     }
     check.problems
-}
-
-/// Most problems that are told at once: the first of them are what a reader mends first.
-const MAX_PROBLEMS: usize = 100;
-
-pub(super) struct Checker {
-    problems: Vec<Problem>,
-    arena: Point,
-}
-
-impl Checker {
-    /// Notes a broken rule, unless there are [`MAX_PROBLEMS`] already.
-    pub(super) fn fail(&mut self, field: impl Into<String>, rule: impl Into<String>, found: impl Display) {
-        self.fail_with(field, (rule.into(), String::new()), found);
-    }
-
-    /// Notes a broken rule with a hint.
-    pub(super) fn fail_with(
-        &mut self,
-        field: impl Into<String>,
-        (rule, hint): (String, String),
-        found: impl Display,
-    ) {
-        if self.problems.len() >= MAX_PROBLEMS {
-            return;
-        }
-        let (field, found) = (field.into(), found.to_string());
-        self.problems.push(Problem { field, rule, found, hint, ..Problem::default() });
-    }
-
-    /// Whether no more problems are taken.
-    pub(super) fn is_full(&self) -> bool {
-        self.problems.len() >= MAX_PROBLEMS
-    }
-
-    pub(super) fn number(&mut self, field: impl Into<String>, value: f64, limit: Limit) {
-        if !limit.range().contains(&value) {
-            let rule = format!("must be a number from {} to {}", limit.least, limit.most);
-            let other_unit = [value / 1000.0, value * 1000.0].into_iter().find(|other| {
-                (value > 4.0 * limit.most || value > 0.0 && value < limit.least / 4.0)
-                    && limit.range().contains(other)
-            });
-            let hint = other_unit
-                .map_or(String::new(), |other| format!("is the unit right? {other} would be in range"));
-            let found = if value.abs() < 1e15 { value.to_string() } else { format!("{value:e}") };
-            self.fail_with(field, (rule, hint), found);
-        }
-    }
-
-    fn count(&mut self, field: impl Into<String>, value: u32, limit: Limit) {
-        if !limit.allows(value as usize) {
-            self.fail(field, format!("must be a count from {} to {}", limit.least, limit.most), value);
-        }
-    }
-
-    /// The number of entries of a table or list.
-    pub(super) fn entries(&mut self, field: impl Into<String>, count: usize, limit: Limit) {
-        if !limit.allows(count) {
-            let rule = match limit.least {
-                0.0 => format!("must have at most {} entries", limit.most),
-                least => format!("must have {least} to {} entries", limit.most),
-            };
-            self.fail(field, rule, count);
-        }
-    }
-
-    /// A point at least `margin` metres inside the arena.
-    pub(super) fn inside(&mut self, field: impl Into<String>, point: Point, margin: f64) {
-        let fits = |x: f64, size: f64| x >= margin && x <= size - margin;
-        if !fits(point[0], self.arena[0]) || !fits(point[1], self.arena[1]) {
-            let rule = format!("must lie in the arena, at least {margin} m from its walls");
-            self.fail(field, rule, format!("({}, {})", point[0], point[1]));
-        }
-    }
 }
 
 /// The number of entries of each table and list: what comes after takes time and memory with each of them.
@@ -184,48 +106,6 @@ fn team(check: &mut Checker, file: &ScenarioFile) {
         }
         check.inside(format!("{field}.center"), [row.center[0] - row.width_m / 2.0, row.center[1]], radius);
         check.inside(format!("{field}.center"), [row.center[0] + row.width_m / 2.0, row.center[1]], radius);
-    }
-}
-
-/// The name that may have been meant, as a hint.
-fn meant<'k>(name: &str, known: impl IntoIterator<Item = &'k str>) -> String {
-    nearest(name, known).map_or(String::new(), |meant| format!("did you mean {meant}?"))
-}
-
-/// A name as it is told: in quotes, and not longer than a line.
-fn shown(name: &str) -> String {
-    let start: String = name.chars().take(80).collect();
-    if start.len() < name.len() {
-        format!("{start:?}... of {} bytes", name.len())
-    } else {
-        format!("{name:?}")
-    }
-}
-
-/// Whether Windows has a device of this name, with or without an extension: no file can be called that.
-fn is_device(name: &str) -> bool {
-    let stem = name.split('.').next().unwrap_or_default().to_ascii_lowercase();
-    let numbered =
-        |kind| stem.strip_prefix(kind).is_some_and(|rest| matches!(rest.as_bytes(), [b'1'..=b'9']));
-    ["con", "prn", "aux", "nul"].contains(&stem.as_str()) || numbered("com") || numbered("lpt")
-}
-
-/// Names of a table: each plain, and each once.
-fn names<'n>(check: &mut Checker, table: &str, names: impl Iterator<Item = &'n str>) {
-    let plain = |c: char| c.is_ascii_alphanumeric() || "-_".contains(c);
-    let mut seen: Vec<&str> = Vec::new();
-    for (i, name) in names.enumerate() {
-        let field = format!("{table}[{i}].name");
-        if !limits::NAME_BYTES.allows(name.len()) || name.starts_with('-') || !name.chars().all(plain) {
-            let rule =
-                "must be a name of at most 64 letters, digits, `-` and `_` that does not start with `-`";
-            check.fail(field, rule, shown(name));
-        } else if is_device(name) {
-            check.fail(field, "must not be the name of a device on Windows", shown(name));
-        } else if seen.contains(&name) {
-            check.fail(field, "must not be listed twice", shown(name));
-        }
-        seen.push(name);
     }
 }
 

@@ -59,7 +59,7 @@ fn bad_sweep_files_are_refused_with_their_lines() {
     refuse("\"mission.loading_s\"", "\"mission.loading\"", "bad.ron:5: set.\"mission.loading\": ");
     refuse("trials: 2", "trails: 2", "bad.ron:7:");
     refuse("short.ron", "long.ron", "long.ron: cannot be read");
-    refuse("score: Sum", "score: Most", "policies: policy RNE: ");
+    refuse("score: Sum", "score: Most", "bad.ron:6: policies[1]: policy RNE: ");
     refuse("\"DIS\"", "\"RNE\"", "policies: must not be listed twice, found \"RNE\"");
     refuse(
         "trials: 2",

@@ -107,8 +107,8 @@ fn sweeps_with_too_many_policies_seeds_values_or_cases_are_refused_at_once() {
         "at most 1000 values",
     );
     let axis = |path: &str| format!("\"{path}\": [{}],", entries(311, "3#.0"));
-    let axes = axis("mission.rest_s") + &axis("mission.loading_s");
-    at_once(here, &sweep(&format!("axes: {{{axes}}}")), "axes: must span at most 10000 cases");
+    let both = axis("mission.rest_s") + &axis("mission.loading_s");
+    at_once(here, &sweep(&format!("axes: {{{both}}}")), "axes: must span at most 10000 cases");
     at_once(
         here,
         &sweep(&format!("axes: {{{}}}", entries(50_000, "\"k#\": []"))),

@@ -11,6 +11,7 @@ mod decided;
 mod drawn;
 mod expected;
 mod exported;
+mod files;
 mod grids;
 mod guarded;
 mod hostile;

@@ -1,0 +1,114 @@
+//! `usar resolve`: every value that a scenario ends up with, and where it comes from.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use experiments::Failure;
+use experiments::experiment::with_settings;
+use ron_fields::Fields;
+use usar_sim::scenario::read_text;
+
+use super::load;
+
+/// Print every value that a scenario ends up with, and where it comes from
+#[derive(Debug, Args)]
+#[command(after_help = "\
+A line for each value: its path, the value, and its origin: file and line, --set, or default. The path is that of --set and of axes.
+
+Examples:
+  usar resolve scenarios/three-tasks.ron
+  usar resolve scenarios/paper.ron --set mission.rest_s=10 | grep rest_s")]
+pub(crate) struct Arguments {
+    /// Scenario file (RON)
+    file: PathBuf,
+    /// Set a field of the scenario, by its path, to a value in RON; may stand several times
+    #[arg(long, value_name = "PATH=VALUE")]
+    set: Vec<String>,
+}
+
+/// A text in which values are written.
+struct Source {
+    path: PathBuf,
+    text: String,
+    fields: Fields,
+}
+
+impl Source {
+    fn read(path: &Path) -> Result<Self, Failure> {
+        let text = read_text(path).map_err(Failure::input)?;
+        Ok(Self { path: path.to_owned(), fields: Fields::of(&text), text })
+    }
+
+    /// The base that it names.
+    fn base(&self) -> Option<PathBuf> {
+        let name = self.text[self.fields.value("base")?].trim_matches('"');
+        Some(self.path.parent().unwrap_or(Path::new("")).join(name))
+    }
+
+    /// Whether a list of the text takes the place of all that a base has there.
+    fn has_list_around(&self, path: &str) -> bool {
+        let first = path.split(['.', '[']).next().unwrap_or_default();
+        self.fields.value(first).is_some_and(|place| self.text[place].starts_with('['))
+    }
+
+    /// The line of a value, if it is written here; `named` is its path with the names of entries.
+    fn line(&self, path: &str, named: &str) -> Option<usize> {
+        let written = [path, named].into_iter().find(|path| self.fields.value(path).is_some());
+        if let Some(path) = written {
+            return self.fields.line(path);
+        }
+        // `((0, 0), (10, 0))` is a wall without the names of its fields.
+        let entry = &path[..=path.find(']')?];
+        let place = self.fields.value(entry)?;
+        let is_short = self.text[place].starts_with("((");
+        (is_short && !path.ends_with("thickness_m")).then(|| self.fields.line(entry)).flatten()
+    }
+}
+
+impl Arguments {
+    pub(crate) fn execute(&self, out: &mut dyn Write) -> Result<(), Failure> {
+        let (scenario, _) = load(&self.file)?;
+        let resolved = with_settings(&scenario, &self.set)?.resolved();
+        let fields = Fields::of(&resolved);
+        let own = Source::read(&self.file)?;
+        let base = own.base().map(|path| Source::read(&path)).transpose()?;
+        let set: Vec<String> = self.set.iter().filter_map(|set| canonical(&fields, set)).collect();
+        let width = fields.leaves().map(|(path, _)| path.len()).max().unwrap_or_default();
+        for (path, place) in fields.leaves() {
+            let named = named(&fields, &resolved, path);
+            let from =
+                |source: &Source| Some(format!("{}:{}", source.path.display(), source.line(path, &named)?));
+            let is_set = set.iter().any(|set| path.strip_prefix(set.as_str()).is_some_and(ends_a_segment));
+            let origin = if is_set {
+                Some("--set".to_owned())
+            } else {
+                let of_base = base.as_ref().filter(|_| !own.has_list_around(path));
+                from(&own).or_else(|| from(of_base?))
+            };
+            let origin = origin.unwrap_or_else(|| "default".to_owned());
+            writeln!(out, "{path:width$} = {}  # {origin}", &resolved[place])?;
+        }
+        Ok(())
+    }
+}
+
+fn ends_a_segment(rest: &str) -> bool {
+    rest.is_empty() || rest.starts_with(['.', '['])
+}
+
+/// The path that a setting is of, with numbers for names.
+fn canonical(fields: &Fields, setting: &str) -> Option<String> {
+    fields.canonical(setting.split('=').next()?.trim())
+}
+
+/// A path with the name of the table's entry in the place of its number: `roles.carrier.hp` for `roles[0].hp`.
+fn named(fields: &Fields, text: &str, path: &str) -> String {
+    let name = || {
+        let end = path.find(']')? + 1;
+        let name = text[fields.value(&format!("{}.name", &path[..end]))?].trim_matches('"');
+        let table = &path[..path.find('[')?];
+        Some(format!("{table}.{name}{}", &path[end..]))
+    };
+    name().unwrap_or_else(|| path.to_owned())
+}

@@ -1,0 +1,67 @@
+//! `usar new`, `list` and `resolve`: scenario files to begin with, and what is in them.
+
+use crate::place::refused;
+use crate::support::{read, root, succeeds, usar};
+
+#[test]
+fn a_new_scenario_runs_and_nothing_is_overwritten() {
+    let folder = tempfile::tempdir().unwrap();
+    let here = folder.path();
+    for from in ["minimal", "paper", "three-tasks"] {
+        let name = format!("mine-{from}");
+        assert_eq!(succeeds(&usar(here, &["new", &name, "--from", from])), format!("./{name}.ron\n"));
+        let file = format!("{name}.ron");
+        assert_eq!(succeeds(&usar(here, &["check", &file])), format!("{file}: ok\n"));
+        assert!(read(&here.join(&file)).contains("// SI units. Points are (x, y) in metres"));
+    }
+    assert!(succeeds(&usar(here, &["run", "mine-minimal.ron", "--check"])).contains("rescued      9"));
+    refused(here, 2, &["new", "mine-paper"], &["mine-paper.ron exists; nothing was overwritten"]);
+    refused(here, 2, &["new", "../mine"], &["name must be a name of at most 64 letters"]);
+    refused(here, 2, &["new", "a", "--from", "papre"], &["paper"]);
+}
+
+#[test]
+fn scenarios_policies_roles_and_metrics_are_listed() {
+    let root = root();
+    let listed = |arguments: &[&str]| succeeds(&usar(&root, &[&["list"], arguments].concat()));
+    let scenarios = listed(&["scenarios"]);
+    assert!(scenarios.contains("scenarios/three-tasks.ron\tNine carriers"), "{scenarios}");
+    assert!(!scenarios.contains("sweep"), "{scenarios}");
+    let policies = listed(&["policies"]);
+    assert!(
+        policies.lines().any(|line| line.starts_with("RNE\t") && line.contains("score: MaxOfBoth")),
+        "{policies}"
+    );
+    assert!(listed(&["roles"]).contains("carrier\t6 robots; drives at 2.25 m/s"));
+    assert!(listed(&["metrics", "scenarios/three-tasks.ron"]).contains("rescuees.medium\t"));
+    refused(&root, 2, &["list", "scenarios", "nowhere"], &["nowhere: cannot be read"]);
+}
+
+#[test]
+fn each_value_is_told_with_its_origin() {
+    let folder = tempfile::tempdir().unwrap();
+    let here = folder.path();
+    succeeds(&usar(here, &["new", "first"]));
+    let over = "(\n    base: \"first.ron\", name: \"over\",\n    roles: (carrier: (speed_mps: 3.0)),\n    mission: (loading_s: 1.0),\n    walls: [((5, 14), (15, 14))],\n)";
+    std::fs::write(here.join("over.ron"), over).unwrap();
+    let told = succeeds(&usar(here, &["resolve", "over.ron", "--set", "mission.reach_m=2"]));
+    let line = |path: &str| {
+        let found = told.lines().find(|line| line.split_whitespace().next() == Some(path));
+        found.unwrap_or_else(|| panic!("{path}: {told}")).split_whitespace().collect::<Vec<_>>().join(" ")
+    };
+    for expected in [
+        "name = \"over\" # over.ron:2",
+        "duration_s = 180.0 # first.ron:10",
+        "roles[0].speed_mps = 3.0 # over.ron:3",
+        "roles[0].capacity = 6 # first.ron:24",
+        "roles[0].mass_kg = 50.0 # default",
+        "mission.loading_s = 1.0 # over.ron:4",
+        "mission.rest_s = 20.0 # first.ron:40",
+        "mission.reach_m = 2.0 # --set",
+        "mission.health_floor = 0.5 # default",
+        "walls[0].from[0] = 5.0 # over.ron:5",
+        "walls[0].thickness_m = 0.2 # default",
+    ] {
+        assert_eq!(line(expected.split(' ').next().unwrap()), expected);
+    }
+}
