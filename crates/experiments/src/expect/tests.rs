@@ -58,7 +58,7 @@ fn looks_double_up_to_the_last() {
     assert_eq!(looks(3), [3]);
 }
 
-/// scipy.stats.binomtest(45, 50).proportion_ci(0.95, "exact")
+/// `scipy.stats.binomtest(45, 50).proportion_ci(0.95, "exact")`
 #[test]
 fn the_interval_of_a_share_is_scipys() {
     let [low, high] = clopper_pearson(45, 50, 0.95).unwrap();

@@ -157,7 +157,10 @@ mod tests {
         let value = |name| Objective::parse(name, &tasks).unwrap().value(&outcome()).unwrap();
         let values =
             ["rescuees", "rescuees.hard", "rescue_rate", "energy_per_rescuee", "hp.total", "time"].map(value);
-        assert_eq!(values.map(|value| (value * 1e6).round()), [6e6, 4e6, 3e6, 2e6, 5e5, 120e6]);
+        assert_eq!(
+            values.map(|value| (value * 1e6).round() as u64),
+            [6_000_000, 4_000_000, 3_000_000, 2_000_000, 500_000, 120_000_000]
+        );
         let score = |name| Objective::parse(name, &tasks).unwrap().score(&outcome()).unwrap();
         assert!(score("energy.easy") < -2.9 && score("rescuees.easy") > 1.9);
     }

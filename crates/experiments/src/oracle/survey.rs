@@ -134,8 +134,7 @@ pub fn survey<E: From<BranchError>>(
         evaluations: evaluations(sample, outcomes),
         coverage: Coverage::Sample { of: count, drawn, searched: 0 },
     };
-    loop {
-        let Some(best) = survey.ranked(objective).first().map(|best| best.assignment.clone()) else { break };
+    while let Some(best) = survey.ranked(objective).first().map(|best| best.assignment.clone()) {
         let mut near = assignments::neighbours(question, &best);
         near.retain(|assignment| !known.contains(&assignment.groups));
         near.truncate(limit.saturating_sub(survey.evaluations.len()));
@@ -171,9 +170,9 @@ fn sample(question: &Question, named: &[Assignment], count: usize) -> Vec<Assign
         if sample.len() >= count {
             break;
         }
-        let drawn = assignments::draw(question, &mut draws);
-        if known.insert(drawn.groups.clone()) {
-            sample.push(drawn);
+        let assignment = assignments::draw(question, &mut draws);
+        if known.insert(assignment.groups.clone()) {
+            sample.push(assignment);
         }
     }
     sample
@@ -200,6 +199,7 @@ mod tests {
     }
 
     /// The first task rescues the sum of its robots' numbers.
+    #[expect(clippy::unnecessary_wraps, reason = "playing may fail")]
     fn outcomes(assignments: &[Assignment]) -> Result<Vec<Outcome>, BranchError> {
         let outcome = |assignment: &Assignment| {
             let rescued = assignment.groups[0].iter().sum();

@@ -99,8 +99,8 @@ pub fn bca_ratio_interval(
     let observed = ratio(sums)?;
     let mut draws = ChaCha8Rng::seed_from_u64(seed);
     let mut resample = || {
-        let drawn = (0..count).map(|_| &pairs[draws.random_range(0..count as u32) as usize]);
-        ratio(drawn.fold([0.0; 2], add))
+        let again = (0..count).map(|_| &pairs[draws.random_range(0..count as u32) as usize]);
+        ratio(again.fold([0.0; 2], add))
     };
     let ratios = (0..resamples).map(|_| resample()).collect::<Option<Vec<f64>>>()?;
     // The jackknife: the ratio without each pair.
@@ -119,12 +119,12 @@ pub fn bca_ratio_interval(
 /// The quantiles of resampled statistics that the observed one's bias and acceleration ask for.
 fn bias_corrected(observed: f64, mut resampled: Vec<f64>, acceleration: f64, tail: f64) -> [f64; 2] {
     let normal = Normal::standard();
-    let resamples = resampled.len() as f64;
+    let count = resampled.len() as f64;
     resampled.sort_by(f64::total_cmp);
     let below = resampled.partition_point(|value| *value < observed);
     let up_to = resampled.partition_point(|value| *value <= observed);
-    let share = (below + up_to) as f64 / (2.0 * resamples);
-    let bias = normal.inverse_cdf(share.clamp(1.0 / resamples, 1.0 - 1.0 / resamples));
+    let share = (below + up_to) as f64 / (2.0 * count);
+    let bias = normal.inverse_cdf(share.clamp(1.0 / count, 1.0 - 1.0 / count));
     let limit = |z: f64| {
         let moved = bias + z;
         quantile(&resampled, normal.cdf(bias + moved / (1.0 - acceleration * moved)))

@@ -46,7 +46,7 @@ pub(crate) struct Arguments {
     /// Most assignments of one decision
     #[arg(long, default_value_t = DEFAULT_LIMIT, value_parser = clap::value_parser!(u64).range(2..=1_000_000))]
     limit: u64,
-    /// What decisions are judged by; may stand several times [default: rescuees, rescue_rate and energy_per_rescuee]
+    /// What decisions are judged by; may stand several times [default: `rescuees`, `rescue_rate` and `energy_per_rescuee`]
     #[arg(long)]
     metric: Vec<String>,
     /// Folder of the study [default: results/NAME]

@@ -38,6 +38,7 @@ Examples:
   usar run scenarios/paper.ron --from half.snapshot --policy DIS              another policy goes on from there
   usar run scenarios/paper.ron --events events.jsonl                          every event with its time
   usar run scenarios/paper.ron --record paper.usrec                           then: usar view paper.usrec")]
+#[expect(clippy::struct_excessive_bools, reason = "each is a switch of the command line")]
 pub(crate) struct Arguments {
     /// Scenario file (RON)
     file: PathBuf,

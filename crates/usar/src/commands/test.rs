@@ -46,7 +46,7 @@ pub(crate) struct Arguments {
     /// Number of threads [default: one per core]
     #[arg(long)]
     jobs: Option<usize>,
-    /// Write the results to this file as JUnit XML
+    /// Write the results to this file in the XML of `JUnit`
     #[arg(long, value_name = "FILE")]
     junit: Option<PathBuf>,
     /// Simulate even if it takes very long: more bodies x steps than docs/limits.md has
@@ -107,13 +107,16 @@ impl Arguments {
     }
 }
 
+/// The metrics of a trial.
+type Values = Vec<Option<f64>>;
+
 /// A sweep and what is expected of it.
 struct Suite {
     file: String,
     experiment: Arc<Experiment>,
     expected: Vec<Expected>,
     /// Values of the trials so far, by case, policy and trial; or why there are none.
-    values: BTreeMap<(usize, usize, u32), Result<Vec<Option<f64>>, String>>,
+    values: BTreeMap<(usize, usize, u32), Result<Values, String>>,
 }
 
 impl Suite {

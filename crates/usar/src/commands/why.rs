@@ -171,23 +171,12 @@ impl Arguments {
             round: question.round,
             time_s: begun.map_or(0.0, |round| round.start_s),
             directed: directed.unwrap_or_default(),
-            others: other_choices(&full, &decision.assignment, &self.others(asked)?),
+            others: other_choices(&full, &decision.assignment, &others(asked)?),
             oracle: self.oracle(asked, question, &decision.assignment),
             robot: story.transpose()?,
             question,
             decision,
         })
-    }
-
-    /// The policies besides the one that decided.
-    fn others(&self, asked: &AskedTrial) -> Result<Vec<PolicySpec>, Failure> {
-        let all = if asked.policies.is_empty() {
-            let names = registry().names().into_iter().map(PolicySpec::parse);
-            names.collect::<Result<Vec<_>, String>>().map_err(Failure::run)?
-        } else {
-            asked.policies.clone()
-        };
-        Ok(all.into_iter().filter(|spec| spec.plain() != asked.spec.plain()).collect())
     }
 
     /// What the oracle said of a decision, if it was asked.
@@ -214,4 +203,15 @@ impl Arguments {
             played: survey.evaluations.len(),
         })
     }
+}
+
+/// The policies besides the one that decided.
+fn others(asked: &AskedTrial) -> Result<Vec<PolicySpec>, Failure> {
+    let all = if asked.policies.is_empty() {
+        let names = registry().names().into_iter().map(PolicySpec::parse);
+        names.collect::<Result<Vec<_>, String>>().map_err(Failure::run)?
+    } else {
+        asked.policies.clone()
+    };
+    Ok(all.into_iter().filter(|spec| spec.plain() != asked.spec.plain()).collect())
 }
