@@ -23,7 +23,7 @@ policy's regret, how often grouping matters at all, how much of what can be achi
 assignment go with its outcome. The paper's team has 240 assignments: about two minutes of one core for each trial.
 
 The folder has `decisions.jsonl` (every outcome), `regret.csv` (a row for each decision, policy and metric) and `summary.json`. A study that \
-was broken off goes on; with a folder instead of a file, only the tables are made.
+was broken off goes on; with a folder instead of a file, only its tables and figures are made anew.
 
 Examples:
   usar regret scenarios/sweeps/regret.ron
@@ -73,11 +73,9 @@ impl Arguments {
         let objectives = self.objectives(&folder.study.tasks)?;
         let analyses = objectives.iter().map(|objective| analyse(&folder, objective));
         let analyses = analyses.collect::<Result<Vec<_>, Failure>>()?;
-        if !self.file.is_dir() {
-            write_tables(folder.path(), &analyses)?;
-            for (name, content) in regret_figures(&analyses)? {
-                NewFile::write(folder.path(), &name, &content)?;
-            }
+        write_tables(folder.path(), &analyses)?;
+        for (name, content) in regret_figures(&analyses)? {
+            NewFile::write(folder.path(), &name, &content)?;
         }
         if self.json {
             let output = serde_json::json!({"schema_version": SCHEMA_VERSION, "study": folder.study.name, "analyses": analyses});

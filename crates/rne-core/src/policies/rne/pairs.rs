@@ -39,8 +39,17 @@ impl Rne {
         assignment: &Assignment,
     ) -> Result<Option<RelativeNeedsEntropy>, PolicyError> {
         let mut sums = self.sums(question, assignment)?;
-        // In the order of their smallest ids, as the policy forms them, should the score have a direction.
-        sums.sort_by_key(|(task, _)| assignment.of(*task).first().copied());
+        // In the order of the smallest ids of the first role, as the policy forms them, should the score have a direction.
+        let first_role = question.role_ids().find(|role| question.of_role(*role).next().is_some());
+        let smallest = |task: TaskId| {
+            let members = first_role.into_iter().flat_map(|role| question.of_role(role));
+            members
+                .map(|member| member.id)
+                .filter(|id| assignment.of(task).contains(id))
+                .min()
+                .unwrap_or(u32::MAX)
+        };
+        sums.sort_by_key(|(task, _)| smallest(*task));
         let sums: Vec<Vec<f64>> = sums.into_iter().map(|(_, sum)| sum).collect();
         Ok(as_score(Scorer::new(self.options.score, self.options.sort).total(&sums, 0)))
     }

@@ -16,6 +16,8 @@ use crate::commands::fork::ids;
 
 /// A score that exceeds the next best by less than this share is called close.
 const CLOSE: f64 = 0.05;
+/// Scores whose ratio differs from 1 by less are equal: they were added up in another order.
+const ROUNDING: f64 = 1e-9;
 
 pub(super) fn text(out: &mut dyn Write, account: &Account, asked: &AskedTrial) -> Result<(), Failure> {
     let Account { question, decision, .. } = account;
@@ -195,7 +197,9 @@ fn robot(
     if let (Some(best), Some(score)) = (story.exchanges.first(), score) {
         let then = best.score_nats.map_or("infinite".to_owned(), |nats| format!("{nats:.3e}"));
         let verdict = match best.score_nats {
-            Some(nats) if nats <= score => "no exchange with a robot of its role would have raised the score",
+            Some(nats) if nats <= score * (1.0 + ROUNDING) => {
+                "no exchange with a robot of its role would have raised the score"
+            }
             _ => {
                 "an exchange would have raised the score: the roles are split one by one, and not all together"
             }
