@@ -1,9 +1,9 @@
 //! Expectations of a sweep's outcome, tested with as few trials as it takes.
 //!
-//! An expectation is looked at after 10, 20, 40, ... trials. At each look an interval of the share or of the mean
-//! difference is compared with what is expected: it *holds* if the whole interval does, it *fails* if none of it does,
-//! and otherwise more trials decide. The confidence is shared over the planned looks (Bonferroni), so that a verdict is wrong
-//! with at most the stated probability however often one looks.
+//! An expectation is looked at after 10, 20, 40, ... trials. At each look an interval of the share or of
+//! the mean difference is compared with what is expected: it *holds* if the whole interval does, it *fails*
+//! if none of it does, and otherwise more trials decide. The confidence is shared over the planned looks
+//! (Bonferroni), so that a verdict is wrong with at most the stated probability however often one looks.
 
 mod parse;
 
@@ -123,8 +123,9 @@ pub fn looks(most: u32) -> Vec<u32> {
     doubled.take_while(|look| *look < most).chain([most]).collect()
 }
 
-/// Judges an expectation by values of trials: `value(policy, metric)` has one value for each trial, nothing where a
-/// metric is undefined. `looks` is how many looks are planned, and `is_last` whether this is the last of them.
+/// Judges an expectation by values of trials: `value(policy, metric)` has one value for each trial, nothing
+/// where a metric is undefined. `looks` is how many looks are planned, and `is_last` whether this is the
+/// last of them.
 #[must_use]
 pub fn judge(
     expected: &Expected,

@@ -28,10 +28,7 @@ pub struct Exchange {
     pub score_nats: Option<f64>,
 }
 
-/// What each policy would have decided, the oracle left out.
-///
-/// # Errors
-/// None that stops: a policy that cannot group this team is left out.
+/// What each policy would have decided. The oracle is left out, and so is a policy that cannot group this team.
 #[must_use]
 pub fn other_choices(question: &Question, chosen: &Assignment, policies: &[PolicySpec]) -> Vec<OtherChoice> {
     let choice = |spec: &PolicySpec| {
@@ -59,7 +56,8 @@ pub fn directed(rne: &Rne, question: &Question, decision: &Decision) -> Result<V
     Ok(directed)
 }
 
-/// What the score would have been, had this robot changed places with another of its role; the best exchange first.
+/// What the score would have been, had this robot changed places with another of its role; the best
+/// exchange first.
 ///
 /// # Errors
 /// The needs cannot be compared.

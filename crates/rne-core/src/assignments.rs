@@ -1,7 +1,7 @@
 //! Every assignment that the quotas of a question allow: what a policy chooses from.
 //!
-//! Where a quota binds, each task gets exactly its members of the role. Where it does not, its numbers are the
-//! sizes of the parts of the role, and any task may get any part.
+//! Where a quota binds, each task gets exactly its members of the role. Where it does not, its numbers are
+//! the sizes of the parts of the role, and any task may get any part.
 
 use rand::Rng;
 use rand::seq::{IndexedRandom, SliceRandom};

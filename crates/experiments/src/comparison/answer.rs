@@ -5,8 +5,8 @@ use crate::metric::{Direction, Metric};
 use crate::stats::Moments;
 use crate::sweep::folder::Folder;
 
-/// What a case says of a metric: which policy has most (least, for a cost), by how much, and how sure that is. `None`
-/// without values.
+/// What a case says of a metric: which policy has most (least, for a cost), by how much, and how sure that
+/// is. `None` without values.
 #[must_use]
 pub fn answer(folder: &Folder, case: usize, metric: usize, comparisons: &[&Comparison]) -> Option<String> {
     let experiment = folder.experiment();

@@ -1,5 +1,5 @@
-//! Which comparisons are made: what the command line says, else what the sweep file asks, else those of the paper's
-//! tables. `compare` and `report` ask here, so that both say the same.
+//! Which comparisons are made: what the command line says, else what the sweep file asks, else those of the
+//! paper's tables. `compare` and `report` ask here, so that both say the same.
 
 use super::Choice;
 use crate::experiment::Experiment;

@@ -1,8 +1,9 @@
 //! Better, worse, equivalent or undecided: what a comparison says once it is known which differences matter.
 //!
-//! Two policies are *equivalent within a margin* if the 90 % interval of their mean difference lies inside the margin on
-//! both sides. That is the two one-sided tests (TOST, Schuirmann 1987) at 5 %. Otherwise one is *better* if a difference
-//! shows after correction and the 95 % interval excludes zero. All else is *undecided*: more trials would decide it.
+//! Two policies are *equivalent within a margin* if the 90 % interval of their mean difference lies inside
+//! the margin on both sides. That is the two one-sided tests (TOST, Schuirmann 1987) at 5 %. Otherwise one
+//! is *better* if a difference shows after correction and the 95 % interval excludes zero. All else is
+//! *undecided*: more trials would decide it.
 
 use serde::Serialize;
 

@@ -81,7 +81,8 @@ impl Comparison {
     }
 }
 
-/// What to say where so many comparisons of so few pairs were made together that none can show a difference, whatever it is.
+/// What to say where so many comparisons of so few pairs were made together that none can show a
+/// difference, whatever it is.
 #[must_use]
 pub fn limit_of_correction(comparisons: &[Comparison]) -> Option<String> {
     let family = comparisons.iter().filter(|comparison| comparison.p.is_some()).count();

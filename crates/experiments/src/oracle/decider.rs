@@ -1,4 +1,5 @@
-//! `ORACLE`: the assignment of which most comes, known by playing them all. No policy: it sees the trial that asks.
+//! `ORACLE`: the assignment of which most comes, known by playing them all. No policy: it sees the trial
+//! that asks.
 
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;

@@ -1,10 +1,10 @@
-//! What would have come of every other assignment: each one is played in the trial that asks, with the same random
-//! streams.
+//! What would have come of every other assignment: each one is played in the trial that asks, with the same
+//! random streams.
 //!
-//! The paper's team of six carriers, four suppliers and two observers has 240 assignments over two tasks. The best
-//! of them is what a policy with perfect foresight would choose; the *regret* of a decision is how far it stays
-//! behind. Robots of one role differ at least in where they are, so that none is exchangeable for another and every
-//! assignment is played.
+//! The paper's team of six carriers, four suppliers and two observers has 240 assignments over two tasks.
+//! The best of them is what a policy with perfect foresight would choose; the *regret* of a decision is how
+//! far it stays behind. Robots of one role differ at least in where they are, so that none is exchangeable
+//! for another and every assignment is played.
 
 mod branch;
 mod decider;

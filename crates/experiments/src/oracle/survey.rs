@@ -21,8 +21,8 @@ pub struct Evaluation {
 pub enum Coverage {
     /// All: the best of them is the best there is.
     All,
-    /// A random sample and what a local search found from the best of it: the best of them may not be the best there
-    /// is, so that a regret is a lower bound.
+    /// A random sample and what a local search found from the best of it: the best of them may not be the
+    /// best there is, so that a regret is a lower bound.
     Sample {
         /// Assignments that there are; `u64::MAX` for that many and more.
         of: u64,
@@ -61,7 +61,8 @@ impl Survey {
         found.map(|evaluation| &evaluation.outcome)
     }
 
-    /// The evaluations for which an objective is defined, the best first; equals in the order in which they were played.
+    /// The evaluations for which an objective is defined, the best first; equals in the order in which they
+    /// were played.
     #[must_use]
     pub fn ranked(&self, objective: &Objective) -> Vec<&Evaluation> {
         let mut scored: Vec<(f64, &Evaluation)> = self
@@ -104,9 +105,9 @@ impl Survey {
     }
 }
 
-/// Plays all assignments of a question if there are at most `limit`. If there are more, plays those that are `named`, a
-/// uniform sample that fills half of the limit, and then goes from the best to its best neighbour (two robots of one
-/// role change places) until no neighbour is better or the limit is reached.
+/// Plays all assignments of a question if there are at most `limit`. If there are more, plays those that
+/// are `named`, a uniform sample that fills half of the limit, and then goes from the best to its best
+/// neighbour (two robots of one role change places) until no neighbour is better or the limit is reached.
 ///
 /// `play` says what comes of a batch of assignments, in their order.
 ///
@@ -158,8 +159,8 @@ fn evaluations(assignments: Vec<Assignment>, outcomes: Vec<Outcome>) -> Vec<Eval
     pairs.map(|(assignment, outcome)| Evaluation { assignment, outcome }).collect()
 }
 
-/// The named assignments and random ones, each once. The draws are those of the question, so that the sample is the
-/// same whoever asks for it.
+/// The named assignments and random ones, each once. The draws are those of the question, so that the
+/// sample is the same whoever asks for it.
 fn sample(question: &Question, named: &[Assignment], count: usize) -> Vec<Assignment> {
     let mut known = BTreeSet::new();
     let mut sample: Vec<Assignment> =

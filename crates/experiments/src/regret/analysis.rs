@@ -78,7 +78,8 @@ pub struct PolicyRegret {
     pub best: Option<Estimate>,
     /// Mean share of the assignments that are better.
     pub outranked: Option<Estimate>,
-    /// Of what lies between a fair draw and the best assignment, the share that it achieves: 0 for a fair draw, 1 for the best.
+    /// Of what lies between a fair draw and the best assignment, the share that it achieves: 0 for a fair
+    /// draw, 1 for the best.
     pub achieved: Option<Estimate>,
 }
 

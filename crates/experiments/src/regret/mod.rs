@@ -1,5 +1,5 @@
-//! How good single decisions were: what would have come of every other assignment, decision by decision, and how
-//! far each policy stays behind the best.
+//! How good single decisions were: what would have come of every other assignment, decision by decision,
+//! and how far each policy stays behind the best.
 
 mod analysis;
 mod decision;

@@ -1,4 +1,5 @@
-//! The study of regret: trials whose every decision is played in all ways, in a folder that survives being broken off.
+//! The study of regret: trials whose every decision is played in all ways, in a folder that survives being
+//! broken off.
 
 use std::fs::{self, File};
 use std::io::{BufRead, BufReader, Write};

@@ -5,8 +5,8 @@ use std::sync::Arc;
 use super::{Simulation, State};
 use crate::model::Model;
 
-/// The state of a trial at one moment. Trials that go on from it share the model, and all random streams: what differs
-/// between them follows from what was decided.
+/// The state of a trial at one moment. Trials that go on from it share the model, and all random streams:
+/// what differs between them follows from what was decided.
 ///
 /// A checkpoint stays in this process; [`Simulation::snapshot`] writes the state for others.
 #[derive(Clone)]
@@ -28,8 +28,8 @@ impl Simulation {
 }
 
 impl Checkpoint {
-    /// A trial that goes on from here, with the same result bit for bit if the same is decided. Invariants are not
-    /// checked, until [`Simulation::checked`] is called.
+    /// A trial that goes on from here, with the same result bit for bit if the same is decided. Invariants
+    /// are not checked, until [`Simulation::checked`] is called.
     ///
     /// # Panics
     /// Never: the bytes are those that [`Simulation::checkpoint`] wrote.

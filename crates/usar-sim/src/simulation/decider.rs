@@ -4,8 +4,8 @@ use rne_core::{Decision, Policy, PolicyError, Question};
 
 use super::Simulation;
 
-/// Answers the questions of a trial. Every [`Policy`] is a decider that looks at the question alone; an oracle
-/// looks at the trial, too.
+/// Answers the questions of a trial. Every [`Policy`] is a decider that looks at the question alone; an
+/// oracle looks at the trial, too.
 pub trait Decider {
     /// Answers the question that the trial asks.
     ///

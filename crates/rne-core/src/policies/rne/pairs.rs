@@ -28,8 +28,8 @@ pub struct DirectedRne {
 }
 
 impl Rne {
-    /// The score of an assignment as this policy computes it: the sum over all pairs of groups, in nats. `None`
-    /// where fewer than two groups have members.
+    /// The score of an assignment as this policy computes it: the sum over all pairs of groups, in nats.
+    /// `None` where fewer than two groups have members.
     ///
     /// # Errors
     /// Those of [`crate::Policy::decide`].
