@@ -75,7 +75,7 @@ fn box_figure(folder: &Folder, case: usize, name: &str, places: &[usize]) -> Res
     })
 }
 
-/// Lines at the means of the oracle, the ceiling of any policy with foresight of one round, and of a fair draw, where the sweep has them.
+/// Lines at the means of the oracle and of a fair draw, where the sweep has them.
 fn bounds(folder: &Folder, case: usize, metric: usize) -> Vec<ReferenceLine> {
     let policies = &folder.experiment().policies;
     let line = |name: &str, label: &str| {
