@@ -71,7 +71,7 @@ results:
     target/release/usar sweep scenarios/sweeps/readings.ron
     target/release/usar sweep scenarios/sweeps/readings-calibrated.ron
 
-# The search that found scenarios/paper-calibrated.ron, step by step (docs/calibration.md): about an hour on two cores
+# The search for scenarios/paper-calibrated.ron, from the design of its readings to the choice (docs/calibration.md): hours; goes on where it was broken off
 calibrate:
     cargo build --release --package usar
-    bash docs/calibration/search
+    cargo run --release --package xtask -- calibration

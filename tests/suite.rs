@@ -9,6 +9,7 @@ mod determinism;
 mod invariants;
 mod limits;
 mod minimal;
+mod mission_readings;
 mod missions;
 mod navigation;
 mod pairing;

@@ -114,8 +114,10 @@ ron_fields::limits! {
     /// Half the width of the strip in which things are sampled, in metres.
     STRIP_M: "sampled.strip_m" = 0.1, 10_000;
 
-    /// A cost, in percent.
+    /// A cost, in percent or points.
     RATE: "costs.*.*" = 0, 100;
+    /// What work costs in a second, in percent or points.
+    WORK_RATE: "costs.work.*" = 0, 100;
     /// A threshold, in percent.
     THRESHOLD: "mission.*_threshold" = 0, 99;
     /// Reserve for the way to rest.
@@ -130,6 +132,8 @@ ron_fields::limits! {
     AREA_MARGIN_M: "mission.area_margin_m" = 0, 1_000;
     /// Share of its speed that a group without a guide loses.
     BLIND_SPEED_LOSS: "mission.blind_speed_loss" = 0, 0.95;
+    /// Share of its speed that a robot with a full load loses.
+    LOAD_SPEED_LOSS: "mission.load_speed_loss" = 0, 0.95;
     /// Factor on speed and ranges without health.
     HEALTH_FLOOR: "mission.health_floor" = 0.05, 1;
     /// Time without progress, in seconds.

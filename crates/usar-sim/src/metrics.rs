@@ -110,8 +110,8 @@ impl Metrics {
         Self { tasks: vec![TaskTotals::default(); tasks], task_of: vec![None; robots], ..Self::default() }
     }
 
-    /// Charges what a robot spent in this step.
-    pub fn charge(&mut self, robot: RobotId, energy: f64, hp: f64) {
+    /// Charges the energy and HP that a robot spent in this step.
+    pub fn charge(&mut self, robot: RobotId, [energy, hp]: [f64; 2]) {
         let Some(task) = self.task_of[robot.index()] else {
             self.ungrouped[0] += energy;
             self.ungrouped[1] += hp;

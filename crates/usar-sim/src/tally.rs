@@ -44,8 +44,8 @@ impl Tally {
         self.distance_m += metres;
     }
 
-    /// Adds what was spent, in percent points.
-    pub(crate) fn note_costs(&mut self, energy: f64, hp: f64) {
+    /// Adds the energy and HP that were spent, in the unit of the scenario's costs.
+    pub(crate) fn note_costs(&mut self, [energy, hp]: [f64; 2]) {
         self.spent = [self.spent[0] + energy, self.spent[1] + hp];
     }
 

@@ -2,26 +2,36 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Cost in percent points of the robot's own maximum. The three add up.
+/// Costs of moving or of radiation, in the unit of the scenario's costs (percent of the robot's own maximum, or points). The three add up.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Rates {
-    /// Percent per simulation step, as the paper prints it (energy: a step in which the robot moves; HP: a step inside a zone).
+    /// Per simulation step, as the paper prints it (energy: a step in which the robot moves; HP: a step inside a zone).
     pub per_step: f64,
-    /// Percent per metre travelled (HP: inside a zone).
+    /// Per metre travelled (HP: inside a zone).
     pub per_metre: f64,
-    /// Percent per second (energy: of duty, at rest places excepted; HP: inside a zone).
+    /// Per second (energy: of duty, at rest places excepted; HP: inside a zone).
     pub per_second: f64,
 }
 
-/// Energy spent in one step of `dt` seconds, in percent points.
+/// What work costs, in the same unit.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct WorkRates {
+    /// Energy per second of loading.
+    pub energy_per_second: f64,
+    /// HP per second in the area of the robot's own task.
+    pub hp_per_second: f64,
+}
+
+/// Energy spent in one step of `dt` seconds, in the unit of the rates.
 #[must_use]
 pub fn energy_cost(rates: &Rates, moving: bool, metres: f64, dt: f64) -> f64 {
     let moved = if moving { rates.per_step + rates.per_metre * metres } else { 0.0 };
     moved + rates.per_second * dt
 }
 
-/// Health lost in one step of `dt` seconds inside `zones` overlapping zones, which add up, in percent points.
+/// Health lost in one step of `dt` seconds inside `zones` overlapping zones, which add up, in the unit of the rates.
 #[must_use]
 pub fn hp_cost(rates: &Rates, zones: usize, metres: f64, dt: f64) -> f64 {
     zones as f64 * (rates.per_step + rates.per_metre * metres + rates.per_second * dt)

@@ -11,8 +11,9 @@ use rne_core::Registry;
 use terminal_size::{Width, terminal_size_of};
 
 use crate::commands::{
-    calibrate, check, compare, draw, estimate, export, fork, group, list, merge, new, oracle, readings,
-    regret, render, report, reproduce, resolve, run, schema, sorting, sweep, test, trust, verify, view, why,
+    calibrate, check, choose, compare, draw, estimate, export, fork, group, list, merge, new, oracle,
+    readings, regret, render, report, reproduce, resolve, run, schema, sorting, sweep, test, trust, verify,
+    view, why,
 };
 use crate::printable::Printable;
 use crate::running::{status_of_signal, tell};
@@ -64,6 +65,7 @@ enum Command {
     Regret(regret::Arguments),
     Verify(verify::Arguments),
     Calibrate(calibrate::Arguments),
+    Choose(choose::Arguments),
     New(new::Arguments),
     Check(check::Arguments),
     Resolve(resolve::Arguments),
@@ -148,6 +150,7 @@ impl Command {
             Self::Regret(arguments) => arguments.execute(out),
             Self::Verify(arguments) => arguments.execute(out),
             Self::Calibrate(arguments) => arguments.execute(out),
+            Self::Choose(arguments) => arguments.execute(out),
             Self::New(arguments) => arguments.execute(out),
             Self::Check(arguments) => arguments.execute(out),
             Self::Resolve(arguments) => arguments.execute(out),

@@ -101,6 +101,7 @@ pub fn mission(robots: u32, duration_s: f64, to_tasks_m: Option<f64>) -> Scenari
     let file = ScenarioFile {
         name: format!("density-{robots}"),
         description: String::new(),
+        only_policy: String::new(),
         duration_s,
         dt_s: DT_S,
         arena_m: [side, side],

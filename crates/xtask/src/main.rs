@@ -5,13 +5,14 @@ mod commands;
 
 use std::process::ExitCode;
 
-use commands::{damage, golden, kills, limits, mutations, pages, scale, soak, work, worlds};
+use commands::{calibration, damage, golden, kills, limits, mutations, pages, scale, soak, work, worlds};
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let (task, arguments) =
         arguments.split_first().map_or(("", &[][..]), |(task, rest)| (task.as_str(), rest));
     match task {
+        "calibration" => calibration::run(arguments),
         "damage" => damage::run(arguments),
         "golden" => golden::run(arguments),
         "kills" => kills::run(arguments),
@@ -25,7 +26,7 @@ fn main() -> ExitCode {
         "worlds" => worlds::run(arguments),
         _ => {
             eprintln!(
-                "xtask: no task {task:?}. Tasks: damage, golden, kills, navigation, pages, scale, soak, work, worlds"
+                "xtask: no task {task:?}. Tasks: calibration, damage, golden, kills, limits, mutations, navigation, pages, scale, soak, work, worlds"
             );
             ExitCode::from(2)
         }

@@ -194,6 +194,7 @@ pub(crate) fn base(seed: u64, arena_m: Point, duration_s: f64) -> ScenarioFile {
     ScenarioFile {
         name: format!("world-{seed}"),
         description: String::new(),
+        only_policy: String::new(),
         duration_s,
         dt_s: 0.02,
         arena_m,

@@ -69,6 +69,17 @@ pub fn check_cost(scenario: &Scenario, is_allowed: bool) -> Result<(), Failure> 
 }
 
 impl Experiment {
+    /// Refuses a sweep with policies that may not run in its scenarios, and one that costs much, unless that is allowed.
+    ///
+    /// # Errors
+    /// A scenario allows another policy alone, or those of [`Experiment::check_cost`].
+    pub fn check(&self, is_allowed: bool) -> Result<(), Failure> {
+        for case in &self.cases {
+            self.policies.iter().try_for_each(|policy| policy.check_allowed(&case.scenario))?;
+        }
+        self.check_cost(is_allowed)
+    }
+
     /// Refuses a sweep that costs much, unless that is allowed.
     ///
     /// # Errors

@@ -5,7 +5,9 @@ use std::sync::OnceLock;
 use rne_core::{MadePolicy, Registry, RneOptions};
 use ron_fields::{Fields, nearest};
 use serde::de::DeserializeOwned;
+use usar_sim::scenario::Scenario;
 
+use crate::Failure;
 use crate::oracle::{NotSimulated, Oracle, OracleOptions};
 use crate::run::Driver;
 
@@ -105,6 +107,21 @@ impl PolicySpec {
         let onwards = options.onwards(|then| Self::parse(then)?.make().map(|made| made.policy));
         let onwards = onwards.map_err(|error| format!("policy ORACLE: then: {error}"))?;
         Ok(Driver::Oracle(Box::new(Oracle::new(options, onwards))))
+    }
+
+    /// Refuses a policy that may not run in a scenario.
+    ///
+    /// # Errors
+    /// The scenario allows another one alone.
+    pub fn check_allowed(&self, scenario: &Scenario) -> Result<(), Failure> {
+        let only = &scenario.only_policy;
+        if only.is_empty() || *only == self.plain() {
+            return Ok(());
+        }
+        Err(Failure::input(format!(
+            "{}: only_policy allows {only} alone, found {}; a candidate of a calibration runs no other policy before it is chosen",
+            scenario.name, self.label
+        )))
     }
 
     /// Name and options without the label: reads to the same policy.

@@ -16,11 +16,13 @@ use super::{Calibration, Evaluation, Free, POLICY, Spread};
 /// The log.
 const LOG: &str = "evaluations.csv";
 /// What is made of it in the end.
-const RESULTS: [&str; 2] = ["calibrated.ron", "fit.csv"];
+const RESULTS: [&str; 2] = [CALIBRATED, "fit.csv"];
+/// The scenario with what was found.
+pub const CALIBRATED: &str = "calibrated.ron";
 /// The last column of the log.
 const CHECKSUM: &str = "xxh3_64";
 /// What it is of.
-const ORIGIN: &str = "calibration.json";
+pub(super) const ORIGIN: &str = "calibration.json";
 
 /// The log of one calibration, held by one process.
 pub struct Log {

@@ -5,6 +5,7 @@
 //! mirrored at its ends. It is deterministic: a search that was broken off is repeated from its start, with the evaluations in the log instead of
 //! new trials.
 
+mod choice;
 mod fit;
 mod free;
 mod log;
@@ -25,9 +26,10 @@ use rne_core::Policy;
 use ron_fields::{Fields, with_values};
 use usar_sim::scenario::{Scenario, ScenarioFile};
 
+pub use choice::{Candidate, Judged, NOT_TOLD_APART, judge};
 pub use fit::{Fit, write_fit};
 pub use free::Free;
-pub use log::Log;
+pub use log::{CALIBRATED, Log};
 pub use target::{Quantity, Spread, Target};
 
 /// The one policy that is ever calibrated.
@@ -67,7 +69,7 @@ pub struct Calibration {
 pub struct Evaluation {
     /// A value for each free parameter.
     pub values: Vec<f64>,
-    /// How far it is from the target.
+    /// How far it is from the target, with what values near the ends of their ranges add.
     pub misfit: f64,
     /// Means and spreads of the target's quantities; none for a candidate that cannot be run.
     pub spreads: Vec<Spread>,
@@ -101,7 +103,7 @@ impl Calibration {
         with_values(&self.text, &settings).map_err(|error| error.to_string())
     }
 
-    /// The same with a first line that tells what was fitted.
+    /// The same with a first line that tells what was fitted. No other policy runs in it.
     ///
     /// # Errors
     /// Those of [`Calibration::text_with`].
@@ -111,6 +113,7 @@ impl Calibration {
             Some((first, rest)) if first.starts_with(ORIGIN_LINE) => rest,
             _ => &text,
         };
+        let text = candidate(text);
         let names: Vec<&str> = self.free.iter().map(|free| free.name.as_str()).collect();
         Ok(format!(
             "{ORIGIN_LINE} (misfit {} over {} trials of {POLICY}), whatever comments below say of them: {}\n{text}",
@@ -195,6 +198,12 @@ impl Calibration {
         Ok(Some((0..self.target.spreads.len()).map(|q| rows.iter().map(|row| row[q]).collect()).collect()))
     }
 
+    /// What values near the ends of their ranges add to the misfit.
+    #[must_use]
+    pub fn edge_penalty(&self, values: &[f64]) -> f64 {
+        self.free.iter().zip(values).map(|(free, value)| free.edge_penalty(*value)).sum()
+    }
+
     fn evaluate(&self, values: Vec<f64>, stop: &AtomicBool) -> Option<Evaluation> {
         let seeds = (0..self.trials).into_par_iter().map(|trial| self.first_seed + u64::from(trial));
         match self.measure(&values, seeds, stop) {
@@ -202,7 +211,8 @@ impl Calibration {
             Ok(Some(quantities)) => {
                 let spreads: Vec<Spread> =
                     quantities.iter().filter_map(|values| Spread::of(values)).collect();
-                Some(Evaluation { misfit: self.target.misfit(&spreads), values, spreads, failure: None })
+                let misfit = self.target.misfit(&spreads, self.trials as usize) + self.edge_penalty(&values);
+                Some(Evaluation { misfit, values, spreads, failure: None })
             }
             Err(reason) => {
                 Some(Evaluation { values, misfit: WORST, spreads: Vec::new(), failure: Some(reason) })
@@ -260,6 +270,16 @@ impl Calibration {
         }
         trouble.take().map_or(Ok(!stop.load(Ordering::Relaxed)), Err)
     }
+}
+
+/// The text of a scenario that allows the calibrated policy alone.
+fn candidate(text: &str) -> String {
+    let fields = Fields::of(text);
+    let name = fields.value("name").filter(|_| fields.value("only_policy").is_none());
+    name.map_or_else(
+        || text.to_owned(),
+        |name| format!("{}, only_policy: \"{POLICY}\"{}", &text[..name.end], &text[name.end..]),
+    )
 }
 
 fn the_policy() -> Result<Arc<dyn Policy>, String> {

@@ -48,13 +48,15 @@ impl Spread {
         Some(Self { mean: mean?, sd: sd? })
     }
 
-    /// How far a model's spread is from this one: the squared distance of the means in units of this standard deviation, plus the squared
-    /// logarithm of the ratio of the standard deviations. The model's counts as at least a twentieth of this one.
+    /// How far a model's spread, over `model_trials` trials, is from this one, over `trials`: the squared distance of the means and the
+    /// squared logarithm of the ratio of the standard deviations, each by its variance if both came from one normal distribution. Of a true
+    /// model each is 1 on average. The model's standard deviation counts as at least a twentieth of this one.
     #[must_use]
-    pub fn misfit(&self, model: &Self) -> [f64; 2] {
+    pub fn misfit(&self, model: &Self, [trials, model_trials]: [usize; 2]) -> [f64; 2] {
+        let [n, m] = [trials, model_trials].map(|trials| trials.max(2) as f64);
         let mean = (model.mean - self.mean) / self.sd;
         let spread = (model.sd.max(self.sd / 20.0) / self.sd).ln();
-        [mean * mean, spread * spread]
+        [mean * mean / (1.0 / n + 1.0 / m), spread * spread / (0.5 / (n - 1.0) + 0.5 / (m - 1.0))]
     }
 }
 
@@ -64,6 +66,8 @@ pub struct Target {
     pub quantities: Vec<Quantity>,
     /// Their means and spreads.
     pub spreads: Vec<Spread>,
+    /// The values of each, trial by trial.
+    pub values: Vec<Vec<f64>>,
     /// Number of trials.
     pub trials: usize,
     /// Names of the quantities that it has not.
@@ -110,7 +114,7 @@ impl Target {
             })
         };
         let spreads = found.iter().zip(&values).map(spread).collect::<Result<Vec<_>, _>>()?;
-        Ok(Self { quantities: found, spreads, trials: table.rows.len(), missing })
+        Ok(Self { quantities: found, spreads, values, trials: table.rows.len(), missing })
     }
 
     /// The quantities of a trial.
@@ -125,11 +129,17 @@ impl Target {
         self.quantities.iter().map(value).collect()
     }
 
-    /// How far a model is from the target: the sum over all quantities; smaller is nearer.
+    /// How far a model is from the target, by so many of its trials: the sum over all quantities; smaller is nearer. Of a true model it is
+    /// twice the number of quantities on average.
     #[must_use]
-    pub fn misfit(&self, model: &[Spread]) -> f64 {
-        self.spreads.iter().zip(model).flat_map(|(data, model)| data.misfit(model)).sum()
+    pub fn misfit(&self, model: &[Spread], model_trials: usize) -> f64 {
+        misfit(&self.spreads, model, [self.trials, model_trials])
     }
+}
+
+/// How far a model's spreads are from the data's, over so many trials of the data and of the model.
+pub(super) fn misfit(data: &[Spread], model: &[Spread], trials: [usize; 2]) -> f64 {
+    data.iter().zip(model).flat_map(|(data, model)| data.misfit(model, trials)).sum()
 }
 
 /// What the columns of a table are.
@@ -215,14 +225,41 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_misfit_counts_standard_deviations_and_ratios() {
+    fn a_misfit_counts_standard_errors() {
         let data = Spread { mean: 100.0, sd: 5.0 };
-        let misfit = |mean, sd| data.misfit(&Spread { mean, sd });
+        let misfit = |mean, sd| data.misfit(&Spread { mean, sd }, [10, 10]);
         assert_eq!(misfit(100.0, 5.0), [0.0, 0.0]);
-        assert_eq!(misfit(110.0, 5.0), [4.0, 0.0]);
+        assert!((misfit(110.0, 5.0)[0] - 4.0 / 0.2).abs() < 1e-12);
         let [_, wide] = misfit(100.0, 5.0 * std::f64::consts::E);
-        assert!((wide - 1.0).abs() < 1e-12);
-        assert!((misfit(100.0, 0.0)[1] - 20_f64.ln().powi(2)).abs() < 1e-12, "no spread at all is finite");
+        assert!((wide - 9.0).abs() < 1e-12);
+        let none = misfit(100.0, 0.0)[1];
+        assert!((none - 9.0 * 20_f64.ln().powi(2)).abs() < 1e-9, "no spread at all is finite");
+        let more = data.misfit(&Spread { mean: 110.0, sd: 5.0 }, [10, 40]);
+        assert!(
+            (more[0] - 4.0 / 0.125).abs() < 1e-12,
+            "more trials of the model: the same distance weighs more"
+        );
+    }
+
+    #[test]
+    fn of_a_true_model_each_term_is_one_on_average() {
+        use rand::{RngExt, SeedableRng};
+        use statrs::distribution::{ContinuousCDF, Normal};
+        let (mut draws, normal) = (rand::rngs::ChaCha8Rng::seed_from_u64(1), Normal::new(50.0, 4.0).unwrap());
+        let mut spread = |trials: usize| {
+            let values: Vec<f64> =
+                (0..trials).map(|_| normal.inverse_cdf(draws.random_range(0.0..1.0))).collect();
+            Spread::of(&values).unwrap()
+        };
+        let worlds = 4_000;
+        let mut sums = [0.0; 2];
+        for _ in 0..worlds {
+            let [mean, sd] = spread(10).misfit(&spread(20), [10, 20]);
+            sums = [sums[0] + mean, sums[1] + sd];
+        }
+        // By the t distribution of few trials the first is (n - 1) / (n - 3) on average, and the logarithm's variance a little more.
+        let [mean, sd] = sums.map(|sum| sum / f64::from(worlds));
+        assert!((1.15..1.45).contains(&mean) && (0.9..1.3).contains(&sd), "{mean} {sd}");
     }
 
     fn papers() -> Scenario {

@@ -5,5 +5,5 @@ mod fit;
 mod readings;
 
 pub(crate) use claims::{claims_table, examples_table, power_table, verdicts_table};
-pub use fit::fit_table;
+pub use fit::{choice_table, fit_table};
 pub use readings::{averaged_table, readings_table, rivals_table};

@@ -59,6 +59,12 @@ impl Activity {
         matches!(self, Self::Home | Self::Returning | Self::ToRest)
     }
 
+    /// Whether it rests, or is on its way to rest.
+    #[must_use]
+    pub fn is_rest(self) -> bool {
+        matches!(self, Self::ToRest | Self::Resting(_))
+    }
+
     /// The rescuee that it has claimed.
     #[must_use]
     pub fn claim(self) -> Option<RescueeId> {
@@ -111,6 +117,11 @@ impl Agent {
             watch: Watch::default(),
             costliest_round: [0.0; 2],
         }
+    }
+
+    /// Whether it rests, is on its way to rest, or on its way home from there.
+    pub(super) fn is_off_to_rest(&self) -> bool {
+        self.activity.is_rest() || self.activity == Activity::Returning && self.has_rested
     }
 
     /// Sends it to its rest place; what the round costs it no longer counts.

@@ -24,6 +24,7 @@ use crate::event::{Event, EventLog, TurnBackCause};
 use crate::ids::RobotId;
 use crate::model::Model;
 use crate::navigation::Goal;
+use crate::scenario::MissionRules;
 use crate::world::{Robot, World};
 
 /// How near a robot comes to its place at home or at a rest place, in metres.
@@ -148,7 +149,7 @@ impl Mission {
         let all = self.knowledge.iter_mut().chain([&mut self.knowledge_at_home]);
         all.for_each(|knowledge| knowledge.restore(world, inflation.clone()));
         self.is_guided = vec![false; self.groups.len()];
-        self.look_for_guides(world);
+        self.look_for_guides(&model.scenario.mission, world);
     }
 
     fn agent(&mut self, robot: RobotId) -> &mut Agent {
@@ -175,18 +176,21 @@ impl Mission {
         }
     }
 
-    /// Top speed of a robot: lower with its health, and lower where its group has no guide that can act.
+    /// Top speed of a robot: lower with its health, with its load, and where its group has no guide that can act.
     #[must_use]
     pub fn speed_of(&self, model: &Model, robot: &Robot) -> f64 {
+        let rules = &model.scenario.mission;
         let task = self.agents[robot.id.index()].task;
         let is_blind = task.is_some_and(|task| !self.is_guided[task.index()]);
-        robot.speed() * if is_blind { 1.0 - model.scenario.mission.blind_speed_loss } else { 1.0 }
+        let unladen = robot.speed() * if is_blind { 1.0 - rules.blind_speed_loss } else { 1.0 };
+        unladen * (1.0 - rules.load_speed_loss * robot.load_share())
     }
 
-    fn look_for_guides(&mut self, world: &World) {
+    fn look_for_guides(&mut self, rules: &MissionRules, world: &World) {
         let guides = |id: &RobotId| {
             let robot = &world.robots[id.index()];
-            robot.spec.guides && robot.is_able()
+            let is_there = rules.resting_guides || !self.agents[id.index()].activity.is_rest();
+            robot.spec.guides && robot.is_able() && is_there
         };
         for (is_guided, group) in self.is_guided.iter_mut().zip(&self.groups) {
             *is_guided = group.members.iter().any(guides);
@@ -195,12 +199,12 @@ impl Mission {
 
     /// Begins to decide: looks which robots are cut off, and ends and begins rounds. A new round waits for its assignment: see [`Mission::question`].
     pub fn prepare(&mut self, scene: &mut Scene) {
-        self.look_for_guides(scene.world);
+        self.look_for_guides(&scene.model.scenario.mission, scene.world);
         if !scene.model.scenario.errands.is_empty() {
             self.follow_errands(scene);
         } else if scene.world.robots.iter().any(|robot| robot.is_able() && robot.can_carry()) {
             self.watch(scene);
-            if self.everybody_is_home(scene.world) && self.can_begin_round(scene) {
+            if self.everybody_is_home(scene) && self.can_begin_round(scene) && !self.rest_first(scene) {
                 self.end_round(scene);
                 self.open_round(scene);
             }
@@ -239,7 +243,7 @@ impl Mission {
                 continue;
             }
             let way = f64::from((robot.rest_slot(agent.rest_at) - robot.position).length());
-            let way_cost = scene.way_cost(way, self.speed_of(scene.model, robot));
+            let way_cost = scene.way_cost(robot, way, self.speed_of(scene.model, robot));
             let rules = &scene.model.scenario.mission;
             if let Some(cause) = turn_back_cause(rules, robot.energy, robot.hp, way_cost) {
                 self.release_claim(RobotId(id as u32), scene.world);

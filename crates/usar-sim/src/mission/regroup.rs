@@ -7,15 +7,20 @@ use super::{Activity, Agent, Group, Mission, Pending, Scene};
 use crate::event::{Event, TurnBackCause};
 use crate::ids::RobotId;
 use crate::model::Model;
-use crate::scenario::{MissionRules, Scenario};
+use crate::scenario::{MissionRules, RestAtHome, RoundEnd, Scenario};
 use crate::seed::{Purpose, stream};
 use crate::world::{Robot, World};
 
 impl Mission {
-    pub(super) fn everybody_is_home(&self, world: &World) -> bool {
+    /// Whether everybody is home for whom the team waits.
+    pub(super) fn everybody_is_home(&self, scene: &Scene) -> bool {
         let agent = |robot: &Robot| &self.agents[robot.id.index()];
-        let waited_for = |robot: &&Robot| robot.is_able() && !agent(robot).is_cut_off;
-        let mut awaited = world.robots.iter().filter(waited_for).peekable();
+        let waits_for_resting = scene.model.scenario.mission.round_end == RoundEnd::EverybodyHome;
+        let waited_for = |robot: &&Robot| {
+            let agent = agent(robot);
+            robot.is_able() && !agent.is_cut_off && (waits_for_resting || !agent.is_off_to_rest())
+        };
+        let mut awaited = scene.world.robots.iter().filter(waited_for).peekable();
         awaited.peek().is_some() && awaited.all(|robot| agent(robot).activity == Activity::Home)
     }
 
@@ -73,6 +78,41 @@ impl Mission {
         unfit_cause(rules, &fitness)
     }
 
+    /// Sends the robots at home that are not fit to rest, where the next round waits for that. Returns whether there are any.
+    pub(super) fn rest_first(&mut self, scene: &mut Scene) -> bool {
+        let rules = &scene.model.scenario.mission;
+        if rules.rest_at_home == RestAtHome::DuringRound {
+            return false;
+        }
+        let tasks = self.groups.len() as u16;
+        let unfit: Vec<(RobotId, TurnBackCause)> = scene
+            .world
+            .robots
+            .iter()
+            .filter(|robot| robot.is_able())
+            .filter(|robot| {
+                let agent = &self.agents[robot.id.index()];
+                agent.activity == Activity::Home && !agent.has_given_up_all_rests(tasks)
+            })
+            .filter_map(|robot| Some((robot.id, self.unfit_cause(rules, robot)?)))
+            .collect();
+        unfit.iter().for_each(|(id, cause)| self.send_to_rest(*id, *cause, scene));
+        !unfit.is_empty()
+    }
+
+    /// Sends a robot to the nearest rest place that it has not given up on.
+    fn send_to_rest(&mut self, id: RobotId, cause: TurnBackCause, scene: &mut Scene) {
+        let robot = &scene.world.robots[id.index()];
+        let agent = &mut self.agents[id.index()];
+        let way = |task: &TaskId| (robot.rest_slot(*task) - robot.position).length();
+        let places = scene.model.task_ids().rev().filter(|task| !agent.has_given_up_rest(*task));
+        // Of rest places that are equally far, the one of the last task.
+        let nearest = places.min_by(|a, b| way(a).total_cmp(&way(b)));
+        agent.rest_at = nearest.unwrap_or_default();
+        agent.go_to_rest();
+        scene.log.push(Event::TurnedBack { robot: id, cause });
+    }
+
     /// Sends the groups out and the robots that are not fit to rest. The assignment must answer the question that waits for one.
     pub fn assign(&mut self, assignment: &Assignment, scene: &mut Scene) {
         let Some(Pending { unfit, .. }) = self.pending.take() else { return };
@@ -82,17 +122,8 @@ impl Mission {
         for (task, members) in scene.model.task_ids().zip(groups) {
             self.send_out(task, members, scene.model, scene.world);
         }
-        for (id, cause) in unfit {
-            let robot = &scene.world.robots[id.index()];
-            let way = |task: &TaskId| (robot.rest_slot(*task) - robot.position).length();
-            // Of rest places that are equally far, the one of the last task.
-            let nearest = scene.model.task_ids().rev().min_by(|a, b| way(a).total_cmp(&way(b)));
-            let agent = self.agent(id);
-            agent.rest_at = nearest.unwrap_or_default();
-            agent.go_to_rest();
-            scene.log.push(Event::TurnedBack { robot: id, cause });
-        }
-        self.look_for_guides(scene.world);
+        unfit.iter().for_each(|(id, cause)| self.send_to_rest(*id, *cause, scene));
+        self.look_for_guides(&scene.model.scenario.mission, scene.world);
     }
 
     /// Sends a group to its task, unless nobody in it can carry: then it stays home.

@@ -3,10 +3,12 @@
 use rne_core::TaskId;
 use rne_core::question::MAX_TASKS;
 
+use super::round::{levels_after_rest, rest_time_s};
 use super::{Activity, Mission, Scene};
 use crate::event::{Event, EventLog, Place};
 use crate::ids::{RescueeId, RobotId};
 use crate::model::Model;
+use crate::scenario::LoadAtRest;
 use crate::world::{RescueeState, World};
 
 /// For each task, the member that shares its resources, once it was looked for and until it gives one away.
@@ -44,16 +46,20 @@ impl Mission {
                 self.agents[id].activity = Activity::Home;
             }
             Activity::ToRest if is_at_slot() => {
-                deliver(robot, Place::Rest, scene.world, scene.log);
-                self.agents[id].activity = Activity::Resting(step + scene.model.steps(rules.rest_s));
+                if rules.load_at_rest == LoadAtRest::Delivered {
+                    deliver(robot, Place::Rest, scene.world, scene.log);
+                }
+                let body = &scene.world.robots[id];
+                let rest_s = rest_time_s(rules, [body.energy, body.hp]);
+                self.agents[id].activity = Activity::Resting(step + scene.model.steps(rest_s));
                 scene.log.push(Event::RestStarted { robot });
             }
             Activity::Resting(done) if !is_at_slot() => {
                 self.agents[id].activity = Activity::Resting(done + 1);
             }
             Activity::Resting(done) if step >= done => {
-                scene.world.robots[id].energy = 100.0;
-                scene.world.robots[id].hp = 100.0;
+                let body = &mut scene.world.robots[id];
+                [body.energy, body.hp] = levels_after_rest(rules, [body.energy, body.hp]);
                 self.agents[id].activity = Activity::Returning;
                 self.agents[id].has_rested = true;
                 scene.log.push(Event::RestEnded { robot });

@@ -1,7 +1,7 @@
 //! The decisions of a round, as pure functions: who takes part, who turns back, and when a group goes home.
 
 use crate::event::{ReturnCause, TurnBackCause};
-use crate::scenario::{MissionRules, TurnBack};
+use crate::scenario::{MissionRules, RestFills, TurnBack};
 
 /// A robot's levels before a round, and what its costliest round has cost, in percent (points).
 #[derive(Debug, Clone, Copy)]
@@ -48,6 +48,32 @@ pub fn turn_back_cause(rules: &MissionRules, energy: f64, hp: f64, way_cost: f64
     }
 }
 
+/// How long a robot with these levels (energy and HP, in percent) rests, in seconds.
+#[must_use]
+pub fn rest_time_s(rules: &MissionRules, levels: [f64; 2]) -> f64 {
+    match rules.rest_fills {
+        RestFills::Both | RestFills::Low => rules.rest_s,
+        RestFills::InTurn => {
+            rules.rest_s * levels.iter().filter(|level| **level < 100.0).count().max(1) as f64
+        }
+    }
+}
+
+/// Energy and HP after a rest, in percent.
+#[must_use]
+pub fn levels_after_rest(rules: &MissionRules, [energy, hp]: [f64; 2]) -> [f64; 2] {
+    if rules.rest_fills != RestFills::Low {
+        return [100.0; 2];
+    }
+    match (energy < rules.energy_threshold, hp < rules.hp_threshold) {
+        (true, true) => [100.0; 2],
+        (true, false) => [100.0, hp],
+        (false, true) => [energy, 100.0],
+        (false, false) if energy <= hp => [100.0, hp],
+        (false, false) => [energy, 100.0],
+    }
+}
+
 /// What a group in the field can still do.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct FieldState {
@@ -84,20 +110,26 @@ mod tests {
     use super::*;
 
     fn rules(turn_back: TurnBack) -> MissionRules {
-        MissionRules {
-            energy_threshold: 30.0,
-            hp_threshold: 30.0,
-            energy_turn_back: turn_back,
-            hp_turn_back: turn_back,
-            rest_reserve: 1.5,
-            rest_s: 30.0,
-            loading_s: 2.0,
-            reach_m: 1.0,
-            area_margin_m: 4.0,
-            blind_speed_loss: 0.3,
-            health_floor: 0.5,
-            cut_off_s: 60.0,
-        }
+        MissionRules { energy_turn_back: turn_back, hp_turn_back: turn_back, ..MissionRules::default() }
+    }
+
+    #[test]
+    fn a_rest_restores_what_its_rule_says_and_takes_as_long() {
+        let rules = |rest_fills| MissionRules { rest_fills, ..MissionRules::default() };
+        let after =
+            |fills, levels| (levels_after_rest(&rules(fills), levels), rest_time_s(&rules(fills), levels));
+        assert_eq!(after(RestFills::Both, [20.0, 60.0]), ([100.0, 100.0], 30.0));
+        assert_eq!(after(RestFills::InTurn, [20.0, 60.0]), ([100.0, 100.0], 60.0));
+        assert_eq!(after(RestFills::InTurn, [20.0, 100.0]), ([100.0, 100.0], 30.0));
+        assert_eq!(after(RestFills::Low, [20.0, 60.0]), ([100.0, 60.0], 30.0));
+        assert_eq!(after(RestFills::Low, [60.0, 29.0]), ([60.0, 100.0], 30.0));
+        assert_eq!(after(RestFills::Low, [20.0, 29.0]), ([100.0, 100.0], 30.0));
+        assert_eq!(
+            after(RestFills::Low, [35.0, 40.0]),
+            ([100.0, 40.0], 30.0),
+            "none is below: the lower one"
+        );
+        assert_eq!(after(RestFills::Low, [41.0, 40.0]), ([41.0, 100.0], 30.0));
     }
 
     #[test]

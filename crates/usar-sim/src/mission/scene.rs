@@ -5,6 +5,7 @@ use crate::event::EventLog;
 use crate::ids::RobotId;
 use crate::model::Model;
 use crate::navigation::{Goal, Navigator};
+use crate::scenario::Costs;
 use crate::world::{Robot, World};
 
 /// The parts of a trial that decisions look at and change.
@@ -35,10 +36,12 @@ impl Scene<'_> {
         traveller.has_arrived(robot.position) && traveller.goal().is_some_and(covers)
     }
 
-    /// Energy that a way of this length costs, in percent points.
-    pub(super) fn way_cost(&self, metres: f64, speed: f64) -> f64 {
-        let rates = &self.model.scenario.costs.energy;
+    /// Energy that a way of this length costs a robot, in percent points.
+    pub(super) fn way_cost(&self, robot: &Robot, metres: f64, speed: f64) -> f64 {
+        let Costs { unit, energy: rates, .. } = &self.model.scenario.costs;
         let seconds = metres / speed.max(1e-3);
-        seconds * (rates.per_step / self.model.dt_s() + rates.per_second) + metres * rates.per_metre
+        let cost =
+            seconds * (rates.per_step / self.model.dt_s() + rates.per_second) + metres * rates.per_metre;
+        unit.to_percent(cost, robot.spec.energy)
     }
 }

@@ -4,10 +4,10 @@
 use rne_core::hierarchy::NeedLevel;
 
 use super::file::{
-    Costs, InitialLevels, Measure, MissionRules, Movable, NeedFile, Normal, PlanningRules, RightOfWay,
-    RoleFile, RoleKind, TurnBack,
+    CostUnit, Costs, InitialLevels, LoadAtRest, Measure, MissionRules, Movable, NeedFile, Normal,
+    PlanningRules, RestAtHome, RestFills, RightOfWay, RoleFile, RoleKind, RoundEnd, TurnBack,
 };
-use crate::vitals::Rates;
+use crate::vitals::{Rates, WorkRates};
 
 /// One role, for scenarios in which all robots are alike.
 pub(super) fn roles() -> Vec<RoleFile> {
@@ -64,7 +64,12 @@ impl Default for InitialLevels {
 impl Default for Costs {
     fn default() -> Self {
         let per_step = |per_step| Rates { per_step, per_metre: 0.0, per_second: 0.0 };
-        Self { energy: per_step(0.0045), hp: per_step(0.0003) }
+        Self {
+            unit: CostUnit::Percent,
+            energy: per_step(0.0045),
+            hp: per_step(0.0003),
+            work: WorkRates::default(),
+        }
     }
 }
 
@@ -77,10 +82,16 @@ impl Default for MissionRules {
             hp_turn_back: TurnBack::AtOnce,
             rest_reserve: 1.5,
             rest_s: 30.0,
+            rest_fills: RestFills::Both,
+            rest_at_home: RestAtHome::DuringRound,
+            load_at_rest: LoadAtRest::Delivered,
+            round_end: RoundEnd::EverybodyHome,
+            resting_guides: true,
             loading_s: 2.0,
             reach_m: 1.0,
             area_margin_m: 4.0,
             blind_speed_loss: 0.3,
+            load_speed_loss: 0.0,
             health_floor: 0.5,
             cut_off_s: 60.0,
         }

@@ -21,6 +21,10 @@ pub struct ScenarioFile {
     /// What the scenario is for.
     #[serde(default)]
     pub description: String,
+    /// The one policy that may run here, by name; empty for any. A candidate of a calibration names the policy that it is fitted with, so that
+    /// no other can be tried before a candidate is chosen.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub only_policy: String,
     /// Simulated time of a trial, in seconds.
     pub duration_s: f64,
     /// Length of a simulation step, in seconds.

@@ -40,8 +40,10 @@ impl From<InitialLevels> for file::InitialLevels {
 #[derive(Default, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub(super) struct Costs {
+    unit: file::CostUnit,
     energy: PartOfRates,
     hp: PartOfRates,
+    work: vitals::WorkRates,
 }
 
 #[derive(Default, Deserialize)]
@@ -61,7 +63,8 @@ impl From<Costs> for file::Costs {
             per_second: part.per_second.unwrap_or(default.per_second),
         };
         let default = Self::default();
-        Self { energy: whole(written.energy, default.energy), hp: whole(written.hp, default.hp) }
+        let (energy, hp) = (whole(written.energy, default.energy), whole(written.hp, default.hp));
+        Self { unit: written.unit, energy, hp, work: written.work }
     }
 }
 

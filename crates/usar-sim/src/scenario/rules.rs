@@ -2,16 +2,50 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::vitals::Rates;
+use crate::vitals::{Rates, WorkRates};
 
-/// What moving and radiation cost.
+/// What moving, radiation and work cost.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, from = "super::partial::Costs")]
 pub struct Costs {
+    /// What the numbers below, and the costs in the results, count.
+    pub unit: CostUnit,
     /// Battery.
     pub energy: Rates,
     /// Health, inside radiation zones.
     pub hp: Rates,
+    /// Work, in addition.
+    pub work: WorkRates,
+}
+
+/// What costs are counted in.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub enum CostUnit {
+    /// Percent of the robot's own maximum. The default.
+    #[default]
+    Percent,
+    /// Points of the scale in which roles give their `energy` and `hp`: a robot with 150 of them lasts 1.5 times as long as one with 100.
+    Points,
+}
+
+impl CostUnit {
+    /// A cost in percent of the maximum of the robot that bears it.
+    #[must_use]
+    pub fn to_percent(self, cost: f64, maximum: f64) -> f64 {
+        match self {
+            Self::Percent => cost,
+            Self::Points => cost * 100.0 / maximum,
+        }
+    }
+
+    /// A share of a robot's maximum, in percent, as a cost.
+    #[must_use]
+    pub fn of_percent(self, percent: f64, maximum: f64) -> f64 {
+        match self {
+            Self::Percent => percent,
+            Self::Points => percent * maximum / 100.0,
+        }
+    }
 }
 
 /// When a robot below the threshold turns back.
@@ -24,6 +58,48 @@ pub enum TurnBack {
     WhenHome,
     /// Before a round at whose end it would be below, judged by its costliest round so far.
     BeforeRound,
+}
+
+/// What a rest restores.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub enum RestFills {
+    /// Energy and HP, in one `rest_s`. The default.
+    #[default]
+    Both,
+    /// The levels below their thresholds; the lower one if none is.
+    Low,
+    /// Energy, then HP: `rest_s` for each of them that is not full.
+    InTurn,
+}
+
+/// When a robot that is at home with a low level rests.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub enum RestAtHome {
+    /// During the next round, which goes on without it. The default.
+    #[default]
+    DuringRound,
+    /// Before the next round, which waits for it.
+    BeforeRound,
+}
+
+/// Where the rescuees are delivered that a robot has on board when it goes to rest.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub enum LoadAtRest {
+    /// At the rest place. The default.
+    #[default]
+    Delivered,
+    /// At home, after the rest.
+    Kept,
+}
+
+/// Who must be home before the next round begins.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub enum RoundEnd {
+    /// Every robot that can still move. The default.
+    #[default]
+    EverybodyHome,
+    /// All but those that rest, or are on their way to rest or back from it.
+    WithoutResting,
 }
 
 /// Rules of the mission.
@@ -42,6 +118,16 @@ pub struct MissionRules {
     pub rest_reserve: f64,
     /// Time at a rest place, in seconds.
     pub rest_s: f64,
+    /// What a rest restores.
+    pub rest_fills: RestFills,
+    /// When a robot that is at home with a low level rests.
+    pub rest_at_home: RestAtHome,
+    /// Where the load of a robot that goes to rest is delivered.
+    pub load_at_rest: LoadAtRest,
+    /// Who must be home before the next round begins.
+    pub round_end: RoundEnd,
+    /// Whether a robot that rests, or is on its way to rest, still guides its group.
+    pub resting_guides: bool,
     /// Time to load one rescuee, in seconds.
     pub loading_s: f64,
     /// Distance from its centre within which a robot can load a rescuee, in metres.
@@ -50,6 +136,8 @@ pub struct MissionRules {
     pub area_margin_m: f64,
     /// Share of its speed that a robot loses when its group has no guide that can act.
     pub blind_speed_loss: f64,
+    /// Share of its speed that a robot loses with a full load; with less in proportion.
+    pub load_speed_loss: f64,
     /// Factor on speed, sensing and observing range at health 0 %; it rises linearly to 1 at 100 %.
     pub health_floor: f64,
     /// A robot that comes no nearer to its home, its rest place or its work for this long, in seconds, gives up on the place: the team

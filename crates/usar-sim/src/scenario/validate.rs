@@ -293,6 +293,9 @@ fn rules(check: &mut Checker, file: &ScenarioFile) {
     };
     rates("costs.energy", &file.costs.energy);
     rates("costs.hp", &file.costs.hp);
+    let work = &file.costs.work;
+    check.number("costs.work.energy_per_second", work.energy_per_second, limits::WORK_RATE);
+    check.number("costs.work.hp_per_second", work.hp_per_second, limits::WORK_RATE);
     let mission = &file.mission;
     check.number("mission.energy_threshold", mission.energy_threshold, limits::THRESHOLD);
     check.number("mission.hp_threshold", mission.hp_threshold, limits::THRESHOLD);
@@ -307,6 +310,7 @@ fn rules(check: &mut Checker, file: &ScenarioFile) {
         Limit { least: least_reach, ..limits::AREA_MARGIN_M },
     );
     check.number("mission.blind_speed_loss", mission.blind_speed_loss, limits::BLIND_SPEED_LOSS);
+    check.number("mission.load_speed_loss", mission.load_speed_loss, limits::LOAD_SPEED_LOSS);
     check.number("mission.health_floor", mission.health_floor, limits::HEALTH_FLOOR);
     check.number("mission.cut_off_s", mission.cut_off_s, limits::CUT_OFF_S);
     check.number("planning.clearance_m", file.planning.clearance_m, limits::CLEARANCE_M);

@@ -7,10 +7,11 @@ use crate::conflict::{Delay, Mover, PriorityKey, Resolver};
 use crate::event::{Event, EventLog};
 use crate::hash::{HashChain, PARTS, part};
 use crate::metrics::Metrics;
-use crate::mission::{Activity, Mission, Scene};
+use crate::mission::{Activity, Agent, Mission, Scene};
 use crate::model::{Model, RobotStart};
 use crate::navigation::{Navigator, PLANNED_BRAKING};
 use crate::record::DecisionRecord;
+use crate::scenario::Costs;
 use crate::tally::{Tally, delay_cause};
 use crate::vitals::{energy_cost, hp_cost};
 use crate::world::{Condition, Robot, STANDING_MPS, World};
@@ -120,25 +121,25 @@ impl State {
         }
     }
 
-    /// Energy for moving, HP for radiation; robots that have none left stay where they are.
+    /// Energy for moving and loading, HP for radiation and work; robots that have none left stay where they are.
     pub(super) fn expose(&mut self, model: &Model) {
-        let (costs, dt) = (&model.scenario.costs, model.dt_s());
+        let unit = model.scenario.costs.unit;
         for (robot, tally) in self.world.robots.iter_mut().zip(&mut self.tallies) {
-            let speed = robot.velocity.length();
-            let metres = f64::from(speed) * dt;
-            tally.note_way(metres);
-            let resting = matches!(self.mission.agents[robot.id.index()].activity, Activity::Resting(_));
-            if !robot.is_able() || resting {
+            tally.note_way(way_in_a_step(robot, model));
+            let agent = &self.mission.agents[robot.id.index()];
+            if !robot.is_able() || matches!(agent.activity, Activity::Resting(_)) {
                 continue;
             }
             let zones = self.world.zones.iter().filter(|zone| zone.contains(robot.position)).count();
-            let energy = energy_cost(&costs.energy, speed > STANDING_MPS, metres, dt).min(robot.energy);
-            let hp = hp_cost(&costs.hp, zones, metres, dt).min(robot.hp);
+            let [energy, hp] = step_costs(model, agent, robot, zones);
+            let energy = unit.to_percent(energy, robot.spec.energy).min(robot.energy);
+            let hp = unit.to_percent(hp, robot.spec.hp).min(robot.hp);
             robot.energy -= energy;
             robot.hp -= hp;
-            tally.note_costs(energy, hp);
             if energy > 0.0 || hp > 0.0 {
-                self.metrics.charge(robot.id, energy, hp);
+                let spent = [unit.of_percent(energy, robot.spec.energy), unit.of_percent(hp, robot.spec.hp)];
+                tally.note_costs(spent);
+                self.metrics.charge(robot.id, spent);
             }
             if robot.energy <= 0.0 {
                 robot.condition = Condition::Stranded;
@@ -174,6 +175,30 @@ impl State {
             part(&self.log),
         ]
     }
+}
+
+/// The way of a robot in this step, in metres.
+fn way_in_a_step(robot: &Robot, model: &Model) -> f64 {
+    f64::from(robot.velocity.length()) * model.dt_s()
+}
+
+/// Energy and HP that this step costs a robot that stands in so many radiation zones, in the unit of the scenario's costs.
+fn step_costs(model: &Model, agent: &Agent, robot: &Robot, zones: usize) -> [f64; 2] {
+    let (Costs { energy, hp, work, .. }, dt) = (&model.scenario.costs, model.dt_s());
+    let metres = way_in_a_step(robot, model);
+    let mut costs = [
+        energy_cost(energy, robot.velocity.length() > STANDING_MPS, metres, dt),
+        hp_cost(hp, zones, metres, dt),
+    ];
+    if matches!(agent.activity, Activity::Loading(..)) {
+        costs[0] += work.energy_per_second * dt;
+    }
+    let is_at_work =
+        || agent.task.is_some_and(|task| model.tasks[task.index()].area.contains(robot.position));
+    if work.hp_per_second > 0.0 && is_at_work() {
+        costs[1] += work.hp_per_second * dt;
+    }
+    costs
 }
 
 /// A robot as the resolver sees it.

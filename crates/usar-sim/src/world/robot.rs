@@ -82,6 +82,12 @@ impl Robot {
         self.spec.capacity - self.load.len() as u32
     }
 
+    /// Share of its capacity that is used, from 0 to 1.
+    #[must_use]
+    pub fn load_share(&self) -> f64 {
+        self.load.len() as f64 / f64::from(self.spec.capacity.max(1))
+    }
+
     /// Top speed at its present health, in metres per second.
     #[must_use]
     pub fn speed(&self) -> f64 {

@@ -51,6 +51,13 @@ impl TrialArguments {
             let scenario = with_settings(&scenario, &self.set)?;
             check_cost(&scenario, self.allow_expensive)?;
             let (first_policy, first_seed) = defaults(&self.file)?;
+            if !scenario.only_policy.is_empty() {
+                return Err(Failure::input(format!(
+                    "{}: only_policy allows {} alone: no decision can be tried otherwise",
+                    self.file.display(),
+                    scenario.only_policy
+                )));
+            }
             let spec = parse(policy.unwrap_or(&first_policy))?;
             let seed = self.seed.unwrap_or(first_seed);
             return Ok(AskedTrial { scenario, spec, seed, policies: Vec::new() });

@@ -28,8 +28,9 @@ A parameter is a field of the scenario and its range; with `+` it sets several f
 list; `log` searches the range by factors. Each must be written in FILE: what is found takes its place there, and comments stay.
 
 The misfit is the sum, over the columns that the target shares with trials.csv (rescuees, energy, HP of each task; rounds), of the squared \
-distance of the means in standard deviations of the data, plus the squared logarithm of the ratio of the standard deviations. The search \
-is CMA-ES, seeded. Each evaluation is on disk as soon as it is done; the same command goes on where it was broken off, and more \
+distance of the means in standard errors, plus the squared logarithm of the ratio of the standard deviations in standard errors, so that \
+few recorded trials bind less: of a true model it is about twice the number of columns. A value near an end of its range adds up to 4. The \
+search is CMA-ES, seeded. Each evaluation is on disk as soon as it is done; the same command goes on where it was broken off, and more \
 --evaluations go on from there. The folder gets evaluations.csv (the log), calibrated.ron, fit.csv and calibration.json.
 
 Examples:

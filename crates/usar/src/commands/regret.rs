@@ -97,7 +97,7 @@ impl Arguments {
     fn play(&self) -> Result<StudyFolder, Failure> {
         let overrides = Overrides { trials: self.trials, ..Overrides::default() };
         let experiment = Experiment::load(&self.file, &overrides)?;
-        experiment.check_cost(self.allow_expensive)?;
+        experiment.check(self.allow_expensive)?;
         let then = self.horizon_trial.as_deref().map(PolicySpec::parse).transpose();
         let then = then.map_err(|error| Failure::input(format!("--horizon-trial: {error}")))?;
         let choices =

@@ -109,6 +109,7 @@ impl Arguments {
             (None, None) => &first_policy,
         };
         let spec = PolicySpec::parse(asked).map_err(|error| Failure::input(format!("--policy: {error}")))?;
+        spec.check_allowed(&scenario)?;
         let driver = spec.driver().map_err(Failure::input)?;
         let simulation = match &snapshot {
             Some(snapshot) => snapshot.restore(&scenario)?,

@@ -118,7 +118,7 @@ impl Arguments {
             let first = Precision::first_look(experiment.trials, self.most(&experiment));
             experiment = experiment.with_trials(first)?;
         }
-        experiment.check_cost(self.allow_expensive)?;
+        experiment.check(self.allow_expensive)?;
         experiment.check_start(&self.file)?;
 
         stop_on_signals();

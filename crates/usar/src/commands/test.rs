@@ -81,7 +81,7 @@ impl Arguments {
         let mut suites = Vec::new();
         for file in &self.files {
             let suite = Suite::load(file, self.max_trials)?;
-            suite.experiment.check_cost(self.allow_expensive)?;
+            suite.experiment.check(self.allow_expensive)?;
             suites.push(suite);
         }
         let mut tested = Vec::new();

@@ -96,6 +96,7 @@ impl Asked {
         for policy in split_list(self.policy.as_deref().unwrap_or(&first_policy)) {
             let spec =
                 PolicySpec::parse(policy).map_err(|error| Failure::input(format!("--policy: {error}")))?;
+            spec.check_allowed(&scenario)?;
             let driver = spec.driver().map_err(Failure::input)?;
             let simulation = Simulation::new(&scenario, seed)
                 .map_err(|error| Failure::input(format!("{}: {error}", file.display())))?;

@@ -1,5 +1,6 @@
 //! One file per task.
 
+pub mod calibration;
 pub mod damage;
 pub mod golden;
 pub mod kills;

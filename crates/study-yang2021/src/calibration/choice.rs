@@ -1,0 +1,182 @@
+//! The choice between candidates that were fitted under different readings: by trials that none was fitted to, with what the data and the
+//! seeds leave open.
+
+use std::path::Path;
+use std::sync::atomic::AtomicBool;
+
+use experiments::Failure;
+use rand::rngs::ChaCha8Rng;
+use rand::{RngExt, SeedableRng};
+use ron_fields::Fields;
+use serde::Serialize;
+use usar_sim::scenario::Scenario;
+
+use super::log::{CALIBRATED, ORIGIN};
+use super::target::misfit;
+use super::{Calibration, Free, Spread, Target};
+
+/// Resamples of the data and of the seeds.
+const RESAMPLES: usize = 4_000;
+
+/// A candidate that is the nearest to the data in this share of the resamples cannot be told from the nearest.
+pub const NOT_TOLD_APART: f64 = 0.05;
+
+/// A candidate: what a calibration found.
+pub struct Candidate {
+    /// Name of the calibration's folder.
+    pub name: String,
+    calibration: Calibration,
+    values: Vec<f64>,
+}
+
+/// A candidate as it was judged.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Judged {
+    /// Name of the calibration's folder.
+    pub candidate: String,
+    /// How far it is from the data, with what values near the ends of their ranges add.
+    pub misfit: f64,
+    /// What values near the ends of their ranges add.
+    pub edge_penalty: f64,
+    /// Share of the resamples of the recorded trials and of the seeds in which it is the nearest.
+    pub share_nearest: f64,
+    /// Mean and standard deviation of each quantity.
+    #[serde(skip)]
+    pub spreads: Vec<Spread>,
+}
+
+impl Candidate {
+    /// Reads what a calibration left in its folder.
+    ///
+    /// # Errors
+    /// The folder is not that of a finished calibration, or the target does not fit its scenario.
+    pub fn read(folder: &Path, target: &Path) -> Result<Self, Failure> {
+        let unreadable = |name: &str, error: &dyn std::fmt::Display| {
+            Failure::input(format!(
+                "{}: is not the folder of a finished calibration: {name}: {error}",
+                folder.display()
+            ))
+        };
+        let (base, text) =
+            Scenario::load(&folder.join(CALIBRATED)).map_err(|error| unreadable(CALIBRATED, &error))?;
+        let origin =
+            ron_fields::file::read_text(&folder.join(ORIGIN)).map_err(|error| unreadable(ORIGIN, &error))?;
+        let origin: serde_json::Value =
+            serde_json::from_str(&origin).map_err(|error| unreadable(ORIGIN, &error))?;
+        let fields = Fields::of(&text);
+        let specs = origin["free"].as_array().into_iter().flatten().filter_map(|free| free.as_str());
+        let free = specs.map(|spec| Free::parse(spec, &fields, &fields)).collect::<Result<Vec<_>, _>>();
+        let free = free.map_err(|error| unreadable(ORIGIN, &error))?;
+        let target = Target::load(target, &base)?;
+        let calibration =
+            Calibration { text, base, free, target, trials: 0, first_seed: 0, seed: 0, first_step: 0.0 };
+        let values = calibration.present()?;
+        let name = folder.file_name().unwrap_or(folder.as_os_str()).to_string_lossy().into_owned();
+        Ok(Self { name, calibration, values })
+    }
+
+    /// The quantities of its trials with these seeds, each a list over the trials. `None` when `stop` was set.
+    ///
+    /// # Errors
+    /// It cannot be run.
+    pub fn measure(&self, seeds: &[u64], stop: &AtomicBool) -> Result<Option<Vec<Vec<f64>>>, Failure> {
+        let measured = self.calibration.measure(&self.values, seeds.to_vec(), stop);
+        measured.map_err(|reason| Failure::run(format!("{}: {reason}", self.name)))
+    }
+}
+
+/// Judges the candidates by their trials, which have the same seeds, one list of quantities each; the nearest to the data first.
+#[must_use]
+pub fn judge(target: &Target, candidates: &[(Candidate, Vec<Vec<f64>>)]) -> Vec<Judged> {
+    let trials = candidates.first().and_then(|(_, quantities)| quantities.first()).map_or(0, Vec::len);
+    let of = |values: &[Vec<f64>], rows: &[usize]| -> Vec<Spread> {
+        let spread = |values: &Vec<f64>| {
+            let drawn: Vec<f64> = rows.iter().map(|row| values[*row]).collect();
+            Spread::of(&drawn)
+        };
+        values.iter().filter_map(spread).collect()
+    };
+    let penalty = |candidate: &Candidate| candidate.calibration.edge_penalty(&candidate.values);
+    let distances = |data_rows: &[usize], rows: &[usize]| -> Vec<f64> {
+        let data = of(&target.values, data_rows).into_iter().zip(&target.spreads);
+        // Ten trials drawn from ten may be all alike: no distance could be measured by that.
+        let data: Vec<Spread> =
+            data.map(|(drawn, whole)| Spread { sd: drawn.sd.max(whole.sd / 2.0), ..drawn }).collect();
+        let distance = |(candidate, quantities): &(Candidate, Vec<Vec<f64>>)| {
+            misfit(&data, &of(quantities, rows), [target.trials, trials]) + penalty(candidate)
+        };
+        candidates.iter().map(distance).collect()
+    };
+    let all = |count: usize| (0..count).collect::<Vec<usize>>();
+    let whole = distances(&all(target.trials), &all(trials));
+    let mut wins = vec![0_usize; candidates.len()];
+    let mut draws = ChaCha8Rng::seed_from_u64(1);
+    for _ in 0..RESAMPLES {
+        let mut drawn = |count: usize| -> Vec<usize> {
+            (0..count).map(|_| draws.random_range(0..count as u32) as usize).collect()
+        };
+        let distances = distances(&drawn(target.trials), &drawn(trials));
+        let nearest = (0..distances.len()).min_by(|a, b| distances[*a].total_cmp(&distances[*b]));
+        nearest.into_iter().for_each(|nearest| wins[nearest] += 1);
+    }
+    let mut judged: Vec<Judged> = candidates
+        .iter()
+        .zip(whole.iter().zip(&wins))
+        .map(|((candidate, quantities), (misfit, wins))| Judged {
+            candidate: candidate.name.clone(),
+            misfit: *misfit,
+            edge_penalty: penalty(candidate),
+            share_nearest: *wins as f64 / RESAMPLES as f64,
+            spreads: of(quantities, &all(trials)),
+        })
+        .collect();
+    judged.sort_by(|a, b| a.misfit.total_cmp(&b.misfit));
+    judged
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn candidate(name: &str) -> Candidate {
+        let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios");
+        let (base, text) = Scenario::load(&root.join("paper.ron")).unwrap();
+        let target = Target::load(&root.join("reference/dis_trials.csv"), &base).unwrap();
+        let calibration = Calibration {
+            text,
+            base,
+            free: Vec::new(),
+            target,
+            trials: 0,
+            first_seed: 0,
+            seed: 0,
+            first_step: 0.0,
+        };
+        Candidate { name: name.to_owned(), calibration, values: Vec::new() }
+    }
+
+    #[test]
+    fn the_nearest_is_chosen_and_what_is_like_it_is_not_told_apart() {
+        let (first, twin, far) = (candidate("first"), candidate("twin"), candidate("far"));
+        let target = Target::load(
+            &Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/reference/dis_trials.csv"),
+            &first.calibration.base,
+        )
+        .unwrap();
+        let data = target.values.clone();
+        // The data turned round: the same means and spreads, other trials in each resample.
+        let turned: Vec<Vec<f64>> =
+            data.iter().map(|values| values.iter().rev().copied().collect()).collect();
+        let off: Vec<Vec<f64>> = data
+            .iter()
+            .zip(&target.spreads)
+            .map(|(values, spread)| values.iter().map(|value| value + 3.0 * spread.sd).collect())
+            .collect();
+        let judged = judge(&target, &[(far, off), (first, data), (twin, turned)]);
+        let names: Vec<&str> = judged.iter().map(|judged| judged.candidate.as_str()).collect();
+        assert_eq!(names, ["first", "twin", "far"]);
+        assert!(judged[0].misfit < 1e-20 && judged[2].misfit > 300.0, "{judged:?}");
+        assert!(judged[..2].iter().all(|judged| judged.share_nearest > 0.3), "{judged:?}");
+        assert!(judged[2].share_nearest < NOT_TOLD_APART, "{judged:?}");
+    }
+}

@@ -1,0 +1,222 @@
+//! The readings of the paper's mission that are options: each does what docs/readings.md says, with every invariant checked.
+
+use usar_sim::event::{Event, Place};
+use usar_sim::ids::RobotId;
+use usar_sim::mission::Activity;
+use usar_sim::scenario::Scenario;
+use usar_sim::simulation::Simulation;
+
+use crate::support::{paper_with, policy};
+
+/// Robots get low soon, so that a trial has many rests.
+const TIRING: (&str, &str) = ("per_step: 0.0045", "per_step: 0.012");
+
+/// Runs a trial of DIS and shows each step to `look`.
+fn watch(scenario: &Scenario, mut look: impl FnMut(&Simulation)) {
+    let mut simulation = Simulation::new(scenario, 7).unwrap().checked();
+    let dis = policy("DIS");
+    while simulation.step(&*dis).is_none() {
+        look(&simulation);
+    }
+}
+
+fn levels(simulation: &Simulation, robot: RobotId) -> [f64; 2] {
+    let robot = &simulation.world().robots[robot.index()];
+    [robot.energy, robot.hp]
+}
+
+#[test]
+fn a_rest_that_fills_the_low_level_leaves_the_other_as_it_was() {
+    let scenario = paper_with(&[TIRING, ("rest_fills: Both", "rest_fills: Low")]);
+    let (mut before, mut rests) = (vec![[0.0; 2]; 12], 0);
+    watch(&scenario, |simulation| {
+        for event in simulation.events() {
+            if let Event::RestEnded { robot } = event {
+                let ([energy, hp], now) = (before[robot.index()], levels(simulation, *robot));
+                assert!(energy < 30.0 || energy < hp, "{energy} {hp}: only energy gets low here");
+                assert_eq!(now, [100.0, hp]);
+                rests += 1;
+            }
+        }
+        before = (0..12).map(|id| levels(simulation, RobotId(id))).collect();
+    });
+    assert!(rests >= 10, "{rests}");
+}
+
+#[test]
+fn a_rest_that_fills_energy_then_hp_takes_both_times() {
+    let scenario = paper_with(&[TIRING, ("rest_fills: Both", "rest_fills: InTurn")]);
+    let (mut began, mut rests) = ([0.0; 12], 0);
+    watch(&scenario, |simulation| {
+        for event in simulation.events() {
+            match event {
+                Event::RestStarted { robot } => {
+                    let full = levels(simulation, *robot).iter().filter(|level| **level >= 100.0).count();
+                    began[robot.index()] = simulation.time_s() - 30.0 * full as f64;
+                }
+                Event::RestEnded { robot } => {
+                    let took = simulation.time_s() - began[robot.index()];
+                    assert!((took - 60.0).abs() < 1.0, "{robot:?} rested {took} s");
+                    rests += 1;
+                }
+                _ => {}
+            }
+        }
+    });
+    assert!(rests >= 5, "{rests}");
+}
+
+#[test]
+fn points_last_longer_where_a_robot_has_more_of_them() {
+    let rates = ("hp: (per_step: 0.0003, per_metre: 0.0, per_second: 0.0)", "hp: (per_second: 0.02)");
+    let over_the_way = ("radius_m: 4.5", "radius_m: 20.0");
+    let after = |unit: &str| {
+        let scenario = paper_with(&[
+            ("unit: Percent", unit),
+            rates,
+            over_the_way,
+            ("duration_s: 600.0", "duration_s: 30.0"),
+        ]);
+        let mut last = Vec::new();
+        let mut simulation = Simulation::new(&scenario, 7).unwrap();
+        let first: Vec<[f64; 2]> = (0..12).map(|id| levels(&simulation, RobotId(id))).collect();
+        let dis = policy("DIS");
+        while simulation.step(&*dis).is_none() {
+            last = (0..12).map(|id| levels(&simulation, RobotId(id))).collect();
+        }
+        let spent: Vec<f64> = simulation.finish().robots.iter().map(|robot| robot.energy_spent).collect();
+        let lost: Vec<[f64; 2]> = first
+            .iter()
+            .zip(&last)
+            .map(|(first, last): (&[f64; 2], &[f64; 2])| [first[0] - last[0], first[1] - last[1]])
+            .collect();
+        (lost, spent)
+    };
+    let ((percent, spent_percent), (points, spent_points)) = (after("unit: Percent"), after("unit: Points"));
+    // Health changes the speed a little, so nothing is quite the same: observers have 100 and 50 points, the others 150 and 100.
+    for id in 0..12 {
+        let ratio = |level: usize| points[id][level] / percent[id][level];
+        let [energy, hp] = if id < 10 { [1.0 / 1.5, 1.0] } else { [1.0, 2.0] };
+        assert!((ratio(0) / energy - 1.0).abs() < 0.02, "robot {id}: {} of {energy}", ratio(0));
+        assert!(
+            percent[id][1] <= 0.0 || (ratio(1) / hp - 1.0).abs() < 0.1,
+            "robot {id}: {} of {hp}",
+            ratio(1)
+        );
+        let told = spent_points[id] / spent_percent[id];
+        assert!((told - 1.0).abs() < 0.02, "results count in the unit of the costs: robot {id}: {told}");
+    }
+    assert!((0..12).any(|id| percent[id][1] > 0.1), "somebody is in a zone");
+}
+
+#[test]
+fn a_group_whose_observer_rests_is_without_one_if_the_reading_says_so() {
+    let share = |scenario: &Scenario| {
+        let (mut slowed, mut rested) = (0_u32, 0_u32);
+        watch(scenario, |simulation| {
+            let (mission, world) = (simulation.mission(), simulation.world());
+            for group in &mission.groups {
+                let activity = |id: &RobotId| mission.agents[id.index()].activity;
+                let observer = group.members.iter().find(|id| world.robots[id.index()].spec.guides);
+                let Some(observer) = observer.filter(|id| matches!(activity(id), Activity::Resting(_)))
+                else {
+                    continue;
+                };
+                for id in group.members.iter().filter(|id| *id != observer && activity(id).is_in_field()) {
+                    let robot = &world.robots[id.index()];
+                    let full = mission.speed_of(simulation.model(), robot) / robot.speed();
+                    rested += 1;
+                    slowed += u32::from((full - 0.7).abs() < 1e-9);
+                }
+            }
+        });
+        (slowed, rested)
+    };
+    let (slowed, rested) = share(&paper_with(&[TIRING]));
+    assert!(rested > 100 && slowed == 0, "{slowed} of {rested}");
+    let (slowed, rested) = share(&paper_with(&[TIRING, ("resting_guides: true", "resting_guides: false")]));
+    assert!(rested > 100 && slowed >= rested - 10, "{slowed} of {rested}");
+}
+
+/// In each round: who is in a group, of the robots that can act.
+fn grouped(scenario: &Scenario) -> Vec<[usize; 2]> {
+    let mut rounds = Vec::new();
+    watch(scenario, |simulation| {
+        for event in simulation.events() {
+            if let Event::RoundStarted { groups, .. } = event {
+                let able = simulation.world().robots.iter().filter(|robot| robot.is_able()).count();
+                rounds.push([groups.iter().map(Vec::len).sum(), able]);
+            }
+        }
+    });
+    rounds
+}
+
+#[test]
+fn a_round_waits_for_robots_that_rest_at_home_if_the_reading_says_so() {
+    let tired = ("energy: (mean: 80.0, sd: 20.0)", "energy: (mean: 40.0, sd: 20.0)");
+    let during = grouped(&paper_with(&[tired]));
+    assert!(
+        during[0][0] < during[0][1],
+        "some are low at first, and the first round goes on without them: {during:?}"
+    );
+    let before = grouped(&paper_with(&[tired, ("rest_at_home: DuringRound", "rest_at_home: BeforeRound")]));
+    assert!(before.len() >= 2 && before.iter().all(|[grouped, able]| grouped == able), "{before:?}");
+}
+
+#[test]
+fn a_round_begins_without_robots_that_rest_if_the_reading_says_so() {
+    let waits = grouped(&paper_with(&[TIRING]));
+    assert!(waits.iter().all(|[grouped, able]| grouped == able), "{waits:?}");
+    let goes_on = grouped(&paper_with(&[TIRING, ("round_end: EverybodyHome", "round_end: WithoutResting")]));
+    assert!(goes_on.iter().any(|[grouped, able]| grouped < able), "{goes_on:?}");
+    assert!(goes_on.len() > waits.len(), "rounds are shorter: {} {}", goes_on.len(), waits.len());
+}
+
+#[test]
+fn a_load_is_kept_through_a_rest_if_the_reading_says_so() {
+    let places = |scenario: &Scenario| {
+        let mut places = [0, 0];
+        watch(scenario, |simulation| {
+            for event in simulation.events() {
+                if let Event::Delivered { place, .. } = event {
+                    places[usize::from(*place == Place::Rest)] += 1;
+                }
+            }
+        });
+        places
+    };
+    let [_, at_rest] = places(&paper_with(&[TIRING]));
+    assert!(at_rest > 10, "{at_rest}");
+    let [home, at_rest] = places(&paper_with(&[TIRING, ("load_at_rest: Delivered", "load_at_rest: Kept")]));
+    assert!(home > 10 && at_rest == 0, "{home} {at_rest}");
+}
+
+#[test]
+fn work_costs_energy_hp_and_speed_if_the_reading_says_so() {
+    let costly = paper_with(&[
+        (
+            "work: (energy_per_second: 0.0, hp_per_second: 0.0)",
+            "work: (energy_per_second: 1.0, hp_per_second: 0.2)",
+        ),
+        ("load_speed_loss: 0.0", "load_speed_loss: 0.5"),
+        ("loading_s: 2.0", "loading_s: 4.0"),
+    ]);
+    let (mut loading, mut laden, mut before) = (0, 0, vec![[100.0; 2]; 12]);
+    watch(&costly, |simulation| {
+        let now: Vec<[f64; 2]> = (0..12).map(|id| levels(simulation, RobotId(id))).collect();
+        for robot in &simulation.world().robots {
+            let (id, agent) = (robot.id.index(), &simulation.mission().agents[robot.id.index()]);
+            let lost = |level: usize| before[id][level] - now[id][level];
+            if matches!(agent.activity, Activity::Loading(..)) && simulation.time_s() > 1.0 {
+                loading += usize::from(lost(0) >= 0.02 - 1e-9 && lost(1) >= 0.004 - 1e-9);
+            }
+            if robot.load.len() == 3 && robot.spec.capacity == 6 {
+                let speed = simulation.mission().speed_of(simulation.model(), robot);
+                laden += usize::from((speed / robot.speed() - 0.75).abs() < 1e-9);
+            }
+        }
+        before = now;
+    });
+    assert!(loading > 1000 && laden > 100, "{loading} {laden}");
+}
