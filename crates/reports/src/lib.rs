@@ -7,12 +7,13 @@ mod decisions;
 mod drawing;
 mod figures;
 mod maps;
+mod overview;
 mod page;
 mod regret;
 pub mod table;
 
 pub use maps::ShownTrial;
-pub use page::write_report;
+pub use page::{Wanted, write_report};
 pub use regret::regret_figures;
 
 /// The style sheet of all pages.

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use askama::Template;
 use experiments::Failure;
 use experiments::comparison::{
-    Asked, Comparison, answer, compare, digits, limit_of_correction, short, short_p, test_in_words,
+    Asked, Comparison, Wishes, answer, compare, digits, limit_of_correction, short, short_p, test_in_words,
 };
 use experiments::experiment::{Axis, Experiment, Seeds};
 use experiments::stats::Moments;
@@ -17,11 +17,14 @@ use crate::decisions::{Decisions, decisions};
 use crate::drawing::{self, Figure};
 use crate::figures::figures;
 use crate::maps::{Map, ShownTrial, trails_map, world_map};
+use crate::overview::write_overview;
 
 #[derive(Template)]
 #[template(path = "report.html")]
 struct Page<'a> {
-    name: &'a str,
+    title: &'a str,
+    /// Where figures are from the page on, and what their names begin with.
+    links: String,
     description: &'a str,
     place: String,
     is_complete: bool,
@@ -39,6 +42,9 @@ struct Page<'a> {
     summary: Vec<Vec<String>>,
     decisions: Option<Decisions>,
     comparisons: Vec<Row>,
+    exploratory: Vec<Row>,
+    /// Titles of the metrics of figures that are zero in every trial.
+    quiet: Vec<&'a str>,
     found: Vec<&'a str>,
     open: Vec<&'a str>,
     limit: Option<String>,
@@ -61,50 +67,136 @@ struct Row {
     means: String,
     difference: String,
     interval: String,
-    shift: String,
     p: String,
     p_holm: String,
     verdict: String,
-    effect: String,
     needed: String,
+    pairing: String,
     is_found: bool,
 }
 
-/// Writes the report of a sweep's case, numbered from 0, into its folder; returns where it is. The ways of all robots in `shown` trials
-/// are drawn, and their replays written beside the figures.
+/// Cases of a sweep that get a page each, where none is asked for.
+const MOST_PAGES: usize = 24;
+
+/// What a report is to show.
+pub struct Wanted {
+    /// The comparisons.
+    pub asked: Asked,
+    /// Its title; none for the sweep's name.
+    pub title: Option<String>,
+    /// The case that gets a page, from 0; none for all.
+    pub case: Option<usize>,
+    /// Trials whose ways are drawn, with their replays, on the page of the case that is asked for, or of the first.
+    pub shown: Vec<ShownTrial>,
+}
+
+impl Wanted {
+    /// What a sweep's file asks, and no trial.
+    ///
+    /// # Errors
+    /// What it asks is not right.
+    pub fn of(experiment: &Experiment) -> Result<Self, Failure> {
+        let asked = Asked::of(experiment, &Wishes::default())?;
+        Ok(Self { asked, title: None, case: None, shown: Vec::new() })
+    }
+}
+
+/// The files of a report, by their names from the folder on.
+pub(crate) type Files = Vec<(String, Vec<u8>)>;
+
+/// Writes the report of a sweep into its folder; returns where it is. A sweep with several cases gets an overview, and a page for each case
+/// beside the figures.
 ///
 /// # Errors
-/// The folder cannot be written to, or its journal cannot be read.
-pub fn write_report(folder: &mut Folder, case: usize, shown: Vec<ShownTrial>) -> Result<PathBuf, Failure> {
-    let asked = Asked::of(folder.experiment(), &[], None, &[])?;
+/// An unknown policy, the folder cannot be written to, or its journal cannot be read.
+pub fn write_report(folder: &mut Folder, mut wanted: Wanted) -> Result<PathBuf, Failure> {
     let is_compared = folder.experiment().policies.len() > 1;
-    let all = if is_compared { compare(folder, &asked.metrics, asked.choice(None))? } else { Vec::new() };
-    let here: Vec<&Comparison> = all.iter().filter(|comparison| comparison.case == case + 1).collect();
-    let figures = figures(folder, case, &here)?;
-    let mut maps: Vec<Map> = world_map(folder.experiment(), case).into_iter().collect();
-    for (number, trial) in shown.iter().enumerate() {
-        maps.push(trails_map(number, trial, PLOTS)?);
+    let compared = |metrics: &[usize]| {
+        if is_compared { compare(folder, metrics, wanted.asked.choice()) } else { Ok(Vec::new()) }
+    };
+    let all = Compared {
+        asked: compared(&wanted.asked.metrics)?,
+        exploratory: compared(&wanted.asked.exploratory)?,
+    };
+    let cases = folder.experiment().cases.len();
+    let shown = std::mem::take(&mut wanted.shown);
+    let mut files = Files::new();
+    if cases == 1 {
+        let place =
+            PagePlace { case: 0, file: REPORT.to_owned(), links: format!("{PLOTS}/"), prefix: String::new() };
+        write_case(folder, &wanted, &all, (&place, shown), &mut files)?;
+    } else {
+        let chosen: Vec<usize> = wanted.case.map_or((0..cases.min(MOST_PAGES)).collect(), |case| vec![case]);
+        let mut shown = Some(shown);
+        for case in &chosen {
+            let prefix = format!("case-{}-", case + 1);
+            let file = format!("{PLOTS}/case-{}.html", case + 1);
+            let place = PagePlace { case: *case, file, links: prefix.clone(), prefix };
+            let shown = shown.take().unwrap_or_default();
+            write_case(folder, &wanted, &all, (&place, shown), &mut files)?;
+        }
+        write_overview(folder, &wanted, &all.asked, &chosen, &mut files)?;
     }
-    let drawn = (&figures[..], &maps[..]);
-    let decided = decisions(folder, case)?;
-    let mut page = page(folder, case, (&here, &all), drawn);
-    page.decisions = decided;
-    page.answer = asked.metrics.first().and_then(|metric| answer(folder, case, *metric, &here));
-    page.is_declared = asked.is_declared;
-    let page = page.render().map_err(Failure::run)?;
+    ours::write_report(folder.path(), &files)?;
+    Ok(folder.path().join(REPORT))
+}
 
-    let mut files = vec![(REPORT.to_owned(), page.into_bytes())];
+/// The comparisons of a sweep: those that were asked for, and the others.
+struct Compared {
+    asked: Vec<Comparison>,
+    exploratory: Vec<Comparison>,
+}
+
+/// Where the page of a case is, and what the names of its figures begin with.
+struct PagePlace {
+    case: usize,
+    file: String,
+    /// From the page on.
+    links: String,
+    /// From the folder of figures on.
+    prefix: String,
+}
+
+fn write_case(
+    folder: &mut Folder,
+    wanted: &Wanted,
+    all: &Compared,
+    (place, shown): (&PagePlace, Vec<ShownTrial>),
+    files: &mut Files,
+) -> Result<(), Failure> {
+    let PagePlace { case, file, links, prefix } = place;
+    let of_case = |all: &'_ [Comparison]| -> Vec<Comparison> {
+        all.iter().filter(|comparison| comparison.case == case + 1).cloned().collect()
+    };
+    let (here, exploratory) = (of_case(&all.asked), of_case(&all.exploratory));
+    let here: Vec<&Comparison> = here.iter().collect();
+    let figures = figures(folder, *case, &here)?;
+    let mut maps: Vec<Map> = world_map(folder.experiment(), *case).into_iter().collect();
+    for (number, trial) in shown.iter().enumerate() {
+        let beside = links.strip_suffix(prefix.as_str()).unwrap_or(links).trim_end_matches('/');
+        maps.push(trails_map(number, trial, beside)?);
+    }
+    let decided = decisions(folder, *case)?;
+    let mut page = page(folder, *case, (&here, &all.asked), (&figures, &maps));
+    page.decisions = decided;
+    page.answer = wanted.asked.metrics.first().and_then(|metric| answer(folder, *case, *metric, &here));
+    page.is_declared = wanted.asked.is_declared;
+    page.exploratory = exploratory.iter().map(row).collect();
+    page.links.clone_from(links);
+    if let Some(title) = &wanted.title {
+        page.title = title;
+    }
+    files.push((file.clone(), page.render().map_err(Failure::run)?.into_bytes()));
     for Figure { name, svg, csv, .. } in figures {
-        files.push((format!("{PLOTS}/{name}.svg"), svg.into_bytes()));
-        files.push((format!("{PLOTS}/{name}.csv"), csv.into_bytes()));
+        files.push((format!("{PLOTS}/{prefix}{name}.svg"), svg.into_bytes()));
+        files.push((format!("{PLOTS}/{prefix}{name}.csv"), csv.into_bytes()));
     }
     for Map { name, svg, .. } in maps {
-        files.push((format!("{PLOTS}/{name}.svg"), svg.into_bytes()));
+        files.push((format!("{PLOTS}/{prefix}{name}.svg"), svg.into_bytes()));
     }
     let replays = shown.into_iter().filter_map(|trial| trial.replay);
     files.extend(replays.map(|(name, content)| (format!("{PLOTS}/{name}"), content)));
-    ours::write_report(folder.path(), &files)?;
-    Ok(folder.path().join(REPORT))
+    Ok(())
 }
 
 fn page<'a>(
@@ -137,7 +229,8 @@ fn page<'a>(
     let pairs = names.zip(&experiment.policies).map(|(name, policy)| (name, policy.label.as_str()));
     Page {
         abbreviations: pairs.filter(|(name, label)| name != label).collect(),
-        name: &experiment.name,
+        title: &experiment.name,
+        links: String::new(),
         description: &experiment.base.description,
         place: experiment.describe(&experiment.cases[case]).trim_end_matches(": ").to_owned(),
         is_complete: manifest.is_complete,
@@ -151,6 +244,8 @@ fn page<'a>(
         summary: summary(folder, case),
         decisions: None,
         comparisons: comparisons.iter().map(|comparison| row(comparison)).collect(),
+        exploratory: Vec::new(),
+        quiet: quiet(folder, case),
         found: sentences(true),
         open: sentences(false),
         limit: limit_of_correction(all),
@@ -163,6 +258,20 @@ fn page<'a>(
         command: command(folder),
         scenario: experiment.cases[case].scenario.resolved(),
     }
+}
+
+/// Titles of the metrics of figures that are zero in every trial of a case.
+fn quiet(folder: &Folder, case: usize) -> Vec<&str> {
+    let Experiment { metrics, .. } = folder.experiment();
+    let places = metrics.figures().into_iter().flat_map(|(_, places)| places);
+    places.filter(|place| is_quiet(folder, case, *place)).map(|place| metrics[place].title.as_str()).collect()
+}
+
+/// Whether a metric has values in a case, and all of them are zero.
+pub(crate) fn is_quiet(folder: &Folder, case: usize, metric: usize) -> bool {
+    let policies = 0..folder.experiment().policies.len();
+    let mut values = policies.flat_map(|policy| folder.values(case, policy, metric)).peekable();
+    values.peek().is_some() && values.all(|value| value == 0.0)
 }
 
 /// What makes these results again.
@@ -184,14 +293,13 @@ fn row(c: &Comparison) -> Row {
         interval: c
             .interval
             .map_or("-".to_owned(), |[low, high]| format!("{} to {}", short(low), short(high))),
-        shift: number(c.shift),
         p: c.p.map_or("-".to_owned(), short_p),
         verdict: c
             .judged
             .map_or(String::new(), |judged| format!("{} ({})", judged.verdict.name(), short(judged.margin))),
         p_holm: c.p_holm.map_or("-".to_owned(), short_p),
-        effect: c.effect.map_or("-".to_owned(), |effect| format!("{effect:.2}")),
         needed: c.pairs_needed.map_or("-".to_owned(), |pairs| pairs.to_string()),
+        pairing: c.pairing.map_or("-".to_owned(), |times| format!("{} x", digits(times, 2))),
         is_found: c.is_found(),
     }
 }

@@ -4,14 +4,14 @@ use std::fmt::Display;
 use std::io::Write;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Arc, LazyLock};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use experiments::Failure;
 use experiments::experiment::Shard;
 use experiments::run::Limits;
 use experiments::sweep::folder::Folder;
 use experiments::sweep::{missing, run_trials};
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::{HumanDuration, ProgressBar, ProgressStyle};
 use signal_hook::consts::{SIGINT, SIGTERM};
 use usar_sim::simulation::Simulation;
 
@@ -112,7 +112,26 @@ pub(crate) fn run_missing(
     ran
 }
 
-/// Progress on stderr: a bar, or one line where that is not a terminal.
+/// Seconds between two lines about progress where stderr is not a terminal.
+const REPORT_S: u64 = 60;
+
+/// Says once a minute how far it is, until the bar is finished: for logs.
+fn report_progress(bar: &ProgressBar, of: &str) {
+    let (bar, of) = (bar.downgrade(), of.to_owned());
+    std::thread::spawn(move || {
+        for second in 1_u64.. {
+            std::thread::sleep(Duration::from_secs(1));
+            let Some(bar) = bar.upgrade().filter(|bar| !bar.is_finished()) else { return };
+            if second.is_multiple_of(REPORT_S) {
+                let (done, all) = (bar.position(), bar.length().unwrap_or(0));
+                let (gone, left) = (HumanDuration(bar.elapsed()), HumanDuration(bar.eta()));
+                tell(format_args!("{done} of {all} {of} after {gone}; {left} left at this pace"));
+            }
+        }
+    });
+}
+
+/// Progress on stderr: a bar, or a line a minute where that is not a terminal.
 pub(crate) fn progress_bar(count: usize, of: &str, jobs: usize, quiet: bool) -> ProgressBar {
     if quiet {
         return ProgressBar::hidden();
@@ -123,7 +142,8 @@ pub(crate) fn progress_bar(count: usize, of: &str, jobs: usize, quiet: bool) -> 
     if bar.is_hidden() {
         let plural = if jobs == 1 { "" } else { "s" };
         tell(format_args!("{count} {of} on {jobs} thread{plural}"));
+        report_progress(&bar, of);
     }
-    bar.enable_steady_tick(std::time::Duration::from_millis(200));
+    bar.enable_steady_tick(Duration::from_millis(200));
     bar
 }

@@ -1,56 +1,104 @@
-//! Which comparisons are made: what the command line says, else what the sweep file asks, else those of the
-//! paper's tables. `compare` and `report` ask here, so that both say the same.
+//! Which comparisons are made: what the command line says, else what the sweep file asks, else a small family: rescuees, in total and of
+//! each task, of every policy against the first. `compare` and `report` ask here, so that both say the same.
 
 use super::Choice;
 use crate::experiment::Experiment;
 use crate::failure::Failure;
+
+/// What the command line says of comparisons.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Wishes {
+    /// Metrics, by name; none for those that the sweep file names.
+    pub metrics: Vec<String>,
+    /// The policy with which the others are compared.
+    pub baseline: Option<String>,
+    /// `METRIC=VALUE`: the largest difference that does not matter.
+    pub margins: Vec<String>,
+    /// None but these policies.
+    pub policies: Option<Vec<String>>,
+}
 
 /// Which comparisons are made together.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Asked {
     /// Places of the metrics.
     pub metrics: Vec<usize>,
+    /// Places of the main metrics that are not among them: what they show is exploratory.
+    pub exploratory: Vec<usize>,
     /// The policy with which the others are compared; none for all pairs.
     pub baseline: Option<String>,
     /// For metrics, the largest difference that does not matter.
     pub margins: Vec<(usize, f64)>,
-    /// Whether the sweep file names the metrics.
+    /// None but these policies.
+    pub policies: Option<Vec<String>>,
+    /// Whether the command line or the sweep file names the metrics.
     pub is_declared: bool,
 }
 
 impl Asked {
-    /// From metrics, a baseline and margins (`METRIC=VALUE`) of the command line, and the sweep file.
+    /// From the command line and the sweep file.
     ///
     /// # Errors
     /// An unknown metric, or a margin that is not a number above 0.
-    pub fn of(
-        experiment: &Experiment,
-        metrics: &[String],
-        baseline: Option<&str>,
-        margins: &[String],
-    ) -> Result<Self, Failure> {
+    pub fn of(experiment: &Experiment, wishes: &Wishes) -> Result<Self, Failure> {
         let asks = experiment.asks()?;
-        let is_declared = metrics.is_empty() && !asks.primary.is_empty();
-        let chosen = experiment.metrics.chosen(if is_declared { &asks.primary } else { metrics })?;
-        let mut all = Vec::new();
-        for text in margins {
-            all.push(margin(experiment, text)?);
+        let catalogue = &experiment.metrics;
+        let is_declared = !(wishes.metrics.is_empty() && asks.primary.is_empty());
+        let metrics = if !wishes.metrics.is_empty() {
+            catalogue.chosen(&wishes.metrics)?
+        } else if is_declared {
+            catalogue.chosen(&asks.primary)?
+        } else {
+            first_question(experiment)?
+        };
+        let mut margins = Vec::new();
+        for text in &wishes.margins {
+            margins.push(margin(experiment, text)?);
         }
         for (name, margin) in &asks.margins {
-            let place = experiment.metrics.named(name)?;
-            if all.iter().all(|(known, _)| *known != place) {
-                all.push((place, *margin));
+            let place = catalogue.named(name)?;
+            if margins.iter().all(|(known, _)| *known != place) {
+                margins.push((place, *margin));
             }
         }
-        let baseline = baseline.map(str::to_owned).or(asks.baseline);
-        Ok(Self { metrics: chosen, baseline, margins: all, is_declared })
+        let is_compared =
+            |label: &&str| wishes.policies.as_ref().is_none_or(|only| only.iter().any(|one| one == label));
+        let mut labels = experiment.policies.iter().map(|policy| policy.label.as_str());
+        let first = labels.find(is_compared).filter(|_| !is_declared).map(str::to_owned);
+        let exploratory =
+            catalogue.chosen(&[])?.into_iter().filter(|place| !metrics.contains(place)).collect();
+        Ok(Self {
+            metrics,
+            exploratory,
+            baseline: wishes.baseline.clone().or(asks.baseline).or(first),
+            margins,
+            policies: wishes.policies.clone(),
+            is_declared,
+        })
     }
 
-    /// The same as a choice, of some policies only.
+    /// The same as a choice.
     #[must_use]
-    pub fn choice<'a>(&'a self, policies: Option<&'a [&'a str]>) -> Choice<'a> {
-        Choice { baseline: self.baseline.as_deref(), policies, margins: &self.margins }
+    pub fn choice(&self) -> Choice<'_> {
+        Choice {
+            baseline: self.baseline.as_deref(),
+            policies: self.policies.as_deref(),
+            margins: &self.margins,
+        }
     }
+}
+
+/// The metrics of a sweep that names none: rescuees, in total and of each task; errands done, where there are errands.
+fn first_question(experiment: &Experiment) -> Result<Vec<usize>, Failure> {
+    let has_errands = !experiment.base.errands.is_empty();
+    let mut metrics = experiment.metrics.declared(if has_errands { "errands_done" } else { "rescuees" });
+    if has_errands {
+        metrics.push(experiment.metrics.named("time")?);
+    }
+    // With one task, its metric is the total again.
+    let tasks = metrics.len().saturating_sub(1);
+    metrics.truncate(if tasks == 1 && !has_errands { 1 } else { metrics.len() });
+    Ok(metrics)
 }
 
 fn margin(experiment: &Experiment, text: &str) -> Result<(usize, f64), Failure> {

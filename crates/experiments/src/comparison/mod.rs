@@ -3,6 +3,7 @@
 mod answer;
 mod asked;
 mod equivalence;
+mod interaction;
 
 use rayon::prelude::*;
 use serde::Serialize;
@@ -17,8 +18,9 @@ use crate::stats::wilcoxon::{DRAWS, EXACT_PAIRS, SignedRank};
 use crate::sweep::folder::{Folder, Measured};
 
 pub use answer::answer;
-pub use asked::Asked;
+pub use asked::{Asked, Wishes};
 pub use equivalence::{Judged, TOST_CONFIDENCE, Verdict, judge};
+pub use interaction::{Interaction, interactions};
 
 /// Level of a finding, after correction.
 pub const LEVEL: f64 = 0.05;
@@ -64,6 +66,9 @@ pub struct Comparison {
     pub p_holm: Option<f64>,
     /// Matched-pairs rank-biserial correlation.
     pub effect: Option<f64>,
+    /// What pairing is worth: how many times as many unpaired trials would know the mean difference as well. The variance of the
+    /// difference without pairing (the sum of both variances) over that with it.
+    pub pairing: Option<f64>,
     /// Pairs that would be needed for 80 % power, were the effect what was observed.
     pub pairs_needed: Option<u64>,
     /// What it says, where it is known which differences matter.
@@ -148,6 +153,13 @@ impl Pairs {
         pairs
     }
 
+    /// First less second, by trial; nothing where one has no value.
+    fn by_trial(folder: &Folder, case: usize, metric: usize, [a, b]: [usize; 2]) -> Vec<Option<f64>> {
+        let value = |policy, trial| folder.results().get(&(case, policy, trial))?.metrics.as_ref()?[metric];
+        let trials = 1..=folder.experiment().trials;
+        trials.map(|trial| Some(value(a, trial)? - value(b, trial)?)).collect()
+    }
+
     /// First less second.
     #[must_use]
     pub fn differences(&self) -> Vec<f64> {
@@ -161,7 +173,7 @@ pub struct Choice<'a> {
     /// Each with this one only.
     pub baseline: Option<&'a str>,
     /// None but these.
-    pub policies: Option<&'a [&'a str]>,
+    pub policies: Option<&'a [String]>,
     /// For metrics, by their places, the largest difference that does not matter.
     pub margins: &'a [(usize, f64)],
 }
@@ -256,10 +268,18 @@ fn comparison(
         is_exact: test.is_exact,
         p_holm: None,
         effect: has_pairs.then(|| test.effect()),
+        pairing: pairing(pairs, &differences),
         pairs_needed: pairs_needed(&differences),
         judged: None,
         in_words: String::new(),
     }
+}
+
+/// What pairing is worth; nothing where no pair differs from another.
+fn pairing(pairs: &Pairs, differences: &[f64]) -> Option<f64> {
+    let variance = |values: &[f64]| Moments::of(values).sd.map(|sd| sd * sd);
+    let paired = variance(differences).filter(|variance| *variance > 0.0)?;
+    Some((variance(&pairs.a)? + variance(&pairs.b)?) / paired)
 }
 
 /// The finding as one sentence.
@@ -292,7 +312,15 @@ fn in_words(comparison: &Comparison, metrics: &Catalogue) -> String {
         let (difference, margin) = (short(difference), short(margin));
         let range =
             format!("difference {difference}, 90 % interval {} to {}, n = {n}", short(low), short(high));
-        return format!("{place}: {a} and {b} are equivalent within {margin} ({range}).");
+        let shown = if comparison.is_found() {
+            format!(
+                "; the difference is shown (corrected {}), and smaller than what was said to matter",
+                p_in_words(p)
+            )
+        } else {
+            String::new()
+        };
+        return format!("{place}: {a} and {b} are equivalent within {margin} ({range}){shown}.");
     }
     if comparison.is_found() && !is_clear {
         let shift = comparison.shift.unwrap_or(0.0);

@@ -20,8 +20,8 @@ struct Quantity {
     value: Value,
 }
 
-const POINTS: &str = "percent points";
-const RATIO: &str = "percent points per rescuee";
+const POINTS: &str = "points";
+const RATIO: &str = "points per rescuee";
 
 #[rustfmt::skip]
 const QUANTITIES: [Quantity; 7] = [

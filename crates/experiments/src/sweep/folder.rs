@@ -9,6 +9,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use super::dictionary::write_dictionary;
 use super::disk::{
     MANIFEST, broken_files, check_continues, experiment_of, has_begun, lock, read_manifest, sweeps_in,
     sync_folder, write_manifest, write_start,
@@ -331,6 +332,7 @@ impl Folder {
         self.journal.tidy()?;
         let finished = self.tables_in(&self.path.clone(), stop)?;
         self.manifest.files.extend(finished);
+        self.manifest.files.extend(write_dictionary(&self.path, &self.experiment)?);
         let journal = self.path.join(journal::FILE);
         let hash = file_hash(&journal)
             .map_err(|error| Failure::storage(format!("{}: {error}", journal.display())))?;

@@ -1,6 +1,7 @@
 //! Where the results of a sweep are kept: its folder, its journal, and the tables made of it.
 
 pub mod audit;
+mod dictionary;
 pub mod disk;
 pub mod folder;
 mod journal;

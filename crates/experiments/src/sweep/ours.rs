@@ -3,6 +3,7 @@
 use std::fs;
 use std::path::Path;
 
+use super::dictionary::DICTIONARY;
 use super::disk::{INPUTS, LOCK, MANIFEST, PLOTS, RECORDINGS, REPORT, is_sweeps};
 use super::journal;
 use super::parquet::PARQUETS;
@@ -18,7 +19,7 @@ const RECORDING: &str = ".usrec";
 
 /// The names of all files that a sweep writes.
 fn known_names() -> impl Iterator<Item = &'static str> {
-    [MANIFEST, LOCK, journal::FILE].into_iter().chain(INPUTS).chain(TABLES).chain(PARQUETS)
+    [MANIFEST, LOCK, journal::FILE].into_iter().chain(INPUTS).chain(TABLES).chain(PARQUETS).chain(DICTIONARY)
 }
 
 /// Refuses a folder that is not a sweep's: one with a manifest or a journal of this program, or with nothing in it.

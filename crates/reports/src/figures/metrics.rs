@@ -8,13 +8,14 @@ use experiments::stats::Moments;
 use experiments::stats::paired::t_half_width;
 use experiments::sweep::folder::Folder;
 use kuva::plot::annotations::ReferenceLine;
-use kuva::plot::{BoxPlot, ForestPlot, ScatterPlot};
+use kuva::plot::{BoxPlot, ForestPlot, ScatterPlot, StripPlot};
 use kuva::render::plots::Plot;
 
 use crate::drawing::{Figure, Panel, colour, draw, layout, line_panel, names, range, table};
+use crate::page::is_quiet;
 
-/// Trials of a policy that are drawn as points; more would only blacken the figure.
-const MAX_POINTS: usize = 300;
+/// Trials of a policy that are drawn as points, about: more would hide the boxes.
+const MAX_POINTS: usize = 40;
 
 const PANEL: [f64; 2] = [360.0, 320.0];
 
@@ -27,14 +28,13 @@ pub(super) fn boxes(folder: &Folder, case: usize) -> Result<Vec<Figure>, Failure
 fn box_figure(folder: &Folder, case: usize, name: &str, places: &[usize]) -> Result<Figure, Failure> {
     let Experiment { policies, metrics, .. } = folder.experiment();
     let names = names(folder.experiment());
-    let has_points = folder.experiment().trials as usize <= MAX_POINTS;
+    let step = (folder.experiment().trials as usize).div_ceil(MAX_POINTS).max(1);
     let (mut panels, mut rows, mut counts) = (Vec::new(), Vec::new(), Vec::new());
-    for place in places {
+    for place in places.iter().filter(|place| !is_quiet(folder, case, **place)) {
         let metric = &metrics[*place];
         let mut plot = BoxPlot::new().with_width(0.6);
-        if has_points {
-            plot = plot.with_strip(0.2).with_overlay_size(2.5).with_overlay_color("#333333");
-        }
+        let mut points = StripPlot::new().with_jitter(0.2).with_point_size(2.0).with_color("#333333");
+        points = points.with_marker_opacity(if step > 1 { 0.45 } else { 0.8 });
         let (mut colours, mut all) = (Vec::new(), Vec::new());
         for (i, policy) in policies.iter().enumerate() {
             let values = folder.values(case, i, *place);
@@ -44,6 +44,7 @@ fn box_figure(folder: &Folder, case: usize, name: &str, places: &[usize]) -> Res
             );
             all.extend_from_slice(&values);
             if !values.is_empty() {
+                points = points.with_group(names[i].clone(), values.iter().copied().step_by(step));
                 plot = plot.with_group(names[i].clone(), values);
                 colours.push(lighter(colour(i)));
             }
@@ -51,7 +52,7 @@ fn box_figure(folder: &Folder, case: usize, name: &str, places: &[usize]) -> Res
         if colours.is_empty() {
             continue;
         }
-        let plots = vec![Plot::Box(plot.with_group_colors(colours))];
+        let plots = vec![Plot::Box(plot.with_group_colors(colours)), Plot::Strip(points)];
         let [low, high] = range(all);
         let mut layout = layout(&plots, &metric.title)
             .with_y_label(metric.unit)
@@ -67,7 +68,11 @@ fn box_figure(folder: &Folder, case: usize, name: &str, places: &[usize]) -> Res
         title: capitalised(name),
         caption: format!(
             "Median, quartiles, and whiskers to the last trial within 1.5 times the distance of the quartiles; {}. {}",
-            if has_points { "each point is a trial" } else { "points are left out for so many trials" },
+            if step > 1 {
+                format!("points: one trial in {step}")
+            } else {
+                "each point is a trial".to_owned()
+            },
             per_box(&counts)
         ),
         svg: if panels.is_empty() { String::new() } else { draw(panels, 3, PANEL) },
@@ -210,9 +215,27 @@ pub(super) fn forest(experiment: &Experiment, comparisons: &[&Comparison]) -> Re
             number(c.interval.map(|i| i[1])),
             number(c.p),
             number(c.p_holm),
+            number(c.shift),
+            number(c.effect),
+            number(c.pairing),
+            c.pairs_needed.map_or(String::new(), |pairs| pairs.to_string()),
         ]
     };
-    let header = ["metric", "a", "b", "n", "difference", "low", "high", "p", "p_holm"];
+    let header = [
+        "metric",
+        "a",
+        "b",
+        "n",
+        "difference",
+        "low",
+        "high",
+        "p",
+        "p_holm",
+        "shift",
+        "effect",
+        "pairing",
+        "pairs_needed",
+    ];
     Ok(Figure {
         name: "differences".into(),
         title: "Paired differences".into(),

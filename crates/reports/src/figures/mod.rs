@@ -14,6 +14,13 @@ use crate::drawing::Figure;
 
 pub(crate) use regret::regret;
 
+/// Figures of metrics along the axes of a sweep.
+pub(crate) fn along_axes(folder: &Folder) -> Result<Vec<Figure>, Failure> {
+    let mut figures = metrics::axes(folder, 0)?;
+    figures.retain(|figure| !figure.svg.is_empty());
+    Ok(figures)
+}
+
 /// All figures of a sweep's case for which there is something to draw.
 pub(crate) fn figures(
     folder: &mut Folder,
@@ -32,7 +39,6 @@ pub(crate) fn figures(
     figures.push(course::levels(experiment, case, &gathered)?);
     figures.push(groups::sorting(experiment, &gathered)?);
     figures.extend(groups::trust(experiment, &gathered)?);
-    figures.extend(metrics::axes(folder, case)?);
     figures.retain(|figure| !figure.svg.is_empty());
     Ok(figures)
 }

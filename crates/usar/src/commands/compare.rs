@@ -6,22 +6,22 @@ use std::path::PathBuf;
 use clap::Args;
 use experiments::Failure;
 use experiments::comparison::{
-    Asked, CONFIDENCE, Comparison, LEVEL, compare, limit_of_correction, test_in_words,
+    CONFIDENCE, Comparison, Interaction, LEVEL, compare, interactions, limit_of_correction, test_in_words,
 };
-use experiments::experiment::split_list;
 use experiments::stats::bootstrap::resamples;
 use experiments::sweep::folder::Folder;
 use reports::table::comparison_table;
 use serde::Serialize;
 
 use super::SCHEMA_VERSION;
+use super::family::FamilyArguments;
 
 /// Is A better than B, by how much, and how sure is that? Paired by seed
 #[derive(Debug, Args)]
 #[command(after_help = "\
 For each metric and pair of policies: mean of each, mean difference with its 95 % bootstrap interval, Hodges-Lehmann shift, Wilcoxon's \
 signed-rank test, its p after Holm's correction over all comparisons shown, effect size (matched-pairs rank-biserial), how many pairs \
-would be needed for 80 % power, and one sentence. With a margin, two policies are equivalent if the 90 % interval of their difference lies \
+would be needed for 80 % power, and one sentence. For a sweep with axes, also how each difference changes along an axis. With a margin, two policies are equivalent if the 90 % interval of their difference lies \
 within it (two one-sided tests at 5 %). Choose metrics before looking: the correction knows only what is shown together.
 
 Examples:
@@ -33,18 +33,8 @@ Examples:
 pub(crate) struct Arguments {
     /// Folder of a sweep
     folder: PathBuf,
-    /// Metric to compare, or `all`; may stand several times [default: those that the sweep file names, or the main ones]
-    #[arg(long)]
-    metric: Vec<String>,
-    /// Compare each policy with this one only [default: the one that the sweep file names]
-    #[arg(long)]
-    baseline: Option<String>,
-    /// The largest difference of a metric that does not matter: says better, worse, equivalent or undecided; may stand several times
-    #[arg(long, value_name = "METRIC=VALUE")]
-    margin: Vec<String>,
-    /// Compare these policies only, by their labels, separated by commas
-    #[arg(long)]
-    policies: Option<String>,
+    #[command(flatten)]
+    family: FamilyArguments,
     /// Print one JSON object
     #[arg(long)]
     json: bool,
@@ -59,15 +49,16 @@ struct Output<'a> {
     confidence: f64,
     level: f64,
     comparisons: &'a [Comparison],
+    interactions: &'a [Interaction],
 }
 
 impl Arguments {
     pub(crate) fn execute(&self, out: &mut dyn Write) -> Result<(), Failure> {
         let folder = Folder::read(&self.folder)?;
         let experiment = folder.experiment();
-        let policies = self.policies.as_deref().map(split_list);
-        let asked = Asked::of(experiment, &self.metric, self.baseline.as_deref(), &self.margin)?;
-        let comparisons = compare(&folder, &asked.metrics, asked.choice(policies.as_deref()))?;
+        let asked = self.family.asked(experiment)?;
+        let comparisons = compare(&folder, &asked.metrics, asked.choice())?;
+        let interactions = interactions(&folder, &asked.metrics, asked.choice())?;
         if self.json {
             let output = Output {
                 schema_version: SCHEMA_VERSION,
@@ -77,6 +68,7 @@ impl Arguments {
                 confidence: CONFIDENCE,
                 level: LEVEL,
                 comparisons: &comparisons,
+                interactions: &interactions,
             };
             return Ok(writeln!(out, "{}", serde_json::to_string(&output).map_err(Failure::run)?)?);
         }
@@ -90,6 +82,9 @@ impl Arguments {
         }
         for comparison in &comparisons {
             writeln!(out, "{}", comparison.in_words)?;
+        }
+        for interaction in &interactions {
+            writeln!(out, "{}", interaction.in_words)?;
         }
         if let Some(limit) = limit_of_correction(&comparisons) {
             writeln!(out, "\n{limit}")?;

@@ -9,6 +9,7 @@ pub(crate) mod draw;
 mod drawn;
 pub(crate) mod estimate;
 pub(crate) mod export;
+mod family;
 pub(crate) mod fork;
 pub(crate) mod group;
 pub(crate) mod list;

@@ -7,8 +7,9 @@ use clap::Args;
 use experiments::Failure;
 use experiments::run::TrialKey;
 use experiments::sweep::folder::Folder;
-use reports::{ShownTrial, write_report};
+use reports::{ShownTrial, Wanted, write_report};
 
+use super::family::FamilyArguments;
 use super::trials::Shown;
 use super::view::page;
 use crate::recordings::{path_of, recording_of};
@@ -16,20 +17,28 @@ use crate::recordings::{path_of, recording_of};
 /// Write a report: means, comparisons, figures, and where it all comes from
 #[derive(Debug, Args)]
 #[command(after_help = "\
-Writes report.html into the folder, which opens from disk and prints, and plots/: each figure as SVG and its numbers as CSV. With --trial, \
+Writes report.html into the folder, which opens from disk and prints, and plots/: each figure as SVG and its numbers as CSV. It answers first \
+what `usar compare` with the same flags says. Where the sweep has axes, report.html says how differences change along them, and links to a page \
+for each case. With --trial, \
 the ways of all robots in the trials with this seed are drawn; with --with-replays, these trials can be watched from the report: each is a \
 page of its own in plots/, as `usar view` writes it. Both take the recordings of the sweep, or simulate again.
 
 Examples:
   usar report results/paper
+  usar report results/paper --baseline DIS --metric rescuees.hard --title 'Rescuees of the hard task'
   usar report results/paper --trial 3 --with-replays
   usar report results/energy --case 3      (the third point of the grid)")]
 pub(crate) struct Arguments {
     /// Folder of a sweep
     folder: PathBuf,
-    /// Number of the case whose figures are drawn, where the sweep has axes
-    #[arg(long, default_value_t = 1)]
-    case: usize,
+    #[command(flatten)]
+    family: FamilyArguments,
+    /// Title of the report [default: the sweep's name]
+    #[arg(long)]
+    title: Option<String>,
+    /// Number of the case that gets a page, where the sweep has axes [default: all, up to 24]
+    #[arg(long)]
+    case: Option<usize>,
     /// Draw the ways of all robots in the trials with this seed, one for each policy
     #[arg(long, value_name = "SEED")]
     trial: Option<u64>,
@@ -42,14 +51,19 @@ impl Arguments {
     pub(crate) fn execute(&self, out: &mut dyn Write) -> Result<(), Failure> {
         let mut folder = Folder::read(&self.folder)?;
         let cases = folder.experiment().cases.len();
-        if !(1..=cases).contains(&self.case) {
-            return Err(Failure::input(format!("--case: must be from 1 to {cases}, found {}", self.case)));
+        if let Some(case) = self.case.filter(|case| !(1..=cases).contains(case)) {
+            return Err(Failure::input(format!("--case: must be from 1 to {cases}, found {case}")));
         }
         if folder.results().values().all(|measured| measured.metrics.is_none()) {
             return Err(Failure::input(format!("{}: no trial has given numbers yet", self.folder.display())));
         }
-        let shown = self.shown(&folder)?;
-        let path = write_report(&mut folder, self.case - 1, shown)?;
+        let wanted = Wanted {
+            asked: self.family.asked(folder.experiment())?,
+            title: self.title.clone(),
+            case: self.case.map(|case| case - 1),
+            shown: self.shown(&folder)?,
+        };
+        let path = write_report(&mut folder, wanted)?;
         Ok(writeln!(out, "{}", path.display())?)
     }
 
@@ -58,7 +72,8 @@ impl Arguments {
         let experiment = folder.experiment();
         let first = experiment.seed(1);
         let Some(seed) = self.trial.or(self.with_replays.then_some(first)) else { return Ok(Vec::new()) };
-        let is_shown = |key: &TrialKey| key.case + 1 == self.case && key.seed == seed && folder.has(key);
+        let is_shown =
+            |key: &TrialKey| key.case + 1 == self.case.unwrap_or(1) && key.seed == seed && folder.has(key);
         let keys: Vec<TrialKey> = experiment.keys(None).filter(is_shown).collect();
         if keys.is_empty() {
             let last = experiment.seed(experiment.trials);

@@ -11,7 +11,7 @@ use experiments::experiment::Experiment;
 use experiments::run::Limits;
 use experiments::sweep::disk::is_sweeps;
 use experiments::sweep::folder::{Folder, Opening};
-use reports::write_report;
+use reports::{Wanted, write_report};
 use study_yang2021::claims::{
     Judged, PAPERS_TRIALS, examples, write_authors_columns, write_claims, write_examples, write_power,
 };
@@ -71,7 +71,8 @@ impl Arguments {
         let mut judged = Vec::new();
         for folder in &mut folders {
             self.run(folder)?;
-            write_report(folder, 0, Vec::new())?;
+            let wanted = Wanted::of(folder.experiment())?;
+            write_report(folder, wanted)?;
             write_authors_columns(&self.out, folder)?;
             judged.push(Judged::of(folder, self.trials)?);
         }

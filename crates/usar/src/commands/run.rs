@@ -207,7 +207,7 @@ fn print(out: &mut dyn Write, [scenario, policy]: [&str; 2], record: &TrialRecor
         0 => "-".to_owned(),
         _ => format!("{:.2}", cost / f64::from(rescued)),
     };
-    writeln!(out, "per rescuee  {} energy, {} HP (percent points)", per(record.energy()), per(record.hp()))?;
+    writeln!(out, "per rescuee  {} energy, {} HP (points)", per(record.energy()), per(record.hp()))?;
     let (waiting, stall) = (record.waiting_s(), record.longest_stall_s());
     writeln!(
         out,

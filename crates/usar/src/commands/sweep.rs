@@ -211,7 +211,7 @@ fn footnote(folder: &Folder) -> String {
         _ => format!("\n{failed} trials failed, {missing} are missing: these are not in the means"),
     };
     format!(
-        "mean ± sample standard deviation over {} paired trials (seeds {first} to {last}); energy and HP in percent points per rescuee delivered;\n\
+        "mean ± sample standard deviation over {} paired trials (seeds {first} to {last}); energy and HP in points per rescuee delivered;\n\
          totals include what robots spent outside a group, on their way to rest{gaps}",
         experiment.trials,
     )

@@ -42,10 +42,20 @@ fn comparisons_are_paired_and_say_what_they_stand_on() {
         (&"RNE".into(), &"DIS".into(), &6.into())
     );
     assert!((comparisons[0]["difference"].as_f64().unwrap() - mean).abs() < 1e-9);
+    let variance = |values: &[f64]| {
+        let mean = values.iter().sum::<f64>() / values.len() as f64;
+        values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / (values.len() - 1) as f64
+    };
+    let differences: Vec<f64> = rne.iter().zip(&dis).map(|(a, b)| a - b).collect();
+    let pairing = (variance(&rne) + variance(&dis)) / variance(&differences);
+    assert!((comparisons[0]["pairing"].as_f64().unwrap() / pairing - 1.0).abs() < 1e-9);
     let [low, high] = [0, 1].map(|i: usize| comparisons[0]["interval"][i].as_f64().unwrap());
     assert!(low <= mean && mean <= high);
     let text = succeeds(&usar(here, &["compare", "results/paper"]));
-    assert!(text.contains("Holm's correction over the 30 comparisons above"), "{text}");
+    assert!(text.contains("Holm's correction over the 6 comparisons above"), "{text}");
+    let all = succeeds(&usar(here, &["compare", "results/paper", "--metric", "all", "--json"]));
+    let all: Value = serde_json::from_str(&all).unwrap();
+    assert!(all["comparisons"].as_array().unwrap().len() > 100, "every metric, every pair of policies");
     assert!(text.contains("in which the metric is not defined"), "{text}");
     assert!(!text.contains("NaN") && !text.contains("inf"), "{text}");
     assert_eq!(text, succeeds(&usar(here, &["compare", "results/paper"])), "the bootstrap is seeded");
@@ -207,4 +217,40 @@ fn a_sweep_file_names_its_metrics_its_baseline_and_which_differences_matter() {
         &["sweep", "asked.ron"],
         &["asked.ron: margins: distance: must be a number above 0, found -1"],
     );
+}
+
+#[test]
+fn a_sweep_with_axes_says_how_differences_change_along_them() {
+    let folder = place();
+    let here = folder.path();
+    succeeds(&usar(here, &["sweep", "grid.ron", "--set", "duration_s=120", "--trials", "4", "--quiet"]));
+    let told = succeeds(&usar(
+        here,
+        &["compare", "results/grid", "--metric", "distance", "--baseline", "DIS", "--json"],
+    ));
+    let told: Value = serde_json::from_str(&told).unwrap();
+    let interactions = told["interactions"].as_array().unwrap();
+    // Two axes of two values: each value but the first, at both values of the other axis, for each policy but the baseline.
+    let policies = told["comparisons"].as_array().unwrap().len() / 4;
+    assert_eq!(interactions.len(), 4 * policies);
+    let results = here.join("results/grid");
+    let (trials, at) = (rows(&results, "trials.csv"), column(&results, "distance_m"));
+    let header = csv::Reader::from_path(results.join("trials.csv")).unwrap().headers().unwrap().clone();
+    let [case, method, trial] =
+        ["case", "method", "trial"].map(|name| header.iter().position(|h| h == name).unwrap());
+    let value = |number: &Value, policy: &str, number_of: usize| -> f64 {
+        let is_it = |row: &&csv::StringRecord| {
+            row[case] == number.to_string() && &row[method] == policy && row[trial] == number_of.to_string()
+        };
+        trials.iter().find(is_it).unwrap()[at].parse().unwrap()
+    };
+    for one in interactions {
+        let (a, b) = (one["a"].as_str().unwrap(), one["b"].as_str().unwrap());
+        let difference = |at: &str, trial| value(&one[at], a, trial) - value(&one[at], b, trial);
+        let change =
+            (1..=4).map(|trial| difference("case", trial) - difference("reference", trial)).sum::<f64>()
+                / 4.0;
+        assert!((one["change"].as_f64().unwrap() - change).abs() < 1e-6, "{one}");
+        assert!(one["in_words"].as_str().unwrap().contains(&format!("{a} less {b} goes from")), "{one}");
+    }
 }

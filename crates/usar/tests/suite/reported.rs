@@ -17,32 +17,35 @@ fn a_report_is_one_file_with_figures_and_the_numbers_behind_them() {
     succeeds(&usar(here, &["sweep", "grid.ron", "--set", "duration_s=120", "--trials", "3"]));
     assert_eq!(succeeds(&usar(here, &["report", "results/grid"])), "results/grid/report.html\n");
     let results = here.join("results/grid");
-    let page = std::fs::read_to_string(results.join("report.html")).unwrap();
+    let read = |name: &str| std::fs::read_to_string(results.join(name)).unwrap();
+    let (overview, page) = (read("report.html"), read("plots/case-1.html"));
     // Nothing is fetched: the only addresses are names of formats.
-    for source in ["src=", "@import", "url(\"http", "<script", "<link"] {
-        assert!(!page.contains(source), "{source}");
+    for page in [&overview, &page] {
+        for source in ["src=", "@import", "url(\"http", "<script", "<link"] {
+            assert!(!page.contains(source), "{source}");
+        }
+        let others = page.replace("http://www.w3.org/", "");
+        assert!(!others.contains("http:") && !page.contains("https:"));
+        assert!(!page.contains("NaN") && !page.contains(">inf"));
     }
-    assert!(page.replace("http://www.w3.org/", "").matches("http:").count() == 0 && !page.contains("https:"));
-    assert!(!page.contains("NaN") && !page.contains(">inf"));
     let plots = files(&results.join("plots"));
-    for name in [
-        "rescuees",
-        "energy-per-rescuee",
-        "hp-per-rescuee",
-        "waiting-and-deadlocks",
-        "costs",
-        "differences",
-        "rescuees-over-time",
-        "groups",
-        "levels",
-        "trust",
-        "along-roles-carrier-speed_mps",
-        "along-conflicts-priority",
-    ] {
+    let is_drawn = |page: &str, prefix: &str, name: &str| {
         assert!(page.contains(&format!("<figure id=\"{name}\">")), "{name}");
-        assert!(plots[&format!("{name}.svg")].starts_with(b"<svg viewBox="), "{name}");
-        let table = csv::Reader::from_reader(&*plots[&format!("{name}.csv")]).records().count();
+        assert!(plots[&format!("{prefix}{name}.svg")].starts_with(b"<svg viewBox="), "{name}");
+        assert!(page.contains(&format!("{prefix}{name}.csv\">")), "{name}");
+        let table = csv::Reader::from_reader(&*plots[&format!("{prefix}{name}.csv")]).records().count();
         assert!(table > 0, "{name}");
+    };
+    for name in ["along-roles-carrier-speed_mps", "along-conflicts-priority"] {
+        is_drawn(&overview, "", name);
+    }
+    for name in
+        ["rescuees", "energy-per-rescuee", "hp-per-rescuee", "waiting-and-deadlocks", "costs", "differences"]
+    {
+        is_drawn(&page, "case-1-", name);
+    }
+    for name in ["rescuees-over-time", "groups", "levels", "trust"] {
+        is_drawn(&page, "case-1-", name);
     }
     for words in [
         "sum",
@@ -54,11 +57,29 @@ fn a_report_is_one_file_with_figures_and_the_numbers_behind_them() {
     ] {
         assert!(page.contains(words), "{words}");
     }
-    assert!(page.contains("<figure id=\"map\"") && plots["map.svg"].starts_with(b"<svg xmlns"));
+    assert!(
+        page.contains("<a href=\"../report.html\">")
+            && page.contains("exploratory comparisons, not corrected")
+    );
+    for case in 1..=4 {
+        assert!(overview.contains(&format!("<a href=\"plots/case-{case}.html\">")), "{case}");
+    }
+    assert!(overview.contains("Does it depend on the scenario?") && overview.contains("faster carriers"));
+    assert!(page.contains("<figure id=\"map\"") && plots["case-1-map.svg"].starts_with(b"<svg xmlns"));
     assert!(!page.contains("Ways of all robots"));
     succeeds(&usar(here, &["report", "results/grid"]));
-    assert_eq!(page, std::fs::read_to_string(results.join("report.html")).unwrap(), "the same bytes again");
+    assert_eq!(overview, read("report.html"), "the same bytes again");
+    assert_eq!(page, read("plots/case-1.html"), "the same bytes again");
+    let more = ["--case", "3", "--title", "Of <speed>", "--metric", "distance", "--baseline", "DIS"];
+    succeeds(&usar(here, &[&["report", "results/grid"], &more[..]].concat()));
+    assert!(!results.join("plots/case-1.html").exists());
+    let third = read("plots/case-3.html");
+    assert!(third.contains("<h1>Of &#60;speed&#62;</h1>") && third.contains("distance travelled"));
+    let said = succeeds(&usar(here, &[&["compare", "results/grid"], &more[4..]].concat()));
+    let sentence = said.lines().find(|line| line.contains("distance travelled: ")).unwrap();
+    assert!(read("report.html").contains("distance travelled") && !sentence.is_empty());
     refused(here, 2, &["report", "results/grid", "--case", "5"], &["--case: must be from 1 to 4, found 5"]);
+    refused(here, 2, &["report", "results/grid", "--metric", "luck"], &["unknown metric \"luck\""]);
     // The sweep still goes on in a folder with a report.
     succeeds(&usar(here, &["sweep", "grid.ron", "--set", "duration_s=120", "--trials", "3"]));
 }

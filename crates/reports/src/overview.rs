@@ -1,0 +1,94 @@
+//! The first page of the report of a sweep with several cases: what each case says, and how differences change from one to another.
+
+use askama::Template;
+use experiments::Failure;
+use experiments::comparison::{Comparison, Interaction, LEVEL, answer, interactions};
+use experiments::sweep::disk::{PLOTS, REPORT};
+use experiments::sweep::folder::Folder;
+
+use crate::drawing::Figure;
+use crate::figures::along_axes;
+use crate::page::{Files, Wanted};
+
+#[derive(Template)]
+#[template(path = "overview.html")]
+struct Overview<'a> {
+    title: &'a str,
+    description: &'a str,
+    counts: String,
+    is_complete: bool,
+    cases: Vec<Line>,
+    /// How many of them have a page.
+    pages: usize,
+    /// Changes that are shown.
+    found: Vec<&'a str>,
+    /// Changes that are not.
+    open: Vec<&'a str>,
+    figures: &'a [Figure],
+}
+
+/// A case in a line.
+struct Line {
+    place: String,
+    /// Its page, from the overview on; empty for none.
+    page: String,
+    answer: Option<String>,
+}
+
+pub(crate) fn write_overview(
+    folder: &Folder,
+    wanted: &Wanted,
+    comparisons: &[Comparison],
+    pages: &[usize],
+    files: &mut Files,
+) -> Result<(), Failure> {
+    let experiment = folder.experiment();
+    let changes = if experiment.policies.len() > 1 {
+        interactions(folder, &wanted.asked.metrics, wanted.asked.choice())?
+    } else {
+        Vec::new()
+    };
+    let sentences = |is_wanted: bool| -> Vec<&str> {
+        let is_shown = |change: &&Interaction| {
+            let is_clear = change.interval.is_some_and(|[low, high]| low > 0.0 || high < 0.0);
+            (is_clear && change.p_holm.is_some_and(|p| p < LEVEL)) == is_wanted
+        };
+        changes.iter().filter(is_shown).map(|change| change.in_words.as_str()).collect()
+    };
+    let line = |case: usize| {
+        let here: Vec<&Comparison> =
+            comparisons.iter().filter(|comparison| comparison.case == case + 1).collect();
+        let page =
+            if pages.contains(&case) { format!("{PLOTS}/case-{}.html", case + 1) } else { String::new() };
+        Line {
+            place: experiment.describe(&experiment.cases[case]).trim_end_matches(": ").to_owned(),
+            page,
+            answer: wanted.asked.metrics.first().and_then(|metric| answer(folder, case, *metric, &here)),
+        }
+    };
+    let figures = along_axes(folder)?;
+    let failed = folder.results().values().filter(|measured| measured.metrics.is_none()).count();
+    let overview = Overview {
+        title: wanted.title.as_deref().unwrap_or(&experiment.name),
+        description: &experiment.base.description,
+        counts: format!(
+            "{} cases, {} policies, {} paired trials of each were asked for: {} finished, {failed} failed.",
+            experiment.cases.len(),
+            experiment.policies.len(),
+            experiment.trials,
+            folder.results().len() - failed,
+        ),
+        is_complete: folder.manifest().is_complete,
+        cases: (0..experiment.cases.len()).map(line).collect(),
+        pages: pages.len(),
+        found: sentences(true),
+        open: sentences(false),
+        figures: &figures,
+    };
+    files.push((REPORT.to_owned(), overview.render().map_err(Failure::run)?.into_bytes()));
+    for Figure { name, svg, csv, .. } in figures {
+        files.push((format!("{PLOTS}/{name}.svg"), svg.into_bytes()));
+        files.push((format!("{PLOTS}/{name}.csv"), csv.into_bytes()));
+    }
+    Ok(())
+}
