@@ -139,7 +139,16 @@ impl Manifest {
         compare("program", program(self), program(other));
         compare("policies", self.policies.join(", "), other.policies.join(", "));
         let axes = |m: &Self| {
-            let axis = |axis: &Axis| format!("{} [{}]", axis.path, axis.values.join(", "));
+            let set = |axis: &Axis, value: &String| {
+                let settings =
+                    axis.settings(value).into_iter().map(|(path, value)| format!("{path}={value}"));
+                format!("{value} ({})", settings.collect::<Vec<_>>().join(", "))
+            };
+            let values = |axis: &Axis| match axis.variants.is_empty() {
+                true => axis.values.join(", "),
+                false => axis.values.iter().map(|value| set(axis, value)).collect::<Vec<_>>().join(", "),
+            };
+            let axis = |axis: &Axis| format!("{} [{}]", axis.path, values(axis));
             if m.axes.is_empty() {
                 "none".into()
             } else {

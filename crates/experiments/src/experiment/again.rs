@@ -14,7 +14,8 @@ impl Experiment {
             let value = value.split_whitespace().collect::<Vec<_>>().join(" ");
             format!("--set '{}={}'", path, value.replace('\'', "'\\''"))
         };
-        let axes = axes.map(|(axis, value)| set(&axis.path, value));
+        let settings = axes.flat_map(|(axis, value)| axis.settings(value));
+        let axes = settings.map(|(path, value)| set(path, value));
         let quoted = match policy.plain() {
             plain if plain == policy.name => plain,
             plain => format!("'{}'", plain.replace('\'', "'\\''")),
@@ -38,9 +39,18 @@ impl Experiment {
         };
         let line =
             |axis: &Axis| Ok(format!("        {}: [{}],\n", quoted(&axis.path)?, axis.values.join(", ")));
-        let axes = self.axes.iter().map(line).collect::<Result<Vec<_>, Failure>>()?.concat();
+        let (of_variants, of_fields): (Vec<&Axis>, Vec<&Axis>) =
+            self.axes.iter().partition(|axis| !axis.variants.is_empty());
+        let axes = of_fields.into_iter().map(line).collect::<Result<Vec<_>, Failure>>()?.concat();
+        let variant = |(name, settings): (&String, &Vec<(String, String)>)| {
+            let settings = settings.iter().map(|(path, value)| Ok(format!("{}: {value}", quoted(path)?)));
+            let settings = settings.collect::<Result<Vec<_>, Failure>>()?.join(", ");
+            Ok(format!("        {}: {{{settings}}},\n", quoted(name)?))
+        };
+        let named = of_variants.into_iter().flat_map(|axis| axis.values.iter().zip(&axis.variants));
+        let variants = named.map(variant).collect::<Result<Vec<_>, Failure>>()?.concat();
         Ok(format!(
-            "(\n    name: {},\n    scenario: {},\n    policies: [{}],\n    trials: {},\n    {seeds},\n    lean: {},\n    axes: {{\n{axes}    }},\n)\n",
+            "(\n    name: {},\n    scenario: {},\n    policies: [{}],\n    trials: {},\n    {seeds},\n    lean: {},\n    variants: {{\n{variants}    }},\n    axes: {{\n{axes}    }},\n)\n",
             quoted(&self.name)?,
             quoted(scenario)?,
             policies.join(", "),

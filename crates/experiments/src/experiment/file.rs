@@ -51,6 +51,9 @@ pub(super) struct SweepFile {
     /// What is expected of the outcome: see `usar test --help`.
     #[serde(default)]
     pub expect: Vec<String>,
+    /// Scenarios that differ in several fields at once, each by a name with what it sets: an axis of its own, before the others.
+    #[serde(default)]
+    pub variants: Map<Map<Box<RawValue>>>,
     /// Fields and the values that each takes: the full grid is run.
     #[serde(default)]
     pub axes: Map<Vec<Box<RawValue>>>,

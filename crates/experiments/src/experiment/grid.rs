@@ -13,10 +13,35 @@ use crate::run::Driver;
 /// A field of the scenario and the values that it takes, in RON.
 #[derive(Debug, Clone, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct Axis {
-    /// Path of the field.
+    /// Path of the field; [`VARIANT`] for an axis of variants.
     pub path: String,
-    /// Its values.
+    /// Its values; the names of variants.
     pub values: Vec<String>,
+    /// What each variant sets: paths and values in RON. None for an axis of one field.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub variants: Vec<Vec<(String, String)>>,
+}
+
+/// What an axis of variants is called.
+pub const VARIANT: &str = "variant";
+
+impl Axis {
+    /// What one of its values sets: paths and values in RON.
+    #[must_use]
+    pub fn settings<'a>(&'a self, value: &'a str) -> Vec<(&'a str, &'a str)> {
+        if self.variants.is_empty() {
+            return vec![(&self.path, value)];
+        }
+        let place = self.values.iter().position(|name| name == value);
+        let settings = place.into_iter().flat_map(|place| &self.variants[place]);
+        settings.map(|(path, value)| (path.as_str(), value.as_str())).collect()
+    }
+
+    /// The fields that it sets, each once for each value that sets it.
+    pub fn paths(&self) -> impl Iterator<Item = &str> {
+        let own = self.variants.is_empty().then_some(self.path.as_str());
+        own.into_iter().chain(self.variants.iter().flatten().map(|(path, _)| path.as_str()))
+    }
 }
 
 /// One point of the grid that the axes span.
@@ -95,7 +120,9 @@ impl Grid<'_> {
         let Some(axis) = self.axes.get(values.len()) else { return self.add_case(file, values) };
         for value in &axis.values {
             let mut file = file.clone();
-            file.set(&axis.path, value).map_err(|error| Failure::input(format!("axes: {error}")))?;
+            for (path, value) in axis.settings(value) {
+                file.set(path, value).map_err(|error| Failure::input(format!("axes: {error}")))?;
+            }
             values.push(value.clone());
             self.add(file, values)?;
             values.pop();

@@ -19,7 +19,7 @@ use usar_sim::scenario::{SampledCounts, Scenario, check_text, read_text};
 
 pub use asks::Asks;
 pub use cost::{Cost, check_cost};
-pub use grid::{Axis, Case};
+pub use grid::{Axis, Case, VARIANT};
 pub use policy::{PolicySpec, registry, set_registry, split_list};
 pub use read::{companion, defaults, with_settings};
 
@@ -161,8 +161,8 @@ impl Experiment {
             let here = canonical(&parts.base, path);
             set.into_iter().any(|path| canonical(&parts.base, path) == here)
         };
-        if let Some(axis) = parts.axes.iter().find(|axis| is_set(&axis.path)) {
-            return Err(Failure::input(format!("--set: {} is an axis of this sweep", axis.path)));
+        if let Some(path) = parts.axes.iter().flat_map(Axis::paths).find(|path| is_set(path)) {
+            return Err(Failure::input(format!("--set: {path} is on an axis of this sweep")));
         }
         if let Some(policies) = &overrides.policies {
             parts.policies.clone_from(policies);

@@ -10,7 +10,7 @@ use usar_sim::scenario::{Problem, Scenario, ScenarioFile, parse_ron, read_text};
 use xxhash_rust::xxh3::xxh3_128;
 
 use super::file::{Map, SweepFile};
-use super::grid::check_bytes;
+use super::grid::{VARIANT, check_bytes};
 use super::policy::{PolicySpec, registry};
 use super::{Axis, Parts, Program, Seeds};
 use crate::failure::Failure;
@@ -128,7 +128,8 @@ pub(super) fn from_sweep_file(text: String, path: &Path) -> Result<(Parts, Vec<R
         set.set(field, value.trim().get_ron()).map_err(|error| bad(&place, &error))?;
     }
     let base = checked(set, &format!("{}: set: ", path.display()))?;
-    let axes = axes(file.axes, &base, &bad)?;
+    let variants = variants(file.variants, &base, &bad)?;
+    let axes = axes(file.axes, &base, (variants, &bad))?;
     let readings = readings(file.readings, &bad)?;
     let policies = file.policies.unwrap_or_else(|| vec!["RNE".to_owned()]);
     for (i, policy) in policies.iter().enumerate() {
@@ -172,8 +173,12 @@ pub(super) fn canonical(scenario: &Scenario, path: &str) -> String {
 type Bad<'a> = dyn Fn(&str, &dyn std::fmt::Display) -> Failure + 'a;
 
 /// Checks each value of each axis alone, so that a wrong one is named with its line.
-fn axes(map: Map<Vec<Box<ron::value::RawValue>>>, base: &Scenario, bad: &Bad) -> Result<Vec<Axis>, Failure> {
-    let mut axes = Vec::new();
+fn axes(
+    map: Map<Vec<Box<ron::value::RawValue>>>,
+    base: &Scenario,
+    (variants, bad): (Option<Axis>, &Bad),
+) -> Result<Vec<Axis>, Failure> {
+    let mut axes: Vec<Axis> = variants.into_iter().collect();
     for (path, values) in map.0 {
         let field = format!("axes.{path:?}");
         let values: Vec<String> = values.iter().map(|value| value.trim().get_ron().to_owned()).collect();
@@ -192,8 +197,10 @@ fn axes(map: Map<Vec<Box<ron::value::RawValue>>>, base: &Scenario, bad: &Bad) ->
         };
         let here = canonical(base, &path);
         let overlaps = |axis: &&Axis| {
-            let there = canonical(base, &axis.path);
-            holds(&there, &here) || holds(&here, &there)
+            axis.paths().any(|path| {
+                let there = canonical(base, path);
+                holds(&there, &here) || holds(&here, &there)
+            })
         };
         if let Some(Axis { path: other, .. }) = axes.iter().find(overlaps) {
             return Err(bad(&field, &format!("must not be a part of another axis, found {other}")));
@@ -208,9 +215,55 @@ fn axes(map: Map<Vec<Box<ron::value::RawValue>>>, base: &Scenario, bad: &Bad) ->
                 return Err(bad(&entry, &format!("must not be listed twice, found {value}")));
             }
         }
-        axes.push(Axis { path, values });
+        axes.push(Axis { path, values, variants: Vec::new() });
     }
     Ok(axes)
+}
+
+/// Checks each variant alone.
+fn variants(
+    map: Map<Map<Box<ron::value::RawValue>>>,
+    base: &Scenario,
+    bad: &Bad,
+) -> Result<Option<Axis>, Failure> {
+    if map.0.is_empty() {
+        return Ok(None);
+    }
+    if !limits::AXIS_VALUES.allows(map.0.len()) {
+        let most = limits::AXIS_VALUES.most;
+        return Err(bad("variants", &format!("must have at most {most} entries, found {}", map.0.len())));
+    }
+    check_bytes(base, map.0.len())?;
+    let mut axis = Axis { path: VARIANT.to_owned(), values: Vec::new(), variants: Vec::new() };
+    let mut files = BTreeSet::new();
+    for (name, settings) in map.0 {
+        let field = format!("variants.{name:?}");
+        if name.trim().is_empty()
+            || name.chars().any(char::is_control)
+            || name.starts_with(['=', '+', '-', '@'])
+        {
+            return Err(bad(
+                &field,
+                &"must have a name of visible characters that does not begin like a formula",
+            ));
+        }
+        let mut file: ScenarioFile = (**base).clone();
+        let mut set = Vec::new();
+        for (path, value) in settings.0 {
+            let (entry, value) = (format!("{field}.{path:?}"), value.trim().get_ron().to_owned());
+            if !decides(&path) {
+                return Err(bad(&entry, &"decides no number of a trial, so that no variant can set it"));
+            }
+            file.set(&path, &value).map_err(|error| bad(&entry, &error))?;
+            set.push((path, value));
+        }
+        if !files.insert(xxh3_128(ron::to_string(&file).map_err(Failure::input)?.as_bytes())) {
+            return Err(bad(&field, &"is the same scenario as a variant before it"));
+        }
+        axis.values.push(name);
+        axis.variants.push(set);
+    }
+    Ok(Some(axis))
 }
 
 /// An option of RNE with its values.

@@ -43,6 +43,8 @@ fn a_sweep_writes_the_same_bytes_on_any_number_of_threads() {
     let names: Vec<&str> = one.1.keys().map(String::as_str).collect();
     let expected = [
         ".lock",
+        "columns.md",
+        "datapackage.json",
         "experiment.ron",
         "groups.csv",
         "hashes.csv",
