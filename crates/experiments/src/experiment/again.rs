@@ -40,12 +40,12 @@ impl Experiment {
             |axis: &Axis| Ok(format!("        {}: [{}],\n", quoted(&axis.path)?, axis.values.join(", ")));
         let axes = self.axes.iter().map(line).collect::<Result<Vec<_>, Failure>>()?.concat();
         Ok(format!(
-            "(\n    name: {},\n    scenario: {},\n    policies: [{}],\n    trials: {},\n    {seeds},\n    lean: {},\n    axes: {{\n{axes}    }},\n)\n",
+            "(\n    name: {},\n    scenario: {},\n    policies: [{}],\n    trials: {},\n    {seeds},\n    keep: {},\n    axes: {{\n{axes}    }},\n)\n",
             quoted(&self.name)?,
             quoted(scenario)?,
             policies.join(", "),
             self.trials,
-            self.is_lean,
+            self.keep.in_files(),
         ))
     }
 }

@@ -3,6 +3,7 @@
 mod asked;
 pub(crate) mod calibrate;
 pub(crate) mod check;
+mod chosen;
 pub(crate) mod compare;
 pub(crate) mod draw;
 mod drawn;
