@@ -16,6 +16,7 @@ pub mod merge;
 mod missing;
 pub mod ours;
 mod parquet;
+pub mod progress;
 mod rows;
 mod sizes;
 mod store;
