@@ -15,6 +15,10 @@ fn main() {
     let commit = git(&["describe", "--always", "--dirty", "--abbrev=40", "--exclude=*"]);
     println!("cargo::rustc-env=USAR_COMMIT={}", commit.as_deref().unwrap_or("unknown"));
     println!("cargo::rustc-env=USAR_SOURCE={:016x}", source_hash(Path::new("../..")));
+    let compiler =
+        std::env::var("RUSTC").ok().and_then(|rustc| Command::new(rustc).arg("--version").output().ok());
+    let compiler = compiler.map(|output| String::from_utf8_lossy(&output.stdout).trim().to_owned());
+    println!("cargo::rustc-env=USAR_COMPILER={}", compiler.as_deref().unwrap_or("unknown"));
     if let Some(folder) = git(&["rev-parse", "--absolute-git-dir"]) {
         println!("cargo::rerun-if-changed={folder}/logs/HEAD");
     }

@@ -1,16 +1,19 @@
 //! Where results come from: enough to make them again, and to refuse to mix them with others.
 
 use ron_fields::Fields;
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Deserializer, Serialize};
 use usar_sim::physics::ENGINE_FEATURES;
 use xxhash_rust::xxh3::xxh3_128;
 
-use crate::experiment::{Axis, Experiment, Seeds, Shard};
+use crate::experiment::{Axis, Experiment, Keep, Seeds, Shard};
 use crate::failure::Failure;
 use crate::files::FileHash;
 
 /// Version of the folder's layout.
-pub const SCHEMA_VERSION: u32 = 4;
+pub const SCHEMA_VERSION: u32 = 5;
+
+/// The first version that can be read, but not gone on with. Its shards were dealt otherwise, so that these cannot.
+const READABLE_VERSION: u32 = 4;
 
 /// Trials that a sweep may have for each case and policy.
 const MAX_TRIALS: u32 = 1_000_000;
@@ -44,8 +47,9 @@ pub struct Manifest {
     pub seeds: Seeds,
     /// Whether every invariant was checked at every step.
     pub is_checked: bool,
-    /// Whether the large tables and the hash chains were left out.
-    pub is_lean: bool,
+    /// What is kept of each trial.
+    #[serde(alias = "is_lean", deserialize_with = "keep_of")]
+    pub keep: Keep,
     /// Which part of the sweep this is, if it is not the whole.
     pub shard: Option<Shard>,
     /// Whether all trials are there.
@@ -73,7 +77,7 @@ impl Manifest {
             trials: experiment.trials,
             seeds: experiment.seeds.clone(),
             is_checked: experiment.is_checked,
-            is_lean: experiment.is_lean,
+            keep: experiment.keep,
             shard,
             is_complete: false,
             files,
@@ -110,6 +114,13 @@ impl Manifest {
         }
         manifest.checksum.clear();
         Ok(manifest)
+    }
+
+    /// Whether this program can read the folder.
+    #[must_use]
+    pub fn is_readable(&self) -> bool {
+        let is_former = self.schema_version == READABLE_VERSION && self.shard.is_none();
+        is_former || self.schema_version == SCHEMA_VERSION
     }
 
     /// The manifest as it was before the first trial.
@@ -166,9 +177,24 @@ impl Manifest {
             compare("seeds", seeds(self), seeds(other));
         }
         compare("--check", self.is_checked.to_string(), other.is_checked.to_string());
-        compare("lean", self.is_lean.to_string(), other.is_lean.to_string());
+        compare("--keep", self.keep.name().to_owned(), other.keep.name().to_owned());
         differences
     }
+}
+
+/// What is kept, or whether little is, as version 4 has it.
+fn keep_of<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Keep, D::Error> {
+    #[derive(Deserialize)]
+    #[serde(untagged)]
+    enum Either {
+        Now(Keep),
+        Former(bool),
+    }
+    Ok(match Either::deserialize(deserializer)? {
+        Either::Now(keep) => keep,
+        Either::Former(true) => Keep::Rounds,
+        Either::Former(false) => Keep::Groups,
+    })
 }
 
 /// The fields in which two resolved scenarios differ, one sentence each.

@@ -20,6 +20,9 @@ pub(crate) struct Decisions {
 pub(crate) fn decisions(folder: &mut Folder, case: usize) -> Result<Option<Decisions>, Failure> {
     let policies: Vec<String> =
         folder.experiment().policies.iter().map(|policy| policy.label.clone()).collect();
+    if !folder.experiment().keep.has_records() {
+        return Ok(None);
+    }
     let trials = folder.experiment().trials;
     let is_finished = |trial: u32| {
         (0..policies.len()).all(|policy| {

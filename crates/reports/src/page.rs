@@ -207,17 +207,18 @@ fn page<'a>(
 ) -> Page<'a> {
     let (experiment, manifest) = (folder.experiment(), folder.manifest());
     let failed = folder.results().values().filter(|measured| measured.metrics.is_none()).count();
-    let asked = experiment.keys(manifest.shard).count();
+    let asked = experiment.count(manifest.shard);
     let seeds = match &experiment.seeds {
         Seeds::From(first) => format!("{first} to {}", experiment.seed(experiment.trials)),
         Seeds::Listed(list) => format!("{list:?}"),
     };
+    let part = manifest.shard.map_or(String::new(), |_| format!(", dealt out: this is {}", manifest.part()));
     let facts = vec![
         (
             "program",
             format!("usar {}, commit {}, source {}", manifest.version, manifest.commit, manifest.source),
         ),
-        ("trials", format!("{} for each case and policy, seeds {seeds}", experiment.trials)),
+        ("trials", format!("{} for each case and policy, seeds {seeds}{part}", experiment.trials)),
         ("policies", manifest.policies.join(", ")),
         ("checked", if manifest.is_checked { "every invariant at every step".into() } else { "no".into() }),
     ];
@@ -237,7 +238,7 @@ fn page<'a>(
         finished: folder.results().len() - failed,
         failed,
         missing: asked - folder.results().len().min(asked),
-        trials: experiment.trials,
+        trials: folder.trials_of(case) as u32,
         labels: experiment.policies.iter().map(|policy| policy.label.as_str()).collect(),
         answer: None,
         is_declared: false,
@@ -312,7 +313,7 @@ fn summary(folder: &Folder, case: usize) -> Vec<Vec<String>> {
         let moments = Moments::of(&values);
         let Some(mean) = moments.mean else { return "-".to_owned() };
         let sd = moments.sd.map_or(String::new(), |sd| format!(" ± {}", short(sd)));
-        let partly = if values.len() < folder.experiment().trials as usize {
+        let partly = if values.len() < folder.trials_of(case) {
             format!(" (n = {})", values.len())
         } else {
             String::new()

@@ -12,8 +12,8 @@ use terminal_size::{Width, terminal_size_of};
 
 use crate::commands::{
     calibrate, check, choose, compare, draw, estimate, export, fork, group, list, merge, new, oracle,
-    readings, regret, render, report, reproduce, resolve, run, schema, sorting, sweep, test, trust, verify,
-    view, why,
+    readings, regret, render, report, reproduce, resolve, run, schema, sorting, status, submit, sweep, test,
+    trust, verify, view, why,
 };
 use crate::printable::Printable;
 use crate::running::{status_of_signal, tell};
@@ -35,6 +35,7 @@ Examples:
   usar draw scenarios/paper.ron --out map.svg          the world before anything runs
   usar render scenarios/paper.ron --at 120 --out frame.png
   usar estimate scenarios/paper.ron --trials 1000      how long, and how much disk?
+  usar submit scenarios/sweeps/energy.ron --slurm      on a cluster; `usar status` tells how it goes
   usar verify results/paper                            do the numbers come out again?
   usar trust --weights 6,4,2 --from 86,120,30 --to 20,30,10
   usar group robots.csv --policy RNE
@@ -56,6 +57,8 @@ enum Command {
     Test(test::Arguments),
     Estimate(estimate::Arguments),
     Merge(merge::Arguments),
+    Submit(submit::Arguments),
+    Status(status::Arguments),
     Compare(compare::Arguments),
     Report(report::Arguments),
     Reproduce(reproduce::Arguments),
@@ -141,6 +144,8 @@ impl Command {
             Self::Test(arguments) => arguments.execute(out),
             Self::Estimate(arguments) => arguments.execute(out),
             Self::Merge(arguments) => arguments.execute(out),
+            Self::Submit(arguments) => arguments.execute(out),
+            Self::Status(arguments) => arguments.execute(out),
             Self::Compare(arguments) => arguments.execute(out),
             Self::Reproduce(arguments) => arguments.execute(out),
             Self::Report(arguments) => arguments.execute(out),

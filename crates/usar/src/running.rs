@@ -10,6 +10,7 @@ use experiments::Failure;
 use experiments::experiment::Shard;
 use experiments::run::Limits;
 use experiments::sweep::folder::Folder;
+use experiments::sweep::host::{HostRun, Hosts};
 use experiments::sweep::{missing, run_trials};
 use indicatif::{HumanDuration, ProgressBar, ProgressStyle};
 use signal_hook::consts::{SIGINT, SIGTERM};
@@ -94,7 +95,7 @@ pub(crate) fn run_missing(
     limits: Limits,
     quiet: bool,
 ) -> Result<(), Failure> {
-    let (all, missing) = (folder.experiment().keys(shard).count(), missing(folder, shard));
+    let (all, missing) = (folder.experiment().count(shard), missing(folder, shard));
     if !quiet && missing.len() < all {
         tell(format_args!("{} of {all} trials are there already", all - missing.len()));
     }
@@ -102,13 +103,19 @@ pub(crate) fn run_missing(
         return Ok(());
     }
     let progress = progress_bar(missing.len(), "trials", limits.jobs, quiet);
+    let (mut host, begun) = (HostRun::new(folder, limits.jobs), Instant::now());
     let ran = run_trials(folder, missing, limits, &STOP, |outcome| {
         if let Some(failure) = outcome.failure() {
             progress.suspend(|| tell(failure));
         }
+        host.trials += 1;
         progress.inc(1);
     });
     progress.finish_and_clear();
+    host.seconds = begun.elapsed().as_secs_f64();
+    if host.trials > 0 {
+        Hosts::add(folder.path(), [host])?;
+    }
     ran
 }
 

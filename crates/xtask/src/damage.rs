@@ -1,6 +1,7 @@
 //! Folders of results that are damaged: by flipped bits, and by somebody who forges numbers and computes every checksum anew.
 
 use std::collections::BTreeMap;
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
@@ -10,11 +11,12 @@ use experiments::run::{Limits, Outcome, TrialKey};
 use experiments::sweep::audit::{difference, strange_files};
 use experiments::sweep::folder::{Folder, Opening};
 use experiments::sweep::{missing, run_trials};
+use flate2::{Compression, GzBuilder};
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 use xxhash_rust::xxh3::{xxh3_64, xxh3_128};
 
-use crate::kills::files;
+use crate::kills::{files, journal};
 
 /// What became of damaged folders.
 #[derive(Debug, Default, PartialEq, Eq)]
@@ -51,8 +53,7 @@ impl Sound {
     /// Flips one bit of one file, again and again, and looks whether that is found and mended.
     pub fn flip(&self, times: u32, seed: u64) -> Report {
         let mut draws = ChaCha8Rng::seed_from_u64(seed);
-        let names: Vec<&String> =
-            self.forged.sound.keys().filter(|name| !name.starts_with(".lock")).collect();
+        let names: Vec<&String> = self.forged.sound.keys().collect();
         let mut report = Report::default();
         for _ in 0..times {
             self.forged.restore();
@@ -144,6 +145,19 @@ fn other_digit(text: &str, pick: u64) -> String {
     format!("{}{digit}{}", &text[..at], &text[at + 1..])
 }
 
+/// The journal of a finished sweep.
+const JOURNAL: &str = "journal.jsonl.gz";
+
+/// A gzip file without any fields in its header as a member of a journal: its header says how long it is and how many lines it
+/// has.
+fn with_head(gzip: Vec<u8>, lines: usize) -> Vec<u8> {
+    let mut head = vec![0x1f, 0x8b, 8, 4, 0, 0, 0, 0, 0, 0xff, 12, 0, b'U', b'S', 8, 0];
+    head.extend((gzip.len() as u32 + 14).to_le_bytes());
+    head.extend((lines as u32).to_le_bytes());
+    head.extend(&gzip[10..]);
+    head
+}
+
 /// A finished sweep's folder, and what was in it.
 pub struct Forged {
     folder: PathBuf,
@@ -172,8 +186,12 @@ impl Forged {
         self.restore();
         let text = change(self.text(name));
         assert!(text != self.text(name), "{name} is changed");
-        std::fs::write(self.folder.join(name), &text).unwrap();
-        let hash = format!("{:032x}", xxh3_128(text.as_bytes()));
+        self.bytes(name, text.as_bytes());
+    }
+
+    fn bytes(&self, name: &str, bytes: &[u8]) {
+        std::fs::write(self.folder.join(name), bytes).unwrap();
+        let hash = format!("{:032x}", xxh3_128(bytes));
         self.write_manifest(|manifest| {
             let listed = manifest.files.iter_mut().filter(|file| file.name == name);
             listed.for_each(|file| file.xxh3_128.clone_from(&hash));
@@ -182,7 +200,7 @@ impl Forged {
 
     /// Changes the line of the journal that has this in it, and every checksum.
     pub fn line(&self, with: &str, change: impl FnOnce(&mut String)) {
-        self.file("journal.jsonl", |text| {
+        self.journal(|text| {
             let line = text.lines().find(|line| line.contains(with)).unwrap();
             let (_, entry) = line.split_once(",\"trial\":").unwrap();
             let mut entry = entry.strip_suffix('}').unwrap().to_owned();
@@ -190,6 +208,15 @@ impl Forged {
             let sum = xxh3_64(entry.as_bytes());
             text.replace(line, &format!("{{\"xxh3_64\":\"{sum:016x}\",\"trial\":{entry}}}"))
         });
+    }
+
+    /// Changes the journal, and the manifest's checksums.
+    pub fn journal(&self, change: impl FnOnce(String) -> String) {
+        self.restore();
+        let text = change(journal(&self.folder));
+        let mut encoder = GzBuilder::new().write(Vec::new(), Compression::fast());
+        encoder.write_all(text.as_bytes()).unwrap();
+        self.bytes(JOURNAL, &with_head(encoder.finish().unwrap(), text.lines().count()));
     }
 
     /// Changes the manifest alone, and its checksum.

@@ -2,11 +2,13 @@
 //! left alone.
 
 use std::collections::BTreeMap;
+use std::io::Read;
 use std::os::unix::process::CommandExt;
 use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::Duration;
 
+use flate2::read::MultiGzDecoder;
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 
@@ -64,7 +66,7 @@ pub fn kill_sweeps(usar: &Path, arguments: &[&str], folder: &Path, kills: u32, l
 
 /// Number of finished trials in a folder's journal, each of which must stand there once.
 fn finished_trials(folder: &Path) -> usize {
-    let journal = std::fs::read_to_string(folder.join("journal.jsonl")).unwrap_or_default();
+    let journal = journal(folder);
     let whole = journal.rfind('\n').map_or("", |end| &journal[..end]);
     let mut ids: Vec<&str> =
         whole.lines().filter_map(|line| line.split("\"id\":\"").nth(1)?.get(..32)).collect();
@@ -75,6 +77,17 @@ fn finished_trials(folder: &Path) -> usize {
     count
 }
 
+/// The journal of a folder: as it grows, or of a sweep that is finished.
+pub fn journal(folder: &Path) -> String {
+    let mut text = String::new();
+    if let Ok(growing) = std::fs::read_to_string(folder.join("journal.jsonl")) {
+        text = growing;
+    } else if let Ok(finished) = std::fs::File::open(folder.join("journal.jsonl.gz")) {
+        MultiGzDecoder::new(finished).read_to_string(&mut text).expect("a whole file");
+    }
+    text
+}
+
 fn assert_same(killed: &BTreeMap<String, Vec<u8>>, alone: &BTreeMap<String, Vec<u8>>) {
     assert_eq!(killed.keys().collect::<Vec<_>>(), alone.keys().collect::<Vec<_>>());
     for (name, content) in killed {
@@ -82,12 +95,14 @@ fn assert_same(killed: &BTreeMap<String, Vec<u8>>, alone: &BTreeMap<String, Vec<
     }
 }
 
-/// The files of a folder, by name.
+/// The files of a folder, by name, but for what differs between two runs of the same sweep: a lock that a killed process has left, and
+/// `host.json`.
 pub fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
     let file = |entry: std::io::Result<std::fs::DirEntry>| {
         let path = entry.expect("an entry").path();
         let name = path.file_name().expect("a name").to_string_lossy().into_owned();
         (name, std::fs::read(path).expect("a file"))
     };
-    std::fs::read_dir(folder).expect("a folder").map(file).collect()
+    let is_same = |(name, _): &(String, Vec<u8>)| name != "host.json" && !name.starts_with(".lock");
+    std::fs::read_dir(folder).expect("a folder").map(file).filter(is_same).collect()
 }

@@ -135,7 +135,7 @@ impl Pairs {
     #[must_use]
     pub fn of(folder: &Folder, case: usize, metric: usize, [a, b]: [usize; 2]) -> Self {
         let mut pairs = Self::default();
-        for trial in 1..=folder.experiment().trials {
+        for trial in folder.experiment().trials_of(case, folder.manifest().shard) {
             let result = |policy| folder.results().get(&(case, policy, trial));
             let value = |measured: &Measured| Some(measured.metrics.as_ref()?[metric]);
             match (result(a), result(b)) {

@@ -7,6 +7,8 @@ use std::marker::PhantomData;
 use ron::value::RawValue;
 use serde::de::{Deserialize, Deserializer, Error, MapAccess, Visitor};
 
+use super::Keep;
+
 /// A sweep file: a scenario, what to set in it, the policies to compare, and the axes to go along.
 #[derive(Debug, serde::Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -36,9 +38,9 @@ pub(super) struct SweepFile {
     /// Seeds of the trials, one by one, instead of `trials` and `first_seed`.
     #[serde(default)]
     pub seeds: Option<Vec<u64>>,
-    /// Whether to leave out what takes most of the disk: `groups.csv`, `robots.csv`, `series.csv` and the hash chains.
+    /// What to keep of each trial; all that there is by default.
     #[serde(default)]
-    pub lean: bool,
+    pub keep: Keep,
     /// Metrics that the sweep is about: `compare` and `report` begin with them.
     #[serde(default)]
     pub primary: Vec<String>,

@@ -5,8 +5,10 @@ mod asks;
 mod cost;
 mod file;
 mod grid;
+mod keep;
 mod policy;
 mod read;
+mod shard;
 
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
@@ -20,8 +22,10 @@ use usar_sim::scenario::{SampledCounts, Scenario, check_text, read_text};
 pub use asks::Asks;
 pub use cost::{Cost, check_cost};
 pub use grid::{Axis, Case, VARIANT};
+pub use keep::Keep;
 pub use policy::{PolicySpec, registry, set_registry, split_list};
 pub use read::{companion, defaults, with_settings};
+pub use shard::{Place, Shard};
 
 use crate::failure::Failure;
 use crate::limits::TRIALS;
@@ -56,27 +60,6 @@ impl Program {
     }
 }
 
-/// One of several parts of a sweep, to run apart from the others.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
-pub struct Shard {
-    /// Which part, from 1.
-    pub number: u32,
-    /// Number of parts.
-    pub of: u32,
-}
-
-impl std::str::FromStr for Shard {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        let parts = text.split_once('/').map(|(number, of)| (number.trim().parse(), of.trim().parse()));
-        match parts {
-            Some((Ok(number), Ok(of))) if (1..=of).contains(&number) => Ok(Self { number, of }),
-            _ => Err(format!("must be i/n with i from 1 to n, found {text:?}")),
-        }
-    }
-}
-
 /// What the command line says otherwise.
 #[derive(Debug, Clone, Default)]
 pub struct Overrides {
@@ -90,6 +73,8 @@ pub struct Overrides {
     pub set: Vec<String>,
     /// Check every invariant at every step.
     pub is_checked: bool,
+    /// What to keep of each trial.
+    pub keep: Option<Keep>,
 }
 
 /// A sweep, ready to run.
@@ -114,8 +99,8 @@ pub struct Experiment {
     pub seeds: Seeds,
     /// Whether every invariant is checked at every step.
     pub is_checked: bool,
-    /// Whether the large tables and the hash chains are left out.
-    pub is_lean: bool,
+    /// What is kept of each trial.
+    pub keep: Keep,
     /// What runs it, or ran it.
     pub program: Program,
     /// For each case and policy, a hash of what decides its numbers but for the seed.
@@ -133,7 +118,7 @@ pub(crate) struct Parts {
     pub trials: u32,
     pub seeds: Seeds,
     pub is_checked: bool,
-    pub is_lean: bool,
+    pub keep: Keep,
     pub program: Program,
 }
 
@@ -178,6 +163,7 @@ impl Experiment {
         parts.policies = with_readings(parts.policies, &readings);
         parts.trials = overrides.trials.unwrap_or(parts.trials);
         parts.is_checked = overrides.is_checked;
+        parts.keep = overrides.keep.unwrap_or(parts.keep);
         let experiment = Self::assemble(parts)?;
         experiment.asks().map_err(|error| Failure::input(format!("{}: {error}", path.display())))?;
         Ok(experiment)
@@ -188,7 +174,7 @@ impl Experiment {
     /// # Errors
     /// A policy, an axis or a case that cannot be used.
     pub(crate) fn assemble(parts: Parts) -> Result<Self, Failure> {
-        let Parts { name, given, base, axes, policies, trials, seeds, is_checked, is_lean, program } = parts;
+        let Parts { name, given, base, axes, policies, trials, seeds, is_checked, keep, program } = parts;
         let policies = checked_policies(&policies)?;
         if let Seeds::Listed(list) = &seeds
             && list.len() < trials as usize
@@ -229,7 +215,7 @@ impl Experiment {
             trials,
             seeds,
             is_checked,
-            is_lean,
+            keep,
             program,
             ids,
             shared: SharedTrials::new(is_checked),
@@ -244,35 +230,9 @@ impl Experiment {
         format!("{:032x}", xxh3_128(format!("{rest:032x} {}", key.seed).as_bytes()))
     }
 
-    /// The trials that a shard runs, or all: case by case, policy by policy. Adding trials to a sweep leaves each trial in its shard.
-    pub fn keys(&self, shard: Option<Shard>) -> impl Iterator<Item = TrialKey> + '_ {
-        let (cases, policies) = (self.cases.len(), self.policies.len());
-        let places = (0..cases).flat_map(move |case| (0..policies).map(move |policy| (case, policy)));
-        let trials = move |(case, policy)| (1..=self.trials).map(move |trial| (case, policy, trial));
-        let is_ours = move |place: &(usize, usize, u32)| self.is_in_shard(*place, shard);
-        places.flat_map(trials).filter(is_ours).map(|place| self.key(place))
-    }
-
-    /// Whether the sweep, or a shard of it, has a trial at this place, with this seed.
-    #[must_use]
-    pub fn has(&self, place: (usize, usize, u32), seed: u64, shard: Option<Shard>) -> bool {
-        let (case, policy, trial) = place;
-        case < self.cases.len()
-            && policy < self.policies.len()
-            && (1..=self.trials).contains(&trial)
-            && self.seed(trial) == seed
-            && self.is_in_shard(place, shard)
-    }
-
-    fn is_in_shard(&self, (case, policy, trial): (usize, usize, u32), shard: Option<Shard>) -> bool {
-        let (cases, policies) = (self.cases.len(), self.policies.len());
-        let index = (trial as usize - 1) * cases * policies + case * policies + policy;
-        shard.is_none_or(|shard| index % shard.of as usize == shard.number as usize - 1)
-    }
-
     /// The name of a trial.
     #[must_use]
-    pub fn key(&self, (case, policy, trial): (usize, usize, u32)) -> TrialKey {
+    pub fn key(&self, (case, policy, trial): Place) -> TrialKey {
         TrialKey { case, policy, trial, seed: self.seed(trial), label: self.policies[policy].label.clone() }
     }
 
@@ -320,7 +280,7 @@ impl Experiment {
             trials,
             seeds: self.seeds.clone(),
             is_checked: self.is_checked,
-            is_lean: self.is_lean,
+            keep: self.keep,
             program: self.program.clone(),
         })
     }

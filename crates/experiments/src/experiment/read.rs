@@ -12,7 +12,7 @@ use xxhash_rust::xxh3::xxh3_128;
 use super::file::{Map, SweepFile};
 use super::grid::{VARIANT, check_bytes};
 use super::policy::{PolicySpec, registry};
-use super::{Axis, Parts, Program, Seeds};
+use super::{Axis, Keep, Parts, Program, Seeds};
 use crate::failure::Failure;
 use crate::limits;
 
@@ -82,7 +82,7 @@ pub(super) fn from_scenario(text: String, path: &Path) -> Result<(Parts, Vec<Rea
         trials: 1,
         seeds: Seeds::From(1),
         is_checked: false,
-        is_lean: false,
+        keep: Keep::default(),
         program: Program::this(),
         base,
     };
@@ -158,7 +158,7 @@ pub(super) fn from_sweep_file(text: String, path: &Path) -> Result<(Parts, Vec<R
         trials: file.trials.or(listed).unwrap_or(1),
         seeds,
         is_checked: false,
-        is_lean: file.lean,
+        keep: file.keep,
         program: Program::this(),
         base,
     };

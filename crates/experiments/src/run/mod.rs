@@ -6,6 +6,6 @@ mod shared;
 mod trial;
 
 pub use driver::Driver;
-pub use pool::{Limits, Run, run_all};
+pub use pool::{Limits, Run, run_all, run_batches};
 pub use shared::SharedTrials;
 pub use trial::{Fault, FaultKind, Outcome, Trial, TrialKey, run_trial, series_times};

@@ -1,6 +1,6 @@
 //! Trials on threads: one that fails, panics or takes too long is one outcome, and the others go on.
 
-use std::collections::{BTreeMap, VecDeque};
+use std::collections::BTreeMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, Sender, channel};
@@ -36,8 +36,11 @@ struct Running {
     halt: Arc<AtomicBool>,
 }
 
+/// Trials that are still to be started.
+type Queue = Box<dyn Iterator<Item = TrialKey> + Send>;
+
 struct Pool {
-    queue: Arc<Mutex<VecDeque<TrialKey>>>,
+    queue: Arc<Mutex<Queue>>,
     run: Arc<Run>,
     sender: Sender<Message>,
     workers: usize,
@@ -50,16 +53,29 @@ struct Pool {
 /// # Errors
 /// The threads cannot be started, or those of `done`, after which no further trial is started.
 pub fn run_all(
-    keys: impl IntoIterator<Item = TrialKey>,
+    keys: Vec<TrialKey>,
     limits: Limits,
     run: Arc<Run>,
     stop: &AtomicBool,
     mut done: impl FnMut(Outcome) -> Result<(), Failure>,
 ) -> Result<bool, Failure> {
-    let queue: VecDeque<TrialKey> = keys.into_iter().collect();
-    let mut left = queue.len();
+    run_batches(keys.into_iter(), limits, run, stop, |outcomes| outcomes.into_iter().try_for_each(&mut done))
+}
+
+/// The same, where outcomes that came at one time are handed over together.
+///
+/// # Errors
+/// Those of [`run_all`].
+pub fn run_batches(
+    keys: impl ExactSizeIterator<Item = TrialKey> + Send + 'static,
+    limits: Limits,
+    run: Arc<Run>,
+    stop: &AtomicBool,
+    mut done: impl FnMut(Vec<Outcome>) -> Result<(), Failure>,
+) -> Result<bool, Failure> {
+    let mut left = keys.len();
     let (sender, receiver) = channel();
-    let queue = Arc::new(Mutex::new(queue));
+    let queue = Arc::new(Mutex::new(Box::new(keys) as Queue));
     let mut pool = Pool { queue, run, sender, workers: 0, running: BTreeMap::new() };
     for _ in 0..limits.jobs.min(left) {
         pool.start_worker()?;
@@ -67,11 +83,11 @@ pub fn run_all(
     while left > 0 {
         let outcomes = pool.next_outcomes(&receiver, limits.trial)?;
         left -= outcomes.len();
-        for outcome in outcomes {
-            if let Err(failure) = done(outcome) {
-                pool.halt();
-                return Err(failure);
-            }
+        if !outcomes.is_empty()
+            && let Err(failure) = done(outcomes)
+        {
+            pool.halt();
+            return Err(failure);
         }
         if stop.load(Ordering::Relaxed) && left > 0 {
             pool.halt();
@@ -88,7 +104,7 @@ impl Pool {
         let (queue, run, sender) = (Arc::clone(&self.queue), Arc::clone(&self.run), self.sender.clone());
         let work = move || {
             loop {
-                let next = queue.lock().ok().and_then(|mut queue| queue.pop_front());
+                let next = queue.lock().ok().and_then(|mut queue| queue.next());
                 let Some(key) = next else { return };
                 let halt = Arc::new(AtomicBool::new(false));
                 if sender.send(Message::Started(number, key.clone(), Arc::clone(&halt))).is_err() {
@@ -146,7 +162,7 @@ impl Pool {
     /// Lets nobody start another trial, and those under way end soon.
     fn halt(&self) {
         if let Ok(mut queue) = self.queue.lock() {
-            queue.clear();
+            *queue = Box::new(std::iter::empty());
         }
         self.running.values().for_each(|running| running.halt.store(true, Ordering::Relaxed));
     }

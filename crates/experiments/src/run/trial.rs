@@ -72,6 +72,9 @@ pub enum FaultKind {
 }
 
 impl FaultKind {
+    /// All kinds.
+    pub const ALL: [Self; 3] = [Self::Failed, Self::Panicked, Self::TimedOut];
+
     /// As one word, for tables.
     #[must_use]
     pub fn name(self) -> &'static str {
@@ -80,6 +83,16 @@ impl FaultKind {
             Self::Panicked => "panicked",
             Self::TimedOut => "timed_out",
         }
+    }
+}
+
+impl Fault {
+    /// What happened to which trial, in one sentence.
+    #[must_use]
+    pub fn sentence(&self, key: &TrialKey) -> String {
+        let TrialKey { label, trial, seed, .. } = key;
+        let kind = self.kind.name().replace('_', " ");
+        format!("trial {trial} of {label} (seed {seed}) {kind}: {}", self.reason)
     }
 }
 
@@ -108,10 +121,7 @@ impl Outcome {
     /// Why there is nothing, in one sentence.
     #[must_use]
     pub fn failure(&self) -> Option<String> {
-        let Fault { kind, reason } = self.result.as_ref().err()?;
-        let TrialKey { label, trial, seed, .. } = &self.key;
-        let kind = kind.name().replace('_', " ");
-        Some(format!("trial {trial} of {label} (seed {seed}) {kind}: {reason}"))
+        Some(self.result.as_ref().err()?.sentence(&self.key))
     }
 }
 

@@ -7,7 +7,8 @@ use usar_sim::hash::Link;
 
 use super::disk::{broken_files, inputs};
 use super::folder::Folder;
-use super::{journal, parquet};
+use super::line::line_of;
+use super::parquet;
 use crate::experiment::Experiment;
 use crate::failure::Failure;
 use crate::files::FileHash;
@@ -26,11 +27,18 @@ pub fn difference(folder: &mut Folder, again: &Outcome) -> Result<Option<String>
         return Ok(Some(format!("{name} is not in the journal")));
     }
     let there = folder.line((*case, *policy, *trial))?;
-    let now = journal::line_of(&experiment, again)?;
+    let now = line_of(&experiment, experiment.keep, again)?;
     if there == now {
         return Ok(None);
     }
-    let recorded = folder.outcome((*case, *policy, *trial))?;
+    let recorded = match folder.outcome((*case, *policy, *trial)) {
+        Ok(recorded) => recorded,
+        Err(_) if !experiment.keep.has_records() => {
+            let what = "differs in its metrics or its last state";
+            return Ok(Some(format!("{name} {what}")));
+        }
+        Err(error) => return Ok(Some(format!("{name} cannot be read: {error}"))),
+    };
     let timed_out =
         |outcome: &Outcome| outcome.result.as_ref().is_err_and(|fault| fault.kind == FaultKind::TimedOut);
     let what = if timed_out(&recorded) || timed_out(again) {
@@ -52,7 +60,7 @@ fn first_step(recorded: &Outcome, again: &Outcome, experiment: &Experiment) -> O
         outcome.record().map(|record| record.chain.links().to_vec()).unwrap_or_default()
     };
     let (before, now) = (links(recorded), links(again));
-    if experiment.is_lean {
+    if !experiment.keep.has_chains() {
         return None;
     }
     if let Some((before, now)) = before.iter().zip(&now).find(|(before, now)| before != now) {
@@ -97,11 +105,15 @@ pub fn strange_files(folder: &mut Folder) -> Result<Vec<String>, Failure> {
         .iter()
         .map(|file| format!("{}: does not have the checksum of the manifest", name(file)))
         .collect();
-    if !folder.is_tidy()? {
-        strange.push(format!("{}: is not its trials in order", name(journal::FILE)));
-    }
     let place = tempfile::tempdir()?;
-    let mut again: Vec<FileHash> = folder.tables_in(place.path(), &AtomicBool::new(false))?;
+    let made = folder.tables_in(place.path(), &AtomicBool::new(false));
+    let mut again: Vec<FileHash> = match made {
+        Ok(made) => made.unwrap_or_default(),
+        Err(failure) => {
+            strange.push(format!("{}: {failure}", path.display()));
+            Vec::new()
+        }
+    };
     let inputs = inputs(folder.experiment())?;
     again.extend(inputs.iter().map(|(name, text)| FileHash::of(name, text.as_bytes())));
     for file in again.iter().filter(|file| !manifest.files.contains(file)) {

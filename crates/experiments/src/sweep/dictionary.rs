@@ -2,17 +2,15 @@
 //! column with its type, its unit and what it means. Metrics are described where they are declared, the rest here.
 
 use std::fmt::Write;
-use std::path::Path;
 
 use serde_json::{Value, json};
 
 use super::links::{self, LinkRow};
 use super::rows::{RobotRow, RoundRow, group_columns, series_columns, trial_columns};
 use super::table::columns;
-use super::tables::{LEAN_TABLES, TABLES};
-use crate::experiment::Experiment;
+use super::tables::{TABLES, tables_of};
+use crate::experiment::{Axis, Experiment};
 use crate::failure::Failure;
-use crate::files::{FileHash, NewFile};
 
 /// For people, and for programs.
 pub(super) const DICTIONARY: [&str; 2] = ["columns.md", "datapackage.json"];
@@ -27,11 +25,11 @@ struct Column {
 
 /// What a row of each table is.
 const ROWS: [(&str, &str); TABLES.len()] = [
-    ("trials.csv", "a trial"),
-    ("rounds.csv", "a task's group in a round of a trial"),
-    ("groups.csv", "a robot when it was grouped, in a round of a trial, with the needs that the policy saw"),
-    ("robots.csv", "a robot in a trial"),
-    ("series.csv", "a moment of a trial, every ten seconds"),
+    (TABLES[0], "a trial"),
+    (TABLES[1], "a task's group in a round of a trial"),
+    (TABLES[2], "a robot in a trial"),
+    (TABLES[3], "a robot when it was grouped, in a round of a trial, with the needs that the policy saw"),
+    (TABLES[4], "a moment of a trial, every ten seconds"),
     (links::FILE, "a link of a trial's hash chain"),
 ];
 
@@ -115,46 +113,51 @@ const DESCRIBED: &[(&str, &str, &str, &str)] = &[
     ),
 ];
 
-/// Writes the dictionary of an experiment's tables into a folder.
+/// The dictionary of an experiment's tables: its files with their texts.
 ///
 /// # Errors
-/// The disk does not take it.
-pub(super) fn write_dictionary(folder: &Path, experiment: &Experiment) -> Result<Vec<FileHash>, Failure> {
+/// None: it can be written to memory.
+pub(super) fn dictionary(experiment: &Experiment) -> Result<[(&'static str, String); 2], Failure> {
     let tables = tables(experiment)?;
-    let text = NewFile::write(folder, DICTIONARY[0], markdown(experiment, &tables).as_bytes())?;
     let package = format!("{:#}\n", package(experiment, &tables));
-    Ok(vec![text, NewFile::write(folder, DICTIONARY[1], package.as_bytes())?])
+    Ok([(DICTIONARY[0], markdown(experiment, &tables)), (DICTIONARY[1], package)])
 }
 
 /// Each table with what a row is and its columns.
 fn tables(experiment: &Experiment) -> Result<Vec<(&'static str, &'static str, Vec<Column>)>, Failure> {
-    let count = if experiment.is_lean { LEAN_TABLES } else { TABLES.len() };
     let names = [
         trial_columns(&experiment.metrics),
         columns::<RoundRow>()?,
-        group_columns(&experiment.base.needs),
         columns::<RobotRow>()?,
+        group_columns(&experiment.base.needs),
         series_columns(&experiment.metrics),
         columns::<LinkRow>()?,
     ];
-    let tables = ROWS.iter().zip(names).take(count);
+    let tables = ROWS.iter().zip(names).take(tables_of(experiment.keep, None).len());
     Ok(tables
         .map(|((file, row), names)| {
             let before = if experiment.axes.is_empty() { None } else { Some(described(file, "case")) };
-            let axes = experiment.axes.iter().map(|axis| Column {
-                name: axis.path.clone(),
-                kind: if axis.values.iter().all(|value| value.parse::<f64>().is_ok()) {
-                    "number"
-                } else {
-                    "string"
-                },
-                unit: "",
-                meaning: "Value of this field of the scenario.".to_owned(),
-            });
+            let axes = experiment.axes.iter().map(axis);
             let own = names.iter().map(|name| column(file, name, experiment));
             (*file, *row, before.into_iter().chain(axes).chain(own).collect())
         })
         .collect())
+}
+
+/// The column of an axis.
+fn axis(axis: &Axis) -> Column {
+    let are_numbers = axis.values.iter().all(|value| value.parse::<f64>().is_ok());
+    let meaning = if axis.variants.is_empty() {
+        "Value of this field of the scenario."
+    } else {
+        "Name of the variant."
+    };
+    Column {
+        name: axis.path.clone(),
+        kind: if are_numbers { "number" } else { "string" },
+        unit: "",
+        meaning: meaning.to_owned(),
+    }
 }
 
 /// A column by its name: a metric of the trial, a need, or what is described above.
@@ -169,7 +172,7 @@ fn column(file: &str, name: &str, experiment: &Experiment) -> Column {
         let until = if file == TABLES[4] { " Up to this time." } else { "" };
         return Column { name: name.to_owned(), kind: "number", unit: metric.unit, meaning: what + until };
     }
-    if let Some(need) = name.strip_prefix("need_").filter(|_| file == TABLES[2]) {
+    if let Some(need) = name.strip_prefix("need_").filter(|_| file == TABLES[3]) {
         let meaning = format!("The need {need:?} as the robot reported it, in the units of the scenario.");
         return Column { name: name.to_owned(), kind: "number", unit: "", meaning };
     }

@@ -1,13 +1,14 @@
 //! What of a sweep's folder is on disk besides its journal and tables: the manifest, the sweep itself, and the lock.
 
-use std::fs::{self, File, TryLockError};
+use std::fs::{self, File};
 use std::io::ErrorKind;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use usar_sim::scenario::Scenario;
 
-use super::tables::{LEAN_TABLES, TABLES};
-use super::{journal, ours, parquet};
+use super::dictionary::{DICTIONARY, dictionary};
+use super::tables::tables_of;
+use super::{archive, journal, ours, parquet};
 use crate::experiment::{Experiment, Parts, Program, Shard};
 use crate::failure::Failure;
 use crate::files::{self, FileHash, NewFile, file_hash};
@@ -19,7 +20,7 @@ const RESOLVED: &str = "resolved.ron";
 /// The sweep as a file over the resolved scenario: what makes the folder again.
 const AGAIN: &str = "sweep.ron";
 /// Written before anything else.
-pub(super) const INPUTS: [&str; 3] = [GIVEN, RESOLVED, AGAIN];
+pub(super) const INPUTS: [&str; 5] = [GIVEN, RESOLVED, AGAIN, DICTIONARY[0], DICTIONARY[1]];
 /// The report, and the folder of its figures.
 pub const REPORT: &str = "report.html";
 /// See [`REPORT`].
@@ -50,15 +51,17 @@ pub(super) fn write_start(
 }
 
 /// What a sweep is of, as the files of its folder.
-pub(super) fn inputs(experiment: &Experiment) -> Result<[(&'static str, String); 3], Failure> {
+pub(super) fn inputs(experiment: &Experiment) -> Result<[(&'static str, String); 5], Failure> {
     let again = experiment.as_sweep_file(RESOLVED)?;
-    Ok([(GIVEN, experiment.given.clone()), (RESOLVED, experiment.base.resolved()), (AGAIN, again)])
+    let [columns, package] = dictionary(experiment)?;
+    let [given, resolved] = [experiment.given.clone(), experiment.base.resolved()];
+    Ok([(GIVEN, given), (RESOLVED, resolved), (AGAIN, again), columns, package])
 }
 
 /// The names of the files that a manifest lists.
 fn listed(manifest: &Manifest) -> Vec<&'static str> {
-    let tables = if manifest.is_lean { &TABLES[..LEAN_TABLES] } else { &TABLES[..] };
-    let made = tables.iter().copied().chain([journal::FILE]).filter(|_| manifest.is_complete);
+    let tables = tables_of(manifest.keep, manifest.shard).iter().copied();
+    let made = tables.chain([archive::FILE]).filter(|_| manifest.is_complete);
     INPUTS.into_iter().chain(made).collect()
 }
 
@@ -76,25 +79,7 @@ pub(super) fn sync_folder(path: &Path) -> Result<(), Failure> {
 
 /// Whether a sweep has begun in a folder: its inputs are there, or trials.
 pub(super) fn has_begun(path: &Path) -> bool {
-    [RESOLVED, journal::FILE].iter().any(|name| path.join(name).exists())
-}
-
-/// Takes the folder for this process, until the file is dropped.
-///
-/// # Errors
-/// Another process is at work in it, or it cannot be written to.
-pub fn lock(path: &Path) -> Result<File, Failure> {
-    let name = path.join(LOCK);
-    let trouble = |error| Failure::storage(format!("cannot write to {}: {error}", path.display()));
-    files::check_is_file(&name).map_err(trouble)?;
-    let file = File::options().create(true).append(true).open(&name).map_err(trouble)?;
-    match file.try_lock() {
-        Ok(()) => Ok(file),
-        Err(TryLockError::WouldBlock) => {
-            Err(Failure::storage(format!("{}: another process is at work in this folder", path.display())))
-        }
-        Err(TryLockError::Error(error)) => Err(trouble(error)),
-    }
+    [RESOLVED, journal::FILE, archive::FILE].iter().any(|name| path.join(name).exists())
 }
 
 pub(super) fn read_manifest(path: &Path) -> Result<Option<Manifest>, Failure> {
@@ -115,6 +100,38 @@ pub(super) fn read_manifest(path: &Path) -> Result<Option<Manifest>, Failure> {
     })
 }
 
+/// The manifest of a folder that this program can read.
+///
+/// # Errors
+/// It is not the folder of a sweep, or of one that another version has made.
+pub fn manifest_in(path: &Path) -> Result<Manifest, Failure> {
+    let not_one = |reason: &dyn std::fmt::Display| {
+        Failure::input(format!("{}: is not the folder of a sweep: {reason}", path.display()))
+    };
+    if !path.is_dir() {
+        return Err(not_one(&"there is no such folder"));
+    }
+    let missing = || match sweeps_in(path) {
+        sweeps if sweeps.is_empty() => not_one(&format!("{MANIFEST} is missing")),
+        sweeps => {
+            let names: Vec<String> = sweeps.iter().map(|sweep| sweep.display().to_string()).collect();
+            not_one(&format!("these in it are: {}", names.join(", ")))
+        }
+    };
+    let manifest = read_manifest(path)?.ok_or_else(missing)?;
+    if manifest.is_readable() {
+        return Ok(manifest);
+    }
+    let (found, now) = (manifest.schema_version, SCHEMA_VERSION);
+    Err(not_one(&format!("its layout has version {found}; this program reads version {now}")))
+}
+
+/// The resolved scenario of a folder, as text.
+pub(super) fn resolved_in(path: &Path) -> String {
+    let text = files::read(&path.join(RESOLVED)).unwrap_or_default();
+    String::from_utf8_lossy(&text).into_owned()
+}
+
 /// Refuses to go on with another sweep, or with fewer trials than there are.
 pub(super) fn check_continues(
     path: &Path,
@@ -126,9 +143,7 @@ pub(super) fn check_continues(
     if there.shard != now.shard {
         differences.push(format!("shard: {} there, {} now", there.part(), now.part()));
     }
-    let old = files::read(&path.join(RESOLVED)).unwrap_or_default();
-    let old = String::from_utf8_lossy(&old).into_owned();
-    differences.extend(scenario_differences(&old, resolved));
+    differences.extend(scenario_differences(&resolved_in(path), resolved));
     if now.trials < there.trials {
         differences
             .push(format!("trials: {} there, {} now; trials can only be added", there.trials, now.trials));
@@ -167,7 +182,7 @@ pub fn experiment_of(path: &Path, manifest: &Manifest) -> Result<Experiment, Fai
         trials: manifest.trials,
         seeds: manifest.seeds.clone(),
         is_checked: manifest.is_checked,
-        is_lean: manifest.is_lean,
+        keep: manifest.keep,
         program: Program { version: manifest.version.clone(), source: manifest.source.clone() },
     })
 }
@@ -191,10 +206,10 @@ pub fn is_sweeps(path: &Path) -> bool {
 }
 
 /// The folders of sweeps that are in a folder, by name.
-pub(super) fn sweeps_in(path: &Path) -> Vec<String> {
+#[must_use]
+pub fn sweeps_in(path: &Path) -> Vec<PathBuf> {
     let entries = fs::read_dir(path).into_iter().flatten().flatten().map(|entry| entry.path());
-    let mut sweeps: Vec<String> =
-        entries.filter(|entry| is_sweeps(entry)).map(|entry| entry.display().to_string()).collect();
+    let mut sweeps: Vec<PathBuf> = entries.filter(|entry| is_sweeps(entry)).collect();
     sweeps.sort();
     sweeps
 }

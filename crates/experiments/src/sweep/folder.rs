@@ -1,59 +1,45 @@
 //! The folder of a sweep's results: resumable at any moment, and the same bytes in the end.
 //!
-//! `journal.jsonl` takes each trial as it is done; when all are done, the tables are made from it. The manifest says what the sweep is from
-//! the first moment on, so that the same command goes on with it and another is refused.
+//! `journal.jsonl` takes each trial as it is done; when all are done, the tables are made from it, and its lines go in
+//! order into `journal.jsonl.gz`. The manifest says what the sweep is from the first moment on, so that the same
+//! command goes on with it and another is refused.
 
-use std::collections::BTreeMap;
-use std::fs::{self, File};
+use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::AtomicBool;
 
-use super::dictionary::write_dictionary;
+use super::archive;
+use super::closing::Closing;
+use super::damages::Damages;
 use super::disk::{
-    MANIFEST, broken_files, check_continues, experiment_of, has_begun, lock, read_manifest, sweeps_in,
+    MANIFEST, broken_files, check_continues, experiment_of, has_begun, manifest_in, read_manifest,
     sync_folder, write_manifest, write_start,
 };
-use super::journal::{self, Damage, Journal, Place};
+use super::journal::{self, Damage, Journal};
+use super::line::{Finished, Kept, line_of};
+use super::lock::Lock;
+use super::measured::{Results, read_results};
 use super::ours::{check_is_ours, check_may_be_cleared, clear};
-use super::tables::Tables;
-use crate::experiment::{Experiment, Shard};
+use super::store::{Order, Store, thaw};
+use super::tables::TRIALS;
+use crate::experiment::{Experiment, Place, Shard};
 use crate::failure::Failure;
-use crate::files::{FileHash, check_is_file, file_hash};
-use crate::metric::Catalogue;
-use crate::provenance::{Manifest, SCHEMA_VERSION};
+use crate::files::{self, FileHash, check_is_file};
+use crate::provenance::Manifest;
 use crate::run::{Outcome, TrialKey};
 
-/// Damaged lines of a journal that are named.
-const MAX_DAMAGES: usize = 5;
+pub use super::measured::Measured;
 
 /// A sweep's folder with what is finished in it.
 pub struct Folder {
     path: PathBuf,
     experiment: Arc<Experiment>,
     manifest: Manifest,
-    journal: Journal,
-    results: BTreeMap<Place, Measured>,
+    store: Store,
+    results: Results,
     /// Held until the folder is dropped.
-    _lock: Option<File>,
-}
-
-/// What comparisons need of a trial.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Measured {
-    /// Its status in one word.
-    pub status: &'static str,
-    /// Values of all metrics, in the order of the experiment's catalogue; `None` for a trial without numbers.
-    pub metrics: Option<Vec<Option<f64>>>,
-    /// Why it gave nothing.
-    pub failure: Option<String>,
-}
-
-impl Measured {
-    fn of(outcome: &Outcome, metrics: &Catalogue) -> Self {
-        let metrics = outcome.record().map(|record| metrics.measure(record));
-        Self { status: outcome.status(), metrics, failure: outcome.failure() }
-    }
+    lock: Option<Lock>,
 }
 
 /// How a folder is opened to be written.
@@ -80,47 +66,71 @@ impl Folder {
         let trouble = |error| Failure::storage(format!("cannot write to {}: {error}", path.display()));
         fs::create_dir_all(path).map_err(trouble)?;
         path.parent().map_or(Ok(()), sync_folder)?;
-        let lock = lock(path)?;
+        let lock = Lock::take(path, say)?;
         if opening.is_fresh {
             check_may_be_cleared(path)?;
             clear(path).map_err(trouble)?;
         }
         let manifest = Manifest::new(&experiment, opening.shard, Vec::new());
-        let mut finished = None;
-        let file = path.join(journal::FILE);
-        check_is_file(&file).map_err(|error| Failure::storage(format!("{}: {error}", file.display())))?;
-        let has_begun = has_begun(path);
-        if let Some(there) = read_manifest(path)?.filter(|_| has_begun) {
-            check_continues(path, &there, &manifest, &experiment.base.resolved())?;
-            let broken = broken_files(path, &there);
-            for name in &broken {
-                let name = path.join(name);
-                say(format!(
-                    "{}: does not have the checksum of the manifest; it is made again",
-                    name.display()
-                ));
-            }
-            let is_same = there.is_complete && there.started() == manifest;
-            finished = (is_same && broken.is_empty()).then_some(there);
-        } else if has_begun {
-            return Err(Failure::storage(format!(
-                "{}: has a journal but no {MANIFEST}, so what it is of is not known; --fresh starts over",
-                path.display()
-            )));
+        for name in [journal::FILE, archive::FILE] {
+            let file = path.join(name);
+            check_is_file(&file).map_err(|error| Failure::storage(format!("{}: {error}", file.display())))?;
         }
-        if let Some(manifest) = finished {
-            let mut damaged = false;
-            let mut note = |_| damaged = true; // it is said below
-            let folder = Self::with_journal(path, Arc::clone(&experiment), manifest, true, &mut note)?;
-            let missing = folder.experiment.keys(opening.shard).any(|key| !folder.has(&key));
-            if !damaged && !missing {
-                return Ok(Self { _lock: Some(lock), ..folder });
-            }
+        if let Some(done) = Self::is_done(path, &manifest, &experiment, say)?
+            && let Ok((store, results)) = Self::closed(path, &experiment, opening.shard)
+            && !results.values().any(Measured::is_late)
+        {
+            files::remove(&path.join(journal::FILE)).map_err(trouble)?;
+            let path = path.to_owned();
+            return Ok(Self { path, experiment, manifest: done, store, results, lock: Some(lock) });
         }
         // What the journal is of is on disk before the journal.
         let manifest = write_start(path, &experiment, opening.shard)?;
-        let folder = Self::with_journal(path, experiment, manifest, true, &mut |damage| say(again(damage)))?;
-        Ok(Self { _lock: Some(lock), ..folder })
+        thaw(path)?;
+        let mut say = |damage: String| say(damage + "; what it held is run again");
+        let folder = Self::with_journal(path, experiment, manifest, true, &mut say)?;
+        Ok(Self { lock: Some(lock), ..folder })
+    }
+
+    /// The manifest of what is in a folder, if it is this very sweep, finished and sound.
+    fn is_done(
+        path: &Path,
+        manifest: &Manifest,
+        experiment: &Experiment,
+        say: &mut dyn FnMut(String),
+    ) -> Result<Option<Manifest>, Failure> {
+        if !has_begun(path) {
+            return Ok(None);
+        }
+        let unknown = || {
+            Failure::storage(format!(
+                "{}: has a journal but no {MANIFEST}, so what it is of is not known; --fresh starts over",
+                path.display()
+            ))
+        };
+        let there = read_manifest(path)?.ok_or_else(unknown)?;
+        check_continues(path, &there, manifest, &experiment.base.resolved())?;
+        let broken = broken_files(path, &there);
+        for name in &broken {
+            let name = path.join(name);
+            say(format!("{}: does not have the checksum of the manifest; it is made again", name.display()));
+        }
+        let is_same = there.is_complete && there.started() == *manifest;
+        Ok((is_same && broken.is_empty()).then_some(there))
+    }
+
+    /// The trials and results of a sweep or shard that is finished and sound.
+    fn closed(
+        path: &Path,
+        experiment: &Experiment,
+        shard: Option<Shard>,
+    ) -> Result<(Store, Results), String> {
+        let store = Store::archive(path, Order::of(experiment, shard))
+            .map_err(|reason| format!("{}: {reason}", path.join(archive::FILE).display()))?;
+        let table = path.join(TRIALS);
+        let results = read_results(&table, experiment, shard)
+            .map_err(|reason| format!("{}: {reason}", table.display()))?;
+        Ok((store, results))
     }
 
     /// Reads a folder, complete or not.
@@ -137,28 +147,22 @@ impl Folder {
     /// # Errors
     /// It is not the folder of a sweep.
     pub fn read_damaged(path: &Path) -> Result<(Self, Vec<String>), Failure> {
-        let not_one = |reason: &dyn std::fmt::Display| {
-            Failure::input(format!("{}: is not the folder of a sweep: {reason}", path.display()))
-        };
-        if !path.is_dir() {
-            return Err(not_one(&"there is no such folder"));
-        }
-        let missing = || match sweeps_in(path) {
-            sweeps if sweeps.is_empty() => not_one(&format!("{MANIFEST} is missing")),
-            sweeps => not_one(&format!("these in it are: {}", sweeps.join(", "))),
-        };
-        let manifest = read_manifest(path)?.ok_or_else(missing)?;
-        if manifest.schema_version != SCHEMA_VERSION {
-            return Err(not_one(&format!(
-                "its layout has version {}; this program reads version {SCHEMA_VERSION}",
-                manifest.schema_version
-            )));
-        }
+        let manifest = manifest_in(path)?;
         let experiment = Arc::new(experiment_of(path, &manifest)?);
         let broken = broken_files(path, &manifest);
         let mut damages = Vec::new();
-        let folder =
-            Self::with_journal(path, experiment, manifest, false, &mut |damage| damages.push(damage))?;
+        let is_archived = manifest.files.iter().any(|file| file.name == archive::FILE);
+        if is_archived && broken.is_empty() {
+            let (store, results) = Self::closed(path, &experiment, manifest.shard).map_err(Failure::input)?;
+            let path = path.to_owned();
+            return Ok((Self { path, experiment, manifest, store, results, lock: None }, damages));
+        }
+        let mut say = |damage| damages.push(damage);
+        let folder = if is_archived || !path.join(journal::FILE).exists() {
+            Self::salvaged(path, experiment, manifest, &mut say)?
+        } else {
+            Self::with_journal(path, experiment, manifest, false, &mut say)?
+        };
         if !broken.is_empty() {
             damages.push(format!(
                 "{}: these files do not have the checksums of the manifest: {}; the sweep's command makes them again",
@@ -169,6 +173,25 @@ impl Folder {
         Ok((folder, damages))
     }
 
+    /// Its trials, and their places; the results are let go.
+    pub(super) fn into_store(self) -> (Store, Vec<Place>) {
+        (self.store, self.results.into_keys().collect())
+    }
+
+    /// What of a finished sweep whose files were changed can be read.
+    fn salvaged(
+        path: &Path,
+        experiment: Arc<Experiment>,
+        manifest: Manifest,
+        say: &mut dyn FnMut(String),
+    ) -> Result<Self, Failure> {
+        let mut damages = Damages::new(path, say);
+        let mut note = |damage| damages.say(damage);
+        let (store, results) = Store::salvage(path, (&experiment, manifest.shard), &mut note)?;
+        damages.finish();
+        Ok(Self { path: path.to_owned(), experiment, manifest, store, results, lock: None })
+    }
+
     fn with_journal(
         path: &Path,
         experiment: Arc<Experiment>,
@@ -176,22 +199,19 @@ impl Folder {
         is_writable: bool,
         say: &mut dyn FnMut(String),
     ) -> Result<Self, Failure> {
-        let mut results = BTreeMap::new();
+        let mut results = Results::new();
         let (journal, damages) =
-            Journal::open(path, (&experiment, manifest.shard), is_writable, |outcome| {
-                let TrialKey { case, policy, trial, .. } = outcome.key;
-                results.insert((case, policy, trial), Measured::of(&outcome, &experiment.metrics));
+            Journal::open(path, (&experiment, manifest.shard), is_writable, |finished| {
+                results.insert(finished.place(), Measured::of_finished(&finished, &experiment));
             })?;
         // A sweep that is under way may be writing its last line.
         let may_write = !is_writable && !manifest.is_complete;
-        let damages: Vec<Damage> =
-            damages.into_iter().filter(|damage| !(may_write && damage.is_cut_off)).collect();
-        let count = damages.len();
-        damages.into_iter().take(MAX_DAMAGES).for_each(|damage| say(damage.what));
-        if count > MAX_DAMAGES {
-            say(format!("{}: {} further lines cannot be used", path.display(), count - MAX_DAMAGES));
-        }
-        Ok(Self { path: path.to_owned(), experiment, manifest, journal, results, _lock: None })
+        let said = damages.into_iter().filter(|damage: &Damage| !(may_write && damage.is_cut_off));
+        let mut damages = Damages::new(path, say);
+        said.for_each(|damage| damages.say(damage.what));
+        damages.finish();
+        let (path, store) = (path.to_owned(), Store::Journal(journal));
+        Ok(Self { path, experiment, manifest, store, results, lock: None })
     }
 
     /// Goes on with more trials of the same sweep.
@@ -200,6 +220,12 @@ impl Folder {
     /// The disk does not take it.
     pub fn extend(&mut self, experiment: Arc<Experiment>) -> Result<(), Failure> {
         self.manifest = write_start(&self.path, &experiment, self.manifest.shard)?;
+        if !matches!(self.store, Store::Journal(_)) {
+            thaw(&self.path)?;
+            let shard = self.manifest.shard;
+            let (journal, _) = Journal::open(&self.path, (&experiment, shard), true, |_| {})?;
+            self.store = Store::Journal(journal);
+        }
         self.experiment = experiment;
         Ok(())
     }
@@ -230,7 +256,7 @@ impl Folder {
 
     /// What is finished, by place.
     #[must_use]
-    pub fn results(&self) -> &BTreeMap<Place, Measured> {
+    pub fn results(&self) -> &Results {
         &self.results
     }
 
@@ -248,54 +274,73 @@ impl Folder {
         measured.filter_map(|metrics| metrics[metric]).collect()
     }
 
+    /// How many trials it is to have of a case and policy: those of its shard, or all.
+    #[must_use]
+    pub fn trials_of(&self, case: usize) -> usize {
+        self.experiment.trials_of(case, self.manifest.shard).count()
+    }
+
     /// Whether a trial is finished.
     #[must_use]
     pub fn has(&self, key: &TrialKey) -> bool {
-        self.journal.has(key)
+        self.results.contains_key(&(key.case, key.policy, key.trial))
     }
 
     /// A finished trial.
     ///
     /// # Errors
-    /// The journal cannot be read.
+    /// The journal cannot be read, or the sweep keeps no more of a trial than its metrics.
     pub fn outcome(&mut self, place: Place) -> Result<Outcome, Failure> {
-        self.journal.outcome(place, &self.experiment)
+        let Finished { key, result } = self.finished(place)?;
+        let result = match result {
+            Ok(Kept::Record(trial)) => Ok(*trial),
+            Err(fault) => Err(fault),
+            Ok(Kept::Summary(_)) => {
+                return Err(Failure::input(format!(
+                    "{}: keeps the metrics of its trials only, not their rounds and decisions; \
+                     a sweep with `--keep rounds` has them",
+                    self.path.display()
+                )));
+            }
+        };
+        Ok(Outcome { key, result })
+    }
+
+    /// The hash of a trial's last state, if it ran to its end.
+    ///
+    /// # Errors
+    /// The journal cannot be read.
+    pub fn state_hash(&mut self, place: Place) -> Result<Option<String>, Failure> {
+        let finished = self.finished(place)?;
+        Ok(finished.summary(&self.experiment).ok().map(|summary| summary.state_hash))
+    }
+
+    pub(super) fn finished(&mut self, place: Place) -> Result<Finished, Failure> {
+        self.store.finished(place, &self.experiment)
     }
 
     /// Its line in the journal.
     ///
     /// # Errors
     /// The journal cannot be read.
-    pub fn line(&mut self, place: Place) -> Result<Vec<u8>, Failure> {
-        self.journal.line(place)
+    pub(super) fn line(&mut self, place: Place) -> Result<Vec<u8>, Failure> {
+        self.store.line(place)
     }
 
-    /// Whether its journal is nothing but its trials, in order.
+    /// Takes trials: when this returns, they are on disk.
     ///
     /// # Errors
-    /// The journal cannot be looked at.
-    pub fn is_tidy(&self) -> Result<bool, Failure> {
-        self.journal.is_tidy()
-    }
-
-    /// Takes a trial: when this returns, it is on disk.
-    ///
-    /// # Errors
-    /// The disk does not take it.
-    pub fn add(&mut self, outcome: &Outcome) -> Result<(), Failure> {
-        self.journal.add(&self.experiment, outcome)?;
-        let TrialKey { case, policy, trial, .. } = outcome.key;
-        self.results.insert((case, policy, trial), Measured::of(outcome, &self.experiment.metrics));
-        Ok(())
-    }
-
-    /// Takes the line of a trial from another folder.
-    ///
-    /// # Errors
-    /// The disk does not take it.
-    pub fn add_line(&mut self, line: &[u8], place: Place, measured: Measured) -> Result<(), Failure> {
-        self.journal.append(line, place)?;
-        self.results.insert(place, measured);
+    /// The disk does not take them, or another process has taken over the folder.
+    pub fn add(&mut self, outcomes: &[Outcome]) -> Result<(), Failure> {
+        self.lock.as_ref().map_or(Ok(()), Lock::check)?;
+        let Store::Journal(journal) = &mut self.store else {
+            return Err(Failure::run("a finished sweep takes no trials"));
+        };
+        let place = |outcome: &Outcome| (outcome.key.case, outcome.key.policy, outcome.key.trial);
+        let line = |outcome| Ok((place(outcome), line_of(&self.experiment, self.experiment.keep, outcome)?));
+        journal.append(&outcomes.iter().map(line).collect::<Result<Vec<_>, Failure>>()?)?;
+        let measured = |outcome| (place(outcome), Measured::of(outcome, &self.experiment.metrics));
+        self.results.extend(outcomes.iter().map(measured));
         Ok(())
     }
 
@@ -308,17 +353,15 @@ impl Folder {
         ))
     }
 
-    /// Makes all tables from the journal, in a folder.
-    pub(super) fn tables_in(&mut self, path: &Path, stop: &AtomicBool) -> Result<Vec<FileHash>, Failure> {
-        let experiment = Arc::clone(&self.experiment);
-        let mut tables = Tables::new(path, &experiment)?;
-        for place in self.journal.places().collect::<Vec<_>>() {
-            if stop.load(Ordering::Relaxed) {
-                return Err(self.interrupted());
-            }
-            tables.add(&self.outcome(place)?, &experiment)?;
-        }
-        tables.finish()
+    /// Makes all tables from the journal, in another folder; `None` when it was to stop.
+    pub(super) fn tables_in(
+        &mut self,
+        folder: &Path,
+        stop: &AtomicBool,
+    ) -> Result<Option<Vec<FileHash>>, Failure> {
+        let Self { experiment, store, results, manifest, .. } = self;
+        let closing = Closing { folder, experiment, keep: experiment.keep, shard: manifest.shard, stop };
+        closing.run(results.keys().copied(), |place| store.line(place), |_, _| {})
     }
 
     /// Makes the tables, unless they are there already.
@@ -329,19 +372,38 @@ impl Folder {
         if self.manifest.is_complete {
             return Ok(());
         }
-        self.journal.tidy()?;
-        let finished = self.tables_in(&self.path.clone(), stop)?;
-        self.manifest.files.extend(finished);
-        self.manifest.files.extend(write_dictionary(&self.path, &self.experiment)?);
-        let journal = self.path.join(journal::FILE);
-        let hash = file_hash(&journal)
-            .map_err(|error| Failure::storage(format!("{}: {error}", journal.display())))?;
-        self.manifest.files.push(FileHash { name: journal::FILE.into(), xxh3_128: hash });
-        self.manifest.is_complete = true;
-        write_manifest(&self.path, &self.manifest)
+        let path = self.path.clone();
+        let made = self.tables_in(&path, stop)?.ok_or_else(|| self.interrupted())?;
+        self.close(made)
     }
-}
 
-fn again(damage: String) -> String {
-    damage + "; what it held is run again"
+    /// Takes all trials from elsewhere, in order, and makes the tables.
+    ///
+    /// # Errors
+    /// A line cannot be read, the disk does not take it, or `stop` was set.
+    pub(super) fn fill(
+        &mut self,
+        line: impl FnMut(Place) -> Result<Vec<u8>, Failure>,
+        stop: &AtomicBool,
+    ) -> Result<(), Failure> {
+        let (path, experiment) = (self.path.clone(), Arc::clone(&self.experiment));
+        let keep = experiment.keep;
+        let closing = Closing { folder: &path, experiment: &experiment, keep, shard: None, stop };
+        let results = &mut self.results;
+        let found = |place, measured| {
+            results.insert(place, measured);
+        };
+        let made = closing.run(experiment.places(None), line, found)?;
+        self.close(made.ok_or_else(|| self.interrupted())?)
+    }
+
+    fn close(&mut self, made: Vec<FileHash>) -> Result<(), Failure> {
+        self.manifest.files.extend(made);
+        self.manifest.is_complete = true;
+        write_manifest(&self.path, &self.manifest)?;
+        let order = Order::of(&self.experiment, self.manifest.shard);
+        self.store = Store::archive(&self.path, order).map_err(Failure::storage)?;
+        let journal = self.path.join(journal::FILE);
+        files::remove(&journal).map_err(|error| Failure::storage(format!("{}: {error}", journal.display())))
+    }
 }

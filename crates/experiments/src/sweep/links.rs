@@ -2,8 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 use usar_sim::hash::{HashChain, Link, PARTS};
+use usar_sim::record::TrialRecord;
 
-use crate::run::Outcome;
+use crate::run::TrialKey;
 
 /// Name of the table.
 pub const FILE: &str = "hashes.csv";
@@ -21,11 +22,10 @@ pub(super) struct LinkRow {
 }
 
 impl LinkRow {
-    pub(super) fn of(outcome: &Outcome) -> impl Iterator<Item = Self> {
-        let links = outcome.record().map(|record| record.chain.links()).unwrap_or_default();
-        links.iter().map(|link| Self {
-            policy: outcome.key.label.clone(),
-            trial: outcome.key.trial,
+    pub(super) fn of(key: &TrialKey, record: &TrialRecord) -> impl Iterator<Item = Self> {
+        record.chain.links().iter().map(|link| Self {
+            policy: key.label.clone(),
+            trial: key.trial,
             step: link.step,
             digest: format!("{:032x}", link.digest),
             parts: link.parts.map(|part| format!("{part:04x}")).concat(),

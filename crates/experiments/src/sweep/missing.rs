@@ -4,22 +4,31 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use super::folder::Folder;
-use crate::experiment::Shard;
+use crate::experiment::{Place, Shard};
 use crate::failure::Failure;
-use crate::run::{Limits, Outcome, Run, TrialKey, run_all};
+use crate::run::{Limits, Outcome, Run, run_batches};
 
 /// Seeds of which trials are run at a time.
-const SEEDS_AT_A_TIME: u32 = 8;
+const SEEDS_AT_A_TIME: usize = 8;
 
 /// The trials of a shard, or of the whole sweep, that a folder has not got yet, in the order in which they
 /// are run.
 #[must_use]
-pub fn missing(folder: &Folder, shard: Option<Shard>) -> Vec<TrialKey> {
-    let mut missing: Vec<TrialKey> = folder.experiment().keys(shard).filter(|key| !folder.has(key)).collect();
-    // A few seeds at a time, so that a sweep that is broken off has whole pairs, and policies that decide
-    // alike share their trials; within these policy by policy, so that no two threads simulate what they
-    // could share.
-    missing.sort_by_key(|key| (key.case, key.trial / SEEDS_AT_A_TIME, key.policy, key.trial));
+pub fn missing(folder: &Folder, shard: Option<Shard>) -> Vec<Place> {
+    let experiment = folder.experiment();
+    let policies = experiment.policies.len();
+    let mut missing = Vec::new();
+    for case in 0..experiment.cases.len() {
+        // A few seeds at a time, so that a sweep that is broken off has whole pairs, and policies that decide
+        // alike share their trials; within these policy by policy, so that no two threads simulate what they
+        // could share.
+        let trials: Vec<u32> = experiment.trials_of(case, shard).collect();
+        for some in trials.chunks(SEEDS_AT_A_TIME) {
+            let places =
+                (0..policies).flat_map(|policy| some.iter().map(move |trial| (case, policy, *trial)));
+            missing.extend(places.filter(|place| !folder.results().contains_key(place)));
+        }
+    }
     missing
 }
 
@@ -29,16 +38,17 @@ pub fn missing(folder: &Folder, shard: Option<Shard>) -> Vec<TrialKey> {
 /// The disk does not take a trial, no thread can be started, or `stop` was set before all were done.
 pub fn run_trials(
     folder: &mut Folder,
-    trials: Vec<TrialKey>,
+    trials: Vec<Place>,
     limits: Limits,
     stop: &AtomicBool,
     mut done: impl FnMut(&Outcome),
 ) -> Result<(), Failure> {
-    let experiment = folder.shared_experiment();
+    let (experiment, names) = (folder.shared_experiment(), folder.shared_experiment());
     let run: Arc<Run> = Arc::new(move |key, halt| experiment.run(key, halt));
-    let is_whole = run_all(trials, limits, run, stop, |outcome| {
-        folder.add(&outcome)?;
-        done(&outcome);
+    let keys = trials.into_iter().map(move |place| names.key(place));
+    let is_whole = run_batches(keys, limits, run, stop, |outcomes| {
+        folder.add(&outcomes)?;
+        outcomes.iter().for_each(&mut done);
         Ok(())
     })?;
     folder.experiment().forget_shared();

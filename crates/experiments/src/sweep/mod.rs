@@ -1,19 +1,31 @@
 //! Where the results of a sweep are kept: its folder, its journal, and the tables made of it.
 
+mod archive;
 pub mod audit;
+mod closing;
+mod damages;
 mod dictionary;
 pub mod disk;
 pub mod folder;
+pub mod host;
 mod journal;
+mod line;
 pub mod links;
+pub mod lock;
+mod measured;
+pub mod merge;
 mod missing;
 pub mod ours;
 mod parquet;
+pub mod progress;
 mod rows;
+mod sizes;
+mod store;
 mod table;
 mod tables;
 
-pub use journal::Place;
+pub use crate::experiment::Place;
 pub use missing::{missing, run_trials};
 pub use parquet::write_parquet;
 pub use rows::trial_columns;
+pub use sizes::{Sizes, sizes};

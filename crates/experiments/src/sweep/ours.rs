@@ -3,11 +3,10 @@
 use std::fs;
 use std::path::Path;
 
-use super::dictionary::DICTIONARY;
 use super::disk::{INPUTS, LOCK, MANIFEST, PLOTS, RECORDINGS, REPORT, is_sweeps};
-use super::journal;
 use super::parquet::PARQUETS;
 use super::tables::TABLES;
+use super::{archive, host, journal};
 use crate::failure::Failure;
 use crate::files::{self, NewFile};
 
@@ -19,7 +18,8 @@ const RECORDING: &str = ".usrec";
 
 /// The names of all files that a sweep writes.
 fn known_names() -> impl Iterator<Item = &'static str> {
-    [MANIFEST, LOCK, journal::FILE].into_iter().chain(INPUTS).chain(TABLES).chain(PARQUETS).chain(DICTIONARY)
+    let logs = [MANIFEST, LOCK, journal::FILE, archive::FILE, host::FILE];
+    logs.into_iter().chain(INPUTS).chain(TABLES).chain(PARQUETS)
 }
 
 /// Refuses a folder that is not a sweep's: one with a manifest or a journal of this program, or with nothing in it.
@@ -30,10 +30,10 @@ pub(super) fn check_is_ours(path: &Path) -> Result<(), Failure> {
     if !path.is_dir() {
         return Err(Failure::input(format!("--out: {} is a file, not a folder", path.display())));
     }
-    if is_sweeps(path) || journal::is_one(path) {
+    if is_sweeps(path) || journal::is_one(path) || archive::is_one(path) {
         return Ok(());
     }
-    let is_first = |name: &String| name == LOCK || name == &format!("{MANIFEST}.new");
+    let is_first = |name: &String| is_lock(name) || name == &format!("{MANIFEST}.new");
     if names_in(path)?.iter().all(is_first) {
         return Ok(());
     }
@@ -41,6 +41,11 @@ pub(super) fn check_is_ours(path: &Path) -> Result<(), Failure> {
         "--out: {} is not empty and not the folder of a sweep; nothing was overwritten",
         path.display()
     )))
+}
+
+/// Whether a file is a lock, or what a process looked at one with.
+fn is_lock(name: &str) -> bool {
+    name.strip_prefix(LOCK).is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
 }
 
 fn names_in(path: &Path) -> Result<Vec<String>, Failure> {
@@ -60,6 +65,7 @@ pub(super) fn check_may_be_cleared(path: &Path) -> Result<(), Failure> {
         let is_folder = path.join(name).symlink_metadata().is_ok_and(|there| there.is_dir());
         is_folder && [PLOTS, RECORDINGS].contains(&name)
             || name == REPORTED
+            || is_lock(name)
             || known_names().any(|known| known == name)
             || reported.contains(&name.into())
     };

@@ -15,8 +15,8 @@ use crate::files::{self, NewFile, file_hash};
 pub(super) const PARQUETS: [&str; TABLES.len()] = [
     "trials.parquet",
     "rounds.parquet",
-    "groups.parquet",
     "robots.parquet",
+    "groups.parquet",
     "series.parquet",
     "hashes.parquet",
 ];

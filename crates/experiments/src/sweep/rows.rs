@@ -2,12 +2,14 @@
 
 use rne_core::TaskId;
 use serde::Serialize;
-use usar_sim::record::DecisionRecord;
+use usar_sim::record::{DecisionRecord, TrialRecord};
 use usar_sim::scenario::NeedFile;
 
+use super::line::Finished;
+use super::measured::Summary;
 use crate::experiment::Experiment;
 use crate::metric::{Catalogue, Metric};
-use crate::run::{Outcome, Trial, TrialKey, series_times};
+use crate::run::{Trial, TrialKey, series_times};
 
 /// The columns of `trials.csv`: which trial it is, every metric, and what else is kept of it. `method` and `policy` say the same; the one is
 /// there so that the authors' files and ours can be stacked, the other for the words of this project.
@@ -20,21 +22,28 @@ pub fn trial_columns(metrics: &Catalogue) -> Vec<String> {
     columns
 }
 
+/// How many columns of `trials.csv` stand before the metrics, the axes left out.
+pub(super) const FIRST_METRIC: usize = 5;
+
 /// A row of `trials.csv`. Numbers are printed so that they read back exactly.
-pub(super) fn trial_row(outcome: &Outcome, experiment: &Experiment) -> Vec<String> {
-    let TrialKey { label, trial, seed, .. } = &outcome.key;
-    let (record, fault) = (outcome.record(), outcome.result.as_ref().err());
-    let number = |metric: &Metric| {
-        let value = record.and_then(|record| metric.value(record));
-        value.map_or(String::new(), |value| value.to_string())
+pub(super) fn trial_row(finished: &Finished, experiment: &Experiment) -> Vec<String> {
+    let TrialKey { label, trial, seed, .. } = &finished.key;
+    let before = |status: &str| {
+        vec![label.clone(), trial.to_string(), label.clone(), seed.to_string(), status.to_owned()]
     };
-    let status = outcome.status().to_owned();
-    let mut row = vec![label.clone(), trial.to_string(), label.clone(), seed.to_string(), status];
-    row.extend(experiment.metrics.iter().map(number));
-    row.push(record.map_or(String::new(), |record| record.state_hash.clone()));
-    row.push(fault.map_or(String::new(), |fault| fault.reason.clone()));
-    row.push(fault.map_or(String::new(), |_| experiment.replay_command(&outcome.key)));
-    row
+    match finished.summary(experiment) {
+        Ok(Summary { status, metrics, state_hash }) => {
+            let number = |value: Option<f64>| value.map_or(String::new(), |value| value.to_string());
+            let after = [state_hash, String::new(), String::new()];
+            before(&status).into_iter().chain(metrics.into_iter().map(number)).chain(after).collect()
+        }
+        Err(fault) => {
+            let mut row = before(fault.kind.name());
+            row.resize(FIRST_METRIC + experiment.metrics.len() + 1, String::new());
+            row.extend([fault.reason, experiment.replay_command(&finished.key)]);
+            row
+        }
+    }
 }
 
 /// A row of `rounds.csv`: one group in one round.
@@ -57,32 +66,23 @@ pub(super) struct RoundRow<'a> {
 }
 
 impl<'a> RoundRow<'a> {
-    pub(super) fn of(outcome: &'a Outcome) -> impl Iterator<Item = Self> {
-        outcome
-            .record()
-            .into_iter()
-            .flat_map(|record| record.rounds.iter().map(move |round| (record, round)))
-            .map(|(record, round)| Self {
-                policy: &outcome.key.label,
-                trial: outcome.key.trial,
-                seed: outcome.key.seed,
-                round: round.round,
-                task: &record.tasks[round.task.index()].task,
-                start_s: round.start_s,
-                end_s: round.end_s,
-                members: round
-                    .members
-                    .iter()
-                    .map(|member| member.id.to_string())
-                    .collect::<Vec<_>>()
-                    .join(" "),
-                secured: round.secured,
-                rescued: round.rescued,
-                energy: round.energy,
-                hp: round.hp,
-                turned_back: round.turned_back,
-                return_cause: round.return_cause.map(usar_sim::event::ReturnCause::name),
-            })
+    pub(super) fn of(key: &'a TrialKey, record: &'a TrialRecord) -> impl Iterator<Item = Self> {
+        record.rounds.iter().map(|round| Self {
+            policy: &key.label,
+            trial: key.trial,
+            seed: key.seed,
+            round: round.round,
+            task: &record.tasks[round.task.index()].task,
+            start_s: round.start_s,
+            end_s: round.end_s,
+            members: round.members.iter().map(|member| member.id.to_string()).collect::<Vec<_>>().join(" "),
+            secured: round.secured,
+            rescued: round.rescued,
+            energy: round.energy,
+            hp: round.hp,
+            turned_back: round.turned_back,
+            return_cause: round.return_cause.map(usar_sim::event::ReturnCause::name),
+        })
     }
 }
 
@@ -110,11 +110,11 @@ pub(super) struct RobotRow<'a> {
 }
 
 impl<'a> RobotRow<'a> {
-    pub(super) fn of(outcome: &'a Outcome) -> impl Iterator<Item = Self> {
-        outcome.record().into_iter().flat_map(|record| &record.robots).map(|robot| Self {
-            policy: &outcome.key.label,
-            trial: outcome.key.trial,
-            seed: outcome.key.seed,
+    pub(super) fn of(key: &'a TrialKey, record: &'a TrialRecord) -> impl Iterator<Item = Self> {
+        record.robots.iter().map(|robot| Self {
+            policy: &key.label,
+            trial: key.trial,
+            seed: key.seed,
             robot: robot.robot,
             role: &robot.role,
             initial_energy: robot.initial_energy,
@@ -142,18 +142,23 @@ pub(super) fn group_columns(needs: &[NeedFile]) -> Vec<String> {
 }
 
 /// The rows of `groups.csv` of one trial.
-pub(super) fn group_rows(outcome: &Outcome) -> impl Iterator<Item = Vec<String>> + '_ {
-    let decisions = outcome.record().into_iter().flat_map(|record| &record.decisions);
-    decisions
-        .flat_map(move |asked| asked.question.task_ids().flat_map(move |task| group_of(outcome, asked, task)))
+pub(super) fn group_rows<'a>(
+    key: &'a TrialKey,
+    record: &'a TrialRecord,
+) -> impl Iterator<Item = Vec<String>> + 'a {
+    let of_task = |asked, task| group_of(key, asked, task);
+    record
+        .decisions
+        .iter()
+        .flat_map(move |asked| asked.question.task_ids().flat_map(move |task| of_task(asked, task)))
 }
 
 fn group_of<'a>(
-    outcome: &'a Outcome,
+    key: &'a TrialKey,
     DecisionRecord { question, decision }: &'a DecisionRecord,
     task: TaskId,
 ) -> impl Iterator<Item = Vec<String>> + 'a {
-    let TrialKey { label, trial, seed, .. } = &outcome.key;
+    let TrialKey { label, trial, seed, .. } = key;
     let group = decision.assignment.of(task);
     let level = |level: Option<f64>| level.map_or(String::new(), |level| level.to_string());
     question.members.iter().filter(|member| group.contains(&member.id)).map(move |member| {
@@ -174,15 +179,18 @@ pub(super) fn series_columns(metrics: &Catalogue) -> Vec<String> {
 }
 
 /// The rows of `series.csv` of a trial.
-pub(super) fn series_rows(outcome: &Outcome, duration_s: f64) -> impl Iterator<Item = Vec<String>> {
-    let TrialKey { label, trial, seed, .. } = &outcome.key;
-    let row = move |found: &Trial, time_s: f64| {
+pub(super) fn series_rows(
+    key: &TrialKey,
+    found: &Trial,
+    duration_s: f64,
+) -> impl Iterator<Item = Vec<String>> {
+    let TrialKey { label, trial, seed, .. } = key;
+    let row = move |time_s: f64| {
         let delivered = found.delivered(time_s);
         let mut row = vec![label.clone(), trial.to_string(), seed.to_string(), time_s.to_string()];
         row.push(delivered.iter().sum::<usize>().to_string());
         row.extend(delivered.iter().map(usize::to_string));
         row
     };
-    let rows = move |found| series_times(duration_s).map(move |time_s| row(found, time_s));
-    outcome.result.as_ref().ok().into_iter().flat_map(rows)
+    series_times(duration_s).map(row)
 }

@@ -1,103 +1,105 @@
-//! A table of a sweep's folder: a row for each thing, the axes of the sweep before its own columns.
+//! A table of a sweep's folder: a row for each thing, the axes of the sweep before its own columns. Rows are made
+//! in memory, so that threads can make them, and put into the file in order.
 
+use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
+use crate::experiment::Experiment;
 use crate::failure::Failure;
 use crate::files::{FileHash, NewFile, trouble};
 
-/// A table whose columns are those of the serialised rows, after the number of the case and the values of the axes where there are any.
-pub struct Table {
-    writer: csv::Writer<NewFile>,
-    axes: Vec<String>,
-    has_header: bool,
+/// A table on its way.
+pub(super) struct Table {
+    file: NewFile,
     path: PathBuf,
 }
 
 impl Table {
-    /// Begins a table.
+    /// Begins a table with these columns, after the number of the case and the values of the axes where there
+    /// are any.
     ///
     /// # Errors
     /// The folder cannot be written to.
-    pub fn new(folder: &Path, name: &str, axes: Vec<String>) -> Result<Self, Failure> {
-        let writer = csv::Writer::from_writer(NewFile::new(folder, name)?);
-        Ok(Self { writer, axes, has_header: false, path: folder.join(name) })
+    pub(super) fn new(
+        folder: &Path,
+        name: &str,
+        experiment: &Experiment,
+        columns: &[String],
+    ) -> Result<Self, Failure> {
+        let axes = experiment.axes.iter().map(|axis| axis.path.clone());
+        let case = (!experiment.axes.is_empty()).then(|| "case".to_owned());
+        let mut header = Rows::new();
+        header.write(case.into_iter().chain(axes).chain(columns.iter().cloned()))?;
+        let mut table = Self { file: NewFile::new(folder, name)?, path: folder.join(name) };
+        table.append(header)?;
+        Ok(table)
     }
 
-    /// Adds a row of a case.
+    /// Adds rows.
+    ///
+    /// # Errors
+    /// The disk does not take them.
+    pub(super) fn append(&mut self, rows: Rows) -> Result<(), Failure> {
+        let bytes = rows.0.into_inner().map_err(Failure::run)?;
+        self.file.write_all(&bytes).map_err(|error| trouble(&self.path, &error))
+    }
+
+    /// Puts the table in its place.
     ///
     /// # Errors
     /// The disk does not take it.
-    pub fn add<R: Serialize>(&mut self, case: (usize, &[String]), row: &R) -> Result<(), Failure> {
-        if self.axes.is_empty() {
-            self.has_header = true;
-            return self.writer.serialize(row).map_err(|error| table_trouble(&self.path, &error));
-        }
-        let [header, row] = header_and_row(row)?;
-        self.add_record(case, &header.iter().collect::<Vec<_>>(), &row)
-    }
-
-    /// Adds a row of a case as texts.
-    ///
-    /// # Errors
-    /// The disk does not take it.
-    pub fn add_record(
-        &mut self,
-        (case, values): (usize, &[String]),
-        header: &[impl AsRef<str>],
-        row: impl IntoIterator<Item = impl AsRef<str>>,
-    ) -> Result<(), Failure> {
-        self.write_header(header)?;
-        let mut record = csv::StringRecord::new();
-        if !self.axes.is_empty() {
-            record.push_field(&(case + 1).to_string());
-        }
-        record.extend(values);
-        record.extend(row);
-        self.writer.write_record(&record).map_err(|error| table_trouble(&self.path, &error))
-    }
-
-    fn write_header(&mut self, header: &[impl AsRef<str>]) -> Result<(), Failure> {
-        if std::mem::replace(&mut self.has_header, true) {
-            return Ok(());
-        }
-        let before = if self.axes.is_empty() { None } else { Some("case") };
-        let before = before.into_iter().chain(self.axes.iter().map(String::as_str));
-        let header = before.chain(header.iter().map(AsRef::as_ref));
-        self.writer.write_record(header).map_err(|error| table_trouble(&self.path, &error))
-    }
-
-    /// Puts the table in its place; one without rows has its header all the same.
-    ///
-    /// # Errors
-    /// The disk does not take it.
-    pub fn finish(mut self, header: &[impl AsRef<str>]) -> Result<FileHash, Failure> {
-        self.write_header(header)?;
-        let Self { writer, path, .. } = self;
-        let file = writer.into_inner().map_err(|error| trouble(&path, error.error()))?;
-        file.finish()
+    pub(super) fn finish(self) -> Result<FileHash, Failure> {
+        self.file.finish()
     }
 }
 
-fn table_trouble(path: &Path, error: &csv::Error) -> Failure {
-    Failure::storage(format!("cannot write {}: {error}", path.display()))
+/// Rows of a table in memory.
+pub(super) struct Rows(csv::Writer<Vec<u8>>);
+
+/// What stands before the columns of a table in the rows of a case: its number from 1 and the values of the axes, or nothing without axes.
+pub(super) fn before(experiment: &Experiment, case: usize) -> Vec<String> {
+    let values = &experiment.cases[case].values;
+    let number = (!values.is_empty()).then(|| (case + 1).to_string());
+    number.into_iter().chain(values.iter().cloned()).collect()
+}
+
+impl Rows {
+    /// None yet.
+    pub(super) fn new() -> Self {
+        Self(csv::WriterBuilder::new().has_headers(false).flexible(true).from_writer(Vec::new()))
+    }
+
+    /// Adds a row whose cells are the fields of a structure.
+    ///
+    /// # Errors
+    /// None: it can be written to memory.
+    pub(super) fn add(&mut self, before: &[String], row: &impl Serialize) -> Result<(), Failure> {
+        self.0.serialize((before, row)).map_err(Failure::run)
+    }
+
+    /// Adds a row of texts.
+    ///
+    /// # Errors
+    /// None: it can be written to memory.
+    pub(super) fn add_texts(&mut self, before: &[String], row: Vec<String>) -> Result<(), Failure> {
+        self.write(before.iter().cloned().chain(row))
+    }
+
+    fn write(&mut self, cells: impl IntoIterator<Item = String>) -> Result<(), Failure> {
+        self.0.write_record(cells.into_iter().map(String::into_bytes)).map_err(Failure::run)
+    }
 }
 
 /// The names of the columns of a row.
 ///
 /// # Errors
 /// None: rows can be written to memory.
-pub fn columns<R: Serialize + Default>() -> Result<Vec<String>, Failure> {
-    let [header, _] = header_and_row(&R::default())?;
-    Ok(header.iter().map(str::to_owned).collect())
-}
-
-fn header_and_row(row: &impl Serialize) -> Result<[csv::StringRecord; 2], Failure> {
+pub(super) fn columns<R: Serialize + Default>() -> Result<Vec<String>, Failure> {
     let mut rows = csv::Writer::from_writer(Vec::new());
-    rows.serialize(row).map_err(Failure::run)?;
+    rows.serialize(R::default()).map_err(Failure::run)?;
     let bytes = rows.into_inner().map_err(Failure::run)?;
-    let mut rows = csv::ReaderBuilder::new().has_headers(false).from_reader(&*bytes).into_records();
-    let mut next = || rows.next().transpose().map_err(Failure::run).map(Option::unwrap_or_default);
-    Ok([next()?, next()?])
+    let mut rows = csv::Reader::from_reader(&*bytes);
+    Ok(rows.headers().map_err(Failure::run)?.iter().map(str::to_owned).collect())
 }

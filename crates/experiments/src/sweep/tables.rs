@@ -2,86 +2,105 @@
 
 use std::path::Path;
 
+use super::line::Finished;
 use super::links::{self, LinkRow};
 use super::rows::{
     RobotRow, RoundRow, group_columns, group_rows, series_columns, series_rows, trial_columns, trial_row,
 };
-use super::table::{Table, columns};
-use crate::experiment::Experiment;
+use super::table::{Rows, Table, before, columns};
+use crate::experiment::{Experiment, Keep, Shard};
 use crate::failure::Failure;
 use crate::files::FileHash;
-use crate::run::Outcome;
 
-/// Their names.
+/// The table that every folder has.
+pub(super) const TRIALS: &str = "trials.csv";
+
+/// Their names, from those that every sweep keeps to those that take the most room.
 pub(super) const TABLES: [&str; 6] =
-    ["trials.csv", "rounds.csv", "groups.csv", "robots.csv", "series.csv", links::FILE];
+    [TRIALS, "rounds.csv", "robots.csv", "groups.csv", "series.csv", links::FILE];
 
-/// How many of them a lean sweep has: the first.
-pub(super) const LEAN_TABLES: usize = 2;
-
-/// The tables on their way; of a lean sweep the first two only.
-pub(super) struct Tables {
-    trials: Table,
-    trial_columns: Vec<String>,
-    rounds: Table,
-    large: Option<Large>,
+/// The names of the tables of a sweep that keeps this, or of a shard: the others are made when the shards are merged.
+pub(super) fn tables_of(keep: Keep, shard: Option<Shard>) -> &'static [&'static str] {
+    let count = match keep {
+        Keep::Trials => 1,
+        _ if shard.is_some() => 1,
+        Keep::Rounds => 2,
+        Keep::Robots => 3,
+        Keep::Groups => 6,
+    };
+    &TABLES[..count]
 }
 
-/// The tables that a lean sweep leaves out.
-struct Large {
-    groups: Table,
-    group_columns: Vec<String>,
-    robots: Table,
-    series: Table,
-    series_columns: Vec<String>,
-    hashes: Table,
-}
+/// The tables on their way.
+pub(super) struct Tables(Vec<Table>);
 
 impl Tables {
-    pub(super) fn new(path: &Path, experiment: &Experiment) -> Result<Self, Failure> {
-        let axes: Vec<String> = experiment.axes.iter().map(|axis| axis.path.clone()).collect();
-        let table = |place: usize| Table::new(path, TABLES[place], axes.clone());
-        let large = || {
-            Ok::<_, Failure>(Large {
-                groups: table(2)?,
-                group_columns: group_columns(&experiment.base.needs),
-                robots: table(3)?,
-                series: table(4)?,
-                series_columns: series_columns(&experiment.metrics),
-                hashes: table(5)?,
-            })
-        };
-        let large = if experiment.is_lean { None } else { Some(large()?) };
-        let trial_columns = trial_columns(&experiment.metrics);
-        Ok(Self { trials: table(0)?, trial_columns, rounds: table(1)?, large })
+    pub(super) fn new(
+        path: &Path,
+        (experiment, keep): (&Experiment, Keep),
+        shard: Option<Shard>,
+    ) -> Result<Self, Failure> {
+        let all = [
+            trial_columns(&experiment.metrics),
+            columns::<RoundRow>()?,
+            columns::<RobotRow>()?,
+            group_columns(&experiment.base.needs),
+            series_columns(&experiment.metrics),
+            columns::<LinkRow>()?,
+        ];
+        let names = tables_of(keep, shard).iter();
+        let tables = names.zip(&all).map(|(name, columns)| Table::new(path, name, experiment, columns));
+        Ok(Self(tables.collect::<Result<_, _>>()?))
     }
 
-    pub(super) fn add(&mut self, outcome: &Outcome, experiment: &Experiment) -> Result<(), Failure> {
-        let number = outcome.key.case;
-        let case = (number, experiment.cases[number].values.as_slice());
-        self.trials.add_record(case, &self.trial_columns, trial_row(outcome, experiment))?;
-        RoundRow::of(outcome).try_for_each(|row| self.rounds.add(case, &row))?;
-        let Some(large) = &mut self.large else { return Ok(()) };
-        let duration_s = experiment.cases[number].scenario.duration_s;
-        for row in group_rows(outcome) {
-            large.groups.add_record(case, &large.group_columns, row)?;
+    /// Rows for all of them, of these trials.
+    pub(super) fn rows<'a>(
+        count: usize,
+        trials: impl Iterator<Item = &'a Finished>,
+        experiment: &Experiment,
+    ) -> Result<TableRows, Failure> {
+        let mut rows = TableRows((0..count).map(|_| Rows::new()).collect());
+        for finished in trials {
+            rows.add(finished, experiment)?;
         }
-        RobotRow::of(outcome).try_for_each(|row| large.robots.add(case, &row))?;
-        for row in series_rows(outcome, duration_s) {
-            large.series.add_record(case, &large.series_columns, row)?;
-        }
-        LinkRow::of(outcome).try_for_each(|row| large.hashes.add(case, &row))
+        Ok(rows)
+    }
+
+    /// How many there are.
+    pub(super) fn count(&self) -> usize {
+        self.0.len()
+    }
+
+    pub(super) fn append(&mut self, rows: TableRows) -> Result<(), Failure> {
+        self.0.iter_mut().zip(rows.0).try_for_each(|(table, rows)| table.append(rows))
     }
 
     pub(super) fn finish(self) -> Result<Vec<FileHash>, Failure> {
-        let mut files =
-            vec![self.trials.finish(&self.trial_columns)?, self.rounds.finish(&columns::<RoundRow>()?)?];
-        if let Some(large) = self.large {
-            files.push(large.groups.finish(&large.group_columns)?);
-            files.push(large.robots.finish(&columns::<RobotRow>()?)?);
-            files.push(large.series.finish(&large.series_columns)?);
-            files.push(large.hashes.finish(&columns::<LinkRow>()?)?);
-        }
-        Ok(files)
+        self.0.into_iter().map(Table::finish).collect()
+    }
+}
+
+/// Rows of each table, in memory.
+pub(super) struct TableRows(Vec<Rows>);
+
+impl TableRows {
+    fn add(&mut self, finished: &Finished, experiment: &Experiment) -> Result<(), Failure> {
+        let key = &finished.key;
+        let before = before(experiment, key.case);
+        let mut tables = self.0.iter_mut();
+        let Some(trials) = tables.next() else { return Ok(()) };
+        trials.add_texts(&before, trial_row(finished, experiment))?;
+        let Some(trial) = finished.trial() else { return Ok(()) };
+        let Some(rounds) = tables.next() else { return Ok(()) };
+        RoundRow::of(key, &trial.record).try_for_each(|row| rounds.add(&before, &row))?;
+        let Some(robots) = tables.next() else { return Ok(()) };
+        RobotRow::of(key, &trial.record).try_for_each(|row| robots.add(&before, &row))?;
+        let Some(groups) = tables.next() else { return Ok(()) };
+        group_rows(key, &trial.record).try_for_each(|row| groups.add_texts(&before, row))?;
+        let duration_s = experiment.cases[key.case].scenario.duration_s;
+        let Some(series) = tables.next() else { return Ok(()) };
+        series_rows(key, trial, duration_s).try_for_each(|row| series.add_texts(&before, row))?;
+        let Some(hashes) = tables.next() else { return Ok(()) };
+        LinkRow::of(key, &trial.record).try_for_each(|row| hashes.add(&before, &row))
     }
 }

@@ -31,6 +31,9 @@ pub(super) struct Gathered {
 pub(super) fn gather(folder: &mut Folder, case: usize) -> Result<Vec<Gathered>, Failure> {
     let times: Vec<f64> = series_times(folder.experiment().cases[case].scenario.duration_s).collect();
     let policies = folder.experiment().policies.len();
+    if !folder.experiment().keep.has_records() {
+        return Ok((0..policies).map(|_| Gathered::default()).collect());
+    }
     let mut all = Vec::new();
     for policy in 0..policies {
         let mut gathered = Gathered::default();

@@ -34,11 +34,13 @@ pub(crate) fn figures(
     if !comparisons.is_empty() {
         figures.push(metrics::forest(experiment, comparisons)?);
     }
-    figures.push(course::over_time(experiment, case, &gathered)?);
-    figures.push(course::membership(experiment, case, &gathered)?);
-    figures.push(course::levels(experiment, case, &gathered)?);
-    figures.push(groups::sorting(experiment, &gathered)?);
-    figures.extend(groups::trust(experiment, &gathered)?);
+    if experiment.keep.has_records() {
+        figures.push(course::over_time(experiment, case, &gathered)?);
+        figures.push(course::membership(experiment, case, &gathered)?);
+        figures.push(course::levels(experiment, case, &gathered)?);
+        figures.push(groups::sorting(experiment, &gathered)?);
+        figures.extend(groups::trust(experiment, &gathered)?);
+    }
     figures.retain(|figure| !figure.svg.is_empty());
     Ok(figures)
 }

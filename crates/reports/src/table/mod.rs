@@ -18,13 +18,14 @@ pub use grouping::{levels_table, likeness_table};
 /// Metrics down, policies across: mean ± sample standard deviation of one case.
 #[must_use]
 pub fn policy_table(folder: &Folder, case: usize) -> Table {
-    let Experiment { policies, metrics, trials, .. } = folder.experiment();
+    let Experiment { policies, metrics, .. } = folder.experiment();
+    let trials = folder.trials_of(case);
     let header = std::iter::once(Cell::new("policy"));
     let mut table = headed(header.chain(policies.iter().map(|policy| right(&policy.label))));
     let mut last = "";
     for (i, metric) in metrics.iter().enumerate().filter(|(_, metric)| metric.is_primary) {
         let cells = (0..policies.len())
-            .map(|policy| right(&moments(&Moments::of(&folder.values(case, policy, i)), *trials as usize)));
+            .map(|policy| right(&moments(&Moments::of(&folder.values(case, policy, i)), trials)));
         table.add_row(std::iter::once(Cell::new(indented(&metric.title, last))).chain(cells));
         last = &metric.title;
     }

@@ -9,6 +9,7 @@ use experiments::Failure;
 use experiments::experiment::Program;
 use experiments::files::{self, NewFile};
 use experiments::sweep::disk;
+use experiments::sweep::lock::Lock;
 use xxhash_rust::xxh3::Xxh3;
 
 use super::{Calibration, Evaluation, Free, POLICY, Spread};
@@ -31,7 +32,7 @@ pub struct Log {
     /// Cells of a line.
     columns: usize,
     evaluations: Vec<Evaluation>,
-    _lock: File,
+    _lock: Lock,
 }
 
 impl Log {
@@ -44,7 +45,9 @@ impl Log {
         let origin = folder.join(ORIGIN);
         let has_others = |folder: &Path| -> std::io::Result<bool> {
             let mut names = fs::read_dir(folder)?.flatten().map(|entry| entry.file_name());
-            Ok(names.any(|name| name != disk::LOCK && !name.to_string_lossy().ends_with(".new")))
+            Ok(names.any(|name| {
+                !name.to_string_lossy().starts_with(disk::LOCK) && !name.to_string_lossy().ends_with(".new")
+            }))
         };
         if folder.exists() && !origin.exists() && has_others(folder).map_err(trouble)? {
             return Err(Failure::input(format!(
@@ -59,7 +62,7 @@ impl Log {
             check_continues(folder, &there, &now)?;
         }
         fs::create_dir_all(folder).map_err(trouble)?;
-        let lock = disk::lock(folder)?;
+        let lock = Lock::take(folder, &mut |_| {})?;
         let path = folder.join(LOG);
         for name in [LOG].into_iter().chain(RESULTS).filter(|name| is_fresh && folder.join(name).exists()) {
             fs::remove_file(folder.join(name)).map_err(trouble)?;

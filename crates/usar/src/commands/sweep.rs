@@ -7,13 +7,14 @@ use std::time::Duration;
 
 use clap::Args;
 use experiments::Failure;
-use experiments::experiment::{Experiment, Overrides, Shard, split_list};
+use experiments::experiment::{Experiment, Shard};
 use experiments::run::Limits;
 use experiments::sweep::disk::trials_in;
 use experiments::sweep::folder::{Folder, Opening};
 use experiments::sweep::write_parquet;
 use reports::table::policy_table;
 
+use super::chosen::Chosen;
 use super::precision::Precision;
 use crate::recordings::{Recorded, record_trials};
 use crate::running::{STOP, default_jobs, run_missing, stop_on_signals, tell};
@@ -45,18 +46,8 @@ Examples:
 pub(crate) struct Arguments {
     /// Scenario or sweep file (RON)
     file: PathBuf,
-    /// Policies, separated by commas, with options in brackets [default: the file's]
-    #[arg(long)]
-    policies: Option<String>,
-    /// Trials for each policy and case [default: the file's]
-    #[arg(long, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
-    trials: Option<u32>,
-    /// Seed of the first trial [default: the file's]
-    #[arg(long)]
-    seed: Option<u64>,
-    /// Set a field of the scenario, by its path, to a value in RON, e.g. `costs.energy.per_step=0.009`; may stand several times
-    #[arg(long, value_name = "PATH=VALUE")]
-    set: Vec<String>,
+    #[command(flatten)]
+    chosen: Chosen,
     /// Threads [default: one per core]
     #[arg(long, value_parser = clap::value_parser!(u32).range(1..=1024))]
     jobs: Option<u32>,
@@ -78,9 +69,6 @@ pub(crate) struct Arguments {
     /// Longest time of one trial, in seconds; one that takes longer is given up
     #[arg(long, default_value_t = 600.0, value_name = "SECONDS")]
     max_trial_s: f64,
-    /// Check every invariant at every step; a violation ends the trial as failed
-    #[arg(long)]
-    check: bool,
     /// Run it even if it takes very long: more bodies x steps than docs/limits.md has
     #[arg(long)]
     allow_expensive: bool,
@@ -103,9 +91,9 @@ impl Arguments {
                 self.max_trial_s
             )));
         }
-        let mut experiment = Experiment::load(&self.file, &self.overrides())?;
+        let mut experiment = Experiment::load(&self.file, &self.chosen.overrides())?;
         let path = self.out.clone().unwrap_or_else(|| default_path(&experiment.name, self.shard));
-        if (self.trials.is_none() || self.precision.is_some())
+        if (self.chosen.trials.is_none() || self.precision.is_some())
             && !self.fresh
             && let Some(trials) = trials_in(&path)
             && trials > experiment.trials
@@ -156,17 +144,6 @@ impl Arguments {
         self.max_trials.min(experiment.most_trials())
     }
 
-    fn overrides(&self) -> Overrides {
-        let policies = self.policies.as_deref();
-        Overrides {
-            policies: policies.map(|list| split_list(list).into_iter().map(str::to_owned).collect()),
-            trials: self.trials,
-            first_seed: self.seed,
-            set: self.set.clone(),
-            is_checked: self.check,
-        }
-    }
-
     /// Runs what is missing.
     fn run(&self, folder: &mut Folder) -> Result<(), Failure> {
         let jobs = self.jobs.map_or_else(default_jobs, |jobs| jobs as usize);
@@ -205,14 +182,16 @@ fn footnote(folder: &Folder) -> String {
     let experiment = folder.experiment();
     let (first, last) = (experiment.seed(1), experiment.seed(experiment.trials));
     let failed = folder.results().values().filter(|measured| measured.metrics.is_none()).count();
-    let missing = experiment.keys(None).filter(|key| !folder.has(key)).count();
+    let shard = folder.manifest().shard;
+    let missing = experiment.count(shard) - folder.results().len();
     let gaps = match (failed, missing) {
         (0, 0) => String::new(),
         _ => format!("\n{failed} trials failed, {missing} are missing: these are not in the means"),
     };
+    let part = shard.map_or(String::new(), |shard| format!(", shard {} of {}", shard.number, shard.of));
     format!(
-        "mean ± sample standard deviation over {} paired trials (seeds {first} to {last}); energy and HP in points per rescuee delivered;\n\
+        "mean ± sample standard deviation over {} paired trials (seeds {first} to {last}{part}); energy and HP in points per rescuee delivered;\n\
          totals include what robots spent outside a group, on their way to rest{gaps}",
-        experiment.trials,
+        experiment.count(shard) / experiment.policies.len() / experiment.cases.len().max(1),
     )
 }

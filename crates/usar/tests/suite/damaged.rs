@@ -30,12 +30,12 @@ fn changed_bytes_are_named_and_made_again() {
         let middle = bytes.len() / 2;
         bytes[middle] ^= 1;
     };
-    damage("journal.jsonl", flip);
-    refused(here, 2, &["compare", "results/paper"], &["journal.jsonl:", "checksum does not match"]);
-    mended("the checksum does not match");
-    damage("journal.jsonl", |bytes| bytes.truncate(bytes.len() - 100));
-    refused(here, 2, &["compare", "results/paper"], &["journal.jsonl:4: the last line is cut off"]);
-    mended("journal.jsonl:4: the last line is cut off");
+    damage("journal.jsonl.gz", flip);
+    refused(here, 2, &["compare", "results/paper"], &["journal.jsonl.gz: after line "]);
+    mended("journal.jsonl.gz: does not have the checksum");
+    damage("journal.jsonl.gz", |bytes| bytes.truncate(bytes.len() - 100));
+    refused(here, 2, &["compare", "results/paper"], &["journal.jsonl.gz: after line 0: it is cut off"]);
+    mended("journal.jsonl.gz: does not have the checksum");
     damage("trials.csv", flip);
     refused(here, 2, &["compare", "results/paper"], &["trials.csv"]);
     mended("trials.csv: does not have the checksum");
@@ -74,13 +74,19 @@ fn trouble_with_the_disk_breaks_nothing() {
     std::fs::write(here.join("file"), "").unwrap();
     refused(here, 3, &["sweep", "short.ron", "--out", "file/results"], &["cannot write to file/results"]);
 
-    let lock = std::fs::File::open(here.join("results/paper/.lock")).unwrap();
-    lock.lock().unwrap();
+    std::fs::write(
+        here.join("results/paper/.lock"),
+        "{\"host\":\"n17\",\"job\":\"42_3\",\"process\":99,\"since\":\"2026-01-01T00:00:00Z\"}\n",
+    )
+    .unwrap();
     refused(
         here,
         3,
         &["sweep", "short.ron", "--policies", "RNE", "--trials", "4"],
-        &["results/paper: another process is at work in this folder"],
+        &[
+            "results/paper: another process is at work in this folder",
+            "process 99 on n17, job 42_3, since 2026-01-01T00:00:00Z",
+        ],
     );
 }
 
@@ -116,13 +122,12 @@ fn a_changed_manifest_or_a_journal_that_lacks_lines_is_noticed() {
     .unwrap();
     refused(here, 2, &["compare", "results/paper"], &["manifest.json", "its checksum does not match"]);
     std::fs::write(results.join("manifest.json"), text("manifest.json")).unwrap();
-    let journal: Vec<&str> = text("journal.jsonl").leak().lines().collect();
-    std::fs::write(results.join("journal.jsonl"), journal[..3].join("\n") + "\n").unwrap();
+    std::fs::write(results.join("journal.jsonl.gz"), []).unwrap();
     refused(
         here,
         2,
         &["compare", "results/paper"],
-        &["do not have the checksums of the manifest: journal.jsonl"],
+        &["do not have the checksums of the manifest: journal.jsonl.gz"],
     );
     succeeds(&usar(here, &sweep));
     assert!(files(&results) == sound);

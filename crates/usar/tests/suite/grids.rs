@@ -1,12 +1,13 @@
 //! Sweep files: their grids, their shards, and what is wrong with them.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 
 use serde_json::Value;
 use xtask::kills::files;
 
 use crate::place::{column, place, refused, rows};
-use crate::support::{succeeds, usar};
+use crate::support::{read, succeeds, usar};
 
 #[test]
 fn a_sweep_file_spans_its_grid_and_any_field_can_be_an_axis() {
@@ -133,7 +134,7 @@ fn the_sweep_file_in_the_folder_makes_it_again() {
 
 /// The tables of a folder.
 fn files_but(folder: &Path) -> Vec<(String, Vec<u8>)> {
-    let names = ["trials.csv", "rounds.csv", "hashes.csv", "journal.jsonl", "resolved.ron"];
+    let names = ["trials.csv", "rounds.csv", "hashes.csv", "journal.jsonl.gz", "resolved.ron"];
     names.iter().map(|name| ((*name).to_owned(), std::fs::read(folder.join(name)).unwrap())).collect()
 }
 
@@ -147,7 +148,7 @@ fn shards_are_joined_to_the_bytes_of_a_single_run() {
     }
     let parts = ["results/grid-1-of-3", "results/grid-2-of-3", "results/grid-3-of-3"];
     let merge = |parts: &[&'static str]| [&["merge"], parts, &["--out", "joined"]].concat();
-    refused(here, 2, &merge(&parts[..2]), &["shard 3/3 is not there: missing trials, 8: "]);
+    refused(here, 2, &merge(&parts[..2]), &["shard 3/3 is not there: missing trials, 6: "]);
     succeeds(&usar(here, &["sweep", "grid.ron", "--shard", "3/3", "--trials", "3", "--out", "results/more"]));
     refused(
         here,
@@ -179,7 +180,59 @@ fn trials_that_took_too_long_are_counted_and_joined() {
     // Joined once more, nothing changes.
     let before = files(&here.join("results/whole"));
     usar(here, &["merge", parts[0], parts[1], "--out", "results/whole"]);
-    assert!(files(&here.join("results/whole"))["journal.jsonl"] == before["journal.jsonl"]);
+    assert!(files(&here.join("results/whole")) == before);
+}
+
+#[test]
+fn a_shard_has_whole_pairs_and_calls_itself_complete() {
+    let folder = place();
+    let here = folder.path();
+    succeeds(&usar(
+        here,
+        &["sweep", "short.ron", "--policies", "RNE,DIS", "--trials", "5", "--shard", "2/2"],
+    ));
+    let shard = here.join("results/paper-2-of-2");
+    let manifest: Value = serde_json::from_str(&read(&shard.join("manifest.json"))).unwrap();
+    assert_eq!(manifest["is_complete"], true);
+    let names: Vec<String> = files(&shard).into_keys().collect();
+    let expected =
+        ["experiment.ron", "journal.jsonl.gz", "manifest.json", "resolved.ron", "sweep.ron", "trials.csv"];
+    assert_eq!(names, expected, "the other tables are made when shards are merged");
+    let said = succeeds(&usar(here, &["compare", "results/paper-2-of-2", "--metric", "distance", "--json"]));
+    let compared: Value = serde_json::from_str(&said).unwrap();
+    let first = &compared["comparisons"][0];
+    assert_eq!((&first["n"], &first["missing"]), (&2.into(), &0.into()), "seeds 2 and 4, whole");
+    succeeds(&usar(here, &["report", "results/paper-2-of-2"]));
+    succeeds(&usar(here, &["verify", "results/paper-2-of-2"]));
+    let estimate =
+        ["estimate", "short.ron", "--policies", "RNE,DIS", "--trials", "5", "--shards", "2", "--json"];
+    let said: Value = serde_json::from_str(&succeeds(&usar(here, &estimate))).unwrap();
+    assert_eq!(said["shard"]["trials"], 6, "the larger of the two");
+    assert!(said["shard"]["bytes"].as_u64() < said["bytes"].as_u64());
+    assert!(said["bytes_by_keep"]["trials"].as_u64() < said["bytes_by_keep"]["groups"].as_u64());
+}
+
+#[test]
+fn a_sweep_that_keeps_its_trials_only_is_compared_reported_verified_and_joined() {
+    let folder = place();
+    let here = folder.path();
+    let keep = ["sweep", "short.ron", "--policies", "RNE,DIS", "--trials", "3", "--keep", "trials"];
+    succeeds(&usar(here, &[&keep[..], &["--out", "little"]].concat()));
+    succeeds(&usar(here, &["sweep", "short.ron", "--policies", "RNE,DIS", "--trials", "3", "--out", "much"]));
+    let [little, much] = ["little", "much"].map(|name| files(&here.join(name)));
+    assert!(little["trials.csv"] == much["trials.csv"] && !little.contains_key("rounds.csv"));
+    let journal = |files: &BTreeMap<String, Vec<u8>>| files["journal.jsonl.gz"].len();
+    assert!(journal(&little) * 5 < journal(&much), "{} {}", journal(&little), journal(&much));
+    for command in ["compare", "report", "verify"] {
+        succeeds(&usar(here, &[command, "little"]));
+    }
+    refused(here, 2, &["sorting", "little"], &["keeps the metrics of its trials only", "--keep rounds"]);
+    for shard in ["1/2", "2/2"] {
+        succeeds(&usar(here, &[&keep[..], &["--shard", shard]].concat()));
+    }
+    succeeds(&usar(here, &["merge", "results", "--out", "joined"]));
+    assert!(files(&here.join("joined")) == little);
+    refused(here, 2, &[&keep[..6], &["--out", "little"]].concat(), &["--keep: trials there, groups now"]);
 }
 
 #[test]

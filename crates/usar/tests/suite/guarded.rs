@@ -69,7 +69,10 @@ fn no_link_is_followed_out_of_a_folder_of_results() {
     }
     let more = ["sweep", "short.ron", "--policies", "RNE,DIS", "--trials", "3"];
     succeeds(&usar(here, &more));
-    std::fs::remove_file(results.join("journal.jsonl")).unwrap();
+    std::fs::remove_file(results.join("journal.jsonl.gz")).unwrap();
+    symlink(outside.join("table"), results.join("journal.jsonl.gz")).unwrap();
+    refused(here, 3, &more, &["journal.jsonl.gz: is not a regular file"]);
+    std::fs::remove_file(results.join("journal.jsonl.gz")).unwrap();
     symlink(outside.join("table"), results.join("journal.jsonl")).unwrap();
     refused(here, 3, &more, &["journal.jsonl: is not a regular file"]);
     assert_eq!(read(&outside.join("table")), "mine");
@@ -92,9 +95,9 @@ fn a_pipe_among_the_results_is_not_waited_for() {
     assert!(String::from_utf8_lossy(&said.stderr).contains("checksums of the manifest: robots.csv"));
     succeeds(&usar(here, &SWEEP));
     assert!(path.is_file(), "it is made again");
-    pipe("journal.jsonl");
+    pipe("journal.jsonl.gz");
     let said = usar(here, &["compare", "results/paper"]);
-    assert!(String::from_utf8_lossy(&said.stderr).contains("journal.jsonl: is not a regular file"));
+    assert!(String::from_utf8_lossy(&said.stderr).contains("journal.jsonl.gz: is not a regular file"));
 }
 
 #[test]
@@ -104,7 +107,8 @@ fn a_byte_after_the_last_line_of_a_journal_is_taken_away() {
     succeeds(&usar(here, &SWEEP));
     let results = here.join("results/paper");
     let sound = files(&results);
-    std::fs::write(results.join("journal.jsonl"), [&sound["journal.jsonl"][..], b"x"].concat()).unwrap();
+    let journal = "journal.jsonl.gz";
+    std::fs::write(results.join(journal), [&sound[journal][..], b"x"].concat()).unwrap();
     succeeds(&usar(here, &SWEEP));
     assert!(files(&results) == sound, "the sweep's command mends it");
     succeeds(&usar(here, &["verify", "results/paper"]));

@@ -4,6 +4,7 @@ mod place;
 mod support;
 
 mod calibrated;
+mod cluster;
 mod commands;
 mod compared;
 mod damaged;

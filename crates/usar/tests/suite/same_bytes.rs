@@ -1,12 +1,12 @@
 //! One seed, one result: in any number of threads, in any surroundings, in a new process, and when it is
 //! verified.
 
-use std::collections::BTreeMap;
 use std::path::Path;
 use std::process::Command;
 
 use experiments::experiment::Shard;
 use xtask::damage::{Forged, Sound};
+use xtask::kills::files;
 
 use crate::commands::paper_text;
 use crate::support::{program, succeeds, usar};
@@ -21,15 +21,6 @@ fn short() -> tempfile::TempDir {
     folder
 }
 
-/// The files of a folder, by name.
-fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
-    let file = |entry: std::io::Result<std::fs::DirEntry>| {
-        let path = entry.unwrap().path();
-        (path.file_name().unwrap().to_str().unwrap().to_owned(), std::fs::read(path).unwrap())
-    };
-    std::fs::read_dir(folder).unwrap().map(file).collect()
-}
-
 #[test]
 fn a_sweep_writes_the_same_bytes_on_any_number_of_threads() {
     let folder = short();
@@ -42,13 +33,12 @@ fn a_sweep_writes_the_same_bytes_on_any_number_of_threads() {
     assert_eq!(one, sweep("8"));
     let names: Vec<&str> = one.1.keys().map(String::as_str).collect();
     let expected = [
-        ".lock",
         "columns.md",
         "datapackage.json",
         "experiment.ron",
         "groups.csv",
         "hashes.csv",
-        "journal.jsonl",
+        "journal.jsonl.gz",
         "manifest.json",
         "resolved.ron",
         "robots.csv",
@@ -122,11 +112,11 @@ fn a_sweep_is_verified_and_the_first_difference_is_named() {
     forged.file("trials.csv", |text| text.replacen("RNE,1,RNE,1,completed,", "RNE,1,RNE,1,completed,9", 1));
     refused(&["4 of 4 trials match", "trials.csv: is not what the trials in the journal give"]);
 
-    forged.file("journal.jsonl", |text| {
+    forged.journal(|text| {
         let (first, rest) = text.split_once('\n').unwrap();
         format!("{rest}{first}\n")
     });
-    refused(&["journal.jsonl: is not its trials in order"]);
+    refused(&["the journal: is not its trials in order"]);
 
     forged.restore();
     std::fs::remove_file(done.join("hashes.csv")).unwrap();
@@ -139,7 +129,7 @@ fn a_sweep_is_verified_and_the_first_difference_is_named() {
         });
         refused(&[
             &format!("trial {trials} of RNE (seed 1) is not of this sweep"),
-            "trial 1 of RNE (seed 1) is not in the journal",
+            "trial 1 of RNE (seed 1) cannot be read: ",
         ]);
     }
     forged.restore();

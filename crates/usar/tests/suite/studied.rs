@@ -114,7 +114,7 @@ fn readings_stand_for_every_combination_and_are_named_by_what_differs() {
     let folder = place.path();
     let sweep = |readings: &str, policies: &str| {
         let text = format!(
-            "(name: \"r\", scenario: \"short.ron\", set: {{\"duration_s\": 30.0}}, policies: {policies}, readings: {readings}, trials: 2, lean: true)"
+            "(name: \"r\", scenario: \"short.ron\", set: {{\"duration_s\": 30.0}}, policies: {policies}, readings: {readings}, trials: 2, keep: Rounds)"
         );
         std::fs::write(folder.join("r.ron"), text).unwrap();
         usar(folder, &["sweep", "r.ron", "--quiet", "--out", "out", "--fresh"])

@@ -1,0 +1,67 @@
+//! What a sweep keeps of each trial.
+
+use std::str::FromStr;
+
+use serde::{Deserialize, Serialize};
+
+/// What a sweep keeps of each trial. Each keeps what those before it keep.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+pub enum Keep {
+    /// Its row of `trials.csv`: every metric.
+    Trials,
+    /// Its record with all decisions, and `rounds.csv`.
+    Rounds,
+    /// `robots.csv` as well.
+    Robots,
+    /// `groups.csv`, `series.csv`, `hashes.csv` with the hash chain, and what policies say of their decisions.
+    #[default]
+    Groups,
+}
+
+impl Keep {
+    /// All, from the least to the most.
+    pub const ALL: [Self; 4] = [Self::Trials, Self::Rounds, Self::Robots, Self::Groups];
+
+    /// Its name on the command line.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Trials => "trials",
+            Self::Rounds => "rounds",
+            Self::Robots => "robots",
+            Self::Groups => "groups",
+        }
+    }
+
+    /// Its name in a sweep file.
+    #[must_use]
+    pub fn in_files(self) -> &'static str {
+        match self {
+            Self::Trials => "Trials",
+            Self::Rounds => "Rounds",
+            Self::Robots => "Robots",
+            Self::Groups => "Groups",
+        }
+    }
+
+    /// Whether the records of trials are kept, with rounds and decisions.
+    #[must_use]
+    pub fn has_records(self) -> bool {
+        self >= Self::Rounds
+    }
+
+    /// Whether hash chains are kept.
+    #[must_use]
+    pub fn has_chains(self) -> bool {
+        self >= Self::Groups
+    }
+}
+
+impl FromStr for Keep {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let found = Self::ALL.into_iter().find(|keep| keep.name() == text);
+        found.ok_or_else(|| format!("must be trials, rounds, robots or groups, found {text:?}"))
+    }
+}

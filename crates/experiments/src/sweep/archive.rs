@@ -1,0 +1,197 @@
+//! `journal.jsonl.gz`: the journal of a finished sweep, its lines in order. It is a gzip file of several members, so
+//! that `zcat` prints the journal; the header of each member says how long it is and how many lines it has, so
+//! that a line is found without reading those before it.
+
+use std::fs::File;
+use std::io::{self, Read, Seek, SeekFrom, Write};
+use std::path::{Path, PathBuf};
+
+use flate2::read::GzDecoder;
+use flate2::{Compression, GzBuilder};
+
+use crate::failure::Failure;
+use crate::files;
+use crate::limits::JOURNAL_LINE_BYTES;
+
+/// Name of the file.
+pub const FILE: &str = "journal.jsonl.gz";
+
+/// Bytes of lines from which on a member is full.
+pub(super) const MEMBER_BYTES: usize = 256 << 10;
+
+/// What each member begins with: a header of ten bytes with an extra field, its length, and our subfield of eight
+/// bytes (RFC 1952).
+const HEAD: [u8; 16] = [0x1f, 0x8b, 8, 4, 0, 0, 0, 0, 0, 0xff, 12, 0, b'U', b'S', 8, 0];
+/// Bytes of a header with its two numbers.
+const HEAD_BYTES: usize = HEAD.len() + 8;
+/// How hard a member is pressed: a third level costs half the time of the sixth for a tenth more bytes.
+const LEVEL: Compression = Compression::new(3);
+
+/// Whether a folder has an archive of this program.
+pub(super) fn is_one(folder: &Path) -> bool {
+    let mut head = [0; HEAD.len()];
+    let read = files::open(&folder.join(FILE)).and_then(|mut file| file.read_exact(&mut head));
+    read.is_ok() && head == HEAD
+}
+
+/// Whole lines as a member of the file.
+///
+/// # Errors
+/// They take more than 4 GiB.
+pub(super) fn member(lines: &[u8], count: usize) -> Result<Vec<u8>, Failure> {
+    let trouble = |error: io::Error| Failure::storage(format!("{FILE}: {error}"));
+    let extra = [&HEAD[12..], &[0; 8]].concat();
+    let mut encoder = GzBuilder::new().extra(extra).operating_system(0xff).write(Vec::new(), LEVEL);
+    encoder.write_all(lines).map_err(trouble)?;
+    let mut bytes = encoder.finish().map_err(trouble)?;
+    bytes[..HEAD.len()].copy_from_slice(&HEAD);
+    let number =
+        |count: usize| u32::try_from(count).map_err(|_| Failure::storage("a trial takes over 4 GiB"));
+    let numbers = [number(bytes.len())?.to_le_bytes(), number(count)?.to_le_bytes()].concat();
+    bytes[HEAD.len()..HEAD_BYTES].copy_from_slice(&numbers);
+    Ok(bytes)
+}
+
+/// Where a member is.
+#[derive(Debug, Clone, Copy)]
+struct Member {
+    start: u64,
+    size: u32,
+    /// Number of its first line, from 0.
+    first: usize,
+}
+
+/// The journal of a finished sweep, to be read.
+pub(super) struct Archive {
+    path: PathBuf,
+    members: Vec<Member>,
+    lines: usize,
+    /// The member that was read last: its number, its bytes, and where its lines end.
+    latest: Option<(usize, Vec<u8>, Vec<usize>)>,
+}
+
+impl Archive {
+    /// Finds the members.
+    ///
+    /// # Errors
+    /// The file cannot be read, or is none.
+    pub(super) fn open(folder: &Path) -> io::Result<Self> {
+        let (archive, whole) = Self::open_damaged(folder)?;
+        if whole { Ok(archive) } else { Err(invalid("it is cut off, or was changed")) }
+    }
+
+    /// Finds the members as far as they follow one another, and tells whether they end with the file.
+    ///
+    /// # Errors
+    /// The file cannot be read.
+    pub(super) fn open_damaged(folder: &Path) -> io::Result<(Self, bool)> {
+        let path = folder.join(FILE);
+        let mut file = files::open(&path)?;
+        let end = file.metadata()?.len();
+        let (mut members, mut start, mut lines) = (Vec::new(), 0, 0);
+        while start < end {
+            let Some((size, count)) = head_at(&mut file, start, end)? else { break };
+            members.push(Member { start, size, first: lines });
+            start += u64::from(size);
+            lines += count as usize;
+        }
+        Ok((Self { path, members, lines, latest: None }, start == end))
+    }
+
+    /// How many lines it has.
+    pub(super) fn count(&self) -> usize {
+        self.lines
+    }
+
+    /// A line, by its number from 0.
+    ///
+    /// # Errors
+    /// It cannot be read, or there is none.
+    pub(super) fn line(&mut self, number: usize) -> io::Result<&[u8]> {
+        let place = self.members.partition_point(|member| member.first <= number).wrapping_sub(1);
+        let member = *self.members.get(place).ok_or_else(|| invalid("it has no such line"))?;
+        if self.latest.as_ref().is_none_or(|(latest, ..)| *latest != place) {
+            let (bytes, _) = self.read(member)?; // each line has its checksum
+            let ends = bytes.iter().enumerate().filter(|(_, byte)| **byte == b'\n');
+            let ends = ends.map(|(at, _)| at + 1).collect();
+            self.latest = Some((place, bytes, ends));
+        }
+        let Some((_, bytes, ends)) = &self.latest else { return Err(invalid("it has no such line")) };
+        let index = number - member.first;
+        let start = if index == 0 { Some(0) } else { ends.get(index - 1).copied() };
+        let range = start.zip(ends.get(index).copied());
+        range.map(|(start, end)| &bytes[start..end]).ok_or_else(|| invalid("it has no such line"))
+    }
+
+    /// For each member, the number of its first line, its lines as far as they can be read, and what is wrong then.
+    pub(super) fn salvage(&self) -> impl Iterator<Item = io::Result<(usize, Vec<u8>, io::Result<()>)>> + '_ {
+        let read = |member: &Member| self.read(*member).map(|(bytes, whole)| (member.first, bytes, whole));
+        self.members.iter().map(read)
+    }
+
+    /// The bytes of a member's lines as far as they can be read, and what was wrong then.
+    fn read(&self, member: Member) -> io::Result<(Vec<u8>, io::Result<()>)> {
+        let mut file = files::open(&self.path)?;
+        file.seek(SeekFrom::Start(member.start))?;
+        let mut pressed = vec![0; member.size as usize];
+        file.read_exact(&mut pressed)?;
+        let most = MEMBER_BYTES as u64 + JOURNAL_LINE_BYTES.most as u64;
+        let mut bytes = Vec::new();
+        let read = GzDecoder::new(&*pressed).take(most).read_to_end(&mut bytes);
+        bytes.truncate(bytes.iter().rposition(|byte| *byte == b'\n').map_or(0, |at| at + 1));
+        Ok((bytes, read.map(drop)))
+    }
+}
+
+/// Length and number of lines of the member that begins here, if one does.
+fn head_at(file: &mut File, start: u64, end: u64) -> io::Result<Option<(u32, u32)>> {
+    let mut head = [0; HEAD_BYTES];
+    file.seek(SeekFrom::Start(start))?;
+    if end - start < HEAD_BYTES as u64 {
+        return Ok(None);
+    }
+    file.read_exact(&mut head)?;
+    let number = |at: usize| u32::from_le_bytes([head[at], head[at + 1], head[at + 2], head[at + 3]]);
+    let (size, count) = (number(HEAD.len()), number(HEAD.len() + 4));
+    let fits = size as usize > HEAD_BYTES && u64::from(size) <= end - start;
+    Ok((head[..HEAD.len()] == HEAD && fits).then_some((size, count)))
+}
+
+fn invalid(reason: &str) -> io::Error {
+    io::Error::new(io::ErrorKind::InvalidData, reason)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_are_found_and_the_file_is_plain_gzip() {
+        let folder = tempfile::tempdir().unwrap();
+        let members = [member(b"one\ntwo\n", 2).unwrap(), member(b"three\n", 1).unwrap()];
+        std::fs::write(folder.path().join(FILE), members.concat()).unwrap();
+        let mut archive = Archive::open(folder.path()).unwrap();
+        let lines: Vec<Vec<u8>> = [2, 0, 1].map(|number| archive.line(number).unwrap().to_vec()).to_vec();
+        assert_eq!(lines, [b"three\n".to_vec(), b"one\n".to_vec(), b"two\n".to_vec()]);
+        assert!(archive.line(3).is_err());
+        let mut all = String::new();
+        flate2::read::MultiGzDecoder::new(&*members.concat()).read_to_string(&mut all).unwrap();
+        assert_eq!(all, "one\ntwo\nthree\n");
+    }
+
+    #[test]
+    fn what_of_a_damaged_file_can_be_read_is_read() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut bytes = [member(b"one\n", 1).unwrap(), member(b"two\n", 1).unwrap()].concat();
+        let last = bytes.len() - 1;
+        bytes[last] ^= 1; // the length of the second member's lines
+        std::fs::write(folder.path().join(FILE), &bytes).unwrap();
+        let (archive, is_whole) = Archive::open_damaged(folder.path()).unwrap();
+        let read: Vec<_> = archive.salvage().map(Result::unwrap).collect();
+        assert!(is_whole && read[0].2.is_ok() && read[1].2.is_err());
+        assert_eq!([&read[0].1, &read[1].1], [b"one\n", b"two\n"]);
+        bytes.truncate(last - 3);
+        std::fs::write(folder.path().join(FILE), &bytes).unwrap();
+        assert!(Archive::open(folder.path()).is_err());
+    }
+}

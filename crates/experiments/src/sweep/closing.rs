@@ -1,0 +1,122 @@
+//! What is made of a sweep's trials in the end: its tables and the archive of its journal, in one pass, by all threads.
+
+use std::io::Write;
+use std::path::Path;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use rayon::prelude::*;
+
+use super::archive::{self, MEMBER_BYTES, member};
+use super::line::{Finished, finished_of};
+use super::measured::Measured;
+use super::tables::{TableRows, Tables};
+use crate::experiment::{Experiment, Keep, Place, Shard};
+use crate::failure::Failure;
+use crate::files::{FileHash, NewFile, trouble};
+
+/// What is to be made, and of what.
+pub(super) struct Closing<'a> {
+    /// The folder that takes it.
+    pub folder: &'a Path,
+    pub experiment: &'a Experiment,
+    pub keep: Keep,
+    pub shard: Option<Shard>,
+    /// Ends it.
+    pub stop: &'a AtomicBool,
+}
+
+/// Some trials: their lines in order.
+#[derive(Default)]
+struct Batch {
+    lines: Vec<u8>,
+    places: Vec<(Place, usize)>,
+}
+
+/// A batch as parts of files, and its results.
+struct Made {
+    rows: TableRows,
+    member: Vec<u8>,
+    results: Vec<(Place, Measured)>,
+}
+
+impl Closing<'_> {
+    /// Makes the tables of these trials and the archive; each trial's result goes to `found`. `None` when it was
+    /// to stop.
+    ///
+    /// # Errors
+    /// A line cannot be read or is not of the trial that it should be of; the disk does not take a file.
+    pub(super) fn run(
+        &self,
+        places: impl Iterator<Item = Place>,
+        mut line: impl FnMut(Place) -> Result<Vec<u8>, Failure>,
+        mut found: impl FnMut(Place, Measured),
+    ) -> Result<Option<Vec<FileHash>>, Failure> {
+        let mut tables = Tables::new(self.folder, (self.experiment, self.keep), self.shard)?;
+        let mut archive = NewFile::new(self.folder, archive::FILE)?;
+        let at_a_time = 2 * rayon::current_num_threads();
+        let mut places = places.peekable();
+        while places.peek().is_some() {
+            if self.stop.load(Ordering::Relaxed) {
+                return Ok(None);
+            }
+            let batches = (0..at_a_time).map(|_| Batch::next(&mut places, &mut line));
+            let batches = batches.collect::<Result<Vec<_>, _>>()?;
+            let count = tables.count();
+            let made: Vec<_> = batches.par_iter().map(|batch| self.make(batch, count)).collect();
+            for made in made {
+                let Made { rows, member, results } = made?;
+                tables.append(rows)?;
+                archive
+                    .write_all(&member)
+                    .map_err(|error| trouble(&self.folder.join(archive::FILE), &error))?;
+                results.into_iter().for_each(|(place, measured)| found(place, measured));
+            }
+        }
+        let mut files = tables.finish()?;
+        files.push(archive.finish()?);
+        Ok(Some(files))
+    }
+
+    fn make(&self, batch: &Batch, tables: usize) -> Result<Made, Failure> {
+        let finished = batch.finished(self.experiment)?;
+        let rows = Tables::rows(tables, finished.iter(), self.experiment)?;
+        let member = match batch.places.len() {
+            0 => Vec::new(),
+            count => member(&batch.lines, count)?,
+        };
+        let measure = |finished: &Finished| Measured::of_finished(finished, self.experiment);
+        let results = finished.iter().map(|finished| (finished.place(), measure(finished))).collect();
+        Ok(Made { rows, member, results })
+    }
+}
+
+impl Batch {
+    /// The next trials, as many as fill a member of the archive.
+    fn next(
+        places: &mut impl Iterator<Item = Place>,
+        line: &mut impl FnMut(Place) -> Result<Vec<u8>, Failure>,
+    ) -> Result<Self, Failure> {
+        let mut batch = Self::default();
+        while batch.lines.len() < MEMBER_BYTES {
+            let Some(place) = places.next() else { break };
+            batch.lines.extend(line(place)?);
+            batch.places.push((place, batch.lines.len()));
+        }
+        Ok(batch)
+    }
+
+    fn finished(&self, experiment: &Experiment) -> Result<Vec<Finished>, Failure> {
+        let mut start = 0;
+        let one = |(place, end): &(Place, usize)| {
+            let line = &self.lines[std::mem::replace(&mut start, *end)..*end];
+            let finished = finished_of(line, experiment, None);
+            let finished = finished.map_err(|reason| Failure::storage(format!("the journal: {reason}")))?;
+            if finished.place() == *place {
+                Ok(finished)
+            } else {
+                Err(Failure::storage("the journal: is not its trials in order"))
+            }
+        };
+        self.places.iter().map(one).collect()
+    }
+}

@@ -1,0 +1,146 @@
+//! A finished trial as a line of JSON with its checksum.
+
+use rne_core::Account;
+use serde::{Deserialize, Serialize};
+use xxhash_rust::xxh3::xxh3_64;
+
+use super::links;
+use super::measured::Summary;
+use crate::experiment::{Experiment, Keep, Place, Shard};
+use crate::failure::Failure;
+use crate::run::{Fault, Outcome, Trial, TrialKey};
+
+/// What a line begins with, before 16 hexadecimal digits.
+pub(super) const HEAD: &str = "{\"xxh3_64\":\"";
+/// What stands between the digits and the trial.
+const MIDDLE: &str = "\",\"trial\":";
+
+#[derive(Serialize, Deserialize)]
+struct Entry {
+    id: String,
+    case: usize,
+    policy: String,
+    trial: u32,
+    seed: u64,
+    outcome: Stored,
+}
+
+#[derive(Serialize, Deserialize)]
+enum Stored {
+    Ended { trial: Box<Trial>, links: String },
+    Measured(Summary),
+    Fault(Fault),
+}
+
+/// A finished trial, as much of it as its sweep keeps.
+pub(super) struct Finished {
+    /// Which trial.
+    pub key: TrialKey,
+    /// What it gave, or why nothing.
+    pub result: Result<Kept, Fault>,
+}
+
+/// What is kept of a trial that ran to its end.
+pub(super) enum Kept {
+    /// Its record.
+    Record(Box<Trial>),
+    /// What it came to.
+    Summary(Summary),
+}
+
+impl Finished {
+    /// Where it is in its sweep.
+    pub fn place(&self) -> Place {
+        (self.key.case, self.key.policy, self.key.trial)
+    }
+
+    /// What it came to.
+    pub fn summary(&self, experiment: &Experiment) -> Result<Summary, Fault> {
+        match self.result.as_ref().map_err(Clone::clone)? {
+            Kept::Record(trial) => Ok(Summary::of(&trial.record, &experiment.metrics)),
+            Kept::Summary(summary) => Ok(summary.clone()),
+        }
+    }
+
+    /// The record, where it is kept.
+    pub fn trial(&self) -> Option<&Trial> {
+        match &self.result {
+            Ok(Kept::Record(trial)) => Some(trial),
+            _ => None,
+        }
+    }
+}
+
+/// The line of a trial.
+///
+/// # Errors
+/// None: a trial can be written to memory.
+pub(super) fn line_of(experiment: &Experiment, keep: Keep, outcome: &Outcome) -> Result<Vec<u8>, Failure> {
+    let key = &outcome.key;
+    let outcome = match &outcome.result {
+        Err(fault) => Stored::Fault(fault.clone()),
+        Ok(trial) if keep == Keep::Trials => {
+            Stored::Measured(Summary::of(&trial.record, &experiment.metrics))
+        }
+        Ok(trial) => {
+            let has_chains = keep.has_chains();
+            let links = links::encode(if has_chains { trial.record.chain.links() } else { &[] });
+            let mut trial = Box::new(trial.clone());
+            if !has_chains {
+                trial.record.decisions.iter_mut().for_each(|asked| asked.decision.account = Account::None);
+            }
+            Stored::Ended { links, trial }
+        }
+    };
+    let entry = Entry {
+        id: experiment.id(key),
+        case: key.case,
+        policy: key.label.clone(),
+        trial: key.trial,
+        seed: key.seed,
+        outcome,
+    };
+    let entry = serde_json::to_string(&entry).map_err(Failure::run)?;
+    Ok(format!("{HEAD}{:016x}{MIDDLE}{entry}}}\n", xxh3_64(entry.as_bytes())).into_bytes())
+}
+
+/// The trial of a line, of the sweep or of a shard of it; otherwise what is wrong with it.
+pub(super) fn finished_of(
+    line: &[u8],
+    experiment: &Experiment,
+    shard: Option<Shard>,
+) -> Result<Finished, String> {
+    let entry = sound(line).ok_or("the checksum does not match: the line was changed or cut")?;
+    let entry: Entry = serde_json::from_slice(entry).map_err(|error| format!("is no trial: {error}"))?;
+    let policy = experiment.policies.iter().position(|policy| policy.label == entry.policy);
+    let name = format!("trial {} of {} (seed {})", entry.trial, entry.policy, entry.seed);
+    let policy =
+        policy.filter(|policy| experiment.has((entry.case, *policy, entry.trial), entry.seed, shard));
+    let policy = policy.ok_or_else(|| format!("{name} is not of this sweep"))?;
+    let key =
+        TrialKey { case: entry.case, policy, trial: entry.trial, seed: entry.seed, label: entry.policy };
+    if experiment.id(&key) != entry.id {
+        return Err(format!("{name} is of another scenario, option or program"));
+    }
+    let result = match entry.outcome {
+        Stored::Fault(fault) => Err(fault),
+        Stored::Measured(summary) => {
+            summary.check(&experiment.metrics).map_err(|reason| format!("{name} {reason}"))?;
+            Ok(Kept::Summary(summary))
+        }
+        Stored::Ended { mut trial, links } => {
+            trial.record.chain = links::decode(&links).ok_or("has no hash chain")?;
+            Ok(Kept::Record(trial))
+        }
+    };
+    Ok(Finished { key, result })
+}
+
+/// The trial in a line whose checksum matches.
+fn sound(line: &[u8]) -> Option<&[u8]> {
+    let rest = line.strip_prefix(HEAD.as_bytes())?;
+    let (digits, rest) = rest.split_at_checked(16)?;
+    let entry = rest.strip_prefix(MIDDLE.as_bytes())?.strip_suffix(b"}\n")?;
+    let digits = std::str::from_utf8(digits).ok()?;
+    (u64::from_str_radix(digits, 16).ok()? == xxh3_64(entry)).then_some(entry)
+}

@@ -1,0 +1,130 @@
+//! What comparisons need of a trial, and reading it from `trials.csv`.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+use usar_sim::record::{Status, TrialRecord};
+
+use super::line::Finished;
+use super::rows::{FIRST_METRIC, trial_columns};
+use crate::experiment::{Experiment, Place, Shard};
+use crate::files;
+use crate::metric::Catalogue;
+use crate::run::{Fault, FaultKind, Outcome, TrialKey};
+
+/// Results of trials, by place.
+pub type Results = BTreeMap<Place, Measured>;
+
+/// What comparisons need of a trial.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Measured {
+    /// Its status in one word.
+    pub status: &'static str,
+    /// Values of all metrics, in the order of the experiment's catalogue; `None` for a trial without numbers.
+    pub metrics: Option<Vec<Option<f64>>>,
+    /// Why it gave nothing.
+    pub failure: Option<String>,
+}
+
+/// What a trial that ran to its end came to.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(super) struct Summary {
+    /// Its status in one word.
+    pub status: String,
+    /// Values of all metrics, in the order of the experiment's catalogue.
+    pub metrics: Vec<Option<f64>>,
+    /// Hash of its last state.
+    pub state_hash: String,
+}
+
+impl Summary {
+    pub(super) fn of(record: &TrialRecord, metrics: &Catalogue) -> Self {
+        let status = record.status.name().to_owned();
+        Self { status, metrics: metrics.measure(record), state_hash: record.state_hash.clone() }
+    }
+
+    /// Says what keeps it from being of a trial with these metrics.
+    pub(super) fn check(&self, metrics: &Catalogue) -> Result<(), String> {
+        let (count, found) = (metrics.len(), self.metrics.len());
+        if count != found {
+            return Err(format!("must have {count} metrics, found {found}"));
+        }
+        status_of(&self.status).map(drop).ok_or_else(|| format!("has no status {:?}", self.status))
+    }
+}
+
+/// The status of this name.
+fn status_of(name: &str) -> Option<&'static str> {
+    let ended = [Status::Completed, Status::NobodyCanCarry, Status::ErrandsOver].map(|status| status.name());
+    let faults = FaultKind::ALL.map(FaultKind::name);
+    ended.into_iter().chain(faults).find(|known| *known == name)
+}
+
+impl Measured {
+    pub(super) fn of(outcome: &Outcome, metrics: &Catalogue) -> Self {
+        let metrics = outcome.record().map(|record| metrics.measure(record));
+        Self { status: outcome.status(), metrics, failure: outcome.failure() }
+    }
+
+    pub(super) fn of_finished(finished: &Finished, experiment: &Experiment) -> Self {
+        match finished.summary(experiment) {
+            Ok(summary) => Self::ended(summary),
+            Err(fault) => Self::failed(&finished.key, &fault),
+        }
+    }
+
+    fn ended(summary: Summary) -> Self {
+        let mut metrics = summary.metrics;
+        metrics.shrink_to_fit();
+        Self { status: status_of(&summary.status).unwrap_or_default(), metrics: Some(metrics), failure: None }
+    }
+
+    fn failed(key: &TrialKey, fault: &Fault) -> Self {
+        Self { status: fault.kind.name(), metrics: None, failure: Some(fault.sentence(key)) }
+    }
+
+    /// Whether the trial took longer than it was given.
+    pub(super) fn is_late(&self) -> bool {
+        self.status == FaultKind::TimedOut.name()
+    }
+}
+
+/// The results of a finished sweep or shard, from its `trials.csv`.
+pub(super) fn read_results(
+    table: &Path,
+    experiment: &Experiment,
+    shard: Option<Shard>,
+) -> Result<Results, String> {
+    let file = files::open(table).map_err(|error| error.to_string())?;
+    let mut reader = csv::Reader::from_reader(std::io::BufReader::with_capacity(1 << 20, file));
+    let columns = trial_columns(&experiment.metrics);
+    let before = if experiment.axes.is_empty() { 0 } else { 1 + experiment.axes.len() };
+    let header = reader.headers().map_err(|error| error.to_string())?;
+    if !header.iter().skip(before).eq(columns.iter()) {
+        return Err("does not have the columns of this sweep's trials".to_owned());
+    }
+    let mut row = csv::StringRecord::new();
+    let mut next = |key: &TrialKey| {
+        let is_there = reader.read_record(&mut row).map_err(|error| error.to_string())?;
+        let cells: Vec<&str> = row.iter().skip(before).collect();
+        if is_there { measured_in(&cells, key, experiment.metrics.len()) } else { None }
+            .ok_or_else(|| format!("has no row of trial {} of {}", key.trial, key.label))
+    };
+    let places = experiment.places(shard);
+    places.map(|place| Ok((place, next(&experiment.key(place))?))).collect()
+}
+
+/// What a row tells, if it is of this trial.
+fn measured_in(cells: &[&str], key: &TrialKey, metrics: usize) -> Option<Measured> {
+    let is_of =
+        cells[1].parse() == Ok(key.trial) && cells[2] == key.label && cells[3].parse() == Ok(key.seed);
+    let status = status_of(cells[4]).filter(|_| is_of)?;
+    if let Some(kind) = FaultKind::ALL.into_iter().find(|kind| kind.name() == status) {
+        let reason = cells[FIRST_METRIC + metrics + 1].to_owned();
+        return Some(Measured::failed(key, &Fault { kind, reason }));
+    }
+    let value = |cell: &&str| if cell.is_empty() { Some(None) } else { cell.parse().ok().map(Some) };
+    let values = cells[FIRST_METRIC..FIRST_METRIC + metrics].iter().map(value).collect::<Option<Vec<_>>>()?;
+    Some(Measured { status, metrics: Some(values), failure: None })
+}

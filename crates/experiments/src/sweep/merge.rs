@@ -1,0 +1,200 @@
+//! The shards of a sweep as one folder: its bytes are those of a single run.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
+use super::archive;
+use super::disk::{broken_files, experiment_of, manifest_in, resolved_in};
+use super::folder::{Folder, Opening};
+use super::host::Hosts;
+use super::store::{Order, Store};
+use crate::experiment::{Experiment, Place, Program, Shard};
+use crate::failure::Failure;
+use crate::provenance::{Manifest, scenario_differences};
+use crate::run::TrialKey;
+
+/// How many missing trials are named.
+const MAX_NAMED: usize = 5;
+/// No shard has the trial.
+const NOBODY: u32 = u32::MAX;
+
+/// Shards that together are a sweep.
+pub struct Merge {
+    experiment: Arc<Experiment>,
+    parts: Vec<Part>,
+    order: Order,
+    /// For each trial, in order, the shard that has it.
+    owners: Vec<u32>,
+}
+
+/// One shard.
+struct Part {
+    path: PathBuf,
+    manifest: Manifest,
+    store: Store,
+    /// The places of its trials, where it has not got all of its shard.
+    places: Option<Vec<Place>>,
+}
+
+impl Merge {
+    /// Finds out which shard has which trial. No trial is read.
+    ///
+    /// # Errors
+    /// A folder is damaged or is no sweep's; they are of different sweeps or programs, disagree about a trial, or lack
+    /// one.
+    pub fn of(folders: &[PathBuf]) -> Result<Self, Failure> {
+        let [first, ..] = folders else { return Err(Failure::input("there is nothing to merge")) };
+        let manifest = manifest_in(first)?;
+        check_program(first, &manifest)?;
+        let experiment = Arc::new(experiment_of(first, &manifest)?);
+        let resolved = experiment.base.resolved();
+        let part = |path: &PathBuf| {
+            let there = manifest_in(path)?;
+            check_same([first, path], [&manifest, &there], &resolved)?;
+            Part::open(path, there, &experiment)
+        };
+        let parts = folders.iter().map(part).collect::<Result<Vec<_>, _>>()?;
+        let order = Order::of(&experiment, None);
+        let owners = vec![NOBODY; order.count()];
+        let mut merge = Self { experiment, parts, order, owners };
+        merge.find_owners()?;
+        merge.check_complete()?;
+        Ok(merge)
+    }
+
+    fn find_owners(&mut self) -> Result<(), Failure> {
+        let experiment = Arc::clone(&self.experiment);
+        for number in 0..self.parts.len() {
+            let Part { manifest, places, .. } = &self.parts[number];
+            let shard = manifest.shard;
+            match places.clone() {
+                Some(places) => places.into_iter().try_for_each(|place| self.own(number, place))?,
+                None => experiment.places(shard).try_for_each(|place| self.own(number, place))?,
+            }
+        }
+        Ok(())
+    }
+
+    /// Says that a shard has a trial. Where another has it as well, they must agree.
+    fn own(&mut self, number: usize, place: Place) -> Result<(), Failure> {
+        let Some(rank) = self.order.rank(place) else { return Ok(()) };
+        let owner = self.owners[rank];
+        if owner == NOBODY {
+            self.owners[rank] = number as u32;
+            return Ok(());
+        }
+        let other = owner as usize;
+        if self.parts[other].store.line(place)? == self.parts[number].store.line(place)? {
+            return Ok(());
+        }
+        let TrialKey { trial, label, seed, .. } = self.experiment.key(place);
+        let [one, two] = [other, number].map(|number| self.parts[number].path.display());
+        Err(Failure::input(format!("{one} and {two} disagree about trial {trial} of {label} (seed {seed})")))
+    }
+
+    /// Refuses shards that lack a trial, naming the shards that are not there and the first trials.
+    fn check_complete(&self) -> Result<(), Failure> {
+        let count = self.owners.iter().filter(|owner| **owner == NOBODY).count();
+        if count == 0 {
+            return Ok(());
+        }
+        let missing = self.experiment.places(None).zip(&self.owners).filter(|(_, owner)| **owner == NOBODY);
+        let name = |(place, _)| {
+            let key = self.experiment.key(place);
+            let case = self.experiment.describe(&self.experiment.cases[key.case]);
+            format!("{case}trial {} of {}", key.trial, key.label)
+        };
+        let named = missing.take(MAX_NAMED).map(name).collect::<Vec<_>>().join(", ");
+        let more = if count > MAX_NAMED { ", ..." } else { "" };
+        Err(Failure::input(format!("{}missing trials, {count}: {named}{more}", self.absent_shards())))
+    }
+
+    /// Which of the shards are not there, in words; nothing where all are.
+    fn absent_shards(&self) -> String {
+        let there: Vec<Shard> = self.parts.iter().filter_map(|part| part.manifest.shard).collect();
+        let Some(first) = there.first() else { return String::new() };
+        let is_there =
+            |number: &u32| there.iter().any(|shard| shard.of == first.of && shard.number == *number);
+        let absent: Vec<String> = (1..=first.of)
+            .filter(|number| !is_there(number))
+            .map(|number| format!("{number}/{}", first.of))
+            .collect();
+        if absent.is_empty() { String::new() } else { format!("shard {} is not there: ", absent.join(", ")) }
+    }
+
+    /// Writes the whole to a folder; no trial is held there twice. What is to be said about it goes to `say`.
+    ///
+    /// # Errors
+    /// The folder has something else in it, a line cannot be read, the disk does not take it, or `stop` was set.
+    pub fn write_to(
+        mut self,
+        out: &Path,
+        stop: &AtomicBool,
+        say: &mut dyn FnMut(String),
+    ) -> Result<Folder, Failure> {
+        let mut whole = Folder::open(out, Arc::clone(&self.experiment), Opening::default(), say)?;
+        if whole.manifest().is_complete {
+            return Ok(whole);
+        }
+        let (order, owners, parts) = (&self.order, &self.owners, &mut self.parts);
+        let line = |place: Place| {
+            let owner = order.rank(place).map_or(NOBODY, |rank| owners[rank]) as usize;
+            let part = parts.get_mut(owner).ok_or_else(|| Failure::run("a shard is missing"))?;
+            part.store.line(place)
+        };
+        whole.fill(line, stop)?;
+        Hosts::add(out, self.parts.iter().flat_map(|part| Hosts::read(&part.path).runs))?;
+        Ok(whole)
+    }
+}
+
+impl Part {
+    fn open(path: &Path, manifest: Manifest, experiment: &Experiment) -> Result<Self, Failure> {
+        let is_finished = manifest.is_complete && broken_files(path, &manifest).is_empty();
+        if is_finished {
+            let order = Order::of(experiment, manifest.shard);
+            let store = Store::archive(path, order).map_err(|reason| {
+                Failure::input(format!("{}: {reason}", path.join(archive::FILE).display()))
+            })?;
+            return Ok(Self { path: path.to_owned(), manifest, store, places: None });
+        }
+        let (store, places) = Folder::read(path)?.into_store();
+        Ok(Self { path: path.to_owned(), manifest, store, places: Some(places) })
+    }
+}
+
+/// Refuses shards of another program than this one.
+fn check_program(path: &Path, there: &Manifest) -> Result<(), Failure> {
+    let this = Program::this();
+    if (&there.version, &there.source) == (&this.version, &this.source) {
+        return Ok(());
+    }
+    Err(Failure::input(format!(
+        "{} is of usar {} with source {}; this is {} with source {}: merge with the program that ran the shards",
+        path.display(),
+        there.version,
+        there.source,
+        this.version,
+        this.source
+    )))
+}
+
+/// Refuses shards of different sweeps.
+fn check_same(paths: [&Path; 2], manifests: [&Manifest; 2], resolved: &str) -> Result<(), Failure> {
+    let [first, other] = manifests;
+    let mut differences = first.differences(other);
+    let scenario = resolved_in(paths[1]);
+    if scenario != resolved {
+        differences.extend(scenario_differences(resolved, &scenario));
+    }
+    if first.trials != other.trials {
+        differences.push(format!("trials: {} there, {} now", first.trials, other.trials));
+    }
+    if differences.is_empty() {
+        return Ok(());
+    }
+    let [one, other] = paths.map(Path::display);
+    let differences = differences.join("\n  ");
+    Err(Failure::input(format!("{one} and {other} are not of one sweep:\n  {differences}")))
+}

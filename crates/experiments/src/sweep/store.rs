@@ -1,0 +1,170 @@
+//! Where a folder's trials are: in the journal while there may be more, in its archive when there are all.
+
+use std::collections::BTreeMap;
+use std::fs::File;
+use std::io::{self, BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+use super::archive::{self, Archive};
+use super::disk::sync_folder;
+use super::journal::{self, Journal};
+use super::line::{Finished, finished_of};
+use super::measured::{Measured, Results};
+use crate::experiment::{Experiment, Place, Shard};
+use crate::failure::Failure;
+use crate::files;
+
+/// The trials of a folder.
+pub(super) enum Store {
+    /// There may be more.
+    Journal(Journal),
+    /// All are there, in order.
+    Archive(Archive, Order),
+    /// What can be read of a damaged archive: the number of each line.
+    Salvaged(Archive, BTreeMap<Place, usize>),
+}
+
+impl Store {
+    /// The line of a trial.
+    ///
+    /// # Errors
+    /// It is not there, or cannot be read.
+    pub(super) fn line(&mut self, place: Place) -> Result<Vec<u8>, Failure> {
+        let (archive, number) = match self {
+            Self::Journal(journal) => return journal.line(place),
+            Self::Archive(archive, order) => (archive, order.rank(place)),
+            Self::Salvaged(archive, numbers) => (archive, numbers.get(&place).copied()),
+        };
+        let no_such = || io::Error::new(io::ErrorKind::NotFound, "it has no such trial");
+        let line = number.ok_or_else(no_such).and_then(|number| archive.line(number).map(<[u8]>::to_vec));
+        line.map_err(|error| Failure::storage(format!("{}: {error}", archive::FILE)))
+    }
+
+    /// A finished trial.
+    ///
+    /// # Errors
+    /// Those of [`Store::line`], or it was changed since it was written.
+    pub(super) fn finished(&mut self, place: Place, experiment: &Experiment) -> Result<Finished, Failure> {
+        let line = self.line(place)?;
+        let in_its_place = |finished: Finished| match finished.place() {
+            found if found == place => Ok(finished),
+            _ => Err("is not its trials in order".to_owned()),
+        };
+        finished_of(&line, experiment, None)
+            .and_then(in_its_place)
+            .map_err(|reason| Failure::storage(format!("{}: {reason}", self.name())))
+    }
+
+    /// The name of its file.
+    pub(super) fn name(&self) -> &'static str {
+        if let Self::Journal(_) = self { journal::FILE } else { archive::FILE }
+    }
+
+    /// The archive of a folder in which all trials are.
+    ///
+    /// # Errors
+    /// It cannot be read, or has not got as many lines.
+    pub(super) fn archive(folder: &Path, order: Order) -> Result<Self, String> {
+        let archive = Archive::open(folder).map_err(|error| error.to_string())?;
+        if archive.count() != order.count() {
+            return Err(format!("has {} trials of {}", archive.count(), order.count()));
+        }
+        Ok(Self::Archive(archive, order))
+    }
+
+    /// What can be read of an archive, whatever was done to it, with the results; what is wrong goes to `say`.
+    ///
+    /// # Errors
+    /// It cannot be read at all.
+    pub(super) fn salvage(
+        folder: &Path,
+        (experiment, shard): (&Experiment, Option<Shard>),
+        say: &mut dyn FnMut(String),
+    ) -> Result<(Self, Results), Failure> {
+        let path = folder.join(archive::FILE);
+        let trouble = |error: io::Error| Failure::storage(format!("{}: {error}", path.display()));
+        let (archive, is_whole) = Archive::open_damaged(folder).map_err(trouble)?;
+        let (mut numbers, mut results) = (BTreeMap::new(), Results::new());
+        for member in archive.salvage() {
+            let (first, lines, whole) = member.map_err(trouble)?;
+            for (number, line) in (first..).zip(lines.split_inclusive(|byte| *byte == b'\n')) {
+                match finished_of(line, experiment, shard) {
+                    Ok(finished) => {
+                        results.insert(finished.place(), Measured::of_finished(&finished, experiment));
+                        numbers.insert(finished.place(), number);
+                    }
+                    Err(reason) => say(format!("{}:{}: {reason}", path.display(), number + 1)),
+                }
+            }
+            if let Err(error) = whole {
+                say(format!("{}: after line {}: {error}", path.display(), numbers.len()));
+            }
+        }
+        if !is_whole {
+            say(format!("{}: after line {}: it is cut off, or was changed", path.display(), archive.count()));
+        }
+        Ok((Self::Salvaged(archive, numbers), results))
+    }
+}
+
+/// Makes a journal of a folder's archive again, where there is no journal: there may be more trials. What of it
+/// cannot be read is not in the journal.
+///
+/// # Errors
+/// The disk does not take it.
+pub(super) fn thaw(folder: &Path) -> Result<(), Failure> {
+    let [journal, pressed] = [journal::FILE, archive::FILE].map(|name| folder.join(name));
+    let trouble = |path: &PathBuf| {
+        let path = path.display().to_string();
+        move |error: io::Error| Failure::storage(format!("{path}: {error}"))
+    };
+    files::check_is_file(&pressed).map_err(trouble(&pressed))?;
+    if journal.symlink_metadata().is_err() && pressed.exists() {
+        let new = folder.join(format!("{}.new", journal::FILE));
+        let mut file = BufWriter::new(files::create(&new).map_err(trouble(&new))?);
+        let (archive, _) = Archive::open_damaged(folder).map_err(trouble(&pressed))?;
+        for member in archive.salvage() {
+            let (_, lines, _) = member.map_err(trouble(&pressed))?;
+            file.write_all(&lines).map_err(trouble(&new))?;
+        }
+        let file: File = file.into_inner().map_err(|error| trouble(&new)(error.into_error()))?;
+        file.sync_all().and_then(|()| std::fs::rename(&new, &journal)).map_err(trouble(&new))?;
+        sync_folder(folder)?;
+    }
+    files::remove(&pressed).map_err(trouble(&pressed))
+}
+
+/// The order of a folder's trials, without a list of them.
+pub(super) struct Order {
+    policies: usize,
+    /// Of each case, how many trials the cases before have, and the numbers of its trials.
+    cases: Vec<(usize, Vec<u32>)>,
+    count: usize,
+}
+
+impl Order {
+    /// Of a sweep or a shard of it.
+    pub(super) fn of(experiment: &Experiment, shard: Option<Shard>) -> Self {
+        let policies = experiment.policies.len();
+        let (mut cases, mut count) = (Vec::new(), 0);
+        for case in 0..experiment.cases.len() {
+            let trials: Vec<u32> = experiment.trials_of(case, shard).collect();
+            let of_case = trials.len() * policies;
+            cases.push((count, trials));
+            count += of_case;
+        }
+        Self { policies, cases, count }
+    }
+
+    /// How many there are.
+    pub(super) fn count(&self) -> usize {
+        self.count
+    }
+
+    /// The number of a trial's line, from 0.
+    pub(super) fn rank(&self, (case, policy, trial): Place) -> Option<usize> {
+        let (before, trials) = self.cases.get(case).filter(|_| policy < self.policies)?;
+        let place = trials.binary_search(&trial).ok()?;
+        Some(before + policy * trials.len() + place)
+    }
+}

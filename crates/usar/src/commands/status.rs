@@ -1,0 +1,140 @@
+//! `usar status`: how far a sweep is that was dealt into shards, and how to go on with what is missing.
+
+mod shards;
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use experiments::Failure;
+use experiments::sweep::disk::{experiment_in, is_sweeps, sweeps_in};
+use serde::Serialize;
+
+use super::estimate::duration;
+use super::submit::{LOGS, Submission, line};
+use super::{SCHEMA_VERSION, slurm};
+use shards::{OneShard, Said, State, ranges, seconds_each};
+
+/// Shards that are listed one by one.
+const MOST_LISTED: usize = 20;
+
+/// How far a sweep of many shards is, and the line that submits what is missing
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Looks at the folder of each shard (its manifest, its journal and its lock) and, where there are `squeue` and `sacct`, asks Slurm. A shard is \
+done; running; waiting in the queue; failed, with what Slurm says of its task; or lost: nothing is at work in it and no queue has it. The last \
+line submits what is failed or lost, and nothing else; each of these goes on where it was.
+
+Examples:
+  usar status results/energy-shards        the folder that `usar submit` made, or one with shards in it
+  usar status results/energy               one sweep or shard
+  usar status results/energy-shards --json")]
+pub(crate) struct Arguments {
+    /// Folder of shards, or of one
+    folder: PathBuf,
+    /// Print one JSON object
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Serialize)]
+struct Output {
+    schema_version: u32,
+    shards: Vec<OneShard>,
+    finished: usize,
+    trials: usize,
+    /// Time that is left, if as many shards run at a time as now.
+    seconds_left: Option<f64>,
+    /// The line that submits what is missing.
+    submit: Option<String>,
+}
+
+impl Arguments {
+    pub(crate) fn execute(&self, out: &mut dyn Write) -> Result<(), Failure> {
+        let output = match Submission::read(&self.folder)? {
+            Some(submission) => submitted(&std::path::absolute(&self.folder)?, &submission)?,
+            None => by_hand(&self.folder)?,
+        };
+        if self.json {
+            return Ok(writeln!(out, "{}", serde_json::to_string(&output).map_err(Failure::run)?)?);
+        }
+        output.print(out)
+    }
+}
+
+/// The shards of a submission.
+fn submitted(folder: &Path, submission: &Submission) -> Result<Output, Failure> {
+    let Submission { array, plan, name, .. } = submission;
+    let array = array.as_deref().unwrap_or_default();
+    let said = Said { queued: slurm::queued(array, name), ended: slurm::ended(array) };
+    let of = |(number, trials): (u32, &usize)| {
+        OneShard::of(number, folder.join(number.to_string()), *trials, &said)
+    };
+    let shards = (1..).zip(&plan.trials).map(of).collect::<Result<Vec<_>, _>>()?;
+    let mut output = Output::of(shards, plan.at_once, plan.seconds_per_trial / f64::from(plan.cpus));
+    let missing: Vec<u32> = output.missing().map(|shard| shard.number).collect();
+    let tasks = format!("{}%{}", ranges(&missing), plan.at_once);
+    output.submit = (!missing.is_empty()).then(|| line(folder, Some(&tasks)));
+    Ok(output)
+}
+
+/// Shards that were run without `usar submit`, or a single sweep.
+fn by_hand(folder: &Path) -> Result<Output, Failure> {
+    let folders = if is_sweeps(folder) { vec![folder.to_owned()] } else { sweeps_in(folder) };
+    if folders.is_empty() {
+        return Err(Failure::input(format!("{}: has neither shards nor a sweep in it", folder.display())));
+    }
+    let said = Said { queued: None, ended: slurm::Tasks::new() };
+    let of = |folder: PathBuf| {
+        let (experiment, manifest) = experiment_in(&folder)?;
+        let number = manifest.shard.map_or(1, |shard| shard.number);
+        OneShard::of(number, folder, experiment.count(manifest.shard), &said)
+    };
+    let shards = folders.into_iter().map(of).collect::<Result<Vec<_>, _>>()?;
+    Ok(Output::of(shards, 1, 0.0))
+}
+
+impl Output {
+    fn of(shards: Vec<OneShard>, at_once: u32, estimated: f64) -> Self {
+        let sum = |value: fn(&OneShard) -> usize| shards.iter().map(value).sum::<usize>();
+        let (finished, trials) = (sum(|shard| shard.finished), sum(|shard| shard.trials));
+        let each = seconds_each(shards.iter().map(|shard| &shard.folder)).unwrap_or(estimated);
+        let running = shards.iter().filter(|shard| shard.state == State::Running).count();
+        let open = shards.iter().filter(|shard| shard.state != State::Done).count();
+        let at_a_time = if running > 0 { running } else { at_once as usize }.min(open).max(1);
+        let seconds_left = each * (trials - finished) as f64 / at_a_time as f64;
+        let seconds_left = (each > 0.0).then_some(seconds_left);
+        Self { schema_version: SCHEMA_VERSION, shards, finished, trials, seconds_left, submit: None }
+    }
+
+    /// The shards that nobody will go on with.
+    fn missing(&self) -> impl Iterator<Item = &OneShard> {
+        self.shards.iter().filter(|shard| matches!(shard.state, State::Failed | State::Lost))
+    }
+
+    fn print(&self, out: &mut dyn Write) -> Result<(), Failure> {
+        let of = |state: State| self.shards.iter().filter(|shard| shard.state == state).count();
+        let counts = State::ALL.into_iter().map(|state| (state, of(state))).filter(|(_, count)| *count > 0);
+        let counts: Vec<String> = counts.map(|(state, count)| format!("{count} {}", state.name())).collect();
+        writeln!(out, "shards  {}: {}", self.shards.len(), counts.join(", "))?;
+        writeln!(out, "trials  {} of {}", self.finished, self.trials)?;
+        if let Some(seconds) = self.seconds_left.filter(|_| self.finished < self.trials) {
+            writeln!(out, "time    about {} left", duration(seconds))?;
+        }
+        let open: Vec<&OneShard> = self.shards.iter().filter(|shard| shard.state != State::Done).collect();
+        for shard in open.iter().take(MOST_LISTED) {
+            let OneShard { number, state, why, finished, trials, .. } = shard;
+            writeln!(out, "  shard {number:>4}  {:8} {finished} of {trials} trials  {why}", state.name())?;
+        }
+        if open.len() > MOST_LISTED {
+            writeln!(out, "  ... and {} more: --json has all", open.len() - MOST_LISTED)?;
+        }
+        if let Some(line) = &self.submit {
+            writeln!(
+                out,
+                "what the jobs printed is in {LOGS}/; this submits what is missing, and the merge:\n{line}"
+            )?;
+        }
+        Ok(())
+    }
+}

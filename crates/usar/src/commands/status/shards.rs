@@ -1,0 +1,130 @@
+//! Where each shard of a sweep stands: from its folder, and from what Slurm says of its task.
+
+use std::path::{Path, PathBuf};
+
+use experiments::Failure;
+use experiments::sweep::host::Hosts;
+use experiments::sweep::progress::{Progress, progress};
+use serde::Serialize;
+
+use super::super::slurm::Tasks;
+
+/// Where a shard stands.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub(super) enum State {
+    /// All its trials are there.
+    Done,
+    /// A process is at work in it.
+    Running,
+    /// It is in the queue.
+    Waiting,
+    /// Its task ended without being done.
+    Failed,
+    /// It is neither done, nor running, nor in the queue.
+    Lost,
+}
+
+impl State {
+    pub(super) const ALL: [Self; 5] = [Self::Done, Self::Running, Self::Waiting, Self::Failed, Self::Lost];
+
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Self::Done => "done",
+            Self::Running => "running",
+            Self::Waiting => "waiting",
+            Self::Failed => "failed",
+            Self::Lost => "lost",
+        }
+    }
+}
+
+/// A shard.
+#[derive(Debug, Serialize)]
+pub(super) struct OneShard {
+    pub number: u32,
+    pub state: State,
+    /// What Slurm says, or who is at work.
+    pub why: String,
+    /// Trials that are there, and that are to be.
+    pub finished: usize,
+    pub trials: usize,
+    #[serde(skip)]
+    pub folder: PathBuf,
+}
+
+/// What Slurm says of tasks: those in the queue, where there is one, and how others ended.
+pub(super) struct Said {
+    pub queued: Option<Tasks>,
+    pub ended: Tasks,
+}
+
+impl OneShard {
+    /// The shard in a folder that has so many trials to run.
+    ///
+    /// # Errors
+    /// The folder has something else in it.
+    pub(super) fn of(number: u32, folder: PathBuf, trials: usize, said: &Said) -> Result<Self, Failure> {
+        let there = progress(&folder)?;
+        let finished = match &there {
+            None => 0,
+            Some(Progress { manifest, .. }) if manifest.is_complete => trials,
+            Some(Progress { journal_lines, .. }) => (*journal_lines).min(trials),
+        };
+        let (state, why) = state(there.as_ref(), number, said);
+        Ok(Self { number, state, why, finished, trials, folder })
+    }
+}
+
+fn state(there: Option<&Progress>, number: u32, said: &Said) -> (State, String) {
+    if there.is_some_and(|there| there.manifest.is_complete) {
+        return (State::Done, String::new());
+    }
+    if let Some(holder) = there.and_then(|there| there.holder.as_ref()) {
+        return (State::Running, holder.to_string());
+    }
+    let queued = said.queued.as_ref().and_then(|tasks| tasks.get(&number));
+    match (queued.map(String::as_str), said.ended.get(&number)) {
+        (Some(state @ ("RUNNING" | "COMPLETING")), _) => (State::Running, state.to_owned()),
+        (Some(state), _) => (State::Waiting, state.to_owned()),
+        (None, Some(state)) if state != "PENDING" && state != "RUNNING" => (State::Failed, state.clone()),
+        (None, _) => (State::Lost, "not in the queue, and nothing is at work in its folder".to_owned()),
+    }
+}
+
+/// Mean wall-clock time of a trial in a shard, in seconds, over all runs that ended; nothing before the first.
+pub(super) fn seconds_each(folders: impl Iterator<Item = impl AsRef<Path>>) -> Option<f64> {
+    let runs = folders.flat_map(|folder| Hosts::read(folder.as_ref()).runs);
+    let (seconds, trials) =
+        runs.fold((0.0, 0), |(seconds, trials), run| (seconds + run.seconds, trials + run.trials));
+    (trials > 0).then(|| seconds / trials as f64)
+}
+
+/// Numbers as Slurm writes them: `1,4-7`.
+pub(super) fn ranges(numbers: &[u32]) -> String {
+    let runs = numbers.chunk_by(|a, b| a + 1 == *b);
+    let run = |run: &[u32]| match run {
+        [one] => one.to_string(),
+        [first, .., last] => format!("{first}-{last}"),
+        [] => String::new(),
+    };
+    runs.map(run).collect::<Vec<_>>().join(",")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_shard_without_a_folder_is_what_slurm_says_of_its_task() {
+        let of = |queued: Option<&str>, ended: Option<&str>| {
+            let tasks = |state: Option<&str>| state.map(|state| (3, state.to_owned())).into_iter().collect();
+            state(None, 3, &Said { queued: Some(tasks(queued)), ended: tasks(ended) }).0
+        };
+        assert_eq!(of(Some("RUNNING"), None), State::Running);
+        assert_eq!(of(Some("PENDING"), Some("NODE_FAIL")), State::Waiting, "it was queued again");
+        assert_eq!(of(None, Some("TIMEOUT")), State::Failed);
+        assert_eq!(of(None, None), State::Lost);
+        assert_eq!(ranges(&[1, 4, 5, 6, 9]), "1,4-6,9");
+    }
+}

@@ -1,0 +1,65 @@
+//! `submission.json`: what was submitted, in the folder of the shards.
+
+use std::path::{Path, PathBuf};
+
+use experiments::Failure;
+use experiments::files::{self, NewFile};
+use serde::{Deserialize, Serialize};
+
+use super::plan::Plan;
+
+/// Name of the file.
+const FILE: &str = "submission.json";
+/// Name of the script of the shards.
+pub(crate) const ARRAY: &str = "array.sh";
+/// Name of the script of the job after it.
+pub(crate) const MERGE: &str = "merge.sh";
+/// The folder of what the jobs print.
+pub(crate) const LOGS: &str = "logs";
+/// Version of its layout.
+const SCHEMA_VERSION: u32 = 1;
+
+/// What was submitted.
+#[derive(Debug, Serialize, Deserialize)]
+pub(crate) struct Submission {
+    schema_version: u32,
+    /// Name of the sweep.
+    pub name: String,
+    /// How it was dealt out.
+    pub plan: Plan,
+    /// Where the whole goes.
+    pub out: PathBuf,
+    /// The array, as Slurm names it.
+    pub array: Option<String>,
+    /// The job after it.
+    pub merge: Option<String>,
+}
+
+impl Submission {
+    pub(super) fn new(name: &str, plan: Plan, out: PathBuf) -> Self {
+        Self { schema_version: SCHEMA_VERSION, name: name.to_owned(), plan, out, array: None, merge: None }
+    }
+
+    /// Reads what was submitted from a folder of shards; nothing where that is not there.
+    ///
+    /// # Errors
+    /// It cannot be read.
+    pub(crate) fn read(folder: &Path) -> Result<Option<Self>, Failure> {
+        let path = folder.join(FILE);
+        if path.symlink_metadata().is_err() {
+            return Ok(None);
+        }
+        let wrong = |error: &dyn std::fmt::Display| Failure::input(format!("{}: {error}", path.display()));
+        let text = files::read(&path).map_err(|error| wrong(&error))?;
+        let read: Self = serde_json::from_slice(&text).map_err(|error| wrong(&error))?;
+        match read.schema_version {
+            SCHEMA_VERSION => Ok(Some(read)),
+            other => Err(wrong(&format!("its layout has version {other}; this is {SCHEMA_VERSION}"))),
+        }
+    }
+
+    pub(super) fn write(&self, folder: &Path) -> Result<(), Failure> {
+        let text = serde_json::to_string_pretty(self).map_err(Failure::run)? + "\n";
+        NewFile::write(folder, FILE, text.as_bytes()).map(drop)
+    }
+}

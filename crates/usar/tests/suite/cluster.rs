@@ -1,0 +1,129 @@
+//! A sweep on a cluster: what is submitted, how far it is, and that the whole has the bytes of a single run. `sbatch` is a script here;
+//! .ci/slurm does the same with Slurm itself.
+
+use std::os::unix::fs::symlink;
+use std::path::Path;
+use std::process::{Command, Output};
+
+use serde_json::Value;
+use xtask::kills::files;
+
+use crate::place::{place, refused};
+use crate::support::{program, read, root, succeeds, usar};
+
+const SWEEP: [&str; 5] = ["short.ron", "--policies", "RNE,DIS", "--trials", "20"];
+
+/// Runs a command where `sbatch` is the script.
+fn with_slurm(here: &Path, command: &mut Command, more: &[(&str, &str)]) -> Output {
+    let bin = here.join("bin");
+    if !bin.exists() {
+        std::fs::create_dir(&bin).unwrap();
+        symlink(root().join("crates/usar/tests/suite/fake_sbatch"), bin.join("sbatch")).unwrap();
+    }
+    let path = format!("{}:{}", bin.display(), std::env::var("PATH").unwrap());
+    command.current_dir(here).env("PATH", path).envs(more.iter().copied()).output().unwrap()
+}
+
+fn submit<'a>(more: &[&'a str]) -> Vec<&'a str> {
+    [&["submit"], &SWEEP[..], &["--slurm", "--cpus", "2"], more].concat()
+}
+
+fn status(here: &Path) -> Value {
+    serde_json::from_str(&succeeds(&usar(here, &["status", "results/paper-shards", "--json"]))).unwrap()
+}
+
+#[test]
+fn a_sweep_on_a_cluster_goes_on_after_kills_and_has_the_bytes_of_a_single_run() {
+    let folder = place();
+    let here = folder.path();
+    succeeds(&usar(here, &[&["sweep"], &SWEEP[..], &["--out", "alone"]].concat()));
+    let troubles = [("FAKE_KILLED", "2"), ("FAKE_LOST", "4")];
+    let mut command = Command::new(program());
+    let said = succeeds(&with_slurm(here, command.args(submit(&["--shards", "4"])), &troubles));
+    assert!(said.starts_with("4 shards of up to 10 trials, each about "), "{said}");
+    assert!(said.contains("submitted: array 1, and after it 2, which writes "), "{said}");
+    assert!(!here.join("results/paper").exists(), "the job after it waits for all");
+    let before = status(here);
+    let states: Vec<&str> =
+        before["shards"].as_array().unwrap().iter().map(|shard| shard["state"].as_str().unwrap()).collect();
+    assert_eq!(states, ["done", "lost", "done", "lost"]);
+    let finished = before["finished"].as_u64().unwrap();
+    assert!((21..30).contains(&finished), "two shards and a part of the second: {finished}");
+    // The line that it says submits what is missing, and the merge.
+    let shown = succeeds(&usar(here, &["status", "results/paper-shards"]));
+    let line = shown.lines().last().unwrap();
+    assert!(line.contains("--array=2,4%4 "), "{line}");
+    let output = with_slurm(here, Command::new("bash").args(["-c", line]), &[]);
+    succeeds(&output);
+    assert_eq!(status(here)["finished"], 40);
+    assert!(read(&here.join("results/paper-shards/logs/merge.log")).contains("report.html"));
+    let mut whole = files_only(&here.join("results/paper"));
+    whole.retain(|name, _| name != "report.html" && name != "report.files");
+    assert!(whole == files_only(&here.join("alone")), "its bytes are those of a single run");
+    refused(here, 2, &submit(&["--shards", "4"]), &["results/paper-shards exists; nothing was submitted"]);
+}
+
+/// The files of a folder, but not the folders in it.
+fn files_only(folder: &Path) -> std::collections::BTreeMap<String, Vec<u8>> {
+    let _ = std::fs::remove_dir_all(folder.join("plots"));
+    files(folder)
+}
+
+#[test]
+fn a_dry_run_prints_readable_scripts_and_writes_nothing() {
+    let folder = place();
+    let here = folder.path();
+    let before = std::fs::read_dir(here).unwrap().count();
+    let said = succeeds(&usar(
+        here,
+        &submit(&[
+            "--dry-run",
+            "--account",
+            "robots",
+            "--partition",
+            "short",
+            "--time",
+            "01:00:00",
+            "--set",
+            "dt_s=0.02",
+        ]),
+    ));
+    for line in [
+        "#SBATCH --array=1-1%1",
+        "#SBATCH --requeue",
+        "#SBATCH --signal=B:INT@60",
+        "#SBATCH --cpus-per-task=2",
+        "#SBATCH --time=01:00:00",
+        "#SBATCH --account=robots",
+        "#SBATCH --partition=short",
+    ] {
+        assert!(said.lines().any(|found| found == line), "{line}: {said}");
+    }
+    assert!(said.contains("short.ron --policies RNE,DIS --trials 20 --set dt_s=0.02 \\"), "{said}");
+    assert!(said.contains("nothing was written or submitted"), "{said}");
+    assert_eq!(std::fs::read_dir(here).unwrap().count(), before);
+    std::fs::write(here.join("mine.sh"), "#!/bin/bash\n@uasr@ sweep @arguments@\n").unwrap();
+    refused(
+        here,
+        2,
+        &submit(&["--dry-run", "--template", "mine.sh"]),
+        &["--template: line 2: @uasr@ must be one of @name@"],
+    );
+    refused(here, 2, &submit(&["--account", "a b"]), &["must be letters, digits and -_.:, found \"a b\""]);
+    let mut command = Command::new(program());
+    let output = command.args(submit(&[])).current_dir(here).env("PATH", here).output().unwrap();
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.code() == Some(1) && said.contains("--dry-run prints the scripts"), "{said}");
+    assert!(!here.join("results").join("paper-shards").exists());
+}
+
+#[test]
+fn shards_that_were_run_by_hand_have_a_status_too() {
+    let folder = place();
+    let here = folder.path();
+    succeeds(&usar(here, &[&["sweep"], &SWEEP[..], &["--shard", "1/2"]].concat()));
+    let said = succeeds(&usar(here, &["status", "results"]));
+    assert!(said.starts_with("shards  1: 1 done\ntrials  20 of 20\n"), "{said}");
+    std::fs::create_dir(here.join("empty")).unwrap();
+    refused(here, 2, &["status", "empty"], &["has neither shards nor a sweep in it"]);
+}
