@@ -165,7 +165,7 @@ impl Header {
         (steps_per_frame, frames_per_segment): (u64, usize),
     ) -> Self {
         let scenario = simulation.scenario();
-        let resolved = scenario.resolved();
+        let resolved = simulation.model().given().resolved();
         let world = World::of(simulation);
         let rows = world.rows();
         Self {

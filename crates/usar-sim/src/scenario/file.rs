@@ -7,7 +7,11 @@ use std::collections::BTreeMap;
 use rne_core::hierarchy::NeedLevel;
 use serde::{Deserialize, Serialize};
 
+pub use super::distribution::{Amount, Distribution};
+pub use super::draws::Draws;
 pub use super::rules::*;
+pub use super::scatter::{Placement, Scatter, Scattered};
+pub use super::timeline::{Happening, Moment};
 
 /// A point `(x, y)` or an extent `(width, height)`, in metres.
 pub type Point = [f64; 2];
@@ -16,6 +20,9 @@ pub type Point = [f64; 2];
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ScenarioFile {
+    /// Number of the format that the file is written in; this program reads format 2.
+    #[serde(default = "super::defaults::format")]
+    pub format: u32,
     /// Short name: letters, digits, `-`, `_` and `.`; names the folder of results.
     pub name: String,
     /// What the scenario is for.
@@ -57,6 +64,12 @@ pub struct ScenarioFile {
     /// What the debris and radiation zones are like that tasks ask for.
     #[serde(default)]
     pub sampled: Sampled,
+    /// Debris and radiation zones that are placed anew in every trial.
+    #[serde(default)]
+    pub scatter: Vec<Scatter>,
+    /// What happens at which time.
+    #[serde(default)]
+    pub timeline: Vec<Moment>,
     /// What moving and radiation cost.
     #[serde(default)]
     pub costs: Costs,
@@ -69,6 +82,9 @@ pub struct ScenarioFile {
     /// Rules of right of way.
     #[serde(default)]
     pub conflicts: ConflictRules,
+    /// Distributions that stand in the place of values; written there, and not as a field.
+    #[serde(default, skip_serializing_if = "Draws::is_empty")]
+    pub draws: Draws,
 }
 
 /// Robots of one role side by side.
@@ -83,7 +99,7 @@ pub struct Row {
     pub center: Point,
     /// Distance between the first and the last robot, in metres.
     pub width_m: f64,
-    /// Initial levels of the whole row, instead of draws.
+    /// Initial levels of the robots of the row, instead of `initial_levels`. A distribution is drawn for each robot.
     #[serde(default)]
     pub levels: Option<Levels>,
     /// What is different in this row from the robots of its role.
@@ -120,13 +136,13 @@ pub struct Body {
 }
 
 /// Levels of a robot, in percent.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Levels {
     /// Battery.
-    pub energy: f64,
+    pub energy: Amount,
     /// Health.
-    pub hp: f64,
+    pub hp: Amount,
 }
 
 /// Places that one robot is to go to, one after the other.
@@ -278,6 +294,9 @@ pub struct DebrisFile {
     /// Mass and friction of debris that a robot can push; absent for fixed debris.
     #[serde(default)]
     pub movable: Option<Movable>,
+    /// A name, by which an event of the timeline can clear it away.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub name: Option<String>,
 }
 
 /// Outline of a piece of debris.
@@ -302,13 +321,16 @@ pub struct Movable {
 }
 
 /// A radiation zone: a source and the radius of its effect.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ZoneFile {
     /// The source.
     pub at: Point,
     /// Radius, in metres.
     pub radius_m: f64,
+    /// A name, by which an event of the timeline can end it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub name: Option<String>,
 }
 
 /// What is drawn where a task asks for sampled debris or radiation.
@@ -355,11 +377,17 @@ pub struct WallFile {
 }
 
 /// A gap in a wall.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Door {
     /// Distance of its middle from the wall's beginning, in metres.
     pub at_m: f64,
     /// Width, in metres.
     pub width_m: f64,
+    /// A name, by which an event of the timeline can open and close it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub name: Option<String>,
+    /// Whether it is closed at the start.
+    #[serde(default, rename = "closed", skip_serializing_if = "std::ops::Not::not")]
+    pub is_closed: bool,
 }

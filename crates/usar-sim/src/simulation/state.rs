@@ -3,6 +3,7 @@
 use parry2d::math::Vector;
 use serde::{Deserialize, Serialize};
 
+use super::timeline::Timeline;
 use crate::conflict::{Delay, Mover, PriorityKey, Resolver};
 use crate::event::{Event, EventLog};
 use crate::hash::{HashChain, PARTS, part};
@@ -30,6 +31,7 @@ pub(crate) struct State {
     pub(super) is_midway: bool,
     pub(super) log: EventLog,
     pub(super) tallies: Vec<Tally>,
+    pub(super) timeline: Timeline,
     pub(super) chain: HashChain,
 }
 
@@ -63,6 +65,7 @@ impl State {
             is_midway: false,
             log: EventLog::default(),
             tallies: model.layout.robots.iter().map(tally).collect(),
+            timeline: Timeline::new(model),
             chain: HashChain::default(),
             world,
         }
@@ -123,7 +126,8 @@ impl State {
     /// Energy for moving, HP for radiation; robots that have none left stay where they are.
     pub(super) fn expose(&mut self, model: &Model) {
         let (costs, dt) = (&model.scenario.costs, model.dt_s());
-        for (robot, tally) in self.world.robots.iter_mut().zip(&mut self.tallies) {
+        let (robots, zones_at) = self.world.robots_in_zones();
+        for (robot, tally) in robots.iter_mut().zip(&mut self.tallies) {
             let speed = robot.velocity.length();
             let metres = f64::from(speed) * dt;
             tally.note_way(metres);
@@ -131,7 +135,7 @@ impl State {
             if !robot.is_able() || resting {
                 continue;
             }
-            let zones = self.world.zones.iter().filter(|zone| zone.contains(robot.position)).count();
+            let zones = zones_at(robot.position);
             let energy = energy_cost(&costs.energy, speed > STANDING_MPS, metres, dt).min(robot.energy);
             let hp = hp_cost(&costs.hp, zones, metres, dt).min(robot.hp);
             robot.energy -= energy;
@@ -148,6 +152,15 @@ impl State {
                 self.log.push(Event::Disabled { robot: robot.id });
             }
         }
+    }
+
+    /// The hash of the events, and of what the timeline has left, where there is one.
+    fn part_of_events(&self) -> u128 {
+        let (world, timeline) = (&self.world, &self.timeline);
+        if timeline.is_empty() {
+            return part(&self.log);
+        }
+        part(&(&self.log, timeline, world.changed_by_events()))
     }
 
     /// Adds a link to the hash chain.
@@ -171,7 +184,7 @@ impl State {
             part(&self.navigator),
             part(&self.resolver),
             part(&(&self.metrics, &self.tallies)),
-            part(&self.log),
+            self.part_of_events(),
         ]
     }
 }
