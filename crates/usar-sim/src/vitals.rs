@@ -1,9 +1,10 @@
 //! Energy and health: pure functions from what a robot did to what it costs, and from health to what it can do.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Cost in percent points of the robot's own maximum. The three add up.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Rates {
     /// Percent per simulation step, as the paper prints it (energy: a step in which the robot moves; HP: a step inside a zone).

@@ -11,7 +11,7 @@ use rne_core::Registry;
 use terminal_size::{Width, terminal_size_of};
 
 use crate::commands::{
-    calibrate, check, compare, draw, estimate, export, fork, group, list, merge, new, oracle, readings,
+    calibrate, check, compare, draw, estimate, export, fmt, fork, group, list, merge, new, oracle, readings,
     regret, render, report, reproduce, resolve, run, schema, sorting, sweep, test, trust, verify, view, why,
 };
 use crate::printable::Printable;
@@ -40,6 +40,7 @@ Examples:
   usar new mine                                        a commented scenario to begin with
   usar check scenarios/*.ron                           is every value in its range?
   usar resolve scenarios/paper.ron                     every value, and where it comes from
+  usar fmt mine.ron                                    its layout; comments stay
   usar list policies                                   which there are: also scenarios, roles, metrics"
 )]
 struct Cli {
@@ -66,6 +67,7 @@ enum Command {
     Calibrate(calibrate::Arguments),
     New(new::Arguments),
     Check(check::Arguments),
+    Fmt(fmt::Arguments),
     Resolve(resolve::Arguments),
     List(list::Arguments),
     Trust(trust::Arguments),
@@ -150,6 +152,7 @@ impl Command {
             Self::Calibrate(arguments) => arguments.execute(out),
             Self::New(arguments) => arguments.execute(out),
             Self::Check(arguments) => arguments.execute(out),
+            Self::Fmt(arguments) => arguments.execute(out),
             Self::Resolve(arguments) => arguments.execute(out),
             Self::List(arguments) => arguments.execute(out),
             Self::Trust(arguments) => arguments.execute(out),

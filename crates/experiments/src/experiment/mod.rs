@@ -19,6 +19,7 @@ use usar_sim::scenario::{Scenario, check_text, read_text};
 
 pub use asks::Asks;
 pub use cost::{Cost, check_cost};
+pub use file::sweep_schema;
 pub use grid::{Axis, Case};
 pub use policy::{PolicySpec, registry, set_registry, split_list};
 pub use read::{companion, defaults, with_settings};

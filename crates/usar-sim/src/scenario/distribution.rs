@@ -3,6 +3,7 @@
 use rand::RngExt;
 use rand::rngs::ChaCha8Rng;
 use ron_fields::{Fields, Misfit};
+use schemars::JsonSchema;
 use serde::de::Error;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
@@ -20,7 +21,7 @@ const TRUNCATION_TRIES: u32 = 1000;
 const MOST_DEVIATIONS: f64 = 4.0;
 
 /// A distribution of numbers. It is bounded: a `Normal` stands within `Clamped` or `Truncated`.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub enum Distribution {
     /// `Uniform(2, 5)`: every value between the two alike; of whole numbers, both ends too.
     Uniform(f64, f64),

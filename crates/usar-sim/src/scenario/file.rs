@@ -5,6 +5,7 @@
 use std::collections::BTreeMap;
 
 use rne_core::hierarchy::NeedLevel;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 pub use super::distribution::{Amount, Distribution};
@@ -17,7 +18,7 @@ pub use super::timeline::{Happening, Moment};
 pub type Point = [f64; 2];
 
 /// A whole scenario.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ScenarioFile {
     /// Number of the format that the file is written in; this program reads format 2.
@@ -84,11 +85,12 @@ pub struct ScenarioFile {
     pub conflicts: ConflictRules,
     /// Distributions that stand in the place of values; written there, and not as a field.
     #[serde(default, skip_serializing_if = "Draws::is_empty")]
+    #[schemars(skip)]
     pub draws: Draws,
 }
 
 /// Robots of one role side by side.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Row {
     /// Name of the role of the whole row.
@@ -108,7 +110,7 @@ pub struct Row {
 }
 
 /// Values of a row's robots in the place of their role's; what is left out is as in the role.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Body {
     /// Radius of the disc, in metres.
@@ -136,7 +138,7 @@ pub struct Body {
 }
 
 /// Levels of a robot, in percent.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Levels {
     /// Battery.
@@ -146,7 +148,7 @@ pub struct Levels {
 }
 
 /// Places that one robot is to go to, one after the other.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Errand {
     /// Id of the robot.
@@ -156,7 +158,7 @@ pub struct Errand {
 }
 
 /// What a robot of a role is and can do, at full health.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct RoleFile {
     /// Name of the role.
@@ -190,7 +192,7 @@ pub struct RoleFile {
 }
 
 /// Where robots of a role move.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 pub enum RoleKind {
     /// On the ground: walls, debris and other ground robots are in the way. The default.
     #[default]
@@ -200,7 +202,7 @@ pub enum RoleKind {
 }
 
 /// A need that robots report and policies compare.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct NeedFile {
     /// Name of the need.
@@ -215,7 +217,7 @@ pub struct NeedFile {
 }
 
 /// What a need measures of a robot as it is now.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub enum Measure {
     /// Health points.
     Health,
@@ -236,8 +238,9 @@ pub enum Measure {
 }
 
 /// Normal distributions of the initial levels, in percent, clamped to [1, 100].
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, from = "super::partial::InitialLevels")]
+#[schemars(!from, default)]
 pub struct InitialLevels {
     /// Battery level.
     pub energy: Normal,
@@ -246,7 +249,7 @@ pub struct InitialLevels {
 }
 
 /// A normal distribution.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Normal {
     /// Mean, in percent.
@@ -256,7 +259,7 @@ pub struct Normal {
 }
 
 /// A block of rescuees and the rest place that belongs to it.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct TaskFile {
     /// Name of the task.
@@ -281,7 +284,7 @@ pub struct TaskFile {
 }
 
 /// A piece of debris.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct DebrisFile {
     /// Its outline.
@@ -300,7 +303,7 @@ pub struct DebrisFile {
 }
 
 /// Outline of a piece of debris.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub enum DebrisShape {
     /// A disc of this radius in metres.
     Disc(f64),
@@ -311,7 +314,7 @@ pub enum DebrisShape {
 }
 
 /// Debris that can be pushed; `movable: ()` has the defaults: 40 kg, friction 0.5.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Movable {
     /// Mass, in kilograms.
@@ -321,7 +324,7 @@ pub struct Movable {
 }
 
 /// A radiation zone: a source and the radius of its effect.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ZoneFile {
     /// The source.
@@ -334,7 +337,7 @@ pub struct ZoneFile {
 }
 
 /// What is drawn where a task asks for sampled debris or radiation.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Sampled {
     /// Least and greatest radius of a sampled disc of debris, in metres.
@@ -354,7 +357,7 @@ impl Default for Sampled {
 }
 
 /// How many to draw for one task.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct SampledCounts {
     /// Pieces of fixed debris.
@@ -377,7 +380,7 @@ pub struct WallFile {
 }
 
 /// A gap in a wall.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Door {
     /// Distance of its middle from the wall's beginning, in metres.

@@ -16,9 +16,11 @@ mod places;
 mod reading;
 mod rules;
 mod scatter;
+mod schema;
 mod sense;
 mod set;
 mod timeline;
+mod upgrade;
 mod validate;
 
 use std::ops::Deref;
@@ -34,6 +36,8 @@ pub use error::{LayoutError, Problem, Problems, ScenarioError};
 pub use file::*;
 pub(crate) use reading::ron_options;
 pub use reading::{check_text, parse_ron, read_text};
+pub use schema::scenario_schema;
+pub use upgrade::upgraded;
 
 /// The format of scenario files that this program reads. Format 1 had tables in round brackets; `usar fmt --upgrade` rewrites it.
 pub const FORMAT: u32 = 2;

@@ -1,12 +1,14 @@
 //! The rules of a scenario as they are written: costs, the mission, planning and right of way.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::vitals::Rates;
 
 /// What moving and radiation cost.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, from = "super::partial::Costs")]
+#[schemars(!from, default)]
 pub struct Costs {
     /// Battery.
     pub energy: Rates,
@@ -15,7 +17,7 @@ pub struct Costs {
 }
 
 /// When a robot below the threshold turns back.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 pub enum TurnBack {
     /// At once, wherever it is. The default; the paper's words.
     #[default]
@@ -27,7 +29,7 @@ pub enum TurnBack {
 }
 
 /// Rules of the mission.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct MissionRules {
     /// Battery level below which a robot needs rest, in percent.
@@ -58,7 +60,7 @@ pub struct MissionRules {
 }
 
 /// Rules of route planning.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct PlanningRules {
     /// Distance that routes keep from known debris and walls, beyond the robot's radius, in metres.
@@ -68,7 +70,7 @@ pub struct PlanningRules {
 }
 
 /// Rules of right of way.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct ConflictRules {
     /// Who has the right of way.
@@ -78,7 +80,7 @@ pub struct ConflictRules {
 }
 
 /// Who has the right of way in a conflict set; ties go to the lowest id.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 pub enum PriorityRule {
     /// The robot with the lowest battery level. The default.
     #[default]
@@ -109,7 +111,7 @@ pub enum ResolverRule {
 }
 
 /// Values of the paper's rule.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct RightOfWay {
     /// Distance that robots keep from one another, beyond their radii, in metres.

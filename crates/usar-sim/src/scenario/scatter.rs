@@ -1,5 +1,6 @@
 //! Things of one kind that are placed anew in every trial.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::checker::Checker;
@@ -9,7 +10,7 @@ use crate::limits;
 
 /// Discs of debris or radiation zones, placed anew in every trial. They keep clear of homes, rest places and rescuees, and debris leaves a way
 /// from home to each task and rest place.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Scatter {
     /// What is placed.
@@ -30,7 +31,7 @@ pub struct Scatter {
 }
 
 /// What is placed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub enum Scattered {
     /// Discs of debris.
     Debris,
@@ -39,7 +40,7 @@ pub enum Scattered {
 }
 
 /// How things are placed in a region.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 pub enum Placement {
     /// Each anywhere, all places alike. Debris does not overlap other debris. The default.
     #[default]

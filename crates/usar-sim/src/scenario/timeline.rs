@@ -1,5 +1,6 @@
 //! Events that a scenario asks for, each at its time.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::checker::{Checker, meant, shown};
@@ -7,7 +8,7 @@ use super::file::{DebrisFile, DebrisShape, Door, Point, ScenarioFile, TaskFile, 
 use crate::limits;
 
 /// Something that happens at its time.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Moment {
     /// When, in seconds from the start.
@@ -17,7 +18,7 @@ pub struct Moment {
 }
 
 /// What happens at a time.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub enum Happening {
     /// A fixed piece of debris falls: `DebrisFalls(shape: Disc(1.5), at: (20, 30))`. It falls once no robot on the ground is below it.
     DebrisFalls {

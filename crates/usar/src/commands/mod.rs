@@ -8,6 +8,7 @@ pub(crate) mod draw;
 mod drawn;
 pub(crate) mod estimate;
 pub(crate) mod export;
+pub(crate) mod fmt;
 pub(crate) mod fork;
 pub(crate) mod group;
 pub(crate) mod list;
