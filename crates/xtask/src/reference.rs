@@ -48,7 +48,9 @@ fn section(page: &mut String, title: &str, schema: &Value) {
         for (name, field) in fields {
             let default = match field.get("default") {
                 _ if required.contains(&name.as_str()) => "must be given".to_owned(),
-                Some(Value::Array(list)) if list.len() > 3 => "see `usar resolve`".to_owned(),
+                Some(value @ Value::Array(_)) if value.to_string().len() > 40 => {
+                    "see `usar resolve`".to_owned()
+                }
                 Some(value @ Value::Object(fields)) if !fields.is_empty() => {
                     let short = value.to_string();
                     if short.len() < 40 { format!("`{short}`") } else { "each has its own".to_owned() }

@@ -1,6 +1,7 @@
 //! The timeline of a trial: what a scenario asks for happens at the beginning of its step.
 
 use parry2d::query::distance;
+use rne_core::TaskId;
 use serde::{Deserialize, Serialize};
 
 use super::State;
@@ -88,18 +89,8 @@ impl State {
                 let (first, count) = (ids.start as u32, ids.len() as u32);
                 self.log.push(Event::RescueesAppeared { task: *task, first, count });
             }
-            Action::Begin(task) => {
-                self.world.closed_tasks[task.index()] = false;
-                self.log.push(Event::TaskBegan { task: *task });
-                // Its own rescuees; those of later events come with them.
-                let later = model
-                    .rescuees_later
-                    .iter()
-                    .find(|ids| model.tasks[task.index()].rescuees.start == ids.start);
-                if let Some(ids) = later.filter(|ids| !ids.is_empty()) {
-                    self.act_out(&Action::Rescuees(*task, ids.clone()), model);
-                }
-            }
+            Action::Begin(task) => self.begin_task(*task, model),
+            Action::End(task) if self.world.closed_tasks[task.index()] => {}
             Action::End(task) => {
                 self.world.closed_tasks[task.index()] = true;
                 self.log.push(Event::TaskEnded { task: *task });
@@ -107,6 +98,23 @@ impl State {
             }
         }
         true
+    }
+
+    /// Opens a task. Its own rescuees appear when it begins for the first time; those of later events come with them.
+    fn begin_task(&mut self, task: TaskId, model: &Model) {
+        if !std::mem::replace(&mut self.world.closed_tasks[task.index()], false) {
+            return;
+        }
+        self.log.push(Event::TaskBegan { task });
+        let begins = |action: &Action| *action == Action::Begin(task) || *action == Action::End(task);
+        let mut done = model.timeline.iter().zip(&self.timeline.done);
+        let is_first = !done.any(|(due, is_done)| *is_done && begins(&due.action));
+        let first = model.tasks[task.index()].rescuees.start;
+        let own = model.rescuees_later.iter().find(|ids| ids.start == first && !ids.is_empty());
+        let has_own = !model.scenario.tasks[task.index()].grid.contains(&0);
+        if let Some(ids) = own.filter(|_| is_first && has_own) {
+            self.act_out(&Action::Rescuees(task, ids.clone()), model);
+        }
     }
 
     /// Takes energy and HP from a robot that can still act; one that has none left stays where it is.
