@@ -110,8 +110,8 @@ impl<'t> Writer<'t> {
         match (self.last, token.part) {
             (_, Part::Line(_)) => token.blanks.max(1),
             (_, Part::Comma | Part::Colon | Part::Close(_))
-            | (Some(Part::Open(_) | Part::Word(_)), Part::Open(_)) => 0,
-            (Some(Part::Open(_)), _) => 0,
+            | (Some(Part::Open(_)), _)
+            | (Some(Part::Word(_)), Part::Open(_)) => 0,
             _ => 1,
         }
     }

@@ -120,7 +120,7 @@ ron_fields::limits! {
     CHOICES: "Choice" = 1, 64;
     /// Entries of the list of scattered things.
     SCATTERS: "scatter" = 0, 100;
-    /// Things of one entry that are placed anew in every trial.
+    /// Things that are placed anew in every trial, all entries together.
     SCATTERED: "scatter[*].count" = 0, 1_000;
     /// Events of the timeline.
     MOMENTS: "timeline" = 0, 1_000;

@@ -34,6 +34,15 @@ pub fn page() -> String {
     page
 }
 
+/// The schemas of files: name and text.
+pub fn schemas() -> [(&'static str, String); 2] {
+    let text = |schema: &Value| serde_json::to_string_pretty(schema).expect("a schema is JSON") + "\n";
+    [
+        ("scenario", text(&usar_sim::scenario::scenario_schema())),
+        ("sweep", text(&experiments::experiment::sweep_schema())),
+    ]
+}
+
 fn text<'v>(schema: &'v Value, key: &str) -> &'v str {
     schema.get(key).and_then(Value::as_str).unwrap_or_default()
 }
@@ -102,7 +111,7 @@ fn variant_name(variant: &Value) -> String {
                 }
                 None => plain(&kind(of)),
             };
-            fields.map(|(name, of)| format!("{name}({})", inside(of))).collect()
+            fields.map(|(name, of)| format!("{name}({})", inside(of))).collect::<Vec<_>>().join(" ")
         },
         str::to_owned,
     )

@@ -201,10 +201,10 @@ impl Invariants {
                 }
                 self.overlaps.note_put(*debris as usize, world);
             }
-            Event::SourceAppeared { zone } | Event::SourceDied { zone } => {
-                if world.is_on(*zone as usize) == matches!(event, Event::SourceDied { .. }) {
-                    return Err(self.violation(None, format!("radiation {zone} is not as its event left it")));
-                }
+            Event::SourceAppeared { zone } | Event::SourceDied { zone }
+                if world.is_on(*zone as usize) == matches!(event, Event::SourceDied { .. }) =>
+            {
+                return Err(self.violation(None, format!("radiation {zone} is not as its event left it")));
             }
             Event::Damaged { robot, energy, hp } => {
                 let (now, then) = (&world.robots[robot.index()], self.before[robot.index()].levels);

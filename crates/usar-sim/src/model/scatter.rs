@@ -4,6 +4,7 @@ use parry2d::math::Vector;
 use rand::RngExt;
 
 use super::layout::{KeepClear, Layout, SAMPLING_TRIES};
+use crate::geometry::{Outline, Places};
 use crate::scenario::{
     DebrisFile, DebrisShape, LayoutError, Placement, Point, Scatter, Scattered, Scenario, ZoneFile,
 };
@@ -17,6 +18,10 @@ impl Layout {
         keep_clear: &KeepClear,
         (seed, attempt): (u64, u32),
     ) -> Result<(), LayoutError> {
+        if scenario.scatter.is_empty() {
+            return Ok(());
+        }
+        let mut ground = Ground::of(&self.debris);
         for (number, entry) in (0..).zip(&scenario.scatter) {
             let [debris, zones] = [self.debris.len(), self.zones.len()];
             for i in 0..entry.count {
@@ -24,7 +29,8 @@ impl Layout {
                 let entity = number << 48 | u64::from(attempt) << 32 | u64::from(i);
                 let mut draws = stream(seed, Purpose::Scatter, entity);
                 let radius = entry.radius_m.draw(&mut draws);
-                let placed = Placed { layout: self, first: [debris, zones], entry, keep_clear };
+                let placed =
+                    Placed { ground: &ground, zones: &self.zones[zones..], first: debris, entry, keep_clear };
                 let found = match entry.place {
                     Placement::Grid => {
                         Some(cell(entry, scenario.arena_m, i)).filter(|at| placed.allows(*at, radius))
@@ -42,6 +48,7 @@ impl Layout {
                 };
                 let at = found.ok_or_else(|| no_place(entry, number, i))?;
                 self.put(entry, at, radius);
+                self.debris[ground.outlines.len()..].iter().for_each(|piece| ground.add(piece));
             }
         }
         Ok(())
@@ -64,11 +71,33 @@ impl Layout {
     }
 }
 
+/// The debris that lies there, by place.
+struct Ground {
+    outlines: Vec<Outline>,
+    places: Places,
+}
+
+impl Ground {
+    fn of(debris: &[DebrisFile]) -> Self {
+        let mut ground = Self { outlines: Vec::new(), places: Places::default() };
+        debris.iter().for_each(|piece| ground.add(piece));
+        ground
+    }
+
+    fn add(&mut self, piece: &DebrisFile) {
+        let outline = piece.outline();
+        self.places.put(self.outlines.len(), outline.shape.compute_aabb(&outline.pose));
+        self.outlines.push(outline);
+    }
+}
+
 /// What is placed already.
 struct Placed<'l> {
-    layout: &'l Layout,
-    /// Number of the first piece and the first zone of the entry.
-    first: [usize; 2],
+    ground: &'l Ground,
+    /// The zones of the entry.
+    zones: &'l [ZoneFile],
+    /// Number of the first piece of the entry.
+    first: usize,
     entry: &'l Scatter,
     keep_clear: &'l KeepClear,
 }
@@ -84,14 +113,13 @@ impl Placed<'_> {
                     let point = Vector::new(at[0] as f32, at[1] as f32);
                     let free = radius + gap.unwrap_or_default();
                     // The gap is one between things of the entry; other debris is not overlapped.
-                    self.layout.debris.iter().enumerate().all(|(number, other)| {
-                        let least = if number >= self.first[0] { free } else { radius };
-                        f64::from(other.outline().distance_to(point)) >= least
+                    self.ground.places.near(point, free as f32).into_iter().all(|number| {
+                        let least = if number >= self.first { free } else { radius };
+                        f64::from(self.ground.outlines[number].distance_to(point)) >= least
                     })
                 }
                 Scattered::Radiation => gap.is_none_or(|gap| {
-                    let own = &self.layout.zones[self.first[1]..];
-                    own.iter().all(|other| {
+                    self.zones.iter().all(|other| {
                         libm::hypot(at[0] - other.at[0], at[1] - other.at[1]) >= radius + other.radius_m + gap
                     })
                 }),

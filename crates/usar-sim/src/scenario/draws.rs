@@ -18,6 +18,12 @@ use crate::seed::{Purpose, stream};
 /// Times that the values of a trial are drawn before it is said that they do not go together.
 const TRIES: u32 = 100;
 
+/// The same for a scenario that is longer than [`LONG_BYTES`].
+const TRIES_OF_A_LONG_ONE: u32 = 5;
+
+/// Scenarios longer than this are read fewer times over: of a choice the first two values are checked before a trial, in bytes.
+const LONG_BYTES: usize = 1 << 18;
+
 /// The distributions of a scenario: path of the field, with numbers for names, and the distribution as it is written.
 pub type Draws = BTreeMap<String, String>;
 
@@ -97,15 +103,20 @@ pub(super) fn take_out(text: &str, fields: &Fields, of_file: &str) -> (String, D
     }
     let mut end = 0;
     for (path, place) in fields.all() {
-        let full = if of_file.is_empty() {
-            path.to_owned()
-        } else {
-            format!("{of_file}{}", path.strip_prefix("[0]").unwrap_or(path))
-        };
         let found = &text[place.clone()];
-        let is_named = fields.inside(path).iter().any(|name| !name.starts_with('['));
-        if place.start < end || is_named || !is_distribution(found) || is_drawn_for_each(&full) {
+        if place.start < end || !is_distribution(found) {
             continue;
+        }
+        let inner = path.strip_prefix("[0]").unwrap_or(path);
+        let full = if of_file.is_empty() { path.to_owned() } else { format!("{of_file}{inner}") };
+        let is_named = fields.inside(path).iter().any(|name| !name.starts_with('['));
+        if is_named || is_drawn_for_each(&full) {
+            continue;
+        }
+        if !limits::DRAWS.allows(draws.len() + 1) {
+            let rule = format!("is one distribution too many: at most {}", limits::DRAWS.most);
+            problems.push(Problem { field: full, rule, ..Problem::default() });
+            return (plain, draws, problems);
         }
         end = place.end;
         let draw = Draw::read(found);
@@ -135,12 +146,10 @@ impl ScenarioFile {
     }
 
     /// The file with values of its distributions.
-    fn with_drawn(&self, value: impl Fn(&str, &Draw, bool) -> Option<String>) -> Result<Self, Problem> {
-        let problem = |field: &str, rule: String| Problem {
-            field: field.to_owned(),
-            rule,
-            found: self.draws.get(field).cloned().unwrap_or_default(),
-            ..Problem::default()
+    fn with_drawn(&self, value: impl Fn(&str, &Draw, bool) -> Option<String>) -> Result<Self, Box<Problem>> {
+        let problem = |field: &str, rule: String| {
+            let found = self.draws.get(field).cloned().unwrap_or_default();
+            Box::new(Problem { field: field.to_owned(), rule, found, ..Problem::default() })
         };
         let plain = self.without_draws();
         let text = ron::to_string(&plain).map_err(|error| problem("", error.to_string()))?;
@@ -165,20 +174,20 @@ impl ScenarioFile {
             let at = reading::offset(&text, error.span.start.line, error.span.start.col);
             let Misfit { field, rule, found, hint } =
                 Misfit::new(&error.code, &path, (&text, at), &Fields::of(&text));
-            Problem { field, rule, found, hint, ..Problem::default() }
+            Box::new(Problem { field, rule, found, hint, ..Problem::default() })
         })
+    }
+
+    fn is_long(&self) -> bool {
+        ron::to_string(self).is_ok_and(|text| text.len() > LONG_BYTES)
     }
 
     /// The broken rules of a file with distributions: of its values one by one, at the ends of the distributions. What goes together is
     /// looked at in each trial.
     pub(super) fn problems_of_draws(&self) -> Vec<Problem> {
-        if !limits::DRAWS.allows(self.draws.len()) {
-            let rule = format!("must have at most {} distributions", limits::DRAWS.most);
-            let found = self.draws.len().to_string();
-            return vec![Problem { field: "the file".to_owned(), rule, found, ..Problem::default() }];
-        }
         let most = self.draws.values().filter_map(|text| Draw::read(text).ok());
         let most = most.map(|draw| draw.examples(false).len()).max().unwrap_or_default();
+        let most = if self.is_long() { most.min(2) } else { most };
         for example in 0..most {
             let nth = |_: &str, draw: &Draw, is_whole: bool| {
                 let examples = draw.examples(is_whole);
@@ -186,7 +195,7 @@ impl ScenarioFile {
             };
             let problems = match self.with_drawn(nth) {
                 Ok(file) => validate::problems_of_values(&file),
-                Err(problem) => vec![problem],
+                Err(problem) => vec![*problem],
             };
             if !problems.is_empty() {
                 return problems;
@@ -214,7 +223,8 @@ impl Scenario {
             return Ok(self.clone());
         }
         let mut last = None;
-        for attempt in 0..TRIES {
+        let tries = if self.is_long() { TRIES_OF_A_LONG_ONE } else { TRIES };
+        for attempt in 0..tries {
             let drawn = self.with_drawn(|path, draw, is_whole| {
                 let entity = if attempt == 0 { path.to_owned() } else { format!("{path} {attempt}") };
                 let mut draws = stream(seed, Purpose::Slot, xxh3_64(entity.as_bytes()));
@@ -224,7 +234,7 @@ impl Scenario {
                 })
             });
             let problem = match drawn {
-                Err(problem) => Some(problem),
+                Err(problem) => Some(*problem),
                 Ok(file) => match Self::try_from(file) {
                     Ok(scenario) => return Ok(scenario),
                     Err(problems) => problems.into_iter().next(),
@@ -233,7 +243,7 @@ impl Scenario {
             last = problem.or(last);
         }
         let problem = last.map(|problem| problem.to_string()).unwrap_or_default();
-        Err(LayoutError::NeverFits { tries: TRIES, problem })
+        Err(LayoutError::NeverFits { tries, problem })
     }
 }
 

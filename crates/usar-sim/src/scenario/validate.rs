@@ -6,7 +6,8 @@ use super::checker::{Checker, is_device, meant, names, shown};
 use super::debris::debris;
 use super::error::Problem;
 use super::file::{
-    Happening, Measure, NeedFile, Normal, ResolverRule, RoleFile, SampledCounts, ScenarioFile, TaskFile,
+    Amount, Happening, Measure, NeedFile, Normal, ResolverRule, RoleFile, SampledCounts, ScenarioFile,
+    TaskFile,
 };
 use super::homes::homes_are_free;
 use super::scatter::scatter;
@@ -93,6 +94,11 @@ fn sizes(check: &mut Checker, file: &ScenarioFile) {
     }
     check.entries("radiation", file.radiation.len(), limits::ZONES);
     check.entries("scatter", file.scatter.len(), limits::SCATTERS);
+    let scattered: u64 = file.scatter.iter().map(|entry| u64::from(entry.count)).sum();
+    if !limits::SCATTERED.allows(scattered as usize) {
+        let rule = format!("must place at most {} things in all", limits::SCATTERED.most);
+        check.fail("scatter", rule, scattered);
+    }
     check.entries("timeline", file.timeline.len(), limits::MOMENTS);
 }
 
@@ -137,7 +143,7 @@ fn team(check: &mut Checker, file: &ScenarioFile) {
         if let Some(levels) = &row.levels {
             for (name, level) in [("energy", &levels.energy), ("hp", &levels.hp)] {
                 let ends = level.support();
-                let ends = if ends[0] == ends[1] { &ends[..1] } else { &ends };
+                let ends = if matches!(level, Amount::Fixed(_)) { &ends[..1] } else { &ends };
                 ends.iter()
                     .for_each(|end| check.number(format!("{field}.levels.{name}"), *end, limits::LEVEL));
             }
