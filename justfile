@@ -30,6 +30,14 @@ damage *arguments:
 mutations *arguments:
     cargo run --release --package xtask -- mutations {{arguments}}
 
+# 500 random scenarios of all kinds, with distributions and timelines: a minute of each with every invariant checked
+scenarios *arguments:
+    cargo run --release --package xtask -- scenarios {{arguments}}
+
+# docs/scenarios-reference.md and the schemas of files from the types' comments
+reference:
+    cargo run --package xtask -- reference
+
 # docs/limits.md from the constants
 limits:
     cargo run --package xtask -- limits

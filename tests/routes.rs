@@ -93,7 +93,7 @@ fn random_debris(draws: &mut ChaCha8Rng) -> Vec<Outline> {
             };
             let at = [draws.random_range(25.0..65.0), draws.random_range(20.0..50.0)];
             let rotation_deg = draws.random_range(-180.0..180.0);
-            DebrisFile { shape, at, rotation_deg, movable: None }.outline()
+            DebrisFile { shape, at, rotation_deg, movable: None, name: None }.outline()
         })
         .collect()
 }
@@ -206,9 +206,14 @@ fn a_detour_round_radiation_is_made_where_it_is_cheaper_and_no_further() {
 #[test]
 fn observers_fly_over_debris() {
     let scenario = paper();
-    let wall =
-        DebrisFile { shape: DebrisShape::Box(1.0, 60.0), at: [45.0, 35.0], rotation_deg: 0.0, movable: None }
-            .outline();
+    let wall = DebrisFile {
+        shape: DebrisShape::Box(1.0, 60.0),
+        at: [45.0, 35.0],
+        rotation_deg: 0.0,
+        movable: None,
+        name: None,
+    }
+    .outline();
     let obstacles = known(&[wall], 1);
     let length = |aerial| {
         let query = Query {

@@ -100,9 +100,14 @@ pub(crate) fn draw_names(sheet: &mut Sheet, world: &World) {
 }
 
 /// Radiation zones. `is_known` tells of each whether it is drawn as a fact.
-pub(crate) fn draw_zones(sheet: &mut Sheet, zones: &[ZoneFile], is_sampled: impl Fn(usize) -> bool) {
+pub(crate) fn draw_zones(
+    sheet: &mut Sheet,
+    zones: &[ZoneFile],
+    is_there: impl Fn(usize) -> bool,
+    is_sampled: impl Fn(usize) -> bool,
+) {
     let (line, dash) = (Num(0.8 * sheet.unit), Num(2.5 * sheet.unit));
-    for (number, zone) in zones.iter().enumerate() {
+    for (number, zone) in zones.iter().enumerate().filter(|(number, _)| is_there(*number)) {
         let (at, radius) = (sheet.at(zone.at), zone.radius_m * sheet.scale);
         for share in [1.0, 0.8, 0.6, 0.4, 0.2] {
             sheet.svg.disc(at, share * radius, &format!("fill=\"{RADIATION}\" fill-opacity=\"0.1\""));
@@ -179,6 +184,7 @@ pub(crate) fn draw_rescuees(sheet: &mut Sheet, world: &World, state: impl Fn(usi
         match state(number) {
             0 | 1 => waiting.square(at, half),
             2 => gone.square(at, half),
+            4 => {} // not there
             _ => delivered.square(at, 0.45 * half),
         }
     }
@@ -201,11 +207,27 @@ pub(crate) fn entries(world: &World, unit: f64, sampled: [usize; 2], has_waiting
     let (placed, drawn) = world.debris.split_at(sampled[0].min(world.debris.len()));
     add(has_waiting, Sign::Square(format!("fill=\"{RESCUEE}\"")), "waiting to be rescued");
     add(!placed.iter().all(is_movable), Sign::Square(fixed_looks(unit)), "debris");
-    add(!drawn.is_empty(), Sign::Square(sampled_looks(unit)), "debris of this seed");
+    add(
+        !drawn.is_empty(),
+        Sign::Square(sampled_looks(unit)),
+        if world.debris_later.is_empty() {
+            "debris of this seed"
+        } else {
+            "debris of this seed or of an event"
+        },
+    );
     add(world.debris.iter().any(is_movable), Sign::Square(movable_looks(unit)), "movable debris");
     let zone = format!("fill=\"{RADIATION}\" fill-opacity=\"0.35\" stroke=\"{RADIATION_EDGE}\"");
     let dashed = format!("{zone} stroke-dasharray=\"{}\"", Num(2.5 * unit));
     add(sampled[1] > 0 && !world.zones.is_empty(), Sign::Disc(zone), "radiation");
-    add(sampled[1] < world.zones.len(), Sign::Disc(dashed), "radiation of this seed");
+    add(
+        sampled[1] < world.zones.len(),
+        Sign::Disc(dashed),
+        if world.zones_later.is_empty() {
+            "radiation of this seed"
+        } else {
+            "radiation of this seed or of an event"
+        },
+    );
     entries
 }

@@ -19,7 +19,8 @@ pub fn moment(recording: &Recording, number: usize, look: &Look) -> Result<Pictu
     let [corner, size] = sheet.map();
     sheet.svg.begin_window(corner, size);
     ground::draw_places(&mut sheet, world);
-    ground::draw_zones(&mut sheet, &world.zones, |_| false);
+    let on = recording.zones_on(frame.step);
+    ground::draw_zones(&mut sheet, &world.zones, |zone| on[zone], |_| false);
     ground::draw_debris(&mut sheet, &world.debris, &places(&frame), |_| false);
     ground::draw_rescuees(&mut sheet, world, |rescuee| frame.rescuees[rescuee].state);
     ground::draw_names(&mut sheet, world);

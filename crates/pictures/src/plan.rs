@@ -36,12 +36,16 @@ pub fn plan(plan: &Plan, look: &Look) -> Picture {
     let [corner, size] = sheet.map();
     sheet.svg.begin_window(corner, size);
     ground::draw_places(&mut sheet, world);
-    ground::draw_zones(&mut sheet, &world.zones, |number| number >= zones);
+    ground::draw_zones(&mut sheet, &world.zones, |_| true, |number| number >= zones);
     draw_ranges(&mut sheet, world);
     ground::draw_debris(&mut sheet, &world.debris, &ground::as_placed(&world.debris), |number| {
         number >= debris
     });
-    ground::draw_rescuees(&mut sheet, world, |_| 0);
+    ground::draw_rescuees(
+        &mut sheet,
+        world,
+        |number| if world.rescuees_later.contains(&number) { 2 } else { 0 },
+    );
     draw_errands(&mut sheet, plan);
     draw_team(&mut sheet, world);
     ground::draw_names(&mut sheet, world);

@@ -38,7 +38,7 @@ pub fn trails(recording: &Recording, look: &Look) -> Result<Picture, PictureErro
     let [corner, size] = sheet.map();
     sheet.svg.begin_window(corner, size);
     ground::draw_places(&mut sheet, world);
-    ground::draw_zones(&mut sheet, &world.zones, |_| false);
+    ground::draw_zones(&mut sheet, &world.zones, |_| true, |_| false);
     ground::draw_debris(&mut sheet, &world.debris, &places(&last), |_| false);
     ground::draw_rescuees(&mut sheet, world, |_| 0);
     for stretch in stretches(recording)? {

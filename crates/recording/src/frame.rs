@@ -26,7 +26,7 @@ pub(crate) const ACTIVITIES: [&str; 9] = [
 pub(crate) const CONDITIONS: [&str; 3] = ["able", "stranded", "disabled"];
 
 /// Names of the states of rescuees, in the order of their numbers.
-pub(crate) const RESCUEE_STATES: [&str; 4] = ["waiting", "claimed", "on_board", "delivered"];
+pub(crate) const RESCUEE_STATES: [&str; 5] = ["waiting", "claimed", "on_board", "delivered", "absent"];
 
 /// The state at one moment.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
@@ -308,6 +308,7 @@ impl RescueeFrame {
             (RescueeState::Waiting, by) => (1, by),
             (RescueeState::OnBoard(robot), _) => (2, Some(robot)),
             (RescueeState::Rescued, _) => (3, None),
+            (RescueeState::Absent, _) => (4, None),
         };
         Self { state, robot: robot.map(|robot| robot.0) }
     }

@@ -93,6 +93,15 @@ pub struct World {
     pub debris: Vec<DebrisFile>,
     /// The radiation zones, the scenario's and the sampled.
     pub zones: Vec<ZoneFile>,
+    /// Numbers of the pieces of debris that are not there at the start.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub debris_later: Vec<usize>,
+    /// Numbers of the radiation zones that are not there at the start.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub zones_later: Vec<usize>,
+    /// Numbers of the rescuees that are not there at the start.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub rescuees_later: Vec<usize>,
 }
 
 /// A task's place.
@@ -165,7 +174,7 @@ impl Header {
         (steps_per_frame, frames_per_segment): (u64, usize),
     ) -> Self {
         let scenario = simulation.scenario();
-        let resolved = scenario.resolved();
+        let resolved = simulation.model().given().resolved();
         let world = World::of(simulation);
         let rows = world.rows();
         Self {
@@ -225,6 +234,7 @@ impl World {
             rest: robot.rest.iter().map(|at| metres(at.x, at.y)).collect(),
             body: (*robot.spec != scenario.roles[robot.role.index()]).then(|| (*robot.spec).clone()),
         });
+        let absent = model.layout.gates.iter().filter(|(_, is_there)| !**is_there);
         Self {
             arena_m: scenario.arena_m,
             roles: scenario.roles.clone(),
@@ -235,6 +245,9 @@ impl World {
             rescuees: model.rescuees.iter().map(|(_, at)| metres(at.x, at.y)).collect(),
             debris: model.layout.debris.clone(),
             zones: model.layout.zones.clone(),
+            debris_later: absent.map(|(number, _)| *number).collect(),
+            zones_later: model.layout.zones_later.iter().copied().collect(),
+            rescuees_later: model.rescuees_later.iter().flat_map(Clone::clone).collect(),
         }
     }
 

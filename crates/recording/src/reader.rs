@@ -59,6 +59,23 @@ fn json<T: DeserializeOwned>(chunk: &Chunk, content: &[u8]) -> Result<T, ReadErr
 }
 
 impl Recording {
+    /// For each radiation zone, whether it is on at a step.
+    #[must_use]
+    pub fn zones_on(&self, step: u64) -> Vec<bool> {
+        let world = &self.header.world;
+        let mut on: Vec<bool> =
+            (0..world.zones.len()).map(|zone| !world.zones_later.contains(&zone)).collect();
+        for (_, event) in self.events.iter().take_while(|(at, _)| *at <= step) {
+            let (zone, is_on) = match event {
+                Event::SourceAppeared { zone } => (*zone, true),
+                Event::SourceDied { zone } => (*zone, false),
+                _ => continue,
+            };
+            on.get_mut(zone as usize).into_iter().for_each(|on| *on = is_on);
+        }
+        on
+    }
+
     /// Reads a recording. One that was cut short gives all its whole chunks.
     ///
     /// # Errors

@@ -19,7 +19,8 @@ pub(crate) const RESCUEES: usize = 2;
 
 /// Whether a row of a stream never changes.
 pub(crate) fn is_fixed(simulation: &Simulation, stream: usize, row: usize) -> bool {
-    stream == 3 && simulation.world().debris[row].is_fixed
+    let piece = |row: usize| &simulation.world().debris[row];
+    stream == 3 && piece(row).is_fixed && !piece(row).is_gate
 }
 
 /// The numbers of one row of a stream, now.

@@ -129,6 +129,19 @@ fn sentence(event: &Event, tasks: &[&str]) -> String {
         }
         Event::ErrandsOver => "all errands are over".to_owned(),
         Event::MissionOver => "no robot that can carry is left".to_owned(),
+        Event::DebrisFell { debris } => format!("debris {debris} falls"),
+        Event::WayClosed { debris } => format!("a way closes: debris {debris}"),
+        Event::WayOpened { debris } => format!("a way opens: debris {debris} is gone"),
+        Event::SourceAppeared { zone } => format!("radiation {zone} appears"),
+        Event::SourceDied { zone } => format!("radiation {zone} dies"),
+        Event::Damaged { robot, energy, hp } => {
+            format!("robot {robot} is damaged: it loses {energy:.1} % energy and {hp:.1} % HP")
+        }
+        Event::RescueesAppeared { task: number, first, count } => {
+            format!("{count} rescuees appear in {}, from rescuee {first} on", task(number.index()))
+        }
+        Event::TaskBegan { task: number } => format!("task {} begins", task(number.index())),
+        Event::TaskEnded { task: number } => format!("task {} ends", task(number.index())),
     }
 }
 

@@ -73,7 +73,7 @@ impl<'a> Cursor<'a> {
         }
     }
 
-    fn skip_block_comment(&mut self) {
+    pub(crate) fn skip_block_comment(&mut self) {
         let mut depth = 0;
         while self.at < self.text.len() {
             if self.starts_with(b"/*") {

@@ -85,6 +85,11 @@ impl Fields {
         leaves.map(|node| (&*node.path, node.value.clone()))
     }
 
+    /// Paths, with numbers for names, and bytes of the values of all fields and entries, each before what is in it.
+    pub fn all(&self) -> impl Iterator<Item = (&str, Range<usize>)> {
+        self.nodes.iter().skip(1).map(|node| (&*node.path, node.value.clone()))
+    }
+
     /// The path, with numbers for names, of the field without fields of its own whose value holds a byte of the text, or ends before it.
     #[must_use]
     pub fn leaf_at(&self, at: usize) -> Option<&str> {

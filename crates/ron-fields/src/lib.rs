@@ -3,6 +3,7 @@
 mod cursor;
 mod fields;
 pub mod file;
+mod layout;
 pub mod limits;
 mod nearest;
 mod path;
@@ -15,6 +16,7 @@ mod walker;
 mod written;
 
 pub use fields::Fields;
+pub use layout::formatted;
 pub use nearest::nearest;
 pub use set::{SetError, set};
 pub use size::{TooMuch, check_size};

@@ -217,6 +217,59 @@ pub enum Event {
     ErrandsOver,
     /// No robot that can carry is left.
     MissionOver,
+    /// Debris fell.
+    DebrisFell {
+        /// Its number.
+        debris: u32,
+    },
+    /// A way closed: a door, or debris that was away is back.
+    WayClosed {
+        /// Number of the piece that closes it.
+        debris: u32,
+    },
+    /// A way opened: a door, or debris was cleared away.
+    WayOpened {
+        /// Number of the piece that closed it.
+        debris: u32,
+    },
+    /// A radiation source appeared.
+    SourceAppeared {
+        /// Its number.
+        zone: u32,
+    },
+    /// A radiation source died.
+    SourceDied {
+        /// Its number.
+        zone: u32,
+    },
+    /// A robot lost a part of its levels by an event of the scenario.
+    Damaged {
+        /// The robot.
+        robot: RobotId,
+        /// Energy that it lost, in percent points.
+        energy: f64,
+        /// HP that it lost, in percent points.
+        hp: f64,
+    },
+    /// Rescuees appeared.
+    RescueesAppeared {
+        /// Their task.
+        task: TaskId,
+        /// The lowest of their ids, which follow one another.
+        first: u32,
+        /// How many.
+        count: u32,
+    },
+    /// A task began.
+    TaskBegan {
+        /// The task.
+        task: TaskId,
+    },
+    /// A task ended: its rescuees that still waited are gone.
+    TaskEnded {
+        /// The task.
+        task: TaskId,
+    },
 }
 
 /// The events of the current step, in order, and a hash over all before.

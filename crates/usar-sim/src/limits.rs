@@ -114,6 +114,21 @@ ron_fields::limits! {
     /// Half the width of the strip in which things are sampled, in metres.
     STRIP_M: "sampled.strip_m" = 0.1, 10_000;
 
+    /// Distributions in the place of values.
+    DRAWS: "a scenario" = 0, 1_000;
+    /// Values of a `Choice([...])`.
+    CHOICES: "Choice" = 1, 64;
+    /// Entries of the list of scattered things.
+    SCATTERS: "scatter" = 0, 100;
+    /// Things that are placed anew in every trial, all entries together.
+    SCATTERED: "scatter[*].count" = 0, 1_000;
+    /// Events of the timeline.
+    MOMENTS: "timeline" = 0, 1_000;
+    /// Time of an event, in seconds.
+    AT_S: "timeline[*].at_s" = 0, DURATION_S.most;
+    /// What a robot loses of a level, in percent points.
+    LOSS: "timeline[*].event.*" = 0, 100;
+
     /// A cost, in percent or points.
     RATE: "costs.*.*" = 0, 100;
     /// What work costs in a second, in percent or points.

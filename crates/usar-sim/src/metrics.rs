@@ -182,7 +182,16 @@ impl Metrics {
                 | Event::RestStarted { .. }
                 | Event::RestEnded { .. }
                 | Event::ErrandsOver
-                | Event::MissionOver => {}
+                | Event::MissionOver
+                | Event::DebrisFell { .. }
+                | Event::WayClosed { .. }
+                | Event::WayOpened { .. }
+                | Event::SourceAppeared { .. }
+                | Event::SourceDied { .. }
+                | Event::Damaged { .. }
+                | Event::RescueesAppeared { .. }
+                | Event::TaskBegan { .. }
+                | Event::TaskEnded { .. } => {}
             }
         }
     }

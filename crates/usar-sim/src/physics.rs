@@ -3,6 +3,8 @@
 //! Bodies in a plane seen from above, without gravity. Ground robots are discs that touch walls, debris and each other; aerial robots
 //! touch walls and each other. Debris is fixed, or rubs on the ground with Coulomb friction.
 
+use std::collections::BTreeMap;
+
 use parry2d::math::{Pose, Vector};
 use rapier2d::dynamics::{
     GenericJointBuilder, IntegrationParameters, JointAxesMask, JointAxis, RigidBodyBuilder, RigidBodyHandle,
@@ -63,6 +65,8 @@ pub(crate) struct RobotBody {
 pub(crate) struct DebrisBody<'d> {
     /// Its shape and place.
     pub outline: &'d Outline,
+    /// Whether a fixed piece is put to other places.
+    pub is_gate: bool,
     /// Mass, in kilograms; `None` for a fixed piece.
     pub mass: Option<f32>,
     /// Mass times the coefficient of friction with the ground, in kilograms.
@@ -77,6 +81,8 @@ pub struct Physics {
     robots: Vec<RigidBodyHandle>,
     /// Bodies of movable debris; fixed debris never moves.
     debris: Vec<Option<RigidBodyHandle>>,
+    /// Bodies of fixed debris that comes and goes, by number.
+    gates: BTreeMap<usize, RigidBodyHandle>,
 }
 
 impl Physics {
@@ -90,16 +96,35 @@ impl Physics {
         let ground = world.insert_body(RigidBodyBuilder::fixed());
         let drivers = robots.iter().filter(|robot| !robot.is_aerial);
         let longest_step = drivers.map(|robot| robot.top_speed).fold(0.0, f32::max) * dt;
-        let insert = |piece| insert_debris(&mut world, ground, piece, longest_step);
-        let debris = debris.iter().map(insert).collect();
+        let mut gates = BTreeMap::new();
+        let insert = |(number, piece): (usize, &DebrisBody)| {
+            let (handle, is_movable) = insert_debris(&mut world, ground, piece, longest_step);
+            if piece.is_gate {
+                gates.insert(number, handle);
+            }
+            is_movable.then_some(handle)
+        };
+        let debris = debris.iter().enumerate().map(insert).collect();
         let robots = robots.iter().map(|robot| insert_robot(&mut world, robot, dt)).collect();
-        Self { world, robots, debris }
+        Self { world, robots, debris, gates }
     }
 
     /// Changes a robot's velocity by as much as its drive allowed.
     pub(crate) fn drive(&mut self, robot: RobotId, velocity_change: Vector) {
         let body = &mut self.world.bodies[self.robots[robot.index()]];
         body.apply_impulse(velocity_change * body.mass(), true);
+    }
+
+    /// The bodies of fixed debris that comes and goes.
+    pub(crate) fn gates(&self) -> &BTreeMap<usize, RigidBodyHandle> {
+        &self.gates
+    }
+
+    /// Puts a fixed piece that comes and goes to a place.
+    pub(crate) fn put_debris(&mut self, number: usize, pose: Pose) {
+        if let Some(handle) = self.gates.get(&number) {
+            self.world.bodies[*handle].set_position(pose, true);
+        }
     }
 
     /// Moves time on by one step.
@@ -226,7 +251,7 @@ fn insert_debris(
     ground: RigidBodyHandle,
     piece: &DebrisBody,
     longest_step: f32,
-) -> Option<RigidBodyHandle> {
+) -> (RigidBodyHandle, bool) {
     let outline = piece.outline;
     let builder = if piece.mass.is_some() { RigidBodyBuilder::dynamic() } else { RigidBodyBuilder::fixed() };
     // A thin piece that a fast robot pushes would be well inside the next body before the contact is noticed.
@@ -242,7 +267,9 @@ fn insert_debris(
         collider = collider.mass(mass);
     }
     let (handle, _) = world.insert(builder.pose(outline.pose), collider);
-    piece.mass?;
+    if piece.mass.is_none() {
+        return (handle, false);
+    }
     // Friction with the ground: motors that hold still in x, y and rotation, up to the force mu m g. The solver treats x and y apart,
     // so the limit is exact along them and up to 1.41 times larger on the diagonal.
     let limit = piece.friction_mass * GRAVITY;
@@ -253,7 +280,7 @@ fn insert_debris(
         joint = joint.motor_velocity(axis, 0.0, GROUND_GRIP).motor_max_force(axis, limit);
     }
     world.insert_impulse_joint(ground, handle, joint);
-    Some(handle)
+    (handle, true)
 }
 
 #[cfg(test)]
@@ -282,7 +309,12 @@ mod tests {
         };
         let mass = movable.map(|[mass, _]| mass);
         let friction_mass = movable.map_or(0.0, |[mass, friction]| mass * friction);
-        Physics::new(DT, [40.0, 10.0], &[robot], &[DebrisBody { outline, mass, friction_mass }])
+        Physics::new(
+            DT,
+            [40.0, 10.0],
+            &[robot],
+            &[DebrisBody { outline, is_gate: false, mass, friction_mass }],
+        )
     }
 
     #[test]

@@ -20,6 +20,10 @@ pub enum Purpose {
     SampledDebris,
     /// One sampled radiation zone.
     SampledRadiation,
+    /// A distribution in the place of a value, by the hash of its path.
+    Slot,
+    /// One scattered thing.
+    Scatter,
 }
 
 impl Purpose {
@@ -31,6 +35,8 @@ impl Purpose {
             Self::Grouping => 3,
             Self::SampledDebris => 4,
             Self::SampledRadiation => 5,
+            Self::Slot => 6,
+            Self::Scatter => 7,
         }
     }
 }

@@ -14,7 +14,7 @@ use crate::simulation::{Simulation, State};
 const MAGIC: &[u8; 8] = b"USARSNAP";
 
 /// Version of the format: one more whenever the state changes its shape.
-pub const VERSION: u32 = 5;
+pub const VERSION: u32 = 6;
 
 const HEADER_BYTES: usize = 8 + 4 + 8 + 16;
 
@@ -142,7 +142,7 @@ impl Simulation {
     /// Never: the state is of types that postcard can write to memory.
     #[must_use]
     pub fn snapshot(&self, policy: &str) -> Vec<u8> {
-        let identity = Identity::new(self.scenario(), policy, self.seed());
+        let identity = Identity::new(self.model().given(), policy, self.seed());
         let payload =
             postcard::to_stdvec(&(identity, self.state())).expect("the state can be written to memory");
         let mut bytes = Vec::with_capacity(HEADER_BYTES + payload.len());
@@ -196,7 +196,14 @@ mod tests {
                 (shape: Box(1.0, 0.6), at: (9.0, 7.0), rotation_deg: 20.0, movable: (mass_kg: 5.0, friction: 0.3)),
                 (shape: Disc(0.5), at: (16.0, 8.0)),
             ],
-            radiation: [(at: (8.0, 9.0), radius_m: 2.0)],
+            radiation: [(at: (8.0, 9.0), radius_m: 2.0, name: "leak")],
+            walls: [(from: (20, 0), to: (20, 8), doors: [(at_m: 4, width_m: 1.5, name: "gate")])],
+            timeline: [
+                (at_s: 2, event: DebrisFalls(shape: Disc(0.6), at: (12, 9))), (at_s: 3, event: Closes("gate")),
+                (at_s: 4, event: SourceDies("leak")), (at_s: 5, event: TaskEnds("near")), (at_s: 30, event: Opens("gate")),
+                (at_s: 6, event: SourceAppears(at: (14, 12), radius_m: 2)), (at_s: 1, event: RobotLoses(robot: 1, hp: 20)),
+                (at_s: 2.5, event: RescueesAppear(task: "far", grid: (2, 1))),
+            ],
         )"#;
         Scenario::parse(text, "fields.ron".as_ref()).unwrap_or_else(|error| panic!("{error}"))
     }

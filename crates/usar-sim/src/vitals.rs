@@ -1,9 +1,10 @@
 //! Energy and health: pure functions from what a robot did to what it costs, and from health to what it can do.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Costs of moving or of radiation, in the unit of the scenario's costs (percent of the robot's own maximum, or points). The three add up.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Rates {
     /// Per simulation step, as the paper prints it (energy: a step in which the robot moves; HP: a step inside a zone).
@@ -15,7 +16,7 @@ pub struct Rates {
 }
 
 /// What work costs, in the same unit.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct WorkRates {
     /// Energy per second of loading.

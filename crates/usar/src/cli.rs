@@ -11,7 +11,7 @@ use rne_core::Registry;
 use terminal_size::{Width, terminal_size_of};
 
 use crate::commands::{
-    calibrate, check, choose, compare, draw, estimate, export, fork, group, list, merge, new, oracle,
+    calibrate, check, choose, compare, draw, estimate, export, fmt, fork, group, list, merge, new, oracle,
     readings, regret, render, report, reproduce, resolve, run, schema, sorting, status, submit, sweep, test,
     trust, verify, view, why,
 };
@@ -42,6 +42,7 @@ Examples:
   usar new mine                                        a commented scenario to begin with
   usar check scenarios/*.ron                           is every value in its range?
   usar resolve scenarios/paper.ron                     every value, and where it comes from
+  usar fmt mine.ron                                    its layout; comments stay
   usar list policies                                   which there are: also scenarios, roles, metrics"
 )]
 struct Cli {
@@ -71,6 +72,7 @@ enum Command {
     Choose(choose::Arguments),
     New(new::Arguments),
     Check(check::Arguments),
+    Fmt(fmt::Arguments),
     Resolve(resolve::Arguments),
     List(list::Arguments),
     Trust(trust::Arguments),
@@ -158,6 +160,7 @@ impl Command {
             Self::Choose(arguments) => arguments.execute(out),
             Self::New(arguments) => arguments.execute(out),
             Self::Check(arguments) => arguments.execute(out),
+            Self::Fmt(arguments) => arguments.execute(out),
             Self::Resolve(arguments) => arguments.execute(out),
             Self::List(arguments) => arguments.execute(out),
             Self::Trust(arguments) => arguments.execute(out),

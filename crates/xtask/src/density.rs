@@ -6,8 +6,8 @@ use std::collections::BTreeMap;
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 use usar_sim::scenario::{
-    ConflictRules, Costs, DebrisFile, DebrisShape, InitialLevels, MissionRules, Normal, PlanningRules, Point,
-    RoleFile, Row, Sampled, SampledCounts, Scenario, ScenarioFile, TaskFile,
+    ConflictRules, Costs, DebrisFile, DebrisShape, Draws, InitialLevels, MissionRules, Normal, PlanningRules,
+    Point, RoleFile, Row, Sampled, SampledCounts, Scenario, ScenarioFile, TaskFile,
 };
 
 /// The scenario whose roles and needs the robots have, but for their size and speed.
@@ -40,7 +40,7 @@ pub fn boxes(robots: u32, is_taken: impl Fn(Point) -> bool) -> Vec<DebrisFile> {
         let rotation_deg = draws.random_range(0.0..180.0);
         if !is_taken(at) {
             let shape = DebrisShape::Box(2.0 * half[0], 2.0 * half[1]);
-            boxes.push(DebrisFile { shape, at, rotation_deg, movable: None });
+            boxes.push(DebrisFile { shape, at, rotation_deg, movable: None, name: None });
         }
     }
     boxes
@@ -99,6 +99,7 @@ pub fn mission(robots: u32, duration_s: f64, to_tasks_m: Option<f64>) -> Scenari
         ..role.clone()
     };
     let file = ScenarioFile {
+        format: usar_sim::scenario::FORMAT,
         name: format!("density-{robots}"),
         description: String::new(),
         only_policy: String::new(),
@@ -118,10 +119,13 @@ pub fn mission(robots: u32, duration_s: f64, to_tasks_m: Option<f64>) -> Scenari
         walls: Vec::new(),
         radiation: Vec::new(),
         sampled: Sampled::default(),
+        scatter: Vec::new(),
+        timeline: Vec::new(),
         costs: Costs::default(),
         mission: MissionRules::default(),
         planning: PlanningRules::default(),
         conflicts: ConflictRules::default(),
+        draws: Draws::new(),
     };
     Scenario::try_from(file).unwrap_or_else(|problems| panic!("{problems:?}"))
 }

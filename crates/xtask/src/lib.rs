@@ -17,6 +17,8 @@ pub mod limits;
 pub mod mutations;
 pub mod navigation;
 pub mod pages;
+pub mod random;
+pub mod reference;
 pub mod rooms;
 pub mod team;
 pub mod worlds;

@@ -5,7 +5,10 @@ mod commands;
 
 use std::process::ExitCode;
 
-use commands::{calibration, damage, golden, kills, limits, mutations, pages, scale, soak, work, worlds};
+use commands::{
+    calibration, damage, golden, kills, limits, mutations, pages, reference, scale, scenarios, soak, work,
+    worlds,
+};
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -20,13 +23,16 @@ fn main() -> ExitCode {
         "limits" => limits::run(),
         "navigation" => xtask::navigation::main(),
         "pages" => pages::run(arguments),
+        "reference" => reference::run(),
+        "scenarios" => scenarios::run(arguments),
         "scale" => scale::run(arguments),
         "soak" => soak::run(arguments),
         "work" => work::run(arguments),
         "worlds" => worlds::run(arguments),
         _ => {
             eprintln!(
-                "xtask: no task {task:?}. Tasks: calibration, damage, golden, kills, limits, mutations, navigation, pages, scale, soak, work, worlds"
+                "xtask: no task {task:?}. Tasks: calibration, damage, golden, kills, limits, mutations, navigation, pages, reference, scale, \
+                 scenarios, soak, work, worlds"
             );
             ExitCode::from(2)
         }

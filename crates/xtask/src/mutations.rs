@@ -118,12 +118,26 @@ fn kinds(folder: &Path) -> Vec<Kind> {
         let place = root().join("scenarios/damaged.ron");
         Scenario::parse(&String::from_utf8_lossy(bytes), &place).map_err(|error| error.to_string()).is_ok()
     };
+    let drawn = |bytes: &[u8]| {
+        let text = String::from_utf8_lossy(bytes);
+        let scenario = Scenario::parse(&text, "damaged.ron".as_ref()).map_err(|error| error.to_string());
+        let Ok(scenario) = scenario else { return false };
+        Simulation::new(&scenario, 1).map_err(|error| error.to_string()).is_ok()
+    };
+    let laid_out = |bytes: &[u8]| {
+        let text = String::from_utf8_lossy(bytes);
+        let is_read = usar_sim::scenario::check_text(&text, "damaged.ron".as_ref()).is_ok();
+        is_read && usar_sim::scenario::upgraded(&text).is_ok()
+    };
     let question = |bytes: &[u8]| Question::from_json(&String::from_utf8_lossy(bytes)).is_ok();
     let kind = |name, good: Vec<u8>, loads: Box<Loader>| Kind { name, good, loads };
     vec![
         kind("scenario", text("scenarios/minimal/pushed.ron"), Box::new(scenario)),
         kind("scenario with walls", walls.to_vec(), Box::new(scenario)),
         kind("scenario over a base", over.to_vec(), Box::new(based)),
+        kind("scenario with distributions", text("scenarios/tutorial/08-chance.ron"), Box::new(drawn)),
+        kind("scenario with a timeline", text("scenarios/tutorial/09-timeline.ron"), Box::new(drawn)),
+        kind("file to lay out", text("scenarios/tutorial/09-timeline.ron"), Box::new(laid_out)),
         kind("sweep", text("scenarios/sweeps/turning-back.ron"), Box::new(sweep)),
         kind("table", text("scenarios/reference/dis_trials.csv"), Box::new(table)),
         kind("snapshot", snapshot, Box::new(restored)),

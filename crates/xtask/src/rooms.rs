@@ -157,6 +157,7 @@ fn debris(
             at,
             rotation_deg: draws.random_range(0.0..180.0),
             movable: can_be_pushed.then(|| Movable { mass_kg: draws.random_range(5.0..80.0), friction: 0.5 }),
+            name: None,
         });
     }
     debris
@@ -180,6 +181,7 @@ fn wall(
             at: [0, 1].map(|k| f64::midpoint(low[k], high[k])),
             rotation_deg: 0.0,
             movable: None,
+            name: None,
         });
     };
     for part in 0..parts {

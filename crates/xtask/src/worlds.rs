@@ -15,8 +15,8 @@ use usar_sim::geometry::Outline;
 use usar_sim::ids::RobotId;
 use usar_sim::model::rest_slot;
 use usar_sim::scenario::{
-    ConflictRules, Costs, DebrisFile, DebrisShape, Errand, InitialLevels, MissionRules, Movable, Normal,
-    PlanningRules, Point, Row, Sampled, SampledCounts, Scenario, ScenarioFile, TaskFile, ZoneFile,
+    ConflictRules, Costs, DebrisFile, DebrisShape, Draws, Errand, InitialLevels, MissionRules, Movable,
+    Normal, PlanningRules, Point, Row, Sampled, SampledCounts, Scenario, ScenarioFile, TaskFile, ZoneFile,
 };
 
 /// The scenario whose roles and needs the robots have.
@@ -117,6 +117,7 @@ fn mission(seed: u64, draws: &mut ChaCha8Rng) -> Option<ScenarioFile> {
         .map(|_| ZoneFile {
             at: [draws.random_range(0.0..arena[0]), draws.random_range(8.0..arena[1])],
             radius_m: draws.random_range(1.0..4.0),
+            name: None,
         })
         .collect();
     let file = ScenarioFile { team, tasks, debris, radiation, ..base(seed, arena, 300.0) };
@@ -162,6 +163,7 @@ fn debris(
             at: [draws.random_range(0.0..arena[0]), draws.random_range(above..arena[1])],
             rotation_deg: draws.random_range(0.0..180.0),
             movable: small.then_some(Movable { mass_kg: 30.0, friction: 0.5 }),
+            name: None,
         });
     }
     if draws.random_range(0..3_u32) == 0 {
@@ -183,6 +185,7 @@ fn debris(
                 at: [x, f64::midpoint(low, high)],
                 rotation_deg: 0.0,
                 movable: None,
+                name: None,
             });
         }
     }
@@ -192,6 +195,7 @@ fn debris(
 pub(crate) fn base(seed: u64, arena_m: Point, duration_s: f64) -> ScenarioFile {
     let paper = Scenario::parse(PAPER, "paper.ron".as_ref()).unwrap_or_else(|error| panic!("{error}"));
     ScenarioFile {
+        format: usar_sim::scenario::FORMAT,
         name: format!("world-{seed}"),
         description: String::new(),
         only_policy: String::new(),
@@ -211,10 +215,13 @@ pub(crate) fn base(seed: u64, arena_m: Point, duration_s: f64) -> ScenarioFile {
         walls: Vec::new(),
         radiation: Vec::new(),
         sampled: Sampled::default(),
+        scatter: Vec::new(),
+        timeline: Vec::new(),
         costs: Costs::default(),
         mission: MissionRules::default(),
         planning: PlanningRules::default(),
         conflicts: ConflictRules::default(),
+        draws: Draws::new(),
     }
 }
 

@@ -1,7 +1,7 @@
 /** Draws what robots move among: the floor, places, radiation, debris, rescuees. */
 
 import { Stream } from '../recording/segment';
-import { knownBy } from '../recording/state';
+import { knownBy, zonesOn } from '../recording/state';
 import type { Point } from '../recording/types';
 import { addDebris } from './shapes';
 import type { Sheet } from './sheet';
@@ -129,7 +129,9 @@ export function drawGroundObjects({ context, camera, recording, moment, looks, c
   const pixel = 1 / camera.scale;
   const known = looks.viewpoint === null ? null : knownBy(moment, looks.viewpoint);
   const picture = glowPicture(colours.radiation);
+  const on = zonesOn(recording, moment);
   world.zones.forEach(({ at: [x, y], radius_m: radius }, number) => {
+    if (!on.has(number)) return;
     const isKnown = known?.zones.has(number) ?? true;
     if (isKnown) context.drawImage(picture, x - radius, y - radius, 2 * radius, 2 * radius);
     context.beginPath();

@@ -79,6 +79,20 @@ export function knownBy(moment: Moment, group: number): { debris: Map<number, nu
   return { debris, zones: new Set(row.slice(end)) };
 }
 
+/** Numbers of the radiation zones that are on: events switch them. */
+export function zonesOn(recording: Recording, { segment, frame }: Moment): Set<number> {
+  const { world, first_step: first, steps_per_frame: steps, dt_s: dt } = recording.header;
+  const on = new Set(world.zones.keys());
+  world.zones_later?.forEach((zone) => on.delete(zone));
+  const time = (first + (segment.firstFrame + frame) * steps) * dt + 1e-9;
+  for (const { kind, fields, time: at } of recording.happenings) {
+    if (at > time) break;
+    if (kind === 'SourceAppeared') on.add(Number(fields.zone));
+    if (kind === 'SourceDied') on.delete(Number(fields.zone));
+  }
+  return on;
+}
+
 /** What a need measures of a robot. */
 export function needOf(need: Need, robot: RobotState, healthFloor: number): number {
   const { role, hp, energy } = robot;

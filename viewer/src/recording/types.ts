@@ -54,6 +54,8 @@ export interface World {
   rescuees: Point[];
   debris: DebrisPiece[];
   zones: { at: Point; radius_m: number }[];
+  /** Numbers of the radiation zones that are not there at the start. */
+  zones_later?: number[];
 }
 
 export interface Header {

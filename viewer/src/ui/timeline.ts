@@ -25,6 +25,19 @@ export function rounds(recording: Recording): Band[] {
 
 const LOSSES = ['Stranded', 'Disabled'];
 
+/** What the timeline of a scenario asks for. */
+const ASKED_FOR = [
+  'DebrisFell',
+  'WayClosed',
+  'WayOpened',
+  'SourceAppeared',
+  'SourceDied',
+  'Damaged',
+  'RescueesAppeared',
+  'TaskBegan',
+  'TaskEnded',
+];
+
 export class Timeline {
   readonly root: HTMLElement;
   private readonly sheet: Sheet;
@@ -45,6 +58,7 @@ export class Timeline {
       ['◆', 'deadlock'],
       ['●', 'rest'],
       ['✕', 'loss'],
+      ['▼', 'event of the scenario'],
     ]) {
       legend.append(
         element('span', {}, element('i', { class: `sign-${text.split(' ')[0]}` }, sign), ` ${text}`),
@@ -148,6 +162,14 @@ export class Timeline {
       context.fill();
     });
     context.globalAlpha = 1;
+    context.fillStyle = colours.ink;
+    marks(ASKED_FOR, (x) => {
+      context.beginPath();
+      context.moveTo(x - 3.5, top);
+      context.lineTo(x + 3.5, top);
+      context.lineTo(x, top + 6);
+      context.fill();
+    });
     context.strokeStyle = colours.ink;
     context.lineWidth = 1.75;
     marks(LOSSES, (x) => {

@@ -1,6 +1,6 @@
 //! The sweep file as it is written.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 use std::marker::PhantomData;
 
@@ -10,9 +10,12 @@ use serde::de::{Deserialize, Deserializer, Error, MapAccess, Visitor};
 use super::Keep;
 
 /// A sweep file: a scenario, what to set in it, the policies to compare, and the axes to go along.
-#[derive(Debug, serde::Deserialize)]
+#[derive(Debug, serde::Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct SweepFile {
+    /// Number of the format that the file is written in; this program reads format 2.
+    #[serde(default)]
+    pub format: Option<u32>,
     /// Short name; names the folder of results.
     pub name: String,
     /// What the sweep is for.
@@ -22,12 +25,14 @@ pub(super) struct SweepFile {
     pub scenario: String,
     /// Fields of the scenario to set, by their paths.
     #[serde(default)]
+    #[schemars(with = "BTreeMap<String, serde_json::Value>")]
     pub set: Map<Box<RawValue>>,
     /// Policies to compare; the scenario's where there are none.
     #[serde(default)]
     pub policies: Option<Vec<String>>,
     /// Options of RNE and the values that each takes: the policy `RNE` stands for every combination.
     #[serde(default)]
+    #[schemars(with = "BTreeMap<String, Vec<serde_json::Value>>")]
     pub readings: Map<Vec<Box<RawValue>>>,
     /// Paired trials for each case and policy.
     #[serde(default)]
@@ -49,16 +54,25 @@ pub(super) struct SweepFile {
     pub baseline: Option<String>,
     /// For metrics, the largest difference that does not matter.
     #[serde(default)]
+    #[schemars(with = "BTreeMap<String, f64>")]
     pub margins: Map<f64>,
     /// What is expected of the outcome: see `usar test --help`.
     #[serde(default)]
     pub expect: Vec<String>,
     /// Scenarios that differ in several fields at once, each by a name with what it sets: an axis of its own, before the others.
     #[serde(default)]
+    #[schemars(with = "BTreeMap<String, BTreeMap<String, serde_json::Value>>")]
     pub variants: Map<Map<Box<RawValue>>>,
     /// Fields and the values that each takes: the full grid is run.
     #[serde(default)]
+    #[schemars(with = "BTreeMap<String, Vec<serde_json::Value>>")]
     pub axes: Map<Vec<Box<RawValue>>>,
+}
+
+/// The JSON Schema of a sweep file.
+#[must_use]
+pub fn sweep_schema() -> serde_json::Value {
+    schemars::schema_for!(SweepFile).into()
 }
 
 /// A map in the order in which it is written; no key may stand twice.

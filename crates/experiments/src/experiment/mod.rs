@@ -17,10 +17,11 @@ use usar_sim::simulation::{Advance, Simulation};
 use xxhash_rust::xxh3::xxh3_128;
 
 use ron_fields::Fields;
-use usar_sim::scenario::{SampledCounts, Scenario, check_text, read_text};
+use usar_sim::scenario::{Scenario, check_text, read_text};
 
 pub use asks::Asks;
 pub use cost::{Cost, check_cost};
+pub use file::sweep_schema;
 pub use grid::{Axis, Case, VARIANT};
 pub use keep::Keep;
 pub use policy::{PolicySpec, registry, set_registry, split_list};
@@ -310,7 +311,7 @@ impl Experiment {
     /// A layout that cannot be drawn, or a question that a policy cannot answer, with the seed.
     pub fn check_start(&self, path: &Path) -> Result<(), Failure> {
         for case in &self.cases {
-            let is_drawn = case.scenario.tasks.iter().any(|task| task.sampled != SampledCounts::default());
+            let is_drawn = case.scenario.is_drawn();
             let trials = if is_drawn { self.trials } else { 1 };
             for seed in (1..=trials).map(|trial| self.seed(trial)) {
                 self.check_case(case, seed)

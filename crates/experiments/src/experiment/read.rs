@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use ron_fields::Fields;
 use ron_fields::limits::Limit;
-use usar_sim::scenario::{Problem, Scenario, ScenarioFile, parse_ron, read_text};
+use usar_sim::scenario::{FORMAT, Problem, Scenario, ScenarioFile, parse_ron, read_text};
 
 use xxhash_rust::xxh3::xxh3_128;
 
@@ -96,6 +96,10 @@ pub(super) fn from_sweep_file(text: String, path: &Path) -> Result<(Parts, Vec<R
         let line = fields.line(field).map_or(String::new(), |line| format!(":{line}"));
         Failure::input(format!("{}{line}: {field}: {reason}", path.display()))
     };
+    let format = file.format.unwrap_or(FORMAT);
+    if format != FORMAT {
+        return Err(bad("format", &format!("must be {FORMAT}, which this program reads, found {format}")));
+    }
     let usable = |c: char| c.is_ascii_alphanumeric() || "-_.".contains(c);
     if file.name.is_empty() || file.name.starts_with(['.', '-']) || !file.name.chars().all(usable) {
         let rule = "must be letters, digits, -, _ and ., the first no . and no -";

@@ -75,7 +75,8 @@ pub(super) fn world_scene(world: &World, time: Time) -> SceneUpdate {
     for y in [-WALL_M / 2.0, height + WALL_M / 2.0] {
         ground.cubes.push(cube([width / 2.0, y, 0.5], [width, WALL_M, 1.0], WALL));
     }
-    for zone in &world.zones {
+    let from_start = |(number, _): &(usize, _)| !world.zones_later.contains(number);
+    for (_, zone) in world.zones.iter().enumerate().filter(from_start) {
         ground.cylinders.push(disc(zone.at, zone.radius_m, [0.0, 0.05], RADIATION));
     }
     for (number, task) in world.tasks.iter().enumerate() {

@@ -48,8 +48,8 @@ pub(crate) struct Seen {
 pub struct Knowledge {
     /// For each piece of debris, the number of its sightings that are known; 0 is unknown.
     pub debris: Vec<u32>,
-    /// For each radiation zone, whether it is known.
-    pub zones: Vec<bool>,
+    /// For each radiation zone, how many of its switches are known; an odd number is a zone that is known to be on.
+    pub zones: Vec<u8>,
     /// For each rescuee, whether it was seen.
     pub rescuees: Vec<bool>,
     /// For each robot, whether it is known to stand for good.
@@ -95,7 +95,7 @@ impl Knowledge {
     pub fn nothing(world: &World, inflation: Inflation) -> Self {
         Self {
             debris: vec![0; world.debris.len()],
-            zones: vec![false; world.zones.len()],
+            zones: vec![0; world.zones.len()],
             rescuees: vec![false; world.rescuees.len()],
             wrecks: vec![false; world.robots.len()],
             pool: 0,
@@ -144,10 +144,22 @@ impl Knowledge {
 
     /// Takes note of a radiation zone.
     pub fn learn_zone(&mut self, world: &World, number: usize) {
-        if !std::mem::replace(&mut self.zones[number], true) {
-            let at = self.known_zones.partition_point(|(other, _)| (*other as usize) < number);
-            self.known_zones.insert(at, (number as u32, world.zones[number]));
+        self.learn_switch(world, number, world.switches_of(number));
+    }
+
+    /// Takes note of a radiation zone as it was after so many switches.
+    fn learn_switch(&mut self, world: &World, number: usize, switches: u8) {
+        let before = self.zones[number];
+        self.zones[number] = before.max(switches);
+        let [was_on, is_on] = [before, self.zones[number]].map(|switches| switches % 2 == 1);
+        let at = self.known_zones.partition_point(|(other, _)| (*other as usize) < number);
+        let zone = world.zones[number];
+        if is_on && !was_on {
+            self.known_zones.insert(at, (number as u32, zone));
             self.news.push(News::Zone(number as u32));
+        } else if was_on && !is_on {
+            self.known_zones.remove(at);
+            self.news.push(News::Opening(Opening { center: zone.center, reach: zone.radius }));
         }
     }
 
@@ -171,7 +183,9 @@ impl Knowledge {
             self.learn_sighting(world, number, *sighting);
         }
         let known = |list: &[bool]| -> Vec<usize> { (0..list.len()).filter(|i| list[*i]).collect() };
-        known(&other.zones).into_iter().for_each(|number| self.learn_zone(world, number));
+        for (number, switches) in other.zones.iter().enumerate() {
+            self.learn_switch(world, number, *switches);
+        }
         known(&other.wrecks).into_iter().for_each(|number| self.learn_wreck(world, number));
         for (own, other) in self.rescuees.iter_mut().zip(&other.rescuees) {
             *own |= other;
@@ -199,7 +213,8 @@ impl Knowledge {
     pub(crate) fn restore(&mut self, world: &World, inflation: Inflation) {
         self.inflation = inflation;
         self.obstacles = self.inflation.radii.iter().map(|radius| self.map(world, *radius)).collect();
-        let known_zones = world.zones.iter().zip(0_u32..).filter(|(_, number)| self.zones[*number as usize]);
+        let known_zones =
+            world.zones.iter().zip(0_u32..).filter(|(_, number)| self.zones[*number as usize] % 2 == 1);
         self.known_zones = known_zones.map(|(zone, number)| (number, *zone)).collect();
     }
 

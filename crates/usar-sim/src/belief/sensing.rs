@@ -33,8 +33,19 @@ pub fn look_around(
             log.push(Event::DebrisDiscovered { robot: robot.id, debris: number as u32 });
         }
     }
+    for number in &world.gates {
+        // A piece that was taken away is missed where it was seen last.
+        let seen = knowledge.debris[*number] as usize;
+        let sightings = &world.debris[*number].sightings;
+        if seen > 0 && seen < sightings.len() && sightings[seen - 1].distance_to(robot.position) <= sensing {
+            knowledge.learn_debris(world, *number);
+            log.push(Event::DebrisDiscovered { robot: robot.id, debris: *number as u32 });
+        }
+    }
     for (number, zone) in world.zones.iter().enumerate() {
-        if !knowledge.zones[number] && (zone.center - robot.position).length() <= sensing + zone.radius {
+        if knowledge.zones[number] < world.switches_of(number)
+            && (zone.center - robot.position).length() <= sensing + zone.radius
+        {
             knowledge.learn_zone(world, number);
             log.push(Event::ZoneDiscovered { robot: robot.id, zone: number as u32 });
         }

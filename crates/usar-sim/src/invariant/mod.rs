@@ -192,6 +192,41 @@ impl Invariants {
                 self.on_board -= 1;
                 self.checked_changes = None;
             }
+            Event::DebrisFell { debris } | Event::WayClosed { debris } | Event::WayOpened { debris } => {
+                let is_there = world.debris[*debris as usize].is_there();
+                if is_there == matches!(event, Event::WayOpened { .. }) {
+                    return Err(
+                        self.violation(None, format!("debris {debris} is not where its event put it"))
+                    );
+                }
+                self.overlaps.note_put(*debris as usize, world);
+            }
+            Event::SourceAppeared { zone } | Event::SourceDied { zone }
+                if world.is_on(*zone as usize) == matches!(event, Event::SourceDied { .. }) =>
+            {
+                return Err(self.violation(None, format!("radiation {zone} is not as its event left it")));
+            }
+            Event::Damaged { robot, energy, hp } => {
+                let (now, then) = (&world.robots[robot.index()], self.before[robot.index()].levels);
+                if now.energy > then[0] - energy + ROUNDING || now.hp > then[1] - hp + ROUNDING {
+                    return Err(self.violation(Some(*robot), "kept the levels that it lost".to_owned()));
+                }
+            }
+            Event::RescueesAppeared { first, count, .. } => {
+                for id in *first..first + count {
+                    let was = std::mem::replace(&mut self.rescuees[id as usize], RescueeState::Waiting);
+                    if was != RescueeState::Absent {
+                        return Err(self.violation(None, format!("rescuee {id} appeared, which was {was:?}")));
+                    }
+                }
+                self.checked_changes = None;
+            }
+            Event::TaskEnded { task } => {
+                let own = world.rescuees.iter().zip(&mut self.rescuees).filter(|(own, _)| own.task == *task);
+                let waiting = own.filter(|(_, state)| **state == RescueeState::Waiting);
+                waiting.for_each(|(_, state)| *state = RescueeState::Absent);
+                self.checked_changes = None;
+            }
             Event::RestStarted { robot } => {
                 let robot = &world.robots[robot.index()];
                 self.check_rest(robot, robot.radius().max(ARRIVAL_M))?;

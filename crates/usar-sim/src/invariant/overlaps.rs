@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::ids::RobotId;
 use crate::scenario::Scenario;
-use crate::world::{Robot, World};
+use crate::world::{Debris, Robot, World};
 
 /// Overlap that one contact in a thousand may exceed, in metres.
 pub const RARE_OVERLAP_M: f32 = 0.01;
@@ -78,6 +78,8 @@ pub(super) struct Gauge {
     still: Vec<(usize, Pose)>,
     /// Numbers of the debris that was pushed.
     pushed: Vec<usize>,
+    /// Numbers of the pieces that come and go by events, and where their last event left them.
+    put: Vec<(usize, Pose)>,
     /// For each robot, the last look at the debris that has not moved.
     looks: Vec<Look>,
     /// Numbers of the robots in order of x.
@@ -85,6 +87,11 @@ pub(super) struct Gauge {
     /// For each robot, the deepest overlap in this step, in metres; negative is a gap.
     overlap: Vec<f32>,
     total: Overlaps,
+}
+
+/// The pieces that do not come and go.
+fn still(world: &World) -> impl Iterator<Item = (usize, &Debris)> {
+    world.debris.iter().enumerate().filter(|(_, piece)| !piece.is_gate)
 }
 
 impl Gauge {
@@ -100,8 +107,9 @@ impl Gauge {
             reach: vec![0.0; world.robots.len()],
             longest_reach: 0.0,
             may_touch: vec![false; world.robots.len()],
-            still: world.debris.iter().map(|piece| piece.outline.pose).enumerate().collect(),
-            pushed: Vec::new(),
+            still: still(world).map(|(number, piece)| (number, piece.outline.pose)).collect(),
+            pushed: world.gates.clone(),
+            put: world.gates.iter().map(|number| (*number, world.debris[*number].outline.pose)).collect(),
             looks: vec![Look::never(); world.robots.len()],
             by_x,
             overlap: vec![f32::NEG_INFINITY; world.robots.len()],
@@ -143,8 +151,19 @@ impl Gauge {
         self.longest_reach = self.reach.iter().copied().fold(0.0, f32::max);
     }
 
+    /// Takes note of a piece that an event has put to a place, or away.
+    pub(super) fn note_put(&mut self, debris: usize, world: &World) {
+        let own = self.put.iter_mut().filter(|(number, _)| *number == debris);
+        own.for_each(|(number, pose)| *pose = world.debris[*number].outline.pose);
+    }
+
     /// Takes note of the pieces that were pushed for the first time. Number of a fixed one that is not where it was, if there is one.
     pub(super) fn note_pushed(&mut self, world: &World) -> Option<usize> {
+        if let Some((number, _)) =
+            self.put.iter().find(|(number, at)| world.debris[*number].outline.pose != *at)
+        {
+            return Some(*number);
+        }
         while let Some(at) =
             self.still.iter().position(|(number, at)| world.debris[*number].outline.pose != *at)
         {

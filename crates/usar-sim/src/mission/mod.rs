@@ -8,6 +8,7 @@ mod rescue;
 mod round;
 mod scene;
 mod watch;
+mod withdraw;
 mod work;
 
 use rne_core::{Question, TaskId};

@@ -7,7 +7,7 @@ use super::{Activity, Agent, Group, Mission, Pending, Scene};
 use crate::event::{Event, TurnBackCause};
 use crate::ids::RobotId;
 use crate::model::Model;
-use crate::scenario::{MissionRules, RestAtHome, RoundEnd, Scenario};
+use crate::scenario::{MissionRules, RestAtHome, RoundEnd, Scenario, TaskFile};
 use crate::seed::{Purpose, stream};
 use crate::world::{Robot, World};
 
@@ -63,7 +63,7 @@ impl Mission {
                 Some(cause) => unfit.push((robot.id, cause)),
             }
         }
-        let question = question(scene.model, self.round, &fit);
+        let question = question(scene.model, (self.round, &scene.world.closed_tasks), &fit);
         self.agents.iter_mut().for_each(|agent| agent.rests_given_up = 0);
         let is_empty = question.members.is_empty();
         self.pending = Some(Pending { question, unfit });
@@ -152,7 +152,7 @@ impl Mission {
 }
 
 /// How these robots are to be grouped. What they report is what they are.
-fn question(model: &Model, round: u32, fit: &[&Robot]) -> Question {
+fn question(model: &Model, (round, closed): (u32, &[bool]), fit: &[&Robot]) -> Question {
     let scenario = &model.scenario;
     let member = |robot: &&Robot| {
         Some(Member {
@@ -184,7 +184,7 @@ fn question(model: &Model, round: u32, fit: &[&Robot]) -> Question {
             })
             .collect(),
         quotas: (0..scenario.roles.len())
-            .map(|role| Quota::share(count(role), &asked(scenario, role), &model.hardest_first))
+            .map(|role| Quota::share(count(role), &asked(scenario, role, closed), &model.hardest_first))
             .collect(),
         members: fit.iter().filter_map(member).collect(),
         history: Vec::new(),
@@ -193,7 +193,17 @@ fn question(model: &Model, round: u32, fit: &[&Robot]) -> Question {
 }
 
 /// How many robots of a role each task asks for.
-fn asked(scenario: &Scenario, role: usize) -> Vec<Option<usize>> {
+fn asked(scenario: &Scenario, role: usize, closed: &[bool]) -> Vec<Option<usize>> {
     let name = &scenario.roles[role].name;
-    scenario.tasks.iter().map(|task| task.quota.get(name).map(|quota| *quota as usize)).collect()
+    let quota = |task: &TaskFile| task.quota.get(name).map(|quota| *quota as usize);
+    let mut asked: Vec<Option<usize>> = scenario.tasks.iter().map(quota).collect();
+    // A task that has not begun, or has ended, asks for nobody; an open one takes the robots that are left.
+    let is_open = |number: usize| closed.get(number) != Some(&true);
+    if closed.contains(&true) {
+        let takes_the_rest = (0..asked.len()).any(|number| is_open(number) && asked[number].is_none());
+        for (number, asked) in asked.iter_mut().enumerate() {
+            *asked = if is_open(number) { asked.filter(|_| takes_the_rest) } else { Some(0) };
+        }
+    }
+    asked
 }

@@ -1,22 +1,25 @@
 //! The layout of one trial: what the scenario fixes, and what is drawn from the trial's seed.
 
+use std::collections::{BTreeMap, BTreeSet};
+
+use parry2d::bounding_volume::Aabb;
 use parry2d::math::Vector;
 use rand::RngExt;
 use rand::rngs::ChaCha8Rng;
 use rne_core::{RoleId, TaskId};
 
 use super::places::{rescuee_places, rest_slot};
-use crate::geometry::Outline;
+use crate::geometry::{Outline, Places};
 use crate::ids::RobotId;
 use crate::planning::Planner;
 use crate::scenario::{
-    DebrisFile, DebrisShape, LayoutError, Normal, Point, RoleKind, SampledCounts, Scenario, TaskFile,
-    ZoneFile,
+    Amount, DebrisFile, DebrisShape, Happening, LayoutError, Normal, Point, RoleKind, SampledCounts,
+    Scenario, TaskFile, ZoneFile,
 };
 use crate::seed::{Purpose, normal, stream};
 
 /// Draws for one sampled thing before it is said that there is no room.
-const SAMPLING_TRIES: u32 = 500;
+pub(super) const SAMPLING_TRIES: u32 = 500;
 
 /// Layouts drawn before it is said that there is no passage.
 const LAYOUT_ATTEMPTS: u32 = 20;
@@ -44,10 +47,14 @@ pub struct RobotStart {
 pub struct Layout {
     /// Robots, by id.
     pub robots: Vec<RobotStart>,
-    /// Debris: the scenario's, then the sampled.
+    /// Debris: the scenario's, then the sampled and the scattered, then what comes by events.
     pub debris: Vec<DebrisFile>,
     /// Radiation zones: the scenario's, then the sampled.
     pub zones: Vec<ZoneFile>,
+    /// Numbers of the pieces of debris that come and go by events, and whether each is there at the start.
+    pub gates: BTreeMap<usize, bool>,
+    /// Numbers of the radiation zones that are not there at the start.
+    pub zones_later: BTreeSet<usize>,
 }
 
 impl Layout {
@@ -56,7 +63,9 @@ impl Layout {
     /// # Errors
     /// No room for what is to be sampled, or no passage between home, tasks and rest places.
     pub fn sample(scenario: &Scenario, trial_seed: u64) -> Result<Self, LayoutError> {
-        let draws_nothing = scenario.tasks.iter().all(|task| task.sampled.debris == 0);
+        let draws_nothing =
+            scenario.tasks.iter().all(|task| task.sampled.debris == 0) && scenario.scatter.is_empty();
+        let keep_clear = KeepClear::new(scenario);
         let attempts = if draws_nothing { 1 } else { LAYOUT_ATTEMPTS };
         let mut blocked = None;
         for attempt in 0..attempts {
@@ -64,10 +73,14 @@ impl Layout {
                 robots: robot_starts(scenario, trial_seed),
                 debris: scenario.obstacles(),
                 zones: scenario.radiation.clone(),
+                gates: BTreeMap::new(),
+                zones_later: BTreeSet::new(),
             };
             for (number, task) in scenario.tasks.iter().enumerate() {
-                layout.sample_near(scenario, (number, task), trial_seed, attempt)?;
+                layout.sample_near(scenario, (number, task), &keep_clear, (trial_seed, attempt))?;
             }
+            layout.scatter(scenario, &keep_clear, (trial_seed, attempt))?;
+            layout.add_later(scenario);
             if !scenario.errands.is_empty() {
                 return Ok(layout); // an errand that leads nowhere is found out by the robot
             }
@@ -84,12 +97,11 @@ impl Layout {
         &mut self,
         scenario: &Scenario,
         (number, task): (usize, &TaskFile),
-        seed: u64,
-        attempt: u32,
+        keep_clear: &KeepClear,
+        (seed, attempt): (u64, u32),
     ) -> Result<(), LayoutError> {
         let SampledCounts { debris, radiation } = task.sampled;
         let strip = Strip::new(scenario, task);
-        let keep_clear = KeepClear::new(scenario);
         let no_room = |what, number: u32, count| LayoutError::NoRoom {
             task: task.name.clone(),
             what,
@@ -115,6 +127,7 @@ impl Layout {
                 at,
                 rotation_deg: 0.0,
                 movable: None,
+                name: None,
             });
         }
         for i in 0..radiation {
@@ -122,15 +135,55 @@ impl Layout {
             let place = strip
                 .draw(&mut draws, scenario.sampled.zone_radius_m, |at, radius| keep_clear.allows(at, radius));
             let (at, radius_m) = place.ok_or_else(|| no_room("radiation", i, radiation))?;
-            self.zones.push(ZoneFile { at, radius_m });
+            self.zones.push(ZoneFile { at, radius_m, name: None });
         }
         Ok(())
+    }
+
+    /// Adds what comes and goes by events, after everything else: panels of doors, debris that falls, radiation that appears.
+    fn add_later(&mut self, scenario: &Scenario) {
+        for (panel, is_closed) in scenario.panels() {
+            self.gates.insert(self.debris.len(), is_closed);
+            self.debris.push(panel);
+        }
+        for moment in &scenario.timeline {
+            if let Some(falling) = moment.event.falling() {
+                self.gates.insert(self.debris.len(), false);
+                self.debris.push(falling);
+            }
+            if let Some(source) = moment.event.source() {
+                self.zones_later.insert(self.zones.len());
+                self.zones.push(source);
+            }
+        }
+        for moment in &scenario.timeline {
+            let (Happening::Opens(name) | Happening::Closes(name)) = &moment.event else { continue };
+            let number = self.debris.iter().position(|piece| piece.name.as_ref() == Some(name));
+            if let Some(number) = number {
+                self.gates.entry(number).or_insert(true);
+            }
+        }
+    }
+
+    /// Number of the piece that falls in an event of the timeline.
+    pub(super) fn falling(&self, scenario: &Scenario, moment: usize) -> usize {
+        let after = scenario.timeline[moment..].iter().filter(|moment| moment.event.falling().is_some());
+        self.debris.len() - after.count()
+    }
+
+    /// Number of the radiation source that appears in an event of the timeline.
+    pub(super) fn appearing(&self, scenario: &Scenario, moment: usize) -> usize {
+        let after = scenario.timeline[moment..].iter().filter(|moment| moment.event.source().is_some());
+        self.zones.len() - after.count()
     }
 
     /// Every place that a mission needs can be reached by each ground robot. Robots of one radius are looked at together, the largest
     /// first.
     fn check_passages(&self, scenario: &Scenario) -> Result<(), LayoutError> {
-        let outlines: Vec<_> = self.debris.iter().map(DebrisFile::outline).collect();
+        // What comes and goes closes no way for good.
+        let stays = |(number, _): &(usize, &DebrisFile)| !self.gates.contains_key(number);
+        let outlines: Vec<_> =
+            self.debris.iter().enumerate().filter(stays).map(|(_, file)| file.outline()).collect();
         let mut planner = Planner::new(scenario);
         for radius_m in scenario.ground_radii_m().into_iter().rev() {
             self.check_passages_of(scenario, radius_m, (&mut planner, &outlines))?;
@@ -184,19 +237,22 @@ fn robot_starts(scenario: &Scenario, seed: u64) -> Vec<RobotStart> {
     let level = |purpose, robot: u32, Normal { mean, sd }: Normal| {
         normal(&mut stream(seed, purpose, u64::from(robot)), mean, sd).clamp(LEAST_LEVEL, 100.0)
     };
+    let of_row =
+        |purpose, robot: u32, amount: &Amount| amount.draw(&mut stream(seed, purpose, u64::from(robot)));
     homes
         .zip(0..)
-        .map(|((row, home), id)| RobotStart {
-            id: RobotId(id),
-            role: scenario.role_of(row),
-            home: vector(home),
-            energy: row.levels.map_or_else(
-                || level(Purpose::EnergyLevel, id, scenario.initial_levels.energy),
-                |levels| levels.energy,
-            ),
-            hp: row
-                .levels
-                .map_or_else(|| level(Purpose::HpLevel, id, scenario.initial_levels.hp), |levels| levels.hp),
+        .map(|((row, home), id)| {
+            let (energy, hp) = match &row.levels {
+                None => (
+                    level(Purpose::EnergyLevel, id, scenario.initial_levels.energy),
+                    level(Purpose::HpLevel, id, scenario.initial_levels.hp),
+                ),
+                Some(levels) => (
+                    of_row(Purpose::EnergyLevel, id, &levels.energy),
+                    of_row(Purpose::HpLevel, id, &levels.hp),
+                ),
+            };
+            RobotStart { id: RobotId(id), role: scenario.role_of(row), home: vector(home), energy, hp }
         })
         .collect()
 }
@@ -247,25 +303,37 @@ impl Strip {
 }
 
 /// Homes, places to rest and rescuees, each with the radius of what stands there.
-struct KeepClear(Vec<(Point, f64)>);
+pub(super) struct KeepClear {
+    list: Vec<(Point, f64)>,
+    /// Where they are.
+    places: Places,
+}
 
 impl KeepClear {
     fn new(scenario: &Scenario) -> Self {
+        if !scenario.is_drawn() {
+            return Self { list: Vec::new(), places: Places::default() };
+        }
         let radius = scenario.largest_radius_m(RoleKind::Ground);
         let point = |v: Vector| [f64::from(v.x), f64::from(v.y)];
-        let mut places: Vec<(Point, f64)> =
+        let mut list: Vec<(Point, f64)> =
             scenario.team.iter().flat_map(crate::scenario::Row::places).map(|home| (home, radius)).collect();
         for task in (0..).take(scenario.tasks.len()).map(TaskId) {
             let slots = (0..scenario.robots()).map(|i| rest_slot(scenario, task, RobotId(i)));
-            places.extend(slots.map(|slot| (point(slot), radius)));
+            list.extend(slots.map(|slot| (point(slot), radius)));
         }
-        places.extend(rescuee_places(scenario).map(|(_, at)| (point(at), 0.0)));
-        Self(places)
+        list.extend(rescuee_places(scenario).map(|(_, at)| (point(at), 0.0)));
+        let bounds =
+            |(at, own): &(Point, f64)| Aabb::from_half_extents(vector(*at), Vector::splat(*own as f32));
+        Self { places: list.iter().map(bounds).collect(), list }
     }
 
     /// None of them within `radius` metres.
-    fn allows(&self, at: Point, radius: f64) -> bool {
-        self.0.iter().all(|(place, own)| libm::hypot(at[0] - place[0], at[1] - place[1]) >= radius + own)
+    pub(super) fn allows(&self, at: Point, radius: f64) -> bool {
+        let near = self.places.near(vector(at), radius as f32);
+        near.into_iter()
+            .map(|number| &self.list[number])
+            .all(|(place, own)| libm::hypot(at[0] - place[0], at[1] - place[1]) >= radius + own)
     }
 }
 

@@ -3,6 +3,8 @@
 mod area;
 mod layout;
 mod places;
+mod scatter;
+mod timeline;
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -13,6 +15,7 @@ use rne_core::{RoleId, TaskId};
 pub use area::TaskArea;
 pub use layout::{Layout, RobotStart};
 pub use places::{rescuee_places, rest_slot};
+pub use timeline::{Action, Due};
 
 use crate::ids::RobotId;
 use crate::scenario::{LayoutError, RoleFile, RoleKind, Scenario};
@@ -20,8 +23,10 @@ use crate::scenario::{LayoutError, RoleFile, RoleKind, Scenario};
 /// Everything that is fixed in one trial.
 #[derive(Debug)]
 pub struct Model {
-    /// The scenario.
+    /// The scenario, with the values that its distributions have in this trial.
     pub scenario: Scenario,
+    /// The scenario with its distributions, where it has any.
+    given: Option<Scenario>,
     /// Seed of the trial.
     pub seed: u64,
     /// What was drawn from the seed.
@@ -34,6 +39,10 @@ pub struct Model {
     pub hardest_first: Vec<TaskId>,
     /// Task and place of each rescuee, by id.
     pub rescuees: Vec<(TaskId, Vector)>,
+    /// Ids of the rescuees that are not there at the start.
+    pub rescuees_later: Vec<Range<usize>>,
+    /// What happens at which step, in order.
+    pub timeline: Vec<Due>,
 }
 
 /// What is fixed of one robot.
@@ -98,6 +107,8 @@ impl Model {
     /// # Errors
     /// The layout cannot be drawn.
     pub fn compile(scenario: &Scenario, seed: u64) -> Result<Arc<Self>, LayoutError> {
+        let given = (!scenario.draws.is_empty()).then(|| scenario.clone());
+        let scenario = &scenario.of_trial(seed)?;
         let layout = Layout::sample(scenario, seed)?;
         let specs = bodies(scenario);
         let tasks = || (0..scenario.tasks.len() as u16).map(TaskId);
@@ -122,8 +133,12 @@ impl Model {
             bounds: bounds(&rescuees[ids_of(task, &rescuees)]),
         };
         let tasks = tasks().map(task).collect();
+        let timeline = timeline::timeline(scenario, &layout);
         Ok(Arc::new(Self {
             scenario: scenario.clone(),
+            given,
+            rescuees_later: later(scenario),
+            timeline,
             seed,
             layout,
             robots,
@@ -131,6 +146,12 @@ impl Model {
             hardest_first,
             rescuees,
         }))
+    }
+
+    /// The scenario as it was given, with its distributions.
+    #[must_use]
+    pub fn given(&self) -> &Scenario {
+        self.given.as_ref().unwrap_or(&self.scenario)
     }
 
     /// Length of a step, in seconds.
@@ -156,6 +177,27 @@ fn bodies(scenario: &Scenario) -> Vec<Arc<RoleFile>> {
     let rows =
         scenario.team.iter().map(|row| (Arc::new(scenario.body_of(row).unwrap_or_default()), row.count));
     rows.flat_map(|(body, count)| (0..count).map(move |_| Arc::clone(&body))).collect()
+}
+
+/// Ids of the rescuees that appear by an event, and of those whose task begins with one.
+fn later(scenario: &Scenario) -> Vec<Range<usize>> {
+    if scenario.timeline.is_empty() {
+        return Vec::new();
+    }
+    let mut task = scenario.tasks.iter();
+    let mut begins_later = false;
+    let is_later = |block: &places::Block| {
+        if block.moment.is_none() {
+            begins_later = task.next().is_some_and(|task| scenario.begins_later(task));
+        }
+        block.moment.is_some() || begins_later
+    };
+    let mut is_later = is_later;
+    places::rescuee_blocks(scenario)
+        .into_iter()
+        .filter(|block| is_later(block))
+        .map(|block| block.ids)
+        .collect()
 }
 
 fn ids_of(task: TaskId, rescuees: &[(TaskId, Vector)]) -> Range<usize> {

@@ -1,10 +1,12 @@
 //! Places that follow from the scenario alone: of rescuees, and of robots at rest.
 
+use std::ops::Range;
+
 use parry2d::math::Vector;
 use rne_core::TaskId;
 
 use crate::ids::RobotId;
-use crate::scenario::{RoleKind, Scenario, TaskFile};
+use crate::scenario::{Happening, RoleKind, Scenario, TaskFile};
 
 /// Free distance between two robots at a rest place, in metres: others can pass between them.
 const REST_GAP_M: f64 = 1.2;
@@ -25,9 +27,43 @@ pub fn rest_slot(scenario: &Scenario, task: TaskId, robot: RobotId) -> Vector {
     Vector::new(x as f32, y as f32)
 }
 
-/// The task and the place of each rescuee, by id: task by task, each in a regular grid.
+/// The task and the place of each rescuee, by id: task by task, each in a regular grid; after it, those of the task that appear later.
 pub fn rescuee_places(scenario: &Scenario) -> impl Iterator<Item = (TaskId, Vector)> + '_ {
-    (0..).zip(&scenario.tasks).flat_map(|(number, task)| grid(task).map(move |at| (TaskId(number), at)))
+    (0..).zip(&scenario.tasks).flat_map(move |(number, task)| {
+        let later = later_grids(scenario, task).flat_map(move |(_, cells)| cells_of(task, cells));
+        grid(task).chain(later).map(move |at| (TaskId(number), at))
+    })
+}
+
+/// Rescuees that are there from the same moment on.
+pub(super) struct Block {
+    /// Number of the event with which they appear; none for those of the task's table.
+    pub(super) moment: Option<usize>,
+    /// Their ids.
+    pub(super) ids: Range<usize>,
+}
+
+/// The blocks of rescuees, in the order of their ids.
+pub(super) fn rescuee_blocks(scenario: &Scenario) -> Vec<Block> {
+    let (mut blocks, mut next) = (Vec::new(), 0);
+    for task in &scenario.tasks {
+        let own = std::iter::once((None, task.grid));
+        let later = later_grids(scenario, task).map(|(moment, cells)| (Some(moment), cells));
+        for (moment, cells) in own.chain(later) {
+            let count = cells[0] as usize * cells[1] as usize;
+            blocks.push(Block { moment, ids: next..next + count });
+            next += count;
+        }
+    }
+    blocks
+}
+
+/// The grids of rescuees that appear in a task, each with the number of its event.
+fn later_grids<'s>(scenario: &'s Scenario, of: &'s TaskFile) -> impl Iterator<Item = (usize, [u32; 2])> + 's {
+    scenario.timeline.iter().enumerate().filter_map(|(number, moment)| match &moment.event {
+        Happening::RescueesAppear { task, grid } if *task == of.name => Some((number, *grid)),
+        _ => None,
+    })
 }
 
 fn grid(task: &TaskFile) -> impl Iterator<Item = Vector> + '_ {
@@ -40,4 +76,13 @@ fn grid(task: &TaskFile) -> impl Iterator<Item = Vector> + '_ {
         Vector::new(x as f32, y as f32)
     };
     (0..task.grid[1]).flat_map(move |row| (0..task.grid[0]).map(move |column| place(column, row)))
+}
+
+/// Middles of so many cells of a task's block.
+fn cells_of(task: &TaskFile, [columns, rows]: [u32; 2]) -> impl Iterator<Item = Vector> + '_ {
+    let along = |k: usize, i: u32, count: u32| {
+        task.center[k] + task.size_m[k] * ((f64::from(i) + 0.5) / f64::from(count) - 0.5)
+    };
+    let place = move |column, row| Vector::new(along(0, column, columns) as f32, along(1, row, rows) as f32);
+    (0..rows).flat_map(move |row| (0..columns).map(move |column| place(column, row)))
 }

@@ -1,30 +1,19 @@
 //! The rules of debris and radiation zones.
 
 use super::checker::Checker;
-use super::file::{DebrisShape, Door, Point, ScenarioFile, WallFile};
+use super::file::{DebrisFile, DebrisShape, Door, Point, ScenarioFile, WallFile};
 use crate::limits;
 
 /// Least width of a polygon in every direction, in metres: less is flat in single precision.
 pub const LEAST_POLYGON_WIDTH_M: f64 = 0.01;
 
 pub(super) fn debris(check: &mut Checker, file: &ScenarioFile) {
-    for (i, piece) in file.debris.iter().enumerate() {
-        let field = format!("debris[{i}]");
-        match &piece.shape {
-            DebrisShape::Disc(radius) => {
-                check.number(format!("{field}.shape"), *radius, limits::DISC_RADIUS_M);
-            }
-            DebrisShape::Box(width, height) => {
-                check.number(format!("{field}.shape"), *width, limits::BOX_M);
-                check.number(format!("{field}.shape"), *height, limits::BOX_M);
-            }
-            DebrisShape::Polygon(corners) => polygon(check, &format!("{field}.shape"), corners),
-        }
-        check.inside(format!("{field}.at"), piece.at, 0.0);
-        check.number(format!("{field}.rotation_deg"), piece.rotation_deg, limits::ROTATION_DEG);
-        if let Some(movable) = piece.movable {
-            check.number(format!("{field}.movable.mass_kg"), movable.mass_kg, limits::PIECE_MASS_KG);
-            check.number(format!("{field}.movable.friction"), movable.friction, limits::FRICTION);
+    for (i, file) in file.debris.iter().enumerate() {
+        piece(check, &format!("debris[{i}]"), file);
+    }
+    for (i, moment) in file.timeline.iter().enumerate() {
+        if let Some(falling) = moment.event.falling() {
+            piece(check, &format!("timeline[{i}].event"), &falling);
         }
     }
     for (i, wall) in file.walls.iter().enumerate() {
@@ -33,6 +22,25 @@ pub(super) fn debris(check: &mut Checker, file: &ScenarioFile) {
     for (i, zone) in file.radiation.iter().enumerate() {
         check.inside(format!("radiation[{i}].at"), zone.at, 0.0);
         check.number(format!("radiation[{i}].radius_m"), zone.radius_m, limits::ZONE_RADIUS_M);
+    }
+}
+
+fn piece(check: &mut Checker, field: &str, piece: &DebrisFile) {
+    match &piece.shape {
+        DebrisShape::Disc(radius) => {
+            check.number(format!("{field}.shape"), *radius, limits::DISC_RADIUS_M);
+        }
+        DebrisShape::Box(width, height) => {
+            check.number(format!("{field}.shape"), *width, limits::BOX_M);
+            check.number(format!("{field}.shape"), *height, limits::BOX_M);
+        }
+        DebrisShape::Polygon(corners) => polygon(check, &format!("{field}.shape"), corners),
+    }
+    check.inside(format!("{field}.at"), piece.at, 0.0);
+    check.number(format!("{field}.rotation_deg"), piece.rotation_deg, limits::ROTATION_DEG);
+    if let Some(movable) = piece.movable {
+        check.number(format!("{field}.movable.mass_kg"), movable.mass_kg, limits::PIECE_MASS_KG);
+        check.number(format!("{field}.movable.friction"), movable.friction, limits::FRICTION);
     }
 }
 

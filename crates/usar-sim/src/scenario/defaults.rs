@@ -9,6 +9,11 @@ use super::file::{
 };
 use crate::vitals::{Rates, WorkRates};
 
+/// The format of a file that says none: the one that this program reads.
+pub(super) fn format() -> u32 {
+    super::FORMAT
+}
+
 /// One role, for scenarios in which all robots are alike.
 pub(super) fn roles() -> Vec<RoleFile> {
     vec![RoleFile { name: "robot".to_owned(), ..RoleFile::default() }]

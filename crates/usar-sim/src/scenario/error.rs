@@ -111,6 +111,30 @@ pub enum LayoutError {
         /// Draws made.
         tries: u32,
     },
+    /// No place for one more scattered thing.
+    #[error(
+        "{field}: no place for {what} {number} of {count}{tried}; lower the count, the radius or the gap, or enlarge `within`"
+    )]
+    NoPlace {
+        /// Path of the field.
+        field: String,
+        /// `debris` or `radiation`.
+        what: &'static str,
+        /// Which of them, from 1.
+        number: u32,
+        /// How many were asked for.
+        count: u32,
+        /// What was tried, in words.
+        tried: String,
+    },
+    /// The values that were drawn break a rule, each time.
+    #[error("the values drawn {tries} times never went together: {problem}")]
+    NeverFits {
+        /// Times that they were drawn.
+        tries: u32,
+        /// What was wrong the last time.
+        problem: String,
+    },
     /// Debris and walls leave no way for a ground robot.
     #[error(
         "debris leaves no way from home to {to} that is wide enough for a robot of radius {radius_m} m with clearance"

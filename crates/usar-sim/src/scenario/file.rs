@@ -5,17 +5,25 @@
 use std::collections::BTreeMap;
 
 use rne_core::hierarchy::NeedLevel;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+pub use super::distribution::{Amount, Distribution};
+pub use super::draws::Draws;
 pub use super::rules::*;
+pub use super::scatter::{Placement, Scatter, Scattered};
+pub use super::timeline::{Happening, Moment};
 
 /// A point `(x, y)` or an extent `(width, height)`, in metres.
 pub type Point = [f64; 2];
 
 /// A whole scenario.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ScenarioFile {
+    /// Number of the format that the file is written in; this program reads format 2.
+    #[serde(default = "super::defaults::format")]
+    pub format: u32,
     /// Short name: letters, digits, `-`, `_` and `.`; names the folder of results.
     pub name: String,
     /// What the scenario is for.
@@ -61,6 +69,12 @@ pub struct ScenarioFile {
     /// What the debris and radiation zones are like that tasks ask for.
     #[serde(default)]
     pub sampled: Sampled,
+    /// Debris and radiation zones that are placed anew in every trial.
+    #[serde(default)]
+    pub scatter: Vec<Scatter>,
+    /// What happens at which time.
+    #[serde(default)]
+    pub timeline: Vec<Moment>,
     /// What moving and radiation cost.
     #[serde(default)]
     pub costs: Costs,
@@ -73,10 +87,14 @@ pub struct ScenarioFile {
     /// Rules of right of way.
     #[serde(default)]
     pub conflicts: ConflictRules,
+    /// Distributions that stand in the place of values; written there, and not as a field.
+    #[serde(default, skip_serializing_if = "Draws::is_empty")]
+    #[schemars(skip)]
+    pub draws: Draws,
 }
 
 /// Robots of one role side by side.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Row {
     /// Name of the role of the whole row.
@@ -87,7 +105,7 @@ pub struct Row {
     pub center: Point,
     /// Distance between the first and the last robot, in metres.
     pub width_m: f64,
-    /// Initial levels of the whole row, instead of draws.
+    /// Initial levels of the robots of the row, instead of `initial_levels`. A distribution is drawn for each robot.
     #[serde(default)]
     pub levels: Option<Levels>,
     /// What is different in this row from the robots of its role.
@@ -96,7 +114,7 @@ pub struct Row {
 }
 
 /// Values of a row's robots in the place of their role's; what is left out is as in the role.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Body {
     /// Radius of the disc, in metres.
@@ -124,17 +142,17 @@ pub struct Body {
 }
 
 /// Levels of a robot, in percent.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Levels {
     /// Battery.
-    pub energy: f64,
+    pub energy: Amount,
     /// Health.
-    pub hp: f64,
+    pub hp: Amount,
 }
 
 /// Places that one robot is to go to, one after the other.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Errand {
     /// Id of the robot.
@@ -144,7 +162,7 @@ pub struct Errand {
 }
 
 /// What a robot of a role is and can do, at full health.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct RoleFile {
     /// Name of the role.
@@ -178,7 +196,7 @@ pub struct RoleFile {
 }
 
 /// Where robots of a role move.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 pub enum RoleKind {
     /// On the ground: walls, debris and other ground robots are in the way. The default.
     #[default]
@@ -188,7 +206,7 @@ pub enum RoleKind {
 }
 
 /// A need that robots report and policies compare.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct NeedFile {
     /// Name of the need.
@@ -203,7 +221,7 @@ pub struct NeedFile {
 }
 
 /// What a need measures of a robot as it is now.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub enum Measure {
     /// Health points.
     Health,
@@ -224,8 +242,9 @@ pub enum Measure {
 }
 
 /// Normal distributions of the initial levels, in percent, clamped to [1, 100].
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, from = "super::partial::InitialLevels")]
+#[schemars(!from, default)]
 pub struct InitialLevels {
     /// Battery level.
     pub energy: Normal,
@@ -234,7 +253,7 @@ pub struct InitialLevels {
 }
 
 /// A normal distribution.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Normal {
     /// Mean, in percent.
@@ -244,7 +263,7 @@ pub struct Normal {
 }
 
 /// A block of rescuees and the rest place that belongs to it.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct TaskFile {
     /// Name of the task.
@@ -269,7 +288,7 @@ pub struct TaskFile {
 }
 
 /// A piece of debris.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct DebrisFile {
     /// Its outline.
@@ -282,10 +301,13 @@ pub struct DebrisFile {
     /// Mass and friction of debris that a robot can push; absent for fixed debris.
     #[serde(default)]
     pub movable: Option<Movable>,
+    /// A name, by which an event of the timeline can clear it away.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub name: Option<String>,
 }
 
 /// Outline of a piece of debris.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub enum DebrisShape {
     /// A disc of this radius in metres.
     Disc(f64),
@@ -296,7 +318,7 @@ pub enum DebrisShape {
 }
 
 /// Debris that can be pushed; `movable: ()` has the defaults: 40 kg, friction 0.5.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Movable {
     /// Mass, in kilograms.
@@ -306,17 +328,20 @@ pub struct Movable {
 }
 
 /// A radiation zone: a source and the radius of its effect.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ZoneFile {
     /// The source.
     pub at: Point,
     /// Radius, in metres.
     pub radius_m: f64,
+    /// A name, by which an event of the timeline can end it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub name: Option<String>,
 }
 
 /// What is drawn where a task asks for sampled debris or radiation.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Sampled {
     /// Least and greatest radius of a sampled disc of debris, in metres.
@@ -336,7 +361,7 @@ impl Default for Sampled {
 }
 
 /// How many to draw for one task.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct SampledCounts {
     /// Pieces of fixed debris.
@@ -359,11 +384,17 @@ pub struct WallFile {
 }
 
 /// A gap in a wall.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Door {
     /// Distance of its middle from the wall's beginning, in metres.
     pub at_m: f64,
     /// Width, in metres.
     pub width_m: f64,
+    /// A name, by which an event of the timeline can open and close it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub name: Option<String>,
+    /// Whether it is closed at the start.
+    #[serde(default, rename = "closed", skip_serializing_if = "std::ops::Not::not")]
+    pub is_closed: bool,
 }

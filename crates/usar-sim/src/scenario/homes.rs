@@ -32,6 +32,18 @@ pub(super) fn homes_are_free(check: &mut Checker, file: &ScenarioFile) {
     for (i, wall) in file.walls.iter().enumerate() {
         wall.pieces().for_each(|piece| outside(check, &format!("walls[{i}]"), &piece, (&homes, &places)));
     }
+    for (field, piece) in later_pieces(file) {
+        outside(check, &field, &piece, (&homes, &places));
+    }
+}
+
+/// What may come to lie there: panels of doors, and debris that falls.
+pub(super) fn later_pieces(file: &ScenarioFile) -> impl Iterator<Item = (String, DebrisFile)> + '_ {
+    let panels = file.panels().map(|(panel, _)| ("walls".to_owned(), panel));
+    let falling = (0..).zip(&file.timeline).filter_map(|(i, moment): (usize, _)| {
+        Some((format!("timeline[{i}].event.at"), moment.event.falling()?))
+    });
+    panels.chain(falling)
 }
 
 /// No home of a robot that drives in a piece of debris: the first that is.

@@ -4,6 +4,8 @@ mod base;
 mod checker;
 mod debris;
 mod defaults;
+mod distribution;
+mod draws;
 mod error;
 mod file;
 mod former;
@@ -13,8 +15,12 @@ mod partial;
 mod places;
 mod reading;
 mod rules;
+mod scatter;
+mod schema;
 mod sense;
 mod set;
+mod timeline;
+mod upgrade;
 mod validate;
 
 use std::ops::Deref;
@@ -30,6 +36,11 @@ pub use error::{LayoutError, Problem, Problems, ScenarioError};
 pub use file::*;
 pub(crate) use reading::ron_options;
 pub use reading::{check_text, parse_ron, read_text};
+pub use schema::scenario_schema;
+pub use upgrade::upgraded;
+
+/// The format of scenario files that this program reads. Format 1 had tables in round brackets; `usar fmt --upgrade` rewrites it.
+pub const FORMAT: u32 = 2;
 
 /// Most radii for which ways on the ground are planned apart: each costs a map of what is known.
 pub const MAX_RADIUS_CLASSES: usize = 4;
@@ -99,13 +110,22 @@ impl Scenario {
             return base::Overlay::parse(text, path);
         }
         let fields = Fields::of(text);
-        let (file, mut list) = reading::read_all::<ScenarioFile>(text, &fields);
+        let (plain, draws, wrong) = draws::take_out(text, &fields, "");
+        let fields = if draws.is_empty() { fields } else { Fields::of(&plain) };
+        let (file, mut list) = reading::read_all::<ScenarioFile>(&plain, &fields);
+        list.extend(wrong);
+        if fields.value("draws").is_some() {
+            let rule = "is no field".to_owned();
+            let hint = "a distribution stands in the place of its value".to_owned();
+            list.push(Problem { field: "draws".to_owned(), rule, hint, ..Problem::default() });
+        }
         if !list.is_empty()
             && let Some((line, change)) = former::change_needed(text)
         {
             return Err(ScenarioError::Former { path: path.to_owned(), line, change });
         }
         let checked = match file {
+            Some(file) if list.is_empty() => Self::try_from(ScenarioFile { draws, ..file }),
             Some(file) => Self::try_from(file),
             None => Err(Vec::new()),
         };
@@ -126,8 +146,11 @@ impl Scenario {
     #[must_use]
     pub fn resolved(&self) -> String {
         let layout = ron::ser::PrettyConfig::new().new_line("\n").depth_limit(2);
-        let pretty = ron::ser::to_string_pretty(&self.0, layout);
-        pretty.expect("a checked scenario can be written") + "\n"
+        let plain = ScenarioFile { draws: Draws::new(), ..self.0.clone() };
+        let pretty = ron::ser::to_string_pretty(&plain, layout).expect("a checked scenario can be written");
+        let draws: Vec<(String, String)> = self.draws.clone().into_iter().collect();
+        let pretty = if draws.is_empty() { Ok(pretty) } else { ron_fields::with_values(&pretty, &draws) };
+        pretty.expect("a checked scenario has a place for each distribution") + "\n"
     }
 
     /// Number of simulation steps in a trial.

@@ -69,7 +69,7 @@ impl From<Costs> for file::Costs {
 }
 
 /// The text of a value, without blanks around it, to be read in one of two ways.
-fn text_of<'de, D: Deserializer<'de>>(deserializer: D) -> Result<String, D::Error> {
+pub(super) fn text_of<'de, D: Deserializer<'de>>(deserializer: D) -> Result<String, D::Error> {
     let raw: Box<ron::value::RawValue> = Deserialize::deserialize(deserializer)?;
     Ok(raw.trim().get_ron().to_owned())
 }
@@ -215,7 +215,7 @@ mod tests {
             assert_eq!(value::<WallFile>(text).unwrap(), wall);
         }
         let door: WallFile = value("(from: (0, 0), to: (9, 0), doors: [(at_m: 2, width_m: 1)])").unwrap();
-        assert_eq!(door.doors, [Door { at_m: 2.0, width_m: 1.0 }]);
+        assert_eq!(door.doors, [Door { at_m: 2.0, width_m: 1.0, name: None, is_closed: false }]);
         assert!(value::<WallFile>("(from: (0, 0))").is_err());
         assert!(value::<WallFile>("((0, 0), 1)").is_err());
     }

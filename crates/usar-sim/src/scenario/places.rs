@@ -52,7 +52,13 @@ impl WallFile {
         begins.zip(ends).filter(move |(begin, end)| end - begin >= thickness).map(move |(begin, end)| {
             let middle = f64::midpoint(begin, end);
             let at = [from[0] + along[0] * middle, from[1] + along[1] * middle];
-            DebrisFile { shape: DebrisShape::Box(end - begin, thickness), at, rotation_deg, movable: None }
+            DebrisFile {
+                shape: DebrisShape::Box(end - begin, thickness),
+                at,
+                rotation_deg,
+                movable: None,
+                name: None,
+            }
         })
     }
 }
@@ -125,12 +131,12 @@ mod tests {
     use crate::scenario::DebrisShape;
 
     fn piece(shape: DebrisShape) -> Outline {
-        DebrisFile { shape, at: [10.0, 5.0], rotation_deg: 30.0, movable: None }.outline()
+        DebrisFile { shape, at: [10.0, 5.0], rotation_deg: 30.0, movable: None, name: None }.outline()
     }
 
     #[test]
     fn the_parts_of_a_wall_leave_its_doors_free() {
-        let door = |at_m| crate::scenario::Door { at_m, width_m: 1.0 };
+        let door = |at_m| crate::scenario::Door { at_m, width_m: 1.0, name: None, is_closed: false };
         let doors = vec![door(7.0), door(3.0), door(9.55)];
         let wall = WallFile { from: [2.0, 0.0], to: [2.0, 10.0], thickness_m: 0.2, doors };
         let pieces: Vec<(f64, f64)> = wall

@@ -122,7 +122,8 @@ pub(super) fn read_all<T: DeserializeOwned>(text: &str, fields: &Fields) -> (Opt
     }
 }
 
-fn read<T: DeserializeOwned>(text: &str) -> Result<T, Box<(ron::error::SpannedError, String)>> {
+/// Reads a value; of an error, the path too.
+pub(super) fn read<T: DeserializeOwned>(text: &str) -> Result<T, Box<(ron::error::SpannedError, String)>> {
     let options = ron_options();
     let mut deserializer = ron::Deserializer::from_str_with_options(text, &options)
         .map_err(|error| Box::new((error, String::new())))?;
@@ -133,7 +134,7 @@ fn read<T: DeserializeOwned>(text: &str) -> Result<T, Box<(ron::error::SpannedEr
 }
 
 /// The bytes before a line and a column.
-fn offset(text: &str, line: usize, column: usize) -> usize {
+pub(super) fn offset(text: &str, line: usize, column: usize) -> usize {
     let start: usize = text.split_inclusive('\n').take(line - 1).map(str::len).sum();
     let before = text[start..].chars().take(column - 1).map(char::len_utf8).sum::<usize>();
     (start + before).min(text.len())

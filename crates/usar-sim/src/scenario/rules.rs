@@ -1,12 +1,14 @@
 //! The rules of a scenario as they are written: costs, the mission, planning and right of way.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::vitals::{Rates, WorkRates};
 
 /// What moving, radiation and work cost.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, from = "super::partial::Costs")]
+#[schemars(!from, default)]
 pub struct Costs {
     /// What the numbers below, and the costs in the results, count.
     pub unit: CostUnit,
@@ -19,7 +21,7 @@ pub struct Costs {
 }
 
 /// What costs are counted in.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 pub enum CostUnit {
     /// Percent of the robot's own maximum. The default.
     #[default]
@@ -49,7 +51,7 @@ impl CostUnit {
 }
 
 /// When a robot below the threshold turns back.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 pub enum TurnBack {
     /// At once, wherever it is. The default; the paper's words.
     #[default]
@@ -61,7 +63,7 @@ pub enum TurnBack {
 }
 
 /// What a rest restores.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 pub enum RestFills {
     /// Energy and HP, in one `rest_s`. The default.
     #[default]
@@ -73,7 +75,7 @@ pub enum RestFills {
 }
 
 /// When a robot that is at home with a low level rests.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 pub enum RestAtHome {
     /// During the next round, which goes on without it. The default.
     #[default]
@@ -83,7 +85,7 @@ pub enum RestAtHome {
 }
 
 /// Where the rescuees are delivered that a robot has on board when it goes to rest.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 pub enum LoadAtRest {
     /// At the rest place. The default.
     #[default]
@@ -93,7 +95,7 @@ pub enum LoadAtRest {
 }
 
 /// Who must be home before the next round begins.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 pub enum RoundEnd {
     /// Every robot that can still move. The default.
     #[default]
@@ -103,7 +105,7 @@ pub enum RoundEnd {
 }
 
 /// Rules of the mission.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct MissionRules {
     /// Battery level below which a robot needs rest, in percent.
@@ -146,7 +148,7 @@ pub struct MissionRules {
 }
 
 /// Rules of route planning.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct PlanningRules {
     /// Distance that routes keep from known debris and walls, beyond the robot's radius, in metres.
@@ -156,7 +158,7 @@ pub struct PlanningRules {
 }
 
 /// Rules of right of way.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct ConflictRules {
     /// Who has the right of way.
@@ -166,7 +168,7 @@ pub struct ConflictRules {
 }
 
 /// Who has the right of way in a conflict set; ties go to the lowest id.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 pub enum PriorityRule {
     /// The robot with the lowest battery level. The default.
     #[default]
@@ -197,7 +199,7 @@ pub enum ResolverRule {
 }
 
 /// Values of the paper's rule.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct RightOfWay {
     /// Distance that robots keep from one another, beyond their radii, in metres.

@@ -75,6 +75,9 @@ fn places(check: &mut Checker, file: &ScenarioFile) {
     for (i, piece) in file.debris.iter().enumerate().filter(|(_, piece)| piece.movable.is_none()) {
         covers(check, &format!("debris[{i}].at"), piece, file);
     }
+    for (field, piece) in super::homes::later_pieces(file) {
+        covers(check, &field, &piece, file);
+    }
     for (i, wall) in file.walls.iter().enumerate() {
         for piece in wall.pieces() {
             covers(check, &format!("walls[{i}]"), &piece, file);
@@ -96,6 +99,7 @@ fn is_in_the_way(wall: &Outline, task: &TaskFile) -> bool {
         at: task.center,
         rotation_deg: 0.0,
         movable: None,
+        name: None,
     };
     let block = block.outline();
     distance(&wall.pose, &*wall.shape, &block.pose, &*block.shape).is_ok_and(|found| found.distance <= 0.0)

@@ -1,8 +1,8 @@
 //! Setting one field of a scenario by its path.
 
-use ron_fields::SetError;
+use ron_fields::{Fields, SetError};
 
-use super::ScenarioFile;
+use super::{Problem, ScenarioFile, draws};
 
 impl ScenarioFile {
     /// Sets the field at a path such as `costs.energy.per_step` or `tasks.village.grid[0]` to a value in RON. Rules are not checked: that
@@ -11,7 +11,27 @@ impl ScenarioFile {
     /// # Errors
     /// There is no such field, or the value is not of its type.
     pub fn set(&mut self, path: &str, value: &str) -> Result<(), SetError> {
-        *self = ron_fields::set(self, path, value, "a scenario")?;
+        let wrapped = format!("[{value}]");
+        let is_plain = !super::distribution::WORDS.iter().any(|word| value.contains(word));
+        if self.draws.is_empty() && is_plain {
+            *self = ron_fields::set(self, path, value, "a scenario")?;
+            return Ok(());
+        }
+        let text = ron::to_string(self).unwrap_or_default();
+        let canonical = Fields::of(&text).canonical(path).unwrap_or_else(|| path.to_owned());
+        let (plain, draws, wrong) = draws::take_out(&wrapped, &Fields::of(&wrapped), &canonical);
+        if let Some(Problem { rule: reason, found, .. }) = wrong.into_iter().next() {
+            return Err(SetError::Malformed { path: path.to_owned(), reason, found });
+        }
+        let inner = if draws.is_empty() { value } else { plain[1..plain.len() - 1].trim_end() };
+        let mut set = ron_fields::set(self, path, inner, "a scenario")?;
+        let is_inside = |key: &str| {
+            key.strip_prefix(canonical.as_str())
+                .is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']))
+        };
+        set.draws.retain(|key, _| !is_inside(key));
+        set.draws.extend(draws);
+        *self = set;
         Ok(())
     }
 }
@@ -19,7 +39,7 @@ impl ScenarioFile {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scenario::{DebrisShape, ron_options};
+    use crate::scenario::{Amount, DebrisShape, ron_options};
 
     fn file() -> ScenarioFile {
         let row = "(role: \"robot\", count: 2, center: (5, 5), width_m: 2)";
@@ -42,7 +62,8 @@ mod tests {
         expected.costs.energy.per_step = 0.009;
         expected.roles[0].speed_mps = 3.0;
         expected.debris[0].shape = DebrisShape::Box(3.0, 1.0);
-        expected.team[0].levels = Some(crate::scenario::Levels { energy: 50.0, hp: 60.0 });
+        expected.team[0].levels =
+            Some(crate::scenario::Levels { energy: Amount::Fixed(50.0), hp: Amount::Fixed(60.0) });
         expected.arena_m[1] = 30.0;
         assert_eq!(set, expected);
     }
@@ -59,7 +80,7 @@ mod tests {
             refused("costs.energy.per_stop", "1"),
             "costs.energy.per_stop: no such field; costs.energy has per_step, per_metre, per_second; did you mean per_step?"
         );
-        assert!(refused("cots.energy", "1").contains("a scenario has name, description, duration_s"));
+        assert!(refused("cots.energy", "1").contains("a scenario has format, name, description, duration_s"));
         assert_eq!(
             refused("debris[7].at", "(1, 1)"),
             "debris[7].at: no such field; debris has 2 entries, from [0] on"

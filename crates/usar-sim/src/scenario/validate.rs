@@ -5,18 +5,40 @@ use ron_fields::limits::Limit;
 use super::checker::{Checker, is_device, meant, names, shown};
 use super::debris::debris;
 use super::error::Problem;
-use super::file::{Measure, NeedFile, Normal, ResolverRule, RoleFile, SampledCounts, ScenarioFile, TaskFile};
+use super::file::{
+    Amount, Happening, Measure, NeedFile, Normal, ResolverRule, RoleFile, SampledCounts, ScenarioFile,
+    TaskFile,
+};
 use super::homes::homes_are_free;
+use super::scatter::scatter;
 use super::sense::sense;
+use super::timeline::timeline;
 use crate::limits;
 use crate::vitals::Rates;
 
 /// All broken rules, in the order of the fields.
 pub(super) fn problems(file: &ScenarioFile) -> Vec<Problem> {
+    if !file.draws.is_empty() {
+        return file.problems_of_draws();
+    }
+    let mut check = of_values(file);
+    if check.problems.is_empty() {
+        homes_are_free(&mut check, file); // these need sound shapes and places
+        sense(&mut check, file);
+    }
+    check.problems
+}
+
+/// The broken rules of the values one by one.
+pub(super) fn problems_of_values(file: &ScenarioFile) -> Vec<Problem> {
+    of_values(file).problems
+}
+
+fn of_values(file: &ScenarioFile) -> Checker {
     let mut check = Checker { problems: Vec::new(), arena: file.arena_m };
     sizes(&mut check, file);
     if !check.problems.is_empty() {
-        return check.problems; // the rules below take time with each entry
+        return check; // the rules below take time with each entry
     }
     general(&mut check, file);
     team(&mut check, file);
@@ -30,12 +52,10 @@ pub(super) fn problems(file: &ScenarioFile) -> Vec<Problem> {
     debris(&mut check, file);
     sampled(&mut check, file);
     rules(&mut check, file);
+    scatter(&mut check, file);
+    timeline(&mut check, file);
     needs(&mut check, file);
-    if check.problems.is_empty() {
-        homes_are_free(&mut check, file); // these need sound shapes and places
-        sense(&mut check, file);
-    }
-    check.problems
+    check
 }
 
 /// The number of entries of each table and list: what comes after takes time and memory with each of them.
@@ -56,7 +76,11 @@ fn sizes(check: &mut Checker, file: &ScenarioFile) {
         check.entries(format!("tasks[{i}].quota"), task.quota.len(), Limit { least: 0.0, ..limits::ROLES });
     }
     let rescuees = file.tasks.iter().map(|task| u64::from(task.grid[0]) * u64::from(task.grid[1]));
-    let rescuees = rescuees.fold(0, u64::saturating_add);
+    let later = file.timeline.iter().filter_map(|moment| match &moment.event {
+        Happening::RescueesAppear { grid, .. } => Some(u64::from(grid[0]) * u64::from(grid[1])),
+        _ => None,
+    });
+    let rescuees = rescuees.chain(later).fold(0, u64::saturating_add);
     let each_is_sound =
         file.tasks.iter().flat_map(|task| task.grid).all(|side| limits::GRID.allows(side as usize));
     if each_is_sound && !limits::RESCUEES.allows(rescuees as usize) {
@@ -69,9 +93,25 @@ fn sizes(check: &mut Checker, file: &ScenarioFile) {
         check.entries(format!("walls[{i}].doors"), wall.doors.len(), limits::DOORS);
     }
     check.entries("radiation", file.radiation.len(), limits::ZONES);
+    check.entries("scatter", file.scatter.len(), limits::SCATTERS);
+    let scattered: u64 = file.scatter.iter().map(|entry| u64::from(entry.count)).sum();
+    if !limits::SCATTERED.allows(scattered as usize) {
+        let rule = format!("must place at most {} things in all", limits::SCATTERED.most);
+        check.fail("scatter", rule, scattered);
+    }
+    check.entries("timeline", file.timeline.len(), limits::MOMENTS);
 }
 
 fn general(check: &mut Checker, file: &ScenarioFile) {
+    if file.format != super::FORMAT {
+        let hint = if file.format < super::FORMAT {
+            "`usar fmt --upgrade` rewrites it"
+        } else {
+            "it is of a newer program"
+        };
+        let rule = (format!("must be {}", super::FORMAT), hint.to_owned());
+        check.fail_with("format", rule, file.format);
+    }
     let plain = |c: char| c.is_ascii_alphanumeric() || "-_.".contains(c);
     let is_name = limits::NAME_BYTES.allows(file.name.len()) && file.name.chars().all(plain);
     if !is_name || file.name.starts_with(['.', '-']) || file.name.ends_with('.') {
@@ -100,9 +140,13 @@ fn team(check: &mut Checker, file: &ScenarioFile) {
             self::role(check, &format!("{field}.body"), &role, file.dt_s);
         }
         check.number(format!("{field}.width_m"), row.width_m, limits::ROW_WIDTH_M);
-        if let Some(levels) = row.levels {
-            check.number(format!("{field}.levels.energy"), levels.energy, limits::LEVEL);
-            check.number(format!("{field}.levels.hp"), levels.hp, limits::LEVEL);
+        if let Some(levels) = &row.levels {
+            for (name, level) in [("energy", &levels.energy), ("hp", &levels.hp)] {
+                let ends = level.support();
+                let ends = if matches!(level, Amount::Fixed(_)) { &ends[..1] } else { &ends };
+                ends.iter()
+                    .for_each(|end| check.number(format!("{field}.levels.{name}"), *end, limits::LEVEL));
+            }
         }
         check.inside(format!("{field}.center"), [row.center[0] - row.width_m / 2.0, row.center[1]], radius);
         check.inside(format!("{field}.center"), [row.center[0] + row.width_m / 2.0, row.center[1]], radius);

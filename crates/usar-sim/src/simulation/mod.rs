@@ -6,6 +6,7 @@
 mod checkpoint;
 mod decider;
 mod state;
+mod timeline;
 
 use std::sync::Arc;
 
@@ -336,6 +337,7 @@ impl Simulation {
     fn begin_step(&mut self, done: &mut impl FnMut(Stage)) {
         let state = &mut self.state;
         state.log.clear();
+        state.happen(&self.model);
         state.mission.sense(&self.model, &state.world, state.step, &mut state.log);
         done(Stage::Sense);
         let (mission, mut scene) = state.scene(&self.model);

@@ -3,6 +3,7 @@
 use parry2d::math::Vector;
 use serde::{Deserialize, Serialize};
 
+use super::timeline::Timeline;
 use crate::conflict::{Delay, Mover, PriorityKey, Resolver};
 use crate::event::{Event, EventLog};
 use crate::hash::{HashChain, PARTS, part};
@@ -31,6 +32,7 @@ pub(crate) struct State {
     pub(super) is_midway: bool,
     pub(super) log: EventLog,
     pub(super) tallies: Vec<Tally>,
+    pub(super) timeline: Timeline,
     pub(super) chain: HashChain,
 }
 
@@ -64,6 +66,7 @@ impl State {
             is_midway: false,
             log: EventLog::default(),
             tallies: model.layout.robots.iter().map(tally).collect(),
+            timeline: Timeline::new(model),
             chain: HashChain::default(),
             world,
         }
@@ -124,14 +127,14 @@ impl State {
     /// Energy for moving and loading, HP for radiation and work; robots that have none left stay where they are.
     pub(super) fn expose(&mut self, model: &Model) {
         let unit = model.scenario.costs.unit;
-        for (robot, tally) in self.world.robots.iter_mut().zip(&mut self.tallies) {
+        let (robots, zones_at) = self.world.robots_in_zones();
+        for (robot, tally) in robots.iter_mut().zip(&mut self.tallies) {
             tally.note_way(way_in_a_step(robot, model));
             let agent = &self.mission.agents[robot.id.index()];
             if !robot.is_able() || matches!(agent.activity, Activity::Resting(_)) {
                 continue;
             }
-            let zones = self.world.zones.iter().filter(|zone| zone.contains(robot.position)).count();
-            let [energy, hp] = step_costs(model, agent, robot, zones);
+            let [energy, hp] = step_costs(model, agent, robot, zones_at(robot.position));
             let energy = unit.to_percent(energy, robot.spec.energy).min(robot.energy);
             let hp = unit.to_percent(hp, robot.spec.hp).min(robot.hp);
             robot.energy -= energy;
@@ -149,6 +152,15 @@ impl State {
                 self.log.push(Event::Disabled { robot: robot.id });
             }
         }
+    }
+
+    /// The hash of the events, and of what the timeline has left, where there is one.
+    fn part_of_events(&self) -> u128 {
+        let (world, timeline) = (&self.world, &self.timeline);
+        if timeline.is_empty() {
+            return part(&self.log);
+        }
+        part(&(&self.log, timeline, world.changed_by_events()))
     }
 
     /// Adds a link to the hash chain.
@@ -172,7 +184,7 @@ impl State {
             part(&self.navigator),
             part(&self.resolver),
             part(&(&self.metrics, &self.tallies)),
-            part(&self.log),
+            self.part_of_events(),
         ]
     }
 }

@@ -10,6 +10,9 @@ use crate::scenario::DebrisFile;
 /// A pushed piece is noticed once it lies this far, in metres, from where it was last seen.
 const NOTICED_MOVE_M: f32 = 0.2;
 
+/// Where pieces lie that are not there, in metres: far from every arena.
+const AWAY: Vector = Vector::new(-20_000.0, -20_000.0);
+
 /// A piece of debris in the world.
 #[derive(Clone, Serialize, Deserialize)]
 pub struct Debris {
@@ -18,6 +21,9 @@ pub struct Debris {
     /// Whether nothing can push it.
     #[serde(skip)]
     pub is_fixed: bool,
+    /// Whether it comes and goes by events.
+    #[serde(skip)]
+    pub is_gate: bool,
     /// No point of it is farther from its centre than this, in metres.
     #[serde(skip)]
     pub reach: f32,
@@ -32,7 +38,34 @@ impl Debris {
         let outline = file.outline();
         let bounds = outline.shape.compute_local_bounding_sphere();
         let reach = bounds.center.length() + bounds.radius;
-        Self { is_fixed: file.movable.is_none(), sightings: vec![outline.clone()], reach, outline }
+        let (is_fixed, sightings) = (file.movable.is_none(), vec![outline.clone()]);
+        Self { is_fixed, is_gate: false, sightings, reach, outline }
+    }
+
+    /// One that comes and goes by events; `is_there` at the start.
+    #[must_use]
+    pub fn gate(file: &DebrisFile, is_there: bool) -> Self {
+        let mut piece = Self { is_gate: true, ..Self::new(file) };
+        if !is_there {
+            piece.sightings.clear();
+            piece.outline.pose.translation = AWAY;
+        }
+        piece
+    }
+
+    /// Whether it is in the arena, and not away.
+    #[must_use]
+    pub fn is_there(&self) -> bool {
+        self.outline.pose.translation != AWAY
+    }
+
+    /// Puts it to a place, or away; robots that come by will see it.
+    pub(super) fn put(&mut self, pose: Option<Pose>) {
+        match pose {
+            Some(pose) => self.outline.pose = pose,
+            None => self.outline.pose.translation = AWAY,
+        }
+        self.sightings.push(self.outline.clone());
     }
 
     /// Makes anew what a snapshot leaves out because it is fixed.

@@ -6,6 +6,7 @@ mod robot;
 
 use std::sync::Arc;
 
+use parry2d::math::{Pose, Vector};
 use serde::{Deserialize, Serialize};
 
 pub use debris::Debris;
@@ -32,9 +33,17 @@ pub struct World {
     /// Where the debris is.
     #[serde(skip)]
     pub debris_places: Places,
-    /// Radiation zones.
+    /// Numbers of the debris that comes and goes by events.
+    #[serde(skip)]
+    pub gates: Vec<usize>,
+    /// Radiation zones, those that are off among them.
     #[serde(skip)]
     pub zones: Vec<RadiationZone>,
+    /// How often each zone was switched on or off; one that is there from the start begins with 1. An odd number is on. Empty in a scenario
+    /// without a timeline: all zones are on.
+    zone_switches: Vec<u8>,
+    /// For each task, whether it has ended, or not begun. Empty in a scenario without a timeline.
+    pub closed_tasks: Vec<bool>,
     /// Rescuees, by id.
     pub rescuees: Rescuees,
 }
@@ -46,8 +55,10 @@ impl World {
         let layout = &model.layout;
         let starts = model.robots.iter().zip(&layout.robots);
         let robots: Vec<Robot> = starts.map(|(model, start)| Robot::new(model, start)).collect();
-        let debris: Vec<Debris> = layout.debris.iter().map(Debris::new).collect();
+        let debris: Vec<Debris> =
+            layout.debris.iter().enumerate().map(|(i, file)| piece(layout, i, file)).collect();
         let scenario = &model.scenario;
+        let many = if model.timeline.is_empty() { 0 } else { usize::MAX };
         Self {
             physics: Physics::new(
                 scenario.dt_s as f32,
@@ -59,7 +70,13 @@ impl World {
             debris_places: debris.iter().map(Debris::bounds).collect(),
             debris,
             zones: zones(layout),
-            rescuees: Rescuees::new(&model.rescuees),
+            gates: layout.gates.keys().copied().collect(),
+            zone_switches: (0..layout.zones.len())
+                .take(many)
+                .map(|i| u8::from(!layout.zones_later.contains(&i)))
+                .collect(),
+            closed_tasks: scenario.tasks.iter().take(many).map(|task| scenario.begins_later(task)).collect(),
+            rescuees: Rescuees::new(&model.rescuees, &model.rescuees_later),
         }
     }
 
@@ -81,14 +98,68 @@ impl World {
         }
     }
 
+    /// The radiation zones that are on, with their numbers.
+    pub fn zones_on(&self) -> impl Iterator<Item = (usize, &RadiationZone)> {
+        self.zones.iter().enumerate().filter(|(number, _)| self.is_on(*number))
+    }
+
+    /// Whether a radiation zone is on.
+    #[must_use]
+    pub fn is_on(&self, zone: usize) -> bool {
+        self.switches_of(zone) % 2 == 1
+    }
+
+    /// The robots, and the number of zones that are on at a point.
+    pub(crate) fn robots_in_zones(&mut self) -> (&mut [Robot], impl Fn(Vector) -> usize) {
+        let Self { robots, zones, zone_switches, .. } = self;
+        let is_on = |number: usize| zone_switches.get(number).is_none_or(|switches| switches % 2 == 1);
+        let zones = &*zones;
+        let count = move |at: Vector| {
+            zones.iter().enumerate().filter(|(number, zone)| is_on(*number) && zone.contains(at)).count()
+        };
+        (robots, count)
+    }
+
+    /// How often a radiation zone was switched on or off; 1 for one that was always on.
+    #[must_use]
+    pub fn switches_of(&self, zone: usize) -> u8 {
+        self.zone_switches.get(zone).copied().unwrap_or(1)
+    }
+
+    /// What of the world the timeline changes, and no other part of the hash chain covers.
+    pub(crate) fn changed_by_events(&self) -> impl Serialize + '_ {
+        (&self.zone_switches, &self.closed_tasks, self.physics.gates())
+    }
+
+    /// Switches a radiation zone; false where it is so already.
+    pub(crate) fn switch_zone(&mut self, zone: usize, on: bool) -> bool {
+        let changes = self.is_on(zone) != on;
+        self.zone_switches[zone] += u8::from(changes);
+        changes
+    }
+
+    /// Puts a piece that comes and goes to a place, or away.
+    pub(crate) fn put_debris(&mut self, number: usize, pose: Option<Pose>) {
+        let piece = &mut self.debris[number];
+        piece.put(pose);
+        self.physics.put_debris(number, piece.outline.pose);
+        self.debris_places.put(number, piece.bounds());
+    }
+
     /// Makes anew what a snapshot leaves out because it is fixed or follows from the rest.
     pub(crate) fn restore(&mut self, model: &Model) {
         self.robots.iter_mut().zip(&model.robots).for_each(|(robot, model)| robot.model = Arc::clone(model));
         self.debris.iter_mut().zip(&model.layout.debris).for_each(|(piece, file)| piece.restore(file));
+        model.layout.gates.keys().for_each(|number| self.debris[*number].is_gate = true);
         self.zones = zones(&model.layout);
+        self.gates = model.layout.gates.keys().copied().collect();
         self.rescuees.restore(&model.rescuees);
         self.debris_places = self.debris.iter().map(Debris::bounds).collect();
     }
+}
+
+fn piece(layout: &Layout, number: usize, file: &DebrisFile) -> Debris {
+    layout.gates.get(&number).map_or_else(|| Debris::new(file), |is_there| Debris::gate(file, *is_there))
 }
 
 fn zones(layout: &Layout) -> Vec<RadiationZone> {
@@ -110,6 +181,7 @@ fn debris_body<'d>((file, piece): (&DebrisFile, &'d Debris)) -> DebrisBody<'d> {
         file.movable.map(|movable| (movable.mass_kg as f32, (movable.friction * movable.mass_kg) as f32));
     DebrisBody {
         outline: &piece.outline,
+        is_gate: piece.is_gate,
         mass: movable.map(|m| m.0),
         friction_mass: movable.map_or(0.0, |m| m.1),
     }

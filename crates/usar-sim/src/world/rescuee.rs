@@ -1,6 +1,6 @@
 //! Rescuees: persons and valuables, in a grid in each task's area.
 
-use std::ops::{Deref, DerefMut};
+use std::ops::{Deref, DerefMut, Range};
 
 use parry2d::math::Vector;
 use rne_core::TaskId;
@@ -17,6 +17,8 @@ pub enum RescueeState {
     OnBoard(RobotId),
     /// Delivered home or to a rest place.
     Rescued,
+    /// Not there: it appears later, or is gone with its task.
+    Absent,
 }
 
 /// A person or valuable to rescue.
@@ -47,7 +49,7 @@ pub struct Rescuees {
 
 impl Rescuees {
     /// All of them, waiting at these places.
-    pub(super) fn new(places: &[(TaskId, Vector)]) -> Self {
+    pub(super) fn new(places: &[(TaskId, Vector)], later: &[Range<usize>]) -> Self {
         let waiting = |(id, (task, position)): (u32, &(TaskId, Vector))| Rescuee {
             id: RescueeId(id),
             task: *task,
@@ -55,7 +57,11 @@ impl Rescuees {
             state: RescueeState::Waiting,
             claimed_by: None,
         };
-        Self { list: (0..).zip(places).map(waiting).collect(), changes: 0 }
+        let mut list: Vec<Rescuee> = (0..).zip(places).map(waiting).collect();
+        for ids in later {
+            list[ids.clone()].iter_mut().for_each(|rescuee| rescuee.state = RescueeState::Absent);
+        }
+        Self { list, changes: 0 }
     }
 
     /// Makes anew what a snapshot leaves out because it is fixed.

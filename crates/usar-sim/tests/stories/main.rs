@@ -5,6 +5,7 @@ mod held_up;
 mod radii;
 mod rooms;
 mod shapes;
+mod timeline;
 
 use rne_core::Registry;
 use usar_sim::event::Event;

@@ -52,10 +52,13 @@ impl Arguments {
         let simulation = Simulation::new(&scenario, seed)
             .map_err(|error| Failure::input(format!("{}: {error}", self.file.display())))?;
         let world = World::of(&simulation);
-        let first_sampled = [scenario.debris.len(), scenario.radiation.len()];
+        let first_sampled = [simulation.scenario().obstacles().len(), scenario.radiation.len()];
         let is_sampled = world.debris.len() > first_sampled[0] || world.zones.len() > first_sampled[1];
-        let title =
-            if is_sampled { format!("{}, seed {seed}", scenario.name) } else { scenario.name.clone() };
+        let title = if is_sampled || scenario.is_drawn() {
+            format!("{}, seed {seed}", scenario.name)
+        } else {
+            scenario.name.clone()
+        };
         let drawn = Plan { title: &title, world: &world, errands: &scenario.errands, first_sampled };
         let picture = plan(&drawn, &self.looks.look(Width::Pixels(800)));
         output::write(&place, &kind.content(&picture)?)?;

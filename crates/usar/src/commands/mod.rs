@@ -11,6 +11,7 @@ mod drawn;
 pub(crate) mod estimate;
 pub(crate) mod export;
 mod family;
+pub(crate) mod fmt;
 pub(crate) mod fork;
 pub(crate) mod group;
 pub(crate) mod list;

@@ -69,13 +69,24 @@ impl Source {
 impl Arguments {
     pub(crate) fn execute(&self, out: &mut dyn Write) -> Result<(), Failure> {
         let (scenario, _) = load(&self.file)?;
-        let resolved = with_settings(&scenario, &self.set)?.resolved();
+        let scenario = with_settings(&scenario, &self.set)?;
+        let resolved = scenario.resolved();
         let fields = Fields::of(&resolved);
         let own = Source::read(&self.file)?;
         let base = own.base().map(|path| Source::read(&path)).transpose()?;
         let set: Vec<String> = self.set.iter().filter_map(|set| canonical(&fields, set)).collect();
         let width = fields.leaves().map(|(path, _)| path.len()).max().unwrap_or_default();
+        let mut drawn = None;
         for (path, place) in fields.leaves() {
+            // A distribution is one value, however many numbers stand in it.
+            let around =
+                scenario.draws.keys().find(|key| path.strip_prefix(key.as_str()).is_some_and(ends_a_segment));
+            if around.is_some() && around == drawn {
+                continue;
+            }
+            drawn = around;
+            let whole = around.and_then(|key| Some((key.as_str(), fields.value(key)?)));
+            let (path, place) = whole.unwrap_or((path, place));
             let named = named(&fields, &resolved, path);
             let from =
                 |source: &Source| Some(format!("{}:{}", source.path.display(), source.line(path, &named)?));

@@ -1,17 +1,21 @@
-//! `usar schema`: the JSON Schema of questions and decisions.
+//! `usar schema`: the JSON Schema of files, and of questions and decisions.
 
 use std::io::Write;
 
 use clap::{Args, ValueEnum};
 use experiments::Failure;
+use experiments::experiment::sweep_schema;
 use rne_core::{Decision, Question};
+use usar_sim::scenario::scenario_schema;
 
-/// Print the JSON Schema of a question or of a decision
+/// Print the JSON Schema of scenario and sweep files, of a question or of a decision
 #[derive(Debug, Args)]
 #[command(after_help = "\
-docs/decisions.md tells what the fields mean.
+docs/scenarios-reference.md and docs/decisions.md tell what the fields mean. RON has no schemas of its own: that of a file describes it as JSON,
+with structs as objects, lists and tuples as arrays, and `Disc(0.5)` as {\"Disc\": 0.5}.
 
 Examples:
+  usar schema scenario > scenario.schema.json
   usar schema question
   usar schema decision > decision.schema.json")]
 pub(crate) struct Arguments {
@@ -21,6 +25,10 @@ pub(crate) struct Arguments {
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
 enum Of {
+    /// A scenario file
+    Scenario,
+    /// A sweep file
+    Sweep,
     /// What a policy is asked
     Question,
     /// What it answers
@@ -30,8 +38,10 @@ enum Of {
 impl Arguments {
     pub(crate) fn execute(&self, out: &mut dyn Write) -> Result<(), Failure> {
         let schema = match self.of {
-            Of::Question => schemars::schema_for!(Question),
-            Of::Decision => schemars::schema_for!(Decision),
+            Of::Scenario => scenario_schema(),
+            Of::Sweep => sweep_schema(),
+            Of::Question => schemars::schema_for!(Question).into(),
+            Of::Decision => schemars::schema_for!(Decision).into(),
         };
         Ok(writeln!(out, "{}", serde_json::to_string_pretty(&schema).map_err(Failure::run)?)?)
     }

@@ -213,7 +213,7 @@ fn bad_files_are_refused() {
 #[test]
 fn the_schemas_in_the_documents_are_those_of_the_types() {
     let docs = root().join("docs/schemas");
-    for of in ["question", "decision"] {
+    for of in ["question", "decision", "scenario", "sweep"] {
         let expected = std::fs::read_to_string(docs.join(format!("{of}.schema.json"))).unwrap();
         assert_eq!(succeeds(&usar(&docs, &["schema", of])), expected, "usar schema {of} makes it anew");
     }

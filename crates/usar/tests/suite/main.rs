@@ -9,6 +9,7 @@ mod commands;
 mod compared;
 mod damaged;
 mod decided;
+mod distributions;
 mod drawn;
 mod expected;
 mod exported;

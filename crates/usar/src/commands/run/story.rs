@@ -26,7 +26,7 @@ const MOST: usize = 16;
 const COLUMNS: usize = 80;
 
 /// Events that are told.
-const TOLD: [&str; 8] = [
+const TOLD: [&str; 14] = [
     "deadlocked",
     "made_room",
     "turn_passed",
@@ -35,6 +35,12 @@ const TOLD: [&str; 8] = [
     "unreachable",
     "cut_off",
     "stranded",
+    "debris_fell",
+    "way_closed",
+    "way_opened",
+    "source_appeared",
+    "source_died",
+    "damaged",
 ];
 
 /// Two robots that come near each other.

@@ -1,0 +1,377 @@
+//! Values that are drawn anew in every trial: a distribution in the place of any value of a scenario.
+//!
+//! Where a distribution stands in a text, one of its values is read there, and the distribution is kept beside the file, by the path of
+//! its field. A trial has a scenario of its own, in which each has a value drawn from the stream of its path.
+
+use std::collections::BTreeMap;
+
+use ron_fields::{Fields, Misfit, with_values};
+use xxhash_rust::xxh3::xxh3_64;
+
+use super::distribution::{Distribution, WORDS, index, is_distribution};
+use super::error::{LayoutError, Problem};
+use super::file::ScenarioFile;
+use super::{Scenario, reading, ron_options, validate};
+use crate::limits;
+use crate::seed::{Purpose, stream};
+
+/// Times that the values of a trial are drawn before it is said that they do not go together.
+const TRIES: u32 = 100;
+
+/// The same for a scenario that is longer than [`LONG_BYTES`].
+const TRIES_OF_A_LONG_ONE: u32 = 5;
+
+/// Scenarios longer than this are read fewer times over: of a choice the first two values are checked before a trial, in bytes.
+const LONG_BYTES: usize = 1 << 18;
+
+/// The distributions of a scenario: path of the field, with numbers for names, and the distribution as it is written.
+pub type Draws = BTreeMap<String, String>;
+
+/// What stands in the place of one value.
+enum Draw {
+    Number(Distribution),
+    /// One of these, in RON.
+    Choice(Vec<String>),
+}
+
+impl Draw {
+    /// Reads a distribution; tells what is wrong with it, as the rest of a sentence.
+    fn read(text: &str) -> Result<Self, String> {
+        if text.starts_with("Choice") {
+            let fields = Fields::of(text);
+            let count = fields.entries("[0]").filter(|_| fields.entries("") == Some(1)).unwrap_or_default();
+            let entries = (0..count).filter_map(|i| fields.value(&format!("[0][{i}]")));
+            let entries: Vec<String> = entries.map(|place| text[place].to_owned()).collect();
+            return match entries.len() {
+                0 => Err("must be Choice([...]) with at least one value".to_owned()),
+                many if !limits::CHOICES.allows(many) => {
+                    Err(format!("must have at most {} values to choose from", limits::CHOICES.most))
+                }
+                _ => Ok(Self::Choice(entries)),
+            };
+        }
+        let distribution: Distribution = ron_options().from_str(text).map_err(|error| {
+            let at = error.span.start.col.saturating_sub(1);
+            Misfit::new(&error.code, "", (text, at), &Fields::of(text)).rule
+        })?;
+        match distribution.fault() {
+            Some(rule) => Err(rule.to_owned()),
+            None => Ok(Self::Number(distribution)),
+        }
+    }
+
+    /// Values to be checked: the ends of a distribution, or all choices.
+    fn examples(&self, is_whole: bool) -> Vec<String> {
+        match self {
+            Self::Number(distribution) => distribution.support().map(|end| written(end, is_whole)).to_vec(),
+            Self::Choice(texts) => texts.clone(),
+        }
+    }
+
+    /// The value that is read where the distribution stands: the greatest; of choices, the first.
+    fn stand_in(&self, text: &str) -> String {
+        match self {
+            Self::Number(distribution) => {
+                let is_whole = !text.contains('.');
+                written(distribution.support()[1], is_whole)
+            }
+            Self::Choice(texts) => texts[0].clone(),
+        }
+    }
+}
+
+/// A number in RON.
+fn written(value: f64, is_whole: bool) -> String {
+    if is_whole && value.fract() == 0.0 { format!("{value:.0}") } else { format!("{value:?}") }
+}
+
+/// Whether a number is drawn there for each thing, and not once for all.
+fn is_drawn_for_each(path: &str) -> bool {
+    let field = |list: &str, rest: &str| {
+        let inside = path.strip_prefix(list).and_then(|path| path.split_once(']'));
+        inside.is_some_and(|(_, path)| path.starts_with(rest))
+    };
+    field("team[", ".levels.") || field("scatter[", ".radius_m")
+}
+
+/// A text in which a value stands for each distribution, at the same bytes, and the distributions. `of_file` is the path of the text's value
+/// in the scenario, empty for a whole file.
+pub(super) fn take_out(text: &str, fields: &Fields, of_file: &str) -> (String, Draws, Vec<Problem>) {
+    let (mut plain, mut draws, mut problems) = (text.to_owned(), Draws::new(), Vec::new());
+    if !WORDS.iter().any(|word| text.contains(word)) {
+        return (plain, draws, problems);
+    }
+    let mut end = 0;
+    for (path, place) in fields.all() {
+        let found = &text[place.clone()];
+        if place.start < end || !is_distribution(found) {
+            continue;
+        }
+        let inner = path.strip_prefix("[0]").unwrap_or(path);
+        let full = if of_file.is_empty() { path.to_owned() } else { format!("{of_file}{inner}") };
+        let is_named = fields.inside(path).iter().any(|name| !name.starts_with('['));
+        if is_named || is_drawn_for_each(&full) {
+            continue;
+        }
+        if !limits::DRAWS.allows(draws.len() + 1) {
+            let rule = format!("is one distribution too many: at most {}", limits::DRAWS.most);
+            problems.push(Problem { field: full, rule, ..Problem::default() });
+            return (plain, draws, problems);
+        }
+        end = place.end;
+        let draw = Draw::read(found);
+        let mut stand_in = match &draw {
+            Ok(draw) => draw.stand_in(found),
+            Err(_) => "0".to_owned(),
+        };
+        if let Err(rule) = draw {
+            let (field, found) = (full.clone(), found.to_owned());
+            problems.push(Problem { field, rule, found, ..Problem::default() });
+        }
+        // At the same bytes, so that lines and columns stay what they were.
+        stand_in.truncate(place.len());
+        let mut rest: Vec<u8> = found.bytes().map(|byte| if byte == b'\n' { byte } else { b' ' }).collect();
+        rest[..stand_in.len()].copy_from_slice(stand_in.as_bytes());
+        let rest = String::from_utf8(rest).unwrap_or_else(|_| " ".repeat(place.len()));
+        plain.replace_range(place, &rest);
+        draws.insert(full, found.to_owned());
+    }
+    (plain, draws, problems)
+}
+
+impl ScenarioFile {
+    /// The file without its distributions: of each one value.
+    fn without_draws(&self) -> Self {
+        Self { draws: Draws::new(), ..self.clone() }
+    }
+
+    /// The file with values of its distributions.
+    fn with_drawn(&self, value: impl Fn(&str, &Draw, bool) -> Option<String>) -> Result<Self, Box<Problem>> {
+        let problem = |field: &str, rule: String| {
+            let found = self.draws.get(field).cloned().unwrap_or_default();
+            Box::new(Problem { field: field.to_owned(), rule, found, ..Problem::default() })
+        };
+        let plain = self.without_draws();
+        let text = ron::to_string(&plain).map_err(|error| problem("", error.to_string()))?;
+        let fields = Fields::of(&text);
+        let mut values = Vec::new();
+        for (path, written) in &self.draws {
+            let draw = Draw::read(written).map_err(|rule| problem(path, rule))?;
+            let Some(place) = fields.value(path) else {
+                let rule = "must stand in a field with a name: write the names of the fields".to_owned();
+                return Err(problem(path, rule));
+            };
+            let found = text[place].trim_start_matches("Some(");
+            let is_whole = found.bytes().next().is_some_and(|byte| byte.is_ascii_digit() || byte == b'-')
+                && !found.contains(['.', 'e', 'E']);
+            if let Some(value) = value(path, &draw, is_whole) {
+                values.push((path.clone(), value));
+            }
+        }
+        let text = with_values(&text, &values).map_err(|error| problem("", error.to_string()))?;
+        reading::read(&text).map_err(|error| {
+            let (error, path) = *error;
+            let at = reading::offset(&text, error.span.start.line, error.span.start.col);
+            let Misfit { field, rule, found, hint } =
+                Misfit::new(&error.code, &path, (&text, at), &Fields::of(&text));
+            Box::new(Problem { field, rule, found, hint, ..Problem::default() })
+        })
+    }
+
+    fn is_long(&self) -> bool {
+        ron::to_string(self).is_ok_and(|text| text.len() > LONG_BYTES)
+    }
+
+    /// The broken rules of a file with distributions: of its values one by one, at the ends of the distributions. What goes together is
+    /// looked at in each trial.
+    pub(super) fn problems_of_draws(&self) -> Vec<Problem> {
+        let most = self.draws.values().filter_map(|text| Draw::read(text).ok());
+        let most = most.map(|draw| draw.examples(false).len()).max().unwrap_or_default();
+        let most = if self.is_long() { most.min(2) } else { most };
+        for example in 0..most {
+            let nth = |_: &str, draw: &Draw, is_whole: bool| {
+                let examples = draw.examples(is_whole);
+                examples.get(example.min(examples.len() - 1)).cloned()
+            };
+            let problems = match self.with_drawn(nth) {
+                Ok(file) => validate::problems_of_values(&file),
+                Err(problem) => vec![*problem],
+            };
+            if !problems.is_empty() {
+                return problems;
+            }
+        }
+        Vec::new()
+    }
+}
+
+impl Scenario {
+    /// Whether trials differ by more than the initial levels: something is drawn.
+    #[must_use]
+    pub fn is_drawn(&self) -> bool {
+        let samples = |task: &super::TaskFile| task.sampled != super::SampledCounts::default();
+        !self.draws.is_empty() || !self.scatter.is_empty() || self.tasks.iter().any(samples)
+    }
+
+    /// The scenario of one trial: with a value, drawn from the stream of its path, for each distribution. Values that do not go together
+    /// are all drawn again.
+    ///
+    /// # Errors
+    /// They never go together.
+    pub fn of_trial(&self, seed: u64) -> Result<Self, LayoutError> {
+        if self.draws.is_empty() {
+            return Ok(self.clone());
+        }
+        let mut last = None;
+        let tries = if self.is_long() { TRIES_OF_A_LONG_ONE } else { TRIES };
+        for attempt in 0..tries {
+            let drawn = self.with_drawn(|path, draw, is_whole| {
+                let entity = if attempt == 0 { path.to_owned() } else { format!("{path} {attempt}") };
+                let mut draws = stream(seed, Purpose::Slot, xxh3_64(entity.as_bytes()));
+                Some(match draw {
+                    Draw::Number(distribution) => written(distribution.draw(&mut draws, is_whole), is_whole),
+                    Draw::Choice(texts) => texts[index(&mut draws, texts.len())].clone(),
+                })
+            });
+            let problem = match drawn {
+                Err(problem) => Some(*problem),
+                Ok(file) => match Self::try_from(file) {
+                    Ok(scenario) => return Ok(scenario),
+                    Err(problems) => problems.into_iter().next(),
+                },
+            };
+            last = problem.or(last);
+        }
+        let problem = last.map(|problem| problem.to_string()).unwrap_or_default();
+        Err(LayoutError::NeverFits { tries, problem })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TEXT: &str = r#"(
+        name: "t", duration_s: 60, dt_s: 0.02, arena_m: (40, 40),
+        team: [(role: "robot", count: Uniform(2, 4), center: (20, 5), width_m: 6,
+            levels: (energy: Uniform(50, 60), hp: 90.0), body: (speed_mps: Truncated(Normal(2, 0.5), 1, 3)))],
+        tasks: [(name: "a", difficulty: 1, center: (Uniform(10, 30), 30), size_m: (2, 2), grid: (2, 2), rest: (20, 12))],
+        debris: [(shape: Choice([Disc(0.5), Box(1.0, 2.0)]), at: (20, 20))],
+        radiation: [(at: (8, 20), radius_m: Uniform(1, 3))],
+    )"#;
+
+    fn scenario(text: &str) -> Scenario {
+        Scenario::parse(text, "t.ron".as_ref()).unwrap_or_else(|error| panic!("{error}"))
+    }
+
+    #[test]
+    fn every_trial_has_values_of_its_own() {
+        let scenario = scenario(TEXT);
+        let trials: Vec<Scenario> = (1..60).map(|seed| scenario.of_trial(seed).unwrap()).collect();
+        assert!(trials.iter().all(|trial| trial.draws.is_empty() && (2..=4).contains(&trial.robots())));
+        assert!((2..=4).all(|count| trials.iter().any(|trial| trial.robots() == count)));
+        let speeds = trials.iter().map(|trial| trial.team[0].body.unwrap().speed_mps.unwrap());
+        assert!(speeds.clone().all(|speed| (1.0..=3.0).contains(&speed)));
+        let centers: Vec<f64> = trials.iter().map(|trial| trial.tasks[0].center[0]).collect();
+        assert!(centers.iter().any(|x| *x < 15.0) && centers.iter().any(|x| *x > 25.0));
+        let boxes =
+            trials.iter().filter(|trial| matches!(trial.debris[0].shape, super::super::DebrisShape::Box(..)));
+        assert!((15..45).contains(&boxes.count()));
+        assert_eq!(scenario.of_trial(7).unwrap(), scenario.of_trial(7).unwrap());
+    }
+
+    #[test]
+    fn one_distribution_more_leaves_the_other_draws_alone() {
+        let before = scenario(TEXT);
+        let after = scenario(&TEXT.replace("width_m: 6", "width_m: Uniform(5, 7)"));
+        for seed in 1..20 {
+            let (before, after) = (before.of_trial(seed).unwrap(), after.of_trial(seed).unwrap());
+            assert_eq!(before.tasks, after.tasks);
+            assert_eq!(before.radiation, after.radiation);
+            assert_eq!(before.team[0].count, after.team[0].count);
+        }
+    }
+
+    #[test]
+    fn the_whole_scenario_is_read_again_as_it_was() {
+        let scenario = scenario(TEXT);
+        let again = self::scenario(&scenario.resolved());
+        assert_eq!(scenario, again);
+        assert!(scenario.resolved().contains("radius_m: Uniform(1, 3)"), "{}", scenario.resolved());
+    }
+
+    #[test]
+    fn a_value_takes_the_place_of_a_distribution_and_back() {
+        let mut file = (*scenario(TEXT)).clone();
+        file.set("tasks.a.center", "(12, 30)").unwrap();
+        file.set("radiation[0].at[1]", "Uniform(18, 22)").unwrap();
+        let keys: Vec<&str> = file.draws.keys().map(String::as_str).collect();
+        assert_eq!(
+            keys,
+            [
+                "debris[0].shape",
+                "radiation[0].at[1]",
+                "radiation[0].radius_m",
+                "team[0].body.speed_mps",
+                "team[0].count"
+            ]
+        );
+        assert!(
+            file.set("mission.rest_s", "Uniform(5, 2)")
+                .unwrap_err()
+                .to_string()
+                .contains("least value first")
+        );
+    }
+
+    #[test]
+    fn what_is_wrong_with_a_distribution_is_told() {
+        let error = |from: &str, to: &str| {
+            Scenario::parse(&TEXT.replace(from, to), "t.ron".as_ref()).unwrap_err().to_string()
+        };
+        for (from, to, says) in [
+            (
+                "Uniform(2, 4)",
+                "Uniform(4, 2)",
+                "t.ron:3: team[0].count must have its least value first, found Uniform(4, 2)",
+            ),
+            ("Uniform(2, 4)", "Uniform(2, 4.5)", "t.ron:3: team[0].count must be a whole number, found 4.5"),
+            (
+                "Uniform(1, 3)",
+                "Uniform(0, 3)",
+                "t.ron:7: radiation[0].radius_m must be a number from 0.01 to 1000, found 0",
+            ),
+            ("Uniform(1, 3)", "Normal(1, 3)", "t.ron:7: radiation[0].radius_m must be bounded"),
+            (
+                "Uniform(50, 60)",
+                "Uniform(50, 160)",
+                "t.ron:4: team[0].levels.energy must be a number from 0.01 to 100, found 160",
+            ),
+            (
+                "Uniform(50, 60)",
+                "Uniform(70, 60)",
+                "t.ron:4: team[0].levels.energy must have its least value first, found Uniform(70, 60)",
+            ),
+            (
+                "Choice([Disc(0.5), Box(1.0, 2.0)])",
+                "Choice([])",
+                "t.ron:6: debris[0].shape must be Choice([...]) with at least one value",
+            ),
+            ("Box(1.0, 2.0)", "Bax(1.0, 2.0)", "t.ron:6: debris[0].shape must be one of Disc, Box, Polygon"),
+            ("name: \"t\"", "name: Uniform(1, 2)", "t.ron:2: name must be"),
+        ] {
+            let error = error(from, to);
+            assert!(error.contains(says), "{to}: {error}");
+        }
+    }
+
+    #[test]
+    fn values_that_never_go_together_are_told() {
+        let text = TEXT.replace("at: (20, 20)", "at: (20, Uniform(4.9, 5.1))").replace("Uniform(2, 4)", "3");
+        let error = scenario(&text).of_trial(1).unwrap_err().to_string();
+        assert!(
+            error.contains("100 times") && error.contains("must leave every robot's home free"),
+            "{error}"
+        );
+    }
+}

@@ -1,0 +1,248 @@
+//! Events that a scenario asks for, each at its time.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::checker::{Checker, meant, shown};
+use super::file::{DebrisFile, DebrisShape, Door, Point, ScenarioFile, TaskFile, WallFile, ZoneFile};
+use crate::limits;
+
+/// Something that happens at its time.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Moment {
+    /// When, in seconds from the start.
+    pub at_s: f64,
+    /// What happens.
+    pub event: Happening,
+}
+
+/// What happens at a time.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub enum Happening {
+    /// A fixed piece of debris falls: `DebrisFalls(shape: Disc(1.5), at: (20, 30))`. It falls once no robot on the ground is below it.
+    DebrisFalls {
+        /// Its outline.
+        shape: DebrisShape,
+        /// Its centre (for a polygon: the origin of its points).
+        at: Point,
+        /// Rotation, in degrees anticlockwise.
+        #[serde(default)]
+        rotation_deg: f64,
+        /// A name, so that a later event can clear it away.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        name: Option<String>,
+    },
+    /// A door opens, or a fixed piece of debris is cleared away: `Opens("gate")`.
+    Opens(String),
+    /// A door closes, or a piece of debris that was cleared away is back: `Closes("gate")`. It closes once no robot is in it.
+    Closes(String),
+    /// A radiation source appears: `SourceAppears(at: (30, 30), radius_m: 4)`.
+    SourceAppears {
+        /// The source.
+        at: Point,
+        /// Radius, in metres.
+        radius_m: f64,
+        /// A name, so that a later event can end it.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        name: Option<String>,
+    },
+    /// A radiation source that has a name dies: `SourceDies("leak")`.
+    SourceDies(String),
+    /// A robot breaks down for good: `RobotFails(3)`, the robot with this id.
+    RobotFails(u32),
+    /// A robot loses a part of its levels: `RobotLoses(robot: 3, energy: 30, hp: 10)`.
+    RobotLoses {
+        /// Id of the robot.
+        robot: u32,
+        /// Battery that it loses, in percent points.
+        #[serde(default)]
+        energy: f64,
+        /// Health that it loses, in percent points.
+        #[serde(default)]
+        hp: f64,
+    },
+    /// Rescuees appear in a task's block, in a grid of their own: `RescueesAppear(task: "north", grid: (4, 2))`.
+    RescueesAppear {
+        /// Name of the task.
+        task: String,
+        /// Rescuees along the width and along the height.
+        grid: [u32; 2],
+    },
+    /// A task begins: `TaskBegins("north")`. Before, it has no rescuees and is given no robots.
+    TaskBegins(String),
+    /// A task ends: `TaskEnds("north")`. Rescuees that still wait are gone, and it is given no more robots.
+    TaskEnds(String),
+}
+
+impl Happening {
+    /// The piece that falls, if it is one that falls.
+    #[must_use]
+    pub fn falling(&self) -> Option<DebrisFile> {
+        let Self::DebrisFalls { shape, at, rotation_deg, name } = self else { return None };
+        let (shape, name) = (shape.clone(), name.clone());
+        Some(DebrisFile { shape, at: *at, rotation_deg: *rotation_deg, movable: None, name })
+    }
+
+    /// The source that appears, if it is one that does.
+    #[must_use]
+    pub fn source(&self) -> Option<ZoneFile> {
+        let Self::SourceAppears { at, radius_m, name } = self else { return None };
+        Some(ZoneFile { at: *at, radius_m: *radius_m, name: name.clone() })
+    }
+}
+
+impl WallFile {
+    /// The panel that closes a door.
+    #[must_use]
+    pub fn panel(&self, door: &Door) -> DebrisFile {
+        let (from, length) = (self.from, self.length_m());
+        let along = [(self.to[0] - from[0]) / length, (self.to[1] - from[1]) / length];
+        DebrisFile {
+            shape: DebrisShape::Box(door.width_m, self.thickness_m),
+            at: [from[0] + along[0] * door.at_m, from[1] + along[1] * door.at_m],
+            rotation_deg: libm::atan2(along[1], along[0]).to_degrees(),
+            movable: None,
+            name: door.name.clone(),
+        }
+    }
+}
+
+impl ScenarioFile {
+    /// The panels of doors that are closed or have a name, and whether each is closed at the start.
+    pub fn panels(&self) -> impl Iterator<Item = (DebrisFile, bool)> + '_ {
+        let doors = self.walls.iter().flat_map(|wall| wall.doors.iter().map(move |door| (wall, door)));
+        let moves = |(_, door): &(&WallFile, &Door)| door.is_closed || door.name.is_some();
+        doors.filter(moves).map(|(wall, door)| (wall.panel(door), door.is_closed))
+    }
+
+    /// The moments in the order of their times; of equal times, in the order of the file.
+    #[must_use]
+    pub fn moments(&self) -> Vec<(usize, &Moment)> {
+        let mut moments: Vec<(usize, &Moment)> = self.timeline.iter().enumerate().collect();
+        moments.sort_by(|a, b| a.1.at_s.total_cmp(&b.1.at_s));
+        moments
+    }
+
+    /// Whether a task begins with an event of the timeline.
+    #[must_use]
+    pub fn begins_later(&self, task: &TaskFile) -> bool {
+        let first = self.moments().into_iter().find_map(|(_, moment)| match &moment.event {
+            Happening::TaskBegins(name) if *name == task.name => Some(true),
+            Happening::TaskEnds(name) if *name == task.name => Some(false),
+            _ => None,
+        });
+        first == Some(true)
+    }
+
+    /// Names of what can open and close: whether it is a fixed piece.
+    fn ways(&self) -> Vec<(&str, bool)> {
+        let debris =
+            self.debris.iter().filter_map(|piece| Some((piece.name.as_deref()?, piece.movable.is_none())));
+        let doors = self.walls.iter().flat_map(|wall| &wall.doors);
+        let doors = doors.filter_map(|door| Some((door.name.as_deref()?, true)));
+        let falling = self.timeline.iter().filter_map(|moment| match &moment.event {
+            Happening::DebrisFalls { name, .. } => Some((name.as_deref()?, true)),
+            _ => None,
+        });
+        debris.chain(doors).chain(falling).collect()
+    }
+
+    /// Names of radiation sources.
+    fn sources(&self) -> Vec<&str> {
+        let zones = self.radiation.iter().filter_map(|zone| zone.name.as_deref());
+        let later = self.timeline.iter().filter_map(|moment| match &moment.event {
+            Happening::SourceAppears { name, .. } => name.as_deref(),
+            _ => None,
+        });
+        zones.chain(later).collect()
+    }
+}
+
+/// The rules of the timeline, and of the names that it uses.
+pub(super) fn timeline(check: &mut Checker, file: &ScenarioFile) {
+    let ways = file.ways();
+    let names: Vec<&str> = ways.iter().map(|(name, _)| *name).collect();
+    unique(check, "debris, doors and falling debris", &names);
+    unique(check, "radiation sources", &file.sources());
+    for (i, moment) in file.timeline.iter().enumerate() {
+        let field = format!("timeline[{i}].event");
+        check.number(format!("timeline[{i}].at_s"), moment.at_s, limits::AT_S);
+        match &moment.event {
+            Happening::DebrisFalls { .. } => {}
+            Happening::Opens(name) | Happening::Closes(name) => {
+                named(check, &field, name, (&names, "must name a door or a piece of debris that has a name"));
+                if ways.contains(&(name.as_str(), false)) {
+                    check.fail(&field, "must name fixed debris", format!("{name:?}, which can be pushed"));
+                }
+            }
+            Happening::SourceAppears { at, radius_m, .. } => {
+                check.inside(format!("{field}.at"), *at, 0.0);
+                check.number(format!("{field}.radius_m"), *radius_m, limits::ZONE_RADIUS_M);
+            }
+            Happening::SourceDies(name) => {
+                named(check, &field, name, (&file.sources(), "must name a radiation source that has a name"));
+            }
+            Happening::RobotFails(robot) => self::robot(check, &field, *robot, file),
+            Happening::RobotLoses { robot, energy, hp } => {
+                self::robot(check, &format!("{field}.robot"), *robot, file);
+                check.number(format!("{field}.energy"), *energy, limits::LOSS);
+                check.number(format!("{field}.hp"), *hp, limits::LOSS);
+            }
+            Happening::RescueesAppear { task, grid } => {
+                self::task(check, &format!("{field}.task"), task, file);
+                check.count(format!("{field}.grid[0]"), grid[0], limits::GRID);
+                check.count(format!("{field}.grid[1]"), grid[1], limits::GRID);
+            }
+            Happening::TaskBegins(name) | Happening::TaskEnds(name) => self::task(check, &field, name, file),
+        }
+    }
+    let goes_on = |task: &TaskFile| {
+        file.timeline.iter().all(|moment| match &moment.event {
+            Happening::TaskBegins(name) | Happening::TaskEnds(name) => *name != task.name,
+            _ => true,
+        })
+    };
+    if !file.tasks.is_empty() && !file.timeline.is_empty() && !file.tasks.iter().any(goes_on) {
+        check.fail("timeline", "must leave one task that neither begins nor ends", "all tasks");
+    }
+}
+
+fn unique(check: &mut Checker, of: &str, names: &[&str]) {
+    let mut sorted = names.to_vec();
+    sorted.sort_unstable();
+    for name in &sorted {
+        let is_plain = limits::NAME_BYTES.allows(name.len()) && !name.chars().any(char::is_control);
+        if !is_plain {
+            check.fail("name", format!("of {of} must be text of at most 64 bytes on a line"), shown(name));
+        }
+    }
+    for pair in sorted.windows(2).filter(|pair| pair[0] == pair[1]) {
+        check.fail("name", format!("of {of} must not be given twice"), shown(pair[0]));
+    }
+}
+
+fn named(check: &mut Checker, field: &str, name: &str, (known, rule): (&[&str], &str)) {
+    if !known.contains(&name) {
+        let there =
+            if known.is_empty() { "; there is none".to_owned() } else { format!(" ({})", known.join(", ")) };
+        let rule = (format!("{rule}{there}"), meant(name, known.iter().copied()));
+        check.fail_with(field, rule, shown(name));
+    }
+}
+
+fn robot(check: &mut Checker, field: &str, robot: u32, file: &ScenarioFile) {
+    let robots: u32 = file.team.iter().map(|row| row.count).sum();
+    if robot >= robots {
+        check.fail(field, format!("must be the id of one of the {robots} robots, from 0"), robot);
+    }
+}
+
+fn task(check: &mut Checker, field: &str, name: &str, file: &ScenarioFile) {
+    let known: Vec<&str> = file.tasks.iter().map(|task| task.name.as_str()).collect();
+    if file.errands.is_empty() {
+        named(check, field, name, (&known, "must name a task"));
+    } else {
+        check.fail(field, "must be absent where there are errands: there are no tasks to do", shown(name));
+    }
+}

@@ -1,0 +1,157 @@
+//! The timeline of a trial: what a scenario asks for happens at the beginning of its step.
+
+use parry2d::query::distance;
+use rne_core::TaskId;
+use serde::{Deserialize, Serialize};
+
+use super::State;
+use crate::event::Event;
+use crate::geometry::Outline;
+use crate::ids::RobotId;
+use crate::model::{Action, Model};
+use crate::world::{Condition, RescueeState, Robot, World};
+
+/// Nothing falls or closes on a robot that may come nearer than this within a few steps, in metres.
+const FREE_M: f32 = 0.1;
+
+/// Steps of a robot at its speed for which the place must stay free.
+const FREE_STEPS: f32 = 3.0;
+
+/// What of the timeline has happened: for each of its events, in the order of their steps.
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
+pub(crate) struct Timeline {
+    done: Vec<bool>,
+}
+
+impl Timeline {
+    /// Nothing has happened.
+    pub(super) fn new(model: &Model) -> Self {
+        Self { done: vec![false; model.timeline.len()] }
+    }
+
+    pub(super) fn is_empty(&self) -> bool {
+        self.done.is_empty()
+    }
+}
+
+impl State {
+    /// Lets happen what is due. A piece waits until nobody is where it is to lie.
+    pub(super) fn happen(&mut self, model: &Model) {
+        for (number, due) in model.timeline.iter().enumerate() {
+            if due.step > self.step {
+                break;
+            }
+            if !self.timeline.done[number] {
+                self.timeline.done[number] = self.act_out(&due.action, model);
+            }
+        }
+    }
+
+    /// Lets an action happen; false if it has to wait.
+    fn act_out(&mut self, action: &Action, model: &Model) -> bool {
+        match action {
+            Action::Fall(debris) | Action::Close(debris) => {
+                if self.world.debris[*debris].is_there() {
+                    return true;
+                }
+                if !is_free(&self.world, *debris, model) {
+                    return false;
+                }
+                self.world.put_debris(*debris, Some(model.layout.debris[*debris].outline().pose));
+                let debris = *debris as u32;
+                let falls = matches!(action, Action::Fall(_));
+                self.log.push(if falls { Event::DebrisFell { debris } } else { Event::WayClosed { debris } });
+            }
+            Action::Open(debris) => {
+                if self.world.debris[*debris].is_there() {
+                    self.world.put_debris(*debris, None);
+                    self.log.push(Event::WayOpened { debris: *debris as u32 });
+                }
+            }
+            Action::Appear(zone) => {
+                if self.world.switch_zone(*zone, true) {
+                    self.log.push(Event::SourceAppeared { zone: *zone as u32 });
+                }
+            }
+            Action::Die(zone) => {
+                if self.world.switch_zone(*zone, false) {
+                    self.log.push(Event::SourceDied { zone: *zone as u32 });
+                }
+            }
+            Action::Fail(robot) => {
+                let hp = self.world.robots[robot.index()].hp;
+                self.lose(*robot, [0.0, hp], model);
+            }
+            Action::Lose(robot, losses) => self.lose(*robot, *losses, model),
+            Action::Rescuees(task, ids) => {
+                let rescuees = &mut self.world.rescuees[ids.clone()];
+                rescuees.iter_mut().for_each(|rescuee| rescuee.state = RescueeState::Waiting);
+                let (first, count) = (ids.start as u32, ids.len() as u32);
+                self.log.push(Event::RescueesAppeared { task: *task, first, count });
+            }
+            Action::Begin(task) => self.begin_task(*task, model),
+            Action::End(task) if self.world.closed_tasks[task.index()] => {}
+            Action::End(task) => {
+                self.world.closed_tasks[task.index()] = true;
+                self.log.push(Event::TaskEnded { task: *task });
+                self.mission.withdraw(*task, model, &mut self.world);
+            }
+        }
+        true
+    }
+
+    /// Opens a task. Its own rescuees appear when it begins for the first time; those of later events come with them.
+    fn begin_task(&mut self, task: TaskId, model: &Model) {
+        if !std::mem::replace(&mut self.world.closed_tasks[task.index()], false) {
+            return;
+        }
+        self.log.push(Event::TaskBegan { task });
+        let begins = |action: &Action| *action == Action::Begin(task) || *action == Action::End(task);
+        let mut done = model.timeline.iter().zip(&self.timeline.done);
+        let is_first = !done.any(|(due, is_done)| *is_done && begins(&due.action));
+        let first = model.tasks[task.index()].rescuees.start;
+        let own = model.rescuees_later.iter().find(|ids| ids.start == first && !ids.is_empty());
+        let has_own = !model.scenario.tasks[task.index()].grid.contains(&0);
+        if let Some(ids) = own.filter(|_| is_first && has_own) {
+            self.act_out(&Action::Rescuees(task, ids.clone()), model);
+        }
+    }
+
+    /// Takes energy and HP from a robot that can still act; one that has none left stays where it is.
+    fn lose(&mut self, id: RobotId, [energy, hp]: [f64; 2], model: &Model) {
+        let robot = &mut self.world.robots[id.index()];
+        if !robot.is_able() {
+            return;
+        }
+        let (energy, hp) = (energy.min(robot.energy), hp.min(robot.hp));
+        robot.energy -= energy;
+        robot.hp -= hp;
+        self.log.push(Event::Damaged { robot: id, energy, hp });
+        let (unit, spec) = (model.scenario.costs.unit, &robot.spec);
+        let spent = [unit.of_percent(energy, spec.energy), unit.of_percent(hp, spec.hp)];
+        self.tallies[id.index()].note_costs(spent);
+        if robot.hp <= 0.0 {
+            robot.condition = Condition::Disabled;
+            self.log.push(Event::Disabled { robot: id });
+        } else if robot.energy <= 0.0 {
+            robot.condition = Condition::Stranded;
+            self.log.push(Event::Stranded { robot: id });
+        }
+    }
+}
+
+/// Whether nothing that touches debris is where a piece is to lie, nor comes there within a few steps.
+fn is_free(world: &World, debris: usize, model: &Model) -> bool {
+    let outline = model.layout.debris[debris].outline();
+    let dt = model.dt_s() as f32;
+    let is_clear = |robot: &Robot| {
+        let way = robot.velocity.length() * FREE_STEPS * dt;
+        robot.is_aerial() || outline.signed_distance(robot.position) > robot.radius() + FREE_M + way
+    };
+    let touches = |other: &Outline| {
+        let apart = distance(&outline.pose, &*outline.shape, &other.pose, &*other.shape);
+        apart.is_ok_and(|apart| apart.distance <= FREE_M)
+    };
+    world.robots.iter().all(is_clear)
+        && !world.debris.iter().filter(|piece| !piece.is_fixed).any(|piece| touches(&piece.outline))
+}

@@ -1,0 +1,69 @@
+//! `usar fmt`: the layout of scenario and sweep files, and their format.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use experiments::Failure;
+use ron_fields::formatted;
+use usar_sim::scenario::{read_text, upgraded};
+
+use super::output;
+
+/// Lay out scenario and sweep files anew, and rewrite those of a former format
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Indents, blanks and commas are set; line breaks and comments stay where they are, and no value changes. The files are written over.
+
+Examples:
+  usar fmt mine.ron
+  usar fmt --check scenarios/*.ron     exit status 1 if a file is laid out otherwise; nothing is written
+  usar fmt --upgrade old.ron           in the present format too")]
+pub(crate) struct Arguments {
+    /// Scenario or sweep files (RON)
+    #[arg(required = true)]
+    files: Vec<PathBuf>,
+    /// Write nothing; name the files that are laid out otherwise
+    #[arg(long)]
+    check: bool,
+    /// Rewrite files of a former format in the present one
+    #[arg(long)]
+    upgrade: bool,
+}
+
+impl Arguments {
+    pub(crate) fn execute(&self, out: &mut dyn Write) -> Result<(), Failure> {
+        // All are read before one is written.
+        let texts = self.files.iter().map(|file| self.laid_out(file)).collect::<Result<Vec<_>, _>>()?;
+        let mut others = 0;
+        for (file, text) in self.files.iter().zip(texts) {
+            let Some(text) = text else { continue };
+            others += 1;
+            if self.check {
+                writeln!(out, "{}: is laid out otherwise", file.display())?;
+            } else {
+                output::write(&output::place("FILE", file, true)?, text.as_bytes())?;
+                writeln!(out, "{}: written", file.display())?;
+            }
+        }
+        if self.check && others > 0 {
+            return Err(Failure::run(format!(
+                "{others} of {} files; `usar fmt` lays them out",
+                self.files.len()
+            )));
+        }
+        Ok(())
+    }
+
+    /// The text of a file as it should be; nothing if it is so.
+    fn laid_out(&self, file: &Path) -> Result<Option<String>, Failure> {
+        let text = read_text(file).map_err(Failure::input)?;
+        let new = if self.upgrade {
+            upgraded(&text)
+                .map_err(|(line, change)| Failure::input(format!("{}:{line}: {change}", file.display())))?
+        } else {
+            formatted(&text)
+        };
+        Ok((new != text).then_some(new))
+    }
+}
