@@ -219,6 +219,14 @@ impl Metric {
         if column.ends_with(unit) { column } else { column + unit }
     }
 
+    /// The name of its column without the task: what a table calls it that has the task in a column of its own.
+    #[must_use]
+    pub fn declared_column(&self) -> String {
+        let whole = self.column();
+        let part = format!("_{}", self.part);
+        if self.part.is_empty() { whole } else { whole.replacen(&part, "", 1) }
+    }
+
     /// Its title with its unit, if it has one.
     #[must_use]
     pub fn title_with_unit(&self) -> String {

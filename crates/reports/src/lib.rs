@@ -3,18 +3,21 @@
 //! [`write_report`] makes `report.html` in a sweep's folder; [`table`] has tables as text. A page of another
 //! crate takes its looks from [`STYLE`].
 
+mod case;
 mod decisions;
 mod drawing;
 mod figures;
 mod maps;
 mod overview;
-mod page;
 mod regret;
+mod report;
 pub mod table;
+mod wanted;
 
 pub use maps::ShownTrial;
-pub use page::{Wanted, write_report};
 pub use regret::regret_figures;
+pub use report::write_report;
+pub use wanted::Wanted;
 
 /// The style sheet of all pages.
 pub const STYLE: &str = include_str!("../templates/style.css");

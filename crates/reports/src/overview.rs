@@ -8,7 +8,7 @@ use experiments::sweep::folder::Folder;
 
 use crate::drawing::Figure;
 use crate::figures::along_axes;
-use crate::page::{Files, Wanted};
+use crate::wanted::{Files, Wanted};
 
 #[derive(Template)]
 #[template(path = "overview.html")]

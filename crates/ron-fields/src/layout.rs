@@ -263,7 +263,7 @@ mod tests {
             let leaves = |text: &str| -> Vec<(String, String)> {
                 Fields::of(text)
                     .leaves()
-                    .map(|(path, place)| (path.to_owned(), text[place].to_owned()))
+                    .map(|(path, place)| (path.to_owned(), text[place].split_whitespace().collect()))
                     .collect()
             };
             assert_eq!(leaves(text), leaves(&out), "{text}: {out}");

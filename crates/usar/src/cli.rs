@@ -13,7 +13,7 @@ use terminal_size::{Width, terminal_size_of};
 use crate::commands::{
     calibrate, check, choose, compare, draw, estimate, export, fmt, fork, group, list, merge, new, oracle,
     readings, regret, render, report, reproduce, resolve, run, schema, sorting, status, submit, sweep, test,
-    trust, verify, view, why,
+    tidy, trust, verify, view, why,
 };
 use crate::printable::Printable;
 use crate::running::{status_of_signal, tell};
@@ -62,6 +62,7 @@ enum Command {
     Status(status::Arguments),
     Compare(compare::Arguments),
     Report(report::Arguments),
+    Tidy(tidy::Arguments),
     Reproduce(reproduce::Arguments),
     Fork(fork::Arguments),
     Oracle(oracle::Arguments),
@@ -151,6 +152,7 @@ impl Command {
             Self::Compare(arguments) => arguments.execute(out),
             Self::Reproduce(arguments) => arguments.execute(out),
             Self::Report(arguments) => arguments.execute(out),
+            Self::Tidy(arguments) => arguments.execute(out),
             Self::Fork(arguments) => arguments.execute(out),
             Self::Oracle(arguments) => arguments.execute(out),
             Self::Readings(arguments) => arguments.execute(out),

@@ -23,9 +23,11 @@ mod sizes;
 mod store;
 mod table;
 mod tables;
+mod tidy;
 
 pub use crate::experiment::Place;
 pub use missing::{missing, run_trials};
 pub use parquet::write_parquet;
 pub use rows::trial_columns;
 pub use sizes::{Sizes, sizes};
+pub use tidy::{tidy_columns, tidy_rows};

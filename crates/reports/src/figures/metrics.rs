@@ -11,8 +11,8 @@ use kuva::plot::annotations::ReferenceLine;
 use kuva::plot::{BoxPlot, ForestPlot, ScatterPlot, StripPlot};
 use kuva::render::plots::Plot;
 
+use super::is_quiet;
 use crate::drawing::{Figure, Panel, colour, draw, layout, line_panel, names, range, table};
-use crate::page::is_quiet;
 
 /// Trials of a policy that are drawn as points, about: more would hide the boxes.
 const MAX_POINTS: usize = 40;

@@ -44,3 +44,10 @@ pub(crate) fn figures(
     figures.retain(|figure| !figure.svg.is_empty());
     Ok(figures)
 }
+
+/// Whether a metric has values in a case, and all of them are zero.
+pub(crate) fn is_quiet(folder: &Folder, case: usize, metric: usize) -> bool {
+    let policies = 0..folder.experiment().policies.len();
+    let mut values = policies.flat_map(|policy| folder.values(case, policy, metric)).peekable();
+    values.peek().is_some() && values.all(|value| value == 0.0)
+}

@@ -35,6 +35,7 @@ pub(crate) mod status;
 pub(crate) mod submit;
 pub(crate) mod sweep;
 pub(crate) mod test;
+pub(crate) mod tidy;
 mod trials;
 pub(crate) mod trust;
 pub(crate) mod verify;

@@ -333,3 +333,61 @@ fn every_column_of_every_table_is_in_the_dictionary() {
     }
     assert!(text.contains("Of the task \"hard\" alone."), "{text}");
 }
+
+#[test]
+fn the_long_table_has_every_value_once() {
+    let folder = place();
+    let here = folder.path();
+    succeeds(&usar(here, &["sweep", "grid.ron", "--quiet", "--trials", "1", "--set", "duration_s=120"]));
+    let text = succeeds(&usar(here, &["tidy", "results/grid"]));
+    let mut table = csv::Reader::from_reader(text.as_bytes());
+    let header: Vec<String> = table.headers().unwrap().iter().map(str::to_owned).collect();
+    let expected = [
+        "case",
+        "roles.carrier.speed_mps",
+        "conflicts.priority",
+        "policy",
+        "trial",
+        "seed",
+        "round",
+        "task",
+        "metric",
+        "value",
+    ];
+    assert_eq!(header, expected);
+    let long: Vec<csv::StringRecord> = table.records().map(Result::unwrap).collect();
+    let find = |case: &str, policy: &str, [round, task, metric]: [&str; 3]| -> Vec<String> {
+        let is_it = |row: &&csv::StringRecord| {
+            [&row[0], &row[3], &row[6], &row[7], &row[8]] == [case, policy, round, task, metric]
+        };
+        long.iter().filter(is_it).map(|row| row[9].to_owned()).collect()
+    };
+    let results = here.join("results/grid");
+    for row in rows(&results, "trials.csv") {
+        let (case, policy) = (&row[0], &row[3]);
+        for (metric, task, name) in [
+            ("distance_m", "", "distance_m"),
+            ("rescuees", "hard", "rescuees_hard"),
+            ("energy", "", "energy_total"),
+        ] {
+            assert_eq!(
+                find(case, policy, ["", task, metric]),
+                [row[column(&results, name)].to_owned()],
+                "{name}"
+            );
+        }
+    }
+    for row in rows(&results, "rounds.csv").iter().filter(|row| &row[3] == "DIS") {
+        let header = csv::Reader::from_path(results.join("rounds.csv")).unwrap().headers().unwrap().clone();
+        let cell = |name: &str| row[header.iter().position(|column| column == name).unwrap()].to_owned();
+        assert_eq!(find(&row[0], "DIS", [&cell("round"), &cell("task"), "energy"]), [cell("energy")]);
+    }
+    succeeds(&usar(here, &["tidy", "results/grid", "--out", "tidy.csv"]));
+    assert_eq!(std::fs::read_to_string(here.join("tidy.csv")).unwrap(), text);
+    refused(
+        here,
+        2,
+        &["tidy", "results/grid", "--out", "tidy.csv"],
+        &["tidy.csv exists; nothing was overwritten"],
+    );
+}

@@ -1,23 +1,20 @@
-//! `report.html`, one file that opens from disk, and the figures in it with the numbers behind each.
-
-use std::path::PathBuf;
+//! The page of one case of a sweep, which opens from disk, and the figures in it with the numbers behind each.
 
 use askama::Template;
 use experiments::Failure;
 use experiments::comparison::{
-    Asked, Comparison, Wishes, answer, compare, digits, limit_of_correction, short, short_p, test_in_words,
+    Comparison, answer, digits, limit_of_correction, short, short_p, test_in_words,
 };
 use experiments::experiment::{Axis, Experiment, Seeds};
 use experiments::stats::Moments;
-use experiments::sweep::disk::{PLOTS, REPORT};
+use experiments::sweep::disk::PLOTS;
 use experiments::sweep::folder::Folder;
-use experiments::sweep::ours;
 
 use crate::decisions::{Decisions, decisions};
 use crate::drawing::{self, Figure};
-use crate::figures::figures;
+use crate::figures::{figures, is_quiet};
 use crate::maps::{Map, ShownTrial, trails_map, world_map};
-use crate::overview::write_overview;
+use crate::wanted::{Files, Wanted};
 
 #[derive(Template)]
 #[template(path = "report.html")]
@@ -75,89 +72,24 @@ struct Row {
     is_found: bool,
 }
 
-/// Cases of a sweep that get a page each, where none is asked for.
-const MOST_PAGES: usize = 24;
-
-/// What a report is to show.
-pub struct Wanted {
-    /// The comparisons.
-    pub asked: Asked,
-    /// Its title; none for the sweep's name.
-    pub title: Option<String>,
-    /// The case that gets a page, from 0; none for all.
-    pub case: Option<usize>,
-    /// Trials whose ways are drawn, with their replays, on the page of the case that is asked for, or of the first.
-    pub shown: Vec<ShownTrial>,
-}
-
-impl Wanted {
-    /// What a sweep's file asks, and no trial.
-    ///
-    /// # Errors
-    /// What it asks is not right.
-    pub fn of(experiment: &Experiment) -> Result<Self, Failure> {
-        let asked = Asked::of(experiment, &Wishes::default())?;
-        Ok(Self { asked, title: None, case: None, shown: Vec::new() })
-    }
-}
-
-/// The files of a report, by their names from the folder on.
-pub(crate) type Files = Vec<(String, Vec<u8>)>;
-
-/// Writes the report of a sweep into its folder; returns where it is. A sweep with several cases gets an overview, and a page for each case
-/// beside the figures.
-///
-/// # Errors
-/// An unknown policy, the folder cannot be written to, or its journal cannot be read.
-pub fn write_report(folder: &mut Folder, mut wanted: Wanted) -> Result<PathBuf, Failure> {
-    let is_compared = folder.experiment().policies.len() > 1;
-    let compared = |metrics: &[usize]| {
-        if is_compared { compare(folder, metrics, wanted.asked.choice()) } else { Ok(Vec::new()) }
-    };
-    let all = Compared {
-        asked: compared(&wanted.asked.metrics)?,
-        exploratory: compared(&wanted.asked.exploratory)?,
-    };
-    let cases = folder.experiment().cases.len();
-    let shown = std::mem::take(&mut wanted.shown);
-    let mut files = Files::new();
-    if cases == 1 {
-        let place =
-            PagePlace { case: 0, file: REPORT.to_owned(), links: format!("{PLOTS}/"), prefix: String::new() };
-        write_case(folder, &wanted, &all, (&place, shown), &mut files)?;
-    } else {
-        let chosen: Vec<usize> = wanted.case.map_or((0..cases.min(MOST_PAGES)).collect(), |case| vec![case]);
-        let mut shown = Some(shown);
-        for case in &chosen {
-            let prefix = format!("case-{}-", case + 1);
-            let file = format!("{PLOTS}/case-{}.html", case + 1);
-            let place = PagePlace { case: *case, file, links: prefix.clone(), prefix };
-            let shown = shown.take().unwrap_or_default();
-            write_case(folder, &wanted, &all, (&place, shown), &mut files)?;
-        }
-        write_overview(folder, &wanted, &all.asked, &chosen, &mut files)?;
-    }
-    ours::write_report(folder.path(), &files)?;
-    Ok(folder.path().join(REPORT))
-}
-
 /// The comparisons of a sweep: those that were asked for, and the others.
-struct Compared {
-    asked: Vec<Comparison>,
-    exploratory: Vec<Comparison>,
+pub(crate) struct Compared {
+    pub asked: Vec<Comparison>,
+    pub exploratory: Vec<Comparison>,
 }
 
 /// Where the page of a case is, and what the names of its figures begin with.
-struct PagePlace {
-    case: usize,
-    file: String,
+pub(crate) struct PagePlace {
+    pub case: usize,
+    pub file: String,
     /// From the page on.
-    links: String,
+    pub links: String,
     /// From the folder of figures on.
-    prefix: String,
+    pub prefix: String,
 }
 
-fn write_case(
+/// Writes the page of a case, its figures and its maps.
+pub(crate) fn write_case(
     folder: &mut Folder,
     wanted: &Wanted,
     all: &Compared,
@@ -266,13 +198,6 @@ fn quiet(folder: &Folder, case: usize) -> Vec<&str> {
     let Experiment { metrics, .. } = folder.experiment();
     let places = metrics.figures().into_iter().flat_map(|(_, places)| places);
     places.filter(|place| is_quiet(folder, case, *place)).map(|place| metrics[place].title.as_str()).collect()
-}
-
-/// Whether a metric has values in a case, and all of them are zero.
-pub(crate) fn is_quiet(folder: &Folder, case: usize, metric: usize) -> bool {
-    let policies = 0..folder.experiment().policies.len();
-    let mut values = policies.flat_map(|policy| folder.values(case, policy, metric)).peekable();
-    values.peek().is_some() && values.all(|value| value == 0.0)
 }
 
 /// What makes these results again.

@@ -1,0 +1,77 @@
+//! A sweep as one long table: a row for each value, whatever was measured. Every row names what the value is of, so that tools for data
+//! frames can filter, pivot and plot without knowing the other tables.
+
+use usar_sim::metrics::RoundRecord;
+
+use super::folder::Folder;
+use crate::experiment::Place;
+use crate::failure::Failure;
+
+/// What is measured of a group in a round, as in `rounds.csv`.
+type OfRound = (&'static str, fn(&RoundRecord) -> Option<f64>);
+
+const OF_ROUNDS: [OfRound; 6] = [
+    ("duration_s", |round| round.end_s.map(|end| end - round.start_s)),
+    ("secured", |round| Some(f64::from(round.secured))),
+    ("rescued", |round| Some(f64::from(round.rescued))),
+    ("energy", |round| Some(round.energy)),
+    ("hp", |round| Some(round.hp)),
+    ("turned_back", |round| Some(f64::from(round.turned_back))),
+];
+
+/// The columns: the axes of the sweep stand after the case.
+#[must_use]
+pub fn tidy_columns(folder: &Folder) -> Vec<String> {
+    let axes = folder.experiment().axes.iter().map(|axis| axis.path.as_str());
+    let after = ["policy", "trial", "seed", "round", "task", "metric", "value"];
+    ["case"].into_iter().chain(axes).chain(after).map(str::to_owned).collect()
+}
+
+/// Gives every row of the table to `write`, trial by trial: the trial's metrics, with an empty `round`, then those of each group and round as
+/// far as the sweep keeps them. `task` is empty where a value is of all tasks together; values that are not defined have no row.
+///
+/// # Errors
+/// The journal cannot be read, or `write` says so.
+pub fn tidy_rows(
+    folder: &mut Folder,
+    mut write: impl FnMut(&[String]) -> Result<(), Failure>,
+) -> Result<(), Failure> {
+    let places: Vec<Place> = folder.results().keys().copied().collect();
+    for place in places {
+        for [round, task, metric, value] in trial_rows(folder, place)? {
+            let (case, policy, trial) = place;
+            let experiment = folder.experiment();
+            let mut row = vec![(case + 1).to_string()];
+            row.extend(experiment.cases[case].values.iter().cloned());
+            row.push(experiment.policies[policy].label.clone());
+            row.extend([trial.to_string(), experiment.seed(trial).to_string(), round, task, metric, value]);
+            write(&row)?;
+        }
+    }
+    Ok(())
+}
+
+/// Round, task, metric and value of everything that was measured of a trial.
+fn trial_rows(folder: &mut Folder, place: Place) -> Result<Vec<[String; 4]>, Failure> {
+    let mut rows = Vec::new();
+    let experiment = folder.experiment();
+    let measured = folder.results().get(&place).and_then(|measured| measured.metrics.as_ref());
+    for (metric, value) in experiment.metrics.iter().zip(measured.into_iter().flatten()) {
+        let task = if metric.is_total() { "" } else { metric.part() };
+        rows.extend(value.map(|value| {
+            [String::new(), task.to_owned(), metric.declared_column().to_owned(), value.to_string()]
+        }));
+    }
+    if rows.is_empty() || !experiment.keep.has_records() {
+        return Ok(rows);
+    }
+    let Ok(trial) = folder.outcome(place)?.result else { return Ok(rows) };
+    for round in &trial.record.rounds {
+        let task = &trial.record.tasks[round.task.index()].task;
+        for (name, value) in OF_ROUNDS {
+            let value = value(round).map(|value| value.to_string());
+            rows.extend(value.map(|value| [round.round.to_string(), task.clone(), name.to_owned(), value]));
+        }
+    }
+    Ok(rows)
+}

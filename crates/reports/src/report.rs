@@ -1,0 +1,53 @@
+//! The report of a sweep: the page of its case, or an overview and a page for each of its cases.
+
+use std::path::PathBuf;
+
+use experiments::Failure;
+use experiments::comparison::compare;
+use experiments::sweep::disk::{PLOTS, REPORT};
+use experiments::sweep::folder::Folder;
+use experiments::sweep::ours;
+
+use crate::case::{Compared, PagePlace, write_case};
+use crate::overview::write_overview;
+use crate::wanted::{Files, Wanted};
+
+/// Cases of a sweep that get a page each, where none is asked for.
+const MOST_PAGES: usize = 24;
+
+/// Writes the report of a sweep into its folder; returns where it is. A sweep with several cases gets an overview, and a page for each case
+/// beside the figures.
+///
+/// # Errors
+/// An unknown policy, the folder cannot be written to, or its journal cannot be read.
+pub fn write_report(folder: &mut Folder, mut wanted: Wanted) -> Result<PathBuf, Failure> {
+    let is_compared = folder.experiment().policies.len() > 1;
+    let compared = |metrics: &[usize]| {
+        if is_compared { compare(folder, metrics, wanted.asked.choice()) } else { Ok(Vec::new()) }
+    };
+    let all = Compared {
+        asked: compared(&wanted.asked.metrics)?,
+        exploratory: compared(&wanted.asked.exploratory)?,
+    };
+    let cases = folder.experiment().cases.len();
+    let shown = std::mem::take(&mut wanted.shown);
+    let mut files = Files::new();
+    if cases == 1 {
+        let place =
+            PagePlace { case: 0, file: REPORT.to_owned(), links: format!("{PLOTS}/"), prefix: String::new() };
+        write_case(folder, &wanted, &all, (&place, shown), &mut files)?;
+    } else {
+        let chosen: Vec<usize> = wanted.case.map_or((0..cases.min(MOST_PAGES)).collect(), |case| vec![case]);
+        let mut shown = Some(shown);
+        for case in &chosen {
+            let prefix = format!("case-{}-", case + 1);
+            let file = format!("{PLOTS}/case-{}.html", case + 1);
+            let place = PagePlace { case: *case, file, links: prefix.clone(), prefix };
+            let shown = shown.take().unwrap_or_default();
+            write_case(folder, &wanted, &all, (&place, shown), &mut files)?;
+        }
+        write_overview(folder, &wanted, &all.asked, &chosen, &mut files)?;
+    }
+    ours::write_report(folder.path(), &files)?;
+    Ok(folder.path().join(REPORT))
+}

@@ -1,0 +1,56 @@
+//! `usar tidy`: everything that a sweep measured as one long table.
+
+use std::io::Write;
+use std::path::PathBuf;
+
+use clap::Args;
+use experiments::Failure;
+use experiments::files::NewFile;
+use experiments::sweep::folder::Folder;
+use experiments::sweep::{tidy_columns, tidy_rows};
+
+use super::output::place;
+
+/// Print everything that a sweep measured as one long table: a row for each value
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Columns: case, the sweep's axes, policy, trial, seed, round, task, metric, value. Values of a whole trial have no round, those of all tasks \
+together no task. columns.md in the sweep's folder says what each metric means.
+
+Examples:
+  usar tidy results/paper | head
+  usar tidy results/paper --out tidy.csv
+  python3 -c \"import pandas; print(pandas.read_csv('tidy.csv').query('metric == \\\"rescuees\\\"').groupby('policy').value.describe())\"")]
+pub(crate) struct Arguments {
+    /// Folder of a sweep
+    folder: PathBuf,
+    /// Write it to a file
+    #[arg(long, value_name = "CSV")]
+    out: Option<PathBuf>,
+    /// Replace the file
+    #[arg(long)]
+    force: bool,
+}
+
+impl Arguments {
+    pub(crate) fn execute(&self, out: &mut dyn Write) -> Result<(), Failure> {
+        let mut folder = Folder::read(&self.folder)?;
+        let Some(path) = &self.out else { return print(&mut folder, out) };
+        let (place, name) = place("--out", path, self.force)?;
+        let mut file = NewFile::new(&place, name)?;
+        print(&mut folder, &mut file)?;
+        file.finish().map(drop)
+    }
+}
+
+fn print(folder: &mut Folder, out: &mut dyn Write) -> Result<(), Failure> {
+    let mut table = csv::Writer::from_writer(out);
+    let trouble = |error: csv::Error| match error.into_kind() {
+        csv::ErrorKind::Io(error) => Failure::from(error),
+        other => Failure::run(format!("{other:?}")),
+    };
+    table.write_record(tidy_columns(folder)).map_err(trouble)?;
+    tidy_rows(folder, |row| table.write_record(row).map_err(trouble))?;
+    table.flush()?;
+    Ok(())
+}
