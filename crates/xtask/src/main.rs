@@ -5,7 +5,7 @@ mod commands;
 
 use std::process::ExitCode;
 
-use commands::{damage, golden, kills, limits, mutations, pages, scale, soak, work, worlds};
+use commands::{damage, golden, kills, limits, million, mutations, pages, scale, soak, work, worlds};
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -15,6 +15,7 @@ fn main() -> ExitCode {
         "damage" => damage::run(arguments),
         "golden" => golden::run(arguments),
         "kills" => kills::run(arguments),
+        "million" => million::run(arguments),
         "mutations" => mutations::run(arguments),
         "limits" => limits::run(),
         "navigation" => xtask::navigation::main(),
@@ -25,7 +26,7 @@ fn main() -> ExitCode {
         "worlds" => worlds::run(arguments),
         _ => {
             eprintln!(
-                "xtask: no task {task:?}. Tasks: damage, golden, kills, navigation, pages, scale, soak, work, worlds"
+                "xtask: no task {task:?}. Tasks: damage, golden, kills, million, navigation, pages, scale, soak, work, worlds"
             );
             ExitCode::from(2)
         }
