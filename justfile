@@ -26,6 +26,15 @@ damage *arguments:
     cargo build --release --package usar
     cargo run --release --package xtask -- damage {{arguments}}
 
+# A million trials by a fast fake, in 50 shards: time, memory and disk of merge, compare and report
+million *arguments:
+    cargo build --release --package usar
+    cargo run --release --package xtask -- million {{arguments}}
+
+# A sweep on Slurm itself, with a task killed and one cancelled: installs Debian's slurm-wlm, needs root
+slurm:
+    bash .ci/slurm
+
 # 100,000 damaged scenarios, sweep files, tables, snapshots and questions through their loaders: no panic, none takes a second
 mutations *arguments:
     cargo run --release --package xtask -- mutations {{arguments}}

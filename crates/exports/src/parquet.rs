@@ -11,8 +11,10 @@ use parquet::schema::types::Type;
 
 use crate::error::ExportError;
 
-/// Rows that are written at a time.
+/// The most rows that are written at a time.
 const ROWS: usize = 1 << 16;
+/// The column whose rows are written together.
+const CASE: &str = "case";
 
 /// What a column of a table holds. An empty cell is a missing value, whatever the column holds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -45,10 +47,11 @@ pub fn from_csv<W: Write + Send>(
         .set_compression(Compression::SNAPPY)
         .build();
     let mut writer = SerializedFileWriter::new(out, schema(&names, &kinds)?, Arc::new(properties))?;
-    let mut records = reader.into_records();
+    let mut records = reader.into_records().peekable();
+    let case = names.iter().position(|name| name == CASE);
     let mut first_row = 0;
     loop {
-        let rows = records.by_ref().take(ROWS).collect::<Result<Vec<_>, _>>()?;
+        let rows = next_group(&mut records, case)?;
         if rows.is_empty() {
             return Ok(writer.into_inner()?);
         }
@@ -62,6 +65,24 @@ pub fn from_csv<W: Write + Send>(
         group.close()?;
         first_row += rows.len();
     }
+}
+
+/// The next rows that are written together: of one case, where the table has cases, so that a reader can leave out the others.
+fn next_group(
+    records: &mut std::iter::Peekable<impl Iterator<Item = csv::Result<csv::StringRecord>>>,
+    case: Option<usize>,
+) -> Result<Vec<csv::StringRecord>, ExportError> {
+    let mut rows: Vec<csv::StringRecord> = Vec::new();
+    let case_of = |row: &csv::StringRecord| case.and_then(|case| row.get(case).map(str::to_owned));
+    while rows.len() < ROWS {
+        let fits = |next: &csv::Result<csv::StringRecord>| match (next, rows.first()) {
+            (Ok(next), Some(first)) => case_of(next) == case_of(first),
+            _ => true,
+        };
+        let Some(row) = records.next_if(fits) else { break };
+        rows.push(row?);
+    }
+    Ok(rows)
 }
 
 fn schema(names: &[String], kinds: &[Kind]) -> Result<Arc<Type>, ExportError> {

@@ -7,6 +7,7 @@ use std::path::Path;
 use exports::parquet::{Kind, from_csv};
 use exports::tables::Table;
 use exports::{ExportError, mcap};
+use parquet::file::metadata::RowGroupMetaData;
 use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::record::Field;
 use recording::{Options, Recording, record};
@@ -131,4 +132,15 @@ fn a_cell_that_is_not_of_its_kind_is_named() {
     let error = from_csv(table.as_bytes(), |_| Kind::Natural, Vec::new()).unwrap_err();
     assert!(matches!(error, ExportError::Cell { row: 2, .. }), "{error}");
     assert_eq!(error.to_string(), "row 2: column b: must be a whole number, found \"x\"");
+}
+
+#[test]
+fn the_rows_of_a_case_are_row_groups_of_their_own() {
+    let table = "case,x\n1,0.5\n1,1.5\n2,2.5\n3,3.5\n3,4.5\n3,5.5\n";
+    let written = from_csv(table.as_bytes(), |_| Kind::Number, Vec::new()).unwrap();
+    let mut file = tempfile::tempfile().unwrap();
+    file.write_all(&written).unwrap();
+    let read = SerializedFileReader::new(file).unwrap();
+    let rows: Vec<i64> = read.metadata().row_groups().iter().map(RowGroupMetaData::num_rows).collect();
+    assert_eq!(rows, [2, 1, 3]);
 }

@@ -1,4 +1,5 @@
-//! Folders of results that are damaged: by flipped bits, and by somebody who forges numbers and computes every checksum anew.
+//! Folders of results that are damaged: by flipped bits, and by somebody who forges numbers and computes
+//! every checksum anew.
 
 use std::collections::BTreeMap;
 use std::io::Write;
@@ -68,7 +69,8 @@ impl Sound {
         report
     }
 
-    /// Changes one digit of one number in the journal or in a table and computes every checksum anew, again and again.
+    /// Changes one digit of one number in the journal or in a table and computes every checksum anew, again
+    /// and again.
     pub fn forge(&self, times: u32, seed: u64) -> Report {
         let mut draws = ChaCha8Rng::seed_from_u64(seed);
         let mut report = Report::default();
@@ -148,9 +150,9 @@ fn other_digit(text: &str, pick: u64) -> String {
 /// The journal of a finished sweep.
 const JOURNAL: &str = "journal.jsonl.gz";
 
-/// A gzip file without any fields in its header as a member of a journal: its header says how long it is and how many lines it
-/// has.
-fn with_head(gzip: Vec<u8>, lines: usize) -> Vec<u8> {
+/// A gzip file without any fields in its header as a member of a journal: its header says how long it is and
+/// how many lines it has.
+fn with_head(gzip: &[u8], lines: usize) -> Vec<u8> {
     let mut head = vec![0x1f, 0x8b, 8, 4, 0, 0, 0, 0, 0, 0xff, 12, 0, b'U', b'S', 8, 0];
     head.extend((gzip.len() as u32 + 14).to_le_bytes());
     head.extend((lines as u32).to_le_bytes());
@@ -216,7 +218,7 @@ impl Forged {
         let text = change(journal(&self.folder));
         let mut encoder = GzBuilder::new().write(Vec::new(), Compression::fast());
         encoder.write_all(text.as_bytes()).unwrap();
-        self.bytes(JOURNAL, &with_head(encoder.finish().unwrap(), text.lines().count()));
+        self.bytes(JOURNAL, &with_head(&encoder.finish().unwrap(), text.lines().count()));
     }
 
     /// Changes the manifest alone, and its checksum.

@@ -1,5 +1,5 @@
-//! A sweep that is killed again and again: nothing finished is lost or done twice, and in the end its files are those of a sweep that was
-//! left alone.
+//! A sweep that is killed again and again: nothing finished is lost or done twice, and in the end its files
+//! are those of a sweep that was left alone.
 
 use std::collections::BTreeMap;
 use std::io::Read;
@@ -95,7 +95,8 @@ fn assert_same(killed: &BTreeMap<String, Vec<u8>>, alone: &BTreeMap<String, Vec<
     }
 }
 
-/// The files of a folder, by name, but for what differs between two runs of the same sweep: a lock that a killed process has left, and
+/// The files of a folder, by name, but for what differs between two runs of the same sweep: a lock that a
+/// killed process has left, and
 /// `host.json`.
 pub fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
     let file = |entry: std::io::Result<std::fs::DirEntry>| {

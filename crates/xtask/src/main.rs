@@ -6,7 +6,7 @@ mod commands;
 use std::process::ExitCode;
 
 use commands::{
-    calibration, damage, golden, kills, limits, mutations, pages, reference, scale, scenarios, soak, work,
+    calibration, damage, golden, kills, limits, million, mutations, pages, reference, scale, scenarios, soak, work,
     worlds,
 };
 
@@ -19,6 +19,7 @@ fn main() -> ExitCode {
         "damage" => damage::run(arguments),
         "golden" => golden::run(arguments),
         "kills" => kills::run(arguments),
+        "million" => million::run(arguments),
         "mutations" => mutations::run(arguments),
         "limits" => limits::run(),
         "navigation" => xtask::navigation::main(),
@@ -31,7 +32,7 @@ fn main() -> ExitCode {
         "worlds" => worlds::run(arguments),
         _ => {
             eprintln!(
-                "xtask: no task {task:?}. Tasks: calibration, damage, golden, kills, limits, mutations, navigation, pages, reference, scale, \
+                "xtask: no task {task:?}. Tasks: calibration, damage, golden, kills, limits, million, mutations, navigation, pages, reference, scale, \
                  scenarios, soak, work, worlds"
             );
             ExitCode::from(2)

@@ -14,7 +14,7 @@ use crate::metric::{Catalogue, Metric};
 use crate::stats::Moments;
 use crate::stats::bootstrap::interval;
 use crate::stats::paired::{hodges_lehmann, holm, pairs_needed};
-use crate::stats::wilcoxon::{DRAWS, EXACT_PAIRS, SignedRank};
+use crate::stats::wilcoxon::{DRAWN_PAIRS, DRAWS, EXACT_PAIRS, SignedRank};
 use crate::sweep::folder::{Folder, Measured};
 
 pub use answer::answer;
@@ -111,10 +111,15 @@ pub fn limit_of_correction(comparisons: &[Comparison]) -> Option<String> {
 /// What p is, in words.
 #[must_use]
 pub fn test_in_words(comparisons: &[Comparison]) -> String {
+    let most = comparisons.iter().map(|comparison| comparison.n).max().unwrap_or(0);
     if comparisons.iter().all(|comparison| comparison.is_exact) {
         "p exact".to_owned()
-    } else {
+    } else if most <= DRAWN_PAIRS {
         format!("p exact to {EXACT_PAIRS} pairs, beyond from {DRAWS} random choices of signs")
+    } else {
+        format!(
+            "p exact to {EXACT_PAIRS} pairs, to {DRAWN_PAIRS} from {DRAWS} random choices of signs, beyond normal"
+        )
     }
 }
 

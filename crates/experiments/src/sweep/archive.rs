@@ -1,6 +1,6 @@
 //! `journal.jsonl.gz`: the journal of a finished sweep, its lines in order. It is a gzip file of several members, so
-//! that `zcat` prints the journal; the header of each member says how long it is and how many lines it has, so
-//! that a line is found without reading those before it.
+//! that `zcat` prints the journal; the header of each member says how long it is and how many lines it has,
+//! so that a line is found without reading those before it.
 
 use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom, Write};
@@ -19,8 +19,8 @@ pub const FILE: &str = "journal.jsonl.gz";
 /// Bytes of lines from which on a member is full.
 pub(super) const MEMBER_BYTES: usize = 256 << 10;
 
-/// What each member begins with: a header of ten bytes with an extra field, its length, and our subfield of eight
-/// bytes (RFC 1952).
+/// What each member begins with: a header of ten bytes with an extra field, its length, and our subfield of
+/// eight bytes (RFC 1952).
 const HEAD: [u8; 16] = [0x1f, 0x8b, 8, 4, 0, 0, 0, 0, 0, 0xff, 12, 0, b'U', b'S', 8, 0];
 /// Bytes of a header with its two numbers.
 const HEAD_BYTES: usize = HEAD.len() + 8;
@@ -123,7 +123,8 @@ impl Archive {
         range.map(|(start, end)| &bytes[start..end]).ok_or_else(|| invalid("it has no such line"))
     }
 
-    /// For each member, the number of its first line, its lines as far as they can be read, and what is wrong then.
+    /// For each member, the number of its first line, its lines as far as they can be read, and what is wrong
+    /// then.
     pub(super) fn salvage(&self) -> impl Iterator<Item = io::Result<(usize, Vec<u8>, io::Result<()>)>> + '_ {
         let read = |member: &Member| self.read(*member).map(|(bytes, whole)| (member.first, bytes, whole));
         self.members.iter().map(read)

@@ -1,4 +1,5 @@
-//! What of a finished sweep's folder does not come out again: trials, line by line, and everything that is made from them.
+//! What of a finished sweep's folder does not come out again: trials, line by line, and everything that is
+//! made from them.
 
 use std::sync::atomic::AtomicBool;
 
@@ -14,7 +15,8 @@ use crate::failure::Failure;
 use crate::files::FileHash;
 use crate::run::{FaultKind, Outcome, TrialKey};
 
-/// Where the journal's line of a trial is not that of the same trial run again; nothing where it is, byte for byte.
+/// Where the journal's line of a trial is not that of the same trial run again; nothing where it is, byte for
+/// byte.
 ///
 /// # Errors
 /// The journal cannot be read.
@@ -54,7 +56,8 @@ pub fn difference(folder: &mut Folder, again: &Outcome) -> Result<Option<String>
     Ok(Some(format!("{name} {what}")))
 }
 
-/// The first step at which the states of two runs differ, and in which parts; or which of them has states at all.
+/// The first step at which the states of two runs differ, and in which parts; or which of them has states at
+/// all.
 fn first_step(recorded: &Outcome, again: &Outcome, experiment: &Experiment) -> Option<String> {
     let links = |outcome: &Outcome| -> Vec<Link> {
         outcome.record().map(|record| record.chain.links().to_vec()).unwrap_or_default()
@@ -93,7 +96,8 @@ fn first_field(path: &str, there: &Value, now: &Value) -> Option<String> {
     }
 }
 
-/// The files of a finished sweep's folder that are not what its trials and its manifest give, each in a sentence.
+/// The files of a finished sweep's folder that are not what its trials and its manifest give, each in a
+/// sentence.
 ///
 /// # Errors
 /// The journal cannot be read, or there is no room for the tables in the folder of temporary files.

@@ -1,4 +1,5 @@
-//! What is made of a sweep's trials in the end: its tables and the archive of its journal, in one pass, by all threads.
+//! What is made of a sweep's trials in the end: its tables and the archive of its journal, in one pass, by
+//! all threads.
 
 use std::io::Write;
 use std::path::Path;
@@ -40,8 +41,8 @@ struct Made {
 }
 
 impl Closing<'_> {
-    /// Makes the tables of these trials and the archive; each trial's result goes to `found`. `None` when it was
-    /// to stop.
+    /// Makes the tables of these trials and the archive; each trial's result goes to `found`. `None` when it
+    /// was to stop.
     ///
     /// # Errors
     /// A line cannot be read or is not of the trial that it should be of; the disk does not take a file.

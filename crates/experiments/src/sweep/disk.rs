@@ -1,4 +1,5 @@
-//! What of a sweep's folder is on disk besides its journal and tables: the manifest, the sweep itself, and the lock.
+//! What of a sweep's folder is on disk besides its journal and tables: the manifest, the sweep itself, and
+//! the lock.
 
 use std::fs::{self, File};
 use std::io::ErrorKind;

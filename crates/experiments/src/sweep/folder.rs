@@ -1,23 +1,23 @@
 //! The folder of a sweep's results: resumable at any moment, and the same bytes in the end.
 //!
 //! `journal.jsonl` takes each trial as it is done; when all are done, the tables are made from it, and its lines go in
-//! order into `journal.jsonl.gz`. The manifest says what the sweep is from the first moment on, so that the same
-//! command goes on with it and another is refused.
+//! order into `journal.jsonl.gz`. The manifest says what the sweep is from the first moment on, so that the
+//! same command goes on with it and another is refused.
+
+mod writing;
 
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
 
 use super::archive;
-use super::closing::Closing;
 use super::damages::Damages;
 use super::disk::{
     MANIFEST, broken_files, check_continues, experiment_of, has_begun, manifest_in, read_manifest,
-    sync_folder, write_manifest, write_start,
+    sync_folder, write_start,
 };
 use super::journal::{self, Damage, Journal};
-use super::line::{Finished, Kept, line_of};
+use super::line::{Finished, Kept};
 use super::lock::Lock;
 use super::measured::{Results, read_results};
 use super::ours::{check_is_ours, check_may_be_cleared, clear};
@@ -25,7 +25,7 @@ use super::store::{Order, Store, thaw};
 use super::tables::TRIALS;
 use crate::experiment::{Experiment, Place, Shard};
 use crate::failure::Failure;
-use crate::files::{self, FileHash, check_is_file};
+use crate::files::{self, check_is_file};
 use crate::provenance::Manifest;
 use crate::run::{Outcome, TrialKey};
 
@@ -52,7 +52,8 @@ pub struct Opening {
 }
 
 impl Folder {
-    /// Opens the folder of a new sweep, or of one that was broken off or is to be extended. What is to be said about it goes to `say`.
+    /// Opens the folder of a new sweep, or of one that was broken off or is to be extended. What is to be
+    /// said about it goes to `say`.
     ///
     /// # Errors
     /// It belongs to something else; the folder cannot be used; another process uses it.
@@ -214,22 +215,6 @@ impl Folder {
         Ok(Self { path, experiment, manifest, store, results, lock: None })
     }
 
-    /// Goes on with more trials of the same sweep.
-    ///
-    /// # Errors
-    /// The disk does not take it.
-    pub fn extend(&mut self, experiment: Arc<Experiment>) -> Result<(), Failure> {
-        self.manifest = write_start(&self.path, &experiment, self.manifest.shard)?;
-        if !matches!(self.store, Store::Journal(_)) {
-            thaw(&self.path)?;
-            let shard = self.manifest.shard;
-            let (journal, _) = Journal::open(&self.path, (&experiment, shard), true, |_| {})?;
-            self.store = Store::Journal(journal);
-        }
-        self.experiment = experiment;
-        Ok(())
-    }
-
     /// Where it is.
     #[must_use]
     pub fn path(&self) -> &Path {
@@ -327,23 +312,6 @@ impl Folder {
         self.store.line(place)
     }
 
-    /// Takes trials: when this returns, they are on disk.
-    ///
-    /// # Errors
-    /// The disk does not take them, or another process has taken over the folder.
-    pub fn add(&mut self, outcomes: &[Outcome]) -> Result<(), Failure> {
-        self.lock.as_ref().map_or(Ok(()), Lock::check)?;
-        let Store::Journal(journal) = &mut self.store else {
-            return Err(Failure::run("a finished sweep takes no trials"));
-        };
-        let place = |outcome: &Outcome| (outcome.key.case, outcome.key.policy, outcome.key.trial);
-        let line = |outcome| Ok((place(outcome), line_of(&self.experiment, self.experiment.keep, outcome)?));
-        journal.append(&outcomes.iter().map(line).collect::<Result<Vec<_>, Failure>>()?)?;
-        let measured = |outcome| (place(outcome), Measured::of(outcome, &self.experiment.metrics));
-        self.results.extend(outcomes.iter().map(measured));
-        Ok(())
-    }
-
     /// What is to be said when the sweep was stopped.
     #[must_use]
     pub fn interrupted(&self) -> Failure {
@@ -351,59 +319,5 @@ impl Folder {
         Failure::Interrupted(format!(
             "stopped; {done} finished trials are in {path}, and the same command goes on"
         ))
-    }
-
-    /// Makes all tables from the journal, in another folder; `None` when it was to stop.
-    pub(super) fn tables_in(
-        &mut self,
-        folder: &Path,
-        stop: &AtomicBool,
-    ) -> Result<Option<Vec<FileHash>>, Failure> {
-        let Self { experiment, store, results, manifest, .. } = self;
-        let closing = Closing { folder, experiment, keep: experiment.keep, shard: manifest.shard, stop };
-        closing.run(results.keys().copied(), |place| store.line(place), |_, _| {})
-    }
-
-    /// Makes the tables, unless they are there already.
-    ///
-    /// # Errors
-    /// The disk does not take them, or `stop` was set: the same command makes them.
-    pub fn finish(&mut self, stop: &AtomicBool) -> Result<(), Failure> {
-        if self.manifest.is_complete {
-            return Ok(());
-        }
-        let path = self.path.clone();
-        let made = self.tables_in(&path, stop)?.ok_or_else(|| self.interrupted())?;
-        self.close(made)
-    }
-
-    /// Takes all trials from elsewhere, in order, and makes the tables.
-    ///
-    /// # Errors
-    /// A line cannot be read, the disk does not take it, or `stop` was set.
-    pub(super) fn fill(
-        &mut self,
-        line: impl FnMut(Place) -> Result<Vec<u8>, Failure>,
-        stop: &AtomicBool,
-    ) -> Result<(), Failure> {
-        let (path, experiment) = (self.path.clone(), Arc::clone(&self.experiment));
-        let keep = experiment.keep;
-        let closing = Closing { folder: &path, experiment: &experiment, keep, shard: None, stop };
-        let results = &mut self.results;
-        let found = |place, measured| {
-            results.insert(place, measured);
-        };
-        let made = closing.run(experiment.places(None), line, found)?;
-        self.close(made.ok_or_else(|| self.interrupted())?)
-    }
-
-    fn close(&mut self, made: Vec<FileHash>) -> Result<(), Failure> {
-        self.manifest.files.extend(made);
-        self.manifest.is_complete = true;
-        write_manifest(&self.path, &self.manifest)?;
-        let order = Order::of(&self.experiment, self.manifest.shard);
-        self.store = Store::archive(&self.path, order).map_err(Failure::storage)?;
-        let journal = self.path.join(journal::FILE);
-        files::remove(&journal).map_err(|error| Failure::storage(format!("{}: {error}", journal.display())))
     }
 }

@@ -1,6 +1,6 @@
 //! `host.json`: the machines that ran a sweep, and when. It stands beside the manifest and is no part of the hashed
-//! results, because it differs between two runs of the same sweep. It has what the STRESS guidelines for reporting
-//! simulation studies ask for (Monks et al. 2019): hardware, system, compiler, threads and times.
+//! results, because it differs between two runs of the same sweep. It has what the STRESS guidelines for
+//! reporting simulation studies ask for (Monks et al. 2019): hardware, system, compiler, threads and times.
 
 use std::path::Path;
 

@@ -43,8 +43,9 @@ pub(super) fn is_one(folder: &Path) -> bool {
 }
 
 impl Journal {
-    /// Opens the journal of a folder, of the whole sweep or one shard, and hands each finished trial to `found`, in the order of the file. For one who writes, trials that timed
-    /// out count as not run. A last line that is cut off is what a killed process was writing.
+    /// Opens the journal of a folder, of the whole sweep or one shard, and hands each finished trial to
+    /// `found`, in the order of the file. For one who writes, trials that timed out count as not run. A last
+    /// line that is cut off is what a killed process was writing.
     ///
     /// # Errors
     /// The file cannot be read.

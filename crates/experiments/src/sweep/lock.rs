@@ -1,9 +1,10 @@
 //! `.lock`: one process at a time works in a folder, also on file systems that nodes share.
 //!
-//! The file is made with `O_EXCL`, which every file system does as one step, and names host, job, process and time.
-//! Where the system call `flock` works, its holder has it as well, so that a killed process of the same machine leaves
-//! nothing behind; on Lustre without `flock`, and on NFS with locks of each node alone, the file is what counts. Its
-//! holder writes it anew every [`BEAT`]. A lock is stale, and is taken over with a note, when
+//! The file is made with `O_EXCL`, which every file system does as one step, and names host, job, process and
+//! time. Where the system call `flock` works, its holder has it as well, so that a killed process of the same
+//! machine leaves nothing behind; on Lustre without `flock`, and on NFS with locks of each node alone, the
+//! file is what counts. Its holder writes it anew every [`BEAT`]. A lock is stale, and is taken over with a
+//! note, when
 //!
 //! - it is of this host, and its process is gone, or
 //! - it is of an earlier start of this very job (Slurm requeued it), or
@@ -159,7 +160,8 @@ impl Lock {
         Ok(Self { held, end: Some(end), beats: Some(beats) })
     }
 
-    /// Refuses to go on when another process has taken the folder over, because this one was silent for too long.
+    /// Refuses to go on when another process has taken the folder over, because this one was silent for too
+    /// long.
     ///
     /// # Errors
     /// That.
@@ -232,7 +234,8 @@ fn read(path: &Path) -> io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// What is known of a lock, with its bytes and, for as long as the file is open, its `flock`; nothing where it is gone.
+/// What is known of a lock, with its bytes and, for as long as the file is open, its `flock`; nothing where
+/// it is gone.
 fn look(path: &Path) -> io::Result<Option<(Found, Vec<u8>, File)>> {
     let opened = match File::options().read(true).append(true).open(path) {
         Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
@@ -265,8 +268,8 @@ fn silence(path: &Path, file: &File) -> io::Result<Option<Duration>> {
     Ok(Some(now?.duration_since(written).unwrap_or_default()))
 }
 
-/// Removes a lock with these bytes; returns whether it was that lock. One that took its place in between is put
-/// back.
+/// Removes a lock with these bytes; returns whether it was that lock. One that took its place in between is
+/// put back.
 fn remove_stale(path: &Path, bytes: &[u8]) -> io::Result<bool> {
     let aside = beside(path, "stale");
     match fs::rename(path, &aside) {

@@ -41,8 +41,8 @@ impl Merge {
     /// Finds out which shard has which trial. No trial is read.
     ///
     /// # Errors
-    /// A folder is damaged or is no sweep's; they are of different sweeps or programs, disagree about a trial, or lack
-    /// one.
+    /// A folder is damaged or is no sweep's; they are of different sweeps or programs, disagree about a
+    /// trial, or lack one.
     pub fn of(folders: &[PathBuf]) -> Result<Self, Failure> {
         let [first, ..] = folders else { return Err(Failure::input("there is nothing to merge")) };
         let manifest = manifest_in(first)?;
@@ -126,7 +126,8 @@ impl Merge {
     /// Writes the whole to a folder; no trial is held there twice. What is to be said about it goes to `say`.
     ///
     /// # Errors
-    /// The folder has something else in it, a line cannot be read, the disk does not take it, or `stop` was set.
+    /// The folder has something else in it, a line cannot be read, the disk does not take it, or `stop` was
+    /// set.
     pub fn write_to(
         mut self,
         out: &Path,

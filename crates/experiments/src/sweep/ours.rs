@@ -1,4 +1,5 @@
-//! What in a folder is a sweep's or a report's: nothing else is deleted or written over, and no link is followed.
+//! What in a folder is a sweep's or a report's: nothing else is deleted or written over, and no link is
+//! followed.
 
 use std::fs;
 use std::path::Path;
@@ -22,7 +23,8 @@ fn known_names() -> impl Iterator<Item = &'static str> {
     logs.into_iter().chain(INPUTS).chain(TABLES).chain(PARQUETS)
 }
 
-/// Refuses a folder that is not a sweep's: one with a manifest or a journal of this program, or with nothing in it.
+/// Refuses a folder that is not a sweep's: one with a manifest or a journal of this program, or with nothing
+/// in it.
 pub(super) fn check_is_ours(path: &Path) -> Result<(), Failure> {
     if !path.exists() {
         return Ok(());
@@ -103,7 +105,8 @@ fn reported(path: &Path) -> Vec<String> {
     names.into_iter().filter(|name| name == REPORT || is_figure(name)).collect()
 }
 
-/// Writes the files of a report, by their names from the folder on: whatever is there already must be of the report before.
+/// Writes the files of a report, by their names from the folder on: whatever is there already must be of the
+/// report before.
 ///
 /// # Errors
 /// A file of this name that no report has written, or the disk does not take it.
@@ -161,7 +164,8 @@ fn remove_recordings(path: &Path) -> std::io::Result<()> {
     Ok(())
 }
 
-/// The files in a folder and in the folders in it, by their names from the folder on; of a link to a folder, the link.
+/// The files in a folder and in the folders in it, by their names from the folder on; of a link to a folder,
+/// the link.
 fn files_in(folder: &Path) -> Vec<String> {
     let mut found = Vec::new();
     for name in names_in(folder).unwrap_or_default() {

@@ -1,4 +1,5 @@
-//! The tables of a finished sweep as Parquet files beside them. They are made of the tables alone, and are no part of the hashed results.
+//! The tables of a finished sweep as Parquet files beside them. They are made of the tables alone, and are no
+//! part of the hashed results.
 
 use std::path::Path;
 

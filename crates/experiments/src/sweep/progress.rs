@@ -1,6 +1,6 @@
 //! How far a folder is, without reading its trials.
 
-use std::io::{self, Read};
+use std::io::{self, BufRead, BufReader, Read, Seek, SeekFrom};
 use std::path::Path;
 
 use super::disk::read_manifest;
@@ -34,17 +34,21 @@ pub fn progress(folder: &Path) -> Result<Option<Progress>, Failure> {
     Ok(Some(Progress { manifest, journal_lines, holder }))
 }
 
-/// The lines of a file; 0 where there is none.
+/// The lines of a file that have an end; 0 where there is none.
 fn lines(path: &Path) -> io::Result<usize> {
-    let mut file = match files::open(path) {
+    let file = match files::open(path) {
         Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(0),
         opened => opened?,
     };
-    let (mut buffer, mut lines) = (vec![0; 1 << 16], 0);
-    loop {
-        match file.read(&mut buffer)? {
-            0 => return Ok(lines),
-            size => lines += buffer[..size].iter().filter(|byte| **byte == b'\n').count(),
-        }
+    let (mut reader, mut lines) = (BufReader::with_capacity(1 << 16, file), 0);
+    while reader.skip_until(b'\n')? > 0 {
+        lines += 1;
     }
+    let mut file = reader.into_inner();
+    let mut last = [b'\n'];
+    if lines > 0 {
+        file.seek(SeekFrom::End(-1))?;
+        file.read_exact(&mut last)?;
+    }
+    Ok(lines - usize::from(last != *b"\n"))
 }

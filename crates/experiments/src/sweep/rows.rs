@@ -11,8 +11,9 @@ use crate::experiment::Experiment;
 use crate::metric::{Catalogue, Metric};
 use crate::run::{Trial, TrialKey, series_times};
 
-/// The columns of `trials.csv`: which trial it is, every metric, and what else is kept of it. `method` and `policy` say the same; the one is
-/// there so that the authors' files and ours can be stacked, the other for the words of this project.
+/// The columns of `trials.csv`: which trial it is, every metric, and what else is kept of it. `method` and
+/// `policy` say the same; the one is there so that the authors' files and ours can be stacked, the other for
+/// the words of this project.
 #[must_use]
 pub fn trial_columns(metrics: &Catalogue) -> Vec<String> {
     let names = |names: &[&str]| names.iter().map(|name| (*name).to_owned()).collect::<Vec<_>>();

@@ -18,7 +18,8 @@ pub struct Sizes {
     pub journal: u64,
 }
 
-/// The room that these trials of a sweep take, by themselves or as trials of a shard, if this is kept of each.
+/// The room that these trials of a sweep take, by themselves or as trials of a shard, if this is kept of
+/// each.
 ///
 /// # Errors
 /// There is no room for them in the folder of temporary files, or `stop` was set.

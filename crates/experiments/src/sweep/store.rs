@@ -72,7 +72,8 @@ impl Store {
         Ok(Self::Archive(archive, order))
     }
 
-    /// What can be read of an archive, whatever was done to it, with the results; what is wrong goes to `say`.
+    /// What can be read of an archive, whatever was done to it, with the results; what is wrong goes to
+    /// `say`.
     ///
     /// # Errors
     /// It cannot be read at all.
@@ -107,8 +108,8 @@ impl Store {
     }
 }
 
-/// Makes a journal of a folder's archive again, where there is no journal: there may be more trials. What of it
-/// cannot be read is not in the journal.
+/// Makes a journal of a folder's archive again, where there is no journal: there may be more trials. What of
+/// it cannot be read is not in the journal.
 ///
 /// # Errors
 /// The disk does not take it.

@@ -1,5 +1,5 @@
-//! A table of a sweep's folder: a row for each thing, the axes of the sweep before its own columns. Rows are made
-//! in memory, so that threads can make them, and put into the file in order.
+//! A table of a sweep's folder: a row for each thing, the axes of the sweep before its own columns. Rows are
+//! made in memory, so that threads can make them, and put into the file in order.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -58,7 +58,8 @@ impl Table {
 /// Rows of a table in memory.
 pub(super) struct Rows(csv::Writer<Vec<u8>>);
 
-/// What stands before the columns of a table in the rows of a case: its number from 1 and the values of the axes, or nothing without axes.
+/// What stands before the columns of a table in the rows of a case: its number from 1 and the values of the
+/// axes, or nothing without axes.
 pub(super) fn before(experiment: &Experiment, case: usize) -> Vec<String> {
     let values = &experiment.cases[case].values;
     let number = (!values.is_empty()).then(|| (case + 1).to_string());

@@ -19,7 +19,8 @@ pub(super) const TRIALS: &str = "trials.csv";
 pub(super) const TABLES: [&str; 6] =
     [TRIALS, "rounds.csv", "robots.csv", "groups.csv", "series.csv", links::FILE];
 
-/// The names of the tables of a sweep that keeps this, or of a shard: the others are made when the shards are merged.
+/// The names of the tables of a sweep that keeps this, or of a shard: the others are made when the shards are
+/// merged.
 pub(super) fn tables_of(keep: Keep, shard: Option<Shard>) -> &'static [&'static str] {
     let count = match keep {
         Keep::Trials => 1,

@@ -74,7 +74,9 @@ fn submitted(folder: &Path, submission: &Submission) -> Result<Output, Failure> 
     let mut output = Output::of(shards, plan.at_once, plan.seconds_per_trial / f64::from(plan.cpus));
     let missing: Vec<u32> = output.missing().map(|shard| shard.number).collect();
     let tasks = format!("{}%{}", ranges(&missing), plan.at_once);
-    output.submit = (!missing.is_empty()).then(|| line(folder, Some(&tasks)));
+    let is_under_way = |shard: &OneShard| matches!(shard.state, State::Running | State::Waiting);
+    let other = output.shards.iter().any(is_under_way).then_some(array);
+    output.submit = (!missing.is_empty()).then(|| line(folder, Some(&tasks), other));
     Ok(output)
 }
 

@@ -175,15 +175,21 @@ fn print(out: &mut dyn Write, scripts: &Scripts, folder: &Path) -> Result<(), Fa
     for (name, script) in [(ARRAY, &scripts.array), (MERGE, &scripts.merge)] {
         writeln!(out, "\n--- {}\n{script}", folder.join(name).display())?;
     }
-    Ok(writeln!(out, "--- nothing was written or submitted; without --dry-run:\n{}", line(folder, None))?)
+    Ok(writeln!(
+        out,
+        "--- nothing was written or submitted; without --dry-run:\n{}",
+        line(folder, None, None)
+    )?)
 }
 
-/// The line that submits an array, or some of its tasks, and the merge after it.
-pub(crate) fn line(folder: &Path, tasks: Option<&str>) -> String {
+/// The line that submits an array, or some of its tasks, and the merge after it, and after another array that
+/// is under way.
+pub(crate) fn line(folder: &Path, tasks: Option<&str>, other: Option<&str>) -> String {
     let script = |name: &str| quoted(&folder.join(name).display().to_string());
     let tasks = tasks.map_or(String::new(), |tasks| format!("--array={tasks} "));
     let (array, merge) = (script(ARRAY), script(MERGE));
-    format!("sbatch --dependency=afterok:$(sbatch --parsable {tasks}{array}) {merge}")
+    let other = other.map_or(String::new(), |array| format!("afterany:{array},"));
+    format!("sbatch --dependency={other}afterok:$(sbatch --parsable {tasks}{array}) {merge}")
 }
 
 fn submit(

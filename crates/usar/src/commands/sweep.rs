@@ -39,10 +39,9 @@ Examples:
   usar sweep scenarios/paper.ron --policies RNE,RANDOM --trials 100 --out results/many
   usar sweep scenarios/paper.ron --policies 'RNE,sum=RNE(score: Sum)' --out results/sum
   usar sweep scenarios/paper.ron --record 1              (then: usar view results/paper --policy RNE,DIS)
-  usar sweep scenarios/paper.ron --parquet               (the tables as Parquet files as well)
+  usar sweep scenarios/paper.ron --tables parquet        (the tables as Parquet files as well)
   usar sweep scenarios/sweeps/energy.ron --shard 2/8     (then `usar merge`)
   usar sweep scenarios/paper.ron --precision 'rescuees.hard: RNE-DIS: 2.0' --max-trials 500")]
-#[expect(clippy::struct_excessive_bools, reason = "each is a switch of the command line")]
 pub(crate) struct Arguments {
     /// Scenario or sweep file (RON)
     file: PathBuf,
@@ -75,9 +74,9 @@ pub(crate) struct Arguments {
     /// Record trials for `usar view`: `all`, the first N of each policy, or `seeds=3,7`; files go to the folder `recordings/` of the results
     #[arg(long, value_name = "all|N|seeds=LIST")]
     record: Option<Recorded>,
-    /// Write the tables as Parquet files as well
-    #[arg(long)]
-    parquet: bool,
+    /// Form of the tables: with `parquet`, Parquet files stand beside the CSV
+    #[arg(long, value_name = "csv|parquet", default_value = "csv", value_parser = ["csv", "parquet"])]
+    tables: String,
     /// No progress on stderr
     #[arg(long)]
     quiet: bool,
@@ -121,7 +120,7 @@ impl Arguments {
             self.run(&mut folder)?;
         }
         folder.finish(&STOP)?;
-        if self.parquet {
+        if self.tables == "parquet" {
             write_parquet(&folder)?;
         }
         if let Some(which) = &self.record {

@@ -69,7 +69,7 @@ fn parquet_files_of_a_sweep_belong_to_it_and_are_verified() {
     let path = |name: &str| folder.path().join("r").join(name);
     let plain = succeeds(&sweep(&["--trials", "2"]));
     let manifest = read(&path("manifest.json"));
-    assert_eq!(succeeds(&sweep(&["--trials", "2", "--parquet"])), plain);
+    assert_eq!(succeeds(&sweep(&["--trials", "2", "--tables", "parquet"])), plain);
     assert_eq!(read(&path("manifest.json")), manifest, "Parquet files are no part of the results");
     for name in ["trials", "rounds", "groups", "robots", "series", "hashes"] {
         assert!(path(&format!("{name}.parquet")).exists(), "{name}");
@@ -84,12 +84,12 @@ fn parquet_files_of_a_sweep_belong_to_it_and_are_verified() {
     assert!(
         String::from_utf8_lossy(&verified.stderr).contains("robots.parquet: is not what robots.csv gives")
     );
-    succeeds(&sweep(&["--trials", "2", "--parquet"]));
+    succeeds(&sweep(&["--trials", "2", "--tables", "parquet"]));
     assert_eq!(std::fs::read(path("robots.parquet")).unwrap(), whole);
     // They would be of fewer trials.
     succeeds(&sweep(&["--trials", "3"]));
     assert!(!path("robots.parquet").exists());
-    succeeds(&sweep(&["--trials", "3", "--parquet"]));
+    succeeds(&sweep(&["--trials", "3", "--tables", "parquet"]));
     succeeds(&sweep(&["--trials", "3", "--fresh"]));
     assert!(!path("trials.parquet").exists());
 }

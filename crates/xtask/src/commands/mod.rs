@@ -5,6 +5,7 @@ pub mod damage;
 pub mod golden;
 pub mod kills;
 pub mod limits;
+pub mod million;
 pub mod mutations;
 pub mod pages;
 pub mod reference;

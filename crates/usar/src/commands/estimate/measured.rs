@@ -11,10 +11,12 @@ use experiments::sweep::{Sizes, sizes};
 
 use crate::running::{STOP, progress_bar};
 
-/// About how many trials are measured, in whole seeds: policies that decide alike share theirs, so that only all policies of a seed show what it takes.
+/// About how many trials are measured, in whole seeds: policies that decide alike share theirs, so that only
+/// all policies of a seed show what it takes.
 const TRIALS: usize = 24;
 
-/// Places that this is added to, again and again, are spread without a pattern that a grid of cases could have as well.
+/// Places that this is added to, again and again, are spread without a pattern that a grid of cases could
+/// have as well.
 const GOLDEN_RATIO: f64 = 0.618_033_988_749_895;
 
 /// A few trials of a sweep, and how long they took.

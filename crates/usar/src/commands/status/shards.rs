@@ -92,7 +92,8 @@ fn state(there: Option<&Progress>, number: u32, said: &Said) -> (State, String) 
     }
 }
 
-/// Mean wall-clock time of a trial in a shard, in seconds, over all runs that ended; nothing before the first.
+/// Mean wall-clock time of a trial in a shard, in seconds, over all runs that ended; nothing before the
+/// first.
 pub(super) fn seconds_each(folders: impl Iterator<Item = impl AsRef<Path>>) -> Option<f64> {
     let runs = folders.flat_map(|folder| Hosts::read(folder.as_ref()).runs);
     let (seconds, trials) =
