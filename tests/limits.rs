@@ -130,6 +130,8 @@ fn each_table_may_have_its_most_entries_and_not_one_more() {
         ("needs", "(name:\"n#\",level:Basic,measures:Health)", limits::NEEDS),
         ("tasks", task, limits::TASKS),
         ("radiation", "(at:(9,9),radius_m:1)", limits::ZONES),
+        ("scatter", "(what:Debris,count:1,radius_m:1)", limits::SCATTERS),
+        ("timeline", "(at_s:1,event:RobotFails(1))", limits::MOMENTS),
         ("team", "(role:\"observer\",count:1,center:(9,9),width_m:0)", limits::ROWS),
     ] {
         assert_eq!(entries(path, entry, limit.count()), Vec::<String>::new(), "{path}");
@@ -143,6 +145,37 @@ fn each_table_may_have_its_most_entries_and_not_one_more() {
     };
     assert_eq!(with_piece(limits::DEBRIS.count()), None);
     assert!(with_piece(limits::DEBRIS.count() + 1).is_some());
+}
+
+#[test]
+fn distributions_choices_and_scattered_things_have_limits() {
+    let problem = |path: &str, value: &str| {
+        let mut file: ScenarioFile = (*paper()).clone();
+        file.set(path, value).map_err(|error| error.to_string())?;
+        Scenario::try_from(file).map(|_| ()).map_err(|problems| problems[0].to_string())
+    };
+    let zones = |count: usize| vec!["(at:(50,36),radius_m:Uniform(1,2))"; count].join(",");
+    assert_eq!(problem("radiation", &format!("[{}]", zones(limits::DRAWS.count()))), Ok(()));
+    let many = problem("radiation", &format!("[{}]", zones(limits::DRAWS.count() + 1))).unwrap_err();
+    assert!(many.contains("one distribution too many"), "{many}");
+    let choice = |count: usize| format!("Choice([{}])", vec!["4.5"; count].join(","));
+    assert_eq!(problem("radiation[0].radius_m", &choice(limits::CHOICES.count())), Ok(()));
+    assert!(problem("radiation[0].radius_m", &choice(limits::CHOICES.count() + 1)).is_err());
+    let scatter = |count: usize| {
+        format!("[(what:Debris,count:{count},radius_m:1),(what:Radiation,count:1,radius_m:1)]")
+    };
+    assert_eq!(problem("scatter", &scatter(limits::SCATTERED.count() - 1)), Ok(()));
+    assert!(problem("scatter", &scatter(limits::SCATTERED.count())).unwrap_err().contains("in all"));
+    for (event, limit) in [
+        ("RobotLoses(robot:1,hp:#)", limits::LOSS),
+        ("SourceAppears(at:(9,9),radius_m:#)", limits::ZONE_RADIUS_M),
+    ] {
+        let event = |value: f64| format!("[(at_s:1,event:{})]", event.replace('#', &format!("{value:?}")));
+        assert_eq!(problem("timeline", &event(limit.most)), Ok(()));
+        assert!(problem("timeline", &event(limit.most.next_up())).is_err());
+    }
+    assert_eq!(problem("timeline", "[(at_s:86400,event:RobotFails(1))]"), Ok(()));
+    assert!(problem("timeline", "[(at_s:86400.1,event:RobotFails(1))]").is_err());
 }
 
 #[test]

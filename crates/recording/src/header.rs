@@ -155,7 +155,19 @@ mod as_text {
     }
 }
 
+/// States of rescuees in recordings that were made before rescuees could be absent.
+const FORMER_RESCUEE_STATES: usize = 4;
+
 impl Codes {
+    /// Whether the numbers of states mean what they mean in this version.
+    pub(crate) fn are_known(&self) -> bool {
+        let mut known = Self::of_this_version();
+        if self.rescuees.len() == FORMER_RESCUEE_STATES {
+            known.rescuees.truncate(FORMER_RESCUEE_STATES);
+        }
+        *self == known
+    }
+
     pub(crate) fn of_this_version() -> Self {
         Self {
             activities: names(&ACTIVITIES),

@@ -2,11 +2,12 @@
 
 use rand::RngExt;
 use rand::rngs::ChaCha8Rng;
-use ron_fields::{Fields, Misfit};
+use ron_fields::{Fields, Misfit, nearest};
 use schemars::JsonSchema;
 use serde::de::Error;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
+use super::error::Problem;
 use super::partial::text_of;
 use super::ron_options;
 use crate::seed::normal;
@@ -159,6 +160,16 @@ impl Amount {
 pub(super) fn is_distribution(text: &str) -> bool {
     let name = text.split(|c: char| !c.is_alphanumeric()).next().unwrap_or_default();
     WORDS.contains(&name) && text[name.len()..].trim_start().starts_with('(')
+}
+
+/// Says which distribution may have been meant in the place of a number.
+pub(super) fn hint(problem: &mut Problem) {
+    let is_of_number = ["must be a number", "must be a whole number"].contains(&problem.rule.as_str());
+    let name = problem.found.split('(').next().filter(|name| name.len() < problem.found.len());
+    let meant = name.and_then(|name| nearest(name, WORDS));
+    if let Some(meant) = meant.filter(|_| is_of_number && problem.hint.is_empty()) {
+        problem.hint = format!("did you mean {meant}?");
+    }
 }
 
 impl<'de> Deserialize<'de> for Amount {

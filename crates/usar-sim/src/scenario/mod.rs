@@ -113,7 +113,9 @@ impl Scenario {
         let (plain, draws, wrong) = draws::take_out(text, &fields, "");
         let fields = if draws.is_empty() { fields } else { Fields::of(&plain) };
         let (file, mut list) = reading::read_all::<ScenarioFile>(&plain, &fields);
+        let are_sound = wrong.is_empty();
         list.extend(wrong);
+        list.iter_mut().for_each(distribution::hint);
         if fields.value("draws").is_some() {
             let rule = "is no field".to_owned();
             let hint = "a distribution stands in the place of its value".to_owned();
@@ -126,8 +128,8 @@ impl Scenario {
         }
         let checked = match file {
             Some(file) if list.is_empty() => Self::try_from(ScenarioFile { draws, ..file }),
-            Some(file) => Self::try_from(file),
-            None => Err(Vec::new()),
+            Some(file) if are_sound => Self::try_from(file),
+            Some(_) | None => Err(Vec::new()),
         };
         list.extend(checked.as_ref().err().into_iter().flatten().cloned());
         for problem in list.iter_mut().filter(|problem| problem.line.is_none()) {

@@ -135,36 +135,64 @@ impl ScenarioFile {
         first == Some(true)
     }
 
-    /// Names of what can open and close: whether it is a fixed piece.
-    fn ways(&self) -> Vec<(&str, bool)> {
-        let debris =
-            self.debris.iter().filter_map(|piece| Some((piece.name.as_deref()?, piece.movable.is_none())));
-        let doors = self.walls.iter().flat_map(|wall| &wall.doors);
-        let doors = doors.filter_map(|door| Some((door.name.as_deref()?, true)));
-        let falling = self.timeline.iter().filter_map(|moment| match &moment.event {
-            Happening::DebrisFalls { name, .. } => Some((name.as_deref()?, true)),
-            _ => None,
-        });
-        debris.chain(doors).chain(falling).collect()
+    /// What can open and close and has a name.
+    fn ways(&self) -> Vec<Named<'_>> {
+        let mut ways = Vec::new();
+        for (i, piece) in self.debris.iter().enumerate() {
+            let is_fixed = piece.movable.is_none();
+            ways.extend(Named::new(format!("debris[{i}].name"), piece.name.as_deref(), is_fixed));
+        }
+        for (i, wall) in self.walls.iter().enumerate() {
+            for (k, door) in wall.doors.iter().enumerate() {
+                ways.extend(Named::new(format!("walls[{i}].doors[{k}].name"), door.name.as_deref(), true));
+            }
+        }
+        for (i, moment) in self.timeline.iter().enumerate() {
+            if let Happening::DebrisFalls { name, .. } = &moment.event {
+                ways.extend(Named::new(format!("timeline[{i}].event.name"), name.as_deref(), true));
+            }
+        }
+        ways
     }
 
-    /// Names of radiation sources.
-    fn sources(&self) -> Vec<&str> {
-        let zones = self.radiation.iter().filter_map(|zone| zone.name.as_deref());
-        let later = self.timeline.iter().filter_map(|moment| match &moment.event {
-            Happening::SourceAppears { name, .. } => name.as_deref(),
-            _ => None,
-        });
-        zones.chain(later).collect()
+    /// Radiation sources that have a name.
+    fn sources(&self) -> Vec<Named<'_>> {
+        let mut sources = Vec::new();
+        for (i, zone) in self.radiation.iter().enumerate() {
+            sources.extend(Named::new(format!("radiation[{i}].name"), zone.name.as_deref(), true));
+        }
+        for (i, moment) in self.timeline.iter().enumerate() {
+            if let Happening::SourceAppears { name, .. } = &moment.event {
+                sources.extend(Named::new(format!("timeline[{i}].event.name"), name.as_deref(), true));
+            }
+        }
+        sources
+    }
+}
+
+/// A thing with a name that events use.
+struct Named<'f> {
+    /// Where the name stands.
+    field: String,
+    name: &'f str,
+    /// Whether nothing can push it.
+    is_fixed: bool,
+}
+
+impl<'f> Named<'f> {
+    fn new(field: String, name: Option<&'f str>, is_fixed: bool) -> Option<Self> {
+        Some(Self { field, name: name?, is_fixed })
     }
 }
 
 /// The rules of the timeline, and of the names that it uses.
 pub(super) fn timeline(check: &mut Checker, file: &ScenarioFile) {
     let ways = file.ways();
-    let names: Vec<&str> = ways.iter().map(|(name, _)| *name).collect();
-    unique(check, "debris, doors and falling debris", &names);
-    unique(check, "radiation sources", &file.sources());
+    let names: Vec<&str> = ways.iter().map(|way| way.name).collect();
+    let sources = file.sources();
+    let source_names: Vec<&str> = sources.iter().map(|source| source.name).collect();
+    unique(check, &ways);
+    unique(check, &sources);
     for (i, moment) in file.timeline.iter().enumerate() {
         let field = format!("timeline[{i}].event");
         check.number(format!("timeline[{i}].at_s"), moment.at_s, limits::AT_S);
@@ -172,7 +200,7 @@ pub(super) fn timeline(check: &mut Checker, file: &ScenarioFile) {
             Happening::DebrisFalls { .. } => {}
             Happening::Opens(name) | Happening::Closes(name) => {
                 named(check, &field, name, (&names, "must name a door or a piece of debris that has a name"));
-                if ways.contains(&(name.as_str(), false)) {
+                if ways.iter().any(|way| way.name == name && !way.is_fixed) {
                     check.fail(&field, "must name fixed debris", format!("{name:?}, which can be pushed"));
                 }
             }
@@ -181,7 +209,7 @@ pub(super) fn timeline(check: &mut Checker, file: &ScenarioFile) {
                 check.number(format!("{field}.radius_m"), *radius_m, limits::ZONE_RADIUS_M);
             }
             Happening::SourceDies(name) => {
-                named(check, &field, name, (&file.sources(), "must name a radiation source that has a name"));
+                named(check, &field, name, (&source_names, "must name a radiation source that has a name"));
             }
             Happening::RobotFails(robot) => self::robot(check, &field, *robot, file),
             Happening::RobotLoses { robot, energy, hp } => {
@@ -208,17 +236,17 @@ pub(super) fn timeline(check: &mut Checker, file: &ScenarioFile) {
     }
 }
 
-fn unique(check: &mut Checker, of: &str, names: &[&str]) {
-    let mut sorted = names.to_vec();
-    sorted.sort_unstable();
-    for name in &sorted {
-        let is_plain = limits::NAME_BYTES.allows(name.len()) && !name.chars().any(char::is_control);
-        if !is_plain {
-            check.fail("name", format!("of {of} must be text of at most 64 bytes on a line"), shown(name));
+fn unique(check: &mut Checker, all: &[Named]) {
+    let mut sorted: Vec<&Named> = all.iter().collect();
+    sorted.sort_by_key(|named| named.name);
+    for Named { field, name, .. } in &sorted {
+        if !limits::NAME_BYTES.allows(name.len()) || name.chars().any(char::is_control) {
+            check.fail(field, "must be text of 1 to 64 bytes without line breaks", shown(name));
         }
     }
-    for pair in sorted.windows(2).filter(|pair| pair[0] == pair[1]) {
-        check.fail("name", format!("of {of} must not be given twice"), shown(pair[0]));
+    for pair in sorted.windows(2).filter(|pair| pair[0].name == pair[1].name) {
+        let rule = format!("must not be the name of {} too", pair[0].field.trim_end_matches(".name"));
+        check.fail(&pair[1].field, rule, shown(pair[1].name));
     }
 }
 

@@ -10,7 +10,7 @@ use crate::scenario;
 
 const WORLD: &str = r#"
     duration_s: 120, arena_m: (40, 40),
-    team: [(role: "robot", count: 4, center: (20, 5), width_m: 6, body: (observing_m: 5, sensing_m: 5))],
+    team: [(role: "robot", count: 4, center: (20, 5), width_m: 6, body: (observing_m: 5, sensing_m: 14))],
     tasks: [
         (name: "far", difficulty: 2, center: (10, 34), size_m: (4, 2), grid: (3, 2), rest: (8, 12)),
         (name: "near", difficulty: 1, center: (30, 34), size_m: (4, 2), grid: (3, 2), rest: (32, 12)),

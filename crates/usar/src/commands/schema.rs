@@ -40,9 +40,13 @@ impl Arguments {
         let schema = match self.of {
             Of::Scenario => scenario_schema(),
             Of::Sweep => sweep_schema(),
-            Of::Question => schemars::schema_for!(Question).into(),
-            Of::Decision => schemars::schema_for!(Decision).into(),
+            Of::Question => return print(out, &schemars::schema_for!(Question)),
+            Of::Decision => return print(out, &schemars::schema_for!(Decision)),
         };
-        Ok(writeln!(out, "{}", serde_json::to_string_pretty(&schema).map_err(Failure::run)?)?)
+        print(out, &schema)
     }
+}
+
+fn print(out: &mut dyn Write, schema: &impl serde::Serialize) -> Result<(), Failure> {
+    Ok(writeln!(out, "{}", serde_json::to_string_pretty(schema).map_err(Failure::run)?)?)
 }
