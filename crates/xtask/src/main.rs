@@ -6,8 +6,8 @@ mod commands;
 use std::process::ExitCode;
 
 use commands::{
-    calibration, damage, golden, kills, limits, million, mutations, pages, reference, scale, scenarios, soak, work,
-    worlds,
+    calibration, damage, golden, kills, limits, million, mutations, pages, reference, scale, scenarios, soak,
+    work, worlds,
 };
 
 fn main() -> ExitCode {
