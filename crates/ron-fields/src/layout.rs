@@ -252,10 +252,10 @@ mod tests {
             "()",
             "[]",
             "(a: [ ],)",
-            "(a: Some((b: 'c')))",
+            "(a: Some((b: \"c\")))",
             "(a: 1 // one\n, b: 2\n)",
             "[1, 2 /* two */\n]",
-            "A(b\"x\")",
+            "A(\"x\")",
             "(größe: -1e3)",
         ] {
             let out = formatted(text);
@@ -263,7 +263,7 @@ mod tests {
             let leaves = |text: &str| -> Vec<(String, String)> {
                 Fields::of(text)
                     .leaves()
-                    .map(|(path, place)| (path.to_owned(), text[place].split_whitespace().collect()))
+                    .map(|(path, place)| (path.to_owned(), text[place].replace(' ', "")))
                     .collect()
             };
             assert_eq!(leaves(text), leaves(&out), "{text}: {out}");
