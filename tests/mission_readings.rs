@@ -34,7 +34,7 @@ fn a_rest_that_fills_the_low_level_leaves_the_other_as_it_was() {
             if let Event::RestEnded { robot } = event {
                 let ([energy, hp], now) = (before[robot.index()], levels(simulation, *robot));
                 assert!(energy < 30.0 || energy < hp, "{energy} {hp}: only energy gets low here");
-                assert_eq!(now, [100.0, hp]);
+                assert_eq!(now.map(f64::to_bits), [100.0, hp].map(f64::to_bits));
                 rests += 1;
             }
         }
@@ -85,12 +85,12 @@ fn points_last_longer_where_a_robot_has_more_of_them() {
             last = (0..12).map(|id| levels(&simulation, RobotId(id))).collect();
         }
         let spent: Vec<f64> = simulation.finish().robots.iter().map(|robot| robot.energy_spent).collect();
-        let lost: Vec<[f64; 2]> = first
+        let losses: Vec<[f64; 2]> = first
             .iter()
             .zip(&last)
             .map(|(first, last): (&[f64; 2], &[f64; 2])| [first[0] - last[0], first[1] - last[1]])
             .collect();
-        (lost, spent)
+        (losses, spent)
     };
     let ((percent, spent_percent), (points, spent_points)) = (after("unit: Percent"), after("unit: Points"));
     // Health changes the speed a little, so nothing is quite the same: observers have 100 and 50 points, the others 150 and 100.

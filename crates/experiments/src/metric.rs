@@ -54,42 +54,59 @@ const RATIO: &str = "points per rescuee";
 /// All metrics.
 #[rustfmt::skip]
 const DECLARATIONS: &[Declaration] = &[
-    per_task("rescuees", "rescuees", "Rescuees delivered home or to a rest place.", "", |r| Some(f64::from(r.rescued())), |t| Some(f64::from(t.rescued))).primary().in_figure("rescuees").higher(),
-    per_task("energy_per_rescuee", "energy per rescuee", "Energy spent, divided by the rescuees delivered; empty where nobody was rescued. The total includes what robots spent outside groups.", RATIO, |r| ratio(r.energy(), r.rescued()), |t| ratio(t.energy, t.rescued)).primary().in_figure("energy per rescuee").lower(),
-    per_task("hp_per_rescuee", "HP per rescuee", "HP lost, divided by the rescuees delivered; empty where nobody was rescued. The total includes what robots lost outside groups.", RATIO, |r| ratio(r.hp(), r.rescued()), |t| ratio(t.hp, t.rescued)).primary().in_figure("HP per rescuee").lower(),
-    whole("rounds", "rounds", "Rounds that ended: everybody was home again for whom the team waits.", "", |r| Some(f64::from(r.completed_rounds))).primary().higher(),
-    whole("waiting", "time waited", "Time in which robots stood because of other robots, summed over all robots.", "s", |r| Some(r.waiting_s())).in_figure("waiting and deadlocks").lower(),
-    whole("deadlocks", "deadlocks", "Conflict sets in which nobody moved for as long as the rule of right of way allows.", "", |r| Some(f64::from(r.counts.deadlocks))).in_figure("waiting and deadlocks").lower(),
-    whole("longest_stall", "longest stall", "The longest time in which one robot with a goal came no nearer to it, over all robots.", "s", |r| Some(r.longest_stall_s())).in_figure("waiting and deadlocks").lower(),
-    whole("conflicts", "conflicts", "Conflict sets that began: robots whose wishes would have brought them too near to one another.", "", |r| Some(f64::from(r.counts.conflicts))),
-    whole("rotations", "turns passed on", "Times the head of a conflict set lost its turn to the next.", "", |r| Some(f64::from(r.counts.rotations))),
-    whole("retreats", "times room was made", "Times a robot made room for another.", "", |r| Some(f64::from(r.counts.retreats))),
-    whole("back_offs", "times backed off", "Times a conflict set backed off sideways.", "", |r| Some(f64::from(r.counts.back_offs))),
-    whole("unreachable", "places given up on", "Times a robot gave up on a rescuee or a place because no way leads there.", "", |r| Some(f64::from(r.counts.unreachable))).lower(),
-    whole("errands_done", "errands done", "Places of errands that were reached.", "", |r| Some(f64::from(r.counts.errands_done))).higher(),
-    whole("time", "time to the end", "Simulated time when the trial was over.", "s", |r| Some(r.time_s)),
-    per_task("secured", "secured", "Rescuees that were taken on board.", "", |r| Some(f64::from(r.secured())), |t| Some(f64::from(t.secured))).higher(),
-    per_task("energy", "energy spent", "Energy spent by all robots; of a task, by its groups.", POINTS, |r| Some(r.energy()), |t| Some(t.energy)),
-    whole("energy.ungrouped", "energy spent outside groups", "Energy spent by robots that were in no group: on their way to rest, and during rounds that went on without them.", POINTS, |r| Some(r.ungrouped_energy)),
-    per_task("hp", "HP lost", "HP lost by all robots; of a task, by its groups.", POINTS, |r| Some(r.hp()), |t| Some(t.hp)),
-    whole("hp.ungrouped", "HP lost outside groups", "HP lost by robots that were in no group.", POINTS, |r| Some(r.ungrouped_hp)),
-    whole("turned_back", "times turned back", "Times a robot left for its rest place.", "", |r| Some(f64::from(r.counts.turned_back))),
-    whole("stranded", "robots stranded", "Robots that ended with no energy.", "", |r| Some(r.stranded() as f64)).lower(),
-    whole("disabled", "robots disabled", "Robots that ended with no HP.", "", |r| Some(r.disabled() as f64)).lower(),
-    whole("distance", "distance travelled", "Way travelled, summed over all robots.", "m", |r| Some(r.distance_m())),
+    per_task("rescuees", "rescuees", "", |r| Some(f64::from(r.rescued())), |t| Some(f64::from(t.rescued))).primary().in_figure("rescuees").higher()
+        .means("Rescuees delivered home or to a rest place."),
+    per_task("energy_per_rescuee", "energy per rescuee", RATIO, |r| ratio(r.energy(), r.rescued()), |t| ratio(t.energy, t.rescued)).primary().in_figure("energy per rescuee").lower()
+        .means("Energy spent, divided by the rescuees delivered; empty where nobody was rescued. The total includes what robots spent outside groups."),
+    per_task("hp_per_rescuee", "HP per rescuee", RATIO, |r| ratio(r.hp(), r.rescued()), |t| ratio(t.hp, t.rescued)).primary().in_figure("HP per rescuee").lower()
+        .means("HP lost, divided by the rescuees delivered; empty where nobody was rescued. The total includes what robots lost outside groups."),
+    whole("rounds", "rounds", "", |r| Some(f64::from(r.completed_rounds))).primary().higher()
+        .means("Rounds that ended: everybody was home again for whom the team waits."),
+    whole("waiting", "time waited", "s", |r| Some(r.waiting_s())).in_figure("waiting and deadlocks").lower()
+        .means("Time in which robots stood because of other robots, summed over all robots."),
+    whole("deadlocks", "deadlocks", "", |r| Some(f64::from(r.counts.deadlocks))).in_figure("waiting and deadlocks").lower()
+        .means("Conflict sets in which nobody moved for as long as the rule of right of way allows."),
+    whole("longest_stall", "longest stall", "s", |r| Some(r.longest_stall_s())).in_figure("waiting and deadlocks").lower()
+        .means("The longest time in which one robot with a goal came no nearer to it, over all robots."),
+    whole("conflicts", "conflicts", "", |r| Some(f64::from(r.counts.conflicts)))
+        .means("Conflict sets that began: robots whose wishes would have brought them too near to one another."),
+    whole("rotations", "turns passed on", "", |r| Some(f64::from(r.counts.rotations)))
+        .means("Times the head of a conflict set lost its turn to the next."),
+    whole("retreats", "times room was made", "", |r| Some(f64::from(r.counts.retreats)))
+        .means("Times a robot made room for another."),
+    whole("back_offs", "times backed off", "", |r| Some(f64::from(r.counts.back_offs)))
+        .means("Times a conflict set backed off sideways."),
+    whole("unreachable", "places given up on", "", |r| Some(f64::from(r.counts.unreachable))).lower()
+        .means("Times a robot gave up on a rescuee or a place because no way leads there."),
+    whole("errands_done", "errands done", "", |r| Some(f64::from(r.counts.errands_done))).higher()
+        .means("Places of errands that were reached."),
+    whole("time", "time to the end", "s", |r| Some(r.time_s))
+        .means("Simulated time when the trial was over."),
+    per_task("secured", "secured", "", |r| Some(f64::from(r.secured())), |t| Some(f64::from(t.secured))).higher()
+        .means("Rescuees that were taken on board."),
+    per_task("energy", "energy spent", POINTS, |r| Some(r.energy()), |t| Some(t.energy))
+        .means("Energy spent by all robots; of a task, by its groups."),
+    whole("energy.ungrouped", "energy spent outside groups", POINTS, |r| Some(r.ungrouped_energy))
+        .means("Energy spent by robots that were in no group: on their way to rest, and during rounds that went on without them."),
+    per_task("hp", "HP lost", POINTS, |r| Some(r.hp()), |t| Some(t.hp))
+        .means("HP lost by all robots; of a task, by its groups."),
+    whole("hp.ungrouped", "HP lost outside groups", POINTS, |r| Some(r.ungrouped_hp))
+        .means("HP lost by robots that were in no group."),
+    whole("turned_back", "times turned back", "", |r| Some(f64::from(r.counts.turned_back)))
+        .means("Times a robot left for its rest place."),
+    whole("stranded", "robots stranded", "", |r| Some(r.stranded() as f64)).lower()
+        .means("Robots that ended with no energy."),
+    whole("disabled", "robots disabled", "", |r| Some(r.disabled() as f64)).lower()
+        .means("Robots that ended with no HP."),
+    whole("distance", "distance travelled", "m", |r| Some(r.distance_m()))
+        .means("Way travelled, summed over all robots."),
 ];
 
-const fn whole(
-    name: &'static str,
-    title: &'static str,
-    meaning: &'static str,
-    unit: &'static str,
-    value: Value,
-) -> Declaration {
+const fn whole(name: &'static str, title: &'static str, unit: &'static str, value: Value) -> Declaration {
     Declaration {
         name,
         title,
-        meaning,
+        meaning: "",
         unit,
         figure: "",
         is_primary: false,
@@ -101,7 +118,6 @@ const fn whole(
 const fn per_task(
     name: &'static str,
     title: &'static str,
-    meaning: &'static str,
     unit: &'static str,
     total: Value,
     task: TaskValue,
@@ -109,7 +125,7 @@ const fn per_task(
     Declaration {
         name,
         title,
-        meaning,
+        meaning: "",
         unit,
         figure: "",
         is_primary: false,
@@ -121,6 +137,10 @@ const fn per_task(
 impl Declaration {
     const fn primary(self) -> Self {
         Self { is_primary: true, ..self }
+    }
+
+    const fn means(self, meaning: &'static str) -> Self {
+        Self { meaning, ..self }
     }
 
     const fn higher(self) -> Self {

@@ -155,9 +155,11 @@ impl Manifest {
                     axis.settings(value).into_iter().map(|(path, value)| format!("{path}={value}"));
                 format!("{value} ({})", settings.collect::<Vec<_>>().join(", "))
             };
-            let values = |axis: &Axis| match axis.variants.is_empty() {
-                true => axis.values.join(", "),
-                false => axis.values.iter().map(|value| set(axis, value)).collect::<Vec<_>>().join(", "),
+            let values = |axis: &Axis| {
+                if axis.variants.is_empty() {
+                    return axis.values.join(", ");
+                }
+                axis.values.iter().map(|value| set(axis, value)).collect::<Vec<_>>().join(", ")
             };
             let axis = |axis: &Axis| format!("{} [{}]", axis.path, values(axis));
             if m.axes.is_empty() {

@@ -134,8 +134,8 @@ fn interaction(
 
 fn in_words(interaction: &Interaction, title: &str) -> String {
     let Interaction { path, values: [from, to], a, b, n, .. } = interaction;
-    let others: String =
-        interaction.others.iter().map(|(path, value)| format!(" (at {path}={value})")).collect();
+    let others = interaction.others.iter().map(|(path, value)| format!(" (at {path}={value})"));
+    let others = others.collect::<Vec<_>>().concat();
     let place = format!("{title}, {path} from {from} to {to}{others}");
     let (Some([there, here]), Some(change), Some(p), Some([low, high])) =
         (interaction.differences, interaction.change, interaction.p_holm, interaction.interval)

@@ -123,8 +123,11 @@ pub(super) fn dictionary(experiment: &Experiment) -> Result<[(&'static str, Stri
     Ok([(DICTIONARY[0], markdown(experiment, &tables)), (DICTIONARY[1], package)])
 }
 
-/// Each table with what a row is and its columns.
-fn tables(experiment: &Experiment) -> Result<Vec<(&'static str, &'static str, Vec<Column>)>, Failure> {
+/// A table: its file, what a row is, and its columns.
+type Described = (&'static str, &'static str, Vec<Column>);
+
+/// The tables of an experiment.
+fn tables(experiment: &Experiment) -> Result<Vec<Described>, Failure> {
     let names = [
         trial_columns(&experiment.metrics),
         columns::<RoundRow>()?,
@@ -188,7 +191,7 @@ fn described(file: &str, name: &str) -> Column {
     Column { name: name.to_owned(), kind, unit, meaning: meaning.to_owned() }
 }
 
-fn markdown(experiment: &Experiment, tables: &[(&str, &str, Vec<Column>)]) -> String {
+fn markdown(experiment: &Experiment, tables: &[Described]) -> String {
     let mut text = format!(
         "# Tables of {}\n\nEmpty cells are values that are not defined. Energy and HP costs are in points: percent of a robot's own maximum, unless the \
          scenario counts otherwise (`costs.unit`).\n",
@@ -207,7 +210,7 @@ fn markdown(experiment: &Experiment, tables: &[(&str, &str, Vec<Column>)]) -> St
     text
 }
 
-fn package(experiment: &Experiment, tables: &[(&str, &str, Vec<Column>)]) -> Value {
+fn package(experiment: &Experiment, tables: &[Described]) -> Value {
     let field = |column: &Column| {
         let mut field = json!({"name": column.name, "type": column.kind, "description": column.meaning});
         if !column.unit.is_empty() {
@@ -215,7 +218,7 @@ fn package(experiment: &Experiment, tables: &[(&str, &str, Vec<Column>)]) -> Val
         }
         field
     };
-    let resource = |(file, row, columns): &(&str, &str, Vec<Column>)| {
+    let resource = |(file, row, columns): &Described| {
         json!({
             "name": file.trim_end_matches(".csv"),
             "path": file,

@@ -58,9 +58,9 @@ fn trial_rows(folder: &mut Folder, place: Place) -> Result<Vec<[String; 4]>, Fai
     let measured = folder.results().get(&place).and_then(|measured| measured.metrics.as_ref());
     for (metric, value) in experiment.metrics.iter().zip(measured.into_iter().flatten()) {
         let task = if metric.is_total() { "" } else { metric.part() };
-        rows.extend(value.map(|value| {
-            [String::new(), task.to_owned(), metric.declared_column().to_owned(), value.to_string()]
-        }));
+        rows.extend(
+            value.map(|value| [String::new(), task.to_owned(), metric.declared_column(), value.to_string()]),
+        );
     }
     if rows.is_empty() || !experiment.keep.has_records() {
         return Ok(rows);

@@ -112,10 +112,10 @@ pub fn judge(target: &Target, candidates: &[(Candidate, Vec<Vec<f64>>)]) -> Vec<
     let mut wins = vec![0_usize; candidates.len()];
     let mut draws = ChaCha8Rng::seed_from_u64(1);
     for _ in 0..RESAMPLES {
-        let mut drawn = |count: usize| -> Vec<usize> {
+        let mut some = |count: usize| -> Vec<usize> {
             (0..count).map(|_| draws.random_range(0..count as u32) as usize).collect()
         };
-        let distances = distances(&drawn(target.trials), &drawn(trials));
+        let distances = distances(&some(target.trials), &some(trials));
         let nearest = (0..distances.len()).min_by(|a, b| distances[*a].total_cmp(&distances[*b]));
         nearest.into_iter().for_each(|nearest| wins[nearest] += 1);
     }

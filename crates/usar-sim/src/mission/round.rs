@@ -65,13 +65,12 @@ pub fn levels_after_rest(rules: &MissionRules, [energy, hp]: [f64; 2]) -> [f64; 
     if rules.rest_fills != RestFills::Low {
         return [100.0; 2];
     }
-    match (energy < rules.energy_threshold, hp < rules.hp_threshold) {
-        (true, true) => [100.0; 2],
-        (true, false) => [100.0, hp],
-        (false, true) => [energy, 100.0],
-        (false, false) if energy <= hp => [100.0, hp],
-        (false, false) => [energy, 100.0],
-    }
+    let (needs_energy, needs_hp) = (energy < rules.energy_threshold, hp < rules.hp_threshold);
+    let neither = !needs_energy && !needs_hp;
+    [
+        if needs_energy || neither && energy <= hp { 100.0 } else { energy },
+        if needs_hp || neither && energy > hp { 100.0 } else { hp },
+    ]
 }
 
 /// What a group in the field can still do.

@@ -238,15 +238,16 @@ fn a_sweep_with_axes_says_how_differences_change_along_them() {
     let header = csv::Reader::from_path(results.join("trials.csv")).unwrap().headers().unwrap().clone();
     let [case, method, trial] =
         ["case", "method", "trial"].map(|name| header.iter().position(|h| h == name).unwrap());
-    let value = |number: &Value, policy: &str, number_of: usize| -> f64 {
+    let value = |number: &str, policy: &str, number_of: usize| -> f64 {
         let is_it = |row: &&csv::StringRecord| {
-            row[case] == number.to_string() && &row[method] == policy && row[trial] == number_of.to_string()
+            row[case] == *number && &row[method] == policy && row[trial] == number_of.to_string()
         };
         trials.iter().find(is_it).unwrap()[at].parse().unwrap()
     };
     for one in interactions {
         let (a, b) = (one["a"].as_str().unwrap(), one["b"].as_str().unwrap());
-        let difference = |at: &str, trial| value(&one[at], a, trial) - value(&one[at], b, trial);
+        let difference =
+            |at: &str, trial| value(&one[at].to_string(), a, trial) - value(&one[at].to_string(), b, trial);
         let change =
             (1..=4).map(|trial| difference("case", trial) - difference("reference", trial)).sum::<f64>()
                 / 4.0;

@@ -94,7 +94,7 @@ fn strange_texts_are_refused_in_words() {
         here,
         2,
         &["sweep", "grid.ron", "--set", "roles[0].speed_mps=2.0"],
-        &["--set: roles.carrier.speed_mps is an axis"],
+        &["--set: roles.carrier.speed_mps is on an axis"],
     );
     let grid = std::fs::read_to_string(here.join("grid.ron")).unwrap();
     let commented = grid.replace("[1.5, 3.0]", "[1.5, // as printed\n 3.0 /* twice */]");
@@ -195,8 +195,16 @@ fn a_shard_has_whole_pairs_and_calls_itself_complete() {
     let manifest: Value = serde_json::from_str(&read(&shard.join("manifest.json"))).unwrap();
     assert_eq!(manifest["is_complete"], true);
     let names: Vec<String> = files(&shard).into_keys().collect();
-    let expected =
-        ["experiment.ron", "journal.jsonl.gz", "manifest.json", "resolved.ron", "sweep.ron", "trials.csv"];
+    let expected = [
+        "columns.md",
+        "datapackage.json",
+        "experiment.ron",
+        "journal.jsonl.gz",
+        "manifest.json",
+        "resolved.ron",
+        "sweep.ron",
+        "trials.csv",
+    ];
     assert_eq!(names, expected, "the other tables are made when shards are merged");
     let said = succeeds(&usar(here, &["compare", "results/paper-2-of-2", "--metric", "distance", "--json"]));
     let compared: Value = serde_json::from_str(&said).unwrap();

@@ -87,7 +87,12 @@ mod tests {
             (plan.shards(), plan.at_once, plan.time())
         };
         assert_eq!(shards(0.1, None, 1000), (1, 1, "00:30:00".to_owned()));
-        assert_eq!(shards(80.0, None, 1000), (120, 100, "00:31:00".to_owned()));
+        assert_eq!(shards(80.0, None, 1000), (120, 100, "00:30:00".to_owned()));
+        assert_eq!(
+            shards(80.0, Some(10), 1000).2,
+            "04:00:00",
+            "100 seeds of 4 trials of 72 s on 4 processors, twice"
+        );
         assert_eq!(shards(8000.0, None, 1000).0, 500);
         assert_eq!(shards(8000.0, None, 50).0, 50);
         assert_eq!(shards(0.1, Some(7), 1000).0, 7);
