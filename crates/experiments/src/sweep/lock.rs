@@ -3,12 +3,12 @@
 //! The file is made with `O_EXCL`, which every file system does as one step, and names host, job, process and
 //! time. Where the system call `flock` works, its holder has it as well, so that a killed process of the same
 //! machine leaves nothing behind; on Lustre without `flock`, and on NFS with locks of each node alone, the
-//! file is what counts. Its holder writes it anew every [`BEAT`]. A lock is stale, and is taken over with a
+//! file is what counts. Its holder writes it anew every `BEAT`. A lock is stale, and is taken over with a
 //! note, when
 //!
 //! - it is of this host, and its process is gone, or
 //! - it is of an earlier start of this very job (Slurm requeued it), or
-//! - it was not written for [`STALE`], by the clock of the file server.
+//! - it was not written for `STALE`, by the clock of the file server.
 
 use std::fs::{self, File, TryLockError};
 use std::io::{self, ErrorKind, Read, Seek, SeekFrom, Write};
