@@ -130,7 +130,7 @@ impl Free {
         !(0.01..=0.99).contains(&place)
     }
 
-    /// What a value near an end of the range adds to a misfit: nothing from a twentieth of the range on, [`EDGE`] at the very end, and the
+    /// What a value near an end of the range adds to a misfit: nothing from a twentieth of the range on, `EDGE` at the very end, and the
     /// square of the way between. A value at an end says that the range decides, not the data.
     #[must_use]
     pub fn edge_penalty(&self, value: f64) -> f64 {
