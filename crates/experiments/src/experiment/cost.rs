@@ -74,10 +74,19 @@ impl Experiment {
     /// # Errors
     /// A scenario allows another policy alone, or those of [`Experiment::check_cost`].
     pub fn check(&self, is_allowed: bool) -> Result<(), Failure> {
-        for case in &self.cases {
-            self.policies.iter().try_for_each(|policy| policy.check_allowed(&case.scenario))?;
-        }
+        self.check_policies()?;
         self.check_cost(is_allowed)
+    }
+
+    /// Refuses policies that may not run in the sweep's scenarios.
+    ///
+    /// # Errors
+    /// A scenario allows another policy alone.
+    pub fn check_policies(&self) -> Result<(), Failure> {
+        let mut scenarios = self.cases.iter().map(|case| &case.scenario);
+        scenarios.try_for_each(|scenario| {
+            self.policies.iter().try_for_each(|policy| policy.check_allowed(scenario))
+        })
     }
 
     /// Refuses a sweep that costs much, unless that is allowed.

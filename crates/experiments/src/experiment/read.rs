@@ -343,5 +343,5 @@ pub(super) fn checked(file: ScenarioFile, prefix: &str) -> Result<Scenario, Fail
 /// Whether a field decides numbers: all do but the scenario's name and its description.
 fn decides(path: &str) -> bool {
     let first = path.split(['.', '[']).next().unwrap_or_default();
-    !["name", "description"].contains(&first)
+    !["name", "description", "only_policy"].contains(&first)
 }

@@ -51,13 +51,7 @@ impl TrialArguments {
             let scenario = with_settings(&scenario, &self.set)?;
             check_cost(&scenario, self.allow_expensive)?;
             let (first_policy, first_seed) = defaults(&self.file)?;
-            if !scenario.only_policy.is_empty() {
-                return Err(Failure::input(format!(
-                    "{}: only_policy allows {} alone: no decision can be tried otherwise",
-                    self.file.display(),
-                    scenario.only_policy
-                )));
-            }
+            check_open(&scenario)?;
             let spec = parse(policy.unwrap_or(&first_policy))?;
             let seed = self.seed.unwrap_or(first_seed);
             return Ok(AskedTrial { scenario, spec, seed, policies: Vec::new() });
@@ -68,6 +62,7 @@ impl TrialArguments {
             return Err(Failure::input(format!("--case: must be from 1 to {cases}, found {}", self.case)));
         };
         let scenario = with_settings(&case.scenario, &self.set)?;
+        check_open(&scenario)?;
         let labelled = |label: &str| experiment.policies.iter().find(|spec| spec.label == label).cloned();
         let spec = match policy {
             None => experiment.policies[0].clone(),
@@ -76,6 +71,18 @@ impl TrialArguments {
         let seed = self.seed.unwrap_or_else(|| experiment.seed(1));
         Ok(AskedTrial { scenario, spec, seed, policies: experiment.policies })
     }
+}
+
+/// Refuses a candidate of a calibration: no decision in it can be tried otherwise before it is chosen.
+fn check_open(scenario: &Scenario) -> Result<(), Failure> {
+    let only = &scenario.only_policy;
+    if only.is_empty() {
+        return Ok(());
+    }
+    Err(Failure::input(format!(
+        "{}: only_policy allows {only} alone: no decision can be tried otherwise",
+        scenario.name
+    )))
 }
 
 impl AskedTrial {

@@ -78,6 +78,7 @@ impl Arguments {
     pub(crate) fn execute(&self, out: &mut dyn Write) -> Result<(), Failure> {
         stop_on_signals();
         let experiment = Experiment::load(&self.file, &self.chosen.overrides())?;
+        experiment.check_policies()?;
         let measured = Measured::of(&experiment)?;
         let output = self.output(&experiment, &measured)?;
         if self.json {

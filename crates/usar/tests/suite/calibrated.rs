@@ -66,6 +66,7 @@ fn a_calibration_that_was_broken_off_ends_as_one_that_was_not() {
     assert_eq!(scenario.name, "paper-fitted");
     assert!(text.starts_with("// Fitted by usar calibrate (misfit "), "{text}");
     assert!(text.contains("// Places [view]"), "comments stay");
+    no_other_policy_runs_in(folder, "whole/calibrated.ron");
     assert_eq!(scenario.roles[0].speed_mps.to_bits(), scenario.roles[1].speed_mps.to_bits());
     assert!(
         scenario
@@ -74,6 +75,25 @@ fn a_calibration_that_was_broken_off_ends_as_one_that_was_not() {
             .all(|zone| zone.radius_m.to_bits() == scenario.radiation[0].radius_m.to_bits())
     );
     assert!(whole.contains("roles.carrier.speed_mps = ") && whole.contains("rescuees_hard"), "{whole}");
+}
+
+/// Before a candidate is chosen, only the calibrated policy runs in it.
+#[track_caller]
+fn no_other_policy_runs_in(folder: &std::path::Path, file: &str) {
+    let message = ["only_policy allows DIS alone"];
+    for arguments in [
+        vec!["run", file, "--policy", "RNE"],
+        vec!["sweep", file, "--policies", "DIS,RNE"],
+        vec!["estimate", file, "--policies", "RNE"],
+        vec!["view", file, "--policy", "RNE", "--no-open"],
+        vec!["fork", file, "--at-round", "1", "--policy", "RNE"],
+        vec!["oracle", file],
+    ] {
+        refused(&usar(folder, &arguments), &message);
+    }
+    let set = ["run", file, "--policy", "RNE", "--set", "only_policy=\"\""];
+    refused(&usar(folder, &set), &["only_policy: decides no number of a trial"]);
+    succeeds(&usar(folder, &["run", file, "--policy", "DIS", "--quiet"]));
 }
 
 #[test]
