@@ -1,4 +1,5 @@
-//! The readings of the paper's mission that are options: each does what docs/readings.md says, with every invariant checked.
+//! The readings of the paper's mission that are options: each does what docs/readings.md says, with every
+//! invariant checked.
 
 use usar_sim::event::{Event, Place};
 use usar_sim::ids::RobotId;
@@ -93,7 +94,8 @@ fn points_last_longer_where_a_robot_has_more_of_them() {
         (losses, spent)
     };
     let ((percent, spent_percent), (points, spent_points)) = (after("unit: Percent"), after("unit: Points"));
-    // Health changes the speed a little, so nothing is quite the same: observers have 100 and 50 points, the others 150 and 100.
+    // Health changes the speed a little, so nothing is quite the same: observers have 100 and 50 points, the
+    // others 150 and 100.
     for id in 0..12 {
         let ratio = |level: usize| points[id][level] / percent[id][level];
         let [energy, hp] = if id < 10 { [1.0 / 1.5, 1.0] } else { [1.0, 2.0] };

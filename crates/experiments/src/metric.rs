@@ -239,7 +239,8 @@ impl Metric {
         if column.ends_with(unit) { column } else { column + unit }
     }
 
-    /// The name of its column without the task: what a table calls it that has the task in a column of its own.
+    /// The name of its column without the task: what a table calls it that has the task in a column of its
+    /// own.
     #[must_use]
     pub fn declared_column(&self) -> String {
         let whole = self.column();

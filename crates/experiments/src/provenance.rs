@@ -12,7 +12,8 @@ use crate::files::FileHash;
 /// Version of the folder's layout.
 pub const SCHEMA_VERSION: u32 = 5;
 
-/// The first version that can be read, but not gone on with. Its shards were dealt otherwise, so that these cannot.
+/// The first version that can be read, but not gone on with. Its shards were dealt otherwise, so that these
+/// cannot.
 const READABLE_VERSION: u32 = 4;
 
 /// Trials that a sweep may have for each case and policy.

@@ -28,7 +28,8 @@ pub struct Exchange {
     pub score_nats: Option<f64>,
 }
 
-/// What each policy would have decided. The oracle is left out, and so is a policy that cannot group this team.
+/// What each policy would have decided. The oracle is left out, and so is a policy that cannot group this
+/// team.
 #[must_use]
 pub fn other_choices(question: &Question, chosen: &Assignment, policies: &[PolicySpec]) -> Vec<OtherChoice> {
     let choice = |spec: &PolicySpec| {

@@ -67,7 +67,8 @@ pub fn from_csv<W: Write + Send>(
     }
 }
 
-/// The next rows that are written together: of one case, where the table has cases, so that a reader can leave out the others.
+/// The next rows that are written together: of one case, where the table has cases, so that a reader can
+/// leave out the others.
 fn next_group(
     records: &mut std::iter::Peekable<impl Iterator<Item = csv::Result<csv::StringRecord>>>,
     case: Option<usize>,

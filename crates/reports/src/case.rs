@@ -1,4 +1,5 @@
-//! The page of one case of a sweep, which opens from disk, and the figures in it with the numbers behind each.
+//! The page of one case of a sweep, which opens from disk, and the figures in it with the numbers behind
+//! each.
 
 use askama::Template;
 use experiments::Failure;

@@ -1,4 +1,5 @@
-//! The first page of the report of a sweep with several cases: what each case says, and how differences change from one to another.
+//! The first page of the report of a sweep with several cases: what each case says, and how differences
+//! change from one to another.
 
 use askama::Template;
 use experiments::Failure;

@@ -15,8 +15,8 @@ use crate::wanted::{Files, Wanted};
 /// Cases of a sweep that get a page each, where none is asked for.
 const MOST_PAGES: usize = 24;
 
-/// Writes the report of a sweep into its folder; returns where it is. A sweep with several cases gets an overview, and a page for each case
-/// beside the figures.
+/// Writes the report of a sweep into its folder; returns where it is. A sweep with several cases gets an
+/// overview, and a page for each case beside the figures.
 ///
 /// # Errors
 /// An unknown policy, the folder cannot be written to, or its journal cannot be read.

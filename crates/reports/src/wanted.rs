@@ -14,7 +14,8 @@ pub struct Wanted {
     pub title: Option<String>,
     /// The case that gets a page, from 0; none for all.
     pub case: Option<usize>,
-    /// Trials whose ways are drawn, with their replays, on the page of the case that is asked for, or of the first.
+    /// Trials whose ways are drawn, with their replays, on the page of the case that is asked for, or of the
+    /// first.
     pub shown: Vec<ShownTrial>,
 }
 

@@ -85,7 +85,8 @@ impl Fields {
         leaves.map(|node| (&*node.path, node.value.clone()))
     }
 
-    /// Paths, with numbers for names, and bytes of the values of all fields and entries, each before what is in it.
+    /// Paths, with numbers for names, and bytes of the values of all fields and entries, each before what is
+    /// in it.
     pub fn all(&self) -> impl Iterator<Item = (&str, Range<usize>)> {
         self.nodes.iter().skip(1).map(|node| (&*node.path, node.value.clone()))
     }

@@ -1,4 +1,5 @@
-//! The layout of a text: indents, blanks, commas at ends of lines. Line breaks and comments stay where they are.
+//! The layout of a text: indents, blanks, commas at ends of lines. Line breaks and comments stay where they
+//! are.
 
 use crate::cursor::Cursor;
 
@@ -30,9 +31,10 @@ struct Token<'t> {
     blanks: usize,
 }
 
-/// A text that is well-formed in the layout of the project: four blanks for each bracket that is open at the end of a line, one blank after
-/// commas and colons, a comma after the last entry before a bracket on a line of its own, no blanks at ends of lines, at most one empty line.
-/// Line breaks, comments and the blanks before comments at the ends of lines stay as they are. Doing it twice changes nothing.
+/// A text that is well-formed in the layout of the project: four blanks for each bracket that is open at the
+/// end of a line, one blank after commas and colons, a comma after the last entry before a bracket on a line
+/// of its own, no blanks at ends of lines, at most one empty line. Line breaks, comments and the blanks
+/// before comments at the ends of lines stay as they are. Doing it twice changes nothing.
 ///
 /// ```
 /// let text = "(a:1 ,b :[\n1,2 // two\n ]\n)";
@@ -145,7 +147,8 @@ fn tokens(text: &str) -> Vec<Token<'_>> {
     tokens
 }
 
-/// Puts commas before the comments between an entry and its comma, and drops commas that [`formatted`] adds itself.
+/// Puts commas before the comments between an entry and its comma, and drops commas that [`formatted`] adds
+/// itself.
 fn after_commas(tokens: &mut Vec<Token>) {
     let mut at = 0;
     while at < tokens.len() {

@@ -1,8 +1,10 @@
-//! The readings of the paper's mission that a calibration compares, a design of experiments over them, and what follows from its runs.
+//! The readings of the paper's mission that a calibration compares, a design of experiments over them, and
+//! what follows from its runs.
 //!
-//! There are 3 x 2^7 = 384 combinations. The screening fits 24 of them: for each of the three kinds of rest an eighth of the 128 others (a
-//! fractional factorial of resolution III, with other signs for each rest), so that the levels of each factor stand in equally many runs with each
-//! level of rest, and the mean over a level's runs is not biased by any other factor alone.
+//! There are 3 x 2^7 = 384 combinations. The screening fits 24 of them: for each of the three kinds of rest
+//! an eighth of the 128 others (a fractional factorial of resolution III, with other signs for each rest), so
+//! that the levels of each factor stand in equally many runs with each level of rest, and the mean over a
+//! level's runs is not biased by any other factor alone.
 
 use std::fmt;
 use std::path::Path;
@@ -15,7 +17,8 @@ pub struct Factor {
     pub levels: &'static [&'static str],
 }
 
-/// The readings, in the order of the table. The last is no field: whether work costs something, by how much is then fitted.
+/// The readings, in the order of the table. The last is no field: whether work costs something, by how much
+/// is then fitted.
 pub const FACTORS: [Factor; 8] = [
     Factor { field: "mission.rest_fills", levels: &["Both", "Low", "InTurn"] },
     Factor { field: "costs.unit", levels: &["Percent", "Points"] },
@@ -134,7 +137,8 @@ impl fmt::Display for Run {
     }
 }
 
-/// How far the mean logarithm of the misfit over the runs with each level is from that over all runs, for each factor.
+/// How far the mean logarithm of the misfit over the runs with each level is from that over all runs, for
+/// each factor.
 fn effects(runs: &[Run]) -> Vec<Vec<f64>> {
     let mean = |runs: &mut dyn Iterator<Item = &Run>| {
         let (sum, count) = runs.fold((0.0, 0.0), |(sum, count), run| (sum + run.misfit.ln(), count + 1.0));
@@ -150,9 +154,9 @@ fn effects(runs: &[Run]) -> Vec<Vec<f64>> {
         .collect()
 }
 
-/// The six combinations that are fitted further: the three with the least misfit in the screening, and the three of all 384 for which the sum of the
-/// effects promises the least, each with the run of the screening that it starts from: the one that differs in the fewest readings, of
-/// these the one with the least misfit.
+/// The six combinations that are fitted further: the three with the least misfit in the screening, and the
+/// three of all 384 for which the sum of the effects promises the least, each with the run of the screening
+/// that it starts from: the one that differs in the fewest readings, of these the one with the least misfit.
 ///
 /// # Panics
 /// There are no runs.

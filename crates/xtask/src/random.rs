@@ -1,5 +1,6 @@
-//! Random valid scenarios of all kinds: one to four tasks or errands, walls and doors, radiation, things that are scattered, distributions in
-//! the place of values, timelines. Each is run for a minute with every invariant checked.
+//! Random valid scenarios of all kinds: one to four tasks or errands, walls and doors, radiation, things that
+//! are scattered, distributions in the place of values, timelines. Each is run for a minute with every
+//! invariant checked.
 
 use std::fmt::Write;
 

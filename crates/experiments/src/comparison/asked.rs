@@ -1,5 +1,6 @@
-//! Which comparisons are made: what the command line says, else what the sweep file asks, else a small family: rescuees, in total and of
-//! each task, of every policy against the first. `compare` and `report` ask here, so that both say the same.
+//! Which comparisons are made: what the command line says, else what the sweep file asks, else a small
+//! family: rescuees, in total and of each task, of every policy against the first. `compare` and `report` ask
+//! here, so that both say the same.
 
 use super::Choice;
 use crate::experiment::Experiment;
@@ -88,7 +89,8 @@ impl Asked {
     }
 }
 
-/// The metrics of a sweep that names none: rescuees, in total and of each task; errands done, where there are errands.
+/// The metrics of a sweep that names none: rescuees, in total and of each task; errands done, where there are
+/// errands.
 fn first_question(experiment: &Experiment) -> Result<Vec<usize>, Failure> {
     let has_errands = !experiment.base.errands.is_empty();
     let mut metrics = experiment.metrics.declared(if has_errands { "errands_done" } else { "rescuees" });

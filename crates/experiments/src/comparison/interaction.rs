@@ -1,5 +1,6 @@
-//! Interactions: does a difference between two policies depend on the scenario? The difference of differences, paired by seed, between a
-//! case of a sweep with axes and the case in which one axis has its first value instead.
+//! Interactions: does a difference between two policies depend on the scenario? The difference of
+//! differences, paired by seed, between a case of a sweep with axes and the case in which one axis has its
+//! first value instead.
 
 use serde::Serialize;
 
@@ -73,7 +74,8 @@ pub fn interactions(folder: &Folder, metrics: &[usize], choice: Choice) -> Resul
     Ok(found)
 }
 
-/// Pairs of cases that differ in one axis only, where the first of them has the axis's first value: the case, its reference, the axis.
+/// Pairs of cases that differ in one axis only, where the first of them has the axis's first value: the case,
+/// its reference, the axis.
 fn contrasts(experiment: &Experiment) -> Vec<(usize, usize, usize)> {
     let cases = &experiment.cases;
     let mut contrasts = Vec::new();

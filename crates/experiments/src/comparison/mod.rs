@@ -66,8 +66,8 @@ pub struct Comparison {
     pub p_holm: Option<f64>,
     /// Matched-pairs rank-biserial correlation.
     pub effect: Option<f64>,
-    /// What pairing is worth: how many times as many unpaired trials would know the mean difference as well. The variance of the
-    /// difference without pairing (the sum of both variances) over that with it.
+    /// What pairing is worth: how many times as many unpaired trials would know the mean difference as well.
+    /// The variance of the difference without pairing (the sum of both variances) over that with it.
     pub pairing: Option<f64>,
     /// Pairs that would be needed for 80 % power, were the effect what was observed.
     pub pairs_needed: Option<u64>,

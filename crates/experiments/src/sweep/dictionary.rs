@@ -1,14 +1,13 @@
-//! The dictionary of a sweep's tables, for people (`columns.md`) and for programs (`datapackage.json`, a Frictionless Data Package): each
-//! column with its type, its unit and what it means. Metrics are described where they are declared, the rest here.
+//! The dictionary of a sweep's tables, for people (`columns.md`) and for programs (`datapackage.json`, a
+//! Frictionless Data Package): each column with its type, its unit and what it means. Metrics are described
+//! where they are declared, the rest here.
 
 use std::fmt::Write;
 
 use serde_json::{Value, json};
 
-use super::links::{self, LinkRow};
-use super::rows::{RobotRow, RoundRow, group_columns, series_columns, trial_columns};
-use super::table::columns;
-use super::tables::{TABLES, tables_of};
+use super::links;
+use super::tables::{TABLES, all_columns, tables_of};
 use crate::experiment::{Axis, Experiment};
 use crate::failure::Failure;
 
@@ -33,7 +32,8 @@ const ROWS: [(&str, &str); TABLES.len()] = [
     (links::FILE, "a link of a trial's hash chain"),
 ];
 
-/// Columns that are no metrics: name, type, unit, meaning. Where a name means something else in one table, `table/name` stands before it.
+/// Columns that are no metrics: name, type, unit, meaning. Where a name means something else in one table,
+/// `table/name` stands before it.
 const DESCRIBED: &[(&str, &str, &str, &str)] = &[
     ("case", "integer", "", "Number of the case, from 1: a combination of the values of the axes."),
     ("method", "string", "", "The same as policy, under the name that the paper's authors use."),
@@ -128,14 +128,7 @@ type Described = (&'static str, &'static str, Vec<Column>);
 
 /// The tables of an experiment.
 fn tables(experiment: &Experiment) -> Result<Vec<Described>, Failure> {
-    let names = [
-        trial_columns(&experiment.metrics),
-        columns::<RoundRow>()?,
-        columns::<RobotRow>()?,
-        group_columns(&experiment.base.needs),
-        series_columns(&experiment.metrics),
-        columns::<LinkRow>()?,
-    ];
+    let names = all_columns(experiment)?;
     let tables = ROWS.iter().zip(names).take(tables_of(experiment.keep, None).len());
     Ok(tables
         .map(|((file, row), names)| {

@@ -32,6 +32,18 @@ pub(super) fn tables_of(keep: Keep, shard: Option<Shard>) -> &'static [&'static 
     &TABLES[..count]
 }
 
+/// The columns of each table, in the order of [`TABLES`], without the case and the axes.
+pub(super) fn all_columns(experiment: &Experiment) -> Result<[Vec<String>; TABLES.len()], Failure> {
+    Ok([
+        trial_columns(&experiment.metrics),
+        columns::<RoundRow>()?,
+        columns::<RobotRow>()?,
+        group_columns(&experiment.base.needs),
+        series_columns(&experiment.metrics),
+        columns::<LinkRow>()?,
+    ])
+}
+
 /// The tables on their way.
 pub(super) struct Tables(Vec<Table>);
 
@@ -41,14 +53,7 @@ impl Tables {
         (experiment, keep): (&Experiment, Keep),
         shard: Option<Shard>,
     ) -> Result<Self, Failure> {
-        let all = [
-            trial_columns(&experiment.metrics),
-            columns::<RoundRow>()?,
-            columns::<RobotRow>()?,
-            group_columns(&experiment.base.needs),
-            series_columns(&experiment.metrics),
-            columns::<LinkRow>()?,
-        ];
+        let all = all_columns(experiment)?;
         let names = tables_of(keep, shard).iter();
         let tables = names.zip(&all).map(|(name, columns)| Table::new(path, name, experiment, columns));
         Ok(Self(tables.collect::<Result<_, _>>()?))

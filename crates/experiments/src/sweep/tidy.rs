@@ -1,5 +1,5 @@
-//! A sweep as one long table: a row for each value, whatever was measured. Every row names what the value is of, so that tools for data
-//! frames can filter, pivot and plot without knowing the other tables.
+//! A sweep as one long table: a row for each value, whatever was measured. Every row names what the value is
+//! of, so that tools for data frames can filter, pivot and plot without knowing the other tables.
 
 use usar_sim::metrics::RoundRecord;
 
@@ -27,8 +27,9 @@ pub fn tidy_columns(folder: &Folder) -> Vec<String> {
     ["case"].into_iter().chain(axes).chain(after).map(str::to_owned).collect()
 }
 
-/// Gives every row of the table to `write`, trial by trial: the trial's metrics, with an empty `round`, then those of each group and round as
-/// far as the sweep keeps them. `task` is empty where a value is of all tasks together; values that are not defined have no row.
+/// Gives every row of the table to `write`, trial by trial: the trial's metrics, with an empty `round`, then
+/// those of each group and round as far as the sweep keeps them. `task` is empty where a value is of all
+/// tasks together; values that are not defined have no row.
 ///
 /// # Errors
 /// The journal cannot be read, or `write` says so.

@@ -1,5 +1,5 @@
-//! The choice between candidates that were fitted under different readings: by trials that none was fitted to, with what the data and the
-//! seeds leave open.
+//! The choice between candidates that were fitted under different readings: by trials that none was fitted
+//! to, with what the data and the seeds leave open.
 
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
@@ -18,7 +18,8 @@ use super::{Calibration, Free, Spread, Target};
 /// Resamples of the data and of the seeds.
 const RESAMPLES: usize = 4_000;
 
-/// A candidate that is the nearest to the data in this share of the resamples cannot be told from the nearest.
+/// A candidate that is the nearest to the data in this share of the resamples cannot be told from the
+/// nearest.
 pub const NOT_TOLD_APART: f64 = 0.05;
 
 /// A candidate: what a calibration found.
@@ -75,7 +76,8 @@ impl Candidate {
         Ok(Self { name, calibration, values })
     }
 
-    /// The quantities of its trials with these seeds, each a list over the trials. `None` when `stop` was set.
+    /// The quantities of its trials with these seeds, each a list over the trials. `None` when `stop` was
+    /// set.
     ///
     /// # Errors
     /// It cannot be run.
@@ -85,7 +87,8 @@ impl Candidate {
     }
 }
 
-/// Judges the candidates by their trials, which have the same seeds, one list of quantities each; the nearest to the data first.
+/// Judges the candidates by their trials, which have the same seeds, one list of quantities each; the nearest
+/// to the data first.
 #[must_use]
 pub fn judge(target: &Target, candidates: &[(Candidate, Vec<Vec<f64>>)]) -> Vec<Judged> {
     let trials = candidates.first().and_then(|(_, quantities)| quantities.first()).map_or(0, Vec::len);

@@ -8,7 +8,8 @@ use usar_sim::scenario::ScenarioFile;
 /// Significant digits of a candidate value, so that the log and the calibrated scenario hold what was run, to the bit.
 const DIGITS: usize = 4;
 
-/// What a value at the very end of its range adds to a misfit: as much as a mean that is two standard errors off.
+/// What a value at the very end of its range adds to a misfit: as much as a mean that is two standard errors
+/// off.
 const EDGE: f64 = 4.0;
 
 /// A free parameter. It may set several fields that belong together, each in a fixed ratio to it.
@@ -130,8 +131,9 @@ impl Free {
         !(0.01..=0.99).contains(&place)
     }
 
-    /// What a value near an end of the range adds to a misfit: nothing from a twentieth of the range on, `EDGE` at the very end, and the
-    /// square of the way between. A value at an end says that the range decides, not the data.
+    /// What a value near an end of the range adds to a misfit: nothing from a twentieth of the range on,
+    /// `EDGE` at the very end, and the square of the way between. A value at an end says that the range
+    /// decides, not the data.
     #[must_use]
     pub fn edge_penalty(&self, value: f64) -> f64 {
         let place = self.place_of(value);

@@ -48,9 +48,10 @@ impl Spread {
         Some(Self { mean: mean?, sd: sd? })
     }
 
-    /// How far a model's spread, over `model_trials` trials, is from this one, over `trials`: the squared distance of the means and the
-    /// squared logarithm of the ratio of the standard deviations, each by its variance if both came from one normal distribution. Of a true
-    /// model each is 1 on average. The model's standard deviation counts as at least a twentieth of this one.
+    /// How far a model's spread, over `model_trials` trials, is from this one, over `trials`: the squared
+    /// distance of the means and the squared logarithm of the ratio of the standard deviations, each by its
+    /// variance if both came from one normal distribution. Of a true model each is 1 on average. The model's
+    /// standard deviation counts as at least a twentieth of this one.
     #[must_use]
     pub fn misfit(&self, model: &Self, [trials, model_trials]: [usize; 2]) -> [f64; 2] {
         let [n, m] = [trials, model_trials].map(|trials| trials.max(2) as f64);
@@ -129,8 +130,8 @@ impl Target {
         self.quantities.iter().map(value).collect()
     }
 
-    /// How far a model is from the target, by so many of its trials: the sum over all quantities; smaller is nearer. Of a true model it is
-    /// twice the number of quantities on average.
+    /// How far a model is from the target, by so many of its trials: the sum over all quantities; smaller is
+    /// nearer. Of a true model it is twice the number of quantities on average.
     #[must_use]
     pub fn misfit(&self, model: &[Spread], model_trials: usize) -> f64 {
         misfit(&self.spreads, model, [self.trials, model_trials])
@@ -257,7 +258,8 @@ mod tests {
             let [mean, sd] = spread(10).misfit(&spread(20), [10, 20]);
             sums = [sums[0] + mean, sums[1] + sd];
         }
-        // By the t distribution of few trials the first is (n - 1) / (n - 3) on average, and the logarithm's variance a little more.
+        // By the t distribution of few trials the first is (n - 1) / (n - 3) on average, and the logarithm's
+        // variance a little more.
         let [mean, sd] = sums.map(|sum| sum / f64::from(worlds));
         assert!((1.15..1.45).contains(&mean) && (0.9..1.3).contains(&sd), "{mean} {sd}");
     }

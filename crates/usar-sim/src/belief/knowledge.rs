@@ -48,7 +48,8 @@ pub(crate) struct Seen {
 pub struct Knowledge {
     /// For each piece of debris, the number of its sightings that are known; 0 is unknown.
     pub debris: Vec<u32>,
-    /// For each radiation zone, how many of its switches are known; an odd number is a zone that is known to be on.
+    /// For each radiation zone, how many of its switches are known; an odd number is a zone that is known to
+    /// be on.
     pub zones: Vec<u8>,
     /// For each rescuee, whether it was seen.
     pub rescuees: Vec<bool>,

@@ -177,7 +177,8 @@ impl Mission {
         }
     }
 
-    /// Top speed of a robot: lower with its health, with its load, and where its group has no guide that can act.
+    /// Top speed of a robot: lower with its health, with its load, and where its group has no guide that can
+    /// act.
     #[must_use]
     pub fn speed_of(&self, model: &Model, robot: &Robot) -> f64 {
         let rules = &model.scenario.mission;

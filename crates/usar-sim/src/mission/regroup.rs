@@ -78,7 +78,8 @@ impl Mission {
         unfit_cause(rules, &fitness)
     }
 
-    /// Sends the robots at home that are not fit to rest, where the next round waits for that. Returns whether there are any.
+    /// Sends the robots at home that are not fit to rest, where the next round waits for that. Returns
+    /// whether there are any.
     pub(super) fn rest_first(&mut self, scene: &mut Scene) -> bool {
         let rules = &scene.model.scenario.mission;
         if rules.rest_at_home == RestAtHome::DuringRound {

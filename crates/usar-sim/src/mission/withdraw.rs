@@ -7,7 +7,8 @@ use crate::model::Model;
 use crate::world::{RescueeState, World};
 
 impl Mission {
-    /// Takes away the rescuees of a task that still wait, and the work of its group: it goes home, since nothing is left.
+    /// Takes away the rescuees of a task that still wait, and the work of its group: it goes home, since
+    /// nothing is left.
     pub(crate) fn withdraw(&mut self, task: TaskId, model: &Model, world: &mut World) {
         for rescuee in &mut world.rescuees[model.tasks[task.index()].rescuees.clone()] {
             if rescuee.state == RescueeState::Waiting {

@@ -140,7 +140,8 @@ impl Layout {
         Ok(())
     }
 
-    /// Adds what comes and goes by events, after everything else: panels of doors, debris that falls, radiation that appears.
+    /// Adds what comes and goes by events, after everything else: panels of doors, debris that falls,
+    /// radiation that appears.
     fn add_later(&mut self, scenario: &Scenario) {
         for (panel, is_closed) in scenario.panels() {
             self.gates.insert(self.debris.len(), is_closed);

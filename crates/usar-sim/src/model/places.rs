@@ -27,7 +27,8 @@ pub fn rest_slot(scenario: &Scenario, task: TaskId, robot: RobotId) -> Vector {
     Vector::new(x as f32, y as f32)
 }
 
-/// The task and the place of each rescuee, by id: task by task, each in a regular grid; after it, those of the task that appear later.
+/// The task and the place of each rescuee, by id: task by task, each in a regular grid; after it, those of
+/// the task that appear later.
 pub fn rescuee_places(scenario: &Scenario) -> impl Iterator<Item = (TaskId, Vector)> + '_ {
     (0..).zip(&scenario.tasks).flat_map(move |(number, task)| {
         let later = later_grids(scenario, task).flat_map(move |(_, cells)| cells_of(task, cells));

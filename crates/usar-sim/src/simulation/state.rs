@@ -124,7 +124,8 @@ impl State {
         }
     }
 
-    /// Energy for moving and loading, HP for radiation and work; robots that have none left stay where they are.
+    /// Energy for moving and loading, HP for radiation and work; robots that have none left stay where they
+    /// are.
     pub(super) fn expose(&mut self, model: &Model) {
         let unit = model.scenario.costs.unit;
         let (robots, zones_at) = self.world.robots_in_zones();
@@ -194,7 +195,8 @@ fn way_in_a_step(robot: &Robot, model: &Model) -> f64 {
     f64::from(robot.velocity.length()) * model.dt_s()
 }
 
-/// Energy and HP that this step costs a robot that stands in so many radiation zones, in the unit of the scenario's costs.
+/// Energy and HP that this step costs a robot that stands in so many radiation zones, in the unit of the
+/// scenario's costs.
 fn step_costs(model: &Model, agent: &Agent, robot: &Robot, zones: usize) -> [f64; 2] {
     let (Costs { energy, hp, work, .. }, dt) = (&model.scenario.costs, model.dt_s());
     let metres = way_in_a_step(robot, model);

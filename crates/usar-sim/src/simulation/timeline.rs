@@ -100,7 +100,8 @@ impl State {
         true
     }
 
-    /// Opens a task. Its own rescuees appear when it begins for the first time; those of later events come with them.
+    /// Opens a task. Its own rescuees appear when it begins for the first time; those of later events come
+    /// with them.
     fn begin_task(&mut self, task: TaskId, model: &Model) {
         if !std::mem::replace(&mut self.world.closed_tasks[task.index()], false) {
             return;

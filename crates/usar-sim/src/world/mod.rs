@@ -39,8 +39,8 @@ pub struct World {
     /// Radiation zones, those that are off among them.
     #[serde(skip)]
     pub zones: Vec<RadiationZone>,
-    /// How often each zone was switched on or off; one that is there from the start begins with 1. An odd number is on. Empty in a scenario
-    /// without a timeline: all zones are on.
+    /// How often each zone was switched on or off; one that is there from the start begins with 1. An odd
+    /// number is on. Empty in a scenario without a timeline: all zones are on.
     zone_switches: Vec<u8>,
     /// For each task, whether it has ended, or not begun. Empty in a scenario without a timeline.
     pub closed_tasks: Vec<bool>,

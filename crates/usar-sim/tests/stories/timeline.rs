@@ -1,4 +1,5 @@
-//! Stories of timelines: what a scenario asks for happens, is noticed, and goes on bit for bit from a snapshot.
+//! Stories of timelines: what a scenario asks for happens, is noticed, and goes on bit for bit from a
+//! snapshot.
 
 use rne_core::Registry;
 use usar_sim::event::Event;

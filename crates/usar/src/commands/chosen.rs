@@ -1,4 +1,5 @@
-//! What commands that are about a sweep to be run have in common: which trials of it, and what is kept of them.
+//! What commands that are about a sweep to be run have in common: which trials of it, and what is kept of
+//! them.
 
 use clap::Args;
 use experiments::experiment::{Keep, Overrides, split_list};
@@ -15,14 +16,15 @@ pub(crate) struct Chosen {
     /// Seed of the first trial [default: the file's]
     #[arg(long)]
     seed: Option<u64>,
-    /// Set a field of the scenario, by its path, to a value in RON, e.g. `costs.energy.per_step=0.009`; may stand several times
+    /// Set a field of the scenario, by its path, to a value in RON, e.g. `costs.energy.per_step=0.009`; may
+    /// stand several times
     #[arg(long, value_name = "PATH=VALUE")]
     set: Vec<String>,
     /// Check every invariant at every step; a violation ends the trial as failed
     #[arg(long)]
     check: bool,
-    /// What to keep of each trial: its metrics (trials), its rounds and decisions too (rounds), its robots too (robots), or
-    /// everything (groups) [default: the file's, or groups]
+    /// What to keep of each trial: its metrics (trials), its rounds and decisions too (rounds), its robots
+    /// too (robots), or everything (groups) [default: the file's, or groups]
     #[arg(long, value_name = "trials|rounds|robots|groups")]
     keep: Option<Keep>,
 }

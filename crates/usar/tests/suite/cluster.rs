@@ -1,5 +1,5 @@
-//! A sweep on a cluster: what is submitted, how far it is, and that the whole has the bytes of a single run. `sbatch` is a script here;
-//! .ci/slurm does the same with Slurm itself.
+//! A sweep on a cluster: what is submitted, how far it is, and that the whole has the bytes of a single run.
+//! `sbatch` is a script here; .ci/slurm does the same with Slurm itself.
 
 use std::os::unix::fs::symlink;
 use std::path::Path;

@@ -230,7 +230,8 @@ fn a_sweep_with_axes_says_how_differences_change_along_them() {
     ));
     let told: Value = serde_json::from_str(&told).unwrap();
     let interactions = told["interactions"].as_array().unwrap();
-    // Two axes of two values: each value but the first, at both values of the other axis, for each policy but the baseline.
+    // Two axes of two values: each value but the first, at both values of the other axis, for each policy but
+    // the baseline.
     let policies = told["comparisons"].as_array().unwrap().len() / 4;
     assert_eq!(interactions.len(), 4 * policies);
     let results = here.join("results/grid");

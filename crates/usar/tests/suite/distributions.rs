@@ -1,4 +1,5 @@
-//! Files with distributions and timelines on the command line: `fmt`, `resolve`, `draw`, `run`, snapshots and recordings.
+//! Files with distributions and timelines on the command line: `fmt`, `resolve`, `draw`, `run`, snapshots and
+//! recordings.
 
 use crate::support::{read, succeeds, usar};
 

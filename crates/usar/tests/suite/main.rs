@@ -21,4 +21,5 @@ mod reported;
 mod resumed;
 mod same_bytes;
 mod studied;
+mod tabled;
 mod viewed;

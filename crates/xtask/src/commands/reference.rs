@@ -1,4 +1,5 @@
-//! Makes `docs/scenarios-reference.md` of the types' comments, and the schemas of scenario and sweep files in `docs/schemas`.
+//! Makes `docs/scenarios-reference.md` of the types' comments, and the schemas of scenario and sweep files in
+//! `docs/schemas`.
 
 use std::process::ExitCode;
 
