@@ -3,7 +3,7 @@
 use usar_sim::limits;
 use usar_sim::scenario::{Problem, Scenario, ScenarioFile};
 
-use crate::support::paper;
+use crate::support::{paper, paper_text};
 
 /// Fields at which single values are checked: a path in paper.ron for each limit of one.
 const PLACES: &[(&str, &ron_fields::limits::Limit)] = &[
@@ -145,6 +145,24 @@ fn each_table_may_have_its_most_entries_and_not_one_more() {
     };
     assert_eq!(with_piece(limits::DEBRIS.count()), None);
     assert!(with_piece(limits::DEBRIS.count() + 1).is_some());
+}
+
+#[test]
+fn values_with_names_have_limits() {
+    let with = |values: &str| {
+        let text = paper_text().replacen("\n(", &format!("\n(values: ({values}),"), 1);
+        Scenario::parse(&text, "t.ron".as_ref()).map(|_| ()).map_err(|error| error.to_string())
+    };
+    let many = |count: usize| (0..count).map(|i| format!("a{i}: 1,")).collect::<String>();
+    assert_eq!(with(&many(limits::VALUES.count())), Ok(()));
+    assert!(with(&many(limits::VALUES.count() + 1)).unwrap_err().contains("values must be at most 1000"));
+    let long = |bytes: usize| format!("a: \"{}\"", "x".repeat(bytes - 2));
+    assert_eq!(with(&long(limits::VALUE_BYTES.count())), Ok(()));
+    assert!(
+        with(&long(limits::VALUE_BYTES.count() + 1))
+            .unwrap_err()
+            .contains("values.a must be at most 1024 bytes")
+    );
 }
 
 #[test]

@@ -114,6 +114,10 @@ ron_fields::limits! {
     /// Half the width of the strip in which things are sampled, in metres.
     STRIP_M: "sampled.strip_m" = 0.1, 10_000;
 
+    /// Values that have names.
+    VALUES: "values" = 0, 1_000;
+    /// Length of a value that has a name, in bytes.
+    VALUE_BYTES: "values.*" = 1, 1_024;
     /// Distributions in the place of values.
     DRAWS: "a scenario" = 0, 1_000;
     /// Values of a `Choice([...])`.

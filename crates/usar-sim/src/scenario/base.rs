@@ -4,12 +4,14 @@
 //! `roles: (carrier: (speed_mps: 3.0))`. Anything else, a list in square brackets too, takes the place of what the base has. The base
 //! has no base of its own.
 
+use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
 use ron_fields::{Fields, SetError};
 
 use super::error::{Problem, Problems, ScenarioError};
 use super::file::ScenarioFile;
+use super::named::{self, Names};
 use super::{Scenario, read_text};
 
 /// The field that names the base.
@@ -17,7 +19,7 @@ const FIELD: &str = "base";
 
 /// A text over its base.
 pub(super) struct Overlay<'t> {
-    text: &'t str,
+    text: Cow<'t, str>,
     path: &'t Path,
     fields: Fields,
     base: PathBuf,
@@ -33,8 +35,16 @@ impl<'t> Overlay<'t> {
     /// The scenario of a text that names a base.
     pub(super) fn parse(text: &'t str, path: &'t Path) -> Result<Scenario, ScenarioError> {
         let fields = Fields::of(text);
-        let mut overlay = Overlay { text, path, fields, base: PathBuf::new(), base_fields: Fields::of("()") };
-        let mut file = overlay.read_base()?;
+        let (base, base_fields) = (PathBuf::new(), Fields::of("()"));
+        let mut overlay = Overlay { text: text.into(), path, fields, base, base_fields };
+        let (names, wrong) = named::names(text);
+        if !wrong.is_empty() {
+            return Err(overlay.invalid(wrong));
+        }
+        let (mut file, names) = overlay.read_base(names)?;
+        if !names.is_empty() {
+            overlay.expand(&names)?;
+        }
         let mut problems = Vec::new();
         for name in overlay.fields.inside("") {
             if name != FIELD {
@@ -42,13 +52,22 @@ impl<'t> Overlay<'t> {
             }
         }
         if !problems.is_empty() {
+            problems.iter_mut().for_each(|problem| named::hint(problem, &names));
             return Err(overlay.invalid(problems));
         }
         Scenario::try_from(file).map_err(|problems| overlay.invalid(problems))
     }
 
-    /// Reads the base, which is found from the folder of the text.
-    fn read_base(&mut self) -> Result<ScenarioFile, ScenarioError> {
+    /// Puts values in the place of their names.
+    fn expand(&mut self, names: &Names) -> Result<(), ScenarioError> {
+        let text = named::expanded(&self.text, names).map_err(|problem| self.invalid(vec![*problem]))?;
+        self.fields = Fields::of(&text);
+        self.text = text.into();
+        Ok(())
+    }
+
+    /// Reads the base, which is found from the folder of the text, with these values of names; returns all names too.
+    fn read_base(&mut self, over: Names) -> Result<(ScenarioFile, Names), ScenarioError> {
         let place = self.fields.value(FIELD).unwrap_or_default();
         let written: Result<String, _> = ron::from_str(&self.text[place.clone()]);
         let Ok(name) = written else {
@@ -63,9 +82,11 @@ impl<'t> Overlay<'t> {
         if is_named_in(&text) {
             return Err(self.wrong_base("must be a scenario without a base of its own", format!("{name:?}")));
         }
-        let (scenario, fields) = (Scenario::parse(&text, &self.base)?, Fields::of(&text));
-        self.base_fields = fields;
-        Ok((*scenario).clone())
+        let scenario = Scenario::parse_with(&text, &self.base, &over)?;
+        self.base_fields = Fields::of(&text);
+        let (mut names, _) = named::names(&text);
+        names.extend(over);
+        Ok(((*scenario).clone(), names))
     }
 
     fn wrong_base(&self, rule: &str, found: String) -> ScenarioError {
@@ -174,6 +195,37 @@ mod tests {
         expected.set("conflicts.resolver", "Rotation(margin_m: 0.3)").unwrap();
         expected.set("team", "[(role: \"carrier\", count: 1, center: (40, 10), width_m: 0)]").unwrap();
         assert_eq!(*over, expected);
+    }
+
+    #[test]
+    fn names_of_the_base_are_known_and_may_have_other_values() {
+        let base = include_str!("../../../../scenarios/paper.ron").replacen(
+            "\n(",
+            "\n(values: (rest: 20, near: 3),",
+            1,
+        );
+        let base = base.replacen("rest_s: 30.0", "rest_s: rest", 1);
+        let over = "(base: \"named.ron\", name: \"over\", values: (rest: 7, far: 9), mission: (loading_s: near), roles: (carrier: (speed_mps: far)))";
+        let wrong = "(base: \"named.ron\", mission: (loading_s: neer))";
+        let folder = folder(&[("named.ron", &base), ("over.ron", over), ("wrong.ron", wrong)]);
+        let (scenario, _) = Scenario::load(&folder.join("over.ron")).unwrap();
+        let expected =
+            [("mission.rest_s", "7"), ("mission.loading_s", "3"), ("roles.carrier.speed_mps", "9")];
+        let (base, _) = Scenario::load(&folder.join("named.ron")).unwrap();
+        let mut file = (*base).clone();
+        expected.iter().for_each(|(path, value)| file.set(path, value).unwrap());
+        file.name = "over".to_owned();
+        assert_eq!(*scenario, file);
+        file.set("mission.rest_s", "20").unwrap();
+        assert_eq!(
+            base.mission,
+            crate::scenario::MissionRules { loading_s: base.mission.loading_s, ..file.mission }
+        );
+        let error = Scenario::load(&folder.join("wrong.ron")).unwrap_err().to_string();
+        assert!(
+            error.contains("mission.loading_s must be a number, found neer; did you mean near?"),
+            "{error}"
+        );
     }
 
     #[test]

@@ -10,6 +10,7 @@ mod error;
 mod file;
 mod former;
 mod homes;
+mod named;
 mod odd;
 mod partial;
 mod places;
@@ -109,13 +110,36 @@ impl Scenario {
         if base::is_named_in(text) {
             return base::Overlay::parse(text, path);
         }
+        Self::parse_with(text, path, &named::Names::new())
+    }
+
+    /// Checks the text of a scenario without a base, in which these names have these values whatever its own say.
+    fn parse_with(text: &str, path: &Path, over: &named::Names) -> Result<Self, ScenarioError> {
+        if !named::are_in(text) {
+            return Self::parse_plain(text, path, over);
+        }
+        let (mut names, wrong) = named::names(text);
+        names.extend(over.clone());
+        let invalid = |list| ScenarioError::Invalid(Problems { path: path.to_owned(), list });
+        if !wrong.is_empty() {
+            return Err(invalid(wrong));
+        }
+        let text = named::expanded(text, &names).map_err(|problem| invalid(vec![*problem]))?;
+        Self::parse_plain(&text, path, &names)
+    }
+
+    /// Checks the text of a scenario in which names have given way to their values; the names are used in messages only.
+    fn parse_plain(text: &str, path: &Path, names: &named::Names) -> Result<Self, ScenarioError> {
         let fields = Fields::of(text);
         let (plain, draws, wrong) = draws::take_out(text, &fields, "");
         let fields = if draws.is_empty() { fields } else { Fields::of(&plain) };
         let (file, mut list) = reading::read_all::<ScenarioFile>(&plain, &fields);
         let are_sound = wrong.is_empty();
         list.extend(wrong);
-        list.iter_mut().for_each(distribution::hint);
+        list.iter_mut().for_each(|problem| {
+            named::hint(problem, names);
+            distribution::hint(problem);
+        });
         if fields.value("draws").is_some() {
             let rule = "is no field".to_owned();
             let hint = "a distribution stands in the place of its value".to_owned();

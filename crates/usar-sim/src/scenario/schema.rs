@@ -85,6 +85,8 @@ pub fn scenario_schema() -> Value {
     if let Some(properties) = all.get_mut("properties").and_then(Value::as_object_mut) {
         let base = json!({"description": "Path of another scenario, from this file's folder, of which this one says what differs.", "type": "string"});
         properties.insert("base".to_owned(), base);
+        let values = json!({"description": "Values with names, as in `(leak_m: 4.5)`: a name then stands for its value wherever that is meant. A scenario over a base may give a name of the base another value.", "type": "object", "additionalProperties": true});
+        properties.insert("values".to_owned(), values);
     }
     // Sections may be given in part, and a base has what is left out.
     let required = all.remove("required").unwrap_or_default();

@@ -52,6 +52,18 @@ impl Source {
         self.fields.value(first).is_some_and(|place| self.text[place].starts_with('['))
     }
 
+    /// Where a value is written, if it is written here, with the name that stands there for it.
+    fn origin(&self, path: &str, named: &str) -> Option<String> {
+        let place = format!("{}:{}", self.path.display(), self.line(path, named)?);
+        let value = [path, named].into_iter().find_map(|path| self.fields.value(path));
+        let word = &self.text[value.unwrap_or_default()];
+        let name = format!("values.{word}");
+        Some(match self.fields.value(&name).and_then(|_| self.fields.line(&name)) {
+            Some(line) => format!("{place}, {word} of line {line}"),
+            None => place,
+        })
+    }
+
     /// The line of a value, if it is written here; `named` is its path with the names of entries.
     fn line(&self, path: &str, named: &str) -> Option<usize> {
         let written = [path, named].into_iter().find(|path| self.fields.value(path).is_some());
@@ -88,8 +100,7 @@ impl Arguments {
             let whole = around.and_then(|key| Some((key.as_str(), fields.value(key)?)));
             let (path, place) = whole.unwrap_or((path, place));
             let named = named(&fields, &resolved, path);
-            let from =
-                |source: &Source| Some(format!("{}:{}", source.path.display(), source.line(path, &named)?));
+            let from = |source: &Source| source.origin(path, &named);
             let is_set = set.iter().any(|set| path.strip_prefix(set.as_str()).is_some_and(ends_a_segment));
             let origin = if is_set {
                 Some("--set".to_owned())
