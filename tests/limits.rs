@@ -153,7 +153,7 @@ fn values_with_names_have_limits() {
         let text = paper_text().replacen("\n(", &format!("\n(values: ({values}),"), 1);
         Scenario::parse(&text, "t.ron".as_ref()).map(|_| ()).map_err(|error| error.to_string())
     };
-    let many = |count: usize| (0..count).map(|i| format!("a{i}: 1,")).collect::<String>();
+    let many = |count: usize| (0..count).map(|i| format!("a{i}: 1")).collect::<Vec<_>>().join(",");
     assert_eq!(with(&many(limits::VALUES.count())), Ok(()));
     assert!(with(&many(limits::VALUES.count() + 1)).unwrap_err().contains("values must be at most 1000"));
     let long = |bytes: usize| format!("a: \"{}\"", "x".repeat(bytes - 2));

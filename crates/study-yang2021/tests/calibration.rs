@@ -40,7 +40,7 @@ fn the_calibrated_scenario_is_the_best_of_its_log() {
         target,
         trials: 10,
         first_seed: 100_001,
-        seed: 1,
+
         first_step: 0.25,
     };
     let found = calibration.measure(&[], (100_001..100_011_u64).collect::<Vec<_>>(), &AtomicBool::new(false));
@@ -65,8 +65,7 @@ fn a_log_is_held_by_one_process() {
     let table = place.path().join("target.csv");
     std::fs::write(&table, "method,rescuees_hard,energy_hard\nDIS,10,150\nDIS,14,160\nDIS,12,170\n").unwrap();
     let target = Target::load(&table, &base).unwrap();
-    let calibration =
-        Calibration { text, base, free, target, trials: 2, first_seed: 1, seed: 1, first_step: 0.25 };
+    let calibration = Calibration { text, base, free, target, trials: 2, first_seed: 1, first_step: 0.25 };
     let out = place.path().join("out");
     let held = Log::open(&out, &calibration, false).unwrap();
     let error = Log::open(&out, &calibration, false).err().unwrap();

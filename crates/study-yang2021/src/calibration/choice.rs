@@ -69,8 +69,7 @@ impl Candidate {
         let free = specs.map(|spec| Free::parse(spec, &fields, &fields)).collect::<Result<Vec<_>, _>>();
         let free = free.map_err(|error| unreadable(ORIGIN, &error))?;
         let target = Target::load(target, &base)?;
-        let calibration =
-            Calibration { text, base, free, target, trials: 0, first_seed: 0, seed: 0, first_step: 0.0 };
+        let calibration = Calibration { text, base, free, target, trials: 0, first_seed: 0, first_step: 0.0 };
         let values = calibration.present()?;
         let name = folder.file_name().unwrap_or(folder.as_os_str()).to_string_lossy().into_owned();
         Ok(Self { name, calibration, values })
@@ -145,16 +144,8 @@ mod tests {
         let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios");
         let (base, text) = Scenario::load(&root.join("paper.ron")).unwrap();
         let target = Target::load(&root.join("reference/dis_trials.csv"), &base).unwrap();
-        let calibration = Calibration {
-            text,
-            base,
-            free: Vec::new(),
-            target,
-            trials: 0,
-            first_seed: 0,
-            seed: 0,
-            first_step: 0.0,
-        };
+        let calibration =
+            Calibration { text, base, free: Vec::new(), target, trials: 0, first_seed: 0, first_step: 0.0 };
         Candidate { name: name.to_owned(), calibration, values: Vec::new() }
     }
 

@@ -88,14 +88,9 @@ impl Free {
         rounded(value).clamp(self.low, self.high)
     }
 
-    /// The place of a value, kept a tenth of the range away from its ends.
+    /// The place of a value in the range, from 0 to 1; of a value beyond, that of the nearest end.
     #[must_use]
     pub fn place(&self, value: f64) -> f64 {
-        self.place_of(value).clamp(0.1, 0.9)
-    }
-
-    /// The place of a value, of the nearest in the range.
-    fn place_of(&self, value: f64) -> f64 {
         let value = value.clamp(self.low, self.high);
         if self.is_log {
             (value / self.low).ln() / (self.high / self.low).ln()
@@ -127,7 +122,7 @@ impl Free {
     /// Whether a value is within a hundredth of the range of one of its ends.
     #[must_use]
     pub fn is_at_end(&self, value: f64) -> bool {
-        let place = self.place_of(value);
+        let place = self.place(value);
         !(0.01..=0.99).contains(&place)
     }
 
@@ -136,7 +131,7 @@ impl Free {
     /// decides, not the data.
     #[must_use]
     pub fn edge_penalty(&self, value: f64) -> f64 {
-        let place = self.place_of(value);
+        let place = self.place(value);
         let from_end = place.min(1.0 - place).max(0.0);
         EDGE * (1.0 - from_end / 0.05).max(0.0).powi(2)
     }

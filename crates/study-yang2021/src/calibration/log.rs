@@ -207,7 +207,6 @@ fn origin_of(calibration: &Calibration) -> serde_json::Value {
         "target": target,
         "trials": calibration.trials,
         "first_seed": calibration.first_seed,
-        "seed": calibration.seed,
         "first_step": calibration.first_step,
         "scenario": calibration.base.resolved(),
     })

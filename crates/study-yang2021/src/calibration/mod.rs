@@ -1,22 +1,20 @@
 //! Calibration: free parameters of a scenario, searched so that the distance baseline does what recorded trials of it did.
 //!
 //! Only [`POLICY`] can be run here: how other policies fare in the calibrated world is a result, so nothing that fits it may look at them.
-//! The search is CMA-ES (Hansen 2016, "The CMA Evolution Strategy: A Tutorial", arXiv 1604.00772), from the crate `cmaes`, over a box that is
-//! mirrored at its ends. It is deterministic: a search that was broken off is repeated from its start, with the evaluations in the log instead of
-//! new trials.
+//! The search is by least squares without derivatives, over a box. It is deterministic: a search that was broken off is repeated from its
+//! start, with the evaluations in the log instead of new trials.
 
 mod choice;
 mod fit;
 mod free;
+mod least_squares;
 mod log;
 mod target;
 
-use std::cell::Cell;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use cmaes::{CMAESOptions, DVector};
 use experiments::comparison::short;
 use experiments::experiment::registry;
 use experiments::run::run_trial;
@@ -29,6 +27,7 @@ use usar_sim::scenario::{Scenario, ScenarioFile};
 pub use choice::{Candidate, Judged, NOT_TOLD_APART, judge};
 pub use fit::{Fit, write_fit};
 pub use free::Free;
+use least_squares::LeastSquares;
 pub use log::{CALIBRATED, Log};
 pub use target::{Quantity, Spread, Target};
 
@@ -58,9 +57,7 @@ pub struct Calibration {
     pub trials: u32,
     /// Seed of the first of them.
     pub first_seed: u64,
-    /// Seed of the search.
-    pub seed: u64,
-    /// Standard deviation of the first candidates, in units of each range.
+    /// How far the first candidates are from the start, as a share of each range.
     pub first_step: f64,
 }
 
@@ -220,8 +217,8 @@ impl Calibration {
         }
     }
 
-    /// Evaluates the start and searches from there until there are so many evaluations in the log, to the end of a generation of candidates, or
-    /// nothing gets better; returns whether it came to its end: not so when `stop` was set. `done` hears the number of evaluations so far and the least misfit.
+    /// Evaluates the start and searches from there, so many candidates in all; returns whether it came to its end: not so when `stop` was
+    /// set. `done` hears the number of evaluations so far and the least misfit.
     ///
     /// # Errors
     /// The disk does not take the log.
@@ -232,43 +229,34 @@ impl Calibration {
         stop: &AtomicBool,
         mut done: impl FnMut(usize, f64),
     ) -> Result<bool, Failure> {
-        let present = self.start()?;
-        if log.find(&present).is_none() {
-            let Some(evaluation) = self.evaluate(present.clone(), stop) else { return Ok(false) };
-            log.add(evaluation)?;
-        }
-        let start: Vec<f64> =
-            self.free.iter().zip(&present).map(|(free, value)| free.place(*value)).collect();
-        let trouble = Cell::new(None);
-        let (mut asked, mut least) = (1, log.find(&present).map_or(WORST, |evaluation| evaluation.misfit));
-        let objective = |x: &DVector<f64>| {
-            let values: Vec<f64> = self.free.iter().zip(x.iter()).map(|(free, x)| free.value(*x)).collect();
-            let known = log.find(&values).map(|evaluation| evaluation.misfit);
-            let misfit = known.or_else(|| {
-                let evaluation = self.evaluate(values, stop)?;
-                let misfit = evaluation.misfit;
-                log.add(evaluation).map_err(|failure| trouble.set(Some(failure))).ok()?;
-                Some(misfit)
-            });
-            asked += 1;
-            least = least.min(misfit.unwrap_or(WORST));
+        let start = self.start()?;
+        let places = self.free.iter().zip(&start).map(|(free, value)| free.place(*value)).collect();
+        let mut search = LeastSquares::new(places, self.first_step);
+        let mut least = WORST;
+        for asked in 1..=evaluations {
+            let place = search.propose();
+            let there = || self.free.iter().zip(&place).map(|(free, x)| free.value(*x)).collect();
+            let values = if asked == 1 { start.clone() } else { there() };
+            if log.find(&values).is_none() {
+                let Some(evaluation) = self.evaluate(values.clone(), stop) else { return Ok(false) };
+                log.add(evaluation)?;
+            }
+            if let Some(evaluation) = log.find(&values) {
+                least = least.min(evaluation.misfit);
+                if evaluation.failure.is_none() {
+                    search.tell(&place, self.residuals(evaluation));
+                }
+            }
             done(asked, least);
-            misfit.unwrap_or(WORST)
-        };
-        let options = CMAESOptions::new(start, self.first_step)
-            .seed(self.seed)
-            .max_function_evals(evaluations.saturating_sub(1));
-        let mut search =
-            options.build(objective).map_err(|_| Failure::run("the search has no free parameter"))?;
-        while search.next().is_none() {
-            if let Some(failure) = trouble.take() {
-                return Err(failure);
-            }
-            if stop.load(Ordering::Relaxed) {
-                return Ok(false);
-            }
         }
-        trouble.take().map_or(Ok(!stop.load(Ordering::Relaxed)), Err)
+        Ok(true)
+    }
+
+    /// What the search makes small: their squares add up to the misfit.
+    fn residuals(&self, evaluation: &Evaluation) -> Vec<f64> {
+        let of_data = self.target.residuals(&evaluation.spreads, self.trials as usize);
+        let edges = self.free.iter().zip(&evaluation.values);
+        of_data.into_iter().chain(edges.map(|(free, value)| free.edge_penalty(*value).sqrt())).collect()
     }
 }
 

@@ -48,16 +48,15 @@ impl Spread {
         Some(Self { mean: mean?, sd: sd? })
     }
 
-    /// How far a model's spread, over `model_trials` trials, is from this one, over `trials`: the squared
-    /// distance of the means and the squared logarithm of the ratio of the standard deviations, each by its
-    /// variance if both came from one normal distribution. Of a true model each is 1 on average. The model's
-    /// standard deviation counts as at least a twentieth of this one.
+    /// How far a model's spread, over `model_trials` trials, is from this one, over `trials`: the distance of the means and the logarithm of
+    /// the ratio of the standard deviations, each by its standard error if both came from one normal distribution. Of a true model the
+    /// square of each is 1 on average. The model's standard deviation counts as at least a twentieth of this one.
     #[must_use]
-    pub fn misfit(&self, model: &Self, [trials, model_trials]: [usize; 2]) -> [f64; 2] {
+    pub fn residuals(&self, model: &Self, [trials, model_trials]: [usize; 2]) -> [f64; 2] {
         let [n, m] = [trials, model_trials].map(|trials| trials.max(2) as f64);
         let mean = (model.mean - self.mean) / self.sd;
         let spread = (model.sd.max(self.sd / 20.0) / self.sd).ln();
-        [mean * mean / (1.0 / n + 1.0 / m), spread * spread / (0.5 / (n - 1.0) + 0.5 / (m - 1.0))]
+        [mean / (1.0 / n + 1.0 / m).sqrt(), spread / (0.5 / (n - 1.0) + 0.5 / (m - 1.0)).sqrt()]
     }
 }
 
@@ -136,11 +135,20 @@ impl Target {
     pub fn misfit(&self, model: &[Spread], model_trials: usize) -> f64 {
         misfit(&self.spreads, model, [self.trials, model_trials])
     }
+
+    /// The same, quantity by quantity: of each the distance of the means and of the spreads, in standard errors.
+    pub(super) fn residuals(&self, model: &[Spread], model_trials: usize) -> Vec<f64> {
+        residuals(&self.spreads, model, [self.trials, model_trials]).collect()
+    }
 }
 
 /// How far a model's spreads are from the data's, over so many trials of the data and of the model.
 pub(super) fn misfit(data: &[Spread], model: &[Spread], trials: [usize; 2]) -> f64 {
-    data.iter().zip(model).flat_map(|(data, model)| data.misfit(model, trials)).sum()
+    residuals(data, model, trials).map(|residual| residual * residual).sum()
+}
+
+fn residuals(data: &[Spread], model: &[Spread], trials: [usize; 2]) -> impl Iterator<Item = f64> {
+    data.iter().zip(model).flat_map(move |(data, model)| data.residuals(model, trials))
 }
 
 /// What the columns of a table are.
@@ -228,16 +236,17 @@ mod tests {
     #[test]
     fn a_misfit_counts_standard_errors() {
         let data = Spread { mean: 100.0, sd: 5.0 };
-        let misfit = |mean, sd| data.misfit(&Spread { mean, sd }, [10, 10]);
+        let misfit =
+            |mean, sd| data.residuals(&Spread { mean, sd }, [10, 10]).map(|residual| residual * residual);
         assert_eq!(misfit(100.0, 5.0), [0.0, 0.0]);
         assert!((misfit(110.0, 5.0)[0] - 4.0 / 0.2).abs() < 1e-12);
         let [_, wide] = misfit(100.0, 5.0 * std::f64::consts::E);
         assert!((wide - 9.0).abs() < 1e-12);
         let none = misfit(100.0, 0.0)[1];
         assert!((none - 9.0 * 20_f64.ln().powi(2)).abs() < 1e-9, "no spread at all is finite");
-        let more = data.misfit(&Spread { mean: 110.0, sd: 5.0 }, [10, 40]);
+        let [more, _] = data.residuals(&Spread { mean: 110.0, sd: 5.0 }, [10, 40]);
         assert!(
-            (more[0] - 4.0 / 0.125).abs() < 1e-12,
+            (more * more - 4.0 / 0.125).abs() < 1e-12,
             "more trials of the model: the same distance weighs more"
         );
     }
@@ -255,7 +264,7 @@ mod tests {
         let worlds = 4_000;
         let mut sums = [0.0; 2];
         for _ in 0..worlds {
-            let [mean, sd] = spread(10).misfit(&spread(20), [10, 20]);
+            let [mean, sd] = spread(10).residuals(&spread(20), [10, 20]).map(|residual| residual * residual);
             sums = [sums[0] + mean, sums[1] + sd];
         }
         // By the t distribution of few trials the first is (n - 1) / (n - 3) on average, and the logarithm's

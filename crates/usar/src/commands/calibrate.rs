@@ -30,7 +30,8 @@ list; `log` searches the range by factors. Each must be written in FILE: what is
 The misfit is the sum, over the columns that the target shares with trials.csv (rescuees, energy, HP of each task; rounds), of the squared \
 distance of the means in standard errors, plus the squared logarithm of the ratio of the standard deviations in standard errors, so that \
 few recorded trials bind less: of a true model it is about twice the number of columns. A value near an end of its range adds up to 4. The \
-search is CMA-ES, seeded. Each evaluation is on disk as soon as it is done; the same command goes on where it was broken off, and more \
+search is by least squares: each distance is modelled as linear in the parameters, by a regression on the candidates near the present one, \
+and the model's minimum is tried next. Each evaluation is on disk as soon as it is done; the same command goes on where it was broken off, and more \
 --evaluations go on from there. The folder gets evaluations.csv (the log), calibrated.ron, fit.csv and calibration.json.
 
 Examples:
@@ -50,8 +51,8 @@ pub(crate) struct Arguments {
     /// Set a field that is not free; may stand several times
     #[arg(long, value_name = "PATH=VALUE")]
     set: Vec<String>,
-    /// Candidates to ask for, the start among them; the last generation is finished, and there are fewer when nothing gets better
-    #[arg(long, default_value_t = 400, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    /// Candidates to ask for, the start among them
+    #[arg(long, default_value_t = 100, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     evaluations: u32,
     /// Trials of a candidate
     #[arg(long, default_value_t = 10, value_parser = clap::value_parser!(u32).range(2..=100_000))]
@@ -62,11 +63,8 @@ pub(crate) struct Arguments {
     /// Trials, with seeds from 1, on which what was found is looked at afterwards
     #[arg(long, default_value_t = 100, value_parser = clap::value_parser!(u32).range(2..=100_000))]
     fresh_trials: u32,
-    /// Seed of the search
-    #[arg(long, default_value_t = 1)]
-    seed: u64,
     /// How far the first candidates are from the scenario as it is, as a share of each range; small to refine what was found
-    #[arg(long, default_value_t = 0.25, value_name = "SHARE")]
+    #[arg(long, default_value_t = 0.1, value_name = "SHARE")]
     first_step: f64,
     /// Threads [default: one per core]
     #[arg(long, value_parser = clap::value_parser!(u32).range(1..=1024))]
@@ -160,9 +158,8 @@ impl Arguments {
             return Err(Failure::input(format!("--set: {path} is free")));
         }
         let target = Target::load(&self.target, &base)?;
-        let (trials, first_seed, seed, first_step) =
-            (self.trials, self.first_seed, self.seed, self.first_step);
-        let calibration = Calibration { text, base, free, target, trials, first_seed, seed, first_step };
+        let (trials, first_seed, first_step) = (self.trials, self.first_seed, self.first_step);
+        let calibration = Calibration { text, base, free, target, trials, first_seed, first_step };
         calibration.check()?;
         Ok(calibration)
     }

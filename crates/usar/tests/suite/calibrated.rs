@@ -159,8 +159,8 @@ fn what_cannot_be_calibrated_is_refused() {
     std::fs::write(folder.join("target.csv"), "method,rounds\nDIS,6\nDIS,7\n").unwrap();
     succeeds(&run(&["--evaluations", "2"]));
     refused(
-        &run(&["--evaluations", "2", "--seed", "9"]),
-        &["has the calibration of something else", "seed: 1 there, 9 now"],
+        &run(&["--evaluations", "2", "--first-step", "0.2"]),
+        &["has the calibration of something else", "first_step: 0.1 there, 0.2 now"],
     );
     std::fs::write(folder.join("target.csv"), "method,rounds\nDIS,6\nDIS,8\n").unwrap();
     refused(&run(&["--evaluations", "2"]), &["target.rounds: [6.5,0.70", "there, [7.0,1.41"]);

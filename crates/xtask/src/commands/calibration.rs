@@ -18,9 +18,8 @@ pub fn run(arguments: &[String]) -> ExitCode {
         let folder = out.join(&name);
         if !folder.join("fit.csv").exists() {
             // A coarser step, few trials and few candidates: what matters here is which readings do better.
-            let quick =
-                ["--trials", "6", "--evaluations", "100", "--fresh-trials", "2", "--set", "dt_s=0.04"];
-            calibrate(Path::new(START), &folder, &combination, &quick);
+            let quick = "--trials 6 --evaluations 80 --first-step 0.05 --fresh-trials 2 --set dt_s=0.04";
+            calibrate(Path::new(START), &folder, &combination, quick);
         }
         runs.push(Run { name, misfit: least_misfit(&folder), combination });
         println!("{}", runs.last().expect("one was pushed"));
@@ -32,9 +31,8 @@ pub fn run(arguments: &[String]) -> ExitCode {
         let folder = out.join(format!("final-{}", i + 1));
         if !folder.join("fit.csv").exists() {
             let start = out.join(&nearest.name).join("calibrated.ron");
-            let whole =
-                ["--trials", "10", "--evaluations", "150", "--first-step", "0.12", "--set", "dt_s=0.02"];
-            calibrate(&start, &folder, &combination, &whole);
+            let whole = "--trials 10 --evaluations 80 --first-step 0.03 --set dt_s=0.02";
+            calibrate(&start, &folder, &combination, whole);
         }
         println!(
             "final-{}, from {}, misfit {:.1}: {combination}",
@@ -57,7 +55,7 @@ pub fn run(arguments: &[String]) -> ExitCode {
 }
 
 /// Fits one combination of readings.
-fn calibrate(start: &Path, folder: &Path, combination: &Combination, more: &[&str]) {
+fn calibrate(start: &Path, folder: &Path, combination: &Combination, more: &str) {
     let mut command = Command::new(super::usar());
     command.arg("calibrate").arg(start).args(["--target", TARGET, "--quiet", "--out"]).arg(folder);
     for free in &combination.free() {
@@ -66,7 +64,7 @@ fn calibrate(start: &Path, folder: &Path, combination: &Combination, more: &[&st
     for setting in combination.settings() {
         command.args(["--set", &setting]);
     }
-    let output = command.args(more).output().expect("usar can be started");
+    let output = command.args(more.split(' ')).output().expect("usar can be started");
     let said = String::from_utf8_lossy(&output.stderr);
     assert!(output.status.success(), "usar calibrate, {} of {} readings: {said}", combination, FACTORS.len());
 }
