@@ -11,6 +11,7 @@ use experiments::sweep::ours;
 use reports::STYLE;
 
 use crate::claims::{CLAIMS, Example, Judged, LEAST_TRIALS};
+use crate::scenarios::Standing;
 use crate::table::{claims_table, examples_table, power_table, verdicts_table};
 
 /// A part of what is to be said.
@@ -26,7 +27,9 @@ pub struct Section {
 /// All that is to be said, the verdicts last.
 #[must_use]
 pub fn sections(judged: &[Judged], examples: &[Example]) -> Vec<Section> {
-    let claims = judged.iter().map(|scenario| Section {
+    // Of an alternative world the verdicts alone are shown; claims.csv and power.csv have the rest.
+    let main = || judged.iter().filter(|world| world.standing != Standing::Alternative);
+    let claims = main().map(|scenario| Section {
         title: format!("{}: what its trials say of each claim", scenario.scenario),
         table: Some(claims_table(scenario)),
         note: String::new(),
@@ -36,7 +39,7 @@ pub fn sections(judged: &[Judged], examples: &[Example]) -> Vec<Section> {
         table: Some(examples_table(examples)),
         note: String::new(),
     };
-    let power = judged.iter().map(|scenario| {
+    let power = main().map(|scenario| {
         let table = power_table(scenario);
         let few = format!("Not said: it takes {LEAST_TRIALS} trials, there are {}.", scenario.trials);
         let note = if table.is_some() { POWER_NOTE.to_owned() } else { few };
@@ -44,7 +47,7 @@ pub fn sections(judged: &[Judged], examples: &[Example]) -> Vec<Section> {
         Section { title, table, note }
     });
     let verdicts =
-        Section { title: "Verdicts".to_owned(), table: Some(verdicts_table(judged)), note: footnote() };
+        Section { title: "Verdicts".to_owned(), table: Some(verdicts_table(judged)), note: footnote(judged) };
     claims.chain([examples]).chain(power).chain([verdicts]).collect()
 }
 
@@ -52,14 +55,24 @@ const POWER_NOTE: &str = "leans to: what large experiments would say, were the m
     experiments say so (of a comparison: of paired t tests at 5 %); of 10 pairs: verdicts of experiments of 10 pairs drawn from these; least found\n\
     by 10: the difference that 80 % of experiments of 10 pairs find";
 
-fn footnote() -> String {
-    format!(
-        "Paired by seed; intervals: BCa bootstrap at 95 %, widened for small n. A claim holds when the interval of each of its comparisons lies on the\n\
+fn footnote(judged: &[Judged]) -> String {
+    let alternatives = judged.iter().filter(|world| world.standing == Standing::Alternative).count();
+    let worlds = if alternatives == 0 {
+        String::new()
+    } else {
+        format!(
+            "All calibrated worlds: paper-calibrated and {alternatives} that the recorded trials cannot tell from it. A claim holds there if it\n\
+             holds in each, and does not if it does not in one.\n"
+        )
+    };
+    worlds
+        + &format!(
+            "Paired by seed; intervals: BCa bootstrap at 95 %, widened for small n. A claim holds when the interval of each of its comparisons lies on the\n\
          claimed side, and does not when one lies on the other side (by the shared interval: 95 % for all its comparisons together); else it is\n\
          undecided. Each verdict is wrong in about 2.5 % of experiments at most; the {} claims are not corrected for one another.\n\
          docs/reproduction.md discusses them.",
-        CLAIMS.len()
-    )
+            CLAIMS.len()
+        )
 }
 
 #[derive(Template)]

@@ -4,28 +4,112 @@ use std::path::Path;
 
 use experiments::Failure;
 use experiments::experiment::{Experiment, Overrides};
+use ron_fields::Fields;
+
+use crate::claims::PAPERS_TRIALS;
 
 /// Policies of the paper.
 pub const POLICIES: [&str; 4] = ["RNE", "DIS", "ENG", "HP_DIS"];
 
-/// Paths and texts of the scenarios. They are a part of the program, so that it runs from any folder.
-const SCENARIOS: [(&str, &str); 2] = [
-    ("scenarios/paper.ron", include_str!("../../../scenarios/paper.ron")),
-    ("scenarios/paper-calibrated.ron", include_str!("../../../scenarios/paper-calibrated.ron")),
-];
+// Scenarios are a part of the program, so that it runs from any folder.
+const PRINTED: &str = include_str!("../../../scenarios/paper.ron");
+const CALIBRATED: &str = include_str!("../../../scenarios/paper-calibrated.ron");
 
-/// The paper's experiment in each of its scenarios: with the printed constants, and with calibrated costs.
+/// The calibrated worlds that the data cannot tell from the one that was chosen, as variants of it.
+const ALTERNATIVES: &str = include_str!("../../../scenarios/sweeps/calibrated-worlds.ron");
+
+/// Trials of an alternative world, as a part of those of the others.
+const ALTERNATIVE_SHARE: u32 = 4;
+
+/// What a scenario stands for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Standing {
+    /// The constants that the paper prints.
+    Printed,
+    /// Costs fitted to the authors' recorded trials of the distance baseline: the fit that was chosen.
+    Calibrated,
+    /// Another fit, which the recorded trials cannot tell from the one that was chosen.
+    Alternative,
+}
+
+/// The paper's experiment in one scenario.
+pub struct World {
+    /// What the scenario stands for.
+    pub standing: Standing,
+    /// What is run in it.
+    pub experiment: Experiment,
+}
+
+/// The paper's experiment in each scenario: with the printed constants, with calibrated costs, and in each world that the data cannot tell
+/// from that one, over a quarter of the trials.
 ///
 /// # Errors
 /// None: the scenarios are given. A program that was started with policies of its own may lack one of
 /// [`POLICIES`].
-pub fn experiments(trials: u32) -> Result<Vec<Experiment>, Failure> {
-    let overrides = Overrides {
-        policies: Some(POLICIES.map(str::to_owned).to_vec()),
-        trials: Some(trials),
-        ..Overrides::default()
+pub fn worlds(trials: u32) -> Result<Vec<World>, Failure> {
+    let printed = world(Standing::Printed, "scenarios/paper.ron", PRINTED, overrides(trials, Vec::new()))?;
+    let calibrated =
+        |standing, overrides| world(standing, "scenarios/paper-calibrated.ron", CALIBRATED, overrides);
+    let mut worlds = vec![printed, calibrated(Standing::Calibrated, overrides(trials, Vec::new()))?];
+    let few = (trials / ALTERNATIVE_SHARE).max(PAPERS_TRIALS);
+    for (name, settings) in alternatives(ALTERNATIVES) {
+        let mut world = calibrated(Standing::Alternative, overrides(few, settings))?;
+        world.experiment.name = format!("{}-{name}", world.experiment.name);
+        worlds.push(world);
+    }
+    Ok(worlds)
+}
+
+fn world(standing: Standing, path: &str, text: &str, overrides: Overrides) -> Result<World, Failure> {
+    let experiment = Experiment::parse(text.to_owned(), Path::new(path), &overrides)?;
+    Ok(World { standing, experiment })
+}
+
+fn overrides(trials: u32, set: Vec<String>) -> Overrides {
+    let policies = Some(POLICIES.map(str::to_owned).to_vec());
+    Overrides { policies, trials: Some(trials), set, ..Overrides::default() }
+}
+
+/// Names of variants of a sweep file, and their settings as `path=value`.
+fn alternatives(sweep: &str) -> Vec<(String, Vec<String>)> {
+    let fields = Fields::of(sweep);
+    let plain = |key: &str| key.trim_matches('"').to_owned();
+    let variant = |key: &str| {
+        let place = format!("variants.{key}");
+        let setting = |path: &str| {
+            let value = &sweep[fields.value(&format!("{place}.{path}")).unwrap_or_default()];
+            format!("{}={value}", plain(path))
+        };
+        (plain(key), fields.inside(&place).into_iter().map(setting).collect())
     };
-    let experiment =
-        |(path, text): (&str, &str)| Experiment::parse(text.to_owned(), Path::new(path), &overrides);
-    SCENARIOS.into_iter().map(experiment).collect()
+    fields.inside("variants").into_iter().map(variant).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn variants_of_a_sweep_file_are_worlds_with_names_and_settings() {
+        let text = "(name: \"w\", variants: {\"two\": {\"mission.rest_s\": 3.0, \"a.b[0]\": At(1)}, \"three\": {\"c\": 1}})";
+        let expected = [("two", vec!["mission.rest_s=3.0", "a.b[0]=At(1)"]), ("three", vec!["c=1"])];
+        let found = alternatives(text);
+        let found: Vec<(&str, Vec<&str>)> = found
+            .iter()
+            .map(|(name, set)| (name.as_str(), set.iter().map(String::as_str).collect()))
+            .collect();
+        assert_eq!(found, expected);
+    }
+
+    #[test]
+    fn alternatives_have_names_of_their_own_and_fewer_trials() {
+        let worlds = worlds(200).unwrap();
+        assert_eq!(worlds[0].standing, Standing::Printed);
+        assert_eq!(worlds[1].standing, Standing::Calibrated);
+        assert!(worlds[2..].iter().all(|world| world.standing == Standing::Alternative));
+        let names: std::collections::BTreeSet<&str> =
+            worlds.iter().map(|world| world.experiment.name.as_str()).collect();
+        assert_eq!(names.len(), worlds.len());
+        assert!(worlds[2..].iter().all(|world| world.experiment.trials == 50));
+    }
 }

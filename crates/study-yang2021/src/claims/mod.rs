@@ -23,6 +23,8 @@ use experiments::stats::paired::pairs_needed;
 use experiments::sweep::folder::Folder;
 use serde::Serialize;
 
+use crate::scenarios::Standing;
+
 pub use examples::{Example, examples};
 pub use files::{write_authors_columns, write_claims, write_examples, write_power};
 pub use papers::CLAIMS;
@@ -87,6 +89,17 @@ impl Verdict {
             Self::Holds => "holds",
             Self::DoesNotHold => "does not hold",
             Self::Undecided => "undecided",
+        }
+    }
+
+    /// Of several worlds, from the verdict in each.
+    fn over(mut worlds: impl Iterator<Item = Self> + Clone) -> Self {
+        if worlds.clone().any(|verdict| verdict == Self::DoesNotHold) {
+            Self::DoesNotHold
+        } else if worlds.all(|verdict| verdict == Self::Holds) {
+            Self::Holds
+        } else {
+            Self::Undecided
         }
     }
 
@@ -179,6 +192,8 @@ const POWER_SEED: u64 = 1;
 
 /// What a scenario's trials say of each claim.
 pub struct Judged {
+    /// What the scenario stands for.
+    pub standing: Standing,
     /// Name of the scenario.
     pub scenario: String,
     /// What is measured there.
@@ -198,15 +213,25 @@ impl Judged {
     ///
     /// # Errors
     /// The sweep has not the policies of a claim.
-    pub fn of(folder: &Folder, trials: u32) -> Result<Self, Failure> {
+    pub fn of(folder: &Folder, standing: Standing, trials: u32) -> Result<Self, Failure> {
         let all =
             |trials| CLAIMS.iter().map(|claim| judge(folder, claim, trials)).collect::<Result<Vec<_>, _>>();
         let (of_few, of_all) = (all(PAPERS_TRIALS)?, all(trials)?);
         let powers =
             of_all.iter().map(|finding| power(finding, PAPERS_TRIALS as usize, POWER_SEED)).collect();
         let (scenario, metrics) = (folder.experiment().name.clone(), folder.experiment().metrics.clone());
-        Ok(Self { scenario, metrics, of_few, trials, of_all, powers })
+        Ok(Self { standing, scenario, metrics, of_few, trials, of_all, powers })
     }
+}
+
+/// The verdicts on each claim in all calibrated worlds together: it holds if it holds in each, and does not if it does not in one. None
+/// where there is one such world.
+#[must_use]
+pub fn verdicts_over_worlds(judged: &[Judged]) -> Option<Vec<Verdict>> {
+    let calibrated: Vec<&Judged> =
+        judged.iter().filter(|world| world.standing != Standing::Printed).collect();
+    let verdict = |claim: usize| Verdict::over(calibrated.iter().map(|world| world.of_all[claim].verdict));
+    (calibrated.len() > 1).then(|| (0..CLAIMS.len()).map(verdict).collect())
 }
 
 /// What the first trials of a folder's sweep say of a claim.
@@ -284,6 +309,15 @@ mod tests {
             pairs_needed: None,
         };
         intervals.iter().map(part).collect()
+    }
+
+    #[test]
+    fn a_claim_holds_over_worlds_when_it_holds_in_each_and_falls_with_one() {
+        let over = |verdicts: &[Verdict]| Verdict::over(verdicts.iter().copied());
+        let [holds, falls, open] = [Verdict::Holds, Verdict::DoesNotHold, Verdict::Undecided];
+        assert_eq!(over(&[holds, holds]), holds);
+        assert_eq!(over(&[holds, open]), open);
+        assert_eq!(over(&[holds, open, falls]), falls);
     }
 
     #[test]

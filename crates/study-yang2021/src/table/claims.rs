@@ -4,7 +4,8 @@ use comfy_table::{Cell, Table};
 use experiments::comparison::{digits, short};
 use reports::table::{headed, right};
 
-use crate::claims::{CLAIMS, Example, Judged, PAPERS_TRIALS, PartFinding, Shares};
+use crate::claims::{CLAIMS, Example, Judged, PAPERS_TRIALS, PartFinding, Shares, verdicts_over_worlds};
+use crate::scenarios::Standing;
 
 /// What a scenario's trials say of each claim: a row for each of its comparisons.
 pub(crate) fn claims_table(judged: &Judged) -> Table {
@@ -101,17 +102,21 @@ pub(crate) fn power_table(judged: &Judged) -> Option<Table> {
     Some(table)
 }
 
-/// All verdicts side by side.
+/// All verdicts side by side: of each scenario, and of all calibrated worlds where there are more than one.
 pub(crate) fn verdicts_table(judged: &[Judged]) -> Table {
-    let header = judged.iter().flat_map(|scenario| {
-        [PAPERS_TRIALS, scenario.trials]
-            .map(|trials| Cell::new(format!("{}, {trials} pairs", scenario.scenario)))
+    let main: Vec<&Judged> = judged.iter().filter(|world| world.standing != Standing::Alternative).collect();
+    let over_worlds = verdicts_over_worlds(judged);
+    let header = main.iter().flat_map(|scenario| {
+        [PAPERS_TRIALS, scenario.trials].map(|trials| format!("{}, {trials} pairs", scenario.scenario))
     });
-    let mut table = headed(std::iter::once(Cell::new("claim")).chain(header));
+    let header = ["claim".to_owned()].into_iter().chain(header);
+    let last = over_worlds.as_ref().map(|_| "all calibrated worlds".to_owned());
+    let mut table = headed(header.chain(last).map(Cell::new));
     for (i, claim) in CLAIMS.iter().enumerate() {
-        let verdicts = judged.iter().flat_map(|scenario| {
-            [&scenario.of_few, &scenario.of_all].map(|findings| Cell::new(findings[i].verdict.words()))
-        });
+        let verdicts =
+            main.iter().flat_map(|scenario| [&scenario.of_few, &scenario.of_all].map(|of| of[i].verdict));
+        let last = over_worlds.as_ref().map(|verdicts| verdicts[i]);
+        let verdicts = verdicts.chain(last).map(|verdict| Cell::new(verdict.words()));
         table.add_row(std::iter::once(Cell::new(claim.words)).chain(verdicts));
     }
     table

@@ -7,7 +7,6 @@ use std::time::Duration;
 
 use clap::Args;
 use experiments::Failure;
-use experiments::experiment::Experiment;
 use experiments::run::Limits;
 use experiments::sweep::disk::is_sweeps;
 use experiments::sweep::folder::{Folder, Opening};
@@ -16,7 +15,8 @@ use study_yang2021::claims::{
     Judged, PAPERS_TRIALS, examples, write_authors_columns, write_claims, write_examples, write_power,
 };
 use study_yang2021::page::{Section, sections, write_page};
-use study_yang2021::scenarios::{POLICIES, experiments};
+use study_yang2021::predictions::{predictions, write_predictions};
+use study_yang2021::scenarios::{POLICIES, Standing, World, worlds};
 
 use crate::running::{STOP, default_jobs, run_missing, stop_on_signals, tell};
 
@@ -27,19 +27,20 @@ const TRIAL_LIMIT: Duration = Duration::from_mins(10);
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Runs RNE, DIS, ENG and HP_DIS on paper.ron (printed constants) and paper-calibrated.ron (fitted to the authors' recorded trials of DIS), and \
-says of each of the paper's claims whether it holds: over the first 10 trials, as many as the paper has, and over all.
+says of each of the paper's claims whether it holds: over the first 10 trials, as many as the paper has, and over all. Where the recorded trials \
+cannot tell other fits from the calibrated one, a quarter of the trials runs in each of those worlds, too.
 
 A claim holds when the 95 % interval of each of its comparisons lies on the claimed side; it does not when one lies on the other side, at 95 % \
 shared by its comparisons; else it is undecided. The last table says how many paired trials each claim would need, and what 10 could have shown.
 
-The folder gets report.html, the verdicts as a page; a sweep's folder for each scenario, with a report.html of its own; claims.csv, power.csv and examples.csv; and for each scenario a CSV with \
+The folder gets report.html, the verdicts as a page; a sweep's folder for each scenario, with a report.html of its own; claims.csv, power.csv and examples.csv; predictions.csv, what each policy does in each world, with intervals of the mean of ten trials; and for each scenario a CSV with \
 exactly the authors' columns. docs/experiments.md says what is in each. A broken-off run goes on with the same command; more --trials only add.
 
 Examples:
   usar reproduce
   usar reproduce --trials 1000")]
 pub(crate) struct Arguments {
-    /// Paired trials of each policy and scenario
+    /// Paired trials of each policy in the printed and in the calibrated world
     #[arg(long, default_value_t = 200, value_parser = clap::value_parser!(u32).range(i64::from(PAPERS_TRIALS)..=1_000_000))]
     trials: u32,
     /// Folder for the results
@@ -61,22 +62,25 @@ impl Arguments {
         stop_on_signals();
         if is_sweeps(&self.out) {
             return Err(Failure::input(format!(
-                "--out: {} is the folder of one sweep; the folders of both scenarios would be put into it",
+                "--out: {} is the folder of one sweep; the folders of all scenarios would be put into it",
                 self.out.display()
             )));
         }
-        // Both are opened first, so that a folder that cannot be used is known before the first trial.
-        let opened = experiments(self.trials)?.into_iter().map(|experiment| self.open(experiment));
+        // All are opened first, so that a folder that cannot be used is known before the first trial.
+        let opened = worlds(self.trials)?.into_iter().map(|world| self.open(world));
         let mut folders = opened.collect::<Result<Vec<_>, Failure>>()?;
-        let mut judged = Vec::new();
-        for folder in &mut folders {
+        let (mut judged, mut predicted) = (Vec::new(), Vec::new());
+        for (standing, folder) in &mut folders {
             self.run(folder)?;
             let wanted = Wanted::of(folder.experiment())?;
             write_report(folder, wanted)?;
             write_authors_columns(&self.out, folder)?;
-            judged.push(Judged::of(folder, self.trials)?);
+            let trials = folder.experiment().trials;
+            judged.push(Judged::of(folder, *standing, trials)?);
+            predicted.push((*standing, predictions(folder, trials)?));
         }
         write_claims(&self.out, &judged)?;
+        write_predictions(&self.out, &predicted)?;
         write_power(&self.out, &judged)?;
         let examples = examples()?;
         write_examples(&self.out, &examples)?;
@@ -90,23 +94,26 @@ impl Arguments {
         if !self.quiet {
             tell(format_args!("results in {}, all of this as {}", self.out.display(), page.display()));
         }
-        let failures = folders.iter().flat_map(|folder| folder.results().values());
+        let failures = folders.iter().flat_map(|(_, folder)| folder.results().values());
         let failures: Vec<&str> = failures.filter_map(|measured| measured.failure.as_deref()).collect();
         if failures.is_empty() { Ok(()) } else { Err(Failure::run(failures.join("\n"))) }
     }
 
     /// Opens the folder of one scenario.
-    fn open(&self, experiment: Experiment) -> Result<Folder, Failure> {
+    fn open(&self, world: World) -> Result<(Standing, Folder), Failure> {
+        let World { standing, experiment } = world;
         let opening = Opening { shard: None, is_fresh: self.fresh };
         let place = self.out.join(&experiment.name);
-        Folder::open(&place, Arc::new(experiment), opening, &mut |note| tell(format_args!("note: {note}")))
+        let note = &mut |note: String| tell(format_args!("note: {note}"));
+        Ok((standing, Folder::open(&place, Arc::new(experiment), opening, note)?))
     }
 
     /// Runs the trials that are not there yet.
     fn run(&self, folder: &mut Folder) -> Result<(), Failure> {
         if !self.quiet {
             let name = &folder.experiment().name;
-            tell(format_args!("{name}: {} trials of each of {} policies", self.trials, POLICIES.len()));
+            let trials = folder.experiment().trials;
+            tell(format_args!("{name}: {trials} trials of each of {} policies", POLICIES.len()));
         }
         let jobs = self.jobs.map_or_else(default_jobs, |jobs| jobs as usize);
         run_missing(folder, None, Limits { jobs, trial: Some(TRIAL_LIMIT) }, self.quiet)?;

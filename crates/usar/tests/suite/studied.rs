@@ -27,6 +27,16 @@ fn has_the_files(results: &Path) {
         rows("examples.csv").iter().map(|row| row["verdict"].as_str()).collect::<Vec<_>>(),
         ["holds", "holds", "does not hold"]
     );
+    let predictions = rows("predictions.csv");
+    let dis =
+        predictions.iter().find(|row| row["policy"] == "DIS" && row["quantity"] == "rescuees_hard").unwrap();
+    let trials = rows("paper.csv");
+    let hard = trials
+        .iter()
+        .filter(|row| row["method"] == "DIS")
+        .map(|row| row["rescuees_hard"].parse::<f64>().unwrap());
+    let mean = hard.sum::<f64>() / 10.0;
+    assert!((dis["mean"].parse::<f64>().unwrap() - mean).abs() < 1e-9, "{dis:?}");
     let claims = rows("claims.csv");
     assert_eq!(claims.len(), 2 * 2 * 30);
     for row in &claims {

@@ -47,10 +47,11 @@ pub fn run(arguments: &[String]) -> ExitCode {
         .arg("choose")
         .args(&folders)
         .args(["--target", TARGET, "--quiet", "--csv"])
-        .arg(csv)
+        .arg(&csv)
         .status()
         .expect("usar can be started");
     assert!(status.success(), "usar choose: {status}");
+    xtask::calibrated::write_worlds(&csv, &folders);
     ExitCode::SUCCESS
 }
 

@@ -1,0 +1,160 @@
+//! What each policy does in each world, as predictions of the authors' trials: with their table, anyone can score them.
+
+use std::path::Path;
+
+use experiments::Failure;
+use experiments::files::NewFile;
+use experiments::stats::Moments;
+use experiments::sweep::folder::Folder;
+use serde::Serialize;
+use statrs::distribution::{ContinuousCDF, StudentsT};
+
+use crate::claims::PAPERS_TRIALS;
+use crate::scenarios::{POLICIES, Standing};
+
+/// What the authors tell of a trial.
+const QUANTITIES: [&str; 4] = ["rescuees", "energy", "hp", "rounds"];
+
+/// The name that stands for the chosen calibrated world and its alternatives together.
+const ALL: &str = "all calibrated worlds";
+
+/// A quantity of a policy in one world, or in all calibrated ones.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Prediction {
+    /// Name of the scenario.
+    pub scenario: String,
+    /// The policy.
+    pub policy: String,
+    /// The quantity, under the authors' name.
+    pub quantity: String,
+    /// Trials that were simulated.
+    pub trials: usize,
+    /// Mean over them.
+    pub mean: f64,
+    /// Their sample standard deviation.
+    pub sd: f64,
+    /// The mean of ten other trials lies above this in 97.5 % of experiments, if the world is the authors'.
+    pub low: f64,
+    /// And below this.
+    pub high: f64,
+}
+
+/// The predictions of one world.
+///
+/// # Errors
+/// The sweep has not the paper's policies.
+pub fn predictions(folder: &Folder, trials: u32) -> Result<Vec<Prediction>, Failure> {
+    let experiment = folder.experiment();
+    let mut predictions = Vec::new();
+    for name in POLICIES {
+        let policy = experiment.policies.iter().position(|policy| policy.label == name);
+        let policy = policy
+            .ok_or_else(|| Failure::input(format!("{}: has no policy {name}", folder.path().display())))?;
+        for place in QUANTITIES.iter().flat_map(|name| experiment.metrics.declared(name)) {
+            let value =
+                |trial| folder.results().get(&(0, policy, trial))?.metrics.as_ref()?.get(place).copied()?;
+            let values: Vec<f64> = (1..=trials).filter_map(value).collect();
+            let (scenario, quantity) = (experiment.name.clone(), experiment.metrics[place].column());
+            predictions.extend(of_values(&values).map(|[mean, sd, low, high]| Prediction {
+                scenario,
+                policy: name.to_owned(),
+                quantity,
+                trials: values.len(),
+                mean,
+                sd,
+                low,
+                high,
+            }));
+        }
+    }
+    Ok(predictions)
+}
+
+/// Mean, standard deviation, and the 95 % prediction interval of the mean of as many other trials as the paper has.
+fn of_values(values: &[f64]) -> Option<[f64; 4]> {
+    let Moments { mean, sd, .. } = Moments::of(values);
+    let (mean, sd, count) = (mean?, sd?, values.len() as f64);
+    let t = StudentsT::new(0.0, 1.0, count - 1.0).ok()?.inverse_cdf(0.975);
+    let half = t * sd * (1.0 / f64::from(PAPERS_TRIALS) + 1.0 / count).sqrt();
+    Some([mean, sd, mean - half, mean + half])
+}
+
+/// The predictions of all calibrated worlds together: the mean of their means, the root mean square of their standard deviations, and an
+/// interval that holds all of theirs. Empty where there is one such world.
+#[must_use]
+pub fn over_worlds(worlds: &[(Standing, Vec<Prediction>)]) -> Vec<Prediction> {
+    let calibrated: Vec<&Vec<Prediction>> = worlds
+        .iter()
+        .filter(|(standing, _)| *standing != Standing::Printed)
+        .map(|(_, predictions)| predictions)
+        .collect();
+    let Some(first) = calibrated.first().filter(|_| calibrated.len() > 1) else { return Vec::new() };
+    let together = |one: &Prediction| {
+        let alike = |other: &&Prediction| other.policy == one.policy && other.quantity == one.quantity;
+        let all: Vec<&Prediction> =
+            calibrated.iter().filter_map(|predictions| predictions.iter().find(alike)).collect();
+        let mean = |value: &dyn Fn(&Prediction) -> f64| {
+            all.iter().map(|prediction| value(prediction)).sum::<f64>() / all.len() as f64
+        };
+        Prediction {
+            scenario: ALL.to_owned(),
+            trials: all.iter().map(|prediction| prediction.trials).sum(),
+            mean: mean(&|prediction| prediction.mean),
+            sd: mean(&|prediction| prediction.sd * prediction.sd).sqrt(),
+            low: all.iter().map(|prediction| prediction.low).fold(f64::INFINITY, f64::min),
+            high: all.iter().map(|prediction| prediction.high).fold(f64::NEG_INFINITY, f64::max),
+            ..one.clone()
+        }
+    };
+    first.iter().map(together).collect()
+}
+
+/// `predictions.csv`: each world, then all calibrated ones together.
+///
+/// # Errors
+/// The disk does not take it.
+pub fn write_predictions(out: &Path, worlds: &[(Standing, Vec<Prediction>)]) -> Result<(), Failure> {
+    let mut table = csv::Writer::from_writer(Vec::new());
+    let together = over_worlds(worlds);
+    let mut rows = worlds.iter().flat_map(|(_, predictions)| predictions).chain(&together);
+    rows.try_for_each(|row| table.serialize(row)).map_err(Failure::run)?;
+    let bytes = table.into_inner().map_err(Failure::run)?;
+    NewFile::write(out, "predictions.csv", &bytes).map(drop)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_interval_is_that_of_the_mean_of_ten_other_trials() {
+        // numpy and scipy: t.ppf(0.975, 4) * std(ddof=1) * sqrt(1/10 + 1/5)
+        let [mean, sd, low, high] = of_values(&[1.0, 2.0, 3.0, 4.0, 10.0]).unwrap();
+        assert!((mean - 4.0).abs() < 1e-12 && (sd - 3.535_533_905_932_738).abs() < 1e-12);
+        assert!((high - mean - 5.376_562_827_045_078).abs() < 1e-9, "{}", high - mean);
+        assert!((mean - low - (high - mean)).abs() < 1e-12);
+        assert_eq!(of_values(&[1.0]), None);
+    }
+
+    #[test]
+    fn an_interval_over_worlds_holds_that_of_each_calibrated_one_and_not_the_printed() {
+        let one = |mean: f64, scenario: &str| Prediction {
+            scenario: scenario.to_owned(),
+            policy: "RNE".to_owned(),
+            quantity: "rounds".to_owned(),
+            trials: 10,
+            mean,
+            sd: 1.0,
+            low: mean - 1.0,
+            high: mean + 1.0,
+        };
+        let worlds = [
+            (Standing::Printed, vec![one(90.0, "paper")]),
+            (Standing::Calibrated, vec![one(6.0, "a")]),
+            (Standing::Alternative, vec![one(8.0, "b")]),
+        ];
+        let together = over_worlds(&worlds);
+        assert_eq!(together, [Prediction { trials: 20, low: 5.0, high: 9.0, ..one(7.0, ALL) }]);
+        assert!(over_worlds(&worlds[..2]).is_empty());
+    }
+}

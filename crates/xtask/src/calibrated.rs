@@ -1,0 +1,101 @@
+//! Scenario files of what a calibration chose: the calibrated world, and those that cannot be told from it as variants of it.
+
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+
+use ron_fields::{Fields, with_values};
+
+/// Finalists that are the nearest in at least this share of the draws cannot be told from the choice.
+const NOT_TOLD_APART: f64 = 0.05;
+
+const HEADER: &str = "\
+// The paper's experiment in a world that costs what the authors recorded: paper.ron with its free values fitted to their ten trials of the
+// distance baseline (scenarios/reference/dis_trials.csv). How, how well, and what does not fit: docs/calibration.md.
+//
+";
+
+const WORLDS: &str = "\
+// The calibrated worlds that the authors' recorded trials cannot tell from scenarios/paper-calibrated.ron: what is claimed of it should
+// hold in them as well. Made by `just calibrate`; docs/calibration.md says how.
+(
+    name: \"calibrated-worlds\",
+    scenario: \"../paper-calibrated.ron\",
+    policies: [\"RNE\", \"DIS\", \"ENG\", \"HP_DIS\"],
+    trials: 50,
+    variants: {
+";
+
+/// Writes `paper-calibrated.ron` and `calibrated-worlds.ron` beside the table of the choice, whose first row is the one that was chosen.
+///
+/// # Panics
+/// A table or a scenario is not what a calibration wrote, or the disk does not take the files.
+pub fn write_worlds(choice: &Path, folders: &[PathBuf]) {
+    let mut table = csv::Reader::from_path(choice).expect("the choice has a table");
+    let rows: Vec<csv::StringRecord> = table.records().map(|row| row.expect("a table")).collect();
+    let text = |row: &csv::StringRecord| {
+        let folder = folders.iter().find(|folder| folder.ends_with(&row[0])).expect("a finalist's name");
+        std::fs::read_to_string(folder.join("calibrated.ron")).expect("a finished calibration")
+    };
+    let (first, others) = rows.split_first().expect("there are finalists");
+    let chosen = text(first);
+    let mut worlds = WORLDS.to_owned();
+    for row in others {
+        if row[3].parse::<f64>().expect("a share") >= NOT_TOLD_APART {
+            writeln!(worlds, "        {:?}: {{{}}},", &row[0], changes(&chosen, &text(row))).expect("memory");
+        }
+    }
+    worlds.push_str("    },\n)\n");
+    let out = choice.parent().expect("it is in a folder");
+    std::fs::write(out.join("calibrated-worlds.ron"), worlds).expect("the folder takes a file");
+    std::fs::write(out.join("paper-calibrated.ron"), named(&chosen)).expect("the folder takes a file");
+}
+
+/// A candidate's text with the header and the name of the scenario in the repository, in which every policy may run.
+fn named(text: &str) -> String {
+    let legend = text.find("// [paper]").expect("a legend");
+    let text = text[legend..].replace(", only_policy: \"DIS\"", "");
+    let name = [("name".to_owned(), "\"paper-calibrated\"".to_owned())];
+    let text = with_values(&text, &name).expect("it has a name");
+    HEADER.to_owned() + &text.replacen("(\n", "(\n    format: 2,\n", 1)
+}
+
+/// The values in which a scenario differs from another, as entries of a variant.
+fn changes(from: &str, to: &str) -> String {
+    let (from_fields, to_fields) = (Fields::of(from), Fields::of(to));
+    let differs = |path: &&str| {
+        let there = to_fields.value(path).map(|place| &to[place]);
+        *path != "name" && from_fields.value(path).map(|place| &from[place]) != there
+    };
+    let paths = to_fields.leaves().map(|(path, _)| path).filter(differs);
+    let entry = |path: &str| format!("{path:?}: {}", &to[to_fields.value(path).unwrap_or_default()]);
+    paths.map(entry).collect::<Vec<_>>().join(", ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_choice_is_a_scenario_and_what_cannot_be_told_from_it_are_its_variants() {
+        let place = tempfile::tempdir().unwrap();
+        let candidate = |name: &str, rest: &str| {
+            let folder = place.path().join(name);
+            std::fs::create_dir(&folder).unwrap();
+            let text = format!(
+                "// Fitted\n// Start.\n//\n// [paper] legend\n(\n    name: \"s-fitted\", only_policy: \"DIS\",\n    mission: (rest_s: {rest}), // [paper]\n)\n"
+            );
+            std::fs::write(folder.join("calibrated.ron"), text).unwrap();
+            folder
+        };
+        let folders = [candidate("final-1", "3.0"), candidate("final-2", "4.0"), candidate("final-3", "5.0")];
+        let choice = place.path().join("choice.csv");
+        let table = "candidate,misfit,edge_penalty,share_nearest\nfinal-2,1,0,0.9\nfinal-1,2,0,0.06\nfinal-3,9,0,0.04\n";
+        std::fs::write(&choice, table).unwrap();
+        write_worlds(&choice, &folders);
+        let read = |name: &str| std::fs::read_to_string(place.path().join(name)).unwrap();
+        let expected = "// [paper] legend\n(\n    format: 2,\n    name: \"paper-calibrated\",\n    mission: (rest_s: 4.0), // [paper]\n)\n";
+        assert_eq!(read("paper-calibrated.ron"), HEADER.to_owned() + expected);
+        let expected = "        \"final-1\": {\"mission.rest_s\": 3.0},\n    },\n)\n";
+        assert_eq!(read("calibrated-worlds.ron"), WORLDS.to_owned() + expected);
+    }
+}
