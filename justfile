@@ -43,9 +43,10 @@ mutations *arguments:
 scenarios *arguments:
     cargo run --release --package xtask -- scenarios {{arguments}}
 
-# docs/scenarios-reference.md and the schemas of files from the types' comments
+# The pages made from the code: docs/scenarios-reference.md, docs/columns.md, docs/events.md, the schemas of files, and docs/commands.md
 reference:
     cargo run --package xtask -- reference
+    cargo run -- man --markdown > target/commands.md && mv target/commands.md docs/commands.md
 
 # docs/limits.md from the constants
 limits:

@@ -20,6 +20,7 @@ mod hostile;
 mod reported;
 mod resumed;
 mod same_bytes;
+mod shell;
 mod studied;
 mod tabled;
 mod viewed;
