@@ -1,5 +1,7 @@
 //! All commands on one page: what `--help` prints of each.
 
+use std::fmt::Write;
+
 use clap::Command;
 
 const HEAD: &str = "\
@@ -22,7 +24,7 @@ pub(super) fn page(command: Command) -> String {
         // A version differs from commit to commit and does not belong on a page that is compared.
         let help = command.term_width(COLUMNS).render_help().to_string();
         let help: Vec<&str> = help.lines().map(str::trim_end).collect();
-        page += &format!("\n## {name}\n\n```text\n{}\n```\n", help.join("\n").trim_end());
+        let _ = write!(page, "\n## {name}\n\n```text\n{}\n```\n", help.join("\n").trim_end());
     }
     page
 }
