@@ -13,7 +13,7 @@ use super::SCHEMA_VERSION;
 use crate::running::default_jobs;
 
 /// Bytes that the write test writes.
-const TEST_BYTES: usize = 1 << 16;
+const TEST_BYTES: usize = 1 << 12;
 
 /// Tell version, machine and threads, and whether results can be written
 #[derive(Debug, Args)]
