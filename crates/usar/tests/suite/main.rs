@@ -23,4 +23,5 @@ mod same_bytes;
 mod shell;
 mod studied;
 mod tabled;
+mod taught;
 mod viewed;
