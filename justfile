@@ -48,6 +48,10 @@ reference:
     cargo run --package xtask -- reference
     cargo run -- man --markdown > target/commands.md && mv target/commands.md docs/commands.md
 
+# The pages of docs/ as a book in target/book; index.html opens from disk, with search
+book:
+    bash .ci/book
+
 # docs/limits.md from the constants
 limits:
     cargo run --package xtask -- limits

@@ -6,6 +6,7 @@ mod support;
 mod broken;
 mod conservation;
 mod determinism;
+mod documents;
 mod files;
 mod invariants;
 mod limits;

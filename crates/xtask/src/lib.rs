@@ -21,4 +21,5 @@ pub mod random;
 pub mod reference;
 pub mod rooms;
 pub mod team;
+pub mod told;
 pub mod worlds;

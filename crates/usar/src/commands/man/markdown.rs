@@ -7,7 +7,8 @@ use clap::Command;
 const HEAD: &str = "\
 # Commands
 
-What `--help` prints of every command. `usar man --markdown` makes this page, and a test compares it with the program.
+What `--help` prints of every command. `usar man --markdown` makes this page, and a test compares it with
+the program.
 ";
 
 /// Columns of the help texts.
