@@ -43,8 +43,8 @@ fn prose(page: &str) -> impl Iterator<Item = (usize, &str)> {
 
 /// The anchors of a page: its headings in lower case, with hyphens for blanks and without other signs.
 fn anchors(page: &str) -> BTreeSet<String> {
-    let headings =
-        prose(page).filter_map(|(_, line)| line.starts_with('#').then(|| line.trim_start_matches('#')));
+    let headings = prose(page).map(|(_, line)| line).filter(|line| line.starts_with('#'));
+    let headings = headings.map(|line| line.trim_start_matches('#'));
     let slug = |heading: &str| -> String {
         let kept = heading.trim().chars().filter(|c| c.is_alphanumeric() || " -_".contains(*c));
         kept.flat_map(char::to_lowercase).map(|c| if c == ' ' { '-' } else { c }).collect()
