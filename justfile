@@ -52,6 +52,14 @@ reference:
 book:
     bash .ci/book
 
+# A release in target/dist: tests, packages, the program, checksums, notes; `--dry-run` sets no tag
+release *arguments:
+    bash .ci/release {{arguments}}
+
+# Licences, sources and versions of all dependencies; needs cargo-deny
+deny:
+    cargo deny check licenses bans sources
+
 # docs/limits.md from the constants
 limits:
     cargo run --package xtask -- limits

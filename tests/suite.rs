@@ -14,6 +14,7 @@ mod minimal;
 mod mission_readings;
 mod missions;
 mod navigation;
+mod packages;
 mod pairing;
 mod paper_counts;
 mod random_worlds;
