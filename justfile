@@ -43,9 +43,22 @@ mutations *arguments:
 scenarios *arguments:
     cargo run --release --package xtask -- scenarios {{arguments}}
 
-# docs/scenarios-reference.md and the schemas of files from the types' comments
+# The pages made from the code: docs/scenarios-reference.md, docs/columns.md, docs/events.md, the schemas of files, and docs/commands.md
 reference:
     cargo run --package xtask -- reference
+    cargo run -- man --markdown > target/commands.md && mv target/commands.md docs/commands.md
+
+# The pages of docs/ as a book in target/book; index.html opens from disk, with search
+book:
+    bash .ci/book
+
+# A release in target/dist: tests, packages, the program, checksums, notes; `--dry-run` sets no tag
+release *arguments:
+    bash .ci/release {{arguments}}
+
+# Licences, sources and versions of all dependencies; needs cargo-deny
+deny:
+    cargo deny check licenses bans sources
 
 # docs/limits.md from the constants
 limits:

@@ -6,7 +6,7 @@ use rne_core::Registry;
 use usar_sim::record::Status;
 use usar_sim::scenario::{Scenario, scenario_schema};
 use usar_sim::simulation::Simulation;
-use xtask::{random, reference};
+use xtask::{random, reference, told};
 
 use crate::support::root;
 
@@ -80,4 +80,16 @@ fn the_reference_is_made_of_the_types() {
         assert!(field.get("description").is_some(), "{name} has no comment");
         assert!(page.contains(&format!("| `{name}` |")), "{name} is missing");
     }
+}
+
+#[test]
+fn events_and_columns_are_told_by_the_program() {
+    for (path, page) in told::pages() {
+        let there = std::fs::read_to_string(&path).unwrap();
+        assert!(there == page, "{}: `just reference` makes it anew", path.display());
+    }
+    let events = &told::pages()[0].1;
+    let rows = events.lines().filter(|line| line.starts_with("| `")).count();
+    assert!(rows >= 33, "{events}");
+    assert!(events.contains("| `made_room` |") && events.contains("`room_for`: "), "{events}");
 }

@@ -37,7 +37,7 @@ const GENERAL: [&str; 9] = [
 ];
 
 /// What is needed to show something to people, and the crates that may need it.
-const SCREEN: [(&str, &[&str]); 9] = [
+const SCREEN: [(&str, &[&str]); 11] = [
     ("terminal_size", &["usar"]),
     ("resvg", &["pictures"]),
     ("gif", &["pictures"]),
@@ -45,6 +45,8 @@ const SCREEN: [(&str, &[&str]); 9] = [
     ("askama", &["reports", "study-yang2021"]),
     ("comfy-table", &["reports", "study-yang2021"]),
     ("clap", &["usar", "xtask"]),
+    ("clap_complete", &["usar"]),
+    ("clap_mangen", &["usar"]),
     ("ctrlc", &["usar"]),
     ("indicatif", &["usar"]),
 ];

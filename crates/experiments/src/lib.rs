@@ -34,3 +34,8 @@ pub mod sweep;
 pub mod why;
 
 pub use failure::{Failure, panic_message};
+
+/// The programs in the README compile and run.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -43,3 +43,8 @@ pub use reader::{Recording, TimedDecision};
 pub use trust::Trust;
 pub use words::{ToldEvent, robots_in_words};
 pub use writer::{DEFAULT_FPS, Options, Recorder, record};
+
+/// The programs in the README compile and run.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -40,3 +40,8 @@ pub mod stage;
 mod tally;
 pub mod vitals;
 pub mod world;
+
+/// The programs in the README compile and run.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -2,32 +2,39 @@
 
 use std::io::Write;
 use std::process::ExitCode;
+use std::sync::LazyLock;
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand};
 use experiments::experiment::set_registry;
+use experiments::provenance::COMMIT;
 use experiments::{Failure, panic_message};
 use reports::table::fold_at;
 use rne_core::Registry;
 use terminal_size::{Width, terminal_size_of};
 
 use crate::commands::{
-    calibrate, check, choose, compare, draw, estimate, export, fmt, fork, group, list, merge, new, oracle,
-    readings, regret, render, report, reproduce, resolve, run, schema, sorting, status, submit, sweep, test,
-    tidy, trust, verify, view, why,
+    calibrate, check, choose, compare, completions, doctor, draw, estimate, export, fmt, fork, group, list,
+    man, merge, new, oracle, readings, regret, render, report, reproduce, resolve, run, schema, sorting,
+    status, submit, sweep, test, tidy, trust, verify, view, why,
 };
 use crate::printable::Printable;
 use crate::running::{status_of_signal, tell};
+
+/// The version, with the commit that the program was built from where that is known.
+static VERSION: LazyLock<String> = LazyLock::new(|| match COMMIT {
+    "unknown" => env!("CARGO_PKG_VERSION").to_owned(),
+    commit => format!("{} (commit {commit})", env!("CARGO_PKG_VERSION")),
+});
 
 /// Which robots should team up? A laboratory for trust and grouping policies in mixed robot teams.
 #[derive(Debug, Parser)]
 #[command(
     name = "usar",
-    version,
-    about,
+    version = VERSION.as_str(),
     max_term_width = 110,
     after_help = "\
 Examples:
-  usar sweep scenarios/paper.ron                       the paper's experiment: policies compared over paired trials
+  usar sweep scenarios/paper.ron                       the paper's experiment: policies over paired trials
   usar run scenarios/paper.ron --policy RNE --seed 3   one trial, round by round
   usar compare results/paper                           is A better than B, by how much, how sure is that?
   usar report results/paper                            all of it as one page, with figures
@@ -43,7 +50,18 @@ Examples:
   usar check scenarios/*.ron                           is every value in its range?
   usar resolve scenarios/paper.ron                     every value, and where it comes from
   usar fmt mine.ron                                    its layout; comments stay
-  usar list policies                                   which there are: also scenarios, roles, metrics"
+  usar list policies                                   which there are: also scenarios, roles, metrics
+  usar completions bash                                for the shell; `usar man` writes manual pages
+  usar doctor                                          version, processor, threads; can results be written?
+
+Exit status:
+  0    a result
+  1    trouble underway: a trial without numbers, a failed check, an internal error
+  2    input that cannot be used; nothing was written
+  3    trouble with the disk; what was finished is kept
+  130  stopped by Ctrl-C (129 by SIGHUP, 143 by SIGTERM)
+
+Data goes to stdout, progress and messages to stderr."
 )]
 struct Cli {
     #[command(subcommand)]
@@ -84,6 +102,9 @@ enum Command {
     Draw(draw::Arguments),
     Render(render::Arguments),
     Export(export::Arguments),
+    Doctor(doctor::Arguments),
+    Completions(completions::Arguments),
+    Man(man::Arguments),
 }
 
 /// Runs the command that the process was called with, with policies of the caller's own beside the built-in
@@ -173,6 +194,9 @@ impl Command {
             Self::Draw(arguments) => arguments.execute(out),
             Self::Render(arguments) => arguments.execute(out),
             Self::Export(arguments) => arguments.execute(out),
+            Self::Doctor(arguments) => arguments.execute(out),
+            Self::Completions(arguments) => arguments.execute(Cli::command(), out),
+            Self::Man(arguments) => arguments.execute(Cli::command(), out),
         }
     }
 }

@@ -8,7 +8,7 @@ mod running;
 
 pub use cli::{main, main_with};
 
-/// The programs in the README compile.
+/// The program of the page about policies compiles.
 #[cfg(doctest)]
-#[doc = include_str!("../../../README.md")]
-struct Readme;
+#[doc = include_str!("../../../docs/policies.md")]
+struct Policies;

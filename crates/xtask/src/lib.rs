@@ -22,4 +22,5 @@ pub mod random;
 pub mod reference;
 pub mod rooms;
 pub mod team;
+pub mod told;
 pub mod worlds;

@@ -8,10 +8,12 @@ use ron_fields::limits::Limit;
 const HEAD: &str = "\
 # Limits
 
-What a file may say, and how much of it. Each limit is checked before anything is built: a file that goes beyond one is refused with its line
-and field, in less than 100 ms and with less than 50 MB of memory. Only regular files are read: no folder, no pipe, no device.
+What a file may say, and how much of it. Each limit is checked before anything is built: a file that goes
+beyond one is refused with its line and field, in less than 100 ms and with less than 50 MB of memory. Only
+regular files are read: no folder, no pipe, no device.
 
-The constants are the source of this page: `cargo run --package xtask -- limits` makes it, and a test compares it with them. `*` stands for any entry.
+The constants are the source of this page: `cargo run --package xtask -- limits` makes it, and a test compares
+it with them. `*` stands for any entry.
 ";
 
 /// Where the page is.

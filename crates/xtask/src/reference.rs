@@ -1,5 +1,6 @@
 //! `docs/scenarios-reference.md`, made of the comments of the types that scenario and sweep files are read into.
 
+use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
@@ -8,10 +9,12 @@ use serde_json::Value;
 const HEAD: &str = "\
 # Reference of scenario files
 
-Every field of a scenario and of a sweep file. A tutorial and examples are in [scenarios](scenarios.md); limits of the numbers are in [limits](limits.md).
-In the place of a number may stand a [distribution](scenarios.md#a-value-or-a-distribution).
+Every field of a scenario and of a sweep file. A tutorial and examples are in [scenarios](scenarios.md); limits of
+the numbers are in [limits](limits.md). In the place of a number may stand a
+[distribution](scenarios.md#a-value-or-a-distribution).
 
-The comments of the types are the source of this page: `cargo run --package xtask -- reference` makes it, and a test compares it with them.
+The comments of the types are the source of this page: `cargo run --package xtask -- reference` makes it, and a test
+compares it with them.
 ";
 
 /// Where the page is.
@@ -27,7 +30,8 @@ pub fn page() -> String {
     for (title, schema) in [("A scenario", &scenario), ("A sweep", &sweep)] {
         section(&mut page, title, schema);
     }
-    let types = scenario["$defs"].as_object().into_iter().flatten();
+    let types = [&scenario, &sweep].into_iter().filter_map(|schema| schema["$defs"].as_object());
+    let types: BTreeMap<&String, &Value> = types.flatten().collect();
     for (name, schema) in types {
         section(&mut page, name, schema);
     }

@@ -123,6 +123,14 @@ pub(super) fn dictionary(experiment: &Experiment) -> Result<[(&'static str, Stri
     Ok([(DICTIONARY[0], markdown(experiment, &tables)), (DICTIONARY[1], package)])
 }
 
+/// `columns.md` of an experiment.
+///
+/// # Errors
+/// Its tables cannot be told.
+pub fn columns_page(experiment: &Experiment) -> Result<String, Failure> {
+    Ok(markdown(experiment, &tables(experiment)?))
+}
+
 /// A table: its file, what a row is, and its columns.
 type Described = (&'static str, &'static str, Vec<Column>);
 

@@ -5,7 +5,9 @@
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
-use sysinfo::{CpuRefreshKind, MemoryRefreshKind, Pid, ProcessesToUpdate, RefreshKind, System};
+use sysinfo::{
+    CpuRefreshKind, DiskRefreshKind, Disks, MemoryRefreshKind, Pid, ProcessesToUpdate, RefreshKind, System,
+};
 
 use super::folder::Folder;
 use crate::failure::Failure;
@@ -59,9 +61,15 @@ pub struct HostRun {
 }
 
 impl HostRun {
-    /// A run on this machine.
+    /// A run on this machine, of the part of a sweep that a folder holds.
     #[must_use]
     pub fn new(folder: &Folder, threads: usize) -> Self {
+        Self::of_part(folder.manifest().part(), threads)
+    }
+
+    /// A run on this machine, of a part in words.
+    #[must_use]
+    pub fn of_part(part: String, threads: usize) -> Self {
         let memory = MemoryRefreshKind::nothing().with_ram();
         let kind = RefreshKind::nothing().with_memory(memory).with_cpu(CpuRefreshKind::nothing());
         let system = System::new_with_specifics(kind).ok();
@@ -78,7 +86,7 @@ impl HostRun {
             compiler: env!("USAR_COMPILER").to_owned(),
             threads,
             job: job(),
-            part: folder.manifest().part(),
+            part,
             trials: 0,
             begun: now(),
             seconds: 0.0,
@@ -120,6 +128,16 @@ pub fn name() -> String {
 pub fn job() -> Option<String> {
     let task = variable("SLURM_ARRAY_JOB_ID").zip(variable("SLURM_ARRAY_TASK_ID"));
     task.map(|(array, task)| format!("{array}_{task}")).or_else(|| variable("SLURM_JOB_ID"))
+}
+
+/// Bytes that are free for a user on the file system of a folder that is there; nothing where it cannot be told.
+#[must_use]
+pub fn free_bytes(folder: &Path) -> Option<u64> {
+    let folder = folder.canonicalize().ok()?;
+    let disks = Disks::new_with_refreshed_list_specifics(DiskRefreshKind::nothing().with_storage()).ok()?;
+    let holds = disks.iter().filter(|disk| folder.starts_with(disk.mount_point()));
+    let nearest = holds.max_by_key(|disk| disk.mount_point().components().count())?;
+    Some(nearest.available_space())
 }
 
 /// A variable of the environment that is set.

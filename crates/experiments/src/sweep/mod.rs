@@ -26,6 +26,7 @@ mod tables;
 mod tidy;
 
 pub use crate::experiment::Place;
+pub use dictionary::columns_page;
 pub use missing::{missing, run_trials};
 pub use parquet::write_parquet;
 pub use rows::trial_columns;

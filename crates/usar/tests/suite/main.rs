@@ -20,6 +20,8 @@ mod hostile;
 mod reported;
 mod resumed;
 mod same_bytes;
+mod shell;
 mod studied;
 mod tabled;
+mod taught;
 mod viewed;

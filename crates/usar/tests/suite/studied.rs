@@ -72,6 +72,30 @@ fn agrees_with_its_page(first: &str) {
     }
 }
 
+/// The rows of the README's table are rows of what its first command prints.
+fn agrees_with_the_readme(printed: &str) {
+    let cells = |line: &str, bar: char| -> Vec<String> {
+        line.split(bar).map(|cell| cell.trim_matches(['│', ' ']).to_owned()).collect()
+    };
+    let mut group = String::new();
+    let mut rows = Vec::new();
+    for mut row in printed.lines().filter(|line| line.starts_with('│')).map(|line| cells(line, '┆')) {
+        if let Some(first) = row[0].strip_suffix(" total") {
+            first.clone_into(&mut group);
+        } else if ["hard", "easy"].contains(&row[0].as_str()) {
+            row[0] = format!("{group} {}", row[0]);
+        }
+        rows.push(row);
+    }
+    let readme = read(&root().join("README.md"));
+    let told = readme.lines().filter(|line| line.starts_with('|') && line.contains('±'));
+    let told: Vec<Vec<String>> = told.map(|line| cells(line.trim_matches(['|', ' ']), '|')).collect();
+    assert_eq!(told.len(), 4);
+    for row in told {
+        assert!(rows.contains(&row), "README.md: {row:?} is not in\n{printed}");
+    }
+}
+
 /// The claims over as many trials as the paper has; and the pages in `docs/` with the numbers of these
 /// trials.
 #[test]
@@ -101,6 +125,11 @@ fn the_papers_experiment_and_the_pages_that_tell_of_it() {
     example("Example 3", "┆ does not hold");
 
     agrees_with_its_page(&first);
+
+    // So does the table of the README.
+    let sweep = root().join("scenarios/paper.ron");
+    let sweep = ["sweep", sweep.to_str().unwrap(), "--out", "results/reproduction/paper", "--quiet"];
+    agrees_with_the_readme(&succeeds(&usar(folder.path(), &sweep)));
 
     // The page that tells why has the numbers of the paper's ten trials.
     let page = read(&root().join("docs/why.md"));

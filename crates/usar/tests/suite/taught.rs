@@ -1,0 +1,90 @@
+//! The pages that teach: their files are written, their commands run in order, and what they print is what the
+//! page says.
+
+use std::path::Path;
+
+use crate::support::{read, root, succeeds, usar};
+
+/// A fenced block: its language, its text, and the file that a comment before it names.
+struct Block {
+    language: String,
+    text: String,
+    file: Option<String>,
+}
+
+fn blocks(page: &str) -> Vec<Block> {
+    let mut blocks: Vec<Block> = Vec::new();
+    let (mut open, mut file) = (false, None);
+    for line in page.lines() {
+        if let Some(language) = line.strip_prefix("```") {
+            open = !open;
+            if open {
+                blocks.push(Block { language: language.to_owned(), text: String::new(), file: file.take() });
+            }
+        } else if open {
+            let block = blocks.last_mut().unwrap();
+            block.text += line;
+            block.text += "\n";
+        } else if let Some(name) = line.strip_prefix("<!-- file: ") {
+            file = name.strip_suffix(" -->").map(str::to_owned);
+        }
+    }
+    blocks
+}
+
+/// The words of a command: blanks part them, quotation marks and a comment are the shell's.
+fn words(command: &str) -> Vec<String> {
+    let command = command.split(" # ").next().unwrap();
+    command.split_whitespace().map(|word| word.trim_matches('\'').to_owned()).collect()
+}
+
+/// Runs a page in a folder that has `scenarios/`. A block `text` after commands is in what the last one printed.
+fn follow(page: &str) -> usize {
+    let folder = tempfile::tempdir().unwrap();
+    let here = folder.path();
+    copy(&root().join("scenarios"), &here.join("scenarios"));
+    let (mut printed, mut count) = (String::new(), 0);
+    for block in blocks(&read(&root().join("docs").join(page))) {
+        match (block.file, block.language.as_str()) {
+            (Some(file), _) => std::fs::write(here.join(file), block.text).unwrap(),
+            (None, "sh") => {
+                for line in block.text.lines() {
+                    let words = words(line);
+                    assert_eq!(words[0], "usar", "{page}: {line}");
+                    let arguments: Vec<&str> = words[1..].iter().map(String::as_str).collect();
+                    println!("{page}: {line}");
+                    printed = succeeds(&usar(here, &arguments));
+                    count += 1;
+                }
+            }
+            (None, "text") if count > 0 => {
+                for line in block.text.lines() {
+                    assert!(printed.contains(line), "{page} says {line:?}; printed was\n{printed}");
+                }
+            }
+            _ => {}
+        }
+    }
+    count
+}
+
+/// The scenarios at the top of their folder: the pages need no others.
+fn copy(from: &Path, to: &Path) {
+    std::fs::create_dir(to).unwrap();
+    for entry in std::fs::read_dir(from).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_file() {
+            std::fs::copy(&path, to.join(path.file_name().unwrap())).unwrap();
+        }
+    }
+}
+
+#[test]
+fn the_tutorial_comes_to_what_it_says() {
+    assert_eq!(follow("start.md"), 12);
+}
+
+#[test]
+fn the_guides_run() {
+    assert_eq!(["policies.md", "results.md", "paper-figures.md", "study.md"].map(follow), [2, 4, 7, 3]);
+}

@@ -1,0 +1,101 @@
+//! Pages of the reference that are made of comments and constants: `docs/events.md` and `docs/columns.md`.
+
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+
+use experiments::experiment::{Experiment, Overrides};
+use experiments::sweep::columns_page;
+
+const EVENTS: &str = "\
+# Events: what can happen in a trial
+
+`usar run FILE --events FILE.jsonl` writes every event of a trial as a line of JSON: `time_s`, `step`, `event`
+(its name), `says` (it in a sentence), and the fields of its kind. The tables of `usar export` and the topic
+`/events` of an MCAP log have the same. Robots, rescuees, debris and radiation zones have numbers from 0;
+`task` is a row of the scenario's table of tasks.
+
+The comments of the type are the source of this page: `cargo run --package xtask -- reference` makes it.
+
+| event | what | fields |
+| --- | --- | --- |
+";
+
+const COLUMNS: &str = "\
+# Columns: metrics and the tables of a sweep
+
+The tables in the folder of `usar sweep scenarios/paper.ron`. A sweep's own `columns.md` has its tasks, needs and
+axes. The name of a metric on the command line has a dot before the task: the column `rescuees_hard` is
+`rescuees.hard`. [Experiments](experiments.md#what-is-in-the-folder) has the other files of the folder.
+
+The program is the source of this page: `cargo run --package xtask -- reference` makes it.
+";
+
+/// A page: where it is, and its text.
+pub fn pages() -> [(PathBuf, String); 2] {
+    [(place("docs/events.md"), events()), (place("docs/columns.md"), columns())]
+}
+
+fn place(path: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").join(path)
+}
+
+/// The columns of the paper's sweep.
+fn columns() -> String {
+    let file = place("scenarios/paper.ron");
+    let experiment = Experiment::load(&file, &Overrides::default()).expect("the paper's sweep is sound");
+    let page = columns_page(&experiment).expect("its tables have columns");
+    let (_, tables) = page.split_once("\n\n").expect("a title");
+    format!("{COLUMNS}\n{tables}")
+}
+
+/// The variants of the type of events, with their comments.
+fn events() -> String {
+    let source = std::fs::read_to_string(place("crates/usar-sim/src/event.rs")).expect("the type of events");
+    let (_, variants) = source.split_once("pub enum Event {\n").expect("the type of events");
+    let (variants, _) = variants.split_once("\n}\n").expect("its end");
+    let mut page = EVENTS.to_owned();
+    let (mut comment, mut fields): (String, Vec<String>) = Default::default();
+    let mut open: Option<(String, String)> = None;
+    for line in variants.lines().map(str::trim) {
+        let first = line.chars().next().unwrap_or(' ');
+        if let Some(text) = line.strip_prefix("///") {
+            comment.push_str(text);
+        } else if first.is_uppercase() {
+            let name = snake(line.trim_end_matches([' ', '{', ',']));
+            let event = (name, std::mem::take(&mut comment));
+            if line.ends_with('{') { open = Some(event) } else { row(&mut page, &event, &[]) }
+        } else if let Some((name, _)) = line.split_once(':') {
+            fields.push(format!("`{name}`: {}", plain(&std::mem::take(&mut comment))));
+        } else if let Some(event) = open.take() {
+            row(&mut page, &event, &std::mem::take(&mut fields));
+        }
+    }
+    page
+}
+
+fn row(page: &mut String, (name, comment): &(String, String), fields: &[String]) {
+    let _ = writeln!(page, "| `{name}` | {} | {} |", comment.trim(), fields.join("; "));
+}
+
+/// A comment as a part of a sentence.
+fn plain(comment: &str) -> String {
+    let text = comment.trim().trim_end_matches('.');
+    let mut letters = text.chars();
+    let first = letters.next();
+    if letters.clone().next().is_none_or(char::is_uppercase) {
+        return text.to_owned(); // it begins with an abbreviation
+    }
+    first.into_iter().flat_map(char::to_lowercase).chain(letters).collect()
+}
+
+/// The name of a variant as the files have it.
+fn snake(name: &str) -> String {
+    let mut out = String::new();
+    for (at, letter) in name.char_indices() {
+        if letter.is_uppercase() && at > 0 {
+            out.push('_');
+        }
+        out.extend(letter.to_lowercase());
+    }
+    out
+}

@@ -1,0 +1,48 @@
+//! What makes the crates usable by strangers: ranges of versions where these hurt nobody, and what a registry and a
+//! reader need to know.
+
+use std::collections::BTreeSet;
+
+use crate::support::root;
+
+/// Dependencies that decide bits: any other version may change every number.
+const EXACT: [&str; 6] = ["cmaes", "libm", "nalgebra", "parry2d", "polyanya", "rapier2d"];
+
+/// Crates that are no libraries for others.
+const OURS: [&str; 1] = ["xtask"];
+
+fn text(path: &str) -> String {
+    std::fs::read_to_string(root().join(path)).unwrap_or_else(|error| panic!("{path}: {error}"))
+}
+
+#[test]
+fn only_what_decides_bits_has_an_exact_version() {
+    let workspace = text("Cargo.toml");
+    let (_, dependencies) = workspace.split_once("[workspace.dependencies]").unwrap();
+    let (dependencies, _) = dependencies.split_once("\n[").unwrap();
+    let exact = dependencies.lines().filter(|line| line.contains("\"="));
+    let exact: BTreeSet<&str> = exact.filter_map(|line| line.split(" = ").next()).collect();
+    assert_eq!(exact, BTreeSet::from(EXACT));
+    let page = text("docs/dependencies.md");
+    for name in EXACT {
+        assert!(page.contains(name), "docs/dependencies.md does not tell of {name}");
+    }
+}
+
+#[test]
+fn every_library_says_what_it_is() {
+    for folder in std::fs::read_dir(root().join("crates")).unwrap() {
+        let name = folder.unwrap().file_name().into_string().unwrap();
+        assert!(!root().join(format!("crates/{name}/examples")).exists(), "{name}: tests are no examples");
+        if OURS.contains(&name.as_str()) {
+            continue;
+        }
+        let manifest = text(&format!("crates/{name}/Cargo.toml"));
+        for field in ["description = ", "readme = ", "keywords = [", "categories = [", "license.workspace"] {
+            assert!(manifest.contains(&format!("\n{field}")), "crates/{name}/Cargo.toml lacks {field}");
+        }
+        let keywords = manifest.split("\nkeywords = [").nth(1).unwrap().split(']').next().unwrap();
+        assert!(keywords.split(',').count() <= 5, "{name}: a registry takes five keywords");
+        assert!(text(&format!("crates/{name}/README.md")).starts_with(&format!("# {name}\n")));
+    }
+}
