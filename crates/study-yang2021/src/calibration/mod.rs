@@ -1,24 +1,21 @@
 //! Calibration: free parameters of a scenario, searched so that the distance baseline does what recorded trials of it did.
 //!
 //! Only [`POLICY`] can be run here: how other policies fare in the calibrated world is a result, so nothing that fits it may look at them.
-//! The search is CMA-ES (Hansen 2016, "The CMA Evolution Strategy: A Tutorial", arXiv 1604.00772), from the crate `cmaes`, over a box that is
-//! mirrored at its ends. It is deterministic: a search that was broken off is repeated from its start, with the evaluations in the log instead of
-//! new trials.
+//! The search is [`Descent`]: it is deterministic, so that one that was broken off is repeated from its start, with
+//! the evaluations in the log instead of new trials.
 
 mod choice;
 mod fit;
-mod free;
 mod log;
 mod target;
 
-use std::cell::Cell;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use cmaes::{CMAESOptions, DVector};
 use experiments::comparison::short;
 use experiments::experiment::registry;
+use experiments::explore::{Descent, Free, WORST};
 use experiments::run::run_trial;
 use experiments::{Failure, panic_message};
 use rayon::prelude::*;
@@ -28,7 +25,6 @@ use usar_sim::scenario::{Scenario, ScenarioFile};
 
 pub use choice::{Candidate, Judged, NOT_TOLD_APART, judge};
 pub use fit::{Fit, write_fit};
-pub use free::Free;
 pub use log::{CALIBRATED, Log};
 pub use target::{Quantity, Spread, Target};
 
@@ -41,8 +37,9 @@ const SUFFIX: &str = "-fitted";
 /// Begins the first line of a calibrated scenario.
 const ORIGIN_LINE: &str = "// Fitted by usar calibrate";
 
-/// The misfit of a candidate that cannot be run.
-const WORST: f64 = 1e9;
+/// What a value at the very end of its range adds to a misfit: as much as a mean that is two standard errors
+/// off.
+const EDGE: f64 = 4.0;
 
 /// What is fitted to what.
 pub struct Calibration {
@@ -201,7 +198,7 @@ impl Calibration {
     /// What values near the ends of their ranges add to the misfit.
     #[must_use]
     pub fn edge_penalty(&self, values: &[f64]) -> f64 {
-        self.free.iter().zip(values).map(|(free, value)| free.edge_penalty(*value)).sum()
+        self.free.iter().zip(values).map(|(free, value)| edge_penalty(free, *value)).sum()
     }
 
     fn evaluate(&self, values: Vec<f64>, stop: &AtomicBool) -> Option<Evaluation> {
@@ -232,44 +229,37 @@ impl Calibration {
         stop: &AtomicBool,
         mut done: impl FnMut(usize, f64),
     ) -> Result<bool, Failure> {
-        let present = self.start()?;
-        if log.find(&present).is_none() {
-            let Some(evaluation) = self.evaluate(present.clone(), stop) else { return Ok(false) };
-            log.add(evaluation)?;
-        }
-        let start: Vec<f64> =
-            self.free.iter().zip(&present).map(|(free, value)| free.place(*value)).collect();
-        let trouble = Cell::new(None);
-        let (mut asked, mut least) = (1, log.find(&present).map_or(WORST, |evaluation| evaluation.misfit));
-        let objective = |x: &DVector<f64>| {
-            let values: Vec<f64> = self.free.iter().zip(x.iter()).map(|(free, x)| free.value(*x)).collect();
+        let start = self.start()?;
+        let descent = Descent { evaluations, seed: self.seed, first_step: self.first_step };
+        let (mut asked, mut least) = (0, WORST);
+        descent.search((&self.free, &start), stop, |values| {
             let known = log.find(&values).map(|evaluation| evaluation.misfit);
-            let misfit = known.or_else(|| {
-                let evaluation = self.evaluate(values, stop)?;
-                let misfit = evaluation.misfit;
-                log.add(evaluation).map_err(|failure| trouble.set(Some(failure))).ok()?;
-                Some(misfit)
-            });
+            let misfit = match known {
+                Some(misfit) => misfit,
+                None => match self.evaluate(values, stop) {
+                    None => return Ok(None),
+                    Some(evaluation) => {
+                        let misfit = evaluation.misfit;
+                        log.add(evaluation)?;
+                        misfit
+                    }
+                },
+            };
             asked += 1;
-            least = least.min(misfit.unwrap_or(WORST));
+            least = least.min(misfit);
             done(asked, least);
-            misfit.unwrap_or(WORST)
-        };
-        let options = CMAESOptions::new(start, self.first_step)
-            .seed(self.seed)
-            .max_function_evals(evaluations.saturating_sub(1));
-        let mut search =
-            options.build(objective).map_err(|_| Failure::run("the search has no free parameter"))?;
-        while search.next().is_none() {
-            if let Some(failure) = trouble.take() {
-                return Err(failure);
-            }
-            if stop.load(Ordering::Relaxed) {
-                return Ok(false);
-            }
-        }
-        trouble.take().map_or(Ok(!stop.load(Ordering::Relaxed)), Err)
+            Ok(Some(misfit))
+        })
     }
+}
+
+/// What a value near an end of the range adds to a misfit: nothing from a twentieth of the range on,
+/// `EDGE` at the very end, and the square of the way between. A value at an end says that the range
+/// decides, not the data.
+fn edge_penalty(free: &Free, value: f64) -> f64 {
+    let place = free.place_of(value);
+    let from_end = place.min(1.0 - place).max(0.0);
+    EDGE * (1.0 - from_end / 0.05).max(0.0).powi(2)
 }
 
 /// The text of a scenario that allows the calibrated policy alone.
