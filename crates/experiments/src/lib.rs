@@ -19,6 +19,7 @@
 pub mod comparison;
 pub mod expect;
 pub mod experiment;
+pub mod explore;
 mod failure;
 pub mod files;
 pub mod input_table;

@@ -6,6 +6,7 @@
 mod case;
 mod decisions;
 mod drawing;
+mod explored;
 mod figures;
 mod maps;
 mod overview;
@@ -14,6 +15,7 @@ mod report;
 pub mod table;
 mod wanted;
 
+pub use explored::{ranking, sensitivity_figure, sensitivity_table};
 pub use maps::ShownTrial;
 pub use regret::regret_figures;
 pub use report::write_report;

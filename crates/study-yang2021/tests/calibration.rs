@@ -3,8 +3,9 @@
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 
+use experiments::explore::Free;
 use ron_fields::Fields;
-use study_yang2021::calibration::{Calibration, Free, Log, Spread, Target};
+use study_yang2021::calibration::{Calibration, Log, Spread, Target};
 use usar_sim::scenario::Scenario;
 
 fn root() -> PathBuf {

@@ -8,16 +8,16 @@ use clap::{CommandFactory, Parser, Subcommand};
 use experiments::experiment::set_registry;
 use experiments::provenance::COMMIT;
 use experiments::{Failure, panic_message};
-use reports::table::fold_at;
+use reports::table::{Format, fold_at, show_as};
 use rne_core::Registry;
 use terminal_size::{Width, terminal_size_of};
 
+use crate::commands::sentences;
 use crate::commands::{
     calibrate, check, choose, compare, completions, doctor, draw, estimate, export, fmt, fork, group, list,
-    man, merge, new, oracle, readings, regret, render, report, reproduce, resolve, run, schema, sorting,
-    status, submit, sweep, test, tidy, trust, verify, view, why,
+    man, merge, new, oracle, readings, regret, render, report, reproduce, resolve, run, schema, search,
+    sensitivity, sorting, status, submit, sweep, test, tidy, trust, verify, view, why,
 };
-use crate::printable::Printable;
 use crate::running::{status_of_signal, tell};
 
 /// The version, with the commit that the program was built from where that is known.
@@ -39,6 +39,8 @@ Examples:
   usar compare results/paper                           is A better than B, by how much, how sure is that?
   usar report results/paper                            all of it as one page, with figures
   usar view scenarios/paper.ron --policy RNE,DIS       watch two trials side by side, in a browser
+  usar sensitivity scenarios/paper.ron --over mission.rest_s=0..60    what matters for the outcome?
+  usar search scenarios/paper.ron --policy RNE --against DIS --over mission.rest_s=0..60    where does it fail?
   usar draw scenarios/paper.ron --out map.svg          the world before anything runs
   usar render scenarios/paper.ron --at 120 --out frame.png
   usar estimate scenarios/paper.ron --trials 1000      how long, and how much disk?
@@ -86,6 +88,8 @@ enum Command {
     Oracle(oracle::Arguments),
     Readings(readings::Arguments),
     Regret(regret::Arguments),
+    Sensitivity(sensitivity::Arguments),
+    Search(search::Arguments),
     Verify(verify::Arguments),
     Calibrate(calibrate::Arguments),
     Choose(choose::Arguments),
@@ -136,8 +140,10 @@ pub fn main() -> ExitCode {
     if let Some((Width(columns), _)) = terminal_size_of(std::io::stdout()) {
         fold_at(columns);
     }
-    let mut out = Printable::new(std::io::stdout().lock());
-    let result = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| cli.command.execute(&mut out)))
+    let (format, has_json) = cli.command.shown();
+    show_as(format);
+    let mut out = sentences(format, has_json);
+    let result = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| cli.command.execute(&mut *out)))
         .unwrap_or_else(|panic| Err(Failure::run(format!("internal error: {}", panic_message(&*panic)))));
     let result = result.and_then(|()| Ok(out.flush()?));
     match result {
@@ -160,6 +166,27 @@ fn exit_status(failure: &Failure) -> u8 {
 }
 
 impl Command {
+    /// How tables are written, and whether the command has JSON of its own.
+    fn shown(&self) -> (Format, bool) {
+        let (shown, has_json) = match self {
+            Self::Run(arguments) => (arguments.shown, true),
+            Self::Compare(arguments) => (arguments.shown, true),
+            Self::Fork(arguments) => (arguments.shown, true),
+            Self::Oracle(arguments) => (arguments.shown, true),
+            Self::Regret(arguments) => (arguments.shown, true),
+            Self::Choose(arguments) => (arguments.shown, true),
+            Self::Why(arguments) => (arguments.shown, true),
+            Self::Sensitivity(arguments) => (arguments.shown, true),
+            Self::Sweep(arguments) => (arguments.shown, false),
+            Self::Reproduce(arguments) => (arguments.shown, false),
+            Self::Readings(arguments) => (arguments.shown, false),
+            Self::Calibrate(arguments) => (arguments.shown, false),
+            Self::Sorting(arguments) => (arguments.shown, false),
+            _ => return (Format::Table, false),
+        };
+        (shown.format(), has_json)
+    }
+
     fn execute(&self, out: &mut dyn Write) -> Result<(), Failure> {
         match self {
             Self::Run(arguments) => arguments.execute(out),
@@ -178,6 +205,8 @@ impl Command {
             Self::Oracle(arguments) => arguments.execute(out),
             Self::Readings(arguments) => arguments.execute(out),
             Self::Regret(arguments) => arguments.execute(out),
+            Self::Sensitivity(arguments) => arguments.execute(out),
+            Self::Search(arguments) => arguments.execute(out),
             Self::Verify(arguments) => arguments.execute(out),
             Self::Calibrate(arguments) => arguments.execute(out),
             Self::Choose(arguments) => arguments.execute(out),

@@ -216,7 +216,7 @@ pub fn compare(folder: &Folder, metrics: &[usize], choice: Choice) -> Result<Vec
     Ok(comparisons)
 }
 
-fn policy_pairs(experiment: &Experiment, choice: Choice) -> Result<Vec<[usize; 2]>, Failure> {
+pub(crate) fn policy_pairs(experiment: &Experiment, choice: Choice) -> Result<Vec<[usize; 2]>, Failure> {
     let labels: Vec<&str> = experiment.policies.iter().map(|policy| policy.label.as_str()).collect();
     let place = |option: &str, wanted: &str| {
         labels.iter().position(|label| *label == wanted).ok_or_else(|| {

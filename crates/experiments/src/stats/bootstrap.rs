@@ -106,14 +106,51 @@ pub fn bca_ratio_interval(
     // The jackknife: the ratio without each pair.
     let without = |pair: &[f64; 2]| ratio([sums[0] - pair[0], sums[1] - pair[1]]);
     let without = pairs.iter().map(without).collect::<Option<Vec<f64>>>()?;
-    let mean = without.iter().sum::<f64>() / count as f64;
-    let power = |exponent: i32| without.iter().map(|value| (mean - value).powi(exponent)).sum::<f64>();
-    if power(2) <= 0.0 {
-        return Some([observed; 2]);
-    }
-    let acceleration = power(3) / (6.0 * power(2).powf(1.5));
     let tail = tail(count, confidence, Width::Expanded)?;
+    let Some(acceleration) = jackknife_acceleration(&without) else { return Some([observed; 2]) };
     Some(bias_corrected(observed, ratios, acceleration, tail))
+}
+
+/// Resamples of any other statistic.
+const RESAMPLES_OF_ANY: usize = 4_000;
+
+/// The interval of any statistic of so many independent observations at this confidence: bias-corrected and
+/// accelerated, widened for small samples. The statistic is given the places of the observations to take. `None` for
+/// fewer than two observations, or where a resample has no value.
+#[must_use]
+pub fn statistic_interval(
+    count: usize,
+    confidence: f64,
+    statistic: impl Fn(&[usize]) -> Option<f64>,
+) -> Option<[f64; 2]> {
+    if count < 2 {
+        return None;
+    }
+    let all: Vec<usize> = (0..count).collect();
+    let observed = statistic(&all)?;
+    let mut draws = ChaCha8Rng::seed_from_u64(SEED);
+    let mut rows = all.clone();
+    let resample = |_| {
+        rows.iter_mut().for_each(|row| *row = draws.random_range(0..count as u32) as usize);
+        statistic(&rows)
+    };
+    let resampled = (0..RESAMPLES_OF_ANY).map(resample).collect::<Option<Vec<f64>>>()?;
+    // The jackknife: the statistic without each observation.
+    let without = |left_out: usize| {
+        let rows: Vec<usize> = all.iter().copied().filter(|row| *row != left_out).collect();
+        statistic(&rows)
+    };
+    let without = (0..count).map(without).collect::<Option<Vec<f64>>>();
+    let tail = tail(count, confidence, Width::Expanded)?;
+    let Some(acceleration) = jackknife_acceleration(&without?) else { return Some([observed; 2]) };
+    Some(bias_corrected(observed, resampled, acceleration, tail))
+}
+
+/// From the statistic without each observation; `None` where it is always the same.
+fn jackknife_acceleration(without: &[f64]) -> Option<f64> {
+    let mean = without.iter().sum::<f64>() / without.len() as f64;
+    let power = |exponent: i32| without.iter().map(|value| (mean - value).powi(exponent)).sum::<f64>();
+    (power(2) > 0.0).then(|| power(3) / (6.0 * power(2).powf(1.5)))
 }
 
 /// The quantiles of resampled statistics that the observed one's bias and acceleration ask for.

@@ -3,6 +3,7 @@
 pub mod bootstrap;
 mod correlation;
 pub mod paired;
+pub mod sensitivity;
 pub mod stopping;
 #[cfg(test)]
 #[expect(clippy::float_cmp, reason = "ranks, counts and medians of them are exact")]

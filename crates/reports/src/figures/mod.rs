@@ -5,6 +5,7 @@ mod gather;
 mod groups;
 mod metrics;
 mod regret;
+mod sensitivity;
 
 use experiments::Failure;
 use experiments::comparison::Comparison;
@@ -13,6 +14,7 @@ use experiments::sweep::folder::Folder;
 use crate::drawing::Figure;
 
 pub(crate) use regret::regret;
+pub(crate) use sensitivity::sensitivity;
 
 /// Figures of metrics along the axes of a sweep.
 pub(crate) fn along_axes(folder: &Folder) -> Result<Vec<Figure>, Failure> {

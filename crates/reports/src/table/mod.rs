@@ -1,11 +1,13 @@
 //! Tables for people.
 
+mod format;
 mod grouping;
 
 use std::sync::OnceLock;
 
+pub use comfy_table::Table;
 use comfy_table::presets::UTF8_FULL_CONDENSED;
-use comfy_table::{Cell, CellAlignment, ContentArrangement, Row, Table};
+use comfy_table::{Cell, CellAlignment, ContentArrangement, Row};
 use experiments::comparison::{Comparison, digits, short, short_p};
 use experiments::experiment::Experiment;
 use experiments::stats::Moments;
@@ -13,6 +15,7 @@ use experiments::sweep::folder::Folder;
 use usar_sim::event::ReturnCause;
 use usar_sim::record::TrialRecord;
 
+pub use format::{Format, show_as, shown_as};
 pub use grouping::{levels_table, likeness_table};
 
 /// Metrics down, policies across: mean ± sample standard deviation of one case.
@@ -35,8 +38,11 @@ pub fn policy_table(folder: &Folder, case: usize) -> Table {
 /// A title of which only the last word is shown where the words before are those of the title above.
 fn indented(title: &str, above: &str) -> String {
     let common = |text: &str| text.rfind(' ').map(|end| text[..end].to_owned());
+    let is_terminal = shown_as() == Format::Table;
     match (common(title), common(above)) {
-        (Some(here), Some(there)) if here == there => " ".repeat(here.len()) + &title[here.len()..],
+        (Some(here), Some(there)) if here == there && is_terminal => {
+            " ".repeat(here.len()) + &title[here.len()..]
+        }
         _ => title.to_owned(),
     }
 }

@@ -5,6 +5,7 @@ use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
 use experiments::Failure;
+use experiments::explore::Free;
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 use ron_fields::Fields;
@@ -13,7 +14,7 @@ use usar_sim::scenario::Scenario;
 
 use super::log::{CALIBRATED, ORIGIN};
 use super::target::misfit;
-use super::{Calibration, Free, Spread, Target};
+use super::{Calibration, Spread, Target};
 
 /// Resamples of the data and of the seeds.
 const RESAMPLES: usize = 4_000;

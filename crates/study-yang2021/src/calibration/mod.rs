@@ -6,7 +6,6 @@
 
 mod choice;
 mod fit;
-mod free;
 mod least_squares;
 mod log;
 mod target;
@@ -17,6 +16,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use experiments::comparison::short;
 use experiments::experiment::registry;
+use experiments::explore::{Free, WORST};
 use experiments::run::run_trial;
 use experiments::{Failure, panic_message};
 use rayon::prelude::*;
@@ -26,7 +26,6 @@ use usar_sim::scenario::{Scenario, ScenarioFile};
 
 pub use choice::{Candidate, Judged, NOT_TOLD_APART, judge};
 pub use fit::{Fit, write_fit};
-pub use free::Free;
 use least_squares::LeastSquares;
 pub use log::{CALIBRATED, Log};
 pub use target::{Quantity, Spread, Target};
@@ -40,8 +39,9 @@ const SUFFIX: &str = "-fitted";
 /// Begins the first line of a calibrated scenario.
 const ORIGIN_LINE: &str = "// Fitted by usar calibrate";
 
-/// The misfit of a candidate that cannot be run.
-const WORST: f64 = 1e9;
+/// What a value at the very end of its range adds to a misfit: as much as a mean that is two standard errors
+/// off.
+const EDGE: f64 = 4.0;
 
 /// What is fitted to what.
 pub struct Calibration {
@@ -198,7 +198,7 @@ impl Calibration {
     /// What values near the ends of their ranges add to the misfit.
     #[must_use]
     pub fn edge_penalty(&self, values: &[f64]) -> f64 {
-        self.free.iter().zip(values).map(|(free, value)| free.edge_penalty(*value)).sum()
+        self.free.iter().zip(values).map(|(free, value)| edge_penalty(free, *value)).sum()
     }
 
     fn evaluate(&self, values: Vec<f64>, stop: &AtomicBool) -> Option<Evaluation> {
@@ -230,7 +230,7 @@ impl Calibration {
         mut done: impl FnMut(usize, f64),
     ) -> Result<bool, Failure> {
         let start = self.start()?;
-        let places = self.free.iter().zip(&start).map(|(free, value)| free.place(*value)).collect();
+        let places = self.free.iter().zip(&start).map(|(free, value)| free.place_of(*value)).collect();
         let mut search = LeastSquares::new(places, self.first_step);
         let mut least = WORST;
         for asked in 1..=evaluations {
@@ -256,8 +256,17 @@ impl Calibration {
     fn residuals(&self, evaluation: &Evaluation) -> Vec<f64> {
         let of_data = self.target.residuals(&evaluation.spreads, self.trials as usize);
         let edges = self.free.iter().zip(&evaluation.values);
-        of_data.into_iter().chain(edges.map(|(free, value)| free.edge_penalty(*value).sqrt())).collect()
+        of_data.into_iter().chain(edges.map(|(free, value)| edge_penalty(free, *value).sqrt())).collect()
     }
+}
+
+/// What a value near an end of the range adds to a misfit: nothing from a twentieth of the range on,
+/// `EDGE` at the very end, and the square of the way between. A value at an end says that the range
+/// decides, not the data.
+fn edge_penalty(free: &Free, value: f64) -> f64 {
+    let place = free.place_of(value);
+    let from_end = place.min(1.0 - place).max(0.0);
+    EDGE * (1.0 - from_end / 0.05).max(0.0).powi(2)
 }
 
 /// The text of a scenario that allows the calibrated policy alone.

@@ -6,14 +6,15 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use experiments::Failure;
 use experiments::comparison::short;
+use experiments::explore::Free;
 use experiments::files::NewFile;
 use rayon::prelude::*;
 use ron_fields::{Fields, with_values};
-use study_yang2021::calibration::{Calibration, Fit, Free, Log, POLICY, Spread, Target, write_fit};
+use study_yang2021::calibration::{Calibration, Fit, Log, POLICY, Spread, Target, write_fit};
 use study_yang2021::table::fit_table;
 use usar_sim::scenario::Scenario;
 
-use super::load;
+use super::{ShownArguments, load, print_table};
 use crate::running::{STOP, default_jobs, progress_bar, stop_on_signals, tell};
 
 /// The scenario with what was found.
@@ -78,6 +79,8 @@ pub(crate) struct Arguments {
     /// No progress on stderr
     #[arg(long)]
     quiet: bool,
+    #[command(flatten)]
+    pub(crate) shown: ShownArguments,
 }
 
 impl Arguments {
@@ -197,7 +200,7 @@ impl Arguments {
         if log.evaluations().first().is_some_and(|first| first.values == best.values) {
             writeln!(out, "no candidate is nearer to the data than the start")?;
         }
-        writeln!(out, "{}", fit_table(rows))?;
+        print_table(out, &fit_table(rows))?;
         let (trials, first) = (self.trials, self.first_seed);
         let last = first + u64::from(trials) - 1;
         writeln!(

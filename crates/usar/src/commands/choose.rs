@@ -12,7 +12,7 @@ use study_yang2021::calibration::{CALIBRATED, Candidate, Judged, NOT_TOLD_APART,
 use study_yang2021::table::choice_table;
 use usar_sim::scenario::Scenario;
 
-use super::SCHEMA_VERSION;
+use super::{SCHEMA_VERSION, ShownArguments, print_table};
 use crate::running::{STOP, default_jobs, progress_bar, stop_on_signals};
 
 /// Choose between what several calibrations found, by trials that none was fitted to
@@ -50,6 +50,8 @@ pub(crate) struct Arguments {
     /// No progress on stderr
     #[arg(long)]
     quiet: bool,
+    #[command(flatten)]
+    pub(crate) shown: ShownArguments,
 }
 
 impl Arguments {
@@ -75,11 +77,15 @@ impl Arguments {
         if let Some(path) = &self.csv {
             write_csv(path, &target, &judged)?;
         }
-        if self.json { print_json(out, &target, &judged) } else { self.print(out, &target, &judged) }
+        if self.json || self.shown.is_json() {
+            print_json(out, &target, &judged)
+        } else {
+            self.print(out, &target, &judged)
+        }
     }
 
     fn print(&self, out: &mut dyn Write, target: &Target, judged: &[Judged]) -> Result<(), Failure> {
-        writeln!(out, "{}", choice_table(target, judged))?;
+        print_table(out, &choice_table(target, judged))?;
         let (trials, first) = (self.trials, self.first_seed);
         writeln!(
             out,

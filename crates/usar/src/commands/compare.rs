@@ -13,8 +13,8 @@ use experiments::sweep::folder::Folder;
 use reports::table::comparison_table;
 use serde::Serialize;
 
-use super::SCHEMA_VERSION;
 use super::family::FamilyArguments;
+use super::{SCHEMA_VERSION, ShownArguments, print_table};
 
 /// Is A better than B, by how much, and how sure is that? Paired by seed
 #[derive(Debug, Args)]
@@ -38,6 +38,8 @@ pub(crate) struct Arguments {
     /// Print one JSON object
     #[arg(long)]
     json: bool,
+    #[command(flatten)]
+    pub(crate) shown: ShownArguments,
 }
 
 #[derive(Serialize)]
@@ -59,7 +61,7 @@ impl Arguments {
         let asked = self.family.asked(experiment)?;
         let comparisons = compare(&folder, &asked.metrics, asked.choice())?;
         let interactions = interactions(&folder, &asked.metrics, asked.choice())?;
-        if self.json {
+        if self.json || self.shown.is_json() {
             let output = Output {
                 schema_version: SCHEMA_VERSION,
                 sweep: &experiment.name,
@@ -78,7 +80,7 @@ impl Arguments {
                 writeln!(out, "{}", place.trim_end_matches(": "))?;
             }
             let here: Vec<&Comparison> = comparisons.iter().filter(|c| c.case == i + 1).collect();
-            writeln!(out, "{}", comparison_table(&here))?;
+            print_table(out, &comparison_table(&here))?;
         }
         for comparison in &comparisons {
             writeln!(out, "{}", comparison.in_words)?;

@@ -13,8 +13,8 @@ use serde::Serialize;
 use usar_sim::record::TrialRecord;
 use usar_sim::simulation::{Checkpoint, Decider, Simulation};
 
-use super::SCHEMA_VERSION;
 use super::asked::{AskedTrial, TrialArguments};
+use super::{SCHEMA_VERSION, ShownArguments, print_table};
 use crate::running::{STOP, stop_on_signals};
 
 /// What if round N had been decided otherwise? Both trials, side by side
@@ -49,6 +49,8 @@ pub(crate) struct Arguments {
     /// Print one JSON object
     #[arg(long)]
     json: bool,
+    #[command(flatten)]
+    pub(crate) shown: ShownArguments,
 }
 
 /// One of the two trials.
@@ -95,7 +97,7 @@ impl Arguments {
         let onwards = driver.map_err(Failure::input)?.unwrap_or_else(|| base.clone());
         let sides = [side(&start, was, &base)?, side(&start, otherwise, &onwards)?];
         let fork = self.in_words(other.as_ref(), &asked.spec.label);
-        if self.json {
+        if self.json || self.shown.is_json() {
             let output = Output {
                 schema_version: SCHEMA_VERSION,
                 scenario: &asked.scenario.name,
@@ -247,7 +249,7 @@ fn print(out: &mut dyn Write, asked: &AskedTrial, sides: &[Side; 2]) -> Result<(
     }
     row("energy (points)".to_owned(), &|side| side.record.energy(), 1);
     row("HP (points)".to_owned(), &|side| side.record.hp(), 2);
-    writeln!(out, "{table}")?;
+    print_table(out, &table)?;
     let [was, fork] = sides.each_ref().map(|side| &side.state_hash);
     writeln!(out, "state hash   as it was {was}\n             the fork  {fork}")?;
     if was == fork {

@@ -11,6 +11,7 @@ pub(crate) mod doctor;
 pub(crate) mod draw;
 mod drawn;
 pub(crate) mod estimate;
+mod explored;
 pub(crate) mod export;
 mod family;
 pub(crate) mod fmt;
@@ -31,6 +32,9 @@ pub(crate) mod reproduce;
 pub(crate) mod resolve;
 pub(crate) mod run;
 pub(crate) mod schema;
+pub(crate) mod search;
+pub(crate) mod sensitivity;
+mod shown;
 mod slurm;
 mod snapshot;
 pub(crate) mod sorting;
@@ -51,6 +55,9 @@ use experiments::Failure;
 use usar_sim::scenario::Scenario;
 
 use crate::running::tell;
+
+use shown::print_table;
+pub(crate) use shown::{ShownArguments, sentences};
 
 /// Version of the JSON that the commands print.
 pub(crate) const SCHEMA_VERSION: u32 = 1;

@@ -19,6 +19,7 @@ use rayon::prelude::*;
 use rne_core::{Assignment, Decision, Policy, Question, assignments};
 use usar_sim::simulation::Checkpoint;
 
+use super::ShownArguments;
 use super::asked::{AskedTrial, TrialArguments};
 use super::fork::failure;
 use crate::running::{STOP, default_jobs, progress_bar, stop_on_signals};
@@ -83,6 +84,8 @@ pub(crate) struct Arguments {
     /// Print one JSON object
     #[arg(long)]
     json: bool,
+    #[command(flatten)]
+    pub(crate) shown: ShownArguments,
 }
 
 /// How far assignments are played.
@@ -139,7 +142,7 @@ impl Arguments {
         if let Some(path) = &self.csv {
             print::write_csv(path, &asked, &answers)?;
         }
-        if self.json {
+        if self.json || self.shown.is_json() {
             print::json(out, &asked, &answers)
         } else {
             print::text(out, &asked, &answers, self.top)

@@ -11,6 +11,7 @@ use study_yang2021::readings::{Trials, averaged, groupings_in_words, rivals, sin
 use study_yang2021::table::{averaged_table, readings_table, rivals_table};
 
 use super::sorting::gaps;
+use super::{ShownArguments, print_table};
 
 /// Which reading of the paper's ambiguous places decides what?
 #[derive(Debug, Args)]
@@ -24,6 +25,8 @@ Examples:
 pub(crate) struct Arguments {
     /// Folder of a sweep with readings of RNE, the default among them
     folder: PathBuf,
+    #[command(flatten)]
+    pub(crate) shown: ShownArguments,
 }
 
 impl Arguments {
@@ -59,7 +62,7 @@ impl Arguments {
         }
         let rows = single(&trials, default, &readings, &rounds)?;
         writeln!(out, "Each reading by itself against the default, over {} pairs", trials.numbers.len())?;
-        writeln!(out, "{}", readings_table(&rows, &folder.experiment().metrics))?;
+        print_table(out, &readings_table(&rows, &folder.experiment().metrics))?;
         writeln!(
             out,
             "regrouped: share of the {} rounds of the default's trials that the reading would group otherwise, and of those that it would split otherwise\n\
@@ -72,7 +75,8 @@ impl Arguments {
                 out,
                 "Each reading averaged over all combinations of the others, against the default of its option"
             )?;
-            writeln!(out, "{}\n", averaged_table(&averaged, &folder.experiment().metrics))?;
+            print_table(out, &averaged_table(&averaged, &folder.experiment().metrics))?;
+            writeln!(out)?;
         }
         let distinct = trials.distinct(&readings);
         let rivals = rivals(&trials, &distinct);
@@ -83,7 +87,7 @@ impl Arguments {
                 distinct.len(),
                 readings.len()
             )?;
-            writeln!(out, "{}", rivals_table(&rivals))?;
+            print_table(out, &rivals_table(&rivals))?;
             writeln!(
                 out,
                 "95 % paired t intervals; corrected: at 95 % shared by these readings (Bonferroni); all: above, or below, each of the others; least and\n\

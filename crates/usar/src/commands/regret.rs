@@ -12,7 +12,7 @@ use experiments::regret::{Analysis, Choices, Estimate, Study, StudyFolder, analy
 use reports::regret_figures;
 use reports::table::{headed, right};
 
-use super::SCHEMA_VERSION;
+use super::{SCHEMA_VERSION, ShownArguments, print_table};
 use crate::running::{STOP, default_jobs, progress_bar, stop_on_signals, tell};
 
 /// How far does each policy's decision stay behind the best one? A study over all rounds of many trials
@@ -64,6 +64,8 @@ pub(crate) struct Arguments {
     /// Print one JSON object
     #[arg(long)]
     json: bool,
+    #[command(flatten)]
+    pub(crate) shown: ShownArguments,
 }
 
 impl Arguments {
@@ -77,7 +79,7 @@ impl Arguments {
         for (name, content) in regret_figures(&analyses)? {
             NewFile::write(folder.path(), &name, &content)?;
         }
-        if self.json {
+        if self.json || self.shown.is_json() {
             let output = serde_json::json!({"schema_version": SCHEMA_VERSION, "study": folder.study.name, "analyses": analyses});
             return Ok(writeln!(out, "{output}")?);
         }
@@ -208,7 +210,7 @@ fn print_analysis(out: &mut dyn Write, analysis: &Analysis) -> Result<(), Failur
             right(&with_interval(policy.achieved.as_ref(), 100.0, " %")),
         ]);
     }
-    writeln!(out, "{table}")?;
+    print_table(out, &table)?;
     let mut table = headed(["feature of an assignment", "rank correlation with the outcome", "decisions"]);
     for row in &analysis.features {
         table.add_row([
@@ -217,5 +219,5 @@ fn print_analysis(out: &mut dyn Write, analysis: &Analysis) -> Result<(), Failur
             right(&row.decisions.to_string()),
         ]);
     }
-    Ok(writeln!(out, "{table}")?)
+    print_table(out, &table)
 }

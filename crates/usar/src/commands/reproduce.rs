@@ -18,6 +18,7 @@ use study_yang2021::page::{Section, sections, write_page};
 use study_yang2021::predictions::{predictions, write_predictions};
 use study_yang2021::scenarios::{POLICIES, Standing, World, worlds};
 
+use super::{ShownArguments, print_table};
 use crate::running::{STOP, default_jobs, run_missing, stop_on_signals, tell};
 
 /// Longest time of one trial.
@@ -55,6 +56,8 @@ pub(crate) struct Arguments {
     /// No progress on stderr
     #[arg(long)]
     quiet: bool,
+    #[command(flatten)]
+    pub(crate) shown: ShownArguments,
 }
 
 impl Arguments {
@@ -88,7 +91,7 @@ impl Arguments {
         let page = write_page(&self.out, &judged, &sections)?;
         for Section { title, table, note } in &sections {
             writeln!(out, "{title}")?;
-            table.iter().try_for_each(|table| writeln!(out, "{table}"))?;
+            table.iter().try_for_each(|table| print_table(out, table))?;
             writeln!(out, "{note}{}", if note.is_empty() { "" } else { "\n" })?;
         }
         if !self.quiet {

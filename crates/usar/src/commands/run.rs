@@ -22,7 +22,7 @@ use self::story::Story;
 use crate::recordings;
 
 use super::snapshot::{Snapshot, save};
-use super::{SCHEMA_VERSION, load};
+use super::{SCHEMA_VERSION, ShownArguments, load, print_table};
 use crate::running::{Guard, stop_on_signals};
 
 /// Run one trial and tell what happened, round by round
@@ -84,6 +84,8 @@ pub(crate) struct Arguments {
     /// Print one JSON object
     #[arg(long)]
     json: bool,
+    #[command(flatten)]
+    pub(crate) shown: ShownArguments,
 }
 
 #[derive(Serialize)]
@@ -126,7 +128,7 @@ impl Arguments {
         if let Status::Failed(reason) = &record.status {
             return Err(Failure::run(format!("trial of {} with seed {seed} failed: {reason}", spec.label)));
         }
-        if self.json {
+        if self.json || self.shown.is_json() {
             let output = Output {
                 schema_version: SCHEMA_VERSION,
                 scenario: &scenario.name,
@@ -191,7 +193,7 @@ fn print(out: &mut dyn Write, [scenario, policy]: [&str; 2], record: &TrialRecor
         record.status.name().replace('_', " ")
     )?;
     if !record.rounds.is_empty() {
-        writeln!(out, "{}", rounds_table(record))?;
+        print_table(out, &rounds_table(record))?;
     }
     let rescued = record.rescued();
     let by_task = record.tasks.iter().map(|task| format!("{} {}", task.task, task.totals.rescued));

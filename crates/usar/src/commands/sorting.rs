@@ -13,6 +13,8 @@ use rne_core::Member;
 use rne_core::policies::rne::Rne;
 use usar_sim::scenario::Scenario;
 
+use super::{ShownArguments, print_table};
+
 /// What do the policies' groups amount to: sorting by energy, by HP, or by what?
 #[derive(Debug, Args)]
 #[command(after_help = "\
@@ -28,6 +30,8 @@ pub(crate) struct Arguments {
     /// Number of the case, where the sweep has axes
     #[arg(long, default_value_t = 1)]
     case: usize,
+    #[command(flatten)]
+    pub(crate) shown: ShownArguments,
 }
 
 impl Arguments {
@@ -91,14 +95,14 @@ fn print(
         out,
         "In which share of the rounds a policy's split is the one that sorting each role gives (in brackets: by chance)"
     )?;
-    writeln!(out, "{}", likeness_table(likenesses))?;
+    print_table(out, &likeness_table(likenesses))?;
     writeln!(
         out,
         "split: in all roles, whichever half takes which task; higher: the group of the {hardest} task has the higher mean of that level. Ties count as sorted,\n\
          by chance too\n"
     )?;
     writeln!(out, "Mean levels of the groups when a round begins, in percent")?;
-    writeln!(out, "{}", levels_table(levels, &task_names(scenario)))?;
+    print_table(out, &levels_table(levels, &task_names(scenario)))?;
     writeln!(out, "n: rounds with two groups\n")?;
     blind.iter().try_for_each(|(label, rounds, blindness)| print_blindness(out, label, *rounds, blindness))
 }

@@ -16,6 +16,7 @@ use reports::table::policy_table;
 
 use super::chosen::Chosen;
 use super::precision::Precision;
+use super::{ShownArguments, print_table};
 use crate::recordings::{Recorded, record_trials};
 use crate::running::{STOP, default_jobs, run_missing, stop_on_signals, tell};
 
@@ -80,6 +81,8 @@ pub(crate) struct Arguments {
     /// No progress on stderr
     #[arg(long)]
     quiet: bool,
+    #[command(flatten)]
+    pub(crate) shown: ShownArguments,
 }
 
 impl Arguments {
@@ -164,7 +167,7 @@ pub(super) fn print(out: &mut dyn Write, folder: &Folder) -> Result<(), Failure>
         if !place.is_empty() {
             writeln!(out, "{}", place.trim_end_matches(": "))?;
         }
-        writeln!(out, "{}", policy_table(folder, i))?;
+        print_table(out, &policy_table(folder, i))?;
     }
     if experiment.cases.len() > MAX_TABLES {
         writeln!(

@@ -18,9 +18,9 @@ use serde::Serialize;
 use usar_sim::record::{DecisionRecord, Status};
 use usar_sim::simulation::Simulation;
 
-use super::SCHEMA_VERSION;
 use super::asked::{AskedTrial, TrialArguments};
 use super::oracle::decision_key;
+use super::{SCHEMA_VERSION, ShownArguments};
 use crate::running::{Guard, stop_on_signals};
 use robot::{RobotStory, Watched};
 
@@ -57,6 +57,8 @@ pub(crate) struct Arguments {
     /// Print one JSON object
     #[arg(long)]
     json: bool,
+    #[command(flatten)]
+    pub(crate) shown: ShownArguments,
 }
 
 /// What the oracle says of a decision.
@@ -103,7 +105,7 @@ impl Arguments {
             )));
         };
         let account = self.account(&asked, &simulation, record, watched)?;
-        if self.json {
+        if self.json || self.shown.is_json() {
             return Ok(writeln!(out, "{}", serde_json::to_string(&account).map_err(Failure::run)?)?);
         }
         told::text(out, &account, &asked)

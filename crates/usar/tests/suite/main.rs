@@ -12,6 +12,7 @@ mod decided;
 mod distributions;
 mod drawn;
 mod expected;
+mod explored;
 mod exported;
 mod files;
 mod grids;

@@ -6,13 +6,14 @@ use std::path::Path;
 use experiments::Failure;
 use experiments::files;
 use experiments::oracle::{Coverage, Evaluation, Objective, Outcome, Standing, Survey};
-use reports::table::{headed, right};
+use reports::table::{Table, headed, right};
 use rne_core::Assignment;
 use serde::Serialize;
 
 use super::{Answer, Asked, coverage_in_words};
 use crate::commands::SCHEMA_VERSION;
 use crate::commands::fork::ids;
+use crate::commands::print_table;
 
 #[derive(Serialize)]
 struct Output<'a> {
@@ -143,8 +144,8 @@ fn print_answer(out: &mut dyn Write, asked: &Asked, answer: &Answer, top: usize)
     let mean = survey.mean(objective).unwrap_or(best);
     let [best, worst, mean] = [best, worst, mean].map(short);
     writeln!(out, "\n{objective}, {better} is better: best {best}, mean {mean}, worst {worst}")?;
-    writeln!(out, "{}", ranking(asked, survey, top))?;
-    writeln!(out, "{}", choices(asked, survey))?;
+    print_table(out, &ranking(asked, survey, top))?;
+    print_table(out, &choices(asked, survey))?;
     Ok(())
 }
 
@@ -153,7 +154,7 @@ fn short(value: f64) -> String {
     if value.fract() == 0.0 { format!("{value:.0}") } else { format!("{value:.2}") }
 }
 
-fn ranking(asked: &Asked, survey: &Survey, top: usize) -> impl std::fmt::Display + use<> {
+fn ranking(asked: &Asked, survey: &Survey, top: usize) -> Table {
     let tasks = asked.question.tasks.iter().map(|task| format!("{} group", task.name));
     let header = ["rank", asked.objective.name(), "rescued", "energy", "time s"].map(str::to_owned);
     let mut table = headed(header.into_iter().chain(tasks).collect::<Vec<_>>());
@@ -183,7 +184,7 @@ fn rescued(outcome: &Outcome) -> String {
     format!("{} ({})", outcome.total().rescued, each.join(" + "))
 }
 
-fn choices(asked: &Asked, survey: &Survey) -> impl std::fmt::Display + use<> {
+fn choices(asked: &Asked, survey: &Survey) -> Table {
     let header = ["policy", "rank", "regret", asked.objective.name()].map(str::to_owned);
     let tasks = asked.question.tasks.iter().map(|task| format!("{} group", task.name));
     let mut table = headed(header.into_iter().chain(tasks).collect::<Vec<_>>());

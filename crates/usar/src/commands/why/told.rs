@@ -13,6 +13,7 @@ use super::robot::{RobotStory, in_words};
 use super::{Account, OracleSays};
 use crate::commands::asked::AskedTrial;
 use crate::commands::fork::ids;
+use crate::commands::print_table;
 
 /// A score that exceeds the next best by less than this share is called close.
 const CLOSE: f64 = 0.05;
@@ -143,7 +144,7 @@ fn needs(out: &mut dyn Write, question: &Question, pair: &DirectedRne) -> Result
         let adds = pair.by_need[k].map_or("infinite".to_owned(), |nats| format!("{nats:+.3e}"));
         table.add_row([right(&question.needs[k].name), right(&p), right(&q), right(&adds)]);
     }
-    Ok(writeln!(out, "{table}")?)
+    print_table(out, &table)
 }
 
 fn others(out: &mut dyn Write, question: &Question, others: &[OtherChoice]) -> Result<(), Failure> {

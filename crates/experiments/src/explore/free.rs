@@ -1,4 +1,4 @@
-//! A free parameter of a calibration: the fields of the scenario that it sets, and the range in which it is searched.
+//! A free parameter of a scenario: the fields that it sets, and the range in which it is searched or varied.
 
 use std::fmt;
 
@@ -7,10 +7,6 @@ use usar_sim::scenario::ScenarioFile;
 
 /// Significant digits of a candidate value, so that the log and the calibrated scenario hold what was run, to the bit.
 const DIGITS: usize = 4;
-
-/// What a value at the very end of its range adds to a misfit: as much as a mean that is two standard errors
-/// off.
-const EDGE: f64 = 4.0;
 
 /// A free parameter. It may set several fields that belong together, each in a fixed ratio to it.
 #[derive(Debug, Clone, PartialEq)]
@@ -22,11 +18,14 @@ pub struct Free {
     low: f64,
     high: f64,
     is_log: bool,
+    /// Whether its fields take whole numbers only.
+    is_whole: bool,
 }
 
 impl Free {
-    /// Reads `PATH[*RATIO] [+ PATH[*RATIO] ...]=LOW..HIGH[ log]`; `[*]` in a path is every entry of a list. `fields` are those that are written
-    /// in the scenario, as each path must be; `known` are all that a scenario has.
+    /// Reads `PATH[*RATIO] [+ PATH[*RATIO] ...]=LOW..HIGH[ log]`; `[*]` in a path is every entry of a list.
+    /// `fields` are those that are written in the scenario, as each path must be; `known` are all that a
+    /// scenario has.
     ///
     /// # Errors
     /// A text of another form, a path that is not in the scenario, or a range that cannot be searched; in one sentence.
@@ -72,7 +71,14 @@ impl Free {
             }
             named.extend(matching);
         }
-        Ok(Self { name, fields: named, low, high, is_log })
+        Ok(Self { name, fields: named, low, high, is_log, is_whole: false })
+    }
+
+    /// The same for this scenario: where a field takes whole numbers only, values are rounded to these.
+    #[must_use]
+    pub fn in_scenario(self, base: &ScenarioFile) -> Self {
+        let is_whole = self.whole_numbers(base).is_some();
+        Self { is_whole, ..self }
     }
 
     /// The value at a place on the line of all numbers, of which [0, 1] is the range; beyond, the range is mirrored again and again.
@@ -85,12 +91,19 @@ impl Free {
         } else {
             self.low + unit * (self.high - self.low)
         };
-        rounded(value).clamp(self.low, self.high)
+        let value = if self.is_whole { value.round() } else { rounded(value) };
+        value.clamp(self.low, self.high)
     }
 
-    /// The place of a value in the range, from 0 to 1; of a value beyond, that of the nearest end.
+    /// The place of a value, kept a tenth of the range away from its ends.
     #[must_use]
     pub fn place(&self, value: f64) -> f64 {
+        self.place_of(value).clamp(0.1, 0.9)
+    }
+
+    /// The place of a value in the range, from 0 to 1; of the nearest end for a value outside.
+    #[must_use]
+    pub fn place_of(&self, value: f64) -> f64 {
         let value = value.clamp(self.low, self.high);
         if self.is_log {
             (value / self.low).ln() / (self.high / self.low).ln()
@@ -107,7 +120,10 @@ impl Free {
 
     /// Its fields, each with its value in RON.
     pub fn settings(&self, value: f64) -> impl Iterator<Item = (&str, String)> {
-        self.fields.iter().map(move |(path, ratio)| (path.as_str(), in_ron(rounded(value * ratio))))
+        let text = |value: f64| {
+            if self.is_whole { format!("{value:.0}") } else { in_ron(rounded(value)) }
+        };
+        self.fields.iter().map(move |(path, ratio)| (path.as_str(), text(value * ratio)))
     }
 
     /// Whether one of its fields is at this path or within it.
@@ -122,18 +138,8 @@ impl Free {
     /// Whether a value is within a hundredth of the range of one of its ends.
     #[must_use]
     pub fn is_at_end(&self, value: f64) -> bool {
-        let place = self.place(value);
+        let place = self.place_of(value);
         !(0.01..=0.99).contains(&place)
-    }
-
-    /// What a value near an end of the range adds to a misfit: nothing from a twentieth of the range on,
-    /// `EDGE` at the very end, and the square of the way between. A value at an end says that the range
-    /// decides, not the data.
-    #[must_use]
-    pub fn edge_penalty(&self, value: f64) -> f64 {
-        let place = self.place(value);
-        let from_end = place.min(1.0 - place).max(0.0);
-        EDGE * (1.0 - from_end / 0.05).max(0.0).powi(2)
     }
 
     /// Its present value: that of its first field.
@@ -190,12 +196,12 @@ fn not_there(path: &str, known: &Fields) -> String {
 }
 
 /// A number as RON writes a float.
-pub(super) fn in_ron(value: f64) -> String {
+fn in_ron(value: f64) -> String {
     format!("{value:?}")
 }
 
 /// A number with few digits.
-pub(super) fn rounded(value: f64) -> f64 {
+fn rounded(value: f64) -> f64 {
     format!("{value:.*e}", DIGITS - 1).parse().unwrap_or(value)
 }
 

@@ -1,0 +1,180 @@
+//! The search for the scenario in which a policy fails the most.
+
+use std::path::Path;
+use std::sync::atomic::AtomicBool;
+
+use ron_fields::with_values;
+
+use super::space::{Point, Space};
+use super::{Descent, EvaluationLog, Free, Purpose, WORST};
+use crate::experiment::Program;
+use crate::failure::Failure;
+
+/// The scenario that was found.
+pub const FOUND: &str = "found.ron";
+const PURPOSE: Purpose = Purpose { noun: "search", origin: "search.json", results: &[FOUND] };
+
+/// Begins the first line of a found scenario.
+const ORIGIN_LINE: &str = "// Found by usar search";
+
+/// What a found scenario's name ends with.
+const SUFFIX: &str = "-found";
+
+/// A search. The space has one outcome.
+pub struct Hunt {
+    /// What varies, and what is looked at.
+    pub space: Space,
+    /// Whether the outcome is to be as low as can be.
+    pub is_lowest: bool,
+    /// Seed of the first trial of each candidate.
+    pub first_seed: u64,
+    /// How it is searched.
+    pub descent: Descent,
+}
+
+/// A candidate and how it fared.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Candidate {
+    /// A value for each parameter.
+    pub values: Vec<f64>,
+    /// The outcome on the search's seeds, or why there is none.
+    pub outcome: Result<f64, String>,
+}
+
+/// The candidates of a search.
+pub struct Trail {
+    log: EvaluationLog,
+    candidates: Vec<Candidate>,
+}
+
+impl Trail {
+    /// All candidates, in the order in which they were evaluated; the first is the start.
+    #[must_use]
+    pub fn candidates(&self) -> &[Candidate] {
+        &self.candidates
+    }
+}
+
+impl Hunt {
+    /// Opens the search's log in a folder.
+    ///
+    /// # Errors
+    /// The folder is of something else, or the disk does not take it.
+    pub fn open(&self, folder: &Path, is_fresh: bool) -> Result<Trail, Failure> {
+        let free = self.space.free.iter().map(|free| free.name.clone());
+        let outcome = self.space.outcomes[0].name();
+        let header: Vec<String> = std::iter::once("evaluation".to_owned())
+            .chain(free)
+            .chain([outcome, "failure".to_owned()])
+            .collect();
+        let (log, rows) = EvaluationLog::open(folder, &PURPOSE, (&self.origin(), &header), is_fresh)?;
+        let read = |(i, row): (usize, &Vec<String>)| self.candidate(row).ok_or_else(|| log.bad_row(i));
+        let candidates = rows.iter().enumerate().map(read).collect::<Result<Vec<_>, Failure>>()?;
+        Ok(Trail { log, candidates })
+    }
+
+    fn candidate(&self, row: &[String]) -> Option<Candidate> {
+        let number = |text: &String| text.parse::<f64>().ok().filter(|value| value.is_finite());
+        let count = self.space.free.len();
+        let values = row[1..=count].iter().map(number).collect::<Option<Vec<f64>>>()?;
+        let failure = row[count + 2].clone();
+        let outcome = if failure.is_empty() { Ok(number(&row[count + 1])?) } else { Err(failure) };
+        Some(Candidate { values, outcome })
+    }
+
+    /// What decides the evaluations.
+    fn origin(&self) -> serde_json::Value {
+        let Program { version, source } = Program::this();
+        let experiment = &self.space.experiment;
+        serde_json::json!({
+            "program": format!("usar {version} with source {source}"),
+            "over": self.space.free.iter().map(Free::to_string).collect::<Vec<_>>(),
+            "outcome": self.space.outcomes[0].name(),
+            "is_lowest": self.is_lowest,
+            "trials": experiment.trials,
+            "first_seed": self.first_seed,
+            "seed": self.descent.seed,
+            "first_step": self.descent.first_step,
+            "scenario": experiment.base.resolved(),
+        })
+    }
+
+    /// The best of these: that with the lowest outcome, or the highest; the earliest of equals.
+    #[must_use]
+    pub fn best<'a>(&self, trail: &'a Trail) -> Option<(&'a Candidate, f64)> {
+        let found = trail.candidates.iter();
+        let found = found.filter_map(|candidate| Some((candidate, *candidate.outcome.as_ref().ok()?)));
+        found.min_by(|a, b| self.turned(a.1).total_cmp(&self.turned(b.1)))
+    }
+
+    /// So that less is what is looked for.
+    fn turned(&self, outcome: f64) -> f64 {
+        if self.is_lowest { outcome } else { -outcome }
+    }
+
+    /// Searches on; returns whether it came to its end: not so when `stop` was set. `done` hears how many
+    /// candidates were asked for, and the best outcome.
+    ///
+    /// # Errors
+    /// The disk does not take the log.
+    pub fn search(
+        &self,
+        trail: &mut Trail,
+        stop: &AtomicBool,
+        mut done: impl FnMut(usize, f64),
+    ) -> Result<bool, Failure> {
+        let present = self.space.present()?;
+        let ends = self.space.free.iter().map(Free::ends);
+        let start: Vec<f64> =
+            present.into_iter().zip(ends).map(|(value, [low, high])| value.clamp(low, high)).collect();
+        let mut asked = 0;
+        self.descent.search((&self.space.free, &start), stop, |values| {
+            let known = trail.candidates.iter().find(|candidate| candidate.values == values).cloned();
+            let candidate = match known {
+                Some(candidate) => candidate,
+                None => match self.evaluate(values, stop) {
+                    None => return Ok(None),
+                    Some(candidate) => Self::add(trail, candidate)?,
+                },
+            };
+            asked += 1;
+            done(asked, self.best(trail).map_or(f64::NAN, |(_, outcome)| outcome));
+            Ok(Some(candidate.outcome.map_or(WORST, |outcome| self.turned(outcome))))
+        })
+    }
+
+    fn evaluate(&self, values: Vec<f64>, stop: &AtomicBool) -> Option<Candidate> {
+        let point = Point { values, first_seed: self.first_seed };
+        let outcome = self.space.evaluate(std::slice::from_ref(&point), stop)?.pop()?;
+        let undefined = || "the metric is defined in no trial".to_owned();
+        let outcome = outcome.and_then(|values| values[0].ok_or_else(undefined));
+        Some(Candidate { values: point.values, outcome })
+    }
+
+    fn add(trail: &mut Trail, candidate: Candidate) -> Result<Candidate, Failure> {
+        let mut row = vec![(trail.candidates.len() + 1).to_string()];
+        row.extend(candidate.values.iter().map(f64::to_string));
+        row.push(candidate.outcome.as_ref().map_or(String::new(), f64::to_string));
+        row.push(candidate.outcome.as_ref().err().cloned().unwrap_or_default());
+        trail.log.add(row)?;
+        trail.candidates.push(candidate.clone());
+        Ok(candidate)
+    }
+
+    /// A candidate as a scenario file with every value; `what` stands in its first line.
+    ///
+    /// # Errors
+    /// None for a candidate that was run.
+    pub fn text(&self, candidate: &Candidate, what: &str) -> Result<String, Failure> {
+        let base = &self.space.experiment.base;
+        let pairs = self.space.free.iter().zip(&candidate.values);
+        let mut settings: Vec<(String, String)> = pairs
+            .flat_map(|(free, value)| free.settings(*value))
+            .map(|(path, value)| (path.to_owned(), value))
+            .collect();
+        let name = base.name.strip_suffix(SUFFIX).unwrap_or(&base.name);
+        settings.push(("name".to_owned(), format!("{:?}", format!("{name}{SUFFIX}"))));
+        let text = with_values(&base.resolved(), &settings).map_err(Failure::run)?;
+        Ok(format!("{ORIGIN_LINE}: {what}\n{text}"))
+    }
+}

@@ -1,0 +1,18 @@
+//! Parameters of a scenario, varied within ranges: which of them matter ([`Sensitivity`]), and where a policy
+//! fails ([`Hunt`]).
+
+mod descent;
+mod design;
+mod free;
+mod hunt;
+mod log;
+mod sensitivity;
+mod space;
+
+pub use descent::{Descent, WORST};
+pub use design::Method;
+pub use free::Free;
+pub use hunt::{Candidate, FOUND, Hunt, Trail};
+pub use log::{EvaluationLog, Purpose};
+pub use sensitivity::{CHANCE, Evaluations, FIGURE, INDICES, Index, Row, Sensitivity};
+pub use space::{Outcome, Point, Space, Values};

@@ -1,0 +1,349 @@
+//! Which parameters of a scenario matter, for outcomes and for differences between policies.
+//!
+//! All points of a block share the seeds of their trials, and each block has its own. So a parameter's effect is
+//! measured within the same draws of chance, and the bootstrap over blocks covers the parameters' places and
+//! the seeds together.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::sync::atomic::AtomicBool;
+
+use serde::Serialize;
+
+use super::design::{Block, MOVE, Method};
+use super::space::Point;
+use super::{EvaluationLog, Free, Outcome, Purpose, Space, Values};
+use crate::experiment::Program;
+use crate::failure::Failure;
+use crate::stats::bootstrap::interval;
+use crate::stats::sensitivity::{self as indices, Effects, Known, Shares};
+
+/// The table of the indices.
+pub const INDICES: &str = "indices.csv";
+/// The figure.
+pub const FIGURE: &str = "indices.svg";
+const PURPOSE: Purpose =
+    Purpose { noun: "sensitivity study", origin: "sensitivity.json", results: &[INDICES, FIGURE] };
+
+/// A study of sensitivity.
+pub struct Sensitivity {
+    /// What varies, and what is looked at.
+    pub space: Space,
+    /// How it is measured.
+    pub method: Method,
+    /// Seed of the places.
+    pub seed: u64,
+    /// Seed of the first trial.
+    pub first_seed: u64,
+}
+
+/// Block and point of an evaluation, from 0.
+type Place = (u32, usize);
+
+/// The evaluations of a study, by block and point.
+pub struct Evaluations {
+    log: EvaluationLog,
+    known: BTreeMap<Place, Values>,
+}
+
+/// What a parameter's index is, by the method.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[serde(untagged)]
+pub enum Index {
+    /// Elementary effects, in units of the outcome over the whole range; for chance, of other seeds.
+    Effects {
+        /// What the effects come to.
+        #[serde(flatten)]
+        effects: Effects,
+        /// mu* less that of other seeds; none for chance itself.
+        #[serde(rename = "beyond_chance")]
+        beyond: Option<Known>,
+    },
+    /// Shares of the variance.
+    Shares(Shares),
+    /// The share of the seeds alone.
+    Chance {
+        /// The share.
+        first: Known,
+    },
+}
+
+/// A parameter's index for an outcome.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Row {
+    /// What is looked at.
+    #[serde(flatten)]
+    pub outcome: Outcome,
+    /// The parameter; [`CHANCE`] for the seeds.
+    pub parameter: String,
+    /// Blocks in which it is known.
+    pub blocks: usize,
+    /// The index.
+    #[serde(flatten)]
+    pub index: Index,
+}
+
+/// What stands where a parameter would, for the effect of other seeds.
+pub const CHANCE: &str = "chance (other seeds)";
+
+impl Row {
+    /// By what rows are ranked: mu*, or the total index.
+    #[must_use]
+    pub fn size(&self) -> f64 {
+        match self.index {
+            Index::Effects { effects, .. } => effects.size.value,
+            Index::Shares(Shares { total, .. }) => total.value,
+            Index::Chance { first } => first.value,
+        }
+    }
+
+    /// Whether it is that of chance.
+    #[must_use]
+    pub fn is_chance(&self) -> bool {
+        self.parameter == CHANCE
+    }
+
+    /// Whether it is told apart from chance: the mean effect's interval excludes zero, or the effects are larger
+    /// than those of other seeds; for shares, the first-order interval is above zero.
+    #[must_use]
+    pub fn is_shown(&self) -> bool {
+        let excludes_zero = |known: &Known| known.interval.is_some_and(|[low, high]| low > 0.0 || high < 0.0);
+        let is_above = |known: &Known| known.interval.is_some_and(|[low, _]| low > 0.0);
+        match &self.index {
+            Index::Effects { effects, beyond } => {
+                excludes_zero(&effects.mean) || beyond.as_ref().is_some_and(is_above)
+            }
+            Index::Shares(Shares { first, .. }) | Index::Chance { first } => is_above(first),
+        }
+    }
+}
+
+impl Evaluations {
+    /// Points that are there of so many blocks.
+    #[must_use]
+    pub fn count(&self, blocks: u32) -> usize {
+        self.known.range(..(blocks, 0)).count()
+    }
+}
+
+impl Sensitivity {
+    /// Opens the study's log in a folder.
+    ///
+    /// # Errors
+    /// The folder is of something else, or the disk does not take it.
+    pub fn open(&self, folder: &Path, is_fresh: bool) -> Result<Evaluations, Failure> {
+        let header = self.header();
+        let (log, rows) = EvaluationLog::open(folder, &PURPOSE, (&self.origin(), &header), is_fresh)?;
+        let mut known = BTreeMap::new();
+        for (i, row) in rows.iter().enumerate() {
+            let (place, values) = self.read(row).ok_or_else(|| log.bad_row(i))?;
+            known.insert(place, values);
+        }
+        Ok(Evaluations { log, known })
+    }
+
+    /// Points of so many blocks.
+    #[must_use]
+    pub fn count(&self, blocks: u32) -> usize {
+        blocks as usize * self.points(0).len()
+    }
+
+    fn block(&self, number: u32) -> Block {
+        Block::draw(self.method, self.space.free.len(), (self.seed, number))
+    }
+
+    /// The points of a block. For elementary effects, the last is the first again with other seeds.
+    fn points(&self, number: u32) -> Vec<Point> {
+        let trials = u64::from(self.space.experiment.trials);
+        let first_seed = self.first_seed + 2 * trials * u64::from(number);
+        let places = self.block(number).places;
+        let values = |places: &Vec<f64>| -> Vec<f64> {
+            self.space.free.iter().zip(places).map(|(free, place)| free.value(*place)).collect()
+        };
+        let mut points: Vec<Point> =
+            places.iter().map(|places| Point { values: values(places), first_seed }).collect();
+        if self.method == Method::Morris {
+            points.push(Point { values: values(&places[0]), first_seed: first_seed + trials });
+        }
+        points
+    }
+
+    /// Evaluates what is missing of so many blocks; returns whether all is there: not so when `stop` was set.
+    /// `done` hears how many points are.
+    ///
+    /// # Errors
+    /// The disk does not take the log.
+    pub fn evaluate(
+        &self,
+        blocks: u32,
+        evaluations: &mut Evaluations,
+        stop: &AtomicBool,
+        mut done: impl FnMut(usize),
+    ) -> Result<bool, Failure> {
+        let all = (0..blocks).flat_map(|block| {
+            self.points(block).into_iter().enumerate().map(move |(i, point)| ((block, i), point))
+        });
+        let missing: Vec<_> = all.filter(|(place, _)| !evaluations.known.contains_key(place)).collect();
+        let trials = self.space.experiment.trials as usize;
+        // So many at a time that no thread waits long, and little is lost when it is broken off.
+        let batch = (4 * rayon::current_num_threads()).div_ceil(trials);
+        let mut there = self.count(blocks) - missing.len();
+        for batch in missing.chunks(batch) {
+            let (places, points): (Vec<_>, Vec<_>) = batch.iter().cloned().unzip();
+            let Some(values) = self.space.evaluate(&points, stop) else { return Ok(false) };
+            for ((place, point), values) in places.into_iter().zip(&points).zip(values) {
+                evaluations.log.add(self.row(place, point, &values))?;
+                evaluations.known.insert(place, values);
+                there += 1;
+            }
+            done(there);
+        }
+        Ok(true)
+    }
+
+    fn header(&self) -> Vec<String> {
+        let first = ["block", "point"].map(str::to_owned).into_iter();
+        let free = self.space.free.iter().map(|free| free.name.clone());
+        let outcomes = self.space.outcomes.iter().map(Outcome::name);
+        first
+            .chain(["first_seed".to_owned()])
+            .chain(free)
+            .chain(outcomes)
+            .chain(["failure".to_owned()])
+            .collect()
+    }
+
+    fn row(&self, place: Place, point: &Point, values: &Values) -> Vec<String> {
+        let mut row =
+            vec![(place.0 + 1).to_string(), (place.1 + 1).to_string(), point.first_seed.to_string()];
+        row.extend(point.values.iter().map(f64::to_string));
+        match values {
+            Ok(values) => {
+                row.extend(values.iter().map(|value| value.map_or(String::new(), |value| value.to_string())));
+                row.push(String::new());
+            }
+            Err(reason) => {
+                row.extend(vec![String::new(); self.space.outcomes.len()]);
+                row.push(reason.clone());
+            }
+        }
+        row
+    }
+
+    fn read(&self, row: &[String]) -> Option<(Place, Values)> {
+        let place =
+            (row[0].parse::<u32>().ok()?.checked_sub(1)?, row[1].parse::<usize>().ok()?.checked_sub(1)?);
+        if let Some(reason) = row.last().filter(|reason| !reason.is_empty()) {
+            return Some((place, Err(reason.clone())));
+        }
+        let first = 3 + self.space.free.len();
+        let cells = &row[first..first + self.space.outcomes.len()];
+        let value = |cell: &String| match cell.as_str() {
+            "" => Some(None),
+            cell => cell.parse::<f64>().ok().filter(|value| value.is_finite()).map(Some),
+        };
+        Some((place, Ok(cells.iter().map(value).collect::<Option<Vec<_>>>()?)))
+    }
+
+    /// What decides the evaluations.
+    fn origin(&self) -> serde_json::Value {
+        let Program { version, source } = Program::this();
+        let experiment = &self.space.experiment;
+        let policies: Vec<&str> = experiment.policies.iter().map(|policy| policy.label.as_str()).collect();
+        serde_json::json!({
+            "program": format!("usar {version} with source {source}"),
+            "method": self.method,
+            "over": self.space.free.iter().map(Free::to_string).collect::<Vec<_>>(),
+            "policies": policies,
+            "outcomes": self.space.outcomes.iter().map(Outcome::name).collect::<Vec<_>>(),
+            "trials": experiment.trials,
+            "first_seed": self.first_seed,
+            "seed": self.seed,
+            "scenario": experiment.base.resolved(),
+        })
+    }
+
+    /// Points without numbers among those of so many blocks, and why the first has none.
+    #[must_use]
+    pub fn failures(&self, blocks: u32, evaluations: &Evaluations) -> Option<(usize, String)> {
+        let mut reasons = evaluations.known.range(..(blocks, 0)).filter_map(|(_, v)| v.as_ref().err());
+        let first = reasons.next()?.clone();
+        Some((1 + reasons.count(), first))
+    }
+
+    /// The indices of all outcomes from so many blocks, each outcome's parameters in the order of their size, chance
+    /// last. Blocks with a point that has no number are left out.
+    #[must_use]
+    pub fn indices(&self, blocks: u32, evaluations: &Evaluations) -> Vec<Row> {
+        let outcomes = self.space.outcomes.iter().enumerate();
+        let of = |(place, outcome): (usize, &Outcome)| {
+            let values = |number: u32| -> Option<Vec<f64>> {
+                let points = (0..self.count(1)).map(|point| evaluations.known.get(&(number, point)));
+                points.map(|values| values?.as_ref().ok()?[place]).collect()
+            };
+            let whole: Vec<(u32, Vec<f64>)> =
+                (0..blocks).filter_map(|number| Some((number, values(number)?))).collect();
+            let mut rows = match self.method {
+                Method::Morris => self.effects(outcome, &whole),
+                Method::Sobol => self.shares(outcome, &whole),
+            };
+            rows.sort_by(|a, b| {
+                a.is_chance().cmp(&b.is_chance()).then_with(|| b.size().total_cmp(&a.size()))
+            });
+            rows
+        };
+        outcomes.flat_map(of).collect()
+    }
+
+    fn effects(&self, outcome: &Outcome, blocks: &[(u32, Vec<f64>)]) -> Vec<Row> {
+        let count = self.space.free.len();
+        let mut found = vec![Vec::new(); count];
+        let mut chance = Vec::new();
+        for (number, values) in blocks {
+            let Block { places, moved } = self.block(*number);
+            for (i, parameter) in moved.iter().enumerate() {
+                let by = places[i + 1][*parameter] - places[i][*parameter];
+                found[*parameter].push((values[i + 1] - values[i]) / by + 0.0); // no -0
+            }
+            chance.push((values[count + 1] - values[0]) / MOVE);
+        }
+        let row = |parameter: &str, effects: &[f64], beyond: Option<Known>| {
+            let index = Index::Effects { effects: indices::effects(effects)?, beyond };
+            Some(Row {
+                outcome: outcome.clone(),
+                parameter: parameter.to_owned(),
+                blocks: blocks.len(),
+                index,
+            })
+        };
+        let beyond = |effects: &[f64]| {
+            let pairs = effects.iter().zip(&chance);
+            let beyond: Vec<f64> = pairs.map(|(effect, chance)| effect.abs() - chance.abs()).collect();
+            let value = beyond.iter().sum::<f64>() / beyond.len().max(1) as f64;
+            Some(Known { value, interval: interval(&beyond, 0.95) })
+        };
+        let free = self.space.free.iter().zip(&found);
+        let rows = free.filter_map(|(free, effects)| row(&free.name, effects, beyond(effects)));
+        rows.chain(row(CHANCE, &chance, None)).collect()
+    }
+
+    fn shares(&self, outcome: &Outcome, blocks: &[(u32, Vec<f64>)]) -> Vec<Row> {
+        let of = |(_, values): &(u32, Vec<f64>)| indices::Block {
+            a: values[0],
+            b: values[1],
+            mixed: values[2..].to_vec(),
+        };
+        let blocks: Vec<indices::Block> = blocks.iter().map(of).collect();
+        let row = |parameter: &str, index: Index| Row {
+            outcome: outcome.clone(),
+            parameter: parameter.to_owned(),
+            blocks: blocks.len(),
+            index,
+        };
+        let free = self.space.free.iter().enumerate();
+        let rows =
+            free.filter_map(|(i, free)| Some(row(&free.name, Index::Shares(indices::shares(&blocks, i)?))));
+        let chance = indices::common_share(&blocks).map(|first| row(CHANCE, Index::Chance { first }));
+        rows.chain(chance).collect()
+    }
+}

@@ -1,0 +1,221 @@
+//! A scenario with parameters that vary within ranges, and what comes of it at a point.
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use rayon::prelude::*;
+use ron_fields::Fields;
+use serde::Serialize;
+use usar_sim::scenario::{Scenario, ScenarioFile};
+
+use super::Free;
+use crate::comparison::{Choice, policy_pairs};
+use crate::experiment::Experiment;
+use crate::failure::{Failure, panic_message};
+use crate::run::SharedTrials;
+use crate::stats::Moments;
+
+/// What is looked at: a policy's mean of a metric, or the mean of the paired differences of two.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Outcome {
+    /// Place of the metric.
+    #[serde(skip)]
+    pub metric: usize,
+    /// Place of the policy.
+    #[serde(skip)]
+    pub policy: usize,
+    /// Place of the policy that is taken away, for a difference.
+    #[serde(skip)]
+    pub less: Option<usize>,
+    /// The policy or both: `RNE`, `RNE - DIS`.
+    pub who: String,
+    /// Name of the metric.
+    pub what: String,
+}
+
+impl Outcome {
+    /// In one word for a column: `RNE - DIS: rescuees.total`.
+    #[must_use]
+    pub fn name(&self) -> String {
+        format!("{}: {}", self.who, self.what)
+    }
+}
+
+/// The parameters of a scenario, and what is looked at.
+pub struct Space {
+    /// The scenario and the policies; one case.
+    pub experiment: Experiment,
+    /// What varies.
+    pub free: Vec<Free>,
+    /// What is looked at.
+    pub outcomes: Vec<Outcome>,
+}
+
+/// The value of each outcome at a point, where it is defined; or why there is none.
+pub type Values = Result<Vec<Option<f64>>, String>;
+
+/// A point and the seeds of its trials.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Point {
+    /// A value for each parameter.
+    pub values: Vec<f64>,
+    /// Seed of the first trial.
+    pub first_seed: u64,
+}
+
+/// The metrics of a trial, policy by policy.
+type OfSeed = Vec<Vec<Option<f64>>>;
+
+impl Space {
+    /// The parameters of the command line over an experiment, and these outcomes.
+    ///
+    /// # Errors
+    /// An experiment with axes, a parameter that the scenario has not, two that set one field, or a range whose
+    /// ends cannot be run.
+    pub fn new(experiment: Experiment, specs: &[String], outcomes: Vec<Outcome>) -> Result<Self, Failure> {
+        let bad = |error: String| Failure::input(format!("--over: {error}"));
+        if !experiment.axes.is_empty() {
+            return Err(Failure::input(
+                "this sweep has axes; --over varies one scenario: name its file, or a sweep without axes",
+            ));
+        }
+        let text = experiment.base.resolved();
+        let fields = Fields::of(&text);
+        let parse = |spec: &String| Free::parse(spec, &fields, &fields);
+        let free = specs.iter().map(parse).collect::<Result<Vec<_>, _>>().map_err(bad)?;
+        let free = free.into_iter().map(|free| free.in_scenario(&experiment.base)).collect::<Vec<_>>();
+        let mut paths: Vec<&str> = free.iter().flat_map(|free| free.settings(1.0).map(|(p, _)| p)).collect();
+        paths.sort_unstable();
+        if let Some([twice, _]) = paths.array_windows().find(|[a, b]| a == b) {
+            return Err(bad(format!("{twice}: is set by two parameters")));
+        }
+        let space = Self { experiment, free, outcomes };
+        space.check_ends().map_err(bad)?;
+        Ok(space)
+    }
+
+    /// Each end of each range alone must make a scenario.
+    fn check_ends(&self) -> Result<(), String> {
+        for free in &self.free {
+            for end in free.ends() {
+                let mut file: ScenarioFile = (*self.experiment.base).clone();
+                free.set(&mut file, end)?;
+                checked(file)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Outcomes of all policies in these metrics, then their differences.
+    ///
+    /// # Errors
+    /// An unknown policy.
+    pub fn outcomes(
+        experiment: &Experiment,
+        metrics: &[usize],
+        choice: Choice,
+    ) -> Result<Vec<Outcome>, Failure> {
+        let label = |policy: usize| experiment.policies[policy].label.as_str();
+        let name = |metric: usize| experiment.metrics[metric].name.clone();
+        let pairs =
+            if experiment.policies.len() > 1 { policy_pairs(experiment, choice)? } else { Vec::new() };
+        let mut outcomes = Vec::new();
+        for metric in metrics.iter().copied() {
+            let of = |policy| Outcome {
+                metric,
+                policy,
+                less: None,
+                who: label(policy).to_owned(),
+                what: name(metric),
+            };
+            outcomes.extend((0..experiment.policies.len()).map(of));
+            outcomes.extend(pairs.iter().map(|[policy, less]| Outcome {
+                less: Some(*less),
+                who: format!("{} - {}", label(*policy), label(*less)),
+                ..of(*policy)
+            }));
+        }
+        Ok(outcomes)
+    }
+
+    /// The scenario at a point.
+    ///
+    /// # Errors
+    /// Its values break a rule together, in one sentence.
+    pub fn scenario(&self, values: &[f64]) -> Result<Scenario, String> {
+        let mut file: ScenarioFile = (*self.experiment.base).clone();
+        self.free.iter().zip(values).try_for_each(|(free, value)| free.set(&mut file, *value))?;
+        checked(file)
+    }
+
+    /// The values of the scenario as it is.
+    ///
+    /// # Errors
+    /// A field is not a number.
+    pub fn present(&self) -> Result<Vec<f64>, Failure> {
+        let text = self.experiment.base.resolved();
+        let fields = Fields::of(&text);
+        let present = self.free.iter().map(|free| free.present(&text, &fields)).collect::<Result<_, _>>();
+        present.map_err(|error| Failure::input(format!("--over: {error}")))
+    }
+
+    /// The outcomes at these points, each from as many trials as the experiment has, on the threads of the
+    /// pool that calls this. `None` when `stop` was set.
+    #[must_use]
+    pub fn evaluate(&self, points: &[Point], stop: &AtomicBool) -> Option<Vec<Values>> {
+        let scenarios: Vec<Result<Scenario, String>> =
+            points.iter().map(|point| self.scenario(&point.values)).collect();
+        let trials = self.experiment.trials;
+        let all: Vec<(usize, u64)> = (0..points.len())
+            .filter(|point| scenarios[*point].is_ok())
+            .flat_map(|point| (0..trials).map(move |trial| (point, trial)))
+            .map(|(point, trial)| (point, points[point].first_seed + u64::from(trial)))
+            .collect();
+        let run = |(point, seed): &(usize, u64)| {
+            let scenario = scenarios[*point].as_ref().map_err(Clone::clone)?;
+            self.run_seed(scenario, *seed, stop)
+        };
+        let mut results: Vec<Result<OfSeed, String>> = all.par_iter().map(run).collect();
+        if stop.load(Ordering::Relaxed) {
+            return None;
+        }
+        let mut rest = results.drain(..);
+        let of_point = |scenario: &Result<Scenario, String>| -> Values {
+            scenario.as_ref().map_err(Clone::clone)?;
+            let seeds: Vec<Result<OfSeed, String>> = rest.by_ref().take(trials as usize).collect();
+            let seeds = seeds.into_iter().collect::<Result<Vec<OfSeed>, String>>()?;
+            Ok(self.outcomes.iter().map(|outcome| value(outcome, &seeds)).collect())
+        };
+        Some(scenarios.iter().map(of_point).collect())
+    }
+
+    /// The metrics of all policies in a trial. Policies that decide alike share it.
+    fn run_seed(&self, scenario: &Scenario, seed: u64, stop: &AtomicBool) -> Result<OfSeed, String> {
+        let shared = SharedTrials::new(self.experiment.is_checked);
+        let drivers = self.experiment.cases[0].drivers.iter().zip(&self.experiment.policies);
+        let trial = |(driver, policy): (_, &crate::experiment::PolicySpec)| {
+            let run = AssertUnwindSafe(|| shared.run((0, scenario), driver, seed, stop));
+            let failed = |reason: String| format!("{}, seed {seed}: {reason}", policy.label);
+            let result = catch_unwind(run)
+                .map_err(|panic| failed(format!("internal error: {}", panic_message(&*panic))))?;
+            let trial = result.map_err(|fault| failed(fault.reason))?;
+            Ok(self.experiment.metrics.measure(&trial.record))
+        };
+        drivers.map(trial).collect()
+    }
+}
+
+/// Mean over the trials in which it is defined, for both policies where there are two.
+fn value(outcome: &Outcome, seeds: &[OfSeed]) -> Option<f64> {
+    let of = |seed: &OfSeed| {
+        let less = outcome.less.map_or(Some(0.0), |less| seed[less][outcome.metric])?;
+        Some(seed[outcome.policy][outcome.metric]? - less)
+    };
+    Moments::of(&seeds.iter().filter_map(of).collect::<Vec<f64>>()).mean
+}
+
+fn checked(file: ScenarioFile) -> Result<Scenario, String> {
+    Scenario::try_from(file).map_err(|problems| {
+        format!("{} {}, found {}", problems[0].field, problems[0].rule, problems[0].found)
+    })
+}

@@ -1,0 +1,129 @@
+//! A study of sensitivity for people: its figure, its tables, and its ranking in words.
+
+use comfy_table::{Cell, Table};
+use experiments::Failure;
+use experiments::comparison::short;
+use experiments::explore::{CHANCE, Index, Outcome, Row};
+use experiments::stats::sensitivity::Known;
+
+use crate::figures::sensitivity;
+use crate::table::{headed, right};
+
+/// The drawing of a study's indices, and the table of the numbers behind it.
+///
+/// # Errors
+/// None: all is made in memory.
+pub fn sensitivity_figure(rows: &[Row]) -> Result<[Vec<u8>; 2], Failure> {
+    let figure = sensitivity(rows)?;
+    Ok([figure.svg.into_bytes(), figure.csv.into_bytes()])
+}
+
+/// The indices of one outcome.
+#[must_use]
+pub fn sensitivity_table(rows: &[&Row]) -> Table {
+    let is_of_effects = rows.iter().any(|row| matches!(row.index, Index::Effects { .. }));
+    let mut table = if is_of_effects {
+        headed(["parameter", "mu*", "95 % interval", "mu", "95 % interval", "sigma", "beyond chance"])
+    } else {
+        headed(["parameter", "alone", "95 % interval", "in all", "95 % interval"])
+    };
+    for row in rows {
+        let mut cells = vec![Cell::new(&row.parameter)];
+        let mut add = |known: Known| {
+            cells.push(right(&short(known.value)));
+            cells.push(right(&interval(known.interval)));
+        };
+        match row.index {
+            Index::Effects { effects, beyond } => {
+                add(effects.size);
+                add(effects.mean);
+                cells.push(right(&short(effects.spread.value)));
+                cells.push(right(&interval(beyond.and_then(|beyond| beyond.interval))));
+            }
+            Index::Shares(shares) => {
+                add(shares.first);
+                add(shares.total);
+            }
+            Index::Chance { first } => {
+                add(first);
+                cells.extend([right("-"), right("-")]);
+            }
+        }
+        table.add_row(cells);
+    }
+    table
+}
+
+fn interval(interval: Option<[f64; 2]>) -> String {
+    interval.map_or("-".to_owned(), |[low, high]| format!("{} to {}", short(low), short(high)))
+}
+
+/// The ranking of one outcome's parameters in words, the largest first.
+#[must_use]
+pub fn ranking(outcome: &Outcome, rows: &[&Row]) -> String {
+    let place = format!("{}, {}", outcome.what, outcome.who);
+    if rows.is_empty() {
+        return format!("{place}: has no number at some point of every block, or is the same everywhere.");
+    }
+    let shown: Vec<&&Row> = rows.iter().filter(|row| row.is_shown() && !row.is_chance()).collect();
+    let others: Vec<&str> = rows
+        .iter()
+        .filter(|row| !row.is_shown() && !row.is_chance())
+        .map(|row| row.parameter.as_str())
+        .collect();
+    let mut sentences = vec![match shown.split_first() {
+        None => format!("{place}: no parameter is told apart from chance."),
+        Some((most, rest)) => {
+            let rest = rest.iter().map(|row| format!("; then {}{}", row.parameter, in_words(row)));
+            let first = format!("{place}: {} matters most{}", most.parameter, in_words(most));
+            format!("{first}{}.", rest.collect::<String>())
+        }
+    }];
+    if !shown.is_empty() && !others.is_empty() {
+        sentences.push(format!("Not told apart from chance: {}.", others.join(", ")));
+    }
+    let chance = rows.iter().find(|row| row.parameter == CHANCE);
+    sentences.extend(chance.and_then(|row| match row.index {
+        Index::Effects { effects, .. } => {
+            Some(format!("Other seeds alone change it by {}.", short(effects.size.value)))
+        }
+        Index::Chance { first } => {
+            Some(format!("Other seeds alone make {} of the variance.", percent(first.value)))
+        }
+        Index::Shares(_) => None,
+    }));
+    sentences.join(" ")
+}
+
+fn percent(share: f64) -> String {
+    format!("{:.0} %", 100.0 * share)
+}
+
+/// How much a parameter matters, and which way.
+fn in_words(row: &Row) -> String {
+    match row.index {
+        Index::Effects { effects, .. } => {
+            let size = short(effects.size.value);
+            let range = effects.size.interval.map_or(String::new(), |[low, high]| {
+                format!(", 95 % interval {} to {}", short(low), short(high))
+            });
+            let direction = match effects.mean.interval {
+                Some([low, _]) if low > 0.0 => ", and more of it raises the value",
+                Some([_, high]) if high < 0.0 => ", and more of it lowers the value",
+                _ => ", now up, now down",
+            };
+            format!(" (over its range it changes by {size} on average{range}{direction})")
+        }
+        Index::Shares(shares) => {
+            let range = shares.first.interval.map_or(String::new(), |[low, high]| {
+                format!(", 95 % interval {} to {}", percent(low), percent(high))
+            });
+            format!(
+                " ({} of the variance alone{range}; {} with all in which it has a part)",
+                percent(shares.first.value),
+                percent(shares.total.value)
+            )
+        }
+        Index::Chance { .. } => String::new(),
+    }
+}

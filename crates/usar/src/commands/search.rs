@@ -1,0 +1,305 @@
+//! `usar search`: the scenario in which a policy fails the most.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use clap::Args;
+use experiments::Failure;
+use experiments::comparison::{CONFIDENCE, Choice, Comparison, compare, short};
+use experiments::experiment::{Experiment, Overrides};
+use experiments::explore::{Candidate, Descent, FOUND, Hunt, Outcome, Space, Trail};
+use experiments::files::NewFile;
+use experiments::metric::Direction;
+use experiments::run::Limits;
+use experiments::stats::Moments;
+use experiments::stats::bootstrap::interval;
+use experiments::sweep::folder::{Folder, Opening};
+
+use super::SCHEMA_VERSION;
+use super::explored::ExploredArguments;
+use crate::running::{STOP, progress_bar, run_missing, stop_on_signals, tell};
+
+/// The folder of the trials that confirm what was found.
+const CONFIRMATION: &str = "confirmation";
+
+/// Where does a policy fail the most? Searches the parameters of a scenario, and confirms on fresh seeds
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Searches for the scenario in which --policy is worst in --metric; with --against, in which it is the farthest behind that policy over paired \
+seeds. The search is CMA-ES, seeded. All candidates are judged by the same seeds, and the best of many is flattered by chance: so what was \
+found is run again with seeds that no candidate was judged by, and only that is a result.
+
+Each candidate is on disk as soon as it is done; the same command goes on where it was broken off, and more --evaluations go on from there. \
+The folder gets evaluations.csv (the log), search.json, found.ron, and the sweep that confirms it, confirmation/, which `usar report` shows.
+
+Examples:
+  usar search scenarios/paper.ron --policy RNE --against DIS \\
+      --over mission.rest_s=0..60 --over 'radiation[*].radius_m=3..9'
+  usar search scenarios/paper.ron --policy RNE --metric rescuees.hard --over 'debris.count=0..40'
+  usar search scenarios/paper.ron --policy RNE --metric distance --highest --over mission.rest_s=0..60")]
+pub(crate) struct Arguments {
+    #[command(flatten)]
+    explored: ExploredArguments,
+    /// The policy that is to fail
+    #[arg(long)]
+    policy: String,
+    /// The policy that it is to be behind
+    #[arg(long)]
+    against: Option<String>,
+    /// The metric
+    #[arg(long, default_value = "rescuees.total")]
+    metric: String,
+    /// Search for the lowest value or difference [default: where the metric is better high]
+    #[arg(long, conflicts_with = "highest")]
+    lowest: bool,
+    /// Search for the highest value or difference [default: where the metric is better low]
+    #[arg(long)]
+    highest: bool,
+    /// Candidates to ask for, the start among them; the last generation is finished
+    #[arg(long, default_value_t = 60, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    evaluations: u32,
+    /// Trials of each policy for a candidate
+    #[arg(long, default_value_t = 10, value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    trials: u32,
+    /// Seed of their first trial
+    #[arg(long, default_value_t = 400_001, value_parser = clap::value_parser!(u64).range(..u64::MAX / 2))]
+    first_seed: u64,
+    /// Trials of each policy that confirm what was found
+    #[arg(long, default_value_t = 50, value_parser = clap::value_parser!(u32).range(2..=100_000))]
+    confirm_trials: u32,
+    /// Seed of the first of these
+    #[arg(long, default_value_t = 500_001, value_parser = clap::value_parser!(u64).range(..u64::MAX / 2))]
+    confirm_seed: u64,
+    /// Seed of the search
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// How far the first candidates are from the scenario as it is, as a share of each range
+    #[arg(long, default_value_t = 0.3, value_name = "SHARE")]
+    first_step: f64,
+    /// Folder for the log and the results [default: results/NAME-search]
+    #[arg(long)]
+    out: Option<PathBuf>,
+}
+
+impl Arguments {
+    pub(crate) fn execute(&self, out: &mut dyn Write) -> Result<(), Failure> {
+        let hunt = self.hunt()?;
+        let name = format!("{}-search", hunt.space.experiment.name);
+        let folder = self.out.clone().unwrap_or_else(|| Path::new("results").join(name));
+        let mut trail = hunt.open(&folder, self.explored.fresh)?;
+        stop_on_signals();
+        let stopped = || {
+            let place = folder.display();
+            Failure::Interrupted(format!("stopped; what is done is in {place}, and the same command goes on"))
+        };
+        if !self.search(&hunt, &mut trail)? {
+            return Err(stopped());
+        }
+        let (best, outcome) = hunt.best(&trail).ok_or_else(|| {
+            let reason = trail.candidates().first().and_then(|first| first.outcome.clone().err());
+            Failure::run(format!("no candidate could be run: {}", reason.unwrap_or_default()))
+        })?;
+        let what =
+            format!("{} is {} on the seeds of the search", hunt.space.outcomes[0].name(), short(outcome));
+        NewFile::write(&folder, FOUND, hunt.text(best, &what)?.as_bytes())?;
+        let confirmed = self.confirm(&folder)?;
+        let found = Found { hunt: &hunt, trail: &trail, best, outcome };
+        self.print(out, &found, &confirmed)?;
+        if !self.explored.quiet {
+            tell(format_args!("results in {}", folder.display()));
+        }
+        Ok(())
+    }
+
+    fn policies(&self) -> Vec<String> {
+        [Some(self.policy.clone()), self.against.clone()].into_iter().flatten().collect()
+    }
+
+    fn hunt(&self) -> Result<Hunt, Failure> {
+        if !(self.first_step > 0.0 && self.first_step <= 1.0) {
+            let step = self.first_step;
+            return Err(Failure::input(format!("--first-step: must be above 0 and at most 1, found {step}")));
+        }
+        let ends = |first: u64, count: u32| (first, first + u64::from(count));
+        let (a, b) = (ends(self.first_seed, self.trials), ends(self.confirm_seed, self.confirm_trials));
+        if a.0 < b.1 && b.0 < a.1 {
+            return Err(Failure::input(
+                "--confirm-seed: the seeds that confirm must be others than those of the search",
+            ));
+        }
+        let experiment = self.explored.experiment(Some(self.policies()), self.trials)?;
+        let metric = experiment.metrics.named(&self.metric);
+        let metric = metric.map_err(|error| Failure::input(format!("--metric: {error}")))?;
+        let is_lowest = match experiment.metrics[metric].direction {
+            _ if self.lowest || self.highest => self.lowest,
+            Direction::Higher => true,
+            Direction::Lower => false,
+            Direction::Neither => {
+                return Err(Failure::input(format!(
+                    "--metric: {} is neither good nor bad; --lowest or --highest says what is looked for",
+                    self.metric
+                )));
+            }
+        };
+        let outcome = outcome(&experiment, metric);
+        let space = Space::new(experiment, &self.explored.over, vec![outcome])?;
+        let descent =
+            Descent { evaluations: self.evaluations as usize, seed: self.seed, first_step: self.first_step };
+        Ok(Hunt { space, is_lowest, first_seed: self.first_seed, descent })
+    }
+
+    fn search(&self, hunt: &Hunt, trail: &mut Trail) -> Result<bool, Failure> {
+        let (there, quiet, jobs) = (trail.candidates().len(), self.explored.quiet, self.explored.jobs());
+        if there > 0 && !quiet {
+            tell(format_args!("{there} evaluations are there already"));
+        }
+        let progress = progress_bar(self.evaluations as usize, "evaluations", jobs, quiet);
+        let is_whole = self.explored.pool()?.install(|| {
+            hunt.search(trail, &STOP, |asked, best| {
+                progress.set_position(asked as u64);
+                progress.set_message(format!("(worst so far {})", short(best)));
+            })
+        });
+        progress.finish_and_clear();
+        is_whole
+    }
+
+    /// Runs the found scenario with fresh seeds.
+    fn confirm(&self, folder: &Path) -> Result<Folder, Failure> {
+        let overrides = Overrides {
+            policies: Some(self.policies()),
+            trials: Some(self.confirm_trials),
+            first_seed: Some(self.confirm_seed),
+            ..Overrides::default()
+        };
+        let experiment = Arc::new(Experiment::load(&folder.join(FOUND), &overrides)?);
+        let path = folder.join(CONFIRMATION);
+        // Trials of another find are of no use.
+        let is_other = path.exists()
+            && Folder::read(&path).map_or(true, |there| {
+                there.experiment().base.resolved() != experiment.base.resolved()
+                    || there.experiment().trials > experiment.trials
+            });
+        let opening = Opening { shard: None, is_fresh: is_other || self.explored.fresh };
+        let mut confirmed = Folder::open(&path, experiment, opening, &mut |_| {})?;
+        let limits = Limits { jobs: self.explored.jobs(), trial: None };
+        run_missing(&mut confirmed, None, limits, self.explored.quiet)?;
+        confirmed.finish(&STOP)?;
+        Ok(confirmed)
+    }
+
+    fn print(&self, out: &mut dyn Write, found: &Found, confirmed: &Folder) -> Result<(), Failure> {
+        let metric = confirmed.experiment().metrics.named(&self.metric)?;
+        let comparison = match &self.against {
+            None => None,
+            Some(against) => {
+                let choice = Choice { baseline: Some(against), ..Choice::default() };
+                compare(confirmed, &[metric], choice)?.into_iter().next()
+            }
+        };
+        let alone = confirmed.values(0, 0, metric);
+        if self.explored.json {
+            let output = found.as_json(comparison.as_ref(), &alone);
+            return Ok(writeln!(out, "{output}")?);
+        }
+        found.print(out, self.trials)?;
+        let last = self.confirm_seed + u64::from(self.confirm_trials) - 1;
+        writeln!(
+            out,
+            "\nConfirmed on {} fresh seeds ({} to {last}), by which no candidate was judged:",
+            self.confirm_trials, self.confirm_seed
+        )?;
+        match comparison {
+            Some(comparison) => {
+                writeln!(out, "{}", self.verdict(found.hunt.is_lowest, &comparison))?;
+                writeln!(out, "{}", comparison.in_words)?;
+            }
+            None => writeln!(out, "{}", in_words(&found.hunt.space.outcomes[0], &alone))?,
+        }
+        Ok(())
+    }
+}
+
+impl Arguments {
+    /// Whether fresh seeds say the same, in a sentence.
+    fn verdict(&self, is_lowest: bool, comparison: &Comparison) -> String {
+        let Comparison { a, b, difference, interval, .. } = comparison;
+        let is_there = interval.is_some_and(|[low, high]| if is_lowest { high < 0.0 } else { low > 0.0 });
+        let by = difference.map_or("-".to_owned(), |difference| short(difference.abs()));
+        let (side, metric) = (if is_lowest { "below" } else { "above" }, &self.metric);
+        if is_there && comparison.is_found() {
+            format!("Confirmed: in this scenario {a} is {by} {side} {b} in {metric}.")
+        } else {
+            format!("Not confirmed: on fresh seeds {a} is not shown to be {side} {b} in {metric}.")
+        }
+    }
+}
+
+/// What a search found.
+struct Found<'a> {
+    hunt: &'a Hunt,
+    trail: &'a Trail,
+    best: &'a Candidate,
+    outcome: f64,
+}
+
+impl Found<'_> {
+    fn print(&self, out: &mut dyn Write, trials: u32) -> Result<(), Failure> {
+        for (free, value) in self.hunt.space.free.iter().zip(&self.best.values) {
+            let [low, high] = free.ends();
+            let end = if free.is_at_end(*value) { "; it is at the end of its range" } else { "" };
+            writeln!(out, "{} = {value} (searched from {low} to {high}{end})", free.name)?;
+        }
+        let (first, count) = (self.hunt.first_seed, self.trail.candidates().len());
+        let last = first + u64::from(trials) - 1;
+        let start = self.trail.candidates().first().and_then(|first| first.outcome.clone().ok());
+        let start = start.map_or("-".to_owned(), short);
+        writeln!(
+            out,
+            "\n{} is {} there, and {start} in the scenario as it is, on the {trials} seeds of the search ({first} to {last});\n\
+             the {} of {count} candidates, and so flattered by chance.",
+            self.hunt.space.outcomes[0].name(),
+            short(self.outcome),
+            if self.hunt.is_lowest { "lowest" } else { "highest" },
+        )?;
+        if self.trail.candidates().first() == Some(self.best) {
+            writeln!(out, "No candidate is worse than the scenario as it is.")?;
+        }
+        Ok(())
+    }
+
+    fn as_json(&self, comparison: Option<&Comparison>, alone: &[f64]) -> serde_json::Value {
+        let free = self.hunt.space.free.iter().zip(&self.best.values);
+        let values: serde_json::Map<String, serde_json::Value> =
+            free.map(|(free, value)| (free.name.clone(), (*value).into())).collect();
+        serde_json::json!({
+            "schema_version": SCHEMA_VERSION,
+            "outcome": self.hunt.space.outcomes[0],
+            "values": values,
+            "on_search_seeds": self.outcome,
+            "as_it_is_on_search_seeds": self.trail.candidates().first().and_then(|first| first.outcome.clone().ok()),
+            "candidates": self.trail.candidates().len(),
+            "confirmation": comparison,
+            "confirmed_mean": Moments::of(alone).mean,
+            "confirmed_interval": interval(alone, CONFIDENCE),
+        })
+    }
+}
+
+/// The policy in the metric, or its paired difference to the other.
+fn outcome(experiment: &Experiment, metric: usize) -> Outcome {
+    let label = |policy: usize| experiment.policies[policy].label.clone();
+    let less = (experiment.policies.len() > 1).then_some(1);
+    let who = less.map_or_else(|| label(0), |less| format!("{} - {}", label(0), label(less)));
+    Outcome { metric, policy: 0, less, who, what: experiment.metrics[metric].name.clone() }
+}
+
+/// What one policy does, in a sentence.
+fn in_words(outcome: &Outcome, values: &[f64]) -> String {
+    let range = interval(values, CONFIDENCE).map_or(String::new(), |[low, high]| {
+        format!(" (95 % interval {} to {}, n = {})", short(low), short(high), values.len())
+    });
+    let mean = Moments::of(values).mean.map_or("not defined".to_owned(), short);
+    format!("{}, {}: the mean is {mean}{range}.", outcome.what, outcome.who)
+}
