@@ -34,4 +34,4 @@ pub mod stats;
 pub mod sweep;
 pub mod why;
 
-pub use failure::{Failure, panic_message};
+pub use failure::{Failure, catch_panics_quietly, panic_message};

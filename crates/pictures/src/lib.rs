@@ -23,6 +23,7 @@ mod error;
 mod ground;
 mod legend;
 mod moment;
+mod pdf;
 mod picture;
 mod plan;
 mod shapes;
