@@ -20,6 +20,7 @@
 
 mod animation;
 mod error;
+mod font;
 mod ground;
 mod legend;
 mod moment;

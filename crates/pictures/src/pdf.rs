@@ -6,7 +6,7 @@ use svg2pdf::usvg::{Options, Tree, fontdb};
 use svg2pdf::{ConversionOptions, PageOptions};
 
 use crate::error::PictureError;
-use crate::picture::FONT;
+use crate::font::FONT;
 
 /// Dots of SVG in an inch, by CSS.
 const DPI: f32 = 96.0;

@@ -6,10 +6,8 @@ use resvg::tiny_skia::{Pixmap, Transform};
 use resvg::usvg::{Options, Tree, fontdb};
 
 use crate::error::PictureError;
+use crate::font::FONT;
 use crate::pdf;
-
-/// The font of all pictures. The file beside it has its licence.
-pub(crate) const FONT: &[u8] = include_bytes!("../fonts/DejaVuSans-subset.ttf");
 
 /// Name of that font, first where a browser draws the SVG.
 pub(crate) const FONTS: &str = "DejaVu Sans, Helvetica, Arial, sans-serif";
