@@ -186,7 +186,7 @@ fn a_figure_fits_the_column_of_a_paper() {
     sweep.extend(["--policies", "RNE,DIS", "--out", "short"]);
     succeeds(&usar(folder, &sweep));
     let figure = |more: &[&str]| {
-        let mut arguments = vec!["figure", "short", "rescuees-over-time", "--width", "88mm"];
+        let mut arguments = vec!["figure", "short", "rescuees-over-time"];
         arguments.extend(more);
         usar(folder, &arguments)
     };
