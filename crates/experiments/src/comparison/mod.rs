@@ -398,7 +398,7 @@ pub fn digits(value: f64, digits: i32) -> String {
     if value == 0.0 {
         return "0".to_owned();
     }
-    if !(1e-4..1e7).contains(&value.abs()) && value.is_finite() {
+    if !(1e-5..1e7).contains(&value.abs()) && value.is_finite() {
         let power = 3 * (value.abs().log10() / 3.0).floor() as i32;
         let part = value / 10.0_f64.powi(power);
         // What is left of sums that cancel out is nothing.
