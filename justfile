@@ -101,6 +101,10 @@ results:
     target/release/usar sweep scenarios/sweeps/readings.ron
     target/release/usar sweep scenarios/sweeps/readings-calibrated.ron
 
+# How often each kind of interval holds what it is to hold (docs/experiments.md): a minute
+coverage *arguments:
+    cargo run --release --package xtask -- coverage {{arguments}}
+
 # The search for scenarios/paper-calibrated.ron, from the design of its readings to the choice (docs/calibration.md): hours; goes on where it was broken off
 calibrate:
     cargo build --release --package usar

@@ -37,9 +37,10 @@ const GENERAL: [&str; 9] = [
 ];
 
 /// What is needed to show something to people, and the crates that may need it.
-const SCREEN: [(&str, &[&str]); 11] = [
+const SCREEN: [(&str, &[&str]); 12] = [
     ("terminal_size", &["usar"]),
     ("resvg", &["pictures"]),
+    ("svg2pdf", &["pictures"]),
     ("gif", &["pictures"]),
     ("kuva", &["reports"]),
     ("askama", &["reports", "study-yang2021"]),

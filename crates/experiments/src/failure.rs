@@ -1,5 +1,7 @@
 //! Why something ended without its result.
 
+use std::cell::RefCell;
+
 use thiserror::Error;
 
 /// What went wrong, with the sentence for the user.
@@ -49,9 +51,42 @@ impl From<std::io::Error> for Failure {
     }
 }
 
-/// What a panic said.
+thread_local! {
+    /// Where this thread panicked last.
+    static PLACE: RefCell<Option<String>> = const { RefCell::new(None) };
+}
+
+/// From now on, a panic prints nothing, and [`panic_message`] says where it was.
+pub fn catch_panics_quietly() {
+    std::panic::set_hook(Box::new(|panic| {
+        let place = panic.location().map(|place| format!("{}:{}", from_sources(place.file()), place.line()));
+        PLACE.set(place);
+    }));
+}
+
+/// The path of a source, of a library's from the library's name on.
+fn from_sources(path: &str) -> &str {
+    let Some((_, rest)) = path.split_once("registry/src/") else { return path };
+    rest.split_once('/').map_or(rest, |(_, rest)| rest)
+}
+
+/// What a panic that this thread caught said, with its file and line where [`catch_panics_quietly`] was called.
 #[must_use]
 pub fn panic_message(panic: &(dyn std::any::Any + Send)) -> String {
     let text = panic.downcast_ref::<String>().map(String::as_str);
-    text.or_else(|| panic.downcast_ref::<&str>().copied()).unwrap_or("a defect without a message").to_owned()
+    let text = text.or_else(|| panic.downcast_ref::<&str>().copied()).unwrap_or("a defect without a message");
+    let place = PLACE.take().map_or(String::new(), |place| format!(" ({place})"));
+    format!("{text}{place}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sources_of_libraries_are_named_without_the_machines_folders() {
+        let path = "/home/x/.cargo/registry/src/index.crates.io-1/parry2d-0.31.1/src/lib.rs";
+        assert_eq!(from_sources(path), "parry2d-0.31.1/src/lib.rs");
+        assert_eq!(from_sources("crates/usar/src/lib.rs"), "crates/usar/src/lib.rs");
+    }
 }

@@ -34,7 +34,7 @@ pub mod stats;
 pub mod sweep;
 pub mod why;
 
-pub use failure::{Failure, panic_message};
+pub use failure::{Failure, catch_panics_quietly, panic_message};
 
 /// The programs in the README compile and run.
 #[cfg(doctest)]

@@ -45,6 +45,8 @@ struct Declaration {
     figure: &'static str,
     is_primary: bool,
     direction: Direction,
+    /// For a cost per rescuee, the metric of the cost.
+    cost: Option<&'static str>,
     scope: Scope,
 }
 
@@ -56,9 +58,9 @@ const RATIO: &str = "points per rescuee";
 const DECLARATIONS: &[Declaration] = &[
     per_task("rescuees", "rescuees", "", |r| Some(f64::from(r.rescued())), |t| Some(f64::from(t.rescued))).primary().in_figure("rescuees").higher()
         .means("Rescuees delivered home or to a rest place."),
-    per_task("energy_per_rescuee", "energy per rescuee", RATIO, |r| ratio(r.energy(), r.rescued()), |t| ratio(t.energy, t.rescued)).primary().in_figure("energy per rescuee").lower()
+    per_task("energy_per_rescuee", "energy per rescuee", RATIO, |r| ratio(r.energy(), r.rescued()), |t| ratio(t.energy, t.rescued)).primary().of_sums("energy").in_figure("energy per rescuee").lower()
         .means("Energy spent, divided by the rescuees delivered; empty where nobody was rescued. The total includes what robots spent outside groups."),
-    per_task("hp_per_rescuee", "HP per rescuee", RATIO, |r| ratio(r.hp(), r.rescued()), |t| ratio(t.hp, t.rescued)).primary().in_figure("HP per rescuee").lower()
+    per_task("hp_per_rescuee", "HP per rescuee", RATIO, |r| ratio(r.hp(), r.rescued()), |t| ratio(t.hp, t.rescued)).primary().of_sums("hp").in_figure("HP per rescuee").lower()
         .means("HP lost, divided by the rescuees delivered; empty where nobody was rescued. The total includes what robots lost outside groups."),
     whole("rounds", "rounds", "", |r| Some(f64::from(r.completed_rounds))).primary().higher()
         .means("Rounds that ended: everybody was home again for whom the team waits."),
@@ -111,6 +113,7 @@ const fn whole(name: &'static str, title: &'static str, unit: &'static str, valu
         figure: "",
         is_primary: false,
         direction: Direction::Neither,
+        cost: None,
         scope: Scope::Whole(value),
     }
 }
@@ -130,6 +133,7 @@ const fn per_task(
         figure: "",
         is_primary: false,
         direction: Direction::Neither,
+        cost: None,
         scope: Scope::PerTask { total, task },
     }
 }
@@ -141,6 +145,10 @@ impl Declaration {
 
     const fn means(self, meaning: &'static str) -> Self {
         Self { meaning, ..self }
+    }
+
+    const fn of_sums(self, cost: &'static str) -> Self {
+        Self { cost: Some(cost), ..self }
     }
 
     const fn higher(self) -> Self {
@@ -167,7 +175,7 @@ impl Declaration {
     }
 
     fn metric(self, part: Option<&str>, source: Source) -> Metric {
-        let Self { name, title, meaning, unit, figure, is_primary, direction, .. } = self;
+        let Self { name, title, meaning, unit, figure, is_primary, direction, cost, .. } = self;
         let with_part =
             |text: &str, between: char| part.map_or(text.to_owned(), |part| format!("{text}{between}{part}"));
         Metric {
@@ -179,6 +187,7 @@ impl Declaration {
             is_primary,
             direction,
             declared: name,
+            cost,
             part: part.unwrap_or_default().to_owned(),
             source,
         }
@@ -222,6 +231,7 @@ pub struct Metric {
     /// Which way it is better.
     pub direction: Direction,
     declared: &'static str,
+    cost: Option<&'static str>,
     part: String,
     source: Source,
 }
@@ -319,6 +329,16 @@ impl Catalogue {
     #[must_use]
     pub fn title(&self, name: &str) -> &str {
         self.iter().find(|metric| metric.name == name).map_or("", |metric| &metric.title)
+    }
+
+    /// The places of the cost and of the rescuees of which a metric is the ratio; `None` for another metric.
+    #[must_use]
+    pub fn sums(&self, place: usize) -> Option<[usize; 2]> {
+        let Metric { cost, part, .. } = &self[place];
+        let of = |declared: &str| {
+            self.iter().position(|metric| metric.declared == declared && metric.part == *part)
+        };
+        Some([of((*cost)?)?, of("rescuees")?])
     }
 
     /// The metrics that are declared under one name: the total, then that of each task; or the only one.

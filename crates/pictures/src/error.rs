@@ -12,6 +12,9 @@ pub enum PictureError {
     /// The SVG cannot be made pixels: a defect of this crate.
     #[error("the picture cannot be made pixels: {0}")]
     Svg(String),
+    /// The SVG cannot be made a PDF: a defect of this crate.
+    #[error("the picture cannot be made a PDF: {0}")]
+    Pdf(String),
     /// It has more pixels than are made.
     #[error("the picture would be {width} x {height} pixels large; at most {most} on each side are drawn")]
     TooLarge {

@@ -20,9 +20,11 @@
 
 mod animation;
 mod error;
+mod font;
 mod ground;
 mod legend;
 mod moment;
+mod pdf;
 mod picture;
 mod plan;
 mod shapes;

@@ -6,9 +6,8 @@ use resvg::tiny_skia::{Pixmap, Transform};
 use resvg::usvg::{Options, Tree, fontdb};
 
 use crate::error::PictureError;
-
-/// The font of all pictures. The file beside it has its licence.
-const FONT: &[u8] = include_bytes!("../fonts/DejaVuSans-subset.ttf");
+use crate::font::FONT;
+use crate::pdf;
 
 /// Name of that font, first where a browser draws the SVG.
 pub(crate) const FONTS: &str = "DejaVu Sans, Helvetica, Arial, sans-serif";
@@ -105,6 +104,13 @@ impl Picture {
         Self { svg, zoom: look.zoom() }
     }
 
+    /// A drawing from elsewhere. Where its size is in millimetres, its PNG has so many dots in an inch; 96 are those
+    /// of a screen. Its text is drawn with the embedded font.
+    #[must_use]
+    pub fn of_svg(svg: String, dpi: f64) -> Self {
+        Self { svg, zoom: dpi / 96.0 }
+    }
+
     /// The picture as the text of an SVG file.
     #[must_use]
     pub fn svg(&self) -> &str {
@@ -117,6 +123,14 @@ impl Picture {
     /// It is too large.
     pub fn png(&self) -> Result<Vec<u8>, PictureError> {
         self.pixmap()?.encode_png().map_err(|error| PictureError::Svg(error.to_string()))
+    }
+
+    /// The picture as a PDF file of one page, with the font in it.
+    ///
+    /// # Errors
+    /// A defect of this crate.
+    pub fn pdf(&self) -> Result<Vec<u8>, PictureError> {
+        pdf::pdf(&self.svg)
     }
 
     /// The picture as pixels.

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use experiments::Failure;
 use experiments::experiment::{Experiment, PolicySpec};
 use kuva::backend::svg::SvgBackend;
-use kuva::plot::{ColorMap, Heatmap, LinePlot};
+use kuva::plot::{ColorMap, Heatmap, LinePlot, LineStyle};
 use kuva::render::figure::Figure as Panels;
 use kuva::render::layout::{Layout, TickFormat};
 use kuva::render::plots::Plot;
@@ -13,6 +13,78 @@ use kuva::render::plots::Plot;
 /// Okabe and Ito's colours, which the colour-blind tell apart, in the order of the policies.
 const COLOURS: [&str; 8] =
     ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#999999", "#000000"];
+
+/// A figure before it is drawn.
+pub(crate) struct Sketch {
+    /// Name of its files.
+    pub name: String,
+    /// Heading.
+    pub title: String,
+    /// What is shown, and on how many trials it stands.
+    pub caption: String,
+    /// Its panels.
+    pub drawing: Drawing,
+    /// The numbers, as a table.
+    pub csv: String,
+}
+
+/// The panels of a figure, and how the report lays them out.
+pub(crate) struct Drawing {
+    panels: Vec<Panel>,
+    columns: usize,
+    cell: [f64; 2],
+}
+
+/// Size of the numbers at axes, in the units of a drawing.
+pub(crate) const TICK: f64 = 11.0;
+
+/// Space around the panels, and between two of them, in the same units: those of kuva's figures.
+const MARGIN: f64 = 10.0;
+const GAP: f64 = 15.0;
+
+impl Drawing {
+    /// Panels in rows of so many, each so wide and high.
+    pub fn new(panels: Vec<Panel>, columns: usize, cell: [f64; 2]) -> Self {
+        Self { panels, columns, cell }
+    }
+
+    /// Whether there is nothing to draw.
+    pub fn is_empty(&self) -> bool {
+        self.panels.is_empty()
+    }
+
+    /// Keeps the panels of this metric; nothing is left where no panel is of one metric.
+    pub fn keep(&mut self, metric: &str) {
+        self.panels.retain(|panel| panel.metric == metric);
+    }
+
+    /// The drawing as the report has it; empty without any panel.
+    pub fn svg(self) -> String {
+        let (columns, cell) = (self.columns, self.cell);
+        self.laid_out(columns, cell)
+    }
+
+    /// The drawing for a column so wide, in units of which `TICK` can be read: as many panels beside each other
+    /// as fit, each at most as wide as the column.
+    pub fn svg_for(self, width: f64) -> String {
+        let [cell, height] = self.cell;
+        let columns = ((width / cell) as usize).clamp(1, self.panels.len().max(1));
+        let between = GAP * (columns - 1) as f64 + 2.0 * MARGIN;
+        self.laid_out(columns, [(width - between) / columns as f64, height])
+    }
+
+    fn laid_out(self, columns: usize, cell: [f64; 2]) -> String {
+        if self.panels.is_empty() { String::new() } else { draw(self.panels, columns, cell) }
+    }
+}
+
+impl Sketch {
+    /// The figure as the report has it.
+    pub fn drawn(self) -> Figure {
+        let Self { name, title, caption, drawing, csv } = self;
+        Figure { name, title, caption, svg: drawing.svg(), csv }
+    }
+}
 
 /// A figure of the report.
 pub(crate) struct Figure {
@@ -30,6 +102,8 @@ pub(crate) struct Figure {
 
 /// One panel: what is drawn, and its axes.
 pub(crate) struct Panel {
+    /// The metric that it is of; empty for none.
+    pub metric: String,
     pub plots: Vec<Plot>,
     pub layout: Layout,
 }
@@ -39,13 +113,27 @@ pub(crate) fn colour(policy: usize) -> &'static str {
     COLOURS[policy % COLOURS.len()]
 }
 
+/// The dashes of a policy's line, so that lines are told apart without colour.
+fn dashes(policy: usize) -> LineStyle {
+    const DASHES: [&str; 7] = ["8 4", "2 3", "10 3 2 3", "14 4", "5 3 2 3 2 3", "4 4", "1 5"];
+    match policy % (DASHES.len() + 1) {
+        0 => LineStyle::Solid,
+        other => LineStyle::Custom(DASHES[other - 1].to_owned()),
+    }
+}
+
+/// Whether a policy is drawn: all are, or those that are asked for.
+pub(crate) fn is_drawn(only: Option<&[String]>, label: &str) -> bool {
+    only.is_none_or(|only| only.iter().any(|one| one == label))
+}
+
 /// A layout in the report's style.
 pub(crate) fn layout(plots: &[Plot], title: &str) -> Layout {
     Layout::auto_from_plots(plots)
         .with_title(title)
         .with_title_size(15)
         .with_label_size(13)
-        .with_tick_size(11)
+        .with_tick_size(TICK as u32)
         .with_tick_format(TickFormat::Custom(Arc::new(tick)))
         .with_font_family("DejaVu Sans, Helvetica, Arial, sans-serif")
 }
@@ -76,7 +164,7 @@ pub(crate) fn range(values: impl IntoIterator<Item = f64>) -> [f64; 2] {
 pub(crate) type Line<'a> = (usize, &'a str, Vec<(f64, f64, f64)>);
 
 /// Lines through means, each with a band around it; nothing without any point. `words` are title and labels of the axes.
-pub(crate) fn line_panel(lines: &[Line], words: [&str; 3]) -> Option<Panel> {
+pub(crate) fn line_panel(lines: &[Line], metric: &str, words: [&str; 3]) -> Option<Panel> {
     let all = || lines.iter().flat_map(|(_, _, points)| points);
     all().next()?;
     let plot = |(policy, label, points): &Line| {
@@ -84,7 +172,11 @@ pub(crate) fn line_panel(lines: &[Line], words: [&str; 3]) -> Option<Panel> {
         let high = points.iter().map(|(_, mean, half)| mean + half);
         let line = LinePlot::new().with_data(points.iter().map(|(x, mean, _)| (*x, *mean)));
         Plot::Line(
-            line.with_color(colour(*policy)).with_stroke_width(2.0).with_band(low, high).with_legend(*label),
+            line.with_color(colour(*policy))
+                .with_stroke_width(2.0)
+                .with_line_style(dashes(*policy))
+                .with_band(low, high)
+                .with_legend(*label),
         )
     };
     let plots: Vec<Plot> = lines.iter().filter(|(_, _, points)| !points.is_empty()).map(plot).collect();
@@ -98,12 +190,13 @@ pub(crate) fn line_panel(lines: &[Line], words: [&str; 3]) -> Option<Panel> {
         .with_x_axis_max(right)
         .with_y_axis_min(low)
         .with_y_axis_max(high);
-    Some(Panel { plots, layout })
+    Some(Panel { metric: metric.to_owned(), plots, layout })
 }
 
 /// A heat map with its values written in it: white at 0, blue at `most`, light enough for black figures on it. One value has one colour,
-/// whatever the range of the others.
-pub(crate) fn heat_map(data: Vec<Vec<f64>>, most: f64) -> Plot {
+/// whatever the range of the others. The first row is on top: its categories are [`from_top`].
+pub(crate) fn heat_map(mut data: Vec<Vec<f64>>, most: f64) -> Plot {
+    data.reverse(); // kuva begins at the bottom
     let all = || data.iter().flatten().copied();
     let (low, high) = (all().fold(f64::INFINITY, f64::min), all().fold(f64::NEG_INFINITY, f64::max));
     let colours = ColorMap::Custom(Arc::new(move |place: f64| {
@@ -112,6 +205,13 @@ pub(crate) fn heat_map(data: Vec<Vec<f64>>, most: f64) -> Plot {
         format!("#{:02X}{:02X}{:02X}", part(86.0), part(180.0), part(233.0))
     }));
     Plot::Heatmap(Heatmap::new().with_data(data).with_color_map(colours).with_values())
+}
+
+/// The names of a heat map's rows, the first of which is on top.
+pub(crate) fn from_top(names: impl IntoIterator<Item = String>) -> Vec<String> {
+    let mut names: Vec<String> = names.into_iter().collect();
+    names.reverse();
+    names
 }
 
 /// What figures call the policies: their labels, or where one is too long for an axis, the policy's name with its place in the list.
@@ -127,7 +227,7 @@ pub(crate) fn names(experiment: &Experiment) -> Vec<String> {
 const LONGEST_NAME: usize = 12;
 
 /// Panels in rows of this many, as one drawing.
-pub(crate) fn draw(panels: Vec<Panel>, columns: usize, [width, height]: [f64; 2]) -> String {
+fn draw(panels: Vec<Panel>, columns: usize, [width, height]: [f64; 2]) -> String {
     let rows = panels.len().div_ceil(columns);
     let (plots, layouts): (Vec<_>, Vec<_>) =
         panels.into_iter().map(|panel| (panel.plots, panel.layout)).unzip();

@@ -14,7 +14,7 @@ use crate::table::{headed, right};
 /// # Errors
 /// None: all is made in memory.
 pub fn sensitivity_figure(rows: &[Row]) -> Result<[Vec<u8>; 2], Failure> {
-    let figure = sensitivity(rows)?;
+    let figure = sensitivity(rows)?.drawn();
     Ok([figure.svg.into_bytes(), figure.csv.into_bytes()])
 }
 

@@ -10,6 +10,7 @@ mod explored;
 mod figures;
 mod maps;
 mod overview;
+mod paper;
 mod regret;
 mod report;
 pub mod table;
@@ -17,6 +18,7 @@ mod wanted;
 
 pub use explored::{ranking, sensitivity_figure, sensitivity_table};
 pub use maps::ShownTrial;
+pub use paper::{ColumnLook, LEAST_TEXT_POINTS, column_figure};
 pub use regret::regret_figures;
 pub use report::write_report;
 pub use wanted::Wanted;

@@ -3,7 +3,7 @@
 use experiments::Failure;
 use experiments::regret::Analysis;
 
-use crate::drawing::Figure;
+use crate::drawing::{Figure, Sketch};
 use crate::figures::regret;
 
 /// The figures of a study: for each, the name of a file and its content, drawings and the numbers behind them.
@@ -14,6 +14,6 @@ pub fn regret_figures(analyses: &[Analysis]) -> Result<Vec<(String, Vec<u8>)>, F
     let files = |Figure { name, svg, csv, .. }: Figure| {
         [(format!("{name}.svg"), svg.into_bytes()), (format!("{name}.csv"), csv.into_bytes())]
     };
-    let figures = regret(analyses)?.into_iter().filter(|figure| !figure.svg.is_empty());
-    Ok(figures.flat_map(files).collect())
+    let figures = regret(analyses)?.into_iter().filter(|sketch| !sketch.drawing.is_empty());
+    Ok(figures.map(Sketch::drawn).flat_map(files).collect())
 }

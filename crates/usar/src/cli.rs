@@ -7,15 +7,15 @@ use std::sync::LazyLock;
 use clap::{CommandFactory, Parser, Subcommand};
 use experiments::experiment::set_registry;
 use experiments::provenance::COMMIT;
-use experiments::{Failure, panic_message};
+use experiments::{Failure, catch_panics_quietly, panic_message};
 use reports::table::{Format, fold_at, show_as};
 use rne_core::Registry;
 use terminal_size::{Width, terminal_size_of};
 
 use crate::commands::sentences;
 use crate::commands::{
-    calibrate, check, choose, compare, completions, doctor, draw, estimate, export, fmt, fork, group, list,
-    man, merge, new, oracle, readings, regret, render, report, reproduce, resolve, run, schema, search,
+    calibrate, check, choose, compare, completions, doctor, draw, estimate, export, figure, fmt, fork, group,
+    list, man, merge, new, oracle, readings, regret, render, report, reproduce, resolve, run, schema, search,
     sensitivity, sorting, status, submit, sweep, test, tidy, trust, verify, view, why,
 };
 use crate::running::{status_of_signal, tell};
@@ -38,6 +38,7 @@ Examples:
   usar run scenarios/paper.ron --policy RNE --seed 3   one trial, round by round
   usar compare results/paper                           is A better than B, by how much, how sure is that?
   usar report results/paper                            all of it as one page, with figures
+  usar figure results/paper rescuees --width 88mm      a figure for the column of a paper, as PDF
   usar view scenarios/paper.ron --policy RNE,DIS       watch two trials side by side, in a browser
   usar sensitivity scenarios/paper.ron --over mission.rest_s=0..60    what matters for the outcome?
   usar search scenarios/paper.ron --policy RNE --against DIS --over mission.rest_s=0..60    where does it fail?
@@ -82,6 +83,7 @@ enum Command {
     Status(status::Arguments),
     Compare(compare::Arguments),
     Report(report::Arguments),
+    Figure(figure::Arguments),
     Tidy(tidy::Arguments),
     Reproduce(reproduce::Arguments),
     Fork(fork::Arguments),
@@ -135,7 +137,7 @@ pub fn main_with(policies: Registry) -> ExitCode {
 #[must_use]
 pub fn main() -> ExitCode {
     // A panic is a defect of ours; it is caught and reported in one sentence, never as a backtrace.
-    std::panic::set_hook(Box::new(|_| {}));
+    catch_panics_quietly();
     let cli = Cli::parse();
     if let Some((Width(columns), _)) = terminal_size_of(std::io::stdout()) {
         fold_at(columns);
@@ -200,6 +202,7 @@ impl Command {
             Self::Compare(arguments) => arguments.execute(out),
             Self::Reproduce(arguments) => arguments.execute(out),
             Self::Report(arguments) => arguments.execute(out),
+            Self::Figure(arguments) => arguments.execute(out),
             Self::Tidy(arguments) => arguments.execute(out),
             Self::Fork(arguments) => arguments.execute(out),
             Self::Oracle(arguments) => arguments.execute(out),

@@ -6,8 +6,8 @@ mod commands;
 use std::process::ExitCode;
 
 use commands::{
-    calibration, damage, golden, kills, limits, million, mutations, pages, reference, scale, scenarios, soak,
-    work, worlds,
+    calibration, coverage, damage, golden, kills, limits, million, mutations, pages, reference, scale,
+    scenarios, soak, work, worlds,
 };
 
 fn main() -> ExitCode {
@@ -16,6 +16,7 @@ fn main() -> ExitCode {
         arguments.split_first().map_or(("", &[][..]), |(task, rest)| (task.as_str(), rest));
     match task {
         "calibration" => calibration::run(arguments),
+        "coverage" => coverage::run(arguments),
         "damage" => damage::run(arguments),
         "golden" => golden::run(arguments),
         "kills" => kills::run(arguments),
@@ -32,7 +33,7 @@ fn main() -> ExitCode {
         "worlds" => worlds::run(arguments),
         _ => {
             eprintln!(
-                "xtask: no task {task:?}. Tasks: calibration, damage, golden, kills, limits, million, mutations, navigation, pages, reference, scale, \
+                "xtask: no task {task:?}. Tasks: calibration, coverage, damage, golden, kills, limits, million, mutations, navigation, pages, reference, scale, \
                  scenarios, soak, work, worlds"
             );
             ExitCode::from(2)

@@ -9,7 +9,6 @@ use serde::Serialize;
 
 use super::Comparison;
 use crate::metric::Direction;
-use crate::stats::bootstrap::interval;
 
 /// Confidence of the interval whose inclusion in the margin is two one-sided tests at 5 %.
 pub const TOST_CONFIDENCE: f64 = 0.90;
@@ -58,10 +57,14 @@ pub struct Judged {
     pub verdict: Verdict,
 }
 
-/// Judges a comparison by a margin, from the differences of its pairs.
+/// Judges a comparison by a margin and the 90 % interval of its difference.
 #[must_use]
-pub fn judge(comparison: &Comparison, differences: &[f64], margin: f64, direction: Direction) -> Judged {
-    let interval_90 = interval(differences, TOST_CONFIDENCE);
+pub fn judge(
+    comparison: &Comparison,
+    interval_90: Option<[f64; 2]>,
+    margin: f64,
+    direction: Direction,
+) -> Judged {
     let is_equivalent = interval_90.is_some_and(|[low, high]| -margin < low && high < margin);
     let side = comparison.interval.map_or(0.0, |[low, high]| match (low > 0.0, high < 0.0) {
         (true, _) => 1.0,
@@ -90,7 +93,7 @@ mod tests {
     use rand_distr::{Distribution, Normal};
 
     use super::*;
-    use crate::stats::bootstrap::{Width, bca_interval};
+    use crate::stats::bootstrap::{Width, bca_interval, interval};
 
     fn comparison(interval: [f64; 2], p: f64) -> Comparison {
         Comparison { interval: Some(interval), p_holm: Some(p), ..Comparison::default() }
@@ -99,16 +102,17 @@ mod tests {
     #[test]
     fn a_verdict_needs_the_interval_and_the_corrected_test() {
         let far: Vec<f64> = (0..40).map(|i| 10.0 + f64::from(i % 5)).collect();
+        let far = interval(&far, TOST_CONFIDENCE);
         let clear = comparison([9.0, 13.0], 0.001);
-        let verdict = |direction| judge(&clear, &far, 3.0, direction).verdict;
+        let verdict = |direction| judge(&clear, far, 3.0, direction).verdict;
         assert_eq!(verdict(Direction::Higher), Verdict::Better);
         assert_eq!(verdict(Direction::Lower), Verdict::Worse);
         assert_eq!(verdict(Direction::Neither), Verdict::Above);
-        assert_eq!(judge(&clear, &far, 20.0, Direction::Higher).verdict, Verdict::Equivalent);
+        assert_eq!(judge(&clear, far, 20.0, Direction::Higher).verdict, Verdict::Equivalent);
         let uncorrected = comparison([9.0, 13.0], 0.2);
-        assert_eq!(judge(&uncorrected, &far, 3.0, Direction::Higher).verdict, Verdict::Undecided);
+        assert_eq!(judge(&uncorrected, far, 3.0, Direction::Higher).verdict, Verdict::Undecided);
         let wide = comparison([-1.0, 13.0], 0.001);
-        assert_eq!(judge(&wide, &far, 3.0, Direction::Higher).verdict, Verdict::Undecided);
+        assert_eq!(judge(&wide, far, 3.0, Direction::Higher).verdict, Verdict::Undecided);
     }
 
     /// A true difference that is just the margin is called equivalent in about 5 % of experiments.

@@ -4,6 +4,7 @@ mod answer;
 mod asked;
 mod equivalence;
 mod interaction;
+mod sums;
 
 use rayon::prelude::*;
 use serde::Serialize;
@@ -16,11 +17,13 @@ use crate::stats::bootstrap::interval;
 use crate::stats::paired::{hodges_lehmann, holm, pairs_needed};
 use crate::stats::wilcoxon::{DRAWN_PAIRS, DRAWS, EXACT_PAIRS, SignedRank};
 use crate::sweep::folder::{Folder, Measured};
+use sums::Sums;
 
 pub use answer::answer;
 pub use asked::{Asked, Wishes};
 pub use equivalence::{Judged, TOST_CONFIDENCE, Verdict, judge};
 pub use interaction::{Interaction, interactions};
+pub use sums::FEW;
 
 /// Level of a finding, after correction.
 pub const LEVEL: f64 = 0.05;
@@ -48,6 +51,8 @@ pub struct Comparison {
     pub missing: usize,
     /// Pairs in which the metric is not defined for one at least.
     pub undefined: usize,
+    /// Whether it compares ratios of sums, because some trial has few rescuees or none. The means are these ratios.
+    pub is_of_sums: bool,
     /// Mean of the first over these pairs.
     pub mean_a: Option<f64>,
     /// Mean of the second.
@@ -133,6 +138,8 @@ pub struct Pairs {
     failed: usize,
     missing: usize,
     undefined: usize,
+    /// Where ratios of sums are compared: then the values are linearised.
+    sums: Option<Sums>,
 }
 
 impl Pairs {
@@ -155,13 +162,31 @@ impl Pairs {
                 _ => pairs.missing += 1,
             }
         }
+        if let Some(sums) = Sums::of(folder, case, metric, [a, b]) {
+            [pairs.a, pairs.b] = sums.linearised();
+            pairs.undefined = 0;
+            pairs.sums = Some(sums);
+        }
         pairs
+    }
+
+    /// The interval of the mean difference, or of the difference of ratios of sums.
+    fn interval(&self, confidence: f64) -> Option<[f64; 2]> {
+        match &self.sums {
+            Some(sums) => sums.interval(confidence),
+            None => interval(&self.differences(), confidence),
+        }
     }
 
     /// First less second, by trial; nothing where one has no value.
     fn by_trial(folder: &Folder, case: usize, metric: usize, [a, b]: [usize; 2]) -> Vec<Option<f64>> {
-        let value = |policy, trial| folder.results().get(&(case, policy, trial))?.metrics.as_ref()?[metric];
         let trials = 1..=folder.experiment().trials;
+        if let Some(sums) = Sums::of(folder, case, metric, [a, b]) {
+            let [a, b] = sums.linearised();
+            let place = |trial: u32| sums.trials.iter().position(|other| *other == trial);
+            return trials.map(|trial| place(trial).map(|place| a[place] - b[place])).collect();
+        }
+        let value = |policy, trial| folder.results().get(&(case, policy, trial))?.metrics.as_ref()?[metric];
         trials.map(|trial| Some(value(a, trial)? - value(b, trial)?)).collect()
     }
 
@@ -207,9 +232,9 @@ pub fn compare(folder: &Folder, metrics: &[usize], choice: Choice) -> Result<Vec
     }
     for (comparison, (case, metric, pair)) in comparisons.iter_mut().zip(&all) {
         if let Some((_, margin)) = choice.margins.iter().find(|(place, _)| place == metric) {
-            let differences = Pairs::of(folder, *case, *metric, *pair).differences();
+            let interval_90 = Pairs::of(folder, *case, *metric, *pair).interval(TOST_CONFIDENCE);
             let direction = experiment.metrics[*metric].direction;
-            comparison.judged = Some(judge(comparison, &differences, *margin, direction));
+            comparison.judged = Some(judge(comparison, interval_90, *margin, direction));
         }
         comparison.in_words = in_words(comparison, &experiment.metrics);
     }
@@ -264,10 +289,11 @@ fn comparison(
         failed: pairs.failed,
         missing: pairs.missing,
         undefined: pairs.undefined,
+        is_of_sums: pairs.sums.is_some(),
         mean_a: Moments::of(&pairs.a).mean,
         mean_b: Moments::of(&pairs.b).mean,
         difference: Moments::of(&differences).mean,
-        interval: interval(&differences, CONFIDENCE),
+        interval: pairs.interval(CONFIDENCE),
         shift: hodges_lehmann(&differences),
         p: has_pairs.then_some(test.p),
         is_exact: test.is_exact,
@@ -291,7 +317,10 @@ fn pairing(pairs: &Pairs, differences: &[f64]) -> Option<f64> {
 fn in_words(comparison: &Comparison, metrics: &Catalogue) -> String {
     let Comparison { a, b, n, .. } = comparison;
     let place = comparison.axes.iter().map(|(path, value)| format!("{path}={value}"));
-    let place = place.chain([metrics.title(&comparison.metric).to_owned()]).collect::<Vec<_>>().join(", ");
+    let of_sums =
+        if comparison.is_of_sums { " (as a ratio of sums, since some trial has few rescuees)" } else { "" };
+    let title = format!("{}{of_sums}", metrics.title(&comparison.metric));
+    let place = place.chain([title]).collect::<Vec<_>>().join(", ");
     let (Some(difference), Some(p)) = (comparison.difference, comparison.p_holm) else {
         return format!(
             "{place}: nothing can be said of {a} and {b}: there is no pair of trials in which both have a value."
@@ -363,11 +392,21 @@ pub fn short(value: f64) -> String {
     digits(value, 3)
 }
 
-/// About this many significant digits.
+/// About this many significant digits; in engineering form, as in `26.4e-6`, where there would be many zeros.
 #[must_use]
 pub fn digits(value: f64, digits: i32) -> String {
     if value == 0.0 {
         return "0".to_owned();
+    }
+    if !(1e-5..1e7).contains(&value.abs()) && value.is_finite() {
+        let power = 3 * (value.abs().log10() / 3.0).floor() as i32;
+        let part = value / 10.0_f64.powi(power);
+        // What is left of sums that cancel out is nothing.
+        return if value.abs() < 1e-12 {
+            "0".to_owned()
+        } else {
+            format!("{}e{power}", self::digits(part, digits))
+        };
     }
     let decimals = (digits - 1 - value.abs().log10().floor() as i32).clamp(0, 12) as usize;
     let text = format!("{value:.decimals$}");

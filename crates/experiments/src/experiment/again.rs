@@ -1,8 +1,13 @@
 //! What makes results again: a command for one trial, and a file for the whole sweep.
 
+use usar_sim::record::{DecisionRecord, TrialRecord};
+
 use super::{Axis, Experiment, Seeds};
 use crate::failure::Failure;
 use crate::run::TrialKey;
+
+/// How often a policy is asked the same question again.
+const TIMES_ASKED: usize = 3;
 
 impl Experiment {
     /// The command that runs one trial again, in the folder of the results.
@@ -23,6 +28,19 @@ impl Experiment {
         let command = format!("usar run resolved.ron --policy {quoted} --seed {}", key.seed);
         let check = self.is_checked.then(|| "--check".to_owned());
         std::iter::once(command).chain(axes).chain(check).collect::<Vec<_>>().join(" ")
+    }
+
+    /// The first round whose question, asked a few times again, gets another answer than in the trial; `None`
+    /// where the policy keeps to its answers, or where the oracle decides.
+    #[must_use]
+    pub fn answers_otherwise(&self, key: &TrialKey, record: &TrialRecord) -> Option<u32> {
+        let policy = self.cases[key.case].drivers[key.policy].policy()?;
+        let is_other = |asked: &&DecisionRecord| {
+            let question = record.question(asked);
+            let answers = |_| policy.decide(&question).ok().map(|decision| decision.assignment);
+            (0..TIMES_ASKED).map(answers).any(|answer| answer.as_ref() != Some(&asked.decision.assignment))
+        };
+        record.decisions.iter().find(is_other).map(|asked| asked.question.round)
     }
 
     /// The same sweep as a file over its resolved scenario, which is in the same folder.

@@ -21,6 +21,20 @@ use crate::run::{FaultKind, Outcome, TrialKey};
 /// # Errors
 /// The journal cannot be read.
 pub fn difference(folder: &mut Folder, again: &Outcome) -> Result<Option<String>, Failure> {
+    let Some(what) = first_difference(folder, again)? else { return Ok(None) };
+    let experiment = folder.shared_experiment();
+    let round = again.record().and_then(|record| experiment.answers_otherwise(&again.key, record));
+    Ok(Some(round.map_or(what.clone(), |round| {
+        format!(
+            "{what}\nThe reason: policy {} is no function of its question: asked the same question of round {round} again, it \
+             answers otherwise. A policy may use nothing but the question: no clock, no counter, no random numbers of its own.",
+            again.key.label
+        )
+    })))
+}
+
+/// Where the lines differ.
+fn first_difference(folder: &mut Folder, again: &Outcome) -> Result<Option<String>, Failure> {
     let TrialKey { case, policy, label, trial, seed } = &again.key;
     let experiment = folder.shared_experiment();
     let place = experiment.describe(&experiment.cases[*case]);

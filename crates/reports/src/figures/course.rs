@@ -9,14 +9,17 @@ use experiments::stats::paired::t_half_width;
 
 use super::gather::Gathered;
 use super::metrics::capitalised;
-use crate::drawing::{Figure, Panel, draw, heat_map, layout, line_panel, names, table};
+use crate::drawing::{
+    Drawing, Panel, Sketch, from_top, heat_map, is_drawn, layout, line_panel, names, table,
+};
 
 /// Rescuees over time, with a band.
 pub(super) fn over_time(
     experiment: &Experiment,
     case: usize,
     gathered: &[Gathered],
-) -> Result<Figure, Failure> {
+    only: Option<&[String]>,
+) -> Result<Sketch, Failure> {
     let times: Vec<f64> = series_times(experiment.cases[case].scenario.duration_s).collect();
     let names = names(experiment);
     let metrics = &experiment.metrics;
@@ -26,6 +29,9 @@ pub(super) fn over_time(
     for (part, title) in titles.iter().map(String::as_str).enumerate() {
         let mut lines = Vec::new();
         for (i, (policy, gathered)) in experiment.policies.iter().zip(gathered).enumerate() {
+            if !is_drawn(only, &policy.label) {
+                continue;
+            }
             let mut points = Vec::new();
             for (at, time) in times.iter().enumerate() {
                 let values: Vec<f64> = gathered.delivered.iter().map(|trial| trial[at][part]).collect();
@@ -43,16 +49,16 @@ pub(super) fn over_time(
             }
             lines.push((i, names[i].as_str(), points));
         }
-        panels.extend(line_panel(&lines, [title, "time (s)", "delivered"]));
+        panels.extend(line_panel(&lines, &title.replace(' ', "."), [title, "time (s)", "delivered"]));
     }
     let n = gathered.iter().map(|gathered| gathered.delivered.len()).min().unwrap_or(0);
-    Ok(Figure {
+    Ok(Sketch {
         name: "rescuees-over-time".into(),
         title: "Rescuees over time".into(),
         caption: format!(
             "Mean delivered up to each time, with its 95 % t interval (band). n = {n} trials or more for each policy."
         ),
-        svg: if panels.is_empty() { String::new() } else { draw(panels, 3, [420.0, 320.0]) },
+        drawing: Drawing::new(panels, 3, [420.0, 320.0]),
         csv: table(&["metric", "policy", "time_s", "n", "mean", "half_width"], rows)?,
     })
 }
@@ -62,7 +68,7 @@ pub(super) fn membership(
     experiment: &Experiment,
     case: usize,
     gathered: &[Gathered],
-) -> Result<Figure, Failure> {
+) -> Result<Sketch, Failure> {
     let scenario = &experiment.cases[case].scenario;
     let hardest = scenario.hardest_first().first().map_or(0, |task| task.index());
     let task = scenario.tasks.get(hardest).map_or("", |task| &task.name);
@@ -100,12 +106,12 @@ pub(super) fn membership(
         let layout = layout(&plots, name)
             .with_x_label("round")
             .with_x_categories(rounds.iter().map(u32::to_string).collect())
-            .with_y_categories(names.collect());
-        panels.push(Panel { plots, layout });
+            .with_y_categories(from_top(names));
+        panels.push(Panel { metric: String::new(), plots, layout });
     }
     let columns = ["policy", "round", "robot", "role"].into_iter();
     let columns: Vec<&str> = columns.chain(scenario.tasks.iter().map(|task| task.name.as_str())).collect();
-    Ok(Figure {
+    Ok(Sketch {
         name: "groups".into(),
         title: "Groups over rounds".into(),
         caption: format!(
@@ -113,13 +119,13 @@ pub(super) fn membership(
              Rounds that not every robot saw are in the table only.",
             if least == u32::MAX { 0 } else { least }
         ),
-        svg: if panels.is_empty() { String::new() } else { draw(panels, 2, [520.0, 380.0]) },
+        drawing: Drawing::new(panels, 2, [520.0, 380.0]),
         csv: table(&columns, rows)?,
     })
 }
 
 /// The mean levels of the groups, round by round.
-pub(super) fn levels(experiment: &Experiment, case: usize, gathered: &[Gathered]) -> Result<Figure, Failure> {
+pub(super) fn levels(experiment: &Experiment, case: usize, gathered: &[Gathered]) -> Result<Sketch, Failure> {
     let tasks = task_names(&experiment.cases[case].scenario);
     let names = names(experiment);
     let (mut panels, mut rows) = (Vec::new(), Vec::new());
@@ -149,16 +155,16 @@ pub(super) fn levels(experiment: &Experiment, case: usize, gathered: &[Gathered]
                 lines.push((i, names[i].as_str(), points));
             }
             let title = format!("{}, group of the {task_name} task", capitalised(name));
-            panels.extend(line_panel(&lines, [&title, "round", "mean level (percent)"]));
+            panels.extend(line_panel(&lines, "", [&title, "round", "mean level (percent)"]));
         }
     }
-    Ok(Figure {
+    Ok(Sketch {
         name: "levels".into(),
         title: "Levels of the groups".into(),
         caption: "Mean battery and health level of each group's robots when it was formed, with the 95 % t interval over trials (band), for rounds that \
                   half of the trials reached; the table has all rounds with their n."
             .into(),
-        svg: if panels.is_empty() { String::new() } else { draw(panels, 2, [480.0, 300.0]) },
+        drawing: Drawing::new(panels, 2, [480.0, 300.0]),
         csv: table(&["level", "task", "policy", "round", "n", "mean", "half_width"], rows)?,
     })
 }

@@ -7,10 +7,10 @@ use rne_core::policies::rne::Rne;
 use rne_core::{Member, NeedDistribution, NeedWeights, PolicyError, RelativeNeedsEntropy, relative_entropy};
 
 use super::gather::Gathered;
-use crate::drawing::{Figure, Panel, draw, heat_map, layout, names, table};
+use crate::drawing::{Drawing, Panel, Sketch, from_top, heat_map, layout, names, table};
 
 /// RNE from each robot to each other of its role, in the first round of the first trial, with the weights of the question.
-pub(super) fn trust(experiment: &Experiment, gathered: &[Gathered]) -> Result<Option<Figure>, Failure> {
+pub(super) fn trust(experiment: &Experiment, gathered: &[Gathered]) -> Result<Option<Sketch>, Failure> {
     let mut with_rounds = experiment.policies.iter().zip(gathered);
     let first = with_rounds
         .find_map(|(policy, gathered)| Some((policy, gathered.first_question.as_ref()?, gathered)));
@@ -42,7 +42,7 @@ pub(super) fn trust(experiment: &Experiment, gathered: &[Gathered]) -> Result<Op
         let data = members.iter().map(row).collect::<Result<Vec<Vec<RelativeNeedsEntropy>>, _>>()?;
         panels.push(trust_panel(&data, &question.roles[role.index()], members.iter().map(|i| team[*i].id)));
     }
-    Ok(Some(Figure {
+    Ok(Some(Sketch {
         name: "trust".into(),
         title: "Relative Needs Entropy within each role".into(),
         caption: format!(
@@ -51,7 +51,7 @@ pub(super) fn trust(experiment: &Experiment, gathered: &[Gathered]) -> Result<Op
              and the table says so. The table has all pairs, those between roles too. n = 1 trial.",
             gathered.first_trial, policy.label
         ),
-        svg: if panels.is_empty() { String::new() } else { draw(panels, 3, [400.0, 360.0]) },
+        drawing: Drawing::new(panels, 3, [400.0, 360.0]),
         csv: table(&["from", "to", "rne_nats"], rows)?,
     }))
 }
@@ -68,14 +68,14 @@ fn trust_panel(data: &[Vec<RelativeNeedsEntropy>], role: &str, ids: impl Iterato
     let names: Vec<String> = ids.map(|id| id.to_string()).collect();
     let layout = layout(&plots, &format!("{role}s"))
         .with_x_categories(names.clone())
-        .with_y_categories(names)
+        .with_y_categories(from_top(names))
         .with_x_label("to robot")
         .with_y_label("from robot");
-    Panel { plots, layout }
+    Panel { metric: String::new(), plots, layout }
 }
 
 /// In which share of the rounds each policy's split is the one that sorting gives.
-pub(super) fn sorting(experiment: &Experiment, gathered: &[Gathered]) -> Result<Figure, Failure> {
+pub(super) fn sorting(experiment: &Experiment, gathered: &[Gathered]) -> Result<Sketch, Failure> {
     let (mut shares, mut rows, mut labels, mut n) =
         ([Vec::new(), Vec::new()], Vec::new(), Vec::new(), usize::MAX);
     let mut roles_of_all: Vec<String> = Vec::new();
@@ -111,8 +111,8 @@ pub(super) fn sorting(experiment: &Experiment, gathered: &[Gathered]) -> Result<
         let plots = vec![heat_map(data, 1.0)];
         let layout = layout(&plots, title)
             .with_x_categories(KEYS.iter().map(|key| key.name.to_owned()).collect())
-            .with_y_categories(labels.clone());
-        Panel { plots, layout }
+            .with_y_categories(from_top(labels.iter().cloned()));
+        Panel { metric: String::new(), plots, layout }
     };
     let is_empty = labels.is_empty();
     let panels: Vec<Panel> = shares.into_iter().zip(titles).map(panel).collect();
@@ -121,14 +121,14 @@ pub(super) fn sorting(experiment: &Experiment, gathered: &[Gathered]) -> Result<
     let columns: Vec<String> =
         ["policy", "sorted_by", "rounds"].map(str::to_owned).into_iter().chain(shares).collect();
     let columns: Vec<&str> = columns.iter().map(String::as_str).collect();
-    Ok(Figure {
+    Ok(Sketch {
         name: "sorting".into(),
         title: "What the groups amount to".into(),
         caption: format!(
             "Shares of the rounds with two groups. Left: each role is split as sorting it would, whichever half takes which task (by \
              chance in the table). n = {n} rounds or more for each policy."
         ),
-        svg: if is_empty { String::new() } else { draw(panels, 2, [520.0, 320.0]) },
+        drawing: Drawing::new(if is_empty { Vec::new() } else { panels }, 2, [520.0, 320.0]),
         csv: table(&columns, rows)?,
     })
 }

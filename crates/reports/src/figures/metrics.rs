@@ -12,7 +12,7 @@ use kuva::plot::{BoxPlot, ForestPlot, ScatterPlot, StripPlot};
 use kuva::render::plots::Plot;
 
 use super::is_quiet;
-use crate::drawing::{Figure, Panel, colour, draw, layout, line_panel, names, range, table};
+use crate::drawing::{Drawing, Panel, Sketch, colour, is_drawn, layout, line_panel, names, range, table};
 
 /// Trials of a policy that are drawn as points, about: more would hide the boxes.
 const MAX_POINTS: usize = 40;
@@ -20,12 +20,17 @@ const MAX_POINTS: usize = 40;
 const PANEL: [f64; 2] = [360.0, 320.0];
 
 /// Box plots with points, a figure for each group of metrics.
-pub(super) fn boxes(folder: &Folder, case: usize) -> Result<Vec<Figure>, Failure> {
+pub(super) fn boxes(folder: &Folder, case: usize, only: Option<&[String]>) -> Result<Vec<Sketch>, Failure> {
     let figures = folder.experiment().metrics.figures().into_iter();
-    figures.map(|(name, metrics)| box_figure(folder, case, name, &metrics)).collect()
+    figures.map(|(name, metrics)| box_figure((folder, case), name, &metrics, only)).collect()
 }
 
-fn box_figure(folder: &Folder, case: usize, name: &str, places: &[usize]) -> Result<Figure, Failure> {
+fn box_figure(
+    (folder, case): (&Folder, usize),
+    name: &str,
+    places: &[usize],
+    only: Option<&[String]>,
+) -> Result<Sketch, Failure> {
     let Experiment { policies, metrics, .. } = folder.experiment();
     let names = names(folder.experiment());
     let step = (folder.experiment().trials as usize).div_ceil(MAX_POINTS).max(1);
@@ -36,12 +41,13 @@ fn box_figure(folder: &Folder, case: usize, name: &str, places: &[usize]) -> Res
         let mut points = StripPlot::new().with_jitter(0.2).with_point_size(2.0).with_color("#333333");
         points = points.with_marker_opacity(if step > 1 { 0.45 } else { 0.8 });
         let (mut colours, mut all) = (Vec::new(), Vec::new());
-        for (i, policy) in policies.iter().enumerate() {
-            let values = folder.values(case, i, *place);
+        for (i, policy) in policies.iter().enumerate().filter(|(_, policy)| is_drawn(only, &policy.label)) {
+            let found = trials(folder, (case, i), |metrics| metrics[*place]);
+            rows.extend(found.iter().map(|(seed, value)| {
+                vec![metric.name.clone(), policy.label.clone(), seed.to_string(), value.to_string()]
+            }));
+            let values: Vec<f64> = found.into_iter().map(|(_, value)| value).collect();
             counts.push(values.len());
-            rows.extend(
-                values.iter().map(|value| vec![metric.name.clone(), policy.label.clone(), value.to_string()]),
-            );
             all.extend_from_slice(&values);
             if !values.is_empty() {
                 points = points.with_group(names[i].clone(), values.iter().copied().step_by(step));
@@ -61,9 +67,9 @@ fn box_figure(folder: &Folder, case: usize, name: &str, places: &[usize]) -> Res
         for line in bounds(folder, case, *place) {
             layout = layout.with_reference_line(line);
         }
-        panels.push(Panel { plots, layout });
+        panels.push(Panel { metric: metric.name.clone(), plots, layout });
     }
-    Ok(Figure {
+    Ok(Sketch {
         name: name.replace(' ', "-").to_lowercase(),
         title: capitalised(name),
         caption: format!(
@@ -75,9 +81,22 @@ fn box_figure(folder: &Folder, case: usize, name: &str, places: &[usize]) -> Res
             },
             per_box(&counts)
         ),
-        svg: if panels.is_empty() { String::new() } else { draw(panels, 3, PANEL) },
-        csv: table(&["metric", "policy", "value"], rows)?,
+        drawing: Drawing::new(panels, 3, PANEL),
+        csv: table(&["metric", "policy", "seed", "value"], rows)?,
     })
+}
+
+/// What is measured of a policy's trials, where it is defined, each with its seed.
+fn trials<T>(
+    folder: &Folder,
+    (case, policy): (usize, usize),
+    value: impl Fn(&[Option<f64>]) -> Option<T>,
+) -> Vec<(u64, T)> {
+    let trials = folder.results().range((case, policy, 0)..=(case, policy, u32::MAX));
+    let found = trials.filter_map(|((_, _, trial), measured)| {
+        Some((folder.experiment().seed(*trial), value(measured.metrics.as_ref()?)?))
+    });
+    found.collect()
 }
 
 /// Lines at the means of the oracle and of a fair draw, where the sweep has them.
@@ -114,7 +133,7 @@ pub(super) fn capitalised(text: &str) -> String {
 }
 
 /// Energy against HP per rescuee: what a rescue costs.
-pub(super) fn costs(folder: &Folder, case: usize) -> Result<Figure, Failure> {
+pub(super) fn costs(folder: &Folder, case: usize, only: Option<&[String]>) -> Result<Sketch, Failure> {
     let Experiment { policies, metrics, .. } = folder.experiment();
     let names = names(folder.experiment());
     let (mut panels, mut rows, mut counts) = (Vec::new(), Vec::new(), Vec::new());
@@ -122,22 +141,15 @@ pub(super) fn costs(folder: &Folder, case: usize) -> Result<Figure, Failure> {
     for (energy, hp) in energies.into_iter().zip(hps) {
         let part = metrics[energy].part();
         let (mut plots, mut all) = (Vec::new(), Vec::new());
-        for (i, policy) in policies.iter().enumerate() {
-            let trials = (case, i, 0)..=(case, i, u32::MAX);
-            let points: Vec<(f64, f64)> = folder
-                .results()
-                .range(trials)
-                .filter_map(|(_, measured)| {
-                    let metrics = measured.metrics.as_ref()?;
-                    Some((metrics[energy]?, metrics[hp]?))
-                })
-                .collect();
+        for (i, policy) in policies.iter().enumerate().filter(|(_, policy)| is_drawn(only, &policy.label)) {
+            let found = trials(folder, (case, i), |metrics| Some((metrics[energy]?, metrics[hp]?)));
+            rows.extend(found.iter().map(|(seed, (energy, hp))| {
+                let first = [part.to_owned(), policy.label.clone(), seed.to_string()];
+                [first.to_vec(), vec![energy.to_string(), hp.to_string()]].concat()
+            }));
+            let points: Vec<(f64, f64)> = found.into_iter().map(|(_, point)| point).collect();
             counts.push(points.len());
             all.extend_from_slice(&points);
-            let row = |(energy, hp): &(f64, f64)| {
-                vec![part.to_owned(), policy.label.clone(), energy.to_string(), hp.to_string()]
-            };
-            rows.extend(points.iter().map(row));
             if !points.is_empty() {
                 let points = points.into_iter().take(MAX_POINTS);
                 let plot = ScatterPlot::new().with_data(points).with_color(colour(i)).with_size(3.5);
@@ -156,22 +168,22 @@ pub(super) fn costs(folder: &Folder, case: usize) -> Result<Figure, Failure> {
             .with_x_axis_max(energies[1])
             .with_y_axis_min(hps[0])
             .with_y_axis_max(hps[1]);
-        panels.push(Panel { plots, layout });
+        panels.push(Panel { metric: metrics[energy].name.clone(), plots, layout });
     }
-    Ok(Figure {
+    Ok(Sketch {
         name: "costs".into(),
         title: "Energy and HP per rescuee".into(),
         caption: format!(
             "Percent points per rescuee delivered; each point is a trial, of {MAX_POINTS} at most for each policy. {}",
             per_box(&counts)
         ),
-        svg: if panels.is_empty() { String::new() } else { draw(panels, 3, [400.0, 320.0]) },
-        csv: table(&["task", "policy", "energy_per_rescuee", "hp_per_rescuee"], rows)?,
+        drawing: Drawing::new(panels, 3, [400.0, 320.0]),
+        csv: table(&["task", "policy", "seed", "energy_per_rescuee", "hp_per_rescuee"], rows)?,
     })
 }
 
 /// Paired differences with their intervals.
-pub(super) fn forest(experiment: &Experiment, comparisons: &[&Comparison]) -> Result<Figure, Failure> {
+pub(super) fn forest(experiment: &Experiment, comparisons: &[&Comparison]) -> Result<Sketch, Failure> {
     let names = names(experiment);
     let name = |label: &String| {
         let place = experiment.policies.iter().position(|policy| policy.label == *label);
@@ -200,7 +212,7 @@ pub(super) fn forest(experiment: &Experiment, comparisons: &[&Comparison]) -> Re
                 .with_ticks(4)
                 .with_x_axis_min(low)
                 .with_x_axis_max(high);
-            panels.push(Panel { plots, layout });
+            panels.push(Panel { metric: metric.to_owned(), plots, layout });
         }
     }
     let row = |c: &&Comparison| {
@@ -236,13 +248,13 @@ pub(super) fn forest(experiment: &Experiment, comparisons: &[&Comparison]) -> Re
         "pairing",
         "pairs_needed",
     ];
-    Ok(Figure {
+    Ok(Sketch {
         name: "differences".into(),
         title: "Paired differences".into(),
         caption: "First policy less second over the same seeds, with the 95 % bootstrap interval of the mean; the number of pairs in brackets. \
                   The intervals are one by one; p after correction is in the table below."
             .into(),
-        svg: if panels.is_empty() { String::new() } else { draw(panels, 3, [420.0, 280.0]) },
+        drawing: Drawing::new(panels, 3, [420.0, 280.0]),
         csv: table(&header, comparisons.iter().map(row))?,
     })
 }
@@ -256,7 +268,7 @@ fn forest_range(ends: &[f64]) -> [f64; 2] {
 }
 
 /// Means of the first figure's metrics along each axis of numbers, the other axes as in the case.
-pub(super) fn axes(folder: &Folder, case: usize) -> Result<Vec<Figure>, Failure> {
+pub(super) fn axes(folder: &Folder, case: usize, only: Option<&[String]>) -> Result<Vec<Sketch>, Failure> {
     let experiment = folder.experiment();
     let names = names(experiment);
     let metrics = experiment.metrics.figures().into_iter().next().map_or(Vec::new(), |(_, metrics)| metrics);
@@ -274,7 +286,8 @@ pub(super) fn axes(folder: &Folder, case: usize) -> Result<Vec<Figure>, Failure>
         let (mut panels, mut rows) = (Vec::new(), Vec::new());
         for metric in &metrics {
             let mut lines = Vec::new();
-            for (p, policy) in experiment.policies.iter().enumerate() {
+            let policies = experiment.policies.iter().enumerate();
+            for (p, policy) in policies.filter(|(_, policy)| is_drawn(only, &policy.label)) {
                 let mut points: Vec<(f64, f64, f64)> = Vec::new();
                 for (at, other) in cases.iter().enumerate() {
                     let values = folder.values(*other, p, *metric);
@@ -297,8 +310,11 @@ pub(super) fn axes(folder: &Folder, case: usize) -> Result<Vec<Figure>, Failure>
                 points.sort_by(|a, b| a.0.total_cmp(&b.0));
                 lines.push((p, names[p].as_str(), points));
             }
-            panels
-                .extend(line_panel(&lines, [&experiment.metrics[*metric].title_with_unit(), &axis.path, ""]));
+            panels.extend(line_panel(
+                &lines,
+                &experiment.metrics[*metric].name,
+                [&experiment.metrics[*metric].title_with_unit(), &axis.path, ""],
+            ));
         }
         let n = experiment.trials;
         let places: Vec<String> =
@@ -313,11 +329,11 @@ pub(super) fn axes(folder: &Folder, case: usize) -> Result<Vec<Figure>, Failure>
             .map(|(_, (axis, value))| format!("{}={value}", axis.path))
             .collect();
         let fixed = if others.is_empty() { String::new() } else { format!(" Here {}.", others.join(", ")) };
-        all.push(Figure {
+        all.push(Sketch {
             name: format!("along-{}", axis.path.replace(['.', '[', ']'], "-")),
             title: format!("Along {}", axis.path),
             caption: format!("Means of up to {n} trials with their 95 % t intervals (band).{legend}{fixed}"),
-            svg: draw(panels, 3, [420.0, 320.0]),
+            drawing: Drawing::new(panels, 3, [420.0, 320.0]),
             csv: table(&["metric", "policy", "value", "n", "mean", "half_width"], rows)?,
         });
     }

@@ -11,16 +11,28 @@ use experiments::Failure;
 use experiments::comparison::Comparison;
 use experiments::sweep::folder::Folder;
 
-use crate::drawing::Figure;
+use crate::drawing::{Figure, Sketch};
 
 pub(crate) use regret::regret;
 pub(crate) use sensitivity::sensitivity;
 
+/// Which part of a case is drawn.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Part<'a> {
+    /// The case, from 0.
+    pub case: usize,
+    /// None but these policies, by their labels.
+    pub only: Option<&'a [String]>,
+}
+
 /// Figures of metrics along the axes of a sweep.
 pub(crate) fn along_axes(folder: &Folder) -> Result<Vec<Figure>, Failure> {
-    let mut figures = metrics::axes(folder, 0)?;
-    figures.retain(|figure| !figure.svg.is_empty());
-    Ok(figures)
+    Ok(drawn(metrics::axes(folder, 0, None)?))
+}
+
+/// Those of figures for which there is something to draw.
+fn drawn(sketches: Vec<Sketch>) -> Vec<Figure> {
+    sketches.into_iter().filter(|sketch| !sketch.drawing.is_empty()).map(Sketch::drawn).collect()
 }
 
 /// All figures of a sweep's case for which there is something to draw.
@@ -29,22 +41,35 @@ pub(crate) fn figures(
     case: usize,
     comparisons: &[&Comparison],
 ) -> Result<Vec<Figure>, Failure> {
+    sketches(folder, Part { case, only: None }, comparisons).map(drawn)
+}
+
+/// All figures of a sweep's case, before they are drawn.
+pub(crate) fn sketches(
+    folder: &mut Folder,
+    Part { case, only }: Part,
+    comparisons: &[&Comparison],
+) -> Result<Vec<Sketch>, Failure> {
     let gathered = gather::gather(folder, case)?;
     let experiment = folder.experiment();
-    let mut figures = metrics::boxes(folder, case)?;
-    figures.push(metrics::costs(folder, case)?);
+    let mut figures = metrics::boxes(folder, case, only)?;
+    figures.push(metrics::costs(folder, case, only)?);
     if !comparisons.is_empty() {
         figures.push(metrics::forest(experiment, comparisons)?);
     }
     if experiment.keep.has_records() {
-        figures.push(course::over_time(experiment, case, &gathered)?);
+        figures.push(course::over_time(experiment, case, &gathered, only)?);
         figures.push(course::membership(experiment, case, &gathered)?);
         figures.push(course::levels(experiment, case, &gathered)?);
         figures.push(groups::sorting(experiment, &gathered)?);
         figures.extend(groups::trust(experiment, &gathered)?);
     }
-    figures.retain(|figure| !figure.svg.is_empty());
     Ok(figures)
+}
+
+/// The figures of a sweep along its axes, before they are drawn.
+pub(crate) fn sketches_along_axes(folder: &Folder, part: Part) -> Result<Vec<Sketch>, Failure> {
+    metrics::axes(folder, part.case, part.only)
 }
 
 /// Whether a metric has values in a case, and all of them are zero.

@@ -9,17 +9,17 @@ use experiments::stats::paired::t_half_width;
 use kuva::plot::ForestPlot;
 use kuva::render::plots::Plot;
 
-use crate::drawing::{Figure, Panel, draw, layout, line_panel, range, table};
+use crate::drawing::{Drawing, Panel, Sketch, layout, line_panel, range, table};
 
 /// Regret round by round, and the share of the achievable that each policy achieves.
 ///
 /// # Errors
 /// None: tables are written to memory.
-pub(crate) fn regret(analyses: &[Analysis]) -> Result<Vec<Figure>, Failure> {
+pub(crate) fn regret(analyses: &[Analysis]) -> Result<Vec<Sketch>, Failure> {
     Ok(vec![by_round(analyses)?, achieved(analyses)?])
 }
 
-fn by_round(analyses: &[Analysis]) -> Result<Figure, Failure> {
+fn by_round(analyses: &[Analysis]) -> Result<Sketch, Failure> {
     let (mut panels, mut rows) = (Vec::new(), Vec::new());
     for analysis in analyses {
         let labels: Vec<&str> = analysis.policies.iter().map(|policy| policy.policy.as_str()).collect();
@@ -46,15 +46,15 @@ fn by_round(analyses: &[Analysis]) -> Result<Figure, Failure> {
             };
             rows.extend(points.iter().map(row));
         }
-        panels.extend(line_panel(&lines, [&analysis.metric, "round", "regret"]));
+        panels.extend(line_panel(&lines, &analysis.metric, [&analysis.metric, "round", "regret"]));
     }
-    Ok(Figure {
+    Ok(Sketch {
         name: "regret-by-round".to_owned(),
         title: "Regret, round by round".to_owned(),
         caption: "Mean distance to the best assignment, with 95 % t intervals; 0 is the best, the lines `fair draw` and `worst` are those of the mean and of \
                   the worst assignment"
             .to_owned(),
-        svg: if panels.is_empty() { String::new() } else { draw(panels, 2, [460.0, 340.0]) },
+        drawing: Drawing::new(panels, 2, [460.0, 340.0]),
         csv: table(&["metric", "policy", "round", "mean", "half_width"], rows)?,
     })
 }
@@ -70,7 +70,7 @@ fn points(values: impl Iterator<Item = (u32, f64)>) -> Vec<(f64, f64, f64)> {
     by_round.into_iter().filter_map(point).collect()
 }
 
-fn achieved(analyses: &[Analysis]) -> Result<Figure, Failure> {
+fn achieved(analyses: &[Analysis]) -> Result<Sketch, Failure> {
     let (mut panels, mut rows) = (Vec::new(), Vec::new());
     for analysis in analyses {
         let mut plot = ForestPlot::new().with_null_value(0.0).with_cap_size(4.0);
@@ -91,14 +91,14 @@ fn achieved(analyses: &[Analysis]) -> Result<Figure, Failure> {
                 .with_ticks(4)
                 .with_x_axis_min(low)
                 .with_x_axis_max(high);
-            panels.push(Panel { plots, layout });
+            panels.push(Panel { metric: String::new(), plots, layout });
         }
     }
-    Ok(Figure {
+    Ok(Sketch {
         name: "achieved".to_owned(),
         title: "How much of the achievable is achieved".to_owned(),
         caption: "0 is a fair draw, 100 % the best assignment of each decision; 95 % bootstrap intervals over trials".to_owned(),
-        svg: if panels.is_empty() { String::new() } else { draw(panels, 2, [460.0, 280.0]) },
+        drawing: Drawing::new(panels, 2, [460.0, 280.0]),
         csv: table(&["metric", "policy", "achieved_percent", "low", "high"], rows)?,
     })
 }

@@ -6,7 +6,7 @@ use experiments::stats::sensitivity::Known;
 use kuva::plot::ForestPlot;
 use kuva::render::plots::Plot;
 
-use crate::drawing::{Figure, Panel, draw, layout, range, table};
+use crate::drawing::{Drawing, Panel, Sketch, layout, range, table};
 
 const OF_SHOWN: &str = "#0072B2";
 const OF_OTHERS: &str = "#999999";
@@ -15,7 +15,7 @@ const OF_OTHERS: &str = "#999999";
 ///
 /// # Errors
 /// None: tables are written to memory.
-pub(crate) fn sensitivity(rows: &[Row]) -> Result<Figure, Failure> {
+pub(crate) fn sensitivity(rows: &[Row]) -> Result<Sketch, Failure> {
     let mut panels = Vec::new();
     let mut outcomes: Vec<String> = rows.iter().map(|row| row.outcome.name()).collect();
     outcomes.dedup();
@@ -24,11 +24,11 @@ pub(crate) fn sensitivity(rows: &[Row]) -> Result<Figure, Failure> {
     }
     let most = rows.len() / outcomes.len().max(1);
     let height = 110.0 + 34.0 * most as f64;
-    Ok(Figure {
+    Ok(Sketch {
         name: "indices".to_owned(),
         title: "What matters".to_owned(),
         caption: String::new(),
-        svg: if panels.is_empty() { String::new() } else { draw(panels, 2, [520.0, height]) },
+        drawing: Drawing::new(panels, 2, [520.0, height]),
         csv: csv(rows)?,
     })
 }
@@ -64,7 +64,7 @@ fn panel<'a>(outcome: &str, rows: impl Iterator<Item = &'a Row>) -> Option<Panel
     let [low, high] = range(ends);
     let layout =
         layout(&plots, outcome).with_x_label(label).with_ticks(4).with_x_axis_min(low).with_x_axis_max(high);
-    Some(Panel { plots, layout })
+    Some(Panel { metric: String::new(), plots, layout })
 }
 
 const HEADER: [&str; 16] = [

@@ -14,6 +14,7 @@ pub(crate) mod estimate;
 mod explored;
 pub(crate) mod export;
 mod family;
+pub(crate) mod figure;
 pub(crate) mod fmt;
 pub(crate) mod fork;
 pub(crate) mod group;

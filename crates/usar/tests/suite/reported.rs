@@ -7,7 +7,7 @@ use serde_json::Value;
 use xtask::kills::files;
 
 use crate::place::{column, place, refused, rows};
-use crate::support::{succeeds, usar};
+use crate::support::{read, root, succeeds, usar};
 
 #[test]
 fn a_report_is_one_file_with_figures_and_the_numbers_behind_them() {
@@ -173,4 +173,43 @@ fn the_reports_numbers_are_those_of_the_trials() {
     let shown = &rows(&results.join("plots"), "trust.csv")[1];
     assert_eq!((&shown[0], &shown[1]), ("0", "1"));
     assert!((shown[2].parse::<f64>().unwrap() - rne).abs() < 1e-12);
+}
+
+/// A figure for a paper: as wide as its column, in three kinds, of one metric and of some policies.
+#[test]
+fn a_figure_fits_the_column_of_a_paper() {
+    let place = tempfile::tempdir().unwrap();
+    let folder = place.path();
+    let scenario = root().join("scenarios/paper.ron");
+    let scenario = scenario.to_str().unwrap();
+    let mut sweep = vec!["sweep", scenario, "--trials", "2", "--set", "duration_s=60", "--quiet"];
+    sweep.extend(["--policies", "RNE,DIS", "--out", "short"]);
+    succeeds(&usar(folder, &sweep));
+    let figure = |more: &[&str]| {
+        let mut arguments = vec!["figure", "short", "rescuees-over-time"];
+        arguments.extend(more);
+        usar(folder, &arguments)
+    };
+    let told = succeeds(&figure(&["--format", "svg", "--metric", "rescuees", "--policies", "DIS", "--grey"]));
+    assert_eq!(told, "rescuees-over-time.svg\n");
+    let svg = read(&folder.join("rescuees-over-time.svg"));
+    assert!(svg.contains("width=\"88mm\"") && svg.contains("DIS") && !svg.contains("RNE"), "{svg}");
+    assert!(!svg.contains("#D55E00"), "no colour is left");
+    succeeds(&figure(&["--out", "a.pdf"]));
+    succeeds(&figure(&["--format", "png", "--out", "a.png", "--dpi", "60"]));
+    let begins = |name: &str, with: &[u8]| std::fs::read(folder.join(name)).unwrap().starts_with(with);
+    assert!(begins("a.pdf", b"%PDF-") && begins("a.png", b"\x89PNG"));
+    for (more, says) in [
+        (&["--out", "a.pdf"][..], "exists; nothing was overwritten"),
+        (&["--metric", "rounds"], "the figure rescuees-over-time has no panel of rounds"),
+        (&["--policies", "LUCK"], "--policies: must be policies of the sweep (RNE, DIS)"),
+        (&["--width", "88"], "must be 20mm to 1000mm"),
+    ] {
+        let output = figure(more);
+        let stderr = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.code() == Some(2) && stderr.contains(says), "{stderr}");
+    }
+    succeeds(&usar(folder, &["report", "short"]));
+    let table = read(&folder.join("short/plots/rescuees-over-time.csv"));
+    assert!(table.starts_with("metric,policy,time_s,n,"), "{table}");
 }

@@ -1,6 +1,7 @@
 //! One file per task.
 
 pub mod calibration;
+pub mod coverage;
 pub mod damage;
 pub mod golden;
 pub mod kills;

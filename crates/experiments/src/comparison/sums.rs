@@ -1,0 +1,122 @@
+//! Costs per rescuee where a trial has few rescuees or none: compared as ratios of sums.
+//!
+//! The mean of a trial's own ratios is ruled by the trials with the smallest denominators, and leaves out those
+//! with none. The ratio of the sums over all trials is not. A trial's *linearised value* is what it adds to that
+//! ratio: R + (cost - R rescuees) / (mean of rescuees), with the ratio R of both policies together. The mean of
+//! these is the ratio of sums, so that tests and standard deviations of them are those of the ratio.
+
+use super::Measured;
+use crate::stats::bootstrap::statistic_interval;
+use crate::sweep::folder::Folder;
+
+/// Rescuees of a trial below which its own ratio says little: one more or less moves it by a fifth.
+pub const FEW: f64 = 5.0;
+
+/// Costs and rescuees of both policies, pair by pair.
+#[derive(Debug, Default, Clone, PartialEq)]
+pub(super) struct Sums {
+    /// Number of each pair's trial.
+    pub trials: Vec<u32>,
+    /// Cost and rescuees of the first policy, then of the second.
+    pub pairs: Vec<[f64; 4]>,
+}
+
+impl Sums {
+    /// The sums of a metric; `None` where it is no ratio, where each trial has a denominator large enough, or where a
+    /// policy has none at all.
+    pub fn of(folder: &Folder, case: usize, metric: usize, [a, b]: [usize; 2]) -> Option<Self> {
+        let experiment = folder.experiment();
+        let [cost, count] = experiment.metrics.sums(metric)?;
+        let mut sums = Self::default();
+        for trial in experiment.trials_of(case, folder.manifest().shard) {
+            let parts = |policy| {
+                let Measured { metrics, .. } = folder.results().get(&(case, policy, trial))?;
+                let metrics = metrics.as_ref()?;
+                Some([metrics[cost]?, metrics[count]?])
+            };
+            if let (Some([cost_a, count_a]), Some([cost_b, count_b])) = (parts(a), parts(b)) {
+                sums.trials.push(trial);
+                sums.pairs.push([cost_a, count_a, cost_b, count_b]);
+            }
+        }
+        let is_few = sums.pairs.iter().any(|pair| pair[1] < FEW || pair[3] < FEW);
+        (is_few && sums.total(1) > 0.0 && sums.total(3) > 0.0).then_some(sums)
+    }
+
+    fn total(&self, part: usize) -> f64 {
+        self.pairs.iter().map(|pair| pair[part]).sum()
+    }
+
+    /// The linearised values of both policies.
+    pub fn linearised(&self) -> [Vec<f64>; 2] {
+        let ratio = (self.total(0) + self.total(2)) / (self.total(1) + self.total(3));
+        [0, 2].map(|cost| {
+            let mean = self.total(cost + 1) / self.pairs.len() as f64;
+            let value = |pair: &[f64; 4]| ratio + (pair[cost] - ratio * pair[cost + 1]) / mean;
+            self.pairs.iter().map(value).collect()
+        })
+    }
+
+    /// The interval of the difference of both ratios, from resampled pairs.
+    pub fn interval(&self, confidence: f64) -> Option<[f64; 2]> {
+        statistic_interval(self.pairs.len(), confidence, |rows| difference(&self.pairs, rows))
+    }
+}
+
+/// The first ratio of sums over these pairs less the second.
+fn difference(pairs: &[[f64; 4]], rows: &[usize]) -> Option<f64> {
+    let mut sums = [0.0; 4];
+    for row in rows {
+        sums.iter_mut().zip(pairs[*row]).for_each(|(sum, value)| *sum += value);
+    }
+    (sums[1] > 0.0 && sums[3] > 0.0).then(|| sums[0] / sums[1] - sums[2] / sums[3])
+}
+
+#[cfg(test)]
+mod tests {
+    use rand::rngs::ChaCha8Rng;
+    use rand::{RngExt, SeedableRng};
+
+    use super::*;
+
+    /// Costs and rescuees, of which there are often none; the true ratios are 8 and 6.
+    fn sums(pairs: usize, draws: &mut ChaCha8Rng) -> Sums {
+        let mut pair = || {
+            let load = draws.random::<f64>();
+            let mut policy = |ratio: f64| {
+                let count = (6.0 * load * draws.random::<f64>()).floor();
+                // The cost of a trial goes with its rescuees, and some is spent for nothing.
+                let spent = ratio * count + 4.0 * (draws.random::<f64>() - 0.5);
+                [spent + 4.0, count]
+            };
+            let [a, b] = [policy(8.0), policy(6.0)];
+            [a[0], a[1], b[0], b[1]]
+        };
+        Sums { trials: Vec::new(), pairs: (0..pairs).map(|_| pair()).collect() }
+    }
+
+    #[test]
+    fn linearised_values_have_the_ratio_of_sums_as_their_mean() {
+        let sums = sums(40, &mut ChaCha8Rng::seed_from_u64(1));
+        assert!(sums.pairs.iter().any(|pair| pair[1] < 0.5), "some trial has nobody rescued");
+        for (values, cost) in sums.linearised().iter().zip([0, 2]) {
+            let mean = values.iter().sum::<f64>() / values.len() as f64;
+            assert!((mean - sums.total(cost) / sums.total(cost + 1)).abs() < 1e-9);
+        }
+    }
+
+    /// `xtask coverage` counts more of them.
+    #[test]
+    fn the_interval_of_a_difference_of_ratios_covers_what_it_says() {
+        let mut draws = ChaCha8Rng::seed_from_u64(2);
+        let all = sums(400_000, &mut draws);
+        let rows: Vec<usize> = (0..all.pairs.len()).collect();
+        let truth = difference(&all.pairs, &rows).unwrap();
+        let is_held = |_: &u32| {
+            let [low, high] = sums(40, &mut draws).interval(0.95).unwrap();
+            low <= truth && truth <= high
+        };
+        let held = (0..200).filter(is_held).count();
+        assert!((180..=199).contains(&held), "{held} of 200");
+    }
+}
