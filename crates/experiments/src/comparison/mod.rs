@@ -392,7 +392,14 @@ pub fn short(value: f64) -> String {
     digits(value, 3)
 }
 
-/// About this many significant digits; in engineering form, as in `26.4e-6`, where there would be many zeros.
+/// About this many significant digits; in engineering form where there would be many zeros.
+///
+/// ```
+/// use experiments::comparison::digits;
+///
+/// let shown = [0.000_378, 8.333e-6, -12_345_678.0, 52.7].map(|value| digits(value, 3));
+/// assert_eq!(shown, ["0.000378", "8.33e-6", "-12.3e6", "52.7"]);
+/// ```
 #[must_use]
 pub fn digits(value: f64, digits: i32) -> String {
     if value == 0.0 {

@@ -207,7 +207,7 @@ impl Arguments {
         let last = self.confirm_seed + u64::from(self.confirm_trials) - 1;
         writeln!(
             out,
-            "\nConfirmed on {} fresh seeds ({} to {last}), by which no candidate was judged:",
+            "\nRun again on {} fresh seeds ({} to {last}), by which no candidate was judged:",
             self.confirm_trials, self.confirm_seed
         )?;
         match comparison {

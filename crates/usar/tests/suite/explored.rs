@@ -65,7 +65,7 @@ fn a_search_says_what_fresh_seeds_say() {
     };
     let told = succeeds(&search(&[]));
     assert!(told.contains("on the 1 seeds of the search (400001 to 400001)"), "{told}");
-    assert!(told.contains("Confirmed on 3 fresh seeds (500001 to 500003)"), "{told}");
+    assert!(told.contains("Run again on 3 fresh seeds (500001 to 500003)"), "{told}");
     let log = read(&folder.join("found/evaluations.csv"));
     assert_eq!(succeeds(&search(&[])), told, "what is there is not run again");
     assert_eq!(read(&folder.join("found/evaluations.csv")), log);
