@@ -9,8 +9,7 @@ use experiments::sweep::folder::Folder;
 use serde::Serialize;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
-use crate::claims::PAPERS_TRIALS;
-use crate::scenarios::{POLICIES, Standing};
+use crate::scenarios::{PAPERS_TRIALS, POLICIES, Standing};
 
 /// What the authors tell of a trial.
 const QUANTITIES: [&str; 4] = ["rescuees", "energy", "hp", "rounds"];

@@ -6,10 +6,11 @@ use experiments::Failure;
 use experiments::experiment::{Experiment, Overrides};
 use ron_fields::Fields;
 
-use crate::claims::PAPERS_TRIALS;
-
 /// Policies of the paper.
 pub const POLICIES: [&str; 4] = ["RNE", "DIS", "ENG", "HP_DIS"];
+
+/// Trials of the paper.
+pub const PAPERS_TRIALS: u32 = 10;
 
 // Scenarios are a part of the program, so that it runs from any folder.
 const PRINTED: &str = include_str!("../../../scenarios/paper.ron");
@@ -47,21 +48,22 @@ pub struct World {
 /// None: the scenarios are given. A program that was started with policies of its own may lack one of
 /// [`POLICIES`].
 pub fn worlds(trials: u32) -> Result<Vec<World>, Failure> {
-    let printed = world(Standing::Printed, "scenarios/paper.ron", PRINTED, overrides(trials, Vec::new()))?;
-    let calibrated =
-        |standing, overrides| world(standing, "scenarios/paper-calibrated.ron", CALIBRATED, overrides);
-    let mut worlds = vec![printed, calibrated(Standing::Calibrated, overrides(trials, Vec::new()))?];
+    let printed = world(Standing::Printed, "scenarios/paper.ron", PRINTED, &overrides(trials, Vec::new()))?;
+    let calibrated = |standing, overrides: &Overrides| {
+        world(standing, "scenarios/paper-calibrated.ron", CALIBRATED, overrides)
+    };
+    let mut worlds = vec![printed, calibrated(Standing::Calibrated, &overrides(trials, Vec::new()))?];
     let few = (trials / ALTERNATIVE_SHARE).max(PAPERS_TRIALS);
     for (name, settings) in alternatives(ALTERNATIVES) {
-        let mut world = calibrated(Standing::Alternative, overrides(few, settings))?;
+        let mut world = calibrated(Standing::Alternative, &overrides(few, settings))?;
         world.experiment.name = format!("{}-{name}", world.experiment.name);
         worlds.push(world);
     }
     Ok(worlds)
 }
 
-fn world(standing: Standing, path: &str, text: &str, overrides: Overrides) -> Result<World, Failure> {
-    let experiment = Experiment::parse(text.to_owned(), Path::new(path), &overrides)?;
+fn world(standing: Standing, path: &str, text: &str, overrides: &Overrides) -> Result<World, Failure> {
+    let experiment = Experiment::parse(text.to_owned(), Path::new(path), overrides)?;
     Ok(World { standing, experiment })
 }
 

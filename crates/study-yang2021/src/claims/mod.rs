@@ -23,7 +23,7 @@ use experiments::stats::paired::pairs_needed;
 use experiments::sweep::folder::Folder;
 use serde::Serialize;
 
-use crate::scenarios::Standing;
+use crate::scenarios::{PAPERS_TRIALS, Standing};
 
 pub use examples::{Example, examples};
 pub use files::{write_authors_columns, write_claims, write_examples, write_power};
@@ -180,9 +180,6 @@ pub struct Finding {
     /// Its parts, in the order of the claim's.
     pub parts: Vec<PartFinding>,
 }
-
-/// Trials of the paper.
-pub const PAPERS_TRIALS: u32 = 10;
 
 /// Trials below which nothing is said of the power.
 pub const LEAST_TRIALS: u32 = PAPERS_TRIALS * TIMES as u32;

@@ -4,8 +4,8 @@ use comfy_table::{Cell, Table};
 use experiments::comparison::{digits, short};
 use reports::table::{headed, right};
 
-use crate::claims::{CLAIMS, Example, Judged, PAPERS_TRIALS, PartFinding, Shares, verdicts_over_worlds};
-use crate::scenarios::Standing;
+use crate::claims::{CLAIMS, Example, Judged, PartFinding, Shares, verdicts_over_worlds};
+use crate::scenarios::{PAPERS_TRIALS, Standing};
 
 /// What a scenario's trials say of each claim: a row for each of its comparisons.
 pub(crate) fn claims_table(judged: &Judged) -> Table {

@@ -12,11 +12,11 @@ use experiments::sweep::disk::is_sweeps;
 use experiments::sweep::folder::{Folder, Opening};
 use reports::{Wanted, write_report};
 use study_yang2021::claims::{
-    Judged, PAPERS_TRIALS, examples, write_authors_columns, write_claims, write_examples, write_power,
+    Judged, examples, write_authors_columns, write_claims, write_examples, write_power,
 };
 use study_yang2021::page::{Section, sections, write_page};
 use study_yang2021::predictions::{predictions, write_predictions};
-use study_yang2021::scenarios::{POLICIES, Standing, World, worlds};
+use study_yang2021::scenarios::{PAPERS_TRIALS, POLICIES, Standing, World, worlds};
 
 use super::{ShownArguments, print_table};
 use crate::running::{STOP, default_jobs, run_missing, stop_on_signals, tell};
