@@ -3,12 +3,14 @@
 
 use askama::Template;
 use experiments::Failure;
-use experiments::comparison::{Comparison, Interaction, LEVEL, answer, interactions};
+use experiments::comparison::{Comparison, Effect, Interaction, answer, effects, interactions};
+use experiments::metric::Metric;
 use experiments::sweep::disk::{PLOTS, REPORT};
 use experiments::sweep::folder::Folder;
 
 use crate::drawing::Figure;
 use crate::figures::along_axes;
+use crate::table::{Lines, differences_table, effects_table};
 use crate::wanted::{Files, Wanted};
 
 #[derive(Template)]
@@ -21,7 +23,9 @@ struct Overview<'a> {
     cases: Vec<Line>,
     /// How many of them have a page.
     pages: usize,
-    /// Changes that are shown.
+    /// What each metric is like, case by case.
+    changes: Vec<Change<'a>>,
+    /// Changes of differences that are shown.
     found: Vec<&'a str>,
     /// Changes that are not.
     open: Vec<&'a str>,
@@ -34,6 +38,26 @@ struct Line {
     /// Its page, from the overview on; empty for none.
     page: String,
     answer: Option<String>,
+}
+
+/// What the axes change in one metric.
+struct Change<'a> {
+    metric: &'a str,
+    means: Lines,
+    differences: Lines,
+}
+
+impl<'a> Change<'a> {
+    fn of(metric: &'a Metric, effects: &[Effect], comparisons: &[Comparison]) -> Self {
+        let effects: Vec<&Effect> = effects.iter().filter(|one| one.metric == metric.name).collect();
+        let comparisons: Vec<&Comparison> =
+            comparisons.iter().filter(|one| one.metric == metric.name).collect();
+        Self {
+            metric: &metric.title,
+            means: Lines::of(&effects_table(&effects)),
+            differences: Lines::of(&differences_table(&comparisons)),
+        }
+    }
 }
 
 pub(crate) fn write_overview(
@@ -50,12 +74,11 @@ pub(crate) fn write_overview(
         Vec::new()
     };
     let sentences = |is_wanted: bool| -> Vec<&str> {
-        let is_shown = |change: &&Interaction| {
-            let is_clear = change.interval.is_some_and(|[low, high]| low > 0.0 || high < 0.0);
-            (is_clear && change.p_holm.is_some_and(|p| p < LEVEL)) == is_wanted
-        };
+        let is_shown = |change: &&Interaction| change.is_found() == is_wanted;
         changes.iter().filter(is_shown).map(|change| change.in_words.as_str()).collect()
     };
+    let effects = effects(folder, &wanted.asked.metrics, wanted.asked.choice())?;
+    let asked = wanted.asked.metrics.iter().map(|metric| &experiment.metrics[*metric]);
     let line = |case: usize| {
         let here: Vec<&Comparison> =
             comparisons.iter().filter(|comparison| comparison.case == case + 1).collect();
@@ -82,6 +105,7 @@ pub(crate) fn write_overview(
         is_complete: folder.manifest().is_complete,
         cases: (0..experiment.cases.len()).map(line).collect(),
         pages: pages.len(),
+        changes: asked.map(|metric| Change::of(metric, &effects, comparisons)).collect(),
         found: sentences(true),
         open: sentences(false),
         figures: &figures,

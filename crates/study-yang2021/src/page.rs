@@ -11,8 +11,9 @@ use experiments::sweep::ours;
 use reports::STYLE;
 
 use crate::claims::{CLAIMS, Example, Judged, LEAST_TRIALS};
+use crate::predictions::{Prediction, over_worlds};
 use crate::scenarios::Standing;
-use crate::table::{claims_table, examples_table, power_table, verdicts_table};
+use crate::table::{claims_table, examples_table, power_table, predictions_table, verdicts_table};
 
 /// A part of what is to be said.
 pub struct Section {
@@ -26,7 +27,11 @@ pub struct Section {
 
 /// All that is to be said, the verdicts last.
 #[must_use]
-pub fn sections(judged: &[Judged], examples: &[Example]) -> Vec<Section> {
+pub fn sections(
+    judged: &[Judged],
+    examples: &[Example],
+    predicted: &[(Standing, Vec<Prediction>)],
+) -> Vec<Section> {
     // Of an alternative world the verdicts alone are shown; claims.csv and power.csv have the rest.
     let main = || judged.iter().filter(|world| world.standing != Standing::Alternative);
     let claims = main().map(|scenario| Section {
@@ -48,7 +53,22 @@ pub fn sections(judged: &[Judged], examples: &[Example]) -> Vec<Section> {
     });
     let verdicts =
         Section { title: "Verdicts".to_owned(), table: Some(verdicts_table(judged)), note: footnote(judged) };
-    claims.chain([examples]).chain(power).chain([verdicts]).collect()
+    let predictions = predicted_worlds(predicted).into_iter().map(|predictions| Section {
+        title: format!("Predictions of the mean of ten trials: {}", predictions[0].scenario),
+        table: Some(predictions_table(&predictions)),
+        note: "in brackets: the mean of ten other trials lies there in 95 % of experiments, if the world is the authors'".to_owned(),
+    });
+    claims.chain([examples]).chain(power).chain(predictions).chain([verdicts]).collect()
+}
+
+/// The predictions that are shown: of the printed world, and of all calibrated ones together.
+fn predicted_worlds(predicted: &[(Standing, Vec<Prediction>)]) -> Vec<Vec<Prediction>> {
+    let of = |wanted: Standing| predicted.iter().find(|(standing, _)| *standing == wanted);
+    let together = Some(over_worlds(predicted)).filter(|together| !together.is_empty());
+    let calibrated = together.or_else(|| Some(of(Standing::Calibrated)?.1.clone()));
+    let shown =
+        of(Standing::Printed).map(|(_, predictions)| predictions.clone()).into_iter().chain(calibrated);
+    shown.filter(|predictions| !predictions.is_empty()).collect()
 }
 
 const POWER_NOTE: &str = "leans to: what large experiments would say, were the means of these trials the truth; pairs for 80 %: the fewest with which 80 % of\n\

@@ -59,9 +59,9 @@ Examples:
 
 Exit status:
   0    a result
-  1    trouble underway: a trial without numbers, a failed check, an internal error
+  1    a failure while running: a trial without numbers, a failed check, an internal error
   2    input that cannot be used; nothing was written
-  3    trouble with the disk; what was finished is kept
+  3    a disk error; what was finished is kept
   130  stopped by Ctrl-C (129 by SIGHUP, 143 by SIGTERM)
 
 Data goes to stdout, progress and messages to stderr."
@@ -132,7 +132,7 @@ pub fn main_with(policies: Registry) -> ExitCode {
 }
 
 /// Runs the command that the process was called with. The exit status is 0 for a result, 1 for trouble
-/// underway, 2 for input that cannot be used, 3 for trouble with the disk, 130 after Ctrl-C, 143 after SIGTERM
+/// underway, 2 for input that cannot be used, 3 for a disk error, 130 after Ctrl-C, 143 after SIGTERM
 /// and 129 after SIGHUP.
 #[must_use]
 pub fn main() -> ExitCode {

@@ -1,4 +1,7 @@
-//! Pages of `docs/` hold the output of commands: each block after a line `<!-- $ usar ... -->` is what that command prints.
+//! Pages of `docs/` hold the output of commands. What stands after the line `<!-- $ usar ... -->` is what that
+//! command prints, as a block of text. `<!-- $ usar ... | TITLE -->` is for a part of it: the table below the line
+//! that begins with this title, as Markdown, or, as a block, the paragraph that begins so; a number stands for the
+//! first, second, ... table. A table that is too long for a page is a CSV beside it: `<!-- $ usar ... | TITLE > FILE -->`.
 
 use std::path::Path;
 use std::process::Command;
@@ -6,22 +9,109 @@ use std::process::Command;
 /// What stands before a block.
 pub const MARK: &str = "<!-- $ usar ";
 
-fn command_of(line: &str) -> Option<&str> {
-    Some(line.strip_prefix(MARK)?.strip_suffix(" -->")?.trim())
+/// What a page asks for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Request<'p> {
+    /// The arguments of `usar`.
+    pub command: &'p str,
+    /// The title of the table, or the beginning of the paragraph, that alone is wanted.
+    pub table: Option<&'p str>,
+    /// The CSV that the table is, from the page's folder on.
+    pub file: Option<&'p str>,
+}
+
+impl<'p> Request<'p> {
+    /// What a line of a page asks for, if it does.
+    #[must_use]
+    pub fn of(line: &'p str) -> Option<Self> {
+        let asked = line.strip_prefix(MARK)?.strip_suffix(" -->")?;
+        let (asked, file) = parts(asked, " > ");
+        let (command, table) = parts(asked, " | ");
+        Some(Self { command, table, file })
+    }
+
+    /// The command that answers it.
+    fn arguments(self) -> String {
+        let markdown = if self.table.is_some() { " --format md" } else { "" };
+        format!("{}{markdown}", self.command)
+    }
+}
+
+fn parts<'t>(text: &'t str, sign: &str) -> (&'t str, Option<&'t str>) {
+    text.split_once(sign).map_or((text.trim(), None), |(left, right)| (left.trim(), Some(right.trim())))
+}
+
+/// A page made anew.
+#[derive(Debug, Default, PartialEq, Eq)]
+pub struct Renewed {
+    /// Its text.
+    pub page: String,
+    /// The CSV files beside it: names and contents.
+    pub files: Vec<(String, String)>,
 }
 
 /// The page with the block of each command that `run` answers replaced by the answer.
-pub fn renewed(page: &str, mut run: impl FnMut(&str) -> Option<String>) -> String {
-    let mut new = String::new();
-    let mut lines = page.split_inclusive('\n');
+///
+/// # Panics
+/// The page is not written as it must be, or an answer has no such table.
+pub fn renewed(page: &str, mut run: impl FnMut(&str) -> Option<String>) -> Renewed {
+    let mut new = Renewed::default();
+    let mut lines = page.split_inclusive('\n').peekable();
     while let Some(line) = lines.next() {
-        new.push_str(line);
-        let Some(answer) = command_of(line.trim_end()).and_then(&mut run) else { continue };
-        assert_eq!(lines.next(), Some("```text\n"), "a block follows {line}");
-        assert!(lines.any(|line| line == "```\n"), "the block after {line} ends");
-        new.extend(["```text\n", answer.trim_end(), "\n```\n"]);
+        new.page.push_str(line);
+        let Some(request) = Request::of(line.trim_end()) else { continue };
+        let Some(answer) = run(&request.arguments()) else { continue };
+        let is_block = lines.peek() == Some(&"```text\n");
+        match (request.table, request.file) {
+            (Some(title), Some(file)) => new.files.push((file.to_owned(), csv(&table(&answer, title)))),
+            (Some(title), None) if !is_block => {
+                while lines.next_if(|line| line.starts_with('|')).is_some() {}
+                new.page.push_str(&table(&answer, title));
+            }
+            (title, _) => {
+                assert!(is_block, "a block follows {line}");
+                assert!(lines.any(|line| line == "```\n"), "the block after {line} ends");
+                let text = title.map_or(answer.clone(), |title| paragraph(&answer, title));
+                new.page.extend(["```text\n", text.trim_end(), "\n```\n"]);
+            }
+        }
     }
     new
+}
+
+/// The lines of the table below a title, or of the one with this number.
+fn table(answer: &str, title: &str) -> String {
+    let lines: Vec<&str> = answer.lines().collect();
+    let is_row = |i: usize| lines[i].starts_with('|');
+    let mut starts = (0..lines.len()).filter(|i| is_row(*i) && !(*i > 0 && is_row(i - 1)));
+    let start = if let Ok(number) = title.parse::<usize>() {
+        starts.nth(number - 1)
+    } else {
+        let titled = lines.iter().position(|line| line.starts_with(title));
+        titled.and_then(|titled| starts.find(|start| *start > titled && *start <= titled + 2))
+    };
+    let start = start.unwrap_or_else(|| panic!("no table {title:?} in\n{answer}"));
+    lines[start..].iter().take_while(|line| line.starts_with('|')).flat_map(|line| [line, "\n"]).collect()
+}
+
+/// The lines that begin with such a line, up to an empty one.
+fn paragraph(answer: &str, start: &str) -> String {
+    let lines = answer.lines().skip_while(|line| !line.starts_with(start));
+    let lines: Vec<&str> = lines.take_while(|line| !line.is_empty()).collect();
+    assert!(!lines.is_empty(), "no line begins with {start:?} in\n{answer}");
+    lines.join("\n")
+}
+
+/// A table of Markdown as CSV.
+fn csv(table: &str) -> String {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    for (i, line) in table.lines().enumerate() {
+        let inner = line.trim_start_matches("| ").trim_end_matches(" |");
+        if i != 1 {
+            writer.write_record(inner.split(" | ").map(|cell| cell.replace("\\|", "|"))).expect("a row");
+        }
+    }
+    String::from_utf8(writer.into_inner().expect("in memory")).expect("text")
 }
 
 /// The words of a command, of which some stand in single quotes.
@@ -33,6 +123,9 @@ fn words(command: &str) -> Vec<&str> {
 }
 
 /// What `usar` prints when it is run in this folder.
+///
+/// # Panics
+/// It fails.
 pub fn answer(usar: &Path, folder: &Path, arguments: &str) -> String {
     let output = Command::new(usar).args(words(arguments)).current_dir(folder).output();
     let output = output.expect("usar runs");

@@ -4,12 +4,11 @@
 
 use serde::Serialize;
 
-use super::{CONFIDENCE, Choice, LEVEL, Pairs, p_in_words, policy_pairs, short};
-use crate::experiment::Experiment;
+use super::effect::{Contrast, contrasts, corrected, is_shown};
+use super::{CONFIDENCE, Choice, Pairs, p_in_words, policy_pairs, short};
 use crate::failure::Failure;
 use crate::stats::Moments;
 use crate::stats::bootstrap::interval;
-use crate::stats::paired::holm;
 use crate::stats::wilcoxon::SignedRank;
 use crate::sweep::folder::Folder;
 
@@ -48,6 +47,14 @@ pub struct Interaction {
     pub in_words: String,
 }
 
+impl Interaction {
+    /// Whether the change shows after correction.
+    #[must_use]
+    pub fn is_found(&self) -> bool {
+        is_shown(self.p_holm, self.interval)
+    }
+}
+
 /// The interactions of a sweep with axes, for these metrics and policies: none without axes.
 ///
 /// # Errors
@@ -56,71 +63,38 @@ pub fn interactions(folder: &Folder, metrics: &[usize], choice: Choice) -> Resul
     let experiment = folder.experiment();
     let pairs = policy_pairs(experiment, choice)?;
     let mut found = Vec::new();
-    for (case, reference, axis) in contrasts(experiment) {
+    for contrast in contrasts(experiment) {
         for metric in metrics {
             for pair in &pairs {
-                found.push(interaction(folder, [reference, case], axis, *metric, *pair));
+                found.push(interaction(folder, contrast, *metric, *pair));
             }
         }
     }
-    let tested: Vec<usize> = (0..found.len()).filter(|i| found[*i].p.is_some()).collect();
-    let ps: Vec<f64> = tested.iter().filter_map(|i| found[*i].p).collect();
-    for (i, p) in tested.into_iter().zip(holm(&ps)) {
-        found[i].p_holm = Some(p);
-    }
-    for interaction in &mut found {
+    let ps: Vec<Option<f64>> = found.iter().map(|interaction| interaction.p).collect();
+    for (interaction, p) in found.iter_mut().zip(corrected(&ps)) {
+        interaction.p_holm = p;
         interaction.in_words = in_words(interaction, experiment.metrics.title(&interaction.metric));
     }
     Ok(found)
 }
 
-/// Pairs of cases that differ in one axis only, where the first of them has the axis's first value: the case,
-/// its reference, the axis.
-fn contrasts(experiment: &Experiment) -> Vec<(usize, usize, usize)> {
-    let cases = &experiment.cases;
-    let mut contrasts = Vec::new();
-    for (axis, of) in experiment.axes.iter().enumerate() {
-        for (case, one) in cases.iter().enumerate() {
-            let is_reference = |other: &crate::experiment::Case| {
-                let mut values = one.values.iter().zip(&other.values).enumerate();
-                values
-                    .all(|(i, (here, there))| if i == axis { *there == of.values[0] } else { here == there })
-            };
-            if one.values[axis] != of.values[0] {
-                contrasts
-                    .extend(cases.iter().position(is_reference).map(|reference| (case, reference, axis)));
-            }
-        }
-    }
-    contrasts
-}
-
-fn interaction(
-    folder: &Folder,
-    [reference, case]: [usize; 2],
-    axis: usize,
-    metric: usize,
-    pair: [usize; 2],
-) -> Interaction {
+fn interaction(folder: &Folder, contrast: Contrast, metric: usize, pair: [usize; 2]) -> Interaction {
     let experiment = folder.experiment();
-    let differences = [reference, case].map(|case| Pairs::by_trial(folder, case, metric, pair));
+    let Contrast { case, reference, axis } = contrast;
+    let cells = |case: usize| pair.map(|policy| (case, policy));
+    let differences = [reference, case].map(|case| Pairs::by_trial(folder, metric, cells(case)));
     let [there, here] = differences;
     let both: Vec<[f64; 2]> =
         there.into_iter().zip(here).filter_map(|(there, here)| Some([there?, here?])).collect();
     let column = |i: usize| both.iter().map(|pair| pair[i]).collect::<Vec<f64>>();
     let changes: Vec<f64> = both.iter().map(|[there, here]| here - there).collect();
     let [a, b] = pair.map(|policy| experiment.policies[policy].label.clone());
-    let values = |case: usize| experiment.cases[case].values[axis].clone();
-    let others = experiment.axes.iter().zip(&experiment.cases[case].values).enumerate();
     Interaction {
         case: case + 1,
         reference: reference + 1,
         path: experiment.axes[axis].path.clone(),
-        values: [values(reference), values(case)],
-        others: others
-            .filter(|(i, _)| *i != axis)
-            .map(|(_, (axis, value))| (axis.path.clone(), value.clone()))
-            .collect(),
+        values: contrast.values(experiment),
+        others: contrast.others(experiment),
         metric: experiment.metrics[metric].name.clone(),
         a,
         b,
@@ -146,7 +120,6 @@ fn in_words(interaction: &Interaction, title: &str) -> String {
     };
     let course = format!("{a} less {b} goes from {} to {}", short(there), short(here));
     let range = format!("change {}, 95 % interval {} to {}, n = {n}", short(change), short(low), short(high));
-    let verdict =
-        if p < LEVEL && (low > 0.0 || high < 0.0) { "" } else { ", which is not shown to be a change" };
+    let verdict = if interaction.is_found() { "" } else { ", which is not shown to be a change" };
     format!("{place}: {course}{verdict} ({range}; corrected {}).", p_in_words(p))
 }

@@ -2,8 +2,10 @@
 
 mod answer;
 mod asked;
+mod effect;
 mod equivalence;
 mod interaction;
+mod pairs;
 mod sums;
 
 use rayon::prelude::*;
@@ -13,16 +15,16 @@ use crate::experiment::Experiment;
 use crate::failure::Failure;
 use crate::metric::{Catalogue, Metric};
 use crate::stats::Moments;
-use crate::stats::bootstrap::interval;
 use crate::stats::paired::{hodges_lehmann, holm, pairs_needed};
 use crate::stats::wilcoxon::{DRAWN_PAIRS, DRAWS, EXACT_PAIRS, SignedRank};
-use crate::sweep::folder::{Folder, Measured};
-use sums::Sums;
+use crate::sweep::folder::Folder;
 
 pub use answer::answer;
 pub use asked::{Asked, Wishes};
+pub use effect::{Effect, effects};
 pub use equivalence::{Judged, TOST_CONFIDENCE, Verdict, judge};
 pub use interaction::{Interaction, interactions};
+pub use pairs::{Cell, Pairs};
 pub use sums::FEW;
 
 /// Level of a finding, after correction.
@@ -128,75 +130,6 @@ pub fn test_in_words(comparisons: &[Comparison]) -> String {
     }
 }
 
-/// The differences of all pairs in one metric.
-#[derive(Debug, Default, Clone, PartialEq)]
-pub struct Pairs {
-    /// Values of the first policy.
-    pub a: Vec<f64>,
-    /// Values of the second.
-    pub b: Vec<f64>,
-    failed: usize,
-    missing: usize,
-    undefined: usize,
-    /// Where ratios of sums are compared: then the values are linearised.
-    sums: Option<Sums>,
-}
-
-impl Pairs {
-    /// The pairs of a case.
-    #[must_use]
-    pub fn of(folder: &Folder, case: usize, metric: usize, [a, b]: [usize; 2]) -> Self {
-        let mut pairs = Self::default();
-        for trial in folder.experiment().trials_of(case, folder.manifest().shard) {
-            let result = |policy| folder.results().get(&(case, policy, trial));
-            let value = |measured: &Measured| Some(measured.metrics.as_ref()?[metric]);
-            match (result(a), result(b)) {
-                (Some(a), Some(b)) => match (value(a), value(b)) {
-                    (Some(Some(a)), Some(Some(b))) => {
-                        pairs.a.push(a);
-                        pairs.b.push(b);
-                    }
-                    (Some(_), Some(_)) => pairs.undefined += 1,
-                    _ => pairs.failed += 1,
-                },
-                _ => pairs.missing += 1,
-            }
-        }
-        if let Some(sums) = Sums::of(folder, case, metric, [a, b]) {
-            [pairs.a, pairs.b] = sums.linearised();
-            pairs.undefined = 0;
-            pairs.sums = Some(sums);
-        }
-        pairs
-    }
-
-    /// The interval of the mean difference, or of the difference of ratios of sums.
-    fn interval(&self, confidence: f64) -> Option<[f64; 2]> {
-        match &self.sums {
-            Some(sums) => sums.interval(confidence),
-            None => interval(&self.differences(), confidence),
-        }
-    }
-
-    /// First less second, by trial; nothing where one has no value.
-    fn by_trial(folder: &Folder, case: usize, metric: usize, [a, b]: [usize; 2]) -> Vec<Option<f64>> {
-        let trials = 1..=folder.experiment().trials;
-        if let Some(sums) = Sums::of(folder, case, metric, [a, b]) {
-            let [a, b] = sums.linearised();
-            let place = |trial: u32| sums.trials.iter().position(|other| *other == trial);
-            return trials.map(|trial| place(trial).map(|place| a[place] - b[place])).collect();
-        }
-        let value = |policy, trial| folder.results().get(&(case, policy, trial))?.metrics.as_ref()?[metric];
-        trials.map(|trial| Some(value(a, trial)? - value(b, trial)?)).collect()
-    }
-
-    /// First less second.
-    #[must_use]
-    pub fn differences(&self) -> Vec<f64> {
-        self.a.iter().zip(&self.b).map(|(a, b)| a - b).collect()
-    }
-}
-
 /// Which policies are compared, by their labels.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Choice<'a> {
@@ -221,7 +154,7 @@ pub fn compare(folder: &Folder, metrics: &[usize], choice: Choice) -> Result<Vec
         .flat_map(|(case, metric)| pairs.iter().map(move |pair| (case, metric, *pair)))
         .collect();
     let one = |(case, metric, pair): &(usize, usize, [usize; 2])| {
-        let pairs = Pairs::of(folder, *case, *metric, *pair);
+        let pairs = Pairs::of(folder, *metric, pair.map(|policy| (*case, policy)));
         comparison(experiment, *case, &experiment.metrics[*metric], *pair, &pairs)
     };
     let mut comparisons: Vec<Comparison> = all.par_iter().map(one).collect();
@@ -232,7 +165,8 @@ pub fn compare(folder: &Folder, metrics: &[usize], choice: Choice) -> Result<Vec
     }
     for (comparison, (case, metric, pair)) in comparisons.iter_mut().zip(&all) {
         if let Some((_, margin)) = choice.margins.iter().find(|(place, _)| place == metric) {
-            let interval_90 = Pairs::of(folder, *case, *metric, *pair).interval(TOST_CONFIDENCE);
+            let interval_90 =
+                Pairs::of(folder, *metric, pair.map(|policy| (*case, policy))).interval(TOST_CONFIDENCE);
             let direction = experiment.metrics[*metric].direction;
             comparison.judged = Some(judge(comparison, interval_90, *margin, direction));
         }
@@ -241,23 +175,33 @@ pub fn compare(folder: &Folder, metrics: &[usize], choice: Choice) -> Result<Vec
     Ok(comparisons)
 }
 
-pub(crate) fn policy_pairs(experiment: &Experiment, choice: Choice) -> Result<Vec<[usize; 2]>, Failure> {
-    let labels: Vec<&str> = experiment.policies.iter().map(|policy| policy.label.as_str()).collect();
-    let place = |option: &str, wanted: &str| {
-        labels.iter().position(|label| *label == wanted).ok_or_else(|| {
-            let known = labels.join(", ");
-            Failure::input(format!("{option}: must be a policy of the sweep ({known}), found {wanted:?}"))
-        })
-    };
-    let baseline = choice.baseline.map(|baseline| place("--baseline", baseline)).transpose()?;
-    let mut chosen = (0..labels.len()).collect::<Vec<_>>();
+/// The places of the policies that are chosen, with the baseline.
+fn policies_of(experiment: &Experiment, choice: Choice) -> Result<Vec<usize>, Failure> {
+    let baseline = choice.baseline.map(|name| place(experiment, "--baseline", name)).transpose()?;
+    let mut chosen: Vec<usize> = (0..experiment.policies.len()).collect();
     if let Some(policies) = choice.policies {
-        let places = policies.iter().map(|policy| place("--policies", policy));
+        let places = policies.iter().map(|name| place(experiment, "--policies", name));
         let places = places.collect::<Result<Vec<_>, _>>()?;
         chosen.retain(|policy| places.contains(policy) || baseline == Some(*policy));
     }
+    Ok(chosen)
+}
+
+fn place(experiment: &Experiment, option: &str, wanted: &str) -> Result<usize, Failure> {
+    let mut labels = experiment.policies.iter().map(|policy| policy.label.as_str());
+    labels.position(|label| label == wanted).ok_or_else(|| {
+        let known: Vec<&str> = experiment.policies.iter().map(|policy| policy.label.as_str()).collect();
+        let known = known.join(", ");
+        Failure::input(format!("{option}: must be a policy of the sweep ({known}), found {wanted:?}"))
+    })
+}
+
+pub(crate) fn policy_pairs(experiment: &Experiment, choice: Choice) -> Result<Vec<[usize; 2]>, Failure> {
+    let chosen = policies_of(experiment, choice)?;
+    let baseline = choice.baseline.map(|name| place(experiment, "--baseline", name)).transpose()?;
     if let [only] = chosen[..] {
-        return Err(Failure::input(format!("there is nothing to compare: {} only", labels[only])));
+        let only = &experiment.policies[only].label;
+        return Err(Failure::input(format!("there is nothing to compare: {only} only")));
     }
     let pairs = |(i, a): (usize, &usize)| chosen[i + 1..].iter().map(|b| [*a, *b]).collect::<Vec<_>>();
     Ok(match baseline {

@@ -2,34 +2,34 @@
 //!
 //! The mean of a trial's own ratios is ruled by the trials with the smallest denominators, and leaves out those
 //! with none. The ratio of the sums over all trials is not. A trial's *linearised value* is what it adds to that
-//! ratio: R + (cost - R rescuees) / (mean of rescuees), with the ratio R of both policies together. The mean of
+//! ratio: R + (cost - R rescuees) / (mean of rescuees), with the ratio R of both together. The mean of
 //! these is the ratio of sums, so that tests and standard deviations of them are those of the ratio.
 
-use super::Measured;
+use super::pairs::Cell;
 use crate::stats::bootstrap::statistic_interval;
-use crate::sweep::folder::Folder;
+use crate::sweep::folder::{Folder, Measured};
 
 /// Rescuees of a trial below which its own ratio says little: one more or less moves it by a fifth.
 pub const FEW: f64 = 5.0;
 
-/// Costs and rescuees of both policies, pair by pair.
+/// Costs and rescuees of both cells, pair by pair.
 #[derive(Debug, Default, Clone, PartialEq)]
 pub(super) struct Sums {
     /// Number of each pair's trial.
     pub trials: Vec<u32>,
-    /// Cost and rescuees of the first policy, then of the second.
+    /// Cost and rescuees of the first cell, then of the second.
     pub pairs: Vec<[f64; 4]>,
 }
 
 impl Sums {
     /// The sums of a metric; `None` where it is no ratio, where each trial has a denominator large enough, or where a
-    /// policy has none at all.
-    pub fn of(folder: &Folder, case: usize, metric: usize, [a, b]: [usize; 2]) -> Option<Self> {
+    /// cell has none at all.
+    pub fn of(folder: &Folder, metric: usize, [a, b]: [Cell; 2]) -> Option<Self> {
         let experiment = folder.experiment();
         let [cost, count] = experiment.metrics.sums(metric)?;
         let mut sums = Self::default();
-        for trial in experiment.trials_of(case, folder.manifest().shard) {
-            let parts = |policy| {
+        for trial in experiment.trials_of(a.0, folder.manifest().shard) {
+            let parts = |(case, policy): Cell| {
                 let Measured { metrics, .. } = folder.results().get(&(case, policy, trial))?;
                 let metrics = metrics.as_ref()?;
                 Some([metrics[cost]?, metrics[count]?])
@@ -47,7 +47,7 @@ impl Sums {
         self.pairs.iter().map(|pair| pair[part]).sum()
     }
 
-    /// The linearised values of both policies.
+    /// The linearised values of both cells.
     pub fn linearised(&self) -> [Vec<f64>; 2] {
         let ratio = (self.total(0) + self.total(2)) / (self.total(1) + self.total(3));
         [0, 2].map(|cost| {

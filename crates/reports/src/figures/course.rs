@@ -7,6 +7,7 @@ use experiments::run::series_times;
 use experiments::stats::Moments;
 use experiments::stats::paired::t_half_width;
 
+use super::Part;
 use super::gather::Gathered;
 use super::metrics::capitalised;
 use crate::drawing::{
@@ -16,9 +17,8 @@ use crate::drawing::{
 /// Rescuees over time, with a band.
 pub(super) fn over_time(
     experiment: &Experiment,
-    case: usize,
     gathered: &[Gathered],
-    only: Option<&[String]>,
+    Part { case, only }: Part,
 ) -> Result<Sketch, Failure> {
     let times: Vec<f64> = series_times(experiment.cases[case].scenario.duration_s).collect();
     let names = names(experiment);
@@ -66,14 +66,17 @@ pub(super) fn over_time(
 /// In which share of the trials each robot is sent to the hardest task, round by round.
 pub(super) fn membership(
     experiment: &Experiment,
-    case: usize,
     gathered: &[Gathered],
+    Part { case, only }: Part,
 ) -> Result<Sketch, Failure> {
     let scenario = &experiment.cases[case].scenario;
     let hardest = scenario.hardest_first().first().map_or(0, |task| task.index());
     let task = scenario.tasks.get(hardest).map_or("", |task| &task.name);
     let (mut panels, mut rows, mut least) = (Vec::new(), Vec::new(), u32::MAX);
     for ((policy, name), gathered) in experiment.policies.iter().zip(&names(experiment)).zip(gathered) {
+        if !is_drawn(only, &policy.label) {
+            continue;
+        }
         for ((round, robot), tasks) in &gathered.groups {
             let role = gathered.roles[*robot as usize].clone();
             let first = [policy.label.clone(), round.to_string(), robot.to_string(), role];
@@ -125,7 +128,11 @@ pub(super) fn membership(
 }
 
 /// The mean levels of the groups, round by round.
-pub(super) fn levels(experiment: &Experiment, case: usize, gathered: &[Gathered]) -> Result<Sketch, Failure> {
+pub(super) fn levels(
+    experiment: &Experiment,
+    gathered: &[Gathered],
+    Part { case, only }: Part,
+) -> Result<Sketch, Failure> {
     let tasks = task_names(&experiment.cases[case].scenario);
     let names = names(experiment);
     let (mut panels, mut rows) = (Vec::new(), Vec::new());
@@ -133,6 +140,9 @@ pub(super) fn levels(experiment: &Experiment, case: usize, gathered: &[Gathered]
         for (task, task_name) in tasks.iter().enumerate() {
             let mut lines = Vec::new();
             for (i, (policy, gathered)) in experiment.policies.iter().zip(gathered).enumerate() {
+                if !is_drawn(only, &policy.label) {
+                    continue;
+                }
                 let mut points = Vec::new();
                 for ((round, _), trials) in gathered.levels.iter().filter(|((_, of), _)| *of == task) {
                     let values: Vec<f64> = trials.iter().map(|trial| trial[level]).collect();

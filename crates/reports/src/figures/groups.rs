@@ -7,7 +7,7 @@ use rne_core::policies::rne::Rne;
 use rne_core::{Member, NeedDistribution, NeedWeights, PolicyError, RelativeNeedsEntropy, relative_entropy};
 
 use super::gather::Gathered;
-use crate::drawing::{Drawing, Panel, Sketch, from_top, heat_map, layout, names, table};
+use crate::drawing::{Drawing, Panel, Sketch, from_top, heat_map, is_drawn, layout, names, table};
 
 /// RNE from each robot to each other of its role, in the first round of the first trial, with the weights of the question.
 pub(super) fn trust(experiment: &Experiment, gathered: &[Gathered]) -> Result<Option<Sketch>, Failure> {
@@ -75,14 +75,18 @@ fn trust_panel(data: &[Vec<RelativeNeedsEntropy>], role: &str, ids: impl Iterato
 }
 
 /// In which share of the rounds each policy's split is the one that sorting gives.
-pub(super) fn sorting(experiment: &Experiment, gathered: &[Gathered]) -> Result<Sketch, Failure> {
+pub(super) fn sorting(
+    experiment: &Experiment,
+    gathered: &[Gathered],
+    only: Option<&[String]>,
+) -> Result<Sketch, Failure> {
     let (mut shares, mut rows, mut labels, mut n) =
         ([Vec::new(), Vec::new()], Vec::new(), Vec::new(), usize::MAX);
     let mut roles_of_all: Vec<String> = Vec::new();
     let names = names(experiment);
     for ((policy, name), gathered) in experiment.policies.iter().zip(names).zip(gathered) {
         let rounds = gathered.likeness[0].rounds();
-        if rounds == 0 {
+        if rounds == 0 || !is_drawn(only, &policy.label) {
             continue;
         }
         for (key, likeness) in KEYS.iter().zip(&gathered.likeness) {

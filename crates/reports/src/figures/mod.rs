@@ -47,9 +47,10 @@ pub(crate) fn figures(
 /// All figures of a sweep's case, before they are drawn.
 pub(crate) fn sketches(
     folder: &mut Folder,
-    Part { case, only }: Part,
+    part: Part,
     comparisons: &[&Comparison],
 ) -> Result<Vec<Sketch>, Failure> {
+    let Part { case, only } = part;
     let gathered = gather::gather(folder, case)?;
     let experiment = folder.experiment();
     let mut figures = metrics::boxes(folder, case, only)?;
@@ -58,10 +59,10 @@ pub(crate) fn sketches(
         figures.push(metrics::forest(experiment, comparisons)?);
     }
     if experiment.keep.has_records() {
-        figures.push(course::over_time(experiment, case, &gathered, only)?);
-        figures.push(course::membership(experiment, case, &gathered)?);
-        figures.push(course::levels(experiment, case, &gathered)?);
-        figures.push(groups::sorting(experiment, &gathered)?);
+        figures.push(course::over_time(experiment, &gathered, part)?);
+        figures.push(course::membership(experiment, &gathered, part)?);
+        figures.push(course::levels(experiment, &gathered, part)?);
+        figures.push(groups::sorting(experiment, &gathered, only)?);
         figures.extend(groups::trust(experiment, &gathered)?);
     }
     Ok(figures)

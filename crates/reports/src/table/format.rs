@@ -70,6 +70,19 @@ fn lines(table: &Table) -> (Vec<String>, Vec<Vec<String>>) {
     (names.iter().enumerate().map(unique).collect(), table.row_iter().map(cells).collect())
 }
 
+/// The texts of a table, for a page.
+pub(crate) struct Lines {
+    pub header: Vec<String>,
+    pub rows: Vec<Vec<String>>,
+}
+
+impl Lines {
+    pub fn of(table: &Table) -> Self {
+        let (header, rows) = lines(table);
+        Self { header, rows }
+    }
+}
+
 /// Whether each column stands on the right, as numbers do.
 fn are_right(rows: &[Vec<String>]) -> Vec<bool> {
     let is_number = |cell: &String| cell.starts_with(|c: char| c.is_ascii_digit() || "-+<".contains(c));

@@ -1,5 +1,6 @@
 //! Tables for people.
 
+mod effects;
 mod format;
 mod grouping;
 
@@ -15,6 +16,8 @@ use experiments::sweep::folder::Folder;
 use usar_sim::event::ReturnCause;
 use usar_sim::record::TrialRecord;
 
+pub use effects::{differences_table, effects_table, interactions_table};
+pub(crate) use format::Lines;
 pub use format::{Format, show_as, shown_as};
 pub use grouping::{levels_table, likeness_table};
 

@@ -23,7 +23,7 @@ pub(crate) struct TrialArguments {
     /// Case of a sweep with axes, from 1
     #[arg(long, default_value_t = 1)]
     case: usize,
-    /// Set a field of the scenario, by its path, to a value in RON; may stand several times
+    /// Set a field of the scenario, by its path, to a value in RON; can be given several times
     #[arg(long, value_name = "PATH=VALUE")]
     set: Vec<String>,
     /// Simulate even if it takes very long: more bodies x steps than docs/limits.md has

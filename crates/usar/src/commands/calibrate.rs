@@ -32,7 +32,7 @@ The misfit is the sum, over the columns that the target shares with trials.csv (
 distance of the means in standard errors, plus the squared logarithm of the ratio of the standard deviations in standard errors, so that \
 few recorded trials bind less: of a true model it is about twice the number of columns. A value near an end of its range adds up to 4. The \
 search is by least squares: each distance is modelled as linear in the parameters, by a regression on the candidates near the present one, \
-and the model's minimum is tried next. Each evaluation is on disk as soon as it is done; the same command goes on where it was broken off, and more \
+and the model's minimum is tried next. Each evaluation is on disk as soon as it is done; the same command resumes where it stopped, and more \
 --evaluations go on from there. The folder gets evaluations.csv (the log), calibrated.ron, fit.csv and calibration.json.
 
 Examples:
@@ -46,10 +46,10 @@ pub(crate) struct Arguments {
     /// Recorded trials (CSV with a column `method` that says DIS)
     #[arg(long, value_name = "CSV")]
     target: PathBuf,
-    /// A free parameter; may stand several times
+    /// A free parameter; can be given several times
     #[arg(long, value_name = "PATH=LOW..HIGH", required = true)]
     free: Vec<String>,
-    /// Set a field that is not free; may stand several times
+    /// Set a field that is not free; can be given several times
     #[arg(long, value_name = "PATH=VALUE")]
     set: Vec<String>,
     /// Candidates to ask for, the start among them

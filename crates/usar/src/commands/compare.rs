@@ -6,11 +6,13 @@ use std::path::PathBuf;
 use clap::Args;
 use experiments::Failure;
 use experiments::comparison::{
-    CONFIDENCE, Comparison, Interaction, LEVEL, compare, interactions, limit_of_correction, test_in_words,
+    CONFIDENCE, Comparison, Effect, Interaction, LEVEL, compare, effects, interactions, limit_of_correction,
+    test_in_words,
 };
+use experiments::experiment::Experiment;
 use experiments::stats::bootstrap::resamples;
 use experiments::sweep::folder::Folder;
-use reports::table::comparison_table;
+use reports::table::{comparison_table, differences_table, effects_table, interactions_table};
 use serde::Serialize;
 
 use super::family::FamilyArguments;
@@ -21,8 +23,8 @@ use super::{SCHEMA_VERSION, ShownArguments, print_table};
 #[command(after_help = "\
 For each metric and pair of policies: mean of each, mean difference with its 95 % bootstrap interval, Hodges-Lehmann shift, Wilcoxon's \
 signed-rank test, its p after Holm's correction over all comparisons shown, effect size (matched-pairs rank-biserial), how many pairs \
-would be needed for 80 % power, and one sentence. For a sweep with axes, also how each difference changes along an axis. With a margin, two policies are equivalent if the 90 % interval of their difference lies \
-within it (two one-sided tests at 5 %). Choose metrics before looking: the correction knows only what is shown together.
+would be needed for 80 % power, and one sentence. For a sweep with axes, also how each policy's mean, and each difference, changes along an axis, paired by seed. With a margin, two \
+policies are equivalent if the 90 % interval of their difference lies within it (two one-sided tests at 5 %). Choose metrics before looking: the correction knows only what is shown together.
 
 Examples:
   usar compare results/paper
@@ -51,6 +53,7 @@ struct Output<'a> {
     confidence: f64,
     level: f64,
     comparisons: &'a [Comparison],
+    effects: &'a [Effect],
     interactions: &'a [Interaction],
 }
 
@@ -60,6 +63,7 @@ impl Arguments {
         let experiment = folder.experiment();
         let asked = self.family.asked(experiment)?;
         let comparisons = compare(&folder, &asked.metrics, asked.choice())?;
+        let effects = effects(&folder, &asked.metrics, asked.choice())?;
         let interactions = interactions(&folder, &asked.metrics, asked.choice())?;
         if self.json || self.shown.is_json() {
             let output = Output {
@@ -70,6 +74,7 @@ impl Arguments {
                 confidence: CONFIDENCE,
                 level: LEVEL,
                 comparisons: &comparisons,
+                effects: &effects,
                 interactions: &interactions,
             };
             return Ok(writeln!(out, "{}", serde_json::to_string(&output).map_err(Failure::run)?)?);
@@ -85,8 +90,11 @@ impl Arguments {
         for comparison in &comparisons {
             writeln!(out, "{}", comparison.in_words)?;
         }
-        for interaction in &interactions {
-            writeln!(out, "{}", interaction.in_words)?;
+        if !effects.is_empty() {
+            for metric in &asked.metrics {
+                print_changes(out, experiment, *metric, (&comparisons, &effects, &interactions))?;
+            }
+            writeln!(out, "{CHANGES_NOTE}")?;
         }
         if let Some(limit) = limit_of_correction(&comparisons) {
             writeln!(out, "\n{limit}")?;
@@ -94,6 +102,31 @@ impl Arguments {
         writeln!(out, "\n{}", footnote(&comparisons))?;
         Ok(())
     }
+}
+
+/// What the tables of [`print_changes`] have in common.
+const CHANGES_NOTE: &str = "\
+Each change is paired by seed, between two cases that differ in one axis, of which the first has its first value. In brackets 95 %
+bootstrap intervals; *: shown after Holm's correction over all changes (of means, and of differences), or over all comparisons";
+
+/// What the axes change in one metric: each policy's mean, the differences case by case, and their changes.
+fn print_changes(
+    out: &mut dyn Write,
+    experiment: &Experiment,
+    metric: usize,
+    (comparisons, effects, interactions): (&[Comparison], &[Effect], &[Interaction]),
+) -> Result<(), Failure> {
+    let name = &experiment.metrics[metric].name;
+    let title = &experiment.metrics[metric].title;
+    let effects: Vec<&Effect> = effects.iter().filter(|one| one.metric == *name).collect();
+    let interactions: Vec<&Interaction> = interactions.iter().filter(|one| one.metric == *name).collect();
+    let comparisons: Vec<&Comparison> = comparisons.iter().filter(|one| one.metric == *name).collect();
+    writeln!(out, "\nBy how much each policy's mean changes, in percent of what it was: {title}")?;
+    print_table(out, &effects_table(&effects))?;
+    writeln!(out, "\nDifferences between policies, case by case: {title}")?;
+    print_table(out, &differences_table(&comparisons))?;
+    writeln!(out, "\nBy how much these differences change: {title}")?;
+    print_table(out, &interactions_table(&interactions))
 }
 
 fn footnote(comparisons: &[Comparison]) -> String {

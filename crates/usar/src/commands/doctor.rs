@@ -15,7 +15,7 @@ use crate::running::default_jobs;
 /// Bytes that the write test writes.
 const TEST_BYTES: usize = 1 << 12;
 
-/// Tell version, machine and threads, and whether results can be written
+/// Show version, machine and threads, and whether results can be written
 #[derive(Debug, Args)]
 #[command(after_help = "\
 The write test leaves nothing behind. Where the folder does not exist yet, it tests the folder that it would be made in.

@@ -21,7 +21,7 @@ legend. What the seed draws has dashed outlines.
 
 Examples:
   usar draw scenarios/paper.ron --out paper.svg
-  usar draw scenarios/paper.ron --seed 7 --width 88mm --out paper.png     a column of a paper, 300 dots in an inch
+  usar draw scenarios/paper.ron --seed 7 --width 88mm --out paper.png     a column of a paper, 300 dpi
   usar draw scenarios/minimal/head_on.ron --no-title --out lane.svg")]
 pub(crate) struct Arguments {
     /// Scenario file (RON)
@@ -29,7 +29,7 @@ pub(crate) struct Arguments {
     /// Seed of the trial [default: the first of FILE's sweep file]
     #[arg(long)]
     seed: Option<u64>,
-    /// Set a field of the scenario, by its path, to a value in RON; may stand several times
+    /// Set a field of the scenario, by its path, to a value in RON; can be given several times
     #[arg(long, value_name = "PATH=VALUE")]
     set: Vec<String>,
     /// The picture to write; it must not exist yet

@@ -12,7 +12,7 @@ pub(crate) struct Looks {
     /// Width of the picture: pixels, or millimetres on paper, as in `88mm` for a column
     #[arg(long, value_name = "WIDTH", value_parser = width)]
     width: Option<Width>,
-    /// Dots in an inch of a PNG whose width is in millimetres
+    /// Dots per inch of a PNG whose width is in millimetres
     #[arg(long, value_name = "DOTS", default_value_t = 300, value_parser = clap::value_parser!(u16).range(30..=1200))]
     dpi: u16,
     /// Leave out the line above the map

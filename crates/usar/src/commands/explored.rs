@@ -15,10 +15,10 @@ pub(crate) struct ExploredArguments {
     /// Scenario or sweep file without axes (RON)
     pub(super) file: PathBuf,
     /// A parameter and its range: `PATH=LOW..HIGH`; `PATH + PATH*RATIO=LOW..HIGH log` sets several fields and
-    /// goes by factors; `[*]` is every entry of a list; may stand several times
+    /// goes by factors; `[*]` is every entry of a list; can be given several times
     #[arg(long, value_name = "PATH=LOW..HIGH", required = true)]
     pub(super) over: Vec<String>,
-    /// Set a field that does not vary; may stand several times
+    /// Set a field that does not vary; can be given several times
     #[arg(long, value_name = "PATH=VALUE")]
     pub(super) set: Vec<String>,
     /// Threads [default: one per core]

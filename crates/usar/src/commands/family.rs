@@ -8,7 +8,7 @@ use experiments::experiment::{Experiment, split_list};
 /// What is compared: `compare` and `report` take the same flags, and say the same.
 #[derive(Debug, Args)]
 pub(crate) struct FamilyArguments {
-    /// Metric to compare, or `all`; may stand several times [default: those that the sweep file names, or
+    /// Metric to compare, or `all`; can be given several times [default: those that the sweep file names, or
     /// rescuees]
     #[arg(long)]
     metric: Vec<String>,
@@ -17,7 +17,7 @@ pub(crate) struct FamilyArguments {
     #[arg(long)]
     baseline: Option<String>,
     /// The largest difference of a metric that does not matter: says better, worse, equivalent or undecided;
-    /// may stand several times
+    /// can be given several times
     #[arg(long, value_name = "METRIC=VALUE")]
     margin: Vec<String>,
     /// Compare these policies only, by their labels, separated by commas

@@ -35,7 +35,7 @@ pub(crate) struct Arguments {
     /// Kind of file
     #[arg(long, value_enum, default_value = "pdf")]
     format: Kind,
-    /// The panel of this metric alone; for `differences`, which metrics are compared: may stand several times
+    /// The panel of this metric alone; for `differences`, which metrics are compared: can be given several times
     #[arg(long)]
     metric: Vec<String>,
     /// Draw these policies only, by their labels, separated by commas
@@ -44,13 +44,13 @@ pub(crate) struct Arguments {
     /// Differences with this policy only [default: the one that the sweep file names]
     #[arg(long)]
     baseline: Option<String>,
-    /// Number of the case, where the sweep has axes
+    /// Case number, if the sweep has axes
     #[arg(long, default_value_t = 1)]
     case: usize,
     /// Without colours
     #[arg(long)]
     grey: bool,
-    /// Dots in an inch of a PNG
+    /// Dots per inch of a PNG
     #[arg(long, default_value_t = 600, value_parser = clap::value_parser!(u16).range(30..=1200))]
     dpi: u16,
     /// The file to write [default: NAME.FORMAT]
@@ -128,7 +128,7 @@ impl Arguments {
                 let metrics = &folder.experiment().metrics;
                 Ok(Some(metrics[metrics.named(only)?].name.clone()))
             }
-            _ => Err(Failure::input("--metric: may stand several times for `differences` only")),
+            _ => Err(Failure::input("--metric: can be given several times for `differences` only")),
         }
     }
 

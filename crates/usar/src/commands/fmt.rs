@@ -10,7 +10,7 @@ use usar_sim::scenario::{read_text, upgraded};
 
 use super::output;
 
-/// Lay out scenario and sweep files anew, and rewrite those of a former format
+/// Format scenario and sweep files, and upgrade those of an older format
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Indents, blanks and commas are set; line breaks and comments stay where they are, and no value changes. The files are written over.

@@ -11,7 +11,7 @@ use experiments::Failure;
 
 use super::output::{check_folder, make_folder, write};
 
-/// Print the manual page, or write those of all commands
+/// Print the manual page, or write the pages of all commands
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Examples:

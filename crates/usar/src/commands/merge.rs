@@ -11,7 +11,7 @@ use experiments::sweep::merge::Merge;
 use super::sweep::print;
 use crate::running::{STOP, stop_on_signals, tell};
 
-/// Join the shards of a sweep: the result is the bytes of a single run
+/// Join the shards of a sweep into what a single run would have written, byte for byte
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Refuses shards of different sweeps or programs, shards that disagree about a trial, and a sum of shards that lacks a trial.
@@ -20,12 +20,12 @@ Example:
   usar sweep scenarios/sweeps/energy.ron --shard 1/2     (on one machine)
   usar sweep scenarios/sweeps/energy.ron --shard 2/2     (on another)
   usar merge results/energy-1-of-2 results/energy-2-of-2 --out results/energy
-  usar merge results/energy-shards --out results/energy  (a folder that has the shards in it)")]
+  usar merge results/energy-shards --out results/energy  (a folder that contains the shards)")]
 pub(crate) struct Arguments {
-    /// Folders of shards, or folders that have them in them
+    /// Shard folders, or folders that contain them
     #[arg(required = true)]
     folders: Vec<PathBuf>,
-    /// Folder for the whole
+    /// Folder for the merged sweep
     #[arg(long)]
     out: PathBuf,
 }

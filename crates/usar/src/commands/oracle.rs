@@ -34,8 +34,7 @@ Plays each assignment that the quotas allow from the moment of the decision, wit
 end of the trial. Prints the best and the worst, and where each policy's choice stands. Regret is the best value minus that of the choice.
 
 With more assignments than --limit, it plays a random sample and goes on from the best of it by exchanging two robots at a time; the best \
-found may not be the best there is, so that regrets are lower bounds. Outcomes are kept in --cache: a broken off run goes on, and \
-`usar why` finds them there.
+found may not be the best there is, so that regrets are lower bounds. Outcomes are kept in --cache: an interrupted run resumes, and `usar why` finds them there.
 
 Examples:
   usar oracle scenarios/paper.ron --seed 1 --round 1

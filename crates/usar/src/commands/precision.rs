@@ -57,7 +57,8 @@ impl Precision {
     fn state(&self, folder: &Folder) -> Option<State> {
         let mut state = State { half_width: 0.0, pairs: usize::MAX };
         for case in 0..folder.experiment().cases.len() {
-            let differences = Pairs::of(folder, case, self.metric, self.policies).differences();
+            let differences =
+                Pairs::of(folder, self.metric, self.policies.map(|policy| (case, policy))).differences();
             let half_width = t_half_width(&differences).filter(|half| *half > 0.0)?;
             let enough = differences.len() >= FIRST_LOOK.min(folder.experiment().trials) as usize;
             state.half_width = state.half_width.max(half_width);

@@ -22,8 +22,7 @@ Plays every assignment at every decision of the trials of a sweep file; trial by
 policy's regret, how often grouping matters at all, how much of what can be achieved each policy achieves, and which features of an \
 assignment go with its outcome. The paper's team has 240 assignments: about two minutes of one core for each trial.
 
-The folder has `decisions.jsonl` (every outcome), `regret.csv` (a row for each decision, policy and metric) and `summary.json`. A study that \
-was broken off goes on; with a folder instead of a file, only its tables and figures are made anew.
+The folder has `decisions.jsonl` (every outcome), `regret.csv` (a row for each decision, policy and metric) and `summary.json`. An interrupted study resumes; with a folder instead of a file, only its tables and figures are made anew.
 
 Examples:
   usar regret scenarios/sweeps/regret.ron
@@ -46,7 +45,7 @@ pub(crate) struct Arguments {
     /// Most assignments of one decision
     #[arg(long, default_value_t = DEFAULT_LIMIT, value_parser = clap::value_parser!(u64).range(2..=1_000_000))]
     limit: u64,
-    /// What decisions are judged by; may stand several times [default: `rescuees`, `rescue_rate` and `energy_per_rescuee`]
+    /// What decisions are judged by; can be given several times [default: `rescuees`, `rescue_rate` and `energy_per_rescuee`]
     #[arg(long)]
     metric: Vec<String>,
     /// Folder of the study [default: results/NAME]

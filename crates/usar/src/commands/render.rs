@@ -15,7 +15,7 @@ use super::drawn::{Kind, Looks};
 use super::output;
 use super::trials::Asked;
 
-/// Draw a trial: a moment, the ways of all robots, or pictures in a row
+/// Draw a trial: one moment, all trajectories, or a series of frames
 #[derive(Debug, Args)]
 #[command(
     group(ArgGroup::new("what").args(["at", "trails", "every"]).required(true)),
@@ -26,9 +26,9 @@ recordings or simulated again. Nothing else is needed: no display, no fonts. Onl
 
 Examples:
   usar render scenarios/paper.ron --at 120 --out frame.svg
-  usar render paper.usrec --trails --width 88mm --out ways.png            a column of a paper, 300 dots in an inch
+  usar render paper.usrec --trails --width 88mm --out ways.png            a column of a paper, 300 dpi
   usar render results/paper --policy DIS --seed 3 --at 300 --out dis.png
-  usar render paper.usrec --every 10 --frames pictures                    one PNG for each ten seconds
+  usar render paper.usrec --every 10 --frames pictures                    one PNG every ten seconds
   usar render paper.usrec --every 1 --from 100 --to 190 --gif round.gif --width 480
   usar render paper.usrec --every 0.2 --fps 25 --mp4 trial.mp4            five times as fast as the robots"
 )]
@@ -40,10 +40,10 @@ pub(crate) struct Arguments {
     /// Draw the moment at this simulated time, in seconds
     #[arg(long, value_name = "SECONDS", requires = "out")]
     at: Option<f64>,
-    /// Draw the ways of all robots on one map
+    /// Draw the trajectories of all robots on one map
     #[arg(long, requires = "out")]
     trails: bool,
-    /// Draw a picture for every so many seconds of simulated time
+    /// Draw a frame every so many seconds of simulated time
     #[arg(long, value_name = "SECONDS", requires = "film", value_parser = super::seconds)]
     every: Option<f64>,
     /// The picture to write, of --at and --trails; it must not exist yet
@@ -58,7 +58,7 @@ pub(crate) struct Arguments {
     /// Write the pictures of --every as a film (H.264), by the program ffmpeg
     #[arg(long, value_name = "FILE.mp4", requires = "every")]
     mp4: Option<PathBuf>,
-    /// Pictures that a GIF or film shows in a second
+    /// Frames per second of a GIF or film
     #[arg(long, value_name = "FPS", default_value_t = 10, value_parser = clap::value_parser!(u16).range(1..=50), requires = "every")]
     fps: u16,
     /// Where the pictures of --every begin, in seconds of simulated time

@@ -20,7 +20,7 @@ use crate::recordings::{path_of, recording_of};
 Writes report.html into the folder, which opens from disk and prints, and plots/: each figure as SVG and its numbers as CSV. It answers first \
 what `usar compare` with the same flags says. Where the sweep has axes, report.html says how differences change along them, and links to a page \
 for each case. With --trial, \
-the ways of all robots in the trials with this seed are drawn; with --with-replays, these trials can be watched from the report: each is a \
+the trajectories of all robots in the trials with this seed are drawn; with --with-replays, these trials can be watched from the report: each is a \
 page of its own in plots/, as `usar view` writes it. Both take the recordings of the sweep, or simulate again.
 
 Examples:
@@ -36,10 +36,10 @@ pub(crate) struct Arguments {
     /// Title of the report [default: the sweep's name]
     #[arg(long)]
     title: Option<String>,
-    /// Number of the case that gets a page, where the sweep has axes [default: all, up to 24]
+    /// Case number that gets a page, if the sweep has axes [default: all, up to 24]
     #[arg(long)]
     case: Option<usize>,
-    /// Draw the ways of all robots in the trials with this seed, one for each policy
+    /// Draw the trajectories of all robots in the trials with this seed, one for each policy
     #[arg(long, value_name = "SEED")]
     trial: Option<u64>,
     /// Write replays of these trials as well, linked from the report [without --trial: of the first seed]

@@ -35,7 +35,7 @@ A claim holds when the 95 % interval of each of its comparisons lies on the clai
 shared by its comparisons; else it is undecided. The last table says how many paired trials each claim would need, and what 10 could have shown.
 
 The folder gets report.html, the verdicts as a page; a sweep's folder for each scenario, with a report.html of its own; claims.csv, power.csv and examples.csv; predictions.csv, what each policy does in each world, with intervals of the mean of ten trials; and for each scenario a CSV with \
-exactly the authors' columns. docs/experiments.md says what is in each. A broken-off run goes on with the same command; more --trials only add.
+exactly the authors' columns. docs/experiments.md says what is in each. The same command resumes an interrupted run; more --trials only add.
 
 Examples:
   usar reproduce
@@ -87,7 +87,7 @@ impl Arguments {
         write_power(&self.out, &judged)?;
         let examples = examples()?;
         write_examples(&self.out, &examples)?;
-        let sections = sections(&judged, &examples);
+        let sections = sections(&judged, &examples, &predicted);
         let page = write_page(&self.out, &judged, &sections)?;
         for Section { title, table, note } in &sections {
             writeln!(out, "{title}")?;

@@ -22,7 +22,7 @@ Examples:
 pub(crate) struct Arguments {
     /// Scenario file (RON)
     file: PathBuf,
-    /// Set a field of the scenario, by its path, to a value in RON; may stand several times
+    /// Set a field of the scenario, by its path, to a value in RON; can be given several times
     #[arg(long, value_name = "PATH=VALUE")]
     set: Vec<String>,
 }

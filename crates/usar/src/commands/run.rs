@@ -66,13 +66,13 @@ pub(crate) struct Arguments {
     /// Longest time that the trial may take, in seconds of this machine
     #[arg(long, default_value_t = 600.0, value_name = "SECONDS")]
     max_trial_s: f64,
-    /// Set a field of the scenario, by its path, to a value in RON, e.g. `costs.energy.per_step=0.009`; may stand several times
+    /// Set a field of the scenario, by its path, to a value in RON, e.g. `costs.energy.per_step=0.009`; can be given several times
     #[arg(long, value_name = "PATH=VALUE")]
     set: Vec<String>,
     /// Write a recording of the trial to this file, for `usar view`; the file must not exist yet
     #[arg(long, value_name = "FILE")]
     record: Option<PathBuf>,
-    /// Frames of the recording in a second of simulated time
+    /// Frames of the recording per second of simulated time
     #[arg(long, value_name = "FPS", default_value_t = recording::DEFAULT_FPS, requires = "record", value_parser = recordings::fps)]
     record_fps: f64,
     /// Write every event with its time to this file, a JSON object in a line; the file must not exist yet

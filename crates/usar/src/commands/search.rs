@@ -30,7 +30,7 @@ Searches for the scenario in which --policy is worst in --metric; with --against
 seeds. The search is CMA-ES, seeded. All candidates are judged by the same seeds, and the best of many is flattered by chance: so what was \
 found is run again with seeds that no candidate was judged by, and only that is a result.
 
-Each candidate is on disk as soon as it is done; the same command goes on where it was broken off, and more --evaluations go on from there. \
+Each candidate is on disk as soon as it is done; the same command resumes where it stopped, and more --evaluations go on from there. \
 The folder gets evaluations.csv (the log), search.json, found.ron, and the sweep that confirms it, confirmation/, which `usar report` shows.
 
 Examples:

@@ -25,7 +25,7 @@ where a parameter acts through others. sobol tells shares of the variance: of ea
 has a part (total). All points of a trajectory or sample have the same seeds, and each trajectory has its own; `chance` is what other seeds \
 alone do. Intervals are bootstraps over trajectories or samples.
 
-Each point is on disk as soon as its batch is done; the same command goes on where it was broken off, and more --trajectories or --samples \
+Each point is on disk as soon as its batch is done; the same command resumes where it stopped, and more --trajectories or --samples \
 go on from there. The folder gets evaluations.csv (the log), indices.csv, indices.svg and sensitivity.json.
 
 Examples:
@@ -41,7 +41,7 @@ pub(crate) struct Arguments {
     /// Policies, separated by commas [default: the file's]
     #[arg(long)]
     policies: Option<String>,
-    /// Metric; may stand several times [default: those that the sweep file names, or rescuees]
+    /// Metric; can be given several times [default: those that the sweep file names, or rescuees]
     #[arg(long)]
     metric: Vec<String>,
     /// Differences of each policy with this one [default: the file's, or the first]

@@ -27,7 +27,7 @@ Examples:
 pub(crate) struct Arguments {
     /// Folder of a sweep
     folder: PathBuf,
-    /// Number of the case, where the sweep has axes
+    /// Case number, if the sweep has axes
     #[arg(long, default_value_t = 1)]
     case: usize,
     #[command(flatten)]

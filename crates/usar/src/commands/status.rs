@@ -18,7 +18,7 @@ use shards::{OneShard, Said, State, ranges, seconds_each};
 /// Shards that are listed one by one.
 const MOST_LISTED: usize = 20;
 
-/// How far a sweep of many shards is, and the line that submits what is missing
+/// Progress of a sharded sweep, and the command that resubmits what is missing
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Looks at the folder of each shard (its manifest, its journal and its lock) and, where there are `squeue` and `sacct`, asks Slurm. A shard is \
@@ -26,7 +26,7 @@ done; running; waiting in the queue; failed, with what Slurm says of its task; o
 line submits what is failed or lost, and nothing else; each of these goes on where it was.
 
 Examples:
-  usar status results/energy-shards        the folder that `usar submit` made, or one with shards in it
+  usar status results/energy-shards        the folder that `usar submit` made, or one that contains shards
   usar status results/energy               one sweep or shard
   usar status results/energy-shards --json")]
 pub(crate) struct Arguments {

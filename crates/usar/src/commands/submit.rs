@@ -29,7 +29,7 @@ Measures a few trials, deals the sweep into shards of ten minutes or more (at mo
 the folder of the shards, and submits them: an array, and a job after it that merges and reports. The merged folder has the bytes of a single \
 machine's. A task that is stopped, by preemption, its time or a lost node, goes on where it was. docs/cluster.md has the rest.
 
-A template is a job script with words between @: @name@, @shards@, @at_once@, @cpus@, @time@, @merge_time@, @directives@ (account and
+A template is a job script with words between @: @name@, @shards@, @at_once@, @cpus@, @time@, @merge_time@, @directives@ (account and \
 partition), @directory@, @folder@ (of the shards), @out@, @usar@ and @arguments@. --dry-run prints the default one, filled in.
 
 Examples:
@@ -47,13 +47,13 @@ pub(crate) struct Arguments {
     dry_run: bool,
     #[command(flatten)]
     chosen: Chosen,
-    /// Account that pays
+    /// Slurm account to charge
     #[arg(long, value_parser = word)]
     account: Option<String>,
-    /// Partition of the cluster
+    /// Slurm partition
     #[arg(long, value_parser = word)]
     partition: Option<String>,
-    /// Time for each shard, as Slurm writes it [default: twice what was estimated]
+    /// Time limit of each shard, in Slurm's notation [default: twice what was estimated]
     #[arg(long, value_parser = word)]
     time: Option<String>,
     /// Threads of each shard
@@ -62,13 +62,13 @@ pub(crate) struct Arguments {
     /// Number of shards [default: from the estimate]
     #[arg(long, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     shards: Option<u32>,
-    /// Shards that run at one time [default: at most 100]
+    /// Most shards that run at the same time [default: at most 100]
     #[arg(long, value_parser = clap::value_parser!(u32).range(1..))]
     at_once: Option<u32>,
     /// Job script of the shards to fill in, instead of the built-in one
     #[arg(long)]
     template: Option<PathBuf>,
-    /// Folder for the whole; the shards are beside it, in OUT-shards [default: results/NAME]
+    /// Folder for the merged sweep; the shards are beside it, in OUT-shards [default: results/NAME]
     #[arg(long)]
     out: Option<PathBuf>,
 }

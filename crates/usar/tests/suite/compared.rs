@@ -245,6 +245,16 @@ fn a_sweep_with_axes_says_how_differences_change_along_them() {
         };
         trials.iter().find(is_it).unwrap()[at].parse().unwrap()
     };
+    let effects = told["effects"].as_array().unwrap();
+    assert_eq!(effects.len(), 4 * (policies + 1), "the baseline, too");
+    for one in effects {
+        let policy = one["policy"].as_str().unwrap();
+        let at = |at: &str, trial| value(&one[at].to_string(), policy, trial);
+        let change = (1..=4).map(|trial| at("case", trial) - at("reference", trial)).sum::<f64>() / 4.0;
+        assert!((one["change"].as_f64().unwrap() - change).abs() < 1e-6, "{one}");
+        let means = one["means"].as_array().unwrap();
+        assert!((means[1].as_f64().unwrap() - means[0].as_f64().unwrap() - change).abs() < 1e-6, "{one}");
+    }
     for one in interactions {
         let (a, b) = (one["a"].as_str().unwrap(), one["b"].as_str().unwrap());
         let difference =
@@ -255,4 +265,14 @@ fn a_sweep_with_axes_says_how_differences_change_along_them() {
         assert!((one["change"].as_f64().unwrap() - change).abs() < 1e-6, "{one}");
         assert!(one["in_words"].as_str().unwrap().contains(&format!("{a} less {b} goes from")), "{one}");
     }
+    let printed =
+        succeeds(&usar(here, &["compare", "results/grid", "--metric", "distance", "--baseline", "DIS"]));
+    let table = |title: &str| -> usize {
+        let rest = printed.split_once(title).unwrap_or_else(|| panic!("{title}\n{printed}")).1;
+        let rows = rest.lines().skip(2).take_while(|line| !line.starts_with('└'));
+        rows.filter(|line| line.starts_with('│')).count() - 1
+    };
+    assert_eq!(table("By how much each policy's mean changes"), 4, "a row for each change");
+    assert_eq!(table("Differences between policies, case by case"), 4, "a row for each case");
+    assert_eq!(table("By how much these differences change"), 4);
 }

@@ -195,6 +195,15 @@ fn a_figure_fits_the_column_of_a_paper() {
     let svg = read(&folder.join("rescuees-over-time.svg"));
     assert!(svg.contains("width=\"88mm\"") && svg.contains("DIS") && !svg.contains("RNE"), "{svg}");
     assert!(!svg.contains("#D55E00"), "no colour is left");
+    for name in ["groups", "levels", "sorting"] {
+        let file = format!("{name}.svg");
+        succeeds(&usar(
+            folder,
+            &["figure", "short", name, "--policies", "DIS", "--format", "svg", "--out", &file],
+        ));
+        let svg = read(&folder.join(&file));
+        assert!(svg.contains("DIS") && !svg.contains("RNE"), "{name}: {svg}");
+    }
     succeeds(&figure(&["--out", "a.pdf"]));
     succeeds(&figure(&["--format", "png", "--out", "a.png", "--dpi", "60"]));
     let begins = |name: &str, with: &[u8]| std::fs::read(folder.join(name)).unwrap().starts_with(with);

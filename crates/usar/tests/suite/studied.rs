@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use study_yang2021::claims::CLAIMS;
 use xtask::pages;
 
 use crate::calibrated::{place, refused};
@@ -46,30 +47,30 @@ fn has_the_files(results: &Path) {
     }
 }
 
-/// What `usar reproduce` prints of ten trials stands in its page.
-fn agrees_with_its_page(first: &str) {
-    // The verdicts over ten pairs are those of the page, and so is what stands under "first 10".
+/// What `usar reproduce` says of ten trials stands in its page, and in the table beside that.
+fn agrees_with_its_page(first: &str, results: &Path) {
+    let of_ten = |path: &Path| -> Vec<csv::StringRecord> {
+        let rows = csv::Reader::from_path(path).unwrap().into_records().map(Result::unwrap);
+        rows.filter(|row| &row[1] == "10" && ["paper", "paper-calibrated"].contains(&&row[0])).collect()
+    };
+    let here = of_ten(&results.join("claims.csv"));
+    let there = of_ten(&root().join("docs/reproduction/claims.csv"));
+    // Of ten trials in all, each comparison is there twice: over the first ten, and over all.
+    let here: Vec<_> = here.chunks(30).step_by(2).flatten().cloned().collect();
+    assert_eq!(here.len(), 2 * 30);
+    assert_eq!(here, there, "`just pages` makes docs/reproduction/claims.csv anew");
     let page = read(&root().join("docs/reproduction.md"));
-    let cells = |line: &str| -> Vec<String> {
-        line.trim_matches('│').split('┆').map(|cell| cell.trim().to_owned()).collect()
+    let verdicts = |text: &str, bar: char| -> Vec<[String; 3]> {
+        let rows = text.lines().map(|line| {
+            line.trim_matches(['│', '|']).split(bar).map(|cell| cell.trim().to_owned()).collect::<Vec<_>>()
+        });
+        let rows = rows.filter(|row| row.len() >= 5 && CLAIMS.iter().any(|claim| row[0] == claim.words));
+        rows.map(|row| [0, 1, 3].map(|i| row[i].clone())).collect()
     };
-    let comparisons = |text: &str| -> Vec<[String; 2]> {
-        let rows = text.lines().filter(|line| line.starts_with('│')).map(cells);
-        let rows = rows.filter(|row| row.len() == 8 && row[7].ends_with(')'));
-        rows.map(|mut row| [row.remove(0), row.remove(6)]).collect()
-    };
-    assert_eq!(comparisons(first).len(), 2 * 30);
-    assert_eq!(comparisons(first), comparisons(&page), "`just pages` makes it anew");
-    let verdicts = |text: &str| -> Vec<Vec<String>> {
-        let table = text.split("\nVerdicts\n").nth(1).unwrap_or_default();
-        let rows = table.lines().filter(|line| line.starts_with('│')).skip(1);
-        rows.map(cells).collect()
-    };
-    let (here, there) = (verdicts(first), verdicts(&page));
-    assert!(here.len() >= 10 && here.len() == there.len());
-    for (here, there) in here.iter().zip(&there) {
-        assert_eq!([&here[0], &here[1], &here[3]], [&there[0], &there[1], &there[3]]);
-    }
+    let printed = first.split("\nVerdicts\n").nth(1).unwrap_or_default();
+    let told = page.split("| Verdicts -->\n").nth(1).unwrap_or_default();
+    assert_eq!(verdicts(printed, '┆').len(), CLAIMS.len());
+    assert_eq!(verdicts(printed, '┆'), verdicts(told, '|'));
 }
 
 /// The rows of the README's table are rows of what its first command prints.
@@ -124,7 +125,7 @@ fn the_papers_experiment_and_the_pages_that_tell_of_it() {
     example("Example 2", "┆ holds");
     example("Example 3", "┆ does not hold");
 
-    agrees_with_its_page(&first);
+    agrees_with_its_page(&first, &results);
 
     // So does the table of the README.
     let sweep = root().join("scenarios/paper.ron");
@@ -135,16 +136,22 @@ fn the_papers_experiment_and_the_pages_that_tell_of_it() {
     let page = read(&root().join("docs/why.md"));
     let mut found = 0;
     let renewed = pages::renewed(&page, |command| {
-        (command == "sorting results/paper").then(|| {
-            found += 1;
-            pages::answer(program(), folder.path(), "sorting results/reproduction/paper")
-        })
+        let options = command.strip_prefix("sorting results/paper ")?;
+        found += 1;
+        Some(pages::answer(
+            program(),
+            folder.path(),
+            &format!("sorting results/reproduction/paper {options}"),
+        ))
     });
-    assert_eq!(found, 1, "docs/why.md has that command");
+    assert!(found > 1, "docs/why.md has that command");
     assert_eq!(
-        renewed, page,
-        "docs/why.md is not what `usar sorting results/paper` prints; `just pages` makes it anew"
+        renewed.page, page,
+        "docs/why.md is not what `usar sorting results/paper` prints: `just pages`"
     );
+    for (name, text) in &renewed.files {
+        assert_eq!(&read(&root().join("docs").join(name)), text, "docs/{name}: `just pages` makes it anew");
+    }
 }
 
 #[test]
@@ -199,4 +206,30 @@ fn readings_stand_for_every_combination_and_are_named_by_what_differs() {
         &sweep("{\"sort\": [true]}", "[\"DIS\"]"),
         &["this sweep does not run RNE. Add it to `policies`."],
     );
+}
+
+/// A page can have one table of a command, one paragraph, or a table as a file beside it.
+#[test]
+fn a_page_takes_parts_of_what_a_command_prints() {
+    let page = "\
+<!-- $ usar x | Second -->
+| old |
+| --- |
+After.
+<!-- $ usar x | Note -->
+```text
+old
+```
+<!-- $ usar x | 1 > first.csv -->
+<!-- $ usar y -->
+```text
+stays
+```
+";
+    let answer = "First\n\n| a | b |\n| --- | --- |\n| 1, 2 | x\\|y |\n\nSecond one\n\n| c |\n| --- |\n| 3 |\n\nNote: so\nit is\n\nno more\n";
+    let renewed = pages::renewed(page, |command| command.starts_with("x ").then(|| answer.to_owned()));
+    let expected = page.replacen("| old |\n| --- |", "| c |\n| --- |\n| 3 |", 1);
+    let expected = expected.replacen("```text\nold\n", "```text\nNote: so\nit is\n", 1);
+    assert_eq!(renewed.page, expected);
+    assert_eq!(renewed.files, [("first.csv".to_owned(), "a,b\n\"1, 2\",x|y\n".to_owned())]);
 }

@@ -1,9 +1,10 @@
-//! Makes the numbers of `docs/` anew: runs the command before each block and puts what it prints in its
-//! place; figures are copied.
+//! Makes the numbers of `docs/` anew: runs the command before each block and puts what it prints in its place;
+//! figures and long tables are copied beside the page.
 //!
 //! `pages [PAGE ...]`, from the project's folder, with the results that the commands name and `usar` built in
 //! the same profile.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -19,21 +20,35 @@ pub fn run(arguments: &[String]) -> ExitCode {
     }
     for path in chosen {
         let page = std::fs::read_to_string(&path).expect("a page");
-        if !page.contains(pages::MARK) {
+        if !page.contains(pages::MARK) && !page.contains("<!-- copy ") {
             continue;
         }
+        let mut answers = BTreeMap::new();
         let new = pages::renewed(&page, |command| {
-            eprintln!("{}: usar {command}", path.display());
-            Some(pages::answer(&usar, Path::new("."), command))
+            let answer = answers.entry(command.to_owned()).or_insert_with(|| {
+                eprintln!("{}: usar {command}", path.display());
+                pages::answer(&usar, Path::new("."), command)
+            });
+            Some(answer.clone())
         });
-        // `<!-- copy FROM TO -->`: a figure, from the results to a place beside the page.
+        // `<!-- copy FROM TO -->`: a figure or a table, from the results to a place beside the page.
         for line in page.lines().filter_map(|line| line.strip_prefix("<!-- copy ")?.strip_suffix(" -->")) {
             let (from, to) = line.split_once(' ').expect("two names");
-            std::fs::copy(from, Path::new("docs").join(to)).expect("the figure is there");
+            put(to, &std::fs::read(from).unwrap_or_else(|error| panic!("{from}: {error}")));
         }
-        let is_same = new == page;
-        std::fs::write(&path, new).expect("the page can be written");
+        for (name, text) in &new.files {
+            put(name, text.as_bytes());
+        }
+        let is_same = new.page == page;
+        std::fs::write(&path, new.page).expect("the page can be written");
         println!("{}: {}", path.display(), if is_same { "as it was" } else { "renewed" });
     }
     ExitCode::SUCCESS
+}
+
+/// Writes a file in `docs/`.
+fn put(name: &str, bytes: &[u8]) {
+    let path = Path::new("docs").join(name);
+    std::fs::create_dir_all(path.parent().expect("a folder")).expect("the folder can be made");
+    std::fs::write(path, bytes).expect("the file can be written");
 }

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 const LEAST_SECONDS: f64 = 600.0;
 /// Shards that are made without being asked for.
 const MOST_SHARDS: usize = 500;
-/// Shards that run at one time without being asked for.
+/// Most shards that run at the same time without being asked for.
 const MOST_AT_ONCE: u32 = 100;
 /// The least time that is asked for, in minutes.
 const LEAST_MINUTES: u64 = 30;
@@ -17,7 +17,7 @@ const LEAST_MINUTES: u64 = 30;
 pub(crate) struct Plan {
     /// Trials of each shard.
     pub trials: Vec<usize>,
-    /// Shards that run at one time.
+    /// Most shards that run at the same time.
     pub at_once: u32,
     /// Threads of each.
     pub cpus: u32,

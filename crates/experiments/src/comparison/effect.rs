@@ -1,0 +1,160 @@
+//! Main effects: by how much does a field of the scenario change what a policy achieves? The difference of one
+//! policy between a case of a sweep with axes and the case in which one axis has its first value instead, paired
+//! by seed.
+
+use rayon::prelude::*;
+use serde::Serialize;
+
+use super::{CONFIDENCE, Choice, LEVEL, Pairs, policies_of};
+use crate::experiment::{Case, Experiment};
+use crate::failure::Failure;
+use crate::stats::Moments;
+use crate::stats::paired::holm;
+use crate::stats::wilcoxon::SignedRank;
+use crate::sweep::folder::Folder;
+
+/// How one policy's mean changes with one field of the scenario.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Effect {
+    /// Number of the case, from 1.
+    pub case: usize,
+    /// Number of the case that it is compared with.
+    pub reference: usize,
+    /// The field that differs.
+    pub path: String,
+    /// Its value in the reference, and in the case.
+    pub values: [String; 2],
+    /// The other axes and their values, the same in both.
+    pub others: Vec<(String, String)>,
+    /// Name of the metric.
+    pub metric: String,
+    /// The policy.
+    pub policy: String,
+    /// Seeds for which the metric is defined in both trials.
+    pub n: usize,
+    /// Mean of the policy in the reference, and in the case.
+    pub means: Option<[f64; 2]>,
+    /// The second less the first.
+    pub change: Option<f64>,
+    /// Its 95 % bootstrap interval.
+    pub interval: Option<[f64; 2]>,
+    /// Two-sided p of Wilcoxon's signed-rank test.
+    pub p: Option<f64>,
+    /// p after Holm's correction over all effects.
+    pub p_holm: Option<f64>,
+}
+
+impl Effect {
+    /// Whether the change shows after correction.
+    #[must_use]
+    pub fn is_found(&self) -> bool {
+        is_shown(self.p_holm, self.interval)
+    }
+
+    /// The change and the ends of its interval in percent of the mean in the reference; nothing where that mean
+    /// is not above zero.
+    #[must_use]
+    pub fn in_percent(&self) -> Option<[f64; 3]> {
+        let [there, _] = self.means.filter(|[there, _]| *there > 0.0)?;
+        let [low, high] = self.interval?;
+        Some([self.change?, low, high].map(|change| 100.0 * change / there))
+    }
+}
+
+/// The effects in a sweep with axes, for these metrics and policies: none without axes.
+///
+/// # Errors
+/// An unknown policy.
+pub fn effects(folder: &Folder, metrics: &[usize], choice: Choice) -> Result<Vec<Effect>, Failure> {
+    let experiment = folder.experiment();
+    let policies = policies_of(experiment, choice)?;
+    let mut asked = Vec::new();
+    for contrast in contrasts(experiment) {
+        for metric in metrics {
+            asked.extend(policies.iter().map(|policy| (contrast, *metric, *policy)));
+        }
+    }
+    let one =
+        |(contrast, metric, policy): &(Contrast, usize, usize)| effect(folder, *contrast, *metric, *policy);
+    let mut found: Vec<Effect> = asked.par_iter().map(one).collect();
+    let ps: Vec<Option<f64>> = found.iter().map(|effect| effect.p).collect();
+    for (effect, p) in found.iter_mut().zip(corrected(&ps)) {
+        effect.p_holm = p;
+    }
+    Ok(found)
+}
+
+fn effect(folder: &Folder, contrast: Contrast, metric: usize, policy: usize) -> Effect {
+    let experiment = folder.experiment();
+    let pairs = Pairs::of(folder, metric, [(contrast.case, policy), (contrast.reference, policy)]);
+    let changes = pairs.differences();
+    Effect {
+        case: contrast.case + 1,
+        reference: contrast.reference + 1,
+        path: experiment.axes[contrast.axis].path.clone(),
+        values: contrast.values(experiment),
+        others: contrast.others(experiment),
+        metric: experiment.metrics[metric].name.clone(),
+        policy: experiment.policies[policy].label.clone(),
+        n: changes.len(),
+        means: Moments::of(&pairs.b).mean.zip(Moments::of(&pairs.a).mean).map(|(there, here)| [there, here]),
+        change: Moments::of(&changes).mean,
+        interval: pairs.interval(CONFIDENCE),
+        p: (!changes.is_empty()).then(|| SignedRank::of(&changes).p),
+        p_holm: None,
+    }
+}
+
+/// Whether a change with this corrected p and interval is shown.
+pub(super) fn is_shown(p_holm: Option<f64>, interval: Option<[f64; 2]>) -> bool {
+    p_holm.is_some_and(|p| p < LEVEL) && interval.is_some_and(|[low, high]| low > 0.0 || high < 0.0)
+}
+
+/// Each p after Holm's correction over all that are there.
+pub(super) fn corrected(ps: &[Option<f64>]) -> Vec<Option<f64>> {
+    let mut holm = holm(&ps.iter().flatten().copied().collect::<Vec<f64>>()).into_iter();
+    ps.iter().map(|p| p.and_then(|_| holm.next())).collect()
+}
+
+/// A case, and the case that differs from it in one axis only, where that has its first value.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Contrast {
+    pub case: usize,
+    pub reference: usize,
+    pub axis: usize,
+}
+
+impl Contrast {
+    /// The axis's value in the reference, and in the case.
+    pub fn values(self, experiment: &Experiment) -> [String; 2] {
+        [self.reference, self.case].map(|case| experiment.cases[case].values[self.axis].clone())
+    }
+
+    /// The other axes and their values.
+    pub fn others(self, experiment: &Experiment) -> Vec<(String, String)> {
+        let all = experiment.axes.iter().zip(&experiment.cases[self.case].values).enumerate();
+        all.filter(|(i, _)| *i != self.axis)
+            .map(|(_, (axis, value))| (axis.path.clone(), value.clone()))
+            .collect()
+    }
+}
+
+/// All contrasts of a sweep.
+pub(super) fn contrasts(experiment: &Experiment) -> Vec<Contrast> {
+    let cases = &experiment.cases;
+    let mut contrasts = Vec::new();
+    for (axis, of) in experiment.axes.iter().enumerate() {
+        for (case, one) in cases.iter().enumerate() {
+            let is_reference = |other: &Case| {
+                let mut values = one.values.iter().zip(&other.values).enumerate();
+                values
+                    .all(|(i, (here, there))| if i == axis { *there == of.values[0] } else { here == there })
+            };
+            if one.values[axis] != of.values[0] {
+                let reference = cases.iter().position(is_reference);
+                contrasts.extend(reference.map(|reference| Contrast { case, reference, axis }));
+            }
+        }
+    }
+    contrasts
+}

@@ -1,0 +1,82 @@
+//! Values of two cells of a sweep, paired by seed.
+
+use super::sums::Sums;
+use crate::stats::bootstrap::interval;
+use crate::sweep::folder::{Folder, Measured};
+
+/// A case of a sweep and a policy of it, by their places.
+pub type Cell = (usize, usize);
+
+/// The values of two cells in one metric.
+#[derive(Debug, Default, Clone, PartialEq)]
+pub struct Pairs {
+    /// Values of the first cell.
+    pub a: Vec<f64>,
+    /// Values of the second.
+    pub b: Vec<f64>,
+    /// Pairs of which one trial at least failed.
+    pub(super) failed: usize,
+    /// Pairs of which one trial at least has not been run.
+    pub(super) missing: usize,
+    /// Pairs in which the metric is not defined for one at least.
+    pub(super) undefined: usize,
+    /// Where ratios of sums are compared: then the values are linearised.
+    pub(super) sums: Option<Sums>,
+}
+
+impl Pairs {
+    /// The pairs of two cells.
+    #[must_use]
+    pub fn of(folder: &Folder, metric: usize, [a, b]: [Cell; 2]) -> Self {
+        let mut pairs = Self::default();
+        for trial in folder.experiment().trials_of(a.0, folder.manifest().shard) {
+            let result = |(case, policy): Cell| folder.results().get(&(case, policy, trial));
+            let value = |measured: &Measured| Some(measured.metrics.as_ref()?[metric]);
+            match (result(a), result(b)) {
+                (Some(a), Some(b)) => match (value(a), value(b)) {
+                    (Some(Some(a)), Some(Some(b))) => {
+                        pairs.a.push(a);
+                        pairs.b.push(b);
+                    }
+                    (Some(_), Some(_)) => pairs.undefined += 1,
+                    _ => pairs.failed += 1,
+                },
+                _ => pairs.missing += 1,
+            }
+        }
+        if let Some(sums) = Sums::of(folder, metric, [a, b]) {
+            [pairs.a, pairs.b] = sums.linearised();
+            pairs.undefined = 0;
+            pairs.sums = Some(sums);
+        }
+        pairs
+    }
+
+    /// The interval of the mean difference, or of the difference of ratios of sums.
+    pub(super) fn interval(&self, confidence: f64) -> Option<[f64; 2]> {
+        match &self.sums {
+            Some(sums) => sums.interval(confidence),
+            None => interval(&self.differences(), confidence),
+        }
+    }
+
+    /// First less second, by trial; nothing where one has no value.
+    pub(super) fn by_trial(folder: &Folder, metric: usize, [a, b]: [Cell; 2]) -> Vec<Option<f64>> {
+        let trials = 1..=folder.experiment().trials;
+        if let Some(sums) = Sums::of(folder, metric, [a, b]) {
+            let [a, b] = sums.linearised();
+            let place = |trial: u32| sums.trials.iter().position(|other| *other == trial);
+            return trials.map(|trial| place(trial).map(|place| a[place] - b[place])).collect();
+        }
+        let value = |(case, policy): Cell, trial| {
+            folder.results().get(&(case, policy, trial))?.metrics.as_ref()?[metric]
+        };
+        trials.map(|trial| Some(value(a, trial)? - value(b, trial)?)).collect()
+    }
+
+    /// First less second.
+    #[must_use]
+    pub fn differences(&self) -> Vec<f64> {
+        self.a.iter().zip(&self.b).map(|(a, b)| a - b).collect()
+    }
+}

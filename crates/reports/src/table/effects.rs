@@ -1,0 +1,103 @@
+//! What the axes of a sweep change: tables with a row for each case or change.
+
+use comfy_table::{Cell, Table};
+use experiments::comparison::{Comparison, Effect, Interaction, short};
+use experiments::experiment::VARIANT;
+
+use super::{headed, right};
+
+/// A row for each change of an axis, a column for each policy: the change of its mean in percent, with its interval.
+#[must_use]
+pub fn effects_table(effects: &[&Effect]) -> Table {
+    let percent = |effect: &&Effect| match effect.in_percent() {
+        Some(percent) => with_interval(percent, " %", effect.is_found()),
+        None => "-".to_owned(),
+    };
+    let cells = effects.iter().map(|effect| Entry {
+        row: change(&effect.path, &effect.values, &effect.others),
+        column: effect.policy.clone(),
+        text: percent(effect),
+    });
+    pivoted("change", cells)
+}
+
+/// A row for each change of an axis, a column for each two policies: the change of their difference, with its interval.
+#[must_use]
+pub fn interactions_table(interactions: &[&Interaction]) -> Table {
+    let text = |one: &Interaction| match one.change.zip(one.interval) {
+        Some((change, [low, high])) => with_interval([change, low, high], "", one.is_found()),
+        None => "-".to_owned(),
+    };
+    let cells = interactions.iter().map(|one| Entry {
+        row: change(&one.path, &one.values, &one.others),
+        column: format!("{} - {}", one.a, one.b),
+        text: text(one),
+    });
+    pivoted("change", cells)
+}
+
+/// A row for each case, a column for each two policies: their difference, with its interval.
+#[must_use]
+pub fn differences_table(comparisons: &[&Comparison]) -> Table {
+    let text = |one: &Comparison| match one.difference.zip(one.interval) {
+        Some((difference, [low, high])) => with_interval([difference, low, high], "", one.is_found()),
+        None => "-".to_owned(),
+    };
+    let cells = comparisons.iter().map(|one| Entry {
+        row: place(&one.axes),
+        column: format!("{} - {}", one.a, one.b),
+        text: text(one),
+    });
+    pivoted("case", cells)
+}
+
+struct Entry {
+    row: String,
+    column: String,
+    text: String,
+}
+
+/// Rows and columns in the order in which they first come.
+fn pivoted(title: &str, entries: impl Iterator<Item = Entry>) -> Table {
+    let (mut rows, mut columns): (Vec<String>, Vec<String>) = (Vec::new(), Vec::new());
+    let mut texts: Vec<Vec<String>> = Vec::new();
+    let place = |names: &mut Vec<String>, name: String| {
+        names.iter().position(|known| *known == name).unwrap_or_else(|| {
+            names.push(name);
+            names.len() - 1
+        })
+    };
+    for Entry { row, column, text } in entries {
+        let (row, column) = (place(&mut rows, row), place(&mut columns, column));
+        texts.resize(rows.len(), Vec::new());
+        let width = texts[row].len().max(column + 1);
+        texts[row].resize(width, "-".to_owned());
+        texts[row][column] = text;
+    }
+    let mut table = headed(std::iter::once(Cell::new(title)).chain(columns.iter().map(Cell::new)));
+    for (row, texts) in rows.iter().zip(&texts) {
+        table.add_row(std::iter::once(Cell::new(row)).chain(texts.iter().map(|text| right(text))));
+    }
+    table
+}
+
+/// `value (low to high)`, with a star where it is shown.
+fn with_interval([value, low, high]: [f64; 3], unit: &str, is_found: bool) -> String {
+    let star = if is_found { " *" } else { "" };
+    let sign = if value > 0.0 { "+" } else { "" };
+    format!("{sign}{}{unit} ({} to {}){star}", short(value), short(low), short(high))
+}
+
+/// A change of an axis: the name of a variant alone.
+fn change(path: &str, [from, to]: &[String; 2], others: &[(String, String)]) -> String {
+    let here = if path == VARIANT { to.clone() } else { format!("{path} from {from} to {to}") };
+    if others.is_empty() { here } else { format!("{here}, at {}", place(others)) }
+}
+
+/// Where a case stands: the name of a variant alone.
+fn place(axes: &[(String, String)]) -> String {
+    let one = |(path, value): &(String, String)| {
+        if path == VARIANT { value.clone() } else { format!("{path} = {value}") }
+    };
+    axes.iter().map(one).collect::<Vec<_>>().join(", ")
+}
