@@ -76,8 +76,8 @@ fn errand_looks(colour: &str, unit: f64) -> String {
 /// The ranges within which robots notice debris and radiation, at full health and at home.
 fn draw_ranges(sheet: &mut Sheet, world: &World) {
     let looks = range_looks(sheet.unit);
-    for robot in &world.robots {
-        let (at, radius) = (sheet.at(robot.home), world.roles[robot.role].sensing_m * sheet.scale);
+    for (number, robot) in world.robots.iter().enumerate() {
+        let (at, radius) = (sheet.at(robot.home), world.body_of(number).sensing_m * sheet.scale);
         sheet.svg.disc(at, radius, &looks);
     }
 }

@@ -22,7 +22,7 @@ pub(crate) fn colour_of(world: &World, robot: usize, task: Option<u32>) -> &'sta
 /// The radius of a robot's sign, in pixels.
 pub(crate) fn sign_radius(sheet: &Sheet, world: &World, robot: usize) -> f64 {
     let least = if world.robots.len() > LARGE_TEAM { 2.0 } else { 4.2 };
-    (world.roles[world.robots[robot].role].radius_m * sheet.scale).max(least * sheet.unit)
+    (world.body_of(robot).radius_m * sheet.scale).max(least * sheet.unit)
 }
 
 /// The routes of the robots, and where they lead.

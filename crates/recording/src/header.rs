@@ -226,6 +226,16 @@ impl Header {
 }
 
 impl World {
+    /// What a robot is and can do: its row's own body, or that of its role.
+    ///
+    /// # Panics
+    /// There is no such robot.
+    #[must_use]
+    pub fn body_of(&self, robot: usize) -> &RoleFile {
+        let RobotPlace { role, body, .. } = &self.robots[robot];
+        body.as_ref().unwrap_or(&self.roles[*role])
+    }
+
     /// The world of a trial.
     #[must_use]
     pub fn of(simulation: &Simulation) -> Self {

@@ -10,7 +10,7 @@ impl World {
     /// The needs of a robot at a frame, in the order of the table of needs, as far as levels were recorded.
     #[must_use]
     pub fn needs_of(&self, robot: usize, frame: &RobotFrame) -> Vec<f64> {
-        let role = &self.roles[self.robots[robot].role];
+        let role = self.body_of(robot);
         let level = |millipercent: i32| f64::from(millipercent) / 1000.0;
         let (energy, hp) = (level(frame.motion.energy_millipercent), level(frame.motion.hp_millipercent));
         let factor = health_factor(hp, self.health_floor);

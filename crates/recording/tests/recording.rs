@@ -7,7 +7,7 @@ use rand::{RngExt, SeedableRng};
 use recording::{Options, ReadError, Recorder, Recording, record};
 use rne_core::{Policy, Registry, TaskId};
 use usar_sim::mission::Activity;
-use usar_sim::scenario::Scenario;
+use usar_sim::scenario::{Measure, Scenario};
 use usar_sim::simulation::Simulation;
 use usar_sim::world::RescueeState;
 
@@ -218,4 +218,25 @@ fn a_whole_trial_of_the_paper_is_small() {
     let bytes = recorded("paper.ron", 600.0);
     assert!(bytes.len() < 2_000_000, "{} bytes", bytes.len());
     println!("{} bytes", bytes.len());
+}
+
+/// A robot whose row has a body of its own reports its needs with that body and not with its role's.
+#[test]
+fn a_body_of_its_own_is_what_a_robot_is_described_with() {
+    let simulation = Simulation::new(&scenario("gallery/chance.ron", 2.0), 3).unwrap();
+    let specs: Vec<_> = simulation.world().robots.iter().map(|robot| (*robot.spec).clone()).collect();
+    let mut bytes = Vec::new();
+    record(simulation, &*policy("RNE"), &Options::new("RNE"), &mut bytes).unwrap();
+    let recording = Recording::read(&bytes).unwrap();
+    let (world, frame) = (&recording.header.world, recording.frame(0).unwrap());
+    let speed = world.needs.iter().position(|need| need.measures == Measure::Speed).unwrap();
+    let mut with_their_own = 0;
+    for (robot, spec) in specs.iter().enumerate() {
+        assert_eq!(world.body_of(robot), spec);
+        with_their_own += u32::from(world.roles[world.robots[robot].role] != *spec);
+        let reported = world.needs_of(robot, &frame.robots[robot])[speed];
+        let factor = reported / spec.speed_mps;
+        assert!((world.health_floor..=1.0).contains(&factor), "robot {robot}: {reported} of {}", spec.speed_mps);
+    }
+    assert!(with_their_own > 0, "the scenario has suppliers with speeds of their own");
 }

@@ -2,7 +2,7 @@
 
 import type { Moment } from '../recording/recording';
 import { Stream } from '../recording/segment';
-import { routeAt } from '../recording/state';
+import { bodyOf, routeAt } from '../recording/state';
 import type { Point } from '../recording/types';
 import { addShape, shapesOf } from './shapes';
 import { LARGE_TEAM, type Sheet } from './sheet';
@@ -98,7 +98,7 @@ export function drawRobots(
   const shapes = shapesOf(world.roles);
   const isLarge = places.length > LARGE_TEAM;
   const radiusOf = (robot: number): number => {
-    const radius = world.roles[world.robots[robot].role].radius_m * camera.scale;
+    const radius = bodyOf(world, robot).radius_m * camera.scale;
     return isLarge ? Math.max(radius, 2.2) : Math.max(radius, LEAST_RADIUS);
   };
   const paths = new Map<string, Path2D>();

@@ -2,7 +2,7 @@
 
 import type { Moment, Recording } from './recording';
 import { Stream } from './segment';
-import type { Need, Point, Role } from './types';
+import type { Need, Point, Role, World } from './types';
 
 export interface RobotState {
   id: number;
@@ -38,6 +38,12 @@ export function positionOf(recording: Recording, { segment, frame, part }: Momen
   return [between(x, next.motion(robot, 0, at)), between(y, next.motion(robot, 1, at))];
 }
 
+/** What a robot is and can do: its row's own body, or that of its role. */
+export function bodyOf(world: World, robot: number): Role {
+  const { role, body } = world.robots[robot];
+  return body ?? world.roles[role];
+}
+
 export function robotAt(recording: Recording, { segment, frame }: Moment, robot: number): RobotState {
   const { world, codes, dt_s } = recording.header;
   const row = segment.row(Stream.Robots, robot, frame);
@@ -45,7 +51,7 @@ export function robotAt(recording: Recording, { segment, frame }: Moment, robot:
   const motion = (field: number): number => segment.motion(robot, field, frame) / 1000;
   return {
     id: robot,
-    role: world.roles[world.robots[robot].role],
+    role: bodyOf(world, robot),
     activity: codes.activities[row[0]],
     rescuee: id(row[1]),
     until: until === null ? null : until * dt_s,

@@ -50,7 +50,7 @@ export interface World {
   needs: Need[];
   health_floor: number;
   tasks: TaskPlace[];
-  robots: { role: number; home: Point; rest: Point[] }[];
+  robots: { role: number; home: Point; rest: Point[]; body?: Role }[];
   rescuees: Point[];
   debris: DebrisPiece[];
   zones: { at: Point; radius_m: number }[];

@@ -141,8 +141,8 @@ pub(super) fn debris_scene(
 
 /// The robots as cylinders in the colours of their groups; robots that fly are higher.
 pub(super) fn robots_scene(world: &World, frame: &Frame, time: Time) -> SceneUpdate {
-    let entity = |(id, place): (usize, &recording::RobotPlace)| {
-        let role = &world.roles[place.role];
+    let entity = |id: usize| {
+        let role = world.body_of(id);
         let low = if role.kind == RoleKind::Aerial { FLIGHT_M } else { 0.0 };
         let task = frame.robots[id].state.task;
         let color = task.map_or(UNGROUPED, |task| GROUPS[task as usize % GROUPS.len()]);
@@ -151,7 +151,7 @@ pub(super) fn robots_scene(world: &World, frame: &Frame, time: Time) -> SceneUpd
         entity.texts.push(text([0.0, 0.0, low + 2.0 * ROBOT_HEIGHT_M], &format!("{} {id}", role.name), 0.6));
         entity
     };
-    SceneUpdate { entities: world.robots.iter().enumerate().map(entity).collect() }
+    SceneUpdate { entities: (0..world.robots.len()).map(entity).collect() }
 }
 
 /// The rescuees as points with their states.

@@ -46,8 +46,8 @@ pub(super) fn print(out: &mut dyn Write, recordings: &[Recording], time_s: f64) 
 
 fn output(recording: &Recording, number: usize, frame: Frame) -> Output<'_> {
     let (header, world) = (&recording.header, &recording.header.world);
-    let robots = frame.robots.iter().zip(&world.robots).enumerate().map(|(id, (robot, place))| {
-        let role = place.body.as_ref().unwrap_or(&world.roles[place.role]);
+    let robots = frame.robots.iter().enumerate().map(|(id, robot)| {
+        let role = world.body_of(id);
         let levels = [robot.motion.energy_millipercent, robot.motion.hp_millipercent];
         let [energy, hp] = levels.map(|level| f64::from(level) / 1000.0);
         let needs = world.needs.iter().map(|need| need.name.as_str()).zip(world.needs_of(id, robot));
