@@ -236,7 +236,11 @@ fn a_body_of_its_own_is_what_a_robot_is_described_with() {
         with_their_own += u32::from(world.roles[world.robots[robot].role] != *spec);
         let reported = world.needs_of(robot, &frame.robots[robot])[speed];
         let factor = reported / spec.speed_mps;
-        assert!((world.health_floor..=1.0).contains(&factor), "robot {robot}: {reported} of {}", spec.speed_mps);
+        assert!(
+            (world.health_floor..=1.0).contains(&factor),
+            "robot {robot}: {reported} of {}",
+            spec.speed_mps
+        );
     }
     assert!(with_their_own > 0, "the scenario has suppliers with speeds of their own");
 }

@@ -75,7 +75,8 @@ fn of_values(values: &[f64]) -> Option<[f64; 4]> {
     let (mean, sd, count) = (mean?, sd?, values.len() as f64);
     let t = StudentsT::new(0.0, 1.0, count - 1.0).ok()?.inverse_cdf(0.975);
     let half = t * sd * (1.0 / f64::from(PAPERS_TRIALS) + 1.0 / count).sqrt();
-    Some([mean, sd, mean - half, mean + half])
+    // No quantity of the authors is negative.
+    Some([mean, sd, (mean - half).max(0.0), mean + half])
 }
 
 /// The predictions of all calibrated worlds together: the mean of their means, the root mean square of their standard deviations, and an
@@ -128,11 +129,12 @@ mod tests {
     #[test]
     fn an_interval_is_that_of_the_mean_of_ten_other_trials() {
         // numpy and scipy: t.ppf(0.975, 4) * std(ddof=1) * sqrt(1/10 + 1/5)
-        let [mean, sd, low, high] = of_values(&[1.0, 2.0, 3.0, 4.0, 10.0]).unwrap();
-        assert!((mean - 4.0).abs() < 1e-12 && (sd - 3.535_533_905_932_738).abs() < 1e-12);
+        let [mean, sd, low, high] = of_values(&[11.0, 12.0, 13.0, 14.0, 20.0]).unwrap();
+        assert!((mean - 14.0).abs() < 1e-12 && (sd - 3.535_533_905_932_738).abs() < 1e-12);
         assert!((high - mean - 5.376_562_827_045_078).abs() < 1e-9, "{}", high - mean);
         assert!((mean - low - (high - mean)).abs() < 1e-12);
         assert_eq!(of_values(&[1.0]), None);
+        assert_eq!(of_values(&[0.0, 0.1]).unwrap()[2], 0.0, "nothing is below nothing");
     }
 
     #[test]

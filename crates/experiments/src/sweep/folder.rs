@@ -20,7 +20,7 @@ use super::journal::{self, Damage, Journal};
 use super::line::{Finished, Kept};
 use super::lock::Lock;
 use super::measured::{Results, read_results};
-use super::ours::{check_is_ours, check_may_be_cleared, clear};
+use super::ours::{check_is_ours, check_may_be_cleared, clear, remove_unfinished};
 use super::store::{Order, Store, thaw};
 use super::tables::TRIALS;
 use crate::experiment::{Experiment, Place, Shard};
@@ -72,6 +72,7 @@ impl Folder {
             check_may_be_cleared(path)?;
             clear(path).map_err(trouble)?;
         }
+        remove_unfinished(path).map_err(trouble)?;
         let manifest = Manifest::new(&experiment, opening.shard, Vec::new());
         for name in [journal::FILE, archive::FILE] {
             let file = path.join(name);

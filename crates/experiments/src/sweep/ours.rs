@@ -179,13 +179,19 @@ fn files_in(folder: &Path) -> Vec<String> {
     found
 }
 
+/// Deletes the files that a killed process has left half written.
+pub(super) fn remove_unfinished(path: &Path) -> std::io::Result<()> {
+    known_names()
+        .filter(|name| *name != LOCK)
+        .try_for_each(|name| files::remove(&path.join(format!("{name}.new"))))
+}
+
 /// Deletes what a sweep wrote.
 pub(super) fn clear(path: &Path) -> std::io::Result<()> {
     remove_report(path)?;
     remove_recordings(path)?;
     for name in known_names().filter(|name| *name != LOCK) {
         files::remove(&path.join(name))?;
-        files::remove(&path.join(format!("{name}.new")))?;
     }
-    Ok(())
+    remove_unfinished(path)
 }

@@ -3,7 +3,7 @@
 use comfy_table::{Cell, Table};
 use experiments::rounds::{GroupLevels, KEYS, Likeness, Share};
 
-use super::{headed, right};
+use super::{Format, headed, right, shown_as};
 
 /// How often each policy's split is that of sorting.
 #[must_use]
@@ -24,7 +24,7 @@ pub fn likeness_table(policies: &[(String, [Likeness; 3])]) -> Table {
     };
     for (label, likenesses) in policies {
         for (i, (key, likeness)) in KEYS.iter().zip(likenesses).enumerate() {
-            let first = |text: &str| if i == 0 { text.to_owned() } else { String::new() };
+            let first = |text: &str| if i == 0 || is_repeated() { text.to_owned() } else { String::new() };
             let mut row = vec![
                 Cell::new(first(label)),
                 right(&first(&likeness.rounds().to_string())),
@@ -47,16 +47,14 @@ pub fn likeness_table(policies: &[(String, [Likeness; 3])]) -> Table {
 pub fn levels_table(levels: &[GroupLevels], tasks: &[String]) -> Table {
     let mut header = ["policy", "round", "n"].map(str::to_owned).to_vec();
     for level in ["energy", "HP"] {
-        let name =
-            |(i, task): (usize, &String)| if i == 0 { format!("{level} {task}") } else { task.clone() };
-        header.extend(tasks.iter().enumerate().map(name));
-        header.push("difference".to_owned());
+        header.extend(tasks.iter().map(|task| format!("{level} {task}")));
+        header.push(format!("{level} difference"));
     }
     let mut table = headed(header);
     let shown = |level: f64| right(&format!("{level:.1}"));
     let mut last = "";
     for row in levels {
-        let label = if row.policy == last { "" } else { &row.policy };
+        let label = if row.policy == last && !is_repeated() { "" } else { &row.policy };
         last = &row.policy;
         let mut cells = vec![Cell::new(label), right(&row.round.to_string()), right(&row.count.to_string())];
         for level in [0, 1] {
@@ -67,4 +65,9 @@ pub fn levels_table(levels: &[GroupLevels], tasks: &[String]) -> Table {
         table.add_row(cells);
     }
     table
+}
+
+/// Whether what a row shares with the one above is written again: everywhere but in a terminal.
+fn is_repeated() -> bool {
+    shown_as() != Format::Table
 }

@@ -25,7 +25,12 @@ fn the_same_command_goes_on_and_more_trials_only_add() {
     };
     succeeds(&sweep(&["--trials", "2"]));
     let results = folder.path().join("results/paper");
+    // What a process was killed at is no file of the sweep.
+    for name in ["host.json.new", "trials.csv.new"] {
+        std::fs::write(results.join(name), "half").unwrap();
+    }
     let again = sweep(&["--trials", "2"]);
+    assert!(files(&results).keys().all(|name| !name.ends_with(".new")));
     assert!(String::from_utf8_lossy(&again.stderr).contains("4 of 4 trials are there already"));
     let more = sweep(&["--trials", "3"]);
     assert!(String::from_utf8_lossy(&more.stderr).contains("4 of 6 trials are there already"));
