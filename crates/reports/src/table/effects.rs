@@ -9,8 +9,12 @@ use super::{headed, right};
 /// A row for each change of an axis, a column for each policy: the change of its mean in percent, with its interval.
 #[must_use]
 pub fn effects_table(effects: &[&Effect]) -> Table {
-    let percent = |effect: &&Effect| match effect.in_percent() {
-        Some(percent) => with_interval(percent, " %", effect.is_found()),
+    let percent = |effect: &Effect| match effect.in_percent() {
+        Some(percent) => {
+            // A tenth of a percent is below what trials tell; adding zero takes the sign from -0.0.
+            let [change, low, high] = percent.map(|value| (10.0 * value).round() / 10.0 + 0.0);
+            format!("{change:+.1} % ({low:.1} to {high:.1}){}", star(effect.is_found()))
+        }
         None => "-".to_owned(),
     };
     let cells = effects.iter().map(|effect| Entry {
@@ -25,7 +29,7 @@ pub fn effects_table(effects: &[&Effect]) -> Table {
 #[must_use]
 pub fn interactions_table(interactions: &[&Interaction]) -> Table {
     let text = |one: &Interaction| match one.change.zip(one.interval) {
-        Some((change, [low, high])) => with_interval([change, low, high], "", one.is_found()),
+        Some((change, [low, high])) => with_interval([change, low, high], one.is_found()),
         None => "-".to_owned(),
     };
     let cells = interactions.iter().map(|one| Entry {
@@ -40,7 +44,7 @@ pub fn interactions_table(interactions: &[&Interaction]) -> Table {
 #[must_use]
 pub fn differences_table(comparisons: &[&Comparison]) -> Table {
     let text = |one: &Comparison| match one.difference.zip(one.interval) {
-        Some((difference, [low, high])) => with_interval([difference, low, high], "", one.is_found()),
+        Some((difference, [low, high])) => with_interval([difference, low, high], one.is_found()),
         None => "-".to_owned(),
     };
     let cells = comparisons.iter().map(|one| Entry {
@@ -82,10 +86,13 @@ fn pivoted(title: &str, entries: impl Iterator<Item = Entry>) -> Table {
 }
 
 /// `value (low to high)`, with a star where it is shown.
-fn with_interval([value, low, high]: [f64; 3], unit: &str, is_found: bool) -> String {
-    let star = if is_found { " *" } else { "" };
+fn with_interval([value, low, high]: [f64; 3], is_found: bool) -> String {
     let sign = if value > 0.0 { "+" } else { "" };
-    format!("{sign}{}{unit} ({} to {}){star}", short(value), short(low), short(high))
+    format!("{sign}{} ({} to {}){}", short(value), short(low), short(high), star(is_found))
+}
+
+fn star(is_found: bool) -> &'static str {
+    if is_found { " *" } else { "" }
 }
 
 /// A change of an axis: the name of a variant alone.
