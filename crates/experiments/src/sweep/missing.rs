@@ -16,16 +16,18 @@ const SEEDS_AT_A_TIME: usize = 8;
 #[must_use]
 pub fn missing(folder: &Folder, shard: Option<Shard>) -> Vec<Place> {
     let experiment = folder.experiment();
-    let policies = experiment.policies.len();
+    let cases: Vec<Vec<u32>> =
+        (0..experiment.cases.len()).map(|case| experiment.trials_of(case, shard).collect()).collect();
+    let most = cases.iter().map(Vec::len).max().unwrap_or(0);
     let mut missing = Vec::new();
-    for case in 0..experiment.cases.len() {
-        // A few seeds at a time, so that a sweep that is broken off has whole pairs, and policies that decide
-        // alike share their trials; within these policy by policy, so that no two threads simulate what they
-        // could share.
-        let trials: Vec<u32> = experiment.trials_of(case, shard).collect();
-        for some in trials.chunks(SEEDS_AT_A_TIME) {
-            let places =
-                (0..policies).flat_map(|policy| some.iter().map(move |trial| (case, policy, *trial)));
+    // A few seeds at a time, in every case: an interrupted sweep has whole pairs, and can be compared in all cases.
+    // Within these policy by policy: policies that decide alike share their trials, and no two threads simulate
+    // what they could share.
+    for from in (0..most).step_by(SEEDS_AT_A_TIME) {
+        for (case, trials) in cases.iter().enumerate() {
+            let some = &trials[from.min(trials.len())..(from + SEEDS_AT_A_TIME).min(trials.len())];
+            let policies = 0..experiment.policies.len();
+            let places = policies.flat_map(|policy| some.iter().map(move |trial| (case, policy, *trial)));
             missing.extend(places.filter(|place| !folder.results().contains_key(place)));
         }
     }
