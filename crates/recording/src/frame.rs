@@ -245,7 +245,7 @@ impl RobotState {
     }
 
     pub(crate) fn write(&self, out: &mut Vec<i32>) {
-        out.extend([
+        out.extend_from_slice(&[
             i32::from(self.activity),
             some(self.rescuee),
             some(self.until_step),
@@ -282,9 +282,10 @@ impl Route {
         let traveller = simulation.navigator().traveller(robot.id);
         let goal = traveller.goal();
         out.push(i32::from(goal.is_some()));
-        out.extend(goal.iter().flat_map(|goal| [milli(goal.point.x), milli(goal.point.y)]));
         let ahead = traveller.route().map_or(&[][..], |route| route.ahead());
-        out.extend(ahead.iter().flat_map(|at| [milli(at.x), milli(at.y)]));
+        for at in goal.iter().map(|goal| &goal.point).chain(ahead) {
+            out.extend_from_slice(&[milli(at.x), milli(at.y)]);
+        }
     }
 
     pub(crate) fn read(numbers: &[i32]) -> Result<Self, NotNumbers> {
@@ -314,7 +315,7 @@ impl RescueeFrame {
     }
 
     pub(crate) fn write(self, out: &mut Vec<i32>) {
-        out.extend([i32::from(self.state), some(self.robot)]);
+        out.extend_from_slice(&[i32::from(self.state), some(self.robot)]);
     }
 
     pub(crate) fn read(numbers: &[i32]) -> Result<Self, NotNumbers> {
@@ -334,7 +335,8 @@ impl MovedDebris {
     }
 
     pub(crate) fn write(self, out: &mut Vec<i32>) {
-        out.extend([self.position_mm[0], self.position_mm[1], self.angle, self.sightings.cast_signed()]);
+        let [x, y] = self.position_mm;
+        out.extend_from_slice(&[x, y, self.angle, self.sightings.cast_signed()]);
     }
 
     pub(crate) fn read(numbers: &[i32]) -> Result<Self, NotNumbers> {
@@ -353,10 +355,11 @@ impl GroupFrame {
             Some(_) => mission.knowledge_of_group(TaskId(number as u16)),
             None => mission.knowledge_at_home(),
         };
-        out.extend([i32::from(group.is_some_and(|group| group.at_work)), 0]);
+        out.extend_from_slice(&[i32::from(group.is_some_and(|group| group.at_work)), 0]);
         let before = out.len();
-        let debris = (0..).zip(&known.debris).filter(|(_, sighting)| **sighting > 0);
-        out.extend(debris.flat_map(|(number, sighting)| [number, sighting.cast_signed()]));
+        for (number, sighting) in (0..).zip(&known.debris).filter(|(_, sighting)| **sighting > 0) {
+            out.extend_from_slice(&[number, sighting.cast_signed()]);
+        }
         out[before - 1] = count((out.len() - before) / 2);
         out.extend(known.known_zones().iter().map(|(number, _)| number.cast_signed()));
     }
