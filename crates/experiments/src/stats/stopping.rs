@@ -1,6 +1,7 @@
-//! When a stopping rule looks.
+//! When a stopping rule looks at the interval's width.
 
-/// Pairs before the first look: with fewer, a chance narrow spread would stop it too often.
+/// Pairs before the first look. With fewer pairs, a spread that is narrow by chance would stop the sweep
+/// too often.
 pub const FIRST_LOOK: u32 = 20;
 
 /// Pairs at the look after this one: a quarter more.

@@ -1,4 +1,4 @@
-//! The trials that a folder has not got yet: which they are, and running them.
+//! The trials that a folder lacks, and running them.
 
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
@@ -8,20 +8,19 @@ use crate::experiment::{Place, Shard};
 use crate::failure::Failure;
 use crate::run::{Limits, Outcome, Run, run_batches};
 
-/// Seeds of which trials are run at a time.
+/// Number of seeds whose trials are run together.
 const SEEDS_AT_A_TIME: usize = 8;
 
-/// The trials of a shard, or of the whole sweep, that a folder has not got yet, in the order in which they
-/// are run.
+/// The trials of a shard, or of the whole sweep, that a folder lacks, in the order in which they are run.
 #[must_use]
 pub fn missing(folder: &Folder, shard: Option<Shard>) -> Vec<Place> {
     let experiment = folder.experiment();
     let policies = experiment.policies.len();
     let mut missing = Vec::new();
     for case in 0..experiment.cases.len() {
-        // A few seeds at a time, so that a sweep that is broken off has whole pairs, and policies that decide
-        // alike share their trials; within these policy by policy, so that no two threads simulate what they
-        // could share.
+        // A few seeds at a time, so that an interrupted sweep has whole pairs, and policies that decide
+        // alike share their trials. Within these seeds policy by policy, so that no two threads simulate a
+        // trial that they could share.
         let trials: Vec<u32> = experiment.trials_of(case, shard).collect();
         for some in trials.chunks(SEEDS_AT_A_TIME) {
             let places =
@@ -32,10 +31,10 @@ pub fn missing(folder: &Folder, shard: Option<Shard>) -> Vec<Place> {
     missing
 }
 
-/// Runs trials of a folder's sweep; each is on disk before `done` hears of it.
+/// Runs trials of a folder's sweep. Each trial is on disk before `done` is called with it.
 ///
 /// # Errors
-/// The disk does not take a trial, no thread can be started, or `stop` was set before all were done.
+/// The disk does not take a trial, no thread can be started, or `stop` was set before all trials were done.
 pub fn run_trials(
     folder: &mut Folder,
     trials: Vec<Place>,
