@@ -9,8 +9,8 @@ use crate::set::SetError;
 const MAX_NAMES: usize = 20;
 
 impl Fields {
-    /// The error for a path that is none of these fields. `what` describes the whole text, for example `the
-    /// file`.
+    /// The error for a path that is none of these fields. `what` describes the whole text, for example
+    /// `the file`.
     #[must_use]
     pub fn unknown(&self, path: &str, what: &str) -> SetError {
         let mut trail = self.trail(path).into_iter().rev();

@@ -1,8 +1,8 @@
 //! Pages of `docs/` hold the output of commands. The block after the line `<!-- $ usar ... -->` is the
 //! output of that command. `<!-- $ usar ... | TITLE -->` selects a part of it: the table below the line
 //! that begins with this title, as Markdown, or the paragraph that begins with it, as a block. A number
-//! selects the first, second, ... table. A table that is too long for a page is a CSV beside it: `<!-- $
-//! usar ... | TITLE > FILE -->`.
+//! selects the first, second, ... table. A table that is too long for a page is a CSV beside it:
+//! `<!-- $ usar ... | TITLE > FILE -->`.
 
 use std::path::Path;
 use std::process::Command;

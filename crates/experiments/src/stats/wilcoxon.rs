@@ -5,8 +5,8 @@
 //! [`EXACT_PAIRS`] differences, this distribution is counted exactly by adding one difference after the
 //! other. Up to [`DRAWN_PAIRS`], [`DRAWS`] random choices of signs replace it. Beyond that, the normal
 //! distribution with the same mean and variance replaces it, with ties and a continuity correction; it is
-//! then indistinguishable from the exact one. Checked against `SciPy` 1.17.1, `wilcoxon(d,
-//! method=PermutationMethod(n_resamples=numpy.inf))`.
+//! then indistinguishable from the exact one. Checked against `SciPy` 1.17.1,
+//! `wilcoxon(d, method=PermutationMethod(n_resamples=numpy.inf))`.
 
 use rand::rngs::ChaCha8Rng;
 use rand::{Rng, SeedableRng};

@@ -1,4 +1,4 @@
-//! Single decisions: made otherwise, all of them played, and told why.
+//! Single decisions: changed, played in all ways, and explained.
 
 use serde_json::Value;
 
@@ -109,7 +109,7 @@ fn the_oracle_as_a_policy_decides_as_the_oracle_says() {
     refused(here, 2, &["group", "team.csv", "--policy", "ORACLE"], &["here is no trial"]);
 }
 
-/// The RNE between the groups of the first round, worked out from the needs as they were recorded.
+/// The RNE between the groups of the first round, computed from the recorded needs.
 #[test]
 fn why_is_what_the_recorded_needs_say() {
     let folder = place();

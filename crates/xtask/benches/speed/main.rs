@@ -1,6 +1,6 @@
 //! The cost of a step, as its ratio to the raw physics measured in the same process, in alternation. Times
-//! depend on the machine and its load. Ratios depend on them less, and instruction counts (`just
-//! instructions`) hardly.
+//! depend on the machine and its load. Ratios depend on them less, and instruction counts
+//! (`just instructions`) hardly.
 //!
 //! `cargo bench --bench speed [-- CASE...]`
 
