@@ -18,7 +18,7 @@ pub use parse::{Bad, parse};
 /// Trials at the first look.
 pub const FIRST_LOOK: u32 = 10;
 
-/// What is expected.
+/// A relation that a sweep's outcome is expected to fulfil.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Expectation {
     /// A metric of a policy fulfils a relation in a share of the seeds.
@@ -86,13 +86,13 @@ impl Relation {
 pub struct Expected {
     /// The text as written.
     pub text: String,
-    /// What is expected.
+    /// The parsed expectation.
     pub what: Expectation,
     /// Confidence of the verdict, in (0, 1).
     pub confidence: f64,
 }
 
-/// What the trials say about an expectation.
+/// The verdict of trials on an expectation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Verdict {

@@ -4,7 +4,7 @@ use std::cell::RefCell;
 
 use thiserror::Error;
 
-/// What went wrong, with the message for the user.
+/// A failure, with the message for the user.
 #[derive(Debug, Error)]
 pub enum Failure {
     /// The input cannot be used. Nothing was written.

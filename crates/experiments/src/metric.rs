@@ -222,7 +222,7 @@ pub struct Metric {
     pub name: String,
     /// Name in words.
     pub title: String,
-    /// What it measures, in a sentence or two.
+    /// Meaning, in a sentence or two.
     pub meaning: &'static str,
     /// Unit; empty for a count.
     pub unit: &'static str,

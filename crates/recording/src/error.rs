@@ -33,7 +33,7 @@ pub enum ReadError {
         kind: String,
         /// Byte at which it begins in the file.
         at: usize,
-        /// What is wrong.
+        /// Description of the damage.
         reason: String,
     },
     /// A requested frame does not exist.

@@ -20,7 +20,7 @@ pub(crate) struct Sketch {
     pub name: String,
     /// Heading.
     pub title: String,
-    /// What is shown, and from how many trials.
+    /// Content of the figure, and the number of trials behind it.
     pub caption: String,
     /// Its panels.
     pub drawing: Drawing,
@@ -92,7 +92,7 @@ pub(crate) struct Figure {
     pub name: String,
     /// Heading.
     pub title: String,
-    /// What is shown, and from how many trials.
+    /// Content of the figure, and the number of trials behind it.
     pub caption: String,
     /// The drawing.
     pub svg: String,
@@ -100,7 +100,7 @@ pub(crate) struct Figure {
     pub csv: String,
 }
 
-/// One panel: what is drawn, and its axes.
+/// One panel: its plots and its axes.
 pub(crate) struct Panel {
     /// The metric of the panel; empty for none.
     pub metric: String,

@@ -22,7 +22,7 @@ pub struct ShownTrial {
 pub(crate) struct Map {
     /// Name of its file.
     pub name: String,
-    /// What is shown.
+    /// Content of the map.
     pub caption: String,
     /// The drawing.
     pub svg: String,

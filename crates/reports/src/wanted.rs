@@ -23,7 +23,7 @@ impl Wanted {
     /// The content that a sweep's file asks for, without any shown trial.
     ///
     /// # Errors
-    /// What the sweep file asks for is invalid.
+    /// The sweep file's questions are invalid.
     pub fn of(experiment: &Experiment) -> Result<Self, Failure> {
         let asked = Asked::of(experiment, &Wishes::default())?;
         Ok(Self { asked, title: None, case: None, shown: Vec::new() })

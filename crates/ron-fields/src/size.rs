@@ -15,7 +15,7 @@ pub struct TooMuch {
     pub column: usize,
     /// The limit.
     pub most: usize,
-    /// What the limit counts.
+    /// The limited quantity, in words.
     pub what: &'static str,
 }
 

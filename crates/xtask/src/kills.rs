@@ -12,7 +12,7 @@ use flate2::read::MultiGzDecoder;
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 
-/// What the kills led to.
+/// Counts of a series of kills.
 #[derive(Debug, Default)]
 pub struct Report {
     /// Number of processes that were killed before they had finished.

@@ -1,8 +1,8 @@
 //! Random worlds in which every robot can reach all its goals, each from one seed.
 //!
 //! Feasibility is determined by a separate flood fill instead of the planner under test. Its points lie on
-//! a fine grid and keep a robot's radius and clearance from all debris and walls. The feasible points are
-//! those connected with each other in the largest part.
+//! a fine grid and keep a robot's radius and clearance from all debris and walls. The largest connected
+//! part of these points is feasible.
 
 use std::collections::BTreeMap;
 

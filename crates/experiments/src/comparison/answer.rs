@@ -5,7 +5,7 @@ use crate::metric::{Direction, Metric};
 use crate::stats::Moments;
 use crate::sweep::folder::Folder;
 
-/// What a case says about a metric: which policy has the highest mean (the lowest, for a cost), by how
+/// The answer for a case and a metric: which policy has the highest mean (the lowest, for a cost), by how
 /// much, and how certain the difference is. `None` without values.
 #[must_use]
 pub fn answer(folder: &Folder, case: usize, metric: usize, comparisons: &[&Comparison]) -> Option<String> {

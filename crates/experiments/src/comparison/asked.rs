@@ -6,7 +6,7 @@ use super::Choice;
 use crate::experiment::Experiment;
 use crate::failure::Failure;
 
-/// What the command line says about comparisons.
+/// The command line's choice of comparisons.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Wishes {
     /// Metrics, by name. Empty: the metrics that the sweep file names.

@@ -13,7 +13,7 @@ use crate::metric::Direction;
 /// Confidence of the interval whose inclusion in the margin is two one-sided tests at 5 %.
 pub const TOST_CONFIDENCE: f64 = 0.90;
 
-/// What a comparison says of its first policy.
+/// The verdict of a comparison on its first policy.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Verdict {

@@ -74,9 +74,9 @@ pub struct Comparison {
     pub p_holm: Option<f64>,
     /// Matched-pairs rank-biserial correlation.
     pub effect: Option<f64>,
-    /// What pairing is worth: how many times as many unpaired trials would give the mean difference with
-    /// the same precision. The variance of the difference without pairing (the sum of both variances) over
-    /// the variance with pairing.
+    /// Gain from pairing: how many times as many unpaired trials would give the mean difference with the
+    /// same precision. The variance of the difference without pairing (the sum of both variances) over the
+    /// variance with pairing.
     pub pairing: Option<f64>,
     /// Pairs needed for 80 % power, if the true effect is the observed one.
     pub pairs_needed: Option<u64>,
@@ -252,7 +252,7 @@ fn comparison(
     }
 }
 
-/// What pairing is worth; `None` if all differences are equal.
+/// The gain from pairing; `None` if all differences are equal.
 fn pairing(pairs: &Pairs, differences: &[f64]) -> Option<f64> {
     let variance = |values: &[f64]| Moments::of(values).sd.map(|sd| sd * sd);
     let paired = variance(differences).filter(|variance| *variance > 0.0)?;

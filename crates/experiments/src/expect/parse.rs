@@ -7,7 +7,7 @@ use crate::metric::Catalogue;
 /// Confidence of an expectation without a stated confidence.
 const CONFIDENCE: f64 = 0.95;
 
-/// What is wrong with an expectation, in one sentence.
+/// Error of an expectation, in one sentence.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("expect: {reason}, found {found:?}")]
 pub struct Bad {

@@ -7,7 +7,7 @@ use super::Experiment;
 use super::file::SweepFile;
 use crate::failure::Failure;
 
-/// What a sweep asks. Empty for a scenario without a sweep file.
+/// The questions of a sweep file. Empty for a scenario without a sweep file.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Asks {
     /// The metrics that the sweep is about; empty for the metrics of the paper's tables.
@@ -21,7 +21,7 @@ pub struct Asks {
 }
 
 impl Experiment {
-    /// What the file that this sweep was read from asks.
+    /// The questions of the file from which this sweep was read.
     ///
     /// # Errors
     /// An unknown metric, or a margin that is not a number above 0, with the field.

@@ -17,7 +17,7 @@ pub struct Axis {
     pub path: String,
     /// The field's values in RON, or the names of the variants.
     pub values: Vec<String>,
-    /// What each variant sets: paths and values in RON. Empty for an axis of one field.
+    /// Settings of each variant: paths and values in RON. Empty for an axis of one field.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub variants: Vec<Vec<(String, String)>>,
 }
@@ -26,7 +26,7 @@ pub struct Axis {
 pub const VARIANT: &str = "variant";
 
 impl Axis {
-    /// What one of the axis's values sets: paths and values in RON.
+    /// The settings for one of the axis's values: paths and values in RON.
     #[must_use]
     pub fn settings<'a>(&'a self, value: &'a str) -> Vec<(&'a str, &'a str)> {
         if self.variants.is_empty() {

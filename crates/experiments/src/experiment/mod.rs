@@ -1,4 +1,4 @@
-//! What a sweep runs: a scenario or a sweep file, resolved into cases, policies and trials.
+//! Experiments: a scenario or a sweep file, resolved into cases, policies and trials.
 
 mod again;
 mod asks;
@@ -61,7 +61,7 @@ impl Program {
     }
 }
 
-/// What the command line sets instead of the file.
+/// Settings of the command line that replace those of the file.
 #[derive(Debug, Clone, Default)]
 pub struct Overrides {
     /// Policies instead of the file's.
@@ -92,7 +92,7 @@ pub struct Experiment {
     pub cases: Vec<Case>,
     /// The policies to compare.
     pub policies: Vec<PolicySpec>,
-    /// What is measured of each trial.
+    /// The metrics of each trial.
     pub metrics: Catalogue,
     /// Number of paired trials for each case and policy.
     pub trials: u32,

@@ -51,7 +51,7 @@ impl PolicySpec {
     /// Reads a policy.
     ///
     /// # Errors
-    /// An unknown name, options that the policy does not have, or brackets that do not close; in one sentence.
+    /// An unknown name, options that the policy does not have, or unclosed brackets; in one sentence.
     pub fn parse(text: &str) -> Result<Self, String> {
         let text = text.trim();
         let open = text.find('(').unwrap_or(text.len());

@@ -29,7 +29,8 @@ impl Free {
     /// fields that a scenario has.
     ///
     /// # Errors
-    /// A text of another form, a path that is not in the scenario, or a range that cannot be searched; in one sentence.
+    /// The text has another form, the scenario lacks a path, or the range cannot be searched; in one
+    /// sentence.
     pub fn parse(spec: &str, fields: &Fields, known: &Fields) -> Result<Self, String> {
         let form = || {
             format!(

@@ -18,7 +18,7 @@ const LOG: &str = "evaluations.csv";
 /// Name of the log's last column.
 const CHECKSUM: &str = "xxh3_64";
 
-/// What a folder with a log is used for.
+/// The use of a folder with a log.
 #[derive(Debug, Clone, Copy)]
 pub struct Purpose {
     /// Its name in messages: `calibration`.

@@ -14,7 +14,7 @@ const HALT_CHECK_STEPS: u64 = 64;
 /// The outcome of a decision, from the moment of the decision on.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Outcome {
-    /// For each task, what was done and spent for it.
+    /// For each task, the deliveries and costs.
     pub tasks: Vec<TaskTotals>,
     /// Percent points of energy and of HP that robots spent outside any group.
     pub ungrouped: [f64; 2],
@@ -38,7 +38,7 @@ impl Outcome {
         })
     }
 
-    /// What the trial has counted so far.
+    /// The counts of a trial so far.
     fn so_far(trial: &Simulation) -> Self {
         let metrics = trial.metrics();
         Self {

@@ -44,7 +44,7 @@ pub struct Study {
     pub program: [String; 2],
 }
 
-/// What the command line sets.
+/// Settings from the command line.
 #[derive(Debug, Clone)]
 pub struct Choices {
     /// See [`Study::then`].

@@ -56,7 +56,7 @@ pub fn series_times(duration_s: f64) -> impl Iterator<Item = f64> {
 pub struct Fault {
     /// The kind of fault.
     pub kind: FaultKind,
-    /// What happened, in a sentence.
+    /// Description of the fault, in a sentence.
     pub reason: String,
 }
 
@@ -87,7 +87,7 @@ impl FaultKind {
 }
 
 impl Fault {
-    /// What happened to which trial, in one sentence.
+    /// A sentence with the trial and its fault.
     #[must_use]
     pub fn sentence(&self, key: &TrialKey) -> String {
         let TrialKey { label, trial, seed, .. } = key;

@@ -48,7 +48,7 @@ pub fn effects(effects: &[f64]) -> Option<Effects> {
     })
 }
 
-/// Values of a block: at two independent points `a` and `b`, and at `a` with one parameter after another taken
+/// Values of a block: at two independent points `a` and `b`, and at `a` with each parameter in turn taken
 /// from `b`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Block {

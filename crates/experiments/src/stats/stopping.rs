@@ -20,7 +20,8 @@ mod tests {
     use crate::stats::Moments;
     use crate::stats::paired::t_half_width;
 
-    /// Share of 2,000 sequential experiments whose last interval holds the true mean, in percent, when the bound takes about `pairs` pairs.
+    /// Share of 2,000 sequential experiments whose last interval holds the true mean, in percent, if the
+    /// bound needs about `pairs` pairs.
     fn coverage(pairs: f64) -> f64 {
         let bound = 1.96 / pairs.sqrt();
         let mut draws = ChaCha8Rng::seed_from_u64(5);

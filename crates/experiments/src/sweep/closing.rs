@@ -15,7 +15,7 @@ use crate::experiment::{Experiment, Keep, Place, Shard};
 use crate::failure::Failure;
 use crate::files::{FileHash, NewFile, trouble};
 
-/// What is made, and from which sweep.
+/// Settings of the closing of a sweep.
 pub(super) struct Closing<'a> {
     /// The folder to write to.
     pub folder: &'a Path,

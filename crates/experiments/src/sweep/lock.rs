@@ -81,7 +81,7 @@ impl Holder {
     }
 }
 
-/// What is known about an existing lock.
+/// State of an existing lock.
 struct Found {
     holder: Option<Holder>,
     /// Whether no process of this host has the `flock`; `None` if `flock` does not work.

@@ -1,4 +1,5 @@
-//! Figures of metrics: box plots as in the paper, energy against HP, paired differences, and metrics along an axis.
+//! Figures of metrics: box plots as in the paper, energy against HP, paired differences, and metrics along
+//! an axis.
 
 use experiments::Failure;
 use experiments::comparison::Comparison;
@@ -132,7 +133,7 @@ pub(super) fn capitalised(text: &str) -> String {
     letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect())
 }
 
-/// Energy against HP per rescuee: what a rescue costs.
+/// Energy against HP per rescuee: the cost of a rescue.
 pub(super) fn costs(folder: &Folder, case: usize, only: Option<&[String]>) -> Result<Sketch, Failure> {
     let Experiment { policies, metrics, .. } = folder.experiment();
     let names = names(folder.experiment());

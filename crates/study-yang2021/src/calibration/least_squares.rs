@@ -101,7 +101,8 @@ impl LeastSquares {
         &self.centre + step
     }
 
-    /// The residuals at the centre and their slopes, a row for each axis, by a weighted regression with a ridge.
+    /// The residuals at the centre, and their slopes with a row for each axis, by a weighted ridge
+    /// regression.
     fn model(&self) -> Option<(DVector<f64>, DMatrix<f64>)> {
         let count = self.known.first()?.residuals.len();
         let (axes, reach) = (self.centre.len(), self.reach());

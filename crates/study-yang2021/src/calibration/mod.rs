@@ -199,7 +199,7 @@ impl Calibration {
         Ok(Some((0..self.target.spreads.len()).map(|q| rows.iter().map(|row| row[q]).collect()).collect()))
     }
 
-    /// Edge penalty: what values near the ends of their ranges add to the misfit.
+    /// Edge penalty of these values: the sum over all values near the ends of their ranges.
     #[must_use]
     pub fn edge_penalty(&self, values: &[f64]) -> f64 {
         self.free.iter().zip(values).map(|(free, value)| edge_penalty(free, *value)).sum()
@@ -264,9 +264,8 @@ impl Calibration {
     }
 }
 
-/// What a value near an end of the range adds to a misfit: `EDGE` at the very end, falling with the square
-/// of the distance to 0 at a twentieth of the range. A value at an end means that the range decides instead
-/// of the data.
+/// Edge penalty of a value: `EDGE` at the very end of its range, 0 from a twentieth of the range inwards,
+/// and quadratic in between. A value at an end means that the range decides instead of the data.
 fn edge_penalty(free: &Free, value: f64) -> f64 {
     let place = free.place_of(value);
     let from_end = place.min(1.0 - place).max(0.0);

@@ -192,7 +192,7 @@ const POWER_SEED: u64 = 1;
 
 /// The results of a scenario's trials for each claim.
 pub struct Judged {
-    /// What the scenario stands for.
+    /// The role of the scenario in the study.
     pub standing: Standing,
     /// Name of the scenario.
     pub scenario: String,

@@ -5,7 +5,8 @@ use serde_json::Value;
 use crate::place::{place, refused};
 use crate::support::{succeeds, usar};
 
-/// The paper's scenario with two robots of each role, so that there are eight assignments, and three short rounds.
+/// The paper's scenario with two robots of each role, and therefore eight assignments, and with three short
+/// rounds.
 const SMALL: [&str; 8] = [
     "short.ron",
     "--set",

@@ -48,7 +48,7 @@ fn run_family((name, world): &Family, seeds: std::ops::Range<u64>) -> bool {
     totals.print(seeds.end - seeds.start)
 }
 
-/// The reason that stands for a panic.
+/// The text that stands for the message of a panic.
 const INTERNAL: &str = "internal error";
 
 /// Number of worlds between two outputs.

@@ -1,16 +1,18 @@
 //! The problems, each with its source: open space, narrow places, crowds.
 //!
 //! Sources, as the problems name them:
-//! - ORCA: van den Berg, Guy, Lin, Manocha, "Reciprocal n-body collision avoidance", ISRR 2009 (Springer 2011). Robots on a circle swap to
-//!   the antipodal places.
-//! - CADRL: Chen, Liu, Everett, How, "Decentralized non-communicating multiagent collision avoidance with deep reinforcement learning",
-//!   ICRA 2017. Crossings and swaps.
-//! - Social mini-games: Chandra, Zinage, Bakolas, Stone, Biswas, arXiv 2308.10966. Doorway, hallway, intersection.
-//! - MAPF: Stern et al., "Multi-agent pathfinding: definitions, variants, and benchmarks", Symposium on Combinatorial Search 2019. Swapping
-//!   conflicts, which corridors force; random obstacles; permutations.
+//! - ORCA: van den Berg, Guy, Lin, Manocha, "Reciprocal n-body collision avoidance", ISRR 2009 (Springer
+//!   2011). Robots on a circle swap to the antipodal places.
+//! - CADRL: Chen, Liu, Everett, How, "Decentralized non-communicating multiagent collision avoidance with
+//!   deep reinforcement learning", ICRA 2017. Crossings and swaps.
+//! - Social mini-games: Chandra, Zinage, Bakolas, Stone, Biswas, arXiv 2308.10966. Doorway, hallway,
+//!   intersection.
+//! - MAPF: Stern et al., "Multi-agent pathfinding: definitions, variants, and benchmarks", Symposium on
+//!   Combinatorial Search 2019. Swapping conflicts, which corridors force; random obstacles; permutations.
 //!
-//! The papers leave sizes open or use other robots. Here they follow from the robot: it needs 0.8 m of width, because its routes keep 0.15 m
-//! from walls. One lane is 0.9 m wide, too narrow for two robots side by side. Two lanes are 1.6 m wide: two robots pass with all their margins.
+//! The papers leave sizes open or use other robots. Here sizes follow from the robot. It needs 0.8 m of
+//! width, because its routes keep 0.15 m from walls. One lane is 0.9 m wide, too narrow for two robots side
+//! by side. Two lanes are 1.6 m wide: two robots pass with all their margins.
 
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
