@@ -138,7 +138,7 @@ pub(crate) fn layout(plots: &[Plot], title: &str) -> Layout {
         .with_font_family("DejaVu Sans, Helvetica, Arial, sans-serif")
 }
 
-/// A number at an axis, with only as many digits as it needs, at most six decimals.
+/// A number at an axis: up to six decimals without trailing zeros, or scientific notation below 0.001.
 fn tick(value: f64) -> String {
     if value != 0.0 && value.abs() < 0.001 {
         return format!("{value:.1e}");

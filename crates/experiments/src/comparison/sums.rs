@@ -10,8 +10,8 @@ use super::pairs::Cell;
 use crate::stats::bootstrap::statistic_interval;
 use crate::sweep::folder::{Folder, Measured};
 
-/// A trial with fewer rescuees is not compared by its own ratio: one rescuee more or less would change it
-/// by a fifth.
+/// If a trial has fewer rescuees than this, ratios of sums are compared. One rescuee more or less would
+/// change the trial's own ratio by a fifth.
 pub const FEW: f64 = 5.0;
 
 /// Costs and rescuees of both cells, pair by pair.
