@@ -1,5 +1,5 @@
-//! Tells the program what it was built from, for the manifest of its results: the commit, and a hash of the
-//! sources, which decide numbers whether they are committed or not.
+//! Tells the program what it was built from: the commit, and a hash of the sources. The manifest of its
+//! results names both. The hash also covers uncommitted sources, because they decide numbers too.
 
 use std::collections::hash_map::DefaultHasher;
 use std::hash::{Hash, Hasher};
@@ -34,8 +34,8 @@ fn main() {
     println!("cargo::rerun-if-changed=../../Cargo.toml");
 }
 
-/// The crates that the program is made of, those above this one too. Results are refused to a program of
-/// other sources.
+/// The crates that the program consists of, including the crates above this one. Results are refused to a
+/// program with other sources.
 const CRATES: [&str; 11] = [
     "ron-fields",
     "rne-core",

@@ -1,9 +1,10 @@
-//! Expectations of a sweep's outcome, tested with as few trials as it takes.
+//! Expectations about a sweep's outcome, tested with as few trials as needed.
 //!
-//! An expectation is looked at after 10, 20, 40, ... trials. At each look an interval of the share or of
-//! the mean difference is compared with what is expected: it *holds* if the whole interval does, it *fails*
-//! if none of it does, and otherwise more trials decide. The confidence is shared over the planned looks
-//! (Bonferroni), so that a verdict is wrong with at most the stated probability however often one looks.
+//! The trials are looked at after 10, 20, 40, ... of them. At each look, an interval of the share or of the
+//! mean difference is compared with the expectation. The expectation *holds* if the whole interval agrees
+//! with it, and *fails* if no part of the interval does. Otherwise more trials decide. The confidence is
+//! shared over the planned looks (Bonferroni). A verdict is therefore wrong with at most the stated
+//! probability, however many looks there are.
 
 mod parse;
 
@@ -17,10 +18,10 @@ pub use parse::{Bad, parse};
 /// Trials at the first look.
 pub const FIRST_LOOK: u32 = 10;
 
-/// What is expected.
+/// A relation that a sweep's outcome is expected to fulfil.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Expectation {
-    /// A metric of a policy is so in a share of the seeds.
+    /// A metric of a policy fulfils a relation in a share of the seeds.
     Share {
         /// The policy, by its place.
         policy: usize,
@@ -33,7 +34,7 @@ pub enum Expectation {
         /// The least share of the seeds, in (0, 1].
         share: f64,
     },
-    /// The mean of one policy is above that of another by more than a difference.
+    /// The mean of one policy exceeds the mean of another by more than a difference.
     Above {
         /// The metric, by its place.
         metric: usize,
@@ -80,18 +81,18 @@ impl Relation {
     }
 }
 
-/// An expectation as it is written, with its confidence.
+/// An expectation as written, with its confidence.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Expected {
-    /// As it is written.
+    /// The text as written.
     pub text: String,
-    /// What is expected.
+    /// The parsed expectation.
     pub what: Expectation,
     /// Confidence of the verdict, in (0, 1).
     pub confidence: f64,
 }
 
-/// What trials say of an expectation.
+/// The verdict of trials on an expectation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Verdict {
@@ -99,11 +100,11 @@ pub enum Verdict {
     Holds,
     /// It does not hold.
     Fails,
-    /// The trials decide neither.
+    /// The trials do not decide.
     Undecided,
 }
 
-/// A verdict and what it stands on.
+/// A verdict and its evidence.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Judgement {
     /// The verdict.
@@ -116,16 +117,16 @@ pub struct Judgement {
     pub interval: Option<[f64; 2]>,
 }
 
-/// The looks up to so many trials: 10, 20, 40, ..., and the last.
+/// The looks up to this many trials: 10, 20, 40, ..., and the last.
 #[must_use]
 pub fn looks(most: u32) -> Vec<u32> {
     let doubled = std::iter::successors(Some(FIRST_LOOK), |look| look.checked_mul(2));
     doubled.take_while(|look| *look < most).chain([most]).collect()
 }
 
-/// Judges an expectation by values of trials: `value(policy, metric)` has one value for each trial, nothing
-/// where a metric is undefined. `looks` is how many looks are planned, and `is_last` whether this is the
-/// last of them.
+/// Judges an expectation by values of trials. `value(policy, metric)` has one value for each trial, `None`
+/// where the metric is undefined. `looks` is the number of planned looks, and `is_last` says whether this
+/// is the last of them.
 #[must_use]
 pub fn judge(
     expected: &Expected,
@@ -137,7 +138,7 @@ pub fn judge(
     match expected.what {
         Expectation::Share { policy, metric, relation, value: bound, share } => {
             let values = value(policy, metric);
-            // A metric that is undefined is not as expected.
+            // An undefined metric counts as a trial that does not fulfil the relation.
             let held = values.iter().filter(|value| value.is_some_and(|value| relation.holds(value, bound)));
             judge_share([held.count(), values.len()], share, confidence, is_last)
         }
@@ -177,7 +178,8 @@ fn judge_share([held, n]: [usize; 2], share: f64, confidence: f64, is_last: bool
     let observed = (n > 0).then(|| held as f64 / n as f64);
     let interval = clopper_pearson(held, n, confidence);
     let verdict = if share >= 1.0 {
-        // Every seed: one against it decides, and no number of trials can show it for all seeds there are.
+        // A share of 100 %: one seed against it decides. No number of trials can prove it for all possible
+        // seeds.
         match (held < n, is_last) {
             (true, _) => Verdict::Fails,
             (false, true) if n > 0 => Verdict::Holds,

@@ -1,41 +1,41 @@
-//! Why something ended without its result.
+//! Why a command ended without its result.
 
 use std::cell::RefCell;
 
 use thiserror::Error;
 
-/// What went wrong, with the sentence for the user.
+/// A failure, with the message for the user.
 #[derive(Debug, Error)]
 pub enum Failure {
-    /// What was given cannot be used. Nothing was written.
+    /// The input cannot be used. Nothing was written.
     #[error("{0}")]
     Input(String),
-    /// It went wrong underway.
+    /// The run failed.
     #[error("{0}")]
     Run(String),
-    /// The disk or folder does not do what is needed. What was finished is kept.
+    /// The disk or folder refused an operation. Finished results are kept.
     #[error("{0}")]
     Storage(String),
-    /// The user stopped it.
+    /// The user interrupted it.
     #[error("{0}")]
     Interrupted(String),
-    /// The reader of our output went away (`usar ... | head`): nothing is to be said.
+    /// The reader of our output closed it (`usar ... | head`). No message is printed.
     #[error("output closed")]
     ClosedOutput,
 }
 
 impl Failure {
-    /// Bad input, from anything that says what is wrong.
+    /// A failure because of bad input.
     pub fn input(message: impl std::fmt::Display) -> Self {
         Self::Input(message.to_string())
     }
 
-    /// Trouble with a disk or folder.
+    /// A failure of a disk or folder.
     pub fn storage(message: impl std::fmt::Display) -> Self {
         Self::Storage(message.to_string())
     }
 
-    /// Trouble underway.
+    /// A failure of the run.
     pub fn run(message: impl std::fmt::Display) -> Self {
         Self::Run(message.to_string())
     }
@@ -64,13 +64,14 @@ pub fn catch_panics_quietly() {
     }));
 }
 
-/// The path of a source, of a library's from the library's name on.
+/// The path of a source file, shortened for a library to begin with the library's name.
 fn from_sources(path: &str) -> &str {
     let Some((_, rest)) = path.split_once("registry/src/") else { return path };
     rest.split_once('/').map_or(rest, |(_, rest)| rest)
 }
 
-/// What a panic that this thread caught said, with its file and line where [`catch_panics_quietly`] was called.
+/// The message of a panic that this thread caught, with file and line if [`catch_panics_quietly`] was
+/// called.
 #[must_use]
 pub fn panic_message(panic: &(dyn std::any::Any + Send)) -> String {
     let text = panic.downcast_ref::<String>().map(String::as_str);

@@ -1,4 +1,4 @@
-//! Files that take their name when they are whole, and the hashes of their bytes.
+//! Files that get their name when they are complete, and hashes of files.
 
 use std::fs::{self, File};
 use std::io::{self, BufWriter, ErrorKind, Read, Write};
@@ -10,7 +10,7 @@ use xxhash_rust::xxh3::{Xxh3, xxh3_128};
 use crate::failure::Failure;
 use crate::limits::STORED_BYTES;
 
-/// A file on its way: it takes its name when it is whole.
+/// A file that is being written; it gets its name when it is complete.
 pub struct NewFile {
     name: String,
     path: PathBuf,
@@ -28,7 +28,7 @@ pub struct FileHash {
 }
 
 impl FileHash {
-    /// What a file of these bytes is listed as.
+    /// The hash of a file with these bytes.
     #[must_use]
     pub fn of(name: &str, content: &[u8]) -> Self {
         Self { name: name.to_owned(), xxh3_128: format!("{:032x}", xxh3_128(content)) }
@@ -36,7 +36,7 @@ impl FileHash {
 }
 
 impl NewFile {
-    /// Begins a file of this name.
+    /// Begins a file with this name.
     ///
     /// # Errors
     /// The folder cannot be written to.
@@ -46,10 +46,10 @@ impl NewFile {
         Ok(Self { name: name.to_owned(), path, file: BufWriter::new(file), hash: Xxh3::new() })
     }
 
-    /// Puts the file in its place.
+    /// Completes the file and gives it its name.
     ///
     /// # Errors
-    /// The disk does not take it; a file of this name that was there is as it was.
+    /// The disk does not take it. An existing file with this name is then unchanged.
     pub fn finish(self) -> Result<FileHash, Failure> {
         let Self { name, path, file, hash } = self;
         let file = file.into_inner().map_err(|error| trouble(&path, error.error()))?;
@@ -59,7 +59,7 @@ impl NewFile {
         Ok(FileHash { name, xxh3_128: format!("{:032x}", hash.digest128()) })
     }
 
-    /// A whole file at once.
+    /// Writes a whole file at once.
     ///
     /// # Errors
     /// Those of the other functions.
@@ -82,7 +82,7 @@ impl Write for NewFile {
     }
 }
 
-/// Where a file is until it is whole.
+/// The temporary path of a file that is being written.
 fn new_path(path: &Path) -> PathBuf {
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     path.with_file_name(format!("{name}.new"))
@@ -92,10 +92,11 @@ pub(crate) fn trouble(path: &Path, error: &io::Error) -> Failure {
     Failure::storage(format!("cannot write {}: {error}", path.display()))
 }
 
-/// Opens a file to read it; whatever is no regular file, such as a folder, a pipe or a device, is refused and not waited for.
+/// Opens a file for reading. Anything but a regular file, such as a folder, a pipe or a device, is refused
+/// without waiting.
 ///
 /// # Errors
-/// It is not there, no file, or cannot be read.
+/// The file does not exist, is not a regular file, or cannot be read.
 pub fn open(path: &Path) -> io::Result<File> {
     if fs::metadata(path)?.is_file() { File::open(path) } else { Err(no_file()) }
 }
@@ -103,7 +104,7 @@ pub fn open(path: &Path) -> io::Result<File> {
 /// The bytes of a file that [`open`] opens, at most [`STORED_BYTES`].
 ///
 /// # Errors
-/// Those of [`open`], or it is larger.
+/// Those of [`open`], or the file is larger.
 pub fn read(path: &Path) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     open(path)?.take(STORED_BYTES.most as u64 + 1).read_to_end(&mut bytes)?;
@@ -115,16 +116,17 @@ pub fn read(path: &Path) -> io::Result<Vec<u8>> {
     Err(io::Error::new(ErrorKind::FileTooLarge, reason))
 }
 
-/// Makes a new file to write and read it, in the place of a file that may have its name; no link is followed.
+/// Creates a file for reading and writing, and replaces an existing file with this name. No link is
+/// followed.
 pub(crate) fn create(path: &Path) -> io::Result<File> {
     remove(path)?;
     File::options().read(true).write(true).create_new(true).open(path)
 }
 
-/// Refuses to write to what is there under this name, unless it is a regular file of this folder: a link is none.
+/// Refuses to write to a path that exists and is not a regular file. A link is not a regular file.
 ///
 /// # Errors
-/// It is something else.
+/// The path is something other than a regular file.
 pub fn check_is_file(path: &Path) -> io::Result<()> {
     match fs::symlink_metadata(path) {
         Err(error) if error.kind() == ErrorKind::NotFound => Ok(()),
@@ -138,7 +140,7 @@ fn no_file() -> io::Error {
     io::Error::new(ErrorKind::InvalidInput, "is not a regular file")
 }
 
-/// Deletes a file, if it is there; of a link, the link.
+/// Deletes a file if it exists. If it is a link, the link is deleted.
 ///
 /// # Errors
 /// It cannot be deleted.

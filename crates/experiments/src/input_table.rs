@@ -1,4 +1,4 @@
-//! Tables that users write: CSV with a header.
+//! Tables that users write, as CSV with a header.
 
 use std::path::Path;
 
@@ -12,7 +12,7 @@ use crate::limits::{COLUMNS, TABLE_ROWS};
 #[derive(Debug)]
 pub struct InputTable {
     header: StringRecord,
-    /// Lines, from 1, and rows.
+    /// The rows, each with its line in the file, from 1.
     pub rows: Vec<(usize, StringRecord)>,
 }
 
@@ -20,7 +20,8 @@ impl InputTable {
     /// Reads a table; cells are trimmed.
     ///
     /// # Errors
-    /// It cannot be read, a row has another number of cells than the header, or a column stands twice.
+    /// The file cannot be read, a row has another number of cells than the header, or a column name occurs
+    /// twice.
     pub fn read(path: &Path) -> Result<Self, Failure> {
         let shown = path.display();
         let bad = |reason: &dyn std::fmt::Display| Failure::input(format!("{shown}: {reason}"));
@@ -71,16 +72,16 @@ impl InputTable {
     }
 }
 
-/// Counts lines on the way through a text. The reader's own count is one behind where lines end with CR LF.
+/// Counts the lines of a text. The CSV reader's own count is one too low where lines end with CR LF.
 struct Lines<'t> {
     text: &'t str,
-    /// Bytes that are counted.
+    /// Bytes counted so far.
     upto: usize,
     line: usize,
 }
 
 impl Lines<'_> {
-    /// The line on which a row begins; rows come in their order.
+    /// The line on which a row begins. Rows must come in their order.
     fn of(&mut self, row: &StringRecord) -> usize {
         let begin = row.position().map_or(0, |position| position.byte() as usize);
         let blank =

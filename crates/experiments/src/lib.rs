@@ -1,7 +1,7 @@
 //! The laboratory as a library: experiments as files, paired trials on threads, folders of results that
-//! survive anything, and statistics.
+//! survive interruptions, and statistics.
 //!
-//! It draws no figure, has no command line, and knows no single paper: those are the crates above it.
+//! It draws no figures, has no command line, and knows no particular paper. The crates above it do that.
 //!
 //! ```
 //! use std::sync::atomic::AtomicBool;

@@ -1,5 +1,6 @@
-//! What is measured of a trial. Each metric is declared once, in `DECLARATIONS`; an experiment has a [`Catalogue`] of them, with those of
-//! its tasks. `trials.csv`, comparisons, stopping rules, reports and calibrations find them there.
+//! Metrics: the quantities measured in a trial. Each metric is declared once, in `DECLARATIONS`. An
+//! experiment has a [`Catalogue`] of them, including one for each of its tasks. `trials.csv`, comparisons,
+//! stopping rules, reports and calibrations look metrics up there.
 
 use std::ops::Deref;
 
@@ -9,13 +10,13 @@ use usar_sim::scenario::Scenario;
 
 use crate::failure::Failure;
 
-/// What the metric of all tasks together is called, where others name their task.
+/// Name of the metric of all tasks together, in the place of a task's name.
 pub const TOTAL: &str = "total";
 
 type Value = fn(&TrialRecord) -> Option<f64>;
 type TaskValue = fn(&TaskTotals) -> Option<f64>;
 
-/// Which way a metric is better.
+/// Which direction of a metric is better.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Direction {
     /// More is better.
@@ -35,7 +36,7 @@ enum Scope {
     PerTask { total: Value, task: TaskValue },
 }
 
-/// A metric, whatever the tasks are.
+/// A metric, independent of the scenario's tasks.
 #[derive(Clone, Copy)]
 struct Declaration {
     name: &'static str,
@@ -163,7 +164,8 @@ impl Declaration {
         Self { figure, ..self }
     }
 
-    /// The metrics that it stands for: of all tasks together and of each, or of the whole trial.
+    /// The metrics of this declaration: one of all tasks together and one of each task, or one of the whole
+    /// trial.
     fn metrics(self, tasks: &[String]) -> Vec<Metric> {
         match self.scope {
             Scope::Whole(value) => vec![self.metric(None, Source::Trial(value))],
@@ -218,17 +220,17 @@ enum Source {
 pub struct Metric {
     /// Name on the command line and in the tables of comparisons.
     pub name: String,
-    /// In words.
+    /// Name in words.
     pub title: String,
-    /// What it measures, in a sentence or two.
+    /// Meaning, in a sentence or two.
     pub meaning: &'static str,
     /// Unit; empty for a count.
     pub unit: &'static str,
     /// The report's figure of box plots that shows it beside others of the same figure; empty for none.
     pub figure: &'static str,
-    /// Whether it is one of those that are shown unless others are asked for.
+    /// Whether it is shown by default.
     pub is_primary: bool,
-    /// Which way it is better.
+    /// Which direction is better.
     pub direction: Direction,
     declared: &'static str,
     cost: Option<&'static str>,
@@ -249,8 +251,7 @@ impl Metric {
         if column.ends_with(unit) { column } else { column + unit }
     }
 
-    /// The name of its column without the task: what a table calls it that has the task in a column of its
-    /// own.
+    /// The name of its column without the task, for a table that has the task in a column of its own.
     #[must_use]
     pub fn declared_column(&self) -> String {
         let whole = self.column();
@@ -274,13 +275,13 @@ impl Metric {
         value.filter(|value| value.is_finite())
     }
 
-    /// The task that it is of, or [`TOTAL`]; empty for a metric that is not told by task.
+    /// The task of the metric, or [`TOTAL`]; empty for a metric without tasks.
     #[must_use]
     pub fn part(&self) -> &str {
         &self.part
     }
 
-    /// Whether it is that of all tasks together.
+    /// Whether it is the metric of all tasks together.
     #[must_use]
     pub fn is_total(&self) -> bool {
         self.part == TOTAL
@@ -309,7 +310,7 @@ impl Catalogue {
         Self { metrics: DECLARATIONS.iter().flat_map(|declaration| declaration.metrics(tasks)).collect() }
     }
 
-    /// The place of a metric. A name that is told by task means the total.
+    /// The place of a metric. The name of a metric with tasks means the total.
     ///
     /// # Errors
     /// An unknown name, with the known ones.
@@ -325,13 +326,13 @@ impl Catalogue {
         })
     }
 
-    /// A metric in words; nothing for an unknown one.
+    /// A metric's title; empty for an unknown one.
     #[must_use]
     pub fn title(&self, name: &str) -> &str {
         self.iter().find(|metric| metric.name == name).map_or("", |metric| &metric.title)
     }
 
-    /// The places of the cost and of the rescuees of which a metric is the ratio; `None` for another metric.
+    /// The places of the cost and of the rescuees whose ratio the metric is; `None` for other metrics.
     #[must_use]
     pub fn sums(&self, place: usize) -> Option<[usize; 2]> {
         let Metric { cost, part, .. } = &self[place];
@@ -341,13 +342,14 @@ impl Catalogue {
         Some([of((*cost)?)?, of("rescuees")?])
     }
 
-    /// The metrics that are declared under one name: the total, then that of each task; or the only one.
+    /// The metrics declared under one name: the total, then one for each task; or the only one.
     #[must_use]
     pub fn declared(&self, name: &str) -> Vec<usize> {
         (0..self.len()).filter(|place| self[*place].declared == name).collect()
     }
 
-    /// The places of the primary metrics, or of those that were asked for by name; `all` for all.
+    /// The places of the metrics with these names. Without names, the primary metrics; with `all`, all
+    /// metrics.
     ///
     /// # Errors
     /// Those of [`Catalogue::named`].

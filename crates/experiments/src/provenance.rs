@@ -1,4 +1,4 @@
-//! Where results come from: enough to make them again, and to refuse to mix them with others.
+//! Where results come from: enough to reproduce them, and to refuse to mix them with other results.
 
 use ron_fields::Fields;
 use serde::{Deserialize, Deserializer, Serialize};
@@ -12,17 +12,18 @@ use crate::files::FileHash;
 /// Version of the folder's layout.
 pub const SCHEMA_VERSION: u32 = 5;
 
-/// The first version that can be read, but not gone on with. Its shards were dealt otherwise, so that these
-/// cannot.
+/// The oldest version that can be read. Its folders cannot be continued. Its shards cannot be read, because
+/// they were dealt in another way.
 const READABLE_VERSION: u32 = 4;
 
-/// Trials that a sweep may have for each case and policy.
+/// Largest number of trials that a sweep may have for each case and policy.
 const MAX_TRIALS: u32 = 1_000_000;
 
 /// Commit of the source that this program was built from, with `-dirty` where it was changed.
 pub const COMMIT: &str = env!("USAR_COMMIT");
 
-/// `manifest.json`. Holds nothing that differs between two runs of the same sweep: no time of day, no number of threads.
+/// `manifest.json`. It holds nothing that differs between two runs of the same sweep: no time of day, no
+/// number of threads.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Manifest {
     /// Version of the folder's layout.
@@ -44,20 +45,20 @@ pub struct Manifest {
     pub axes: Vec<Axis>,
     /// Paired trials for each case and policy.
     pub trials: u32,
-    /// Their seeds.
+    /// Seeds of the trials.
     pub seeds: Seeds,
     /// Whether every invariant was checked at every step.
     pub is_checked: bool,
     /// What is kept of each trial.
     #[serde(alias = "is_lean", deserialize_with = "keep_of")]
     pub keep: Keep,
-    /// Which part of the sweep this is, if it is not the whole.
+    /// Which part of the sweep this is; `None` for the whole sweep.
     pub shard: Option<Shard>,
-    /// Whether all trials are there.
+    /// Whether all trials are finished.
     pub is_complete: bool,
-    /// The files of the folder with their hashes, but for this one.
+    /// The files of the folder with their hashes, except the manifest.
     pub files: Vec<FileHash>,
-    /// XXH3-128 of the manifest as it is without this.
+    /// XXH3-128 of the manifest without this field.
     checksum: String,
 }
 
@@ -100,7 +101,7 @@ impl Manifest {
     /// Reads a manifest.
     ///
     /// # Errors
-    /// It is none, or was changed; in words.
+    /// The text is not a manifest or was changed; in words.
     pub fn parse(text: &[u8]) -> Result<Self, String> {
         let mut manifest: Self = serde_json::from_slice(text).map_err(|error| error.to_string())?;
         let again = manifest.text().map_err(|error| error.to_string())?;
@@ -130,14 +131,14 @@ impl Manifest {
         Self { is_complete: false, files: Vec::new(), ..self.clone() }
     }
 
-    /// Which part of the sweep it is, in words.
+    /// Which part of the sweep this is, in words.
     #[must_use]
     pub fn part(&self) -> String {
         self.shard.map_or("whole".into(), |shard| format!("shard {}/{}", shard.number, shard.of))
     }
 
-    /// What keeps the results of this manifest from being continued or joined by those of another, one sentence each. The number of trials
-    /// does not, nor which part of the sweep it is.
+    /// Reasons why results of this manifest must not be continued by or merged with results of the other,
+    /// one sentence each. The number of trials and the part of the sweep are not compared.
     #[must_use]
     pub fn differences(&self, other: &Self) -> Vec<String> {
         let mut differences = Vec::new();
@@ -185,7 +186,7 @@ impl Manifest {
     }
 }
 
-/// What is kept, or whether little is, as version 4 has it.
+/// Reads `keep`. Version 4 has a flag instead: whether only rounds are kept.
 fn keep_of<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Keep, D::Error> {
     #[derive(Deserialize)]
     #[serde(untagged)]

@@ -1,4 +1,4 @@
-//! Why a decision is as it is: what drove it, how close it was, and what others would have decided.
+//! Explanations of a decision: what drove it, how close it was, and what other policies would have decided.
 
 use rne_core::policies::rne::{DirectedRne, Rne};
 use rne_core::{Assignment, Decision, Question};
@@ -8,28 +8,27 @@ use crate::experiment::PolicySpec;
 use crate::failure::Failure;
 use crate::oracle::NotSimulated;
 
-/// What another policy would have decided.
+/// The choice of another policy.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct OtherChoice {
     /// The policy.
     pub policy: String,
     /// Its assignment.
     pub assignment: Assignment,
-    /// Robots that it would have sent to another task.
+    /// Robots that the policy would have sent to another task.
     pub moved: Vec<u32>,
 }
 
-/// An exchange of two robots of one role, and what the policy's score would have been.
+/// An exchange of two robots of one role, and the policy's score after it.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Exchange {
-    /// The robot with which it changes places.
+    /// The robot with which the robot changes places.
     pub with: u32,
-    /// The score then, in nats; absent where it is infinite.
+    /// The score after the exchange, in nats; `None` if it is infinite.
     pub score_nats: Option<f64>,
 }
 
-/// What each policy would have decided. The oracle is left out, and so is a policy that cannot group this
-/// team.
+/// The choice of each policy. The oracle and policies that cannot group this team are left out.
 #[must_use]
 pub fn other_choices(question: &Question, chosen: &Assignment, policies: &[PolicySpec]) -> Vec<OtherChoice> {
     let choice = |spec: &PolicySpec| {
@@ -41,7 +40,7 @@ pub fn other_choices(question: &Question, chosen: &Assignment, policies: &[Polic
     policies.iter().filter(|spec| spec.name != NotSimulated::NAME).filter_map(choice).collect()
 }
 
-/// The RNE policy of a decision, by its options; `None` for a policy of another kind.
+/// The RNE policy with these options; `None` for a policy of another kind.
 #[must_use]
 pub fn rne_of(spec: &PolicySpec) -> Option<Rne> {
     Rne::new(spec.rne_options()?).ok()
@@ -57,7 +56,7 @@ pub fn directed(rne: &Rne, question: &Question, decision: &Decision) -> Result<V
     Ok(directed)
 }
 
-/// What the score would have been, had this robot changed places with another of its role; the best
+/// The score if this robot had changed places with each other robot of its role in another group; the best
 /// exchange first.
 ///
 /// # Errors

@@ -1,4 +1,4 @@
-//! A policy that is no function of its question, and one that panics: both are named as what they are.
+//! A policy that is not a function of its question, and a policy that panics. Both are reported as such.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -11,7 +11,7 @@ use rne_core::{Decision, Policy, PolicyError, PolicyKind, Question, Registry};
 
 static ASKED: AtomicU64 = AtomicU64::new(0);
 
-/// Sends everybody to one task, then to the other.
+/// Sends all robots to one task, then to the other.
 #[derive(Clone)]
 struct Fickle;
 

@@ -1,4 +1,4 @@
-//! A trial that goes on from a checkpoint is the trial that was never broken off.
+//! A trial that continues from a checkpoint equals the uninterrupted trial.
 
 use std::path::Path;
 use std::sync::atomic::AtomicBool;

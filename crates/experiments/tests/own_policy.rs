@@ -6,7 +6,7 @@ use std::sync::atomic::AtomicBool;
 use experiments::experiment::{Experiment, Overrides, set_registry};
 use rne_core::{Decision, Policy, PolicyError, PolicyKind, Question, Registry};
 
-/// Sends everybody to the easiest task.
+/// Sends all robots to the easiest task.
 #[derive(Clone)]
 struct Lazy;
 

@@ -11,12 +11,12 @@ use parquet::schema::types::Type;
 
 use crate::error::ExportError;
 
-/// The most rows that are written at a time.
+/// Largest number of rows in a row group.
 const ROWS: usize = 1 << 16;
-/// The column whose rows are written together.
+/// The column by whose values rows are grouped.
 const CASE: &str = "case";
 
-/// What a column of a table holds. An empty cell is a missing value, whatever the column holds.
+/// The type of a table's column. In any column, an empty cell is a missing value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
     /// Whole numbers from 0 on.
@@ -29,8 +29,8 @@ pub enum Kind {
     Text,
 }
 
-/// Writes a table in CSV, with a header, as Parquet; `kind` tells of each column by its name what it holds.
-/// The same table gives the same bytes.
+/// Writes a CSV table with a header as Parquet. `kind` gives the type of each column by its name. The same
+/// table gives the same bytes.
 ///
 /// # Errors
 /// The table cannot be read, a cell is not of its column's kind, or the file cannot be written.
@@ -67,8 +67,8 @@ pub fn from_csv<W: Write + Send>(
     }
 }
 
-/// The next rows that are written together: of one case, where the table has cases, so that a reader can
-/// leave out the others.
+/// The rows of the next row group. If the table has cases, they belong to one case, so that a reader can
+/// skip the other cases.
 fn next_group(
     records: &mut std::iter::Peekable<impl Iterator<Item = csv::Result<csv::StringRecord>>>,
     case: Option<usize>,
@@ -132,7 +132,7 @@ impl From<parquet::errors::ParquetError> for ColumnFailure {
     }
 }
 
-/// The values of the cells that are not empty, and of each cell whether it has one.
+/// The values of the non-empty cells, and for each cell whether it has a value.
 fn values<'c, T>(
     cells: impl Iterator<Item = &'c str>,
     rule: &'static str,

@@ -1,4 +1,4 @@
-//! Tidy tables of a recording: one row for each thing at each time, one header, units in the names.
+//! Tidy tables of a recording: one row for each object at each time, one header, units in the names.
 //! Undefined values are empty cells.
 
 use std::io::Write;
@@ -14,7 +14,7 @@ use crate::parquet::Kind;
 pub enum Table {
     /// Each robot at each time.
     Robots,
-    /// Each task's group at each time, with what became of the task's rescuees.
+    /// Each task's group at each time, with the states of the task's rescuees.
     Groups,
     /// Each event.
     Events,
@@ -81,7 +81,7 @@ impl Table {
         columns
     }
 
-    /// What a column holds, by its name.
+    /// The type of a column, by its name.
     #[must_use]
     pub fn kind(column: &str) -> Kind {
         match column {
@@ -93,10 +93,10 @@ impl Table {
         }
     }
 
-    /// Writes the table as CSV, with each frame that is a multiple of `every`.
+    /// Writes the table as CSV, with every `every`-th frame.
     ///
     /// # Errors
-    /// The recording cannot be read, or the table not be written.
+    /// The recording cannot be read, or the table cannot be written.
     pub fn write_csv<W: Write>(self, recording: &Recording, every: usize, out: W) -> Result<W, ExportError> {
         let mut writer = csv::Writer::from_writer(out);
         writer.write_record(self.columns(&recording.header.world))?;
@@ -125,7 +125,7 @@ pub(crate) fn events(recording: &Recording) -> impl Iterator<Item = ToldEvent> +
     recording.events.iter().map(move |(step, event)| ToldEvent::new((*step, header.dt_s), event, &tasks))
 }
 
-/// A time in seconds, without the noise of the last bits.
+/// A time in seconds, rounded to microseconds.
 fn time(time_s: f64) -> String {
     ((time_s * 1e6).round() / 1e6).to_string()
 }

@@ -1,4 +1,4 @@
-//! Pictures in a row as a GIF.
+//! Sequences of pictures as a GIF.
 
 use std::collections::HashMap;
 use std::io::Write;
@@ -9,17 +9,17 @@ use gif::{DisposalMethod, Encoder, Frame, Repeat};
 use crate::error::PictureError;
 use crate::picture::Pixels;
 
-/// Colours of an animation; one more number stands for a pixel that stays as it is.
+/// Number of colours of an animation; one more number stands for an unchanged pixel.
 const COLOURS: usize = 255;
 
-/// The number of a pixel that stays as it is.
+/// The number of an unchanged pixel.
 const SAME: u8 = 255;
 
 /// How thoroughly colours are chosen: 1 is best, 30 fastest.
 const THOROUGHNESS: i32 = 3;
 
-/// A GIF on its way, which is repeated for ever. It stores of each picture what is other than in the one
-/// before.
+/// A GIF that is being written and that repeats forever. Of each picture, it stores the difference from the
+/// one before.
 pub struct Animation<W: Write> {
     encoder: Encoder<W>,
     colours: NeuQuant,
@@ -29,7 +29,7 @@ pub struct Animation<W: Write> {
     delay: u16,
 }
 
-/// The smallest rectangle with all that changed: its left upper corner and its size.
+/// The smallest rectangle with all changed pixels: its upper left corner and its size.
 struct Changed {
     left: usize,
     top: usize,
@@ -38,12 +38,11 @@ struct Changed {
 }
 
 impl<W: Write> Animation<W> {
-    /// Begins a GIF. The `samples` are some of its pictures, from which its colours are chosen; each picture
-    /// stays for some hundredths
-    /// of a second.
+    /// Begins a GIF. Its colours are chosen from the `samples`, which are some of its pictures. Each
+    /// picture is shown for this many hundredths of a second.
     ///
     /// # Errors
-    /// There is no sample, it is too large, or nothing can be written.
+    /// There is no sample, it is too large, or the output cannot be written.
     pub fn begin(out: W, samples: &[Pixels], hundredths: u16) -> Result<Self, PictureError> {
         let first = samples.first().ok_or(PictureError::OtherSize)?;
         let pixels_of = |length: u32| {

@@ -1,4 +1,4 @@
 //! The font of all pictures.
 
-/// A part of `DejaVu Sans`. The file beside it has its licence.
+/// A subset of `DejaVu Sans`. Its licence is in the file beside it.
 pub(crate) const FONT: &[u8] = include_bytes!("../fonts/DejaVuSans-subset.ttf");

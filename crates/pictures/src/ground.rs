@@ -1,4 +1,4 @@
-//! What robots move among: the floor, the places of the tasks, radiation, debris and rescuees.
+//! The surroundings of robots: the floor, the places of the tasks, radiation, debris and rescuees.
 
 use recording::World;
 use usar_sim::scenario::{DebrisFile, DebrisShape, Point, ZoneFile};
@@ -11,13 +11,13 @@ use crate::theme::{
     DEBRIS, FAINT, GROUND, INK, MOVABLE, RADIATION, RADIATION_EDGE, RESCUEE, SOFT, WALL, colour,
 };
 
-/// Distance between the lines of the floor, in metres.
+/// Distance between the grid lines of the floor, in metres.
 const GRID_M: f64 = 10.0;
 
-/// The most lines of the floor in one direction.
+/// Largest number of grid lines of the floor in one direction.
 const MOST_LINES: f64 = 60.0;
 
-/// The arena's floor.
+/// Draws the arena's floor.
 pub(crate) fn draw_floor(sheet: &mut Sheet) {
     let [corner, size] = sheet.map();
     sheet.svg.rect(corner, size, 0.0, &format!("fill=\"{GROUND}\""));
@@ -38,7 +38,7 @@ pub(crate) fn draw_floor(sheet: &mut Sheet) {
     sheet.svg.path(&lines, &format!("stroke=\"{FAINT}\" stroke-width=\"{width}\" fill=\"none\""));
 }
 
-/// The walls round the arena.
+/// Draws the walls around the arena.
 pub(crate) fn draw_walls(sheet: &mut Sheet) {
     let [[x, y], [width, height]] = sheet.map();
     let wall = (0.3 * sheet.scale).clamp(2.0 * sheet.unit, 5.0 * sheet.unit);
@@ -46,13 +46,13 @@ pub(crate) fn draw_walls(sheet: &mut Sheet) {
     sheet.svg.rect([x - wall / 2.0, y - wall / 2.0], [width + wall, height + wall], 0.0, &looks);
 }
 
-/// A box round a place, in metres, with round corners.
+/// Draws a box around a place, in metres, with round corners.
 fn draw_box(sheet: &mut Sheet, center: Point, size: Point, looks: &str) {
     let corner = sheet.at([center[0] - size[0] / 2.0, center[1] + size[1] / 2.0]);
     sheet.svg.rect(corner, size.map(|length| length * sheet.scale), 1.2 * sheet.scale, looks);
 }
 
-/// The places of the tasks, the rest places and the homes.
+/// Draws the places of the tasks, the rest places and the homes.
 pub(crate) fn draw_places(sheet: &mut Sheet, world: &World) {
     let line = Num(sheet.unit);
     for (number, task) in world.tasks.iter().enumerate() {
@@ -76,12 +76,12 @@ pub(crate) fn draw_places(sheet: &mut Sheet, world: &World) {
     sheet.svg.path(&homes, &format!("fill=\"{FAINT}\""));
 }
 
-/// The names of the places.
+/// Writes the names of the places.
 pub(crate) fn draw_names(sheet: &mut Sheet, world: &World) {
     let size = 10.5 * sheet.unit;
     let write = |sheet: &mut Sheet, text: &str, [x, top]: Point, colour: &str| {
         let [x, y] = sheet.at([x, top]);
-        // Below the edge of the arena where there is no room above the place.
+        // Without room above the place, the name is below the edge of the arena.
         let y = (y - 0.75 * size).max(sheet.map()[0][1] + 0.8 * size);
         sheet.svg.text(text, [x, y], size, (Anchor::Middle, colour));
     };
@@ -99,7 +99,7 @@ pub(crate) fn draw_names(sheet: &mut Sheet, world: &World) {
     }
 }
 
-/// Radiation zones. `is_known` tells of each whether it is drawn as a fact.
+/// Draws the radiation zones for which `is_there` is true; the sampled zones have a dashed outline.
 pub(crate) fn draw_zones(
     sheet: &mut Sheet,
     zones: &[ZoneFile],
@@ -120,15 +120,15 @@ pub(crate) fn draw_zones(
     }
 }
 
-/// A piece of debris where it lies now: its place and its rotation in radians.
+/// The pose of a piece of debris: its place and its rotation in radians.
 pub(crate) type Lies = (Point, f64);
 
-/// Where debris lies at the start.
+/// The poses of debris at the start.
 pub(crate) fn as_placed(debris: &[DebrisFile]) -> Vec<Lies> {
     debris.iter().map(|piece| (piece.at, piece.rotation_deg.to_radians())).collect()
 }
 
-/// Debris; the pieces that are sampled have a dashed outline.
+/// Draws debris; the sampled pieces have a dashed outline.
 pub(crate) fn draw_debris(
     sheet: &mut Sheet,
     debris: &[DebrisFile],
@@ -175,7 +175,7 @@ fn rescuee_size(sheet: &Sheet, count: usize) -> f64 {
     (0.15 * sheet.scale).clamp(least * sheet.unit, 5.0 * sheet.unit)
 }
 
-/// Rescuees by their state: waiting or claimed, gone on board, delivered.
+/// Draws rescuees by their state: waiting or claimed, on board, delivered.
 pub(crate) fn draw_rescuees(sheet: &mut Sheet, world: &World, state: impl Fn(usize) -> u8) {
     let half = rescuee_size(sheet, world.rescuees.len());
     let [mut waiting, mut gone, mut delivered] = [Path::default(), Path::default(), Path::default()];
@@ -194,8 +194,8 @@ pub(crate) fn draw_rescuees(sheet: &mut Sheet, world: &World, state: impl Fn(usi
     sheet.svg.path(&delivered, &format!("fill=\"{SOFT}\" fill-opacity=\"0.5\""));
 }
 
-/// What the signs of the ground mean, as far as the world has them. `sampled` are the first sampled pieces
-/// of debris and zones.
+/// The legend's entries for the signs of the ground that occur in the world. `sampled` are the numbers of
+/// the first sampled piece of debris and of the first sampled zone.
 pub(crate) fn entries(world: &World, unit: f64, sampled: [usize; 2], has_waiting: bool) -> Vec<Entry> {
     let mut entries = Vec::new();
     let mut add = |is_there: bool, sign: Sign, means: &str| {

@@ -4,12 +4,12 @@ use crate::shapes::Shape;
 use crate::svg::{Anchor, At, Num, Path, Svg};
 use crate::theme::{INK, SOFT};
 
-/// Width of a letter as a share of the size of the font, about.
+/// Approximate width of a letter as a share of the font size.
 const LETTER: f64 = 0.58;
 
-/// What stands before a word of the legend.
+/// The sign before an entry of the legend.
 pub(crate) enum Sign {
-    /// A robot's shape in a colour.
+    /// A robot's shape with a colour.
     Robot(Shape, &'static str),
     /// A square with these looks.
     Square(String),
@@ -19,7 +19,7 @@ pub(crate) enum Sign {
     Line(String),
 }
 
-/// A sign and what it means.
+/// A sign and its meaning.
 pub(crate) struct Entry {
     pub(crate) sign: Sign,
     pub(crate) means: String,
@@ -31,7 +31,7 @@ impl Entry {
     }
 }
 
-/// Where the legend is.
+/// Place of the legend on the sheet.
 pub(crate) struct Legend {
     pub(crate) left: f64,
     pub(crate) right: f64,
@@ -39,7 +39,7 @@ pub(crate) struct Legend {
     pub(crate) unit: f64,
 }
 
-/// The largest of 1, 2, 5, 10, 20 ... that is at most a length.
+/// The largest of 1, 2, 5, 10, 20 ... that is not larger than a length.
 fn round_length(most: f64) -> f64 {
     let mut length = 0.001;
     for step in [2.0, 2.5, 2.0].into_iter().cycle().take(24) {
@@ -52,7 +52,7 @@ fn round_length(most: f64) -> f64 {
 }
 
 impl Legend {
-    /// Draws the scale of a map and the entries, line by line; returns where they end.
+    /// Draws the scale of a map and the entries, line by line; returns the lower end.
     pub(crate) fn draw(&self, svg: &mut Svg, scale: f64, arena_m: f64, entries: Vec<Entry>) -> f64 {
         let (unit, size) = (self.unit, 10.5 * self.unit);
         let row = 16.0 * unit;
@@ -71,7 +71,7 @@ impl Legend {
         y + row / 2.0
     }
 
-    /// Draws a bar of a round length; returns where the next thing may begin.
+    /// Draws a scale bar of a round length; returns where the next sign may begin.
     fn draw_scale(&self, svg: &mut Svg, scale: f64, arena_m: f64, y: f64) -> f64 {
         let (unit, size) = (self.unit, 10.5 * self.unit);
         let length = round_length((0.2 * (self.right - self.left) / scale).min(arena_m));

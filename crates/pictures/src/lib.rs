@@ -1,11 +1,10 @@
-//! Pictures of worlds and trials without a display: maps, moments and trails as SVG, as PNG, and moments in
-//! a row as GIF.
+//! Pictures of worlds and trials without a display: maps, moments and trails as SVG and PNG, and sequences
+//! of moments as GIF.
 //!
-//! [`plan`] draws the world before anything runs, [`moment`] the state at a frame of a recording, [`trails`]
-//! the ways of all robots on
-//! one map. Each gives a [`Picture`], which is SVG and can be made pixels. The font is embedded: a picture
-//! is the same on
-//! every machine. Colours and shapes are those of the page of `usar view`.
+//! [`plan`] draws the world before the trial, [`moment`] the state at a frame of a recording, and
+//! [`trails`] the trajectories of all robots on one map. Each function gives a [`Picture`], which is SVG
+//! and can be rendered to pixels. The font is embedded, so that a picture is the same on every machine.
+//! Colours and shapes are those of the page of `usar view`.
 //!
 //! ```no_run
 //! use pictures::{Look, moment};

@@ -36,7 +36,7 @@ pub fn moment(recording: &Recording, number: usize, look: &Look) -> Result<Pictu
     Ok(sheet.finish(entries))
 }
 
-/// Where debris lies at a frame.
+/// The poses of debris at a frame.
 pub(crate) fn places(frame: &Frame) -> Vec<Lies> {
     let lies = |piece: &recording::MovedDebris| {
         (piece.position_mm.map(|mm| f64::from(mm) / 1000.0), f64::from(piece.angle) / 10_000.0)
@@ -44,7 +44,7 @@ pub(crate) fn places(frame: &Frame) -> Vec<Lies> {
     frame.debris.iter().map(lies).collect()
 }
 
-/// What is shown, and when.
+/// The title: the trial and the time.
 fn title(recording: &Recording, number: usize, frame: &Frame) -> String {
     let header = &recording.header;
     let round = recording.decisions.iter().filter(|decided| decided.step <= frame.step).count();
@@ -54,7 +54,7 @@ fn title(recording: &Recording, number: usize, frame: &Frame) -> String {
     if round == 0 { format!("{name}, {time}") } else { format!("{name}, {time}, round {round}") }
 }
 
-/// The trial in words.
+/// A name of the trial in words.
 pub(crate) fn name_of(recording: &Recording) -> String {
     let header = &recording.header;
     if header.world.tasks.is_empty() {

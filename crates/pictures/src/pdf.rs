@@ -1,4 +1,4 @@
-//! A picture as PDF, by the crate svg2pdf, which reads SVG with a `usvg` of its own.
+//! A picture as PDF, by the crate svg2pdf, which reads SVG with its own version of `usvg`.
 
 use std::sync::{Arc, LazyLock};
 
@@ -8,10 +8,10 @@ use svg2pdf::{ConversionOptions, PageOptions};
 use crate::error::PictureError;
 use crate::font::FONT;
 
-/// Dots of SVG in an inch, by CSS.
+/// Dots of SVG in an inch, as defined by CSS.
 const DPI: f32 = 96.0;
 
-/// The embedded font for every family.
+/// Options with the embedded font for every family.
 static OPTIONS: LazyLock<Options<'static>> = LazyLock::new(|| {
     let mut fonts = fontdb::Database::new();
     fonts.load_font_data(FONT.to_vec());
@@ -21,7 +21,7 @@ static OPTIONS: LazyLock<Options<'static>> = LazyLock::new(|| {
     Options { fontdb: Arc::new(fonts), font_family: family, dpi: DPI, ..Options::default() }
 });
 
-/// A page as large as the drawing.
+/// Converts a drawing to a PDF with one page of the same size.
 pub(crate) fn pdf(svg: &str) -> Result<Vec<u8>, PictureError> {
     let trouble = |error: &dyn std::fmt::Display| PictureError::Pdf(error.to_string());
     let tree = Tree::from_str(svg, &OPTIONS).map_err(|error| trouble(&error))?;

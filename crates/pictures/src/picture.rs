@@ -1,4 +1,4 @@
-//! A picture: its text, and its pixels.
+//! A picture: its SVG text, and its pixels.
 
 use std::sync::{Arc, LazyLock};
 
@@ -9,34 +9,34 @@ use crate::error::PictureError;
 use crate::font::FONT;
 use crate::pdf;
 
-/// Name of that font, first where a browser draws the SVG.
+/// The font families of the SVG's text. The embedded font comes first, for browsers that have it.
 pub(crate) const FONTS: &str = "DejaVu Sans, Helvetica, Arial, sans-serif";
 
-/// Pixels in a millimetre of SVG, by CSS.
+/// Pixels in a millimetre of SVG, as defined by CSS.
 const PIXELS_PER_MM: f64 = 96.0 / 25.4;
 
-/// Pixels on a side that are drawn at most.
+/// Largest number of pixels on a side.
 const MOST_PIXELS: u32 = 16_384;
 
-/// How wide a picture is.
+/// Width of a picture.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Width {
-    /// Pixels, on a screen.
+    /// Pixels, for a screen.
     Pixels(u32),
-    /// Millimetres, on paper. As PNG it has [`Look::dpi`] dots in an inch.
+    /// Millimetres, for paper. A PNG then has [`Look::dpi`] dots in an inch.
     Millimetres(f64),
 }
 
 /// How a picture looks.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Look {
-    /// How wide it is. Its height follows.
+    /// Width of the picture. The height follows from it.
     pub width: Width,
-    /// Dots in an inch, of a PNG whose width is in millimetres.
+    /// Dots in an inch of a PNG whose width is in millimetres.
     pub dpi: f64,
-    /// Whether a line above the map says what it shows.
+    /// Whether a title above the map says what it shows.
     pub has_title: bool,
-    /// Whether lines below the map say what the signs mean.
+    /// Whether a legend below the map explains the signs.
     pub has_legend: bool,
 }
 
@@ -55,7 +55,7 @@ impl Look {
         }
     }
 
-    /// A length in pixels of SVG, as an attribute in the unit of the width.
+    /// A length in pixels of SVG, as an attribute in the unit of the picture's width.
     pub(crate) fn length(&self, pixels: f64) -> String {
         match self.width {
             Width::Pixels(_) => format!("{:.0}", pixels.round()),
@@ -89,7 +89,7 @@ pub struct Pixels {
     pub rgba: Vec<u8>,
 }
 
-/// What text is drawn with: the embedded font for every family.
+/// Options for text: the embedded font for every family.
 static OPTIONS: LazyLock<Options<'static>> = LazyLock::new(|| {
     let mut fonts = fontdb::Database::new();
     fonts.load_font_data(FONT.to_vec());
@@ -104,8 +104,8 @@ impl Picture {
         Self { svg, zoom: look.zoom() }
     }
 
-    /// A drawing from elsewhere. Where its size is in millimetres, its PNG has so many dots in an inch; 96 are those
-    /// of a screen. Its text is drawn with the embedded font.
+    /// A picture from a drawing that was made elsewhere. If its size is in millimetres, its PNG has `dpi`
+    /// dots in an inch; a screen has 96. Its text is drawn with the embedded font.
     #[must_use]
     pub fn of_svg(svg: String, dpi: f64) -> Self {
         Self { svg, zoom: dpi / 96.0 }
@@ -125,7 +125,7 @@ impl Picture {
         self.pixmap()?.encode_png().map_err(|error| PictureError::Svg(error.to_string()))
     }
 
-    /// The picture as a PDF file of one page, with the font in it.
+    /// The picture as a PDF file of one page, with the embedded font.
     ///
     /// # Errors
     /// A defect of this crate.
@@ -139,7 +139,7 @@ impl Picture {
     /// It is too large.
     pub fn pixels(&self) -> Result<Pixels, PictureError> {
         let pixmap = self.pixmap()?;
-        // The sheet is opaque: there is nothing to divide by.
+        // The sheet is opaque, so that no division by alpha is needed.
         Ok(Pixels { width: pixmap.width(), height: pixmap.height(), rgba: pixmap.take() })
     }
 

@@ -1,4 +1,4 @@
-//! The world before anything runs.
+//! The world before the trial.
 
 use recording::World;
 use usar_sim::scenario::Errand;
@@ -12,22 +12,22 @@ use crate::svg::{Anchor, Num, Path};
 use crate::team::{self, colour_of, sign_radius};
 use crate::theme::{INK, PAPER, SOFT};
 
-/// A world before anything runs.
+/// A world before the trial.
 #[derive(Debug, Clone, Copy)]
 pub struct Plan<'w> {
-    /// What stands above the map.
+    /// Title above the map.
     pub title: &'w str,
     /// The world of one seed.
     pub world: &'w World,
-    /// The places that robots are to go to, in scenarios without a mission.
+    /// The errands of robots, in scenarios without a mission.
     pub errands: &'w [Errand],
-    /// The number of the first piece of debris, and of the first radiation zone, that this seed has drawn:
-    /// those before are the scenario's.
+    /// The number of the first piece of debris, and of the first radiation zone, that was sampled for this
+    /// seed. Earlier numbers belong to the scenario.
     pub first_sampled: [usize; 2],
 }
 
-/// Draws a world before anything runs: walls, debris, radiation, tasks, rest places, homes, sensing ranges
-/// and errands.
+/// Draws a world before the trial: walls, debris, radiation, tasks, rest places, homes, sensing ranges and
+/// errands.
 #[must_use]
 pub fn plan(plan: &Plan, look: &Look) -> Picture {
     let Plan { world, first_sampled: [debris, zones], .. } = *plan;
@@ -73,7 +73,7 @@ fn errand_looks(colour: &str, unit: f64) -> String {
     format!("fill=\"none\" stroke=\"{colour}\" stroke-width=\"{line}\" stroke-dasharray=\"{dash}\"")
 }
 
-/// The ranges within which robots notice debris and radiation, at full health and at home.
+/// Draws the ranges within which robots notice debris and radiation, at full health and at home.
 fn draw_ranges(sheet: &mut Sheet, world: &World) {
     let looks = range_looks(sheet.unit);
     for (number, robot) in world.robots.iter().enumerate() {
@@ -82,7 +82,7 @@ fn draw_ranges(sheet: &mut Sheet, world: &World) {
     }
 }
 
-/// The straight lines between the places of each errand, with a ring at each place.
+/// Draws straight lines between the places of each errand, with a ring at each place.
 fn draw_errands(sheet: &mut Sheet, plan: &Plan) {
     for errand in plan.errands {
         let number = errand.robot as usize;
@@ -100,7 +100,7 @@ fn draw_errands(sheet: &mut Sheet, plan: &Plan) {
     }
 }
 
-/// The robots at home, with their numbers where there is room.
+/// Draws the robots at home, with their numbers if there is room.
 fn draw_team(sheet: &mut Sheet, world: &World) {
     let shapes = shapes_of(&world.roles);
     let has_numbers = world.robots.len() <= 60 && sheet.scale > 9.0 * sheet.unit;

@@ -6,8 +6,8 @@ use usar_sim::scenario::{DebrisShape, Point, RoleFile, RoleKind};
 
 use crate::svg::{At, Path};
 
-/// The shape of a role's robots: a disc, or corners on the unit circle and how much larger than a disc it is
-/// drawn.
+/// The shape of a role's robots: a disc, or corners on the unit circle and the angle by which they are
+/// turned.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Shape {
     corners: u32,
@@ -27,7 +27,8 @@ const AERIAL: [Shape; 3] = [
     Shape { corners: 3, turn: PI / 2.0 },
 ];
 
-/// The shape of each role: discs and squares drive, triangles fly.
+/// The shape of each role. Robots on the ground have discs, squares and hexagons; robots that fly have
+/// triangles and pentagons.
 pub(crate) fn shapes_of(roles: &[RoleFile]) -> Vec<Shape> {
     let (mut ground, mut aerial) = (GROUND.into_iter().cycle(), AERIAL.into_iter().cycle());
     let shape = |role: &RoleFile| match role.kind {
@@ -38,7 +39,7 @@ pub(crate) fn shapes_of(roles: &[RoleFile]) -> Vec<Shape> {
 }
 
 impl Shape {
-    /// Adds the shape to a path, about as large as a disc of that radius.
+    /// Adds the shape to a path, about as large as a disc with this radius.
     pub(crate) fn add(self, [x, y]: At, radius: f64, path: &mut Path) {
         let size = match self.corners {
             0 => return path.disc([x, y], radius),
@@ -54,7 +55,7 @@ impl Shape {
     }
 }
 
-/// The corners of a piece of debris at a place, turned by an angle in radians; none for a disc.
+/// The corners of a piece of debris at a place, turned by an angle in radians; empty for a disc.
 pub(crate) fn corners(shape: &DebrisShape, [x, y]: Point, angle: f64) -> Vec<Point> {
     let (sin, cos) = angle.sin_cos();
     let turned = |[px, py]: Point| [x + px * cos - py * sin, y + px * sin + py * cos];

@@ -1,4 +1,4 @@
-//! A sheet with the map of an arena on it: a title above, a scale and a legend below.
+//! A sheet with the map of an arena, a title above it, and a scale and a legend below it.
 
 use usar_sim::scenario::Point;
 
@@ -7,21 +7,21 @@ use crate::picture::{FONTS, Look, Picture};
 use crate::svg::{Anchor, At, Num, Svg};
 use crate::theme::{INK, PAPER};
 
-/// Width of a sheet on which signs have their usual size, in pixels.
+/// Width of a sheet on which signs have their normal size, in pixels.
 const USUAL_WIDTH: f64 = 700.0;
 
-/// A map is at most this many times as high as wide.
+/// Largest ratio of height to width of a map.
 const HIGHEST: f64 = 1.4;
 
 /// A sheet on which a map is drawn.
 pub(crate) struct Sheet<'l> {
     pub(crate) svg: Svg,
-    /// Pixels of what is one pixel on a usual sheet: signs grow with the sheet, but less.
+    /// Size of signs relative to a sheet of normal width: signs grow with the sheet, within limits.
     pub(crate) unit: f64,
-    /// Pixels of a metre.
+    /// Pixels in a metre.
     pub(crate) scale: f64,
     look: &'l Look,
-    /// Place of the arena's lower left corner.
+    /// Position of the arena's lower left corner on the sheet.
     origin: At,
     /// Width and height of the arena, in metres.
     arena: Point,
@@ -46,12 +46,12 @@ impl<'l> Sheet<'l> {
         sheet
     }
 
-    /// Where a place of the arena is on the sheet.
+    /// The position on the sheet of a place in the arena.
     pub(crate) fn at(&self, [x, y]: Point) -> At {
         [self.origin[0] + self.scale * x, self.origin[1] - self.scale * y]
     }
 
-    /// Where a place in millimetres is on the sheet.
+    /// The position on the sheet of a place in millimetres.
     pub(crate) fn at_mm(&self, place: [i32; 2]) -> At {
         self.at(place.map(|mm| f64::from(mm) / 1000.0))
     }
@@ -61,7 +61,7 @@ impl<'l> Sheet<'l> {
         [self.at([0.0, self.arena[1]]), self.arena.map(|length| self.scale * length)]
     }
 
-    /// The picture, with the legend below the map.
+    /// Completes the picture, with the legend below the map.
     pub(crate) fn finish(mut self, entries: Vec<Entry>) -> Picture {
         let margin = 7.0 * self.unit;
         let mut height = self.origin[1] + margin;

@@ -2,22 +2,22 @@
 
 use std::fmt::{self, Display, Write};
 
-/// A place on the sheet, in pixels from its upper left corner.
+/// A position on the sheet, in pixels from its upper left corner.
 pub(crate) type At = [f64; 2];
 
-/// A number with at most two places; what is no number is 0.
+/// Prints a number with at most two decimals; NaN and infinities are printed as 0.
 pub(crate) struct Num(pub f64);
 
 impl Display for Num {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         let rounded = (self.0 * 100.0).round() / 100.0;
-        // No "-0".
+        // Avoids "-0".
         let rounded = if rounded.is_finite() && rounded != 0.0 { rounded } else { 0.0 };
         write!(out, "{rounded}")
     }
 }
 
-/// A text on its way into SVG: nothing in it is markup, and nothing in it is forbidden there.
+/// Escapes a text for SVG. Markup characters are escaped, and characters that SVG forbids become U+FFFD.
 pub(crate) struct Escaped<'t>(pub &'t str);
 
 impl Display for Escaped<'_> {
@@ -36,7 +36,7 @@ impl Display for Escaped<'_> {
     }
 }
 
-/// The outline of something: what stands in the attribute `d`.
+/// An outline: the content of the attribute `d`.
 #[derive(Default)]
 pub(crate) struct Path(String);
 
@@ -72,7 +72,7 @@ impl Path {
     }
 }
 
-/// What stands where in a line of text.
+/// Which point of a line of text is at its position.
 #[derive(Clone, Copy)]
 pub(crate) enum Anchor {
     Start,
@@ -84,7 +84,7 @@ pub(crate) enum Anchor {
 pub(crate) struct Svg(pub String);
 
 impl Svg {
-    /// Draws an outline; `looks` are attributes as they stand in the file. An empty one is left out.
+    /// Draws an outline; `looks` are attributes in SVG syntax. An empty outline is left out.
     pub(crate) fn path(&mut self, Path(path): &Path, looks: &str) {
         if !path.is_empty() {
             let _ = writeln!(self.0, "<path d=\"{path}\" {looks}/>");
@@ -96,15 +96,15 @@ impl Svg {
         let _ = writeln!(self.0, "<circle cx=\"{x}\" cy=\"{y}\" r=\"{radius}\" {looks}/>");
     }
 
-    /// A rectangle with its upper left corner, its size, and the radius of its corners.
+    /// Draws a rectangle with this upper left corner, size, and radius of the corners.
     pub(crate) fn rect(&mut self, [x, y]: At, [width, height]: At, round: f64, looks: &str) {
         let [x, y, width, height, round] = [x, y, width, height, round].map(Num);
         let size = format_args!("width=\"{width}\" height=\"{height}\"").to_string();
         let _ = writeln!(self.0, "<rect x=\"{x}\" y=\"{y}\" {size} rx=\"{round}\" {looks}/>");
     }
 
-    /// A line of text with its middle height at a place, and a halo around it, so that it is legible on
-    /// anything.
+    /// Draws a line of text, vertically centred on a position, with a halo around it, so that it is legible
+    /// on any background.
     pub(crate) fn text(&mut self, text: &str, [x, y]: At, size: f64, (anchor, colour): (Anchor, &str)) {
         let anchor = match anchor {
             Anchor::Start => "start",
@@ -119,7 +119,7 @@ impl Svg {
         let _ = writeln!(self.0, "<text {place} fill=\"{colour}\" {halo}>{text}</text>");
     }
 
-    /// Begins a part of the sheet out of which nothing is drawn, with its own upper left corner.
+    /// Begins a clipped part of the sheet with this upper left corner and size.
     pub(crate) fn begin_window(&mut self, [x, y]: At, [width, height]: At) {
         let [x, y, width, height] = [x, y, width, height].map(Num);
         let _ = writeln!(

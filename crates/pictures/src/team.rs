@@ -1,4 +1,4 @@
-//! The team: where robots are, where they go, what they have left, and who waits for whom.
+//! The team: the positions, routes and levels of robots, and the robots for which they wait.
 
 use recording::{Frame, RobotFrame, World};
 
@@ -8,13 +8,13 @@ use crate::sheet::Sheet;
 use crate::svg::{Anchor, At, Num, Path};
 use crate::theme::{ENERGY, FAINT, HP, INK, PAPER, SOFT, UNGROUPED, WAIT, colour, group_colour};
 
-/// Robots of a larger team are drawn without levels and numbers.
+/// In a larger team, robots are drawn without levels and numbers.
 const LARGE_TEAM: usize = 60;
 
-/// Robots have their numbers on a map with at least so many pixels of a usual sheet in a metre.
+/// Robots are drawn with their numbers if a metre has at least this many pixels of a sheet of normal width.
 const NUMBERS_FROM: f64 = 9.0;
 
-/// How a robot is coloured: by its group, or where the scenario has no tasks, by its number.
+/// The colour of a robot: that of its group, or, in scenarios without tasks, a colour by its number.
 pub(crate) fn colour_of(world: &World, robot: usize, task: Option<u32>) -> &'static str {
     if world.tasks.is_empty() { colour(robot) } else { group_colour(task) }
 }
@@ -25,7 +25,7 @@ pub(crate) fn sign_radius(sheet: &Sheet, world: &World, robot: usize) -> f64 {
     (world.body_of(robot).radius_m * sheet.scale).max(least * sheet.unit)
 }
 
-/// The routes of the robots, and where they lead.
+/// Draws the routes of the robots, and their ends.
 pub(crate) fn draw_routes(sheet: &mut Sheet, world: &World, frame: &Frame) {
     for (number, robot) in frame.robots.iter().enumerate() {
         let colour = colour_of(world, number, robot.state.task);
@@ -45,7 +45,7 @@ pub(crate) fn draw_routes(sheet: &mut Sheet, world: &World, frame: &Frame) {
     }
 }
 
-/// Rings round the rescuees that robots have claimed.
+/// Draws rings around the rescuees that robots have claimed.
 pub(crate) fn draw_claims(sheet: &mut Sheet, world: &World, frame: &Frame) {
     let radius = (0.15 * sheet.scale).clamp(sheet.unit, 5.0 * sheet.unit) + 2.2 * sheet.unit;
     for (place, rescuee) in world.rescuees.iter().zip(&frame.rescuees).filter(|(_, now)| now.state == 1) {
@@ -57,7 +57,7 @@ pub(crate) fn draw_claims(sheet: &mut Sheet, world: &World, frame: &Frame) {
     }
 }
 
-/// The robots with their levels; those that cannot act any more are crossed out.
+/// Draws the robots with their levels; robots that cannot act any more are crossed out.
 pub(crate) fn draw_robots(sheet: &mut Sheet, world: &World, frame: &Frame) {
     let shapes = shapes_of(&world.roles);
     let is_large = frame.robots.len() > LARGE_TEAM;
@@ -88,7 +88,7 @@ pub(crate) fn draw_robots(sheet: &mut Sheet, world: &World, frame: &Frame) {
     sheet.svg.path(&lost, &format!("stroke=\"{INK}\" stroke-width=\"{}\"", Num(1.8 * sheet.unit)));
 }
 
-/// Energy and HP as two bars below a robot, and the rescuees on board as dots above it.
+/// Draws energy and HP as two bars below a robot, and the rescuees on board as dots above it.
 fn draw_levels(sheet: &mut Sheet, robot: &RobotFrame, [x, y]: At, radius: f64) {
     let unit = sheet.unit;
     let width = (2.0 * radius).clamp(10.0 * unit, 24.0 * unit);
@@ -108,7 +108,7 @@ fn draw_levels(sheet: &mut Sheet, robot: &RobotFrame, [x, y]: At, radius: f64) {
     sheet.svg.path(&dots, &format!("fill=\"{INK}\""));
 }
 
-/// An arrow from each robot that waits to the robot that it waits for.
+/// Draws an arrow from each waiting robot to the robot for which it waits.
 pub(crate) fn draw_links(sheet: &mut Sheet, frame: &Frame) {
     let (mut lines, mut heads, unit) = (Path::default(), Path::default(), sheet.unit);
     for robot in &frame.robots {
@@ -133,7 +133,7 @@ fn waiting_looks(unit: f64) -> String {
     format!("fill=\"none\" stroke=\"{WAIT}\" stroke-width=\"{}\"", Num(1.4 * unit))
 }
 
-/// What the colours and shapes of robots mean.
+/// The legend's entries for the colours and shapes of robots.
 pub(crate) fn entries(world: &World) -> Vec<Entry> {
     let shapes = shapes_of(&world.roles);
     let is_used = |role: &usize| world.robots.iter().any(|robot| robot.role == *role);
@@ -150,7 +150,7 @@ pub(crate) fn entries(world: &World) -> Vec<Entry> {
     entries
 }
 
-/// What the signs beside robots mean.
+/// The legend's entries for the signs beside robots.
 pub(crate) fn moment_entries(world: &World, unit: f64) -> Vec<Entry> {
     let mut entries = entries(world);
     let bar = |colour: &str| Sign::Line(format!("stroke=\"{colour}\" stroke-width=\"{}\"", Num(2.5 * unit)));

@@ -1,5 +1,5 @@
-//! Colours: those of the page of `usar view` in light surroundings (`viewer/src/draw/theme.ts`). Groups have
-//! the colours of Okabe and Ito.
+//! The colours of the page of `usar view` in its light theme (`viewer/src/draw/theme.ts`). Groups have the
+//! colours of Okabe and Ito.
 
 pub(crate) const PAPER: &str = "#ffffff";
 pub(crate) const GROUND: &str = "#fbfbf9";
@@ -19,12 +19,12 @@ pub(crate) const HP: &str = "#cc79a7";
 
 const GROUPS: [&str; 7] = ["#0072b2", "#d98200", "#009e73", "#cc79a7", "#d55e00", "#56b4e9", "#8a7d00"];
 
-/// The colour of the group of a task, or of one robot among robots without groups.
+/// The colour of a task's group, or of a robot in scenarios without groups.
 pub(crate) fn colour(number: usize) -> &'static str {
     GROUPS[number % GROUPS.len()]
 }
 
-/// The colour of a robot whose group has this task; none is a robot without a group.
+/// The colour of a robot whose group has this task; `None` is a robot without a group.
 pub(crate) fn group_colour(task: Option<u32>) -> &'static str {
     task.map_or(UNGROUPED, |task| colour(task as usize))
 }

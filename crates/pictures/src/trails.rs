@@ -1,4 +1,4 @@
-//! The ways of all robots in a trial, on one map.
+//! The trajectories of all robots in a trial, on one map.
 
 use geo::{Coord, LineString, Simplify};
 use recording::Recording;
@@ -14,18 +14,18 @@ use crate::svg::{Num, Path};
 use crate::team::{self, colour_of};
 use crate::theme::{INK, PAPER};
 
-/// How far a line may lie beside the way that it shows, in pixels.
+/// Largest distance between a drawn line and the trajectory that it shows, in pixels.
 const BESIDE: f64 = 0.15;
 
-/// A part of a robot's way on which it has one group.
+/// A part of a robot's trajectory during which its group stays the same.
 struct Stretch {
     robot: usize,
     task: Option<u32>,
     places_mm: Vec<[i32; 2]>,
 }
 
-/// Draws the ways of all robots in a trial: thin lines in the colours of their groups, from their homes to
-/// where they ended.
+/// Draws the trajectories of all robots in a trial: thin lines in the colours of their groups, from the
+/// robots' homes to their last positions.
 ///
 /// # Errors
 /// The recording has no frames.
@@ -71,7 +71,7 @@ fn end_looks(colour: &str, unit: f64) -> String {
     format!("fill=\"{PAPER}\" stroke=\"{colour}\" stroke-width=\"{}\"", Num(unit))
 }
 
-/// The ways of all robots, cut where their groups change.
+/// The trajectories of all robots, split where their groups change.
 fn stretches(recording: &Recording) -> Result<Vec<Stretch>, PictureError> {
     let robots = recording.header.world.robots.len();
     let mut underway: Vec<Option<Stretch>> = (0..robots).map(|_| None).collect();
@@ -98,7 +98,7 @@ fn stretches(recording: &Recording) -> Result<Vec<Stretch>, PictureError> {
     Ok(done)
 }
 
-/// A stretch as a line with as few corners as show it.
+/// A stretch as a line with as few corners as possible.
 fn way(sheet: &Sheet, stretch: &Stretch) -> Path {
     let mut way = Path::default();
     let places = stretch.places_mm.iter().map(|place| sheet.at_mm(*place)).map(|[x, y]| Coord { x, y });

@@ -1,4 +1,4 @@
-//! Pictures of a recorded trial: what is on them, and that they are the same everywhere.
+//! Pictures of a recorded trial: their content, and that they are the same on every machine.
 
 use std::path::Path;
 
@@ -30,7 +30,7 @@ fn drawn(scenario: &Scenario, look: &Look) -> Picture {
     plan(&Plan { title: "a <b> & \"c\"", world: &world, errands: &scenario.errands, first_sampled }, look)
 }
 
-/// How many pixels of exactly this colour there are.
+/// Number of pixels with exactly this colour.
 fn count(pixels: &Pixels, colour: [u8; 3]) -> usize {
     pixels.rgba.as_chunks::<4>().0.iter().filter(|pixel| pixel[..3] == colour).count()
 }
@@ -54,7 +54,7 @@ fn a_moment_shows_each_robot_where_the_recording_has_it() {
         let task = robot.state.task.unwrap() as usize;
         seen += usize::from(pixels.rgba[at..at + 3] == group[task]);
     }
-    // A robot may be below another's sign or a link.
+    // A robot may be hidden by another robot's sign or by a link.
     assert!(seen >= frame.robots.len() - 2, "{seen} of {} robots", frame.robots.len());
 }
 

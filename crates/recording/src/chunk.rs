@@ -1,4 +1,4 @@
-//! The container: a magic number, then chunks, each compressed and with checksums of its own.
+//! The container: a magic number, then chunks. Each chunk is compressed and has its own checksums.
 
 use std::io::{self, Read, Write};
 
@@ -10,24 +10,25 @@ use crate::error::ReadError;
 /// The first bytes of a recording.
 pub(crate) const MAGIC: [u8; 8] = *b"USREC\r\n\x1a";
 
-/// Bytes before the content of a chunk: kind, length as stored, length inflated, checksum of the content, checksum of all these.
+/// Bytes before the content of a chunk: kind, stored length, inflated length, checksum of the content,
+/// checksum of all these.
 const HEAD: usize = 20;
 
-/// No chunk is larger than this when it is inflated.
+/// Largest inflated size of a chunk.
 const MAX_INFLATED: u32 = 1 << 30;
 
-/// What a chunk holds.
+/// The content of a chunk.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Kind {
-    /// The header, in JSON. The first chunk, and only that.
+    /// The header, in JSON. It is the first chunk, and occurs only once.
     Header,
-    /// What happened in the time of the next segment, in JSON.
+    /// The events in the time of the next segment, in JSON.
     Events,
     /// A decision, in JSON.
     Decision,
     /// Frames.
     Segment,
-    /// The record of the trial, in JSON. The last chunk of a whole recording.
+    /// The record of the trial, in JSON. It is the last chunk of a complete recording.
     Summary,
 }
 
@@ -51,7 +52,7 @@ fn checksum(bytes: &[u8]) -> [u8; 4] {
     crc.sum().to_le_bytes()
 }
 
-/// Writes chunks. What compresses them is made once: that takes as long as compressing one.
+/// Writes chunks. The compressor is created once, because creating it takes as long as compressing a chunk.
 pub(crate) struct ChunkWriter<W> {
     out: W,
     deflate: Compress,
@@ -84,7 +85,7 @@ impl<W: Write> ChunkWriter<W> {
         self.deflate.reset();
         self.stored.clear();
         loop {
-            // Enough for all but content that cannot be compressed.
+            // Enough for everything except incompressible content.
             self.stored.reserve(content.len() / 2 + 256);
             let done = self.deflate.total_in() as usize;
             let rest = content.get(done..).unwrap_or_default();
@@ -99,26 +100,26 @@ impl<W: Write> ChunkWriter<W> {
         self.out.flush()
     }
 
-    /// Where the chunks went.
+    /// The destination of the chunks.
     pub(crate) fn into_inner(self) -> W {
         self.out
     }
 }
 
-/// A chunk as it stands in a file.
+/// A chunk in a file.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Chunk<'b> {
     pub(crate) kind: Kind,
-    /// Its number, from 0.
+    /// Number of the chunk, from 0.
     pub(crate) number: usize,
-    /// Where it begins in the file.
+    /// Byte at which it begins in the file.
     pub(crate) at: usize,
     stored: &'b [u8],
     inflated: usize,
 }
 
 impl Chunk<'_> {
-    /// Its content.
+    /// The inflated content.
     pub(crate) fn content(&self) -> Result<Vec<u8>, ReadError> {
         let mut content = Vec::new();
         let mut inflater = DeflateDecoder::new(self.stored).take(self.inflated as u64 + 1);
@@ -158,12 +159,12 @@ impl<'b> Chunks<'b> {
         Ok(Self { bytes, at: MAGIC.len(), number: 0 })
     }
 
-    /// The byte at which the next chunk begins, or would begin.
+    /// The byte at which the next chunk begins or would begin.
     pub(crate) fn at(&self) -> usize {
         self.at
     }
 
-    /// The next chunk; none at the end of the file, or where the file was cut within a chunk.
+    /// The next chunk; `None` at the end of the file, or if the file is cut off within a chunk.
     pub(crate) fn next(&mut self) -> Result<Option<Chunk<'b>>, ReadError> {
         let Some(head) = self.bytes.get(self.at..self.at + HEAD) else { return Ok(None) };
         let (kind, at, number) = (&head[..4], self.at, self.number);

@@ -2,7 +2,8 @@
 
 use thiserror::Error;
 
-/// Why a file cannot be read as a recording. A file that was cut short is none of these: its whole chunks are read.
+/// Why a file cannot be read as a recording. A truncated file gives none of these errors, unless it ends
+/// within its header: its complete chunks are read.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 #[non_exhaustive]
 pub enum ReadError {
@@ -14,7 +15,7 @@ pub enum ReadError {
     Version {
         /// The version of the file.
         found: u32,
-        /// The version that is read.
+        /// The version that this program reads.
         expected: u32,
     },
     /// It ends before its header does.
@@ -23,24 +24,24 @@ pub enum ReadError {
         /// Length of the file.
         bytes: usize,
     },
-    /// A chunk does not have its checksum, or holds what it must not hold.
+    /// A chunk does not match its checksum, or has invalid content.
     #[error("is damaged: chunk {chunk} ({kind}), at byte {at}: {reason}")]
     Damaged {
         /// Number of the chunk, from 0.
         chunk: usize,
-        /// Its kind.
+        /// Kind of the chunk.
         kind: String,
-        /// Where it begins in the file.
+        /// Byte at which it begins in the file.
         at: usize,
-        /// What is wrong.
+        /// Description of the damage.
         reason: String,
     },
-    /// A frame was asked for that is not there.
+    /// A requested frame does not exist.
     #[error("has {frames} frames; there is no frame {asked}")]
     NoFrame {
-        /// The number that was asked for, from 0.
+        /// The requested number, from 0.
         asked: usize,
-        /// How many there are.
+        /// Number of frames.
         frames: usize,
     },
 }

@@ -1,4 +1,4 @@
-//! The state at one moment, as a recording keeps it: whole numbers and ids.
+//! The state at one moment, as a recording stores it: whole numbers and ids.
 
 use rne_core::TaskId;
 use serde::Serialize;
@@ -9,7 +9,7 @@ use usar_sim::world::{Condition, RescueeState, Robot};
 
 use crate::numbers::NotNumbers;
 
-/// Names of what robots do, in the order of their numbers.
+/// Names of the activities of robots, in the order of their numbers.
 pub(crate) const ACTIVITIES: [&str; 9] = [
     "home",
     "searching",
@@ -31,7 +31,7 @@ pub(crate) const RESCUEE_STATES: [&str; 5] = ["waiting", "claimed", "on_board", 
 /// The state at one moment.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Frame {
-    /// Steps done.
+    /// Number of steps done.
     pub step: u64,
     /// The robots, by id.
     pub robots: Vec<RobotFrame>,
@@ -39,7 +39,7 @@ pub struct Frame {
     pub rescuees: Vec<RescueeFrame>,
     /// The debris.
     pub debris: Vec<MovedDebris>,
-    /// What the group of each task knows, and last what the team at home knows.
+    /// The knowledge of each task's group, and last the knowledge of the team at home.
     pub groups: Vec<GroupFrame>,
     /// The conflict sets: ids of their members, in order of precedence.
     pub conflict_sets: Vec<Vec<u32>>,
@@ -48,15 +48,15 @@ pub struct Frame {
 /// A robot at one moment.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct RobotFrame {
-    /// Where it is, how it moves, and its levels.
+    /// Position, velocity and levels.
     pub motion: Motion,
-    /// What it does and why it waits.
+    /// Activity, delay cause and other state.
     pub state: RobotState,
-    /// Where it is going.
+    /// Goal and waypoints.
     pub route: Route,
 }
 
-/// Where a robot is, how it moves, and its levels.
+/// Position, velocity and levels of a robot.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub struct Motion {
     /// Centre, in millimetres.
@@ -69,16 +69,17 @@ pub struct Motion {
     pub hp_millipercent: i32,
 }
 
-/// What a robot does and why it waits. Activities, causes and conditions are numbers: the header's codes name them.
+/// The activity of a robot, its delay cause, and other state. Activities, causes and conditions are
+/// numbers; the header's codes name them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub struct RobotState {
-    /// What it does.
+    /// Its activity.
     pub activity: u8,
-    /// The rescuee that it goes to or loads.
+    /// The rescuee that it approaches or loads.
     pub rescuee: Option<u32>,
     /// The step until which it loads or rests.
     pub until_step: Option<u32>,
-    /// Why it does not move on.
+    /// Its delay cause: why it does not move on.
     pub delay: u8,
     /// The robot that it waits for.
     pub waits_for: Option<u32>,
@@ -92,10 +93,10 @@ pub struct RobotState {
     pub load: u32,
 }
 
-/// Where a robot is going.
+/// The goal of a robot, and its waypoints.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize)]
 pub struct Route {
-    /// Where it wants to be, in millimetres.
+    /// Its goal, in millimetres.
     pub goal_mm: Option<[i32; 2]>,
     /// Waypoints ahead, in millimetres.
     pub ahead_mm: Vec<[i32; 2]>,
@@ -104,35 +105,36 @@ pub struct Route {
 /// A rescuee at one moment.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub struct RescueeFrame {
-    /// What became of it: the header's codes name it.
+    /// Its state, as a number that the header's codes name.
     pub state: u8,
     /// The robot that has claimed it or has it on board.
     pub robot: Option<u32>,
 }
 
-/// Where a piece of debris lies.
+/// The place of a piece of debris.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub struct MovedDebris {
     /// Its place, in millimetres.
     pub position_mm: [i32; 2],
     /// Its rotation, in ten-thousandths of a radian anticlockwise.
     pub angle: i32,
-    /// How many places of it there were to be noticed so far.
+    /// Number of its sightings so far: the places at which it could be noticed.
     pub sightings: u32,
 }
 
-/// What a group knows.
+/// The knowledge of a group.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct GroupFrame {
     /// Whether it has work to do.
     pub is_at_work: bool,
-    /// The debris that it knows: number, and which place of it.
+    /// The debris that it knows: the number of each piece, and the number of its sighting.
     pub debris: Vec<(u32, u32)>,
     /// The radiation zones that it knows.
     pub zones: Vec<u32>,
 }
 
-/// The nearest whole number; halves go away from zero. Faster than `f64::round` on processors without an instruction for it.
+/// The nearest whole number; halves are rounded away from zero. Faster than `f64::round` on processors
+/// without an instruction for it.
 fn nearest(value: f64) -> i32 {
     (value + 0.5_f64.copysign(value)) as i32
 }
@@ -146,17 +148,17 @@ fn percent(value: f64) -> i32 {
     nearest(value * 1000.0)
 }
 
-/// A number of things.
+/// A number of things as an `i32`.
 fn count(things: usize) -> i32 {
     (things as u32).cast_signed()
 }
 
-/// An id or none, as one number.
+/// An optional id as one number: 0 for none, otherwise the id plus 1.
 fn some(id: Option<u32>) -> i32 {
     id.map_or(0, |id| id.cast_signed().wrapping_add(1))
 }
 
-/// The numbers of a row, one after the other.
+/// Reads the numbers of a row, one after the other.
 struct Row<'r>(std::slice::Iter<'r, i32>);
 
 impl Row<'_> {
@@ -276,7 +278,7 @@ impl RobotState {
 }
 
 impl Route {
-    /// Appends the numbers of a robot's route as it is now.
+    /// Appends the numbers of a robot's current route.
     pub(crate) fn write_now(simulation: &Simulation, id: usize, out: &mut Vec<i32>) {
         let robot = &simulation.world().robots[id];
         let traveller = simulation.navigator().traveller(robot.id);
@@ -347,7 +349,7 @@ impl MovedDebris {
 }
 
 impl GroupFrame {
-    /// Appends the numbers of what a group knows now.
+    /// Appends the numbers of a group's current knowledge.
     pub(crate) fn write_now(simulation: &Simulation, number: usize, out: &mut Vec<i32>) {
         let mission = simulation.mission();
         let group = mission.groups.get(number);
@@ -378,7 +380,7 @@ impl GroupFrame {
     }
 }
 
-/// The conflict sets: of each, its number of members and their ids.
+/// Appends the conflict sets: for each set, its number of members and their ids.
 pub(crate) fn push_sets(simulation: &Simulation, out: &mut Vec<i32>) {
     for set in simulation.conflict_sets() {
         out.push(count(set.len()));

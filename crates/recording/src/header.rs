@@ -1,4 +1,4 @@
-//! The header: what is recorded, and everything that does not change.
+//! The header: what is recorded, and everything that stays the same.
 
 use serde::{Deserialize, Serialize};
 use usar_sim::conflict::DelayCause;
@@ -12,37 +12,39 @@ use crate::rows::{MOTION_FIELDS, STREAMS};
 /// Version of the format.
 pub const VERSION: u32 = 1;
 
-/// What is recorded, and everything that does not change.
+/// The header: what is recorded, and everything that stays the same.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Header {
     /// Version of the format: [`VERSION`].
     pub version: u32,
-    /// The program that wrote it.
+    /// The program that wrote the recording.
     pub program: String,
     /// The scenario.
     pub scenario: ScenarioText,
-    /// What the policy is called.
+    /// Label of the policy.
     pub policy: String,
-    /// Seed of the trial. A text in the file: not every reader of JSON has whole numbers of 64 bits.
+    /// Seed of the trial. It is a string in the file, because not every JSON reader has whole numbers of 64
+    /// bits.
     #[serde(with = "as_text")]
     pub seed: u64,
     /// Length of a step, in seconds.
     pub dt_s: f64,
-    /// Simulated time at which the trial ends at the latest, in seconds.
+    /// Latest simulated time at which the trial ends, in seconds.
     pub duration_s: f64,
-    /// Steps that were done when the recording began.
+    /// Number of steps done before the recording began.
     pub first_step: u64,
-    /// Steps from one frame to the next.
+    /// Number of steps between two frames.
     pub steps_per_frame: u64,
-    /// Frames in a segment; the last one may have fewer.
+    /// Number of frames in a segment; the last segment may have fewer.
     pub frames_per_segment: usize,
-    /// Names of the numbers of each robot that stand in every frame.
+    /// Names of each robot's numbers in every frame.
     pub motion_fields: Vec<String>,
-    /// Names of the streams that have a row only where something changes, in their order, with their numbers of rows.
+    /// Names of the streams whose rows are stored only when they change, in order, with their numbers of
+    /// rows.
     pub streams: Vec<(String, usize)>,
-    /// What the numbers of states mean.
+    /// Names for the numbers of states.
     pub codes: Codes,
-    /// The world, as far as it does not change.
+    /// The part of the world that stays the same.
     pub world: World,
 }
 
@@ -51,28 +53,28 @@ pub struct Header {
 pub struct ScenarioText {
     /// Its name.
     pub name: String,
-    /// What it is for.
+    /// Purpose of the scenario.
     pub description: String,
     /// The whole scenario with every value, in RON.
     pub resolved: String,
-    /// XXH3-128 of that text, in hexadecimal digits.
+    /// XXH3-128 of `resolved`, in hexadecimal digits.
     pub xxh3_128: String,
 }
 
 /// Names of states; a state's number is its place in the list.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Codes {
-    /// What a robot does.
+    /// Names of activities of robots.
     pub activities: Vec<String>,
-    /// Why a robot does not move on.
+    /// Names of delay causes of robots.
     pub delays: Vec<String>,
-    /// Whether a robot can still act.
+    /// Names of conditions of robots.
     pub conditions: Vec<String>,
-    /// What became of a rescuee.
+    /// Names of states of rescuees.
     pub rescuees: Vec<String>,
 }
 
-/// The world, as far as it does not change.
+/// The part of the world that stays the same.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct World {
     /// Width and height of the arena, in metres.
@@ -89,17 +91,17 @@ pub struct World {
     pub robots: Vec<RobotPlace>,
     /// Places of the rescuees, in metres: task by task, in the order of the table of tasks.
     pub rescuees: Vec<Point>,
-    /// The debris, the scenario's and the sampled, as it lies at the start.
+    /// The debris of the scenario and the sampled debris, as it lies at the start.
     pub debris: Vec<DebrisFile>,
-    /// The radiation zones, the scenario's and the sampled.
+    /// The radiation zones of the scenario and the sampled zones.
     pub zones: Vec<ZoneFile>,
-    /// Numbers of the pieces of debris that are not there at the start.
+    /// Numbers of the pieces of debris that appear after the start.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub debris_later: Vec<usize>,
-    /// Numbers of the radiation zones that are not there at the start.
+    /// Numbers of the radiation zones that appear after the start.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub zones_later: Vec<usize>,
-    /// Numbers of the rescuees that are not there at the start.
+    /// Numbers of the rescuees that appear after the start.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub rescuees_later: Vec<usize>,
 }
@@ -119,20 +121,20 @@ pub struct TaskPlace {
     pub rest: Point,
     /// Number of its first rescuee.
     pub first_rescuee: usize,
-    /// How many rescuees it has.
+    /// Number of its rescuees.
     pub rescuees: usize,
 }
 
-/// What is fixed of a robot.
+/// The part of a robot that stays the same.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct RobotPlace {
-    /// Its role: a row of the table.
+    /// Index of its role in the table of roles.
     pub role: usize,
     /// Its place at home, in metres.
     pub home: Point,
     /// Its place at the rest place of each task, in metres.
     pub rest: Vec<Point>,
-    /// What it is and can do, where it differs from its role.
+    /// Its properties, if they differ from its role's.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub body: Option<RoleFile>,
 }
@@ -141,7 +143,7 @@ fn names(names: &[&str]) -> Vec<String> {
     names.iter().map(|name| (*name).to_owned()).collect()
 }
 
-/// A whole number as a text.
+/// Serializes a whole number as a string.
 mod as_text {
     use serde::{Deserialize, Deserializer, Serializer, de};
 
@@ -155,11 +157,11 @@ mod as_text {
     }
 }
 
-/// States of rescuees in recordings that were made before rescuees could be absent.
+/// Number of rescuee states in recordings made before rescuees could be absent.
 const FORMER_RESCUEE_STATES: usize = 4;
 
 impl Codes {
-    /// Whether the numbers of states mean what they mean in this version.
+    /// Whether the numbers of states have the same meaning in this version.
     pub(crate) fn are_known(&self) -> bool {
         let mut known = Self::of_this_version();
         if self.rescuees.len() == FORMER_RESCUEE_STATES {
@@ -226,7 +228,7 @@ impl Header {
 }
 
 impl World {
-    /// What a robot is and can do: its row's own body, or that of its role.
+    /// The properties of a robot: its own body, or that of its role.
     ///
     /// # Panics
     /// There is no such robot.

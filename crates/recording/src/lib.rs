@@ -1,11 +1,13 @@
-//! Recordings of trials: what was where, who did what and why, ten times a second, in a small file.
+//! Recordings of trials: the positions, actions and reasons of all robots, ten times a second, in a small
+//! file.
 //!
-//! A [`Recorder`] listens to a simulation and writes; [`record()`] runs a whole trial with one. [`Recording::read`] reads the file
-//! back, also if it was cut short, and [`Recording::frame`] gives the state at any of its frames. The format is documented in
-//! `docs/recordings.md`: a magic number and chunks, each with checksums; positions are integers in millimetres, as differences
-//! from frame to frame; every few seconds the state stands in full.
+//! A [`Recorder`] listens to a simulation and writes the file; [`record()`] runs a whole trial with one.
+//! [`Recording::read`] reads the file, even if it is truncated, and [`Recording::frame`] gives the state at
+//! any of its frames. The format is documented in `docs/recordings.md`. It has a magic number and chunks,
+//! each with checksums. Positions are integers in millimetres, stored as differences from frame to frame.
+//! Every few seconds the whole state is stored.
 //!
-//! Recording only listens: a trial has the same result with and without it.
+//! Recording does not influence the trial: its result is the same with and without it.
 //!
 //! ```no_run
 //! use recording::{Options, Recording, record};

@@ -7,7 +7,8 @@ use crate::frame::RobotFrame;
 use crate::header::World;
 
 impl World {
-    /// The needs of a robot at a frame, in the order of the table of needs, as far as levels were recorded.
+    /// The needs of a robot at a frame, in the order of the table of needs, with the precision of the
+    /// recorded levels.
     #[must_use]
     pub fn needs_of(&self, robot: usize, frame: &RobotFrame) -> Vec<f64> {
         let role = self.body_of(robot);

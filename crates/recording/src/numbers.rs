@@ -1,6 +1,6 @@
-//! Whole numbers as few bytes: seven bits a byte, the sign in the lowest bit.
+//! Whole numbers in few bytes: seven bits in each byte, and the sign in the lowest bit.
 
-/// Appends a number, small ones as one byte (LEB128).
+/// Appends a number; small numbers take one byte (LEB128).
 pub(crate) fn write_unsigned(out: &mut Vec<u8>, mut value: u64) {
     while value >= 0x80 {
         out.push(value as u8 | 0x80);
@@ -9,7 +9,7 @@ pub(crate) fn write_unsigned(out: &mut Vec<u8>, mut value: u64) {
     out.push(value as u8);
 }
 
-/// Appends a number with a sign: 0, -1, 1, -2 and so on become 0, 1, 2, 3 (zigzag).
+/// Appends a signed number: 0, -1, 1, -2 and so on become 0, 1, 2, 3 (zigzag).
 pub(crate) fn write_signed(out: &mut Vec<u8>, value: i64) {
     write_unsigned(out, ((value << 1) ^ (value >> 63)) as u64);
 }
@@ -19,7 +19,7 @@ pub(crate) struct Numbers<'b> {
     bytes: &'b [u8],
 }
 
-/// Bytes that are not the numbers that they should be.
+/// The error for bytes that are not the expected numbers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct NotNumbers;
 
@@ -28,7 +28,7 @@ impl<'b> Numbers<'b> {
         Self { bytes }
     }
 
-    /// Bytes that are left.
+    /// Number of bytes left.
     pub(crate) fn left(&self) -> usize {
         self.bytes.len()
     }
@@ -51,7 +51,7 @@ impl<'b> Numbers<'b> {
         Ok((value >> 1).cast_signed() ^ -(value & 1).cast_signed())
     }
 
-    /// A number of things, each of which takes at least one byte of what is left.
+    /// A number of things, each of which takes at least one of the remaining bytes.
     pub(crate) fn count(&mut self) -> Result<usize, NotNumbers> {
         let count = usize::try_from(self.unsigned()?).map_err(|_| NotNumbers)?;
         if count <= self.left() { Ok(count) } else { Err(NotNumbers) }

@@ -14,18 +14,18 @@ use crate::rows::{MOTION_FIELDS, STREAMS};
 use crate::segment::Segment;
 use crate::trust::Trust;
 
-/// A recording that was read.
+/// A recording that was read from a file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Recording {
-    /// What is recorded.
+    /// The header.
     pub header: Header,
-    /// What happened, each with the step at whose end it had happened.
+    /// The events, each with the step at whose end it had happened.
     pub events: Vec<(u64, Event)>,
-    /// How the team was grouped.
+    /// The decisions.
     pub decisions: Vec<TimedDecision>,
-    /// The record of the trial, without its decisions; none of a recording that was cut short.
+    /// The record of the trial, without its decisions; `None` for a truncated recording.
     pub summary: Option<TrialRecord>,
-    /// How many bytes at the end of a recording that was cut short belong to no whole chunk.
+    /// Number of bytes at the end of a truncated recording that belong to no complete chunk.
     pub cut: Option<usize>,
     segments: Vec<Segment>,
 }
@@ -35,11 +35,11 @@ pub struct Recording {
 pub struct TimedDecision {
     /// The step in which it was made.
     pub step: u64,
-    /// What was asked, without its history.
+    /// The question, without its history.
     pub question: Question,
-    /// What was answered.
+    /// The answer.
     pub decision: Decision,
-    /// Who would have trusted whom.
+    /// The matrix of trust at the decision.
     pub trust: Option<Trust>,
 }
 
@@ -48,7 +48,7 @@ struct Events {
     events: Vec<(u64, Event)>,
 }
 
-/// The version alone: read before anything that another version may have otherwise.
+/// Only the version. It is read first, because another version may differ in everything else.
 #[derive(Deserialize)]
 struct Version {
     version: u32,
@@ -76,10 +76,10 @@ impl Recording {
         on
     }
 
-    /// Reads a recording. One that was cut short gives all its whole chunks.
+    /// Reads a recording. A truncated recording gives all its complete chunks.
     ///
     /// # Errors
-    /// It is not a recording, is of another version, has nothing but a part of its header, or is damaged.
+    /// The file is not a recording, has another version, ends within its header, or is damaged.
     pub fn read(bytes: &[u8]) -> Result<Self, ReadError> {
         let mut chunks = Chunks::new(bytes)?;
         let first = chunks.next()?.ok_or(ReadError::NoHeader { bytes: bytes.len() })?;
@@ -128,7 +128,7 @@ impl Recording {
     /// The state at a frame, numbered from 0.
     ///
     /// # Errors
-    /// There is no such frame, or its numbers make no sense.
+    /// The frame does not exist, or its numbers are invalid.
     pub fn frame(&self, number: usize) -> Result<Frame, ReadError> {
         let at = self.segments.partition_point(|segment| segment.first_frame <= number);
         let segment = at.checked_sub(1).map(|at| &self.segments[at]);
@@ -144,7 +144,8 @@ impl Recording {
         })
     }
 
-    /// The last frame at or before a simulated time in seconds, as far as there is one.
+    /// The number of the last frame at or before a simulated time in seconds. Times outside the recording
+    /// give its first or its last frame.
     #[must_use]
     pub fn frame_at(&self, time_s: f64) -> usize {
         let Header { dt_s, first_step, steps_per_frame, .. } = self.header;

@@ -1,20 +1,22 @@
-//! What a frame is made of: numbers that stand in every frame, and rows that stand where they change.
+//! The parts of a frame: numbers that are stored in every frame, and rows that are stored only when they
+//! change.
 
 use usar_sim::simulation::Simulation;
 
 use crate::frame::{GroupFrame, Motion, MovedDebris, RescueeFrame, RobotState, Route, push_sets};
 
-/// The numbers of each robot that stand in every frame.
+/// Names of each robot's numbers that are stored in every frame.
 pub(crate) const MOTION_FIELDS: [&str; 6] =
     ["x_mm", "y_mm", "vx_mm_s", "vy_mm_s", "energy_millipercent", "hp_millipercent"];
 
-/// How many of these are positions, which are predicted from the two frames before; the others are predicted to stay.
+/// The first of these are positions. They are predicted by extrapolation from the two frames before; the
+/// other numbers are predicted to stay the same.
 pub(crate) const POSITIONS: usize = 2;
 
-/// The streams of rows that stand only where they change.
+/// The streams of rows that are stored only when they change.
 pub(crate) const STREAMS: [&str; 6] = ["robots", "routes", "rescuees", "debris", "groups", "conflicts"];
 
-/// Place of the rescuees in [`STREAMS`].
+/// Index of the rescuees in [`STREAMS`].
 pub(crate) const RESCUEES: usize = 2;
 
 /// Whether a row of a stream never changes.
@@ -23,7 +25,7 @@ pub(crate) fn is_fixed(simulation: &Simulation, stream: usize, row: usize) -> bo
     stream == 3 && piece(row).is_fixed && !piece(row).is_gate
 }
 
-/// The numbers of one row of a stream, now.
+/// Appends the current numbers of one row of a stream.
 pub(crate) fn write_row(simulation: &Simulation, stream: usize, row: usize, out: &mut Vec<i32>) {
     match stream {
         0 => RobotState::of(simulation, row).write(out),
@@ -35,7 +37,7 @@ pub(crate) fn write_row(simulation: &Simulation, stream: usize, row: usize, out:
     }
 }
 
-/// The motion of a robot, now.
+/// The current motion of a robot.
 pub(crate) fn motion(simulation: &Simulation, robot: usize) -> [i32; MOTION_FIELDS.len()] {
     Motion::of(&simulation.world().robots[robot]).numbers()
 }

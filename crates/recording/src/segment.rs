@@ -1,4 +1,5 @@
-//! A segment: some seconds of frames. It begins with the whole state, so that it is read without the segments before it.
+//! A segment: the frames of some seconds. It begins with the whole state, so that it can be read without
+//! earlier segments.
 
 use usar_sim::simulation::Simulation;
 
@@ -8,7 +9,7 @@ use crate::frame::{
 use crate::numbers::{NotNumbers, Numbers, write_signed, write_unsigned};
 use crate::rows::{MOTION_FIELDS, POSITIONS, RESCUEES, STREAMS, is_fixed, motion, write_row};
 
-/// A number that stands in every frame, as differences from what the frames before let expect.
+/// A number that is stored in every frame, as the difference from its prediction by earlier frames.
 #[derive(Default)]
 struct Column {
     bytes: Vec<u8>,
@@ -29,7 +30,7 @@ impl Column {
     }
 }
 
-/// A row, with the frames in which it changed.
+/// A row, with its changes and the frames in which they happened.
 #[derive(Default)]
 struct ChangingRow {
     bytes: Vec<u8>,
@@ -52,19 +53,19 @@ impl ChangingRow {
     }
 }
 
-/// The segment that is being written.
+/// A segment that is being written.
 pub(crate) struct Draft {
     first_frame: usize,
     frames: usize,
     columns: Vec<Column>,
     rows: Vec<Vec<ChangingRow>>,
-    /// How often the rescuees had changed when they were last looked at.
+    /// The world's count of rescuee changes when the rescuees were last checked.
     rescuee_changes: Option<u64>,
     row: Vec<i32>,
 }
 
 impl Draft {
-    /// An empty segment of a world with so many robots, and so many rows of each stream.
+    /// An empty segment of a world with this many robots and this many rows of each stream.
     pub(crate) fn new(robots: usize, rows: [usize; STREAMS.len()]) -> Self {
         let columns = || (0..robots * MOTION_FIELDS.len()).map(|_| Column::default()).collect();
         let stream = |rows: usize| (0..rows).map(|_| ChangingRow::default()).collect();
@@ -82,7 +83,7 @@ impl Draft {
         self.frames
     }
 
-    /// Adds the state as it is now.
+    /// Adds the current state.
     pub(crate) fn push(&mut self, simulation: &Simulation) {
         for (robot, columns) in self.columns.chunks_exact_mut(MOTION_FIELDS.len()).enumerate() {
             for ((field, column), value) in columns.iter_mut().enumerate().zip(motion(simulation, robot)) {
@@ -107,7 +108,7 @@ impl Draft {
         self.frames += 1;
     }
 
-    /// The segment as bytes; the next one begins.
+    /// Returns the segment as bytes, and begins the next one.
     pub(crate) fn take(&mut self) -> Vec<u8> {
         let mut out = Vec::new();
         write_unsigned(&mut out, self.first_frame as u64);
@@ -126,10 +127,10 @@ impl Draft {
     }
 }
 
-/// A row as it was from some frame on.
+/// The frame from which a row has these numbers, and the numbers.
 type Entry = (usize, Vec<i32>);
 
-/// A segment that was read.
+/// A segment that was read from a recording.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Segment {
     pub(crate) first_frame: usize,
@@ -139,7 +140,7 @@ pub(crate) struct Segment {
 }
 
 impl Segment {
-    /// Reads the bytes of a segment of a world with so many robots, and so many rows of each stream.
+    /// Reads the bytes of a segment of a world with this many robots and this many rows of each stream.
     pub(crate) fn read(
         bytes: &[u8],
         robots: usize,
@@ -164,7 +165,7 @@ impl Segment {
         Ok(segment)
     }
 
-    /// Every entry has a meaning, so that every frame can be read.
+    /// Checks that every entry is valid, so that every frame can be read.
     fn check_entries(&self) -> Result<(), NotNumbers> {
         for (stream, rows) in self.rows.iter().enumerate() {
             for (_, entry) in rows.iter().flatten() {
@@ -181,7 +182,7 @@ impl Segment {
         Ok(())
     }
 
-    /// The state at a frame of this segment, numbered from its first.
+    /// The state at a frame of this segment; frames are numbered from its first one.
     pub(crate) fn frame(&self, frame: usize, step: u64) -> Result<Frame, NotNumbers> {
         let [states, routes, rescuees, debris, groups, conflicts] = &self.rows[..] else {
             return Err(NotNumbers);

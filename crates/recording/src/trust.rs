@@ -1,4 +1,4 @@
-//! The matrix of trust at a decision: who would trust whom, and which group which.
+//! The matrices of trust at a decision: between robots, and between groups.
 
 use rne_core::decision::Account;
 use rne_core::policies::rne::Rne;
@@ -6,27 +6,29 @@ use rne_core::{NeedDistribution, NeedVector, NeedWeights, Question, RneOptions, 
 use serde::{Deserialize, Serialize};
 use usar_sim::record::DecisionRecord;
 
-/// A team that is larger than this has a matrix of its groups only.
+/// A larger team has a matrix of its groups only.
 const MOST_ROBOTS: usize = 64;
 
-/// Relative Needs Entropy in nats from each row towards each column; low values are high trust, none is infinite.
+/// Relative Needs Entropy in nats from each row to each column. Low values are high trust; `None` is
+/// infinite.
 type Matrix = Vec<Vec<Option<f64>>>;
 
-/// Who would trust whom when a decision was made.
+/// The trust between robots and between groups when a decision was made.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Trust {
-    /// The weight of each need: those of the policy's account; without one, the question's, each divided by the largest need.
+    /// The weight of each need. These are the weights of the policy's account, or else those of the
+    /// question, each divided by the largest need.
     pub weights: Vec<f64>,
-    /// The members, by id: rows and columns of `robots`. None for a large team.
+    /// Ids of the members, in the order of the rows and columns of `robots`. Empty for a large team.
     pub members: Vec<u32>,
     /// From robot to robot, in nats.
     pub robots: Matrix,
-    /// From group to group, in nats; a group without members trusts nobody.
+    /// From group to group, in nats; a group without members trusts no group.
     pub groups: Matrix,
 }
 
 impl Trust {
-    /// The matrix of a decision; none where needs give no distribution.
+    /// The matrices of a decision; `None` if needs give no distribution.
     pub(crate) fn of(decided: &DecisionRecord) -> Option<Self> {
         let DecisionRecord { question, decision } = decided;
         let weights = match &decision.account {

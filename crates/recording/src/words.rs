@@ -5,18 +5,18 @@ use serde_json::{Map, Value};
 use usar_sim::event::{CutOffCause, Event, Place, ReturnCause, TurnBackCause};
 use usar_sim::ids::RobotId;
 
-/// An event with its time, and what it is called.
+/// An event with its time, its name and a sentence.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ToldEvent {
-    /// When it had happened, in seconds of simulated time.
+    /// Simulated time at which the event had happened, in seconds.
     pub time_s: f64,
     /// The step at whose end it had happened.
     pub step: u64,
-    /// Its kind in snake case, as `made_room`.
+    /// Its kind in snake case, for example `made_room`.
     pub event: String,
-    /// It in a sentence.
+    /// The event in a sentence.
     pub says: String,
-    /// Whatever else is known of it, by the names of the fields of [`Event`].
+    /// The other data of the event, by the names of the fields of [`Event`].
     #[serde(flatten)]
     pub fields: Map<String, Value>,
 }
@@ -35,7 +35,7 @@ impl ToldEvent {
         Self { time_s, step, event: snake(&name), says: sentence(event, tasks), fields }
     }
 
-    /// The robots that it is about, in its order.
+    /// The ids of the robots that the event concerns.
     #[must_use]
     pub fn robots(&self) -> Vec<u64> {
         let one = ["robot", "room_for", "resource_of"]
@@ -47,7 +47,7 @@ impl ToldEvent {
         robots
     }
 
-    /// A field that is a number.
+    /// The value of a numeric field.
     #[must_use]
     pub fn number(&self, field: &str) -> Option<u64> {
         self.fields.get(field)?.as_u64()

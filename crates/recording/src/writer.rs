@@ -12,26 +12,27 @@ use crate::header::Header;
 use crate::segment::Draft;
 use crate::trust::Trust;
 
-/// Frames in a second of simulated time, unless something else is asked for.
+/// Default number of frames in a second of simulated time.
 pub const DEFAULT_FPS: f64 = 10.0;
 
 /// Simulated time of a segment, in seconds.
 const SEGMENT_S: f64 = 10.0;
 
-/// How hard chunks are compressed, from 1 to 9. Higher levels cost more time than the trial may be slowed down, for a few percent.
+/// Compression level of chunks, from 1 to 9. Higher levels save a few percent, but slow the trial down too
+/// much.
 const LEVEL: u32 = 1;
 
-/// What to record.
+/// Options of a recording.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Options {
-    /// What the policy is called.
+    /// Label of the policy.
     pub policy: String,
-    /// Frames in a second of simulated time. There is at most one in a step.
+    /// Frames in a second of simulated time; at most one frame for each step.
     pub fps: f64,
 }
 
 impl Options {
-    /// A recording with [`DEFAULT_FPS`].
+    /// Options with [`DEFAULT_FPS`].
     #[must_use]
     pub fn new(policy: &str) -> Self {
         Self { policy: policy.to_owned(), fps: DEFAULT_FPS }
@@ -40,7 +41,7 @@ impl Options {
 
 #[derive(Serialize)]
 struct Events<'e> {
-    /// Each with the step at whose end it had happened.
+    /// The events, each with the step at whose end it had happened.
     events: &'e [(u64, Event)],
 }
 
@@ -53,7 +54,7 @@ struct TimedDecision<'d> {
     trust: Option<Trust>,
 }
 
-/// Listens to a simulation and writes what it hears.
+/// Listens to a simulation and writes a recording.
 pub struct Recorder<W> {
     out: ChunkWriter<W>,
     steps_per_frame: u64,
@@ -65,7 +66,7 @@ pub struct Recorder<W> {
 }
 
 impl<W: Write> Recorder<W> {
-    /// Begins a recording with the state as it is now.
+    /// Begins a recording with the current state.
     ///
     /// # Errors
     /// It cannot be written.
@@ -89,7 +90,7 @@ impl<W: Write> Recorder<W> {
         Ok(recorder)
     }
 
-    /// Takes note of a step. To be called after each.
+    /// Records a step. Call it after each step.
     ///
     /// # Errors
     /// It cannot be written.
@@ -113,7 +114,7 @@ impl<W: Write> Recorder<W> {
         if self.draft.frames() == self.frames_per_segment { self.end_segment() } else { Ok(()) }
     }
 
-    /// Writes what has happened since the last segment, and the segment.
+    /// Writes the events since the last segment, and the segment.
     fn end_segment(&mut self) -> io::Result<()> {
         if !self.events.is_empty() {
             write_json(&mut self.out, Kind::Events, &Events { events: &self.events })?;
@@ -126,7 +127,7 @@ impl<W: Write> Recorder<W> {
         self.out.flush()
     }
 
-    /// Ends a whole recording with the record of the trial.
+    /// Completes the recording with the record of the trial.
     ///
     /// # Errors
     /// It cannot be written.
@@ -145,7 +146,7 @@ fn write_json(out: &mut ChunkWriter<impl Write>, kind: Kind, value: &impl Serial
     out.write(kind, &serde_json::to_vec(value)?)
 }
 
-/// Runs a trial to its end and records it. The trial has the result that it has without a recording.
+/// Runs a trial to its end and records it. The result of the trial is the same as without a recording.
 ///
 /// # Errors
 /// The recording cannot be written.

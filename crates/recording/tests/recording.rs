@@ -1,4 +1,4 @@
-//! Recordings of whole trials: read back, cut short, damaged.
+//! Recordings of whole trials: read back, truncated, damaged.
 
 use std::path::Path;
 
@@ -30,7 +30,7 @@ fn recorded(file: &str, duration_s: f64) -> Vec<u8> {
     bytes
 }
 
-/// Compares a frame with the simulation: numbers within their quantisation, all else exactly.
+/// Compares a frame with the simulation: numbers within their quantisation, everything else exactly.
 fn assert_is_now(recording: &Recording, number: usize, now: &Simulation) {
     let frame = recording.frame(number).unwrap();
     assert_eq!(frame.step, now.steps());

@@ -1,5 +1,5 @@
-//! The page of one case of a sweep, which opens from disk, and the figures in it with the numbers behind
-//! each.
+//! The page of one case of a sweep, which opens from disk, with its figures and the numbers behind each
+//! figure.
 
 use askama::Template;
 use experiments::Failure;
@@ -21,7 +21,7 @@ use crate::wanted::{Files, Wanted};
 #[template(path = "report.html")]
 struct Page<'a> {
     title: &'a str,
-    /// Where figures are from the page on, and what their names begin with.
+    /// Path of the figures relative to the page, with the prefix of their names.
     links: String,
     description: &'a str,
     place: String,
@@ -31,7 +31,7 @@ struct Page<'a> {
     missing: usize,
     trials: u32,
     labels: Vec<&'a str>,
-    /// What figures call policies whose labels are too long for them, with these.
+    /// The names that figures use for policies with too long labels, each with its label.
     abbreviations: Vec<(String, &'a str)>,
     /// The answer to the first question of the sweep.
     answer: Option<String>,
@@ -79,13 +79,13 @@ pub(crate) struct Compared {
     pub exploratory: Vec<Comparison>,
 }
 
-/// Where the page of a case is, and what the names of its figures begin with.
+/// The place of a case's page, and the prefix of its figures' names.
 pub(crate) struct PagePlace {
     pub case: usize,
     pub file: String,
-    /// From the page on.
+    /// Relative to the page.
     pub links: String,
-    /// From the folder of figures on.
+    /// Relative to the folder of figures.
     pub prefix: String,
 }
 
@@ -201,7 +201,7 @@ fn quiet(folder: &Folder, case: usize) -> Vec<&str> {
     places.filter(|place| is_quiet(folder, case, *place)).map(|place| metrics[place].title.as_str()).collect()
 }
 
-/// What makes these results again.
+/// The commands that reproduce these results.
 fn command(folder: &Folder) -> String {
     let check = if folder.manifest().is_checked { " --check" } else { "" };
     format!("usar sweep sweep.ron{check} --out again\nusar report again")

@@ -16,7 +16,7 @@ pub(crate) struct Decisions {
     pub rows: Vec<Vec<String>>,
 }
 
-/// The decisions of the first trial of a case that all policies finished; nothing where there is none.
+/// The decisions of the first trial of a case that all policies finished; `None` if there is no such trial.
 pub(crate) fn decisions(folder: &mut Folder, case: usize) -> Result<Option<Decisions>, Failure> {
     let policies: Vec<String> =
         folder.experiment().policies.iter().map(|policy| policy.label.clone()).collect();

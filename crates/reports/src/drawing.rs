@@ -1,4 +1,4 @@
-//! What figures are drawn of: panels as one SVG, and the table of the numbers in them.
+//! The parts of figures: panels as one SVG, and the table of their numbers.
 
 use std::sync::Arc;
 
@@ -10,7 +10,7 @@ use kuva::render::figure::Figure as Panels;
 use kuva::render::layout::{Layout, TickFormat};
 use kuva::render::plots::Plot;
 
-/// Okabe and Ito's colours, which the colour-blind tell apart, in the order of the policies.
+/// Okabe and Ito's colours, which colour-blind readers can tell apart, in the order of the policies.
 const COLOURS: [&str; 8] =
     ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#999999", "#000000"];
 
@@ -20,7 +20,7 @@ pub(crate) struct Sketch {
     pub name: String,
     /// Heading.
     pub title: String,
-    /// What is shown, and on how many trials it stands.
+    /// Content of the figure, and the number of trials behind it.
     pub caption: String,
     /// Its panels.
     pub drawing: Drawing,
@@ -35,15 +35,15 @@ pub(crate) struct Drawing {
     cell: [f64; 2],
 }
 
-/// Size of the numbers at axes, in the units of a drawing.
+/// Size of the numbers at axes, in the unit of a drawing.
 pub(crate) const TICK: f64 = 11.0;
 
-/// Space around the panels, and between two of them, in the same units: those of kuva's figures.
+/// Space around the panels, and between two of them, in the same unit, as in kuva's figures.
 const MARGIN: f64 = 10.0;
 const GAP: f64 = 15.0;
 
 impl Drawing {
-    /// Panels in rows of so many, each so wide and high.
+    /// Panels in rows with this many columns, each panel of this width and height.
     pub fn new(panels: Vec<Panel>, columns: usize, cell: [f64; 2]) -> Self {
         Self { panels, columns, cell }
     }
@@ -53,19 +53,19 @@ impl Drawing {
         self.panels.is_empty()
     }
 
-    /// Keeps the panels of this metric; nothing is left where no panel is of one metric.
+    /// Keeps only the panels of this metric. Panels without a metric are removed, too.
     pub fn keep(&mut self, metric: &str) {
         self.panels.retain(|panel| panel.metric == metric);
     }
 
-    /// The drawing as the report has it; empty without any panel.
+    /// The drawing in the report's layout; empty without any panel.
     pub fn svg(self) -> String {
         let (columns, cell) = (self.columns, self.cell);
         self.laid_out(columns, cell)
     }
 
-    /// The drawing for a column so wide, in units of which `TICK` can be read: as many panels beside each other
-    /// as fit, each at most as wide as the column.
+    /// The drawing for a column of this width, in units in which `TICK` is readable. Each row has as many
+    /// panels as fit, each at most as wide as the column.
     pub fn svg_for(self, width: f64) -> String {
         let [cell, height] = self.cell;
         let columns = ((width / cell) as usize).clamp(1, self.panels.len().max(1));
@@ -79,7 +79,7 @@ impl Drawing {
 }
 
 impl Sketch {
-    /// The figure as the report has it.
+    /// The figure in the report's layout.
     pub fn drawn(self) -> Figure {
         let Self { name, title, caption, drawing, csv } = self;
         Figure { name, title, caption, svg: drawing.svg(), csv }
@@ -92,7 +92,7 @@ pub(crate) struct Figure {
     pub name: String,
     /// Heading.
     pub title: String,
-    /// What is shown, and on how many trials it stands.
+    /// Content of the figure, and the number of trials behind it.
     pub caption: String,
     /// The drawing.
     pub svg: String,
@@ -100,9 +100,9 @@ pub(crate) struct Figure {
     pub csv: String,
 }
 
-/// One panel: what is drawn, and its axes.
+/// One panel: its plots and its axes.
 pub(crate) struct Panel {
-    /// The metric that it is of; empty for none.
+    /// The metric of the panel; empty for none.
     pub metric: String,
     pub plots: Vec<Plot>,
     pub layout: Layout,
@@ -122,7 +122,7 @@ fn dashes(policy: usize) -> LineStyle {
     }
 }
 
-/// Whether a policy is drawn: all are, or those that are asked for.
+/// Whether a policy is drawn: any policy, unless `only` lists the policies to draw.
 pub(crate) fn is_drawn(only: Option<&[String]>, label: &str) -> bool {
     only.is_none_or(|only| only.iter().any(|one| one == label))
 }
@@ -138,7 +138,7 @@ pub(crate) fn layout(plots: &[Plot], title: &str) -> Layout {
         .with_font_family("DejaVu Sans, Helvetica, Arial, sans-serif")
 }
 
-/// A number at an axis: as few digits as tell it from its neighbours.
+/// A number at an axis: up to six decimals without trailing zeros, or scientific notation below 0.001.
 fn tick(value: f64) -> String {
     if value != 0.0 && value.abs() < 0.001 {
         return format!("{value:.1e}");
@@ -148,7 +148,8 @@ fn tick(value: f64) -> String {
     if text.is_empty() || text == "-0" { "0".to_owned() } else { text.to_owned() }
 }
 
-/// The range of an axis that shows all of these values and a little more; from 0 where they come near to it.
+/// The range of an axis that shows all of these values and a margin; it begins at 0 if the values come near
+/// to it.
 pub(crate) fn range(values: impl IntoIterator<Item = f64>) -> [f64; 2] {
     let (least, most) =
         values.into_iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| (a.min(v), b.max(v)));
@@ -160,10 +161,12 @@ pub(crate) fn range(values: impl IntoIterator<Item = f64>) -> [f64; 2] {
     [low, most + room]
 }
 
-/// For each line: the policy, its label, and points of place, mean, and half the width of the band around it.
+/// A line: the policy, its label, and points. A point is a place, a mean, and half the width of the band
+/// around it.
 pub(crate) type Line<'a> = (usize, &'a str, Vec<(f64, f64, f64)>);
 
-/// Lines through means, each with a band around it; nothing without any point. `words` are title and labels of the axes.
+/// Lines through means, each with a band around it; `None` without any point. `words` are the title and the
+/// labels of the axes.
 pub(crate) fn line_panel(lines: &[Line], metric: &str, words: [&str; 3]) -> Option<Panel> {
     let all = || lines.iter().flat_map(|(_, _, points)| points);
     all().next()?;
@@ -193,8 +196,9 @@ pub(crate) fn line_panel(lines: &[Line], metric: &str, words: [&str; 3]) -> Opti
     Some(Panel { metric: metric.to_owned(), plots, layout })
 }
 
-/// A heat map with its values written in it: white at 0, blue at `most`, light enough for black figures on it. One value has one colour,
-/// whatever the range of the others. The first row is on top: its categories are [`from_top`].
+/// A heat map with its values written in it: white at 0 and blue at `most`, light enough for black text.
+/// Equal values have equal colours, whatever the range of the other values. The first row is on top; its
+/// categories are [`from_top`].
 pub(crate) fn heat_map(mut data: Vec<Vec<f64>>, most: f64) -> Plot {
     data.reverse(); // kuva begins at the bottom
     let all = || data.iter().flatten().copied();
@@ -207,14 +211,15 @@ pub(crate) fn heat_map(mut data: Vec<Vec<f64>>, most: f64) -> Plot {
     Plot::Heatmap(Heatmap::new().with_data(data).with_color_map(colours).with_values())
 }
 
-/// The names of a heat map's rows, the first of which is on top.
+/// The names of a heat map's rows in kuva's order, if the first name is that of the top row.
 pub(crate) fn from_top(names: impl IntoIterator<Item = String>) -> Vec<String> {
     let mut names: Vec<String> = names.into_iter().collect();
     names.reverse();
     names
 }
 
-/// What figures call the policies: their labels, or where one is too long for an axis, the policy's name with its place in the list.
+/// The names of policies in figures: their labels, or, for a label that is too long for an axis, the
+/// policy's name with its place in the list.
 pub(crate) fn names(experiment: &Experiment) -> Vec<String> {
     let name = |(i, policy): (usize, &PolicySpec)| {
         let is_short = policy.label.chars().count() <= LONGEST_NAME;
@@ -223,10 +228,10 @@ pub(crate) fn names(experiment: &Experiment) -> Vec<String> {
     experiment.policies.iter().enumerate().map(name).collect()
 }
 
-/// Characters of a policy's label that a figure has room for.
+/// Largest number of characters of a policy's label in a figure.
 const LONGEST_NAME: usize = 12;
 
-/// Panels in rows of this many, as one drawing.
+/// Panels in rows with this many columns, as one drawing.
 fn draw(panels: Vec<Panel>, columns: usize, [width, height]: [f64; 2]) -> String {
     let rows = panels.len().div_ceil(columns);
     let (plots, layouts): (Vec<_>, Vec<_>) =
@@ -240,7 +245,7 @@ fn draw(panels: Vec<Panel>, columns: usize, [width, height]: [f64; 2]) -> String
     with_view_box(&svg)
 }
 
-/// The drawing with its size as a view box too, so that it can be shown at any size.
+/// The drawing with its size also as a view box, so that it can be shown at any size.
 fn with_view_box(svg: &str) -> String {
     let size = |name: &str| svg.split_once(&format!(" {name}=\""))?.1.split_once('"').map(|(size, _)| size);
     match (size("width"), size("height")) {

@@ -1,4 +1,4 @@
-//! A study of sensitivity for people: its figure, its tables, and its ranking in words.
+//! A study of sensitivity as a figure, tables, and a ranking in words.
 
 use comfy_table::{Cell, Table};
 use experiments::Failure;
@@ -99,7 +99,7 @@ fn percent(share: f64) -> String {
     format!("{:.0} %", 100.0 * share)
 }
 
-/// How much a parameter matters, and which way.
+/// The importance of a parameter, and its direction, in words.
 fn in_words(row: &Row) -> String {
     match row.index {
         Index::Effects { effects, .. } => {

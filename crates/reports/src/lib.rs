@@ -1,7 +1,7 @@
 //! Results for people: the figures and the page of a sweep, and tables for the terminal.
 //!
-//! [`write_report`] makes `report.html` in a sweep's folder; [`table`] has tables as text. A page of another
-//! crate takes its looks from [`STYLE`].
+//! [`write_report`] makes `report.html` in a sweep's folder; [`table`] has tables as text. Pages of other
+//! crates use the style sheet [`STYLE`].
 
 mod case;
 mod decisions;

@@ -1,4 +1,4 @@
-//! Maps in a report: the world of a case, and the ways of all robots in chosen trials.
+//! Maps in a report: the world of a case, and the trajectories of all robots in chosen trials.
 
 use experiments::Failure;
 use experiments::experiment::Experiment;
@@ -22,11 +22,11 @@ pub struct ShownTrial {
 pub(crate) struct Map {
     /// Name of its file.
     pub name: String,
-    /// What is shown.
+    /// Content of the map.
     pub caption: String,
     /// The drawing.
     pub svg: String,
-    /// Where the trial can be watched, from the report on; empty for nowhere.
+    /// Link to the trial's replay, relative to the report; empty for none.
     pub replay: String,
 }
 
@@ -34,7 +34,7 @@ fn look(width: u32) -> Look {
     Look { width: Width::Pixels(width), ..Look::default() }
 }
 
-/// The world of a case with the seed of its first trial; none where the layout cannot be drawn.
+/// The world of a case with the seed of its first trial; `None` if the layout cannot be drawn.
 pub(crate) fn world_map(experiment: &Experiment, case: usize) -> Option<Map> {
     let (scenario, seed) = (&experiment.cases[case].scenario, experiment.seed(1));
     let world = World::of(&Simulation::new(scenario, seed).ok()?);
@@ -51,7 +51,7 @@ pub(crate) fn world_map(experiment: &Experiment, case: usize) -> Option<Map> {
     })
 }
 
-/// The ways of all robots in a trial.
+/// The trajectories of all robots in a trial.
 pub(crate) fn trails_map(number: usize, trial: &ShownTrial, plots: &str) -> Result<Map, Failure> {
     let svg = trails(&trial.recording, &look(570)).map_err(Failure::run)?.svg().to_owned();
     let ShownTrial { label, seed, replay, .. } = trial;

@@ -1,5 +1,5 @@
-//! The first page of the report of a sweep with several cases: what each case says, and how differences
-//! change from one to another.
+//! The first page of the report of a sweep with several cases: the answer of each case, and how differences
+//! change from case to case.
 
 use askama::Template;
 use experiments::Failure;
@@ -21,26 +21,26 @@ struct Overview<'a> {
     counts: String,
     is_complete: bool,
     cases: Vec<Line>,
-    /// How many of them have a page.
+    /// Number of cases that have a page.
     pages: usize,
-    /// What each metric is like, case by case.
+    /// The values of each metric, case by case.
     changes: Vec<Change<'a>>,
-    /// Changes of differences that are shown.
+    /// Changes of differences that are statistically shown.
     found: Vec<&'a str>,
-    /// Changes that are not.
+    /// Changes of differences that are not shown.
     open: Vec<&'a str>,
     figures: &'a [Figure],
 }
 
-/// A case in a line.
+/// The overview's line of a case.
 struct Line {
     place: String,
-    /// Its page, from the overview on; empty for none.
+    /// Link to its page, relative to the overview; empty for none.
     page: String,
     answer: Option<String>,
 }
 
-/// What the axes change in one metric.
+/// The changes of one metric along the axes.
 struct Change<'a> {
     metric: &'a str,
     means: Lines,

@@ -8,25 +8,25 @@ use crate::drawing::{Sketch, TICK};
 use crate::figures::{Part, sketches, sketches_along_axes};
 use crate::wanted::Wanted;
 
-/// Points of a millimetre.
+/// Points in a millimetre.
 const POINTS_PER_MM: f64 = 72.0 / 25.4;
 
 /// The smallest text of a figure, in points.
 pub const LEAST_TEXT_POINTS: f64 = 7.0;
 
-/// How a figure for a paper is drawn.
+/// The look of a figure for a paper.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ColumnLook {
     /// Width of the column, in millimetres.
     pub width_mm: f64,
-    /// Without colours.
+    /// Whether colours are replaced by greys.
     pub is_grey: bool,
-    /// The panels of this metric alone; none for all.
+    /// The metric whose panels are kept; `None` for all.
     pub metric: Option<String>,
 }
 
-/// A figure by its name, as SVG with its width in millimetres and no text below 7 points. The names are those of the
-/// report's files.
+/// A figure by its name, as SVG with its width in millimetres and no text below 7 points. The names are
+/// those of the report's files.
 ///
 /// # Errors
 /// There is no such figure, or nothing to draw in it.
@@ -81,7 +81,7 @@ fn in_millimetres(svg: &str, width_mm: f64) -> String {
     format!("{head}>{rest}")
 }
 
-/// The drawing with each colour as the grey that is as light.
+/// The drawing with each colour replaced by a grey of the same lightness.
 fn grey(svg: &str) -> String {
     let mut parts = svg.split('#');
     let mut text = parts.next().unwrap_or_default().to_owned();
@@ -90,7 +90,7 @@ fn grey(svg: &str) -> String {
         let channel = |at: usize| u8::from_str_radix(&part[at..at + 2], 16).map_or(0.0, f64::from);
         text.push('#');
         if digits == 6 {
-            // Rec. 709 weights of the channels as they are encoded.
+            // Rec. 709 weights, applied to the channels as encoded.
             let light = 0.2126 * channel(0) + 0.7152 * channel(2) + 0.0722 * channel(4);
             let light = light.round() as u8;
             text.push_str(&format!("{light:02X}").repeat(3));

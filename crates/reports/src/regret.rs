@@ -6,7 +6,8 @@ use experiments::regret::Analysis;
 use crate::drawing::{Figure, Sketch};
 use crate::figures::regret;
 
-/// The figures of a study: for each, the name of a file and its content, drawings and the numbers behind them.
+/// The figures of a study as files: for each figure its drawing and the numbers behind it, each with the
+/// name of its file.
 ///
 /// # Errors
 /// None: all is made in memory.

@@ -12,10 +12,10 @@ use crate::case::{Compared, PagePlace, write_case};
 use crate::overview::write_overview;
 use crate::wanted::{Files, Wanted};
 
-/// Cases of a sweep that get a page each, where none is asked for.
+/// Largest number of cases that get a page, if no case is selected.
 const MOST_PAGES: usize = 24;
 
-/// Writes the report of a sweep into its folder; returns where it is. A sweep with several cases gets an
+/// Writes the report of a sweep into its folder; returns its path. A sweep with several cases gets an
 /// overview, and a page for each case beside the figures.
 ///
 /// # Errors

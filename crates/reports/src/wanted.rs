@@ -1,4 +1,4 @@
-//! What a report is to show, and what it consists of.
+//! The requested content of a report, and the files of which it consists.
 
 use experiments::Failure;
 use experiments::comparison::{Asked, Wishes};
@@ -6,29 +6,29 @@ use experiments::experiment::Experiment;
 
 use crate::maps::ShownTrial;
 
-/// What a report is to show.
+/// The requested content of a report.
 pub struct Wanted {
     /// The comparisons.
     pub asked: Asked,
-    /// Its title; none for the sweep's name.
+    /// Its title; `None` for the sweep's name.
     pub title: Option<String>,
-    /// The case that gets a page, from 0; none for all.
+    /// The case that gets a page, from 0; `None` for all.
     pub case: Option<usize>,
-    /// Trials whose ways are drawn, with their replays, on the page of the case that is asked for, or of the
-    /// first.
+    /// Trials whose trajectories are drawn, with their replays. They are on the page of the selected case,
+    /// or of the first.
     pub shown: Vec<ShownTrial>,
 }
 
 impl Wanted {
-    /// What a sweep's file asks, and no trial.
+    /// The content that a sweep's file asks for, without any shown trial.
     ///
     /// # Errors
-    /// What it asks is not right.
+    /// The sweep file's questions are invalid.
     pub fn of(experiment: &Experiment) -> Result<Self, Failure> {
         let asked = Asked::of(experiment, &Wishes::default())?;
         Ok(Self { asked, title: None, case: None, shown: Vec::new() })
     }
 }
 
-/// The files of a report, by their names from the folder on.
+/// The files of a report, by their names relative to the folder.
 pub(crate) type Files = Vec<(String, Vec<u8>)>;

@@ -9,7 +9,7 @@ pub(crate) struct Cursor<'a> {
 }
 
 impl<'a> Cursor<'a> {
-    /// The beginning of a text.
+    /// A cursor at the beginning of a text.
     pub(crate) fn new(text: &'a str) -> Self {
         Self { text, at: 0, breaks: 0, counted: 0 }
     }
@@ -101,7 +101,7 @@ impl<'a> Cursor<'a> {
         }
     }
 
-    /// Letters, digits and `_`; of `r#name`, the part after `r#`.
+    /// Steps over letters, digits and `_`, and returns them; of `r#name`, it returns the part after `r#`.
     pub(crate) fn identifier(&mut self) -> &'a str {
         let is_raw = self.starts_with(b"r#")
             && self.text.as_bytes().get(self.at + 2).is_some_and(|byte| is_of_name(*byte));
@@ -111,12 +111,12 @@ impl<'a> Cursor<'a> {
         self.since(start)
     }
 
-    /// A number, or whatever else ends where a blank, a comment or the next entry begins.
+    /// Steps over a number, or over any other text up to a blank, a comment or the end of the entry.
     pub(crate) fn word(&mut self) {
         self.skip_while(|byte| !b",)]}/".contains(&byte) && !byte.is_ascii_whitespace());
     }
 
-    /// A string or a character.
+    /// Steps over a string or a character.
     pub(crate) fn quoted(&mut self, quote: u8) {
         self.at += 1;
         while let Some(byte) = self.peek() {
@@ -128,7 +128,7 @@ impl<'a> Cursor<'a> {
         self.at = self.at();
     }
 
-    /// What follows the `r` of `r#"..."#`.
+    /// Steps over the rest of `r#"..."#` after the `r`.
     pub(crate) fn raw_string(&mut self) {
         let mut end = vec![b'"'];
         while self.peek() == Some(b'#') {
@@ -143,7 +143,7 @@ impl<'a> Cursor<'a> {
     }
 }
 
-/// Whether a byte may stand in a name. Each byte of a letter beyond ASCII may.
+/// Whether a byte may occur in a name. Each byte of a letter beyond ASCII may.
 pub(crate) fn is_of_name(byte: u8) -> bool {
     byte.is_ascii_alphanumeric() || byte == b'_' || !byte.is_ascii()
 }

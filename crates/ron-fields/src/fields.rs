@@ -8,18 +8,22 @@ use crate::path::split;
 /// The node of the whole text.
 pub(crate) const ROOT: usize = 0;
 
-/// Where the fields of one text stand: the line of each, so that a broken rule is reported where the user can mend it, and the bytes of its
-/// value, so that it can be replaced.
+/// The places of a text's fields: the line of each field, so that an error can name the line to correct,
+/// and the bytes of its value, so that the value can be replaced.
 ///
-/// RON's deserialiser gives positions for its own errors only. This walks a text that is already known to be well-formed.
+/// RON's deserialiser gives positions only for its own errors. `Fields` walks a text that is already known
+/// to be well-formed.
 ///
-/// A path is `tasks[0].grid[1]`, or, where a list's entry has a field `name` whose value is the string `"hard"`, `tasks.hard.grid[1]`. Of two
-/// entries with one name, the name is that of the first. The key of a map stands in a path as in the text: `map."a.b"`.
+/// A path is `tasks[0].grid[1]`. If a list's entry has a field `name` whose value is the string `"hard"`,
+/// the path `tasks.hard.grid[1]` is valid, too. If two entries have the same name, it refers to the first.
+/// The key of a map appears in a path as in the text: `map."a.b"`.
 #[derive(Debug, Clone)]
 pub struct Fields {
-    /// The whole text, then its fields and entries in the order of the text, each before what is in it.
+    /// The whole text, then its fields and entries in the order of the text, each before its own fields and
+    /// entries.
     pub(crate) nodes: Vec<Node>,
-    /// The nodes but for the whole text, sorted by path; of one path, in the order of the text.
+    /// All nodes except the whole text, sorted by path; nodes with the same path are in the order of the
+    /// text.
     pub(crate) index: Vec<u32>,
 }
 
@@ -32,19 +36,19 @@ pub(crate) struct Node {
     line: usize,
     /// Bytes of its value.
     pub(crate) value: Range<usize>,
-    /// Fields and entries directly in it.
+    /// Fields and entries directly in the node.
     pub(crate) children: Vec<u32>,
-    /// Its entries that have a name.
+    /// Its entries that have a name, by name.
     #[expect(clippy::box_collection, reason = "most nodes have none, and there are many nodes")]
     pub(crate) named: Option<Box<BTreeMap<Box<str>, usize>>>,
-    /// Value of its field `name`, during the walk.
+    /// Value of its field `name`, used during the walk.
     pub(crate) name: Option<Box<str>>,
     /// Whether its value is in square brackets.
     pub(crate) is_list: bool,
 }
 
 impl Node {
-    /// A node without a value, as yet.
+    /// A node whose value is not known yet.
     pub(crate) fn new(path: Box<str>, line: usize, start: usize) -> Self {
         Self {
             path,
@@ -58,46 +62,49 @@ impl Node {
     }
 }
 
-/// A part of a path that is there, from its beginning on.
+/// The existing beginning of a path.
 pub(crate) struct Step {
-    /// What is there.
+    /// The node at its end.
     pub(crate) node: usize,
     /// Bytes of the path up to here.
     pub(crate) end: usize,
 }
 
 impl Fields {
-    /// The path with numbers for names, `tasks[0].grid[1]` for `tasks.hard.grid[1]`, if there is such a field.
+    /// The path with indices instead of names, `tasks[0].grid[1]` for `tasks.hard.grid[1]`, if the field
+    /// exists.
     #[must_use]
     pub fn canonical(&self, path: &str) -> Option<String> {
         self.field(path).map(|field| field.path.to_string())
     }
 
-    /// The bytes of a field's value, if it is written down.
+    /// The bytes of a field's value, if the text has the field.
     #[must_use]
     pub fn value(&self, path: &str) -> Option<Range<usize>> {
         self.field(path).map(|field| field.value.clone())
     }
 
-    /// Paths, with numbers for names, and bytes of the values of all fields that have no fields of their own.
+    /// All fields without fields of their own: the path of each, with indices instead of names, and the
+    /// bytes of its value.
     pub fn leaves(&self) -> impl Iterator<Item = (&str, Range<usize>)> {
         let leaves = self.nodes.iter().skip(1).filter(|node| node.children.is_empty());
         leaves.map(|node| (&*node.path, node.value.clone()))
     }
 
-    /// Paths, with numbers for names, and bytes of the values of all fields and entries, each before what is
-    /// in it.
+    /// All fields and entries: the path of each, with indices instead of names, and the bytes of its value.
+    /// Each comes before its own fields and entries.
     pub fn all(&self) -> impl Iterator<Item = (&str, Range<usize>)> {
         self.nodes.iter().skip(1).map(|node| (&*node.path, node.value.clone()))
     }
 
-    /// The path, with numbers for names, of the field without fields of its own whose value holds a byte of the text, or ends before it.
+    /// The path, with indices instead of names, of the field without fields of its own whose value contains
+    /// a byte of the text or ends directly before it.
     #[must_use]
     pub fn leaf_at(&self, at: usize) -> Option<&str> {
         self.leaves().find(|(_, place)| place.start <= at && at <= place.end).map(|(path, _)| path)
     }
 
-    /// Number of entries of a list that is written down; of the whole text for an empty path.
+    /// Number of entries of a list in the text; of the whole text for an empty path.
     #[must_use]
     pub fn entries(&self, path: &str) -> Option<usize> {
         self.find(path).map(|node| self.entries_in(node))
@@ -109,7 +116,8 @@ impl Fields {
         self.find(path).map(|node| self.names_in(node)).unwrap_or_default()
     }
 
-    /// Line (from 1) of a field such as `tasks.hard.grid[0]`, or of the nearest field around it that is written down.
+    /// Line (from 1) of a field such as `tasks.hard.grid[0]`; if the text lacks the field, the line of the
+    /// nearest enclosing field.
     #[must_use]
     pub fn line(&self, path: &str) -> Option<usize> {
         let nearest = || self.trail(path).last().map_or(ROOT, |step| step.node);
@@ -121,20 +129,20 @@ impl Fields {
         self.find(path).filter(|node| *node != ROOT).map(|node| &self.nodes[node])
     }
 
-    /// The first node whose path is this, to the letter.
+    /// The first node with exactly this path.
     fn exactly(&self, path: &str) -> Option<usize> {
         let first = self.index.partition_point(|node| *self.nodes[*node as usize].path < *path);
         let node = *self.index.get(first)? as usize;
         (*self.nodes[node].path == *path).then_some(node)
     }
 
-    /// The node of a path, with or without names.
+    /// The node of a path with names or indices.
     fn find(&self, path: &str) -> Option<usize> {
         let by_steps = || self.trail(path).pop().filter(|step| step.end == path.len()).map(|step| step.node);
         self.exactly(path).or_else(by_steps)
     }
 
-    /// What is there of a path, from the whole text on inwards.
+    /// The existing steps of a path, from the whole text inwards.
     pub(crate) fn trail(&self, path: &str) -> Vec<Step> {
         let mut trail = vec![Step { node: ROOT, end: 0 }];
         let (mut node, mut rest) = (ROOT, path);
@@ -147,7 +155,8 @@ impl Fields {
         trail
     }
 
-    /// The node of a segment within a node: its field or entry, or else its first entry of that name.
+    /// The node of a segment within a node: the field or entry with this key, or else the first entry with
+    /// this name.
     fn step(&self, node: usize, segment: &str) -> Option<usize> {
         let around = &self.nodes[node];
         let by_name = || {
@@ -167,7 +176,7 @@ impl Fields {
         names.map(|key| key.strip_prefix('.').unwrap_or(key)).collect()
     }
 
-    /// What is directly in a node: `.name` or, at the root, `name`; `[0]`.
+    /// The keys of the fields and entries directly in a node: `.name` (at the root, `name`) or `[0]`.
     fn keys(&self, node: usize) -> impl Iterator<Item = &str> {
         let node = &self.nodes[node];
         node.children.iter().map(|child| &self.nodes[*child as usize].path[node.path.len()..])

@@ -1,36 +1,37 @@
-//! Files that people write, read whole: only regular files of a size that makes sense, so that nothing is waited for and no memory runs out.
+//! Reads whole files that users write. Only regular files of limited size are read, so that reading neither
+//! blocks nor exhausts memory.
 
 use std::fs;
 use std::io::{self, Read};
 use std::path::Path;
 
-/// Bytes that a text of a person's may have: 4 MiB.
+/// Largest size of a user's text in bytes: 4 MiB.
 pub const MAX_TEXT_BYTES: u64 = crate::limits::TEXT_BYTES.most as u64;
 
 /// Why a file cannot be read, as the rest of a sentence after its name.
 #[derive(Debug, thiserror::Error)]
 pub enum ReadError {
-    /// The system says no.
+    /// The system refuses to read it.
     #[error("cannot be read: {0}")]
     Unreadable(#[from] io::Error),
-    /// A folder.
+    /// The path is a folder.
     #[error("is a folder, not a file")]
     Folder,
-    /// A pipe, a socket or a device.
+    /// The path is a pipe, a socket or a device.
     #[error("is not a regular file")]
     NotRegular,
-    /// Too many bytes.
+    /// The file has too many bytes.
     #[error("is larger than the {} MiB that such a file may have", .0 >> 20)]
     TooLarge(u64),
-    /// Not UTF-8.
+    /// The file is not UTF-8.
     #[error("is not text in UTF-8: {0}")]
     NotText(String),
 }
 
-/// Opens a regular file of at most so many bytes; returns it with its length.
+/// Opens a regular file of at most this many bytes; returns it with its length.
 ///
 /// # Errors
-/// It is not there, no regular file, too large, or cannot be opened.
+/// The file does not exist, is not a regular file, is too large, or cannot be opened.
 pub fn open(path: &Path, most: u64) -> Result<(fs::File, u64), ReadError> {
     let there = fs::metadata(path)?;
     match there.len() {
@@ -41,17 +42,17 @@ pub fn open(path: &Path, most: u64) -> Result<(fs::File, u64), ReadError> {
     }
 }
 
-/// Reads a file of at most so many bytes.
+/// Reads a file of at most this many bytes.
 ///
 /// # Errors
-/// Those of [`open`], or it cannot be read.
+/// Those of [`open`], or the file cannot be read.
 pub fn read(path: &Path, most: u64) -> Result<Vec<u8>, ReadError> {
     let mut bytes = Vec::new();
     open(path, most)?.0.take(most + 1).read_to_end(&mut bytes)?;
     if bytes.len() as u64 > most { Err(ReadError::TooLarge(most)) } else { Ok(bytes) }
 }
 
-/// The first bytes of a file, as many as it has of them, and its length.
+/// The first bytes of a file, at most this many, and the file's length.
 ///
 /// # Errors
 /// Those of [`read`].
@@ -62,10 +63,10 @@ pub fn read_start(path: &Path, bytes: u64, most: u64) -> Result<(Vec<u8>, u64), 
     Ok((start, length))
 }
 
-/// Reads a text of at most [`MAX_TEXT_BYTES`], without the byte order mark that it may begin with.
+/// Reads a text of at most [`MAX_TEXT_BYTES`], without a byte order mark at its beginning.
 ///
 /// # Errors
-/// Those of [`read`], or it is not text in UTF-8.
+/// Those of [`read`], or the file is not text in UTF-8.
 pub fn read_text(path: &Path) -> Result<String, ReadError> {
     let mut bytes = read(path, MAX_TEXT_BYTES)?;
     if bytes.starts_with(&[0xff, 0xfe]) || bytes.starts_with(&[0xfe, 0xff]) {

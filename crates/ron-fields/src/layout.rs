@@ -1,9 +1,8 @@
-//! The layout of a text: indents, blanks, commas at ends of lines. Line breaks and comments stay where they
-//! are.
+//! The layout of a text: indents, blanks, commas at ends of lines. Line breaks and comments stay unchanged.
 
 use crate::cursor::Cursor;
 
-/// Blanks of one indent.
+/// Number of blanks of one indent.
 const INDENT: usize = 4;
 
 /// A smallest part of a text.
@@ -21,20 +20,21 @@ enum Part<'t> {
     Block(&'t str),
 }
 
-/// A part, and what stands before it.
+/// A part, and the white space before it.
 #[derive(Debug, Clone, Copy)]
 struct Token<'t> {
     part: Part<'t>,
-    /// Line breaks between the part before and this one.
+    /// Line breaks since the part before.
     breaks: usize,
     /// Blanks directly before it.
     blanks: usize,
 }
 
-/// A text that is well-formed in the layout of the project: four blanks for each bracket that is open at the
-/// end of a line, one blank after commas and colons, a comma after the last entry before a bracket on a line
-/// of its own, no blanks at ends of lines, at most one empty line. Line breaks, comments and the blanks
-/// before comments at the ends of lines stay as they are. Doing it twice changes nothing.
+/// A well-formed text in the layout of the project. The indent is four blanks for each bracket that is open
+/// at the end of a line. One blank follows commas and colons. A comma follows the last entry before a
+/// bracket on a line of its own. Lines have no trailing blanks, and there is at most one empty line in a
+/// row. Line breaks, comments and the blanks before comments at the ends of lines stay as they are.
+/// Formatting a formatted text changes nothing.
 ///
 /// ```
 /// let text = "(a:1 ,b :[\n1,2 // two\n ]\n)";
@@ -66,7 +66,7 @@ struct Writer<'t> {
     text: String,
     /// For each open bracket, the indent of its line.
     open: Vec<usize>,
-    /// Indent of the present line.
+    /// Indent of the current line.
     indent: usize,
     last: Option<Part<'t>>,
 }
@@ -134,7 +134,8 @@ fn tokens(text: &str) -> Vec<Token<'_>> {
         tokens.push(Token { part, breaks, blanks });
         (breaks, blanks) = (0, 0);
     }
-    // A comma is written by the entry before it; one that stands first on a line goes to the line before.
+    // Commas are written after the entry before them: a comma at the start of a line moves to the line
+    // before.
     for at in 1..tokens.len() {
         if tokens[at].part == Part::Comma {
             let moved = std::mem::replace(&mut tokens[at].breaks, 0);
@@ -217,7 +218,7 @@ fn part<'t>(cursor: &mut Cursor<'t>, byte: u8, text: &'t str, start: usize) -> P
     }
 }
 
-/// A name, a number, or a string with a letter before it.
+/// Steps over a name, a number, or a string with a prefix.
 fn word(cursor: &mut Cursor, rest: &str) {
     let raw = rest.trim_start_matches('b');
     let hashes = raw.strip_prefix('r').map(|raw| raw.trim_start_matches('#'));

@@ -1,22 +1,22 @@
-//! Limits as data: constants to check values by, from which a page can be made that cannot drift.
+//! Limits as data: constants that check values, and from which an always current page can be made.
 
 use std::ops::RangeInclusive;
 
-/// What a value may be.
+/// A limit of a value.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Limit {
-    /// Path of the field, with `*` for any entry, or the words for what it is of.
+    /// Path of the field, with `*` for any entry, or a description of the limited object.
     pub of: &'static str,
     /// Least value.
     pub least: f64,
     /// Greatest value.
     pub most: f64,
-    /// What the value is, with its unit, and why the limit is where it is.
+    /// Meaning of the value, with its unit, and the reason for the limit.
     pub what: &'static str,
 }
 
 impl Limit {
-    /// From the least to the greatest value.
+    /// The range from the least to the greatest value.
     #[must_use]
     pub fn range(&self) -> RangeInclusive<f64> {
         self.least..=self.most
@@ -35,7 +35,8 @@ impl Limit {
     }
 }
 
-/// Declares constants of type [`Limit`](crate::limits::Limit), and `ALL` of them in their order. The first line of the comment is what the value is.
+/// Declares constants of type [`Limit`](crate::limits::Limit), and `ALL` with all of them in order. The
+/// first line of each comment describes the value.
 ///
 /// ```
 /// ron_fields::limits! {

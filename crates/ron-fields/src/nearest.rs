@@ -1,7 +1,8 @@
-//! The word that a mistyped one was meant to be.
+//! Finds the known word that a mistyped word was meant to be.
 
-/// Of these words, the one that is nearest to a mistyped word, if one is near enough to be meant: at most a third of its characters,
-/// or two, added, left out, changed, or swapped with the next. Of two that are as near, the first.
+/// The nearest of these words to a mistyped word, if it is near enough. Near enough is at most a third of
+/// the characters, or two (one, for words with fewer than four characters), added, left out, changed, or
+/// swapped with the next. Of equally near words, the first.
 #[must_use]
 pub fn nearest<'w>(word: &str, words: impl IntoIterator<Item = &'w str>) -> Option<&'w str> {
     let typed: Vec<char> = word.chars().take(MOST_CHARS).collect();
@@ -10,10 +11,11 @@ pub fn nearest<'w>(word: &str, words: impl IntoIterator<Item = &'w str>) -> Opti
     near.filter(|(edits, _)| *edits <= most).min_by_key(|(edits, _)| *edits).map(|(_, known)| known)
 }
 
-/// Longer words are compared by their beginnings.
+/// Number of characters that are compared; the rest of longer words is ignored.
 const MOST_CHARS: usize = 64;
 
-/// Number of edits that make one word of the other (optimal string alignment; Boytsov 2011); a change of case counts as none but the last resort.
+/// Number of edits that turn one word into the other, regardless of the case of ASCII letters (optimal
+/// string alignment; Boytsov 2011).
 fn edits(typed: &[char], known: &str) -> usize {
     let lower = |c: char| c.to_ascii_lowercase();
     let (a, b): (Vec<char>, Vec<char>) =

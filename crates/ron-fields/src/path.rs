@@ -1,7 +1,7 @@
 //! Paths such as `tasks.hard.grid[0]`.
 
-/// Splits off the first segment: `tasks.hard[0]` is `tasks` and `.hard[0]`, and that is `.hard` and `[0]`. Dots and brackets in quotes belong
-/// to the key of a map.
+/// Splits off the first segment: `tasks.hard[0]` is split into `tasks` and `.hard[0]`, and that into
+/// `.hard` and `[0]`. Dots and brackets in quotes belong to the key of a map.
 pub(crate) fn split(path: &str) -> (&str, &str) {
     let (mut in_quotes, mut is_escaped) = (false, false);
     let mut ends = |at: usize, c: char| {

@@ -7,19 +7,19 @@ use thiserror::Error;
 
 use crate::{Fields, Misfit};
 
-/// A field that cannot be set.
+/// Why a field cannot be set.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum SetError {
     /// There is no such field.
     #[error("{path}: no such field; {within} has {known}{}", asked(meant.as_deref()))]
     Unknown {
-        /// The path that was asked for.
+        /// The requested path.
         path: String,
-        /// What is there of it, in words.
+        /// The existing part of the path, in words.
         within: String,
-        /// The fields there.
+        /// The fields of that part.
         known: String,
-        /// The one that may have been meant.
+        /// The field that may have been meant.
         meant: Option<String>,
     },
     /// The value does not fit the field.
@@ -38,11 +38,12 @@ fn asked(meant: Option<&str>) -> String {
     meant.map_or(String::new(), |meant| format!("; did you mean {meant}?"))
 }
 
-/// A value with the field at a path such as `costs.energy` or `tasks.hard.grid[0]` set to `new`, in RON. `what` is the words for the whole value
-/// in messages, such as `a scenario`. A field that serde leaves out when it writes the value cannot be set.
+/// Sets the field at a path such as `costs.energy` or `tasks.hard.grid[0]` to `new`, in RON, and returns
+/// the changed value. `what` describes the whole value in messages, for example `a scenario`. A field that
+/// serde omits when it writes the value cannot be set.
 ///
 /// # Errors
-/// There is no such field, or the new value is not of its type.
+/// The field does not exist, or the new value does not have its type.
 pub fn set<T: Serialize + DeserializeOwned>(
     value: &T,
     path: &str,
@@ -72,7 +73,8 @@ fn options() -> ron::Options {
     ron::Options::default().with_default_extension(Extensions::IMPLICIT_SOME)
 }
 
-/// Whether a text is one value: whatever closes a bracket or opens a comment would change more than one field.
+/// Whether a text is exactly one value. A text that closes a bracket or opens a comment would change more
+/// than one field.
 pub(crate) fn is_one_value(text: &str) -> bool {
     let wrapped = format!("[{text}]");
     let value = Fields::of(&wrapped).value("[0]");

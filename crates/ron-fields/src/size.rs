@@ -1,28 +1,28 @@
-//! How large a text is, before anything is built of it.
+//! Checks the size of a text before anything is built from it.
 
 use thiserror::Error;
 
 use crate::cursor::{Cursor, is_of_name};
 use crate::limits::{Limit, NESTING, STRING_BYTES, VALUES};
 
-/// A text with more in it than is read.
+/// A text that exceeds a limit.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 #[error("must have at most {most} {what}")]
 pub struct TooMuch {
-    /// Line where it is too much, from 1.
+    /// Line at which the limit is exceeded, from 1.
     pub line: usize,
-    /// Column there, from 1, in characters.
+    /// Column at which the limit is exceeded, from 1, in characters.
     pub column: usize,
-    /// Most of it.
+    /// The limit.
     pub most: usize,
-    /// Of what.
+    /// The limited quantity, in words.
     pub what: &'static str,
 }
 
 /// Counts brackets, values and the bytes of strings, in one pass that builds nothing.
 ///
 /// # Errors
-/// The first place where a text goes beyond [`NESTING`], [`VALUES`] or [`STRING_BYTES`].
+/// The first place at which a text exceeds [`NESTING`], [`VALUES`] or [`STRING_BYTES`].
 pub fn check_size(text: &str) -> Result<(), TooMuch> {
     let mut cursor = Cursor::new(text);
     let (mut depth, mut values) = (0_usize, 0_usize);
@@ -59,7 +59,7 @@ pub fn check_size(text: &str) -> Result<(), TooMuch> {
     }
 }
 
-/// Steps over a name, or over the string that begins with one: `r"..."`, `b"..."`.
+/// Steps over a name, or over a string with a prefix: `r"..."`, `b"..."`.
 fn name_or_string(cursor: &mut Cursor) {
     match (cursor.identifier(), cursor.peek()) {
         ("r" | "br", Some(b'"' | b'#')) => cursor.raw_string(),

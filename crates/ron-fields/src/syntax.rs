@@ -1,27 +1,28 @@
-//! Whether a text is well-formed, told in words of the text: which bracket is not closed, where a comma is missing.
+//! Checks whether a text is well-formed. Messages use the terms of the text: which bracket is not closed,
+//! where a comma is missing.
 
 use thiserror::Error;
 
 use crate::cursor::{Cursor, is_of_name};
 
-/// Most characters of the text that a message repeats.
+/// Largest number of characters of the text that a message quotes.
 const MOST_SHOWN: usize = 24;
 
 /// A text that is not well-formed.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 #[error("{message}")]
 pub struct SyntaxError {
-    /// Where, in bytes from the beginning.
+    /// Byte at which the error is, from the beginning of the text.
     pub at: usize,
-    /// What is wrong there.
+    /// Description of the error.
     pub message: String,
 }
 
-/// Checks brackets, commas, colons, strings and numbers. A text that goes beyond the limits of [`check_size`](crate::check_size) is to be refused before:
-/// this one follows brackets within brackets.
+/// Checks brackets, commas, colons, strings and numbers. Check the limits with
+/// [`check_size`](crate::check_size) first, since this function recurses into nested brackets.
 ///
 /// # Errors
-/// The first place that is wrong.
+/// The first error in the text.
 pub fn check_syntax(text: &str) -> Result<(), SyntaxError> {
     let mut reader = Reader { cursor: Cursor::new(text), text, long_string: None };
     reader.blank()?;
@@ -39,7 +40,7 @@ pub fn check_syntax(text: &str) -> Result<(), SyntaxError> {
 struct Reader<'t> {
     cursor: Cursor<'t>,
     text: &'t str,
-    /// Where the last string begins that goes on beyond its line.
+    /// Byte at which the last string begins that continues beyond its line.
     long_string: Option<usize>,
 }
 
@@ -50,7 +51,7 @@ fn wrong(at: usize, message: &str) -> Checked {
 }
 
 impl Reader<'_> {
-    /// The beginning of what comes next, as a message repeats it.
+    /// The beginning of the next part, as a message quotes it.
     fn here(&self) -> String {
         self.shown(self.cursor.at())
     }
@@ -68,7 +69,7 @@ impl Reader<'_> {
         1 + self.text.get(..at).unwrap_or_default().matches('\n').count()
     }
 
-    /// Blanks and comments; a comment must end.
+    /// Reads blanks and comments; an unclosed comment is an error.
     fn blank(&mut self) -> Checked {
         let start = self.cursor.at();
         self.cursor.skip_blank();
@@ -81,7 +82,7 @@ impl Reader<'_> {
         Ok(())
     }
 
-    /// A value; `what` is what it is the value of.
+    /// Reads a value; `what` describes its owner in messages.
     fn value(&mut self, what: &str) -> Checked {
         self.blank()?;
         let at = self.cursor.at();
@@ -120,7 +121,7 @@ impl Reader<'_> {
         wrong(self.cursor.at(), "texts are written in double quotes: \"...\"")
     }
 
-    /// A name, alone or before brackets, or a string that begins with one.
+    /// Reads a name, alone or before brackets, or a string with a prefix.
     fn named(&mut self) -> Checked {
         let at = self.cursor.at();
         let name = self.cursor.identifier();
@@ -167,7 +168,7 @@ impl Reader<'_> {
         wrong(at, &message)
     }
 
-    /// What is between brackets, up to the one that closes them.
+    /// Reads the content of brackets, including the closing bracket.
     fn entries(&mut self, close: u8) -> Checked {
         let open_at = self.cursor.at();
         self.cursor.advance();
@@ -228,7 +229,8 @@ impl Reader<'_> {
         wrong(at, &message)
     }
 
-    /// A field with its name, or an entry without one: within one pair of round brackets all are of one kind.
+    /// Reads a field with its name, or an entry without one. Within one pair of round brackets, all are of
+    /// one kind.
     fn entry(&mut self, close: u8, is_named: &mut Option<bool>) -> Checked {
         let at = self.cursor.at();
         if close == b']' {
@@ -273,7 +275,7 @@ impl Reader<'_> {
     }
 }
 
-/// Whether the last quote of a string is escaped, so that it does not close it.
+/// Whether the last quote of a string is escaped and therefore does not close the string.
 fn ends_escaped(text: &str) -> bool {
     let before = &text.as_bytes()[..text.len() - 1];
     before.iter().rev().take_while(|byte| **byte == b'\\').count() % 2 == 1

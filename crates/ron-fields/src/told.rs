@@ -1,24 +1,25 @@
-//! Values that do not fit their fields, told in words of the file.
+//! Errors about values that do not fit their fields, in terms of the file.
 
 use ron::error::Error;
 
 use crate::{Fields, nearest};
 
-/// A value that does not fit.
+/// A value that does not fit its field.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Misfit {
     /// Path of the field; empty for the whole text.
     pub field: String,
-    /// What holds for it, as the rest of a sentence: `must be a whole number`.
+    /// The rule for the value, as the rest of a sentence: `must be a whole number`.
     pub rule: String,
-    /// What stands there; empty where nothing does.
+    /// The value in the text; empty if there is none.
     pub found: String,
-    /// What may have been meant; empty without an idea.
+    /// A hint at what may have been meant; empty without one.
     pub hint: String,
 }
 
 impl Misfit {
-    /// What the deserialiser says of a text that is well-formed: at which path, and at which byte it was.
+    /// Converts the deserialiser's error in a well-formed text, with the path and the byte at which it
+    /// occurred.
     #[must_use]
     pub fn new(error: &Error, path: &str, (text, at): (&str, usize), fields: &Fields) -> Self {
         let is_of_value = matches!(error, Error::ExpectedComma | Error::ExpectedStructLikeEnd);
@@ -85,17 +86,18 @@ impl Misfit {
         }
     }
 
-    /// As one text that [`Misfit::new`] takes apart again, for values that are read apart from their text.
+    /// The misfit as one text that [`Misfit::new`] can take apart again. Used for values that are read
+    /// separately from their text.
     #[must_use]
     pub fn packed(&self) -> String {
         [self.field.as_str(), &self.rule, &self.found, &self.hint].join(PARTS)
     }
 }
 
-/// What stands between the parts of a packed misfit.
+/// Separator between the parts of a packed misfit.
 const PARTS: &str = "\u{1f}";
 
-/// What was meant by a name, and which there are.
+/// A hint with the name that was probably meant, and the known names.
 fn meant(name: &str, known: &[&str]) -> String {
     let there = if known.is_empty() {
         "there are none".to_owned()
@@ -106,7 +108,7 @@ fn meant(name: &str, known: &[&str]) -> String {
         .map_or(there.clone(), |meant| format!("did you mean {meant}? {}", there.replacen('t', "T", 1)))
 }
 
-/// The path as far as it is written: what is read of it may be within a value.
+/// The part of a path that the text has. The deserialiser's path may continue inside a value.
 fn written<'p>(path: &'p str, fields: &Fields) -> &'p str {
     let mut path = path.trim_end_matches(['?', '.']);
     while !path.is_empty() && fields.value(path).is_none() {
@@ -119,7 +121,7 @@ fn value<'t>(text: &'t str, fields: &Fields, path: &str) -> &'t str {
     fields.value(path).and_then(|place| text.get(place)).unwrap_or_default()
 }
 
-/// Whether a byte stands in a number, behind its beginning.
+/// Whether a byte lies in a number, after its beginning.
 fn is_within_number(text: &str, fields: &Fields, leaf: &str, at: usize) -> bool {
     is_number(value(text, fields, leaf)) && fields.value(leaf).is_some_and(|place| place.start < at)
 }
@@ -128,7 +130,7 @@ fn is_number(text: &str) -> bool {
     text.parse::<f64>().is_ok()
 }
 
-/// A value as a message repeats it: in one line, and not a long one.
+/// A value as a message quotes it: on one line, and shortened.
 fn shown(value: &str) -> String {
     let line = value.split_whitespace().collect::<Vec<_>>().join(" ");
     if line.chars().count() <= 60 { line } else { line.chars().take(60).chain("...".chars()).collect() }

@@ -1,15 +1,16 @@
-//! What is said of a path that is not there.
+//! Errors about paths that do not exist.
 
 use crate::fields::{Fields, ROOT, Step};
 use crate::nearest;
 use crate::path::split;
 use crate::set::SetError;
 
-/// Most names of entries in a message.
+/// Largest number of entry names in a message.
 const MAX_NAMES: usize = 20;
 
 impl Fields {
-    /// What is to be said of a path that is none of these fields. `what` is the words for the whole text, such as `the file`.
+    /// The error for a path that is none of these fields. `what` describes the whole text, for example
+    /// `the file`.
     #[must_use]
     pub fn unknown(&self, path: &str, what: &str) -> SetError {
         let mut trail = self.trail(path).into_iter().rev();
@@ -26,7 +27,7 @@ impl Fields {
         SetError::Unknown { path: path.to_owned(), within: within.to_owned(), known, meant }
     }
 
-    /// What is in a node, in words; nothing for a number or a string.
+    /// The content of a node in words; `None` for a number or a string.
     fn known(&self, node: usize) -> Option<String> {
         let names = self.names_in(node);
         if !names.is_empty() {

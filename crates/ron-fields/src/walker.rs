@@ -1,10 +1,10 @@
-//! The walk over a text that notes where each field and list entry stands.
+//! Walks over a text and records the place of each field and list entry.
 
 use crate::cursor::{Cursor, is_of_name};
 use crate::fields::{Fields, Node, ROOT};
 use crate::path::is_segment;
 
-/// Brackets within brackets that are followed.
+/// Largest number of nested brackets that are followed.
 const MAX_DEPTH: usize = 128; // more than any text that is read has
 
 impl Fields {
@@ -14,7 +14,7 @@ impl Fields {
         Walker::fields(text, usize::MAX)
     }
 
-    /// Walks the whole text and keeps the outermost fields only.
+    /// Walks the whole text and keeps only the outermost fields.
     #[must_use]
     pub fn outer(text: &str) -> Self {
         Walker::fields(text, 1)
@@ -24,9 +24,9 @@ impl Fields {
 struct Walker<'a> {
     cursor: Cursor<'a>,
     nodes: Vec<Node>,
-    /// Open brackets.
+    /// Number of open brackets.
     depth: usize,
-    /// Open brackets within which fields and entries are kept.
+    /// Number of open brackets up to which fields and entries are kept.
     kept: usize,
 }
 
@@ -43,7 +43,7 @@ impl<'a> Walker<'a> {
         Fields { nodes, index }
     }
 
-    /// A value, whose fields and entries become those of a node.
+    /// Reads a value; its fields and entries become those of the node.
     fn value(&mut self, node: usize) {
         self.cursor.skip_blank();
         match self.cursor.peek() {
@@ -54,7 +54,7 @@ impl<'a> Walker<'a> {
         }
     }
 
-    /// A value that begins with a name: `true`, `Some(1)`, `Disc(0.5)`, `b"bytes"`, `r"raw"`.
+    /// Reads a value that begins with a name: `true`, `Some(1)`, `Disc(0.5)`, `b"bytes"`, `r"raw"`.
     fn named_value(&mut self, node: usize) {
         let name = self.cursor.identifier();
         match (name, self.cursor.peek()) {
@@ -84,7 +84,7 @@ impl<'a> Walker<'a> {
         self.depth -= 1;
     }
 
-    /// Fields or elements between brackets.
+    /// Reads the fields or elements between brackets.
     fn entries(&mut self, parent: usize) {
         self.nodes[parent].is_list = self.cursor.peek() == Some(b'[');
         self.cursor.advance();
@@ -111,7 +111,7 @@ impl<'a> Walker<'a> {
         }
     }
 
-    /// One field or element.
+    /// Reads one field or element.
     fn entry(&mut self, parent: usize, number: usize) {
         let line = self.cursor.line();
         let name = self.field_name();
@@ -150,7 +150,7 @@ impl<'a> Walker<'a> {
         }
     }
 
-    /// Keeps the value of a node's field `name`, for the list that the node may be an entry of.
+    /// Stores the value of a node's field `name`, in case the node is an entry of a list.
     fn note_name(&mut self, node: usize, start: usize) {
         let value = self.cursor.since(start);
         let name = value.strip_prefix('"').and_then(|value| value.strip_suffix('"'));
@@ -158,14 +158,14 @@ impl<'a> Walker<'a> {
         node.name = node.name.take().or(name.filter(|name| is_segment(name)).map(Into::into));
     }
 
-    /// Makes an entry known by its name, if no entry before it has the same.
+    /// Makes an entry available by its name, unless an earlier entry has the same name.
     fn note_entry(&mut self, list: usize, entry: usize) {
         if let Some(name) = self.nodes[entry].name.take() {
             self.nodes[list].named.get_or_insert_default().entry(name).or_insert(entry);
         }
     }
 
-    /// The name before a `:`, which is skipped; or nothing, and nothing is skipped.
+    /// Steps over a name and its `:`, and returns the name. Without them, returns `None` and skips nothing.
     fn field_name(&mut self) -> Option<&'a str> {
         let start = self.cursor.at();
         let name = if self.cursor.peek() == Some(b'"') {

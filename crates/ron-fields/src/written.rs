@@ -7,7 +7,7 @@ use thiserror::Error;
 use crate::Fields;
 use crate::set::is_one_value;
 
-/// Values that cannot take their places in a text.
+/// Why values cannot be replaced in a text.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum WriteError {
     /// A field is not in the text.
@@ -16,13 +16,13 @@ pub enum WriteError {
         /// The field.
         path: String,
     },
-    /// Two of the values have one place, or one is a part of the other.
+    /// Two of the values have the same place, or one is part of the other.
     #[error("{path}: is set twice, by itself or as a part of another field")]
     SetTwice {
-        /// The field, or the part.
+        /// The field that is set twice or is part of another.
         path: String,
     },
-    /// A value is none, or more than one.
+    /// The text is not exactly one value.
     #[error("{path}: must be one value in RON, found {found}")]
     Malformed {
         /// The field.
@@ -32,18 +32,19 @@ pub enum WriteError {
     },
 }
 
-/// A value and the bytes whose place it takes.
+/// A value and the bytes that it replaces.
 struct Place<'a> {
     bytes: Range<usize>,
     path: &'a str,
     value: &'a str,
 }
 
-/// The text of a file with the values of these fields, each a path and a value in RON, replaced. Everything else, comments too, stays as it is.
-/// Whether a value is of the right type is not checked: that is done when the text is read.
+/// The text of a file with the values of these fields replaced. Each setting is a path and a value in RON.
+/// Everything else, including comments, stays unchanged. The types of the values are not checked here, but
+/// when the text is read.
 ///
 /// # Errors
-/// A field is not written in the text or is set twice, or a value is not one value.
+/// A field is not in the text or is set twice, or a value is not exactly one value.
 pub fn with_values(text: &str, settings: &[(String, String)]) -> Result<String, WriteError> {
     let fields = Fields::of(text);
     let places = settings.iter().map(|(path, value)| place(&fields, path, value));

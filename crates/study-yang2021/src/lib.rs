@@ -1,9 +1,10 @@
-//! The paper of Yang and Parasuraman (IEEE SMC 2021, arXiv 2105.07443) as a study, and a pattern for the
-//! study of another paper.
+//! The paper of Yang and Parasuraman (IEEE SMC 2021, arXiv 2105.07443) as a study. It is also a pattern for
+//! studies of other papers.
 //!
-//! [`scenarios`] is what is run; [`claims`] what the paper says and what trials say of it; [`readings`] what
-//! its ambiguous places decide; [`calibration`] fits a scenario to the authors' recorded trials; [`predictions`]
-//! says what each policy does in each world; [`table`] and [`page`] show all of it to people.
+//! [`scenarios`] defines what is run. [`claims`] has the paper's claims and the verdicts on them.
+//! [`readings`] shows what the paper's ambiguous places change. [`calibration`] fits a scenario to the
+//! authors' recorded trials. [`predictions`] gives the results of each policy in each world. [`table`] and
+//! [`page`] present all of it.
 
 pub mod calibration;
 pub mod claims;

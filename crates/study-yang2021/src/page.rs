@@ -1,4 +1,4 @@
-//! The verdicts on the paper's claims, section by section: printed as text, and as a page.
+//! The verdicts on the paper's claims, section by section, as printed text and as a page.
 
 use std::path::{Path, PathBuf};
 
@@ -15,24 +15,24 @@ use crate::predictions::{Prediction, over_worlds};
 use crate::scenarios::Standing;
 use crate::table::{claims_table, examples_table, power_table, predictions_table, verdicts_table};
 
-/// A part of what is to be said.
+/// A section of the output.
 pub struct Section {
     /// Its title.
     pub title: String,
-    /// Its table, where there is enough to fill one.
+    /// Its table; `None` if there is too little data for one.
     pub table: Option<Table>,
-    /// What is said below.
+    /// The text below the table.
     pub note: String,
 }
 
-/// All that is to be said, the verdicts last.
+/// All sections, the verdicts last.
 #[must_use]
 pub fn sections(
     judged: &[Judged],
     examples: &[Example],
     predicted: &[(Standing, Vec<Prediction>)],
 ) -> Vec<Section> {
-    // Of an alternative world the verdicts alone are shown; claims.csv and power.csv have the rest.
+    // Of an alternative world, only the verdicts are shown; claims.csv and power.csv have the rest.
     let main = || judged.iter().filter(|world| world.standing != Standing::Alternative);
     let claims = main().map(|scenario| Section {
         title: format!("{}: what its trials say of each claim", scenario.scenario),
@@ -61,7 +61,7 @@ pub fn sections(
     claims.chain([examples]).chain(power).chain(predictions).chain([verdicts]).collect()
 }
 
-/// The predictions that are shown: of the printed world, and of all calibrated ones together.
+/// The predictions to show: those of the printed world, and those of all calibrated worlds together.
 fn predicted_worlds(predicted: &[(Standing, Vec<Prediction>)]) -> Vec<Vec<Prediction>> {
     let of = |wanted: Standing| predicted.iter().find(|(standing, _)| *standing == wanted);
     let together = Some(over_worlds(predicted)).filter(|together| !together.is_empty());
@@ -116,7 +116,7 @@ struct Shown {
 }
 
 struct Row {
-    /// One of the comparisons of the claim above, which are indented.
+    /// Whether the row is a comparison of the claim above it; such rows are indented.
     is_part: bool,
     cells: Vec<String>,
 }
@@ -138,7 +138,8 @@ impl Shown {
     }
 }
 
-/// Writes the sections as `report.html`, the verdicts first, beside the folders of the scenarios; returns where it is.
+/// Writes the sections as `report.html`, the verdicts first, beside the folders of the scenarios; returns
+/// its path.
 ///
 /// # Errors
 /// The disk does not take it.

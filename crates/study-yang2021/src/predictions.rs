@@ -1,4 +1,5 @@
-//! What each policy does in each world, as predictions of the authors' trials: with their table, anyone can score them.
+//! The results of each policy in each world, as predictions of the authors' trials. With the authors'
+//! table, anyone can score them.
 
 use std::path::Path;
 
@@ -11,13 +12,13 @@ use statrs::distribution::{ContinuousCDF, StudentsT};
 
 use crate::scenarios::{PAPERS_TRIALS, POLICIES, Standing};
 
-/// What the authors tell of a trial.
+/// Quantities that the authors report for a trial.
 const QUANTITIES: [&str; 4] = ["rescuees", "energy", "hp", "rounds"];
 
 /// The name that stands for the chosen calibrated world and its alternatives together.
 const ALL: &str = "all calibrated worlds";
 
-/// A quantity of a policy in one world, or in all calibrated ones.
+/// A prediction: a quantity of a policy in one world, or in all calibrated worlds together.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Prediction {
     /// Name of the scenario.
@@ -26,22 +27,22 @@ pub struct Prediction {
     pub policy: String,
     /// The quantity, under the authors' name.
     pub quantity: String,
-    /// Trials that were simulated.
+    /// Number of simulated trials.
     pub trials: usize,
-    /// Mean over them.
+    /// Mean over these trials.
     pub mean: f64,
-    /// Their sample standard deviation.
+    /// Sample standard deviation over these trials.
     pub sd: f64,
     /// The mean of ten other trials lies above this in 97.5 % of experiments, if the world is the authors'.
     pub low: f64,
-    /// And below this.
+    /// The mean of ten other trials lies below this in 97.5 % of experiments, if the world is the authors'.
     pub high: f64,
 }
 
 /// The predictions of one world.
 ///
 /// # Errors
-/// The sweep has not the paper's policies.
+/// The sweep lacks a policy of the paper.
 pub fn predictions(folder: &Folder, trials: u32) -> Result<Vec<Prediction>, Failure> {
     let experiment = folder.experiment();
     let mut predictions = Vec::new();
@@ -69,7 +70,8 @@ pub fn predictions(folder: &Folder, trials: u32) -> Result<Vec<Prediction>, Fail
     Ok(predictions)
 }
 
-/// Mean, standard deviation, and the 95 % prediction interval of the mean of as many other trials as the paper has.
+/// Mean, standard deviation, and the 95 % prediction interval for the mean of the paper's number of other
+/// trials.
 fn of_values(values: &[f64]) -> Option<[f64; 4]> {
     let Moments { mean, sd, .. } = Moments::of(values);
     let (mean, sd, count) = (mean?, sd?, values.len() as f64);
@@ -79,8 +81,9 @@ fn of_values(values: &[f64]) -> Option<[f64; 4]> {
     Some([mean, sd, (mean - half).max(0.0), mean + half])
 }
 
-/// The predictions of all calibrated worlds together: the mean of their means, the root mean square of their standard deviations, and an
-/// interval that holds all of theirs. Empty where there is one such world.
+/// The predictions of all calibrated worlds together: the mean of their means, the root mean square of
+/// their standard deviations, and an interval that holds all their intervals. Empty if there is only one
+/// such world.
 #[must_use]
 pub fn over_worlds(worlds: &[(Standing, Vec<Prediction>)]) -> Vec<Prediction> {
     let calibrated: Vec<&Vec<Prediction>> = worlds
@@ -109,7 +112,7 @@ pub fn over_worlds(worlds: &[(Standing, Vec<Prediction>)]) -> Vec<Prediction> {
     first.iter().map(together).collect()
 }
 
-/// `predictions.csv`: each world, then all calibrated ones together.
+/// Writes `predictions.csv`: the predictions of each world, then of all calibrated worlds together.
 ///
 /// # Errors
 /// The disk does not take it.

@@ -1,4 +1,4 @@
-//! The readings of RNE in a sweep: which one groups otherwise, and what that does to the outcome.
+//! The readings of RNE in a sweep: which reading forms other groups, and how that changes the outcome.
 
 use std::collections::BTreeSet;
 
@@ -12,7 +12,8 @@ use experiments::stats::paired::t_half_width_at;
 use experiments::sweep::folder::Folder;
 use rayon::prelude::*;
 
-/// The metrics whose differences are shown: rescuees, of all tasks and of each, and energy per rescuee.
+/// The metrics whose differences are shown: rescuees, of all tasks and of each task, and energy per
+/// rescuee.
 #[must_use]
 pub fn shown(metrics: &Catalogue) -> Vec<usize> {
     let energy = metrics.named("energy_per_rescuee.total").ok();
@@ -24,54 +25,55 @@ pub fn shown(metrics: &Catalogue) -> Vec<usize> {
 pub struct Difference {
     /// Mean.
     pub mean: f64,
-    /// Half the width of the paired t interval, of 95 % where nothing else is said.
+    /// Half the width of the paired t interval, at 95 % unless another confidence is stated.
     pub half: f64,
 }
 
 impl Difference {
-    /// Of the trials in which it is defined.
+    /// The mean difference over the trials in which it is defined.
     fn of(differences: &[Option<f64>]) -> Option<Self> {
         Self::at(differences, CONFIDENCE)
     }
 
-    /// With an interval of another confidence.
+    /// The same with an interval at another confidence.
     fn at(differences: &[Option<f64>], confidence: f64) -> Option<Self> {
         let defined: Vec<f64> = differences.iter().flatten().copied().collect();
         Some(Self { mean: Moments::of(&defined).mean?, half: t_half_width_at(&defined, confidence)? })
     }
 
-    /// On which side of zero the interval lies, if on one.
+    /// The side of zero on which the whole interval lies: 1, -1, or 0 for neither.
     #[must_use]
     pub fn side(&self) -> i32 {
         if self.mean - self.half > 0.0 { 1 } else { -i32::from(self.mean + self.half < 0.0) }
     }
 }
 
-/// One reading against the default.
+/// One reading compared with the default.
 #[derive(Debug, Clone)]
 pub struct ReadingRow {
     /// The option and its value.
     pub reading: String,
-    /// Share of the default's rounds that it groups otherwise: with other tasks, and as another split.
+    /// Share of the default's rounds in which the reading decides otherwise: with other groups for the
+    /// tasks, and with another split.
     pub regrouped: [f64; 2],
-    /// Share of the trials that go otherwise.
+    /// Share of the trials with another outcome.
     pub trials: f64,
-    /// Differences of the metrics that are [`shown`], reading less default.
+    /// Differences of the metrics that are [`shown`], reading minus default.
     pub differences: Vec<Option<Difference>>,
 }
 
-/// How many readings are above, below or neither against another policy, or against all others at once.
+/// Number of readings above, below or on neither side of another policy, or of all other policies at once.
 #[derive(Debug, Clone)]
 pub struct RivalRow {
-    /// The other policy; `None` for all.
+    /// The other policy; `None` for all at once.
     pub rival: Option<String>,
     /// The metric.
     pub metric: String,
-    /// Readings whose interval lies above zero, below, and around it.
+    /// Number of readings whose interval lies above zero, below zero, and around zero.
     pub counts: [usize; 3],
-    /// The first two by intervals at 95 % shared by all readings.
+    /// The first two counts, with intervals at 95 % shared by all readings.
     pub corrected: [usize; 2],
-    /// The least and the greatest mean difference, with the reading; none against all.
+    /// The least and the greatest mean difference, with the reading; `None` against all at once.
     pub ends: Option<[(String, Difference); 2]>,
 }
 
@@ -79,12 +81,12 @@ pub struct RivalRow {
 #[derive(Clone)]
 pub struct Trials<'f> {
     folder: &'f Folder,
-    /// Their numbers.
+    /// Numbers of these trials.
     pub numbers: Vec<u32>,
 }
 
 impl<'f> Trials<'f> {
-    /// Of a sweep without axes.
+    /// The trials of a sweep without axes.
     #[must_use]
     pub fn of(folder: &'f Folder) -> Self {
         let policies = folder.experiment().policies.len();
@@ -107,19 +109,19 @@ impl<'f> Trials<'f> {
         self.folder.results().get(&(0, policy, trial))?.metrics.as_ref()
     }
 
-    /// Metric of one policy less that of another, trial by trial; `None` where it is not defined.
+    /// Metric of one policy minus that of another, trial by trial; `None` where it is undefined.
     fn differences(&self, metric: usize, a: usize, b: usize) -> Vec<Option<f64>> {
         let value = |policy: usize, trial: u32| self.metrics(policy, trial)?[metric];
         self.numbers.iter().map(|trial| Some(value(a, *trial)? - value(b, *trial)?)).collect()
     }
 
-    /// Share of the trials of two policies that differ in any metric.
+    /// Share of the trials in which two policies differ in any metric.
     fn otherwise(&self, a: usize, b: usize) -> f64 {
         let is_other = |trial: &&u32| self.metrics(a, **trial) != self.metrics(b, **trial);
         self.numbers.iter().filter(is_other).count() as f64 / self.numbers.len() as f64
     }
 
-    /// The readings without those whose trials are the same as an earlier one's.
+    /// The readings, without any reading whose trials equal those of an earlier one.
     #[must_use]
     pub fn distinct(&self, readings: &[usize]) -> Vec<usize> {
         let mut distinct: Vec<usize> = Vec::new();
@@ -134,7 +136,7 @@ impl<'f> Trials<'f> {
 /// The readings that differ from the default in one option.
 ///
 /// # Errors
-/// A policy that cannot group one of the rounds.
+/// A policy cannot group one of the rounds.
 pub fn single(
     trials: &Trials,
     default: usize,
@@ -161,7 +163,7 @@ fn options_in_words(policy: &PolicySpec) -> String {
     if options.is_empty() { "default".to_owned() } else { options.join(", ") }
 }
 
-/// Shares of the rounds that a reading groups otherwise, and splits otherwise.
+/// Shares of the rounds in which a reading forms other groups, and another split.
 fn regrouped(folder: &Folder, reading: usize, rounds: &[Round]) -> Result<[f64; 2], Failure> {
     let policy = folder.experiment().policies[reading].make().map_err(Failure::run)?.policy;
     let same = rounds.par_iter().map(|round| Ok(round.is_as(&round.grouped_by(&*policy)?)));
@@ -171,8 +173,8 @@ fn regrouped(folder: &Folder, reading: usize, rounds: &[Round]) -> Result<[f64; 
     Ok([share(0), share(1)])
 }
 
-/// For each option and value that is not the default, the mean over all combinations of the other options of the differences to the same combination
-/// with the default, trial by trial.
+/// For each option and value other than the default: the difference to the same combination with the
+/// default, trial by trial, averaged over all combinations of the other options.
 #[must_use]
 pub fn averaged(trials: &Trials, readings: &[usize]) -> Vec<(String, Vec<Option<Difference>>)> {
     let (policies, shown) = (trials.policies(), shown(trials.catalogue()));
@@ -210,10 +212,11 @@ pub fn averaged(trials: &Trials, readings: &[usize]) -> Vec<(String, Vec<Option<
     values.par_iter().map(row).collect()
 }
 
-/// On which side of a rival each reading is: by its own interval, and by one shared by all readings.
+/// The side of a rival on which each reading is: by its own interval, and by an interval shared by all
+/// readings.
 type Sides = Vec<[i32; 2]>;
 
-/// Readings against each policy that is none, and against all of these at once.
+/// Readings compared with each policy that is not a reading, and with all of these policies at once.
 #[must_use]
 pub fn rivals(trials: &Trials, readings: &[usize]) -> Vec<RivalRow> {
     let policies = trials.policies();
@@ -258,7 +261,7 @@ fn count(sides: &Sides, which: usize, side: i32) -> usize {
     sides.iter().filter(|of| of[which] == side).count()
 }
 
-/// The side that a reading is on against all rivals; 0 where these differ.
+/// The side on which a reading is against all rivals; 0 if the sides differ.
 fn together(all: &[Sides]) -> Sides {
     let of = |reading: usize, which: usize| {
         let mut sides = all.iter().map(|sides| sides[reading][which]);
@@ -268,17 +271,17 @@ fn together(all: &[Sides]) -> Sides {
     (0..all[0].len()).map(|reading| [of(reading, 0), of(reading, 1)]).collect()
 }
 
-/// The least and the greatest; the first of equals.
+/// The least and the greatest difference; the first of equals.
 fn ends(found: &[(String, Difference)]) -> Option<[(String, Difference); 2]> {
     let by_mean = |a: &&(String, Difference), b: &&(String, Difference)| a.1.mean.total_cmp(&b.1.mean);
     let (least, most) = (found.iter().min_by(by_mean)?, found.iter().rev().max_by(by_mean)?);
     Some([least.clone(), most.clone()])
 }
 
-/// How many readings group otherwise, in a sentence.
+/// Number of readings that form different groups, in a sentence.
 ///
 /// # Errors
-/// A policy that cannot group one of the rounds.
+/// A policy cannot group one of the rounds.
 pub fn groupings_in_words(folder: &Folder, readings: &[usize], rounds: &[Round]) -> Result<String, Failure> {
     let groups = |reading: &usize| {
         let policy = folder.experiment().policies[*reading].make().map_err(Failure::run)?.policy;

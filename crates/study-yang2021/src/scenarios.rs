@@ -1,4 +1,4 @@
-//! What the paper's experiment runs: its policies, and the scenarios that stand for its world.
+//! The runs of the paper's experiment: its policies, and the scenarios that stand for its world.
 
 use std::path::Path;
 
@@ -9,44 +9,44 @@ use ron_fields::Fields;
 /// Policies of the paper.
 pub const POLICIES: [&str; 4] = ["RNE", "DIS", "ENG", "HP_DIS"];
 
-/// Trials of the paper.
+/// Number of trials in the paper.
 pub const PAPERS_TRIALS: u32 = 10;
 
-// Scenarios are a part of the program, so that it runs from any folder.
+// The scenarios are part of the program, so that it runs from any folder.
 const PRINTED: &str = include_str!("../../../scenarios/paper.ron");
 const CALIBRATED: &str = include_str!("../../../scenarios/paper-calibrated.ron");
 
-/// The calibrated worlds that the data cannot tell from the one that was chosen, as variants of it.
+/// The calibrated worlds that the data cannot tell apart from the chosen one, as variants of it.
 const ALTERNATIVES: &str = include_str!("../../../scenarios/sweeps/calibrated-worlds.ron");
 
-/// Trials of an alternative world, as a part of those of the others.
+/// An alternative world gets this fraction (one over it) of the trials of the other worlds.
 const ALTERNATIVE_SHARE: u32 = 4;
 
-/// What a scenario stands for.
+/// The role of a scenario in the study.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Standing {
     /// The constants that the paper prints.
     Printed,
-    /// Costs fitted to the authors' recorded trials of the distance baseline: the fit that was chosen.
+    /// Costs fitted to the authors' recorded trials of the distance baseline: the chosen fit.
     Calibrated,
-    /// Another fit, which the recorded trials cannot tell from the one that was chosen.
+    /// Another fit, which the recorded trials cannot tell apart from the chosen one.
     Alternative,
 }
 
 /// The paper's experiment in one scenario.
 pub struct World {
-    /// What the scenario stands for.
+    /// The role of the scenario.
     pub standing: Standing,
-    /// What is run in it.
+    /// The sweep that is run in it.
     pub experiment: Experiment,
 }
 
-/// The paper's experiment in each scenario: with the printed constants, with calibrated costs, and in each world that the data cannot tell
-/// from that one, over a quarter of the trials.
+/// The paper's experiment in each scenario: with the printed constants, with calibrated costs, and in each
+/// world that the data cannot tell apart from the calibrated one, with a quarter of the trials.
 ///
 /// # Errors
-/// None: the scenarios are given. A program that was started with policies of its own may lack one of
-/// [`POLICIES`].
+/// None: the scenarios are part of the program. A program that was started with policies of its own may
+/// lack one of [`POLICIES`].
 pub fn worlds(trials: u32) -> Result<Vec<World>, Failure> {
     let printed = world(Standing::Printed, "scenarios/paper.ron", PRINTED, &overrides(trials, Vec::new()))?;
     let calibrated = |standing, overrides: &Overrides| {

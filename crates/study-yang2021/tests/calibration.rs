@@ -12,8 +12,8 @@ fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).ancestors().nth(2).unwrap().to_owned()
 }
 
-/// The calibration that was chosen has its log in `docs/calibration/`, and its best candidate is the scenario: the same values,
-/// and in the same trials the same outcome, bit for bit.
+/// The log of the chosen calibration is in `docs/calibration/`. Its best candidate is the scenario: the
+/// values are the same, and the same trials have the same outcome, bit for bit.
 #[test]
 fn the_calibrated_scenario_is_the_best_of_its_log() {
     let (scenario, text) = Scenario::load(&root().join("scenarios/paper-calibrated.ron")).unwrap();

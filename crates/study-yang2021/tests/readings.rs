@@ -1,4 +1,4 @@
-//! What the readings of a sweep amount to.
+//! The readings of a sweep and their effects.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -11,7 +11,7 @@ use experiments::sweep::{missing, run_trials};
 use statrs::distribution::{ContinuousCDF, StudentsT};
 use study_yang2021::readings::{Trials, rivals};
 
-/// `rivals` counts by intervals: here they are made once more, from the differences.
+/// `rivals` counts by intervals. Here the counts are computed again from the differences.
 #[test]
 fn readings_are_counted_against_each_rival_and_against_all() {
     let place = tempfile::tempdir().unwrap();

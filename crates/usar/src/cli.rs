@@ -20,7 +20,7 @@ use crate::commands::{
 };
 use crate::running::{status_of_signal, tell};
 
-/// The version, with the commit that the program was built from where that is known.
+/// The version, with the commit from which the program was built, if known.
 static VERSION: LazyLock<String> = LazyLock::new(|| match COMMIT {
     "unknown" => env!("CARGO_PKG_VERSION").to_owned(),
     commit => format!("{} (commit {commit})", env!("CARGO_PKG_VERSION")),
@@ -113,8 +113,8 @@ enum Command {
     Man(man::Arguments),
 }
 
-/// Runs the command that the process was called with, with policies of the caller's own beside the built-in
-/// ones: the `main` of a program that adds policies.
+/// Runs the command with which the process was called. The caller's own policies are available beside the
+/// built-in ones. This is the `main` of a program that adds policies.
 ///
 /// ```no_run
 /// # fn my_policy() -> rne_core::PolicyKind { rne_core::policies::random::kind() }
@@ -126,17 +126,17 @@ enum Command {
 /// ```
 #[must_use]
 pub fn main_with(policies: Registry) -> ExitCode {
-    // A program that calls this twice keeps its first policies.
+    // A program that calls this twice keeps its first set of policies.
     let _ = set_registry(policies);
     main()
 }
 
-/// Runs the command that the process was called with. The exit status is 0 for a result, 1 for trouble
-/// underway, 2 for input that cannot be used, 3 for a disk error, 130 after Ctrl-C, 143 after SIGTERM
-/// and 129 after SIGHUP.
+/// Runs the command with which the process was called. The exit status is 0 for a result, 1 for a failure
+/// of the run, 2 for unusable input, 3 for a disk error, 130 after Ctrl-C, 143 after SIGTERM and 129 after
+/// SIGHUP.
 #[must_use]
 pub fn main() -> ExitCode {
-    // A panic is a defect of ours; it is caught and reported in one sentence, never as a backtrace.
+    // A panic is a defect of the program. It is caught and reported in one sentence, never as a backtrace.
     catch_panics_quietly();
     let cli = Cli::parse();
     if let Some((Width(columns), _)) = terminal_size_of(std::io::stdout()) {
@@ -168,7 +168,7 @@ fn exit_status(failure: &Failure) -> u8 {
 }
 
 impl Command {
-    /// How tables are written, and whether the command has JSON of its own.
+    /// The format of tables, and whether the command has its own JSON.
     fn shown(&self) -> (Format, bool) {
         let (shown, has_json) = match self {
             Self::Run(arguments) => (arguments.shown, true),

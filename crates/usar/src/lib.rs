@@ -1,4 +1,4 @@
-//! The command `usar` as a library: the `main` of a program that adds policies of its own is [`main_with`].
+//! The command `usar` as a library. A program that adds its own policies calls [`main_with`] as its `main`.
 
 mod cli;
 mod commands;
@@ -8,7 +8,7 @@ mod running;
 
 pub use cli::{main, main_with};
 
-/// The program of the page about policies compiles.
+/// The program on the page about policies compiles.
 #[cfg(doctest)]
 #[doc = include_str!("../../../docs/policies.md")]
 struct Policies;

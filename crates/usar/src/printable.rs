@@ -1,15 +1,15 @@
-//! Text that comes from files and arguments, on its way to a terminal: nothing in it commands the terminal.
+//! Makes text from files and arguments safe to print: no character of it can control the terminal.
 
 use std::borrow::Cow;
 use std::io::{self, Write};
 
-/// Whether a character would do something to a terminal, or to the order in which text is read.
+/// Whether a character would control a terminal, or change the direction in which text is read.
 fn is_command(c: char) -> bool {
     let turns = matches!(c, '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
     (c.is_control() && c != '\n' && c != '\t') || turns
 }
 
-/// The text with every such character written as its number, as in `\u{1b}`.
+/// The text with every such character replaced by its number, for example `\u{1b}`.
 pub(crate) fn printable(text: &str) -> Cow<'_, str> {
     if !text.contains(is_command) {
         return Cow::Borrowed(text);
@@ -18,10 +18,10 @@ pub(crate) fn printable(text: &str) -> Cow<'_, str> {
     Cow::Owned(text.chars().map(escaped).collect())
 }
 
-/// Passes text on, made [`printable`].
+/// Passes text on after making it [`printable`].
 pub(crate) struct Printable<W> {
     to: W,
-    /// Bytes of a character that has not come to its end.
+    /// Bytes of an incomplete character.
     begun: Vec<u8>,
 }
 

@@ -1,4 +1,4 @@
-//! Recordings as files: of one trial, and of the trials of a sweep's folder.
+//! Recordings as files: of single trials, and of the trials of a sweep's folder.
 
 use std::fs::File;
 use std::io::{self, BufWriter};
@@ -19,10 +19,10 @@ use usar_sim::simulation::{Decider, Simulation};
 
 use crate::running::Guard;
 
-/// Bytes that are written to disk at a time.
+/// Number of bytes that are written to disk together.
 const BUFFER: usize = 1 << 16;
 
-/// Frames in a second of simulated time, from the command line.
+/// Parses a number of frames in a second of simulated time.
 pub(crate) fn fps(text: &str) -> Result<f64, String> {
     let fps = text.parse::<f64>().ok().filter(|fps| (0.01..=1000.0).contains(fps));
     fps.ok_or_else(|| format!("must be a number from 0.01 to 1000, found {text:?}"))
@@ -37,8 +37,8 @@ fn trouble(path: &Path, error: &io::Error) -> Failure {
     }
 }
 
-/// Runs a trial to its end and records it in a new file. `watch` is called after each step, and may break it off:
-/// then the file has the trial up to then.
+/// Runs a trial to its end and records it in a new file. `watch` is called after each step and may
+/// interrupt the trial. The file then has the trial up to that step.
 pub(crate) fn record_to(
     path: &Path,
     mut simulation: Simulation,
@@ -58,14 +58,14 @@ pub(crate) fn record_to(
     Ok(record)
 }
 
-/// Which trials of a sweep are recorded.
+/// The trials of a sweep that are recorded.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) enum Recorded {
-    /// All.
+    /// All trials.
     All,
-    /// So many of each policy and case, the first ones.
+    /// The first trials of each policy and case, this many.
     First(u32),
-    /// Those with these seeds.
+    /// The trials with these seeds.
     Seeds(Vec<u64>),
 }
 
@@ -97,11 +97,11 @@ impl Recorded {
     }
 }
 
-/// Where the recording of a trial is, in the folder of its sweep.
+/// The path of a trial's recording in the folder of its sweep.
 pub(crate) fn path_of(folder: &Path, experiment: &Experiment, key: &TrialKey) -> PathBuf {
     let is_plain = |c: char| c.is_ascii_alphanumeric() || "-_.".contains(c);
     let plain: String = key.label.chars().map(|c| if is_plain(c) { c } else { '_' }).collect();
-    // Labels that differ have names that differ.
+    // Different labels must have different file names.
     let label = if plain == key.label { plain } else { format!("{plain}.{}", key.policy + 1) };
     let mut path = folder.join(RECORDINGS);
     if experiment.cases.len() > 1 {
@@ -110,7 +110,8 @@ pub(crate) fn path_of(folder: &Path, experiment: &Experiment, key: &TrialKey) ->
     path.join(format!("{label}-{}.usrec", key.seed))
 }
 
-/// Records trials that a folder has the results of: each is simulated again, and its recording is kept if its result is the same.
+/// Records trials whose results a folder has. Each trial is simulated again, and its recording is kept if
+/// its result is the same.
 pub(crate) fn record_trials(folder: &mut Folder, which: &Recorded, stop: &AtomicBool) -> Result<(), Failure> {
     let experiment = folder.shared_experiment();
     let keys: Vec<TrialKey> =
@@ -154,13 +155,14 @@ fn bytes_of(path: &Path) -> Result<Vec<u8>, ReadError> {
     read(path, RECORDING_BYTES.most as u64)
 }
 
-/// The hash of the last state of a whole recording in a file.
+/// The hash of the last state in a recording file; `None` if the recording is incomplete.
 fn summary_hash(path: &Path) -> Option<String> {
     let recording = Recording::read(&bytes_of(path).ok()?).ok()?;
     recording.summary.map(|summary| summary.state_hash)
 }
 
-/// A trial of a sweep: from its recording, if there is one of this very trial, or simulated again.
+/// The recording of a trial of a sweep: from its file, if that is a recording of this very trial, or by
+/// simulating the trial again.
 pub(crate) fn recording_of(
     folder: &Path,
     experiment: &Experiment,

@@ -1,4 +1,4 @@
-//! What commands that take a while have in common: threads, progress on stderr, and being stopped.
+//! Shared parts of commands that run for a while: threads, progress on stderr, and interruption.
 
 use std::fmt::Display;
 use std::io::Write;
@@ -18,7 +18,7 @@ use usar_sim::simulation::Simulation;
 
 use crate::printable::printable;
 
-/// A trial looks once in this many steps whether it is to stop.
+/// A trial checks once in this many steps whether it is to stop.
 const CLOCK_CHECK_STEPS: u64 = 64;
 
 /// Set by Ctrl-C, SIGTERM and SIGHUP.
@@ -27,7 +27,7 @@ pub(crate) static STOP: LazyLock<Arc<AtomicBool>> = LazyLock::new(Arc::default);
 /// The number of the signal that set [`STOP`]; 0 for none.
 static SIGNAL: LazyLock<Arc<AtomicUsize>> = LazyLock::new(Arc::default);
 
-/// From now on, Ctrl-C, SIGTERM and SIGHUP set [`STOP`]: what runs ends in order.
+/// From now on, Ctrl-C, SIGTERM and SIGHUP set [`STOP`], and running work ends in an orderly way.
 pub(crate) fn stop_on_signals() {
     #[cfg(unix)]
     let signals = [SIGINT, SIGTERM, signal_hook::consts::SIGHUP];
@@ -39,7 +39,7 @@ pub(crate) fn stop_on_signals() {
     }
 }
 
-/// The exit status of what a signal ended, as a shell tells it: 130 after Ctrl-C.
+/// The exit status after a signal, in the convention of shells: 130 after Ctrl-C.
 pub(crate) fn status_of_signal() -> u8 {
     match SIGNAL.load(Ordering::Relaxed) {
         0 => 130,
@@ -47,19 +47,19 @@ pub(crate) fn status_of_signal() -> u8 {
     }
 }
 
-/// Ends a single trial that takes too long, or that is to stop.
+/// Ends a single trial that exceeds its time limit or is to stop.
 pub(crate) struct Guard {
     begun: Instant,
     longest_s: f64,
 }
 
 impl Guard {
-    /// From now on, a trial may take this long, in seconds of this machine.
+    /// A guard that gives a trial this long from now on, in seconds of wall-clock time.
     pub(crate) fn new(longest_s: f64) -> Self {
         Self { begun: Instant::now(), longest_s }
     }
 
-    /// Looks once in a while whether the trial may go on.
+    /// Checks from time to time whether the trial may continue.
     pub(crate) fn look(&self, simulation: &Simulation) -> Result<(), Failure> {
         if !simulation.steps().is_multiple_of(CLOCK_CHECK_STEPS) {
             return Ok(());
@@ -78,7 +78,7 @@ impl Guard {
     }
 }
 
-/// Says something on stderr, in a line. Nothing depends on whether somebody can read it.
+/// Prints a line on stderr. Failures to write it are ignored.
 pub(crate) fn tell(what: impl Display) {
     let _ = writeln!(std::io::stderr(), "{}", printable(&what.to_string()));
 }
@@ -88,7 +88,7 @@ pub(crate) fn default_jobs() -> usize {
     std::thread::available_parallelism().map_or(1, usize::from)
 }
 
-/// Runs the trials that a folder has not got yet, with progress on stderr.
+/// Runs the trials that a folder lacks, with progress on stderr.
 pub(crate) fn run_missing(
     folder: &mut Folder,
     shard: Option<Shard>,
@@ -119,10 +119,10 @@ pub(crate) fn run_missing(
     ran
 }
 
-/// Seconds between two lines about progress where stderr is not a terminal.
+/// Seconds between two progress lines if stderr is not a terminal.
 const REPORT_S: u64 = 60;
 
-/// Says once a minute how far it is, until the bar is finished: for logs.
+/// Prints the progress once a minute until the bar is finished, for logs.
 fn report_progress(bar: &ProgressBar, of: &str) {
     let (bar, of) = (bar.downgrade(), of.to_owned());
     std::thread::spawn(move || {
@@ -138,7 +138,7 @@ fn report_progress(bar: &ProgressBar, of: &str) {
     });
 }
 
-/// Progress on stderr: a bar, or a line a minute where that is not a terminal.
+/// Progress on stderr: a bar, or a line each minute if stderr is not a terminal.
 pub(crate) fn progress_bar(count: usize, of: &str, jobs: usize, quiet: bool) -> ProgressBar {
     if quiet {
         return ProgressBar::hidden();

@@ -1,11 +1,12 @@
-//! Scenario files of what a calibration chose: the calibrated world, and those that cannot be told from it as variants of it.
+//! Scenario files from the result of a calibration: the calibrated world, and, as variants of it, the
+//! worlds that the data cannot tell apart from it.
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 use ron_fields::{Fields, with_values};
 
-/// Finalists that are the nearest in at least this share of the draws cannot be told from the choice.
+/// Finalists that are nearest in at least this share of the draws cannot be told apart from the choice.
 const NOT_TOLD_APART: f64 = 0.05;
 
 const HEADER: &str = "\
@@ -25,7 +26,8 @@ const WORLDS: &str = "\
     variants: {
 ";
 
-/// Writes `paper-calibrated.ron` and `calibrated-worlds.ron` beside the table of the choice, whose first row is the one that was chosen.
+/// Writes `paper-calibrated.ron` and `calibrated-worlds.ron`. `choice` is the table of the choice; its
+/// first row is the chosen candidate.
 ///
 /// # Panics
 /// A table or a scenario is not what a calibration wrote, or the disk does not take the files.
@@ -50,7 +52,8 @@ pub fn write_worlds(choice: &Path, folders: &[PathBuf]) {
     std::fs::write(out.join("paper-calibrated.ron"), named(&chosen)).expect("the folder takes a file");
 }
 
-/// A candidate's text with the header and the name of the scenario in the repository, in which every policy may run.
+/// A candidate's text, with the header and the name of the scenario in the repository. Every policy may run
+/// in it.
 fn named(text: &str) -> String {
     let legend = text.find("// [paper]").expect("a legend");
     let text = text[legend..].replace(", only_policy: \"DIS\"", "");
@@ -59,7 +62,7 @@ fn named(text: &str) -> String {
     HEADER.to_owned() + &text.replacen("(\n", "(\n    format: 2,\n", 1)
 }
 
-/// The values in which a scenario differs from another, as entries of a variant.
+/// The values in which the second scenario differs from the first, as entries of a variant.
 fn changes(from: &str, to: &str) -> String {
     let (from_fields, to_fields) = (Fields::of(from), Fields::of(to));
     let differs = |path: &&str| {

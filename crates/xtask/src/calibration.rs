@@ -1,24 +1,24 @@
-//! The readings of the paper's mission that a calibration compares, a design of experiments over them, and
-//! what follows from its runs.
+//! The readings of the paper's mission that a calibration compares, a design of experiments for them, and
+//! the conclusions from its runs.
 //!
-//! There are 3 x 2^7 = 384 combinations. The screening fits 24 of them: for each of the three kinds of rest
-//! an eighth of the 128 others (a fractional factorial of resolution III, with other signs for each rest), so
-//! that the levels of each factor stand in equally many runs with each level of rest, and the mean over a
-//! level's runs is not biased by any other factor alone.
+//! There are 3 x 2^7 = 384 combinations, of which the screening fits 24. For each of the three kinds of
+//! rest, it fits an eighth of the other 128 combinations (a fractional factorial of resolution III, with
+//! other signs for each kind of rest). The levels of each factor therefore occur in equally many runs with
+//! each kind of rest, and no other single factor biases the mean over a level's runs.
 
 use std::fmt;
 use std::path::Path;
 
-/// A reading of the mission: the field of the scenario, and the values that it may have.
+/// A reading of the mission: the field of the scenario and its possible values.
 pub struct Factor {
     /// Path of the field.
     pub field: &'static str,
-    /// Its values, today's first.
+    /// Its values; the current one comes first.
     pub levels: &'static [&'static str],
 }
 
-/// The readings, in the order of the table. The last is no field: whether work costs something, by how much
-/// is then fitted.
+/// The readings, in the order of the table. The last one is not a field: it says whether work has a cost.
+/// The amount is then fitted.
 pub const FACTORS: [Factor; 8] = [
     Factor { field: "mission.rest_fills", levels: &["Both", "Low", "InTurn"] },
     Factor { field: "costs.unit", levels: &["Percent", "Points"] },
@@ -32,7 +32,7 @@ pub const FACTORS: [Factor; 8] = [
 
 const WORK: &str = "work";
 
-/// Searched in every run.
+/// Parameters that are free in every run.
 const FREE: [&str; 8] = [
     "roles.carrier.speed_mps + roles.supplier.speed_mps + roles.observer.speed_mps*0.666666667 = 1.5..6",
     "costs.energy.per_metre = 0.1..1.5 log",
@@ -44,19 +44,19 @@ const FREE: [&str; 8] = [
     "mission.rest_reserve = 1..3",
 ];
 
-/// Searched in addition where work costs something.
+/// Parameters that are free if work has a cost.
 const FREE_WORK: [(&str, &str); 3] = [
     ("costs.work.energy_per_second", "0..2"),
     ("costs.work.hp_per_second", "0..0.5"),
     ("mission.load_speed_loss", "0..0.6"),
 ];
 
-/// A level of each factor.
+/// One level of each factor.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Combination([usize; FACTORS.len()]);
 
 impl Combination {
-    /// The free parameters, as `usar calibrate` takes them.
+    /// The free parameters, as arguments of `usar calibrate`.
     pub fn free(&self) -> Vec<String> {
         let mut free: Vec<String> = FREE.iter().map(|free| (*free).to_owned()).collect();
         if self.work_costs() {
@@ -65,7 +65,7 @@ impl Combination {
         free
     }
 
-    /// The fields that are set, as `usar calibrate` takes them.
+    /// The fixed settings, as arguments of `usar calibrate`.
     pub fn settings(&self) -> Vec<String> {
         let fields = FACTORS.iter().zip(self.0).filter(|(factor, _)| factor.field != WORK);
         let mut settings: Vec<String> =
@@ -80,12 +80,12 @@ impl Combination {
         self.0[FACTORS.len() - 1] == 1
     }
 
-    /// In how many factors two combinations differ.
+    /// Number of factors in which two combinations differ.
     fn differences(&self, other: &Self) -> usize {
         self.0.iter().zip(other.0).filter(|(a, b)| **a != *b).count()
     }
 
-    /// All of them.
+    /// All combinations.
     fn all() -> impl Iterator<Item = Self> {
         let count: usize = FACTORS.iter().map(|factor| factor.levels.len()).product();
         (0..count).map(|mut rest| {
@@ -109,7 +109,7 @@ impl fmt::Display for Combination {
 
 /// The 24 combinations of the screening.
 pub fn screening() -> Vec<Combination> {
-    // Which of the four products of the first three factors have their signs turned, for each kind of rest.
+    // For each kind of rest: which of the four products of the first three factors have inverted signs.
     let turned = [[0, 0, 0, 0], [1, 1, 1, 0], [0, 1, 0, 1]];
     let mut runs = Vec::new();
     for (rest, [ab, ac, bc, abc]) in turned.into_iter().enumerate() {
@@ -121,13 +121,13 @@ pub fn screening() -> Vec<Combination> {
     runs
 }
 
-/// A combination that was fitted.
+/// A fitted combination.
 pub struct Run {
     /// Name of its folder.
     pub name: String,
     /// Its readings.
     pub combination: Combination,
-    /// The least misfit that was found.
+    /// The least misfit of its calibration.
     pub misfit: f64,
 }
 
@@ -137,8 +137,8 @@ impl fmt::Display for Run {
     }
 }
 
-/// How far the mean logarithm of the misfit over the runs with each level is from that over all runs, for
-/// each factor.
+/// For each level of each factor: the mean logarithm of the misfit over the runs with this level, minus the
+/// mean over all runs.
 fn effects(runs: &[Run]) -> Vec<Vec<f64>> {
     let mean = |runs: &mut dyn Iterator<Item = &Run>| {
         let (sum, count) = runs.fold((0.0, 0.0), |(sum, count), run| (sum + run.misfit.ln(), count + 1.0));
@@ -155,8 +155,9 @@ fn effects(runs: &[Run]) -> Vec<Vec<f64>> {
 }
 
 /// The six combinations that are fitted further: the three with the least misfit in the screening, and the
-/// three of all 384 for which the sum of the effects promises the least, each with the run of the screening
-/// that it starts from: the one that differs in the fewest readings, of these the one with the least misfit.
+/// three of all 384 with the least predicted misfit (sum of the effects). Each comes with its starting run
+/// of the screening: the run that differs in the fewest readings, and among these the one with the least
+/// misfit.
 ///
 /// # Panics
 /// There are no runs.
@@ -196,7 +197,7 @@ pub fn write_screening(path: &Path, runs: &[Run]) {
     table.flush().expect("the folder takes a table");
 }
 
-/// Writes what each level of each factor multiplies the misfit by.
+/// Writes the factor by which each level of each factor multiplies the misfit.
 ///
 /// # Panics
 /// The disk does not take it.

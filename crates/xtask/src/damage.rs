@@ -1,5 +1,5 @@
-//! Folders of results that are damaged: by flipped bits, and by somebody who forges numbers and computes
-//! every checksum anew.
+//! Damaged folders of results: by flipped bits, and by a forger who changes numbers and recomputes every
+//! checksum.
 
 use std::collections::BTreeMap;
 use std::io::Write;
@@ -19,20 +19,20 @@ use xxhash_rust::xxh3::{xxh3_64, xxh3_128};
 
 use crate::kills::{files, journal};
 
-/// What became of damaged folders.
+/// Counts of damaged folders.
 #[derive(Debug, Default, PartialEq, Eq)]
 pub struct Report {
-    /// Folders that were damaged.
+    /// Number of damaged folders.
     pub damaged: u32,
-    /// Those of which verifying said so.
+    /// Damaged folders whose damage was found by verification.
     pub found: u32,
-    /// Those that were refused by all that reads results.
+    /// Damaged folders that everything that reads results refused.
     pub refused: u32,
-    /// Those that the sweep's command made whole again, to the byte, or refused with a sentence.
+    /// Damaged folders that the sweep's command restored byte for byte, or refused with a message.
     pub mended: u32,
 }
 
-/// The finished sweep in a folder, with its trials as they come out again.
+/// The finished sweep in a folder, with its trials run again.
 pub struct Sound {
     folder: PathBuf,
     again: Vec<Outcome>,
@@ -51,7 +51,7 @@ impl Sound {
         Self { folder: path.to_owned(), again, forged: Forged::of(path) }
     }
 
-    /// Flips one bit of one file, again and again, and looks whether that is found and mended.
+    /// Repeatedly flips one bit of one file and checks that the damage is found and mended.
     pub fn flip(&self, times: u32, seed: u64) -> Report {
         let mut draws = ChaCha8Rng::seed_from_u64(seed);
         let names: Vec<&String> = self.forged.sound.keys().collect();
@@ -69,8 +69,8 @@ impl Sound {
         report
     }
 
-    /// Changes one digit of one number in the journal or in a table and computes every checksum anew, again
-    /// and again.
+    /// Repeatedly changes one digit of one number in the journal or in a table and recomputes every
+    /// checksum.
     pub fn forge(&self, times: u32, seed: u64) -> Report {
         let mut draws = ChaCha8Rng::seed_from_u64(seed);
         let mut report = Report::default();
@@ -107,7 +107,7 @@ impl Sound {
         }
     }
 
-    /// Whether verifying says that something is not as it was.
+    /// Whether verification finds a difference.
     fn is_found(&self) -> bool {
         let Ok((mut folder, damages)) = Folder::read_damaged(&self.folder) else { return true };
         let differs = |outcome| difference(&mut folder, outcome).is_ok_and(|difference| difference.is_some());
@@ -116,7 +116,7 @@ impl Sound {
             || !strange_files(&mut folder).is_ok_and(|strange| strange.is_empty())
     }
 
-    /// Whether the sweep's command refuses the folder, or leaves it as it was before the damage.
+    /// Whether the sweep's command refuses the folder, or restores it to its state before the damage.
     fn is_mended(&self) -> bool {
         let experiment = Arc::clone(&self.experiment());
         let Ok(mut folder) = Folder::open(&self.folder, experiment, Opening::default(), &mut |_| {}) else {
@@ -138,7 +138,7 @@ impl Sound {
     }
 }
 
-/// The text with another digit instead of one of its digits.
+/// The text with one of its digits replaced by another digit.
 fn other_digit(text: &str, pick: u64) -> String {
     let places: Vec<usize> =
         text.bytes().enumerate().filter(|(_, c)| c.is_ascii_digit()).map(|(i, _)| i).collect();
@@ -147,11 +147,11 @@ fn other_digit(text: &str, pick: u64) -> String {
     format!("{}{digit}{}", &text[..at], &text[at + 1..])
 }
 
-/// The journal of a finished sweep.
+/// Name of the journal of a finished sweep.
 const JOURNAL: &str = "journal.jsonl.gz";
 
-/// A gzip file without any fields in its header as a member of a journal: its header says how long it is and
-/// how many lines it has.
+/// Turns a gzip file without header fields into a member of a journal, whose header states its length and
+/// its number of lines.
 fn with_head(gzip: &[u8], lines: usize) -> Vec<u8> {
     let mut head = vec![0x1f, 0x8b, 8, 4, 0, 0, 0, 0, 0, 0xff, 12, 0, b'U', b'S', 8, 0];
     head.extend((gzip.len() as u32 + 14).to_le_bytes());
@@ -160,19 +160,19 @@ fn with_head(gzip: &[u8], lines: usize) -> Vec<u8> {
     head
 }
 
-/// A finished sweep's folder, and what was in it.
+/// A finished sweep's folder, and its original content.
 pub struct Forged {
     folder: PathBuf,
     sound: BTreeMap<String, Vec<u8>>,
 }
 
 impl Forged {
-    /// Remembers what is in a finished sweep's folder.
+    /// Remembers the content of a finished sweep's folder.
     pub fn of(folder: &Path) -> Self {
         Self { folder: folder.to_owned(), sound: files(folder) }
     }
 
-    /// Everything as it was.
+    /// Restores the original content.
     pub fn restore(&self) {
         for (name, bytes) in &self.sound {
             std::fs::write(self.folder.join(name), bytes).unwrap();
@@ -183,7 +183,7 @@ impl Forged {
         String::from_utf8(self.sound[name].clone()).unwrap()
     }
 
-    /// Changes one file alone, and the manifest's checksums.
+    /// Changes one file, and its checksum in the manifest.
     pub fn file(&self, name: &str, change: impl FnOnce(String) -> String) {
         self.restore();
         let text = change(self.text(name));
@@ -200,7 +200,7 @@ impl Forged {
         });
     }
 
-    /// Changes the line of the journal that has this in it, and every checksum.
+    /// Changes the line of the journal that contains this text, and every checksum.
     pub fn line(&self, with: &str, change: impl FnOnce(&mut String)) {
         self.journal(|text| {
             let line = text.lines().find(|line| line.contains(with)).unwrap();
@@ -212,7 +212,7 @@ impl Forged {
         });
     }
 
-    /// Changes the journal, and the manifest's checksums.
+    /// Changes the journal, and its checksum in the manifest.
     pub fn journal(&self, change: impl FnOnce(String) -> String) {
         self.restore();
         let text = change(journal(&self.folder));
@@ -221,7 +221,7 @@ impl Forged {
         self.bytes(JOURNAL, &with_head(&encoder.finish().unwrap(), text.lines().count()));
     }
 
-    /// Changes the manifest alone, and its checksum.
+    /// Changes only the manifest, and its checksum.
     pub fn manifest(&self, change: impl FnOnce(&mut Manifest)) {
         self.restore();
         self.write_manifest(change);

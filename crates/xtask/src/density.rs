@@ -1,5 +1,5 @@
-//! Worlds of any size at one density: 5 boxes a robot in a walled square of 40 sqrt(N / 12) m, ten ground robots to two aerial ones, for the
-//! raw physics and for the full simulator alike.
+//! Worlds of any size at one density, for the raw physics and for the full simulator. A walled square of 40
+//! sqrt(N / 12) m holds N robots and 5 boxes for each robot; two of twelve robots are aerial.
 
 use std::collections::BTreeMap;
 
@@ -10,7 +10,7 @@ use usar_sim::scenario::{
     Point, RoleFile, Row, Sampled, SampledCounts, Scenario, ScenarioFile, TaskFile,
 };
 
-/// The scenario whose roles and needs the robots have, but for their size and speed.
+/// The scenario from which the robots have their roles and needs, but not their size and speed.
 const PAPER: &str = include_str!("../../../scenarios/paper.ron");
 
 /// Radius of all robots, in metres.
@@ -25,12 +25,12 @@ pub fn side(robots: u32) -> f64 {
     40.0 * (f64::from(robots) / 12.0).sqrt()
 }
 
-/// Two of twelve robots fly.
+/// Number of aerial robots: two of twelve.
 pub fn aerial(robots: u32) -> u32 {
     (robots / 6).max(1)
 }
 
-/// Boxes of half extents 0.4 to 1.2 m at any angle, off the places that `is_taken`.
+/// Boxes of half extents 0.4 to 1.2 m at any angle, away from places for which `is_taken` is true.
 pub fn boxes(robots: u32, is_taken: impl Fn(Point) -> bool) -> Vec<DebrisFile> {
     let mut draws = ChaCha8Rng::seed_from_u64(u64::from(robots));
     let mut boxes = Vec::new();
@@ -46,8 +46,9 @@ pub fn boxes(robots: u32, is_taken: impl Fn(Point) -> bool) -> Vec<DebrisFile> {
     boxes
 }
 
-/// A mission for the full simulator: `duration_s` seconds, homes in rows along the southern wall, tasks across the arena or, so that a minute
-/// sees robots at work, this far from the homes; rest places before them or beyond.
+/// A mission for the full simulator, `duration_s` seconds long. Homes are in rows along the southern wall.
+/// Tasks are across the arena, or `to_tasks_m` from the homes, so that robots are already at work within a
+/// minute. Rest places are in front of the tasks or behind them.
 pub fn mission(robots: u32, duration_s: f64, to_tasks_m: Option<f64>) -> Scenario {
     let side = side(robots);
     let aerial = aerial(robots);

@@ -1,4 +1,4 @@
-//! The hashes of the small worlds: what they are, and what they should be.
+//! The hashes of the small worlds: computed, and expected.
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -12,12 +12,12 @@ fn root() -> &'static Path {
     manifest.ancestors().find(|folder| folder.join("scenarios").is_dir()).expect("inside the workspace")
 }
 
-/// The file with the hashes as they should be.
+/// Path of the file with the expected hashes.
 pub fn path() -> PathBuf {
     root().join("tests/golden_hashes.txt")
 }
 
-/// A line for each small world, each policy and its state's hash at the end of the trial with seed 1.
+/// A line for each small world and policy, with the hash of the state at the end of the trial with seed 1.
 pub fn hashes() -> String {
     let mut files: Vec<PathBuf> = std::fs::read_dir(root().join("scenarios/minimal"))
         .expect("there are small worlds")

@@ -1,4 +1,4 @@
-//! What is asked of every trial of the random worlds, and how it is counted.
+//! The requirements on every trial of the random worlds, and how violations are counted.
 
 use rne_core::Registry;
 use usar_sim::conflict::DelayCause;
@@ -7,25 +7,25 @@ use usar_sim::scenario::Scenario;
 use usar_sim::simulation::Simulation;
 use usar_sim::world::STANDING_MPS;
 
-/// A robot that has somewhere to go and does not come nearer for longer than this is counted, in seconds.
+/// A robot with a goal is counted if it comes no nearer for longer than this, in seconds.
 pub const STALL_S: f64 = 30.0;
 
-/// A fleet that stands for longer than this although somebody has somewhere to go is a fault, in seconds.
+/// A fleet that stands for longer than this although some robot has a goal is a fault, in seconds.
 pub const STANDSTILL_S: f64 = 60.0;
 
 /// One world's trial.
 pub struct Journeys {
     /// Its record.
     pub record: TrialRecord,
-    /// The longest time in which nobody moved although somebody had somewhere to go and knew a way, in seconds.
+    /// The longest time without motion of any robot although some robot had a goal and a route, in seconds.
     pub standstill_s: f64,
 }
 
 impl Journeys {
-    /// Runs a world with every check on.
+    /// Runs a world with every check enabled.
     ///
     /// # Errors
-    /// Why the trial failed, in words.
+    /// The reason why the trial failed, in words.
     pub fn run(scenario: &Scenario, seed: u64) -> Result<Self, String> {
         let random = Registry::standard().parse("RANDOM").expect("known");
         let mut trial = Simulation::new(scenario, seed).map_err(|error| error.to_string())?.checked();
@@ -50,7 +50,7 @@ impl Journeys {
         Ok(Self { record, standstill_s: longest as f64 * scenario.dt_s })
     }
 
-    /// Robots that did not come on, with cause.
+    /// Robots that made no progress, with the cause.
     pub fn stalls(&self) -> impl Iterator<Item = String> + '_ {
         self.record.robots.iter().filter(|robot| robot.longest_stall_s > STALL_S).map(|robot| {
             let waits_for = robot.stall.waits_for.map(|id| format!(" robot {id}")).unwrap_or_default();

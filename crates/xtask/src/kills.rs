@@ -1,5 +1,5 @@
-//! A sweep that is killed again and again: nothing finished is lost or done twice, and in the end its files
-//! are those of a sweep that was left alone.
+//! A sweep that is killed again and again. No finished trial is lost or run twice, and in the end its files
+//! equal those of an uninterrupted sweep.
 
 use std::collections::BTreeMap;
 use std::io::Read;
@@ -12,21 +12,21 @@ use flate2::read::MultiGzDecoder;
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 
-/// What happened.
+/// Counts of a series of kills.
 #[derive(Debug, Default)]
 pub struct Report {
-    /// Processes that were killed before they were done.
+    /// Number of processes that were killed before they had finished.
     pub kills: u32,
-    /// Sweeps that came to their end all the same.
+    /// Number of sweeps that finished nevertheless.
     pub sweeps: u32,
-    /// Trials that the kills found finished, over all kills.
+    /// Number of finished trials found after kills, summed over all kills.
     pub kept: usize,
 }
 
-/// Kills sweeps of these arguments until there were as many kills, and lets the last one come to its end.
+/// Kills sweeps with these arguments until this many kills are reached, and lets the last sweep finish.
 ///
 /// # Panics
-/// Something was lost, done twice, or differs.
+/// A trial was lost or run twice, or a file differs.
 pub fn kill_sweeps(usar: &Path, arguments: &[&str], folder: &Path, kills: u32, longest_ms: u64) -> Report {
     let mut draws = ChaCha8Rng::seed_from_u64(u64::from(kills));
     let command = |out: &str| {
@@ -64,7 +64,7 @@ pub fn kill_sweeps(usar: &Path, arguments: &[&str], folder: &Path, kills: u32, l
     report
 }
 
-/// Number of finished trials in a folder's journal, each of which must stand there once.
+/// Number of finished trials in a folder's journal; each must occur once.
 fn finished_trials(folder: &Path) -> usize {
     let journal = journal(folder);
     let whole = journal.rfind('\n').map_or("", |end| &journal[..end]);
@@ -77,7 +77,7 @@ fn finished_trials(folder: &Path) -> usize {
     count
 }
 
-/// The journal of a folder: as it grows, or of a sweep that is finished.
+/// The journal of a folder, while it grows or of a finished sweep.
 pub fn journal(folder: &Path) -> String {
     let mut text = String::new();
     if let Ok(growing) = std::fs::read_to_string(folder.join("journal.jsonl")) {
@@ -95,9 +95,8 @@ fn assert_same(killed: &BTreeMap<String, Vec<u8>>, alone: &BTreeMap<String, Vec<
     }
 }
 
-/// The files of a folder, by name, but for what differs between two runs of the same sweep: a lock that a
-/// killed process has left, and
-/// `host.json`.
+/// The files of a folder, by name, except those that differ between two runs of the same sweep: locks that
+/// killed processes left, and `host.json`.
 pub fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
     let file = |entry: std::io::Result<std::fs::DirEntry>| {
         let path = entry.expect("an entry").path();

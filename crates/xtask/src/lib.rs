@@ -1,5 +1,5 @@
-//! What tasks of the project share with its tests and benchmarks: worlds to run, teams to group, and checks
-//! that both make, the tests on few and the tasks on many.
+//! Code that the project's tasks share with its tests and benchmarks: worlds to run, teams to group, and
+//! checks. The tests run the checks on few cases and the tasks on many.
 
 #![expect(
     clippy::missing_panics_doc,

@@ -1,4 +1,4 @@
-//! `docs/limits.md`, made of the constants that are the limits.
+//! `docs/limits.md`, made from the constants that define the limits.
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -16,12 +16,12 @@ The constants are the source of this page: `cargo run --package xtask -- limits`
 it with them. `*` stands for any entry.
 ";
 
-/// Where the page is.
+/// Path of the page.
 pub fn path() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/limits.md")
 }
 
-/// The page.
+/// Text of the page.
 pub fn page() -> String {
     let mut page = HEAD.to_owned();
     for (title, file, limits) in [
@@ -41,7 +41,7 @@ pub fn page() -> String {
     page
 }
 
-/// A number as people read it: with commas between thousands.
+/// A number with commas between thousands.
 fn number(value: f64) -> String {
     let text = value.abs().to_string();
     let (whole, rest) = text

@@ -1,5 +1,5 @@
-//! Tasks of the project itself: `cargo run --release --package xtask -- TASK [ARGUMENT ...]`, from the
-//! project's folder. The justfile has them with their arguments.
+//! Tasks of the project itself: `cargo run --release --package xtask -- TASK [ARGUMENT ...]`, in the
+//! project's folder. The justfile lists them with their arguments.
 
 mod commands;
 

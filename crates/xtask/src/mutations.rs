@@ -1,4 +1,5 @@
-//! Damaged files through all loaders: good scenarios, sweep files, tables, questions and snapshots with bytes changed at random.
+//! Damaged files for all loaders: valid scenarios, sweep files, tables, questions and snapshots with bytes
+//! changed at random.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
@@ -13,33 +14,33 @@ use usar_sim::scenario::Scenario;
 use usar_sim::simulation::Simulation;
 use usar_sim::snapshot::Identity;
 
-/// Bytes that mean something in the formats.
+/// Bytes with a meaning in the formats.
 const SPECIAL: &[u8] = b"()[]{},:\"'\\/*#.-+eE0193_ \n\t\0\xff\xc3";
 
-/// What came of it.
+/// The counts of a run.
 #[derive(Debug, Default)]
 pub struct Outcome {
-    /// Files that were loaded all the same.
+    /// Number of files that were loaded nevertheless.
     pub loaded: u32,
-    /// Files that were refused.
+    /// Number of files that were refused.
     pub refused: u32,
     /// Files with which a loader panicked: the kind, and the mutation's number.
     pub panics: Vec<(&'static str, u64)>,
-    /// The longest that a loader took.
+    /// Longest time that a loader took.
     pub longest: Duration,
 }
 
-/// Whether a file of these bytes is loaded.
+/// Returns whether a file with these bytes is loaded.
 type Loader = dyn Fn(&[u8]) -> bool;
 
-/// A kind of file: a good one, and its loader.
+/// A kind of file: a valid file, and its loader.
 struct Kind {
     name: &'static str,
     good: Vec<u8>,
     loads: Box<Loader>,
 }
 
-/// Loads so many damaged files, the kinds in turn. `folder` is for those that are read from disk.
+/// Loads this many damaged files, the kinds in turn. `folder` is used for kinds that are read from disk.
 pub fn run(count: u64, first: u64, folder: &Path) -> Outcome {
     let kinds = kinds(folder);
     let mut outcome = Outcome::default();
@@ -60,7 +61,8 @@ pub fn run(count: u64, first: u64, folder: &Path) -> Outcome {
     outcome
 }
 
-/// One to eight changes: a byte changed, added or left out, a part repeated or left out, the end cut off.
+/// Applies one to eight changes: a byte changed, added or removed, a part repeated or removed, or the end
+/// cut off.
 fn damaged(good: &[u8], number: u64) -> Vec<u8> {
     let mut draws = ChaCha8Rng::seed_from_u64(number);
     let mut bytes = good.to_vec();

@@ -1,27 +1,28 @@
-//! Pages of `docs/` hold the output of commands. What stands after the line `<!-- $ usar ... -->` is what that
-//! command prints, as a block of text. `<!-- $ usar ... | TITLE -->` is for a part of it: the table below the line
-//! that begins with this title, as Markdown, or, as a block, the paragraph that begins so; a number stands for the
-//! first, second, ... table. A table that is too long for a page is a CSV beside it: `<!-- $ usar ... | TITLE > FILE -->`.
+//! Pages of `docs/` hold the output of commands. The block after the line `<!-- $ usar ... -->` is the
+//! output of that command. `<!-- $ usar ... | TITLE -->` selects a part of it: the table below the line
+//! that begins with this title, as Markdown, or the paragraph that begins with it, as a block. A number
+//! selects the first, second, ... table. A table that is too long for a page is a CSV beside it:
+//! `<!-- $ usar ... | TITLE > FILE -->`.
 
 use std::path::Path;
 use std::process::Command;
 
-/// What stands before a block.
+/// Start of the line before a block.
 pub const MARK: &str = "<!-- $ usar ";
 
-/// What a page asks for.
+/// A page's request for output.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Request<'p> {
     /// The arguments of `usar`.
     pub command: &'p str,
-    /// The title of the table, or the beginning of the paragraph, that alone is wanted.
+    /// The title of the table, or the beginning of the paragraph, to select; `None` for the whole output.
     pub table: Option<&'p str>,
-    /// The CSV that the table is, from the page's folder on.
+    /// The CSV file that takes the table, relative to the page's folder.
     pub file: Option<&'p str>,
 }
 
 impl<'p> Request<'p> {
-    /// What a line of a page asks for, if it does.
+    /// The request in a line of a page, if there is one.
     #[must_use]
     pub fn of(line: &'p str) -> Option<Self> {
         let asked = line.strip_prefix(MARK)?.strip_suffix(" -->")?;
@@ -30,7 +31,7 @@ impl<'p> Request<'p> {
         Some(Self { command, table, file })
     }
 
-    /// The command that answers it.
+    /// The arguments of the command that answers the request.
     fn arguments(self) -> String {
         let markdown = if self.table.is_some() { " --format md" } else { "" };
         format!("{}{markdown}", self.command)
@@ -41,7 +42,7 @@ fn parts<'t>(text: &'t str, sign: &str) -> (&'t str, Option<&'t str>) {
     text.split_once(sign).map_or((text.trim(), None), |(left, right)| (left.trim(), Some(right.trim())))
 }
 
-/// A page made anew.
+/// A renewed page.
 #[derive(Debug, Default, PartialEq, Eq)]
 pub struct Renewed {
     /// Its text.
@@ -53,7 +54,7 @@ pub struct Renewed {
 /// The page with the block of each command that `run` answers replaced by the answer.
 ///
 /// # Panics
-/// The page is not written as it must be, or an answer has no such table.
+/// The page does not have the expected form, or an answer lacks the table.
 pub fn renewed(page: &str, mut run: impl FnMut(&str) -> Option<String>) -> Renewed {
     let mut new = Renewed::default();
     let mut lines = page.split_inclusive('\n').peekable();
@@ -79,7 +80,7 @@ pub fn renewed(page: &str, mut run: impl FnMut(&str) -> Option<String>) -> Renew
     new
 }
 
-/// The lines of the table below a title, or of the one with this number.
+/// The lines of the table below a title, or of the table with this number.
 fn table(answer: &str, title: &str) -> String {
     let lines: Vec<&str> = answer.lines().collect();
     let is_row = |i: usize| lines[i].starts_with('|');
@@ -94,7 +95,7 @@ fn table(answer: &str, title: &str) -> String {
     lines[start..].iter().take_while(|line| line.starts_with('|')).flat_map(|line| [line, "\n"]).collect()
 }
 
-/// The lines that begin with such a line, up to an empty one.
+/// The lines from one that begins with `start` up to an empty line.
 fn paragraph(answer: &str, start: &str) -> String {
     let lines = answer.lines().skip_while(|line| !line.starts_with(start));
     let lines: Vec<&str> = lines.take_while(|line| !line.is_empty()).collect();
@@ -102,7 +103,7 @@ fn paragraph(answer: &str, start: &str) -> String {
     lines.join("\n")
 }
 
-/// A table of Markdown as CSV.
+/// Converts a Markdown table to CSV.
 fn csv(table: &str) -> String {
     let mut writer = csv::Writer::from_writer(Vec::new());
     for (i, line) in table.lines().enumerate() {
@@ -114,7 +115,7 @@ fn csv(table: &str) -> String {
     String::from_utf8(writer.into_inner().expect("in memory")).expect("text")
 }
 
-/// The words of a command, of which some stand in single quotes.
+/// The words of a command; single quotes group words.
 fn words(command: &str) -> Vec<&str> {
     let parts = command.split('\'').enumerate();
     parts
@@ -122,10 +123,10 @@ fn words(command: &str) -> Vec<&str> {
         .collect()
 }
 
-/// What `usar` prints when it is run in this folder.
+/// The output of `usar`, run in this folder.
 ///
 /// # Panics
-/// It fails.
+/// The command fails.
 pub fn answer(usar: &Path, folder: &Path, arguments: &str) -> String {
     let output = Command::new(usar).args(words(arguments)).current_dir(folder).output();
     let output = output.expect("usar runs");

@@ -1,6 +1,6 @@
-//! Random valid scenarios of all kinds: one to four tasks or errands, walls and doors, radiation, things that
-//! are scattered, distributions in the place of values, timelines. Each is run for a minute with every
-//! invariant checked.
+//! Random valid scenarios of all kinds: one to four tasks or errands, walls and doors, radiation, scattered
+//! objects, distributions instead of values, timelines. Each is run for a minute with every invariant
+//! checked.
 
 use std::fmt::Write;
 
@@ -14,7 +14,7 @@ use usar_sim::simulation::Simulation;
 /// Simulated time of a trial, in seconds.
 const DURATION_S: f64 = 60.0;
 
-/// Scenarios that are written before it is given up: what is written at random need not go together.
+/// Number of texts that are tried before giving up. Random values need not be consistent.
 const TRIES: u64 = 200;
 
 const POLICIES: [&str; 5] = ["RNE", "DIS", "ENG", "HP_DIS", "RANDOM"];
@@ -26,21 +26,21 @@ const ROLES: &str = r#"
         (name: "observer", kind: Aerial, guides: true, mass_kg: 5.0, sensing_m: 18.0, observing_m: 6.0, capacity: 0, resources: 0),
     ],"#;
 
-/// What became of a random scenario.
+/// The result of a random scenario.
 pub struct Ran {
-    /// Its text.
+    /// Text of the scenario.
     pub text: String,
-    /// Texts before it that were refused: their values did not go together.
+    /// Number of earlier texts that were refused because their values were inconsistent.
     pub refused: u64,
-    /// Events of its timeline.
+    /// Number of events of its timeline.
     pub events: usize,
-    /// Distributions in it.
+    /// Number of its distributions.
     pub draws: usize,
-    /// Its tasks.
+    /// Number of its tasks.
     pub tasks: usize,
-    /// Things that it scatters.
+    /// Number of objects that it scatters.
     pub scattered: usize,
-    /// What was violated.
+    /// The violated invariant or other failure.
     pub violation: Option<String>,
 }
 
@@ -60,7 +60,7 @@ pub fn run(seed: u64) -> Ran {
     Ran { text, refused, events, draws, tasks, scattered: scenario.scatter.len(), violation }
 }
 
-/// The first text of a seed that is a scenario whose trial can begin.
+/// The first text of a seed that is a valid scenario whose trial can begin.
 fn start(seed: u64) -> (String, Scenario, Simulation, u64) {
     for attempt in 0..TRIES {
         let text = text(seed.wrapping_mul(1_000).wrapping_add(attempt));
@@ -75,7 +75,7 @@ fn start(seed: u64) -> (String, Scenario, Simulation, u64) {
     );
 }
 
-/// A random text of a scenario; its values need not go together.
+/// A random text of a scenario; its values need not be consistent.
 pub fn text(seed: u64) -> String {
     let mut random = Random(ChaCha8Rng::seed_from_u64(seed));
     let arena = [random.number(40.0, 80.0), random.number(40.0, 70.0)];
@@ -122,7 +122,7 @@ impl Random {
         self.0.random_range(0..many) == 0
     }
 
-    /// A number, or now and then a distribution within the same bounds.
+    /// A number, or sometimes a distribution within the same bounds.
     fn value(&mut self, least: f64, most: f64) -> String {
         let middle = f64::midpoint(least, most);
         match self.count(0, 7) {
@@ -134,7 +134,7 @@ impl Random {
         }
     }
 
-    /// A count, or now and then a distribution of one.
+    /// A count, or sometimes a distribution of one.
     fn whole(&mut self, least: u32, most: u32) -> String {
         if self.one_in(3) { format!("Uniform({least}, {most})") } else { self.count(least, most).to_string() }
     }
@@ -144,7 +144,7 @@ impl Random {
     }
 }
 
-/// Rows near the lower wall; the least number of robots.
+/// Writes rows of robots near the lower wall; returns the least number of robots.
 fn team(random: &mut Random, arena: [f64; 2], text: &mut String) -> u32 {
     let mut least = 0;
     text.push_str("    team: [\n");
@@ -204,7 +204,7 @@ fn tasks(random: &mut Random, (arena, tasks): ([f64; 2], u32), text: &mut String
     text.push_str("    ],\n");
 }
 
-/// A wall across the arena, now and then; the number of its doors, which have names.
+/// Sometimes writes a wall across the arena; returns the number of its doors, which have names.
 fn walls(random: &mut Random, arena: [f64; 2], text: &mut String) -> u32 {
     if random.one_in(2) {
         return 0;

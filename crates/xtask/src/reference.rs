@@ -1,4 +1,5 @@
-//! `docs/scenarios-reference.md`, made of the comments of the types that scenario and sweep files are read into.
+//! `docs/scenarios-reference.md`, made from the comments of the types into which scenario and sweep files
+//! are read.
 
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -17,12 +18,12 @@ The comments of the types are the source of this page: `cargo run --package xtas
 compares it with them.
 ";
 
-/// Where the page is.
+/// Path of the page.
 pub fn path() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/scenarios-reference.md")
 }
 
-/// The page.
+/// Text of the page.
 pub fn page() -> String {
     let mut page = HEAD.to_owned();
     let scenario = usar_sim::scenario::scenario_schema();
@@ -38,7 +39,7 @@ pub fn page() -> String {
     page
 }
 
-/// The schemas of files: name and text.
+/// The schemas of files, each with name and text.
 pub fn schemas() -> [(&'static str, String); 2] {
     let text = |schema: &Value| serde_json::to_string_pretty(schema).expect("a schema is JSON") + "\n";
     [
@@ -51,7 +52,7 @@ fn text<'v>(schema: &'v Value, key: &str) -> &'v str {
     schema.get(key).and_then(Value::as_str).unwrap_or_default()
 }
 
-/// A type: its fields, or its variants.
+/// Writes the section of a type: its fields, or its variants.
 fn section(page: &mut String, title: &str, schema: &Value) {
     let _ = write!(page, "\n## {title}\n\n{}\n", on_a_line(text(schema, "description")));
     let variants = schema.get("oneOf").or(schema.get("anyOf")).and_then(Value::as_array);
@@ -93,7 +94,7 @@ fn section(page: &mut String, title: &str, schema: &Value) {
     }
 }
 
-/// Fields that must be given: of a scenario, by one without a base.
+/// The required fields; for a scenario, those required without a base.
 fn required(schema: &Value) -> Vec<&str> {
     let of_alternatives = || schema.get("anyOf")?.as_array()?.last()?.get("required");
     let list = schema.get("required").or_else(of_alternatives).and_then(Value::as_array);
@@ -131,7 +132,7 @@ fn plain(kind: &str) -> String {
     }
 }
 
-/// What a value is, with a link to its type.
+/// The type of a value, with a link to its section.
 fn kind(schema: &Value) -> String {
     if let Some(name) = schema.get("$ref").and_then(Value::as_str).and_then(|path| path.rsplit('/').next()) {
         return format!("[{name}](#{})", name.to_lowercase());

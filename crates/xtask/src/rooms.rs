@@ -1,6 +1,6 @@
-//! Random rooms, each from one seed: walls that meet in a T or cross, doors, robots of two radii, debris that can be pushed, steps of 0.01
-//! to 0.05 s. Errands for even seeds, a rescue mission for odd ones. Every robot can reach every place of its own at first; debris that is
-//! pushed may close a way later.
+//! Random rooms, each from one seed: walls that meet in a T or cross, doors, robots of two radii, movable
+//! debris, steps of 0.01 to 0.05 s. Even seeds have errands, odd seeds a rescue mission. At first, every
+//! robot can reach every place of its own. Pushed debris may close a passage later.
 
 use std::collections::BTreeMap;
 
@@ -18,13 +18,13 @@ use crate::worlds::{FreeSpace, base};
 /// Thickness of walls, in metres.
 const WALL_M: f64 = 0.3;
 
-/// Clearance of routes, and what the grid of the flood fill may be off, in metres.
+/// Clearance of routes, plus the error of the flood fill's grid, in metres.
 const KEEP_OFF_M: f64 = 0.15 + 0.05;
 
 /// No debris lies within this distance of a door's middle, in metres.
 const APRON_M: f64 = 2.5;
 
-/// The rooms of a seed.
+/// The rooms scenario of a seed.
 pub fn rooms(seed: u64) -> Scenario {
     let mut draws = ChaCha8Rng::seed_from_u64(seed ^ 0x0072_006f_006f_006d);
     for _ in 0..400 {
@@ -35,7 +35,7 @@ pub fn rooms(seed: u64) -> Scenario {
     panic!("seed {seed}: no feasible rooms in 400 draws");
 }
 
-/// Radii of the carriers and suppliers, in metres: two of them in two worlds of three.
+/// Radii of the carriers and suppliers, in metres; they differ in two worlds of three.
 fn radii(draws: &mut ChaCha8Rng) -> [f64; 2] {
     let first = draws.random_range(0.25..0.6);
     if draws.random_range(0..3_u32) == 0 { [first; 2] } else { [first, draws.random_range(0.2..0.6)] }
@@ -70,7 +70,7 @@ fn draw(seed: u64, draws: &mut ChaCha8Rng) -> Option<Scenario> {
     if seed.is_multiple_of(2) { errands(file, draws, &kinds, taken) } else { mission(file, draws, &kinds) }
 }
 
-/// Where robots of a row of the team can stand.
+/// The free space of the robots of a row of the team.
 fn free_for<'k>(file: &ScenarioFile, robot: usize, kinds: &'k [FreeSpace; 2]) -> &'k FreeSpace {
     &kinds[usize::from(file.team[robot].role != file.roles[0].name)]
 }
@@ -118,7 +118,7 @@ fn mission(mut file: ScenarioFile, draws: &mut ChaCha8Rng, kinds: &[FreeSpace; 2
     Scenario::try_from(file).ok()
 }
 
-/// Walls with doors at least `door_m` wide, and pieces that cover a share of the rooms.
+/// Walls with doors at least `door_m` wide, and pieces of debris that cover a share of the rooms.
 fn debris(
     draws: &mut ChaCha8Rng,
     arena: Point,
@@ -132,7 +132,7 @@ fn debris(
         wall(draws, (&mut debris, &mut doors), [[x, 0.0], [x, arena[1]]], (rows, door_m));
     }
     for row in 1..rows {
-        // A cross where the wall goes on beyond the first wall that it meets, a T where it ends there.
+        // A cross if the wall continues beyond the first wall that it meets, a T if it ends there.
         let to = if draws.random_range(0..2_u32) == 0 { columns } else { 1 };
         let y = height * row as f64;
         wall(draws, (&mut debris, &mut doors), [[0.0, y], [width * to as f64, y]], (to, door_m));

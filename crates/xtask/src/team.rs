@@ -5,7 +5,8 @@ use rand::{RngExt, SeedableRng};
 use rne_core::question::hardest_first;
 use rne_core::{Member, Need, NeedVector, Question, Quota, RandomSeed, RoleId, SCHEMA_VERSION, Task};
 
-/// How a team of carriers, suppliers and observers, with needs as in the paper's scenario, drawn at random, is to be split over two tasks.
+/// A question about a team of carriers, suppliers and observers, to be split over two tasks. Their needs
+/// are as in the paper's scenario, drawn at random.
 pub fn question(counts: [u32; 3]) -> Question {
     let mut draws = ChaCha8Rng::seed_from_u64(7);
     let of_role = (0..).zip(counts).flat_map(|(role, count)| (0..count).map(move |_| RoleId(role)));

@@ -1,4 +1,5 @@
-//! Pages of the reference that are made of comments and constants: `docs/events.md` and `docs/columns.md`.
+//! Pages of the reference that are made from comments and constants: `docs/events.md` and
+//! `docs/columns.md`.
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -30,7 +31,7 @@ axes. The name of a metric on the command line has a dot before the task: the co
 The program is the source of this page: `cargo run --package xtask -- reference` makes it.
 ";
 
-/// A page: where it is, and its text.
+/// The pages, each with its path and its text.
 pub fn pages() -> [(PathBuf, String); 2] {
     [(place("docs/events.md"), events()), (place("docs/columns.md"), columns())]
 }
@@ -77,7 +78,7 @@ fn row(page: &mut String, (name, comment): &(String, String), fields: &[String])
     let _ = writeln!(page, "| `{name}` | {} | {} |", comment.trim(), fields.join("; "));
 }
 
-/// A comment as a part of a sentence.
+/// A comment as part of a sentence.
 fn plain(comment: &str) -> String {
     let text = comment.trim().trim_end_matches('.');
     let mut letters = text.chars();
@@ -88,7 +89,7 @@ fn plain(comment: &str) -> String {
     first.into_iter().flat_map(char::to_lowercase).chain(letters).collect()
 }
 
-/// The name of a variant as the files have it.
+/// The name of a variant as it appears in files.
 fn snake(name: &str) -> String {
     let mut out = String::new();
     for (at, letter) in name.char_indices() {

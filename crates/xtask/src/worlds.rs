@@ -1,7 +1,8 @@
-//! Random worlds in which every robot can reach every place of its own, each from one seed.
+//! Random worlds in which every robot can reach all its goals, each from one seed.
 //!
-//! Feasibility is found out by a flood fill of its own, not by the planner under test: of the points on a fine grid that keep a robot's
-//! radius and clearance from all debris and walls, those that hang together with the first robot's home.
+//! Feasibility is determined by a separate flood fill instead of the planner under test. Its points lie on
+//! a fine grid and keep a robot's radius and clearance from all debris and walls. The largest connected
+//! part of these points is feasible.
 
 use std::collections::BTreeMap;
 
@@ -19,7 +20,7 @@ use usar_sim::scenario::{
     Normal, PlanningRules, Point, Row, Sampled, SampledCounts, Scenario, ScenarioFile, TaskFile, ZoneFile,
 };
 
-/// The scenario whose roles and needs the robots have.
+/// The scenario from which the robots have their roles and needs.
 const PAPER: &str = include_str!("../../../scenarios/paper.ron");
 
 /// Distance between the points of the flood fill, in metres.
@@ -131,7 +132,7 @@ fn mission(seed: u64, draws: &mut ChaCha8Rng) -> Option<ScenarioFile> {
     reachable.then_some(file)
 }
 
-/// Debris that covers a share of the arena above a line, with a wall that has a door in some.
+/// Debris that covers a share of the arena above a line; some worlds also have a wall with a door.
 fn debris(
     draws: &mut ChaCha8Rng,
     arena: Point,
@@ -167,12 +168,13 @@ fn debris(
         });
     }
     if draws.random_range(0..3_u32) == 0 {
-        // A lane for every twelve robots: more would queue for longer than a robot may stall, however well they do.
+        // One lane for every twelve robots. With fewer lanes, robots would queue for longer than a robot
+        // may stall, even under perfect right of way.
         let lanes = f64::from(robots.div_ceil(12));
         let (x, door) = (arena[0] * draws.random_range(0.35..0.65), lanes * draws.random_range(1.3..1.8));
         let (from, to) = (above, arena[1]);
         let at = draws.random_range(from + 2.0..to - 2.0 - door);
-        // No debris in the door: its lanes would not be free.
+        // Debris in the door would block its lanes.
         let doorway = Aabb::new(Vector::new(x as f32, at as f32), Vector::new(x as f32, (at + door) as f32));
         debris.retain(|piece| {
             let outline = piece.outline();
@@ -232,7 +234,7 @@ pub struct FreeSpace {
 }
 
 impl FreeSpace {
-    /// The free plane among this debris, connected to a middle that is as large as possible.
+    /// The largest connected part of the free plane among this debris.
     pub fn new(arena: Point, debris: &[DebrisFile]) -> Self {
         Self::keeping_off(arena, debris, KEEP_OFF_M)
     }
@@ -275,13 +277,13 @@ impl FreeSpace {
         Self { columns, inside: part.iter().map(|part| Some(*part) == largest).collect() }
     }
 
-    /// Whether a robot can stand at a place and get to the rest of the free plane.
+    /// Whether a robot can stand at a place and reach the rest of the free plane.
     pub fn contains(&self, [x, y]: Point) -> bool {
         let (column, row) = ((x / CELL_M).round() as usize, (y / CELL_M).round() as usize);
         column < self.columns && self.inside.get(row * self.columns + column).copied().unwrap_or(false)
     }
 
-    /// A place that keeps off those taken.
+    /// A free place away from the taken places.
     pub fn draw(&self, draws: &mut ChaCha8Rng, taken: &[Point]) -> Option<Point> {
         (0..300).find_map(|_| {
             let i = draws.random_range(0..self.inside.len());

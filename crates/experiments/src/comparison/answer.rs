@@ -5,8 +5,8 @@ use crate::metric::{Direction, Metric};
 use crate::stats::Moments;
 use crate::sweep::folder::Folder;
 
-/// What a case says of a metric: which policy has most (least, for a cost), by how much, and how sure that
-/// is. `None` without values.
+/// The answer for a case and a metric: which policy has the highest mean (the lowest, for a cost), by how
+/// much, and how certain the difference is. `None` without values.
 #[must_use]
 pub fn answer(folder: &Folder, case: usize, metric: usize, comparisons: &[&Comparison]) -> Option<String> {
     let experiment = folder.experiment();
@@ -52,7 +52,7 @@ fn unit_of(metric: &Metric) -> &str {
     if metric.unit.is_empty() { metric.title.split(' ').next().unwrap_or_default() } else { metric.unit }
 }
 
-/// A difference that shows, seen from one of its policies.
+/// A difference that is shown, from the viewpoint of one of its two policies.
 fn shown(comparison: &Comparison, policy: &str) -> String {
     let (Some(difference), Some([low, high]), Some(p)) =
         (comparison.difference, comparison.interval, comparison.p_holm)

@@ -1,21 +1,21 @@
-//! Which comparisons are made: what the command line says, else what the sweep file asks, else a small
-//! family: rescuees, in total and of each task, of every policy against the first. `compare` and `report` ask
-//! here, so that both say the same.
+//! Which comparisons are made. The command line comes first, then the sweep file. Without either, a small
+//! family is compared: the rescuees, in total and of each task, of every policy against the first.
+//! `compare` and `report` both ask here and therefore agree.
 
 use super::Choice;
 use crate::experiment::Experiment;
 use crate::failure::Failure;
 
-/// What the command line says of comparisons.
+/// The command line's choice of comparisons.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Wishes {
-    /// Metrics, by name; none for those that the sweep file names.
+    /// Metrics, by name. Empty: the metrics that the sweep file names.
     pub metrics: Vec<String>,
     /// The policy with which the others are compared.
     pub baseline: Option<String>,
     /// `METRIC=VALUE`: the largest difference that does not matter.
     pub margins: Vec<String>,
-    /// None but these policies.
+    /// The only policies to compare; `None` for all.
     pub policies: Option<Vec<String>>,
 }
 
@@ -24,20 +24,20 @@ pub struct Wishes {
 pub struct Asked {
     /// Places of the metrics.
     pub metrics: Vec<usize>,
-    /// Places of the main metrics that are not among them: what they show is exploratory.
+    /// Places of the main metrics that are not among `metrics`: their results are exploratory.
     pub exploratory: Vec<usize>,
-    /// The policy with which the others are compared; none for all pairs.
+    /// The policy with which the others are compared; `None` for all pairs.
     pub baseline: Option<String>,
     /// For metrics, the largest difference that does not matter.
     pub margins: Vec<(usize, f64)>,
-    /// None but these policies.
+    /// The only policies to compare; `None` for all.
     pub policies: Option<Vec<String>>,
     /// Whether the command line or the sweep file names the metrics.
     pub is_declared: bool,
 }
 
 impl Asked {
-    /// From the command line and the sweep file.
+    /// Resolves the command line's wishes and the sweep file.
     ///
     /// # Errors
     /// An unknown metric, or a margin that is not a number above 0.
@@ -78,7 +78,7 @@ impl Asked {
         })
     }
 
-    /// The same as a choice.
+    /// The same comparisons as a [`Choice`].
     #[must_use]
     pub fn choice(&self) -> Choice<'_> {
         Choice {
@@ -89,15 +89,15 @@ impl Asked {
     }
 }
 
-/// The metrics of a sweep that names none: rescuees, in total and of each task; errands done, where there are
-/// errands.
+/// The metrics of a sweep that names none: rescuees, in total and of each task. With errands: errands done,
+/// and the time.
 fn first_question(experiment: &Experiment) -> Result<Vec<usize>, Failure> {
     let has_errands = !experiment.base.errands.is_empty();
     let mut metrics = experiment.metrics.declared(if has_errands { "errands_done" } else { "rescuees" });
     if has_errands {
         metrics.push(experiment.metrics.named("time")?);
     }
-    // With one task, its metric is the total again.
+    // With one task, the task's metric equals the total.
     let tasks = metrics.len().saturating_sub(1);
     metrics.truncate(if tasks == 1 && !has_errands { 1 } else { metrics.len() });
     Ok(metrics)

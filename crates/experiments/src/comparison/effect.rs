@@ -1,6 +1,6 @@
-//! Main effects: by how much does a field of the scenario change what a policy achieves? The difference of one
-//! policy between a case of a sweep with axes and the case in which one axis has its first value instead, paired
-//! by seed.
+//! Main effects: how much a field of the scenario changes a policy's result. An effect is the difference of
+//! one policy between two cases of a sweep with axes, paired by seed: a case, and its reference, in which
+//! one axis has its first value instead.
 
 use rayon::prelude::*;
 use serde::Serialize;
@@ -18,7 +18,7 @@ use crate::sweep::folder::Folder;
 pub struct Effect {
     /// Number of the case, from 1.
     pub case: usize,
-    /// Number of the case that it is compared with.
+    /// Number of the reference, the case with which it is compared.
     pub reference: usize,
     /// The field that differs.
     pub path: String,
@@ -34,9 +34,9 @@ pub struct Effect {
     pub n: usize,
     /// Mean of the policy in the reference, and in the case.
     pub means: Option<[f64; 2]>,
-    /// The second less the first.
+    /// Mean in the case minus mean in the reference.
     pub change: Option<f64>,
-    /// Its 95 % bootstrap interval.
+    /// 95 % bootstrap interval of the change.
     pub interval: Option<[f64; 2]>,
     /// Two-sided p of Wilcoxon's signed-rank test.
     pub p: Option<f64>,
@@ -51,8 +51,8 @@ impl Effect {
         is_shown(self.p_holm, self.interval)
     }
 
-    /// The change and the ends of its interval in percent of the mean in the reference; nothing where that mean
-    /// is not above zero.
+    /// The change and the ends of its interval, in percent of the mean in the reference. `None` if that
+    /// mean is not above zero.
     #[must_use]
     pub fn in_percent(&self) -> Option<[f64; 3]> {
         let [there, _] = self.means.filter(|[there, _]| *there > 0.0)?;
@@ -61,7 +61,7 @@ impl Effect {
     }
 }
 
-/// The effects in a sweep with axes, for these metrics and policies: none without axes.
+/// The effects of a sweep's axes on these metrics and policies; empty without axes.
 ///
 /// # Errors
 /// An unknown policy.
@@ -110,13 +110,14 @@ pub(super) fn is_shown(p_holm: Option<f64>, interval: Option<[f64; 2]>) -> bool 
     p_holm.is_some_and(|p| p < LEVEL) && interval.is_some_and(|[low, high]| low > 0.0 || high < 0.0)
 }
 
-/// Each p after Holm's correction over all that are there.
+/// Each p after Holm's correction over all p that exist.
 pub(super) fn corrected(ps: &[Option<f64>]) -> Vec<Option<f64>> {
     let mut holm = holm(&ps.iter().flatten().copied().collect::<Vec<f64>>()).into_iter();
     ps.iter().map(|p| p.and_then(|_| holm.next())).collect()
 }
 
-/// A case, and the case that differs from it in one axis only, where that has its first value.
+/// A case and its reference: the case that differs from it in one axis only, where it has the axis's first
+/// value.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Contrast {
     pub case: usize,

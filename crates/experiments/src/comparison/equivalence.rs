@@ -1,9 +1,9 @@
-//! Better, worse, equivalent or undecided: what a comparison says once it is known which differences matter.
+//! Verdicts of comparisons with a margin: better, worse, equivalent or undecided.
 //!
 //! Two policies are *equivalent within a margin* if the 90 % interval of their mean difference lies inside
 //! the margin on both sides. That is the two one-sided tests (TOST, Schuirmann 1987) at 5 %. Otherwise one
-//! is *better* if a difference shows after correction and the 95 % interval excludes zero. All else is
-//! *undecided*: more trials would decide it.
+//! policy is *better* if a difference shows after correction and the 95 % interval excludes zero. All other
+//! comparisons are *undecided*: more trials would decide them.
 
 use serde::Serialize;
 
@@ -13,7 +13,7 @@ use crate::metric::Direction;
 /// Confidence of the interval whose inclusion in the margin is two one-sided tests at 5 %.
 pub const TOST_CONFIDENCE: f64 = 0.90;
 
-/// What a comparison says of its first policy.
+/// The verdict of a comparison on its first policy.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Verdict {
@@ -27,7 +27,7 @@ pub enum Verdict {
     Below,
     /// The difference is smaller than the margin.
     Equivalent,
-    /// The trials decide neither.
+    /// The trials do not decide.
     Undecided,
 }
 
@@ -46,7 +46,7 @@ impl Verdict {
     }
 }
 
-/// A margin and what it makes of a comparison.
+/// A margin and the verdict that a comparison gets with it.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Judged {
     /// The margin.
@@ -115,7 +115,8 @@ mod tests {
         assert_eq!(judge(&wide, far, 3.0, Direction::Higher).verdict, Verdict::Undecided);
     }
 
-    /// A true difference that is just the margin is called equivalent in about 5 % of experiments.
+    /// Two policies whose true difference equals the margin are called equivalent in about 5 % of
+    /// experiments.
     #[test]
     fn a_difference_as_large_as_the_margin_is_seldom_called_equivalent() {
         let truth = Normal::new(1.0, 2.0).unwrap();

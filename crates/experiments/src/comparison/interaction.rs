@@ -1,6 +1,6 @@
-//! Interactions: does a difference between two policies depend on the scenario? The difference of
-//! differences, paired by seed, between a case of a sweep with axes and the case in which one axis has its
-//! first value instead.
+//! Interactions: whether a difference between two policies depends on the scenario. An interaction is a
+//! difference of differences, paired by seed, between a case of a sweep with axes and its reference: the
+//! case in which one axis has its first value instead.
 
 use serde::Serialize;
 
@@ -17,7 +17,7 @@ use crate::sweep::folder::Folder;
 pub struct Interaction {
     /// Number of the case, from 1.
     pub case: usize,
-    /// Number of the case that it is compared with.
+    /// Number of the reference, the case with which it is compared.
     pub reference: usize,
     /// The field that differs.
     pub path: String,
@@ -29,15 +29,15 @@ pub struct Interaction {
     pub metric: String,
     /// The first policy.
     pub a: String,
-    /// The second.
+    /// The second policy.
     pub b: String,
     /// Seeds for which the metric is defined in all four trials.
     pub n: usize,
     /// Mean difference of the policies in the reference, and in the case.
     pub differences: Option<[f64; 2]>,
-    /// The second less the first.
+    /// Difference in the case minus difference in the reference.
     pub change: Option<f64>,
-    /// Its 95 % bootstrap interval.
+    /// 95 % bootstrap interval of the change.
     pub interval: Option<[f64; 2]>,
     /// Two-sided p of Wilcoxon's signed-rank test.
     pub p: Option<f64>,
@@ -55,7 +55,7 @@ impl Interaction {
     }
 }
 
-/// The interactions of a sweep with axes, for these metrics and policies: none without axes.
+/// The interactions of a sweep's axes with differences between these policies; empty without axes.
 ///
 /// # Errors
 /// An unknown policy, or fewer than two.

@@ -1,4 +1,4 @@
-//! Paired comparisons of policies: what differs, by how much, and how sure that is.
+//! Paired comparisons of policies: what differs, by how much, and how certain the difference is.
 
 mod answer;
 mod asked;
@@ -27,7 +27,7 @@ pub use interaction::{Interaction, interactions};
 pub use pairs::{Cell, Pairs};
 pub use sums::FEW;
 
-/// Level of a finding, after correction.
+/// Significance level of a finding, after correction.
 pub const LEVEL: f64 = 0.05;
 /// Confidence of intervals.
 pub const CONFIDENCE: f64 = 0.95;
@@ -37,48 +37,50 @@ pub const CONFIDENCE: f64 = 0.95;
 pub struct Comparison {
     /// Number of the case, from 1.
     pub case: usize,
-    /// Values of the axes there, in RON.
+    /// The case's values of the axes, in RON.
     pub axes: Vec<(String, String)>,
     /// Name of the metric.
     pub metric: String,
     /// The first policy.
     pub a: String,
-    /// The second.
+    /// The second policy.
     pub b: String,
     /// Pairs in which the metric is defined for both.
     pub n: usize,
-    /// Pairs of which one trial at least failed.
+    /// Pairs with at least one failed trial.
     pub failed: usize,
-    /// Pairs of which one trial at least has not been run.
+    /// Pairs with at least one trial that has not been run.
     pub missing: usize,
-    /// Pairs in which the metric is not defined for one at least.
+    /// Pairs with at least one trial in which the metric is undefined.
     pub undefined: usize,
-    /// Whether it compares ratios of sums, because some trial has few rescuees or none. The means are these ratios.
+    /// Whether it compares ratios of sums, because some trial has few rescuees or none. The means are then
+    /// these ratios.
     pub is_of_sums: bool,
-    /// Mean of the first over these pairs.
+    /// Mean of the first policy over these pairs.
     pub mean_a: Option<f64>,
-    /// Mean of the second.
+    /// Mean of the second policy.
     pub mean_b: Option<f64>,
-    /// Mean of the differences, first less second.
+    /// Mean of the differences, first minus second.
     pub difference: Option<f64>,
-    /// Its 95 % bootstrap interval.
+    /// 95 % bootstrap interval of the mean difference.
     pub interval: Option<[f64; 2]>,
     /// Hodges-Lehmann shift.
     pub shift: Option<f64>,
-    /// Two-sided p of Wilcoxon's signed-rank test; none without any pair.
+    /// Two-sided p of Wilcoxon's signed-rank test; `None` without any pair.
     pub p: Option<f64>,
-    /// Whether p was counted over all signs, not drawn.
+    /// Whether p was counted over all choices of signs, instead of from random choices.
     pub is_exact: bool,
     /// p after Holm's correction over all comparisons made together.
     pub p_holm: Option<f64>,
     /// Matched-pairs rank-biserial correlation.
     pub effect: Option<f64>,
-    /// What pairing is worth: how many times as many unpaired trials would know the mean difference as well.
-    /// The variance of the difference without pairing (the sum of both variances) over that with it.
+    /// Gain from pairing: how many times as many unpaired trials would give the mean difference with the
+    /// same precision. The variance of the difference without pairing (the sum of both variances) over the
+    /// variance with pairing.
     pub pairing: Option<f64>,
-    /// Pairs that would be needed for 80 % power, were the effect what was observed.
+    /// Pairs needed for 80 % power, if the true effect is the observed one.
     pub pairs_needed: Option<u64>,
-    /// What it says, where it is known which differences matter.
+    /// The verdict, where a margin is known.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub judged: Option<Judged>,
     /// The finding in words.
@@ -93,8 +95,8 @@ impl Comparison {
     }
 }
 
-/// What to say where so many comparisons of so few pairs were made together that none can show a
-/// difference, whatever it is.
+/// A warning if the family of comparisons is so large, and the pairs are so few, that no difference can be
+/// significant after correction.
 #[must_use]
 pub fn limit_of_correction(comparisons: &[Comparison]) -> Option<String> {
     let family = comparisons.iter().filter(|comparison| comparison.p.is_some()).count();
@@ -115,7 +117,7 @@ pub fn limit_of_correction(comparisons: &[Comparison]) -> Option<String> {
     })
 }
 
-/// What p is, in words.
+/// How p was computed, in words.
 #[must_use]
 pub fn test_in_words(comparisons: &[Comparison]) -> String {
     let most = comparisons.iter().map(|comparison| comparison.n).max().unwrap_or(0);
@@ -133,15 +135,15 @@ pub fn test_in_words(comparisons: &[Comparison]) -> String {
 /// Which policies are compared, by their labels.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Choice<'a> {
-    /// Each with this one only.
+    /// The policy with which the others are compared; `None` for all pairs.
     pub baseline: Option<&'a str>,
-    /// None but these.
+    /// The only policies to compare; `None` for all.
     pub policies: Option<&'a [String]>,
     /// For metrics, by their places, the largest difference that does not matter.
     pub margins: &'a [(usize, f64)],
 }
 
-/// All comparisons of these metrics: of each pair of policies, or of each with the baseline.
+/// All comparisons of these metrics: of each pair of policies, or of each policy with the baseline.
 ///
 /// # Errors
 /// An unknown policy, or fewer than two.
@@ -175,7 +177,7 @@ pub fn compare(folder: &Folder, metrics: &[usize], choice: Choice) -> Result<Vec
     Ok(comparisons)
 }
 
-/// The places of the policies that are chosen, with the baseline.
+/// The places of the chosen policies, with the baseline.
 fn policies_of(experiment: &Experiment, choice: Choice) -> Result<Vec<usize>, Failure> {
     let baseline = choice.baseline.map(|name| place(experiment, "--baseline", name)).transpose()?;
     let mut chosen: Vec<usize> = (0..experiment.policies.len()).collect();
@@ -250,7 +252,7 @@ fn comparison(
     }
 }
 
-/// What pairing is worth; nothing where no pair differs from another.
+/// The gain from pairing; `None` if all differences are equal.
 fn pairing(pairs: &Pairs, differences: &[f64]) -> Option<f64> {
     let variance = |values: &[f64]| Moments::of(values).sd.map(|sd| sd * sd);
     let paired = variance(differences).filter(|variance| *variance > 0.0)?;
@@ -336,7 +338,7 @@ pub fn short(value: f64) -> String {
     digits(value, 3)
 }
 
-/// About this many significant digits; in engineering form where there would be many zeros.
+/// About this many significant digits, in engineering form for very large and very small numbers.
 ///
 /// ```
 /// use experiments::comparison::digits;
@@ -352,7 +354,7 @@ pub fn digits(value: f64, digits: i32) -> String {
     if !(1e-5..1e7).contains(&value.abs()) && value.is_finite() {
         let power = 3 * (value.abs().log10() / 3.0).floor() as i32;
         let part = value / 10.0_f64.powi(power);
-        // What is left of sums that cancel out is nothing.
+        // Rounding errors of sums that cancel out are shown as 0.
         return if value.abs() < 1e-12 {
             "0".to_owned()
         } else {
@@ -370,7 +372,7 @@ pub fn short_p(p: f64) -> String {
     if p < 0.0001 { "< 0.0001".to_owned() } else { format!("{p:.4}") }
 }
 
-/// The same in a sentence.
+/// A p value for use in a sentence.
 fn p_in_words(p: f64) -> String {
     if p < 0.0001 { "p < 0.0001".to_owned() } else { format!("p = {p:.4}") }
 }

@@ -4,7 +4,7 @@ use super::sums::Sums;
 use crate::stats::bootstrap::interval;
 use crate::sweep::folder::{Folder, Measured};
 
-/// A case of a sweep and a policy of it, by their places.
+/// A cell of a sweep: the places of a case and of a policy.
 pub type Cell = (usize, usize);
 
 /// The values of two cells in one metric.
@@ -12,15 +12,15 @@ pub type Cell = (usize, usize);
 pub struct Pairs {
     /// Values of the first cell.
     pub a: Vec<f64>,
-    /// Values of the second.
+    /// Values of the second cell.
     pub b: Vec<f64>,
-    /// Pairs of which one trial at least failed.
+    /// Pairs with at least one failed trial.
     pub(super) failed: usize,
-    /// Pairs of which one trial at least has not been run.
+    /// Pairs with at least one trial that has not been run.
     pub(super) missing: usize,
-    /// Pairs in which the metric is not defined for one at least.
+    /// Pairs with at least one trial in which the metric is undefined.
     pub(super) undefined: usize,
-    /// Where ratios of sums are compared: then the values are linearised.
+    /// The sums, if ratios of sums are compared. The values are then linearised.
     pub(super) sums: Option<Sums>,
 }
 
@@ -60,7 +60,7 @@ impl Pairs {
         }
     }
 
-    /// First less second, by trial; nothing where one has no value.
+    /// First minus second, by trial; `None` where either has no value.
     pub(super) fn by_trial(folder: &Folder, metric: usize, [a, b]: [Cell; 2]) -> Vec<Option<f64>> {
         let trials = 1..=folder.experiment().trials;
         if let Some(sums) = Sums::of(folder, metric, [a, b]) {
@@ -74,7 +74,7 @@ impl Pairs {
         trials.map(|trial| Some(value(a, trial)? - value(b, trial)?)).collect()
     }
 
-    /// First less second.
+    /// First minus second, pair by pair.
     #[must_use]
     pub fn differences(&self) -> Vec<f64> {
         self.a.iter().zip(&self.b).map(|(a, b)| a - b).collect()

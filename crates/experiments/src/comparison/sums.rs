@@ -1,15 +1,17 @@
-//! Costs per rescuee where a trial has few rescuees or none: compared as ratios of sums.
+//! Costs per rescuee, compared as ratios of sums if some trial has few rescuees or none.
 //!
-//! The mean of a trial's own ratios is ruled by the trials with the smallest denominators, and leaves out those
-//! with none. The ratio of the sums over all trials is not. A trial's *linearised value* is what it adds to that
-//! ratio: R + (cost - R rescuees) / (mean of rescuees), with the ratio R of both together. The mean of
-//! these is the ratio of sums, so that tests and standard deviations of them are those of the ratio.
+//! The trials with the smallest denominators dominate the mean of the trials' own ratios, and trials
+//! without rescuees are missing from it. The ratio of the sums over all trials has neither defect. A
+//! trial's *linearised value* is its contribution to that ratio: R + (cost - R rescuees) / (mean of
+//! rescuees), where R is the ratio of both cells together. The mean of a cell's linearised values is the
+//! cell's ratio of sums. Tests and standard deviations of these values are therefore valid for the ratio.
 
 use super::pairs::Cell;
 use crate::stats::bootstrap::statistic_interval;
 use crate::sweep::folder::{Folder, Measured};
 
-/// Rescuees of a trial below which its own ratio says little: one more or less moves it by a fifth.
+/// If a trial has fewer rescuees than this, ratios of sums are compared. One rescuee more or less would
+/// change the trial's own ratio by a fifth.
 pub const FEW: f64 = 5.0;
 
 /// Costs and rescuees of both cells, pair by pair.
@@ -22,8 +24,8 @@ pub(super) struct Sums {
 }
 
 impl Sums {
-    /// The sums of a metric; `None` where it is no ratio, where each trial has a denominator large enough, or where a
-    /// cell has none at all.
+    /// The sums of a metric. `None` if the metric is not a ratio, if every trial has a large enough
+    /// denominator, or if a cell has no rescuees at all.
     pub fn of(folder: &Folder, metric: usize, [a, b]: [Cell; 2]) -> Option<Self> {
         let experiment = folder.experiment();
         let [cost, count] = experiment.metrics.sums(metric)?;
@@ -57,13 +59,13 @@ impl Sums {
         })
     }
 
-    /// The interval of the difference of both ratios, from resampled pairs.
+    /// The interval of the difference of the two ratios, from resampled pairs.
     pub fn interval(&self, confidence: f64) -> Option<[f64; 2]> {
         statistic_interval(self.pairs.len(), confidence, |rows| difference(&self.pairs, rows))
     }
 }
 
-/// The first ratio of sums over these pairs less the second.
+/// The first ratio of sums over these pairs minus the second.
 fn difference(pairs: &[[f64; 4]], rows: &[usize]) -> Option<f64> {
     let mut sums = [0.0; 4];
     for row in rows {
@@ -79,13 +81,14 @@ mod tests {
 
     use super::*;
 
-    /// Costs and rescuees, of which there are often none; the true ratios are 8 and 6.
+    /// Costs and rescuees; the rescuees are often 0. A rescuee costs 8 in the first cell and 6 in the
+    /// second, beside a fixed cost.
     fn sums(pairs: usize, draws: &mut ChaCha8Rng) -> Sums {
         let mut pair = || {
             let load = draws.random::<f64>();
             let mut policy = |ratio: f64| {
                 let count = (6.0 * load * draws.random::<f64>()).floor();
-                // The cost of a trial goes with its rescuees, and some is spent for nothing.
+                // A trial's cost grows with its rescuees; a random part of it does not depend on them.
                 let spent = ratio * count + 4.0 * (draws.random::<f64>() - 0.5);
                 [spent + 4.0, count]
             };
@@ -105,7 +108,7 @@ mod tests {
         }
     }
 
-    /// `xtask coverage` counts more of them.
+    /// `xtask coverage` checks more intervals.
     #[test]
     fn the_interval_of_a_difference_of_ratios_covers_what_it_says() {
         let mut draws = ChaCha8Rng::seed_from_u64(2);

@@ -1,13 +1,13 @@
-//! Expectations as they are written.
+//! Parses expectations.
 
 use super::{Expectation, Expected, Relation};
 use crate::experiment::PolicySpec;
 use crate::metric::Catalogue;
 
-/// Confidence of an expectation that names none.
+/// Confidence of an expectation without a stated confidence.
 const CONFIDENCE: f64 = 0.95;
 
-/// What is wrong with an expectation, in one sentence.
+/// Error of an expectation, in one sentence.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("expect: {reason}, found {found:?}")]
 pub struct Bad {
@@ -34,7 +34,7 @@ pub fn parse(text: &str, metrics: &Catalogue, policies: &[PolicySpec]) -> Result
     Ok(Expected { text: text.trim().to_owned(), what: what.map_err(bad)?, confidence })
 }
 
-/// A confidence in brackets at the end.
+/// Splits off the confidence in brackets at the end; without brackets, it is the default.
 fn confidence(text: &str) -> Result<(&str, f64), String> {
     let text = text.trim();
     let Some((rest, last)) = text.strip_suffix(')').and_then(|text| text.rsplit_once('(')) else {
@@ -55,10 +55,11 @@ fn number(text: &str) -> Result<f64, String> {
     value.ok_or_else(|| format!("{:?} must be a number", text.trim()))
 }
 
-/// The first of these that stands in a text, with what is before and after it.
+/// Splits a text at the first of these words, into the text before it, the word's value, and the text after
+/// it.
 fn split<'t, T: Copy>(text: &'t str, words: &[(&str, T)]) -> Option<(&'t str, T, &'t str)> {
     let found = words.iter().filter_map(|(word, value)| Some((text.find(word)?, *word, *value)));
-    // Of two at the same place, the longer one: `>=` before `>`.
+    // Of two words at the same place, the longer one wins: `>=` before `>`.
     let (at, word, value) = found.min_by_key(|(at, word, _)| (*at, usize::MAX - word.len()))?;
     Some((text[..at].trim(), value, text[at + word.len()..].trim()))
 }

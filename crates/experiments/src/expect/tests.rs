@@ -95,8 +95,8 @@ fn sequential(expected: &Expected, mut draw: impl FnMut() -> [f64; 2]) -> Verdic
     Verdict::Undecided
 }
 
-/// With the truth exactly at what is expected, either verdict is wrong, and both are rare; far from it,
-/// each is found.
+/// With the truth exactly at the expected value, either verdict is wrong, and both are rare. Far from it,
+/// the correct verdict is found.
 #[test]
 fn verdicts_are_seldom_wrong_and_clear_cases_are_found() {
     let share = read("rescuees >= 1 in 80 % of seeds").unwrap();

@@ -1,4 +1,4 @@
-//! What makes results again: a command for one trial, and a file for the whole sweep.
+//! Reproducing results: a command for one trial, and a file for the whole sweep.
 
 use usar_sim::record::{DecisionRecord, TrialRecord};
 
@@ -30,8 +30,8 @@ impl Experiment {
         std::iter::once(command).chain(axes).chain(check).collect::<Vec<_>>().join(" ")
     }
 
-    /// The first round whose question, asked a few times again, gets another answer than in the trial; `None`
-    /// where the policy keeps to its answers, or where the oracle decides.
+    /// The first round in which the policy gives another answer than in the trial when it is asked the same
+    /// question a few times again. `None` if every answer is the same, or if the oracle decides.
     #[must_use]
     pub fn answers_otherwise(&self, key: &TrialKey, record: &TrialRecord) -> Option<u32> {
         let policy = self.cases[key.case].drivers[key.policy].policy()?;
@@ -43,7 +43,7 @@ impl Experiment {
         record.decisions.iter().find(is_other).map(|asked| asked.question.round)
     }
 
-    /// The same sweep as a file over its resolved scenario, which is in the same folder.
+    /// The same sweep as a sweep file for its resolved scenario, which is in the same folder.
     ///
     /// # Errors
     /// None: it can be written to memory.

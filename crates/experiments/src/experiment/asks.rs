@@ -1,5 +1,5 @@
-//! What a sweep file asks of its results: which metrics come first, against which policy, and which differences
-//! matter. Nothing of it decides a number of a trial.
+//! What a sweep file asks of its results: which metrics come first, with which policy the others are
+//! compared, and which differences matter. None of it changes the numbers of a trial.
 
 use ron_fields::Fields;
 
@@ -7,21 +7,21 @@ use super::Experiment;
 use super::file::SweepFile;
 use crate::failure::Failure;
 
-/// What a sweep asks. Empty for a scenario without a sweep file.
+/// The questions of a sweep file. Empty for a scenario without a sweep file.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Asks {
-    /// The metrics that the sweep is about; none for those of the paper's tables.
+    /// The metrics that the sweep is about; empty for the metrics of the paper's tables.
     pub primary: Vec<String>,
     /// The policy with which the others are compared, if the sweep has it.
     pub baseline: Option<String>,
-    /// Differences that do not matter, up to these values.
+    /// For metrics, the largest difference that does not matter.
     pub margins: Vec<(String, f64)>,
-    /// What is expected of the outcome, as it is written.
+    /// Expectations about the outcome, as written.
     pub expect: Vec<String>,
 }
 
 impl Experiment {
-    /// What the file asks from which this sweep was read.
+    /// The questions of the file from which this sweep was read.
     ///
     /// # Errors
     /// An unknown metric, or a margin that is not a number above 0, with the field.

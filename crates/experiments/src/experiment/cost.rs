@@ -1,4 +1,4 @@
-//! What trials cost: bodies times steps.
+//! The cost of trials: bodies times steps.
 
 use ron_fields::limits::Limit;
 use usar_sim::scenario::Scenario;
@@ -7,7 +7,7 @@ use super::Experiment;
 use crate::failure::Failure;
 use crate::limits::{SWEEP_WORK, TRIAL_WORK};
 
-/// Bodies times steps that a thread simulates in a second, roughly: for an idea of the time.
+/// Bodies times steps that a thread simulates per second, roughly. Used to estimate times in messages.
 const PER_SECOND: f64 = 1.5e6;
 
 /// The cost of one trial or of many.
@@ -15,14 +15,14 @@ const PER_SECOND: f64 = 1.5e6;
 pub struct Cost {
     /// Robots and pieces of debris.
     pub bodies: usize,
-    /// Steps of a trial.
+    /// Steps of one trial.
     pub steps: u64,
-    /// Trials.
+    /// Number of trials.
     pub trials: f64,
 }
 
 impl Cost {
-    /// Of one trial.
+    /// The cost of one trial.
     #[must_use]
     pub fn of(scenario: &Scenario) -> Self {
         let sampled: u32 = scenario.tasks.iter().map(|task| task.sampled.debris).sum();
@@ -60,19 +60,20 @@ fn duration(seconds: f64) -> String {
     }
 }
 
-/// Refuses a trial that costs much, unless that is allowed.
+/// Refuses a trial that is too expensive, unless that is allowed.
 ///
 /// # Errors
-/// It costs more than [`TRIAL_WORK`].
+/// The trial costs more than [`TRIAL_WORK`].
 pub fn check_cost(scenario: &Scenario, is_allowed: bool) -> Result<(), Failure> {
     if is_allowed { Ok(()) } else { Cost::of(scenario).check(TRIAL_WORK) }
 }
 
 impl Experiment {
-    /// Refuses a sweep with policies that may not run in its scenarios, and one that costs much, unless that is allowed.
+    /// Refuses a sweep that is too expensive, unless that is allowed, and a sweep with policies that may
+    /// not run in its scenarios.
     ///
     /// # Errors
-    /// A scenario allows another policy alone, or those of [`Experiment::check_cost`].
+    /// A scenario allows only another policy; or the errors of [`Experiment::check_cost`].
     pub fn check(&self, is_allowed: bool) -> Result<(), Failure> {
         self.check_policies()?;
         self.check_cost(is_allowed)
@@ -81,7 +82,7 @@ impl Experiment {
     /// Refuses policies that may not run in the sweep's scenarios.
     ///
     /// # Errors
-    /// A scenario allows another policy alone.
+    /// A scenario allows only another policy.
     pub fn check_policies(&self) -> Result<(), Failure> {
         let mut scenarios = self.cases.iter().map(|case| &case.scenario);
         scenarios.try_for_each(|scenario| {
@@ -89,10 +90,10 @@ impl Experiment {
         })
     }
 
-    /// Refuses a sweep that costs much, unless that is allowed.
+    /// Refuses a sweep that is too expensive, unless that is allowed.
     ///
     /// # Errors
-    /// A trial costs more than [`TRIAL_WORK`], or all of them more than [`SWEEP_WORK`].
+    /// A trial costs more than [`TRIAL_WORK`], or all trials together cost more than [`SWEEP_WORK`].
     pub fn check_cost(&self, is_allowed: bool) -> Result<(), Failure> {
         let costs = self.cases.iter().map(|case| Cost::of(&case.scenario));
         let Some(dearest) = costs.max_by(|a, b| a.work().total_cmp(&b.work())).filter(|_| !is_allowed) else {

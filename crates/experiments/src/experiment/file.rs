@@ -75,7 +75,7 @@ pub fn sweep_schema() -> serde_json::Value {
     schemars::schema_for!(SweepFile).into()
 }
 
-/// A map in the order in which it is written; no key may stand twice.
+/// A map in the order in which it is written; duplicate keys are an error.
 #[derive(Debug)]
 pub(super) struct Map<V>(pub Vec<(String, V)>);
 

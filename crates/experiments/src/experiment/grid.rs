@@ -15,18 +15,18 @@ use crate::run::Driver;
 pub struct Axis {
     /// Path of the field; [`VARIANT`] for an axis of variants.
     pub path: String,
-    /// Its values; the names of variants.
+    /// The field's values in RON, or the names of the variants.
     pub values: Vec<String>,
-    /// What each variant sets: paths and values in RON. None for an axis of one field.
+    /// Settings of each variant: paths and values in RON. Empty for an axis of one field.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub variants: Vec<Vec<(String, String)>>,
 }
 
-/// What an axis of variants is called.
+/// Name of an axis of variants.
 pub const VARIANT: &str = "variant";
 
 impl Axis {
-    /// What one of its values sets: paths and values in RON.
+    /// The settings for one of the axis's values: paths and values in RON.
     #[must_use]
     pub fn settings<'a>(&'a self, value: &'a str) -> Vec<(&'a str, &'a str)> {
         if self.variants.is_empty() {
@@ -37,7 +37,7 @@ impl Axis {
         settings.map(|(path, value)| (path.as_str(), value.as_str())).collect()
     }
 
-    /// The fields that it sets, each once for each value that sets it.
+    /// The fields that the axis sets. A field that several variants set comes once for each of them.
     pub fn paths(&self) -> impl Iterator<Item = &str> {
         let own = self.variants.is_empty().then_some(self.path.as_str());
         own.into_iter().chain(self.variants.iter().flatten().map(|(path, _)| path.as_str()))
@@ -48,16 +48,16 @@ impl Axis {
 pub struct Case {
     /// The value of each axis, in RON.
     pub values: Vec<String>,
-    /// The scenario there.
+    /// The scenario at this point.
     pub scenario: Scenario,
-    /// What answers there for each of the sweep's policies.
+    /// For each of the sweep's policies, the driver that answers at this point.
     pub drivers: Vec<Driver>,
 }
 
 /// The policies of a sweep, each once.
 ///
 /// # Errors
-/// One that cannot be read, or none.
+/// A policy cannot be read or is listed twice, or there is none.
 pub(super) fn checked_policies(written: &[String]) -> Result<Vec<PolicySpec>, Failure> {
     if written.len() > POLICIES.count() {
         let most = POLICIES.most;
@@ -80,10 +80,10 @@ pub(super) fn checked_policies(written: &[String]) -> Result<Vec<PolicySpec>, Fa
     Ok(policies)
 }
 
-/// The full grid, the last axis fastest.
+/// The full grid; the last axis changes fastest.
 ///
 /// # Errors
-/// It is too large, or a case cannot be used.
+/// The grid is too large, or a case cannot be used.
 pub(super) fn cases(base: &Scenario, axes: &[Axis], policies: &[PolicySpec]) -> Result<Vec<Case>, Failure> {
     let count = axes.iter().try_fold(1_usize, |count, axis| count.checked_mul(axis.values.len()));
     let Some(count) = count.filter(|count| CASES.allows(*count)) else {
@@ -95,7 +95,7 @@ pub(super) fn cases(base: &Scenario, axes: &[Axis], policies: &[PolicySpec]) -> 
     Ok(grid.cases)
 }
 
-/// Refuses more cases, or values, than memory and patience hold.
+/// Refuses more cases, or values of an axis, than memory holds.
 pub(super) fn check_bytes(base: &Scenario, count: usize) -> Result<(), Failure> {
     let bytes = base.resolved().len().saturating_mul(count);
     if count == 1 || CASE_BYTES.allows(bytes) {
@@ -107,7 +107,8 @@ pub(super) fn check_bytes(base: &Scenario, count: usize) -> Result<(), Failure> 
     )))
 }
 
-/// The grid on its way: each value of an axis is set once for all cases that have the same values of the axes before.
+/// The grid while it is built. Each value of an axis is set once for all cases that share the values of the
+/// earlier axes.
 struct Grid<'a> {
     axes: &'a [Axis],
     policies: &'a [PolicySpec],
@@ -115,7 +116,7 @@ struct Grid<'a> {
 }
 
 impl Grid<'_> {
-    /// Adds the cases that begin with these values, which are set in the file.
+    /// Adds the cases that begin with these values. `file` already has the values set.
     fn add(&mut self, file: ScenarioFile, values: &mut Vec<String>) -> Result<(), Failure> {
         let Some(axis) = self.axes.get(values.len()) else { return self.add_case(file, values) };
         for value in &axis.values {
@@ -142,7 +143,7 @@ impl Grid<'_> {
     }
 }
 
-/// What of a scenario decides numbers, as text: all but its name and its description.
+/// The part of a scenario that decides numbers, as text: everything except its name and its description.
 pub(super) fn deciding_text(scenario: &Scenario) -> String {
     let mut file: ScenarioFile = (**scenario).clone();
     file.name = String::new();

@@ -1,4 +1,4 @@
-//! What a sweep runs: a scenario or a sweep file, resolved into cases, policies and trials.
+//! Experiments: a scenario or a sweep file, resolved into cases, policies and trials.
 
 mod again;
 mod asks;
@@ -40,7 +40,7 @@ use read::{canonical, from_scenario, from_sweep_file, with_readings};
 pub enum Seeds {
     /// They count up from the first.
     From(u64),
-    /// They are these.
+    /// Each trial has its own listed seed.
     Listed(Vec<u64>),
 }
 
@@ -54,14 +54,14 @@ pub struct Program {
 }
 
 impl Program {
-    /// The one that runs now.
+    /// The build that runs now.
     #[must_use]
     pub fn this() -> Self {
         Self { version: env!("CARGO_PKG_VERSION").to_owned(), source: env!("USAR_SOURCE").to_owned() }
     }
 }
 
-/// What the command line says otherwise.
+/// Settings of the command line that replace those of the file.
 #[derive(Debug, Clone, Default)]
 pub struct Overrides {
     /// Policies instead of the file's.
@@ -92,24 +92,24 @@ pub struct Experiment {
     pub cases: Vec<Case>,
     /// The policies to compare.
     pub policies: Vec<PolicySpec>,
-    /// What is measured of each trial.
+    /// The metrics of each trial.
     pub metrics: Catalogue,
-    /// Paired trials for each case and policy.
+    /// Number of paired trials for each case and policy.
     pub trials: u32,
-    /// Their seeds.
+    /// Seeds of the trials.
     pub seeds: Seeds,
     /// Whether every invariant is checked at every step.
     pub is_checked: bool,
     /// What is kept of each trial.
     pub keep: Keep,
-    /// What runs it, or ran it.
+    /// The program that runs the sweep, or ran it.
     pub program: Program,
-    /// For each case and policy, a hash of what decides its numbers but for the seed.
+    /// For each case and policy, a hash of everything that decides its numbers, except the seed.
     ids: Vec<Vec<u128>>,
     shared: SharedTrials,
 }
 
-/// The parts of an experiment before they are put together.
+/// The parts of an experiment before assembly.
 pub(crate) struct Parts {
     pub name: String,
     pub given: String,
@@ -132,7 +132,8 @@ impl Experiment {
         Self::parse(read_text(path).map_err(Failure::input)?, path, overrides)
     }
 
-    /// Reads the text of a scenario or a sweep file; `path` says where its scenario is, and stands in messages.
+    /// Reads the text of a scenario or a sweep file. `path` says where its scenario is, and appears in
+    /// messages.
     ///
     /// # Errors
     /// Those of [`Experiment::load`].
@@ -173,7 +174,7 @@ impl Experiment {
     /// Puts the parts together and checks them.
     ///
     /// # Errors
-    /// A policy, an axis or a case that cannot be used.
+    /// A policy, an axis or a case cannot be used.
     pub(crate) fn assemble(parts: Parts) -> Result<Self, Failure> {
         let Parts { name, given, base, axes, policies, trials, seeds, is_checked, keep, program } = parts;
         let policies = checked_policies(&policies)?;
@@ -223,45 +224,45 @@ impl Experiment {
         })
     }
 
-    /// What decides the numbers of a trial, as a hash of 32 hexadecimal digits: the resolved scenario, the policy with its options, the
-    /// seed, and the program.
+    /// A hash of everything that decides the numbers of a trial, in 32 hexadecimal digits: the resolved
+    /// scenario, the policy with its options, the seed, and the program.
     #[must_use]
     pub fn id(&self, key: &TrialKey) -> String {
         let rest = self.ids[key.case][key.policy];
         format!("{:032x}", xxh3_128(format!("{rest:032x} {}", key.seed).as_bytes()))
     }
 
-    /// The name of a trial.
+    /// The key of a trial: its place, its seed, and its policy's label.
     #[must_use]
     pub fn key(&self, (case, policy, trial): Place) -> TrialKey {
         TrialKey { case, policy, trial, seed: self.seed(trial), label: self.policies[policy].label.clone() }
     }
 
-    /// Runs one trial, or takes it over from a policy that grouped every round in the same way.
+    /// Runs one trial, or takes over the trial of a policy that formed the same groups in every round.
     ///
     /// # Errors
-    /// What kept it from its end.
+    /// The reason why the trial did not come to its end.
     pub fn run(&self, key: &TrialKey, halt: &AtomicBool) -> Result<Trial, Fault> {
         let case = &self.cases[key.case];
         let driver = &case.drivers[key.policy];
         self.shared.run((key.case, &case.scenario), driver, key.seed, halt)
     }
 
-    /// How many trials were simulated by [`Experiment::run`] and not taken over.
+    /// Number of trials that [`Experiment::run`] simulated instead of taking them over.
     #[must_use]
     pub fn simulated(&self) -> usize {
         self.shared.simulated()
     }
 
-    /// Lets go of the trials that policies could share.
+    /// Frees the trials that policies could share.
     pub fn forget_shared(&self) {
         self.shared.forget();
     }
 
-    /// Simulates one trial, whatever others are known.
+    /// Simulates one trial without looking at trials of other policies.
     ///
     /// # Errors
-    /// What kept it from its end.
+    /// The reason why the trial did not come to its end.
     pub fn run_alone(&self, key: &TrialKey, halt: &AtomicBool) -> Result<Trial, Fault> {
         let case = &self.cases[key.case];
         run_trial(&case.scenario, &case.drivers[key.policy], key.seed, self.is_checked, halt)
@@ -286,7 +287,7 @@ impl Experiment {
         })
     }
 
-    /// Trials for which there are seeds.
+    /// Largest number of trials for which there are seeds.
     #[must_use]
     pub fn most_trials(&self) -> u32 {
         match &self.seeds {
@@ -295,7 +296,7 @@ impl Experiment {
         }
     }
 
-    /// Seed of a trial, numbered from 1.
+    /// Seed of a trial; trials are numbered from 1.
     #[must_use]
     pub fn seed(&self, trial: u32) -> u64 {
         match &self.seeds {
@@ -304,8 +305,8 @@ impl Experiment {
         }
     }
 
-    /// Draws every layout and lets every policy answer the first question, so that a scenario without room and a policy that cannot group
-    /// this team fail before the first trial runs.
+    /// Draws every layout and asks every policy the first question. A scenario without enough room, or a
+    /// policy that cannot group this team, then fails before the first trial runs.
     ///
     /// # Errors
     /// A layout that cannot be drawn, or a question that a policy cannot answer, with the seed.
@@ -335,7 +336,7 @@ impl Experiment {
         Ok(())
     }
 
-    /// Where on the axes a case is, with a colon; nothing without axes.
+    /// A case's values of the axes, followed by a colon; empty without axes.
     #[must_use]
     pub fn describe(&self, case: &Case) -> String {
         let places: Vec<String> = self

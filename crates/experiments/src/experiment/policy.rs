@@ -13,23 +13,23 @@ use crate::run::Driver;
 
 static REGISTRY: OnceLock<Registry> = OnceLock::new();
 
-/// The policies that this program knows: the built-in ones, unless it was given others by [`set_registry`], and the
-/// oracle.
+/// The policies that this program knows, with the oracle: the built-in policies, or those given by
+/// [`set_registry`].
 pub fn registry() -> &'static Registry {
     REGISTRY.get_or_init(|| with_oracle(Registry::standard()))
 }
 
 /// A registry with the oracle, unless it has one of its own.
 fn with_oracle(mut registry: Registry) -> Registry {
-    // A caller's policy of that name stays.
+    // A caller's policy with the oracle's name stays.
     let _ = registry.add(NotSimulated::kind());
     registry
 }
 
-/// Gives this program its policies, before any is asked for.
+/// Gives this program its policies. Call it before any policy is looked up.
 ///
 /// # Errors
-/// The registry with the oracle, when the program has one already.
+/// The program already has a registry. The error holds the refused registry, with the oracle.
 pub fn set_registry(registry: Registry) -> Result<(), Registry> {
     REGISTRY.set(with_oracle(registry))
 }
@@ -37,21 +37,21 @@ pub fn set_registry(registry: Registry) -> Result<(), Registry> {
 /// A policy with its options.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct PolicySpec {
-    /// What tables and figures call it.
+    /// Its name in tables and figures.
     pub label: String,
     /// Its name in the registry.
     pub name: String,
-    /// The options that are written, with their values in RON.
+    /// The written options, with their values in RON.
     options: Vec<(String, String)>,
-    /// As it can be written.
+    /// Text that reads to the same policy.
     written: String,
 }
 
 impl PolicySpec {
-    /// Reads one.
+    /// Reads a policy.
     ///
     /// # Errors
-    /// An unknown name, options that the policy does not have, or brackets that do not close; in one sentence.
+    /// An unknown name, options that the policy does not have, or unclosed brackets; in one sentence.
     pub fn parse(text: &str) -> Result<Self, String> {
         let text = text.trim();
         let open = text.find('(').unwrap_or(text.len());
@@ -89,15 +89,15 @@ impl PolicySpec {
     /// The policy.
     ///
     /// # Errors
-    /// None: a spec that was read can be made.
+    /// None: a policy that was read can be made.
     pub fn make(&self) -> Result<MadePolicy, String> {
         registry().parse(&self.plain()).map_err(|error| error.to_string())
     }
 
-    /// What answers for it in a trial.
+    /// The driver that answers for this policy in a trial.
     ///
     /// # Errors
-    /// A policy that goes on after the oracle's decision and cannot be made.
+    /// The policy that decides after the oracle's round cannot be made.
     pub fn driver(&self) -> Result<Driver, String> {
         let made = self.make()?;
         if self.name != NotSimulated::NAME {
@@ -112,7 +112,7 @@ impl PolicySpec {
     /// Refuses a policy that may not run in a scenario.
     ///
     /// # Errors
-    /// The scenario allows another one alone.
+    /// The scenario allows only another policy.
     pub fn check_allowed(&self, scenario: &Scenario) -> Result<(), Failure> {
         let only = &scenario.only_policy;
         if only.is_empty() || *only == self.plain() {
@@ -124,39 +124,39 @@ impl PolicySpec {
         )))
     }
 
-    /// Name and options without the label: reads to the same policy.
+    /// Name and options without the label; the text reads to the same policy.
     #[must_use]
     pub fn plain(&self) -> String {
         plain(&self.name, &self.options)
     }
 
-    /// The options of an RNE policy, the defaults included; `None` for another policy.
+    /// All options of an RNE policy, with the defaults; `None` for another policy.
     #[must_use]
     pub fn rne_options(&self) -> Option<RneOptions> {
         let all = self.make().ok().filter(|_| self.name == "RNE")?.options;
         from_ron(&all).ok()
     }
 
-    /// The options that are written, with their values in RON.
+    /// The written options, with their values in RON.
     #[must_use]
     pub fn options(&self) -> &[(String, String)] {
         &self.options
     }
 
-    /// As it can be written: reads to the same policy.
+    /// The policy as text; it reads to the same policy.
     #[must_use]
     pub fn written(&self) -> &str {
         &self.written
     }
 }
 
-/// Options as a registry writes them.
+/// Reads options as a registry writes them.
 fn from_ron<T: DeserializeOwned>(options: &str) -> Result<T, String> {
     let ron = ron::Options::default().with_default_extension(ron::extensions::Extensions::IMPLICIT_SOME);
     ron.from_str(options).map_err(|error| error.code.to_string())
 }
 
-/// What the deserialiser says of an option or a value that is not there, with the one that may have been meant.
+/// Adds to a message about an unknown option or value the known name that is nearest to it.
 fn with_hint(message: String) -> String {
     let quoted: Vec<&str> = message.split('`').skip(1).step_by(2).collect();
     let Some((found, rest)) = quoted.split_first().filter(|_| message.contains("expected one of")) else {
@@ -194,7 +194,7 @@ fn parse_options(text: &str) -> Result<Vec<(String, String)>, String> {
     Ok(options)
 }
 
-/// The entries of a list whose commas may stand in brackets as well.
+/// The entries of a comma-separated list. Commas inside brackets do not separate.
 #[must_use]
 pub fn split_list(text: &str) -> Vec<&str> {
     let mut depth = 0_i32;

@@ -1,4 +1,4 @@
-//! Scenarios and sweep files as parts of an experiment, with the line of whatever is wrong.
+//! Reads scenarios and sweep files as parts of an experiment. Errors name the line.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -19,7 +19,7 @@ use crate::limits;
 /// A scenario with fields set by `path=value`.
 ///
 /// # Errors
-/// A field that is not there, a value that does not fit it or breaks a rule.
+/// An unknown field, or a value that does not fit the field or breaks a rule.
 pub fn with_settings(scenario: &Scenario, settings: &[String]) -> Result<Scenario, Failure> {
     let mut file: ScenarioFile = (**scenario).clone();
     for entry in settings {
@@ -43,7 +43,7 @@ pub fn companion(scenario: &Path) -> PathBuf {
     scenario.with_extension("sweep.ron")
 }
 
-/// The policy and the seed with which a scenario's sweep begins.
+/// The first policy and the first seed of a scenario's sweep.
 ///
 /// # Errors
 /// A scenario or a companion that cannot be used.
@@ -56,7 +56,7 @@ pub fn defaults(scenario: &Path) -> Result<(String, u64), Failure> {
     Ok((parts.policies.into_iter().next().unwrap_or_default(), seed))
 }
 
-/// The sweep that a scenario stands for: that of its companion, or one trial of RNE.
+/// The sweep of a scenario: its companion's sweep, or one trial of RNE.
 pub(super) fn from_scenario(text: String, path: &Path) -> Result<(Parts, Vec<Reading>), Failure> {
     let companion = companion(path);
     if companion.is_file() {
@@ -169,14 +169,15 @@ pub(super) fn from_sweep_file(text: String, path: &Path) -> Result<(Parts, Vec<R
     Ok((parts, readings))
 }
 
-/// The path of a field with numbers for the names of list entries: `roles[0].speed_mps` for `roles.carrier.speed_mps`.
+/// The path of a field with indices instead of the names of list entries: `roles[0].speed_mps` for
+/// `roles.carrier.speed_mps`.
 pub(super) fn canonical(scenario: &Scenario, path: &str) -> String {
     Fields::of(&scenario.resolved()).canonical(path).unwrap_or_else(|| path.to_owned())
 }
 
 type Bad<'a> = dyn Fn(&str, &dyn std::fmt::Display) -> Failure + 'a;
 
-/// Checks each value of each axis alone, so that a wrong one is named with its line.
+/// Checks each value of each axis alone, so that an error names the wrong value and its line.
 fn axes(
     map: Map<Vec<Box<ron::value::RawValue>>>,
     base: &Scenario,
@@ -306,8 +307,8 @@ fn readings(map: Map<Vec<Box<ron::value::RawValue>>>, bad: &Bad) -> Result<Vec<R
     Ok(readings)
 }
 
-/// The policies with every combination of the readings in the place of RNE. One is named by the options in which it differs from the
-/// default.
+/// The policies, with RNE replaced by every combination of the readings. Each combination is named by the
+/// options that differ from the default.
 pub(super) fn with_readings(policies: Vec<String>, readings: &[Reading]) -> Vec<String> {
     let all_options = |text: &str| registry().make("RNE", text).ok().map(|made| made.options);
     let default = all_options("");
@@ -340,7 +341,7 @@ pub(super) fn checked(file: ScenarioFile, prefix: &str) -> Result<Scenario, Fail
     })
 }
 
-/// Whether a field decides numbers: all do but the scenario's name and its description.
+/// Whether a field decides numbers: not the scenario's name, its description, nor `only_policy`.
 fn decides(path: &str) -> bool {
     let first = path.split(['.', '[']).next().unwrap_or_default();
     !["name", "description", "only_policy"].contains(&first)

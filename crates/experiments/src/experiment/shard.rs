@@ -1,4 +1,4 @@
-//! Parts of a sweep, to run apart: whole seeds of cases, so that each part has whole pairs.
+//! Parts of a sweep that run apart. Each part has whole seeds of cases, and therefore whole pairs.
 
 use super::Experiment;
 use crate::run::TrialKey;
@@ -6,10 +6,10 @@ use crate::run::TrialKey;
 /// A place in the sweep: case, policy, trial.
 pub type Place = (usize, usize, u32);
 
-/// One of several parts of a sweep, to run apart from the others.
+/// One of several parts of a sweep that run apart.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct Shard {
-    /// Which part, from 1.
+    /// Number of this part, from 1.
     pub number: u32,
     /// Number of parts.
     pub of: u32,
@@ -28,8 +28,9 @@ impl std::str::FromStr for Shard {
 }
 
 impl Shard {
-    /// Whether a seed of a case is in this part. The seeds are dealt in turn, trial by trial and case by case;
-    /// where that would give a part the same cases again and again, each lap begins one part further on.
+    /// Whether a seed of a case is in this part. The seeds are dealt in turn, trial by trial and case by
+    /// case. After each lap of lcm(parts, cases) seeds the dealing shifts by one part, so that no part gets
+    /// the same cases again and again.
     fn has(self, (case, cases): (usize, usize), trial: u32) -> bool {
         let (of, cases) = (u64::from(self.of), cases as u64);
         let index = (u64::from(trial) - 1) * cases + case as u64;
@@ -43,8 +44,8 @@ fn gcd(a: u64, b: u64) -> u64 {
 }
 
 impl Experiment {
-    /// The places of the trials that a shard runs, or of all, in order: case by case, policy by policy. Adding
-    /// trials to a sweep leaves each trial in its shard.
+    /// The places of the trials of a shard, or of all trials, in order: case by case, policy by policy.
+    /// Adding trials to a sweep leaves each existing trial in its shard.
     pub fn places(&self, shard: Option<Shard>) -> impl Iterator<Item = Place> + '_ {
         let policies = self.policies.len();
         let of_policy =
@@ -53,14 +54,15 @@ impl Experiment {
         (0..self.cases.len()).flat_map(of_case)
     }
 
-    /// The numbers of the trials of a case that a shard runs, or of all. Each is run under every policy.
+    /// The numbers of a case's trials in a shard, or of all its trials. Each trial is run under every
+    /// policy.
     pub fn trials_of(&self, case: usize, shard: Option<Shard>) -> impl Iterator<Item = u32> + use<> {
         let cases = self.cases.len();
         let is_ours = move |trial: &u32| shard.is_none_or(|shard| shard.has((case, cases), *trial));
         (1..=self.trials).filter(is_ours)
     }
 
-    /// How many trials a shard runs, or how many there are.
+    /// Number of trials in a shard, or in the whole sweep.
     #[must_use]
     pub fn count(&self, shard: Option<Shard>) -> usize {
         let seeds = match shard {
@@ -70,18 +72,18 @@ impl Experiment {
         seeds * self.policies.len()
     }
 
-    /// How many seeds all cases have together: the most shards that each have a trial.
+    /// Number of seeds of all cases together. With more shards than that, some shard would have no trial.
     #[must_use]
     pub fn seeds_of_cases(&self) -> usize {
         self.cases.len() * self.trials as usize
     }
 
-    /// The trials that a shard runs, or all, in the order of [`Experiment::places`].
+    /// The keys of the trials of a shard, or of all trials, in the order of [`Experiment::places`].
     pub fn keys(&self, shard: Option<Shard>) -> impl Iterator<Item = TrialKey> + '_ {
         self.places(shard).map(|place| self.key(place))
     }
 
-    /// Whether the sweep, or a shard of it, has a trial at this place, with this seed.
+    /// Whether the sweep, or a shard of it, has a trial at this place with this seed.
     #[must_use]
     pub fn has(&self, place: Place, seed: u64, shard: Option<Shard>) -> bool {
         let (case, policy, trial) = place;

@@ -1,7 +1,7 @@
-//! The search for the least value of a noisy function without derivatives: CMA-ES (Hansen 2016, "The CMA
-//! Evolution Strategy: A Tutorial", arXiv 1604.00772), from the crate `cmaes`, over a box that is mirrored at its
-//! ends. It is deterministic: a search that was broken off is repeated from its start, with the values in a log
-//! instead of new ones.
+//! Minimises a noisy function without derivatives: CMA-ES (Hansen 2016, "The CMA Evolution Strategy: A
+//! Tutorial", arXiv 1604.00772), from the crate `cmaes`, over a box that is mirrored at its ends. The
+//! search is deterministic. An interrupted search is repeated from its start, with the values in a log
+//! instead of new evaluations.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -13,10 +13,10 @@ use crate::failure::Failure;
 /// The value of a point that cannot be evaluated.
 pub const WORST: f64 = 1e9;
 
-/// How a search is done.
+/// Settings of a search.
 #[derive(Debug, Clone, Copy)]
 pub struct Descent {
-    /// Candidates to ask for, the start among them; the last generation is finished.
+    /// Candidates to evaluate, including the start. The last generation is completed.
     pub evaluations: usize,
     /// Seed of the search.
     pub seed: u64,
@@ -25,9 +25,9 @@ pub struct Descent {
 }
 
 impl Descent {
-    /// Searches from a start until so many candidates were asked for, or nothing gets better; returns whether it
-    /// came to its end: not so when `stop` was set. `objective` is the value at a point, `None` where `stop`
-    /// kept it from one.
+    /// Searches from a start until this many candidates were evaluated or the search no longer improves.
+    /// Returns false if `stop` interrupted it. `objective` returns the value at a point, or `None` if
+    /// `stop` interrupted the evaluation.
     ///
     /// # Errors
     /// Those of `objective`.

@@ -1,18 +1,19 @@
-//! Where a scenario's parameters are evaluated: blocks of points, each drawn on its own, so that more blocks
-//! can follow. A place is a value's share of its range, from 0 to 1.
+//! The points at which a scenario's parameters are evaluated. They come in blocks, each drawn
+//! independently, so that more blocks can follow. A place is a value's share of its range, from 0 to 1.
 
 use rand::rngs::ChaCha8Rng;
 use rand::seq::SliceRandom;
 use rand::{RngExt, SeedableRng};
 use serde::{Deserialize, Serialize};
 
-/// How sensitivity is measured.
+/// Method of a sensitivity study.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Method {
-    /// Elementary effects: one parameter moves at a time, along trajectories. Few points, a ranking.
+    /// Elementary effects: one parameter moves at a time, along trajectories. Needs few points and gives a
+    /// ranking.
     Morris,
-    /// Shares of the variance. Many points.
+    /// Shares of the variance. Needs many points.
     Sobol,
 }
 
@@ -21,8 +22,8 @@ const LEVELS: f64 = 4.0;
 /// How far a parameter moves, as a share of its range: p / (2 (p - 1)).
 pub(super) const MOVE: f64 = LEVELS / (2.0 * (LEVELS - 1.0));
 
-/// The points of a block as places. Morris: a trajectory, with the parameter that has moved at each point but
-/// the first. Sobol: the points A and B, then A with each parameter in its turn from B.
+/// The points of a block, as places. Morris: a trajectory; `moved` is the parameter that moves at each
+/// point after the first. Sobol: the points A and B, then A with each parameter in turn taken from B.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Block {
     pub places: Vec<Vec<f64>>,
@@ -30,7 +31,7 @@ pub(super) struct Block {
 }
 
 impl Block {
-    /// A block by its number; the same for one seed, however many there are.
+    /// Draws the block with this number. It does not depend on the number of blocks.
     pub fn draw(method: Method, parameters: usize, (seed, number): (u64, u32)) -> Self {
         let mut draws = ChaCha8Rng::seed_from_u64(seed);
         draws.set_stream(u64::from(number));

@@ -5,7 +5,8 @@ use std::fmt;
 use ron_fields::Fields;
 use usar_sim::scenario::ScenarioFile;
 
-/// Significant digits of a candidate value, so that the log and the calibrated scenario hold what was run, to the bit.
+/// Significant digits of a candidate value. With so few digits, the log and the calibrated scenario hold
+/// exactly the value that was run.
 const DIGITS: usize = 4;
 
 /// A free parameter. It may set several fields that belong together, each in a fixed ratio to it.
@@ -24,11 +25,12 @@ pub struct Free {
 
 impl Free {
     /// Reads `PATH[*RATIO] [+ PATH[*RATIO] ...]=LOW..HIGH[ log]`; `[*]` in a path is every entry of a list.
-    /// `fields` are those that are written in the scenario, as each path must be; `known` are all that a
-    /// scenario has.
+    /// `fields` are the fields that the scenario writes; each path must be one of them. `known` are all
+    /// fields that a scenario has.
     ///
     /// # Errors
-    /// A text of another form, a path that is not in the scenario, or a range that cannot be searched; in one sentence.
+    /// The text has another form, the scenario lacks a path, or the range cannot be searched; in one
+    /// sentence.
     pub fn parse(spec: &str, fields: &Fields, known: &Fields) -> Result<Self, String> {
         let form = || {
             format!(
@@ -74,14 +76,15 @@ impl Free {
         Ok(Self { name, fields: named, low, high, is_log, is_whole: false })
     }
 
-    /// The same for this scenario: where a field takes whole numbers only, values are rounded to these.
+    /// The same parameter for this scenario. If one of its fields takes whole numbers only, its values are
+    /// rounded to whole numbers.
     #[must_use]
     pub fn in_scenario(self, base: &ScenarioFile) -> Self {
         let is_whole = self.whole_numbers(base).is_some();
         Self { is_whole, ..self }
     }
 
-    /// The value at a place on the line of all numbers, of which [0, 1] is the range; beyond, the range is mirrored again and again.
+    /// The value at a place. [0, 1] is the range; beyond it, the range is mirrored again and again.
     #[must_use]
     pub fn value(&self, place: f64) -> f64 {
         let folded = place.rem_euclid(2.0);
@@ -95,13 +98,13 @@ impl Free {
         value.clamp(self.low, self.high)
     }
 
-    /// The place of a value, kept a tenth of the range away from its ends.
+    /// The place of a value, kept at least a tenth of the range away from the ends.
     #[must_use]
     pub fn place(&self, value: f64) -> f64 {
         self.place_of(value).clamp(0.1, 0.9)
     }
 
-    /// The place of a value in the range, from 0 to 1; of the nearest end for a value outside.
+    /// The place of a value in the range, from 0 to 1. A value outside has the place of the nearest end.
     #[must_use]
     pub fn place_of(&self, value: f64) -> f64 {
         let value = value.clamp(self.low, self.high);
@@ -112,13 +115,13 @@ impl Free {
         }
     }
 
-    /// The ends of its range.
+    /// The ends of the parameter's range.
     #[must_use]
     pub fn ends(&self) -> [f64; 2] {
         [self.low, self.high]
     }
 
-    /// Its fields, each with its value in RON.
+    /// The parameter's fields, each with its value in RON.
     pub fn settings(&self, value: f64) -> impl Iterator<Item = (&str, String)> {
         let text = |value: f64| {
             if self.is_whole { format!("{value:.0}") } else { in_ron(rounded(value)) }
@@ -126,7 +129,7 @@ impl Free {
         self.fields.iter().map(move |(path, ratio)| (path.as_str(), text(value * ratio)))
     }
 
-    /// Whether one of its fields is at this path or within it.
+    /// Whether one of the parameter's fields is at this path or within it.
     #[must_use]
     pub fn is_of(&self, path: &str) -> bool {
         let is_within = |field: &str| {
@@ -142,10 +145,10 @@ impl Free {
         !(0.01..=0.99).contains(&place)
     }
 
-    /// Its present value: that of its first field.
+    /// The parameter's present value, computed from its first field.
     ///
     /// # Errors
-    /// The field is not a number.
+    /// The first field is not a number.
     pub fn present(&self, text: &str, fields: &Fields) -> Result<f64, String> {
         let (path, ratio) = &self.fields[0];
         let written = fields.value(path).map(|value| text[value].trim()).unwrap_or_default();
@@ -153,7 +156,7 @@ impl Free {
         value.map(|value| value / ratio).map_err(|_| format!("{path}: must be a number, found {written}"))
     }
 
-    /// What is to be said where one of its fields takes whole numbers only.
+    /// A message if one of the parameter's fields takes whole numbers only.
     #[must_use]
     pub fn whole_numbers(&self, base: &ScenarioFile) -> Option<String> {
         let takes = |path: &str, value: &str| base.clone().set(path, value).is_ok();
@@ -163,7 +166,7 @@ impl Free {
         })
     }
 
-    /// Sets its fields.
+    /// Sets the parameter's fields in a scenario.
     ///
     /// # Errors
     /// A field does not take the value, in one sentence.
@@ -200,12 +203,12 @@ fn in_ron(value: f64) -> String {
     format!("{value:?}")
 }
 
-/// A number with few digits.
+/// A number rounded to [`DIGITS`] significant digits.
 fn rounded(value: f64) -> f64 {
     format!("{value:.*e}", DIGITS - 1).parse().unwrap_or(value)
 }
 
-/// Whether a path is what a pattern names.
+/// Whether a path matches a pattern, in which `[*]` stands for any index.
 fn matches(pattern: &str, path: &str) -> bool {
     let mut rest = path;
     let mut parts = pattern.split("[*]").peekable();

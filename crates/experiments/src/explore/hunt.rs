@@ -1,4 +1,4 @@
-//! The search for the scenario in which a policy fails the most.
+//! The search for the scenario in which a policy performs worst.
 
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
@@ -10,29 +10,29 @@ use super::{Descent, EvaluationLog, Free, Purpose, WORST};
 use crate::experiment::Program;
 use crate::failure::Failure;
 
-/// The scenario that was found.
+/// Name of the file with the found scenario.
 pub const FOUND: &str = "found.ron";
 const PURPOSE: Purpose = Purpose { noun: "search", origin: "search.json", results: &[FOUND] };
 
-/// Begins the first line of a found scenario.
+/// Start of a found scenario's first line.
 const ORIGIN_LINE: &str = "// Found by usar search";
 
-/// What a found scenario's name ends with.
+/// Suffix of a found scenario's name.
 const SUFFIX: &str = "-found";
 
 /// A search. The space has one outcome.
 pub struct Hunt {
-    /// What varies, and what is looked at.
+    /// The parameters, and the outcome.
     pub space: Space,
-    /// Whether the outcome is to be as low as can be.
+    /// Whether to look for the lowest outcome instead of the highest.
     pub is_lowest: bool,
     /// Seed of the first trial of each candidate.
     pub first_seed: u64,
-    /// How it is searched.
+    /// Settings of the search.
     pub descent: Descent,
 }
 
-/// A candidate and how it fared.
+/// A candidate and its outcome.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Candidate {
     /// A value for each parameter.
@@ -59,7 +59,7 @@ impl Hunt {
     /// Opens the search's log in a folder.
     ///
     /// # Errors
-    /// The folder is of something else, or the disk does not take it.
+    /// The folder belongs to something else, or the disk does not take the log.
     pub fn open(&self, folder: &Path, is_fresh: bool) -> Result<Trail, Failure> {
         let free = self.space.free.iter().map(|free| free.name.clone());
         let outcome = self.space.outcomes[0].name();
@@ -82,7 +82,7 @@ impl Hunt {
         Some(Candidate { values, outcome })
     }
 
-    /// What decides the evaluations.
+    /// Everything that decides the evaluations.
     fn origin(&self) -> serde_json::Value {
         let Program { version, source } = Program::this();
         let experiment = &self.space.experiment;
@@ -99,7 +99,8 @@ impl Hunt {
         })
     }
 
-    /// The best of these: that with the lowest outcome, or the highest; the earliest of equals.
+    /// The candidate with the lowest or the highest outcome, as the search wants it; the earliest of
+    /// equals.
     #[must_use]
     pub fn best<'a>(&self, trail: &'a Trail) -> Option<(&'a Candidate, f64)> {
         let found = trail.candidates.iter();
@@ -107,13 +108,13 @@ impl Hunt {
         found.min_by(|a, b| self.turned(a.1).total_cmp(&self.turned(b.1)))
     }
 
-    /// So that less is what is looked for.
+    /// The outcome with its sign chosen so that lower is better.
     fn turned(&self, outcome: f64) -> f64 {
         if self.is_lowest { outcome } else { -outcome }
     }
 
-    /// Searches on; returns whether it came to its end: not so when `stop` was set. `done` hears how many
-    /// candidates were asked for, and the best outcome.
+    /// Continues the search. Returns false if `stop` interrupted it. `done` receives the number of
+    /// candidates so far and the best outcome.
     ///
     /// # Errors
     /// The disk does not take the log.
@@ -161,7 +162,7 @@ impl Hunt {
         Ok(candidate)
     }
 
-    /// A candidate as a scenario file with every value; `what` stands in its first line.
+    /// A candidate as a scenario file with every value; `what` appears in its first line.
     ///
     /// # Errors
     /// None for a candidate that was run.

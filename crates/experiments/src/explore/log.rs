@@ -1,5 +1,5 @@
-//! `evaluations.csv`: what was evaluated at each point of a search or a study, a line each with its checksum,
-//! from which the same command goes on after it was broken off.
+//! `evaluations.csv`: the evaluation at each point of a search or a study. Each line has a checksum. An
+//! interrupted command resumes from it.
 
 use std::collections::BTreeSet;
 use std::fs::{self, File};
@@ -13,19 +13,19 @@ use crate::files::{self, NewFile};
 use crate::sweep::disk;
 use crate::sweep::lock::Lock;
 
-/// The log.
+/// Name of the log.
 const LOG: &str = "evaluations.csv";
-/// The last column of the log.
+/// Name of the log's last column.
 const CHECKSUM: &str = "xxh3_64";
 
-/// What a folder with a log is for.
+/// The use of a folder with a log.
 #[derive(Debug, Clone, Copy)]
 pub struct Purpose {
-    /// What it is called in messages: `calibration`.
+    /// Its name in messages: `calibration`.
     pub noun: &'static str,
-    /// The file that says what the log is of.
+    /// Name of the file that says what the log belongs to.
     pub origin: &'static str,
-    /// Files that are made of the log in the end.
+    /// Names of the files that are made from the log in the end.
     pub results: &'static [&'static str],
 }
 
@@ -39,11 +39,13 @@ pub struct EvaluationLog {
 }
 
 impl EvaluationLog {
-    /// Opens a new log, or one that is to go on; returns the lines that are there. `origin` decides what is
-    /// evaluated, and must be that of the log; `header` are its columns. `is_fresh` starts over.
+    /// Opens a new log, or an existing one to resume; returns the lines that it has. `origin` decides what
+    /// is evaluated and must equal the log's origin. `header` are the log's columns. `is_fresh` starts
+    /// over.
     ///
     /// # Errors
-    /// It is of something else, another process is at work in the folder, or the disk does not take it.
+    /// The log belongs to something else, another process works in the folder, or the disk does not take
+    /// it.
     pub fn open(
         folder: &Path,
         purpose: &Purpose,
@@ -71,19 +73,19 @@ impl EvaluationLog {
         Ok((Self { path, file, columns: header.len(), _lock: lock }, rows))
     }
 
-    /// Cells of a line.
+    /// Number of cells of a line, without the checksum.
     #[must_use]
     pub fn columns(&self) -> usize {
         self.columns
     }
 
-    /// What is to be said of a row, counted from 0, that cannot be one of this log.
+    /// The error for a row, counted from 0, that does not belong to this log.
     #[must_use]
     pub fn bad_row(&self, row: usize) -> Failure {
         bad_line(&self.path, row + 2)
     }
 
-    /// Takes a line: when this returns, it is on disk.
+    /// Adds a line. It is on disk when this returns.
     ///
     /// # Errors
     /// The disk does not take it.
@@ -95,7 +97,7 @@ impl EvaluationLog {
     }
 }
 
-/// Refuses a folder that is of something else.
+/// Refuses a folder that belongs to something else.
 fn check_folder(
     folder: &Path,
     purpose: &Purpose,
@@ -149,7 +151,7 @@ fn bad_line(path: &Path, line: usize) -> Failure {
     ))
 }
 
-/// Reads the log; a last line that was cut off is taken away.
+/// Reads the log and removes an incomplete last line.
 fn read(path: &Path, header: &[String]) -> Result<Vec<Vec<String>>, Failure> {
     let trouble = |error: std::io::Error| Failure::storage(format!("{}: {error}", path.display()));
     let text = String::from_utf8(files::read(path).map_err(trouble)?);
@@ -179,7 +181,7 @@ fn read(path: &Path, header: &[String]) -> Result<Vec<Vec<String>>, Failure> {
     Ok(read)
 }
 
-/// What of a value is otherwise, entry by entry where it has names.
+/// The differences between two values, entry by entry for objects.
 fn differences_of(name: &str, there: &serde_json::Value, now: &serde_json::Value) -> Vec<String> {
     match (there.as_object(), now.as_object()) {
         (Some(old), Some(new)) => {

@@ -1,8 +1,8 @@
 //! Which parameters of a scenario matter, for outcomes and for differences between policies.
 //!
-//! All points of a block share the seeds of their trials, and each block has its own. So a parameter's effect is
-//! measured within the same draws of chance, and the bootstrap over blocks covers the parameters' places and
-//! the seeds together.
+//! All points of a block share the seeds of their trials, and each block has seeds of its own. A
+//! parameter's effect is therefore measured within the same random draws. The bootstrap over blocks covers
+//! the parameters' places and the seeds together.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -18,20 +18,20 @@ use crate::failure::Failure;
 use crate::stats::bootstrap::interval;
 use crate::stats::sensitivity::{self as indices, Effects, Known, Shares};
 
-/// The table of the indices.
+/// Name of the table of indices.
 pub const INDICES: &str = "indices.csv";
-/// The figure.
+/// Name of the figure.
 pub const FIGURE: &str = "indices.svg";
 const PURPOSE: Purpose =
     Purpose { noun: "sensitivity study", origin: "sensitivity.json", results: &[INDICES, FIGURE] };
 
 /// A study of sensitivity.
 pub struct Sensitivity {
-    /// What varies, and what is looked at.
+    /// The parameters, and the outcomes.
     pub space: Space,
-    /// How it is measured.
+    /// The method.
     pub method: Method,
-    /// Seed of the places.
+    /// Seed of the points' places.
     pub seed: u64,
     /// Seed of the first trial.
     pub first_seed: u64,
@@ -46,22 +46,23 @@ pub struct Evaluations {
     known: BTreeMap<Place, Values>,
 }
 
-/// What a parameter's index is, by the method.
+/// A parameter's index; its form depends on the method.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum Index {
-    /// Elementary effects, in units of the outcome over the whole range; for chance, of other seeds.
+    /// Elementary effects: change of the outcome over the parameter's whole range. For chance, the effects
+    /// of other seeds.
     Effects {
-        /// What the effects come to.
+        /// Summary of the effects.
         #[serde(flatten)]
         effects: Effects,
-        /// mu* less that of other seeds; none for chance itself.
+        /// mu* minus the mu* of other seeds; `None` for chance itself.
         #[serde(rename = "beyond_chance")]
         beyond: Option<Known>,
     },
     /// Shares of the variance.
     Shares(Shares),
-    /// The share of the seeds alone.
+    /// The share of the variance that the seeds alone make.
     Chance {
         /// The share.
         first: Known,
@@ -71,23 +72,23 @@ pub enum Index {
 /// A parameter's index for an outcome.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Row {
-    /// What is looked at.
+    /// The outcome.
     #[serde(flatten)]
     pub outcome: Outcome,
     /// The parameter; [`CHANCE`] for the seeds.
     pub parameter: String,
-    /// Blocks in which it is known.
+    /// Number of blocks in which the index is known.
     pub blocks: usize,
     /// The index.
     #[serde(flatten)]
     pub index: Index,
 }
 
-/// What stands where a parameter would, for the effect of other seeds.
+/// Stands in the place of a parameter's name, for the effect of other seeds.
 pub const CHANCE: &str = "chance (other seeds)";
 
 impl Row {
-    /// By what rows are ranked: mu*, or the total index.
+    /// The value by which rows are ranked: mu*, or the total index.
     #[must_use]
     pub fn size(&self) -> f64 {
         match self.index {
@@ -97,14 +98,15 @@ impl Row {
         }
     }
 
-    /// Whether it is that of chance.
+    /// Whether this is the row of chance.
     #[must_use]
     pub fn is_chance(&self) -> bool {
         self.parameter == CHANCE
     }
 
-    /// Whether it is told apart from chance: the mean effect's interval excludes zero, or the effects are larger
-    /// than those of other seeds; for shares, the first-order interval is above zero.
+    /// Whether the index is distinguishable from chance. For effects, the mean effect's interval excludes
+    /// zero, or the effects are larger than those of other seeds. For shares, the first-order interval is
+    /// above zero.
     #[must_use]
     pub fn is_shown(&self) -> bool {
         let excludes_zero = |known: &Known| known.interval.is_some_and(|[low, high]| low > 0.0 || high < 0.0);
@@ -119,7 +121,7 @@ impl Row {
 }
 
 impl Evaluations {
-    /// Points that are there of so many blocks.
+    /// Number of evaluated points in the first `blocks` blocks.
     #[must_use]
     pub fn count(&self, blocks: u32) -> usize {
         self.known.range(..(blocks, 0)).count()
@@ -130,7 +132,7 @@ impl Sensitivity {
     /// Opens the study's log in a folder.
     ///
     /// # Errors
-    /// The folder is of something else, or the disk does not take it.
+    /// The folder belongs to something else, or the disk does not take the log.
     pub fn open(&self, folder: &Path, is_fresh: bool) -> Result<Evaluations, Failure> {
         let header = self.header();
         let (log, rows) = EvaluationLog::open(folder, &PURPOSE, (&self.origin(), &header), is_fresh)?;
@@ -142,7 +144,7 @@ impl Sensitivity {
         Ok(Evaluations { log, known })
     }
 
-    /// Points of so many blocks.
+    /// Number of points in this many blocks.
     #[must_use]
     pub fn count(&self, blocks: u32) -> usize {
         blocks as usize * self.points(0).len()
@@ -152,7 +154,7 @@ impl Sensitivity {
         Block::draw(self.method, self.space.free.len(), (self.seed, number))
     }
 
-    /// The points of a block. For elementary effects, the last is the first again with other seeds.
+    /// The points of a block. For elementary effects, the last point repeats the first with other seeds.
     fn points(&self, number: u32) -> Vec<Point> {
         let trials = u64::from(self.space.experiment.trials);
         let first_seed = self.first_seed + 2 * trials * u64::from(number);
@@ -168,8 +170,8 @@ impl Sensitivity {
         points
     }
 
-    /// Evaluates what is missing of so many blocks; returns whether all is there: not so when `stop` was set.
-    /// `done` hears how many points are.
+    /// Evaluates the missing points of the first `blocks` blocks. Returns false if `stop` interrupted it.
+    /// `done` receives the number of evaluated points.
     ///
     /// # Errors
     /// The disk does not take the log.
@@ -185,7 +187,8 @@ impl Sensitivity {
         });
         let missing: Vec<_> = all.filter(|(place, _)| !evaluations.known.contains_key(place)).collect();
         let trials = self.space.experiment.trials as usize;
-        // So many at a time that no thread waits long, and little is lost when it is broken off.
+        // A batch is large enough to keep all threads busy, and small enough that an interruption loses
+        // little.
         let batch = (4 * rayon::current_num_threads()).div_ceil(trials);
         let mut there = self.count(blocks) - missing.len();
         for batch in missing.chunks(batch) {
@@ -245,7 +248,7 @@ impl Sensitivity {
         Some((place, Ok(cells.iter().map(value).collect::<Option<Vec<_>>>()?)))
     }
 
-    /// What decides the evaluations.
+    /// Everything that decides the evaluations.
     fn origin(&self) -> serde_json::Value {
         let Program { version, source } = Program::this();
         let experiment = &self.space.experiment;
@@ -263,7 +266,8 @@ impl Sensitivity {
         })
     }
 
-    /// Points without numbers among those of so many blocks, and why the first has none.
+    /// Number of failed points in the first `blocks` blocks, and the first failure's reason; `None` without
+    /// failures.
     #[must_use]
     pub fn failures(&self, blocks: u32, evaluations: &Evaluations) -> Option<(usize, String)> {
         let mut reasons = evaluations.known.range(..(blocks, 0)).filter_map(|(_, v)| v.as_ref().err());
@@ -271,8 +275,8 @@ impl Sensitivity {
         Some((1 + reasons.count(), first))
     }
 
-    /// The indices of all outcomes from so many blocks, each outcome's parameters in the order of their size, chance
-    /// last. Blocks with a point that has no number are left out.
+    /// The indices of all outcomes from the first `blocks` blocks. Each outcome's parameters are in the
+    /// order of their size, with chance last. Blocks with an undefined point are left out.
     #[must_use]
     pub fn indices(&self, blocks: u32, evaluations: &Evaluations) -> Vec<Row> {
         let outcomes = self.space.outcomes.iter().enumerate();

@@ -1,4 +1,4 @@
-//! A scenario with parameters that vary within ranges, and what comes of it at a point.
+//! A scenario with parameters that vary within ranges, and the outcomes at a point.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -15,7 +15,7 @@ use crate::failure::{Failure, panic_message};
 use crate::run::SharedTrials;
 use crate::stats::Moments;
 
-/// What is looked at: a policy's mean of a metric, or the mean of the paired differences of two.
+/// An outcome: a policy's mean of a metric, or the mean of the paired differences of two policies.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Outcome {
     /// Place of the metric.
@@ -24,34 +24,34 @@ pub struct Outcome {
     /// Place of the policy.
     #[serde(skip)]
     pub policy: usize,
-    /// Place of the policy that is taken away, for a difference.
+    /// Place of the policy that is subtracted, for a difference.
     #[serde(skip)]
     pub less: Option<usize>,
-    /// The policy or both: `RNE`, `RNE - DIS`.
+    /// The policy, or both policies: `RNE`, `RNE - DIS`.
     pub who: String,
     /// Name of the metric.
     pub what: String,
 }
 
 impl Outcome {
-    /// In one word for a column: `RNE - DIS: rescuees.total`.
+    /// A name for a column: `RNE - DIS: rescuees.total`.
     #[must_use]
     pub fn name(&self) -> String {
         format!("{}: {}", self.who, self.what)
     }
 }
 
-/// The parameters of a scenario, and what is looked at.
+/// The parameters of a scenario, and the outcomes.
 pub struct Space {
-    /// The scenario and the policies; one case.
+    /// The scenario and the policies; it has one case.
     pub experiment: Experiment,
-    /// What varies.
+    /// The parameters.
     pub free: Vec<Free>,
-    /// What is looked at.
+    /// The outcomes.
     pub outcomes: Vec<Outcome>,
 }
 
-/// The value of each outcome at a point, where it is defined; or why there is none.
+/// The value of each outcome at a point, `None` where it is undefined; or the reason why the point failed.
 pub type Values = Result<Vec<Option<f64>>, String>;
 
 /// A point and the seeds of its trials.
@@ -67,11 +67,11 @@ pub struct Point {
 type OfSeed = Vec<Vec<Option<f64>>>;
 
 impl Space {
-    /// The parameters of the command line over an experiment, and these outcomes.
+    /// The parameters of the command line for an experiment, and these outcomes.
     ///
     /// # Errors
-    /// An experiment with axes, a parameter that the scenario has not, two that set one field, or a range whose
-    /// ends cannot be run.
+    /// The experiment has axes, the scenario lacks a parameter, two parameters set one field, or an end of
+    /// a range cannot be run.
     pub fn new(experiment: Experiment, specs: &[String], outcomes: Vec<Outcome>) -> Result<Self, Failure> {
         let bad = |error: String| Failure::input(format!("--over: {error}"));
         if !experiment.axes.is_empty() {
@@ -94,7 +94,7 @@ impl Space {
         Ok(space)
     }
 
-    /// Each end of each range alone must make a scenario.
+    /// Checks that each end of each range alone makes a valid scenario.
     fn check_ends(&self) -> Result<(), String> {
         for free in &self.free {
             for end in free.ends() {
@@ -106,7 +106,7 @@ impl Space {
         Ok(())
     }
 
-    /// Outcomes of all policies in these metrics, then their differences.
+    /// The outcomes of all policies in these metrics, then the differences between policies.
     ///
     /// # Errors
     /// An unknown policy.
@@ -141,14 +141,14 @@ impl Space {
     /// The scenario at a point.
     ///
     /// # Errors
-    /// Its values break a rule together, in one sentence.
+    /// The values together break a rule, in one sentence.
     pub fn scenario(&self, values: &[f64]) -> Result<Scenario, String> {
         let mut file: ScenarioFile = (*self.experiment.base).clone();
         self.free.iter().zip(values).try_for_each(|(free, value)| free.set(&mut file, *value))?;
         checked(file)
     }
 
-    /// The values of the scenario as it is.
+    /// The parameters' present values in the scenario.
     ///
     /// # Errors
     /// A field is not a number.
@@ -159,8 +159,8 @@ impl Space {
         present.map_err(|error| Failure::input(format!("--over: {error}")))
     }
 
-    /// The outcomes at these points, each from as many trials as the experiment has, on the threads of the
-    /// pool that calls this. `None` when `stop` was set.
+    /// The outcomes at these points, each from the experiment's number of trials, on the threads of the
+    /// calling pool. `None` if `stop` was set.
     #[must_use]
     pub fn evaluate(&self, points: &[Point], stop: &AtomicBool) -> Option<Vec<Values>> {
         let scenarios: Vec<Result<Scenario, String>> =
@@ -189,7 +189,7 @@ impl Space {
         Some(scenarios.iter().map(of_point).collect())
     }
 
-    /// The metrics of all policies in a trial. Policies that decide alike share it.
+    /// The metrics of all policies in a trial. Policies that decide alike share the trial.
     fn run_seed(&self, scenario: &Scenario, seed: u64, stop: &AtomicBool) -> Result<OfSeed, String> {
         let shared = SharedTrials::new(self.experiment.is_checked);
         let drivers = self.experiment.cases[0].drivers.iter().zip(&self.experiment.policies);
@@ -205,7 +205,8 @@ impl Space {
     }
 }
 
-/// Mean over the trials in which it is defined, for both policies where there are two.
+/// Mean of an outcome over the trials in which it is defined; a difference must be defined for both
+/// policies.
 fn value(outcome: &Outcome, seeds: &[OfSeed]) -> Option<f64> {
     let of = |seed: &OfSeed| {
         let less = outcome.less.map_or(Some(0.0), |less| seed[less][outcome.metric])?;

@@ -1,4 +1,4 @@
-//! One branch of a trial: a decision, and what came of it.
+//! One branch of a trial: a decision and its outcome.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -8,24 +8,24 @@ use usar_sim::metrics::TaskTotals;
 use usar_sim::record::{Status, TrialRecord};
 use usar_sim::simulation::{Advance, AssignError, Checkpoint, Decider, Simulation};
 
-/// A branch looks once in this many steps whether it is to stop.
+/// A branch checks once in this many steps whether it is to stop.
 const HALT_CHECK_STEPS: u64 = 64;
 
-/// What came of a decision, from the moment of the decision on.
+/// The outcome of a decision, from the moment of the decision on.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Outcome {
-    /// For each task, what was done and spent for it.
+    /// For each task, the deliveries and costs.
     pub tasks: Vec<TaskTotals>,
     /// Percent points of energy and of HP that robots spent outside any group.
     pub ungrouped: [f64; 2],
-    /// Simulated time in which that came about, in seconds.
+    /// Simulated time that the outcome covers, in seconds.
     pub duration_s: f64,
     /// Whether the trial ended before the round did.
     pub is_cut: bool,
 }
 
 impl Outcome {
-    /// All tasks together, with what was spent outside any group.
+    /// The totals of all tasks, with the costs outside any group.
     #[must_use]
     pub fn total(&self) -> TaskTotals {
         let [energy, hp] = self.ungrouped;
@@ -38,7 +38,7 @@ impl Outcome {
         })
     }
 
-    /// What was counted in a trial so far.
+    /// The counts of a trial so far.
     fn so_far(trial: &Simulation) -> Self {
         let metrics = trial.metrics();
         Self {
@@ -66,7 +66,7 @@ impl Outcome {
     }
 }
 
-/// A branch that came to nothing.
+/// Why a branch has no outcome.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum BranchError {
@@ -89,12 +89,12 @@ pub enum BranchError {
     /// The trial failed.
     #[error("{0}")]
     Failed(String),
-    /// It was told to stop.
+    /// The branch was told to stop.
     #[error("it was halted")]
     Halted,
 }
 
-/// Lets a decider play a trial until the question of a round waits for its answer.
+/// Lets a decider play a trial until the question of a round awaits its answer.
 ///
 /// # Errors
 /// The trial ends before that round, fails, or is halted.
@@ -105,7 +105,8 @@ pub fn advance_to(
     halt: &AtomicBool,
 ) -> Result<(), BranchError> {
     loop {
-        // A step would let the decider answer: the question is looked at first.
+        // `advance` stops at a question, whereas `step` would let the decider answer it. The round is
+        // checked in between.
         match trial.advance() {
             Advance::Asks(question) if question.round == round => return Ok(()),
             Advance::Over(Status::Failed(reason)) => return Err(BranchError::Failed(reason)),
@@ -126,19 +127,19 @@ fn look(trial: &Simulation, halt: &AtomicBool) -> Result<(), BranchError> {
     if is_halted { Err(BranchError::Halted) } else { Ok(()) }
 }
 
-/// A trial that goes on from a decision.
+/// A trial that continues from a decision.
 pub struct Branch {
     trial: Simulation,
-    /// What was counted when the decision was made.
+    /// The counts at the moment of the decision.
     before: Outcome,
     round: u32,
 }
 
 impl Branch {
-    /// Decides in a trial whose question waits.
+    /// Decides in a trial whose question awaits its answer.
     ///
     /// # Errors
-    /// No question waits, or the decision does not answer it.
+    /// No question is open, or the decision does not answer it.
     pub fn begin(start: &Checkpoint, decision: Decision) -> Result<Self, BranchError> {
         let mut trial = start.resume();
         let round = trial.question().ok_or(BranchError::NotAsked)?.round;
@@ -150,7 +151,7 @@ impl Branch {
         Ok(Self { trial, before, round })
     }
 
-    /// Goes on to the end of the round, or of the trial where that comes first.
+    /// Continues to the end of the round, or of the trial if that comes first.
     ///
     /// # Errors
     /// The trial fails or is halted.
@@ -167,7 +168,7 @@ impl Branch {
         Ok(Outcome::so_far(&self.trial).since(&self.before, is_cut))
     }
 
-    /// Goes on to the end of the trial; `onwards` decides what is asked later.
+    /// Continues to the end of the trial; `onwards` answers the later questions.
     ///
     /// # Errors
     /// The trial fails or is halted.
@@ -185,14 +186,14 @@ impl Branch {
         }
     }
 
-    /// The record of the trial as far as it was run.
+    /// The record of the trial up to now.
     #[must_use]
     pub fn finish(self) -> TrialRecord {
         self.trial.finish()
     }
 }
 
-/// What comes of a decision: to the end of the round, or to the end of the trial where a policy goes on.
+/// The outcome of a decision: to the end of the round, or, if a policy continues, to the end of the trial.
 ///
 /// # Errors
 /// The decision does not answer the question; the trial fails or is halted.

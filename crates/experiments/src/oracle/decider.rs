@@ -1,5 +1,5 @@
-//! `ORACLE`: the assignment of which most comes, known by playing them all. No policy: it sees the trial
-//! that asks.
+//! `ORACLE`: chooses the assignment with the best outcome, known by playing every assignment. It is not a
+//! policy, because it sees the trial that asks.
 
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
@@ -19,7 +19,7 @@ use crate::metric::task_names;
 pub enum Horizon {
     /// To the end of the round.
     Round,
-    /// To the end of the trial, in which another policy goes on.
+    /// To the end of the trial. Another policy decides the later rounds.
     Trial,
 }
 
@@ -27,13 +27,13 @@ pub enum Horizon {
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct OracleOptions {
-    /// What it maximises, or minimises if it is a cost.
+    /// The metric that it maximises, or minimises if it is a cost.
     pub metric: String,
     /// How far it looks ahead.
     pub horizon: Horizon,
-    /// The policy that goes on after the round, if it looks ahead to the end of the trial.
+    /// The policy that decides after the round, if the horizon is the trial.
     pub then: String,
-    /// Most assignments that it plays for one decision.
+    /// Largest number of assignments that it plays for one decision.
     pub limit: u64,
 }
 
@@ -61,7 +61,7 @@ impl OracleOptions {
     }
 }
 
-/// `ORACLE` where there is no trial to play in: it has no answer.
+/// `ORACLE` without a trial to play in: it cannot answer.
 #[derive(Debug, Clone)]
 pub struct NotSimulated(
     /// Its options.
@@ -72,7 +72,7 @@ impl NotSimulated {
     /// Name of the oracle among the policies.
     pub const NAME: &'static str = "ORACLE";
 
-    /// The registry's line.
+    /// The oracle's entry in the registry.
     #[must_use]
     pub fn kind() -> PolicyKind {
         let about = "the assignment of which most comes in the round, known by playing them all";
@@ -90,7 +90,7 @@ impl Policy for NotSimulated {
     }
 }
 
-/// The oracle at work in a trial.
+/// The oracle in a trial.
 #[derive(Clone)]
 pub struct Oracle {
     options: OracleOptions,
@@ -98,7 +98,7 @@ pub struct Oracle {
 }
 
 impl Oracle {
-    /// With these options; `onwards` decides the rest of the trial, if it looks that far.
+    /// An oracle with these options; `onwards` decides the rest of the trial, if the horizon is the trial.
     #[must_use]
     pub fn new(options: OracleOptions, onwards: Option<Arc<dyn Policy>>) -> Self {
         Self { options, onwards }

@@ -1,10 +1,10 @@
-//! What would have come of every other assignment: each one is played in the trial that asks, with the same
+//! The outcome of every other assignment: each assignment is played in the trial that asks, with the same
 //! random streams.
 //!
-//! The paper's team of six carriers, four suppliers and two observers has 240 assignments over two tasks.
-//! The best of them is what a policy with perfect foresight would choose; the *regret* of a decision is how
-//! far it stays behind. Robots of one role differ at least in where they are, so that none is exchangeable
-//! for another and every assignment is played.
+//! The paper's team of six carriers, four suppliers and two observers has 240 assignments over two tasks. A
+//! policy with perfect foresight would choose the best of them. The *regret* of a decision is its distance
+//! from the best one. Robots of one role differ at least in their positions. No robot is therefore
+//! exchangeable for another, and every assignment is played.
 
 mod branch;
 mod decider;
@@ -16,5 +16,5 @@ pub use decider::{Horizon, NotSimulated, Oracle, OracleOptions};
 pub use objective::{Objective, UnknownObjective};
 pub use survey::{Coverage, Evaluation, Standing, Survey, survey};
 
-/// Assignments that are played, unless another limit is asked for.
+/// Largest number of assignments that are played, unless another limit is given.
 pub const DEFAULT_LIMIT: u64 = 1_000;

@@ -1,4 +1,4 @@
-//! What a decision is judged by.
+//! Objectives: the quantities by which decisions are judged.
 
 use std::fmt;
 
@@ -10,13 +10,13 @@ use crate::metric::TOTAL;
 
 type Value = fn(&TaskTotals, f64) -> Option<f64>;
 
-/// A quantity of what came of a decision, whatever the tasks are.
+/// A quantity of a decision's outcome, independent of the scenario's tasks.
 struct Quantity {
     name: &'static str,
     title: &'static str,
     unit: &'static str,
     is_cost: bool,
-    /// From totals and the time in seconds in which they came about.
+    /// Computed from totals and the time in seconds that they cover.
     value: Value,
 }
 
@@ -51,13 +51,13 @@ pub struct Objective {
     task: Option<usize>,
 }
 
-/// A name that is no objective.
+/// An unknown name of an objective.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("unknown metric {found:?}; decisions are judged by {}", known.join(", "))]
 pub struct UnknownObjective {
-    /// The name.
+    /// The unknown name.
     pub found: String,
-    /// The names that there are.
+    /// The known names.
     pub known: Vec<String>,
 }
 
@@ -114,7 +114,7 @@ impl Objective {
         QUANTITIES[self.quantity].is_cost
     }
 
-    /// Its value; `None` where it is undefined, as a cost per rescuee without rescuees.
+    /// Its value; `None` where it is undefined, such as a cost per rescuee without rescuees.
     #[must_use]
     pub fn value(&self, outcome: &Outcome) -> Option<f64> {
         let totals = match self.task {
@@ -124,7 +124,7 @@ impl Objective {
         (QUANTITIES[self.quantity].value)(&totals, outcome.duration_s).filter(|value| value.is_finite())
     }
 
-    /// Its value, turned so that more is better.
+    /// Its value, with the sign chosen so that more is better.
     #[must_use]
     pub fn score(&self, outcome: &Outcome) -> Option<f64> {
         self.value(outcome).map(|value| if self.is_cost() { -value } else { value })

@@ -1,4 +1,4 @@
-//! All assignments of a question, or a sample of them with a local search, each with what comes of it.
+//! All assignments of a question, or a sample of them with a local search, each with its outcome.
 
 use std::collections::BTreeSet;
 
@@ -7,62 +7,62 @@ use rne_core::{Assignment, Question, assignments};
 use super::branch::{BranchError, Outcome};
 use super::objective::Objective;
 
-/// An assignment and what came of it.
+/// An assignment and its outcome.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Evaluation {
     /// The assignment.
     pub assignment: Assignment,
-    /// What came of it.
+    /// The outcome of the assignment.
     pub outcome: Outcome,
 }
 
 /// Which of the assignments were played.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Coverage {
-    /// All: the best of them is the best there is.
+    /// All of them: the best one in the survey is the best there is.
     All,
-    /// A random sample and what a local search found from the best of it: the best of them may not be the
-    /// best there is, so that a regret is a lower bound.
+    /// A random sample, and the assignments that a local search from the best of them played. A better
+    /// assignment may exist, so that a regret is a lower bound.
     Sample {
-        /// Assignments that there are; `u64::MAX` for that many and more.
+        /// Number of assignments that exist; `u64::MAX` stands for that many or more.
         of: u64,
-        /// Those that were drawn, or named by a policy.
+        /// Number of assignments that were drawn or named by a policy.
         drawn: usize,
-        /// Those that the local search played besides.
+        /// Number of assignments that the local search added.
         searched: usize,
     },
 }
 
-/// Assignments of one question and what came of them.
+/// Assignments of one question and their outcomes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Survey {
     /// Each assignment once.
     pub evaluations: Vec<Evaluation>,
-    /// Whether these are all.
+    /// Whether these are all assignments.
     pub coverage: Coverage,
 }
 
-/// Where an assignment stands among those that were played.
+/// Rank, regret and value of an assignment among the played assignments.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Standing {
     /// 1 for the best; assignments with equal values share a rank.
     pub rank: usize,
-    /// Value of the best minus its own, turned so that it is never negative.
+    /// Regret: distance of its value to the best value, never negative.
     pub regret: f64,
     /// Its value.
     pub value: f64,
 }
 
 impl Survey {
-    /// What came of an assignment, if it was played.
+    /// The outcome of an assignment, if it was played.
     #[must_use]
     pub fn of(&self, assignment: &Assignment) -> Option<&Outcome> {
         let found = self.evaluations.iter().find(|evaluation| evaluation.assignment == *assignment);
         found.map(|evaluation| &evaluation.outcome)
     }
 
-    /// The evaluations for which an objective is defined, the best first; equals in the order in which they
-    /// were played.
+    /// The evaluations for which an objective is defined, the best first. Equal ones are in the order in
+    /// which they were played.
     #[must_use]
     pub fn ranked(&self, objective: &Objective) -> Vec<&Evaluation> {
         let mut scored: Vec<(f64, &Evaluation)> = self
@@ -74,7 +74,7 @@ impl Survey {
         scored.into_iter().map(|(_, evaluation)| evaluation).collect()
     }
 
-    /// Where an assignment stands; `None` if it was not played or has no value.
+    /// The standing of an assignment; `None` if it was not played or has no value.
     #[must_use]
     pub fn standing(&self, objective: &Objective, assignment: &Assignment) -> Option<Standing> {
         let outcome = self.of(assignment)?;
@@ -88,7 +88,7 @@ impl Survey {
         Some(Standing { rank: better + 1, regret: best - score, value: objective.value(outcome)? })
     }
 
-    /// Values of the best and of the worst assignment; `None` where none has a value.
+    /// Values of the best and of the worst assignment; `None` if no assignment has a value.
     #[must_use]
     pub fn range(&self, objective: &Objective) -> Option<[f64; 2]> {
         let ranked = self.ranked(objective);
@@ -96,7 +96,7 @@ impl Survey {
         Some([ranked.first().and_then(value)?, ranked.last().and_then(value)?])
     }
 
-    /// Mean value over all assignments that were played and have one: what a fair draw comes to.
+    /// Mean value over all played assignments that have one: the expected value of a fair draw.
     #[must_use]
     pub fn mean(&self, objective: &Objective) -> Option<f64> {
         let values: Vec<f64> =
@@ -105,11 +105,12 @@ impl Survey {
     }
 }
 
-/// Plays all assignments of a question if there are at most `limit`. If there are more, plays those that
-/// are `named`, a uniform sample that fills half of the limit, and then goes from the best to its best
-/// neighbour (two robots of one role change places) until no neighbour is better or the limit is reached.
+/// Plays all assignments of a question if there are at most `limit`. If there are more, plays the `named`
+/// assignments and a uniform sample that fills half of the limit. A local search then moves from the best
+/// assignment to its best neighbour (two robots of one role change places), until no neighbour is better or
+/// the limit is reached.
 ///
-/// `play` says what comes of a batch of assignments, in their order.
+/// `play` returns the outcomes of a batch of assignments, in their order.
 ///
 /// # Errors
 /// Those of `play`.
@@ -159,14 +160,14 @@ fn evaluations(assignments: Vec<Assignment>, outcomes: Vec<Outcome>) -> Vec<Eval
     pairs.map(|(assignment, outcome)| Evaluation { assignment, outcome }).collect()
 }
 
-/// The named assignments and random ones, each once. The draws are those of the question, so that the
-/// sample is the same whoever asks for it.
+/// The named assignments and random assignments, each once. The draws depend on the question alone, so that
+/// every caller gets the same sample.
 fn sample(question: &Question, named: &[Assignment], count: usize) -> Vec<Assignment> {
     let mut known = BTreeSet::new();
     let mut sample: Vec<Assignment> =
         named.iter().filter(|assignment| known.insert(assignment.groups.clone())).cloned().collect();
     let mut draws = question.draws();
-    // There are more assignments than are drawn: few draws hit a known one.
+    // There are more assignments than draws, so that few draws repeat a known assignment.
     for _ in 0..4 * count {
         if sample.len() >= count {
             break;

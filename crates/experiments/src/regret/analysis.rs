@@ -1,4 +1,4 @@
-//! What a study of regret comes to.
+//! The analysis of a study of regret.
 
 use rne_core::Assignment;
 use serde::Serialize;
@@ -23,13 +23,13 @@ pub struct Estimate {
 }
 
 impl Estimate {
-    /// Of one value a trial.
+    /// The mean of one value for each trial.
     fn mean(values: &[f64]) -> Option<Self> {
         let value = values.iter().sum::<f64>() / values.len() as f64;
         (!values.is_empty()).then(|| Self { value, interval: interval(values, CONFIDENCE) })
     }
 
-    /// Of the sums of two quantities of each trial; absent where the second sum is 0.
+    /// The ratio of the sums of two quantities of each trial; `None` if the second sum is 0.
     fn ratio(pairs: &[[f64; 2]]) -> Option<Self> {
         let [over, under] = [0, 1].map(|i| pairs.iter().map(|pair| pair[i]).sum::<f64>());
         (under != 0.0).then(|| Self { value: over / under, interval: ratio_interval(pairs, CONFIDENCE) })
@@ -53,7 +53,7 @@ pub struct DecisionRow {
     pub rank: usize,
     /// Value of its choice.
     pub value: f64,
-    /// Value of the best minus its own, or the other way round for a cost.
+    /// Distance of its value to the best value, never negative.
     pub regret: f64,
     /// Value of the best assignment.
     pub best: f64,
@@ -63,7 +63,7 @@ pub struct DecisionRow {
     pub worst: f64,
     /// Assignments that were played.
     pub played: usize,
-    /// Whether these are all.
+    /// Whether all assignments were played.
     pub is_exact: bool,
 }
 
@@ -78,32 +78,33 @@ pub struct PolicyRegret {
     pub best: Option<Estimate>,
     /// Mean share of the assignments that are better.
     pub outranked: Option<Estimate>,
-    /// Of what lies between a fair draw and the best assignment, the share that it achieves: 0 for a fair
-    /// draw, 1 for the best.
+    /// The share of the distance from a fair draw to the best assignment that the policy achieves: 0 for a
+    /// fair draw, 1 for the best.
     pub achieved: Option<Estimate>,
 }
 
-/// How a feature goes with the outcome.
+/// The correlation of a feature with the outcome.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct FeatureRow {
     /// The feature.
     pub feature: &'static str,
-    /// Mean rank correlation with the value, turned so that + is better, over decisions in which both vary.
+    /// Mean rank correlation with the value, with the sign chosen so that + is better, over the decisions
+    /// in which both vary.
     pub correlation: Option<Estimate>,
-    /// Those decisions.
+    /// Number of these decisions.
     pub decisions: usize,
 }
 
-/// What a study comes to, by one objective.
+/// The results of a study, by one objective.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Analysis {
     /// The objective.
     pub metric: String,
-    /// Trials.
+    /// Number of trials.
     pub trials: usize,
-    /// Decisions in which the objective is defined.
+    /// Number of decisions in which the objective is defined.
     pub decisions: usize,
-    /// Decisions of which all assignments were played.
+    /// Number of decisions of which all assignments were played.
     pub exact: usize,
     /// Share of the decisions in which the best assignment is better than the worst.
     pub matters: Option<Estimate>,
@@ -111,7 +112,7 @@ pub struct Analysis {
     pub spread: Option<Estimate>,
     /// Mean over decisions of the best value.
     pub best: Option<Estimate>,
-    /// Mean over decisions of the mean value: what a fair draw comes to.
+    /// Mean over decisions of the mean value: the expected value of a fair draw.
     pub drawn: Option<Estimate>,
     /// Mean over decisions of the worst value.
     pub worst: Option<Estimate>,
@@ -124,13 +125,13 @@ pub struct Analysis {
     pub rows: Vec<DecisionRow>,
 }
 
-/// One decision, looked at.
+/// One decision, evaluated.
 struct Looked {
     trial: u32,
     range: [f64; 2],
     mean: f64,
     is_exact: bool,
-    /// For each policy, where its choice stands.
+    /// For each policy, the standing of its choice.
     standings: Vec<Option<Standing>>,
     played: usize,
     correlations: Vec<Option<f64>>,
@@ -220,7 +221,7 @@ fn rows_of<'a>(
     labels.iter().zip(&looked.standings).filter_map(row)
 }
 
-/// For each trial, the mean of a quantity over its decisions in which it is defined.
+/// For each trial, the mean of a quantity over those of its decisions in which it is defined.
 fn by_trial(looked: &[Looked], value: impl Fn(&Looked) -> Option<f64>) -> Vec<f64> {
     let trials = looked.chunk_by(|a, b| a.trial == b.trial);
     let mean = |decisions: &[Looked]| {
@@ -267,7 +268,8 @@ fn summary(objective: &Objective, labels: &[&str], looked: &[Looked], rows: Vec<
     }
 }
 
-/// For each trial: what a policy gains over a fair draw, and what the best assignments gain.
+/// For each trial: the sums over its decisions of what a policy gains over a fair draw, and of what the
+/// best assignment gains.
 fn achieved(looked: &[Looked], policy: usize) -> Vec<[f64; 2]> {
     let trials = looked.chunk_by(|a, b| a.trial == b.trial);
     let sums = |decisions: &[Looked]| {

@@ -1,4 +1,4 @@
-//! One decision of a study: the question, and what comes of every assignment.
+//! One decision of a study: the question, and the outcome of every assignment.
 
 use std::sync::atomic::AtomicBool;
 
@@ -9,33 +9,33 @@ use usar_sim::simulation::{Advance, Decider, Simulation};
 
 use crate::oracle::{BranchError, Coverage, Evaluation, Objective, Outcome, Survey, play, survey};
 
-/// A decision, and what comes of every assignment that was played.
+/// A decision, and the outcomes of the assignments that were played.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct PlayedDecision {
-    /// What was asked, with what earlier rounds came to.
+    /// The question, with the results of earlier rounds.
     pub question: Question,
-    /// When, in seconds.
+    /// Time of the question, in seconds.
     pub time_s: f64,
-    /// What was answered in this trial.
+    /// The assignment that the trial went on with.
     pub chosen: Assignment,
     /// The assignments that were played; `None` for all that the quotas allow, in the order of
     /// [`rne_core::assignments::all`].
     pub sample: Option<Sample>,
-    /// What came of each.
+    /// The outcome of each assignment.
     pub outcomes: Vec<Outcome>,
 }
 
-/// The assignments that were played where there are too many for all.
+/// The assignments that were played, if there are too many to play all.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Sample {
     /// The assignments.
     pub assignments: Vec<Assignment>,
-    /// Those that were drawn or named.
+    /// Number of assignments that were drawn or named; the local search added the others.
     pub drawn: usize,
 }
 
 impl PlayedDecision {
-    /// The assignments and what came of them.
+    /// The assignments and their outcomes.
     #[must_use]
     pub fn survey(&self) -> Survey {
         let (all, coverage) = match &self.sample {
@@ -52,21 +52,21 @@ impl PlayedDecision {
     }
 }
 
-/// How decisions are played.
+/// Settings for playing decisions.
 pub struct Plan<'a> {
-    /// What a local search looks for where not all assignments can be played.
+    /// The objective of the local search, which is used if not all assignments can be played.
     pub objective: &'a Objective,
-    /// Most assignments of one decision.
+    /// Largest number of assignments played for one decision.
     pub limit: u64,
-    /// The policy that decides the rest of the trial; none to play to the end of the round.
+    /// The policy that decides the rest of the trial; `None` to play to the end of the round only.
     pub onwards: Option<&'a dyn Policy>,
-    /// Policies whose choices are played in any case.
+    /// Policies whose choices are always played.
     pub named: &'a [&'a dyn Policy],
-    /// The rounds that are played; empty for all.
+    /// The rounds whose decisions are played; empty for all.
     pub rounds: &'a [u32],
 }
 
-/// Plays a trial in which `driver` decides, and at each decision every other assignment.
+/// Plays a trial in which `driver` decides. At each decision, every other assignment is played as well.
 ///
 /// # Errors
 /// The layout cannot be drawn, the trial or a branch of it fails, or it was halted.
@@ -105,7 +105,7 @@ impl Plan<'_> {
         let start = trial.checkpoint();
         let mut named = vec![decision.assignment.clone()];
         for policy in self.named {
-            // A policy that cannot group this team is left out of the tables, too.
+            // A policy that cannot group this team is skipped. The tables leave it out, too.
             named.extend(policy.decide(&question).map(|decision| decision.assignment));
         }
         let outcome = |assignment: &Assignment| {

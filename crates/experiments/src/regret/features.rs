@@ -1,18 +1,18 @@
-//! Features of an assignment that a policy can see before it decides, and that may predict what comes of it.
+//! Features of an assignment that a policy can see before it decides, and that may predict the outcome.
 
 use rne_core::policies::rne::Rne;
 use rne_core::{Assignment, Member, NeedDistribution, NeedWeights, Question, RneOptions, relative_entropy};
 
 use crate::rounds::{energy, hp};
 
-/// A feature: a number of each assignment.
+/// A feature: a number computed for each assignment.
 pub struct Feature {
-    /// In words.
+    /// Name in words.
     pub name: &'static str,
     value: fn(&Seen, &Assignment) -> Option<f64>,
 }
 
-/// What features are computed of.
+/// The data from which features are computed.
 struct Seen<'q> {
     question: &'q Question,
     rne: Rne,
@@ -31,7 +31,7 @@ pub const FEATURES: [Feature; 9] = [
     Feature { name: "way from the homes to the tasks", value: |seen, a| seen.way(a) },
 ];
 
-/// The value of each feature for each assignment; nothing where it is undefined.
+/// The value of each feature for each assignment; `None` where it is undefined.
 #[must_use]
 pub fn values(question: &Question, assignments: &[&Assignment]) -> Vec<Vec<Option<f64>>> {
     let Ok(rne) = Rne::new(RneOptions::default()) else { return Vec::new() };
@@ -62,7 +62,8 @@ impl Seen<'_> {
         Some((squares.iter().sum::<f64>() / squares.len() as f64).sqrt())
     }
 
-    /// The sum of the needs, each by its weight and as a share of its maximum over the team.
+    /// The sum over the hardest group's members of their weighted needs, each need as a share of its
+    /// maximum over the team.
     fn capability(&self, assignment: &Assignment) -> Option<f64> {
         let weights = self.rne.weights(self.question).ok()?;
         let of =
@@ -90,7 +91,7 @@ impl Seen<'_> {
         (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
     }
 
-    /// The sum over all robots of the way from where they are to their task, as the crow flies, in metres.
+    /// The sum over all robots of the straight-line distance from their homes to their tasks, in metres.
     fn way(&self, assignment: &Assignment) -> Option<f64> {
         let mut sum = 0.0;
         for member in &self.question.members {

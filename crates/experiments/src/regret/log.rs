@@ -1,4 +1,4 @@
-//! Outcomes on disk, so that a survey that was broken off goes on, and its result can be looked up.
+//! Outcomes on disk. An interrupted survey resumes from them, and results can be looked up in them.
 
 use std::collections::BTreeMap;
 use std::fs::{self, File};
@@ -14,23 +14,24 @@ use crate::failure::Failure;
 use crate::files;
 use crate::oracle::Outcome;
 
-/// Which decision outcomes are of.
+/// The decision to which outcomes belong.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct DecisionKey {
     /// Name of the scenario.
     pub scenario: String,
-    /// All that the scenario says.
+    /// The resolved scenario as text.
     pub resolved: String,
     /// Seed of the trial.
     pub seed: u64,
-    /// The policy that decided the rounds before, with its options.
+    /// The policy that decided the earlier rounds, with its options.
     pub base: String,
     /// The round.
     pub round: u32,
 }
 
 impl DecisionKey {
-    /// The file of its outcomes: names what people look for, and a hash of all that decides numbers.
+    /// The path of the decision's file. The name has what users look for, and a hash of everything that
+    /// decides numbers.
     #[must_use]
     pub fn path(&self, folder: &Path) -> PathBuf {
         let Program { version, source } = Program::this();
@@ -49,7 +50,7 @@ impl DecisionKey {
 /// One line of the file.
 #[derive(Serialize, Deserialize)]
 struct Line {
-    /// The policy that decided the rest of the trial; absent for the outcome of the round.
+    /// The policy that decided the rest of the trial; `None` for the outcome of the round.
     then: Option<String>,
     groups: Vec<Vec<u32>>,
     outcome: Outcome,
@@ -63,7 +64,7 @@ pub struct OutcomeLog {
 }
 
 impl OutcomeLog {
-    /// Opens the file of a decision, or begins it. Lines that were cut short are dropped.
+    /// Opens the file of a decision, or begins it. Incomplete lines are dropped.
     ///
     /// # Errors
     /// The file cannot be read or written.
@@ -84,26 +85,26 @@ impl OutcomeLog {
         Ok(Self { path, file, known })
     }
 
-    /// The outcomes of a decision, if there is a file of them.
+    /// The log of a decision, if its file exists.
     #[must_use]
     pub fn find(folder: &Path, key: &DecisionKey) -> Option<Self> {
         key.path(folder).is_file().then(|| Self::open(folder, key).ok()).flatten()
     }
 
-    /// What came of an assignment, if it was played.
+    /// The outcome of an assignment, if it was played.
     #[must_use]
     pub fn get(&self, then: Option<&str>, assignment: &Assignment) -> Option<&Outcome> {
         self.known.get(&(then.map(str::to_owned), assignment.groups.clone()))
     }
 
-    /// All assignments that were played, with what came of them.
+    /// All played assignments with their outcomes.
     pub fn outcomes(&self, then: Option<&str>) -> impl Iterator<Item = (Assignment, &Outcome)> {
         let is_asked = move |key: &(Option<String>, _)| key.0.as_deref() == then;
         let asked = self.known.iter().filter(move |(key, _)| is_asked(key));
         asked.map(|((_, groups), outcome)| (Assignment { groups: groups.clone() }, outcome))
     }
 
-    /// Adds what came of an assignment.
+    /// Adds the outcome of an assignment.
     ///
     /// # Errors
     /// The file cannot be written.
@@ -129,7 +130,7 @@ impl OutcomeLog {
 
 type Known = BTreeMap<(Option<String>, Vec<Vec<u32>>), Outcome>;
 
-/// The outcomes in a file, and how many bytes of it are sound.
+/// The outcomes in a file, and the number of bytes up to its first damaged line.
 fn read(file: &mut File) -> std::io::Result<(Known, u64)> {
     let (mut known, mut sound) = (BTreeMap::new(), 0);
     let mut reader = BufReader::new(file);

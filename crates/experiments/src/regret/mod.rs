@@ -1,5 +1,5 @@
-//! How good single decisions were: what would have come of every other assignment, decision by decision,
-//! and how far each policy stays behind the best.
+//! Regret: how good single decisions were. For each decision, the outcomes of every other assignment, and
+//! the distance of each policy's choice to the best one.
 
 mod analysis;
 mod decision;

@@ -1,5 +1,5 @@
-//! The study of regret: trials whose every decision is played in all ways, in a folder that survives being
-//! broken off.
+//! The study of regret: trials in which every assignment is played at every decision, in a folder that
+//! survives interruptions.
 
 use std::fs::{self, File};
 use std::io::{BufRead, BufReader, Write};
@@ -20,30 +20,31 @@ use crate::oracle::{BranchError, NotSimulated, Objective};
 const MANIFEST: &str = "study.json";
 const JOURNAL: &str = "decisions.jsonl";
 
-/// What a study is of: all that decides its numbers.
+/// The definition of a study: everything that decides its numbers.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Study {
     /// Its name.
     pub name: String,
     /// Names of the tasks.
     pub tasks: Vec<String>,
-    /// The scenario, all that it says.
+    /// The resolved scenario as text.
     pub scenario: String,
-    /// Policies, as they are written. Trial by trial, each in turn decides.
+    /// Policies, as written. They take turns in deciding, trial by trial.
     pub policies: Vec<String>,
     /// Seeds of the trials.
     pub seeds: Vec<u64>,
-    /// The policy that decides the rest of the trial after a decision; none to play to the end of its round.
+    /// The policy that decides the rest of the trial after a decision; `None` to play to the end of the
+    /// round only.
     pub then: Option<String>,
-    /// The rounds that are played; empty for all.
+    /// The rounds whose decisions are played; empty for all.
     pub rounds: Vec<u32>,
-    /// Most assignments of one decision.
+    /// Largest number of assignments played for one decision.
     pub limit: u64,
     /// Version and source of the program.
     pub program: [String; 2],
 }
 
-/// What the command line says.
+/// Settings from the command line.
 #[derive(Debug, Clone)]
 pub struct Choices {
     /// See [`Study::then`].
@@ -61,7 +62,7 @@ pub struct PlayedTrial {
     pub trial: u32,
     /// Its seed.
     pub seed: u64,
-    /// The policy that decided in it.
+    /// The policy that decided in this trial.
     pub driver: String,
     /// Its decisions.
     pub decisions: Vec<PlayedDecision>,
@@ -103,13 +104,13 @@ impl Study {
     /// The policies.
     ///
     /// # Errors
-    /// One that this program does not know.
+    /// A policy that this program does not know.
     pub fn specs(&self) -> Result<Vec<PolicySpec>, Failure> {
         let parse = |text: &String| PolicySpec::parse(text).map_err(Failure::input);
         self.policies.iter().map(parse).collect()
     }
 
-    /// Whether another study has the same numbers, as far as both have the same trials.
+    /// Whether another study gives the same numbers for the trials that both have.
     fn is_as(&self, other: &Self) -> bool {
         let without_seeds = |study: &Self| Self { seeds: Vec::new(), name: String::new(), ..study.clone() };
         let shared = self.seeds.len().min(other.seeds.len());
@@ -120,17 +121,17 @@ impl Study {
 /// The folder of a study.
 pub struct StudyFolder {
     path: PathBuf,
-    /// What it is of.
+    /// The study in the folder.
     pub study: Study,
-    /// The trials that are there, by number.
+    /// The finished trials, by number.
     pub trials: Vec<PlayedTrial>,
 }
 
 impl StudyFolder {
-    /// Opens the folder of a study to go on with it, or begins it.
+    /// Opens the folder of a study to resume it, or begins it.
     ///
     /// # Errors
-    /// The folder has another study, or one of another program.
+    /// The folder holds another study, or a study of another program.
     pub fn open(path: &Path, study: Study) -> Result<Self, Failure> {
         let trouble = |error| Failure::storage(format!("{}: {error}", path.display()));
         fs::create_dir_all(path).map_err(trouble)?;
@@ -150,7 +151,7 @@ impl StudyFolder {
         Ok(Self { path: path.to_owned(), study, trials: Vec::new() })
     }
 
-    /// Reads the folder of a study, whatever program made it.
+    /// Reads the folder of a study. The program that made it may be another one.
     ///
     /// # Errors
     /// It is not the folder of a study.
@@ -164,7 +165,7 @@ impl StudyFolder {
         if let Ok(journal) = files::open(&path.join(JOURNAL)) {
             for line in BufReader::new(journal).lines() {
                 let line = line.map_err(|error| bad(&error))?;
-                // A line that was cut short is a trial that is not there.
+                // An incomplete line counts as a missing trial.
                 let Ok(trial) = serde_json::from_str::<PlayedTrial>(&line) else { continue };
                 let place = trial.trial.checked_sub(1).map(|place| place as usize);
                 let is_ours = place.and_then(|place| study.seeds.get(place)) == Some(&trial.seed);
@@ -177,17 +178,17 @@ impl StudyFolder {
         Ok(Self { path: path.to_owned(), study, trials })
     }
 
-    /// Numbers of the trials that are not there yet.
+    /// Numbers of the missing trials.
     #[must_use]
     pub fn missing(&self) -> Vec<u32> {
         let is_there = |number: &u32| self.trials.iter().any(|trial| trial.trial == *number);
         (1..=self.study.seeds.len() as u32).filter(|number| !is_there(number)).collect()
     }
 
-    /// Plays the trials that are not there yet, on the threads of the current pool; `done` hears of each.
+    /// Plays the missing trials on the threads of the current pool, and calls `done` after each.
     ///
     /// # Errors
-    /// A trial fails, the folder cannot be written, or the study is halted; what was played stays.
+    /// A trial fails, the folder cannot be written, or the study is halted. Finished trials are kept.
     pub fn play_missing(
         &mut self,
         experiment: &Experiment,
@@ -198,7 +199,7 @@ impl StudyFolder {
         let trouble = |error| Failure::storage(format!("{}: {error}", path.display()));
         files::check_is_file(&path).map_err(trouble)?;
         let mut journal = File::options().create(true).append(true).open(&path).map_err(trouble)?;
-        // A line that was cut short ends here.
+        // Ends an incomplete last line.
         if journal.metadata().map_err(trouble)?.len() > 0 {
             journal.write_all(b"\n").map_err(trouble)?;
         }
@@ -221,7 +222,7 @@ impl StudyFolder {
         Ok(())
     }
 
-    /// Where it is.
+    /// Path of the folder.
     #[must_use]
     pub fn path(&self) -> &Path {
         &self.path

@@ -1,4 +1,6 @@
-//! Relative entropy compares proportions: robots that differ in everything can trust each other fully. An example from real trials.
+//! The blindness of relative entropy to magnitude. Relative entropy compares proportions: two robots whose
+//! levels differ greatly can have full trust in each other. This module looks for an example in real
+//! trials.
 
 use rne_core::policies::rne::Rne;
 use rne_core::{Member, NeedDistribution, NeedWeights, relative_entropy};
@@ -6,25 +8,25 @@ use rne_core::{Member, NeedDistribution, NeedWeights, relative_entropy};
 use super::{Round, energy, hp};
 use crate::failure::Failure;
 
-/// Entropies below this, in nats, are rounding.
+/// Smaller entropies, in nats, are rounding errors.
 const LEAST_NATS: f64 = 1e-9;
 
-/// Levels that are nearer than this, in percent points, are the same.
+/// Smaller distances between levels, in percent points, count as equal levels.
 const LEAST_POINTS: f64 = 2.0;
 
 /// Two robots of one role in one round.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Pair {
-    /// The one that trusts.
+    /// The robot that trusts.
     pub from: Member,
-    /// The one that is trusted.
+    /// The robot that is trusted.
     pub to: Member,
     /// Relative needs entropy, in nats.
     pub rne: f64,
 }
 
 impl Pair {
-    /// How far their levels are apart: the distance of (energy, HP), in percent points.
+    /// Distance between their levels (energy, HP), in percent points.
     #[must_use]
     pub fn apart(&self) -> f64 {
         apart(&self.from, &self.to)
@@ -35,14 +37,15 @@ fn apart(a: &Member, b: &Member) -> f64 {
     (energy(a) - energy(b)).hypot(hp(a) - hp(b))
 }
 
-/// How blind to magnitude relative entropy was in some rounds.
+/// How blind relative entropy was to magnitude in some rounds.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Blindness {
-    /// The plainest example: the one pair is as many times as far apart as the other, and the other has as many times the entropy, or more.
+    /// The clearest example: one pair is farther apart by some factor, and the other pair has the higher
+    /// entropy by the same factor or more.
     pub plainest: Option<Example>,
-    /// Pairs of pairs of one role and round that differ in both.
+    /// Number of comparisons between pairs of one role and round that differ in both distance and entropy.
     compared: u64,
-    /// Those of which the one with levels nearer to each other has the higher entropy.
+    /// Number of these comparisons in which the pair with the nearer levels has the higher entropy.
     misjudged: u64,
 }
 
@@ -55,24 +58,25 @@ pub struct Example {
     pub seed: u64,
     /// Number of the round.
     pub round: u32,
-    /// The role of all of them.
+    /// The role of all these robots.
     pub role: String,
-    /// The one is farther apart in its levels.
+    /// The pair whose levels are farther apart.
     pub unlike: Pair,
-    /// The other is nearer to each other, but has the higher entropy.
+    /// The pair whose levels are nearer, but which has the higher entropy.
     pub alike: Pair,
-    /// How plain it is: the lesser of the two ratios.
+    /// How clear the example is: the lesser of the two ratios.
     plain: f64,
 }
 
 impl Blindness {
-    /// Share of the pairs of pairs of one role and round of which the one with levels nearer to each other has the higher entropy.
+    /// The share of comparisons between pairs of one role and round in which the pair with the nearer
+    /// levels has the higher entropy.
     #[must_use]
     pub fn misjudged(&self) -> Option<f64> {
         (self.compared > 0).then(|| self.misjudged as f64 / self.compared as f64)
     }
 
-    /// Takes a round into account. Pairs of infinite entropy are left out.
+    /// Adds a round. Pairs with infinite entropy are left out.
     ///
     /// # Errors
     /// Needs or weights that cannot be used.
@@ -140,7 +144,7 @@ impl Blindness {
     }
 }
 
-/// Two members by their places.
+/// Two members, by their places.
 struct Candidate {
     i: usize,
     j: usize,
@@ -166,8 +170,9 @@ mod tests {
         assert_eq!(ids, [0, 1]);
         assert!(example.unlike.rne < 1e-6 && example.alike.rne > 1e-3);
         assert!(example.alike.apart() < example.unlike.apart());
-        // Of the three distances, 0-1 is the greatest and has the least entropy. The two directions of a pair are equally far apart and are not compared
-        // with each other, so that there are 12 comparisons, 4 for each two distances; those of 0-1 are all misjudged.
+        // Of the three distances, 0-1 is the greatest and has the least entropy. The two directions of a
+        // pair are equally far apart and are not compared with each other. This leaves 12 comparisons, 4
+        // for each two distances. All comparisons with 0-1 are misjudged.
         assert!(found.misjudged().unwrap() >= 8.0 / 12.0, "{:?}", found.misjudged());
         assert_eq!(Blindness::default().misjudged(), None);
     }

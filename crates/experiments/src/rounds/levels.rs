@@ -11,13 +11,14 @@ pub struct GroupLevels {
     pub policy: String,
     /// Number of the round, from 1.
     pub round: u32,
-    /// Rounds in which each task's group had members: what the means are over.
+    /// Number of rounds over which the means are taken: those in which each task's group had members.
     pub count: usize,
     /// Mean energy and HP of each task's group, in the order of the table of tasks.
     pub groups: Vec<[f64; 2]>,
 }
 
-/// Of all rounds of one policy, the means for each round in which each task's group had members.
+/// The mean levels of one policy for each round number, over the rounds in which each task's group had
+/// members.
 #[must_use]
 pub fn levels(label: &str, rounds: &[Round]) -> Vec<GroupLevels> {
     let mut by_round: BTreeMap<u32, Vec<Vec<[f64; 2]>>> = BTreeMap::new();
@@ -41,7 +42,7 @@ pub fn levels(label: &str, rounds: &[Round]) -> Vec<GroupLevels> {
     by_round.into_iter().map(of_round).collect()
 }
 
-/// Mean energy and HP of a task's group; `None` where it is empty.
+/// Mean energy and HP of a task's group; `None` if the group is empty.
 #[must_use]
 pub fn mean_levels(round: &Round, task: rne_core::TaskId) -> Option<[f64; 2]> {
     let members: Vec<_> = round.group(task).collect();

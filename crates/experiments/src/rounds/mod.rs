@@ -1,4 +1,5 @@
-//! Rounds as they were asked and answered: what a split amounts to, and how another policy would have split the same team.
+//! Rounds as question and answer: what a split amounts to, and how another policy would have split the same
+//! team.
 
 mod blindness;
 mod levels;
@@ -21,9 +22,9 @@ pub struct Round {
     pub trial: u32,
     /// Seed of the trial.
     pub seed: u64,
-    /// What was asked.
+    /// The question.
     pub question: Question,
-    /// What was answered.
+    /// The answer.
     pub decision: Decision,
 }
 
@@ -55,7 +56,7 @@ impl Round {
     /// How another policy would have grouped this team.
     ///
     /// # Errors
-    /// It cannot.
+    /// The policy cannot group this team.
     pub fn grouped_by(&self, policy: &dyn Policy) -> Result<Assignment, Failure> {
         Ok(policy.decide(&self.question).map_err(Failure::run)?.assignment)
     }
@@ -73,7 +74,8 @@ impl Round {
         self.question.hardest_first().into_iter().filter(has_members).collect()
     }
 
-    /// Whether an assignment is this round's: with the same tasks, and as a split, whichever group takes which task.
+    /// Whether an assignment equals this round's: first with the same tasks, second as a split, regardless
+    /// of which group takes which task.
     #[must_use]
     pub fn is_as(&self, assignment: &Assignment) -> [bool; 2] {
         let sorted = |assignment: &Assignment| {
@@ -105,7 +107,8 @@ pub(crate) mod testing {
 
     use super::Round;
 
-    /// Robots of one role with these levels (energy, HP), and the number of each one's task; the first task is the harder one.
+    /// Robots of one role, each with its levels (energy, HP) and the number of its task; the first task is
+    /// the harder one.
     pub(crate) fn round(robots: &[(f64, f64, usize)]) -> Round {
         let member = |(id, (energy, hp, _)): (u32, &(f64, f64, usize))| Member {
             id,

@@ -1,12 +1,12 @@
-//! How like splits are to sorting: each role sorted by a level, the upper half against the lower half.
+//! How similar splits are to sorting: each role sorted by a level, the upper half against the lower half.
 
 use rne_core::{Member, RoleId, TaskId};
 
 use super::{Round, energy, hp};
 
-/// What robots may be sorted by.
+/// A quantity by which robots may be sorted.
 pub struct Key {
-    /// In words.
+    /// Name in words.
     pub name: &'static str,
     value: fn(&Member) -> f64,
 }
@@ -18,7 +18,7 @@ pub const KEYS: [Key; 3] = [
     Key { name: "energy : HP", value: |robot| energy(robot) / hp(robot).max(f64::MIN_POSITIVE) },
 ];
 
-/// How often something was so, beside how often chance would have it so.
+/// How often something was true, and how often it would be by chance.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Share {
     times: f64,
@@ -33,43 +33,44 @@ impl Share {
         self.of += 1.0;
     }
 
-    /// The share; `None` where nothing was looked at.
+    /// The observed share; `None` without observations.
     #[must_use]
     pub fn share(&self) -> Option<f64> {
         (self.of > 0.0).then(|| self.times / self.of)
     }
 
-    /// The share by chance.
+    /// The share expected by chance; `None` without observations.
     #[must_use]
     pub fn chance(&self) -> Option<f64> {
         (self.of > 0.0).then(|| self.by_chance / self.of)
     }
 }
 
-/// Rounds of a policy with two groups against sorting by one key. Ties count as sorted either way, by chance as well.
+/// A policy's rounds with two groups, compared with sorting by one key. A tie counts as sorted in either
+/// order, also in the chance.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Likeness {
-    /// The whole split is that of sorting, whichever group takes which task.
+    /// Rounds in which the whole split equals sorting, regardless of which group takes which task.
     pub split: Share,
-    /// So is that of each role, in rounds in which both groups have some of it.
+    /// The same for each role alone, in rounds in which both groups have members of the role.
     pub roles: Vec<RoleShare>,
-    /// The group of the harder task has the higher mean; by chance, half of them.
+    /// Rounds in which the group of the harder task has the higher mean; one half by chance.
     pub harder_is_higher: Share,
 }
 
-/// One role against sorting by one key.
+/// One role, compared with sorting by one key.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct RoleShare {
     /// Name of the role.
     pub role: String,
-    /// Most members that it had in a round. A role of two has only one split.
+    /// Largest number of members that it had in a round. A role with two members has only one split.
     pub most: usize,
-    /// How often its split was that of sorting.
+    /// How often the role's split equals sorting.
     pub share: Share,
 }
 
 impl Likeness {
-    /// Takes a round into account, unless it has another number of groups than two.
+    /// Adds a round, if it has two groups.
     pub fn add(&mut self, round: &Round, key: &Key) {
         let Ok(tasks) = <[TaskId; 2]>::try_from(round.tasks()) else { return };
         let roles: Vec<RoleId> = round.question.role_ids().collect();
@@ -91,14 +92,14 @@ impl Likeness {
         self.roles.iter().filter(|role| role.most > 2)
     }
 
-    /// Rounds with two groups.
+    /// Number of rounds with two groups.
     #[must_use]
     pub fn rounds(&self) -> usize {
         self.split.of as usize
     }
 }
 
-/// How like these rounds are to sorting by each of [`KEYS`].
+/// How similar these rounds are to sorting by each of [`KEYS`].
 pub fn likeness<'r>(rounds: impl IntoIterator<Item = &'r Round>) -> [Likeness; 3] {
     let mut all: [Likeness; 3] = Default::default();
     for round in rounds {
@@ -111,7 +112,7 @@ fn members(round: &Round, task: TaskId, role: RoleId) -> impl Iterator<Item = &M
     round.group(task).filter(move |member| member.role == role)
 }
 
-/// Whether one group holds the upper robots of each of these roles, and the other the lower ones.
+/// Whether one group holds the upper robots of each of these roles, and the other group the lower robots.
 fn is_sorted(round: &Round, [a, b]: [TaskId; 2], key: &Key, roles: &[RoleId]) -> bool {
     let holds = |upper: TaskId, lower: TaskId| {
         roles.iter().all(|role| {
@@ -123,7 +124,7 @@ fn is_sorted(round: &Round, [a, b]: [TaskId; 2], key: &Key, roles: &[RoleId]) ->
     holds(a, b) || holds(b, a)
 }
 
-/// The share of all splits into groups of these sizes of which [`is_sorted`] would say so.
+/// The share of all splits into groups of these sizes for which [`is_sorted`] is true.
 fn chance(round: &Round, [a, _]: [TaskId; 2], key: &Key, roles: &[RoleId]) -> f64 {
     let (mut all, mut first_up, mut second_up, mut both) = (1.0, 1.0, 1.0, 1.0);
     for role in roles {
@@ -141,7 +142,8 @@ fn chance(round: &Round, [a, _]: [TaskId; 2], key: &Key, roles: &[RoleId]) -> f6
     (first_up + second_up - both) / all
 }
 
-/// Ways to choose the upper `upper` of values in falling order: more than one where values are tied at the border.
+/// Number of ways to choose the `upper` highest of values in falling order. There is more than one way if
+/// values are tied at the border.
 fn ways(values: &[f64], upper: usize) -> f64 {
     if upper == 0 || upper == values.len() {
         return 1.0;
@@ -152,7 +154,7 @@ fn ways(values: &[f64], upper: usize) -> f64 {
     choose(all, above)
 }
 
-/// Ways to choose so many of a number.
+/// Number of ways to choose `count` of `of`.
 fn choose(of: usize, count: usize) -> f64 {
     (0..count).map(|i| (of - i) as f64 / (i + 1) as f64).product::<f64>().round()
 }

@@ -1,4 +1,4 @@
-//! What answers the questions of a sweep's trials.
+//! The driver that answers the questions of a sweep's trials.
 
 use std::sync::Arc;
 
@@ -7,7 +7,7 @@ use usar_sim::simulation::{Decider, Simulation};
 
 use crate::oracle::Oracle;
 
-/// What answers the questions of a sweep's trials: a policy, or the oracle.
+/// A driver answers the questions of a sweep's trials: a policy, or the oracle.
 #[derive(Clone)]
 pub enum Driver {
     /// A policy: a function of the question.
@@ -17,7 +17,7 @@ pub enum Driver {
 }
 
 impl Driver {
-    /// The policy, if it is one.
+    /// The policy, unless it is the oracle.
     #[must_use]
     pub fn policy(&self) -> Option<&dyn Policy> {
         match self {

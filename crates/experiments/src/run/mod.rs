@@ -1,4 +1,5 @@
-//! Trials: one, those that policies share, and many of them on threads. It knows nothing of where results are kept.
+//! Running trials: a single trial, trials that policies share, and many trials on threads. This module does
+//! not know where results are stored.
 
 mod driver;
 mod pool;

@@ -1,4 +1,5 @@
-//! Trials on threads: one that fails, panics or takes too long is one outcome, and the others go on.
+//! Trials on threads. A trial that fails, panics or takes too long gives one failed outcome, and the others
+//! continue.
 
 use std::collections::BTreeMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -10,10 +11,10 @@ use std::time::{Duration, Instant};
 use super::trial::{Fault, FaultKind, Outcome, Trial, TrialKey};
 use crate::failure::{Failure, panic_message};
 
-/// How often the time limit and the wish to stop are looked at.
+/// How often the time limit and `stop` are checked.
 const WATCH_PERIOD: Duration = Duration::from_millis(100);
 
-/// What runs a trial; it should end soon when the flag is set.
+/// A function that runs a trial; it should end soon after the flag is set.
 pub type Run = dyn Fn(&TrialKey, &AtomicBool) -> Result<Trial, Fault> + Send + Sync;
 
 /// Bounds of a run.
@@ -36,7 +37,7 @@ struct Running {
     halt: Arc<AtomicBool>,
 }
 
-/// Trials that are still to be started.
+/// Trials that have not been started.
 type Queue = Box<dyn Iterator<Item = TrialKey> + Send>;
 
 struct Pool {
@@ -47,11 +48,12 @@ struct Pool {
     running: BTreeMap<usize, Running>,
 }
 
-/// Runs all trials and hands each outcome to `done` as it comes, in any order. A trial that takes too long is given up: its thread is
-/// left to itself and another takes its place. Returns whether all were run: not so when `stop` was set.
+/// Runs all trials and hands each outcome to `done` as it arrives, in any order. A trial that exceeds the
+/// time limit is abandoned: its thread is told to halt, and another thread takes its place. Returns false
+/// if `stop` interrupted the run.
 ///
 /// # Errors
-/// The threads cannot be started, or those of `done`, after which no further trial is started.
+/// The threads cannot be started; or the errors of `done`, after which no further trial is started.
 pub fn run_all(
     keys: Vec<TrialKey>,
     limits: Limits,
@@ -62,7 +64,7 @@ pub fn run_all(
     run_batches(keys.into_iter(), limits, run, stop, |outcomes| outcomes.into_iter().try_for_each(&mut done))
 }
 
-/// The same, where outcomes that came at one time are handed over together.
+/// The same as [`run_all`], but outcomes that arrive at the same time are handed over together.
 ///
 /// # Errors
 /// Those of [`run_all`].
@@ -125,21 +127,21 @@ impl Pool {
         started.map(drop).map_err(|error| Failure::run(format!("cannot start a thread: {error}")))
     }
 
-    /// What has come to an end since the last call, or was given up.
+    /// The outcomes that arrived since the last call, including trials that exceeded the time limit.
     fn next_outcomes(
         &mut self,
         receiver: &Receiver<Message>,
         longest: Option<Duration>,
     ) -> Result<Vec<Outcome>, Failure> {
         let mut outcomes = Vec::new();
-        // All that was said is heard before anybody is called late.
+        // All messages are read before any trial is declared late.
         let first = receiver.recv_timeout(WATCH_PERIOD).ok();
         for message in first.into_iter().chain(receiver.try_iter()) {
             match message {
                 Message::Started(worker, key, halt) => {
                     self.running.insert(worker, Running { key, since: Instant::now(), halt });
                 }
-                // The outcome of a worker that was given up comes too late.
+                // The outcome of an abandoned worker is dropped.
                 Message::Ended(worker, outcome) => {
                     outcomes.extend(self.running.remove(&worker).map(|_| *outcome));
                 }
@@ -159,7 +161,7 @@ impl Pool {
         Ok(outcomes)
     }
 
-    /// Lets nobody start another trial, and those under way end soon.
+    /// Starts no further trial, and tells the running trials to end soon.
     fn halt(&self) {
         if let Ok(mut queue) = self.queue.lock() {
             *queue = Box::new(std::iter::empty());

@@ -1,5 +1,5 @@
-//! Trials that policies share. A policy acts on a mission through its assignments alone. If a policy would form the same groups in every round,
-//! it reuses the finished trial instead of simulating it again.
+//! Trials that policies share. A policy acts on a mission only through its assignments. If a policy would
+//! form the same groups in every round, it reuses the finished trial instead of simulating it again.
 
 use std::collections::VecDeque;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -12,13 +12,15 @@ use usar_sim::scenario::Scenario;
 use super::driver::Driver;
 use super::trial::{Fault, Trial, run_trial};
 
-/// Scenarios and seeds whose trials are kept. Trials are run seed by seed, so that few are needed.
+/// Number of combinations of case and seed whose trials are kept. Few are needed, because trials are run
+/// seed by seed.
 const KEPT: usize = 16;
 
-/// Trials that are kept of each.
+/// Largest number of trials kept for each of them.
 const KEPT_OF_SEED: usize = 256;
 
-/// The finished trial as another policy would have it: the same, but for what it says of its decisions. `None` where it would form other groups.
+/// The finished trial as another policy would have run it: only the policy's account of its decisions
+/// differs. `None` if the policy would form other groups.
 fn as_decided_by(trial: &Trial, policy: &dyn Policy) -> Option<Trial> {
     let decide = |asked: &DecisionRecord| {
         let decision = policy.decide(&trial.record.question(asked)).ok()?;
@@ -34,7 +36,7 @@ fn as_decided_by(trial: &Trial, policy: &dyn Policy) -> Option<Trial> {
 /// The trials of one case and seed.
 type OfSeed = Arc<Mutex<Vec<Arc<Trial>>>>;
 
-/// Finished trials of the cases and seeds that were run last.
+/// Finished trials of the latest cases and seeds.
 pub struct SharedTrials {
     is_checked: bool,
     simulated: AtomicUsize,
@@ -42,13 +44,13 @@ pub struct SharedTrials {
 }
 
 impl SharedTrials {
-    /// None yet; whether every invariant is checked at every step.
+    /// An empty store; `is_checked` says whether every invariant is checked at every step.
     #[must_use]
     pub fn new(is_checked: bool) -> Self {
         Self { is_checked, simulated: AtomicUsize::new(0), latest: Mutex::default() }
     }
 
-    /// Runs a trial of a case, or finds it among those of other policies.
+    /// Runs a trial of a case, or reuses a trial of another policy.
     ///
     /// # Errors
     /// Those of [`run_trial`].
@@ -75,13 +77,13 @@ impl SharedTrials {
         Ok(trial)
     }
 
-    /// How many trials were simulated and not taken over.
+    /// Number of trials that were simulated instead of reused.
     #[must_use]
     pub fn simulated(&self) -> usize {
         self.simulated.load(Ordering::Relaxed)
     }
 
-    /// Lets go of all trials.
+    /// Frees all trials.
     pub fn forget(&self) {
         self.latest.lock().unwrap_or_else(PoisonError::into_inner).clear();
     }

@@ -1,4 +1,4 @@
-//! One trial of a sweep: its name, and what is kept of it.
+//! One trial of a sweep: its key, and its results.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -8,7 +8,7 @@ use usar_sim::record::{Status, TrialRecord};
 use usar_sim::scenario::Scenario;
 use usar_sim::simulation::{Decider, Simulation};
 
-/// A trial looks once in this many steps whether it is to stop.
+/// A trial checks once in this many steps whether it is to stop.
 const HALT_CHECK_STEPS: u64 = 64;
 
 /// Time between two points of a series, in seconds.
@@ -25,7 +25,7 @@ pub struct TrialKey {
     pub trial: u32,
     /// Seed of the trial.
     pub seed: u64,
-    /// What the sweep calls the policy.
+    /// The policy's label in the sweep.
     pub label: String,
 }
 
@@ -46,28 +46,28 @@ impl Trial {
     }
 }
 
-/// The times in seconds at which series tell what was delivered.
+/// The times in seconds at which series report the deliveries.
 pub fn series_times(duration_s: f64) -> impl Iterator<Item = f64> {
     (0..).map(|i| f64::from(i) * SERIES_PERIOD_S).take_while(move |time| *time <= duration_s)
 }
 
-/// A trial without numbers.
+/// Why a trial has no numbers.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Fault {
-    /// What kind of trouble.
+    /// The kind of fault.
     pub kind: FaultKind,
-    /// What happened, in a sentence.
+    /// Description of the fault, in a sentence.
     pub reason: String,
 }
 
-/// What kept a trial from its end.
+/// Kinds of faults.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum FaultKind {
-    /// It said so itself: an invariant was violated, a policy failed, or the physics broke down.
+    /// The trial reported it: an invariant was violated, a policy failed, or the physics broke down.
     Failed,
     /// The program has a defect.
     Panicked,
-    /// It took longer than a trial may.
+    /// The trial exceeded the time limit.
     TimedOut,
 }
 
@@ -75,7 +75,7 @@ impl FaultKind {
     /// All kinds.
     pub const ALL: [Self; 3] = [Self::Failed, Self::Panicked, Self::TimedOut];
 
-    /// As one word, for tables.
+    /// Name as one word, for tables.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -87,7 +87,7 @@ impl FaultKind {
 }
 
 impl Fault {
-    /// What happened to which trial, in one sentence.
+    /// A sentence with the trial and its fault.
     #[must_use]
     pub fn sentence(&self, key: &TrialKey) -> String {
         let TrialKey { label, trial, seed, .. } = key;
@@ -96,12 +96,12 @@ impl Fault {
     }
 }
 
-/// What became of a trial.
+/// The outcome of a trial.
 #[derive(Debug, Clone)]
 pub struct Outcome {
-    /// Which trial.
+    /// The trial.
     pub key: TrialKey,
-    /// What it gave, or why nothing.
+    /// The trial's results, or its fault.
     pub result: Result<Trial, Fault>,
 }
 
@@ -118,7 +118,7 @@ impl Outcome {
         self.result.as_ref().map_or_else(|fault| fault.kind.name(), |trial| trial.record.status.name())
     }
 
-    /// Why there is nothing, in one sentence.
+    /// Why the trial has no results, in one sentence; `None` if it has.
     #[must_use]
     pub fn failure(&self) -> Option<String> {
         Some(self.result.as_ref().err()?.sentence(&self.key))
@@ -128,7 +128,7 @@ impl Outcome {
 /// Runs one trial; `halt` ends it early.
 ///
 /// # Errors
-/// Its layout cannot be drawn, something went wrong in it, or it was halted.
+/// The layout cannot be drawn, the trial failed, or it was halted.
 pub fn run_trial(
     scenario: &Scenario,
     decider: &(impl Decider + ?Sized),

@@ -1,28 +1,32 @@
 //! Bootstrap interval of a mean: bias-corrected and accelerated (Efron 1987), widened for small samples.
 //!
-//! With few differences the bootstrap's intervals are too narrow: resampled means spread by a factor of sqrt((n - 1) / n) too little, and
-//! normal quantiles stand where t quantiles should (at n = 10 a 95 % interval covers about 90 %). [`Width::Expanded`] corrects
-//! both by asking for more extreme quantiles (Hesterberg 2015, "What teachers should know about the bootstrap", The American Statistician
-//! 69:4). [`Width::Plain`] is the textbook's interval, checked against `SciPy` 1.17.1.
+//! With few differences, plain bootstrap intervals are too narrow. The spread of resampled means is too
+//! small by a factor of sqrt((n - 1) / n), and normal quantiles are used instead of t quantiles. At n = 10,
+//! a 95 % interval covers about 90 %. [`Width::Expanded`] corrects both by taking more extreme quantiles
+//! (Hesterberg 2015, "What teachers should know about the bootstrap", The American Statistician 69:4).
+//! [`Width::Plain`] is the textbook's interval, checked against `SciPy` 1.17.1.
 
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 use statrs::distribution::{ContinuousCDF, Normal, StudentsT};
 
-/// Resamples of an interval.
+/// Resamples of an interval with a medium number of pairs.
 const RESAMPLES: usize = 10_000;
-/// Those of few pairs, which take little time and ask for extreme quantiles.
+/// Largest number of resamples. It is used for few pairs, whose extreme quantiles need it and whose
+/// resamples take little time.
 const RESAMPLES_OF_FEW: usize = 100_000;
-/// Draws that go into more than [`RESAMPLES`].
+/// With more than [`RESAMPLES`] resamples, the number of draws stays at this.
 const DRAWS_OF_FEW: usize = 2_000_000;
-/// Draws beyond which there are fewer than [`RESAMPLES`].
+/// With less than [`RESAMPLES`] resamples, the number of draws stays at this.
 const MOST_DRAWS: usize = 20_000_000;
-/// The least resamples of an interval.
+/// Smallest number of resamples of an interval.
 const LEAST_RESAMPLES: usize = 2_000;
-/// The same draws for every interval: the same differences have the same interval wherever they stand, and its mirror image with the sign turned.
+/// Seed of every interval. Equal differences therefore have equal intervals everywhere, and differences
+/// with the opposite sign have the mirrored interval.
 const SEED: u64 = 1;
 
-/// Resamples for so many pairs: 100,000 to 20 pairs, then fewer, 10,000 from 200 to 2,000 pairs, beyond down to 2,000.
+/// Resamples for this many pairs: 100,000 up to 20 pairs, then fewer, 10,000 from 200 to 2,000 pairs, and
+/// beyond that down to 2,000.
 #[must_use]
 pub fn resamples(pairs: usize) -> usize {
     let pairs = pairs.max(1);
@@ -30,23 +34,24 @@ pub fn resamples(pairs: usize) -> usize {
     of_few.max((MOST_DRAWS / pairs).clamp(LEAST_RESAMPLES, RESAMPLES))
 }
 
-/// The interval of the mean at this confidence that all results have: bias-corrected and accelerated, widened for small samples. `None` for fewer than two values.
+/// The interval of the mean at this confidence, as used for all results: bias-corrected and accelerated,
+/// widened for small samples. `None` for fewer than two values.
 #[must_use]
 pub fn interval(values: &[f64], confidence: f64) -> Option<[f64; 2]> {
     bca_interval(values, confidence, (resamples(values.len()), SEED), Width::Expanded)
 }
 
-/// Which quantiles the interval is made of.
+/// Which quantiles bound the interval.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Width {
-    /// Those of the textbook.
+    /// The quantiles of the textbook.
     Plain,
-    /// More extreme ones, right for small samples.
+    /// More extreme quantiles, correct for small samples.
     Expanded,
 }
 
-/// The interval of the mean at this confidence, from draws of this seed; `None` for fewer than two values. Where all values are equal it
-/// is that value.
+/// The interval of the mean at this confidence, from draws with this seed. `None` for fewer than two
+/// values. If all values are equal, both ends are that value.
 #[must_use]
 pub fn bca_interval(
     values: &[f64],
@@ -61,7 +66,7 @@ pub fn bca_interval(
     if values.iter().all(|value| value.total_cmp(&values[0]).is_eq()) {
         return Some([values[0]; 2]);
     }
-    // Added up as the resamples are, so that a resample of the same values ties with it.
+    // Summed in the same way as the resamples, so that a resample of the same values ties with it.
     let mean = values.iter().sum::<f64>() / count as f64;
     let mut draws = ChaCha8Rng::seed_from_u64(seed);
     let means: Vec<f64> = (0..resamples)
@@ -74,15 +79,15 @@ pub fn bca_interval(
     Some(bias_corrected(mean, means, acceleration(values, mean), tail))
 }
 
-/// The interval of a ratio of sums at this confidence, from one pair of summands each: bias-corrected and accelerated, widened for small
-/// samples. A ratio of sums is not pulled by single summands whose own ratio is extreme. `None` for fewer than two
-/// pairs, or where some resample has no ratio.
+/// The interval of a ratio of sums at this confidence, from pairs of summands: bias-corrected and
+/// accelerated, widened for small samples. Single pairs whose own ratio is extreme do not dominate a ratio
+/// of sums. `None` for fewer than two pairs, or if some resample has no ratio.
 #[must_use]
 pub fn ratio_interval(pairs: &[[f64; 2]], confidence: f64) -> Option<[f64; 2]> {
     bca_ratio_interval(pairs, confidence, (resamples(pairs.len()), SEED))
 }
 
-/// The same, from so many draws of this seed.
+/// The same as [`ratio_interval`], with this number of resamples and this seed.
 #[must_use]
 pub fn bca_ratio_interval(
     pairs: &[[f64; 2]],
@@ -111,12 +116,12 @@ pub fn bca_ratio_interval(
     Some(bias_corrected(observed, ratios, acceleration, tail))
 }
 
-/// Resamples of any other statistic.
+/// Resamples of an arbitrary statistic.
 const RESAMPLES_OF_ANY: usize = 4_000;
 
-/// The interval of any statistic of so many independent observations at this confidence: bias-corrected and
-/// accelerated, widened for small samples. The statistic is given the places of the observations to take. `None` for
-/// fewer than two observations, or where a resample has no value.
+/// The interval of any statistic of `count` independent observations at this confidence: bias-corrected and
+/// accelerated, widened for small samples. The statistic receives the places of the observations to use.
+/// `None` for fewer than two observations, or if a resample has no value.
 #[must_use]
 pub fn statistic_interval(
     count: usize,
@@ -146,14 +151,14 @@ pub fn statistic_interval(
     Some(bias_corrected(observed, resampled, acceleration, tail))
 }
 
-/// From the statistic without each observation; `None` where it is always the same.
+/// The acceleration from the statistic without each observation; `None` if it is always the same.
 fn jackknife_acceleration(without: &[f64]) -> Option<f64> {
     let mean = without.iter().sum::<f64>() / without.len() as f64;
     let power = |exponent: i32| without.iter().map(|value| (mean - value).powi(exponent)).sum::<f64>();
     (power(2) > 0.0).then(|| power(3) / (6.0 * power(2).powf(1.5)))
 }
 
-/// The quantiles of resampled statistics that the observed one's bias and acceleration ask for.
+/// The interval's ends: the quantiles of resampled statistics, corrected for bias and acceleration.
 fn bias_corrected(observed: f64, mut resampled: Vec<f64>, acceleration: f64, tail: f64) -> [f64; 2] {
     let normal = Normal::standard();
     let count = resampled.len() as f64;
@@ -183,13 +188,13 @@ fn tail(count: usize, confidence: f64, width: Width) -> Option<f64> {
     }
 }
 
-/// From the jackknife; for a mean it is the skewness of the values over 6 sqrt(n).
+/// The acceleration of a mean. The jackknife gives the skewness of the values over 6 sqrt(n).
 fn acceleration(values: &[f64], mean: f64) -> f64 {
     let power = |exponent: i32| values.iter().map(|value| (value - mean).powi(exponent)).sum::<f64>();
     power(3) / (6.0 * power(2).powf(1.5))
 }
 
-/// Quantile of values in order, interpolated linearly (type 7 of Hyndman & Fan 1996).
+/// Quantile of sorted values, interpolated linearly (type 7 of Hyndman & Fan 1996).
 #[must_use]
 pub fn quantile(sorted: &[f64], share: f64) -> f64 {
     let place = share.clamp(0.0, 1.0) * (sorted.len() - 1) as f64;

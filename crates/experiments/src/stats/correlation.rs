@@ -2,11 +2,11 @@
 
 use statrs::statistics::{Data, OrderStatistics, RankTieBreaker, Statistics};
 
-/// Spearman's rank correlation: Pearson's of the ranks, ties at their mean rank. `None` where one of the two does not
-/// vary.
+/// Spearman's rank correlation: Pearson's correlation of the ranks, with ties at their mean rank. `None` if
+/// one of the two lists does not vary.
 ///
 /// # Panics
-/// Never: both lists are as long.
+/// Never, if both lists have the same length.
 #[must_use]
 pub fn rank_correlation(a: &[f64], b: &[f64]) -> Option<f64> {
     let ranks = |values: &[f64]| Data::new(values.to_vec()).ranks(RankTieBreaker::Average);

@@ -1,4 +1,4 @@
-//! Statistics of a sweep: slices in, numbers out.
+//! Statistics of a sweep, as functions of slices of numbers.
 
 pub mod bootstrap;
 mod correlation;
@@ -25,7 +25,7 @@ pub struct Moments {
 }
 
 impl Moments {
-    /// Of these values.
+    /// The moments of these values.
     #[must_use]
     pub fn of(values: &[f64]) -> Self {
         Self {

@@ -1,15 +1,16 @@
-//! Smaller parts of a paired comparison: shift, correction for many tests, and how many pairs would be needed.
+//! Smaller parts of a paired comparison: shift, correction for many tests, and the number of pairs needed.
 
 use statrs::distribution::{ContinuousCDF, Normal, StudentsT};
 
 use super::Moments;
 use super::bootstrap::quantile;
 
-/// Differences up to which all means of two are listed; beyond, their median is closed in on.
+/// Largest number of differences for which the means of all pairs are listed. Beyond it, their median is
+/// found by bisection.
 const LISTED: usize = 1_000;
 
-/// Hodges-Lehmann shift: the median of the means of all pairs of differences, each with itself as well (Hodges & Lehmann 1963).
-/// `None` for no differences.
+/// Hodges-Lehmann shift: the median of the means of all pairs of differences, including each difference
+/// with itself (Hodges & Lehmann 1963). `None` without differences.
 #[must_use]
 pub fn hodges_lehmann(differences: &[f64]) -> Option<f64> {
     if differences.len() > LISTED {
@@ -24,7 +25,8 @@ pub fn hodges_lehmann(differences: &[f64]) -> Option<f64> {
     (!averages.is_empty()).then(|| quantile(&averages, 0.5))
 }
 
-/// The lower median of the means of all pairs, by halving the range in which it is: each step counts the means below in one pass.
+/// The lower median of the means of all pairs, by bisection of its range. Each step counts the lower means
+/// in one pass.
 fn closed_in(differences: &[f64]) -> f64 {
     let mut sorted = differences.to_vec();
     sorted.sort_by(f64::total_cmp);
@@ -50,7 +52,8 @@ fn closed_in(differences: &[f64]) -> f64 {
     }
 }
 
-/// Holm's correction (1979): each p of a family, so that the chance of any false finding stays below the level. In the order given.
+/// Holm's correction (1979) of the p values of a family, in the given order. It keeps the probability of
+/// any false finding below the level.
 #[must_use]
 pub fn holm(ps: &[f64]) -> Vec<f64> {
     let mut order: Vec<usize> = (0..ps.len()).collect();
@@ -64,8 +67,9 @@ pub fn holm(ps: &[f64]) -> Vec<f64> {
     corrected
 }
 
-/// Pairs that a two-sided paired t test at 5 % would need for 80 % power, were the effect what was observed: Guenther's approximation to
-/// the noncentral t (1981). `None` where no effect was observed, or one without spread.
+/// Number of pairs that a two-sided paired t test at 5 % needs for 80 % power, if the true effect is the
+/// observed one: Guenther's approximation to the noncentral t (1981). `None` if the observed mean or
+/// standard deviation is zero.
 #[must_use]
 pub fn pairs_needed(differences: &[f64]) -> Option<u64> {
     let Moments { mean, sd, .. } = Moments::of(differences);
@@ -82,7 +86,7 @@ pub fn t_half_width(differences: &[f64]) -> Option<f64> {
     t_half_width_at(differences, 0.95)
 }
 
-/// The same at another confidence.
+/// The same as [`t_half_width`], at another confidence.
 #[must_use]
 pub fn t_half_width_at(differences: &[f64], confidence: f64) -> Option<f64> {
     let count = differences.len() as f64;

@@ -11,28 +11,28 @@ use super::bootstrap::{interval, statistic_interval};
 /// Confidence of the intervals.
 const CONFIDENCE: f64 = 0.95;
 
-/// A number with its 95 % bootstrap interval, where there is one.
+/// A number with its 95 % bootstrap interval, if it has one.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Known {
     /// The number.
     pub value: f64,
-    /// Its interval; none with fewer than two blocks, or where a resample has no value.
+    /// Its interval; `None` with fewer than two blocks, or if a resample has no value.
     pub interval: Option<[f64; 2]>,
 }
 
-/// What a parameter's elementary effects come to.
+/// Summary of a parameter's elementary effects.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Effects {
     /// mu*: mean size of the effects. How much the parameter matters.
     pub size: Known,
     /// mu: mean effect. Its sign is the direction.
     pub mean: Known,
-    /// sigma: standard deviation of the effects. Large for a parameter that acts through others, or not in a
-    /// straight line.
+    /// sigma: standard deviation of the effects. Large for a parameter that interacts with others or has a
+    /// nonlinear effect.
     pub spread: Known,
 }
 
-/// Of the elementary effects of one parameter, one from each block; `None` without any.
+/// The summary of a parameter's elementary effects, one from each block; `None` without any.
 #[must_use]
 pub fn effects(effects: &[f64]) -> Option<Effects> {
     let sizes: Vec<f64> = effects.iter().map(|effect| effect.abs()).collect();
@@ -48,28 +48,28 @@ pub fn effects(effects: &[f64]) -> Option<Effects> {
     })
 }
 
-/// Values of a block: at two independent points `a` and `b`, and at `a` with one parameter after another taken
+/// Values of a block: at two independent points `a` and `b`, and at `a` with each parameter in turn taken
 /// from `b`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Block {
     /// At the first point.
     pub a: f64,
-    /// At the second.
+    /// At the second point.
     pub b: f64,
-    /// At the first point with each parameter, in its turn, from the second.
+    /// At the first point with each parameter in turn taken from the second.
     pub mixed: Vec<f64>,
 }
 
-/// What a parameter's shares of the variance come to.
+/// A parameter's shares of the variance.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Shares {
     /// First-order index: the share of the variance that the parameter makes alone.
     pub first: Known,
-    /// Total index: the share in which it has any part.
+    /// Total index: the share of the variance in which the parameter has any part.
     pub total: Known,
 }
 
-/// Variance of the function over both points of the blocks, and its mean.
+/// Mean and variance of the function over both points of the blocks; `None` if it is constant.
 fn moments(blocks: &[Block], rows: &[usize]) -> Option<(f64, f64)> {
     let values = || rows.iter().flat_map(|row| [blocks[*row].a, blocks[*row].b]);
     let count = 2.0 * rows.len() as f64;
@@ -96,7 +96,7 @@ fn total_order(blocks: &[Block], parameter: usize, rows: &[usize]) -> Option<f64
     Some(mean_over(rows, |row| part(&blocks[row])) / variance)
 }
 
-/// The shares of one parameter, by its place; `None` for fewer than two blocks or a function that is constant.
+/// The shares of one parameter, by its place; `None` for fewer than two blocks or a constant function.
 #[must_use]
 pub fn shares(blocks: &[Block], parameter: usize) -> Option<Shares> {
     let first = known(blocks, |rows| first_order(blocks, parameter, rows))?;
@@ -104,8 +104,8 @@ pub fn shares(blocks: &[Block], parameter: usize) -> Option<Shares> {
     Some(Shares { first, total })
 }
 
-/// The share of the variance that is the same at both points of a block: that of whatever the block's
-/// evaluations have in common besides parameters, such as the seeds of their trials.
+/// The share of the variance that both points of a block have in common. Its source is what the block's
+/// evaluations share besides parameters, such as the seeds of their trials.
 #[must_use]
 pub fn common_share(blocks: &[Block]) -> Option<Known> {
     known(blocks, |rows| {
@@ -131,13 +131,13 @@ mod tests {
 
     type Function = fn(&[f64]) -> f64;
 
-    /// Ishigami & Homma (1990) with a = 7, b = 0.1, over [-pi, pi] each.
+    /// The function of Ishigami & Homma (1990) with a = 7, b = 0.1, each parameter over [-pi, pi].
     fn ishigami(places: &[f64]) -> f64 {
         let [x, y, z] = [0, 1, 2].map(|i: usize| PI * (2.0 * places[i] - 1.0));
         x.sin() + 7.0 * y.sin().powi(2) + 0.1 * z.powi(4) * x.sin()
     }
 
-    /// Sobol's G with these coefficients: small ones matter.
+    /// Coefficients of Sobol's G; parameters with small coefficients matter.
     const G: [f64; 4] = [0.0, 1.0, 4.5, 99.0];
 
     fn g(places: &[f64]) -> f64 {
@@ -189,7 +189,7 @@ mod tests {
         are_near(g, &exact_g(), 2);
     }
 
-    /// The generator of the C standard's example: what another program can draw as well.
+    /// The generator of the C standard's example, so that another program can draw the same numbers.
     struct Lcg(u64);
 
     impl Lcg {
@@ -199,8 +199,9 @@ mod tests {
         }
     }
 
-    /// `SALib` 1.6.0, `sobol.analyze(calc_second_order=False)`, on the same 64 blocks. It centres on the mean of all
-    /// values, these shares on that of A and B: first-order indices differ by that much.
+    /// `SALib` 1.6.0, `sobol.analyze(calc_second_order=False)`, on the same 64 blocks. `SALib` centres on
+    /// the mean of all values, and these shares on the mean of A and B. First-order indices differ by that
+    /// much.
     #[test]
     fn shares_are_salibs() {
         let mut draws = Lcg(12_345);
@@ -251,7 +252,8 @@ mod tests {
         }
     }
 
-    /// An interval at 95 % holds the true index in about so many studies; `xtask coverage` counts more of them.
+    /// About 95 % of studies have an interval that holds the true index; `xtask coverage` checks more of
+    /// them.
     #[test]
     fn intervals_of_shares_hold_the_true_ones() {
         let exact = exact_g();

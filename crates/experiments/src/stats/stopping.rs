@@ -1,6 +1,7 @@
-//! When a stopping rule looks.
+//! When a stopping rule looks at the interval's width.
 
-/// Pairs before the first look: with fewer, a chance narrow spread would stop it too often.
+/// Pairs before the first look. With fewer pairs, a spread that is narrow by chance would stop the sweep
+/// too often.
 pub const FIRST_LOOK: u32 = 20;
 
 /// Pairs at the look after this one: a quarter more.
@@ -19,7 +20,8 @@ mod tests {
     use crate::stats::Moments;
     use crate::stats::paired::t_half_width;
 
-    /// Share of 2,000 sequential experiments whose last interval holds the true mean, in percent, when the bound takes about `pairs` pairs.
+    /// Share of 2,000 sequential experiments whose last interval holds the true mean, in percent, if the
+    /// bound needs about `pairs` pairs.
     fn coverage(pairs: f64) -> f64 {
         let bound = 1.96 / pairs.sqrt();
         let mut draws = ChaCha8Rng::seed_from_u64(5);

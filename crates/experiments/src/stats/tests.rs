@@ -1,4 +1,5 @@
-//! Statistics against `SciPy` 1.17.1 (numpy 2.4.6), whose calls stand beside the figures, and against what they promise.
+//! Statistics compared with `SciPy` 1.17.1 (numpy 2.4.6), whose calls are quoted beside the numbers, and
+//! with their own guarantees.
 
 use rand::SeedableRng;
 use rand::rngs::ChaCha8Rng;
@@ -50,7 +51,7 @@ fn counting_signs_is_enumerating_them() {
     }
 }
 
-/// `scipy.stats.norm.sf(...)` of the normal approximation is what both come near to.
+/// Both are close to `scipy.stats.norm.sf(...)` of the normal approximation.
 #[test]
 fn drawn_signs_agree_with_counted_ones() {
     let differences = |count: usize| -> Vec<f64> {
@@ -129,7 +130,7 @@ fn the_interval_covers_what_it_says_at_ten_and_at_fifty_pairs() {
     }
 }
 
-/// Ratios of sums: the true ratio is 2, of summands whose own ratios vary from almost nothing to very much.
+/// Ratios of sums. The true ratio is 2, and the summands' own ratios vary from almost nothing to very much.
 #[test]
 fn the_interval_of_a_ratio_covers_what_it_says() {
     let mut draws = ChaCha8Rng::seed_from_u64(12);
@@ -151,7 +152,7 @@ fn the_interval_of_a_ratio_covers_what_it_says() {
     assert_eq!(ratio_interval(&[[2.0, 1.0], [4.0, 2.0]], 0.95), Some([2.0, 2.0]));
 }
 
-/// The intervals by which a claim of three comparisons is found not to hold: 95 % shared by them.
+/// The intervals that refute a claim with three comparisons: 95 % shared by the three.
 #[test]
 fn a_shared_interval_covers_what_it_says_at_ten_pairs() {
     let share = coverage(10, 1.0 - 0.05 / 3.0, 0.0, |draws| StandardNormal.sample(draws));
@@ -165,7 +166,7 @@ fn the_shift_is_the_median_of_walsh_averages() {
     assert_eq!(hodges_lehmann(&TIES_AND_ZEROS), Some(1.0));
     assert_eq!(hodges_lehmann(&MIXED), Some(1.125));
     assert_eq!(hodges_lehmann(&[]), None);
-    // 1,001 whole numbers: the means of two are 0, 0.5, ..., 1000, and 500 is their median.
+    // 1,001 whole numbers: the means of two are 0, 0.5, ..., 1000, and their median is 500.
     let many: Vec<f64> = (0..=1_000).map(f64::from).collect();
     assert!((hodges_lehmann(&many).unwrap() - 500.0).abs() < 1e-9);
     let skewed: Vec<f64> = (0..=1_000).map(|i| f64::from(i).powi(2)).collect();

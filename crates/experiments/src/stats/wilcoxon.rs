@@ -1,28 +1,28 @@
 //! Wilcoxon's signed-rank test of paired differences, exact with ties and zeros.
 //!
-//! Zeros are left out (Wilcoxon 1945), tied magnitudes share their mean rank, and the sum of the ranks of
-//! positive differences is compared with its distribution over all 2^n choices of signs: counted, not
-//! enumerated, by adding one difference after the other, so that it is exact to [`EXACT_PAIRS`]. Beyond,
-//! [`DRAWS`] random choices of signs take its place, and beyond [`DRAWN_PAIRS`] the normal distribution of
-//! the same mean and variance, with ties and a continuity correction, from which the exact one is not to be
-//! told any more. Checked against `SciPy` 1.17.1,
+//! Zeros are left out (Wilcoxon 1945), and tied magnitudes share their mean rank. The sum of the ranks of
+//! positive differences is compared with its distribution over all 2^n choices of signs. Up to
+//! [`EXACT_PAIRS`] differences, this distribution is counted exactly by adding one difference after the
+//! other. Up to [`DRAWN_PAIRS`], [`DRAWS`] random choices of signs replace it. Beyond that, the normal
+//! distribution with the same mean and variance replaces it, with ties and a continuity correction; it is
+//! then indistinguishable from the exact one. Checked against `SciPy` 1.17.1,
 //! `wilcoxon(d, method=PermutationMethod(n_resamples=numpy.inf))`.
 
 use rand::rngs::ChaCha8Rng;
 use rand::{Rng, SeedableRng};
 use statrs::distribution::{ContinuousCDF, Normal};
 
-/// Most differences other than zero for which all choices of signs are counted.
+/// Largest number of nonzero differences for which all choices of signs are counted.
 pub const EXACT_PAIRS: usize = 500;
-/// Random choices of signs beyond.
+/// Number of random choices of signs for more differences.
 pub const DRAWS: u32 = 100_000;
-/// Most differences for which signs are drawn.
+/// Largest number of nonzero differences for which signs are drawn.
 pub const DRAWN_PAIRS: usize = 10_000;
 
 /// The result of the test.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SignedRank {
-    /// Differences other than zero.
+    /// Number of nonzero differences.
     pub pairs: usize,
     /// Sum of the ranks of positive differences.
     pub positive: f64,
@@ -30,12 +30,12 @@ pub struct SignedRank {
     pub negative: f64,
     /// Two-sided p; 1 without any difference.
     pub p: f64,
-    /// Whether it was counted, not drawn.
+    /// Whether p was counted over all choices of signs.
     pub is_exact: bool,
 }
 
 impl SignedRank {
-    /// Of these differences, which must be finite.
+    /// The test of these differences, which must be finite.
     #[must_use]
     pub fn of(differences: &[f64]) -> Self {
         let mut nonzero: Vec<f64> = differences.iter().copied().filter(|d| *d != 0.0).collect();
@@ -62,8 +62,8 @@ impl SignedRank {
         }
     }
 
-    /// Matched-pairs rank-biserial correlation, from -1 to 1: the share of the rank sum that favours positive
-    /// differences, less the other (Kerby 2014). 0 without any difference.
+    /// Matched-pairs rank-biserial correlation, from -1 to 1: the share of the rank sum of positive
+    /// differences minus the share of negative ones (Kerby 2014). 0 without any difference.
     #[must_use]
     pub fn effect(&self) -> f64 {
         let total = self.positive + self.negative;
@@ -71,7 +71,7 @@ impl SignedRank {
     }
 }
 
-/// Twice the mean ranks of magnitudes that are in order: whole numbers.
+/// Twice the mean ranks of sorted magnitudes; doubled, they are whole numbers.
 fn doubled_ranks(sorted: &[f64]) -> Vec<u64> {
     let mut ranks = Vec::with_capacity(sorted.len());
     for tied in sorted.chunk_by(|a, b| a.abs().total_cmp(&b.abs()).is_eq()) {
@@ -82,7 +82,7 @@ fn doubled_ranks(sorted: &[f64]) -> Vec<u64> {
     ranks
 }
 
-/// Probability that the rank sum of random signs is at least this.
+/// Probability that the rank sum of random signs is at least `least`.
 fn counted_tail(ranks: &[u64], least: u64) -> f64 {
     let total: u64 = ranks.iter().sum();
     let mut chances = vec![0.0; total as usize + 1];
@@ -100,7 +100,8 @@ fn counted_tail(ranks: &[u64], least: u64) -> f64 {
     chances[least as usize..].iter().sum()
 }
 
-/// The same from random signs; the signs that were found count as one of them, so that it is never 0.
+/// The same probability from random signs. The observed signs count as one of the draws, so that it is
+/// never 0.
 fn drawn_tail(ranks: &[u64], least: u64) -> f64 {
     let mut draws = ChaCha8Rng::seed_from_u64(0);
     let mut as_extreme = 1_u32;
@@ -117,7 +118,8 @@ fn drawn_tail(ranks: &[u64], least: u64) -> f64 {
     f64::from(as_extreme) / f64::from(DRAWS + 1)
 }
 
-/// The same from the normal distribution of the sum's mean and variance, half a rank further in.
+/// The same probability from the normal distribution with the sum's mean and variance, with a continuity
+/// correction of half a rank.
 fn normal_tail(ranks: &[u64], least: u64) -> f64 {
     let mean = ranks.iter().sum::<u64>() as f64 / 2.0;
     let variance = ranks.iter().map(|rank| (*rank as f64).powi(2)).sum::<f64>() / 4.0;

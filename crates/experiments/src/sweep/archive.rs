@@ -1,6 +1,6 @@
-//! `journal.jsonl.gz`: the journal of a finished sweep, its lines in order. It is a gzip file of several members, so
-//! that `zcat` prints the journal; the header of each member says how long it is and how many lines it has,
-//! so that a line is found without reading those before it.
+//! `journal.jsonl.gz`: the journal of a finished sweep, its lines in order. It is a gzip file of several
+//! members, so that `zcat` prints the journal. The header of each member states its length and its number
+//! of lines. A line is therefore found without reading the lines before it.
 
 use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom, Write};
@@ -16,15 +16,15 @@ use crate::limits::JOURNAL_LINE_BYTES;
 /// Name of the file.
 pub const FILE: &str = "journal.jsonl.gz";
 
-/// Bytes of lines from which on a member is full.
+/// A member is full when its lines have this many bytes.
 pub(super) const MEMBER_BYTES: usize = 256 << 10;
 
-/// What each member begins with: a header of ten bytes with an extra field, its length, and our subfield of
-/// eight bytes (RFC 1952).
+/// Start of each member: a gzip header of ten bytes with an extra field, the field's length, and our
+/// subfield of eight bytes (RFC 1952).
 const HEAD: [u8; 16] = [0x1f, 0x8b, 8, 4, 0, 0, 0, 0, 0, 0xff, 12, 0, b'U', b'S', 8, 0];
-/// Bytes of a header with its two numbers.
+/// Bytes of a header including its two numbers.
 const HEAD_BYTES: usize = HEAD.len() + 8;
-/// How hard a member is pressed: a third level costs half the time of the sixth for a tenth more bytes.
+/// Compression level: level 3 takes half the time of level 6 for a tenth more bytes.
 const LEVEL: Compression = Compression::new(3);
 
 /// Whether a folder has an archive of this program.
@@ -34,10 +34,10 @@ pub(super) fn is_one(folder: &Path) -> bool {
     read.is_ok() && head == HEAD
 }
 
-/// Whole lines as a member of the file.
+/// Compresses whole lines into a member of the file.
 ///
 /// # Errors
-/// They take more than 4 GiB.
+/// The lines take more than 4 GiB.
 pub(super) fn member(lines: &[u8], count: usize) -> Result<Vec<u8>, Failure> {
     let trouble = |error: io::Error| Failure::storage(format!("{FILE}: {error}"));
     let extra = [&HEAD[12..], &[0; 8]].concat();
@@ -52,7 +52,7 @@ pub(super) fn member(lines: &[u8], count: usize) -> Result<Vec<u8>, Failure> {
     Ok(bytes)
 }
 
-/// Where a member is.
+/// The place of a member in the file.
 #[derive(Debug, Clone, Copy)]
 struct Member {
     start: u64,
@@ -61,12 +61,12 @@ struct Member {
     first: usize,
 }
 
-/// The journal of a finished sweep, to be read.
+/// Reads the journal of a finished sweep.
 pub(super) struct Archive {
     path: PathBuf,
     members: Vec<Member>,
     lines: usize,
-    /// The member that was read last: its number, its bytes, and where its lines end.
+    /// The latest member that was read: its number, its bytes, and where its lines end.
     latest: Option<(usize, Vec<u8>, Vec<usize>)>,
 }
 
@@ -74,13 +74,14 @@ impl Archive {
     /// Finds the members.
     ///
     /// # Errors
-    /// The file cannot be read, or is none.
+    /// The file cannot be read, or is not an archive.
     pub(super) fn open(folder: &Path) -> io::Result<Self> {
         let (archive, whole) = Self::open_damaged(folder)?;
         if whole { Ok(archive) } else { Err(invalid("it is cut off, or was changed")) }
     }
 
-    /// Finds the members as far as they follow one another, and tells whether they end with the file.
+    /// Finds the members that follow one another without a gap, and returns whether they reach the end of
+    /// the file.
     ///
     /// # Errors
     /// The file cannot be read.
@@ -98,7 +99,7 @@ impl Archive {
         Ok((Self { path, members, lines, latest: None }, start == end))
     }
 
-    /// How many lines it has.
+    /// Number of lines.
     pub(super) fn count(&self) -> usize {
         self.lines
     }
@@ -106,7 +107,7 @@ impl Archive {
     /// A line, by its number from 0.
     ///
     /// # Errors
-    /// It cannot be read, or there is none.
+    /// The line cannot be read, or does not exist.
     pub(super) fn line(&mut self, number: usize) -> io::Result<&[u8]> {
         let place = self.members.partition_point(|member| member.first <= number).wrapping_sub(1);
         let member = *self.members.get(place).ok_or_else(|| invalid("it has no such line"))?;
@@ -123,14 +124,13 @@ impl Archive {
         range.map(|(start, end)| &bytes[start..end]).ok_or_else(|| invalid("it has no such line"))
     }
 
-    /// For each member, the number of its first line, its lines as far as they can be read, and what is wrong
-    /// then.
+    /// For each member: the number of its first line, its readable lines, and the error that ended them.
     pub(super) fn salvage(&self) -> impl Iterator<Item = io::Result<(usize, Vec<u8>, io::Result<()>)>> + '_ {
         let read = |member: &Member| self.read(*member).map(|(bytes, whole)| (member.first, bytes, whole));
         self.members.iter().map(read)
     }
 
-    /// The bytes of a member's lines as far as they can be read, and what was wrong then.
+    /// The bytes of a member's readable lines, and the error that ended them.
     fn read(&self, member: Member) -> io::Result<(Vec<u8>, io::Result<()>)> {
         let mut file = files::open(&self.path)?;
         file.seek(SeekFrom::Start(member.start))?;
@@ -144,7 +144,7 @@ impl Archive {
     }
 }
 
-/// Length and number of lines of the member that begins here, if one does.
+/// Length and number of lines of the member that begins here; `None` if no member does.
 fn head_at(file: &mut File, start: u64, end: u64) -> io::Result<Option<(u32, u32)>> {
     let mut head = [0; HEAD_BYTES];
     file.seek(SeekFrom::Start(start))?;

@@ -1,5 +1,5 @@
-//! What of a finished sweep's folder does not come out again: trials, line by line, and everything that is
-//! made from them.
+//! The audit of a finished sweep's folder: which trials, line by line, and which tables made from them are
+//! not reproduced.
 
 use std::sync::atomic::AtomicBool;
 
@@ -15,8 +15,8 @@ use crate::failure::Failure;
 use crate::files::FileHash;
 use crate::run::{FaultKind, Outcome, TrialKey};
 
-/// Where the journal's line of a trial is not that of the same trial run again; nothing where it is, byte for
-/// byte.
+/// How the journal's line of a trial differs from the line of the same trial run again; `None` if both are
+/// equal, byte for byte.
 ///
 /// # Errors
 /// The journal cannot be read.
@@ -33,7 +33,7 @@ pub fn difference(folder: &mut Folder, again: &Outcome) -> Result<Option<String>
     })))
 }
 
-/// Where the lines differ.
+/// The first difference between the lines.
 fn first_difference(folder: &mut Folder, again: &Outcome) -> Result<Option<String>, Failure> {
     let TrialKey { case, policy, label, trial, seed } = &again.key;
     let experiment = folder.shared_experiment();
@@ -70,8 +70,8 @@ fn first_difference(folder: &mut Folder, again: &Outcome) -> Result<Option<Strin
     Ok(Some(format!("{name} {what}")))
 }
 
-/// The first step at which the states of two runs differ, and in which parts; or which of them has states at
-/// all.
+/// The first step at which the states of two runs differ, and the parts of the state that differ; or which
+/// of the runs has states at all.
 fn first_step(recorded: &Outcome, again: &Outcome, experiment: &Experiment) -> Option<String> {
     let links = |outcome: &Outcome| -> Vec<Link> {
         outcome.record().map(|record| record.chain.links().to_vec()).unwrap_or_default()
@@ -94,7 +94,7 @@ fn first_step(recorded: &Outcome, again: &Outcome, experiment: &Experiment) -> O
     }
 }
 
-/// The path of the first field in which two values differ, with both.
+/// The path of the first field in which two values differ, with both values.
 fn first_field(path: &str, there: &Value, now: &Value) -> Option<String> {
     let join = |key: &str| if path.is_empty() { key.to_owned() } else { format!("{path}.{key}") };
     match (there, now) {
@@ -110,8 +110,8 @@ fn first_field(path: &str, there: &Value, now: &Value) -> Option<String> {
     }
 }
 
-/// The files of a finished sweep's folder that are not what its trials and its manifest give, each in a
-/// sentence.
+/// The files of a finished sweep's folder that differ from what its trials and its manifest give, one
+/// sentence each.
 ///
 /// # Errors
 /// The journal cannot be read, or there is no room for the tables in the folder of temporary files.

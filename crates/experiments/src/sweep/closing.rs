@@ -1,5 +1,5 @@
-//! What is made of a sweep's trials in the end: its tables and the archive of its journal, in one pass, by
-//! all threads.
+//! Closing a sweep: makes its tables and the archive of its journal from its trials, in one pass, on all
+//! threads.
 
 use std::io::Write;
 use std::path::Path;
@@ -15,25 +15,25 @@ use crate::experiment::{Experiment, Keep, Place, Shard};
 use crate::failure::Failure;
 use crate::files::{FileHash, NewFile, trouble};
 
-/// What is to be made, and of what.
+/// Settings of the closing of a sweep.
 pub(super) struct Closing<'a> {
-    /// The folder that takes it.
+    /// The folder to write to.
     pub folder: &'a Path,
     pub experiment: &'a Experiment,
     pub keep: Keep,
     pub shard: Option<Shard>,
-    /// Ends it.
+    /// Interrupts the work.
     pub stop: &'a AtomicBool,
 }
 
-/// Some trials: their lines in order.
+/// A batch of trials: their lines in order.
 #[derive(Default)]
 struct Batch {
     lines: Vec<u8>,
     places: Vec<(Place, usize)>,
 }
 
-/// A batch as parts of files, and its results.
+/// The parts of files that a batch gives, and its results.
 struct Made {
     rows: TableRows,
     member: Vec<u8>,
@@ -41,11 +41,11 @@ struct Made {
 }
 
 impl Closing<'_> {
-    /// Makes the tables of these trials and the archive; each trial's result goes to `found`. `None` when it
-    /// was to stop.
+    /// Makes the tables of these trials and the archive, and hands each trial's result to `found`. `None`
+    /// if `stop` was set.
     ///
     /// # Errors
-    /// A line cannot be read or is not of the trial that it should be of; the disk does not take a file.
+    /// A line cannot be read or belongs to another trial; the disk does not take a file.
     pub(super) fn run(
         &self,
         places: impl Iterator<Item = Place>,
@@ -92,7 +92,7 @@ impl Closing<'_> {
 }
 
 impl Batch {
-    /// The next trials, as many as fill a member of the archive.
+    /// The next trials, enough to fill a member of the archive.
     fn next(
         places: &mut impl Iterator<Item = Place>,
         line: &mut impl FnMut(Place) -> Result<Vec<u8>, Failure>,

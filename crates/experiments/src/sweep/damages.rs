@@ -1,11 +1,11 @@
-//! What is wrong with a folder's trials, of which only the first are said one by one.
+//! Reports of damaged trials in a folder. Only the first few are reported one by one.
 
 use std::path::Path;
 
-/// Damaged lines of a journal that are named.
+/// Largest number of damaged lines that are reported one by one.
 const MOST_NAMED: usize = 5;
 
-/// Damaged lines on their way to the user.
+/// Passes reports of damaged lines to the user.
 pub(super) struct Damages<'a> {
     path: &'a Path,
     say: &'a mut dyn FnMut(String),

@@ -1,6 +1,6 @@
 //! The dictionary of a sweep's tables, for people (`columns.md`) and for programs (`datapackage.json`, a
-//! Frictionless Data Package): each column with its type, its unit and what it means. Metrics are described
-//! where they are declared, the rest here.
+//! Frictionless Data Package): each column with its type, unit and meaning. Metrics are described where
+//! they are declared, the other columns here.
 
 use std::fmt::Write;
 
@@ -11,10 +11,10 @@ use super::tables::{TABLES, all_columns, tables_of};
 use crate::experiment::{Axis, Experiment};
 use crate::failure::Failure;
 
-/// For people, and for programs.
+/// Names of the files: for people, and for programs.
 pub(super) const DICTIONARY: [&str; 2] = ["columns.md", "datapackage.json"];
 
-/// What a column holds: its name, its type, its unit, what it means.
+/// A column: its name, its type, its unit and its meaning.
 struct Column {
     name: String,
     kind: &'static str,
@@ -22,7 +22,7 @@ struct Column {
     meaning: String,
 }
 
-/// What a row of each table is.
+/// The meaning of a row in each table.
 const ROWS: [(&str, &str); TABLES.len()] = [
     (TABLES[0], "a trial"),
     (TABLES[1], "a task's group in a round of a trial"),
@@ -32,8 +32,8 @@ const ROWS: [(&str, &str); TABLES.len()] = [
     (links::FILE, "a link of a trial's hash chain"),
 ];
 
-/// Columns that are no metrics: name, type, unit, meaning. Where a name means something else in one table,
-/// `table/name` stands before it.
+/// Columns other than metrics: name, type, unit, meaning. If a name has another meaning in one table, an
+/// entry `table/name` precedes it.
 const DESCRIBED: &[(&str, &str, &str, &str)] = &[
     ("case", "integer", "", "Number of the case, from 1: a combination of the values of the axes."),
     ("method", "string", "", "The same as policy, under the name that the paper's authors use."),
@@ -126,12 +126,12 @@ pub(super) fn dictionary(experiment: &Experiment) -> Result<[(&'static str, Stri
 /// `columns.md` of an experiment.
 ///
 /// # Errors
-/// Its tables cannot be told.
+/// The columns of its tables cannot be determined.
 pub fn columns_page(experiment: &Experiment) -> Result<String, Failure> {
     Ok(markdown(experiment, &tables(experiment)?))
 }
 
-/// A table: its file, what a row is, and its columns.
+/// A table: its file, the meaning of a row, and its columns.
 type Described = (&'static str, &'static str, Vec<Column>);
 
 /// The tables of an experiment.
@@ -164,7 +164,7 @@ fn axis(axis: &Axis) -> Column {
     }
 }
 
-/// A column by its name: a metric of the trial, a need, or what is described above.
+/// A column by its name: a metric of the trial, a need, or an entry of [`DESCRIBED`].
 fn column(file: &str, name: &str, experiment: &Experiment) -> Column {
     let of_trials = [TABLES[0], TABLES[4]].contains(&file);
     if let Some(metric) = experiment.metrics.iter().find(|metric| of_trials && metric.column() == name) {

@@ -1,5 +1,5 @@
-//! What of a sweep's folder is on disk besides its journal and tables: the manifest, the sweep itself, and
-//! the lock.
+//! The files of a sweep's folder besides its journal and tables: the manifest, the sweep itself, and the
+//! lock.
 
 use std::fs::{self, File};
 use std::io::ErrorKind;
@@ -18,11 +18,11 @@ use crate::provenance::{Manifest, SCHEMA_VERSION, scenario_differences};
 pub(super) const MANIFEST: &str = "manifest.json";
 const GIVEN: &str = "experiment.ron";
 const RESOLVED: &str = "resolved.ron";
-/// The sweep as a file over the resolved scenario: what makes the folder again.
+/// The sweep as a file for the resolved scenario: running it reproduces the folder.
 const AGAIN: &str = "sweep.ron";
-/// Written before anything else.
+/// Files that are written before the trials.
 pub(super) const INPUTS: [&str; 5] = [GIVEN, RESOLVED, AGAIN, DICTIONARY[0], DICTIONARY[1]];
-/// The report, and the folder of its figures.
+/// The report; [`PLOTS`] is the folder of its figures.
 pub const REPORT: &str = "report.html";
 /// See [`REPORT`].
 pub const PLOTS: &str = "plots";
@@ -31,7 +31,7 @@ pub const RECORDINGS: &str = "recordings";
 /// Held by the process that writes to the folder.
 pub const LOCK: &str = ".lock";
 
-/// Writes what a sweep is of.
+/// Writes the manifest and the inputs of a sweep.
 pub(super) fn write_start(
     path: &Path,
     experiment: &Experiment,
@@ -40,18 +40,18 @@ pub(super) fn write_start(
     let inputs = inputs(experiment)?;
     let files = inputs.iter().map(|(name, text)| FileHash::of(name, text.as_bytes())).collect();
     let manifest = Manifest::new(experiment, shard, files);
-    // The manifest first: a folder that has one is ours, and nothing else is.
+    // The manifest comes first: a folder with a manifest is ours, and no other folder is.
     write_manifest(path, &manifest)?;
     for (name, text) in &inputs {
         NewFile::write(path, name, text.as_bytes())?;
     }
-    // A report and Parquet files would be of what was there before.
+    // An existing report and existing Parquet files would belong to the previous contents.
     let trouble = |error| Failure::storage(format!("cannot write to {}: {error}", path.display()));
     ours::remove_report(path).and_then(|()| parquet::remove(path)).map_err(trouble)?;
     Ok(manifest)
 }
 
-/// What a sweep is of, as the files of its folder.
+/// The inputs of a sweep, as the files of its folder.
 pub(super) fn inputs(experiment: &Experiment) -> Result<[(&'static str, String); 5], Failure> {
     let again = experiment.as_sweep_file(RESOLVED)?;
     let [columns, package] = dictionary(experiment)?;
@@ -71,14 +71,14 @@ pub(super) fn write_manifest(path: &Path, manifest: &Manifest) -> Result<(), Fai
     sync_folder(path)
 }
 
-/// The names of files are on disk when their folder is.
+/// Syncs a folder to disk, and with it the names of its files.
 pub(super) fn sync_folder(path: &Path) -> Result<(), Failure> {
     let path = if path.as_os_str().is_empty() { Path::new(".") } else { path };
     let synced = File::open(path).and_then(|folder| folder.sync_all());
     synced.map_err(|error| Failure::storage(format!("{}: {error}", path.display())))
 }
 
-/// Whether a sweep has begun in a folder: its inputs are there, or trials.
+/// Whether a sweep has begun in a folder: it has inputs or trials.
 pub(super) fn has_begun(path: &Path) -> bool {
     [RESOLVED, journal::FILE, archive::FILE].iter().any(|name| path.join(name).exists())
 }
@@ -104,7 +104,7 @@ pub(super) fn read_manifest(path: &Path) -> Result<Option<Manifest>, Failure> {
 /// The manifest of a folder that this program can read.
 ///
 /// # Errors
-/// It is not the folder of a sweep, or of one that another version has made.
+/// The folder does not hold a sweep, or another version made it.
 pub fn manifest_in(path: &Path) -> Result<Manifest, Failure> {
     let not_one = |reason: &dyn std::fmt::Display| {
         Failure::input(format!("{}: is not the folder of a sweep: {reason}", path.display()))
@@ -133,7 +133,7 @@ pub(super) fn resolved_in(path: &Path) -> String {
     String::from_utf8_lossy(&text).into_owned()
 }
 
-/// Refuses to go on with another sweep, or with fewer trials than there are.
+/// Refuses to continue a different sweep, or to continue with fewer trials than there are.
 pub(super) fn check_continues(
     path: &Path,
     there: &Manifest,
@@ -159,14 +159,14 @@ pub(super) fn check_continues(
     )))
 }
 
-/// Names of the files that do not have the hashes of the manifest.
+/// Names of the files whose hashes differ from the manifest.
 #[must_use]
 pub fn broken_files(path: &Path, manifest: &Manifest) -> Vec<String> {
     let is_broken = |file: &&FileHash| file_hash(&path.join(&file.name)).ok() != Some(file.xxh3_128.clone());
     manifest.files.iter().filter(is_broken).map(|file| file.name.clone()).collect()
 }
 
-/// The experiment that a folder is of.
+/// The experiment of a folder.
 ///
 /// # Errors
 /// Its resolved scenario cannot be read.
@@ -188,17 +188,17 @@ pub fn experiment_of(path: &Path, manifest: &Manifest) -> Result<Experiment, Fai
     })
 }
 
-/// The experiment of a folder, whatever program made it.
+/// The experiment of a folder. The program that made it may be another one.
 ///
 /// # Errors
-/// It is not the folder of a sweep.
+/// The folder does not hold a sweep.
 pub fn experiment_in(path: &Path) -> Result<(Experiment, Manifest), Failure> {
     let missing = || Failure::input(format!("{}: is not the folder of a finished sweep", path.display()));
     let manifest = read_manifest(path)?.ok_or_else(missing)?;
     Ok((experiment_of(path, &manifest)?, manifest))
 }
 
-/// Whether a folder is that of a sweep, whatever program made it.
+/// Whether a folder holds a sweep. The program that made it may be another one.
 #[must_use]
 pub fn is_sweeps(path: &Path) -> bool {
     let manifest = files::read(&path.join(MANIFEST)).unwrap_or_default();
@@ -206,7 +206,7 @@ pub fn is_sweeps(path: &Path) -> bool {
     manifest["program"] == "usar"
 }
 
-/// The folders of sweeps that are in a folder, by name.
+/// The folders inside a folder that hold sweeps, by name.
 #[must_use]
 pub fn sweeps_in(path: &Path) -> Vec<PathBuf> {
     let entries = fs::read_dir(path).into_iter().flatten().flatten().map(|entry| entry.path());
@@ -215,7 +215,7 @@ pub fn sweeps_in(path: &Path) -> Vec<PathBuf> {
     sweeps
 }
 
-/// How many trials a folder's sweep has, if there is one.
+/// Number of trials of a folder's sweep, if it holds one.
 #[must_use]
 pub fn trials_in(path: &Path) -> Option<u32> {
     read_manifest(path).ok()?.map(|manifest| manifest.trials)

@@ -1,8 +1,8 @@
-//! The folder of a sweep's results: resumable at any moment, and the same bytes in the end.
+//! The folder of a sweep's results: it can be resumed at any moment, and has the same bytes in the end.
 //!
-//! `journal.jsonl` takes each trial as it is done; when all are done, the tables are made from it, and its lines go in
-//! order into `journal.jsonl.gz`. The manifest says what the sweep is from the first moment on, so that the
-//! same command goes on with it and another is refused.
+//! `journal.jsonl` receives each trial as it ends. When all trials are finished, the tables are made from
+//! the journal, and its lines go in order into `journal.jsonl.gz`. The manifest defines the sweep from the
+//! first moment on. The same command therefore resumes it, and a different sweep is refused.
 
 mod writing;
 
@@ -31,7 +31,7 @@ use crate::run::{Outcome, TrialKey};
 
 pub use super::measured::Measured;
 
-/// A sweep's folder with what is finished in it.
+/// A sweep's folder and its finished trials.
 pub struct Folder {
     path: PathBuf,
     experiment: Arc<Experiment>,
@@ -42,21 +42,20 @@ pub struct Folder {
     lock: Option<Lock>,
 }
 
-/// How a folder is opened to be written.
+/// How to open a folder for writing.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Opening {
     /// The part of the sweep to run.
     pub shard: Option<Shard>,
-    /// Start over: what is there of another sweep is deleted.
+    /// Start over: delete an existing sweep.
     pub is_fresh: bool,
 }
 
 impl Folder {
-    /// Opens the folder of a new sweep, or of one that was broken off or is to be extended. What is to be
-    /// said about it goes to `say`.
+    /// Opens the folder of a new sweep, or of a sweep to resume or extend. Messages go to `say`.
     ///
     /// # Errors
-    /// It belongs to something else; the folder cannot be used; another process uses it.
+    /// The folder belongs to something else or cannot be used, or another process uses it.
     pub fn open(
         path: &Path,
         experiment: Arc<Experiment>,
@@ -86,7 +85,7 @@ impl Folder {
             let path = path.to_owned();
             return Ok(Self { path, experiment, manifest: done, store, results, lock: Some(lock) });
         }
-        // What the journal is of is on disk before the journal.
+        // The manifest and the inputs are on disk before the journal.
         let manifest = write_start(path, &experiment, opening.shard)?;
         thaw(path)?;
         let mut say = |damage: String| say(damage + "; what it held is run again");
@@ -94,7 +93,7 @@ impl Folder {
         Ok(Self { lock: Some(lock), ..folder })
     }
 
-    /// The manifest of what is in a folder, if it is this very sweep, finished and sound.
+    /// The manifest of a folder that holds this very sweep, finished and sound.
     fn is_done(
         path: &Path,
         manifest: &Manifest,
@@ -144,10 +143,10 @@ impl Folder {
         if damages.is_empty() { Ok(folder) } else { Err(Failure::input(damages.join("\n"))) }
     }
 
-    /// Reads a folder as far as it is sound, and says what of it is damaged.
+    /// Reads a folder as far as it is sound, and returns its damages.
     ///
     /// # Errors
-    /// It is not the folder of a sweep.
+    /// The folder does not hold a sweep.
     pub fn read_damaged(path: &Path) -> Result<(Self, Vec<String>), Failure> {
         let manifest = manifest_in(path)?;
         let experiment = Arc::new(experiment_of(path, &manifest)?);
@@ -175,12 +174,12 @@ impl Folder {
         Ok((folder, damages))
     }
 
-    /// Its trials, and their places; the results are let go.
+    /// The store and the places of the trials; the results are dropped.
     pub(super) fn into_store(self) -> (Store, Vec<Place>) {
         (self.store, self.results.into_keys().collect())
     }
 
-    /// What of a finished sweep whose files were changed can be read.
+    /// Reads what is readable of a finished sweep whose files were changed.
     fn salvaged(
         path: &Path,
         experiment: Arc<Experiment>,
@@ -206,7 +205,7 @@ impl Folder {
             Journal::open(path, (&experiment, manifest.shard), is_writable, |finished| {
                 results.insert(finished.place(), Measured::of_finished(&finished, &experiment));
             })?;
-        // A sweep that is under way may be writing its last line.
+        // A running sweep may be writing its last line.
         let may_write = !is_writable && !manifest.is_complete;
         let said = damages.into_iter().filter(|damage: &Damage| !(may_write && damage.is_cut_off));
         let mut damages = Damages::new(path, say);
@@ -216,31 +215,31 @@ impl Folder {
         Ok(Self { path, experiment, manifest, store, results, lock: None })
     }
 
-    /// Where it is.
+    /// Path of the folder.
     #[must_use]
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// What it is of.
+    /// The experiment of the folder.
     #[must_use]
     pub fn experiment(&self) -> &Experiment {
         &self.experiment
     }
 
-    /// What it is of, to share with threads.
+    /// The experiment, to share with threads.
     #[must_use]
     pub fn shared_experiment(&self) -> Arc<Experiment> {
         Arc::clone(&self.experiment)
     }
 
-    /// Its manifest.
+    /// The manifest.
     #[must_use]
     pub fn manifest(&self) -> &Manifest {
         &self.manifest
     }
 
-    /// What is finished, by place.
+    /// The results of the finished trials, by place.
     #[must_use]
     pub fn results(&self) -> &Results {
         &self.results
@@ -252,7 +251,8 @@ impl Folder {
         self.results.range((case, policy, 0)..=(case, policy, u32::MAX)).map(|(place, _)| *place).collect()
     }
 
-    /// The values of a metric under one case and policy, as far as trials ran to their end and it is defined.
+    /// The values of a metric for one case and policy, from the trials that ran to their end and have a
+    /// value.
     #[must_use]
     pub fn values(&self, case: usize, policy: usize, metric: usize) -> Vec<f64> {
         let trials = self.results.range((case, policy, 0)..=(case, policy, u32::MAX));
@@ -260,7 +260,8 @@ impl Folder {
         measured.filter_map(|metrics| metrics[metric]).collect()
     }
 
-    /// How many trials it is to have of a case and policy: those of its shard, or all.
+    /// Number of trials that the folder is to have for a case and each policy: of its shard, or of the
+    /// whole sweep.
     #[must_use]
     pub fn trials_of(&self, case: usize) -> usize {
         self.experiment.trials_of(case, self.manifest.shard).count()
@@ -275,7 +276,7 @@ impl Folder {
     /// A finished trial.
     ///
     /// # Errors
-    /// The journal cannot be read, or the sweep keeps no more of a trial than its metrics.
+    /// The journal cannot be read, or the sweep keeps only the metrics of a trial.
     pub fn outcome(&mut self, place: Place) -> Result<Outcome, Failure> {
         let Finished { key, result } = self.finished(place)?;
         let result = match result {
@@ -305,7 +306,7 @@ impl Folder {
         self.store.finished(place, &self.experiment)
     }
 
-    /// Its line in the journal.
+    /// The line of a trial in the journal.
     ///
     /// # Errors
     /// The journal cannot be read.
@@ -313,7 +314,7 @@ impl Folder {
         self.store.line(place)
     }
 
-    /// What is to be said when the sweep was stopped.
+    /// The message after an interruption.
     #[must_use]
     pub fn interrupted(&self) -> Failure {
         let (done, path) = (self.results.len(), self.path.display());

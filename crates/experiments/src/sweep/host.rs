@@ -1,6 +1,7 @@
-//! `host.json`: the machines that ran a sweep, and when. It stands beside the manifest and is no part of the hashed
-//! results, because it differs between two runs of the same sweep. It has what the STRESS guidelines for
-//! reporting simulation studies ask for (Monks et al. 2019): hardware, system, compiler, threads and times.
+//! `host.json`: the machines that ran a sweep, and the times of the runs. It lies beside the manifest and
+//! is not part of the hashed results, because it differs between two runs of the same sweep. It holds what
+//! the STRESS guidelines for reporting simulation studies ask for (Monks et al. 2019): hardware, system,
+//! compiler, threads and times.
 
 use std::path::Path;
 
@@ -15,16 +16,16 @@ use crate::files::{self, NewFile};
 
 /// Name of the file.
 pub const FILE: &str = "host.json";
-/// Version of its layout.
+/// Version of the file's layout.
 const SCHEMA_VERSION: u32 = 1;
-/// Runs that are kept: the latest.
+/// Largest number of runs that are kept; older ones are dropped.
 const MOST_RUNS: usize = 10_000;
 
-/// The file: every run that added trials to the folder.
+/// The content of the file: every run that added trials to the folder.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Hosts {
     schema_version: u32,
-    /// The runs, in the order of their beginnings.
+    /// The runs, in the order of their starts.
     pub runs: Vec<HostRun>,
 }
 
@@ -33,41 +34,41 @@ pub struct Hosts {
 pub struct HostRun {
     /// Name of the machine.
     pub host: String,
-    /// Its processor.
+    /// Processor of the machine.
     pub cpu: String,
-    /// Its logical processors.
+    /// Number of its logical processors.
     pub cpus: usize,
-    /// Its memory in GiB.
+    /// Memory in GiB.
     pub memory_gib: f64,
-    /// Its system.
+    /// Operating system.
     pub system: String,
-    /// Its kernel.
+    /// Kernel of the operating system.
     pub kernel: String,
-    /// The compiler of the program.
+    /// The compiler that built the program.
     pub compiler: String,
-    /// Threads that ran trials.
+    /// Number of threads that ran trials.
     pub threads: usize,
-    /// The job, as Slurm names it.
+    /// The job, in Slurm's notation.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub job: Option<String>,
-    /// Which part of the sweep it was.
+    /// Which part of the sweep it ran.
     pub part: String,
-    /// Trials that it added.
+    /// Number of trials that it added.
     pub trials: usize,
-    /// When it began, in UTC.
+    /// Start time, in UTC.
     pub begun: String,
-    /// How long it took, in seconds of wall-clock time.
+    /// Duration, in seconds of wall-clock time.
     pub seconds: f64,
 }
 
 impl HostRun {
-    /// A run on this machine, of the part of a sweep that a folder holds.
+    /// A run on this machine, for the part of a sweep that a folder holds.
     #[must_use]
     pub fn new(folder: &Folder, threads: usize) -> Self {
         Self::of_part(folder.manifest().part(), threads)
     }
 
-    /// A run on this machine, of a part in words.
+    /// A run on this machine, for a part in words.
     #[must_use]
     pub fn of_part(part: String, threads: usize) -> Self {
         let memory = MemoryRefreshKind::nothing().with_ram();
@@ -95,7 +96,7 @@ impl HostRun {
 }
 
 impl Hosts {
-    /// Those of a folder; none where there is no such file, or one that cannot be read.
+    /// The runs of a folder; empty if there is no such file or it cannot be read.
     #[must_use]
     pub fn read(folder: &Path) -> Self {
         let text = files::read(&folder.join(FILE)).unwrap_or_default();
@@ -123,14 +124,14 @@ pub fn name() -> String {
     System::host_name().unwrap_or_else(|_| "unknown".to_owned())
 }
 
-/// The job that this process is of, as Slurm names it: `42_3` is the third task of the array 42.
+/// The job of this process, in Slurm's notation: `42_3` is the third task of the array 42.
 #[must_use]
 pub fn job() -> Option<String> {
     let task = variable("SLURM_ARRAY_JOB_ID").zip(variable("SLURM_ARRAY_TASK_ID"));
     task.map(|(array, task)| format!("{array}_{task}")).or_else(|| variable("SLURM_JOB_ID"))
 }
 
-/// Bytes that are free for a user on the file system of a folder that is there; nothing where it cannot be told.
+/// Bytes that are free for a user on the file system of an existing folder; `None` if unknown.
 #[must_use]
 pub fn free_bytes(folder: &Path) -> Option<u64> {
     let folder = folder.canonicalize().ok()?;
@@ -140,7 +141,7 @@ pub fn free_bytes(folder: &Path) -> Option<u64> {
     Some(nearest.available_space())
 }
 
-/// A variable of the environment that is set.
+/// The value of an environment variable; `None` if it is unset or empty.
 pub(super) fn variable(name: &str) -> Option<String> {
     std::env::var(name).ok().filter(|value| !value.is_empty())
 }
@@ -152,10 +153,10 @@ pub fn now() -> String {
     now.round(jiff::Unit::Second).unwrap_or(now).to_string()
 }
 
-/// Whether there is a process of this number on this machine.
+/// Whether a process with this number runs on this machine.
 pub(super) fn is_running(process: u32) -> bool {
     let process = Pid::from_u32(process);
-    // Where it cannot be told, it is taken to be running.
+    // If unknown, the process is assumed to be running.
     let Ok(mut system) = System::new() else { return true };
     system.refresh_processes(ProcessesToUpdate::Some(&[process]), true);
     system.process(process).is_some()

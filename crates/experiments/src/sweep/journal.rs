@@ -1,5 +1,5 @@
-//! `journal.jsonl`: each trial on disk as soon as it is done, a line of JSON with its checksum. Everything else in a
-//! sweep's folder is made from it.
+//! `journal.jsonl`: each trial is on disk as soon as it ends, as a line of JSON with its checksum.
+//! Everything else in a sweep's folder is made from it.
 
 use std::collections::BTreeMap;
 use std::fs::{File, OpenOptions};
@@ -20,18 +20,18 @@ pub const FILE: &str = "journal.jsonl";
 pub(super) struct Journal {
     path: PathBuf,
     file: File,
-    /// Bytes that are sound.
+    /// Length of the sound part, in bytes.
     length: u64,
-    /// Where the line of each finished trial is.
+    /// Offset and size of each finished trial's line.
     lines: BTreeMap<Place, (u64, usize)>,
 }
 
 /// A line that cannot be used.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Damage {
-    /// File, line and what is wrong.
+    /// File, line and defect.
     pub what: String,
-    /// Whether it is the last line, and has no end.
+    /// Whether it is the last line and lacks its end.
     pub is_cut_off: bool,
 }
 
@@ -43,9 +43,9 @@ pub(super) fn is_one(folder: &Path) -> bool {
 }
 
 impl Journal {
-    /// Opens the journal of a folder, of the whole sweep or one shard, and hands each finished trial to
-    /// `found`, in the order of the file. For one who writes, trials that timed out count as not run. A last
-    /// line that is cut off is what a killed process was writing.
+    /// Opens the journal of a folder, for the whole sweep or one shard, and hands each finished trial to
+    /// `found`, in the order of the file. If the journal is writable, trials that timed out count as not
+    /// run. An incomplete last line is the one that a killed process was writing.
     ///
     /// # Errors
     /// The file cannot be read.
@@ -102,10 +102,10 @@ impl Journal {
         Ok((Self { path, file, length, lines }, damages))
     }
 
-    /// Adds lines: when this returns, they are on disk.
+    /// Adds lines. They are on disk when this returns.
     ///
     /// # Errors
-    /// The disk does not take them; the journal is as it was.
+    /// The disk does not take them. The journal is then unchanged.
     pub(super) fn append(&mut self, added: &[(Place, Vec<u8>)]) -> Result<(), Failure> {
         let bytes: Vec<u8> = added.iter().flat_map(|(_, line)| line).copied().collect();
         let mut write = || {

@@ -10,9 +10,9 @@ use crate::experiment::{Experiment, Keep, Place, Shard};
 use crate::failure::Failure;
 use crate::run::{Fault, Outcome, Trial, TrialKey};
 
-/// What a line begins with, before 16 hexadecimal digits.
+/// Start of a line, before 16 hexadecimal digits.
 pub(super) const HEAD: &str = "{\"xxh3_64\":\"";
-/// What stands between the digits and the trial.
+/// Text between the digits and the trial.
 const MIDDLE: &str = "\",\"trial\":";
 
 #[derive(Serialize, Deserialize)]
@@ -32,29 +32,29 @@ enum Stored {
     Fault(Fault),
 }
 
-/// A finished trial, as much of it as its sweep keeps.
+/// A finished trial, with as much of it as its sweep keeps.
 pub(super) struct Finished {
-    /// Which trial.
+    /// The key of the trial.
     pub key: TrialKey,
-    /// What it gave, or why nothing.
+    /// The trial's results, or its fault.
     pub result: Result<Kept, Fault>,
 }
 
-/// What is kept of a trial that ran to its end.
+/// The part of a trial that is kept, if it ran to its end.
 pub(super) enum Kept {
     /// Its record.
     Record(Box<Trial>),
-    /// What it came to.
+    /// Its summary.
     Summary(Summary),
 }
 
 impl Finished {
-    /// Where it is in its sweep.
+    /// The place of the trial in its sweep.
     pub fn place(&self) -> Place {
         (self.key.case, self.key.policy, self.key.trial)
     }
 
-    /// What it came to.
+    /// The summary of the trial, or its fault.
     pub fn summary(&self, experiment: &Experiment) -> Result<Summary, Fault> {
         match self.result.as_ref().map_err(Clone::clone)? {
             Kept::Record(trial) => Ok(Summary::of(&trial.record, &experiment.metrics)),
@@ -62,7 +62,7 @@ impl Finished {
         }
     }
 
-    /// The record, where it is kept.
+    /// The trial with its record, if that is kept.
     pub fn trial(&self) -> Option<&Trial> {
         match &self.result {
             Ok(Kept::Record(trial)) => Some(trial),
@@ -104,7 +104,8 @@ pub(super) fn line_of(experiment: &Experiment, keep: Keep, outcome: &Outcome) ->
     Ok(format!("{HEAD}{:016x}{MIDDLE}{entry}}}\n", xxh3_64(entry.as_bytes())).into_bytes())
 }
 
-/// The trial of a line, of the sweep or of a shard of it; otherwise what is wrong with it.
+/// The trial of a line, if it belongs to the sweep or to a shard of it; otherwise what is wrong with the
+/// line.
 pub(super) fn finished_of(
     line: &[u8],
     experiment: &Experiment,

@@ -1,4 +1,4 @@
-//! `hashes.csv`: the hash chains of all trials, written by a sweep and compared when it is verified.
+//! `hashes.csv`: the hash chains of all trials. A sweep writes them, and its verification compares them.
 
 use serde::{Deserialize, Serialize};
 use usar_sim::hash::{HashChain, Link, PARTS};
@@ -42,7 +42,7 @@ fn link_of(step: u64, digest: &str, digits: &str) -> Option<Link> {
     Some(Link { step, parts, digest })
 }
 
-/// A chain as one text.
+/// Encodes a chain as one text.
 pub(super) fn encode(links: &[Link]) -> String {
     let link = |link: &Link| {
         let parts = link.parts.map(|part| format!("{part:04x}")).concat();
@@ -51,7 +51,7 @@ pub(super) fn encode(links: &[Link]) -> String {
     links.iter().map(link).collect::<Vec<_>>().join(" ")
 }
 
-/// The chain that a text holds.
+/// Decodes the chain in a text.
 pub(super) fn decode(text: &str) -> Option<HashChain> {
     let link = |text: &str| {
         let mut pieces = text.split(':');

@@ -1,14 +1,14 @@
-//! `.lock`: one process at a time works in a folder, also on file systems that nodes share.
+//! `.lock`: only one process at a time works in a folder, also on file systems that nodes share.
 //!
-//! The file is made with `O_EXCL`, which every file system does as one step, and names host, job, process and
-//! time. Where the system call `flock` works, its holder has it as well, so that a killed process of the same
-//! machine leaves nothing behind; on Lustre without `flock`, and on NFS with locks of each node alone, the
-//! file is what counts. Its holder writes it anew every `BEAT`. A lock is stale, and is taken over with a
-//! note, when
+//! The file is created with `O_EXCL`, which every file system does atomically. It names host, job, process
+//! and time. Where the system call `flock` works, the holder also has that lock, so that a killed process
+//! of the same machine leaves no lock behind. On Lustre without `flock`, and on NFS with locks local to
+//! each node, only the file counts. The holder rewrites the file every `BEAT`. A lock is stale, and is
+//! taken over with a note, if
 //!
-//! - it is of this host, and its process is gone, or
-//! - it is of an earlier start of this very job (Slurm requeued it), or
-//! - it was not written for `STALE`, by the clock of the file server.
+//! - its host is this one and its process is gone, or
+//! - it belongs to an earlier start of this very job (Slurm requeued it), or
+//! - it has not been written for `STALE`, by the clock of the file server.
 
 use std::fs::{self, File, TryLockError};
 use std::io::{self, ErrorKind, Read, Seek, SeekFrom, Write};
@@ -25,38 +25,39 @@ use super::host;
 use crate::failure::Failure;
 use crate::files;
 
-/// How often a holder writes its lock anew.
+/// How often a holder rewrites its lock.
 const BEAT: Duration = Duration::from_secs(30);
-/// The silence after which the lock of another host is stale.
+/// Time without writing after which a lock is stale, unless `flock` shows that it is held.
 const STALE: Duration = Duration::from_mins(5);
-/// The silence after which a lock is stale that says nothing: its process was killed while it was making it.
+/// Time without writing after which an empty or unreadable lock is stale: its process was killed while
+/// creating it.
 const UNSAID: Duration = Duration::from_secs(10);
-/// Bytes of a lock that are read.
+/// Largest number of bytes that are read of a lock.
 const MOST_BYTES: u64 = 4_096;
 
-/// A folder that this process alone works in, until it is dropped.
+/// A lock on a folder: only this process works there, until the lock is dropped.
 #[derive(Debug)]
 pub struct Lock {
     held: Arc<Held>,
-    /// Dropping it ends the thread.
+    /// Dropping the sender ends the thread.
     end: Option<Sender<()>>,
     beats: Option<JoinHandle<()>>,
 }
 
-/// What holds a folder.
+/// The process that holds a folder.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Holder {
-    /// Name of its host.
+    /// Name of the host.
     pub host: String,
-    /// Its job, as Slurm names it: `42_3` is the third task of the array 42.
+    /// The job, in Slurm's notation: `42_3` is the third task of the array 42.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub job: Option<String>,
     /// How often this job was requeued before.
     #[serde(default)]
     pub restarts: u32,
-    /// Number of its process.
+    /// Number of the process.
     pub process: u32,
-    /// When it took the folder, in UTC.
+    /// When the process took the folder, in UTC.
     pub since: String,
 }
 
@@ -68,7 +69,7 @@ impl std::fmt::Display for Holder {
 }
 
 impl Holder {
-    /// This process.
+    /// This process as a holder.
     fn this() -> Self {
         Self {
             host: host::name(),
@@ -80,17 +81,17 @@ impl Holder {
     }
 }
 
-/// What is known of a lock that is there.
+/// State of an existing lock.
 struct Found {
     holder: Option<Holder>,
-    /// Whether `flock` says that no process of this host has it; `None` where it cannot be asked.
+    /// Whether no process of this host has the `flock`; `None` if `flock` does not work.
     is_free: Option<bool>,
     /// Time since it was written.
     silence: Duration,
 }
 
 impl Found {
-    /// Why it may be taken over, or nothing.
+    /// The reason why the lock may be taken over; `None` if it may not.
     fn stale(&self, this: &Holder) -> Option<&'static str> {
         let Some(holder) = &self.holder else {
             return (self.is_free != Some(false) && self.silence > UNSAID).then_some("it says nothing");
@@ -111,17 +112,18 @@ impl Found {
 }
 
 impl Lock {
-    /// Takes a folder; what is to be said about it goes to `say`.
+    /// Takes a folder. Messages go to `say`.
     ///
     /// # Errors
-    /// Another process is at work in it, or it cannot be written to.
+    /// Another process works in the folder, or it cannot be written to.
     pub fn take(folder: &Path, say: &mut dyn FnMut(String)) -> Result<Self, Failure> {
         let path = folder.join(LOCK);
         let trouble =
             |error: io::Error| Failure::storage(format!("cannot write to {}: {error}", folder.display()));
         files::check_is_file(&path).map_err(trouble)?;
         let this = Holder::this();
-        // Once more after a stale lock is gone, and after one that was given back while we looked.
+        // Tries again after removing a stale lock, and after a lock that its holder released in the
+        // meantime.
         for _ in 0..3 {
             match File::options().read(true).write(true).create_new(true).open(&path) {
                 Ok(file) => return Self::hold(file, &path, &this).map_err(trouble),
@@ -160,11 +162,11 @@ impl Lock {
         Ok(Self { held, end: Some(end), beats: Some(beats) })
     }
 
-    /// Refuses to go on when another process has taken the folder over, because this one was silent for too
-    /// long.
+    /// Fails if another process has taken over the folder, because this process did not write its lock for
+    /// too long.
     ///
     /// # Errors
-    /// That.
+    /// The folder was taken over.
     pub fn check(&self) -> Result<(), Failure> {
         let state = self.held.state.lock().unwrap_or_else(PoisonError::into_inner);
         let is_late = state.latest.elapsed().is_ok_and(|silence| silence > 2 * BEAT);
@@ -202,7 +204,7 @@ struct Held {
 #[derive(Debug)]
 struct State {
     file: File,
-    /// When the lock was written last, by the clock of this host.
+    /// When the lock was last written, by the clock of this host.
     latest: SystemTime,
     is_lost: bool,
 }
@@ -212,7 +214,7 @@ impl Held {
         read(&self.path).is_ok_and(|bytes| bytes == self.text.as_bytes())
     }
 
-    /// Writes the lock anew; returns whether it is still ours.
+    /// Rewrites the lock; returns whether it is still ours.
     fn beat(&self) -> bool {
         let mut state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
         if !self.is_ours() {
@@ -234,8 +236,8 @@ fn read(path: &Path) -> io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// What is known of a lock, with its bytes and, for as long as the file is open, its `flock`; nothing where
-/// it is gone.
+/// What is known about a lock, with its bytes and the opened file, which holds the `flock` until it is
+/// closed. `None` if the lock is gone.
 fn look(path: &Path) -> io::Result<Option<(Found, Vec<u8>, File)>> {
     let opened = match File::options().read(true).append(true).open(path) {
         Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
@@ -255,7 +257,8 @@ fn look(path: &Path) -> io::Result<Option<(Found, Vec<u8>, File)>> {
     Ok(Some((Found { holder, is_free, silence }, bytes, opened)))
 }
 
-/// Time since a file was written, by the clock of its file server: that of a file that is written now.
+/// Time since a file was written, by the clock of its file server: compared with a file that is written
+/// now.
 fn silence(path: &Path, file: &File) -> io::Result<Option<Duration>> {
     let probe = beside(path, "probe");
     let now = File::create(&probe).and_then(|mut new| {
@@ -268,8 +271,8 @@ fn silence(path: &Path, file: &File) -> io::Result<Option<Duration>> {
     Ok(Some(now?.duration_since(written).unwrap_or_default()))
 }
 
-/// Removes a lock with these bytes; returns whether it was that lock. One that took its place in between is
-/// put back.
+/// Removes a lock with these bytes; returns whether it was that lock. If another lock has taken its place
+/// in the meantime, that lock is put back.
 fn remove_stale(path: &Path, bytes: &[u8]) -> io::Result<bool> {
     let aside = beside(path, "stale");
     match fs::rename(path, &aside) {
@@ -284,12 +287,12 @@ fn remove_stale(path: &Path, bytes: &[u8]) -> io::Result<bool> {
     Ok(is_stale)
 }
 
-/// A name beside the lock that no other process has.
+/// A file name beside the lock that no other process uses.
 fn beside(path: &Path, what: &str) -> PathBuf {
     path.with_file_name(format!("{LOCK}.{what}-{}-{}", host::name(), std::process::id()))
 }
 
-/// What holds a folder, if anything does that was not silent for too long.
+/// The process that holds a folder; `None` if there is no lock or it is stale.
 ///
 /// # Errors
 /// The lock cannot be read.

@@ -1,4 +1,4 @@
-//! What comparisons need of a trial, and reading it from `trials.csv`.
+//! The values of a trial that comparisons need, and reading them from `trials.csv`.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -16,18 +16,18 @@ use crate::run::{Fault, FaultKind, Outcome, TrialKey};
 /// Results of trials, by place.
 pub type Results = BTreeMap<Place, Measured>;
 
-/// What comparisons need of a trial.
+/// The values of a trial that comparisons need.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Measured {
     /// Its status in one word.
     pub status: &'static str,
     /// Values of all metrics, in the order of the experiment's catalogue; `None` for a trial without numbers.
     pub metrics: Option<Vec<Option<f64>>>,
-    /// Why it gave nothing.
+    /// Why it has no values.
     pub failure: Option<String>,
 }
 
-/// What a trial that ran to its end came to.
+/// The summary of a trial that ran to its end.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(super) struct Summary {
     /// Its status in one word.
@@ -44,7 +44,7 @@ impl Summary {
         Self { status, metrics: metrics.measure(record), state_hash: record.state_hash.clone() }
     }
 
-    /// Says what keeps it from being of a trial with these metrics.
+    /// Checks that this can be the summary of a trial with these metrics.
     pub(super) fn check(&self, metrics: &Catalogue) -> Result<(), String> {
         let (count, found) = (metrics.len(), self.metrics.len());
         if count != found {
@@ -54,7 +54,7 @@ impl Summary {
     }
 }
 
-/// The status of this name.
+/// The status with this name.
 fn status_of(name: &str) -> Option<&'static str> {
     let ended = [Status::Completed, Status::NobodyCanCarry, Status::ErrandsOver].map(|status| status.name());
     let faults = FaultKind::ALL.map(FaultKind::name);
@@ -84,7 +84,7 @@ impl Measured {
         Self { status: fault.kind.name(), metrics: None, failure: Some(fault.sentence(key)) }
     }
 
-    /// Whether the trial took longer than it was given.
+    /// Whether the trial exceeded its time limit.
     pub(super) fn is_late(&self) -> bool {
         self.status == FaultKind::TimedOut.name()
     }
@@ -115,7 +115,7 @@ pub(super) fn read_results(
     places.map(|place| Ok((place, next(&experiment.key(place))?))).collect()
 }
 
-/// What a row tells, if it is of this trial.
+/// The values of a row, if it belongs to this trial.
 fn measured_in(cells: &[&str], key: &TrialKey, metrics: usize) -> Option<Measured> {
     let is_of =
         cells[1].parse() == Ok(key.trial) && cells[2] == key.label && cells[3].parse() == Ok(key.seed);
@@ -124,7 +124,7 @@ fn measured_in(cells: &[&str], key: &TrialKey, metrics: usize) -> Option<Measure
         let reason = cells[FIRST_METRIC + metrics + 1].to_owned();
         return Some(Measured::failed(key, &Fault { kind, reason }));
     }
-    // In its size from the beginning: a million of these stay in memory.
+    // Allocated in the final size, because a million of these stay in memory.
     let mut values = Vec::with_capacity(metrics);
     for cell in &cells[FIRST_METRIC..FIRST_METRIC + metrics] {
         values.push(if cell.is_empty() { None } else { Some(cell.parse().ok()?) });

@@ -1,4 +1,4 @@
-//! The shards of a sweep as one folder: its bytes are those of a single run.
+//! Merges the shards of a sweep into one folder, with the same bytes as a single run.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -14,17 +14,17 @@ use crate::failure::Failure;
 use crate::provenance::{Manifest, scenario_differences};
 use crate::run::TrialKey;
 
-/// How many missing trials are named.
+/// Largest number of missing trials that are named.
 const MAX_NAMED: usize = 5;
-/// No shard has the trial.
+/// Marks a trial that no shard has.
 const NOBODY: u32 = u32::MAX;
 
-/// Shards that together are a sweep.
+/// Shards that together form a sweep.
 pub struct Merge {
     experiment: Arc<Experiment>,
     parts: Vec<Part>,
     order: Order,
-    /// For each trial, in order, the shard that has it.
+    /// For each trial, in order, the number of the shard that has it.
     owners: Vec<u32>,
 }
 
@@ -33,16 +33,16 @@ struct Part {
     path: PathBuf,
     manifest: Manifest,
     store: Store,
-    /// The places of its trials, where it has not got all of its shard.
+    /// The places of its trials, if its shard is incomplete.
     places: Option<Vec<Place>>,
 }
 
 impl Merge {
-    /// Finds out which shard has which trial. No trial is read.
+    /// Finds out which shard has which trial, without reading trials.
     ///
     /// # Errors
-    /// A folder is damaged or is no sweep's; they are of different sweeps or programs, disagree about a
-    /// trial, or lack one.
+    /// A folder is damaged or does not hold a sweep; the folders hold different sweeps or come from
+    /// different programs; two of them disagree about a trial; or a trial is missing.
     pub fn of(folders: &[PathBuf]) -> Result<Self, Failure> {
         let [first, ..] = folders else { return Err(Failure::input("there is nothing to merge")) };
         let manifest = manifest_in(first)?;
@@ -76,7 +76,7 @@ impl Merge {
         Ok(())
     }
 
-    /// Says that a shard has a trial. Where another has it as well, they must agree.
+    /// Records that a shard has a trial. If another shard has it as well, both must agree.
     fn own(&mut self, number: usize, place: Place) -> Result<(), Failure> {
         let Some(rank) = self.order.rank(place) else { return Ok(()) };
         let owner = self.owners[rank];
@@ -93,7 +93,7 @@ impl Merge {
         Err(Failure::input(format!("{one} and {two} disagree about trial {trial} of {label} (seed {seed})")))
     }
 
-    /// Refuses shards that lack a trial, naming the shards that are not there and the first trials.
+    /// Refuses shards that lack a trial. The message names the missing shards and the first missing trials.
     fn check_complete(&self) -> Result<(), Failure> {
         let count = self.owners.iter().filter(|owner| **owner == NOBODY).count();
         if count == 0 {
@@ -110,7 +110,7 @@ impl Merge {
         Err(Failure::input(format!("{}missing trials, {count}: {named}{more}", self.absent_shards())))
     }
 
-    /// Which of the shards are not there, in words; nothing where all are.
+    /// The missing shards, in words; empty if none is missing.
     fn absent_shards(&self) -> String {
         let there: Vec<Shard> = self.parts.iter().filter_map(|part| part.manifest.shard).collect();
         let Some(first) = there.first() else { return String::new() };
@@ -123,10 +123,10 @@ impl Merge {
         if absent.is_empty() { String::new() } else { format!("shard {} is not there: ", absent.join(", ")) }
     }
 
-    /// Writes the whole to a folder; no trial is held there twice. What is to be said about it goes to `say`.
+    /// Writes the whole sweep to a folder; no trial is held in memory twice. Messages go to `say`.
     ///
     /// # Errors
-    /// The folder has something else in it, a line cannot be read, the disk does not take it, or `stop` was
+    /// The folder holds something else, a line cannot be read, the disk does not take it, or `stop` was
     /// set.
     pub fn write_to(
         mut self,

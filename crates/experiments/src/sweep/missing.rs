@@ -1,4 +1,4 @@
-//! The trials that a folder has not got yet: which they are, and running them.
+//! The trials that a folder lacks, and running them.
 
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
@@ -8,11 +8,10 @@ use crate::experiment::{Place, Shard};
 use crate::failure::Failure;
 use crate::run::{Limits, Outcome, Run, run_batches};
 
-/// Seeds of which trials are run at a time.
+/// Number of seeds whose trials are run together.
 const SEEDS_AT_A_TIME: usize = 8;
 
-/// The trials of a shard, or of the whole sweep, that a folder has not got yet, in the order in which they
-/// are run.
+/// The trials of a shard, or of the whole sweep, that a folder lacks, in the order in which they are run.
 #[must_use]
 pub fn missing(folder: &Folder, shard: Option<Shard>) -> Vec<Place> {
     let experiment = folder.experiment();
@@ -34,10 +33,10 @@ pub fn missing(folder: &Folder, shard: Option<Shard>) -> Vec<Place> {
     missing
 }
 
-/// Runs trials of a folder's sweep; each is on disk before `done` hears of it.
+/// Runs trials of a folder's sweep. Each trial is on disk before `done` is called with it.
 ///
 /// # Errors
-/// The disk does not take a trial, no thread can be started, or `stop` was set before all were done.
+/// The disk does not take a trial, no thread can be started, or `stop` was set before all trials were done.
 pub fn run_trials(
     folder: &mut Folder,
     trials: Vec<Place>,

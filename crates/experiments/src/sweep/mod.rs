@@ -1,4 +1,4 @@
-//! Where the results of a sweep are kept: its folder, its journal, and the tables made of it.
+//! Storage of a sweep's results: its folder, its journal, and the tables made from it.
 
 mod archive;
 pub mod audit;

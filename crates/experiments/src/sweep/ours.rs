@@ -1,5 +1,5 @@
-//! What in a folder is a sweep's or a report's: nothing else is deleted or written over, and no link is
-//! followed.
+//! Which files of a folder belong to a sweep or a report. No other file is deleted or overwritten, and no
+//! link is followed.
 
 use std::fs;
 use std::path::Path;
@@ -11,10 +11,11 @@ use super::{archive, host, journal};
 use crate::failure::Failure;
 use crate::files::{self, NewFile};
 
-/// The names of the files that a report wrote, a line each, from the folder on.
+/// The file that lists the names of the files that a report wrote, one on each line, relative to the
+/// folder.
 const REPORTED: &str = "report.files";
 
-/// What the file of a recording ends with.
+/// File name extension of a recording.
 const RECORDING: &str = ".usrec";
 
 /// The names of all files that a sweep writes.
@@ -23,8 +24,8 @@ fn known_names() -> impl Iterator<Item = &'static str> {
     logs.into_iter().chain(INPUTS).chain(TABLES).chain(PARQUETS)
 }
 
-/// Refuses a folder that is not a sweep's: one with a manifest or a journal of this program, or with nothing
-/// in it.
+/// Refuses a folder that is not a sweep's. A sweep's folder has a manifest or a journal of this program, or
+/// is empty.
 pub(super) fn check_is_ours(path: &Path) -> Result<(), Failure> {
     if !path.exists() {
         return Ok(());
@@ -45,7 +46,7 @@ pub(super) fn check_is_ours(path: &Path) -> Result<(), Failure> {
     )))
 }
 
-/// Whether a file is a lock, or what a process looked at one with.
+/// Whether a file is a lock, or a temporary file of a process that examined a lock.
 fn is_lock(name: &str) -> bool {
     name.strip_prefix(LOCK).is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
 }
@@ -59,7 +60,7 @@ fn names_in(path: &Path) -> Result<Vec<String>, Failure> {
     Ok(names)
 }
 
-/// Refuses to start over in a folder with anything in it that no sweep and no report has written.
+/// Refuses to start over in a folder with files that neither a sweep nor a report has written.
 pub(super) fn check_may_be_cleared(path: &Path) -> Result<(), Failure> {
     let reported = reported(path);
     let is_known = |name: &str| {
@@ -92,7 +93,7 @@ pub(super) fn check_may_be_cleared(path: &Path) -> Result<(), Failure> {
     )))
 }
 
-/// The files that the last report wrote, by the list that it left: report.html, figures, and replays.
+/// The files that the last report wrote, from its list: report.html, figures, and replays.
 fn reported(path: &Path) -> Vec<String> {
     let list = files::read(&path.join(REPORTED)).unwrap_or_default();
     let is_figure = |name: &str| {
@@ -105,11 +106,11 @@ fn reported(path: &Path) -> Vec<String> {
     names.into_iter().filter(|name| name == REPORT || is_figure(name)).collect()
 }
 
-/// Writes the files of a report, by their names from the folder on: whatever is there already must be of the
-/// report before.
+/// Writes the files of a report, by their names relative to the folder. An existing file must belong to the
+/// previous report.
 ///
 /// # Errors
-/// A file of this name that no report has written, or the disk does not take it.
+/// A file with one of these names exists that no report has written, or the disk does not take it.
 pub fn write_report(path: &Path, report: &[(String, Vec<u8>)]) -> Result<(), Failure> {
     let trouble = |error| Failure::storage(format!("cannot write to {}: {error}", path.display()));
     let before = reported(path);
@@ -138,7 +139,7 @@ pub fn write_report(path: &Path, report: &[(String, Vec<u8>)]) -> Result<(), Fai
     Ok(())
 }
 
-/// Deletes what a report wrote.
+/// Deletes the files that a report wrote.
 pub(super) fn remove_report(path: &Path) -> std::io::Result<()> {
     for name in reported(path) {
         files::remove(&path.join(name))?;
@@ -164,8 +165,8 @@ fn remove_recordings(path: &Path) -> std::io::Result<()> {
     Ok(())
 }
 
-/// The files in a folder and in the folders in it, by their names from the folder on; of a link to a folder,
-/// the link.
+/// The files in a folder and in its subfolders, by their names relative to the folder. A link to a folder
+/// counts as a file.
 fn files_in(folder: &Path) -> Vec<String> {
     let mut found = Vec::new();
     for name in names_in(folder).unwrap_or_default() {
@@ -179,14 +180,14 @@ fn files_in(folder: &Path) -> Vec<String> {
     found
 }
 
-/// Deletes the files that a killed process has left half written.
+/// Deletes the incomplete files of a killed process.
 pub(super) fn remove_unfinished(path: &Path) -> std::io::Result<()> {
     known_names()
         .filter(|name| *name != LOCK)
         .try_for_each(|name| files::remove(&path.join(format!("{name}.new"))))
 }
 
-/// Deletes what a sweep wrote.
+/// Deletes the files that a sweep wrote.
 pub(super) fn clear(path: &Path) -> std::io::Result<()> {
     remove_report(path)?;
     remove_recordings(path)?;

@@ -1,5 +1,5 @@
-//! The tables of a finished sweep as Parquet files beside them. They are made of the tables alone, and are no
-//! part of the hashed results.
+//! The tables of a finished sweep as Parquet files beside them. They are made from the tables alone, and
+//! are not part of the hashed results.
 
 use std::path::Path;
 
@@ -12,7 +12,7 @@ use crate::experiment::Experiment;
 use crate::failure::Failure;
 use crate::files::{self, NewFile, file_hash};
 
-/// Their names, in the order of the tables.
+/// Names of the Parquet files, in the order of the tables.
 pub(super) const PARQUETS: [&str; TABLES.len()] = [
     "trials.parquet",
     "rounds.parquet",
@@ -22,7 +22,7 @@ pub(super) const PARQUETS: [&str; TABLES.len()] = [
     "hashes.parquet",
 ];
 
-/// The table in which these two are no counts.
+/// The table in which the columns `stranded` and `disabled` are no counts.
 const ROBOTS: &str = "robots.csv";
 
 /// Writes the tables of a finished sweep as Parquet.
@@ -48,7 +48,7 @@ fn write(table: &Path, experiment: &Experiment, (folder, name): (&Path, &str)) -
     file.map_err(failed)?.finish().map(drop)
 }
 
-/// What a column of a table holds.
+/// The type of a table's column.
 fn kind(table: &Path, column: &str, experiment: &Experiment) -> Kind {
     if let Some(axis) = experiment.axes.iter().find(|axis| axis.path == column) {
         let are_numbers = axis.values.iter().all(|value| value.parse::<f64>().is_ok());
@@ -65,15 +65,15 @@ fn kind(table: &Path, column: &str, experiment: &Experiment) -> Kind {
     }
 }
 
-/// Deletes them: they would be of other tables.
+/// Deletes the Parquet files, because they would belong to other tables.
 pub(super) fn remove(path: &Path) -> std::io::Result<()> {
     PARQUETS.iter().try_for_each(|name| files::remove(&path.join(name)))
 }
 
-/// Those in the folder that are not what their tables give, each in a sentence.
+/// The Parquet files in the folder that differ from their tables, one sentence each.
 ///
 /// # Errors
-/// There is no room for them in the folder of temporary files.
+/// There is no room in the folder of temporary files.
 pub(super) fn strange(path: &Path, experiment: &Experiment) -> Result<Vec<String>, Failure> {
     let place = tempfile::tempdir()?;
     let mut strange = Vec::new();

@@ -1,4 +1,4 @@
-//! How far a folder is, without reading its trials.
+//! The progress of a folder, determined without reading its trials.
 
 use std::io::{self, BufRead, BufReader, Read, Seek, SeekFrom};
 use std::path::Path;
@@ -10,21 +10,21 @@ use crate::failure::Failure;
 use crate::files;
 use crate::provenance::Manifest;
 
-/// How far a sweep or a shard is.
+/// The progress of a sweep or a shard.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Progress {
-    /// What it is of.
+    /// The manifest of the sweep.
     pub manifest: Manifest,
-    /// Trials that are in its journal; of a finished one this is not counted.
+    /// Number of trials in its journal; 0 for a finished sweep, which is not counted.
     pub journal_lines: usize,
-    /// What works in it now.
+    /// The process that works in the folder now.
     pub holder: Option<Holder>,
 }
 
-/// How far a folder is; nothing where no sweep has begun there.
+/// The progress of a folder; `None` if no sweep has begun there.
 ///
 /// # Errors
-/// Its manifest was changed or is another program's, or its files cannot be read.
+/// The manifest was changed or belongs to another program, or files cannot be read.
 pub fn progress(folder: &Path) -> Result<Option<Progress>, Failure> {
     let Some(manifest) = read_manifest(folder)? else { return Ok(None) };
     let trouble = |error: io::Error| Failure::storage(format!("{}: {error}", folder.display()));
@@ -34,7 +34,7 @@ pub fn progress(folder: &Path) -> Result<Option<Progress>, Failure> {
     Ok(Some(Progress { manifest, journal_lines, holder }))
 }
 
-/// The lines of a file that have an end; 0 where there is none.
+/// Number of complete lines of a file; 0 if the file does not exist.
 fn lines(path: &Path) -> io::Result<usize> {
     let file = match files::open(path) {
         Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(0),

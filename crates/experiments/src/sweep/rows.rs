@@ -11,9 +11,9 @@ use crate::experiment::Experiment;
 use crate::metric::{Catalogue, Metric};
 use crate::run::{Trial, TrialKey, series_times};
 
-/// The columns of `trials.csv`: which trial it is, every metric, and what else is kept of it. `method` and
-/// `policy` say the same; the one is there so that the authors' files and ours can be stacked, the other for
-/// the words of this project.
+/// The columns of `trials.csv`: the trial, every metric, and the other results. `method` and `policy` have
+/// the same content. `method` allows the authors' files to be stacked with ours, and `policy` is this
+/// project's term.
 #[must_use]
 pub fn trial_columns(metrics: &Catalogue) -> Vec<String> {
     let names = |names: &[&str]| names.iter().map(|name| (*name).to_owned()).collect::<Vec<_>>();
@@ -23,7 +23,7 @@ pub fn trial_columns(metrics: &Catalogue) -> Vec<String> {
     columns
 }
 
-/// How many columns of `trials.csv` stand before the metrics, the axes left out.
+/// Number of columns of `trials.csv` before the metrics, without the axes.
 pub(super) const FIRST_METRIC: usize = 5;
 
 /// A row of `trials.csv`. Numbers are printed so that they read back exactly.
@@ -135,7 +135,7 @@ impl<'a> RobotRow<'a> {
     }
 }
 
-/// The columns of `groups.csv`: a robot when it was grouped, with the needs that the policy saw.
+/// The columns of `groups.csv`: a robot at the time of grouping, with the needs that the policy saw.
 pub(super) fn group_columns(needs: &[NeedFile]) -> Vec<String> {
     let first = ["policy", "trial", "seed", "round", "robot", "role", "task", "energy", "hp"];
     let needs = needs.iter().map(|need| format!("need_{}", need.name));
@@ -173,7 +173,7 @@ fn group_of<'a>(
     })
 }
 
-/// The columns of `series.csv`: what was delivered up to a time, from all tasks and from each.
+/// The columns of `series.csv`: the deliveries up to a time, from all tasks and from each task.
 pub(super) fn series_columns(metrics: &Catalogue) -> Vec<String> {
     let rescuees = metrics.declared("rescuees").into_iter().map(|place| metrics[place].column());
     ["policy", "trial", "seed", "time_s"].into_iter().map(str::to_owned).chain(rescuees).collect()

@@ -1,4 +1,4 @@
-//! How much room trials take on disk, from a few of them.
+//! The disk space that trials take, measured from a few of them.
 
 use std::collections::BTreeMap;
 use std::sync::atomic::AtomicBool;
@@ -14,12 +14,12 @@ use crate::run::Outcome;
 pub struct Sizes {
     /// Of the finished folder: the tables and the archive of the journal.
     pub finished: u64,
-    /// Of the journal while the sweep runs.
+    /// Of the journal, while the sweep runs.
     pub journal: u64,
 }
 
-/// The room that these trials of a sweep take, by themselves or as trials of a shard, if this is kept of
-/// each.
+/// The disk space that these trials of a sweep take, by themselves or as trials of a shard, if `keep` is
+/// kept of each.
 ///
 /// # Errors
 /// There is no room for them in the folder of temporary files, or `stop` was set.

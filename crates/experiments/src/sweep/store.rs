@@ -1,4 +1,5 @@
-//! Where a folder's trials are: in the journal while there may be more, in its archive when there are all.
+//! Storage of a folder's trials: in the journal while trials may be added, in the archive when all are
+//! finished.
 
 use std::collections::BTreeMap;
 use std::fs::File;
@@ -16,11 +17,11 @@ use crate::files;
 
 /// The trials of a folder.
 pub(super) enum Store {
-    /// There may be more.
+    /// The journal; trials may be added.
     Journal(Journal),
-    /// All are there, in order.
+    /// The archive with all trials, in order.
     Archive(Archive, Order),
-    /// What can be read of a damaged archive: the number of each line.
+    /// The readable part of a damaged archive, with the number of each trial's line.
     Salvaged(Archive, BTreeMap<Place, usize>),
 }
 
@@ -28,7 +29,7 @@ impl Store {
     /// The line of a trial.
     ///
     /// # Errors
-    /// It is not there, or cannot be read.
+    /// The trial is not in the store, or cannot be read.
     pub(super) fn line(&mut self, place: Place) -> Result<Vec<u8>, Failure> {
         let (archive, number) = match self {
             Self::Journal(journal) => return journal.line(place),
@@ -43,7 +44,7 @@ impl Store {
     /// A finished trial.
     ///
     /// # Errors
-    /// Those of [`Store::line`], or it was changed since it was written.
+    /// Those of [`Store::line`], or the trial was changed since it was written.
     pub(super) fn finished(&mut self, place: Place, experiment: &Experiment) -> Result<Finished, Failure> {
         let line = self.line(place)?;
         let in_its_place = |finished: Finished| match finished.place() {
@@ -55,15 +56,15 @@ impl Store {
             .map_err(|reason| Failure::storage(format!("{}: {reason}", self.name())))
     }
 
-    /// The name of its file.
+    /// Name of the file with the trials.
     pub(super) fn name(&self) -> &'static str {
         if let Self::Journal(_) = self { journal::FILE } else { archive::FILE }
     }
 
-    /// The archive of a folder in which all trials are.
+    /// The archive of a folder that has all trials.
     ///
     /// # Errors
-    /// It cannot be read, or has not got as many lines.
+    /// The archive cannot be read, or has another number of lines.
     pub(super) fn archive(folder: &Path, order: Order) -> Result<Self, String> {
         let archive = Archive::open(folder).map_err(|error| error.to_string())?;
         if archive.count() != order.count() {
@@ -72,11 +73,11 @@ impl Store {
         Ok(Self::Archive(archive, order))
     }
 
-    /// What can be read of an archive, whatever was done to it, with the results; what is wrong goes to
+    /// The readable part of an archive with any damage, and its results. Descriptions of the damage go to
     /// `say`.
     ///
     /// # Errors
-    /// It cannot be read at all.
+    /// The archive cannot be read at all.
     pub(super) fn salvage(
         folder: &Path,
         (experiment, shard): (&Experiment, Option<Shard>),
@@ -108,8 +109,8 @@ impl Store {
     }
 }
 
-/// Makes a journal of a folder's archive again, where there is no journal: there may be more trials. What of
-/// it cannot be read is not in the journal.
+/// Restores the journal of a folder from its archive if there is no journal, so that trials can be added.
+/// Unreadable parts of the archive are not in the journal.
 ///
 /// # Errors
 /// The disk does not take it.
@@ -135,16 +136,16 @@ pub(super) fn thaw(folder: &Path) -> Result<(), Failure> {
     files::remove(&pressed).map_err(trouble(&pressed))
 }
 
-/// The order of a folder's trials, without a list of them.
+/// The order of a folder's trials, computed without a list of them.
 pub(super) struct Order {
     policies: usize,
-    /// Of each case, how many trials the cases before have, and the numbers of its trials.
+    /// For each case, the number of trials in earlier cases, and the numbers of its own trials.
     cases: Vec<(usize, Vec<u32>)>,
     count: usize,
 }
 
 impl Order {
-    /// Of a sweep or a shard of it.
+    /// The order of a sweep or a shard of it.
     pub(super) fn of(experiment: &Experiment, shard: Option<Shard>) -> Self {
         let policies = experiment.policies.len();
         let (mut cases, mut count) = (Vec::new(), 0);
@@ -157,7 +158,7 @@ impl Order {
         Self { policies, cases, count }
     }
 
-    /// How many there are.
+    /// Number of trials.
     pub(super) fn count(&self) -> usize {
         self.count
     }

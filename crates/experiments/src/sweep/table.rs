@@ -1,5 +1,5 @@
-//! A table of a sweep's folder: a row for each thing, the axes of the sweep before its own columns. Rows are
-//! made in memory, so that threads can make them, and put into the file in order.
+//! A table of a sweep's folder. Each row begins with the values of the sweep's axes. Rows are made in
+//! memory, so that threads can make them, and written to the file in order.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -10,15 +10,15 @@ use crate::experiment::Experiment;
 use crate::failure::Failure;
 use crate::files::{FileHash, NewFile, trouble};
 
-/// A table on its way.
+/// A table that is being written.
 pub(super) struct Table {
     file: NewFile,
     path: PathBuf,
 }
 
 impl Table {
-    /// Begins a table with these columns, after the number of the case and the values of the axes where there
-    /// are any.
+    /// Begins a table with these columns. With axes, they follow the number of the case and the values of
+    /// the axes.
     ///
     /// # Errors
     /// The folder cannot be written to.
@@ -46,7 +46,7 @@ impl Table {
         self.file.write_all(&bytes).map_err(|error| trouble(&self.path, &error))
     }
 
-    /// Puts the table in its place.
+    /// Completes the table and gives its file its name.
     ///
     /// # Errors
     /// The disk does not take it.
@@ -58,8 +58,8 @@ impl Table {
 /// Rows of a table in memory.
 pub(super) struct Rows(csv::Writer<Vec<u8>>);
 
-/// What stands before the columns of a table in the rows of a case: its number from 1 and the values of the
-/// axes, or nothing without axes.
+/// The cells before a table's own columns in the rows of a case: its number from 1 and the values of the
+/// axes; empty without axes.
 pub(super) fn before(experiment: &Experiment, case: usize) -> Vec<String> {
     let values = &experiment.cases[case].values;
     let number = (!values.is_empty()).then(|| (case + 1).to_string());
@@ -67,15 +67,15 @@ pub(super) fn before(experiment: &Experiment, case: usize) -> Vec<String> {
 }
 
 impl Rows {
-    /// None yet.
+    /// No rows.
     pub(super) fn new() -> Self {
         Self(csv::WriterBuilder::new().has_headers(false).flexible(true).from_writer(Vec::new()))
     }
 
-    /// Adds a row whose cells are the fields of a structure.
+    /// Adds a row whose cells are the fields of a struct.
     ///
     /// # Errors
-    /// None: it can be written to memory.
+    /// None: rows can be written to memory.
     pub(super) fn add(&mut self, before: &[String], row: &impl Serialize) -> Result<(), Failure> {
         self.0.serialize((before, row)).map_err(Failure::run)
     }

@@ -1,4 +1,4 @@
-//! The tables that a finished sweep has.
+//! The tables of a finished sweep.
 
 use std::path::Path;
 
@@ -15,12 +15,12 @@ use crate::files::FileHash;
 /// The table that every folder has.
 pub(super) const TRIALS: &str = "trials.csv";
 
-/// Their names, from those that every sweep keeps to those that take the most room.
+/// Names of the tables, from the tables that every sweep keeps to those that take the most room.
 pub(super) const TABLES: [&str; 6] =
     [TRIALS, "rounds.csv", "robots.csv", "groups.csv", "series.csv", links::FILE];
 
-/// The names of the tables of a sweep that keeps this, or of a shard: the others are made when the shards are
-/// merged.
+/// The names of the tables that a sweep has for this `keep`. A shard has only the first; the others are
+/// made when the shards are merged.
 pub(super) fn tables_of(keep: Keep, shard: Option<Shard>) -> &'static [&'static str] {
     let count = match keep {
         Keep::Trials => 1,
@@ -44,7 +44,7 @@ pub(super) fn all_columns(experiment: &Experiment) -> Result<[Vec<String>; TABLE
     ])
 }
 
-/// The tables on their way.
+/// The tables while they are written.
 pub(super) struct Tables(Vec<Table>);
 
 impl Tables {
@@ -59,7 +59,7 @@ impl Tables {
         Ok(Self(tables.collect::<Result<_, _>>()?))
     }
 
-    /// Rows for all of them, of these trials.
+    /// The rows of these trials, for the first `count` tables.
     pub(super) fn rows<'a>(
         count: usize,
         trials: impl Iterator<Item = &'a Finished>,
@@ -72,7 +72,7 @@ impl Tables {
         Ok(rows)
     }
 
-    /// How many there are.
+    /// Number of tables.
     pub(super) fn count(&self) -> usize {
         self.0.len()
     }

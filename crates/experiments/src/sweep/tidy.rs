@@ -1,5 +1,6 @@
-//! A sweep as one long table: a row for each value, whatever was measured. Every row names what the value is
-//! of, so that tools for data frames can filter, pivot and plot without knowing the other tables.
+//! A sweep as one long table with a row for each measured value. Every row names the policy, trial, round,
+//! task and metric of its value, so that tools for data frames can filter, pivot and plot without the other
+//! tables.
 
 use usar_sim::metrics::RoundRecord;
 
@@ -7,7 +8,7 @@ use super::folder::Folder;
 use crate::experiment::Place;
 use crate::failure::Failure;
 
-/// What is measured of a group in a round, as in `rounds.csv`.
+/// A quantity of a group in a round, named as in `rounds.csv`.
 type OfRound = (&'static str, fn(&RoundRecord) -> Option<f64>);
 
 const OF_ROUNDS: [OfRound; 6] = [
@@ -19,7 +20,7 @@ const OF_ROUNDS: [OfRound; 6] = [
     ("turned_back", |round| Some(f64::from(round.turned_back))),
 ];
 
-/// The columns: the axes of the sweep stand after the case.
+/// The columns; the axes of the sweep follow the case.
 #[must_use]
 pub fn tidy_columns(folder: &Folder) -> Vec<String> {
     let axes = folder.experiment().axes.iter().map(|axis| axis.path.as_str());
@@ -27,12 +28,12 @@ pub fn tidy_columns(folder: &Folder) -> Vec<String> {
     ["case"].into_iter().chain(axes).chain(after).map(str::to_owned).collect()
 }
 
-/// Gives every row of the table to `write`, trial by trial: the trial's metrics, with an empty `round`, then
-/// those of each group and round as far as the sweep keeps them. `task` is empty where a value is of all
-/// tasks together; values that are not defined have no row.
+/// Passes every row of the table to `write`, trial by trial: first the trial's metrics, with an empty
+/// `round`, then the values of each group and round, if the sweep keeps them. `task` is empty for a value
+/// of all tasks together. Undefined values have no row.
 ///
 /// # Errors
-/// The journal cannot be read, or `write` says so.
+/// The journal cannot be read; or the errors of `write`.
 pub fn tidy_rows(
     folder: &mut Folder,
     mut write: impl FnMut(&[String]) -> Result<(), Failure>,
@@ -52,7 +53,7 @@ pub fn tidy_rows(
     Ok(())
 }
 
-/// Round, task, metric and value of everything that was measured of a trial.
+/// Round, task, metric and value of everything that was measured in a trial.
 fn trial_rows(folder: &mut Folder, place: Place) -> Result<Vec<[String; 4]>, Failure> {
     let mut rows = Vec::new();
     let experiment = folder.experiment();

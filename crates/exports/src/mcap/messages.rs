@@ -1,4 +1,4 @@
-//! Foxglove's messages, as far as they are used, with the names that its schemas give
+//! The parts of Foxglove's messages that are used here, with the names of Foxglove's schemas
 //! (<https://docs.foxglove.dev/docs/sdk/schemas>).
 
 use schemars::JsonSchema;
@@ -54,7 +54,7 @@ pub(super) struct Quaternion {
 }
 
 impl Quaternion {
-    /// Turned by an angle in radians round the vertical.
+    /// A rotation by an angle in radians around the vertical axis.
     pub(super) fn turned(angle: f64) -> Self {
         Self { x: 0.0, y: 0.0, z: (angle / 2.0).sin(), w: (angle / 2.0).cos() }
     }
@@ -130,7 +130,7 @@ pub(super) struct SceneEntity {
 }
 
 impl SceneEntity {
-    /// An entity without anything in it.
+    /// An empty entity.
     pub(super) fn new(timestamp: Time, frame_id: &str, id: impl Into<String>) -> Self {
         Self {
             timestamp,

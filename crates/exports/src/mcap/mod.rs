@@ -1,5 +1,5 @@
 //! A recording as an MCAP log (<https://mcap.dev>) for Foxglove, Lichtblick and Rerun: messages in JSON,
-//! with Foxglove's schemas where there is one.
+//! with Foxglove's schemas where they exist.
 //!
 //! | topic | schema | when |
 //! | --- | --- | --- |
@@ -27,16 +27,16 @@ use self::writer::{Channel, Channels};
 use crate::error::ExportError;
 use crate::tables::events;
 
-/// How severe an event is, in Foxglove's numbers: information, and a warning.
+/// Severities of an event, in Foxglove's numbers: information, and warning.
 const LEVELS: [u8; 2] = [2, 3];
 
-/// Events that are warnings.
+/// Names of events that are warnings.
 const WARNINGS: [&str; 6] = ["stranded", "disabled", "deadlocked", "unreachable", "cut_off", "mission_over"];
 
-/// Writes a recording as an MCAP log, with each frame that is a multiple of `every`.
+/// Writes a recording as an MCAP log, with every `every`-th frame.
 ///
 /// # Errors
-/// The recording cannot be read, or the log not be written.
+/// The recording cannot be read, or the log cannot be written.
 pub fn write<W: Write>(recording: &Recording, every: usize, out: W) -> Result<W, ExportError> {
     let mut channels = Channels::begin(out, recording)?;
     let mut told = events(recording).peekable();
@@ -110,7 +110,7 @@ fn transforms(frame: &Frame, time: Time) -> FrameTransforms {
     FrameTransforms { transforms: frame.robots.iter().enumerate().map(transform).collect() }
 }
 
-/// The levels, needs and doings of a robot.
+/// The message with the levels, needs and activity of a robot.
 fn robot_message(recording: &Recording, id: usize, robot: &recording::RobotFrame) -> Value {
     let (world, codes) = (&recording.header.world, &recording.header.codes);
     let (motion, state) = (&robot.motion, &robot.state);
@@ -136,7 +136,7 @@ fn robot_message(recording: &Recording, id: usize, robot: &recording::RobotFrame
     })
 }
 
-/// The round, and the rescuees by their state.
+/// The message with the round, and the number of rescuees in each state.
 fn team_message(recording: &Recording, frame: &Frame) -> Value {
     let with = |state: u8| frame.rescuees.iter().filter(|rescuee| rescuee.state == state).count();
     let round = recording.decisions.iter().filter(|decided| decided.step <= frame.step).count();

@@ -1,4 +1,4 @@
-//! The world, the robots and the rescuees as things in space. Lengths are metres.
+//! The world, the robots and the rescuees as objects in space. Lengths are in metres.
 
 use base64::Engine;
 use base64::prelude::BASE64_STANDARD;
@@ -18,7 +18,7 @@ const RADIATION: Color = Color { r: 0.84, g: 0.66, b: 0.0, a: 0.3 };
 const INK: Color = grey(0.1, 1.0);
 const UNGROUPED: Color = grey(0.52, 1.0);
 
-/// The colours of the groups, as in pictures and on the page: Okabe and Ito's.
+/// The colours of the groups, as in pictures and on the viewer's page: Okabe and Ito's.
 const GROUPS: [Color; 7] = [
     Color { r: 0.0, g: 0.447, b: 0.698, a: 1.0 },
     Color { r: 0.851, g: 0.51, b: 0.0, a: 1.0 },
@@ -93,7 +93,7 @@ pub(super) fn world_scene(world: &World, time: Time) -> SceneUpdate {
     SceneUpdate { entities: std::iter::once(ground).chain(debris).collect() }
 }
 
-/// A piece of debris where it lies.
+/// A piece of debris in its pose.
 fn debris_entity(
     (number, shape, color): (usize, &DebrisShape, Color),
     ([x, y], angle): ([f64; 2], f64),
@@ -119,7 +119,7 @@ fn debris_entity(
     entity
 }
 
-/// The movable pieces of debris that lie elsewhere than in the frame before; at first all of them.
+/// The movable pieces of debris whose pose changed since the frame before; all of them in the first frame.
 pub(super) fn debris_scene(
     world: &World,
     frame: &Frame,
@@ -139,7 +139,7 @@ pub(super) fn debris_scene(
     (!entities.is_empty()).then_some(SceneUpdate { entities })
 }
 
-/// The robots as cylinders in the colours of their groups; robots that fly are higher.
+/// The robots as cylinders in the colours of their groups; flying robots are drawn above the ground.
 pub(super) fn robots_scene(world: &World, frame: &Frame, time: Time) -> SceneUpdate {
     let entity = |id: usize| {
         let role = world.body_of(id);

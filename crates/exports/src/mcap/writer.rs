@@ -15,7 +15,7 @@ use serde_json::{Map, Value, json};
 use super::messages::{FrameTransforms, Log, PointCloud, SceneUpdate, nanoseconds};
 use crate::error::ExportError;
 
-/// What a message is about.
+/// The topic of a message.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Channel {
     World,
@@ -28,20 +28,20 @@ pub(super) enum Channel {
     Events,
 }
 
-/// A log on its way.
+/// A log that is being written.
 pub(super) struct Channels<W: Write> {
     log: Writer<NoSeek<W>>,
-    /// The number of each channel in the log, and how many messages it has.
+    /// The number of each channel in the log, and its number of messages.
     channels: BTreeMap<Channel, (u16, u32)>,
 }
 
-/// The schema of a message. Its parts stand where they are used: not every reader follows references.
+/// The schema of a message. Subschemas are inlined, because not every reader follows references.
 fn schema<T: JsonSchema>() -> Value {
     let settings = SchemaSettings::draft07().with(|settings| settings.inline_subschemas = true);
     settings.into_generator().into_root_schema_for::<T>().to_value()
 }
 
-/// The schema of an object of these properties, each with its type in JSON.
+/// The schema of an object with these properties, each with its type in JSON.
 fn object(title: &str, properties: impl IntoIterator<Item = (String, Value)>) -> Value {
     json!({ "title": title, "type": "object", "properties": Map::from_iter(properties) })
 }
@@ -93,7 +93,7 @@ impl<W: Write> Channels<W> {
         Ok(())
     }
 
-    /// Writes a message of a time in seconds.
+    /// Writes a message with a time in seconds.
     pub(super) fn write(
         &mut self,
         channel: Channel,

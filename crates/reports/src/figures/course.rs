@@ -1,4 +1,5 @@
-//! Figures of how missions went: rescuees over time, who was in which group, and the levels of the groups.
+//! Figures of the course of missions: rescuees over time, the members of each group, and the levels of the
+//! groups.
 
 use experiments::Failure;
 use experiments::experiment::Experiment;
@@ -63,7 +64,7 @@ pub(super) fn over_time(
     })
 }
 
-/// In which share of the trials each robot is sent to the hardest task, round by round.
+/// The share of the trials in which each robot is sent to the hardest task, round by round.
 pub(super) fn membership(
     experiment: &Experiment,
     gathered: &[Gathered],
@@ -82,7 +83,7 @@ pub(super) fn membership(
             let first = [policy.label.clone(), round.to_string(), robot.to_string(), role];
             rows.push(first.into_iter().chain(tasks.iter().map(u32::to_string)).collect::<Vec<String>>());
         }
-        // A round counts as far as each robot was grouped in some trial.
+        // The rounds before the first one in which some robot was not grouped in any trial.
         let robots = gathered.roles.len() as u32;
         let nothing = vec![0; scenario.tasks.len()];
         let count = |round, robot| gathered.groups.get(&(round, robot)).unwrap_or(&nothing);
@@ -157,7 +158,7 @@ pub(super) fn levels(
                         mean.to_string(),
                         half.map_or(String::new(), |half| half.to_string()),
                     ]);
-                    // Rounds that few trials reached say little and would stretch the axis.
+                    // Rounds that few trials reached carry little information and would stretch the axis.
                     if 2 * values.len() >= gathered.delivered.len() {
                         points.push((f64::from(*round), mean, half.unwrap_or(0.0)));
                     }

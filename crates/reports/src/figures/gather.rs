@@ -1,4 +1,4 @@
-//! What figures need beyond the metrics, from one pass over the trials of a case.
+//! The data of figures beyond the metrics, from one pass over the trials of a case.
 
 use std::collections::BTreeMap;
 
@@ -8,12 +8,12 @@ use experiments::run::{Trial, series_times};
 use experiments::sweep::folder::Folder;
 use rne_core::Question;
 
-/// What was gathered of one policy.
+/// The data gathered for one policy.
 #[derive(Default)]
 pub(super) struct Gathered {
-    /// For each trial and time, what was delivered up to then: in total, and from each task.
+    /// For each trial and time, the number of deliveries so far: in total, and from each task.
     pub delivered: Vec<Vec<Vec<f64>>>,
-    /// For each round and robot, in how many trials it was grouped for each task.
+    /// For each round and robot, the number of trials in which it was grouped for each task.
     pub groups: BTreeMap<(u32, u32), Vec<u32>>,
     /// For each round, task and trial, the mean energy and HP of the group.
     pub levels: BTreeMap<(u32, usize), Vec<[f64; 2]>>,
@@ -21,13 +21,13 @@ pub(super) struct Gathered {
     pub first_question: Option<Question>,
     /// Number of that trial.
     pub first_trial: u32,
-    /// How like its splits are to sorting.
+    /// How similar its splits are to sorting.
     pub likeness: [Likeness; 3],
     /// Roles of the robots.
     pub roles: Vec<String>,
 }
 
-/// Goes once over all trials of a case, policy by policy.
+/// Passes once over all trials of a case, policy by policy.
 pub(super) fn gather(folder: &mut Folder, case: usize) -> Result<Vec<Gathered>, Failure> {
     let times: Vec<f64> = series_times(folder.experiment().cases[case].scenario.duration_s).collect();
     let policies = folder.experiment().policies.len();

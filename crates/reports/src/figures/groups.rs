@@ -1,4 +1,4 @@
-//! Figures of how policies group: the trust within each role, and how like their splits are to sorting.
+//! Figures of how policies group: the trust within each role, and how similar their splits are to sorting.
 
 use experiments::Failure;
 use experiments::experiment::Experiment;
@@ -9,7 +9,8 @@ use rne_core::{Member, NeedDistribution, NeedWeights, PolicyError, RelativeNeeds
 use super::gather::Gathered;
 use crate::drawing::{Drawing, Panel, Sketch, from_top, heat_map, is_drawn, layout, names, table};
 
-/// RNE from each robot to each other of its role, in the first round of the first trial, with the weights of the question.
+/// RNE from each robot to every other robot of its role, in the first round of the first trial, with the
+/// weights of the question.
 pub(super) fn trust(experiment: &Experiment, gathered: &[Gathered]) -> Result<Option<Sketch>, Failure> {
     let mut with_rounds = experiment.policies.iter().zip(gathered);
     let first = with_rounds
@@ -56,7 +57,7 @@ pub(super) fn trust(experiment: &Experiment, gathered: &[Gathered]) -> Result<Op
     }))
 }
 
-/// A heat map of one role. An infinite value is drawn above every finite one: it is no trust at all.
+/// A heat map of one role. An infinite value is drawn above every finite value: it means no trust at all.
 fn trust_panel(data: &[Vec<RelativeNeedsEntropy>], role: &str, ids: impl Iterator<Item = u32>) -> Panel {
     let finite = data.iter().flatten().filter_map(|rne| rne.nats());
     let most = 1000.0 * finite.fold(0.0, f64::max);
@@ -74,7 +75,7 @@ fn trust_panel(data: &[Vec<RelativeNeedsEntropy>], role: &str, ids: impl Iterato
     Panel { metric: String::new(), plots, layout }
 }
 
-/// In which share of the rounds each policy's split is the one that sorting gives.
+/// The share of the rounds in which each policy's split equals sorting.
 pub(super) fn sorting(
     experiment: &Experiment,
     gathered: &[Gathered],

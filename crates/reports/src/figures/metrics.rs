@@ -1,4 +1,5 @@
-//! Figures of metrics: box plots as in the paper, energy against HP, paired differences, and metrics along an axis.
+//! Figures of metrics: box plots as in the paper, energy against HP, paired differences, and metrics along
+//! an axis.
 
 use experiments::Failure;
 use experiments::comparison::Comparison;
@@ -14,7 +15,7 @@ use kuva::render::plots::Plot;
 use super::is_quiet;
 use crate::drawing::{Drawing, Panel, Sketch, colour, is_drawn, layout, line_panel, names, range, table};
 
-/// Trials of a policy that are drawn as points, about: more would hide the boxes.
+/// About the largest number of a policy's trials that are drawn as points; more would hide the boxes.
 const MAX_POINTS: usize = 40;
 
 const PANEL: [f64; 2] = [360.0, 320.0];
@@ -86,7 +87,7 @@ fn box_figure(
     })
 }
 
-/// What is measured of a policy's trials, where it is defined, each with its seed.
+/// The values of a policy's trials, where defined, each with its seed.
 fn trials<T>(
     folder: &Folder,
     (case, policy): (usize, usize),
@@ -99,7 +100,7 @@ fn trials<T>(
     found.collect()
 }
 
-/// Lines at the means of the oracle and of a fair draw, where the sweep has them.
+/// Lines at the means of the oracle and of a fair draw, if the sweep has these policies.
 fn bounds(folder: &Folder, case: usize, metric: usize) -> Vec<ReferenceLine> {
     let policies = &folder.experiment().policies;
     let line = |name: &str, label: &str| {
@@ -110,7 +111,7 @@ fn bounds(folder: &Folder, case: usize, metric: usize) -> Vec<ReferenceLine> {
     [line("ORACLE", "oracle"), line("RANDOM", "fair draw")].into_iter().flatten().collect()
 }
 
-/// On how many trials each policy's part of a panel stands.
+/// The number of trials behind each policy's part of a panel, in words.
 fn per_box(counts: &[usize]) -> String {
     let (least, most) =
         (counts.iter().min().copied().unwrap_or(0), counts.iter().max().copied().unwrap_or(0));
@@ -121,7 +122,7 @@ fn per_box(counts: &[usize]) -> String {
     }
 }
 
-/// Halfway to white.
+/// A colour halfway to white.
 fn lighter(colour: &str) -> String {
     let part = |at: usize| u8::from_str_radix(&colour[at..at + 2], 16).unwrap_or(0).midpoint(255);
     format!("#{:02X}{:02X}{:02X}", part(1), part(3), part(5))
@@ -132,7 +133,7 @@ pub(super) fn capitalised(text: &str) -> String {
     letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect())
 }
 
-/// Energy against HP per rescuee: what a rescue costs.
+/// Energy against HP per rescuee: the cost of a rescue.
 pub(super) fn costs(folder: &Folder, case: usize, only: Option<&[String]>) -> Result<Sketch, Failure> {
     let Experiment { policies, metrics, .. } = folder.experiment();
     let names = names(folder.experiment());
@@ -259,7 +260,7 @@ pub(super) fn forest(experiment: &Experiment, comparisons: &[&Comparison]) -> Re
     })
 }
 
-/// A range that shows all of these and the zero between them.
+/// A range that shows all of these values and zero.
 fn forest_range(ends: &[f64]) -> [f64; 2] {
     let most = ends.iter().fold(0.0, |most: f64, end| most.max(end.abs()));
     let reach = |sign: f64| ends.iter().fold(0.0, |reach: f64, end| reach.max(sign * end));
@@ -267,7 +268,7 @@ fn forest_range(ends: &[f64]) -> [f64; 2] {
     [-reach(-1.0) - room, reach(1.0) + room]
 }
 
-/// Means of the first figure's metrics along each axis of numbers, the other axes as in the case.
+/// Means of the first figure's metrics along each numeric axis, with the other axes as in the case.
 pub(super) fn axes(folder: &Folder, case: usize, only: Option<&[String]>) -> Result<Vec<Sketch>, Failure> {
     let experiment = folder.experiment();
     let names = names(experiment);

@@ -21,7 +21,7 @@ pub(crate) use sensitivity::sensitivity;
 pub(crate) struct Part<'a> {
     /// The case, from 0.
     pub case: usize,
-    /// None but these policies, by their labels.
+    /// Labels of the only policies to draw; `None` for all.
     pub only: Option<&'a [String]>,
 }
 
@@ -30,7 +30,7 @@ pub(crate) fn along_axes(folder: &Folder) -> Result<Vec<Figure>, Failure> {
     Ok(drawn(metrics::axes(folder, 0, None)?))
 }
 
-/// Those of figures for which there is something to draw.
+/// The figures that have something to draw.
 fn drawn(sketches: Vec<Sketch>) -> Vec<Figure> {
     sketches.into_iter().filter(|sketch| !sketch.drawing.is_empty()).map(Sketch::drawn).collect()
 }

@@ -59,7 +59,7 @@ fn by_round(analyses: &[Analysis]) -> Result<Sketch, Failure> {
     })
 }
 
-/// Mean and half the width of its interval for each round with two decisions or more.
+/// For each round with at least two decisions: the round, the mean, and half the width of its interval.
 fn points(values: impl Iterator<Item = (u32, f64)>) -> Vec<(f64, f64, f64)> {
     let mut by_round: BTreeMap<u32, Vec<f64>> = BTreeMap::new();
     values.for_each(|(round, value)| by_round.entry(round).or_default().push(value));

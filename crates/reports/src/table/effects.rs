@@ -1,4 +1,4 @@
-//! What the axes of a sweep change: tables with a row for each case or change.
+//! Tables of the effects of a sweep's axes, with a row for each case or change.
 
 use comfy_table::{Cell, Table};
 use experiments::comparison::{Comparison, Effect, Interaction, short};
@@ -6,12 +6,13 @@ use experiments::experiment::VARIANT;
 
 use super::{headed, right};
 
-/// A row for each change of an axis, a column for each policy: the change of its mean in percent, with its interval.
+/// A row for each change of an axis, a column for each policy: the change of the policy's mean in percent,
+/// with its interval.
 #[must_use]
 pub fn effects_table(effects: &[&Effect]) -> Table {
     let percent = |effect: &Effect| match effect.in_percent() {
         Some(percent) => {
-            // A tenth of a percent is below what trials tell; adding zero takes the sign from -0.0.
+            // Trials do not resolve a tenth of a percent. Adding zero removes the sign of -0.0.
             let [change, low, high] = percent.map(|value| (10.0 * value).round() / 10.0 + 0.0);
             format!("{change:+.1} % ({low:.1} to {high:.1}){}", star(effect.is_found()))
         }
@@ -25,7 +26,8 @@ pub fn effects_table(effects: &[&Effect]) -> Table {
     pivoted("change", cells)
 }
 
-/// A row for each change of an axis, a column for each two policies: the change of their difference, with its interval.
+/// A row for each change of an axis, a column for each pair of policies: the change of their difference,
+/// with its interval.
 #[must_use]
 pub fn interactions_table(interactions: &[&Interaction]) -> Table {
     let text = |one: &Interaction| match one.change.zip(one.interval) {
@@ -40,7 +42,7 @@ pub fn interactions_table(interactions: &[&Interaction]) -> Table {
     pivoted("change", cells)
 }
 
-/// A row for each case, a column for each two policies: their difference, with its interval.
+/// A row for each case, a column for each pair of policies: their difference, with its interval.
 #[must_use]
 pub fn differences_table(comparisons: &[&Comparison]) -> Table {
     let text = |one: &Comparison| match one.difference.zip(one.interval) {
@@ -61,7 +63,7 @@ struct Entry {
     text: String,
 }
 
-/// Rows and columns in the order in which they first come.
+/// Arranges entries in a table, with rows and columns in the order in which they first occur.
 fn pivoted(title: &str, entries: impl Iterator<Item = Entry>) -> Table {
     let (mut rows, mut columns): (Vec<String>, Vec<String>) = (Vec::new(), Vec::new());
     let mut texts: Vec<Vec<String>> = Vec::new();
@@ -85,7 +87,7 @@ fn pivoted(title: &str, entries: impl Iterator<Item = Entry>) -> Table {
     table
 }
 
-/// `value (low to high)`, with a star where it is shown.
+/// `value (low to high)`, with a star if the difference is statistically shown.
 fn with_interval([value, low, high]: [f64; 3], is_found: bool) -> String {
     let sign = if value > 0.0 { "+" } else { "" };
     format!("{sign}{} ({} to {}){}", short(value), short(low), short(high), star(is_found))
@@ -95,13 +97,13 @@ fn star(is_found: bool) -> &'static str {
     if is_found { " *" } else { "" }
 }
 
-/// A change of an axis: the name of a variant alone.
+/// A change of an axis in words; for variants, only the variant's name.
 fn change(path: &str, [from, to]: &[String; 2], others: &[(String, String)]) -> String {
     let here = if path == VARIANT { to.clone() } else { format!("{path} from {from} to {to}") };
     if others.is_empty() { here } else { format!("{here}, at {}", place(others)) }
 }
 
-/// Where a case stands: the name of a variant alone.
+/// The place of a case on the axes in words; for variants, only the variant's name.
 fn place(axes: &[(String, String)]) -> String {
     let one = |(path, value): &(String, String)| {
         if path == VARIANT { value.clone() } else { format!("{path} = {value}") }

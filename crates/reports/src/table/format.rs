@@ -1,14 +1,14 @@
-//! A table as text: for the terminal, or for other programs.
+//! Tables as text, for the terminal or for other programs.
 
 use std::sync::OnceLock;
 
 use comfy_table::{Row, Table};
 use experiments::Failure;
 
-/// How tables are written.
+/// Output formats of tables.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Format {
-    /// With lines, for the terminal.
+    /// With box lines, for the terminal.
     #[default]
     Table,
     /// As Markdown.
@@ -23,25 +23,25 @@ pub enum Format {
 
 static FORMAT: OnceLock<Format> = OnceLock::new();
 
-/// From now on, tables are written like this; the first call decides.
+/// Sets the format of all tables; the first call decides.
 pub fn show_as(format: Format) {
     let _ = FORMAT.set(format); // the command line is the same
 }
 
-/// How tables are written.
+/// The format of tables.
 #[must_use]
 pub fn shown_as() -> Format {
     FORMAT.get().copied().unwrap_or_default()
 }
 
 impl Format {
-    /// Whether nothing but tables may stand in the output.
+    /// Whether the output may contain nothing but tables.
     #[must_use]
     pub fn is_for_programs(self) -> bool {
         matches!(self, Self::Csv | Self::Latex | Self::Json)
     }
 
-    /// A table as text that ends with a line's end.
+    /// A table as text that ends with a line break.
     ///
     /// # Errors
     /// None: it is written to memory.
@@ -60,7 +60,8 @@ fn cells(row: &Row) -> Vec<String> {
     row.cell_iter().map(|cell| cell.content().replace('\n', " ").trim().to_owned()).collect()
 }
 
-/// Header, and the other rows. A name that stands twice has that of the column before it the second time.
+/// The header and the other rows. A column name that occurs more than once is prefixed with the name of the
+/// column before it.
 fn lines(table: &Table) -> (Vec<String>, Vec<Vec<String>>) {
     let names = table.header().map(cells).unwrap_or_default();
     let unique = |(i, name): (usize, &String)| {
@@ -70,7 +71,7 @@ fn lines(table: &Table) -> (Vec<String>, Vec<Vec<String>>) {
     (names.iter().enumerate().map(unique).collect(), table.row_iter().map(cells).collect())
 }
 
-/// The texts of a table, for a page.
+/// The texts of a table, for an HTML page.
 pub(crate) struct Lines {
     pub header: Vec<String>,
     pub rows: Vec<Vec<String>>,
@@ -83,7 +84,7 @@ impl Lines {
     }
 }
 
-/// Whether each column stands on the right, as numbers do.
+/// Whether each column is aligned on the right, as columns of numbers are.
 fn are_right(rows: &[Vec<String>]) -> Vec<bool> {
     let is_number = |cell: &String| cell.starts_with(|c: char| c.is_ascii_digit() || "-+<".contains(c));
     let columns = rows.first().map_or(0, Vec::len);
@@ -112,7 +113,7 @@ fn csv(table: &Table) -> Result<String, Failure> {
 fn json(table: &Table) -> Result<String, Failure> {
     let (header, rows) = lines(table);
     let text = |text: &String| serde_json::to_string(text).map_err(Failure::run);
-    // By hand, so that the columns keep their order.
+    // Written by hand, so that the columns keep their order.
     let object = |row: &Vec<String>| {
         let cells = header.iter().zip(row).map(|(name, cell)| Ok(format!("{}:{}", text(name)?, text(cell)?)));
         Ok(format!("{{{}}}", cells.collect::<Result<Vec<_>, Failure>>()?.join(",")))
@@ -137,7 +138,7 @@ fn latex(table: &Table) -> String {
     )
 }
 
-/// Text as LaTeX has it.
+/// Text escaped for LaTeX.
 fn escaped(text: &str) -> String {
     let letter = |c: char| match c {
         '&' | '%' | '$' | '#' | '_' | '{' | '}' => format!("\\{c}"),

@@ -5,7 +5,7 @@ use experiments::rounds::{GroupLevels, KEYS, Likeness, Share};
 
 use super::{Format, headed, right, shown_as};
 
-/// How often each policy's split is that of sorting.
+/// How often each policy's split equals sorting.
 #[must_use]
 pub fn likeness_table(policies: &[(String, [Likeness; 3])]) -> Table {
     let first = policies.iter().map(|(_, likenesses)| &likenesses[0]).find(|likeness| likeness.rounds() > 0);
@@ -42,7 +42,8 @@ pub fn likeness_table(policies: &[(String, [Likeness; 3])]) -> Table {
     table
 }
 
-/// Mean levels of the groups of these tasks, round by round. The difference is that of the first and the last task.
+/// Mean levels of these tasks' groups, round by round. The difference is between the first and the last
+/// task.
 #[must_use]
 pub fn levels_table(levels: &[GroupLevels], tasks: &[String]) -> Table {
     let mut header = ["policy", "round", "n"].map(str::to_owned).to_vec();
@@ -67,7 +68,8 @@ pub fn levels_table(levels: &[GroupLevels], tasks: &[String]) -> Table {
     table
 }
 
-/// Whether what a row shares with the one above is written again: everywhere but in a terminal.
+/// Whether a row repeats the values that it shares with the row above: in all formats except the
+/// terminal's.
 fn is_repeated() -> bool {
     shown_as() != Format::Table
 }

@@ -21,7 +21,7 @@ pub(crate) use format::Lines;
 pub use format::{Format, show_as, shown_as};
 pub use grouping::{levels_table, likeness_table};
 
-/// Metrics down, policies across: mean ± sample standard deviation of one case.
+/// A row for each metric, a column for each policy: mean ± sample standard deviation in one case.
 #[must_use]
 pub fn policy_table(folder: &Folder, case: usize) -> Table {
     let Experiment { policies, metrics, .. } = folder.experiment();
@@ -38,7 +38,7 @@ pub fn policy_table(folder: &Folder, case: usize) -> Table {
     table
 }
 
-/// A title of which only the last word is shown where the words before are those of the title above.
+/// A title of which only the last word is shown, if its other words equal those of the title above.
 fn indented(title: &str, above: &str) -> String {
     let common = |text: &str| text.rfind(' ').map(|end| text[..end].to_owned());
     let is_terminal = shown_as() == Format::Table;
@@ -98,7 +98,7 @@ pub fn comparison_table(comparisons: &[&Comparison]) -> Table {
     table
 }
 
-/// One line per round and task.
+/// A row for each round and task.
 #[must_use]
 pub fn rounds_table(record: &TrialRecord) -> Table {
     let mut table = headed([
@@ -144,21 +144,22 @@ pub fn headed(header: impl Into<Row>) -> Table {
     table
 }
 
-/// Columns of the terminal, where there is one.
+/// Width of the terminal in columns, if there is one.
 static COLUMNS: OnceLock<u16> = OnceLock::new();
 
-/// From now on, tables that are wider than a terminal of so many columns fold their cells. Until then they are as wide as they are.
+/// Folds the cells of tables that are wider than a terminal with this many columns. Without this call,
+/// tables keep their full width.
 pub fn fold_at(columns: u16) {
     let _ = COLUMNS.set(columns); // the terminal is the same
 }
 
-/// A cell that stands on the right.
+/// A cell aligned on the right.
 #[must_use]
 pub fn right(text: &str) -> Cell {
     Cell::new(text).set_alignment(CellAlignment::Right)
 }
 
-/// `mean ± sd`; with the number of trials where not all that were asked for have it.
+/// `mean ± sd`, with the number of trials if some trials have no value.
 fn moments(moments: &Moments, trials: usize) -> String {
     let Some(mean) = moments.mean else { return "-".to_owned() };
     let decimals = decimals(mean);
@@ -167,7 +168,7 @@ fn moments(moments: &Moments, trials: usize) -> String {
     format!("{mean:.decimals$}{sd}{partly}")
 }
 
-/// Decimals that show a mean with about three significant digits, and at least one.
+/// Number of decimals that shows a mean with about three significant digits; at least one.
 fn decimals(mean: f64) -> usize {
     (1..8)
         .find(|decimals| mean.abs() * 10_f64.powi(*decimals) >= 100.0)

@@ -1,5 +1,5 @@
-//! The choice between candidates that were fitted under different readings: by trials that none was fitted
-//! to, with what the data and the seeds leave open.
+//! The choice between candidates that were fitted under different readings. Trials to which no candidate
+//! was fitted decide it; the result states the uncertainty from the data and the seeds.
 
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
@@ -19,11 +19,11 @@ use super::{Calibration, Spread, Target};
 /// Resamples of the data and of the seeds.
 const RESAMPLES: usize = 4_000;
 
-/// A candidate that is the nearest to the data in this share of the resamples cannot be told from the
-/// nearest.
+/// A candidate that is nearest to the data in at least this share of the resamples cannot be told apart
+/// from the chosen one.
 pub const NOT_TOLD_APART: f64 = 0.05;
 
-/// A candidate: what a calibration found.
+/// A candidate: the result of a calibration.
 pub struct Candidate {
     /// Name of the calibration's folder.
     pub name: String,
@@ -31,16 +31,16 @@ pub struct Candidate {
     values: Vec<f64>,
 }
 
-/// A candidate as it was judged.
+/// A candidate with its judgement.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Judged {
     /// Name of the calibration's folder.
     pub candidate: String,
-    /// How far it is from the data, with what values near the ends of their ranges add.
+    /// Distance from the data, including the edge penalty.
     pub misfit: f64,
-    /// What values near the ends of their ranges add.
+    /// Edge penalty: the part of the misfit from values near the ends of their ranges.
     pub edge_penalty: f64,
-    /// Share of the resamples of the recorded trials and of the seeds in which it is the nearest.
+    /// Share of the resamples of the recorded trials and of the seeds in which this candidate is nearest.
     pub share_nearest: f64,
     /// Mean and standard deviation of each quantity.
     #[serde(skip)]
@@ -48,10 +48,10 @@ pub struct Judged {
 }
 
 impl Candidate {
-    /// Reads what a calibration left in its folder.
+    /// Reads the result of a calibration from its folder.
     ///
     /// # Errors
-    /// The folder is not that of a finished calibration, or the target does not fit its scenario.
+    /// The folder does not hold a finished calibration, or the target does not fit its scenario.
     pub fn read(folder: &Path, target: &Path) -> Result<Self, Failure> {
         let unreadable = |name: &str, error: &dyn std::fmt::Display| {
             Failure::input(format!(
@@ -76,19 +76,19 @@ impl Candidate {
         Ok(Self { name, calibration, values })
     }
 
-    /// The quantities of its trials with these seeds, each a list over the trials. `None` when `stop` was
-    /// set.
+    /// The quantities of the candidate's trials with these seeds, each a list over the trials. `None` if
+    /// `stop` was set.
     ///
     /// # Errors
-    /// It cannot be run.
+    /// The candidate cannot be run.
     pub fn measure(&self, seeds: &[u64], stop: &AtomicBool) -> Result<Option<Vec<Vec<f64>>>, Failure> {
         let measured = self.calibration.measure(&self.values, seeds.to_vec(), stop);
         measured.map_err(|reason| Failure::run(format!("{}: {reason}", self.name)))
     }
 }
 
-/// Judges the candidates by their trials, which have the same seeds, one list of quantities each; the nearest
-/// to the data first.
+/// Judges the candidates by their trials, the nearest to the data first. Each candidate has a list of
+/// quantities; all candidates have the same seeds.
 #[must_use]
 pub fn judge(target: &Target, candidates: &[(Candidate, Vec<Vec<f64>>)]) -> Vec<Judged> {
     let trials = candidates.first().and_then(|(_, quantities)| quantities.first()).map_or(0, Vec::len);
@@ -102,7 +102,8 @@ pub fn judge(target: &Target, candidates: &[(Candidate, Vec<Vec<f64>>)]) -> Vec<
     let penalty = |candidate: &Candidate| candidate.calibration.edge_penalty(&candidate.values);
     let distances = |data_rows: &[usize], rows: &[usize]| -> Vec<f64> {
         let data = of(&target.values, data_rows).into_iter().zip(&target.spreads);
-        // Ten trials drawn from ten may be all alike: no distance could be measured by that.
+        // A resample of ten trials may have equal values. Their standard deviation of zero could not
+        // measure any distance.
         let data: Vec<Spread> =
             data.map(|(drawn, whole)| Spread { sd: drawn.sd.max(whole.sd / 2.0), ..drawn }).collect();
         let distance = |(candidate, quantities): &(Candidate, Vec<Vec<f64>>)| {
@@ -159,7 +160,7 @@ mod tests {
         )
         .unwrap();
         let data = target.values.clone();
-        // The data turned round: the same means and spreads, other trials in each resample.
+        // The data in reverse order: the same means and spreads, but other trials in each resample.
         let turned: Vec<Vec<f64>> =
             data.iter().map(|values| values.iter().rev().copied().collect()).collect();
         let off: Vec<Vec<f64>> = data

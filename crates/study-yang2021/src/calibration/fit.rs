@@ -1,4 +1,4 @@
-//! The fit: each quantity of the data beside the model's.
+//! The fit: each quantity of the data beside the same quantity of the model.
 
 use std::path::Path;
 
@@ -8,24 +8,25 @@ use serde::Serialize;
 
 use super::{Calibration, Spread};
 
-/// One quantity: the data, the model over the seeds that it was fitted on, and over seeds that it was not fitted on.
+/// One quantity: of the data, of the model over the seeds to which it was fitted, and of the model over
+/// fresh seeds.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Fit {
     /// Name of the quantity.
     pub quantity: String,
     /// Mean of the data.
     pub data_mean: f64,
-    /// Its standard deviation.
+    /// Standard deviation of the data.
     pub data_sd: f64,
     /// Mean of the model over the seeds of the calibration.
     pub fitted_mean: f64,
-    /// Its standard deviation.
+    /// Standard deviation of the model over these seeds.
     pub fitted_sd: f64,
     /// Mean of the model over fresh seeds.
     pub fresh_mean: f64,
-    /// Its standard deviation.
+    /// Standard deviation of the model over fresh seeds.
     pub fresh_sd: f64,
-    /// Difference of the means (fresh less data), in standard deviations of the data.
+    /// Difference of the means (fresh minus data), in standard deviations of the data.
     pub off_by_sd: f64,
     /// Ratio of the standard deviations, fresh to data.
     pub sd_ratio: f64,

@@ -1,31 +1,32 @@
-//! Least squares without derivatives, for residuals that are noisy.
+//! Least squares without derivatives, for noisy residuals.
 //!
-//! Each residual is modelled as linear in the parameters, by a regression on the candidates that were evaluated near the centre. The model's
-//! minimum within a box around the centre is the next centre; the box shrinks as the search goes on. Every second candidate is a step from
-//! the centre along one of the axes, so that the regression has something to go by in all directions. A response surface as in Box and
-//! Wilson (1951), with the model of DFO-LS (Cartis, Fiala, Marteau and Roberts 2019, ACM TOMS 45:32) for its residuals.
+//! Each residual is modelled as linear in the parameters, by a regression on the evaluated candidates near
+//! the centre. The model's minimum within a box around the centre is the next centre. The box shrinks as
+//! the search proceeds. Every second candidate is a step from the centre along one of the axes, so that the
+//! regression has data in all directions. The method is a response surface as in Box and Wilson (1951),
+//! with the residual model of DFO-LS (Cartis, Fiala, Marteau and Roberts 2019, ACM TOMS 45:32).
 
 use nalgebra::{DMatrix, DVector};
 
 /// The smallest box, as a share of the first.
 const LAST_REACH: f64 = 0.25;
 
-/// Candidates after which the box is half as wide.
+/// Number of candidates after which the box is half as wide.
 const HALVED_AFTER: f64 = 45.0;
 
 /// Weight of flat slopes in the regression, in units of one candidate at the edge of the box.
 const RIDGE: f64 = 0.05;
 
-/// Rounds of descent along the axes until a model's minimum counts as found.
+/// Rounds of descent along the axes in the search for a model's minimum.
 const ROUNDS: usize = 200;
 
-/// A candidate that was evaluated: its place in the unit box, and what is to become small.
+/// An evaluated candidate: its place in the unit box, and its residuals, which the search minimises.
 struct Known {
     place: DVector<f64>,
     residuals: DVector<f64>,
 }
 
-/// A search, which proposes places and is told their residuals.
+/// A search. It proposes places and is told their residuals.
 pub(super) struct LeastSquares {
     known: Vec<Known>,
     centre: DVector<f64>,
@@ -40,12 +41,12 @@ impl LeastSquares {
         Self { known: Vec::new(), centre: DVector::from_vec(start), first_reach, proposed: 0 }
     }
 
-    /// Half of the present box, as a share of each range.
+    /// Half of the current box, as a share of each range.
     fn reach(&self) -> f64 {
         self.first_reach * (-(self.proposed as f64) / HALVED_AFTER).exp2().max(LAST_REACH)
     }
 
-    /// The next place. The first is the start; then comes a step along each axis.
+    /// The next place to evaluate. The first is the start; then comes a step along each axis.
     pub(super) fn propose(&mut self) -> Vec<f64> {
         let (number, axes) = (self.proposed, self.centre.len());
         self.proposed += 1;
@@ -71,7 +72,7 @@ impl LeastSquares {
         place
     }
 
-    /// Notes the residuals of a place that was proposed.
+    /// Stores the residuals of a proposed place.
     pub(super) fn tell(&mut self, place: &[f64], residuals: Vec<f64>) {
         let (place, residuals) = (DVector::from_column_slice(place), DVector::from_vec(residuals));
         self.known.push(Known { place, residuals });
@@ -100,7 +101,8 @@ impl LeastSquares {
         &self.centre + step
     }
 
-    /// The residuals at the centre and their slopes, a row for each axis, by a weighted regression with a ridge.
+    /// The residuals at the centre, and their slopes with a row for each axis, by a weighted ridge
+    /// regression.
     fn model(&self) -> Option<(DVector<f64>, DMatrix<f64>)> {
         let count = self.known.first()?.residuals.len();
         let (axes, reach) = (self.centre.len(), self.reach());
@@ -125,7 +127,8 @@ impl LeastSquares {
 mod tests {
     use super::*;
 
-    /// Sixteen curved residuals of eight parameters, with noise of 1 that looks like chance but is the same each time.
+    /// Sixteen curved residuals of eight parameters, with noise of standard deviation 1 that looks random
+    /// but is the same each time.
     fn residuals(place: &[f64], with_noise: bool) -> Vec<f64> {
         let noise = |i: usize| {
             let mix: f64 = place.iter().enumerate().map(|(k, x)| x * (12.9898 + k as f64 * 78.233)).sum();

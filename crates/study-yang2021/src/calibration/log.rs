@@ -1,4 +1,4 @@
-//! `evaluations.csv`: each candidate of a calibration as it was evaluated, from which a search goes on that was broken off.
+//! `evaluations.csv`: each evaluated candidate of a calibration. An interrupted search resumes from it.
 
 use std::path::Path;
 
@@ -8,11 +8,11 @@ use experiments::explore::{EvaluationLog, Free, Purpose};
 
 use super::{Calibration, Evaluation, POLICY, Spread};
 
-/// The scenario with what was found.
+/// Name of the calibrated scenario.
 pub const CALIBRATED: &str = "calibrated.ron";
-/// What it is of.
+/// Name of the file that describes the calibration.
 pub(super) const ORIGIN: &str = "calibration.json";
-/// What the folder is, and what is made of the log in the end.
+/// The use of the folder, and the files made from the log in the end.
 const PURPOSE: Purpose = Purpose { noun: "calibration", origin: ORIGIN, results: &[CALIBRATED, "fit.csv"] };
 
 /// The log of one calibration, held by one process.
@@ -22,10 +22,11 @@ pub struct Log {
 }
 
 impl Log {
-    /// Opens the log of a new calibration, or of one that is to go on. `is_fresh` starts over.
+    /// Opens the log of a new calibration, or of one to resume. `is_fresh` starts over.
     ///
     /// # Errors
-    /// It is of something else, another process is at work in the folder, or the disk does not take it.
+    /// The log belongs to something else, another process works in the folder, or the disk does not take
+    /// the log.
     pub fn open(folder: &Path, calibration: &Calibration, is_fresh: bool) -> Result<Self, Failure> {
         let (origin, header) = (origin_of(calibration), header(calibration));
         let (log, rows) = EvaluationLog::open(folder, &PURPOSE, (&origin, &header), is_fresh)?;
@@ -35,26 +36,26 @@ impl Log {
         Ok(Self { log, evaluations })
     }
 
-    /// What was found for a candidate.
+    /// The evaluation of a candidate, if there is one.
     #[must_use]
     pub fn find(&self, values: &[f64]) -> Option<&Evaluation> {
         self.evaluations.iter().find(|evaluation| evaluation.values == values)
     }
 
-    /// All of it, in the order in which it was found.
+    /// All evaluations, in the order in which they were added.
     #[must_use]
     pub fn evaluations(&self) -> &[Evaluation] {
         &self.evaluations
     }
 
-    /// The nearest to the target; the earliest of equals.
+    /// The evaluation with the least misfit; the earliest of equals.
     #[must_use]
     pub fn best(&self) -> Option<&Evaluation> {
         let runs = self.evaluations.iter().filter(|evaluation| evaluation.failure.is_none());
         runs.min_by(|a, b| a.misfit.total_cmp(&b.misfit))
     }
 
-    /// Takes an evaluation: when this returns, it is on disk.
+    /// Adds an evaluation. It is on disk when this returns.
     ///
     /// # Errors
     /// The disk does not take it.
@@ -93,7 +94,7 @@ fn evaluation(row: &[String], calibration: &Calibration) -> Option<Evaluation> {
     Some(Evaluation { values, misfit, spreads, failure })
 }
 
-/// What decides the evaluations.
+/// Everything that decides the evaluations.
 fn origin_of(calibration: &Calibration) -> serde_json::Value {
     let Program { version, source } = Program::this();
     let spreads = calibration.target.quantities.iter().zip(&calibration.target.spreads);

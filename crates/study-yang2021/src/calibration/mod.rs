@@ -1,8 +1,10 @@
-//! Calibration: free parameters of a scenario, searched so that the distance baseline does what recorded trials of it did.
+//! Calibration: the search for free parameters of a scenario with which the distance baseline reproduces
+//! recorded trials of it.
 //!
-//! Only [`POLICY`] can be run here: how other policies fare in the calibrated world is a result, so nothing that fits it may look at them.
-//! The search is by least squares without derivatives, over a box. It is deterministic: a search that was broken off is repeated from its
-//! start, with the evaluations in the log instead of new trials.
+//! Only [`POLICY`] can be run here. The performance of other policies in the calibrated world is a result,
+//! so that no fit may use it. The search is by least squares without derivatives, over a box. It is
+//! deterministic. An interrupted search is repeated from its start, with the evaluations in the log instead
+//! of new trials.
 
 mod choice;
 mod fit;
@@ -30,45 +32,45 @@ use least_squares::LeastSquares;
 pub use log::{CALIBRATED, Log};
 pub use target::{Quantity, Spread, Target};
 
-/// The one policy that is ever calibrated.
+/// The only policy that is calibrated.
 pub const POLICY: &str = "DIS";
 
-/// What a calibrated scenario's name ends with.
+/// Suffix of a calibrated scenario's name.
 const SUFFIX: &str = "-fitted";
 
-/// Begins the first line of a calibrated scenario.
+/// Start of a calibrated scenario's first line.
 const ORIGIN_LINE: &str = "// Fitted by usar calibrate";
 
-/// What a value at the very end of its range adds to a misfit: as much as a mean that is two standard errors
-/// off.
+/// Edge penalty of a value at the very end of its range: the same as for a mean that is off by two standard
+/// errors.
 const EDGE: f64 = 4.0;
 
-/// What is fitted to what.
+/// A calibration: a scenario with free parameters, and its target.
 pub struct Calibration {
     /// The scenario to start from, as text in which each free field is written.
     pub text: String,
-    /// The same, checked.
+    /// The scenario, checked.
     pub base: Scenario,
     /// The free parameters.
     pub free: Vec<Free>,
-    /// What to aim at.
+    /// The target of the fit.
     pub target: Target,
-    /// Trials of an evaluation.
+    /// Number of trials of an evaluation.
     pub trials: u32,
-    /// Seed of the first of them.
+    /// Seed of the first trial.
     pub first_seed: u64,
-    /// How far the first candidates are from the start, as a share of each range.
+    /// Distance of the first candidates from the start, as a share of each range.
     pub first_step: f64,
 }
 
-/// One candidate and how it fared.
+/// One candidate and its evaluation.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Evaluation {
     /// A value for each free parameter.
     pub values: Vec<f64>,
-    /// How far it is from the target, with what values near the ends of their ranges add.
+    /// Distance from the target, including the edge penalty.
     pub misfit: f64,
-    /// Means and spreads of the target's quantities; none for a candidate that cannot be run.
+    /// Means and spreads of the target's quantities; empty for a candidate that cannot be run.
     pub spreads: Vec<Spread>,
     /// Why it cannot be run.
     pub failure: Option<String>,
@@ -87,7 +89,8 @@ impl Calibration {
         })
     }
 
-    /// The text of the scenario with these values in their places, and a name that says so; all else, comments too, is as it was.
+    /// The text of the scenario with these values in their places, and a name with a suffix. Everything
+    /// else, including comments, stays as it is.
     ///
     /// # Errors
     /// None: each free field is written in the text.
@@ -100,7 +103,7 @@ impl Calibration {
         with_values(&self.text, &settings).map_err(|error| error.to_string())
     }
 
-    /// The same with a first line that tells what was fitted. No other policy runs in it.
+    /// The same text with a first line that describes the fit. No other policy can run in this scenario.
     ///
     /// # Errors
     /// Those of [`Calibration::text_with`].
@@ -120,7 +123,7 @@ impl Calibration {
         ))
     }
 
-    /// Where the search begins: the values of the scenario as it is, or the nearest in their ranges.
+    /// The start of the search: the values of the scenario, or the nearest values in their ranges.
     ///
     /// # Errors
     /// A field is not a number.
@@ -129,7 +132,7 @@ impl Calibration {
         Ok(self.present()?.into_iter().zip(ends).map(|(value, [low, high])| value.clamp(low, high)).collect())
     }
 
-    /// The values that the scenario has as it is.
+    /// The scenario's own values of the free parameters.
     ///
     /// # Errors
     /// A field is not a number.
@@ -140,10 +143,11 @@ impl Calibration {
         present.map_err(|error| Failure::input(format!("--free: {error}")))
     }
 
-    /// Checks that no field is set twice, that none decides how long a trial is, and that both ends of each range can be run, the other fields being as they are.
+    /// Checks that no field is set twice, that no parameter decides the duration of a trial, and that both
+    /// ends of each range can be run with the other fields unchanged.
     ///
     /// # Errors
-    /// An end that cannot.
+    /// One of these conditions is violated.
     pub fn check(&self) -> Result<(), Failure> {
         let bad = |error: String| Failure::input(format!("--free: {error}"));
         self.text_with(&self.present()?).map_err(bad)?;
@@ -167,10 +171,10 @@ impl Calibration {
         Ok(())
     }
 
-    /// The quantities of trials with these seeds, each a list over the trials. `None` when `stop` was set.
+    /// The quantities of trials with these seeds, each a list over the trials. `None` if `stop` was set.
     ///
     /// # Errors
-    /// A candidate that cannot be run, in one sentence.
+    /// The candidate cannot be run, in one sentence.
     pub fn measure(
         &self,
         values: &[f64],
@@ -190,12 +194,12 @@ impl Calibration {
         if stop.load(Ordering::Relaxed) {
             return Ok(None);
         }
-        // The first failure in the order of the seeds, whatever the number of threads.
+        // The first failure in the order of the seeds, independent of the number of threads.
         let rows = rows.into_iter().collect::<Result<Vec<Vec<f64>>, String>>()?;
         Ok(Some((0..self.target.spreads.len()).map(|q| rows.iter().map(|row| row[q]).collect()).collect()))
     }
 
-    /// What values near the ends of their ranges add to the misfit.
+    /// Edge penalty of these values: the sum over all values near the ends of their ranges.
     #[must_use]
     pub fn edge_penalty(&self, values: &[f64]) -> f64 {
         self.free.iter().zip(values).map(|(free, value)| edge_penalty(free, *value)).sum()
@@ -217,8 +221,8 @@ impl Calibration {
         }
     }
 
-    /// Evaluates the start and searches from there, so many candidates in all; returns whether it came to its end: not so when `stop` was
-    /// set. `done` hears the number of evaluations so far and the least misfit.
+    /// Evaluates the start and searches from there, `evaluations` candidates in all. Returns false if
+    /// `stop` interrupted it. `done` receives the number of evaluations so far and the least misfit.
     ///
     /// # Errors
     /// The disk does not take the log.
@@ -252,7 +256,7 @@ impl Calibration {
         Ok(true)
     }
 
-    /// What the search makes small: their squares add up to the misfit.
+    /// The residuals that the search minimises; their squares add up to the misfit.
     fn residuals(&self, evaluation: &Evaluation) -> Vec<f64> {
         let of_data = self.target.residuals(&evaluation.spreads, self.trials as usize);
         let edges = self.free.iter().zip(&evaluation.values);
@@ -260,16 +264,15 @@ impl Calibration {
     }
 }
 
-/// What a value near an end of the range adds to a misfit: nothing from a twentieth of the range on,
-/// `EDGE` at the very end, and the square of the way between. A value at an end says that the range
-/// decides, not the data.
+/// Edge penalty of a value: `EDGE` at the very end of its range, 0 from a twentieth of the range inwards,
+/// and quadratic in between. A value at an end means that the range decides instead of the data.
 fn edge_penalty(free: &Free, value: f64) -> f64 {
     let place = free.place_of(value);
     let from_end = place.min(1.0 - place).max(0.0);
     EDGE * (1.0 - from_end / 0.05).max(0.0).powi(2)
 }
 
-/// The text of a scenario that allows the calibrated policy alone.
+/// The text of a scenario that allows only the calibrated policy.
 fn candidate(text: &str) -> String {
     let fields = Fields::of(text);
     let name = fields.value("name").filter(|_| fields.value("only_policy").is_none());

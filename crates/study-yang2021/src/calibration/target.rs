@@ -1,4 +1,4 @@
-//! What a calibration aims at: means and spreads of recorded trials.
+//! The target of a calibration: means and spreads of recorded trials.
 
 use std::path::Path;
 
@@ -19,11 +19,12 @@ pub struct Quantity {
     metric: Metric,
 }
 
-/// The metrics that can be fitted, in the authors' order: each task's where they are told by task, since totals follow from these.
+/// The metrics that can be fitted, in the authors' order. Metrics with tasks are fitted task by task; their
+/// totals follow.
 const FITTED: [&str; 4] = ["rescuees", "energy", "hp", "rounds"];
 
 impl Quantity {
-    /// All of them.
+    /// All quantities that can be fitted.
     fn all(metrics: &Catalogue) -> Vec<Self> {
         let places = FITTED.iter().flat_map(|name| metrics.declared(name));
         let parts = places.map(|place| &metrics[place]).filter(|metric| !metric.is_total());
@@ -41,16 +42,18 @@ pub struct Spread {
 }
 
 impl Spread {
-    /// Of at least two values.
+    /// The spread of at least two values.
     #[must_use]
     pub fn of(values: &[f64]) -> Option<Self> {
         let Moments { mean, sd, .. } = Moments::of(values);
         Some(Self { mean: mean?, sd: sd? })
     }
 
-    /// How far a model's spread, over `model_trials` trials, is from this one, over `trials`: the distance of the means and the logarithm of
-    /// the ratio of the standard deviations, each by its standard error if both came from one normal distribution. Of a true model the
-    /// square of each is 1 on average. The model's standard deviation counts as at least a twentieth of this one.
+    /// Distance of a model's spread, over `model_trials` trials, from this one, over `trials`: the
+    /// difference of the means and the logarithm of the ratio of the standard deviations. Each is divided
+    /// by its standard error under the assumption that both samples come from one normal distribution. For
+    /// a true model, the square of each is 1 on average. The model's standard deviation counts as at least
+    /// a twentieth of this one.
     #[must_use]
     pub fn residuals(&self, model: &Self, [trials, model_trials]: [usize; 2]) -> [f64; 2] {
         let [n, m] = [trials, model_trials].map(|trials| trials.max(2) as f64);
@@ -62,24 +65,26 @@ impl Spread {
 
 /// Recorded trials of the baseline.
 pub struct Target {
-    /// The quantities that it has.
+    /// The quantities in the table.
     pub quantities: Vec<Quantity>,
     /// Their means and spreads.
     pub spreads: Vec<Spread>,
-    /// The values of each, trial by trial.
+    /// The values of each quantity, trial by trial.
     pub values: Vec<Vec<f64>>,
     /// Number of trials.
     pub trials: usize,
-    /// Names of the quantities that it has not.
+    /// Names of the quantities that the table lacks.
     pub missing: Vec<String>,
 }
 
 impl Target {
-    /// Reads a table with the columns of `trials.csv`: `method`, which is the baseline's in each row, and quantities.
+    /// Reads a table with the columns of `trials.csv`: quantities, and `method`, which must be the baseline
+    /// in each row.
     ///
     /// # Errors
-    /// A table that cannot be read, has a column of another name, is of other policies, of trials that are not as long as the scenario's, or
-    /// has a quantity that is no number or has no spread; with file and line, all at once.
+    /// The table cannot be read, has an unknown column, or has trials of another policy or another duration
+    /// than the scenario's; or a quantity is not a number or has no spread. All problems are reported at
+    /// once, with file and line.
     pub fn load(path: &Path, scenario: &Scenario) -> Result<Self, Failure> {
         let shown = path.display();
         let table = InputTable::read(path)?;
@@ -120,7 +125,7 @@ impl Target {
     /// The quantities of a trial.
     ///
     /// # Errors
-    /// One that the trial has not, in one sentence.
+    /// The trial lacks a quantity, in one sentence.
     pub fn measure(&self, record: &TrialRecord) -> Result<Vec<f64>, String> {
         let value = |quantity: &Quantity| {
             let value = quantity.metric.value(record);
@@ -129,20 +134,21 @@ impl Target {
         self.quantities.iter().map(value).collect()
     }
 
-    /// How far a model is from the target, by so many of its trials: the sum over all quantities; smaller is
-    /// nearer. Of a true model it is twice the number of quantities on average.
+    /// Distance of a model from the target, from this many trials of the model: the sum over all
+    /// quantities. Smaller is nearer. For a true model, it is twice the number of quantities on average.
     #[must_use]
     pub fn misfit(&self, model: &[Spread], model_trials: usize) -> f64 {
         misfit(&self.spreads, model, [self.trials, model_trials])
     }
 
-    /// The same, quantity by quantity: of each the distance of the means and of the spreads, in standard errors.
+    /// The residuals of all quantities: for each, the distance of the means and of the spreads, in standard
+    /// errors.
     pub(super) fn residuals(&self, model: &[Spread], model_trials: usize) -> Vec<f64> {
         residuals(&self.spreads, model, [self.trials, model_trials]).collect()
     }
 }
 
-/// How far a model's spreads are from the data's, over so many trials of the data and of the model.
+/// Distance of a model's spreads from the data's, for these numbers of trials of the data and of the model.
 pub(super) fn misfit(data: &[Spread], model: &[Spread], trials: [usize; 2]) -> f64 {
     residuals(data, model, trials).map(|residual| residual * residual).sum()
 }
@@ -151,11 +157,11 @@ fn residuals(data: &[Spread], model: &[Spread], trials: [usize; 2]) -> impl Iter
     data.iter().zip(model).flat_map(move |(data, model)| data.residuals(model, trials))
 }
 
-/// What the columns of a table are.
+/// The columns of a table.
 struct Columns {
     found: Vec<Quantity>,
     missing: Vec<String>,
-    /// What is wrong with its header.
+    /// Problems in the header.
     problems: Vec<String>,
 }
 
@@ -180,7 +186,7 @@ impl Columns {
     }
 }
 
-/// A row by the names of its cells.
+/// A row, with its cells by column name.
 struct Cells<'t> {
     table: &'t InputTable,
     row: &'t csv::StringRecord,
@@ -191,14 +197,14 @@ impl Cells<'_> {
         self.row.get(self.table.column(name)?)
     }
 
-    /// A number from 0 on; `None` where there is no such column.
+    /// A number that is not negative; `None` if there is no such column.
     fn number(&self, name: &str) -> Result<Option<f64>, String> {
         let Some(cell) = self.text(name) else { return Ok(None) };
         let value = cell.parse::<f64>().ok().filter(|value| value.is_finite() && *value >= 0.0);
         value.map(Some).ok_or_else(|| format!("{name} must be a number from 0 on, found {cell:?}"))
     }
 
-    /// What is wrong with what is not fitted.
+    /// Problems in the cells that are not fitted.
     fn check(&self, scenario: &Scenario, metrics: &Catalogue) -> Vec<String> {
         let mut problems = Vec::new();
         if let Some(method) = self.text("method").filter(|method| *method != POLICY) {
@@ -267,8 +273,8 @@ mod tests {
             let [mean, sd] = spread(10).residuals(&spread(20), [10, 20]).map(|residual| residual * residual);
             sums = [sums[0] + mean, sums[1] + sd];
         }
-        // By the t distribution of few trials the first is (n - 1) / (n - 3) on average, and the logarithm's
-        // variance a little more.
+        // By the t distribution of few trials, the first is (n - 1) / (n - 3) on average, and the variance
+        // of the logarithm is a little larger.
         let [mean, sd] = sums.map(|sum| sum / f64::from(worlds));
         assert!((1.15..1.45).contains(&mean) && (0.9..1.3).contains(&sd), "{mean} {sd}");
     }

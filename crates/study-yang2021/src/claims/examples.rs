@@ -1,4 +1,4 @@
-//! What the paper's numerical examples are said to show, with exact values.
+//! The claims that the paper draws from its numerical examples, checked with exact values.
 
 use experiments::Failure;
 use rne_core::{NeedDistribution, NeedVector, NeedWeights, relative_entropy};
@@ -8,15 +8,15 @@ use super::Verdict;
 /// A comparison that the paper draws from one of its examples.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Example {
-    /// Which.
+    /// Name of the example.
     pub name: &'static str,
-    /// What it is said to show, in our words.
+    /// The claim, in our words.
     pub words: &'static str,
-    /// The relative needs entropy that is claimed to be the lower one, in nats: more trust.
+    /// The relative needs entropy that is claimed to be lower, in nats: more trust.
     pub trusting: f64,
-    /// The one that is claimed to be higher.
+    /// The relative needs entropy that is claimed to be higher, in nats.
     pub doubting: f64,
-    /// Whether the exact values say so.
+    /// Whether the exact values agree with the claim.
     pub verdict: Verdict,
 }
 

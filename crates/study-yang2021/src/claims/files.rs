@@ -10,7 +10,7 @@ use serde::Serialize;
 use super::papers::AUTHORS_COLUMNS;
 use super::{CLAIMS, Example, Judged, PAPERS_TRIALS};
 
-/// A CSV of a folder's trials with the columns of the authors' tables, and no others.
+/// A CSV of a folder's trials with only the columns of the authors' tables.
 ///
 /// # Errors
 /// The table of trials cannot be read, or the disk does not take the new one.
@@ -79,7 +79,7 @@ pub fn write_examples(out: &Path, examples: &[Example]) -> Result<(), Failure> {
     write(out, "examples.csv", &examples.iter().map(row).collect::<Vec<_>>())
 }
 
-/// `power.csv`: what experiments of other sizes would say.
+/// `power.csv`: the verdicts expected from experiments of other sizes.
 ///
 /// # Errors
 /// The disk does not take it.
@@ -115,7 +115,7 @@ fn write(out: &Path, name: &str, rows: &[impl Serialize]) -> Result<(), Failure>
     NewFile::write(out, name, &bytes).map(drop)
 }
 
-/// A row of `claims.csv`: one comparison of one claim, over so many trials.
+/// A row of `claims.csv`: one comparison of one claim, over this number of trials.
 #[derive(Serialize)]
 struct ClaimRow<'a> {
     scenario: &'a str,

@@ -1,13 +1,15 @@
-//! The paper's claims, as data, and what trials say of each.
+//! The paper's claims as data, and the verdict of trials on each claim.
 //!
-//! A claim is one or more parts that must all be true: RNE rescues the most when it rescues more than each of the others. A part compares two
-//! quantities over pairs of trials.
+//! A claim has one or more parts that must all be true. Example: RNE rescues the most if it rescues more
+//! than each of the other policies. A part compares two quantities over pairs of trials.
 //!
-//! - *Holds*: the 95 % interval of every part lies wholly on the claimed side. All must, so no correction is needed (intersection-union test, Berger
-//!   1982): a false claim is called true in about 2.5 % of experiments at most.
-//! - *Does not hold*: the interval of some part lies wholly on the other side, at 95 % shared by the parts (Bonferroni): with three parts each interval
-//!   is one of 98.3 %. A true claim is called false in about 2.5 % of experiments at most.
-//! - *Undecided*: neither.
+//! - *Holds*: the 95 % interval of every part lies entirely on the claimed side. Since all parts must hold,
+//!   no correction is needed (intersection-union test, Berger 1982). A false claim is called true in at
+//!   most about 2.5 % of experiments.
+//! - *Does not hold*: the interval of some part lies entirely on the other side, at 95 % shared by the
+//!   parts (Bonferroni). With three parts, each interval is at 98.3 %. A true claim is called false in at
+//!   most about 2.5 % of experiments.
+//! - *Undecided*: otherwise.
 
 mod examples;
 mod files;
@@ -31,30 +33,30 @@ pub use papers::CLAIMS;
 pub use power::{Power, Shares, power};
 use power::{TIMES, least_difference};
 
-/// Pairs below which nothing is decided: signs alone would do it too often.
+/// With fewer pairs, a claim stays undecided: chance signs alone would decide it too often.
 const LEAST_PAIRS: usize = 6;
 
-/// Something that the paper says of its experiment.
+/// A claim that the paper makes about its experiment.
 #[derive(Debug)]
 pub struct Claim {
     /// Short name.
     pub name: &'static str,
-    /// What is claimed, in our words.
+    /// The claim, in our words.
     pub words: &'static str,
     /// The section of the paper.
     pub section: &'static str,
-    /// What must be true for it.
+    /// The comparisons that must all be true.
     pub parts: &'static [Part],
 }
 
-/// One quantity against another.
+/// A comparison of two quantities.
 #[derive(Debug)]
 pub struct Part {
-    /// Policy and metric of the one.
+    /// Policy and metric of the first quantity.
     pub a: [&'static str; 2],
-    /// Of the other.
+    /// Policy and metric of the second quantity.
     pub b: [&'static str; 2],
-    /// What is claimed of the first.
+    /// Side that the paper claims for the first quantity.
     pub claimed: Side,
 }
 
@@ -67,16 +69,16 @@ pub enum Side {
     Less,
 }
 
-/// What trials say of a claim.
+/// The verdict of trials on a claim.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub enum Verdict {
-    /// It is so.
+    /// The claim is true.
     #[serde(rename = "holds")]
     Holds,
-    /// It is otherwise.
+    /// The claim is false.
     #[serde(rename = "does not hold")]
     DoesNotHold,
-    /// These trials do not tell.
+    /// The trials do not decide.
     #[serde(rename = "undecided")]
     Undecided,
 }
@@ -92,7 +94,7 @@ impl Verdict {
         }
     }
 
-    /// Of several worlds, from the verdict in each.
+    /// The verdict on several worlds together, from the verdict in each.
     fn over(mut worlds: impl Iterator<Item = Self> + Clone) -> Self {
         if worlds.clone().any(|verdict| verdict == Self::DoesNotHold) {
             Self::DoesNotHold
@@ -103,7 +105,7 @@ impl Verdict {
         }
     }
 
-    /// From the intervals of all parts: each at 95 %, and each at 95 % shared by the parts.
+    /// The verdict from the intervals of all parts: each at 95 %, and each at 95 % shared by the parts.
     #[must_use]
     fn of(parts: &[PartFinding]) -> Self {
         let on = |interval: Option<[f64; 2]>, side: Side| {
@@ -130,7 +132,7 @@ impl Side {
         }
     }
 
-    /// As a sign between the two.
+    /// The side as a sign between the two quantities.
     #[must_use]
     pub fn sign(self) -> char {
         match self {
@@ -140,20 +142,21 @@ impl Side {
     }
 }
 
-/// What trials say of one part.
+/// The result of trials for one part.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PartFinding {
-    /// What is claimed of the first.
+    /// Side that the paper claims for the first quantity.
     pub claimed: Side,
-    /// Differences of the pairs in which both are defined, first less second, with the numbers of their trials.
+    /// Differences (first minus second) of the pairs in which both are defined, with the numbers of their
+    /// trials.
     pub differences: Vec<(u32, f64)>,
-    /// Their mean.
+    /// Mean of the differences.
     pub difference: Option<f64>,
-    /// Its 95 % interval.
+    /// 95 % interval of the mean difference.
     pub interval: Option<[f64; 2]>,
-    /// Its interval at 95 % shared by all parts of the claim.
+    /// Interval at 95 % shared by all parts of the claim.
     pub shared_interval: Option<[f64; 2]>,
-    /// Pairs that a paired t test would need for 80 % power, were the difference what was observed.
+    /// Pairs that a paired t test needs for 80 % power, if the true difference is the observed one.
     pub pairs_needed: Option<u64>,
 }
 
@@ -165,51 +168,51 @@ impl PartFinding {
         Moments::of(&values).sd
     }
 
-    /// The difference that 80 % of experiments of as many trials as the paper's find.
+    /// The difference that 80 % of experiments with the paper's number of trials would find.
     #[must_use]
     pub fn least_found(&self) -> Option<f64> {
         least_difference(self.sd()?, PAPERS_TRIALS as usize)
     }
 }
 
-/// What trials say of a claim.
+/// The result of trials for a claim.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Finding {
     /// The verdict.
     pub verdict: Verdict,
-    /// Its parts, in the order of the claim's.
+    /// The results of the parts, in the order of the claim.
     pub parts: Vec<PartFinding>,
 }
 
-/// Trials below which nothing is said of the power.
+/// With fewer trials, no power is computed.
 pub const LEAST_TRIALS: u32 = PAPERS_TRIALS * TIMES as u32;
 
-/// Seed of the experiments that are drawn for the power.
+/// Seed of the drawn experiments from which the power is computed.
 const POWER_SEED: u64 = 1;
 
-/// What a scenario's trials say of each claim.
+/// The results of a scenario's trials for each claim.
 pub struct Judged {
-    /// What the scenario stands for.
+    /// The role of the scenario in the study.
     pub standing: Standing,
     /// Name of the scenario.
     pub scenario: String,
-    /// What is measured there.
+    /// Catalogue of the scenario's metrics.
     pub metrics: Catalogue,
-    /// Over as many trials as the paper has.
+    /// Results over the paper's number of trials.
     pub of_few: Vec<Finding>,
-    /// How many are all.
+    /// Number of all trials.
     pub trials: u32,
-    /// Over all.
+    /// Results over all trials.
     pub of_all: Vec<Finding>,
-    /// What experiments of other sizes would say.
+    /// The verdicts expected from experiments of other sizes.
     pub powers: Vec<Option<Power>>,
 }
 
 impl Judged {
-    /// Of the first trials of a folder's sweep.
+    /// Judges the first trials of a folder's sweep.
     ///
     /// # Errors
-    /// The sweep has not the policies of a claim.
+    /// The sweep lacks a policy of a claim.
     pub fn of(folder: &Folder, standing: Standing, trials: u32) -> Result<Self, Failure> {
         let all =
             |trials| CLAIMS.iter().map(|claim| judge(folder, claim, trials)).collect::<Result<Vec<_>, _>>();
@@ -221,8 +224,8 @@ impl Judged {
     }
 }
 
-/// The verdicts on each claim in all calibrated worlds together: it holds if it holds in each, and does not if it does not in one. None
-/// where there is one such world.
+/// The verdict on each claim over all calibrated worlds together: it holds if it holds in each world, and
+/// does not hold if it does not hold in one. `None` if there is only one such world.
 #[must_use]
 pub fn verdicts_over_worlds(judged: &[Judged]) -> Option<Vec<Verdict>> {
     let calibrated: Vec<&Judged> =
@@ -231,10 +234,10 @@ pub fn verdicts_over_worlds(judged: &[Judged]) -> Option<Vec<Verdict>> {
     (calibrated.len() > 1).then(|| (0..CLAIMS.len()).map(verdict).collect())
 }
 
-/// What the first trials of a folder's sweep say of a claim.
+/// Judges a claim by the first trials of a folder's sweep.
 ///
 /// # Errors
-/// The sweep has not the policies of the claim.
+/// The sweep lacks a policy of the claim.
 pub fn judge(folder: &Folder, claim: &Claim, trials: u32) -> Result<Finding, Failure> {
     let count = claim.parts.len();
     let find = |part: &Part| {
@@ -258,7 +261,7 @@ fn part_finding(part: &Part, differences: Vec<(u32, f64)>, count: usize) -> Part
     }
 }
 
-/// First less second, trial by trial, where both are defined.
+/// First minus second, trial by trial, where both are defined.
 fn differences(folder: &Folder, part: &Part, trials: u32) -> Result<Vec<(u32, f64)>, Failure> {
     let metrics = &folder.experiment().metrics;
     let place =
@@ -276,7 +279,7 @@ fn place_of(folder: &Folder, policy: &str) -> Result<usize, Failure> {
 }
 
 impl Part {
-    /// What is compared, in words.
+    /// The comparison in words.
     #[must_use]
     pub fn words(&self, metrics: &Catalogue) -> String {
         let [policy, metric] = self.a;

@@ -1,4 +1,4 @@
-//! What the paper says.
+//! The claims of the paper.
 
 use super::{Claim, Part, Side};
 
@@ -27,7 +27,7 @@ const fn less(a: [&'static str; 2], b: [&'static str; 2]) -> Part {
     Part { a, b, claimed: Side::Less }
 }
 
-/// RNE against each other policy, in one metric.
+/// RNE has more than each other policy, in one metric.
 const fn most(metric: &'static str) -> [Part; 3] {
     [
         more(["RNE", metric], ["DIS", metric]),
@@ -36,7 +36,7 @@ const fn most(metric: &'static str) -> [Part; 3] {
     ]
 }
 
-/// RNE against each other policy, in one metric.
+/// RNE has less than each other policy, in one metric.
 const fn least(metric: &'static str) -> [Part; 3] {
     [
         less(["RNE", metric], ["DIS", metric]),
@@ -45,7 +45,7 @@ const fn least(metric: &'static str) -> [Part; 3] {
     ]
 }
 
-/// One metric against another, under each policy.
+/// One metric is higher than another, under each policy.
 const fn under_each_policy(a: &'static str, b: &'static str) -> [Part; 4] {
     [
         more(["RNE", a], ["RNE", b]),
@@ -74,7 +74,8 @@ const fn claim(
     Claim { name, words, section, parts }
 }
 
-/// The claims about the experiment, in the paper's order. Its claims about numerical examples are in [`super::examples`].
+/// The claims about the experiment, in the paper's order. The claims about numerical examples are in
+/// [`super::examples`].
 #[rustfmt::skip]
 pub const CLAIMS: &[Claim] = &[
     claim("dearer energy", TASKS, "the hard task costs more energy per rescuee than the easy one", &under_each_policy("energy_per_rescuee.hard", "energy_per_rescuee.easy")),

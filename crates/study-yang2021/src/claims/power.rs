@@ -1,4 +1,4 @@
-//! What experiments of another size would show, were the trials at hand the truth.
+//! Power: the verdicts expected from experiments of other sizes, if the trials at hand are the truth.
 
 use experiments::comparison::CONFIDENCE;
 use experiments::stats::Moments;
@@ -8,44 +8,47 @@ use statrs::distribution::{ContinuousCDF, Normal, StudentsT};
 
 use super::{Finding, Side, Verdict};
 
-/// How many times as many trials as an experiment has are needed to draw it from them.
+/// An experiment is drawn only from at least this many times as many trials.
 pub(super) const TIMES: usize = 5;
 
-/// Trials whose differences make the errors of large experiments.
+/// Largest number of trials whose differences are used for the errors of large experiments.
 const MOST_TRIALS: usize = 2_000;
 
-/// Experiments that are drawn.
+/// Number of drawn experiments.
 const EXPERIMENTS: usize = 4_000;
 
-/// Power that is asked for.
+/// Desired power.
 const WANTED: f64 = 0.8;
 
-/// Largest experiment that is looked at, in pairs.
+/// Largest experiment considered, in pairs.
 const MOST_PAIRS: u32 = 1_000_000;
 
-/// Shares of experiments with each verdict; the others decide nothing.
+/// Shares of experiments with each verdict; the remaining experiments are undecided.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Shares {
     /// The claim holds.
     pub holds: f64,
-    /// It does not.
+    /// The claim does not hold.
     pub does_not_hold: f64,
 }
 
-/// What experiments on one claim would say.
+/// The verdicts expected from experiments on one claim.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Power {
-    /// Verdicts of experiments of few pairs, drawn from the trials at hand with putting back.
+    /// Verdicts of experiments with few pairs, drawn from the trials at hand with replacement.
     pub of_few: Shares,
-    /// What large experiments would say, were the means of the trials at hand the truth; undecided where one of them is 0.
+    /// The verdict of large experiments, if the means of the trials at hand are the truth; undecided if one
+    /// of the means is 0.
     pub leaning: Verdict,
-    /// Pairs with which 80 % of experiments would say so; `None` where more than a million would be needed.
+    /// Pairs with which 80 % of experiments reach this verdict; `None` if more than a million would be
+    /// needed.
     pub pairs_needed: Option<u32>,
 }
 
-/// The power of experiments on one claim, drawn with this seed from the trials that `finding` was made of; `None` where these are fewer than
-/// `TIMES` as many as `few`, since experiments drawn from them would be too much alike. Verdicts are
-/// those of [`super::judge`], but with paired t intervals, since thousands of bootstraps would take hours.
+/// The power of experiments on one claim, drawn with this seed from the trials of `finding`. `None` if
+/// there are fewer than `TIMES` times `few` trials, since experiments drawn from them would be too similar.
+/// Verdicts follow the rules of [`super::judge`], but with paired t intervals, since thousands of
+/// bootstraps would take hours.
 #[must_use]
 pub fn power(finding: &Finding, few: usize, seed: u64) -> Option<Power> {
     let trials = trials_of(finding);
@@ -78,7 +81,7 @@ pub fn power(finding: &Finding, few: usize, seed: u64) -> Option<Power> {
     Some(Power { of_few, leaning, pairs_needed: least_pairs(reaches) })
 }
 
-/// What effects of these sizes make of a claim.
+/// The verdict on a claim if its parts have these true effects.
 fn leaning(effects: &[f64], claimed: &[Side]) -> Verdict {
     let towards = |(effect, side): (&f64, &Side)| if *side == Side::More { *effect } else { -effect };
     let least = effects.iter().zip(claimed).map(towards).fold(f64::INFINITY, f64::min);
@@ -90,7 +93,7 @@ fn leaning(effects: &[f64], claimed: &[Side]) -> Verdict {
 }
 
 impl Shares {
-    /// Of [`EXPERIMENTS`] verdicts.
+    /// The shares among [`EXPERIMENTS`] verdicts.
     fn of(verdicts: impl Iterator<Item = Verdict>) -> Self {
         let mut counts = [0_u32; 2];
         for verdict in verdicts {
@@ -102,7 +105,7 @@ impl Shares {
     }
 }
 
-/// For each trial that every part has, the differences of the parts.
+/// The differences of all parts, for each trial that every part has.
 fn trials_of(finding: &Finding) -> Vec<Vec<f64>> {
     let Some((first, others)) = finding.parts.split_first() else { return Vec::new() };
     let value = |differences: &[(u32, f64)], trial: u32| {
@@ -116,7 +119,8 @@ fn trials_of(finding: &Finding) -> Vec<Vec<f64>> {
     first.differences.iter().filter_map(row).collect()
 }
 
-/// Student's t of a sample's mean. Without any spread it is as far from zero as numbers go.
+/// Student's t of a sample's mean. Without any spread, it is 0 or the largest number with the sign of the
+/// mean.
 fn t_of(values: impl Iterator<Item = f64>) -> f64 {
     let values: Vec<f64> = values.collect();
     let Moments { mean: Some(mean), sd: Some(sd), .. } = Moments::of(&values) else { return 0.0 };
@@ -129,12 +133,13 @@ fn t_of(values: impl Iterator<Item = f64>) -> f64 {
     }
 }
 
-/// Mean over standard deviation of one part.
+/// Effect size of one part: mean over standard deviation.
 fn effect(trials: &[Vec<f64>], part: usize) -> f64 {
     t_of(trials.iter().map(|trial| trial[part])) / (trials.len() as f64).sqrt()
 }
 
-/// Errors of the parts' t in large experiments: normal, and correlated as the differences are between the parts (Gaussian multipliers).
+/// Errors of the parts' t in large experiments: normal, with the correlations of the differences between
+/// the parts (Gaussian multipliers).
 fn noise(trials: &[Vec<f64>], draws: &mut ChaCha8Rng) -> Vec<Vec<f64>> {
     let normal = Normal::standard();
     let parts = trials.first().map_or(0, Vec::len);
@@ -155,7 +160,8 @@ fn noise(trials: &[Vec<f64>], draws: &mut ChaCha8Rng) -> Vec<Vec<f64>> {
     (0..EXPERIMENTS).map(|_| experiment()).collect()
 }
 
-/// The t beyond which one part is decided with so many pairs: by itself, and shared by all parts.
+/// The values of t beyond which one part is decided with this many pairs: by itself, and shared by all
+/// parts.
 fn limits(pairs: usize, parts: usize) -> [f64; 2] {
     [1, parts].map(|parts| quantile(pairs, 1.0 - (1.0 - CONFIDENCE) / 2.0 / parts as f64))
 }
@@ -172,13 +178,13 @@ fn verdict(claimed: &[Side], t: impl Fn(usize) -> f64, [each, shared]: [f64; 2])
     }
 }
 
-/// Quantile of Student's t for so many pairs.
+/// Quantile of Student's t for this many pairs.
 fn quantile(pairs: usize, share: f64) -> f64 {
     let freedom = pairs as f64 - 1.0;
     StudentsT::new(0.0, 1.0, freedom).map_or(f64::INFINITY, |t| t.inverse_cdf(share))
 }
 
-/// The least number of pairs that reaches the power, which grows with the number.
+/// The least number of pairs that reaches the power. The power grows with the number.
 fn least_pairs(reaches: impl Fn(u32) -> bool) -> Option<u32> {
     let mut enough = 2;
     while !reaches(enough) {
@@ -195,8 +201,9 @@ fn least_pairs(reaches: impl Fn(u32) -> bool) -> Option<u32> {
     Some(enough)
 }
 
-/// The least difference that a paired t test at 5 % with so many pairs finds with 80 % power, when differences have this standard deviation
-/// (Guenther's approximation, 1981, solved for the difference).
+/// The least difference that a paired t test at 5 % with this many pairs finds with 80 % power, if the
+/// differences have this standard deviation (Guenther's approximation, 1981, solved for the difference).
+/// `None` for too few pairs.
 #[must_use]
 pub fn least_difference(sd: f64, pairs: usize) -> Option<f64> {
     let normal = Normal::standard();

@@ -7,7 +7,7 @@ use reports::table::{headed, right};
 use crate::claims::{CLAIMS, Example, Judged, PartFinding, Shares, verdicts_over_worlds};
 use crate::scenarios::{PAPERS_TRIALS, Standing};
 
-/// What a scenario's trials say of each claim: a row for each of its comparisons.
+/// The verdicts on each claim from a scenario's trials: a row for each comparison.
 pub(crate) fn claims_table(judged: &Judged) -> Table {
     let few = format!("first {PAPERS_TRIALS} pairs");
     let all = format!("{} pairs", judged.trials);
@@ -59,7 +59,8 @@ pub(crate) fn examples_table(examples: &[Example]) -> Table {
     table
 }
 
-/// What experiments of other sizes would say of each claim, and find of each of its comparisons; none where the trials are too few to say.
+/// The verdicts expected from experiments of other sizes, and the differences that they find; `None` if
+/// there are too few trials.
 pub(crate) fn power_table(judged: &Judged) -> Option<Table> {
     let mut table = headed([
         "claim",
@@ -102,7 +103,7 @@ pub(crate) fn power_table(judged: &Judged) -> Option<Table> {
     Some(table)
 }
 
-/// All verdicts side by side: of each scenario, and of all calibrated worlds where there are more than one.
+/// All verdicts side by side: of each scenario, and of all calibrated worlds together if there are several.
 pub(crate) fn verdicts_table(judged: &[Judged]) -> Table {
     let main: Vec<&Judged> = judged.iter().filter(|world| world.standing != Standing::Alternative).collect();
     let over_worlds = verdicts_over_worlds(judged);

@@ -7,7 +7,8 @@ use reports::table::{headed, right};
 use crate::predictions::Prediction;
 use crate::scenarios::POLICIES;
 
-/// A row for each quantity, a column for each policy: the mean, and the interval of the mean of ten other trials.
+/// A row for each quantity, a column for each policy: the mean, and the interval for the mean of ten other
+/// trials.
 pub(crate) fn predictions_table(predictions: &[Prediction]) -> Table {
     let mut table = headed(std::iter::once("quantity").chain(POLICIES).map(Cell::new));
     let first = predictions.iter().filter(|one| one.policy == predictions[0].policy);

@@ -18,7 +18,7 @@ fn signed(value: f64) -> String {
     if value > 0.0 { format!("+{}", short(value)) } else { short(value) }
 }
 
-/// The titles of the metrics that readings are compared in.
+/// The titles of the metrics in which readings are compared.
 fn titles(metrics: &Catalogue) -> impl Iterator<Item = Cell> {
     shown(metrics).into_iter().map(|place| Cell::new(&metrics[place].title))
 }

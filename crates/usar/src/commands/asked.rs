@@ -1,4 +1,4 @@
-//! The trial that a command is asked about: of a scenario, or of a sweep's folder.
+//! The trial that a command is asked about: from a scenario, or from a sweep's folder.
 
 use std::path::PathBuf;
 
@@ -31,18 +31,18 @@ pub(crate) struct TrialArguments {
     allow_expensive: bool,
 }
 
-/// A trial: what decides its numbers.
+/// A trial, defined by everything that decides its numbers.
 pub(super) struct AskedTrial {
     pub scenario: Scenario,
     /// The policy that decides in it.
     pub spec: PolicySpec,
     pub seed: u64,
-    /// The policies of the sweep that it is of; none for a scenario.
+    /// The policies of the sweep to which the trial belongs; empty for a scenario.
     pub policies: Vec<PolicySpec>,
 }
 
 impl TrialArguments {
-    /// The trial in which this policy decides; without one, the first of the sweep does.
+    /// The trial in which this policy decides. Without a policy, the first policy of the sweep decides.
     pub(super) fn open(&self, flag: &str, policy: Option<&str>) -> Result<AskedTrial, Failure> {
         let parse =
             |text: &str| PolicySpec::parse(text).map_err(|error| Failure::input(format!("{flag}: {error}")));
@@ -73,7 +73,7 @@ impl TrialArguments {
     }
 }
 
-/// Refuses a candidate of a calibration: no decision in it can be tried otherwise before it is chosen.
+/// Refuses a candidate of a calibration: before it is chosen, no other decision may be tried in it.
 fn check_open(scenario: &Scenario) -> Result<(), Failure> {
     let only = &scenario.only_policy;
     if only.is_empty() {

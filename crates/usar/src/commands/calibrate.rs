@@ -1,4 +1,4 @@
-//! `usar calibrate`: free parameters of a scenario, fitted to recorded trials of the distance baseline.
+//! `usar calibrate`: fits free parameters of a scenario to recorded trials of the distance baseline.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -17,7 +17,7 @@ use usar_sim::scenario::Scenario;
 use super::{ShownArguments, load, print_table};
 use crate::running::{STOP, default_jobs, progress_bar, stop_on_signals, tell};
 
-/// The scenario with what was found.
+/// Name of the calibrated scenario.
 const CALIBRATED: &str = "calibrated.ron";
 
 /// Fit a scenario's free parameters to recorded trials of the distance baseline (DIS)
@@ -219,7 +219,8 @@ impl Arguments {
     }
 }
 
-/// Where the search begins otherwise than the scenario is.
+/// Notes the parameters whose start differs from the scenario, because the scenario's value is outside the
+/// range.
 fn say_what_is_moved(calibration: &Calibration) -> Result<(), Failure> {
     let values = calibration.present()?.into_iter().zip(calibration.start()?);
     for (free, (is, begins)) in

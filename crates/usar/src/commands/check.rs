@@ -19,8 +19,8 @@ pub(crate) struct Arguments {
     files: Vec<PathBuf>,
 }
 
-/// Checks one file. Trouble of the program's own is a problem of this file: the others are still checked.
-/// What is told of a sound one.
+/// Checks one file, and returns a sentence about a sound file. A panic counts as a problem of this file, so
+/// that the other files are still checked.
 fn check(file: &Path) -> Result<String, Failure> {
     let check = || {
         let experiment = Experiment::load(file, &Overrides::default())?;

@@ -1,4 +1,4 @@
-//! `usar choose`: which of several calibrated candidates is the nearest to the recorded trials.
+//! `usar choose`: finds which of several calibrated candidates is nearest to the recorded trials.
 
 use std::io::Write;
 use std::path::PathBuf;

@@ -1,5 +1,4 @@
-//! What commands that are about a sweep to be run have in common: which trials of it, and what is kept of
-//! them.
+//! Shared arguments of commands that run or plan a sweep: which trials, and what is kept of them.
 
 use clap::Args;
 use experiments::experiment::{Keep, Overrides, split_list};
@@ -42,7 +41,7 @@ impl Chosen {
         }
     }
 
-    /// The same as arguments of a command.
+    /// The same choices as arguments of a command.
     pub(crate) fn arguments(&self) -> Vec<String> {
         let mut arguments = Vec::new();
         let mut add = |flag: &str, value: Option<String>| {

@@ -104,12 +104,13 @@ impl Arguments {
     }
 }
 
-/// What the tables of [`print_changes`] have in common.
+/// Note below the tables of [`print_changes`].
 const CHANGES_NOTE: &str = "\
 Each change is paired by seed, between two cases that differ in one axis, of which the first has its first value. In brackets 95 %
 bootstrap intervals; *: shown after Holm's correction over all changes (of means, and of differences), or over all comparisons";
 
-/// What the axes change in one metric: each policy's mean, the differences case by case, and their changes.
+/// Prints the effects of the axes on one metric: each policy's mean, the differences case by case, and
+/// their changes.
 fn print_changes(
     out: &mut dyn Write,
     experiment: &Experiment,

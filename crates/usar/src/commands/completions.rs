@@ -1,4 +1,4 @@
-//! `usar completions`: scripts with which a shell completes commands and options.
+//! `usar completions`: scripts with which shells complete commands and options.
 
 use std::io::Write;
 

@@ -1,4 +1,4 @@
-//! `usar doctor`: the program, the machine, and whether results can be written.
+//! `usar doctor`: shows the program and the machine, and tests whether results can be written.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -12,7 +12,7 @@ use serde::Serialize;
 use super::SCHEMA_VERSION;
 use crate::running::default_jobs;
 
-/// Bytes that the write test writes.
+/// Number of bytes in the write test.
 const TEST_BYTES: usize = 1 << 12;
 
 /// Show version, machine and threads, and whether results can be written
@@ -51,7 +51,7 @@ struct Findings {
     results: Results,
 }
 
-/// What a folder for results is good for.
+/// Whether results can be written to a folder.
 #[derive(Serialize)]
 struct Results {
     folder: PathBuf,
@@ -76,7 +76,7 @@ impl Results {
     }
 }
 
-/// Writes a file that goes away again.
+/// Writes a temporary file and deletes it.
 fn write_test(folder: &Path) -> std::io::Result<()> {
     let mut file = tempfile::Builder::new().prefix(".usar-doctor").tempfile_in(folder)?;
     file.write_all(&[0; TEST_BYTES])?;

@@ -1,4 +1,4 @@
-//! `usar draw`: the world of a scenario before anything runs.
+//! `usar draw`: draws the world of a scenario before the trial.
 
 use std::io::Write;
 use std::path::PathBuf;

@@ -1,4 +1,4 @@
-//! What `usar draw` and `usar render` have in common: how large a picture is, and what kind of file.
+//! Shared arguments of `usar draw` and `usar render`: the size of a picture, and the kind of file.
 
 use std::path::Path;
 
@@ -40,7 +40,7 @@ fn width(text: &str) -> Result<Width, String> {
 }
 
 impl Looks {
-    /// With this width where none is asked for.
+    /// The look of a picture; `usual` is the width if none is given.
     pub(crate) fn look(&self, usual: Width) -> Look {
         Look {
             width: self.width.unwrap_or(usual),
@@ -51,7 +51,7 @@ impl Looks {
     }
 }
 
-/// What a picture is written as, by the ending of its file.
+/// The kind of a picture file, by the extension of its name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Kind {
     Svg,
@@ -59,7 +59,7 @@ pub(crate) enum Kind {
 }
 
 impl Kind {
-    /// The kind that a file's name asks for.
+    /// The kind for a file's name.
     pub(crate) fn of(path: &Path) -> Result<Self, Failure> {
         match path.extension().and_then(|ending| ending.to_str()) {
             Some("svg") => Ok(Self::Svg),

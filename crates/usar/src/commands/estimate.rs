@@ -1,4 +1,4 @@
-//! `usar estimate`: what a sweep would take, from a short calibration run.
+//! `usar estimate`: the cost of a sweep, from a short calibration run.
 
 mod measured;
 

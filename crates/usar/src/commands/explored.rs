@@ -1,4 +1,4 @@
-//! What `sensitivity` and `search` have in common: a scenario, parameters that vary, and policies.
+//! Shared arguments of `sensitivity` and `search`: a scenario, parameters that vary, and policies.
 
 use std::path::PathBuf;
 
@@ -39,7 +39,7 @@ pub(crate) struct ExploredArguments {
 }
 
 impl ExploredArguments {
-    /// The experiment with these policies and trials at a point.
+    /// The experiment with these policies and this number of trials at a point.
     pub(super) fn experiment(
         &self,
         policies: Option<Vec<String>>,

@@ -1,4 +1,4 @@
-//! `usar export`: a trial for other programs: as an MCAP log, and as tables in CSV or Parquet.
+//! `usar export`: writes a trial for other programs, as an MCAP log and as tables in CSV or Parquet.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -84,7 +84,7 @@ impl Arguments {
         Ok(())
     }
 
-    /// How many frames of the recording there are from one exported state to the next.
+    /// Number of frames of the recording between two exported states.
     fn frames(&self, recording: &Recording) -> usize {
         let frame_s = recording.header.dt_s * recording.header.steps_per_frame as f64;
         self.every.map_or(1, |every| (every / frame_s).round().max(1.0) as usize)

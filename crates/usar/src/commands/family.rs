@@ -1,4 +1,4 @@
-//! Which comparisons a command makes together.
+//! The family of comparisons that a command makes.
 
 use clap::Args;
 use experiments::Failure;

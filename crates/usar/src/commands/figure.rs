@@ -1,4 +1,4 @@
-//! `usar figure`: one figure of a sweep for the column of a paper.
+//! `usar figure`: draws one figure of a sweep for the column of a paper.
 
 use std::io::Write;
 use std::path::PathBuf;
@@ -78,7 +78,7 @@ impl Kind {
     }
 }
 
-/// The figure that is made of comparisons.
+/// Name of the figure that is made from comparisons.
 const DIFFERENCES: &str = "differences";
 
 impl Arguments {
@@ -119,7 +119,7 @@ impl Arguments {
         Ok(Wanted { asked, title: None, case: Some(self.case - 1), shown: Vec::new() })
     }
 
-    /// The metric whose panel is drawn alone, by its full name.
+    /// The full name of the metric whose panel is drawn alone; `None` for all panels.
     fn panel(&self, folder: &Folder) -> Result<Option<String>, Failure> {
         match &self.metric[..] {
             _ if self.name == DIFFERENCES => Ok(None),

@@ -1,4 +1,4 @@
-//! `usar fmt`: the layout of scenario and sweep files, and their format.
+//! `usar fmt`: sets the layout of scenario and sweep files, and upgrades their format.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -33,7 +33,7 @@ pub(crate) struct Arguments {
 
 impl Arguments {
     pub(crate) fn execute(&self, out: &mut dyn Write) -> Result<(), Failure> {
-        // All are read before one is written.
+        // All files are read before the first one is written.
         let texts = self.files.iter().map(|file| self.laid_out(file)).collect::<Result<Vec<_>, _>>()?;
         let mut others = 0;
         for (file, text) in self.files.iter().zip(texts) {
@@ -55,7 +55,7 @@ impl Arguments {
         Ok(())
     }
 
-    /// The text of a file as it should be; nothing if it is so.
+    /// The text of a file in the right layout; `None` if the file already has it.
     fn laid_out(&self, file: &Path) -> Result<Option<String>, Failure> {
         let text = read_text(file).map_err(Failure::input)?;
         let new = if self.upgrade {

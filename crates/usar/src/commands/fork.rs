@@ -1,4 +1,4 @@
-//! `usar fork`: a trial in which one decision is made otherwise.
+//! `usar fork`: plays a trial in which one decision is changed.
 
 use std::io::Write;
 
@@ -57,9 +57,9 @@ pub(crate) struct Arguments {
 #[derive(Serialize)]
 struct Side {
     assignment: Assignment,
-    /// What came of the decision up to the end of its round.
+    /// The outcome of the decision up to the end of its round.
     round: Outcome,
-    /// What came of it up to the end of the trial.
+    /// The outcome of the decision up to the end of the trial.
     rest: Outcome,
     rescuees: u32,
     state_hash: String,
@@ -123,7 +123,7 @@ impl Arguments {
         print(out, &asked, &sides)
     }
 
-    /// The other decision.
+    /// The changed decision.
     fn decision(
         &self,
         trial: &Simulation,
@@ -156,7 +156,7 @@ impl Arguments {
     }
 }
 
-/// A failure of a branch; `place` says which argument is to blame where the input is.
+/// A failure of a branch; `place` names the responsible argument if the input is wrong.
 pub(super) fn failure(error: BranchError, place: &str) -> Failure {
     match error {
         BranchError::Halted => Failure::Interrupted("stopped".to_owned()),
@@ -184,7 +184,7 @@ fn side(start: &Checkpoint, decision: Decision, onwards: &Driver) -> Result<Side
     })
 }
 
-/// Groups as `task=0,2,5; task=1,3,4`.
+/// Parses groups in the form `task=0,2,5; task=1,3,4`.
 fn parse_groups(text: &str, question: &Question) -> Result<Assignment, String> {
     let mut groups: Vec<Option<Vec<u32>>> = vec![None; question.tasks.len()];
     for part in text.split(';').map(str::trim).filter(|part| !part.is_empty()) {

@@ -1,4 +1,4 @@
-//! `usar group`: groups a team from a table, or answers a question in JSON, by any policy.
+//! `usar group`: groups a team from a table, or answers a question in JSON, with any policy.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -176,19 +176,19 @@ fn print_text(
     Ok(())
 }
 
-/// A team as a table has it.
+/// A team, as read from a table.
 struct Team {
-    /// Names of the roles, in the order in which the table names them first.
+    /// Names of the roles, in the order of their first rows in the table.
     roles: Vec<String>,
     /// Names of the needs.
     needs: Vec<String>,
     members: Vec<Member>,
 }
 
-/// Columns that are no needs.
+/// Columns other than needs.
 const OTHER_COLUMNS: [&str; 6] = ["id", "role", "x", "y", "energy_level", "hp_level"];
 
-/// Reads the table; says all that is wrong with it at once.
+/// Reads the table; reports all its problems at once.
 fn read_team(path: &Path) -> Result<Team, Failure> {
     let shown = path.display();
     let table = InputTable::read(path)?;

@@ -1,4 +1,4 @@
-//! `usar list`: which scenarios, policies, roles and metrics there are.
+//! `usar list`: lists the available scenarios, policies, roles or metrics.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -53,7 +53,7 @@ impl Arguments {
     }
 }
 
-/// The scenarios of a folder by name; a file that is none is left out.
+/// Lists the scenarios of a folder by name; files that are not scenarios are left out.
 fn scenarios(out: &mut dyn Write, folder: &Path) -> Result<(), Failure> {
     let entries = std::fs::read_dir(folder)
         .map_err(|error| Failure::input(format!("{}: cannot be read: {error}", folder.display())))?;

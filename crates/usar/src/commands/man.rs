@@ -1,4 +1,5 @@
-//! `usar man`: manual pages, and the reference of commands of the book, from the description of the command line.
+//! `usar man`: manual pages, and the book's reference of commands, made from the description of the command
+//! line.
 
 mod markdown;
 
@@ -51,7 +52,7 @@ impl Arguments {
     }
 }
 
-/// The manual page of a command. Its examples and all after them stand line by line, as in `--help`.
+/// The manual page of a command. From the examples on, it keeps the lines of `--help`.
 fn page(command: Command) -> Result<Vec<u8>, Failure> {
     let mut rendered = Vec::new();
     Man::new(command).render(&mut rendered)?;

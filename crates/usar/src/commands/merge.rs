@@ -1,4 +1,4 @@
-//! `usar merge`: the shards of a sweep as one folder, the bytes of a single run.
+//! `usar merge`: merges the shards of a sweep into one folder with the bytes of a single run.
 
 use std::io::Write;
 use std::path::PathBuf;
@@ -43,7 +43,7 @@ impl Arguments {
     }
 }
 
-/// The folders, and instead of one that is no sweep's the sweeps in it.
+/// The given folders. A folder that does not hold a sweep is replaced by the sweeps inside it.
 fn shards_in(folders: &[PathBuf]) -> Vec<PathBuf> {
     let shards = |folder: &PathBuf| {
         let inside = if is_sweeps(folder) { Vec::new() } else { sweeps_in(folder) };

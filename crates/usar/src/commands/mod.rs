@@ -1,4 +1,4 @@
-//! One file per verb of the command line.
+//! One file for each command.
 
 mod asked;
 pub(crate) mod calibrate;
@@ -63,7 +63,7 @@ pub(crate) use shown::{ShownArguments, sentences};
 /// Version of the JSON that the commands print.
 pub(crate) const SCHEMA_VERSION: u32 = 1;
 
-/// Loads a scenario and its text, or says in full what is wrong with it.
+/// Loads a scenario and its text. The error has all problems; oddities of a valid scenario go to stderr.
 pub(crate) fn load(path: &Path) -> Result<(Scenario, String), Failure> {
     let (scenario, text) = Scenario::load(path).map_err(Failure::input)?;
     for odd in scenario.oddities(&text) {
@@ -73,13 +73,13 @@ pub(crate) fn load(path: &Path) -> Result<(Scenario, String), Failure> {
     Ok((scenario, text))
 }
 
-/// A time from one thing to the next, from the command line.
+/// Parses a time interval from the command line.
 pub(crate) fn seconds(text: &str) -> Result<f64, String> {
     let seconds = text.parse().ok().filter(|seconds| (0.001..=100_000.0).contains(seconds));
     seconds.ok_or_else(|| format!("must be a number from 0.001 to 100000, found {text:?}"))
 }
 
-/// Numbers separated by commas.
+/// Parses numbers separated by commas.
 pub(crate) fn numbers(flag: &str, text: &str) -> Result<Vec<f64>, Failure> {
     let number = |(i, part): (usize, &str)| {
         part.trim().parse::<f64>().map_err(|_| {

@@ -1,4 +1,4 @@
-//! `usar new`: a commented scenario to begin with.
+//! `usar new`: writes a commented scenario to start from.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};

@@ -1,4 +1,4 @@
-//! `usar oracle`: every assignment of a round, played.
+//! `usar oracle`: plays every assignment of a round.
 
 mod print;
 
@@ -24,7 +24,7 @@ use super::asked::{AskedTrial, TrialArguments};
 use super::fork::failure;
 use crate::running::{STOP, default_jobs, progress_bar, stop_on_signals};
 
-/// Assignments that are played before their outcomes are written down.
+/// Number of assignments that are played before their outcomes are written to disk.
 const CHUNK: usize = 16;
 
 /// How good was this decision? Every assignment of a round, played
@@ -96,9 +96,9 @@ enum HorizonName {
     Trial,
 }
 
-/// What all assignments came to, as one policy goes on.
+/// The outcomes of all assignments, with one policy for the rest of the trial.
 struct Answer {
-    /// The policy that decided the rest of the trial; none for the end of the round.
+    /// The policy that decided the rest of the trial; `None` for outcomes at the end of the round.
     then: Option<PolicySpec>,
     survey: Survey,
 }
@@ -109,7 +109,7 @@ struct Asked<'a> {
     question: Question,
     time_s: f64,
     objective: Objective,
-    /// What each policy chooses.
+    /// The choice of each policy.
     choices: Vec<(String, Assignment)>,
 }
 
@@ -148,7 +148,7 @@ impl Arguments {
         }
     }
 
-    /// What the policies choose that are judged.
+    /// The choices of the policies that are judged.
     fn choices(&self, trial: &AskedTrial, question: &Question) -> Result<Vec<(String, Assignment)>, Failure> {
         let parse = |text: &str| {
             PolicySpec::parse(text).map_err(|error| Failure::input(format!("--policies: {error}")))
@@ -169,7 +169,7 @@ impl Arguments {
         specs.iter().filter(is_policy).map(choice).collect()
     }
 
-    /// The policies that decide the rest of the trial, one after the other.
+    /// The policies that decide the rest of the trial; the assignments are played once for each.
     fn onwards(&self, trial: &AskedTrial) -> Result<Vec<Option<PolicySpec>>, Failure> {
         match (self.horizon, &self.then) {
             (HorizonName::Round, None) => Ok(vec![None]),
@@ -209,7 +209,7 @@ impl Arguments {
     }
 }
 
-/// A failure, whose kind a survey needs not know.
+/// A failure in a form that `survey` accepts as an error.
 struct Trouble(Failure);
 
 impl From<BranchError> for Trouble {
@@ -218,7 +218,7 @@ impl From<BranchError> for Trouble {
     }
 }
 
-/// Assignments on their way.
+/// A batch of assignments that are being played.
 struct Batch<'a> {
     start: &'a Checkpoint,
     policy: Option<&'a dyn Policy>,
@@ -227,7 +227,7 @@ struct Batch<'a> {
 }
 
 impl Batch<'_> {
-    /// Plays those that the log has not got, in parallel, and writes them down as they come.
+    /// Plays the assignments that the log lacks, in parallel, and writes each outcome as it arrives.
     fn play(&self, assignments: &[Assignment], log: &mut OutcomeLog) -> Result<Vec<Outcome>, Failure> {
         let missing: Vec<&Assignment> =
             assignments.iter().filter(|assignment| log.get(self.then, assignment).is_none()).collect();
@@ -257,7 +257,7 @@ impl Batch<'_> {
     }
 }
 
-/// The key under which outcomes of a decision are kept.
+/// The key under which the outcomes of a decision are stored.
 pub(super) fn decision_key(trial: &AskedTrial, round: u32) -> DecisionKey {
     DecisionKey {
         scenario: trial.scenario.name.clone(),
@@ -268,7 +268,7 @@ pub(super) fn decision_key(trial: &AskedTrial, round: u32) -> DecisionKey {
     }
 }
 
-/// How many were played, in words.
+/// The number of played assignments, in words.
 fn coverage_in_words(survey: &Survey) -> String {
     let played = survey.evaluations.len();
     match survey.coverage {

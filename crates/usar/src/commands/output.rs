@@ -1,12 +1,12 @@
-//! Files that a command is asked to write: whole or not at all, and not over another file unless that is
-//! asked for.
+//! Output files of commands. They are written completely or not at all, and replace an existing file only
+//! on request.
 
 use std::path::{Path, PathBuf};
 
 use experiments::Failure;
 use experiments::files::NewFile;
 
-/// The folder and the name of a file to write; refused where something has the name already, unless it is a
+/// The folder and the name of a file to write. An existing path with this name is refused, unless it is a
 /// file and `force` is given.
 pub(crate) fn place<'p>(flag: &str, path: &'p Path, force: bool) -> Result<(PathBuf, &'p str), Failure> {
     let name = path.file_name().and_then(|name| name.to_str());
@@ -29,7 +29,7 @@ pub(crate) fn place<'p>(flag: &str, path: &'p Path, force: bool) -> Result<(Path
     Ok((folder.to_owned(), name))
 }
 
-/// Refuses a folder to write to that has anything in it, unless `force` is given.
+/// Refuses to write to a non-empty folder, unless `force` is given.
 pub(crate) fn check_folder(flag: &str, path: &Path, force: bool) -> Result<(), Failure> {
     let is_empty = match std::fs::read_dir(path) {
         Ok(mut entries) => entries.next().is_none(),
@@ -43,7 +43,7 @@ pub(crate) fn check_folder(flag: &str, path: &Path, force: bool) -> Result<(), F
     Ok(())
 }
 
-/// Makes a folder, where it is not there yet.
+/// Creates a folder, if it does not exist.
 pub(crate) fn make_folder(path: &Path) -> Result<(), Failure> {
     std::fs::create_dir_all(path)
         .map_err(|error| Failure::storage(format!("cannot write to {}: {error}", path.display())))

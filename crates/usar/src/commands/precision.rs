@@ -1,9 +1,10 @@
-//! `--precision`: add paired trials until a difference is known well enough.
+//! `--precision`: adds paired trials until a difference is known with enough precision.
 //!
-//! The rule looks at the half width of the 95 % paired t interval, after [`FIRST_LOOK`] pairs or the sweep's trials, whichever is more, and
-//! then each time the number of pairs has grown by a quarter; it stops when the bound is reached in every case of the sweep. It looks at the
-//! width alone, never at the difference itself or its p, so stopping does not favour any finding; `docs/experiments.md` says what it does
-//! to the interval's coverage.
+//! The rule looks at the half width of the 95 % paired t interval. The first look is after [`FIRST_LOOK`]
+//! pairs or the sweep's trials, whichever is more. Each later look is after a quarter more pairs. The rule
+//! stops when every case of the sweep has reached the bound. It looks only at the width, never at the
+//! difference itself or its p, so that stopping does not favour any finding. `docs/experiments.md` gives
+//! its effect on the interval's coverage.
 
 use experiments::Failure;
 use experiments::comparison::{Pairs, short};
@@ -12,7 +13,7 @@ use experiments::stats::paired::t_half_width;
 use experiments::stats::stopping::{FIRST_LOOK, next_look};
 use experiments::sweep::folder::Folder;
 
-/// The rule.
+/// The stopping rule.
 pub(super) struct Precision {
     metric: usize,
     policies: [usize; 2],
@@ -41,19 +42,19 @@ impl Precision {
         Ok(Self { metric, policies, labels, bound })
     }
 
-    /// Pairs at the first look.
+    /// Number of pairs at the first look.
     pub(super) fn first_look(trials: u32, most: u32) -> u32 {
         trials.max(FIRST_LOOK).min(most.max(trials))
     }
 
-    /// Pairs at the next look, if there is to be one.
+    /// Number of pairs at the next look; `None` if no further look is needed or allowed.
     pub(super) fn next_look(&self, folder: &Folder, most: u32) -> Option<u32> {
         let trials = folder.experiment().trials;
         let is_reached = self.state(folder).is_some_and(|state| state.half_width <= self.bound);
         (!is_reached && trials < most).then(|| next_look(trials).min(most))
     }
 
-    /// Where it stands; `None` where a case has too few pairs, or pairs without any spread, to say anything.
+    /// The state of the rule; `None` if a case has too few pairs, or pairs without any spread.
     fn state(&self, folder: &Folder) -> Option<State> {
         let mut state = State { half_width: 0.0, pairs: usize::MAX };
         for case in 0..folder.experiment().cases.len() {
@@ -70,7 +71,7 @@ impl Precision {
         Some(state)
     }
 
-    /// What came of it, in words.
+    /// The result of the rule, in words.
     pub(super) fn verdict(&self, folder: &Folder) -> String {
         let (metric, [a, b], bound) =
             (&folder.experiment().metrics[self.metric].name, &self.labels, short(self.bound));
@@ -91,10 +92,10 @@ impl Precision {
     }
 }
 
-/// Where the rule stands.
+/// The state of the rule.
 struct State {
-    /// The greatest half width over all cases.
+    /// The greatest half width among all cases.
     half_width: f64,
-    /// The least number of pairs over all cases.
+    /// The least number of pairs among all cases.
     pairs: usize,
 }

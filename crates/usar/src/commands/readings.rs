@@ -1,4 +1,4 @@
-//! `usar readings`: which reading of the paper's ambiguous places changes what.
+//! `usar readings`: shows what each reading of the paper's ambiguous places changes.
 
 use std::io::Write;
 use std::path::PathBuf;

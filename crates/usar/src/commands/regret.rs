@@ -1,4 +1,4 @@
-//! `usar regret`: how far each policy's decisions stay behind the best ones.
+//! `usar regret`: the distance of each policy's decisions to the best ones.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -94,7 +94,7 @@ impl Arguments {
         names.iter().map(parse).collect()
     }
 
-    /// Plays what is missing.
+    /// Plays the missing trials of the study.
     fn play(&self) -> Result<StudyFolder, Failure> {
         let overrides = Overrides { trials: self.trials, ..Overrides::default() };
         let experiment = Experiment::load(&self.file, &overrides)?;
@@ -120,7 +120,7 @@ impl Arguments {
     }
 }
 
-/// The tables of a study, into its folder.
+/// Writes the tables of a study into its folder.
 fn write_tables(path: &Path, analyses: &[Analysis]) -> Result<(), Failure> {
     let mut writer = csv::Writer::from_writer(Vec::new());
     let trouble = |error: &dyn std::fmt::Display| Failure::storage(format!("{}: {error}", path.display()));

@@ -1,4 +1,4 @@
-//! `usar render`: a trial as pictures, without a display.
+//! `usar render`: draws a trial as pictures, without a display.
 
 mod film;
 mod video;

@@ -1,4 +1,4 @@
-//! `usar report`: the report of a sweep as one HTML file, and its figures.
+//! `usar report`: writes the report of a sweep as one HTML file, with its figures.
 
 use std::io::Write;
 use std::path::PathBuf;
@@ -67,7 +67,7 @@ impl Arguments {
         Ok(writeln!(out, "{}", path.display())?)
     }
 
-    /// The trials that are drawn, with their replays where these are asked for.
+    /// The trials to draw, with their replays if requested.
     fn shown(&self, folder: &Folder) -> Result<Vec<ShownTrial>, Failure> {
         let experiment = folder.experiment();
         let first = experiment.seed(1);

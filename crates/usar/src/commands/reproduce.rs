@@ -1,4 +1,4 @@
-//! `usar reproduce`: the paper's experiment, and what it says of the paper's claims.
+//! `usar reproduce`: runs the paper's experiment and judges the paper's claims.
 
 use std::io::Write;
 use std::path::PathBuf;
@@ -21,7 +21,7 @@ use study_yang2021::scenarios::{PAPERS_TRIALS, POLICIES, Standing, World, worlds
 use super::{ShownArguments, print_table};
 use crate::running::{STOP, default_jobs, run_missing, stop_on_signals, tell};
 
-/// Longest time of one trial.
+/// Time limit of one trial.
 const TRIAL_LIMIT: Duration = Duration::from_mins(10);
 
 /// Put the paper's claims to the test: four policies, two scenarios, paired trials
@@ -69,7 +69,7 @@ impl Arguments {
                 self.out.display()
             )));
         }
-        // All are opened first, so that a folder that cannot be used is known before the first trial.
+        // All folders are opened first, so that an unusable folder is found before the first trial.
         let opened = worlds(self.trials)?.into_iter().map(|world| self.open(world));
         let mut folders = opened.collect::<Result<Vec<_>, Failure>>()?;
         let (mut judged, mut predicted) = (Vec::new(), Vec::new());
@@ -111,7 +111,7 @@ impl Arguments {
         Ok((standing, Folder::open(&place, Arc::new(experiment), opening, note)?))
     }
 
-    /// Runs the trials that are not there yet.
+    /// Runs the missing trials.
     fn run(&self, folder: &mut Folder) -> Result<(), Failure> {
         if !self.quiet {
             let name = &folder.experiment().name;

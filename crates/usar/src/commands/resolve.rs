@@ -1,4 +1,4 @@
-//! `usar resolve`: every value that a scenario ends up with, and where it comes from.
+//! `usar resolve`: prints every resolved value of a scenario, and its origin.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -27,7 +27,7 @@ pub(crate) struct Arguments {
     set: Vec<String>,
 }
 
-/// A text in which values are written.
+/// A text that contains values.
 struct Source {
     path: PathBuf,
     text: String,
@@ -40,19 +40,19 @@ impl Source {
         Ok(Self { path: path.to_owned(), fields: Fields::of(&text), text })
     }
 
-    /// The base that it names.
+    /// The path of the base that the text names.
     fn base(&self) -> Option<PathBuf> {
         let name = self.text[self.fields.value("base")?].trim_matches('"');
         Some(self.path.parent().unwrap_or(Path::new("")).join(name))
     }
 
-    /// Whether a list of the text takes the place of all that a base has there.
+    /// Whether a list in this text replaces the base's list that contains this path.
     fn has_list_around(&self, path: &str) -> bool {
         let first = path.split(['.', '[']).next().unwrap_or_default();
         self.fields.value(first).is_some_and(|place| self.text[place].starts_with('['))
     }
 
-    /// Where a value is written, if it is written here, with the name that stands there for it.
+    /// The place of a value in this text, if it is written here, with the name that stands for it there.
     fn origin(&self, path: &str, named: &str) -> Option<String> {
         let place = format!("{}:{}", self.path.display(), self.line(path, named)?);
         let value = [path, named].into_iter().find_map(|path| self.fields.value(path));
@@ -64,13 +64,13 @@ impl Source {
         })
     }
 
-    /// The line of a value, if it is written here; `named` is its path with the names of entries.
+    /// The line of a value, if it is written here; `named` is its path with names instead of indices.
     fn line(&self, path: &str, named: &str) -> Option<usize> {
         let written = [path, named].into_iter().find(|path| self.fields.value(path).is_some());
         if let Some(path) = written {
             return self.fields.line(path);
         }
-        // `((0, 0), (10, 0))` is a wall without the names of its fields.
+        // `((0, 0), (10, 0))` is a wall without field names.
         let entry = &path[..=path.find(']')?];
         let place = self.fields.value(entry)?;
         let is_short = self.text[place].starts_with("((");
@@ -90,7 +90,7 @@ impl Arguments {
         let width = fields.leaves().map(|(path, _)| path.len()).max().unwrap_or_default();
         let mut drawn = None;
         for (path, place) in fields.leaves() {
-            // A distribution is one value, however many numbers stand in it.
+            // A distribution is one value, even if it contains several numbers.
             let around =
                 scenario.draws.keys().find(|key| path.strip_prefix(key.as_str()).is_some_and(ends_a_segment));
             if around.is_some() && around == drawn {
@@ -119,12 +119,12 @@ fn ends_a_segment(rest: &str) -> bool {
     rest.is_empty() || rest.starts_with(['.', '['])
 }
 
-/// The path that a setting is of, with numbers for names.
+/// The path of a setting, with indices instead of names.
 fn canonical(fields: &Fields, setting: &str) -> Option<String> {
     fields.canonical(setting.split('=').next()?.trim())
 }
 
-/// A path with the name of the table's entry in the place of its number: `roles.carrier.hp` for `roles[0].hp`.
+/// A path with the name of the table's entry instead of its index: `roles.carrier.hp` for `roles[0].hp`.
 fn named(fields: &Fields, text: &str, path: &str) -> String {
     let name = || {
         let end = path.find(']')? + 1;

@@ -1,4 +1,4 @@
-//! `usar run`: one trial, with a per-round account.
+//! `usar run`: runs one trial, with an account for each round.
 
 mod event_lines;
 mod live;
@@ -142,7 +142,7 @@ impl Arguments {
         story.iter().try_for_each(|line| Ok(writeln!(out, "{line}")?))
     }
 
-    /// Runs the trial, with whatever listens to it; returns its record, and its story where it has one.
+    /// Runs the trial with all its listeners; returns its record, and its story if it has one.
     fn run(
         &self,
         simulation: Simulation,
@@ -172,7 +172,7 @@ impl Arguments {
     }
 }
 
-/// Runs a trial to its end. `watch` is called after each step, and may break it off.
+/// Runs a trial to its end. `watch` is called after each step and may interrupt the trial.
 fn run(
     mut simulation: Simulation,
     decider: &impl Decider,

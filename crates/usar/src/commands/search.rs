@@ -1,4 +1,4 @@
-//! `usar search`: the scenario in which a policy fails the most.
+//! `usar search`: searches for the scenario in which a policy performs worst.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -20,7 +20,7 @@ use super::SCHEMA_VERSION;
 use super::explored::ExploredArguments;
 use crate::running::{STOP, progress_bar, run_missing, stop_on_signals, tell};
 
-/// The folder of the trials that confirm what was found.
+/// Folder of the trials that confirm the found scenario.
 const CONFIRMATION: &str = "confirmation";
 
 /// Where does a policy fail the most? Searches the parameters of a scenario, and confirms on fresh seeds
@@ -175,7 +175,7 @@ impl Arguments {
         };
         let experiment = Arc::new(Experiment::load(&folder.join(FOUND), &overrides)?);
         let path = folder.join(CONFIRMATION);
-        // Trials of another find are of no use.
+        // Existing trials of another found scenario are useless.
         let is_other = path.exists()
             && Folder::read(&path).map_or(true, |there| {
                 there.experiment().base.resolved() != experiment.base.resolved()
@@ -222,7 +222,7 @@ impl Arguments {
 }
 
 impl Arguments {
-    /// Whether fresh seeds say the same, in a sentence.
+    /// Whether fresh seeds confirm the result, in a sentence.
     fn verdict(&self, is_lowest: bool, comparison: &Comparison) -> String {
         let Comparison { a, b, difference, interval, .. } = comparison;
         let is_there = interval.is_some_and(|[low, high]| if is_lowest { high < 0.0 } else { low > 0.0 });
@@ -236,7 +236,7 @@ impl Arguments {
     }
 }
 
-/// What a search found.
+/// The result of a search.
 struct Found<'a> {
     hunt: &'a Hunt,
     trail: &'a Trail,
@@ -287,7 +287,8 @@ impl Found<'_> {
     }
 }
 
-/// The policy in the metric, or its paired difference to the other.
+/// The outcome that is searched: the policy's mean of the metric, or its paired difference to the other
+/// policy.
 fn outcome(experiment: &Experiment, metric: usize) -> Outcome {
     let label = |policy: usize| experiment.policies[policy].label.clone();
     let less = (experiment.policies.len() > 1).then_some(1);
@@ -295,7 +296,7 @@ fn outcome(experiment: &Experiment, metric: usize) -> Outcome {
     Outcome { metric, policy: 0, less, who, what: experiment.metrics[metric].name.clone() }
 }
 
-/// What one policy does, in a sentence.
+/// The result of one policy, in a sentence.
 fn in_words(outcome: &Outcome, values: &[f64]) -> String {
     let range = interval(values, CONFIDENCE).map_or(String::new(), |[low, high]| {
         format!(" (95 % interval {} to {}, n = {})", short(low), short(high), values.len())

@@ -1,4 +1,4 @@
-//! `usar sensitivity`: which parameters of a scenario matter, for outcomes and for differences.
+//! `usar sensitivity`: finds which parameters of a scenario matter, for outcomes and for differences.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -126,7 +126,7 @@ impl Arguments {
         let wishes =
             Wishes { metrics: self.metric.clone(), baseline: self.baseline.clone(), ..Wishes::default() };
         let mut asked = Asked::of(&experiment, &wishes)?;
-        // The file's baseline may be a policy that is not run here.
+        // The sweep file's baseline may be a policy that does not run here.
         let is_run = |label: &String| experiment.policies.iter().any(|policy| policy.label == *label);
         asked.baseline = asked.baseline.filter(|label| self.baseline.is_some() || is_run(label));
         if !asked.is_declared {

@@ -1,4 +1,4 @@
-//! How a command writes its tables.
+//! The output formats of a command's tables.
 
 use std::io::Write;
 
@@ -26,7 +26,7 @@ enum FormatName {
 }
 
 impl ShownArguments {
-    /// How tables are written.
+    /// The format of tables.
     pub(crate) fn format(self) -> Format {
         match self.format {
             FormatName::Table => Format::Table,
@@ -37,13 +37,14 @@ impl ShownArguments {
         }
     }
 
-    /// Whether JSON is asked for: the same as `--json`, where a command has it.
+    /// Whether JSON is selected. For commands that have `--json`, both mean the same.
     pub(crate) fn is_json(self) -> bool {
         self.format() == Format::Json
     }
 }
 
-/// Where sentences go: to stdout, unless that is for programs. A command that `has_json` writes its own.
+/// The destination of sentences: stdout, or stderr if stdout is for other programs. A command with
+/// `has_json` writes its own JSON.
 pub(crate) fn sentences(format: Format, has_json: bool) -> Box<dyn Write> {
     if format.is_for_programs() && !(has_json && format == Format::Json) {
         Box::new(Printable::new(std::io::stderr()))
@@ -52,7 +53,7 @@ pub(crate) fn sentences(format: Format, has_json: bool) -> Box<dyn Write> {
     }
 }
 
-/// Writes a table in the format that was asked for. Every table of the program comes through here.
+/// Writes a table in the selected format. All tables of the program are written here.
 pub(super) fn print_table(out: &mut dyn Write, table: &Table) -> Result<(), Failure> {
     let format = shown_as();
     let text = format.write(table)?;

@@ -1,20 +1,20 @@
-//! Slurm's commands: submitting, and what it says of jobs.
+//! Slurm's commands: submitting jobs, and asking for their states.
 
 use std::collections::BTreeMap;
 use std::process::Command;
 
 use experiments::Failure;
 
-/// The size of arrays that Slurm has where a site says nothing else.
+/// Slurm's default limit of the size of arrays.
 const MAX_ARRAY_SIZE: usize = 1_001;
 
-/// What a command of Slurm printed; nothing where there is no such command, or it failed.
+/// The output of a Slurm command; `None` if the command does not exist or failed.
 fn said(command: &str, arguments: &[&str]) -> Option<String> {
     let output = Command::new(command).args(arguments).output().ok()?;
     output.status.success().then(|| String::from_utf8_lossy(&output.stdout).into_owned())
 }
 
-/// The most tasks of an array: their numbers are below the site's `MaxArraySize`.
+/// Largest number of tasks in an array. Their numbers must be below the site's `MaxArraySize`.
 pub(super) fn most_tasks() -> usize {
     let config = said("scontrol", &["show", "config"]).unwrap_or_default();
     let line = config.lines().find_map(|line| line.trim().strip_prefix("MaxArraySize"));
@@ -25,7 +25,7 @@ pub(super) fn most_tasks() -> usize {
 /// Submits a script; returns the number of the job.
 ///
 /// # Errors
-/// There is no `sbatch`, or it refuses.
+/// There is no `sbatch`, or it refuses the script.
 pub(super) fn submit(arguments: &[&str]) -> Result<String, Failure> {
     let output = Command::new("sbatch").arg("--parsable").args(arguments).output().map_err(|error| {
         Failure::run(format!("sbatch: {error}; --dry-run prints the scripts without submitting them"))
@@ -34,15 +34,15 @@ pub(super) fn submit(arguments: &[&str]) -> Result<String, Failure> {
         return Err(Failure::run(format!("sbatch: {}", String::from_utf8_lossy(&output.stderr).trim())));
     }
     let text = String::from_utf8_lossy(&output.stdout).trim().to_owned();
-    // `123;cluster` where there are several clusters.
+    // The output is `123;cluster` at sites with several clusters.
     let job = text.split(';').next().unwrap_or_default().to_owned();
     if job.is_empty() { Err(Failure::run("sbatch: said no number of a job")) } else { Ok(job) }
 }
 
-/// What Slurm says of a task: its state in one word.
+/// States of tasks, each as Slurm's word for it, by number.
 pub(super) type Tasks = BTreeMap<u32, String>;
 
-/// The tasks of arrays of this name in the queue, by number; `None` where there is no queue to ask.
+/// The queued tasks of arrays with this name, by number; `None` if there is no queue.
 pub(super) fn queued(array: &str, name: &str) -> Option<Tasks> {
     let all = ["--noheader", "--array", "--format=%F|%K|%T|%j"];
     let text = said("squeue", &all)?;
@@ -50,7 +50,7 @@ pub(super) fn queued(array: &str, name: &str) -> Option<Tasks> {
     for line in text.lines() {
         let cells: Vec<&str> = line.split('|').map(str::trim).collect();
         let [job, task, state, of] = cells[..] else { continue };
-        // What was submitted again has another number, and the same name.
+        // A resubmitted array has another number but the same name.
         if (job == array || of == name)
             && let Ok(task) = task.parse()
         {
@@ -60,7 +60,7 @@ pub(super) fn queued(array: &str, name: &str) -> Option<Tasks> {
     Some(tasks)
 }
 
-/// How the tasks of an array ended, by number, where accounts are kept.
+/// The final states of an array's tasks, by number; empty if Slurm keeps no accounts.
 pub(super) fn ended(array: &str) -> Tasks {
     let arguments = ["--noheader", "--parsable2", "--allocations", "--format=JobID,State", "--jobs", array];
     let text = said("sacct", &arguments).unwrap_or_default();

@@ -16,12 +16,12 @@ use usar_sim::snapshot::{Identity, START_BYTES, check_start};
 pub(super) struct Snapshot {
     path: PathBuf,
     bytes: Vec<u8>,
-    /// What it is of.
+    /// The trial to which the snapshot belongs.
     pub(super) identity: Identity,
 }
 
 impl Snapshot {
-    /// Reads a file and checks that it is sound.
+    /// Reads a file and checks its integrity.
     pub(super) fn read(path: &Path) -> Result<Self, Failure> {
         let refused =
             |reason: &dyn std::fmt::Display| Failure::input(format!("{}: {reason}", path.display()));
@@ -40,7 +40,7 @@ impl Snapshot {
     }
 }
 
-/// Runs a trial up to a time, in seconds, and writes a snapshot of it: whole or not at all.
+/// Runs a trial up to a time, in seconds, and writes a snapshot of it, completely or not at all.
 pub(super) fn save(
     simulation: &mut Simulation,
     spec: &PolicySpec,

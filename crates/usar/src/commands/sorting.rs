@@ -1,4 +1,4 @@
-//! `usar sorting`: what the policies' groups of a sweep amount to.
+//! `usar sorting`: compares the groups of a sweep's policies with sorting.
 
 use std::io::Write;
 use std::path::PathBuf;
@@ -70,7 +70,7 @@ impl Arguments {
     }
 }
 
-/// What is to be said of trials that failed or are missing, if there are any.
+/// A sentence about failed and missing trials; `None` if there are none.
 pub(super) fn gaps(folder: &Folder, case: usize) -> Option<String> {
     let keys = folder.experiment().keys(None).filter(|key| key.case == case);
     let (mut failed, mut missing) = (0, 0);

@@ -1,4 +1,4 @@
-//! `usar status`: how far a sweep is that was dealt into shards, and how to go on with what is missing.
+//! `usar status`: shows the progress of a sharded sweep, and how to resume its missing shards.
 
 mod shards;
 
@@ -15,7 +15,7 @@ use super::submit::{LOGS, Submission, line};
 use super::{SCHEMA_VERSION, slurm};
 use shards::{OneShard, Said, State, ranges, seconds_each};
 
-/// Shards that are listed one by one.
+/// Largest number of shards that are listed one by one.
 const MOST_LISTED: usize = 20;
 
 /// Progress of a sharded sweep, and the command that resubmits what is missing
@@ -43,9 +43,9 @@ struct Output {
     shards: Vec<OneShard>,
     finished: usize,
     trials: usize,
-    /// Time that is left, if as many shards run at a time as now.
+    /// Estimated time left, if the number of running shards stays the same.
     seconds_left: Option<f64>,
-    /// The line that submits what is missing.
+    /// The command that submits the missing shards.
     submit: Option<String>,
 }
 
@@ -62,7 +62,7 @@ impl Arguments {
     }
 }
 
-/// The shards of a submission.
+/// The state of the shards of a submission.
 fn submitted(folder: &Path, submission: &Submission) -> Result<Output, Failure> {
     let Submission { array, plan, name, .. } = submission;
     let array = array.as_deref().unwrap_or_default();
@@ -80,7 +80,7 @@ fn submitted(folder: &Path, submission: &Submission) -> Result<Output, Failure> 
     Ok(output)
 }
 
-/// Shards that were run without `usar submit`, or a single sweep.
+/// The state of shards that were run without `usar submit`, or of a single sweep.
 fn by_hand(folder: &Path) -> Result<Output, Failure> {
     let folders = if is_sweeps(folder) { vec![folder.to_owned()] } else { sweeps_in(folder) };
     if folders.is_empty() {
@@ -109,7 +109,7 @@ impl Output {
         Self { schema_version: SCHEMA_VERSION, shards, finished, trials, seconds_left, submit: None }
     }
 
-    /// The shards that nobody will go on with.
+    /// The shards that no process or queued task will finish.
     fn missing(&self) -> impl Iterator<Item = &OneShard> {
         self.shards.iter().filter(|shard| matches!(shard.state, State::Failed | State::Lost))
     }

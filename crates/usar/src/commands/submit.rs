@@ -1,4 +1,4 @@
-//! `usar submit`: a sweep on a cluster, as an array of jobs of Slurm.
+//! `usar submit`: runs a sweep on a cluster, as an array of Slurm jobs.
 
 mod plan;
 mod scripts;
@@ -73,7 +73,7 @@ pub(crate) struct Arguments {
     out: Option<PathBuf>,
 }
 
-/// A text that can stand in a directive of a job script.
+/// Parses a text that is allowed in a directive of a job script.
 fn word(text: &str) -> Result<String, String> {
     let is_plain = |c: char| c.is_ascii_alphanumeric() || "-_.:,".contains(c);
     let is_word = !text.is_empty() && text.chars().all(is_plain);
@@ -157,7 +157,7 @@ impl Arguments {
     }
 }
 
-/// The folder of the shards.
+/// The path of the folder of the shards.
 fn shards_of(whole: &Path) -> PathBuf {
     let name = whole.file_name().unwrap_or_default().to_string_lossy();
     whole.with_file_name(format!("{name}-shards"))
@@ -182,8 +182,8 @@ fn print(out: &mut dyn Write, scripts: &Scripts, folder: &Path) -> Result<(), Fa
     )?)
 }
 
-/// The line that submits an array, or some of its tasks, and the merge after it, and after another array that
-/// is under way.
+/// The command that submits an array, or some of its tasks, and the merge job after it. The merge also
+/// waits for `other`, an array that is still running.
 pub(crate) fn line(folder: &Path, tasks: Option<&str>, other: Option<&str>) -> String {
     let script = |name: &str| quoted(&folder.join(name).display().to_string());
     let tasks = tasks.map_or(String::new(), |tasks| format!("--array={tasks} "));

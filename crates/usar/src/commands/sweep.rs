@@ -1,4 +1,5 @@
-//! `usar sweep`: paired trials of several policies, a table, and a folder of results that survives anything.
+//! `usar sweep`: paired trials of several policies, a table, and a folder of results that survives
+//! interruptions.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -20,7 +21,7 @@ use super::{ShownArguments, print_table};
 use crate::recordings::{Recorded, record_trials};
 use crate::running::{STOP, default_jobs, run_missing, stop_on_signals, tell};
 
-/// Tables of more cases than these are left to `usar compare` and `usar report`.
+/// With more cases, tables are left to `usar compare` and `usar report`.
 const MAX_TABLES: usize = 8;
 
 /// Compare policies over paired trials: the same initial levels for every policy
@@ -140,12 +141,12 @@ impl Arguments {
         if failed.is_empty() { Ok(()) } else { Err(Failure::run(failed.join("\n"))) }
     }
 
-    /// Trials at which --precision gives up.
+    /// Largest number of trials with --precision.
     fn most(&self, experiment: &Experiment) -> u32 {
         self.max_trials.min(experiment.most_trials())
     }
 
-    /// Runs what is missing.
+    /// Runs the missing trials.
     fn run(&self, folder: &mut Folder) -> Result<(), Failure> {
         let jobs = self.jobs.map_or_else(default_jobs, |jobs| jobs as usize);
         let limits = Limits { jobs, trial: Some(Duration::from_secs_f64(self.max_trial_s)) };
@@ -158,7 +159,7 @@ fn default_path(name: &str, shard: Option<Shard>) -> PathBuf {
     Path::new("results").join(format!("{name}{part}"))
 }
 
-/// The table of each case, and what it stands on.
+/// Prints the table of each case, and the number of trials behind it.
 pub(super) fn print(out: &mut dyn Write, folder: &Folder) -> Result<(), Failure> {
     let experiment = folder.experiment();
     for (i, case) in experiment.cases.iter().enumerate().take(MAX_TABLES) {

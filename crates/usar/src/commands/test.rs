@@ -1,4 +1,4 @@
-//! `usar test`: the expectations of sweep files, tested with as few trials as it takes.
+//! `usar test`: tests the expectations of sweep files with as few trials as needed.
 
 use std::collections::BTreeMap;
 use std::io::Write;
@@ -60,18 +60,18 @@ pub(crate) struct Arguments {
     json: bool,
 }
 
-/// An expectation of a case, and what came of it.
+/// An expectation of a case, with its judgement.
 #[derive(Serialize)]
 struct Tested {
     file: String,
     sweep: String,
-    /// Where on the axes the case is; empty without axes.
+    /// The case's values of the axes; empty without axes.
     case: String,
     expectation: String,
     confidence: f64,
     #[serde(flatten)]
     judgement: Judgement,
-    /// Why a trial has no numbers, where one has none: the expectation fails then.
+    /// Why a trial has no numbers, if there is such a trial; the expectation then fails.
     trouble: Option<String>,
 }
 
@@ -110,12 +110,12 @@ impl Arguments {
 /// The metrics of a trial.
 type Values = Vec<Option<f64>>;
 
-/// A sweep and what is expected of it.
+/// A sweep and its expectations.
 struct Suite {
     file: String,
     experiment: Arc<Experiment>,
     expected: Vec<Expected>,
-    /// Values of the trials so far, by case, policy and trial; or why there are none.
+    /// Values of the trials so far, by case, policy and trial; or the reason why a trial has none.
     values: BTreeMap<(usize, usize, u32), Result<Values, String>>,
 }
 
@@ -144,7 +144,7 @@ impl Suite {
         })
     }
 
-    /// Runs trials until every expectation is decided in every case, or none are left.
+    /// Runs trials until every expectation is decided in every case, or no trials are left.
     fn test(mut self, jobs: usize, quiet: bool) -> Result<Vec<Tested>, Failure> {
         let looks = looks(self.experiment.trials);
         let mut open: Vec<(usize, usize)> = (0..self.experiment.cases.len())
@@ -167,7 +167,7 @@ impl Suite {
         Ok(tested.into_values().collect())
     }
 
-    /// The policies that an expectation is about.
+    /// The policies to which an expectation refers.
     fn policies(&self, place: usize) -> Vec<usize> {
         match self.expected[place].what {
             Expectation::Share { policy, .. } => vec![policy],
@@ -190,7 +190,7 @@ impl Suite {
             key.trial <= trials && !self.values.contains_key(&place) && needed(key.case, key.policy)
         };
         let mut keys: Vec<TrialKey> = self.experiment.keys(None).filter(is_missing).collect();
-        // Seed by seed, so that policies that decide alike share their trials.
+        // Sorted by seed, so that policies that decide alike share their trials.
         keys.sort_by_key(|key| (key.case, key.trial, key.policy));
         let progress = progress_bar(keys.len(), "trials", jobs, quiet || keys.is_empty());
         let shared = Arc::clone(&self.experiment);
@@ -242,7 +242,7 @@ fn verdict_name(verdict: Verdict) -> &'static str {
     }
 }
 
-/// What was observed, in words.
+/// The observation, in words.
 fn observed(tested: &Tested) -> String {
     let Judgement { n, observed, interval, .. } = &tested.judgement;
     let value = observed.map_or("nothing".to_owned(), short);

@@ -1,4 +1,4 @@
-//! `usar tidy`: everything that a sweep measured as one long table.
+//! `usar tidy`: prints everything that a sweep measured as one long table.
 
 use std::io::Write;
 use std::path::PathBuf;

@@ -1,4 +1,5 @@
-//! Trials to look at: from recordings, from scenarios that are simulated first, and from the folders of sweeps.
+//! Trials to show: from recordings, from scenarios that are simulated first, and from the folders of
+//! sweeps.
 
 use std::path::{Path, PathBuf};
 
@@ -39,14 +40,14 @@ pub(crate) struct Asked {
     allow_expensive: bool,
 }
 
-/// A recording, and what it is called in messages.
+/// A recording, and its name in messages.
 pub(crate) struct Shown {
     pub(crate) name: String,
     pub(crate) bytes: Vec<u8>,
 }
 
 impl Shown {
-    /// Reads the recording; says so if it was cut short.
+    /// Reads the recording; notes if it is truncated.
     pub(crate) fn read(&self) -> Result<Recording, Failure> {
         let recording = Recording::read(&self.bytes)
             .map_err(|error| Failure::input(format!("{}: {error}", self.name)))?;
@@ -58,14 +59,14 @@ impl Shown {
 }
 
 impl Asked {
-    /// The trials that are asked for, file by file.
+    /// The selected trials, file by file.
     pub(crate) fn open(&self, files: &[PathBuf]) -> Result<Vec<Shown>, Failure> {
         let mut shown = Vec::new();
         files.iter().try_for_each(|file| self.open_file(file, &mut shown))?;
         Ok(shown)
     }
 
-    /// The one trial that is asked for.
+    /// The one selected trial.
     pub(crate) fn open_one(&self, file: &Path) -> Result<Recording, Failure> {
         if self.policy.as_deref().is_some_and(|policy| split_list(policy).len() != 1) {
             return Err(Failure::input("--policy: must be one policy here"));
@@ -116,7 +117,7 @@ impl Asked {
         Ok(())
     }
 
-    /// The trials of a sweep that are asked for.
+    /// The selected trials of a sweep.
     fn keys(&self, experiment: &Experiment) -> Result<Vec<TrialKey>, Failure> {
         let labels: Vec<&str> = experiment.policies.iter().map(|spec| spec.label.as_str()).collect();
         let asked = self.policy.as_deref().map_or_else(|| vec![labels[0]], split_list);

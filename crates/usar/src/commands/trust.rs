@@ -47,12 +47,12 @@ enum Base {
 #[derive(Serialize)]
 struct Output {
     schema_version: u32,
-    /// In nats; null where it is infinite.
+    /// RNE in nats; null if it is infinite.
     rne: Option<f64>,
     infinite: bool,
     trust: f64,
     base: &'static str,
-    /// In units of the base; null where it is infinite.
+    /// RNE in units of the base; null if it is infinite.
     rne_in_base: Option<f64>,
     from: NeedDistribution,
     to: NeedDistribution,

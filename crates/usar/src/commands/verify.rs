@@ -1,4 +1,4 @@
-//! `usar verify`: do the numbers of a finished sweep come out again?
+//! `usar verify`: checks whether the numbers of a finished sweep are reproduced.
 
 use std::io::Write;
 use std::path::PathBuf;
@@ -39,7 +39,7 @@ pub(crate) struct Arguments {
     quiet: bool,
 }
 
-/// A trial that takes longer is given up.
+/// Time limit of a trial.
 const LONGEST_TRIAL: Duration = Duration::from_hours(1);
 
 impl Arguments {
@@ -80,7 +80,7 @@ impl Arguments {
         }
     }
 
-    /// Runs trials again; returns where they differ from the folder's.
+    /// Runs trials again; returns those that differ from the folder's, with the difference.
     fn run_again(
         &self,
         folder: &mut Folder,
@@ -111,7 +111,8 @@ impl Arguments {
         (0..count).map(|i| all[i * all.len() / count].clone()).collect()
     }
 
-    /// Numbers are promised for the same program only.
+    /// Notes that another program made the results. Identical numbers are guaranteed only for the same
+    /// program.
     fn mention_other_version(&self, manifest: &Manifest) {
         let Program { version, source } = Program::this();
         if !self.quiet && (manifest.version != version || manifest.source != source) {

@@ -1,4 +1,4 @@
-//! `usar view`: a trial to watch, as one page that needs nothing but a browser.
+//! `usar view`: shows a trial as one page that needs only a browser.
 
 mod at;
 pub(crate) mod page;
@@ -67,7 +67,7 @@ fn default_path(file: &Path) -> PathBuf {
     Path::new(&format!("{}.html", stem.display())).to_owned()
 }
 
-/// Opens a page with the program that the desktop has for pages.
+/// Opens a page with the desktop's default program.
 fn open_page(path: &Path) {
     let (program, first): (&str, &[&str]) = match std::env::consts::OS {
         "macos" => ("open", &[]),

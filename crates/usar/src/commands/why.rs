@@ -1,4 +1,4 @@
-//! `usar why`: why a robot is in its group, and why it stands where it stands.
+//! `usar why`: explains why a robot is in its group, and why it does not move.
 
 mod robot;
 mod told;
@@ -61,7 +61,7 @@ pub(crate) struct Arguments {
     pub(crate) shown: ShownArguments,
 }
 
-/// What the oracle says of a decision.
+/// The oracle's judgement of a decision.
 #[derive(Debug, Serialize)]
 struct OracleSays {
     metric: String,
@@ -72,7 +72,7 @@ struct OracleSays {
     played: usize,
 }
 
-/// All that is told.
+/// The full account.
 #[derive(Serialize)]
 struct Account<'a> {
     schema_version: u32,
@@ -83,7 +83,7 @@ struct Account<'a> {
     time_s: f64,
     question: &'a Question,
     decision: &'a Decision,
-    /// RNE between the groups, need by need; empty for a policy of another kind.
+    /// RNE between the groups, need by need; empty for other kinds of policies.
     directed: Vec<DirectedRne>,
     others: Vec<OtherChoice>,
     oracle: Option<OracleSays>,
@@ -111,7 +111,7 @@ impl Arguments {
         told::text(out, &account, &asked)
     }
 
-    /// Plays the trial up to the moment that is asked about.
+    /// Plays the trial up to the requested moment.
     fn play(&self, asked: &AskedTrial, simulation: &mut Simulation) -> Result<Option<Watched>, Failure> {
         let robots = simulation.world().robots.len();
         if let Some(robot) = self.robot.filter(|robot| *robot as usize >= robots) {
@@ -162,7 +162,7 @@ impl Arguments {
                 exchanges.transpose()?.unwrap_or_default(),
             ))
         });
-        // The record has the question without what earlier rounds came to.
+        // The recorded question lacks the results of earlier rounds.
         let mut full = question.clone();
         full.history = usar_sim::metrics::history(&simulation.metrics().rounds, question.round);
         Ok(Account {
@@ -181,14 +181,14 @@ impl Arguments {
         })
     }
 
-    /// What the oracle said of a decision, if it was asked.
+    /// The oracle's judgement of a decision, if its outcomes are known.
     fn oracle(&self, asked: &AskedTrial, question: &Question, chosen: &Assignment) -> Option<OracleSays> {
         let log = OutcomeLog::find(&self.cache, &decision_key(asked, question.round))?;
         let evaluations: Vec<Evaluation> = log
             .outcomes(None)
             .map(|(assignment, outcome)| Evaluation { assignment, outcome: outcome.clone() })
             .collect();
-        // A survey that was broken off says nothing.
+        // An interrupted survey gives no judgement.
         if (evaluations.len() as u64) < assignments::count(question) {
             return None;
         }
@@ -207,7 +207,7 @@ impl Arguments {
     }
 }
 
-/// The policies besides the one that decided.
+/// The policies other than the one that decided.
 fn others(asked: &AskedTrial) -> Result<Vec<PolicySpec>, Failure> {
     let all = if asked.policies.is_empty() {
         let names = registry().names().into_iter().map(PolicySpec::parse);

@@ -1,4 +1,4 @@
-//! Calibration: what it finds, what it survives, what it refuses.
+//! Calibration: its results, its interruptions, and its refusals.
 
 use std::process::Output;
 
@@ -53,7 +53,7 @@ fn a_calibration_that_was_broken_off_ends_as_one_that_was_not() {
     for file in ["evaluations.csv", "calibrated.ron", "fit.csv", "calibration.json"] {
         assert_eq!(read(&folder.join("parts").join(file)), read(&folder.join("whole").join(file)), "{file}");
     }
-    // One bit of any cell of a line is noticed: no number of a log can change in silence.
+    // A changed bit in any cell of a line is noticed: no number of a log can change silently.
     let line = text.lines().nth(2).unwrap();
     for at in (0..line.len()).step_by(7) {
         let mut changed = text.clone().into_bytes();

@@ -1,5 +1,5 @@
-//! A sweep on a cluster: what is submitted, how far it is, and that the whole has the bytes of a single run.
-//! `sbatch` is a script here; .ci/slurm does the same with Slurm itself.
+//! A sweep on a cluster: its submission, its progress, and that the merged sweep has the bytes of a single
+//! run. `sbatch` is a script here; .ci/slurm does the same with Slurm itself.
 
 use std::os::unix::fs::symlink;
 use std::path::Path;
@@ -13,7 +13,7 @@ use crate::support::{program, read, root, succeeds, usar};
 
 const SWEEP: [&str; 5] = ["short.ron", "--policies", "RNE,DIS", "--trials", "20"];
 
-/// Runs a command where `sbatch` is the script.
+/// Runs a command with the script as `sbatch`.
 fn with_slurm(here: &Path, command: &mut Command, more: &[(&str, &str)]) -> Output {
     let bin = here.join("bin");
     if !bin.exists() {
@@ -49,7 +49,7 @@ fn a_sweep_on_a_cluster_goes_on_after_kills_and_has_the_bytes_of_a_single_run() 
     assert_eq!(states, ["done", "lost", "done", "lost"]);
     let finished = before["finished"].as_u64().unwrap();
     assert!((21..30).contains(&finished), "two shards and a part of the second: {finished}");
-    // The line that it says submits what is missing, and the merge.
+    // The printed command submits the missing tasks, and the merge.
     let shown = succeeds(&usar(here, &["status", "results/paper-shards"]));
     let line = shown.lines().last().unwrap();
     assert!(line.contains("--array=2,4%4 "), "{line}");

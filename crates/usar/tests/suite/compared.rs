@@ -1,4 +1,4 @@
-//! What is said of a sweep: comparisons, precision, and what it would take.
+//! Analyses of a sweep: comparisons, precision, and cost estimates.
 
 use serde_json::Value;
 
@@ -120,7 +120,7 @@ fn a_rule_of_precision_can_be_given_again_and_needs_pairs_that_differ() {
     let first = sweep("distance");
     assert!(first.contains("after 25 pairs"), "{first}");
     assert_eq!(first, sweep("distance"), "the same command again");
-    // Nobody is rescued within half a minute: no pair differs from another.
+    // No rescuee is delivered within half a minute: all pairs are equal.
     let none = sweep("rescuees.hard");
     assert!(none.contains("NOT reached: there are too few pairs"), "{none}");
     let listed =
@@ -230,8 +230,8 @@ fn a_sweep_with_axes_says_how_differences_change_along_them() {
     ));
     let told: Value = serde_json::from_str(&told).unwrap();
     let interactions = told["interactions"].as_array().unwrap();
-    // Two axes of two values: each value but the first, at both values of the other axis, for each policy but
-    // the baseline.
+    // Two axes of two values: each value but the first, at both values of the other axis, for each policy
+    // but the baseline.
     let policies = told["comparisons"].as_array().unwrap().len() / 4;
     assert_eq!(interactions.len(), 4 * policies);
     let results = here.join("results/grid");

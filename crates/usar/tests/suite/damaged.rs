@@ -54,7 +54,7 @@ fn trouble_with_the_disk_breaks_nothing() {
     let folder = place();
     let here = folder.path();
     succeeds(&usar(here, &["sweep", "short.ron", "--policies", "RNE", "--trials", "4", "--out", "whole"]));
-    // Files may not grow beyond some blocks: what a full disk does, without one.
+    // A limit on the size of files acts like a full disk.
     for blocks in ["1", "12", "20"] {
         let limited = format!(
             "trap '' XFSZ; ulimit -f {blocks}; exec '{}' sweep short.ron --policies RNE --trials 4 --quiet",

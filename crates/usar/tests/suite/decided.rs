@@ -1,11 +1,12 @@
-//! Single decisions: made otherwise, all of them played, and told why.
+//! Single decisions: changed, played in all ways, and explained.
 
 use serde_json::Value;
 
 use crate::place::{place, refused};
 use crate::support::{succeeds, usar};
 
-/// The paper's scenario with two robots of each role, so that there are eight assignments, and three short rounds.
+/// The paper's scenario with two robots of each role, and therefore eight assignments, and with three short
+/// rounds.
 const SMALL: [&str; 8] = [
     "short.ron",
     "--set",
@@ -109,7 +110,7 @@ fn the_oracle_as_a_policy_decides_as_the_oracle_says() {
     refused(here, 2, &["group", "team.csv", "--policy", "ORACLE"], &["here is no trial"]);
 }
 
-/// The RNE between the groups of the first round, worked out from the needs as they were recorded.
+/// The RNE between the groups of the first round, computed from the recorded needs.
 #[test]
 fn why_is_what_the_recorded_needs_say() {
     let folder = place();

@@ -1,4 +1,4 @@
-//! Pictures from the command line: what is written, and what is refused.
+//! Pictures from the command line: the files written, and refusals.
 
 use std::path::Path;
 use std::process::{Command, Output};
@@ -83,7 +83,7 @@ fn what_cannot_be_drawn_is_refused_in_one_sentence() {
     );
 }
 
-/// Runs `usar render --mp4` where the only programs are those of a folder.
+/// Runs `usar render --mp4` with only the programs of one folder on the path.
 fn film(folder: &Path, programs: &Path) -> Output {
     let arguments = ["render", &scenario(), "--every", "2", "--to", "6", "--width", "201", "--mp4", "a.mp4"];
     Command::new(program()).args(arguments).current_dir(folder).env("PATH", programs).output().unwrap()

@@ -1,4 +1,4 @@
-//! `sensitivity` and `search`: what they find, what they survive, what they refuse.
+//! `sensitivity` and `search`: their results, their interruptions, and their refusals.
 
 use crate::calibrated::{place, refused};
 use crate::support::{read, succeeds, usar};

@@ -51,7 +51,7 @@ fn a_small_trial_tells_its_story_and_every_event_has_its_time() {
     let again = run(&["run", &scenario(), "--events", "e.jsonl"]);
     assert_eq!(again.status.code(), Some(2));
     assert_eq!(read(&folder.path().join("e.jsonl")), lines);
-    // A mission is too long for a story, and JSON has none.
+    // A mission is too long for a story, and the JSON output has none.
     let paper = root().join("scenarios/paper.ron").display().to_string();
     let said = succeeds(&run(&["run", &paper, "--set", "duration_s=5"]));
     assert!(!said.lines().any(|line| line.starts_with("At ")), "{said}");
@@ -86,7 +86,7 @@ fn parquet_files_of_a_sweep_belong_to_it_and_are_verified() {
     );
     succeeds(&sweep(&["--trials", "2", "--tables", "parquet"]));
     assert_eq!(std::fs::read(path("robots.parquet")).unwrap(), whole);
-    // They would be of fewer trials.
+    // The old Parquet files would have fewer trials.
     succeeds(&sweep(&["--trials", "3"]));
     assert!(!path("robots.parquet").exists());
     succeeds(&sweep(&["--trials", "3", "--tables", "parquet"]));

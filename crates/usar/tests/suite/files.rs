@@ -1,4 +1,4 @@
-//! `usar new`, `list` and `resolve`: scenario files to begin with, and what is in them.
+//! `usar new`, `list` and `resolve`: scenario files to start from, and their content.
 
 use crate::place::refused;
 use crate::support::{read, root, succeeds, usar};

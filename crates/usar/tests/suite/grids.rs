@@ -1,4 +1,4 @@
-//! Sweep files: their grids, their shards, and what is wrong with them.
+//! Sweep files: their grids, their shards, and errors in them.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -25,7 +25,7 @@ fn a_sweep_file_spans_its_grid_and_any_field_can_be_an_axis() {
     assert!(
         succeeds(&usar(here, &["verify", "results/grid"])).starts_with("24 of 24 trials match, step by step")
     );
-    // A row can be run again alone.
+    // A single row can be run again.
     let policy = "RNE(score: Sum)";
     let arguments = ["run", "results/grid/resolved.ron", "--policy", policy, "--seed", "2", "--json"];
     let set = ["--set", "roles.carrier.speed_mps=3.0"];
@@ -177,7 +177,7 @@ fn trials_that_took_too_long_are_counted_and_joined() {
     assert_eq!(merged.status.code(), Some(1), "{}", String::from_utf8_lossy(&merged.stderr));
     let said = succeeds(&usar(here, &["compare", "results/whole", "--metric", "rescuees.hard"]));
     assert!(said.contains("2 with a failed trial, 0 with"), "{said}");
-    // Joined once more, nothing changes.
+    // Merging again changes nothing.
     let before = files(&here.join("results/whole"));
     usar(here, &["merge", parts[0], parts[1], "--out", "results/whole"]);
     assert!(files(&here.join("results/whole")) == before);

@@ -1,5 +1,5 @@
-//! What is not the program's: files of others, links, pipes and devices; and what the program is told from outside, by signals and by a
-//! stderr that takes nothing.
+//! Files that do not belong to the program: files of other owners, links, pipes and devices. Also events
+//! from outside: signals, and a stderr that cannot be written.
 
 use std::os::unix::fs::symlink;
 use std::path::Path;
@@ -114,7 +114,7 @@ fn a_byte_after_the_last_line_of_a_journal_is_taken_away() {
     succeeds(&usar(here, &["verify", "results/paper"]));
 }
 
-/// Starts a sweep that takes long, and waits until it has trials.
+/// Starts a long sweep, and waits until it has trials.
 fn begun(here: &Path) -> std::process::Child {
     let mut command = Command::new(program());
     command.args(["sweep", "short.ron", "--trials", "5000", "--policies", "RNE", "--jobs", "1"]);

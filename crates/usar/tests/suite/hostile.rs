@@ -1,4 +1,4 @@
-//! Files that are made to take all time or all memory: each is refused at once, by one of the limits of docs/limits.md.
+//! Files designed to use up all time or memory: one of the limits of docs/limits.md refuses each at once.
 
 use std::fmt::Write;
 use std::path::Path;
@@ -11,7 +11,7 @@ const START: &str = "(name: \"s\", duration_s: 10.0, dt_s: 0.02, arena_m: (1000.
 const TEAM: &str = "team: [(role: \"robot\", count: 1, center: (5.0, 5.0), width_m: 0.0)],";
 const TASK: &str = "tasks: [(name: \"t\", difficulty: 1, center: (500.0, 500.0), size_m: (1.0, 1.0), grid: (1, 1), rest: (800.0, 800.0))],";
 
-/// So many entries, `#` in each standing for its number.
+/// This many entries; `#` in an entry is replaced by its number.
 fn entries(count: usize, entry: &str) -> String {
     let mut list = String::new();
     for i in 0..count {
@@ -20,7 +20,7 @@ fn entries(count: usize, entry: &str) -> String {
     list
 }
 
-/// A scenario of one robot and one task, with more.
+/// A scenario with one robot and one task, and additional text.
 fn scenario(more: &str) -> String {
     format!("{START}{TEAM}{TASK}{more})")
 }
@@ -29,7 +29,8 @@ fn sweep(more: &str) -> String {
     format!("(name: \"s\", scenario: \"ok.ron\", {more})")
 }
 
-/// Checks that a file is refused with these words, and at once: this is a build without optimisation, on a machine that does other things as well.
+/// Checks that a file is refused with these words, and at once. The time limit allows for a build without
+/// optimisation on a busy machine.
 #[track_caller]
 fn at_once(here: &Path, text: &str, words: &str) {
     std::fs::write(here.join("hostile.ron"), text).unwrap();

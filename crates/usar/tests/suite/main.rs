@@ -1,4 +1,4 @@
-//! The program `usar`, run as a user runs it. One binary, since each takes long to link.
+//! The program `usar`, run as by a user. All tests are one binary, since each binary takes long to link.
 
 mod place;
 mod support;

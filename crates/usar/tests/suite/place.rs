@@ -1,10 +1,10 @@
-//! A folder with sweeps to run, and what is looked at in their results.
+//! A folder with sweeps to run, and functions that examine their results.
 
 use std::path::{Path, PathBuf};
 
 use crate::support::{read, root, usar};
 
-/// A folder with `short.ron`, the paper's scenario for half a minute, and `grid.ron`, a sweep file over it.
+/// A folder with `short.ron`, the paper's scenario for half a minute, and `grid.ron`, a sweep file for it.
 pub fn place() -> tempfile::TempDir {
     let text = read(&root().join("scenarios/paper.ron"));
     let folder = tempfile::tempdir().unwrap();
@@ -38,8 +38,8 @@ pub fn rows(folder: &Path, table: &str) -> Vec<csv::StringRecord> {
     csv::Reader::from_path(folder.join(table)).unwrap().records().map(Result::unwrap).collect()
 }
 
-/// The command ends with this status and a message that holds all of these, and leaves the folder of results
-/// as it was.
+/// Checks that the command ends with this status and a message that contains all of these, and leaves the
+/// folder of results unchanged.
 #[track_caller]
 pub fn refused(folder: &Path, status: i32, arguments: &[&str], messages: &[&str]) {
     let results = folder.join("results");

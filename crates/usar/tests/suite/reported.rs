@@ -19,7 +19,7 @@ fn a_report_is_one_file_with_figures_and_the_numbers_behind_them() {
     let results = here.join("results/grid");
     let read = |name: &str| std::fs::read_to_string(results.join(name)).unwrap();
     let (overview, page) = (read("report.html"), read("plots/case-1.html"));
-    // Nothing is fetched: the only addresses are names of formats.
+    // Nothing is fetched: the only addresses are names of XML namespaces.
     for page in [&overview, &page] {
         for source in ["src=", "@import", "url(\"http", "<script", "<link"] {
             assert!(!page.contains(source), "{source}");
@@ -80,7 +80,7 @@ fn a_report_is_one_file_with_figures_and_the_numbers_behind_them() {
     assert!(read("report.html").contains("distance travelled") && !sentence.is_empty());
     refused(here, 2, &["report", "results/grid", "--case", "5"], &["--case: must be from 1 to 4, found 5"]);
     refused(here, 2, &["report", "results/grid", "--metric", "luck"], &["unknown metric \"luck\""]);
-    // The sweep still goes on in a folder with a report.
+    // The sweep can still be continued in a folder with a report.
     succeeds(&usar(here, &["sweep", "grid.ron", "--set", "duration_s=120", "--trials", "3"]));
 }
 
@@ -108,7 +108,7 @@ fn a_report_shows_chosen_trials_and_links_their_replays() {
         let replay = std::fs::read_to_string(results.join(format!("plots/replay-{label}-2.html"))).unwrap();
         assert_eq!(replay.matches("<script type=\"application/x-usrec\"").count(), 1);
     }
-    // The next report takes away what this one wrote, and the folder can start over.
+    // The next report removes the files of this one, and the folder can start over.
     succeeds(&usar(here, &["report", "results/paper"]));
     assert!(!results.join("plots/replay-RNE-2.html").exists() && !results.join("plots/ways-1.svg").exists());
     succeeds(&usar(here, &["report", "results/paper", "--with-replays"]));
@@ -119,7 +119,7 @@ fn a_report_shows_chosen_trials_and_links_their_replays() {
     assert!(!results.join("plots").exists());
 }
 
-/// The table of trials has each metric of each trial, to the bit.
+/// Checks that the table of trials has each metric of each trial, to the bit.
 fn every_metric_is_a_column(results: &Path, trials: &[csv::StringRecord]) {
     let sweep = Folder::read(results).unwrap();
     let metrics = &sweep.experiment().metrics;
@@ -132,7 +132,7 @@ fn every_metric_is_a_column(results: &Path, trials: &[csv::StringRecord]) {
     }
 }
 
-/// The numbers of a figure are those of the tables.
+/// The numbers of a figure equal those of the tables.
 #[test]
 fn the_reports_numbers_are_those_of_the_trials() {
     let folder = place();
@@ -154,7 +154,7 @@ fn the_reports_numbers_are_those_of_the_trials() {
         .unwrap();
     assert_eq!((&last[2], &last[3]), ("120", "3"));
     assert!((last[4].parse::<f64>().unwrap() - rescued.iter().sum::<f64>() / 3.0).abs() < 1e-9);
-    // The heat map of trust is what `usar trust` says of the same needs.
+    // The heat map of trust agrees with `usar trust` for the same needs.
     let robots = rows(&results, "groups.csv");
     let needs = |robot: &str| -> Vec<f64> {
         let row = robots
@@ -175,7 +175,7 @@ fn the_reports_numbers_are_those_of_the_trials() {
     assert!((shown[2].parse::<f64>().unwrap() - rne).abs() < 1e-12);
 }
 
-/// A figure for a paper: as wide as its column, in three kinds, of one metric and of some policies.
+/// A figure for a paper: as wide as its column, in three formats, of one metric and of some policies.
 #[test]
 fn a_figure_fits_the_column_of_a_paper() {
     let place = tempfile::tempdir().unwrap();

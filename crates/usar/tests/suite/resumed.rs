@@ -1,4 +1,4 @@
-//! Sweeps that are broken off: killed, interrupted, extended, and refused where they are of something else.
+//! Interrupted sweeps: killed, stopped, extended, and refused if they are different sweeps.
 
 use std::path::Path;
 use std::process::{Command, Stdio};
@@ -25,7 +25,7 @@ fn the_same_command_goes_on_and_more_trials_only_add() {
     };
     succeeds(&sweep(&["--trials", "2"]));
     let results = folder.path().join("results/paper");
-    // What a process was killed at is no file of the sweep.
+    // Files that a killed process was writing are not files of the sweep.
     for name in ["host.json.new", "trials.csv.new"] {
         std::fs::write(results.join(name), "half").unwrap();
     }
@@ -36,7 +36,8 @@ fn the_same_command_goes_on_and_more_trials_only_add() {
     assert!(String::from_utf8_lossy(&more.stderr).contains("4 of 6 trials are there already"));
     succeeds(&sweep(&["--trials", "3", "--out", "results/whole"]));
     assert!(files(&results) == files(&folder.path().join("results/whole")), "added trials change no byte");
-    // The file says 10; the folder has 3: nobody asked for a number, so there is nothing to refuse.
+    // The file asks for 10 trials and the folder has 3. No number was given on the command line, so that
+    // nothing is refused.
     std::fs::write(folder.path().join("one.ron"), small_default(folder.path())).unwrap();
     let plain = usar(folder.path(), &["sweep", "one.ron", "--policies", "RNE,DIS"]);
     assert!(String::from_utf8_lossy(&plain.stderr).contains("6 of 6 trials are there already"));
@@ -119,7 +120,7 @@ fn trials_that_give_nothing_are_rows_that_can_be_run_again() {
     let is_late = |row: &csv::StringRecord| &row[status] == "timed_out" && row[rescuees].is_empty();
     assert!(late.len() == 4 && late.iter().all(is_late));
     assert_eq!(last(&late[3]), "usar run resolved.ron --policy DIS --seed 2");
-    // That may have been the machine's fault, so they are run again.
+    // The machine may have caused the timeouts, so that these trials are run again.
     succeeds(&usar(here, &sweep));
     assert!(rows(&here.join("results/paper"), "trials.csv").iter().all(|row| &row[status] == "completed"));
 }

@@ -1,5 +1,5 @@
-//! One seed, one result: in any number of threads, in any surroundings, in a new process, and when it is
-//! verified.
+//! One seed, one result: with any number of threads, in any environment, in a new process, and in
+//! verification.
 
 use std::path::Path;
 use std::process::Command;

@@ -1,4 +1,4 @@
-//! The paper put to the test: claims, readings, and the pages that tell of them.
+//! Tests of the paper's claims and readings, and of the pages about them.
 
 use std::path::Path;
 
@@ -8,7 +8,7 @@ use xtask::pages;
 use crate::calibrated::{place, refused};
 use crate::support::{program, read, root, succeeds, usar};
 
-/// What `usar reproduce` writes.
+/// Checks the files that `usar reproduce` writes.
 fn has_the_files(results: &Path) {
     let authors = read(&root().join("scenarios/reference/dis_trials.csv"));
     for scenario in ["paper", "paper-calibrated"] {
@@ -50,7 +50,8 @@ fn has_the_files(results: &Path) {
     }
 }
 
-/// What `usar reproduce` says of ten trials stands in its page, and in the table beside that.
+/// Checks that the results of `usar reproduce` for ten trials agree with its page and with the table beside
+/// the page.
 fn agrees_with_its_page(first: &str, results: &Path) {
     let of_ten = |path: &Path| -> Vec<csv::StringRecord> {
         let rows = csv::Reader::from_path(path).unwrap().into_records().map(Result::unwrap);
@@ -58,7 +59,7 @@ fn agrees_with_its_page(first: &str, results: &Path) {
     };
     let here = of_ten(&results.join("claims.csv"));
     let there = of_ten(&root().join("docs/reproduction/claims.csv"));
-    // Of ten trials in all, each comparison is there twice: over the first ten, and over all.
+    // With ten trials in all, each comparison occurs twice: over the first ten, and over all.
     let here: Vec<_> = here.chunks(30).step_by(2).flatten().cloned().collect();
     assert_eq!(here.len(), 2 * 30);
     assert_eq!(here, there, "`just pages` makes docs/reproduction/claims.csv anew");
@@ -76,7 +77,7 @@ fn agrees_with_its_page(first: &str, results: &Path) {
     assert_eq!(verdicts(printed, '┆'), verdicts(told, '|'));
 }
 
-/// The rows of the README's table are rows of what its first command prints.
+/// Checks that the rows of the README's table are rows in the output of its first command.
 fn agrees_with_the_readme(printed: &str) {
     let cells = |line: &str, bar: char| -> Vec<String> {
         line.split(bar).map(|cell| cell.trim_matches(['│', ' ']).to_owned()).collect()
@@ -100,8 +101,7 @@ fn agrees_with_the_readme(printed: &str) {
     }
 }
 
-/// The claims over as many trials as the paper has; and the pages in `docs/` with the numbers of these
-/// trials.
+/// The claims over the paper's number of trials, and the pages in `docs/` with the numbers of these trials.
 #[test]
 fn the_papers_experiment_and_the_pages_that_tell_of_it() {
     let folder = tempfile::tempdir().unwrap();
@@ -130,12 +130,12 @@ fn the_papers_experiment_and_the_pages_that_tell_of_it() {
 
     agrees_with_its_page(&first, &results);
 
-    // So does the table of the README.
+    // The table of the README agrees as well.
     let sweep = root().join("scenarios/paper.ron");
     let sweep = ["sweep", sweep.to_str().unwrap(), "--out", "results/reproduction/paper", "--quiet"];
     agrees_with_the_readme(&succeeds(&usar(folder.path(), &sweep)));
 
-    // The page that tells why has the numbers of the paper's ten trials.
+    // The page docs/why.md has the numbers of the paper's ten trials.
     let page = read(&root().join("docs/why.md"));
     let mut found = 0;
     let renewed = pages::renewed(&page, |command| {
@@ -211,7 +211,7 @@ fn readings_stand_for_every_combination_and_are_named_by_what_differs() {
     );
 }
 
-/// A page can have one table of a command, one paragraph, or a table as a file beside it.
+/// A page can select one table of a command, one paragraph, or a table as a file beside it.
 #[test]
 fn a_page_takes_parts_of_what_a_command_prints() {
     let page = "\

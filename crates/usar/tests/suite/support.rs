@@ -1,4 +1,4 @@
-//! Running the program and looking at what it says.
+//! Runs the program and checks its output.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};

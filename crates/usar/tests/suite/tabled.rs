@@ -25,7 +25,7 @@ fn variants_set_several_fields_at_once_and_are_an_axis() {
     assert_eq!([of("as it is").len(), of("calm").len(), of("faster").len()], [4; 3]);
     let hash = |row: &csv::StringRecord| row[column(&results, "state_hash")].to_owned();
     assert_ne!(hash(&of("as it is")[0]), hash(&of("calm")[0]));
-    // The case is what --set makes of the scenario, and the folder's own file makes it again.
+    // The case equals the scenario changed by --set, and the folder's own file reproduces it.
     let alone = [
         "run",
         "short.ron",
@@ -89,7 +89,7 @@ fn every_column_of_every_table_is_in_the_dictionary() {
             assert!(meaning.ends_with('.'), "{table}: {name}: {meaning:?}");
             assert!(text.contains(&format!("| `{name}` | ")), "{table}: {name}");
         }
-        // Cells are what the dictionary says.
+        // Cells have the types that the dictionary states.
         for row in rows.records().map(Result::unwrap) {
             for (field, cell) in fields.iter().zip(&row).filter(|(_, cell)| !cell.is_empty()) {
                 let is_sound = match field["type"].as_str().unwrap() {

@@ -1,11 +1,11 @@
-//! The pages that teach: their files are written, their commands run in order, and what they print is what the
-//! page says.
+//! The tutorial pages: their files are written, their commands run in order, and the output is compared
+//! with the page.
 
 use std::path::Path;
 
 use crate::support::{read, root, succeeds, usar};
 
-/// A fenced block: its language, its text, and the file that a comment before it names.
+/// A fenced block: its language, its text, and the file named in a comment before it.
 struct Block {
     language: String,
     text: String,
@@ -32,13 +32,14 @@ fn blocks(page: &str) -> Vec<Block> {
     blocks
 }
 
-/// The words of a command: blanks part them, quotation marks and a comment are the shell's.
+/// The words of a command, separated by blanks, without quotation marks and shell comments.
 fn words(command: &str) -> Vec<String> {
     let command = command.split(" # ").next().unwrap();
     command.split_whitespace().map(|word| word.trim_matches('\'').to_owned()).collect()
 }
 
-/// Runs a page in a folder that has `scenarios/`. A block `text` after commands is in what the last one printed.
+/// Runs a page in a folder that has `scenarios/`. A block `text` after commands must occur in the output of
+/// the last one.
 fn follow(page: &str) -> usize {
     let folder = tempfile::tempdir().unwrap();
     let here = folder.path();
@@ -68,7 +69,7 @@ fn follow(page: &str) -> usize {
     count
 }
 
-/// The scenarios at the top of their folder: the pages need no others.
+/// Copies the scenarios at the top of their folder; the pages need no others.
 fn copy(from: &Path, to: &Path) {
     std::fs::create_dir(to).unwrap();
     for entry in std::fs::read_dir(from).unwrap() {

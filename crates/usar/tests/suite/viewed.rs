@@ -1,4 +1,4 @@
-//! Recordings and pages: what is written, what is refused, and that results stay the same.
+//! Recordings and pages: the files written, refusals, and that results stay the same.
 
 use std::path::Path;
 
@@ -78,10 +78,10 @@ fn trials_of_a_sweep_are_recorded_and_shown() {
     assert!(hashes.contains(&recorded.summary.unwrap().state_hash));
     assert!(!folder.path().join("r/recordings/x-1.usrec").exists());
     succeeds(&run(&["verify", "r"]));
-    // One trial from its recording, the other simulated again.
+    // One trial comes from its recording, the other is simulated again.
     succeeds(&run(&["view", "r", "--seed", "2", "--policy", "x,RNE", "--no-open", "--out", "two.html"]));
     succeeds(&run(&["view", "r", "--seed", "1", "--no-open", "--out", "one.html"]));
-    // A recording of another trial is replaced, and all go when the sweep starts over.
+    // A recording of another trial is replaced, and all recordings are deleted when the sweep starts over.
     std::fs::copy(&path, folder.path().join("r/recordings/x-1.usrec")).unwrap();
     succeeds(&sweep(&["--record", "1"]));
     assert_eq!(self::recording(&folder.path().join("r/recordings/x-1.usrec")).header.seed, 1);
@@ -119,7 +119,8 @@ fn files_that_cannot_be_shown_are_refused_in_one_sentence() {
     succeeds(&output);
 }
 
-/// Recordings of this version of the format stay readable: this one was written when it was new.
+/// Recordings of this version of the format stay readable: this recording was written when the version was
+/// new.
 #[test]
 fn a_recording_of_old_is_read_as_it_was_read_then() {
     let path = root().join("viewer/test/small.usrec").display().to_string();

@@ -1,14 +1,14 @@
-//! Grouping alone: how long RNE takes to split teams of different sizes.
+//! Grouping alone: the time that RNE takes to split teams of different sizes.
 
 use std::time::Instant;
 
 use rne_core::{Question, Registry};
 use xtask::team::question;
 
-/// Groupings of one team; the median is printed.
+/// Number of groupings of each team; the median is printed.
 const TURNS: usize = 9;
 
-/// Teams by name: carriers, suppliers, observers.
+/// Teams by name, with their numbers of carriers, suppliers and observers.
 const TEAMS: [(&str, [u32; 3]); 4] = [
     ("6/4/2 robots, exact", [6, 4, 2]),
     ("20 robots of one role, exact", [20, 0, 0]),

@@ -1,5 +1,6 @@
-//! What a step costs, as ratios to the raw physics measured in the same process, turn by turn. Times themselves depend on the machine and its
-//! neighbours; ratios less so, and instruction counts (`just instructions`) hardly.
+//! The cost of a step, as its ratio to the raw physics measured in the same process, in alternation. Times
+//! depend on the machine and its load. Ratios depend on them less, and instruction counts
+//! (`just instructions`) hardly.
 //!
 //! `cargo bench --bench speed [-- CASE...]`
 
@@ -15,7 +16,7 @@ use usar_sim::simulation::Simulation;
 use usar_sim::stage::Stage;
 use xtask::density;
 
-/// Turns of reference and subject.
+/// Number of alternations between reference and subject.
 const TURNS: usize = 5;
 
 fn main() {

@@ -1,5 +1,5 @@
-//! The reference: what the physics alone costs. Robots that drive straight to random waypoints among fixed boxes and push on whatever they
-//! meet; aerial ones collide with nothing.
+//! The reference: the cost of the physics alone. Robots drive straight to random waypoints among fixed
+//! boxes and push against anything in their way. Aerial robots collide with nothing.
 
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
@@ -19,7 +19,7 @@ pub struct Raw {
 }
 
 impl Raw {
-    /// Everything at its first place.
+    /// A world with all robots at their first places.
     pub fn new(robots: u32) -> Self {
         let side = side(robots) as f32;
         let mut world = PhysicsWorld::new();

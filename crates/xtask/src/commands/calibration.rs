@@ -1,6 +1,7 @@
-//! The calibration of the paper's world, from the design of its readings to the choice: docs/calibration.md.
+//! The calibration of the paper's world, from the design of its readings to the choice: see
+//! docs/calibration.md.
 //!
-//! `calibration [OUT]`, with `usar` built in the same profile. It goes on where it was broken off.
+//! `calibration [OUT]`, with `usar` built in the same profile. An interrupted calibration resumes.
 
 use std::path::Path;
 use std::process::{Command, ExitCode};
@@ -17,7 +18,8 @@ pub fn run(arguments: &[String]) -> ExitCode {
         let name = format!("screening-{:02}", i + 1);
         let folder = out.join(&name);
         if !folder.join("fit.csv").exists() {
-            // A coarser step, few trials and few candidates: what matters here is which readings do better.
+            // A coarser step, few trials and few candidates are enough here to find out which readings fit
+            // better.
             let quick = "--trials 6 --evaluations 80 --first-step 0.05 --fresh-trials 2 --set dt_s=0.04";
             calibrate(Path::new(START), &folder, &combination, quick);
         }

@@ -1,5 +1,5 @@
-//! `xtask coverage [REPETITIONS]`: how often each kind of interval holds what it is to hold, over many synthetic
-//! experiments, as the table of docs/experiments.md.
+//! `xtask coverage [REPETITIONS]`: how often each kind of interval holds the true value, over many
+//! synthetic experiments. The table is in docs/experiments.md.
 
 use std::process::ExitCode;
 
@@ -10,10 +10,11 @@ use rand::{RngExt, SeedableRng};
 use rand_distr::{Distribution, Exp, StandardNormal};
 use rayon::prelude::*;
 
-/// Experiments of each row unless the command says otherwise.
+/// Default number of experiments of each row.
 const REPETITIONS: u64 = 2_000;
 
-/// Resamples of an interval of means: fewer than in results, which changes a limit by a hundredth of the width.
+/// Resamples of an interval of means. They are fewer than in results, which changes a limit by a hundredth
+/// of the interval's width.
 const RESAMPLES: usize = 2_000;
 
 type Interval = Option<[f64; 2]>;
@@ -74,7 +75,7 @@ fn mean(draws: &mut ChaCha8Rng, pairs: usize, draw: fn(&mut ChaCha8Rng) -> f64, 
     holds(bca_interval(&values, 0.95, (RESAMPLES, 1), Width::Expanded), truth)
 }
 
-/// Cost and rescuees of a trial: none to four rescuees, each with this cost, and 4 spent for nothing.
+/// Cost and rescuees of a trial: zero to four rescuees, each with this cost, and a fixed cost of 4.
 fn cost(draws: &mut ChaCha8Rng, each: f64) -> [f64; 2] {
     let count = f64::from(draws.random_range(0..5_u32));
     [each * count + 4.0 + normal(draws), count]

@@ -1,4 +1,5 @@
-//! Damages the folder of a finished sweep: a thousand flipped bits, a hundred forged numbers. Is each found?
+//! Damages the folder of a finished sweep with a thousand flipped bits and a hundred forged numbers, and
+//! checks that each damage is found.
 //!
 //! `damage [FLIPS [FORGERIES]]`, with `usar` built in the same profile.
 

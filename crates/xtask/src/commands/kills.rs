@@ -1,4 +1,4 @@
-//! Kills a sweep at random moments, a hundred times: is anything lost?
+//! Kills a sweep at random moments, a hundred times, and checks that nothing is lost.
 //!
 //! `kills [KILLS]`, with `usar` built in the same profile.
 

@@ -1,4 +1,4 @@
-//! Makes `docs/limits.md` of the constants, from the project's folder.
+//! Makes `docs/limits.md` from the constants. Run it in the project's folder.
 
 use std::process::ExitCode;
 

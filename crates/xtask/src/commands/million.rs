@@ -1,7 +1,7 @@
-//! A million trials: what shards, merge, compare and report take, in time and memory.
+//! A million trials: the time and memory that shards, merge, compare and report take.
 //!
-//! `million [TRIALS] [trials|rounds] [SHARDS]` makes trials by a fast fake: a real trial of each policy, of which numbers are changed by the
-//! seed. The program `usar` beside this one merges, compares and reports.
+//! `million [TRIALS] [trials|rounds] [SHARDS]` makes trials from a fast fake: a real trial of each policy,
+//! whose numbers the seed changes. The program `usar` beside this one merges, compares and reports.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode, Stdio};
@@ -16,13 +16,13 @@ use experiments::sweep::folder::{Folder, Opening};
 use super::scale::peak_memory;
 use super::usar;
 
-/// Policies that are compared.
+/// The compared policies.
 const POLICIES: [&str; 4] = ["RNE", "DIS", "ENG", "HP_DIS"];
-/// Cases of the sweep.
+/// Number of cases of the sweep.
 const CASES: usize = 5;
-/// Trials that are written at a time.
+/// Number of trials that are written together.
 const AT_A_TIME: usize = 2_000;
-/// What each command may take at most: seconds, and memory in kB.
+/// Limits of each command: seconds, and memory in kB.
 const MOST: (f64, u64) = (300.0, 1_000_000);
 
 pub fn run(arguments: &[String]) -> ExitCode {
@@ -80,7 +80,7 @@ fn fakes(experiment: &Experiment) -> Vec<Vec<Trial>> {
     (0..CASES).map(of_case).collect()
 }
 
-/// The trial with other numbers, which its seed decides.
+/// The trial with other numbers, chosen by its seed.
 fn faked(trial: &Trial, key: &TrialKey) -> Trial {
     let mut trial = trial.clone();
     let noise = |salt: u64| {
@@ -115,7 +115,7 @@ fn write_shard(experiment: &Arc<Experiment>, fakes: &[Vec<Trial>], shard: Shard,
     folder.finish(&AtomicBool::new(false)).expect("the disk takes the tables");
 }
 
-/// Runs a command of `usar` and tells what it took; returns whether that was little enough.
+/// Runs a command of `usar` and prints its time and memory; returns whether they are within the limits.
 fn measure(place: &Path, arguments: &[&str]) -> bool {
     let start = Instant::now();
     let mut command = Command::new(usar());

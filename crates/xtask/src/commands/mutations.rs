@@ -1,4 +1,4 @@
-//! Damaged files through all loaders: no panic, and none takes long.
+//! Loads damaged files with all loaders and checks that none panics or takes long.
 //!
 //! `mutations [COUNT]`
 
@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use xtask::mutations;
 
-/// The longest that a loader may take.
+/// Longest time that a loader may take.
 const LONGEST: Duration = Duration::from_secs(1);
 
 pub fn run(arguments: &[String]) -> ExitCode {

@@ -1,8 +1,8 @@
-//! Makes the numbers of `docs/` anew: runs the command before each block and puts what it prints in its place;
-//! figures and long tables are copied beside the page.
+//! Renews the numbers in `docs/`: runs the command before each block and replaces the block by its output.
+//! Figures and long tables are copied beside the page.
 //!
-//! `pages [PAGE ...]`, from the project's folder, with the results that the commands name and `usar` built in
-//! the same profile.
+//! `pages [PAGE ...]`, in the project's folder. It needs the results that the commands name, and `usar`
+//! built in the same profile.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -31,7 +31,7 @@ pub fn run(arguments: &[String]) -> ExitCode {
             });
             Some(answer.clone())
         });
-        // `<!-- copy FROM TO -->`: a figure or a table, from the results to a place beside the page.
+        // `<!-- copy FROM TO -->` copies a figure or a table from the results to a place beside the page.
         for line in page.lines().filter_map(|line| line.strip_prefix("<!-- copy ")?.strip_suffix(" -->")) {
             let (from, to) = line.split_once(' ').expect("two names");
             put(to, &std::fs::read(from).unwrap_or_else(|error| panic!("{from}: {error}")));

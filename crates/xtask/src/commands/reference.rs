@@ -1,5 +1,5 @@
-//! Makes `docs/scenarios-reference.md`, `docs/events.md` and `docs/columns.md`, and the schemas of scenario and
-//! sweep files in `docs/schemas`.
+//! Makes `docs/scenarios-reference.md`, `docs/events.md` and `docs/columns.md`, and the schemas of scenario
+//! and sweep files in `docs/schemas`.
 
 use std::process::ExitCode;
 

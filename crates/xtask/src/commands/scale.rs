@@ -1,4 +1,4 @@
-//! A large team at the usual density: does it run, how long does a step take, and how much memory does it need?
+//! A large team at the usual density: whether it runs, the time of a step, and the memory that it needs.
 //!
 //! `scale [ROBOTS] [SECONDS]`
 
@@ -36,7 +36,7 @@ pub fn run(arguments: &[String]) -> ExitCode {
     ExitCode::SUCCESS
 }
 
-/// The largest resident size so far, as the system says it, where it does.
+/// The largest resident size so far, if the system reports it.
 pub(super) fn peak_memory() -> Option<String> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     Some(status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?.trim().to_owned())

@@ -1,4 +1,4 @@
-//! Random valid scenarios of all kinds, a minute of each under the checker of invariants.
+//! Random valid scenarios of all kinds, each run for a minute under the checker of invariants.
 //!
 //! `scenarios [FIRST_SEED] [SCENARIOS]`
 

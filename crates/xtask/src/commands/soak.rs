@@ -1,5 +1,5 @@
-//! Soak: many seeds of a scenario under every policy. Fails when a trial fails, a number is undefined, an invariant is violated, or a
-//! robot that has somewhere to go does not come nearer for more than 30 s.
+//! Soak: many seeds of a scenario under every policy. It fails if a trial fails, a number is undefined, an
+//! invariant is violated, or a robot with a goal does not come nearer to it for more than 30 s.
 //!
 //! `soak [SCENARIO] [SEEDS]`
 
@@ -73,7 +73,7 @@ fn faults(outcome: &Outcome) -> Vec<String> {
     faults
 }
 
-/// What `docs/model.md` says of the scenario, over all policies together.
+/// Prints the numbers of `docs/model.md` for the scenario, over all policies together.
 fn summarise(outcomes: &[Outcome]) {
     let records: Vec<&TrialRecord> = outcomes.iter().filter_map(Outcome::record).collect();
     let each =

@@ -1,4 +1,4 @@
-//! Fixed pieces of work, to count their instructions: `just instructions`.
+//! Fixed workloads whose instructions are counted: `just instructions`.
 //!
 //! `work trial|grouping`
 
@@ -10,7 +10,7 @@ use usar_sim::scenario::Scenario;
 use usar_sim::simulation::Simulation;
 use xtask::team;
 
-/// Half a minute of the paper's mission.
+/// Steps of half a minute of the paper's mission.
 const STEPS: u32 = 1_500;
 
 pub fn run(arguments: &[String]) -> ExitCode {
@@ -34,7 +34,8 @@ fn rne() -> Arc<dyn Policy> {
     Registry::standard().parse("RNE").expect("known").policy
 }
 
-/// The search for the best split of 20 robots of one role, the largest that is exact, and by local search of 60.
+/// Searches for the best split of a role: 20 robots, the largest number that is exact, and 60 robots by
+/// local search.
 fn grouping() {
     let rne = rne();
     for carriers in [20, 60] {

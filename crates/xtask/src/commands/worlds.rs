@@ -1,7 +1,9 @@
-//! Random feasible worlds: does everybody get there? Fails when a fleet stands still for a minute, more than one robot in a hundred does
-//! not come on for half a minute, an invariant is violated, or something panics.
+//! Random feasible worlds: whether all robots arrive. It fails if a fleet stands still for a minute, more
+//! than one robot in a hundred makes no progress for half a minute, an invariant is violated, or a panic
+//! occurs.
 //!
-//! `worlds [FIRST_SEED] [WORLDS] [open|rooms]`: worlds in the open, and rooms whose walls meet; without a word, both.
+//! `worlds [FIRST_SEED] [WORLDS] [open|rooms]`: worlds in the open, or rooms whose walls meet; by default
+//! both.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::process::ExitCode;
@@ -31,7 +33,7 @@ pub fn run(arguments: &[String]) -> ExitCode {
     ExitCode::from(u8::from(sound.count() < families.len()))
 }
 
-/// Runs a family's worlds; whether they are sound.
+/// Runs a family's worlds; returns whether they are sound.
 fn run_family((name, world): &Family, seeds: std::ops::Range<u64>) -> bool {
     let mut totals = Totals { family: name, ..Totals::default() };
     for start in seeds.clone().step_by(CHUNK) {
@@ -46,10 +48,10 @@ fn run_family((name, world): &Family, seeds: std::ops::Range<u64>) -> bool {
     totals.print(seeds.end - seeds.start)
 }
 
-/// What is said of a world in which something panicked.
+/// The text that stands for the message of a panic.
 const INTERNAL: &str = "internal error";
 
-/// Worlds between two outputs.
+/// Number of worlds between two outputs.
 const CHUNK: usize = 10;
 
 #[derive(Default)]
@@ -67,7 +69,7 @@ struct Totals {
 }
 
 impl Totals {
-    /// Adds a world, and prints what is to be said of it.
+    /// Adds a world, and prints its problems.
     fn add(&mut self, seed: u64, result: &Result<Journeys, String>) {
         let journeys = match result {
             Ok(journeys) => journeys,
@@ -99,7 +101,7 @@ impl Totals {
         }
     }
 
-    /// Prints what was counted; whether the worlds are sound.
+    /// Prints the counts; returns whether the worlds are sound.
     fn print(&self, count: u64) -> bool {
         let Self { family, robots, stalls, violations, internal, refused, standstills, .. } = self;
         let share = 100.0 * f64::from(*stalls) / (*robots).max(1) as f64;

@@ -1,4 +1,5 @@
-//! A benchmark of right of way on the problems that the literature uses, and the files in `scenarios/navigation/` that show them.
+//! A benchmark of right of way on problems from the literature, and the files in `scenarios/navigation/`
+//! that show them.
 
 pub mod problems;
 mod table;

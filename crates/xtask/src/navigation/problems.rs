@@ -1,16 +1,18 @@
 //! The problems, each with its source: open space, narrow places, crowds.
 //!
 //! Sources, as the problems name them:
-//! - ORCA: van den Berg, Guy, Lin, Manocha, "Reciprocal n-body collision avoidance", ISRR 2009 (Springer 2011). Robots on a circle swap to
-//!   the antipodal places.
-//! - CADRL: Chen, Liu, Everett, How, "Decentralized non-communicating multiagent collision avoidance with deep reinforcement learning",
-//!   ICRA 2017. Crossings and swaps.
-//! - Social mini-games: Chandra, Zinage, Bakolas, Stone, Biswas, arXiv 2308.10966. Doorway, hallway, intersection.
-//! - MAPF: Stern et al., "Multi-agent pathfinding: definitions, variants, and benchmarks", Symposium on Combinatorial Search 2019. Swapping
-//!   conflicts, which corridors force; random obstacles; permutations.
+//! - ORCA: van den Berg, Guy, Lin, Manocha, "Reciprocal n-body collision avoidance", ISRR 2009 (Springer
+//!   2011). Robots on a circle swap to the antipodal places.
+//! - CADRL: Chen, Liu, Everett, How, "Decentralized non-communicating multiagent collision avoidance with
+//!   deep reinforcement learning", ICRA 2017. Crossings and swaps.
+//! - Social mini-games: Chandra, Zinage, Bakolas, Stone, Biswas, arXiv 2308.10966. Doorway, hallway,
+//!   intersection.
+//! - MAPF: Stern et al., "Multi-agent pathfinding: definitions, variants, and benchmarks", Symposium on
+//!   Combinatorial Search 2019. Swapping conflicts, which corridors force; random obstacles; permutations.
 //!
-//! The papers leave sizes open or use other robots. Here they follow from the robot: it needs 0.8 m of width, because its routes keep 0.15 m
-//! from walls. One lane is 0.9 m wide, too narrow for two robots side by side. Two lanes are 1.6 m wide: two robots pass with all their margins.
+//! The papers leave sizes open or use other robots. Here sizes follow from the robot. It needs 0.8 m of
+//! width, because its routes keep 0.15 m from walls. One lane is 0.9 m wide, too narrow for two robots side
+//! by side. Two lanes are 1.6 m wide: two robots pass with all their margins.
 
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
@@ -30,10 +32,10 @@ const DOOR_DEPTH_M: f64 = 0.4;
 /// Distance between robots that start side by side, in metres.
 const SPACING_M: f64 = 1.1;
 
-/// Distance between robots that leave no gap for another, in metres.
+/// Distance between robots among which no other robot fits through, in metres.
 const DENSE_M: f64 = 0.9;
 
-/// Draws of a random place before a room counts as full.
+/// Number of draws of a random place before a room counts as full.
 const DRAWS: u32 = 2000;
 
 /// Robots that start side by side in one column.
@@ -42,7 +44,7 @@ const ABREAST: u32 = 5;
 /// Width of a room at the end of a corridor for up to five robots, and height of any such room, in metres.
 const ROOM_M: [f64; 2] = [3.0, 6.0];
 
-/// The papers, as headers of the files name them.
+/// The papers, as the headers of the files name them.
 const ORCA: &str = "antipodal circle of van den Berg et al. 2011 (ORCA)";
 const CADRL: &str = "crossing of Chen et al. 2017 (CADRL)";
 const MINI_GAME: &str = "social mini-game of Chandra et al., arXiv 2308.10966";
@@ -50,14 +52,14 @@ const MAPF: &str = "swapping conflicts of Stern et al. 2019 (MAPF)";
 const BENCHMARK: &str = "random obstacles and permutations of Stern et al. 2019 (MAPF)";
 const OWN: &str = "a problem of this project, on which the paper's right of way fails";
 
-/// A kind of world, of which each seed gives one.
+/// A kind of world; each seed gives one instance.
 #[derive(Clone, Copy)]
 pub struct Problem {
-    /// Its name, and that of its file.
+    /// Name of the problem and of its file.
     pub name: &'static str,
-    /// What is asked of the robots.
+    /// Task of the robots.
     pub what: &'static str,
-    /// Where it is from.
+    /// Source of the problem.
     pub source: &'static str,
     make: fn(&mut ChaCha8Rng) -> World,
 }
@@ -164,7 +166,8 @@ pub const PROBLEMS: [Problem; 33] = [
     }),
 ];
 
-/// Robots on a circle, each to the place opposite. The circle has at least a metre of rim for each robot.
+/// Robots on a circle, each with the opposite place as its goal. The circle has at least a metre of rim for
+/// each robot.
 fn circle(robots: u32) -> World {
     let radius = f64::max(4.0, f64::from(robots) / std::f64::consts::TAU);
     let middle = (radius + 2.0).ceil();
@@ -177,7 +180,8 @@ fn circle(robots: u32) -> World {
     world
 }
 
-/// A group from the west to the east and one from the south to the north, whose ways cross in the middle.
+/// A group from the west to the east and a group from the south to the north, whose paths cross in the
+/// middle.
 fn crossing(each: u32) -> World {
     let abreast = if each <= 4 { 2 } else { 4 };
     let rows = each.div_ceil(abreast);
@@ -203,7 +207,7 @@ fn columns(robots: u32, exit_x: f64, height: f64) -> impl Iterator<Item = Point>
     })
 }
 
-/// Width of a room for so many robots, in metres.
+/// Width of a room for this many robots, in metres.
 fn room_width(robots: u32) -> f64 {
     ROOM_M[0] + SPACING_M * f64::from((robots - 1) / ABREAST)
 }
@@ -217,7 +221,7 @@ fn rooms(room: f64, length: f64, width: f64) -> World {
     world
 }
 
-/// Two groups swap the ends of a corridor, each robot to the place opposite.
+/// Two groups swap the ends of a corridor; each robot goes to the opposite place.
 fn corridor(each: u32, length: f64, width: f64) -> World {
     let room = room_width(each);
     let mut world = rooms(room, length, width);
@@ -229,7 +233,7 @@ fn corridor(each: u32, length: f64, width: f64) -> World {
     world
 }
 
-/// A group goes through a door from one room to the next; the foremost go farthest.
+/// A group goes through a door from one room to the next; the robots in front go farthest.
 fn bottleneck(robots: u32) -> World {
     let room = room_width(robots);
     let mut world = rooms(room, DOOR_DEPTH_M, LANE_M);
@@ -239,7 +243,7 @@ fn bottleneck(robots: u32) -> World {
     world
 }
 
-/// A hallway of two lanes that is closed at its ends.
+/// A hallway of two lanes, closed at both ends.
 fn hallway() -> World {
     let (length, height) = (12.0, 2.0);
     let wall = (height - TWO_LANES_M) / 2.0;
@@ -251,7 +255,7 @@ fn hallway() -> World {
     world
 }
 
-/// Two hallways of two lanes that cross: two robots at a right angle, or one from each side.
+/// Two crossing hallways of two lanes: two robots at a right angle, or one from each side.
 fn intersection(robots: u32) -> World {
     let size = 12.0;
     let (middle, wall) = (size / 2.0, (size - TWO_LANES_M) / 2.0);
@@ -266,7 +270,8 @@ fn intersection(robots: u32) -> World {
     world
 }
 
-/// A one-lane corridor that is too long to go back, with a bay at half way in which as many robots find room as come from each side.
+/// A one-lane corridor that is too long to back out of. A bay half way along it has room for all robots of
+/// one side.
 fn bay(each: u32) -> World {
     let (room, length, depth) = (ROOM_M[0], 10.0, 1.0);
     let (height, half) = (ROOM_M[1], 0.05 + LANE_M / 2.0 * f64::from(each));
@@ -284,14 +289,14 @@ fn bay(each: u32) -> World {
     world
 }
 
-/// Two one-lane corridors that cross, with a room at each of the four ends and two robots in each.
+/// Two crossing one-lane corridors, with a room at each of the four ends and two robots in each room.
 fn lane_crossing() -> World {
     let (room, arm, half_room) = (ROOM_M[0], 3.0, 2.0);
     let size = 2.0 * (room + arm) + LANE_M;
     let (middle, lane) = (size / 2.0, room + arm);
     let corner = middle - half_room;
     let mut world = World::new(size, size);
-    // The walls of the corner at the lower left, which the others mirror.
+    // The walls of the lower left corner; the other corners mirror them.
     let walls =
         [[[0.0, 0.0], [corner, corner]], [[room, corner], [lane, lane]], [[corner, room], [lane, corner]]];
     for [low, high] in walls {
@@ -321,8 +326,8 @@ fn room(draws: &mut ChaCha8Rng, robots: u32) -> World {
     }
 }
 
-/// A draw of a room; none if it has no place for one more thing. Boxes leave a metre to each other and to the walls, so that every place
-/// can be reached. Starts are a metre apart, and goals too.
+/// A draw of a room; `None` if there is no place left for something. Boxes are a metre from each other and
+/// from the walls, so that every place can be reached. Starts are a metre apart, and so are goals.
 fn try_room(draws: &mut ChaCha8Rng, robots: u32) -> Option<World> {
     let (share, gap, apart, off_walls) = (0.1, 1.0, 1.0, 0.5);
     let size = (10.0 * libm::sqrt(6.0 * f64::from(robots))).round() / 10.0;
@@ -357,7 +362,7 @@ fn try_room(draws: &mut ChaCha8Rng, robots: u32) -> Option<World> {
     Some(world)
 }
 
-/// A row of parked robots that leaves a way round at one end.
+/// A row of parked robots with a way around it at one end.
 fn parked_row() -> World {
     let mut world = World::new(10.0, 6.0);
     (0..3).for_each(|i| world.robot([1.0, 1.0 + f64::from(i)], [9.0, 1.0 + f64::from(i)]));
@@ -365,8 +370,9 @@ fn parked_row() -> World {
     world
 }
 
-/// Three parked robots abreast in a passage, with gaps too narrow for a fourth: one of them has to make room. Like
-/// `scenarios/minimal/row.ron`, where robots have a radius of 0.4 m and the passage a width of 5.8 m.
+/// Three parked robots side by side in a passage, with gaps too narrow for a fourth robot: one of them has
+/// to make room. It resembles `scenarios/minimal/row.ron`, where robots have a radius of 0.4 m and the
+/// passage a width of 5.8 m.
 fn parked_across() -> World {
     let (room, length, width) = (3.0, 6.0, 3.6);
     let mut world = rooms(room, length, width);
@@ -376,7 +382,7 @@ fn parked_across() -> World {
     world
 }
 
-/// A room of which 42 robots take a fifth; each to the place opposite.
+/// A room in which 42 robots take a fifth of the floor; each robot goes to the opposite place.
 fn swap() -> World {
     let size = 6.3;
     let mut world = World::new(size, size);
@@ -388,7 +394,7 @@ fn swap() -> World {
     world
 }
 
-/// A random permutation of the places of a grid that leaves no robot where it is.
+/// A random permutation of the places of a grid in which every robot changes its place.
 fn grid(draws: &mut ChaCha8Rng) -> World {
     let (columns, spacing) = (4_usize, 1.2);
     let mut goals: Vec<usize> = (0..columns * columns).collect();

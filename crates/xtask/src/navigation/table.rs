@@ -1,4 +1,4 @@
-//! What trials came to, for people and as CSV.
+//! The results of trials, as printed tables and as CSV.
 
 use std::path::Path;
 use std::time::Instant;
@@ -8,7 +8,7 @@ use serde::Serialize;
 use super::problems::Problem;
 use super::trial::{Late, Outcome};
 
-/// A table that prints a line for each problem as soon as it is done.
+/// A table that prints the line of each problem as soon as its trials have ended.
 pub(super) struct Table {
     csv: Option<csv::Writer<std::fs::File>>,
     start: Instant,
@@ -37,7 +37,7 @@ struct Line<'o> {
 }
 
 impl Table {
-    /// Prints the head, and opens the CSV file where one is asked for.
+    /// Prints the header, and opens the CSV file if there is one.
     pub(super) fn new(csv: Option<&Path>) -> Result<Self, String> {
         let open = |path: &Path| {
             csv::Writer::from_path(path).map_err(|error| format!("{}: {error}", path.display()))
@@ -76,7 +76,7 @@ impl Table {
         csv.flush().map_err(|error| error.to_string())
     }
 
-    /// Prints the last line.
+    /// Prints the summary line.
     pub(super) fn finish(self) {
         let logs = self.flows.iter().map(|flow| flow.ln()).sum::<f64>();
         let mean = (logs / self.flows.len() as f64).exp();
@@ -112,7 +112,7 @@ fn line<'o>(problem: &Problem, outcome: &'o Outcome) -> Line<'o> {
     }
 }
 
-/// Prints why a trial is not ok, where it is not.
+/// Prints why a trial is not ok; prints nothing if it is ok.
 pub(super) fn explain(outcome: &Outcome) {
     if outcome.is_ok() {
         return;

@@ -1,4 +1,4 @@
-//! One trial of a problem: the robots together, measured against each robot alone.
+//! One trial of a problem: the robots together, compared with each robot alone.
 
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -15,41 +15,43 @@ use usar_sim::world::World;
 
 use super::problems::Problem;
 
-/// Robots touch at this distance between their bodies, and touch again only after they were farther apart than the second, in metres.
+/// Distances between bodies, in metres: robots touch below the first, and a new touch counts only after
+/// they were farther apart than the second.
 const TOUCH_M: [f32; 2] = [0.002, 0.02];
 
-/// What a trial came to.
+/// The outcome of a trial.
 pub struct Outcome {
     /// The seed.
     pub seed: u64,
-    /// Robots with a goal.
+    /// Number of robots with a goal.
     pub robots: usize,
-    /// Those that arrived.
+    /// Number of robots that arrived.
     pub arrived: usize,
-    /// Sum of the arrival times by the sum of the times that each robot needs alone. A robot that does not arrive counts with the limit.
+    /// Flow: the sum of the arrival times by the sum of the times that each robot needs alone. A robot that
+    /// does not arrive counts with the limit.
     pub flow: f64,
     /// The limit, in seconds: five times the longest time alone, and half a minute.
     pub limit_s: f64,
-    /// When the last robot arrived or gave up, or the limit, in seconds.
+    /// Time when the last robot arrived or gave up, or the limit, in seconds.
     pub time_s: f64,
-    /// Places given up as unreachable.
+    /// Number of goals given up as unreachable.
     pub given_up: u32,
-    /// Times that a robot came to touch another, for each robot.
+    /// Number of new touches, for each robot.
     pub touches: f64,
     /// The deepest overlap of bodies, in metres.
     pub deepest_m: f32,
     /// Whether bodies overlapped by more than a centimetre.
     pub overlapped: bool,
-    /// Time that the simulator took for a step of one robot, in microseconds, checks aside.
+    /// Wall-clock time of a step for one robot, without checks, in microseconds.
     pub step_us: f64,
-    /// Why the trial broke off, where it did.
+    /// Why the trial was interrupted, if it was.
     pub failure: Option<String>,
     /// The robots that did not arrive.
     pub late: Vec<Late>,
 }
 
 impl Outcome {
-    /// Whether all arrived, and no bodies overlapped by more than a centimetre.
+    /// Whether all robots arrived, and no bodies overlapped by more than a centimetre.
     #[must_use]
     pub fn is_ok(&self) -> bool {
         self.failure.is_none() && self.late.is_empty() && !self.overlapped
@@ -58,17 +60,17 @@ impl Outcome {
 
 /// A robot that did not arrive.
 pub struct Late {
-    /// Which.
+    /// Number of the robot.
     pub robot: u32,
-    /// Where it ended.
+    /// Its last position.
     pub at: [f32; 2],
-    /// Where it was to go.
+    /// Its goal.
     pub goal: Point,
-    /// When it gave the goal up, in seconds, where it did.
+    /// Time when it gave up the goal, in seconds, if it did.
     pub gave_up_s: Option<f64>,
-    /// Why it does not move on in the end, and whom it waits for.
+    /// Its delay cause at the end, and the robot for which it waits.
     pub delay: Delay,
-    /// How long it has not come nearer, in seconds.
+    /// Time since it last came nearer to its goal, in seconds.
     pub stalled_s: f64,
 }
 
@@ -78,7 +80,7 @@ pub type Changes = [(String, String)];
 /// Runs the instance of a seed, with these fields of its scenario set.
 ///
 /// # Errors
-/// A change that is none, or a world in which a robot does not arrive although it is alone.
+/// A change that cannot be set, or a world in which a robot does not arrive even alone.
 pub fn run(problem: &Problem, seed: u64, changes: &Changes) -> Result<Outcome, String> {
     let path = format!("{}.ron", problem.name);
     let text = problem.text(seed);
@@ -101,7 +103,7 @@ fn simulation(file: ScenarioFile, seed: u64) -> Result<Simulation, String> {
     Simulation::new(&scenario, seed).map_err(|error| error.to_string())
 }
 
-/// Time that a robot needs for its errand when it is alone, in seconds.
+/// Time that a robot needs for its errand alone, in seconds.
 fn alone(file: &ScenarioFile, errand: usize, seed: u64) -> Result<f64, String> {
     let mut file = file.clone();
     let mut errand = file.errands.swap_remove(errand);
@@ -117,7 +119,7 @@ fn alone(file: &ScenarioFile, errand: usize, seed: u64) -> Result<f64, String> {
     Err(format!("robot {id} does not arrive although it is alone"))
 }
 
-/// All robots together, until the last has arrived or given up.
+/// Runs all robots together, until the last one has arrived or given up.
 fn together(file: ScenarioFile, seed: u64, free_s: f64) -> Result<Outcome, String> {
     let limit_s = file.duration_s;
     let goals: Vec<(u32, Point)> = file.errands.iter().map(|errand| (errand.robot, errand.to[0])).collect();
@@ -184,11 +186,11 @@ fn together(file: ScenarioFile, seed: u64, free_s: f64) -> Result<Outcome, Strin
     })
 }
 
-/// Counts how often robots come to touch one another.
+/// Counts how often robots begin to touch one another.
 struct Touches {
     /// For each pair, whether they touch.
     touching: Vec<bool>,
-    /// Robots that came to touch another: each pair counts twice.
+    /// Number of robots that began to touch another: each pair counts twice.
     count: u64,
 }
 

@@ -1,4 +1,4 @@
-//! One instance of a problem: robots with places to go to, and walls; and its text as a scenario.
+//! One instance of a problem: robots with goals, and walls; and its text as a scenario.
 
 use std::fmt::Write;
 
@@ -12,23 +12,25 @@ pub const RADIUS_M: f64 = 0.25;
 /// Top speed of every robot, in metres per second.
 pub const SPEED_MPS: f64 = 1.0;
 
-/// A robot reaches its top speed in half a second, nearly the same time as the default role (2.25 m/s at 4 m/s²).
+/// Every robot reaches its top speed in half a second, nearly the same time as the default role (2.25 m/s
+/// at 4 m/s²).
 pub const ACCELERATION_MPS2: f64 = 2.0;
 
-/// No world is larger: all robots know all walls from the start.
+/// Larger than every world, so that all robots know all walls from the start.
 const SENSING_M: f64 = 100.0;
 
 /// The seed moves each start by up to this much along both axes, in metres.
 const JITTER_M: f64 = 0.03;
 
-/// Lowest and highest battery level that the seed draws, in percent. The level is the priority and stays what it is: nothing costs energy.
+/// Lowest and highest battery level that the seed draws, in percent. The level is the robot's priority. It
+/// stays constant, because nothing costs energy.
 const ENERGY: [f64; 2] = [50.0, 100.0];
 
 /// A robot of a world.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Robot {
     start: Point,
-    /// Where it is to go; a robot without a goal is parked.
+    /// Its goal; a robot without one is parked.
     goal: Option<Point>,
     energy: f64,
 }
@@ -48,7 +50,7 @@ impl World {
         Self { size: [width, height], robots: Vec::new(), walls: Vec::new() }
     }
 
-    /// Adds a robot that is to go from one place to another.
+    /// Adds a robot that has to go from one place to another.
     pub(super) fn robot(&mut self, start: Point, goal: Point) {
         self.robots.push(Robot { start, goal: Some(goal), energy: 0.0 });
     }
@@ -81,7 +83,8 @@ impl World {
         }
     }
 
-    /// A duration for `usar run`: five times the longest way as the crow flies with a quarter added, and half a minute, in tens of seconds.
+    /// A duration for `usar run`: 25 % more than the longest straight distance, times five, plus half a
+    /// minute, rounded up to tens of seconds.
     fn duration_s(&self) -> f64 {
         let ways = self.robots.iter().filter_map(|robot| {
             let goal = robot.goal?;
@@ -91,7 +94,7 @@ impl World {
         (seconds / 10.0).ceil() * 10.0
     }
 
-    /// The scenario as text, without a comment at its head.
+    /// The scenario as text, without the comment at its head.
     pub(super) fn text(&self, name: &str, description: &str) -> String {
         let mut text = String::new();
         self.write(&mut text, name, description).expect("memory");

@@ -1,4 +1,4 @@
-//! Adding trials to a folder, and closing it when all are there.
+//! Adding trials to a folder, and closing it when all trials are finished.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -18,7 +18,7 @@ use crate::sweep::measured::Measured;
 use crate::sweep::store::{Order, Store, thaw};
 
 impl Folder {
-    /// Goes on with more trials of the same sweep.
+    /// Continues with more trials of the same sweep.
     ///
     /// # Errors
     /// The disk does not take it.
@@ -34,7 +34,7 @@ impl Folder {
         Ok(())
     }
 
-    /// Takes trials: when this returns, they are on disk.
+    /// Adds trials. They are on disk when this returns.
     ///
     /// # Errors
     /// The disk does not take them, or another process has taken over the folder.
@@ -51,7 +51,7 @@ impl Folder {
         Ok(())
     }
 
-    /// Makes all tables from the journal, in another folder; `None` when it was to stop.
+    /// Makes all tables and the archive from the store, in another folder; `None` if `stop` was set.
     pub(in crate::sweep) fn tables_in(
         &mut self,
         folder: &Path,
@@ -62,10 +62,10 @@ impl Folder {
         closing.run(results.keys().copied(), |place| store.line(place), |_, _| {})
     }
 
-    /// Makes the tables, unless they are there already.
+    /// Makes the tables, unless the folder is complete.
     ///
     /// # Errors
-    /// The disk does not take them, or `stop` was set: the same command makes them.
+    /// The disk does not take them, or `stop` was set. The same command resumes.
     pub fn finish(&mut self, stop: &AtomicBool) -> Result<(), Failure> {
         if self.manifest.is_complete {
             return Ok(());
@@ -75,7 +75,7 @@ impl Folder {
         self.close(made)
     }
 
-    /// Takes all trials from elsewhere, in order, and makes the tables.
+    /// Takes all trials from another source, in order, and makes the tables.
     ///
     /// # Errors
     /// A line cannot be read, the disk does not take it, or `stop` was set.

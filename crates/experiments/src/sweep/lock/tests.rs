@@ -1,4 +1,4 @@
-//! When a lock is stale, and that one process at a time has a folder.
+//! Tests of stale locks, and that only one process at a time holds a folder.
 
 use super::*;
 

@@ -1,4 +1,4 @@
-//! What a sweep would take, from a few of its trials.
+//! The cost of a sweep, measured on a few of its trials.
 
 use std::collections::BTreeSet;
 use std::sync::atomic::Ordering;
@@ -11,28 +11,28 @@ use experiments::sweep::{Sizes, sizes};
 
 use crate::running::{STOP, progress_bar};
 
-/// About how many trials are measured, in whole seeds: policies that decide alike share theirs, so that only
-/// all policies of a seed show what it takes.
+/// Approximate number of measured trials, in whole seeds. Policies that decide alike share their trials, so
+/// that only all policies of a seed show the true cost.
 const TRIALS: usize = 24;
 
-/// Places that this is added to, again and again, are spread without a pattern that a grid of cases could
-/// have as well.
+/// Multiples of this number modulo 1 spread over the sweep without a period that could coincide with the
+/// grid of cases.
 const GOLDEN_RATIO: f64 = 0.618_033_988_749_895;
 
-/// A few trials of a sweep, and how long they took.
+/// A few trials of a sweep, and their times.
 pub(crate) struct Measured {
     outcomes: Vec<Outcome>,
     /// Mean time of a trial on one thread, in seconds.
     pub seconds_each: f64,
-    /// How many were simulated, and not taken over from a policy that decides alike.
+    /// Number of trials that were simulated instead of taken over from a policy that decides alike.
     pub simulated: usize,
 }
 
 impl Measured {
-    /// Runs all policies on a few of the cases and seeds, spread over all.
+    /// Runs all policies on a few cases and seeds, spread over the whole sweep.
     ///
     /// # Errors
-    /// It was stopped.
+    /// The run was interrupted.
     pub(crate) fn of(experiment: &Experiment) -> Result<Self, Failure> {
         let sample = sample(experiment);
         let bar = progress_bar(sample.len(), "trials to measure", 1, false);
@@ -51,15 +51,15 @@ impl Measured {
         Ok(Self { outcomes, seconds_each, simulated: experiment.simulated() })
     }
 
-    /// How many trials were measured.
+    /// Number of measured trials.
     pub(crate) fn count(&self) -> usize {
         self.outcomes.len()
     }
 
-    /// The room that so many trials take, by themselves or as a shard, if this is kept of each.
+    /// The disk space of this many trials, by themselves or as a shard, if `keep` is kept of each.
     ///
     /// # Errors
-    /// There is no room for the files of the few.
+    /// There is no room for the files of the measured trials.
     pub(crate) fn sizes(
         &self,
         experiment: &Experiment,
@@ -73,7 +73,7 @@ impl Measured {
     }
 }
 
-/// All policies on a few of the cases and seeds, spread over all.
+/// All policies on a few cases and seeds, spread over the whole sweep.
 fn sample(experiment: &Experiment) -> Vec<TrialKey> {
     let (policies, trials) = (experiment.policies.len(), experiment.trials as usize);
     let count = experiment.cases.len() * trials;

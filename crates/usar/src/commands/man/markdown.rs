@@ -1,4 +1,4 @@
-//! All commands on one page: what `--help` prints of each.
+//! All commands on one page, each with its `--help`.
 
 use std::fmt::Write;
 
@@ -11,7 +11,7 @@ What `--help` prints of every command. `usar man --markdown` makes this page, an
 the program.
 ";
 
-/// Columns of the help texts.
+/// Width of the help texts in columns.
 const COLUMNS: usize = 110;
 
 /// The page.
@@ -22,7 +22,8 @@ pub(super) fn page(command: Command) -> String {
     commands.insert(0, command);
     for command in commands {
         let name = command.get_bin_name().unwrap_or("usar").to_owned();
-        // A version differs from commit to commit and does not belong on a page that is compared.
+        // The version differs from commit to commit, so that it does not belong on a page that tests
+        // compare.
         let help = command.term_width(COLUMNS).render_help().to_string();
         let help: Vec<&str> = help.lines().map(str::trim_end).collect();
         let _ = write!(page, "\n## {name}\n\n```text\n{}\n```\n", help.join("\n").trim_end());

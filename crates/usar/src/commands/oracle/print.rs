@@ -1,4 +1,4 @@
-//! What `usar oracle` prints and writes.
+//! The output of `usar oracle`.
 
 use std::io::Write;
 use std::path::Path;
@@ -32,14 +32,14 @@ struct Output<'a> {
 struct AnswerOutput<'a> {
     /// The policy that decides the rest of the trial; null for the end of the round.
     then: Option<&'a str>,
-    /// Whether all assignments were played, so that the best of them is the best there is.
+    /// Whether all assignments were played. If so, the best of them is the best that exists.
     is_exact: bool,
     played: usize,
     best: Option<f64>,
     mean: Option<f64>,
     worst: Option<f64>,
     policies: Vec<Choice<'a>>,
-    /// The best first.
+    /// The played assignments, the best first.
     ranking: Vec<Ranked<'a>>,
 }
 
@@ -149,7 +149,7 @@ fn print_answer(out: &mut dyn Write, asked: &Asked, answer: &Answer, top: usize)
     Ok(())
 }
 
-/// A number in a table: whole, or with two decimals.
+/// A number for a table: whole, or with two decimals.
 fn short(value: f64) -> String {
     if value.fract() == 0.0 { format!("{value:.0}") } else { format!("{value:.2}") }
 }
@@ -178,7 +178,7 @@ fn ranking(asked: &Asked, survey: &Survey, top: usize) -> Table {
     table
 }
 
-/// All rescuees, and in brackets those of each task.
+/// The number of all rescuees, and in brackets the number for each task.
 fn rescued(outcome: &Outcome) -> String {
     let each: Vec<String> = outcome.tasks.iter().map(|task| task.rescued.to_string()).collect();
     format!("{} ({})", outcome.total().rescued, each.join(" + "))
@@ -203,7 +203,7 @@ fn choices(asked: &Asked, survey: &Survey) -> Table {
     table
 }
 
-/// All outcomes, a line each, the best first.
+/// Writes all outcomes as CSV, one on each line, the best first.
 pub(super) fn write_csv(path: &Path, asked: &Asked, answers: &[Answer]) -> Result<(), Failure> {
     let trouble =
         |error: &dyn std::fmt::Display| Failure::storage(format!("--csv: {}: {error}", path.display()));

@@ -1,4 +1,4 @@
-//! Pictures in a row: as files, as a GIF, or as a film.
+//! Sequences of pictures: as files, as a GIF, or as a film.
 
 use std::io::Write;
 use std::path::Path;
@@ -12,7 +12,7 @@ use super::{Arguments, video};
 use crate::commands::output;
 use crate::running::{STOP, stop_on_signals};
 
-/// The most pictures in a row.
+/// Largest number of pictures in a sequence.
 const MOST: usize = 100_000;
 
 /// The frame at a time of the recording.
@@ -26,7 +26,7 @@ pub(super) fn frame_at(recording: &Recording, flag: &str, time_s: f64) -> Result
     Ok(recording.frame_at(time_s))
 }
 
-/// Pictures to draw, one after the other.
+/// A sequence of pictures to draw.
 struct Row<'r> {
     recording: &'r Recording,
     numbers: Vec<usize>,
@@ -85,7 +85,7 @@ impl Arguments {
         }
     }
 
-    /// The frames that are drawn.
+    /// Numbers of the frames that are drawn.
     fn numbers(&self, recording: &Recording) -> Result<Vec<usize>, Failure> {
         let last = recording.header.time_s_of(recording.frames() - 1);
         let from = self.from.max(recording.header.time_s_of(0));

@@ -1,4 +1,4 @@
-//! A film, made by the program ffmpeg.
+//! Films, made by the program ffmpeg.
 
 use std::io::{ErrorKind, Read, Write};
 use std::path::Path;
@@ -7,10 +7,10 @@ use std::process::{Child, Command, Stdio};
 use experiments::Failure;
 use pictures::Pixels;
 
-/// The program.
+/// Name of the program.
 const PROGRAM: &str = "ffmpeg";
 
-/// Says at once if the program is missing.
+/// Fails at once if the program is missing.
 pub(super) fn check_program() -> Result<(), Failure> {
     let tried = Command::new(PROGRAM).arg("-version").stdout(Stdio::null()).stderr(Stdio::null()).status();
     match tried {
@@ -23,7 +23,7 @@ pub(super) fn check_program() -> Result<(), Failure> {
     }
 }
 
-/// Writes pictures, each shown for a part of a second, as a film of this name.
+/// Writes pictures as a film with this name and this number of pictures in a second.
 pub(super) fn write(
     (folder, name): (&Path, &str),
     fps: u16,
@@ -48,7 +48,7 @@ fn start(first: &Pixels, fps: u16, out: &Path) -> Result<Child, Failure> {
     let size = format!("{}x{}", first.width, first.height);
     let rate = fps.to_string();
     let input = ["-f", "rawvideo", "-pix_fmt", "rgba", "-s", &size, "-r", &rate, "-i", "-"];
-    // Players want an even number of pixels on each side.
+    // Players require an even number of pixels on each side.
     let even = "pad=ceil(iw/2)*2:ceil(ih/2)*2:color=white";
     let output =
         ["-vf", even, "-c:v", "libx264", "-pix_fmt", "yuv420p", "-movflags", "+faststart", "-f", "mp4", "-y"];

@@ -8,7 +8,7 @@ use experiments::Failure;
 use recording::ToldEvent;
 use usar_sim::simulation::Simulation;
 
-/// The file on its way.
+/// The file that is being written.
 pub(super) struct EventLines {
     path: PathBuf,
     file: BufWriter<File>,
@@ -26,7 +26,7 @@ impl EventLines {
         Ok(Self { path: path.to_owned(), file: BufWriter::new(file) })
     }
 
-    /// Takes the events of a step. To be called after each.
+    /// Writes the events of a step. Call it after each step.
     pub(super) fn listen(&mut self, simulation: &Simulation) -> Result<(), Failure> {
         for told in told(simulation) {
             let line = serde_json::to_string(&told).map_err(Failure::run)?;
@@ -35,7 +35,7 @@ impl EventLines {
         Ok(())
     }
 
-    /// Puts the last lines on disk.
+    /// Flushes the last lines to the file.
     pub(super) fn finish(mut self) -> Result<(), Failure> {
         self.file.flush().map_err(|error| self.trouble(&error))
     }

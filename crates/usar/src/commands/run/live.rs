@@ -1,4 +1,4 @@
-//! A trial on one screen of a terminal while it runs, drawn in place.
+//! Shows a running trial on one screen of a terminal, drawn in place.
 
 use std::fmt::Write;
 use std::time::{Duration, Instant};
@@ -10,17 +10,17 @@ use usar_sim::world::RescueeState;
 
 use crate::printable::printable;
 
-/// How often it is drawn.
+/// Time between two drawings.
 const PERIOD: Duration = Duration::from_millis(100);
 
-/// It is looked at the clock once in so many steps.
+/// The clock is checked once in this many steps.
 const CLOCK_STEPS: u64 = 8;
 
-/// The most robots that have a line, and the most columns of a line.
+/// Limits of the screen: robots that have a line, and columns of a line.
 const MOST_ROBOTS: usize = 16;
 const COLUMNS: usize = 79;
 
-/// The screen. Nothing is drawn where stderr is no terminal.
+/// The screen. Nothing is drawn if stderr is not a terminal.
 pub(super) struct Live {
     bar: ProgressBar,
     policy: String,
@@ -37,7 +37,7 @@ impl Live {
         Self { bar, policy: policy.to_owned(), begun: Instant::now(), drawn: None }
     }
 
-    /// Draws once in a while. To be called after each step.
+    /// Draws the screen if enough time has passed. Call it after each step.
     pub(super) fn listen(&mut self, simulation: &Simulation) {
         if self.bar.is_hidden() || !simulation.steps().is_multiple_of(CLOCK_STEPS) {
             return;
@@ -50,13 +50,13 @@ impl Live {
         }
     }
 
-    /// Leaves the terminal as it was.
+    /// Clears the screen.
     pub(super) fn finish(self) {
         self.bar.finish_and_clear();
     }
 }
 
-/// The screen of a moment: the time, the groups, the robots.
+/// The text of the screen: the time, the groups, the robots.
 fn screen(simulation: &Simulation, policy: &str, speed: f64) -> String {
     let (scenario, mission) = (simulation.scenario(), simulation.mission());
     let clock = |seconds: f64| format!("{}:{:02}", seconds as u64 / 60, seconds as u64 % 60);
@@ -121,7 +121,7 @@ fn short(text: &str, most: usize) -> String {
     text.chars().take(most).collect()
 }
 
-/// A share as a bar of so many characters.
+/// A share as a bar with this many characters.
 fn bar(share: f64, width: usize) -> String {
     let full = (share.clamp(0.0, 1.0) * width as f64).round() as usize;
     "█".repeat(full) + &"░".repeat(width - full)

@@ -1,5 +1,5 @@
-//! What happened in a small scenario with errands, in a few sentences: who met whom, who waited, who made
-//! room, who arrived.
+//! The story of a small scenario with errands, in a few sentences: which robots met, waited, made room and
+//! arrived.
 
 use std::collections::BTreeMap;
 
@@ -8,24 +8,26 @@ use usar_sim::simulation::Simulation;
 
 use super::event_lines::told;
 
-/// A team that is larger has no story.
+/// A larger team has no story.
 const LARGEST_TEAM: usize = 12;
 
-/// Robots meet when there is less than this between them, in metres, and part when there is more than that.
+/// Robots meet if the distance between them is less than the first, in metres, and part if it is more than
+/// the second.
 const MEET_M: f32 = 0.5;
 const PART_M: f32 = 1.5;
 
-/// Waiting that goes on after a shorter break than this is one wait, in seconds; shorter waits are not told.
+/// Waits with a shorter break than this between them count as one wait, in seconds. Waits shorter than the
+/// second limit are left out.
 const BREAK_S: f64 = 1.0;
 const SHORTEST_WAIT_S: f64 = 0.2;
 
-/// The most sentences.
+/// Largest number of sentences.
 const MOST: usize = 16;
 
-/// Columns of a line.
+/// Width of a line in columns.
 const COLUMNS: usize = 80;
 
-/// Events that are told.
+/// Events that the story mentions.
 const TOLD: [&str; 14] = [
     "deadlocked",
     "made_room",
@@ -50,20 +52,20 @@ struct Meeting {
     is_over: bool,
 }
 
-/// A robot that waits for another one: from when to when, and how long in all, in seconds.
+/// A robot that waits for another robot: start, end and total waiting time, in seconds.
 struct Wait {
     begun_s: f64,
     last_s: f64,
     waited: f64,
 }
 
-/// Something that happened, and how often.
+/// An event, and how often it happened.
 struct Happening {
     first_s: f64,
     times: u32,
 }
 
-/// What is heard of a trial.
+/// The meetings, waits and events of a trial.
 #[derive(Default)]
 pub(super) struct Story {
     meetings: BTreeMap<(u32, u32), Vec<Meeting>>,
@@ -72,13 +74,13 @@ pub(super) struct Story {
 }
 
 impl Story {
-    /// The story of a trial that is small enough to be told.
+    /// The story of a trial, if its team is small and it has errands.
     pub(super) fn of(simulation: &Simulation) -> Option<Self> {
         let is_small = simulation.world().robots.len() <= LARGEST_TEAM;
         (is_small && !simulation.scenario().errands.is_empty()).then(Self::default)
     }
 
-    /// Takes note of a step. To be called after each.
+    /// Records a step. Call it after each step.
     pub(super) fn listen(&mut self, simulation: &Simulation) {
         let time_s = simulation.time_s();
         self.listen_for_meetings(simulation, time_s);
@@ -129,7 +131,7 @@ impl Story {
         }
     }
 
-    /// The sentences, in the order of time, each in lines of at most 80 columns.
+    /// The sentences in the order of time, each as lines of at most 80 columns.
     pub(super) fn tell(&self) -> Vec<String> {
         let mut sentences: Vec<(f64, String)> = Vec::new();
         for ((a, b), meetings) in &self.meetings {
@@ -167,7 +169,7 @@ impl Story {
     }
 }
 
-/// A sentence in lines; all but the first are set in.
+/// Folds a sentence into lines; all lines but the first are indented.
 fn fold(sentence: &str) -> Vec<String> {
     let mut lines = vec![String::new()];
     for word in sentence.split(' ') {

@@ -1,4 +1,4 @@
-//! Where each shard of a sweep stands: from its folder, and from what Slurm says of its task.
+//! The state of each shard of a sweep, from its folder and from Slurm's state of its task.
 
 use std::path::{Path, PathBuf};
 
@@ -9,19 +9,19 @@ use serde::Serialize;
 
 use super::super::slurm::Tasks;
 
-/// Where a shard stands.
+/// The state of a shard.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub(super) enum State {
-    /// All its trials are there.
+    /// All its trials are finished.
     Done,
-    /// A process is at work in it.
+    /// A process works in its folder.
     Running,
-    /// It is in the queue.
+    /// Its task is in the queue.
     Waiting,
-    /// Its task ended without being done.
+    /// Its task ended before the shard was done.
     Failed,
-    /// It is neither done, nor running, nor in the queue.
+    /// The shard is neither done, nor running, nor in the queue.
     Lost,
 }
 
@@ -44,26 +44,26 @@ impl State {
 pub(super) struct OneShard {
     pub number: u32,
     pub state: State,
-    /// What Slurm says, or who is at work.
+    /// Slurm's state of the task, or the process that works in the folder.
     pub why: String,
-    /// Trials that are there, and that are to be.
+    /// Number of finished trials, and of all trials.
     pub finished: usize,
     pub trials: usize,
     #[serde(skip)]
     pub folder: PathBuf,
 }
 
-/// What Slurm says of tasks: those in the queue, where there is one, and how others ended.
+/// Slurm's states of tasks: the queued tasks, if there is a queue, and the final states of others.
 pub(super) struct Said {
     pub queued: Option<Tasks>,
     pub ended: Tasks,
 }
 
 impl OneShard {
-    /// The shard in a folder that has so many trials to run.
+    /// The shard in a folder, which has this many trials to run.
     ///
     /// # Errors
-    /// The folder has something else in it.
+    /// The folder contains something else.
     pub(super) fn of(number: u32, folder: PathBuf, trials: usize, said: &Said) -> Result<Self, Failure> {
         let there = progress(&folder)?;
         let finished = match &there {
@@ -92,7 +92,7 @@ fn state(there: Option<&Progress>, number: u32, said: &Said) -> (State, String) 
     }
 }
 
-/// Mean wall-clock time of a trial in a shard, in seconds, over all runs that ended; nothing before the
+/// Mean wall-clock time of a trial in a shard, in seconds, over all runs that ended; `None` before the
 /// first.
 pub(super) fn seconds_each(folders: impl Iterator<Item = impl AsRef<Path>>) -> Option<f64> {
     let runs = folders.flat_map(|folder| Hosts::read(folder.as_ref()).runs);
@@ -101,7 +101,7 @@ pub(super) fn seconds_each(folders: impl Iterator<Item = impl AsRef<Path>>) -> O
     (trials > 0).then(|| seconds / trials as f64)
 }
 
-/// Numbers as Slurm writes them: `1,4-7`.
+/// Numbers in Slurm's notation: `1,4-7`.
 pub(super) fn ranges(numbers: &[u32]) -> String {
     let runs = numbers.chunk_by(|a, b| a + 1 == *b);
     let run = |run: &[u32]| match run {

@@ -1,36 +1,36 @@
-//! How a sweep is dealt out to a cluster.
+//! The distribution of a sweep over a cluster.
 
 use experiments::experiment::{Experiment, Shard};
 use serde::{Deserialize, Serialize};
 
-/// A shard takes ten minutes or more: what starting it costs is little then.
+/// Least estimated time of a shard, in seconds. The cost of starting a shard is then small.
 const LEAST_SECONDS: f64 = 600.0;
-/// Shards that are made without being asked for.
+/// Default limit of the number of shards.
 const MOST_SHARDS: usize = 500;
-/// Most shards that run at the same time without being asked for.
+/// Default limit of the number of shards that run at the same time.
 const MOST_AT_ONCE: u32 = 100;
-/// The least time that is asked for, in minutes.
+/// Least time limit of a job, in minutes.
 const LEAST_MINUTES: u64 = 30;
 
-/// How a sweep is dealt out.
+/// The distribution of a sweep over shards.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Plan {
-    /// Trials of each shard.
+    /// Number of trials of each shard.
     pub trials: Vec<usize>,
-    /// Most shards that run at the same time.
+    /// Largest number of shards that run at the same time.
     pub at_once: u32,
-    /// Threads of each.
+    /// Number of threads of each shard.
     pub cpus: u32,
-    /// Time of a trial on one thread, in seconds, as it was estimated.
+    /// Estimated time of a trial on one thread, in seconds.
     pub seconds_per_trial: f64,
 }
 
-/// What the user, or the site, wants of it.
+/// The user's and the site's requirements.
 pub(super) struct Wishes {
     pub shards: Option<u32>,
     pub at_once: Option<u32>,
     pub cpus: u32,
-    /// The most tasks of an array that the site takes.
+    /// Largest number of tasks in an array that the site accepts.
     pub most_tasks: usize,
 }
 
@@ -48,18 +48,19 @@ impl Plan {
         Self { trials, at_once, cpus: wishes.cpus, seconds_per_trial }
     }
 
-    /// How many shards there are.
+    /// Number of shards.
     pub(crate) fn shards(&self) -> usize {
         self.trials.len()
     }
 
-    /// How long the longest takes, in seconds, as it was estimated.
+    /// Estimated time of the longest shard, in seconds.
     pub(super) fn seconds(&self) -> f64 {
         let most = self.trials.iter().copied().max().unwrap_or(0);
         self.seconds_per_trial * most.div_ceil(self.cpus as usize) as f64
     }
 
-    /// The time to ask for: twice what was estimated. A shard that needs longer is queued again and goes on.
+    /// The time limit to request: twice the estimate. A shard that needs longer is queued again and
+    /// resumes.
     pub(super) fn time(&self) -> String {
         let minutes = ((self.seconds() / 30.0).ceil() as u64).max(LEAST_MINUTES);
         format!("{:02}:{:02}:00", minutes / 60, minutes % 60)

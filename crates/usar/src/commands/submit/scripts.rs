@@ -1,16 +1,16 @@
-//! The job scripts: templates in bash, in which words between @ are filled in.
+//! The job scripts: bash templates in which words between @ are replaced.
 
 use experiments::Failure;
 
-/// The script of the shards, unless the user has one.
+/// The built-in script of the shards.
 pub(super) const ARRAY: &str = include_str!("array.sh");
-/// The script of the job after it.
+/// The script of the merge job.
 pub(super) const MERGE: &str = include_str!("merge.sh");
 
-/// Fills in a template. A line with nothing but a word that stands for nothing is left out.
+/// Fills in a template. A line that consists only of a word with an empty value is left out.
 ///
 /// # Errors
-/// A word that stands for nothing at all.
+/// A word in the template is unknown.
 pub(super) fn fill(template: &str, words: &[(&str, String)]) -> Result<String, Failure> {
     let mut script = String::new();
     for (number, line) in template.lines().enumerate() {
@@ -46,7 +46,7 @@ fn fill_line(line: &str, words: &[(&str, String)]) -> Result<String, String> {
     Ok(filled)
 }
 
-/// A text as one word of a shell.
+/// A text quoted as one word of a shell.
 pub(crate) fn quoted(text: &str) -> String {
     let is_plain = |c: char| c.is_ascii_alphanumeric() || "-_./,:=+%".contains(c);
     if !text.is_empty() && text.chars().all(is_plain) {

@@ -1,4 +1,4 @@
-//! `submission.json`: what was submitted, in the folder of the shards.
+//! `submission.json`: a record of the submission, in the folder of the shards.
 
 use std::path::{Path, PathBuf};
 
@@ -12,26 +12,26 @@ use super::plan::Plan;
 const FILE: &str = "submission.json";
 /// Name of the script of the shards.
 pub(crate) const ARRAY: &str = "array.sh";
-/// Name of the script of the job after it.
+/// Name of the script of the merge job.
 pub(crate) const MERGE: &str = "merge.sh";
-/// The folder of what the jobs print.
+/// Name of the folder with the output of the jobs.
 pub(crate) const LOGS: &str = "logs";
-/// Version of its layout.
+/// Version of the file's layout.
 const SCHEMA_VERSION: u32 = 1;
 
-/// What was submitted.
+/// A record of the submission.
 #[derive(Debug, Serialize, Deserialize)]
 pub(crate) struct Submission {
     schema_version: u32,
     /// Name of the sweep.
     pub name: String,
-    /// How it was dealt out.
+    /// The distribution over shards.
     pub plan: Plan,
-    /// Where the whole goes.
+    /// Folder for the merged sweep.
     pub out: PathBuf,
-    /// The array, as Slurm names it.
+    /// The array's job number in Slurm.
     pub array: Option<String>,
-    /// The job after it.
+    /// The merge job's number in Slurm.
     pub merge: Option<String>,
 }
 
@@ -40,10 +40,10 @@ impl Submission {
         Self { schema_version: SCHEMA_VERSION, name: name.to_owned(), plan, out, array: None, merge: None }
     }
 
-    /// Reads what was submitted from a folder of shards; nothing where that is not there.
+    /// Reads the submission from a folder of shards; `None` if there is none.
     ///
     /// # Errors
-    /// It cannot be read.
+    /// The file cannot be read.
     pub(crate) fn read(folder: &Path) -> Result<Option<Self>, Failure> {
         let path = folder.join(FILE);
         if path.symlink_metadata().is_err() {

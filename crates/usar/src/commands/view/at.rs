@@ -21,7 +21,7 @@ struct Output<'a> {
     state: Frame,
 }
 
-/// A robot in words.
+/// A robot, with names instead of numbers.
 #[derive(Serialize)]
 struct Robot<'a> {
     id: usize,
@@ -34,7 +34,7 @@ struct Robot<'a> {
     needs: Vec<(&'a str, f64)>,
 }
 
-/// Prints one JSON object a line, for each recording.
+/// Prints the state of each recording as a JSON object on its own line.
 pub(super) fn print(out: &mut dyn Write, recordings: &[Recording], time_s: f64) -> Result<(), Failure> {
     for recording in recordings {
         let number = recording.frame_at(time_s);

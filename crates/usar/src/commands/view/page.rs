@@ -1,4 +1,4 @@
-//! The page: the viewer, with the recordings in it.
+//! The page: the viewer, with the recordings embedded.
 
 use std::io::Read;
 use std::path::Path;
@@ -8,16 +8,16 @@ use experiments::files::NewFile;
 
 use crate::commands::trials::Shown;
 
-/// The viewer: built from the folder `viewer`.
+/// The viewer, built from the folder `viewer`.
 const VIEWER: &str = include_str!("../../../assets/viewer.html");
 
-/// Where the recordings go.
+/// Marks the place of the recordings in the viewer.
 const PLACE: &str = "<!--recordings-->";
 
-/// How every page of ours begins.
+/// Start of every page that this command writes.
 const START: &str = "<!doctype html><!-- usar view -->";
 
-/// Writes a page whole or not at all. A page that is there is replaced; another file is not.
+/// Writes a page completely or not at all. An existing page is replaced; any other existing file is not.
 pub(super) fn write(path: &Path, shown: &[Shown]) -> Result<(), Failure> {
     if let Ok(file) = std::fs::File::open(path) {
         let mut start = Vec::new();
@@ -36,7 +36,7 @@ pub(super) fn write(path: &Path, shown: &[Shown]) -> Result<(), Failure> {
     NewFile::write(folder, name, page(shown).as_bytes()).map(drop)
 }
 
-/// The page with these recordings in it.
+/// The page with these recordings embedded.
 pub(crate) fn page(shown: &[Shown]) -> String {
     let (before, after) = VIEWER.split_once(PLACE).unwrap_or((VIEWER, ""));
     let mut page = before.to_owned();
@@ -50,12 +50,12 @@ pub(crate) fn page(shown: &[Shown]) -> String {
     page + after
 }
 
-/// A text as the value of an attribute.
+/// A text escaped as the value of an attribute.
 fn escaped(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }
 
-/// Appends bytes as text (RFC 4648, section 4).
+/// Appends bytes in base64 (RFC 4648, section 4).
 fn base64(out: &mut String, bytes: &[u8]) {
     const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     out.reserve(bytes.len().div_ceil(3) * 4);

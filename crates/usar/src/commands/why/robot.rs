@@ -1,4 +1,4 @@
-//! What a robot went through up to a moment.
+//! The history of a robot up to a moment.
 
 use experiments::why::Exchange;
 use rne_core::{Decision, Question};
@@ -8,7 +8,7 @@ use usar_sim::event::{Event, TurnBackCause};
 use usar_sim::ids::RobotId;
 use usar_sim::simulation::Simulation;
 
-/// A robot that is watched while its trial is played.
+/// A robot that is observed while its trial is played.
 pub(super) struct Watched {
     robot: RobotId,
     delay: Delay,
@@ -21,12 +21,12 @@ pub(super) struct Watched {
 pub(super) struct TurnedBack {
     pub at_s: f64,
     pub cause: &'static str,
-    /// Levels then, in percent.
+    /// Levels at that time, in percent.
     pub energy: f64,
     pub hp: f64,
 }
 
-/// What is told of a robot.
+/// The account of a robot.
 #[derive(Serialize)]
 pub(super) struct RobotStory {
     pub robot: u32,
@@ -34,19 +34,19 @@ pub(super) struct RobotStory {
     /// The task of its group.
     pub task: Option<String>,
     pub at_s: f64,
-    /// Levels at that moment, in percent.
+    /// Levels at this moment, in percent.
     pub energy: f64,
     pub hp: f64,
     pub speed_mps: f64,
     pub activity: &'static str,
-    /// Why it does not move on; `under_way` if nothing holds it up.
+    /// Its delay cause; `under_way` if nothing holds it up.
     pub delay: &'static str,
     pub waits_for: Option<u32>,
-    /// When that began, in seconds.
+    /// Time when this delay began, in seconds.
     pub since_s: f64,
-    /// The last time that it turned back.
+    /// The last time it turned back, if any.
     pub turned_back: Option<TurnedBack>,
-    /// What the score would have been after an exchange of places, the best first; empty for a policy that is not RNE.
+    /// The scores after exchanges of places, the best first; empty for a policy that is not RNE.
     pub exchanges: Vec<Exchange>,
 }
 
@@ -59,7 +59,7 @@ impl Watched {
         self.robot.0
     }
 
-    /// Takes note of a step.
+    /// Records a step.
     pub(super) fn listen(&mut self, simulation: &Simulation) {
         let delay = simulation.delay(self.robot);
         if (delay.cause, delay.waits_for) != (self.delay.cause, self.delay.waits_for) {
@@ -109,7 +109,7 @@ impl Watched {
     }
 }
 
-/// Why a robot does not move on, after "robot 3 ...".
+/// The explanation of a delay, as the continuation of "robot 3 ...".
 pub(super) fn in_words(delay: &str, waits_for: Option<u32>) -> String {
     let other = waits_for.map_or("another robot".to_owned(), |id| format!("robot {id}"));
     let cause = DelayCause::ALL.into_iter().find(|cause| cause.name() == delay).unwrap_or_default();

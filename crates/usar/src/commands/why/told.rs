@@ -15,9 +15,9 @@ use crate::commands::asked::AskedTrial;
 use crate::commands::fork::ids;
 use crate::commands::print_table;
 
-/// A score that exceeds the next best by less than this share is called close.
+/// A score that exceeds the next best by a smaller share than this is called close.
 const CLOSE: f64 = 0.05;
-/// Scores whose ratio differs from 1 by less are equal: they were added up in another order.
+/// Scores whose ratio differs from 1 by less than this are equal: they were summed in another order.
 const ROUNDING: f64 = 1e-9;
 
 pub(super) fn text(out: &mut dyn Write, account: &Account, asked: &AskedTrial) -> Result<(), Failure> {
@@ -57,7 +57,7 @@ fn nats(score: Option<RelativeNeedsEntropy>) -> String {
     }
 }
 
-/// How far the runner-up stays behind, in words.
+/// The distance to the runner-up, in words.
 fn margin(best: Option<RelativeNeedsEntropy>, next: Option<RelativeNeedsEntropy>) -> String {
     let value = |score: Option<RelativeNeedsEntropy>| score.and_then(RelativeNeedsEntropy::nats);
     let (Some(best), Some(next)) = (value(best), value(next)) else { return String::new() };
@@ -122,7 +122,7 @@ fn ranked(out: &mut dyn Write, question: &Question, ranking: &Ranking) -> Result
     Ok(())
 }
 
-/// What each need adds to the RNE between two groups, the largest first.
+/// Prints the contribution of each need to the RNE between two groups, the largest first.
 fn needs(out: &mut dyn Write, question: &Question, pair: &DirectedRne) -> Result<(), Failure> {
     let [from, to] = [pair.from, pair.to].map(|task| &question.tasks[task.index()].name);
     writeln!(
