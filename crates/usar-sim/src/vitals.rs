@@ -1,4 +1,4 @@
-//! Energy and health: pure functions from what a robot did to what it costs, and from health to what it can do.
+//! Energy and health: pure functions for the costs of a robot's actions and for the effect of its health.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

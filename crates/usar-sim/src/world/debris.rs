@@ -21,7 +21,7 @@ pub struct Debris {
     /// Whether nothing can push it.
     #[serde(skip)]
     pub is_fixed: bool,
-    /// Whether events open and close it.
+    /// Whether events place or remove it.
     #[serde(skip)]
     pub is_gate: bool,
     /// Distance from its centre within which the whole piece lies, in metres.
@@ -43,7 +43,7 @@ impl Debris {
         Self { is_fixed, is_gate: false, sightings, reach, outline }
     }
 
-    /// A piece that events open and close; `is_there` tells whether it is there at the start.
+    /// A piece that events place or remove; `is_there` tells whether it is there at the start.
     #[must_use]
     pub fn gate(file: &DebrisFile, is_there: bool) -> Self {
         let mut piece = Self { is_gate: true, ..Self::new(file) };

@@ -33,7 +33,7 @@ pub struct World {
     /// The debris by place.
     #[serde(skip)]
     pub debris_places: Places,
-    /// Numbers of the debris that events open and close.
+    /// Numbers of the debris that events place or remove.
     #[serde(skip)]
     pub gates: Vec<usize>,
     /// Radiation zones, including zones that are off.
@@ -138,7 +138,7 @@ impl World {
         changes
     }
 
-    /// Puts a piece that events open and close to a place, or away.
+    /// Puts a piece that events place or remove to a place, or away.
     pub(crate) fn put_debris(&mut self, number: usize, pose: Option<Pose>) {
         let piece = &mut self.debris[number];
         piece.put(pose);
