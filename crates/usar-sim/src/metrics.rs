@@ -53,7 +53,8 @@ pub struct TaskTotals {
 pub struct Counts {
     /// Times that a robot turned back to rest.
     pub turned_back: u32,
-    /// Conflict sets that formed; under the default right of way, times that a robot began to wait before a passage.
+    /// Conflict sets that formed; under the default right of way, times that a robot began to wait before a
+    /// passage.
     pub conflicts: u32,
     /// Times that a conflict set was deadlocked; under the default right of way, times that a robot got stuck
     /// behind another.

@@ -1,7 +1,8 @@
 //! The interface to the physics engine. No other file names `rapier2d`.
 //!
-//! Bodies in a plane seen from above, without gravity. Ground robots are discs that touch walls, debris and each other; aerial robots
-//! touch walls and each other. Debris is fixed, or rubs on the ground with Coulomb friction.
+//! Bodies in a plane seen from above, without gravity. Ground robots are discs that touch walls, debris and
+//! each other. Aerial robots touch walls and each other. Debris is fixed, or rubs on the ground with Coulomb
+//! friction.
 
 use std::collections::BTreeMap;
 
@@ -38,7 +39,8 @@ const CORRECTION_MPS: f32 = 0.04;
 /// of overlapping first.
 const APPROACH_STEPS: f32 = 2.0;
 
-/// Movable debris is thin if the fastest robot goes farther in a step than this share of the piece's narrower side.
+/// Movable debris is thin if the fastest robot goes farther in a step than this share of the piece's narrower
+/// side.
 const THIN_SHARE: f32 = 0.125;
 
 /// Standard gravity, in metres per second squared: the weight with which movable debris rubs on the ground.

@@ -261,7 +261,8 @@ mod tests {
         KnownObstacle::new(ObstacleKey::Debris(number), 1, &outline, 0.4, 0.15)
     }
 
-    /// A passage along x at y = 10, 1.2 m wide, from x = 5 to x = 15, whose northern wall has a bay between x = 11 and x = 13.
+    /// A passage along x at y = 10, 1.2 m wide, from x = 5 to x = 15. Its northern wall has a bay between x =
+    /// 11 and x = 13.
     fn passage() -> ObstacleMap {
         let walls = [
             wall(0, [10.0, 9.0], [10.0, 0.8]),

@@ -25,7 +25,7 @@ const PART_WITHIN_S: f32 = 0.5;
 /// Robots brake for walls and debris that they would reach within this time, in seconds.
 const WALL_HORIZON_S: f32 = 0.5;
 
-/// Robots may come this much nearer to walls and debris than their routes do, in metres, when they are pressed.
+/// Robots under pressure may come this much nearer to walls and debris than their routes do, in metres.
 const WALL_SLACK_M: f32 = 0.04;
 
 /// Distance that robots keep from one another, in metres.
