@@ -63,7 +63,7 @@ pub(super) enum Progress {
 pub(super) enum NextTurn {
     /// Another head tries.
     OfNextHead,
-    /// Every member was the head in vain: all back off.
+    /// Every member was the head without success: all back off.
     OfNobody,
 }
 

@@ -5,7 +5,8 @@
 //! them yield. The head keeps the right of way until it leaves the set; then the next member is the head. A
 //! set in which no robot moves, or whose head moves but comes no nearer to its goal, is deadlocked. The
 //! resolver then tries, in this order: the robot in the way of the head makes room (`retreat`); another
-//! member becomes the head; after a full cycle in vain, the whole set backs off sideways.
+//! member becomes the head; once every member has been the head without success, the whole set backs off
+//! sideways.
 //!
 //! The default rule, reciprocal avoidance, forms no sets (`reciprocal`).
 //!
@@ -55,7 +56,7 @@ const RETREAT_PATIENCE_S: f64 = 3.0;
 /// How long a robot keeps making room at its place while the other robot stands still, in seconds.
 const ROOM_PATIENCE_S: f64 = 15.0;
 
-/// How long a robot is not asked again after a retreat that came to nothing, in seconds.
+/// How long a robot is not asked again after a retreat that failed, in seconds.
 const RESPITE_S: f64 = 3.0;
 
 /// How often a robot asks again for room while it is blocked or comes no nearer, in seconds.

@@ -38,14 +38,14 @@ const PLATOON_M: f32 = 5.0;
 /// Robots go in the same direction if the cosine between their preferred velocities is larger than this.
 const PLATOON_COS: f32 = 0.5;
 
-/// How long a retreat may go on without progress, in steps.
+/// How long a retreat may last without progress, in steps.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Limits {
     /// On the way to the place, without the robot coming nearer to it.
     pub(super) underway: u32,
     /// At the place, while the other robot stands.
     pub(super) at_place: u32,
-    /// After a retreat that came to nothing, before the robot is asked again.
+    /// After a retreat that failed, before the robot is asked again.
     pub(super) respite: u32,
 }
 
@@ -63,7 +63,7 @@ pub(super) struct Retreat {
     line: Vec<Vector>,
     least_left: f32,
     idle_steps: u32,
-    /// Steps since the retreat began. The count goes on when the retreat passes on to another head.
+    /// Steps since the retreat began. The count continues when the retreat passes on to another head.
     held_steps: u32,
 }
 
@@ -205,7 +205,7 @@ impl Retreats {
         Some(retreat)
     }
 
-    /// Ends the retreat of a robot, if it is on one, as one that came to nothing.
+    /// Ends the retreat of a robot as failed, if it retreats.
     pub(super) fn give_up(&mut self, i: usize) {
         if self.end(i).is_some() {
             self.respite[i] = self.limits.respite;

@@ -172,7 +172,7 @@ impl ScenarioFile {
 
 /// A thing with a name that events use.
 struct Named<'f> {
-    /// Path of the field with the name.
+    /// Where the name stands.
     field: String,
     name: &'f str,
     /// Whether nothing can push it.

@@ -50,7 +50,7 @@ pub struct Simulation {
 pub enum Advance<'s> {
     /// A step was done.
     Running,
-    /// A step was begun. It goes on once this question is answered: see [`Simulation::assign`].
+    /// A step was begun. It continues once this question is answered: see [`Simulation::assign`].
     Asks(&'s Question),
     /// The trial is over.
     Over(Status),

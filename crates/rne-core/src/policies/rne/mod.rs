@@ -181,8 +181,8 @@ impl Search<'_> {
         groups
     }
 
-    /// Merges the groups so far with the parts of a role. `last` receives the groups of the runner-up, so
-    /// that those of the last merge are known in the end.
+    /// Merges the groups so far with the parts of a role. `last` receives the groups of the runner-up of this
+    /// merge; after the last merge, it holds that merge's.
     fn merge(
         &mut self,
         role: RoleId,
