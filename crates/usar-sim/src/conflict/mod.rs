@@ -97,7 +97,7 @@ pub struct Resolver {
     directives: Vec<Directive>,
     /// For each robot, the direction of its last directive; zero if it stood.
     headings: Vec<Vector>,
-    /// For each robot, steps since it was last not blocked.
+    /// For each robot, the number of successive steps in which it was blocked.
     blocked_steps: Vec<u32>,
     /// For each robot, its state at a narrow passage.
     entries: Vec<Entry>,
@@ -334,11 +334,10 @@ impl Resolver {
         }
     }
 
-    /// Lets robots ask for room that the judgement of the sets does not serve. A robot asks if it has been
-    /// blocked for a while, or if it moves outside any set and has come no nearer for a while. A robot that
-    /// stands because it has nowhere to go is always asked. A robot with a goal of its own is asked only by
-    /// the head of its set, by a robot that makes room itself, or by the robot with the best claim on a cycle
-    /// of waiting.
+    /// Lets blocked and stalled robots ask for room. A robot asks if it has been blocked for a while, or if
+    /// it moves outside any set and has come no nearer to its goal for a while. A blocker that has nowhere to
+    /// go is always asked. A blocker with a goal of its own is asked only by the head of its set, by a robot
+    /// that makes room itself, or by the robot with the best claim on a cycle of waiting.
     fn ask_for_room(&mut self, movers: &[Mover], log: &mut EventLog) {
         let mut due = Vec::new();
         for (i, directive) in self.directives.iter().enumerate() {

@@ -25,7 +25,8 @@ impl PriorityKey {
     ///   of the next task, and last robots without a group. Within a class, the lowest energy goes first.
     /// - `HighestEnergyFirst`: the opposite of `LowestEnergyFirst`. The difference between the two shows what
     ///   the order is worth.
-    /// - `LowestHpFirst`: the robot that can bear the least radiation should stand in it the shortest.
+    /// - `LowestHpFirst`: the robot that can bear the least radiation should stand in it for the shortest
+    ///   time.
     #[must_use]
     pub fn new(rule: PriorityRule, robot: RobotId, class: u8, [energy, hp]: [f64; 2]) -> Self {
         let (class, level) = match rule {

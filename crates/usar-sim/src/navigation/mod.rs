@@ -19,7 +19,7 @@ pub use traveller::{Goal, Traveller};
 const ROUTE_CHECK_STEPS: u64 = 25;
 
 /// A robot that has come no nearer to its goal for this long, in seconds, plans a detour round the robots
-/// that stand in its way. After four times as long it plans a straight route again, and so on in turn: robots
+/// that stand in its way. After four times as long it plans without a detour again, and so on in turn: robots
 /// that it does not see may block the detour as well.
 const DETOUR_AFTER_S: f64 = 4.0;
 

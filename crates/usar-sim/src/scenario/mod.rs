@@ -40,8 +40,8 @@ pub use reading::{check_text, parse_ron, read_text};
 pub use schema::scenario_schema;
 pub use upgrade::upgraded;
 
-/// The format of scenario files that this program reads. Format 1 had tables in round brackets; `usar fmt
-/// --upgrade` rewrites it.
+/// The format of scenario files that this program reads. Format 1 had tables in round brackets. The command
+/// `usar fmt --upgrade` rewrites it.
 pub const FORMAT: u32 = 2;
 
 /// Most radii for which ground routes are planned separately. Each radius costs a map of the known obstacles.
