@@ -1,4 +1,5 @@
-//! Passing at a tangent: the free direction nearest to the wished one, past robots that stand and clear of known debris.
+//! Passing at a tangent: the free direction nearest to the preferred one, past robots that stand and clear of
+//! known debris.
 
 use parry2d::math::Vector;
 use smallvec::SmallVec;

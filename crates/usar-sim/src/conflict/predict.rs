@@ -1,5 +1,5 @@
-//! Predicted conflicts: pairs of robots whose wishes would bring them into each other's safety distance, and the sets that
-//! these pairs connect.
+//! Predicted conflicts: pairs of robots whose preferred velocities would bring them into each other's safety
+//! distance, and the sets that these pairs connect.
 
 use parry2d::math::Vector;
 

@@ -88,7 +88,8 @@ impl Before {
 /// The account of one trial.
 pub struct Invariants {
     dt: f32,
-    /// Top speed of the fastest robot of each layer, ground and air, in metres per second: it may push others.
+    /// Top speed of the fastest robot of each layer, ground and air, in metres per second. It may push
+    /// others.
     fastest: [f32; 2],
     time_s: f64,
     before: Vec<Before>,
