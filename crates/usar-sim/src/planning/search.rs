@@ -193,7 +193,7 @@ mod tests {
     use super::*;
     use crate::geometry::Outline;
 
-    /// The smallest case known that panics in the library, from a room whose walls meet (docs/triangulation.md).
+    /// The smallest known case that panics in the library: a room whose walls meet (docs/triangulation.md).
     const PANICS: [[[f32; 2]; 3]; 4] = [
         [[34.8173, 73.53], [36.1, 74.6], [35.8847, 74.5]],
         [[35.1, 67.7], [34.926_003, 67.44], [36.3, 43.3]],
