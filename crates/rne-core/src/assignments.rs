@@ -1,7 +1,7 @@
-//! Every assignment that the quotas of a question allow: what a policy chooses from.
+//! Every assignment that the quotas of a question allow. A policy chooses from these.
 //!
-//! Where a quota binds, each task gets exactly its members of the role. Where it does not, its numbers are
-//! the sizes of the parts of the role, and any task may get any part.
+//! If a quota binds, each task gets exactly its number of members of the role. Otherwise the numbers are the
+//! sizes of the parts of the role, and any task may get any part.
 
 use rand::Rng;
 use rand::seq::{IndexedRandom, SliceRandom};
@@ -9,7 +9,7 @@ use rand::seq::{IndexedRandom, SliceRandom};
 use crate::decision::Assignment;
 use crate::question::{Question, Quota};
 
-/// The number of assignments that the quotas of a question allow; `u64::MAX` for that many and more.
+/// The number of assignments that the quotas of a question allow; `u64::MAX` for that number and more.
 ///
 /// A role with members `n` and parts of sizes `n_1 ... n_k` has `n! / (n_1! ... n_k!)` splits for each
 /// distinct order of the sizes; the roles multiply.
@@ -30,7 +30,7 @@ fn splits_of(quota: &Quota) -> u64 {
     splits.saturating_mul(orders_of(quota))
 }
 
-/// Distinct orders of the sizes of the parts: 1 for a quota that binds.
+/// The number of distinct orders of the parts' sizes; 1 for a quota that binds.
 fn orders_of(quota: &Quota) -> u64 {
     if quota.is_binding {
         return 1;
@@ -48,7 +48,7 @@ fn orders_of(quota: &Quota) -> u64 {
         .fold(1, u64::saturating_mul)
 }
 
-/// `n` over `k`, saturating.
+/// The binomial coefficient `n` over `k`, saturating.
 fn binomial(n: usize, k: usize) -> u64 {
     let k = k.min(n - k);
     let mut ways = 1_u128;
@@ -62,7 +62,7 @@ fn binomial(n: usize, k: usize) -> u64 {
 }
 
 /// Every assignment that the quotas allow, each once, in a fixed order: the first role varies slowest. Memory
-/// and time grow with [`count`]; look at that first.
+/// and time grow with [`count`]; check that number first.
 #[must_use]
 pub fn all(question: &Question) -> Vec<Assignment> {
     let mut assignments = vec![vec![Vec::new(); question.tasks.len()]];
@@ -79,7 +79,7 @@ pub fn all(question: &Question) -> Vec<Assignment> {
     assignments.into_iter().map(Assignment::new).collect()
 }
 
-/// The distinct orders of a quota's sizes, the given one first.
+/// The distinct orders of a quota's sizes, the given order first.
 fn orders(quota: &Quota) -> Vec<Vec<usize>> {
     let mut orders = vec![quota.members.clone()];
     if quota.is_binding {
@@ -99,7 +99,7 @@ fn orders(quota: &Quota) -> Vec<Vec<usize>> {
     }
 }
 
-/// The ways to split these ids into parts of these sizes.
+/// All splits of these ids into parts of these sizes.
 fn splits(ids: &[u32], sizes: &[usize]) -> Vec<Vec<Vec<u32>>> {
     let Some((first, rest)) = sizes.split_first() else { return vec![Vec::new()] };
     let mut found = Vec::new();
@@ -113,7 +113,7 @@ fn splits(ids: &[u32], sizes: &[usize]) -> Vec<Vec<Vec<u32>>> {
     found
 }
 
-/// The subsets of this size, lexicographically.
+/// All subsets of this size, in lexicographic order.
 fn combinations(ids: &[u32], size: usize) -> Vec<Vec<u32>> {
     if size == 0 {
         return vec![Vec::new()];
@@ -146,7 +146,7 @@ pub fn draw(question: &Question, draws: &mut impl Rng) -> Assignment {
     Assignment::new(groups)
 }
 
-/// The assignments that differ from this one by two robots of one role who change places.
+/// The assignments that result from this one if two robots of one role change places.
 #[must_use]
 pub fn neighbours(question: &Question, assignment: &Assignment) -> Vec<Assignment> {
     let mut found = Vec::new();
@@ -186,7 +186,7 @@ mod tests {
     use crate::needs::NeedVector;
     use crate::question::{Member, Need, RandomSeed, SCHEMA_VERSION, Task, hardest_first};
 
-    /// A question about robots of which only the number in each role counts, over two tasks.
+    /// A question about robots over two tasks. Only the number of robots in each role matters.
     fn example(counts: &[usize]) -> Question {
         let roles = (0..).zip(counts).flat_map(|(role, count)| vec![RoleId(role); *count]);
         let member = |(id, role): (u32, RoleId)| Member {
@@ -214,7 +214,7 @@ mod tests {
         }
     }
 
-    /// All ways to give each robot a task, of which those stay whose sizes the quotas allow: slow and plain.
+    /// All assignments of a task to each robot, filtered by the sizes that the quotas allow: slow and plain.
     fn by_brute_force(question: &Question) -> BTreeSet<Vec<Vec<u32>>> {
         let (robots, tasks) = (question.members.len() as u32, question.tasks.len());
         let choices = (0..tasks.pow(robots)).map(|code| {

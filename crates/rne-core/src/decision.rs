@@ -1,5 +1,5 @@
-//! The answer to a question: who goes to which task, how good the policy believes that to be, and how it came
-//! to it.
+//! The answer to a question: which robots go to which task, the policy's own score of it, and its account of
+//! the decision.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

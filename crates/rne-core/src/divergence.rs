@@ -23,9 +23,9 @@ pub fn relative_entropy(
     Ok(RelativeNeedsEntropy::from_nats(kullback_leibler(p.shares(), q.shares())))
 }
 
-/// What each need adds to `T(P||Q)`, in nats: the summands of Eqs. 1 and 7. They add up to the relative entropy;
-/// a need of which `p` has the smaller share adds a negative number. `None` for the needs that make the value
-/// infinite.
+/// The contribution of each need to `T(P||Q)`, in nats: the summands of Eqs. 1 and 7. They add up to the
+/// relative entropy. A need with a smaller share in `p` than in `q` contributes a negative number. `None` for
+/// the needs that make the value infinite.
 ///
 /// ```
 /// use rne_core::{NeedDistribution, relative_entropy_by_need};
@@ -95,7 +95,7 @@ pub fn mutual_information(joint: &DMatrix<f64>) -> Result<f64, NeedsError> {
     Ok(information.max(0.0))
 }
 
-/// Kullback-Leibler sum over raw shares; `f64::INFINITY` where a share of `p` has none in `q`.
+/// Kullback-Leibler sum over raw shares; `f64::INFINITY` if a need has a share in `p` but none in `q`.
 pub(crate) fn kullback_leibler(p: &[f64], q: &[f64]) -> f64 {
     let mut sum = 0.0;
     for (p, q) in p.iter().zip(q) {
@@ -107,7 +107,7 @@ pub(crate) fn kullback_leibler(p: &[f64], q: &[f64]) -> f64 {
     sum
 }
 
-/// `p ln(p / q)`, 0 without `p`; `None` where it is infinite.
+/// The summand `p ln(p / q)`; 0 if `p` is 0, and `None` if it is infinite.
 fn summand(p: f64, q: f64) -> Option<f64> {
     if p <= 0.0 {
         return Some(0.0);

@@ -3,7 +3,7 @@
 
 use thiserror::Error;
 
-/// A needs table, weight vector or distribution that the maths is not defined for.
+/// A needs table, weight vector or distribution for which the mathematics is not defined.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum NeedsError {
     /// A vector without entries.
@@ -161,7 +161,7 @@ pub enum PolicyError {
         policy: String,
         /// The fact ("the energy level", ...).
         what: &'static str,
-        /// The robot without it, where it is one robot's.
+        /// The robot that lacks it, if the fact belongs to one robot.
         robot: Option<u32>,
     },
     /// A robot's needs cannot be used by the policy.
@@ -192,7 +192,7 @@ pub enum RegistryError {
         /// All names of the registry.
         known: Vec<String>,
     },
-    /// A name that the registry has already.
+    /// A name that is already in the registry.
     #[error("policy {name:?} is in the registry already")]
     DuplicateName {
         /// The name.
@@ -230,7 +230,7 @@ pub enum AssignmentError {
         /// The robot.
         robot: u32,
     },
-    /// A robot that was not to be grouped.
+    /// A robot that is not a member of the team.
     #[error("robot {robot} is not a member of the team that was to be grouped")]
     Stranger {
         /// The robot.

@@ -1,5 +1,5 @@
 //! The robot needs hierarchy (paper: Section II-B, Eqs. 3 to 6): expectations of safety, basic, capability
-//! and teaming needs, where a level counts only when the one below it is met.
+//! and teaming needs. A level counts only if the levels below it are met.
 //!
 //! No source publishes the probabilities; [`PerceivedNeed::certain`] sets them to 1.
 
@@ -47,9 +47,9 @@ impl PerceivedNeed {
     }
 }
 
-/// Needs expectation of each level, `sum_i w_i p_i` (Eqs. 3 to 6), lowest level first; `None` where a level
-/// below is not met, so that the level does not count. A level is met when its expectation is at least
-/// `required_share` (in [0, 1]) of what it would be with certainty; a level without needs is met.
+/// Needs expectation of each level, `sum_i w_i p_i` (Eqs. 3 to 6), lowest level first. `None` if a level
+/// below is not met, so that the level does not count. A level is met if its expectation is at least
+/// `required_share` (in [0, 1]) of its value under certainty. A level without needs is met.
 ///
 /// # Errors
 /// A weight that is NaN, infinite or negative; a probability or `required_share` outside [0, 1].

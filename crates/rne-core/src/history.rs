@@ -1,4 +1,5 @@
-//! What earlier rounds came to, so that a policy that learns is still a function of its question.
+//! Outcomes of earlier rounds. They are part of the question, so that a learning policy is still a function
+//! of its question.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

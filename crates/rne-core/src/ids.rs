@@ -1,4 +1,4 @@
-//! Rows of tables: tasks, roles and needs are small integers whose names stand in the scenario.
+//! Rows of tables: tasks, roles and needs are small integers; the scenario has their names.
 
 use serde::{Deserialize, Serialize};
 

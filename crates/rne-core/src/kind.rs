@@ -1,4 +1,4 @@
-//! A kind of policy: what a registry knows of it before one is made.
+//! A kind of policy: the entry of a registry, from which policies are made.
 
 use std::fmt;
 use std::sync::Arc;
@@ -21,7 +21,8 @@ pub struct PolicyKind {
     pub(crate) make: Arc<Make>,
 }
 
-/// Makes the policy from its options in RON; returns it with all its options in RON, the defaults included.
+/// Makes the policy from its options in RON. Returns the policy and all its options in RON, including the
+/// defaults.
 pub(crate) type Make = dyn Fn(&str) -> Result<(Arc<dyn Policy>, String), String> + Send + Sync;
 
 impl fmt::Debug for PolicyKind {
@@ -40,8 +41,8 @@ impl PolicyKind {
         Self { name: name.into(), about: about.into(), defaults: String::new(), make: Arc::new(make) }
     }
 
-    /// A policy that is made of options: a struct with defaults, read from RON such as `(score: Sum)`. `make`
-    /// checks them.
+    /// A policy that is made from options: a struct with defaults, read from RON such as `(score: Sum)`.
+    /// `make` checks the options.
     pub fn with_options<O, P, E>(
         name: &str,
         about: &str,

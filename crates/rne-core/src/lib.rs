@@ -1,9 +1,9 @@
 //! Trust between robots as *Relative Needs Entropy* (RNE), and policies that group a mixed team over any
 //! number of tasks.
 //!
-//! The maths of Yang & Parasuraman, *How Can Robots Trust Each Other For Better Cooperation?* (IEEE SMC 2021,
-//! arXiv 2105.07443), with every ambiguity of the text as a named option. This crate knows no world, no files
-//! and no clock.
+//! The mathematics of Yang & Parasuraman, *How Can Robots Trust Each Other For Better Cooperation?* (IEEE SMC
+//! 2021, arXiv 2105.07443), with every ambiguity of the text as a named option. This crate has no world,
+//! reads no files and no clock.
 //!
 //! ```
 //! use rne_core::{NeedDistribution, NeedVector, NeedWeights, relative_entropy};

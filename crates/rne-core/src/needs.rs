@@ -29,11 +29,11 @@ impl NeedVector {
         Ok(Self(values))
     }
 
-    /// The state weighed by the probability that each need is met (the summands of Eqs. 3 to 5). With all
-    /// probabilities 1, the default in the absence of any published value, this is the state itself.
+    /// The state, weighted by the probability that each need is met (the summands of Eqs. 3 to 5). With all
+    /// probabilities 1, the result is the state itself. That is the default, because no values are published.
     ///
     /// # Errors
-    /// As [`NeedVector::new`]; or a probability outside [0, 1], or another number of probabilities than
+    /// As [`NeedVector::new`]; or a probability outside [0, 1]; or a different number of probabilities and
     /// needs.
     pub fn expected(state: &[f64], probabilities: &[f64]) -> Result<Self, NeedsError> {
         check_length("probabilities", state.len(), probabilities.len())?;
@@ -145,8 +145,8 @@ impl NeedDistribution {
     }
 }
 
-/// Writes the share of each value in their sum to `shares` (Eqs. 8 and 9) and returns the sum. The one place where sums of weighted needs become
-/// shares.
+/// Writes the share of each value in their sum to `shares` (Eqs. 8 and 9) and returns the sum. No other
+/// function turns sums of weighted needs into shares.
 pub(crate) fn shares_into(values: &[f64], shares: &mut Vec<f64>) -> f64 {
     let sum: f64 = values.iter().sum();
     shares.clear();
@@ -161,7 +161,7 @@ pub(crate) fn shares_of(values: &[f64]) -> Vec<f64> {
     shares
 }
 
-/// Every entry finite and >= 0, and at least one entry.
+/// Checks that there is at least one entry and that every entry is finite and >= 0.
 pub(crate) fn check_entries(what: &'static str, values: &[f64]) -> Result<(), NeedsError> {
     if values.is_empty() {
         return Err(NeedsError::Empty { what });
@@ -172,12 +172,12 @@ pub(crate) fn check_entries(what: &'static str, values: &[f64]) -> Result<(), Ne
     }
 }
 
-/// The lengths agree.
+/// Checks that the lengths agree.
 pub(crate) fn check_length(what: &'static str, expected: usize, found: usize) -> Result<(), NeedsError> {
     if expected == found { Ok(()) } else { Err(NeedsError::Length { what, expected, found }) }
 }
 
-/// Every entry in [0, 1].
+/// Checks that every entry is in [0, 1].
 pub(crate) fn check_probabilities(values: &[f64]) -> Result<(), NeedsError> {
     match values.iter().position(|p| !(0.0..=1.0).contains(p)) {
         Some(index) => {

@@ -1,4 +1,4 @@
-//! What a policy is.
+//! The interface of a policy.
 
 use crate::decision::Decision;
 use crate::error::PolicyError;
@@ -6,9 +6,9 @@ use crate::question::Question;
 
 /// A way to group a team over the tasks.
 ///
-/// A policy is a function of its question: the same question has the same answer, whatever was asked before.
-/// Sweeps rely on that when policies share trials. A policy that needs randomness draws from
-/// [`Question::draws`]; one that learns learns from [`Question::history`].
+/// A policy is a function of its question: the same question always gets the same answer. Sweeps rely on this
+/// when policies share trials. A policy that needs randomness draws from [`Question::draws`]. A policy that
+/// learns uses [`Question::history`].
 ///
 /// ```
 /// use rne_core::{Decision, Policy, PolicyError, Question};

@@ -1,8 +1,8 @@
-//! The question that a policy answers: who is to be grouped, for which tasks, and what earlier rounds came
-//! to.
+//! The question that a policy answers: the robots to be grouped, the tasks, and the outcomes of earlier
+//! rounds.
 //!
-//! A question is complete: a policy is a function of it, draws included. Its JSON form is documented in
-//! `docs/decisions.md`.
+//! A question is complete: a policy is a function of its question, and random draws come from the question
+//! too. Its JSON form is documented in `docs/decisions.md`.
 
 use std::cmp::Reverse;
 use std::collections::BTreeSet;
@@ -128,11 +128,11 @@ impl From<u64> for RandomSeed {
 }
 
 impl Question {
-    /// Puts the members in the order of their ids and checks that all parts fit each other.
+    /// Sorts the members by their ids and checks that all parts are consistent.
     ///
     /// # Errors
-    /// No task or too many; an id that stands twice; a role, needs or quotas that do not fit their tables; a
-    /// number that is not finite.
+    /// No task or too many; a duplicate id; a role, needs or quotas that do not fit their tables; a number
+    /// that is not finite.
     pub fn checked(mut self) -> Result<Self, QuestionError> {
         self.members.sort_by_key(|member| member.id);
         if self.schema_version != SCHEMA_VERSION {
@@ -232,15 +232,15 @@ impl Question {
         self.needs.iter().map(|need| need.weight).collect()
     }
 
-    /// The generator of this question's draws.
+    /// The random generator for this question's draws.
     #[must_use]
     pub fn draws(&self) -> ChaCha8Rng {
         ChaCha8Rng::from_seed(self.random_seed.0)
     }
 }
 
-/// Tasks with these difficulty ranks from the hardest to the easiest; of equal ranks, the first in the table
-/// first.
+/// The tasks with these difficulty ranks, from the hardest to the easiest. Among equal ranks, the first in
+/// the table comes first.
 #[must_use]
 pub fn hardest_first(difficulties: impl Iterator<Item = u32>) -> Vec<TaskId> {
     let mut order: Vec<(Reverse<u32>, TaskId)> =
@@ -250,13 +250,13 @@ pub fn hardest_first(difficulties: impl Iterator<Item = u32>) -> Vec<TaskId> {
 }
 
 impl Quota {
-    /// Shares `members` out over tasks, given from the hardest to the easiest, of which some ask for a number
-    /// of their own.
+    /// Shares `members` out over tasks, which are given from the hardest to the easiest. Some tasks may ask
+    /// for a number of members.
     ///
-    /// Without such numbers the shares are as equal as possible, and the harder tasks get the extra members.
-    /// With them, those tasks are served first, and the rest is shared equally over the tasks that ask for
-    /// none (over all tasks where each asks). Where there are too few members, each next one goes to the task
-    /// with the smallest filled share, the harder one of equals.
+    /// If no task asks for a number, the shares are as equal as possible, and the harder tasks get the extra
+    /// members. Otherwise the tasks that ask are served first, and the rest is shared equally over the other
+    /// tasks (over all tasks if every task asks). If there are too few members, each next member goes to the
+    /// task with the smallest filled share; among equals, to the harder task.
     #[must_use]
     pub fn share(members: usize, asked: &[Option<usize>], hardest_first: &[TaskId]) -> Self {
         let is_binding = asked.iter().any(Option::is_some);
@@ -279,7 +279,7 @@ impl Quota {
         Self { members: shares, is_binding }
     }
 
-    /// The quotas of a team without wishes of its tasks: as equal as possible.
+    /// The quotas of a team whose tasks ask for no number: as equal as possible.
     #[must_use]
     pub fn equal(counts: &[usize], hardest_first: &[TaskId]) -> Vec<Self> {
         counts

@@ -15,13 +15,13 @@ pub struct Registry {
     kinds: Vec<PolicyKind>,
 }
 
-/// A policy as it was asked for.
+/// A policy as it was requested.
 #[derive(Clone)]
 pub struct MadePolicy {
     /// Its name.
     pub name: String,
-    /// All its options in RON, the defaults included: policies of one name and the same options answer alike.
-    /// Empty without options.
+    /// All its options in RON, including the defaults. Policies with the same name and options give the same
+    /// answers. Empty for a policy without options.
     pub options: String,
     /// The policy.
     pub policy: Arc<dyn Policy>,
@@ -75,8 +75,8 @@ impl Registry {
     /// ```
     ///
     /// # Errors
-    /// An unknown name, with the known ones; or options that the policy does not have or cannot use, with
-    /// those that it has.
+    /// An unknown name, with the known names; or options that the policy does not have or cannot use, with
+    /// the options that it has.
     pub fn make(&self, name: &str, options: &str) -> Result<MadePolicy, RegistryError> {
         let kind = self.kinds.iter().find(|kind| kind.name == name).ok_or_else(|| {
             let known = self.names().into_iter().map(str::to_owned).collect();

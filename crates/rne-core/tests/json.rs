@@ -1,5 +1,5 @@
-//! Questions and decisions as JSON: what is written is read again, and what is no question is refused with
-//! the reason.
+//! Questions and decisions as JSON: texts that are written can be read again, and texts that are not
+//! questions are refused with a reason.
 
 use rne_core::{Assignment, Decision, Question, QuestionError, Registry, Task};
 

@@ -1,4 +1,4 @@
-//! A policy of one's own, written outside the crate: the model for yours.
+//! A custom policy, written outside the crate: a model for your own.
 
 use rne_core::{Decision, Member, Policy, PolicyError, PolicyKind, Question, Registry};
 use serde::{Deserialize, Serialize};
@@ -23,7 +23,7 @@ struct Speed {
 }
 
 impl Speed {
-    /// Checks the options; what is wrong with them is told to who wrote them.
+    /// Checks the options. The error message is shown to the user who wrote them.
     fn new(options: SpeedOptions) -> Result<Self, String> {
         if options.need.is_empty() { Err("need must be a name".to_owned()) } else { Ok(Self { options }) }
     }

@@ -1,8 +1,8 @@
 //! The hash chain over the whole state of a trial: equal chains, equal trials, step by step.
 //!
-//! Every [`PERIOD_STEPS`] steps and at the end, each part of the state is written as bytes (postcard) and hashed (XXH3, 128 bits); the
-//! digests of all parts, the step and the link before make the next link. The parts are kept in short as well, so that two chains that
-//! part tell where.
+//! Every [`PERIOD_STEPS`] steps and at the end, each part of the state is written as bytes (postcard) and
+//! hashed (XXH3, 128 bits). The digests of all parts, the step and the previous link make the next link. Each
+//! link also keeps shortened digests of the parts, which show in which part two chains differ.
 
 use serde::{Deserialize, Serialize};
 use xxhash_rust::xxh3::xxh3_128;
@@ -22,7 +22,7 @@ pub struct Link {
     pub step: u64,
     /// The low 16 bits of each part's hash.
     pub parts: [u16; PARTS.len()],
-    /// Hash over all that came before and all parts.
+    /// Hash over the previous link's digest, the step and all parts.
     pub digest: u128,
 }
 
@@ -35,7 +35,7 @@ impl Link {
     }
 }
 
-/// The chain of one trial as far as it is run.
+/// The chain of one trial so far.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct HashChain {
     links: Vec<Link>,

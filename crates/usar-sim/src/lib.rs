@@ -1,7 +1,8 @@
 //! A physics-backed simulator of mixed robot teams on a rescue mission among debris and radiation.
 //!
-//! A scenario (RON) becomes a [`scenario::Scenario`]; with a seed it becomes a [`model::Model`]; a [`simulation::Simulation`] changes the
-//! state step by step, asks how the team is to be grouped, and leaves a [`record::TrialRecord`]:
+//! A scenario file (RON) becomes a [`scenario::Scenario`]. A scenario and a seed become a [`model::Model`]. A
+//! [`simulation::Simulation`] changes the state step by step, asks how the team is to be grouped, and ends
+//! with a [`record::TrialRecord`]:
 //!
 //! ```no_run
 //! use rne_core::Registry;
@@ -14,8 +15,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! One seed, one result, bit for bit: random streams are named by trial, purpose and entity, transcendental functions come from
-//! `libm`, and nothing iterates over a hash map or looks at a clock.
+//! One seed gives one result, bit for bit. Random streams are identified by trial, purpose and entity;
+//! transcendental functions come from `libm`; and nothing iterates over a hash map or reads a clock.
 
 pub mod belief;
 pub mod conflict;

@@ -1,4 +1,4 @@
-//! What is counted and added up in a trial, gathered by listening to events and charges.
+//! The counts and totals of a trial, gathered from events and charges.
 
 use rne_core::{GroupOutcome, MemberOutcome, RoundOutcome, TaskId};
 use serde::{Deserialize, Serialize};
@@ -7,7 +7,7 @@ use crate::event::{CutOffCause, Event, ReturnCause};
 use crate::ids::RobotId;
 use crate::world::World;
 
-/// What one group did in one round.
+/// The results of one group in one round.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct RoundRecord {
     /// Number of the round, from 1.
@@ -16,17 +16,17 @@ pub struct RoundRecord {
     pub task: TaskId,
     /// When the round began, in seconds.
     pub start_s: f64,
-    /// When every robot was home again, in seconds; `None` for a round that the end of the trial cut short.
+    /// When the round ended, in seconds; `None` if the end of the trial cut the round short.
     pub end_s: Option<f64>,
-    /// The members, by id, and what each of them did.
+    /// The members' results, by id.
     pub members: Vec<MemberOutcome>,
     /// Rescuees taken on board.
     pub secured: u32,
     /// Rescuees delivered.
     pub rescued: u32,
-    /// Percent points of energy spent by the members.
+    /// Energy spent by the members, in the unit of the scenario's costs.
     pub energy: f64,
-    /// Percent points of HP lost by the members.
+    /// HP lost by the members, in the unit of the scenario's costs.
     pub hp: f64,
     /// Members that turned back before the group did.
     pub turned_back: u32,
@@ -34,28 +34,30 @@ pub struct RoundRecord {
     pub return_cause: Option<ReturnCause>,
 }
 
-/// What was done and spent for one task.
+/// Results and costs of one task.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct TaskTotals {
     /// Rescuees delivered.
     pub rescued: u32,
     /// Rescuees taken on board, delivered or not.
     pub secured: u32,
-    /// Percent points of energy spent.
+    /// Energy spent, in the unit of the scenario's costs.
     pub energy: f64,
-    /// Percent points of HP lost.
+    /// HP lost, in the unit of the scenario's costs.
     pub hp: f64,
 }
 
-/// How often things happened in a trial. What is counted here, by an arm of [`Metrics::listen`], is in the record; a line in the lab's table of
-/// metrics shows it.
+/// Counts of events in a trial. An arm of [`Metrics::listen`] counts here. The record holds the counts, and a
+/// line in the lab's table of metrics shows each.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct Counts {
     /// Times that a robot turned back to rest.
     pub turned_back: u32,
-    /// Conflict sets that formed; under the default right of way, times that a robot began to wait before a passage.
+    /// Conflict sets that formed; under the default right of way, times that a robot began to wait before a
+    /// passage.
     pub conflicts: u32,
-    /// Times that a conflict set came to nothing; under the default right of way, times that a robot got stuck behind another.
+    /// Times that a conflict set was deadlocked; under the default right of way, times that a robot got stuck
+    /// behind another.
     pub deadlocks: u32,
     /// Times that the turn passed to another member of a deadlocked set.
     pub rotations: u32,
@@ -69,7 +71,7 @@ pub struct Counts {
     pub unreachable: u32,
 }
 
-/// A robot that the team did not wait for, because it did not get home or to rest.
+/// A robot for which the team did not wait, because it could not get home or to rest.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct CutOff {
     /// The robot.
@@ -78,33 +80,33 @@ pub struct CutOff {
     pub first_s: f64,
     /// How often it was cut off.
     pub times: u32,
-    /// Where it did not get the first time, in metres.
+    /// The place that it could not reach the first time, in metres.
     pub place: [f32; 2],
-    /// Why, the first time.
+    /// The cause, the first time.
     pub cause: CutOffCause,
 }
 
-/// The metrics of a trial as it goes on.
+/// The metrics of a running trial.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub struct Metrics {
     /// Totals of each task.
     pub tasks: Vec<TaskTotals>,
-    /// Percent points of energy and HP that robots spent outside any group, on their way to rest and back.
+    /// Energy and HP that robots spent outside any group, in the unit of the scenario's costs.
     pub ungrouped: [f64; 2],
     /// Rounds, each with one record per task.
     pub rounds: Vec<RoundRecord>,
-    /// Rounds that ended with everybody home.
+    /// Rounds that ended before the trial did.
     pub completed_rounds: u32,
     /// How often things happened.
     pub counts: Counts,
-    /// Robots that were cut off, in the order in which it happened to them first.
+    /// Robots that were cut off, in the order in which each was cut off first.
     pub cut_off: Vec<CutOff>,
     /// The task of each robot's group in the current round.
     task_of: Vec<Option<TaskId>>,
 }
 
 impl Metrics {
-    /// Nothing yet.
+    /// Metrics without any entries.
     #[must_use]
     pub fn new(tasks: usize, robots: usize) -> Self {
         Self { tasks: vec![TaskTotals::default(); tasks], task_of: vec![None; robots], ..Self::default() }
@@ -130,7 +132,7 @@ impl Metrics {
         }
     }
 
-    /// Listens to what happened at this time, in seconds.
+    /// Receives the events of a step. `time_s` is their time, in seconds.
     pub fn listen(&mut self, events: &[Event], world: &World, time_s: f64) {
         for event in events {
             match event {
@@ -174,7 +176,7 @@ impl Metrics {
                 Event::ErrandDone { .. } => self.counts.errands_done += 1,
                 Event::Unreachable { .. } => self.counts.unreachable += 1,
                 Event::CutOff { robot, place, cause } => self.note_cut_off(*robot, *place, *cause, time_s),
-                // Nothing to count; a new kind of event must be placed here or above.
+                // Nothing to count. A new kind of event must be added here or above.
                 Event::Restocked { .. }
                 | Event::DebrisDiscovered { .. }
                 | Event::ZoneDiscovered { .. }
@@ -251,7 +253,7 @@ impl RoundRecord {
     }
 }
 
-/// What the rounds before this one came to, as questions tell it.
+/// The outcomes of the rounds before round `before`, as questions report them.
 #[must_use]
 pub fn history(rounds: &[RoundRecord], before: u32) -> Vec<RoundOutcome> {
     let mut history: Vec<RoundOutcome> = Vec::new();

@@ -1,7 +1,8 @@
-//! The seam to the physics engine: the only file that names `rapier2d`.
+//! The interface to the physics engine. No other file names `rapier2d`.
 //!
-//! Bodies in a plane seen from above, without gravity. Ground robots are discs that touch walls, debris and each other; aerial robots
-//! touch walls and each other. Debris is fixed, or rubs on the ground with Coulomb friction.
+//! Bodies in a plane seen from above, without gravity. Ground robots are discs that touch walls, debris and
+//! each other. Aerial robots touch walls and each other. Debris is fixed, or rubs on the ground with Coulomb
+//! friction.
 
 use std::collections::BTreeMap;
 
@@ -16,7 +17,7 @@ use serde::{Deserialize, Serialize};
 use crate::geometry::Outline;
 use crate::ids::RobotId;
 
-/// Features of the engine that change numbers, for the manifests of results.
+/// Features of the engine that change numerical results, for the manifests of results.
 pub const ENGINE_FEATURES: [&str; 1] = ["rapier2d/enhanced-determinism"];
 
 const GROUND: Group = Group::GROUP_1;
@@ -30,22 +31,26 @@ const HALF_WALL_M: f32 = 1.0;
 /// Friction between bodies that touch.
 const BODY_FRICTION: f32 = 0.2;
 
-/// Overlaps are corrected at most this fast, in metres per second: 0.8 mm in a step of 0.02 s, so that no robot jumps.
+/// Greatest speed at which overlaps are corrected, in metres per second: 0.8 mm in a step of 0.02 s, so that
+/// no robot jumps.
 const CORRECTION_MPS: f32 = 0.04;
 
-/// Contacts are foreseen as many steps ahead at top speed, so that robots that meet head-on touch instead of overlapping first.
+/// Number of steps at top speed for which contacts are predicted. So robots that meet head-on touch instead
+/// of overlapping first.
 const APPROACH_STEPS: f32 = 2.0;
 
-/// Movable debris is thin if the fastest robot goes farther in a step than this share of the piece's narrower side.
+/// Movable debris is thin if the fastest robot goes farther in a step than this share of the piece's narrower
+/// side.
 const THIN_SHARE: f32 = 0.125;
 
 /// Standard gravity, in metres per second squared: the weight with which movable debris rubs on the ground.
 const GRAVITY: f32 = 9.806_65;
 
-/// How hard the ground opposes the sliding of debris, per second, up to the limit of friction: stiff against any slow push.
+/// Gain with which the ground opposes the sliding of debris, per second, up to the limit of friction: stiff
+/// against any slow push.
 const GROUND_GRIP: f32 = 1.0e3;
 
-/// What the engine needs to know of a robot.
+/// The properties of a robot that the engine needs.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct RobotBody {
     /// Centre, in metres.
@@ -60,12 +65,12 @@ pub(crate) struct RobotBody {
     pub top_speed: f32,
 }
 
-/// What the engine needs to know of a piece of debris.
+/// The properties of a piece of debris that the engine needs.
 #[derive(Clone, Copy)]
 pub(crate) struct DebrisBody<'d> {
     /// Its shape and place.
     pub outline: &'d Outline,
-    /// Whether a fixed piece is put to other places.
+    /// Whether events put this fixed piece to other places.
     pub is_gate: bool,
     /// Mass, in kilograms; `None` for a fixed piece.
     pub mass: Option<f32>,
@@ -81,7 +86,7 @@ pub struct Physics {
     robots: Vec<RigidBodyHandle>,
     /// Bodies of movable debris; fixed debris never moves.
     debris: Vec<Option<RigidBodyHandle>>,
-    /// Bodies of fixed debris that comes and goes, by number.
+    /// Bodies of the debris that events place or remove, by number.
     gates: BTreeMap<usize, RigidBodyHandle>,
 }
 
@@ -109,25 +114,25 @@ impl Physics {
         Self { world, robots, debris, gates }
     }
 
-    /// Changes a robot's velocity by as much as its drive allowed.
+    /// Changes a robot's velocity by this vector, in metres per second.
     pub(crate) fn drive(&mut self, robot: RobotId, velocity_change: Vector) {
         let body = &mut self.world.bodies[self.robots[robot.index()]];
         body.apply_impulse(velocity_change * body.mass(), true);
     }
 
-    /// The bodies of fixed debris that comes and goes.
+    /// The bodies of the debris that events place or remove.
     pub(crate) fn gates(&self) -> &BTreeMap<usize, RigidBodyHandle> {
         &self.gates
     }
 
-    /// Puts a fixed piece that comes and goes to a place.
+    /// Puts a piece of debris that events place or remove to a place.
     pub(crate) fn put_debris(&mut self, number: usize, pose: Pose) {
         if let Some(handle) = self.gates.get(&number) {
             self.world.bodies[*handle].set_position(pose, true);
         }
     }
 
-    /// Moves time on by one step.
+    /// Advances time by one step.
     pub(crate) fn integrate(&mut self) {
         self.world.step();
     }
@@ -161,7 +166,7 @@ impl Physics {
     }
 }
 
-/// The engine's world as a run of bytes, for snapshots.
+/// The engine's world as bytes, for snapshots.
 mod as_bytes {
     use rapier2d::pipeline::PhysicsWorld;
     use serde::{Deserialize, Deserializer, Serialize, Serializer, de, ser};
@@ -175,7 +180,7 @@ mod as_bytes {
     }
 }
 
-/// Every parameter of the engine, set here and nowhere else: none is left to a default that a new version may change.
+/// Every parameter of the engine. All are set here, so that no changed default of a new version takes effect.
 fn parameters(dt: f32) -> IntegrationParameters {
     IntegrationParameters {
         dt,
@@ -254,7 +259,8 @@ fn insert_debris(
 ) -> (RigidBodyHandle, bool) {
     let outline = piece.outline;
     let builder = if piece.mass.is_some() { RigidBodyBuilder::dynamic() } else { RigidBodyBuilder::fixed() };
-    // A thin piece that a fast robot pushes would be well inside the next body before the contact is noticed.
+    // Without prediction, a thin piece that a fast robot pushes would be deep in the next body before the
+    // engine notices the contact.
     let bounds = outline.shape.compute_local_aabb();
     let is_thin = longest_step > THIN_SHARE * bounds.extents().min_element();
     let foresight = if is_thin { APPROACH_STEPS * longest_step } else { 0.0 };
@@ -270,8 +276,9 @@ fn insert_debris(
     if piece.mass.is_none() {
         return (handle, false);
     }
-    // Friction with the ground: motors that hold still in x, y and rotation, up to the force mu m g. The solver treats x and y apart,
-    // so the limit is exact along them and up to 1.41 times larger on the diagonal.
+    // Friction with the ground: motors that hold the piece still in x, y and rotation, up to the force mu m
+    // g. The solver treats x and y separately, so the limit is exact along the axes and up to 1.41 times
+    // larger on the diagonal.
     let limit = piece.friction_mass * GRAVITY;
     let arm = 2.0 / 3.0 * outline.shape.compute_local_bounding_sphere().radius;
     let mut joint = GenericJointBuilder::new(JointAxesMask::empty()).local_anchor1(outline.pose.translation);

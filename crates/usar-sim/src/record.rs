@@ -1,4 +1,4 @@
-//! The record of a trial: what is left when it is over.
+//! The record of a trial: its results once it is over.
 
 use rne_core::{Decision, Question};
 use serde::{Deserialize, Serialize};
@@ -17,7 +17,7 @@ pub enum Status {
     NobodyCanCarry,
     /// All errands were done or given up before the time was over.
     ErrandsOver,
-    /// Something went wrong; the numbers are those up to then and must not be used.
+    /// Something went wrong. The numbers go up to that moment and must not be used.
     Failed(String),
 }
 
@@ -34,7 +34,7 @@ impl Status {
     }
 }
 
-/// One robot's part in a trial.
+/// The results of one robot in a trial.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct RobotRecord {
     /// Identity.
@@ -49,17 +49,17 @@ pub struct RobotRecord {
     pub final_energy: f64,
     /// Health level at the end, in percent.
     pub final_hp: f64,
-    /// Percent points of energy spent.
+    /// Energy spent, in the unit of the scenario's costs.
     pub energy_spent: f64,
-    /// Percent points of HP lost.
+    /// HP lost, in the unit of the scenario's costs.
     pub hp_lost: f64,
-    /// Way travelled, in metres.
+    /// Distance travelled, in metres.
     pub distance_m: f64,
-    /// Time in which it had somewhere to go but yielded or was blocked, in seconds.
+    /// Time in which it had a goal but yielded or was blocked, in seconds.
     pub waiting_s: f64,
-    /// The longest time in which it had somewhere to go and did not come nearer, in seconds.
+    /// The longest time in which it had a goal and came no nearer to it, in seconds.
     pub longest_stall_s: f64,
-    /// What held it up at the end of that time, and whom it waited for.
+    /// The most frequent cause of delay in that time, and the robot for which it waited last by this cause.
     pub stall: Delay,
     /// Whether it ended stranded (energy 0).
     pub stranded: bool,
@@ -67,12 +67,12 @@ pub struct RobotRecord {
     pub disabled: bool,
 }
 
-/// One task's part in a trial.
+/// The results of one task in a trial.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct TaskRecord {
     /// Name of the task.
     pub task: String,
-    /// What was done and spent for it.
+    /// Results and costs of the task.
     #[serde(flatten)]
     pub totals: TaskTotals,
 }
@@ -80,9 +80,10 @@ pub struct TaskRecord {
 /// One grouping of the team.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct DecisionRecord {
-    /// What was asked, without its history: that is in [`TrialRecord::rounds`], and [`TrialRecord::question`] puts it back.
+    /// The question without its history. The history is in [`TrialRecord::rounds`], and
+    /// [`TrialRecord::question`] restores it.
     pub question: Question,
-    /// What was answered.
+    /// The answer.
     pub decision: Decision,
 }
 
@@ -95,13 +96,13 @@ pub struct TrialRecord {
     pub status: Status,
     /// Simulated time, in seconds.
     pub time_s: f64,
-    /// What was done and spent for each task, in the order of their table.
+    /// Results and costs of each task, in the order of the table of tasks.
     pub tasks: Vec<TaskRecord>,
-    /// Percent points of energy spent outside any group.
+    /// Energy spent outside any group, in the unit of the scenario's costs.
     pub ungrouped_energy: f64,
-    /// Percent points of HP lost outside any group.
+    /// HP lost outside any group, in the unit of the scenario's costs.
     pub ungrouped_hp: f64,
-    /// Rounds that ended with everybody home.
+    /// Rounds that ended before the trial did.
     pub completed_rounds: u32,
     /// Rounds, each with one record per task.
     pub rounds: Vec<RoundRecord>,
@@ -111,13 +112,14 @@ pub struct TrialRecord {
     pub robots: Vec<RobotRecord>,
     /// How often things happened.
     pub counts: Counts,
-    /// What the watchdog found: robots that the team did not wait for. Absent where there were none.
+    /// Robots that the watchdog cut off: the team did not wait for them. Absent if there were none.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub cut_off: Vec<CutOff>,
     /// How deep bodies overlapped, in a checked trial.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub overlaps: Option<Overlaps>,
-    /// Last digest of the hash chain over the whole state, 32 hexadecimal digits: equal hashes, equal trials.
+    /// Last digest of the hash chain over the whole state, as 32 hexadecimal digits: equal hashes, equal
+    /// trials.
     pub state_hash: String,
     /// The hash chain.
     #[serde(skip)]
@@ -125,13 +127,13 @@ pub struct TrialRecord {
 }
 
 impl TrialRecord {
-    /// A question as it was asked, with its history.
+    /// The question as it was asked, with its history.
     #[must_use]
     pub fn question(&self, asked: &DecisionRecord) -> Question {
         Question { history: history(&self.rounds, asked.question.round), ..asked.question.clone() }
     }
 
-    /// What was done and spent for the task of that name.
+    /// Results and costs of the task of this name.
     #[must_use]
     pub fn task(&self, name: &str) -> Option<&TaskTotals> {
         self.tasks.iter().find(|task| task.task == name).map(|task| &task.totals)
@@ -149,31 +151,31 @@ impl TrialRecord {
         self.tasks.iter().map(|task| task.totals.rescued).sum()
     }
 
-    /// Percent points of energy spent by the whole team.
+    /// Energy spent by the whole team, in the unit of the scenario's costs.
     #[must_use]
     pub fn energy(&self) -> f64 {
         self.tasks.iter().fold(0.0, |sum, task| sum + task.totals.energy) + self.ungrouped_energy
     }
 
-    /// Percent points of HP lost by the whole team.
+    /// HP lost by the whole team, in the unit of the scenario's costs.
     #[must_use]
     pub fn hp(&self) -> f64 {
         self.tasks.iter().fold(0.0, |sum, task| sum + task.totals.hp) + self.ungrouped_hp
     }
 
-    /// Metres that the robots moved, all together.
+    /// Distance travelled by all robots together, in metres.
     #[must_use]
     pub fn distance_m(&self) -> f64 {
         self.robots.iter().map(|robot| robot.distance_m).sum()
     }
 
-    /// Seconds that robots waited for one another, all together.
+    /// Time that all robots together yielded or were blocked, in seconds.
     #[must_use]
     pub fn waiting_s(&self) -> f64 {
         self.robots.iter().map(|robot| robot.waiting_s).sum()
     }
 
-    /// The longest time in seconds that a robot stood still against its will.
+    /// The longest time in which any robot had a goal and came no nearer to it, in seconds.
     #[must_use]
     pub fn longest_stall_s(&self) -> f64 {
         self.robots.iter().map(|robot| robot.longest_stall_s).fold(0.0, f64::max)

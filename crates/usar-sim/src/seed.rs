@@ -1,13 +1,13 @@
-//! The only maker of random generators.
+//! The only source of random generators.
 //!
-//! A stream is named by the trial's seed, a purpose and an entity, and by nothing else: the policy, the number of robots and the order
-//! of the draws elsewhere leave it alone (common random numbers).
+//! A stream is identified by the trial's seed, a purpose and an entity, and by nothing else. The policy, the
+//! number of robots and the order of other draws do not affect it (common random numbers).
 
 use rand::SeedableRng;
 use rand::rngs::ChaCha8Rng;
 use rand_distr::{Distribution, Open01};
 
-/// What a stream is for.
+/// The purpose of a stream.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Purpose {
     /// Initial battery level of a robot.
@@ -20,14 +20,14 @@ pub enum Purpose {
     SampledDebris,
     /// One sampled radiation zone.
     SampledRadiation,
-    /// A distribution in the place of a value, by the hash of its path.
+    /// A distribution in place of a value, by the hash of the value's path.
     Slot,
     /// One scattered thing.
     Scatter,
 }
 
 impl Purpose {
-    /// Part of the seed, so fixed for ever: changing one changes every published trial.
+    /// The number that enters the seed. It never changes, because a change would alter every published trial.
     fn key(self) -> u64 {
         match self {
             Self::EnergyLevel => 1,
@@ -51,7 +51,8 @@ pub fn stream(trial_seed: u64, purpose: Purpose, entity: u64) -> ChaCha8Rng {
     ChaCha8Rng::from_seed(seed)
 }
 
-/// One draw of a normal distribution by Box and Muller, through `libm` so that its bits are the same on every processor.
+/// One draw from a normal distribution by the Box-Muller method. It uses `libm`, so that its bits are the
+/// same on every processor.
 pub fn normal(stream: &mut ChaCha8Rng, mean: f64, standard_deviation: f64) -> f64 {
     let u: f64 = Open01.sample(stream);
     let v: f64 = Open01.sample(stream);

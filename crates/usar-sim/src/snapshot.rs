@@ -1,7 +1,9 @@
-//! A trial as bytes, to go on with later: in another process, on another machine of the same kind, with the same result bit for bit.
+//! A trial as bytes, to resume later: in another process, or on another machine of the same kind, with the
+//! same result bit for bit.
 //!
-//! Layout, numbers in little-endian order: eight bytes `USARSNAP`; the format's version (u32); length (u64) and XXH3-128 (u128) of the
-//! payload; the payload, in postcard's format: what the trial is of, then its whole state.
+//! Layout, with numbers in little-endian order: eight bytes `USARSNAP`; the version of the format (u32);
+//! length (u64) and XXH3-128 (u128) of the payload; the payload in postcard's format: the identity of the
+//! trial, then its whole state.
 
 use serde::{Deserialize, Serialize};
 use xxhash_rust::xxh3::xxh3_128;
@@ -10,15 +12,15 @@ use crate::model::Model;
 use crate::scenario::Scenario;
 use crate::simulation::{Simulation, State};
 
-/// What every snapshot begins with.
+/// The first bytes of every snapshot.
 const MAGIC: &[u8; 8] = b"USARSNAP";
 
-/// Version of the format: one more whenever the state changes its shape.
+/// Version of the format. It increases whenever the layout of the state changes.
 pub const VERSION: u32 = 6;
 
 const HEADER_BYTES: usize = 8 + 4 + 8 + 16;
 
-/// Why bytes are not a snapshot that a trial can go on from.
+/// An error that keeps a trial from resuming from a snapshot.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum SnapshotError {
     /// The bytes do not begin like a snapshot.
@@ -41,26 +43,26 @@ pub enum SnapshotError {
     /// The checksum is wrong.
     #[error("is damaged: its checksum is wrong")]
     Damaged,
-    /// A snapshot of another trial.
+    /// A snapshot of another scenario.
     #[error("is of another {what}: {found} instead of {expected}")]
     Mismatch {
         /// What differs.
         what: &'static str,
-        /// What the snapshot is of.
+        /// The value of the snapshot.
         found: String,
-        /// What was asked for.
+        /// The value of the requested trial.
         expected: String,
     },
 }
 
-/// What a snapshot is of.
+/// The identity of the trial in a snapshot.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Identity {
     /// Name of the scenario.
     pub scenario: String,
-    /// XXH3-128 of all that the scenario says.
+    /// XXH3-128 of the whole scenario.
     pub scenario_hash: u128,
-    /// The policy that decided so far, as it was asked for; another one may go on.
+    /// The policy that decided so far, as it was requested. Another policy may decide from here on.
     pub policy: String,
     /// Seed of the trial.
     pub seed: u64,
@@ -76,10 +78,10 @@ impl Identity {
         }
     }
 
-    /// Reads what a snapshot is of; all checks but those against a scenario are made.
+    /// Reads the identity from a snapshot. Makes all checks except the comparison with a scenario.
     ///
     /// # Errors
-    /// The bytes are no sound snapshot.
+    /// The bytes are not a sound snapshot.
     pub fn of(bytes: &[u8]) -> Result<Self, SnapshotError> {
         let (identity, _) = postcard::take_from_bytes(payload(bytes)?).map_err(|_| SnapshotError::Damaged)?;
         Ok(identity)
@@ -95,20 +97,21 @@ impl Identity {
     }
 }
 
-/// Bytes by whose beginning [`check_start`] knows a snapshot.
+/// Number of bytes that [`check_start`] needs.
 pub const START_BYTES: u64 = HEADER_BYTES as u64;
 
-/// Checks what a snapshot of so many bytes begins with, so that a file that is none need not be read.
+/// Checks the beginning of a snapshot of `length` bytes, so that a file that is not a snapshot need not be
+/// read.
 ///
 /// # Errors
-/// It is no snapshot, or one of another version or length.
+/// The bytes are not a snapshot, or one of another version or length.
 pub fn check_start(start: &[u8], length: u64) -> Result<(), SnapshotError> {
     let (count, _) = header(start)?;
     let expected = count.saturating_add(START_BYTES);
     if expected == length { Ok(()) } else { Err(SnapshotError::Length { expected, found: length }) }
 }
 
-/// Number of bytes of the payload, and the checksum with the payload.
+/// Number of bytes of the payload, and the checksum followed by the payload.
 fn header(bytes: &[u8]) -> Result<(u64, &[u8]), SnapshotError> {
     let Some(rest) = bytes.strip_prefix(MAGIC) else { return Err(SnapshotError::Foreign) };
     let length = |expected: u64| SnapshotError::Length { expected, found: bytes.len() as u64 };
@@ -136,7 +139,7 @@ fn payload(bytes: &[u8]) -> Result<&[u8], SnapshotError> {
 }
 
 impl Simulation {
-    /// The whole trial as it is now, and which policy decided so far.
+    /// The whole present trial, with the name of the policy that decided so far.
     ///
     /// # Panics
     /// Never: the state is of types that postcard can write to memory.
@@ -154,10 +157,11 @@ impl Simulation {
         bytes
     }
 
-    /// The trial that a snapshot was taken of, at the step where it was taken. Unchecked, until [`Simulation::checked`] is called.
+    /// The trial of a snapshot, at the step where the snapshot was taken. Invariants are not checked until
+    /// [`Simulation::checked`] is called.
     ///
     /// # Errors
-    /// The bytes are no sound snapshot, or one of another scenario.
+    /// The bytes are not a sound snapshot, or a snapshot of another scenario.
     pub fn restore(scenario: &Scenario, bytes: &[u8]) -> Result<Self, SnapshotError> {
         let found = Identity::of(bytes)?;
         found.check(&Identity::new(scenario, &found.policy, found.seed))?;

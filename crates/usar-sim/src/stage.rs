@@ -1,9 +1,9 @@
-//! The stages of a step by name, to measure what each costs.
+//! The stages of a step by name, to measure the time of each.
 
 /// The stages of a step, in their order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Stage {
-    /// What is in range becomes known.
+    /// Robots notice what is in range.
     Sense,
     /// Rounds, grouping, claims, goals.
     Mission,

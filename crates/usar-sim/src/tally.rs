@@ -1,4 +1,4 @@
-//! What is added up for each robot over a trial, and why it stops.
+//! The totals of each robot over a trial, and the causes of its delays.
 
 use serde::{Deserialize, Serialize};
 
@@ -9,7 +9,7 @@ use crate::navigation::Traveller;
 use crate::record::RobotRecord;
 use crate::world::{Condition, Robot};
 
-/// What is added up for one robot.
+/// The totals of one robot.
 #[derive(Debug, Clone, Copy, Default, Serialize, Deserialize)]
 pub(crate) struct Tally {
     initial: [f64; 2],
@@ -21,15 +21,15 @@ pub(crate) struct Tally {
     longest_stall: (u64, Delay),
 }
 
-/// What held a robot up since it last came nearer.
+/// The delays of a robot since it last came nearer to its goal.
 #[derive(Debug, Clone, Copy, Default, Serialize, Deserialize)]
 struct Stall {
-    /// Steps for each cause, and whom it waited for last.
+    /// For each cause, its steps, and the robot for which this robot waited last.
     causes: [(u64, Option<RobotId>); DelayCause::ALL.len()],
 }
 
 impl Tally {
-    /// For a robot with these initial levels, in percent.
+    /// The tally of a robot with these initial levels, in percent.
     pub(crate) fn new(energy: f64, hp: f64) -> Self {
         Self { initial: [energy, hp], ..Self::default() }
     }
@@ -39,7 +39,7 @@ impl Tally {
         self.delay
     }
 
-    /// Adds a way, in metres.
+    /// Adds a travelled distance, in metres.
     pub(crate) fn note_way(&mut self, metres: f64) {
         self.distance_m += metres;
     }
@@ -49,7 +49,8 @@ impl Tally {
         self.spent = [self.spent[0] + energy, self.spent[1] + hp];
     }
 
-    /// Takes note of why the robot stops, and of the `steps` since it last came nearer. What took the most of them is their cause.
+    /// Notes why the robot stops, and the `steps` since it last came nearer to its goal. The cause that took
+    /// most of these steps counts as the cause of the stall.
     pub(crate) fn note_delay(&mut self, delay: Delay, steps: u64) {
         self.waiting_steps += u64::from(delay.cause.is_waiting());
         self.delay = delay;
@@ -68,7 +69,7 @@ impl Tally {
         }
     }
 
-    /// The robot's part in the trial.
+    /// The robot's record of the trial.
     pub(crate) fn record(&self, robot: &Robot, dt_s: f64) -> RobotRecord {
         let seconds = |steps: u64| steps as f64 * dt_s;
         RobotRecord {

@@ -1,4 +1,4 @@
-//! Energy and health: pure functions from what a robot did to what it costs, and from health to what it can do.
+//! Energy and health: pure functions for the costs of a robot's actions and for the effect of its health.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -32,14 +32,15 @@ pub fn energy_cost(rates: &Rates, moving: bool, metres: f64, dt: f64) -> f64 {
     moved + rates.per_second * dt
 }
 
-/// Health lost in one step of `dt` seconds inside `zones` overlapping zones, which add up, in the unit of the rates.
+/// Health lost in one step of `dt` seconds inside `zones` overlapping zones, which add up, in the unit of the
+/// rates.
 #[must_use]
 pub fn hp_cost(rates: &Rates, zones: usize, metres: f64, dt: f64) -> f64 {
     zones as f64 * (rates.per_step + rates.per_metre * metres + rates.per_second * dt)
 }
 
-/// Factor in [floor, 1] on speed, sensing and observing range at a health level in percent: 1 at 100 %, falling linearly to
-/// `floor` at 0 %.
+/// Factor in [floor, 1] on speed, sensing and observing range at a health level in percent. It is 1 at 100 %
+/// and falls linearly to `floor` at 0 %.
 #[must_use]
 pub fn health_factor(hp_percent: f64, floor: f64) -> f64 {
     floor + (1.0 - floor) * (hp_percent / 100.0).clamp(0.0, 1.0)

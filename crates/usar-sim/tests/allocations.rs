@@ -1,4 +1,5 @@
-//! A steady step takes no memory: between its events a trial lives on what it has. Counted by an allocator, in a process of its own.
+//! A steady step allocates no memory: between events, a trial reuses the memory that it has. An allocator
+//! counts, in a process of its own.
 
 use std::alloc::System;
 
@@ -27,7 +28,7 @@ fn count(trial: &mut Simulation, policy: &dyn Policy) -> [usize; STAGES] {
     taken
 }
 
-/// Whether somebody waits for, or makes room for, another robot.
+/// Whether a robot waits for, or makes room for, another robot.
 fn is_in_conflict(trial: &Simulation) -> bool {
     trial.delays().any(|delay| {
         let own = [DelayCause::UnderWay, DelayCause::NothingToDo, DelayCause::Loading, DelayCause::Resting];
@@ -46,7 +47,7 @@ fn a_step_without_events_plans_and_conflicts_takes_no_memory() {
         // Events are hashed at the beginning of the step after them.
         let was_busy = is_in_conflict(&trial) || !trial.events().is_empty();
         let mut taken = count(&mut trial, &*policy);
-        // The engine's own: its step, and its list of driven bodies.
+        // Allocations of the engine itself: its step, and its list of driven bodies.
         taken[Stage::Integrate as usize] = 0;
         taken[Stage::Drive as usize] = 0;
         let has_link = trial.steps().is_multiple_of(PERIOD_STEPS);
@@ -64,6 +65,7 @@ fn a_step_without_events_plans_and_conflicts_takes_no_memory() {
         "{steady} steady steps; in {longer} a list is longer than ever before; {planned} more plan a route"
     );
     assert!(steady > 5_000 && planned < steady / 100, "{steady} steady steps, routes planned in {planned}");
-    // Now and then a list is longer than ever before, or a robot that comes no nearer looks who is in its way.
+    // Occasionally a list is longer than ever before, or a robot that comes no nearer to its goal searches
+    // for the robot in its way.
     assert!(longer <= 10, "{longer} of {steady} steady steps take memory");
 }

@@ -37,7 +37,7 @@ impl Policy for Distance {
     }
 }
 
-/// `places` of the tasks stand in the order in which ties are settled.
+/// Assigns the robots of one role, nearest pairs first. The order of `places` settles ties.
 fn fill_nearest_first(
     robots: &[&Member],
     places: &[(TaskId, [f64; 2])],

@@ -10,9 +10,9 @@ use crate::question::Question;
 
 const NAME: &str = "HP_DIS";
 
-/// Per role, sorts by health level; the upper robots take the harder tasks. Of robots with the same level,
-/// the one whose home is nearer to the hardest task goes first (where that task's place is known), then the
-/// lower id.
+/// Per role, sorts by health level; the upper robots take the harder tasks. Among robots with the same level,
+/// the robot whose home is nearer to the hardest task goes first (if that task's place is known), then the
+/// robot with the lower id.
 #[derive(Debug, Clone, Copy)]
 pub struct HpDistance;
 

@@ -1,4 +1,4 @@
-//! `RANDOM`: a fair draw per role, the baseline below all baselines.
+//! `RANDOM`: a fair draw per role, the lowest of the baselines.
 
 use rand::seq::SliceRandom;
 

@@ -1,4 +1,4 @@
-//! Sorting: the first of each role go to the hardest task, the next to the next hardest.
+//! Ranking: the first robots of each role go to the hardest task, the next robots to the next hardest.
 
 use std::cmp::Ordering;
 
@@ -7,7 +7,7 @@ use crate::error::PolicyError;
 use crate::question::{Member, Question};
 
 /// Per role, sorts by `better_first` and deals the members out over the tasks, the hardest first; ties by id.
-/// `key` says what they are sorted by, `value` is the part of a key that the account shows.
+/// `key_name` says what the members are sorted by. `value` is the part of a key that the account shows.
 pub(super) fn deal_by_rank<K>(
     question: &Question,
     (key_name, value): (&str, impl Fn(&K) -> f64),
@@ -27,7 +27,8 @@ pub(super) fn deal_by_rank<K>(
     Ok(Decision { account, ..deal(question, &orders) })
 }
 
-/// Deals the members of each role, in this order, out over the tasks by their quotas, the hardest task first.
+/// Deals the members of each role out over the tasks by their quotas. The members keep the given order; the
+/// hardest task comes first.
 pub(super) fn deal(question: &Question, orders: &[Vec<u32>]) -> Decision {
     let mut groups = vec![Vec::new(); question.tasks.len()];
     let hardest_first = question.hardest_first();

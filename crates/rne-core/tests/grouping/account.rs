@@ -8,7 +8,7 @@ use rne_core::{Account, Question, RneOptions};
 use crate::oracle::{Oracle, as_set, is_close, nats};
 use crate::support::{all_options, decide, drawn_team, question, rne};
 
-/// The scores from the largest on; of equal scores all.
+/// The scores in descending order, with duplicates.
 fn descending(mut scores: Vec<f64>) -> Vec<f64> {
     scores.sort_by(|a, b| b.total_cmp(a));
     scores

@@ -68,7 +68,7 @@ proptest! {
     }
 }
 
-/// Takes the nearest open pair of robot and task again and again; of equals the one with the lower id, then
+/// Repeatedly takes the nearest open pair of robot and task; among equals, the robot with the lower id, then
 /// the harder task.
 fn distance_by_brute_force(question: &Question) -> Vec<Vec<u32>> {
     let mut groups = vec![Vec::new(); question.tasks.len()];

@@ -1,4 +1,5 @@
-//! Teams that are too large to look at everything: the answer says so, and how far it can be from the best.
+//! Teams that are too large for an exhaustive search: the answer says so, and bounds its distance from the
+//! optimum.
 
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
@@ -66,8 +67,8 @@ fn no_score_of_a_local_search_is_above_its_bound() {
     }
 }
 
-/// The bound is of the robots, not of the search: it holds for every split of a team that contains the robots
-/// of the bound.
+/// The bound depends on the robots, not on the search: it holds for every split of a team that contains these
+/// robots.
 #[test]
 fn no_split_at_all_is_above_the_bound() {
     let mut draws = ChaCha8Rng::seed_from_u64(1);

@@ -1,5 +1,5 @@
-//! The RNE policy by its definition: everything is looked at, nothing is fast. Written with the distributions
-//! and divergences of the crate alone.
+//! The RNE policy by its definition: an exhaustive search that is not fast. It uses only the distributions
+//! and divergences of the crate.
 
 use rne_core::policies::rne::{HardRule, MergeReading, ScoreDirection};
 use rne_core::{
@@ -7,7 +7,7 @@ use rne_core::{
     jeffreys, jensen_shannon, relative_entropy,
 };
 
-/// Scores that differ by less are equal.
+/// Scores that differ by less than this are equal.
 const TIE: f64 = 1e-12;
 
 pub type Groups = Vec<Vec<u32>>;
@@ -51,7 +51,7 @@ impl<'a> Oracle<'a> {
         }
     }
 
-    /// The sum over all pairs of groups that have members; minus infinity where there is no such pair.
+    /// The sum over all pairs of groups that have members; minus infinity if there is no such pair.
     pub fn total(&self, groups: &[Vec<u32>]) -> f64 {
         let filled: Vec<&Vec<u32>> = groups.iter().filter(|group| !group.is_empty()).collect();
         let pairs = (0..filled.len()).flat_map(|i| (i + 1..filled.len()).map(move |j| (i, j)));
@@ -98,8 +98,8 @@ impl<'a> Oracle<'a> {
         merged.filter(|(merged, _)| self.fits_in_some_order(merged)).collect()
     }
 
-    /// Whether there are tasks for these groups whose binding quotas they keep, as far as roles have been
-    /// merged.
+    /// Whether the groups fit some order of tasks whose binding quotas they keep, for the roles merged so
+    /// far.
     fn fits_in_some_order(&self, groups: &[Vec<u32>]) -> bool {
         let tasks: Vec<usize> = (0..groups.len()).collect();
         permutations(&tasks)
@@ -114,8 +114,8 @@ impl<'a> Oracle<'a> {
         binding.all(|(role, quota)| count(group, role) == quota.members[task])
     }
 
-    /// The groups by task: each from the hardest on takes the best-suited group that is left, the one with
-    /// the lowest id of equals.
+    /// The groups by task. From the hardest task on, each task takes the best-suited group that is left;
+    /// among equals, the group with the lowest id.
     pub fn by_task(&self, groups: &[Vec<u32>]) -> Groups {
         let mut left: Groups = groups.to_vec();
         left.iter_mut().for_each(|group| group.sort_unstable());
@@ -155,30 +155,30 @@ impl<'a> Oracle<'a> {
     }
 }
 
-/// What a need is multiplied by, so that no unit dominates.
+/// The factor of a need that keeps any unit from dominating.
 fn scale(question: &Question, k: usize) -> f64 {
     let maximum = question.members.iter().map(|member| member.needs.values()[k]).fold(0.0, f64::max);
     if maximum > 0.0 { 1.0 / maximum } else { 1.0 }
 }
 
-/// Whether two scores are the same but for rounding.
+/// Whether two scores are the same up to rounding.
 pub fn is_close(found: f64, expected: f64) -> bool {
     found.total_cmp(&expected).is_eq() || (found - expected).abs() < 1e-11
 }
 
-/// A score as a number: minus infinity where there is none.
+/// A score as a number; minus infinity if there is none.
 pub fn nats(score: Option<RelativeNeedsEntropy>) -> f64 {
     score.map_or(f64::NEG_INFINITY, |score| score.nats().unwrap_or(f64::INFINITY))
 }
 
-/// The first of the best.
+/// The first of the best groups.
 fn first_best(all: Vec<(Groups, f64)>) -> Groups {
     let best = all.into_iter().reduce(|best, next| if next.1 > best.1 + TIE { next } else { best });
     best.unwrap().0
 }
 
-/// Each way to put these ids, which ascend, into sets of these sizes; sets by their smallest ids, empty ones
-/// last.
+/// All partitions of these ascending ids into sets of these sizes. Sets are in the order of their smallest
+/// ids; empty sets come last.
 pub fn partitions(ids: &[u32], sizes: &[usize]) -> Vec<Groups> {
     let Some((first, rest)) = ids.split_first() else { return vec![vec![Vec::new(); sizes.len()]] };
     let mut all = Vec::new();

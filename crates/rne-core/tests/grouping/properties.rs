@@ -11,7 +11,7 @@ use crate::support::{all_options, any_team, decide, names, question, rne, team, 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(32))]
 
-    // That all answers are partitions with the sizes of the quotas is checked by `decide`.
+    // `decide` checks that all answers are partitions with the sizes of the quotas.
 
     #[test]
     fn every_policy_forms_halves_of_every_role(members in any_team(6)) {

@@ -1,4 +1,4 @@
-//! Quotas that bind: every policy keeps them task by task, and RNE finds the best groups that do.
+//! Binding quotas: every policy keeps them task by task, and RNE finds the best groups that do.
 
 use proptest::prelude::*;
 use rne_core::{Assignment, Question, Quota, RneOptions};
@@ -6,7 +6,7 @@ use rne_core::{Assignment, Question, Quota, RneOptions};
 use crate::many_tasks::check_against_oracle;
 use crate::support::{all_options, decide, drawn_team, names, question, rne};
 
-/// A question whose roles have these quotas, given with whether they bind.
+/// A question whose roles have these quotas; each flag says whether the quota binds.
 fn with_quotas(quotas: [(&[usize], bool); 3], difficulties: &[u32], seed: u64) -> Question {
     let counts = quotas.map(|(members, _)| members.iter().sum());
     let mut question = question(drawn_team(&counts, seed), difficulties);

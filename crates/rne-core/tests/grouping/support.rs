@@ -102,7 +102,7 @@ pub fn two_tasks(members: Vec<Member>) -> Question {
     question(members, &[1, 2])
 }
 
-/// The answer of a policy in RON; it must answer the question.
+/// The decision of a policy, given in RON. Panics if it does not answer the question.
 #[track_caller]
 pub fn decide(policy: &str, question: &Question) -> Decision {
     let decision = Registry::standard().parse(policy).unwrap().policy.decide(question).unwrap();
@@ -114,7 +114,7 @@ pub fn decide(policy: &str, question: &Question) -> Decision {
     decision
 }
 
-/// The parts of a role have the sizes of its quota, task by task but for the RNE policy.
+/// Checks that the parts of a role have the sizes of its quota: task by task, except under the RNE policy.
 #[track_caller]
 fn check_sizes(policy: &str, question: &Question, groups: &[Vec<u32>]) {
     for (role, quota) in question.role_ids().zip(&question.quotas) {

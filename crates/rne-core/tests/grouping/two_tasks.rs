@@ -1,5 +1,5 @@
-//! Two tasks, the paper's case: brute force over halves, written once more and in another way than the oracle
-//! for any number of tasks.
+//! Two tasks, the paper's case: brute force over halves, written independently of the oracle for any number
+//! of tasks.
 
 use proptest::prelude::*;
 use rand::rngs::ChaCha8Rng;
@@ -41,14 +41,14 @@ fn best_split_by_brute_force(members: &[Member]) -> f64 {
         .fold(0.0, f64::max)
 }
 
-/// The distribution of the members whose bits are set, or of the others.
+/// The distribution of the members whose bits are set, or of the other members.
 fn side(members: &[Member], chosen: u32, inside: bool, weights: &NeedWeights) -> NeedDistribution {
     let of_side = (0..members.len()).filter(|i| (chosen >> i & 1 == 1) == inside);
     let needs: Vec<NeedVector> = of_side.map(|i| members[i].needs.clone()).collect();
     NeedDistribution::of_group(&needs, weights).unwrap()
 }
 
-/// All the ways to merge the best halves, for the default reading.
+/// Compares with all merges of the best halves, for the default reading.
 #[test]
 fn rne_merges_as_brute_force_does() {
     for seed in 0..20 {

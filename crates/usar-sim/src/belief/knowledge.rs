@@ -1,4 +1,4 @@
-//! What a group knows of the world: shared by its members at once, pooled by the whole team at home.
+//! The knowledge of a group about the world: members share it at once, and the team pools it at home.
 
 use parry2d::math::Vector;
 use serde::{Deserialize, Serialize};
@@ -8,35 +8,35 @@ use crate::planning::{KnownObstacle, ObstacleKey, ObstacleMap};
 use crate::scenario::Scenario;
 use crate::world::{Robot, World};
 
-/// What was learned that concerns routes.
+/// A piece of knowledge that concerns routes.
 #[derive(Debug, Clone, Copy, Serialize, Deserialize)]
 pub(crate) enum News {
-    /// An obstacle is known, where it is now.
+    /// An obstacle became known at its present place.
     Obstacle(ObstacleKey),
-    /// A radiation zone is known.
+    /// A radiation zone became known.
     Zone(u32),
     /// A place is free again.
     Opening(Opening),
 }
 
-/// A place that was found to be free again: a piece of debris was pushed away from there.
+/// A place that is free again: a piece of debris was pushed away, or a radiation zone was switched off.
 #[derive(Debug, Clone, Copy, Serialize, Deserialize)]
 pub(crate) struct Opening {
     /// Middle of the place.
     center: Vector,
-    /// No way through the place that was closed before is farther from the middle than this, in metres.
+    /// Radius round the middle that contains the whole place, in metres.
     reach: f32,
 }
 
 impl Opening {
-    /// A lower bound for the length of any way from `a` to `b` that leads through here, in metres.
+    /// A lower bound for the length of any path from `a` to `b` through this place, in metres.
     pub(crate) fn least_way(&self, a: Vector, b: Vector) -> f32 {
         let to_here = |point: Vector| ((point - self.center).length() - self.reach).max(0.0);
         to_here(a) + to_here(b)
     }
 }
 
-/// How much of some knowledge has been taken into account.
+/// A mark in the news: how much of it has been taken into account.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub(crate) struct Seen {
     pool: u32,
@@ -46,41 +46,42 @@ pub(crate) struct Seen {
 /// Knowledge of a group, or of the team at home.
 #[derive(Clone, Serialize, Deserialize)]
 pub struct Knowledge {
-    /// For each piece of debris, the number of its sightings that are known; 0 is unknown.
+    /// For each piece of debris, the number of its latest known sighting; 0 if unknown.
     pub debris: Vec<u32>,
-    /// For each radiation zone, how many of its switches are known; an odd number is a zone that is known to
+    /// For each radiation zone, how many of its switches are known. With an odd number, the zone is known to
     /// be on.
     pub zones: Vec<u8>,
     /// For each rescuee, whether it was seen.
     pub rescuees: Vec<bool>,
-    /// For each robot, whether it is known to stand for good.
+    /// For each robot, whether it is known to have stopped for good.
     pub wrecks: Vec<bool>,
-    /// How often the groups have pooled what they know. Between two times, what a group knows goes on from what the team knew.
+    /// Number of times that the groups have pooled their knowledge. Between two poolings, each group's
+    /// knowledge extends the team's.
     pool: u32,
-    /// What concerns routes, in the order in which it was learned.
+    /// The news that concern routes, in the order in which they were learned.
     news: Vec<News>,
-    /// One for each class of radii. Follows from `debris` and `wrecks`.
+    /// One map for each class of radii. Follows from `debris` and `wrecks`.
     #[serde(skip)]
     obstacles: Vec<ObstacleMap>,
     /// Follows from `zones`.
     #[serde(skip)]
     known_zones: Vec<(u32, RadiationZone)>,
-    /// By how much obstacles are inflated.
+    /// How much obstacles are inflated.
     #[serde(skip)]
     inflation: Inflation,
 }
 
-/// By how much obstacles are inflated: for each class of ground robots by their radius, and by the clearance that they keep.
+/// How much obstacles are inflated: by the radius of each class of ground robots, and by their clearance.
 #[derive(Debug, Clone, Default)]
 pub struct Inflation {
-    /// Radii of the classes, rising, in metres.
+    /// Radii of the classes in ascending order, in metres.
     pub radii: Vec<f32>,
-    /// What robots keep from obstacles beyond their radius, in metres.
+    /// Distance that robots keep from obstacles beyond their radius, in metres.
     pub clearance: f32,
 }
 
 impl Inflation {
-    /// For the robots of a scenario.
+    /// The inflation for the robots of a scenario.
     #[must_use]
     pub fn of(scenario: &Scenario) -> Self {
         Self {
@@ -91,7 +92,7 @@ impl Inflation {
 }
 
 impl Knowledge {
-    /// Nothing is known.
+    /// Knowledge of nothing.
     #[must_use]
     pub fn nothing(world: &World, inflation: Inflation) -> Self {
         Self {
@@ -107,7 +108,8 @@ impl Knowledge {
         }
     }
 
-    /// The known obstacles as they are in the way of a robot of this radius, in metres: of the smallest class that holds it.
+    /// The known obstacles, inflated for a robot of this radius, in metres: those of the smallest class whose
+    /// radius is at least as large.
     #[must_use]
     pub fn obstacles(&self, radius: f32) -> &ObstacleMap {
         let class = self.inflation.radii.partition_point(|other| *other < radius);
@@ -120,18 +122,18 @@ impl Knowledge {
         &self.known_zones
     }
 
-    /// A mark up to which everything that is known now has been seen.
+    /// The mark after all present news.
     pub(crate) fn seen(&self) -> Seen {
         Seen { pool: self.pool, news: self.news.len() }
     }
 
-    /// What was learned since a mark; everything, where the mark is from before the groups last pooled what they know.
+    /// The news since a mark. All news, if the groups have pooled their knowledge since the mark.
     pub(crate) fn news_since(&self, seen: Seen) -> &[News] {
         let from = if seen.pool == self.pool { seen.news.min(self.news.len()) } else { 0 };
         &self.news[from..]
     }
 
-    /// Takes note of a piece of debris as it lies now.
+    /// Notes a piece of debris at its present place.
     pub fn learn_debris(&mut self, world: &World, number: usize) {
         self.learn_sighting(world, number, world.debris[number].sightings.len() as u32);
     }
@@ -143,12 +145,12 @@ impl Knowledge {
         }
     }
 
-    /// Takes note of a radiation zone.
+    /// Notes a radiation zone in its present state.
     pub fn learn_zone(&mut self, world: &World, number: usize) {
         self.learn_switch(world, number, world.switches_of(number));
     }
 
-    /// Takes note of a radiation zone as it was after so many switches.
+    /// Notes a radiation zone as it was after this many switches.
     fn learn_switch(&mut self, world: &World, number: usize, switches: u8) {
         let before = self.zones[number];
         self.zones[number] = before.max(switches);
@@ -164,7 +166,7 @@ impl Knowledge {
         }
     }
 
-    /// Takes note of a robot that stands for good.
+    /// Notes a robot that has stopped for good.
     pub fn learn_wreck(&mut self, world: &World, number: usize) {
         let robot = &world.robots[number];
         let Some(at) = robot.wreck_at else { return };
@@ -173,7 +175,7 @@ impl Knowledge {
         }
     }
 
-    /// Takes over all that some groups know.
+    /// Adds all that these groups know.
     pub fn pool(&mut self, world: &World, groups: &[Self]) {
         groups.iter().for_each(|group| self.learn_all(world, group));
         self.pool += 1;
@@ -193,7 +195,7 @@ impl Knowledge {
         }
     }
 
-    /// A piece of debris as it is known, for robots of a radius.
+    /// A piece of debris as it is known, as an obstacle for robots of this radius.
     fn debris_obstacle(&self, world: &World, number: usize, radius: f32) -> KnownObstacle {
         let sighting = self.debris[number];
         let outline = &world.debris[number].sightings[sighting as usize - 1];
@@ -210,7 +212,7 @@ impl Knowledge {
         KnownObstacle::wreck(robot.id.0, at, robot.radius(), radius, self.inflation.clearance)
     }
 
-    /// Makes anew what a snapshot leaves out because it follows from the rest.
+    /// Restores the fields that a snapshot leaves out: they follow from the other fields.
     pub(crate) fn restore(&mut self, world: &World, inflation: Inflation) {
         self.inflation = inflation;
         self.obstacles = self.inflation.radii.iter().map(|radius| self.map(world, *radius)).collect();
@@ -219,7 +221,7 @@ impl Knowledge {
         self.known_zones = known_zones.map(|(zone, number)| (number, *zone)).collect();
     }
 
-    /// All known obstacles, for robots of a radius.
+    /// The map of all known obstacles for robots of this radius.
     fn map(&self, world: &World, radius: f32) -> ObstacleMap {
         let known = (0..self.debris.len()).filter(|number| self.debris[*number] > 0);
         let debris = known.map(|number| self.debris_obstacle(world, number, radius));
@@ -228,7 +230,7 @@ impl Knowledge {
         debris.chain(wrecks).collect()
     }
 
-    /// Adds an obstacle to the maps of all classes. News of it are those of the largest robots.
+    /// Adds an obstacle to the maps of all classes. The news use its outline for the largest robots.
     fn insert(&mut self, obstacle: impl Fn(&Self, f32) -> KnownObstacle) {
         let mut news = None;
         for class in 0..self.obstacles.len() {

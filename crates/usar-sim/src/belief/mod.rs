@@ -1,4 +1,4 @@
-//! What groups believe of the world, and how they come to believe it.
+//! The beliefs of groups about the world, and how sensing forms them.
 
 mod knowledge;
 mod sensing;

@@ -1,5 +1,6 @@
-//! What robots notice: debris, radiation and wrecks within their sensing range, rescuees within their observing range. Ranges are discs that
-//! shrink with health; nothing occludes. What one member notices, its whole group knows at once.
+//! Sensing: robots notice debris, radiation and wrecks within their sensing range, and rescuees within their
+//! observing range. Ranges are discs that shrink with health; nothing occludes. A whole group knows at once
+//! what one member notices.
 
 use parry2d::math::Vector;
 use smallvec::SmallVec;
@@ -13,8 +14,8 @@ use crate::world::{RescueeState, Robot, World};
 /// Robots look around once in this many steps (0.1 s at the usual step).
 pub const SENSING_PERIOD_STEPS: u64 = 5;
 
-/// Lets one robot look around, for the knowledge that it shares: for debris, zones, `wrecks` (robots that stand for good, by number) and
-/// rescuees.
+/// Adds to the shared knowledge what one robot notices: debris, zones, rescuees and `wrecks` (numbers of
+/// robots that have stopped for good).
 pub fn look_around(
     world: &World,
     (tasks, wrecks): (&[TaskModel], &[usize]),
@@ -34,7 +35,7 @@ pub fn look_around(
         }
     }
     for number in &world.gates {
-        // A piece that was taken away is missed where it was seen last.
+        // A robot notices that a piece was taken away where the piece was seen last.
         let seen = knowledge.debris[*number] as usize;
         let sightings = &world.debris[*number].sightings;
         if seen > 0 && seen < sightings.len() && sightings[seen - 1].distance_to(robot.position) <= sensing {

@@ -1,7 +1,7 @@
-//! Conflict sets over time: their order, and when they have come to nothing (the paper's Algorithm 6).
+//! Conflict sets over time: their order, and when a set is deadlocked (the paper's Algorithm 6).
 //!
-//! Two ways to come to nothing are told apart: a *deadlock*, in which nobody moves, and a *livelock*, in which the head moves to and
-//! fro but comes no nearer to its goal. Both give the next robot its turn.
+//! Two kinds of deadlock are told apart. In a *deadlock* proper, no robot moves. In a *livelock*, the head
+//! moves to and fro but comes no nearer to its goal. Both pass the turn to the next robot.
 
 use serde::{Deserialize, Serialize};
 use std::cmp::Reverse;
@@ -12,22 +12,22 @@ use crate::scenario::ResolverRule;
 /// Slower than this is no motion, in metres per second.
 const STILL_MPS: f32 = 0.02;
 
-/// Coming nearer by less than this is no progress, in metres.
+/// An approach by less than this is no progress, in metres.
 const PROGRESS_M: f32 = 0.05;
 
-/// What a set looks like in this step.
+/// What is seen of a set in this step.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Observation {
     /// Speed of its fastest member, in metres per second.
     pub(super) fastest: f32,
-    /// Way that its head has left, in metres.
+    /// Distance that the head has left to go, in metres.
     pub(super) head_way_left: f32,
 }
 
-/// When a set is given up on, in steps.
+/// How long a set may make no progress, in steps.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Patience {
-    /// Without motion.
+    /// Without motion of any member.
     pub(super) deadlock: u32,
     /// Without the head coming nearer.
     pub(super) livelock: u32,
@@ -47,14 +47,14 @@ pub(super) struct ConflictSet {
     backing_off: u32,
 }
 
-/// How a set fares in this step.
+/// The progress of a set in this step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Progress {
-    /// The head goes, the others yield.
+    /// The set makes progress, or may still do so.
     Flowing,
-    /// It came to nothing.
+    /// The set is deadlocked.
     Stuck,
-    /// It makes room sideways.
+    /// The whole set moves apart sideways.
     BackingOff,
 }
 
@@ -63,7 +63,7 @@ pub(super) enum Progress {
 pub(super) enum NextTurn {
     /// Another head tries.
     OfNextHead,
-    /// Every member was head in vain: all back off.
+    /// Every member was the head without success: all back off.
     OfNobody,
 }
 
@@ -82,8 +82,8 @@ impl ConflictSet {
         set
     }
 
-    /// Takes new members, in ascending order: those who stay keep their order, newcomers, who were not in it, queue behind them by
-    /// priority.
+    /// Sets the members, given in ascending order. Members that stay keep their order. Newcomers, for which
+    /// `was_in` is false, queue behind them by priority.
     pub(super) fn regroup(
         &mut self,
         members: &[usize],
@@ -98,14 +98,15 @@ impl ConflictSet {
         self.note_head(head);
     }
 
-    /// Puts those who make room for others first, the deepest of a chain before all: the others cannot go before.
+    /// Puts the robots that make room for others first, the deepest of a chain before all: the others cannot
+    /// move before it does.
     pub(super) fn promote(&mut self, depth: impl Fn(usize) -> u32) {
         let head = self.order.first().copied();
         self.order.sort_by_key(|i| Reverse(depth(*i)));
         self.note_head(head);
     }
 
-    /// Counts the steps that come to nothing.
+    /// Counts the steps without progress, and judges the set by them.
     pub(super) fn observe(&mut self, seen: Observation, patience: Patience) -> Progress {
         if self.backing_off > 0 {
             self.backing_off -= 1;
@@ -128,12 +129,12 @@ impl ConflictSet {
         }
     }
 
-    /// Lets the head wait on: somebody makes room for it.
+    /// Resets the head's patience, because another robot makes room for it.
     pub(super) fn wait_for_room(&mut self) {
         self.next_head();
     }
 
-    /// Gives the turn to another head, or has the set back off when all have been head.
+    /// Makes another member the head. Once every member has been the head, the set backs off.
     pub(super) fn give_turn(&mut self, rule: ResolverRule, patience: Patience) -> NextTurn {
         self.turns += 1;
         let cycle_is_over = self.turns >= self.order.len();

@@ -1,4 +1,4 @@
-//! Why robots stand still, and whom they wait for.
+//! Why robots stand still, and for which robots they wait.
 
 use serde::{Deserialize, Serialize};
 
@@ -10,7 +10,7 @@ pub enum DelayCause {
     /// Nothing holds it up: it moves.
     #[default]
     UnderWay,
-    /// It is where it should be and has nothing to do.
+    /// It is at its goal, or has none, and has nothing to do.
     NothingToDo,
     /// It takes a rescuee on board.
     Loading,
@@ -18,13 +18,13 @@ pub enum DelayCause {
     Resting,
     /// It yields to a robot with the right of way.
     RightOfWay,
-    /// Its way is blocked by a robot that stands, or by debris.
+    /// Its route is blocked by a robot that stands, or by debris.
     Blocked,
-    /// It makes room for a robot with the right of way.
+    /// It makes room for a robot with the right of way, or gives way while it has nowhere to go.
     MakingRoom,
     /// Its whole conflict set was deadlocked and backs off.
     BackingOff,
-    /// It knows no way to where it should be.
+    /// It knows no route to its goal.
     NoRoute,
     /// Its energy is 0.
     Stranded,
@@ -73,17 +73,17 @@ impl DelayCause {
     }
 }
 
-/// Why a robot does not move on, and whom it waits for.
+/// Why a robot does not move on, and the robot for which it waits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct Delay {
-    /// Why.
+    /// The cause of the delay.
     pub cause: DelayCause,
-    /// The robot that it waits for, where there is one.
+    /// The robot that it waits for, if there is one.
     pub waits_for: Option<RobotId>,
 }
 
-/// The cycles of a wait-for graph: `waits_for[i]` is the robot that robot `i` waits for. Each robot waits for at most one, so
-/// that every cycle is found by following the waits once. O(robots).
+/// The cycles of a wait-for graph. `waits_for[i]` is the robot for which robot `i` waits. Each robot waits
+/// for at most one other, so following every chain of waits once finds every cycle. O(robots).
 ///
 /// ```
 /// use usar_sim::conflict::wait_cycles;

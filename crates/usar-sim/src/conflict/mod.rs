@@ -1,11 +1,17 @@
 //! Right of way: who moves and who waits when robots would come too close (paper: Section V and Algorithm 6).
 //!
-//! Robots whose next moves would bring them into each other's safety distance form a conflict set. The head of the set moves,
-//! passing the others at a tangent; the others yield until it is out of the set; then the next one is the head. A set in which nobody
-//! moves, or whose head moves but comes no nearer, is deadlocked. Then, in this order: the robot in the way of the head makes room
-//! (`retreat`), another member is the head, and after a full cycle in vain the whole set backs off sideways.
+//! Robots whose next moves would bring them into each other's safety distance form a conflict set. The head
+//! of the set moves and passes the others at a tangent. Members in conflict with a moving member ahead of
+//! them yield. The head keeps the right of way until it leaves the set; then the next member is the head. A
+//! set in which no robot moves, or whose head moves but comes no nearer to its goal, is deadlocked. The
+//! resolver then tries, in this order: the robot in the way of the head makes room (`retreat`); another
+//! member becomes the head; once every member has been the head without success, the whole set backs off
+//! sideways.
 //!
-//! Pure: positions and wishes in, directives out; the only state is the order of the sets that persist and who makes room for whom.
+//! The default rule, reciprocal avoidance, forms no sets (`reciprocal`).
+//!
+//! The resolver reads positions and wishes and returns directives. Between steps it keeps only the order of
+//! the sets, the retreats, and per robot its last direction, its blocked steps and its state at a passage.
 
 mod deadlock;
 mod delay;
@@ -44,19 +50,19 @@ const BACK_OFF_S: f64 = 1.0;
 /// How long the head of a set may move without coming nearer before it loses its turn, in seconds.
 const LIVELOCK_S: f64 = 2.0;
 
-/// How long a robot tries to get to where it makes room without coming nearer, in seconds.
+/// How long a robot tries to reach the place where it makes room without coming nearer to it, in seconds.
 const RETREAT_PATIENCE_S: f64 = 3.0;
 
-/// How long a robot stays where it makes room, in seconds, when the other does not pass.
+/// How long a robot keeps making room at its place while the other robot stands still, in seconds.
 const ROOM_PATIENCE_S: f64 = 15.0;
 
-/// How long a robot is not asked again after it tried in vain to make room, in seconds.
+/// How long a robot is not asked again after a retreat that failed, in seconds.
 const RESPITE_S: f64 = 3.0;
 
-/// How often a robot that is alone before a blocked way asks for room, in seconds.
+/// How often a robot asks again for room while it is blocked or comes no nearer, in seconds.
 const ASK_AGAIN_S: f64 = 0.5;
 
-/// Where there is no way past at the full margin, robots squeeze past at this one, in metres.
+/// Margin at which robots squeeze past if nothing is free at the full margin, in metres.
 const SQUEEZE_MARGIN_M: f32 = 0.03;
 
 /// Share of the wished speed at which robots squeeze past.
@@ -77,7 +83,7 @@ pub struct Resolver {
     arena: Vector,
     sets: Vec<ConflictSet>,
     retreats: Retreats,
-    /// Found anew in every step, as are the following.
+    /// Recomputed in every step, like the three fields below.
     #[serde(skip)]
     neighbours: Neighbours,
     #[serde(skip)]
@@ -85,26 +91,26 @@ pub struct Resolver {
     /// For each robot, the set that it is in.
     #[serde(skip)]
     set_of: Vec<Option<usize>>,
-    /// For each robot, whether others are to pass it: it has nowhere to go, or yields.
+    /// For each robot, whether it stops and others pass it: it has nowhere to go, or it yields.
     #[serde(skip)]
     stands: Vec<bool>,
     directives: Vec<Directive>,
-    /// For each robot, the direction that it was told last; zero where it stood.
+    /// For each robot, the direction of its last directive; zero if it stood.
     headings: Vec<Vector>,
-    /// For each robot, steps since its way was last free.
+    /// For each robot, the number of successive steps in which it was blocked.
     blocked_steps: Vec<u32>,
-    /// For each robot, how it stands at the narrow passage that it is at.
+    /// For each robot, its state at a narrow passage.
     entries: Vec<Entry>,
     /// Steps without coming nearer after which a robot is stuck.
     #[serde(skip)]
     stuck_steps: u32,
-    /// Steps after which a robot that waits before a passage ends the turn of the others.
+    /// Steps of waiting before a passage after which a robot ends the turn of the other direction.
     #[serde(skip)]
     turn_steps: u32,
 }
 
 impl Resolver {
-    /// No conflicts yet.
+    /// A resolver without conflicts.
     #[must_use]
     pub fn new(scenario: &Scenario) -> Self {
         let mut resolver = Self {
@@ -130,7 +136,8 @@ impl Resolver {
         resolver
     }
 
-    /// Makes what a snapshot leaves out because it follows from the scenario or from the rest.
+    /// Restores the fields that a snapshot leaves out: they follow from the scenario or from the other
+    /// fields.
     pub(crate) fn restore(&mut self, scenario: &Scenario) {
         let steps = |seconds: f64| (seconds / scenario.dt_s).round() as u32;
         self.rules = scenario.conflicts;
@@ -152,7 +159,8 @@ impl Resolver {
         self.retreats.restore(limits, self.right_of_way.margin_m as f32, self.arena);
     }
 
-    /// One directive for each mover, in their order. The wishes of those who make room are replaced.
+    /// One directive for each mover, in the order of the movers. Replaces the wishes of robots that make
+    /// room, and limits those of robots that wait before a passage.
     pub fn resolve(&mut self, movers: &mut [Mover], log: &mut EventLog) -> &[Directive] {
         if self.rules.resolver == ResolverRule::None {
             self.directives.clear();
@@ -187,13 +195,14 @@ impl Resolver {
         &self.directives
     }
 
-    /// The conflict sets of the last step: places of their members, in order of precedence.
+    /// The conflict sets of the last step: the members' indices, in order of precedence.
     pub fn sets(&self) -> impl Iterator<Item = &[usize]> {
         self.sets.iter().map(|set| set.order.as_slice())
     }
 
-    /// A set continues the one of the last step with which it shares the most members: whoever is head stays it until it is out of the
-    /// set. One that shares none is new.
+    /// Carries the sets of the last step over to this step. A set continues the earlier set with which it
+    /// shares the most members and keeps its order: the head stays the head until it leaves the set or a
+    /// member makes room. A set that shares no member with an earlier one is new.
     fn carry_over(&mut self, movers: &[Mover], log: &mut EventLog) {
         let mut before: Vec<Option<ConflictSet>> =
             std::mem::take(&mut self.sets).into_iter().map(Some).collect();
@@ -215,7 +224,9 @@ impl Resolver {
         note_sets(&mut self.set_of, movers.len(), self.sets.iter());
     }
 
-    /// How a set fares; a stuck one gets room, another head or a pause.
+    /// Judges the progress of a set. A stuck set gets room, another head or a pause: first the robot in the
+    /// way of the head is asked to make room. If it makes none, the turn passes to another head, or the whole
+    /// set backs off.
     fn judge(&mut self, at: usize, movers: &[Mover], log: &mut EventLog) -> Progress {
         let set = &mut self.sets[at];
         let speeds = set.order.iter().map(|i| movers[*i].velocity.length());
@@ -254,7 +265,8 @@ impl Resolver {
         }
     }
 
-    /// Who stands: whoever has nowhere to go, and of each set all but its head and those in no conflict with one before them that goes.
+    /// Notes which robots stop. A robot stops if it has nowhere to go, or if it is in conflict with a robot
+    /// ahead of it in the set's order that is moving.
     fn note_who_stands(&mut self, movers: &[Mover]) {
         self.stands.clear();
         let is_alone = |i: usize| self.set_of[i].is_none();
@@ -266,7 +278,8 @@ impl Resolver {
         }
     }
 
-    /// The robot in the way of one that does not come on: the one that blocked it in the last step, or else the nearest in its way.
+    /// The robot in the way of a robot that makes no progress: the robot that blocked it in the last step, or
+    /// else the nearest slow robot in its way.
     fn who_stops(&self, i: usize, movers: &[Mover]) -> Option<usize> {
         if let Directive::Blocked { by } = self.directives[i] {
             return by.map(RobotId::index);
@@ -289,7 +302,8 @@ impl Resolver {
         Surroundings { discs: discs.collect(), margin, known: me.known, heading: self.headings[i] }
     }
 
-    /// Heads and robots without conflicts go, past those that stand; the others yield, or back off.
+    /// Directs all robots. Heads, robots without conflicts and members that need not stop pass the robots
+    /// that stand. The others yield, or back off.
     fn direct(&mut self, movers: &[Mover], progress: &[Progress]) {
         self.note_who_stands(movers);
         for i in 0..movers.len() {
@@ -320,8 +334,10 @@ impl Resolver {
         }
     }
 
-    /// Robots outside any set whose way has been blocked for a while by one that has nowhere to go, or that waits for them in the end; and those
-    /// that go to and fro before a robot without coming nearer.
+    /// Lets blocked and stalled robots ask for room. A robot asks if it has been blocked for a while, or if
+    /// it moves outside any set and has come no nearer to its goal for a while. A blocker that has nowhere to
+    /// go is always asked. A blocker with a goal of its own is asked only by the head of its set, by a robot
+    /// that makes room itself, or by the robot with the best claim on a cycle of waiting.
     fn ask_for_room(&mut self, movers: &[Mover], log: &mut EventLog) {
         let mut due = Vec::new();
         for (i, directive) in self.directives.iter().enumerate() {
@@ -358,7 +374,7 @@ impl Resolver {
         }
     }
 
-    /// Whether a robot has the best claim of all blocked ones on a cycle of waiting.
+    /// Whether a robot has the best claim among the blocked robots of a wait cycle.
     fn leads_cycle(&self, i: usize, cycles: &[Vec<usize>], movers: &[Mover]) -> bool {
         let blocked = |k: &&usize| matches!(self.directives[**k], Directive::Blocked { .. });
         cycles.iter().filter(|cycle| cycle.contains(&i)).any(|cycle| {
@@ -379,7 +395,8 @@ impl Resolver {
         makes
     }
 
-    /// The way of a robot that has the right of way, past those that stand.
+    /// The directive of a robot that has the right of way: to pass the robots that stand, at the full margin
+    /// or squeezing through, or `Blocked`.
     fn pass(&self, i: usize, movers: &[Mover], wish: Vector) -> Directive {
         let me = Mover { wish, ..movers[i] };
         let near = self.neighbours.of(i);
@@ -398,7 +415,7 @@ impl Resolver {
     }
 }
 
-/// Notes for each robot the set that it is in.
+/// Notes for each robot the set of which it is a member.
 fn note_sets<'s>(
     set_of: &mut Vec<Option<usize>>,
     robots: usize,
@@ -411,7 +428,7 @@ fn note_sets<'s>(
     }
 }
 
-/// The set, of those that are left, in which the most of these members were; the first of several.
+/// The remaining set that shares the most of these members; the first of several.
 fn most_shared(members: &[usize], set_of: &[Option<usize>], left: &[Option<ConflictSet>]) -> Option<usize> {
     let mut shares = BTreeMap::new();
     for at in members.iter().filter_map(|i| set_of[*i]).filter(|at| left[*at].is_some()) {

@@ -1,4 +1,4 @@
-//! What the resolver is told of a robot, and what it tells it.
+//! What the resolver knows of a robot, and the directive that it returns.
 
 use parry2d::math::Vector;
 use serde::{Deserialize, Serialize};
@@ -18,19 +18,20 @@ pub struct Mover<'a> {
     pub position: Vector,
     /// Velocity, in metres per second.
     pub velocity: Vector,
-    /// The velocity that it would like; zero for a robot with nowhere to go.
+    /// The preferred velocity, in metres per second; zero for a robot with nowhere to go.
     pub wish: Vector,
-    /// Way that is left to where it makes room, in metres; none for a robot on its own way.
+    /// Distance left to the place where it makes room, in metres; none for a robot that is not going to such
+    /// a place.
     pub retreat_left: Option<f32>,
     /// Steps since it last came nearer to its goal.
     pub stalled_steps: u32,
-    /// Way that is left to its next waypoint, in metres.
+    /// Distance left to its next waypoint, in metres.
     pub leg_left: f32,
     /// Waypoints ahead.
     pub route: &'a [Vector],
     /// Narrow passages of the route.
     pub passages: &'a [Passage],
-    /// Places that it came by, the latest last.
+    /// Places that it passed, the latest last.
     pub trail: &'a [Vector],
     /// Radius, in metres.
     pub radius: f32,
@@ -42,7 +43,8 @@ pub struct Mover<'a> {
     pub priority: PriorityKey,
     /// The obstacles that it knows; none for aerial robots.
     pub known: Option<&'a ObstacleMap>,
-    /// Whether it may be asked to make room: not while it loads or rests, nor when it can no longer act.
+    /// Whether it may be asked to make room: not while it loads or rests, nor when it is stranded or
+    /// disabled.
     pub can_make_room: bool,
 }
 
@@ -51,7 +53,7 @@ impl Mover<'_> {
         self.wish != Vector::ZERO
     }
 
-    /// Way that is left to where it is going, in metres.
+    /// Distance left to the place where it makes room, or else to the end of its route, in metres.
     pub(super) fn way_left(&self) -> f32 {
         let starts = std::iter::once(&self.position).chain(self.route);
         self.retreat_left.unwrap_or_else(|| starts.zip(self.route).map(|(a, b)| (*b - *a).length()).sum())
@@ -68,7 +70,7 @@ pub enum Directive {
         /// The robot that it waits for.
         to: RobotId,
     },
-    /// Move with this velocity to where another robot can pass, or stand there until it has.
+    /// Move with this velocity to a place where another robot can pass, or stand there until it has passed.
     Retreat {
         /// Metres per second.
         velocity: Vector,
@@ -77,19 +79,19 @@ pub enum Directive {
     },
     /// Make room sideways with this velocity: the whole set is deadlocked.
     BackOff(Vector),
-    /// Move out of the way of others with this velocity: there is nowhere to go.
+    /// Move out of the way of others with this velocity: the robot has nowhere to go.
     GiveWay(Vector),
     /// Stop: no direction is free at the moment.
     Blocked {
-        /// The robot in the way, where it is one.
+        /// The robot in the way, if a robot is.
         by: Option<RobotId>,
     },
-    /// Stand: there is nowhere to go.
+    /// Stand: the robot has nowhere to go.
     Stand,
 }
 
 impl Directive {
-    /// Every wish is granted.
+    /// The directive that grants a wish as it is.
     pub(super) fn granted(wish: Vector) -> Self {
         if wish == Vector::ZERO { Self::Stand } else { Self::Proceed(wish) }
     }
@@ -106,7 +108,7 @@ impl Directive {
         }
     }
 
-    /// The robot that it waits for, where there is one.
+    /// The robot that it waits for, if there is one.
     #[must_use]
     pub fn waits_for(self) -> Option<RobotId> {
         match self {

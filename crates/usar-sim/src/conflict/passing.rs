@@ -1,4 +1,5 @@
-//! Passing at a tangent: the free direction nearest to the wished one, past robots that stand and clear of known debris.
+//! Passing at a tangent: the free direction nearest to the preferred one, past robots that stand and clear of
+//! known debris.
 
 use parry2d::math::Vector;
 use smallvec::SmallVec;
@@ -6,42 +7,44 @@ use smallvec::SmallVec;
 use super::Mover;
 use crate::planning::{KnownObstacle, ObstacleMap, outward_normal, polygon_contains, polygon_crossed};
 
-/// How far ahead a robot looks for those that stand in its way, in metres.
+/// How far ahead a robot looks for standing robots in its way, in metres.
 pub const PASSING_RANGE_M: f32 = 2.0;
 
-/// How far ahead a robot that goes off its route looks for debris, in metres.
+/// How far ahead a robot that leaves its route looks for debris, in metres.
 const DEBRIS_RANGE_M: f32 = 1.0;
 
 /// Tangents are taken to discs larger by this factor, so that rounding does not make them touch.
 const TANGENT_SLACK: f32 = 1.01;
 
-/// Directions whose cosine to what is too close is at most this lead past it.
+/// A direction is free of an obstacle that is already too close if the cosine of the angle between them is at
+/// most this.
 const SLIDE: f32 = 0.02;
 
-/// How much the direction of the last step counts, against 1 for the wish.
+/// Weight of the direction of the last step, against 1 for the preferred direction.
 const PERSISTENCE: f32 = 0.3;
 
-/// A direction that leads further back than this (cosine to the wish) is no way past.
+/// Least advance of a direction (cosine to the preferred direction) for it to lead past an obstacle.
 const LEAST_ADVANCE: f32 = -0.3;
 
 /// What a robot has to pass.
 pub(super) struct Surroundings<'a> {
-    /// Centres relative to the robot, and distances at which they touch, of the robots that stand or yield.
+    /// Robots that stand or yield: their centres relative to this robot, and the distances at which they
+    /// touch it.
     pub(super) discs: SmallVec<[(Vector, f32); 16]>,
-    /// Distance to keep from them beyond touching, in metres.
+    /// Distance to keep from these robots beyond touching, in metres.
     pub(super) margin: f32,
-    /// Debris that it knows; none for a robot that flies.
+    /// Debris that the robot knows; none for a robot that flies.
     pub(super) known: Option<&'a ObstacleMap>,
-    /// The direction that it took in the last step; zero where it took none.
+    /// The direction that the robot took in the last step; zero if it stood.
     pub(super) heading: Vector,
 }
 
-/// Pieces of debris near enough to be run into.
+/// Pieces of debris that are near enough for a collision.
 type Near<'a> = SmallVec<[&'a KnownObstacle; 16]>;
 
 impl<'a> Surroundings<'a> {
-    /// Debris that a robot at this point may run into within [`DEBRIS_RANGE_M`], in order of its keys: among equally good directions, the
-    /// order decides.
+    /// Debris with which a robot at this point may collide within [`DEBRIS_RANGE_M`], in order of its keys.
+    /// The order decides among equally good directions.
     fn debris(&self, from: Vector) -> Near<'a> {
         let mut near: Near =
             self.known.into_iter().flat_map(|known| known.near(from, DEBRIS_RANGE_M)).collect();
@@ -67,24 +70,26 @@ impl<'a> Surroundings<'a> {
             })
     }
 
-    /// How good a free direction is: near to the wish, and to the one before, so that a robot does not dither between two sides.
+    /// How good a free direction is. A direction near the preferred one is good, and so is one near the
+    /// direction of the last step: a robot should not dither between two sides.
     fn merit(&self, direction: Vector, wish: Vector) -> f32 {
         direction.dot(wish) + PERSISTENCE * direction.dot(self.heading)
     }
 }
 
-/// Directions along the debris that a robot is too close to.
+/// Directions along, and away from, the debris that is too close to a robot.
 fn along_debris(debris: &Near, from: Vector) -> impl Iterator<Item = Vector> {
     let outward = debris.iter().filter_map(move |obstacle| outward(obstacle, from));
     outward.flat_map(|outward| [outward.perp(), -outward.perp(), outward])
 }
 
-/// The direction that leads out of an obstacle's surroundings, for a robot that is in them.
+/// The direction that leads out of an obstacle's inflated outline; `None` for a robot outside it.
 fn outward(obstacle: &KnownObstacle, from: Vector) -> Option<Vector> {
     polygon_contains(&obstacle.tight, from).then(|| outward_normal(&obstacle.tight, from))
 }
 
-/// The best free direction: the wish itself, or a tangent of what is in the way. `None` where nothing is free.
+/// The best free direction: the preferred direction itself, a tangent to a robot in the way, or a direction
+/// along debris. `None` if no direction is free.
 pub(super) fn passing_direction(me: &Mover, surroundings: &Surroundings) -> Option<Vector> {
     let wish = me.wish.normalize_or_zero();
     let range = PASSING_RANGE_M.min(me.leg_left); // the route bends there
@@ -104,7 +109,7 @@ pub(super) fn passing_direction(me: &Mover, surroundings: &Surroundings) -> Opti
         .max_by(|a, b| surroundings.merit(*a, wish).total_cmp(&surroundings.merit(*b, wish)))
 }
 
-/// The nearest disc that is in the way of a wish.
+/// The number of the nearest disc in the way of a preferred velocity.
 pub(super) fn nearest_in_the_way(wish: Vector, surroundings: &Surroundings) -> Option<usize> {
     let wish = wish.normalize_or_zero();
     let gap = |(center, touch): &(Vector, f32)| {

@@ -1,5 +1,5 @@
-//! Predicted conflicts: pairs of robots whose wishes would bring them into each other's safety distance, and the sets that
-//! these pairs connect.
+//! Predicted conflicts: pairs of robots whose preferred velocities would bring them into each other's safety
+//! distance, and the sets that these pairs connect.
 
 use parry2d::math::Vector;
 
@@ -19,11 +19,11 @@ impl Neighbours {
         if self.by_x.len() != movers.len() {
             self.by_x = (0..movers.len()).collect();
         }
-        // Nearly sorted since the last step: linear.
+        // The order of the last step is nearly right, so sorting takes linear time.
         self.by_x.sort_by(|a, b| movers[*a].position.x.total_cmp(&movers[*b].position.x).then(a.cmp(b)));
     }
 
-    /// The robots that are nearer to a point than `range` metres, once they are sorted; in no particular order.
+    /// The robots within `range` metres of a point, in no particular order. Needs [`Self::sort`] first.
     pub(super) fn within<'m>(
         &'m self,
         movers: &'m [Mover],
@@ -36,7 +36,8 @@ impl Neighbours {
         strip.filter(move |i| (movers[*i].position - point).length() < range)
     }
 
-    /// Finds all pairs of one layer that could meet within the horizon or stand in each other's way, once they are sorted.
+    /// Finds all pairs of robots of one layer that could meet within the horizon or be in each other's way.
+    /// Needs [`Self::sort`] first.
     pub(super) fn pair(&mut self, movers: &[Mover], margin: f32, horizon: f32) {
         let fastest = movers.iter().map(|mover| mover.wish.length()).fold(0.0, f32::max);
         let largest = movers.iter().map(|mover| mover.radius).fold(0.0, f32::max);
@@ -63,14 +64,15 @@ impl Neighbours {
         lists.flat_map(|(a, list)| list.iter().filter(move |b| **b > a).map(move |b| (a, *b)))
     }
 
-    /// The robots near one robot.
+    /// The robots near robot `i`.
     pub(super) fn of(&self, i: usize) -> &[usize] {
         &self.lists[i]
     }
 }
 
-/// Whether two robots that both want to move would come closer than their safety distance within the horizon, if both got
-/// their wish. Robots that already are too close but part are not in conflict.
+/// Whether two robots that both want to move would come closer than their safety distance within the horizon
+/// if both moved at their preferred velocities. Robots that are too close already but move apart are not in
+/// conflict.
 fn will_conflict(a: &Mover, b: &Mover, margin: f32, horizon: f32) -> bool {
     if !a.wishes_to_move() || !b.wishes_to_move() {
         return false;
@@ -99,7 +101,7 @@ pub(super) struct Conflicts {
 }
 
 impl Conflicts {
-    /// Finds those among neighbours, for a margin in metres and a horizon in seconds.
+    /// Finds the pairs of neighbours in conflict, for a margin in metres and a horizon in seconds.
     pub(super) fn find(&mut self, movers: &[Mover], neighbours: &Neighbours, margin: f32, horizon: f32) {
         let in_conflict = |(a, b): &(usize, usize)| will_conflict(&movers[*a], &movers[*b], margin, horizon);
         self.pairs.clear();
@@ -111,12 +113,13 @@ impl Conflicts {
         }
     }
 
-    /// The robots in conflict with one.
+    /// The robots in conflict with robot `i`.
     pub(super) fn of(&self, i: usize) -> &[usize] {
         &self.lists[i]
     }
 
-    /// The sets that they connect: at least two robots each, in ascending order, in order of their first member.
+    /// The connected sets of robots in conflict: at least two robots each, in ascending order, sorted by
+    /// their first member.
     pub(super) fn components(&self) -> Vec<Vec<usize>> {
         components(self.lists.len(), &self.pairs)
     }

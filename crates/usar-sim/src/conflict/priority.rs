@@ -1,4 +1,4 @@
-//! The priority key: one comparable value that decides who goes first.
+//! The priority key: one comparable value that decides which robot goes first.
 
 use std::cmp::Ordering;
 
@@ -17,13 +17,16 @@ pub struct PriorityKey {
 }
 
 impl PriorityKey {
-    /// The key of a robot with these levels, in percent. `class` is the rank of its group's task, 0 for the hardest, and more than any task's
-    /// for a robot without a group.
+    /// The key of a robot with these levels, in percent. `class` is the rank of the task of its group: 0 for
+    /// the hardest task. The class of a robot without a group is higher than that of any task.
     ///
-    /// - `LowestEnergyFirst`, because the robot with the least left can least afford to wait.
-    /// - `TaskThenEnergy`: robots of the hardest task, whose way is the longest, then those of the next, then those without a group.
-    /// - `HighestEnergyFirst`, the opposite of the first: what the order is worth shows between the two.
-    /// - `LowestHpFirst`, because the robot that can bear the least radiation should stand in it the least.
+    /// - `LowestEnergyFirst`: the robot with the least energy left can least afford to wait.
+    /// - `TaskThenEnergy`: robots of the hardest task first, because they have the farthest to go; then those
+    ///   of the next task, and last robots without a group. Within a class, the lowest energy goes first.
+    /// - `HighestEnergyFirst`: the opposite of `LowestEnergyFirst`. The difference between the two shows what
+    ///   the order is worth.
+    /// - `LowestHpFirst`: the robot that can bear the least radiation should stand in it for the shortest
+    ///   time.
     #[must_use]
     pub fn new(rule: PriorityRule, robot: RobotId, class: u8, [energy, hp]: [f64; 2]) -> Self {
         let (class, level) = match rule {
@@ -35,7 +38,7 @@ impl PriorityKey {
         Self { class, level, robot }
     }
 
-    /// `Less` goes first.
+    /// Compares two keys. `Less` means that `self` goes first.
     #[must_use]
     pub fn precedence(&self, other: &Self) -> Ordering {
         let level = || self.level.total_cmp(&other.level);

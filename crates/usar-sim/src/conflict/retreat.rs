@@ -1,7 +1,8 @@
-//! Robots that make room: who does, for whom, and until when.
+//! Robots that make room: which robot does so, for which robot, and until when.
 //!
-//! A robot in the way of one with the right of way inherits its priority (as in PIBT; Okumura, Machida, Défago & Tamura, 2022) and
-//! retreats to the nearest place that leaves room. Whoever stands in *its* way makes room in turn: a chain, whose depth is counted.
+//! A robot in the way of a robot with the right of way inherits its priority (as in PIBT; Okumura, Machida,
+//! Défago & Tamura, 2022) and retreats to the nearest place that leaves room. A robot in the way of this
+//! retreat makes room in turn. The robots form a chain, and each knows its depth in the chain.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -22,29 +23,29 @@ const RETREAT_SPEED: f32 = 0.8;
 /// A waypoint of a retreat counts as passed within this distance, in metres.
 const PASSED_M: f32 = 0.1;
 
-/// Coming nearer by less than this is no progress, in metres.
+/// An approach by less than this is no progress, in metres.
 const PROGRESS_M: f32 = 0.05;
 
-/// Robots farther than this from one that makes room do not matter to it, in metres.
+/// A retreating robot ignores robots farther away than this, in metres.
 const CROWD_RANGE_M: f32 = 25.0;
 
-/// Distance between the points at which a retreat is compared with the way of the other robot, in metres.
+/// Distance between the points at which a retreat is compared with the other robot's route, in metres.
 const SAMPLE_M: f32 = 0.4;
 
-/// Robots within this distance of one that makes room go through in one platoon, in metres.
+/// Robots within this distance of a robot that makes room may pass it in the same platoon, in metres.
 const PLATOON_M: f32 = 5.0;
 
-/// Robots whose wishes differ by no more than this (cosine) go in the same direction.
+/// Robots go in the same direction if the cosine between their preferred velocities is larger than this.
 const PLATOON_COS: f32 = 0.5;
 
-/// How long robots try, in steps.
+/// How long a retreat may last without progress, in steps.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Limits {
-    /// On the way to the place, without coming nearer to it.
+    /// On the way to the place, without the robot coming nearer to it.
     pub(super) underway: u32,
     /// At the place, while the other robot stands.
     pub(super) at_place: u32,
-    /// After it came to nothing, before they are asked again.
+    /// After a retreat that failed, before the robot is asked again.
     pub(super) respite: u32,
 }
 
@@ -53,15 +54,16 @@ pub(super) struct Limits {
 pub(super) struct Retreat {
     /// The robot for which it makes room.
     pub(super) head: usize,
-    /// 1 when `head` is on its own way, one more than the retreat of `head` otherwise.
+    /// Depth in the chain: 1 if `head` does not retreat itself, otherwise one more than the depth of `head`.
     pub(super) depth: u32,
     /// Waypoints to the place, the next one last; empty at the place.
     path: Vec<Vector>,
-    /// The whole way from where it was in the way to the place, at short distances.
+    /// Points of the whole trajectory, from the place where the robot was in the way to the place where it
+    /// makes room, at short distances.
     line: Vec<Vector>,
     least_left: f32,
     idle_steps: u32,
-    /// Steps since it began to make room, for whomever.
+    /// Steps since the retreat began. The count continues when the retreat passes on to another head.
     held_steps: u32,
 }
 
@@ -69,10 +71,10 @@ pub(super) struct Retreat {
 #[derive(Default, Serialize, Deserialize)]
 pub(super) struct Retreats {
     of: BTreeMap<usize, Retreat>,
-    /// For whom, and who makes room: the retreats by their heads. Follows from `of`.
+    /// Pairs of a head and a robot that makes room for it. Follows from `of`.
     #[serde(skip)]
     served: BTreeSet<(usize, usize)>,
-    /// Steps for which a robot is not asked again.
+    /// For each robot, steps during which it is not asked again.
     respite: Vec<u32>,
     #[serde(skip)]
     limits: Limits,
@@ -83,7 +85,7 @@ pub(super) struct Retreats {
 }
 
 impl Retreats {
-    /// The robots that make room, in order.
+    /// The robots that make room, in order of their indices.
     pub(super) fn iter(&self) -> impl Iterator<Item = (usize, &Retreat)> {
         self.of.iter().map(|(i, retreat)| (*i, retreat))
     }
@@ -93,12 +95,13 @@ impl Retreats {
         self.of.get(&i).map(|retreat| retreat.head)
     }
 
-    /// Place in the chain of a robot: 0 for one on its own way.
+    /// Depth of a robot in its chain: 0 for a robot that does not retreat.
     pub(super) fn depth(&self, i: usize) -> u32 {
         self.of.get(&i).map_or(0, |retreat| retreat.depth)
     }
 
-    /// Whether somebody is on the way to make room for this robot. Depths grow along a chain, so that patience ends somewhere.
+    /// Whether a robot deeper in the chain is on its way to make room for this robot. Only deeper robots
+    /// count, so that the patience of a chain ends.
     pub(super) fn is_served(&self, i: usize) -> bool {
         let depth = self.depth(i);
         let serves = |retreat: &Retreat| retreat.depth > depth && !retreat.path.is_empty();
@@ -109,7 +112,7 @@ impl Retreats {
         self.of.get(&i).is_some_and(|retreat| retreat.path.is_empty())
     }
 
-    /// Makes what a snapshot leaves out because it is fixed or follows from the rest.
+    /// Restores the fields that a snapshot leaves out: they are fixed or follow from the other fields.
     pub(super) fn restore(&mut self, limits: Limits, margin: f32, arena: Vector) {
         (self.limits, self.margin, self.arena) = (limits, margin, arena);
         self.served = self.of.iter().map(|(i, retreat)| (retreat.head, *i)).collect();
@@ -127,7 +130,7 @@ impl Retreats {
         Some(retreat)
     }
 
-    /// Ends the retreats that are over, and gives the others the wish to go to their place.
+    /// Ends the retreats that are over. Sets the wishes of the other retreating robots to go to their places.
     pub(super) fn follow(&mut self, movers: &mut [Mover], neighbours: &Neighbours) {
         self.respite.resize(movers.len(), 0);
         self.respite.iter_mut().for_each(|steps| *steps = steps.saturating_sub(1));
@@ -166,8 +169,9 @@ impl Retreats {
         retreat.idle_steps > limit
     }
 
-    /// The same room for the next robot that comes after the one that passed: robots go through a narrow passage in platoons, not one at a
-    /// time from either side.
+    /// Passes a retreat on to the nearest robot that follows the robot that passed. So robots go through a
+    /// narrow passage in platoons, not one at a time from either side. `None` if no robot follows, or if the
+    /// retreat has lasted too long.
     fn for_the_next(
         &self,
         i: usize,
@@ -201,14 +205,16 @@ impl Retreats {
         Some(retreat)
     }
 
-    /// Ends the retreat of a robot, if it is on one that comes to nothing.
+    /// Ends the retreat of a robot as failed, if it retreats.
     pub(super) fn give_up(&mut self, i: usize) {
         if self.end(i).is_some() {
             self.respite[i] = self.limits.respite;
         }
     }
 
-    /// Whether a robot is asked at all: it can move, and does not already make room for somebody with a better claim.
+    /// Whether `i` may ask `blocker` to make room. The blocker must be able to make room and not be in its
+    /// respite. The chain must not be too long. A blocker that is deeper in a chain than `i` is asked only
+    /// once it is at its place.
     pub(super) fn may_ask(&self, i: usize, blocker: usize, movers: &[Mover]) -> bool {
         movers[blocker].can_make_room
             && self.respite[blocker] == 0
@@ -216,7 +222,8 @@ impl Retreats {
             && (self.depth(blocker) <= self.depth(i) || self.is_at_place(blocker))
     }
 
-    /// Has `blocker` make room for `i`. Whether it is in the way and there is room to make.
+    /// Has `blocker` make room for `i`. Returns whether it does: it must be in the way, and there must be a
+    /// place to go.
     pub(super) fn ask(
         &mut self,
         i: usize,
@@ -277,7 +284,7 @@ impl Retreats {
     }
 }
 
-/// Points of a way, at most `SAMPLE_M` apart.
+/// Points along a path, at most `SAMPLE_M` apart.
 fn sampled(from: Vector, path: &[Vector]) -> Vec<Vector> {
     let mut points = vec![from];
     for to in path {
@@ -289,12 +296,12 @@ fn sampled(from: Vector, path: &[Vector]) -> Vec<Vector> {
 }
 
 impl Retreat {
-    /// The way to the place, from where the robot is.
+    /// The path from the robot's position to the place.
     fn way(&self, me: &Mover) -> Vec<Vector> {
         std::iter::once(me.position).chain(self.path.iter().rev().copied()).collect()
     }
 
-    /// Whether the way of the other robot keeps this far, in metres, from the whole way of the retreat.
+    /// Whether the other robot's path keeps this distance, in metres, from the whole line of the retreat.
     fn is_passed(&self, head_way: &[Vector], apart: f32) -> bool {
         self.line.iter().all(|point| distance_to_way(*point, head_way) > 0.95 * apart)
     }
@@ -315,7 +322,7 @@ impl Retreat {
         }
     }
 
-    /// Lets a robot wish to go where it makes room, or to stay there.
+    /// Sets the robot's wish: to go to the place where it makes room, or to stay there.
     fn guide(&self, me: &mut Mover) {
         let Some(next) = self.path.last() else {
             me.wish = Vector::ZERO;

@@ -1,7 +1,8 @@
-//! Where a robot can make room: the nearest place from which it leaves another robot's way free, and the way there.
+//! Where a robot can make room: the nearest place that leaves another robot's route free, and the path to it.
 //!
-//! In the open that is a step aside; in a passage that is too narrow for two it is the way that the robot came by, back to the nearest
-//! bay. Dijkstra's algorithm on a local grid, cells of half the robot's radius; O(cells log cells), at most 201 x 201 of them.
+//! In the open, the place is a step aside. In a passage too narrow for two robots, the path leads back to the
+//! nearest bay or out of the passage. The search is Dijkstra's algorithm on a local grid with cells of half
+//! the robot's radius; O(cells log cells), at most 201 x 201 cells.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -20,28 +21,29 @@ const ROW: i32 = 2 * HALF_CELLS + 1;
 /// Cost of a step along a row or column, and of a diagonal one.
 const STEP_COST: [u32; 2] = [10, 14];
 
-/// Extra cost of a cell where another robot stands: it would have to make room in turn.
+/// Extra cost of a cell where another robot stands: that robot has to make room in turn.
 const CROWD_COST: u32 = 150;
 
-/// Way of the other robot, ahead and behind, that is to be left free, in metres.
+/// Length of the other robot's route ahead, and of its trail behind, that is to be left free, in metres.
 const CLEARED_WAY_M: f32 = 30.0;
 
-/// A robot that is nearer than this to an obstacle that it should keep off from may pass along it, in metres.
+/// An obstacle is ignored if the robot is inside its inflated outline and within this distance of one of its
+/// corners in both x and y, in metres: the robot may leave the outline.
 const LEAVE_M: f32 = 0.8;
 
-/// A question for room.
+/// A request for room.
 pub(super) struct Ask<'a> {
-    /// Who is to make room.
+    /// The robot that is to make room.
     pub(super) me: &'a Mover<'a>,
-    /// For whom.
+    /// The robot for which it makes room.
     pub(super) head: &'a Mover<'a>,
-    /// The way of `head` that is to be left free.
+    /// The path of `head` that is to be left free.
     pub(super) way: Vec<Vector>,
-    /// Whether `me` may go through where `head` is: `head` will have to make room for it first.
+    /// Whether `me` may pass through the position of `head`, which then has to make room for `me` first.
     pub(super) through_head: bool,
-    /// Other robots: centre, and distance at which they touch `me`.
+    /// Other robots: their centres, and the distances at which they touch `me`.
     pub(super) crowd: Vec<(Vector, f32)>,
-    /// Places that other robots are on their way to, to make room there.
+    /// Places to which other robots are going to make room there.
     pub(super) reserved: Vec<(Vector, f32)>,
     /// Distance to keep from robots, in metres.
     pub(super) margin: f32,
@@ -49,7 +51,7 @@ pub(super) struct Ask<'a> {
     pub(super) arena: Vector,
 }
 
-/// The ways of a robot: ahead from where it is, and behind.
+/// The paths of a robot: its route ahead, and its trail behind.
 pub(super) fn ways(robot: &Mover) -> [Vec<Vector>; 2] {
     let ahead = std::iter::once(robot.position).chain(robot.route.iter().copied());
     let behind = std::iter::once(robot.position).chain(robot.trail.iter().rev().copied());
@@ -69,7 +71,7 @@ fn cut(points: impl Iterator<Item = Vector>) -> Vec<Vector> {
     way
 }
 
-/// Distance of a point from a way, in metres.
+/// Distance of a point from a path, in metres.
 pub(super) fn distance_to_way(point: Vector, way: &[Vector]) -> f32 {
     let to_leg = |leg: &[Vector]| {
         let along = leg[1] - leg[0];
@@ -84,7 +86,8 @@ pub(super) fn distance_to_way(point: Vector, way: &[Vector]) -> f32 {
 }
 
 impl Ask<'_> {
-    /// The way to the nearest place that leaves room, without the robot's own position; `None` where there is none within reach.
+    /// The path to the nearest place that leaves room, without the robot's own position; `None` if no place
+    /// is within reach.
     pub(super) fn find(&self) -> Option<Vec<Vector>> {
         let mut grid = Grid::new(self);
         let place = grid.search()?;
@@ -183,7 +186,7 @@ impl<'a> Grid<'a> {
         None
     }
 
-    /// What is in a cell, found out when it is first looked at.
+    /// The content of a cell, determined on first use.
     fn kind(&mut self, cell: u32) -> Cell {
         if self.cells[cell as usize] == Cell::Unknown {
             self.cells[cell as usize] = self.look_at(self.point(cell));
@@ -198,7 +201,7 @@ impl<'a> Grid<'a> {
         if outside || self.obstacles.iter().any(|obstacle| polygon_contains(&obstacle.tight, point)) {
             return Cell::Blocked;
         }
-        // Already touching, a robot may still leave.
+        // A robot that already touches another one may still move away from it.
         let nearer = |center: Vector| (center - point).length() < (center - me.position).length();
         let meets = |center: Vector, touch: f32| (center - point).length() < touch && nearer(center);
         if meets(head.position, self.ask.touch_head()) {
@@ -208,7 +211,7 @@ impl<'a> Grid<'a> {
         if crowded { Cell::Crowded } else { Cell::Free }
     }
 
-    /// The way to a cell, its corners only.
+    /// The path to a cell, reduced to its corners.
     fn way_to(&mut self, place: u32) -> Vec<Vector> {
         let mut way = vec![place];
         let mut last = place;
@@ -227,7 +230,7 @@ impl<'a> Grid<'a> {
         corners
     }
 
-    /// Whether the straight way between two cells leads through free cells only.
+    /// Whether the straight line between two cells crosses free cells only.
     fn is_clear(&self, a: u32, b: u32) -> bool {
         let (a, b) = (self.point(a), self.point(b));
         let samples = (2.0 * (b - a).length() / self.size).ceil().max(1.0);
@@ -258,7 +261,8 @@ mod tests {
         KnownObstacle::new(ObstacleKey::Debris(number), 1, &outline, 0.4, 0.15)
     }
 
-    /// A passage along x at y = 10, 1.2 m wide, from x = 5 to x = 15, whose northern wall has a bay between x = 11 and x = 13.
+    /// A passage along x at y = 10, 1.2 m wide, from x = 5 to x = 15. Its northern wall has a bay between x =
+    /// 11 and x = 13.
     fn passage() -> ObstacleMap {
         let walls = [
             wall(0, [10.0, 9.0], [10.0, 0.8]),

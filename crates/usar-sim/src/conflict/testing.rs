@@ -5,7 +5,7 @@ use parry2d::math::Vector;
 use super::{Mover, PriorityKey};
 use crate::ids::RobotId;
 
-/// A ground robot of 0.4 m radius that wishes this velocity; its route leads 10 m that way.
+/// A ground robot of 0.4 m radius with this preferred velocity, whose route leads 10 m in that direction.
 pub(super) fn mover(id: u32, at: [f32; 2], wish: [f32; 2]) -> Mover<'static> {
     let (position, wish) = (Vector::from(at), Vector::from(wish));
     Mover {

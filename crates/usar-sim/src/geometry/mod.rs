@@ -1,4 +1,4 @@
-//! Shapes in the plane and where they are.
+//! Shapes in the plane and their places.
 
 mod outline;
 mod places;

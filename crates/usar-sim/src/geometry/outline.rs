@@ -15,7 +15,7 @@ pub struct Outline {
     pub pose: Pose,
 }
 
-/// The shape of an outline that was read from a snapshot, until the world gives it its own again.
+/// The placeholder shape of an outline that was read from a snapshot, until the world restores its own shape.
 fn no_shape() -> SharedShape {
     SharedShape::ball(0.0)
 }
@@ -39,7 +39,8 @@ impl Outline {
         self.shape.distance_to_point(&self.pose, point, false)
     }
 
-    /// Corners, anticlockwise, of a convex polygon that holds every point within `by` metres of the outline and little more.
+    /// Corners, anticlockwise, of a convex polygon that contains every point within `by` metres of the
+    /// outline, and little more.
     #[must_use]
     pub fn inflated(&self, by: f32) -> Vec<Vector> {
         if let Some(ball) = self.shape.as_ball() {
@@ -62,7 +63,7 @@ impl Outline {
     }
 }
 
-/// Corners of the regular polygon around a circle of this radius.
+/// Corners of the regular polygon circumscribed about a circle of this radius.
 fn ring(corners: u32, radius: f32) -> impl Iterator<Item = Vector> {
     let half = std::f32::consts::PI / corners as f32;
     let outer = radius / libm::cosf(half);

@@ -1,4 +1,4 @@
-//! Things found by place.
+//! Spatial search for numbered things.
 
 use parry2d::bounding_volume::{Aabb, BoundingVolume};
 use parry2d::math::Vector;
@@ -6,39 +6,40 @@ use parry2d::partitioning::{Bvh, BvhNode, TraversalAction};
 use parry2d::query::{Ray, RayCast};
 use smallvec::SmallVec;
 
-/// Bounds are this much too large, in metres: rounding must not hide a thing.
+/// Bounds are enlarged by this much, in metres, so that rounding hides no thing.
 const BOUNDS_MARGIN_M: f32 = 0.01;
 
-/// Numbers of things, in no particular order: whoever depends on an order sorts them.
+/// Numbers of things, in no particular order. Callers that depend on an order sort them.
 pub type Found = SmallVec<[usize; 32]>;
 
-/// Where numbered things are, as boxes in a tree: a search costs what it finds and little more.
+/// A tree of the bounding boxes of numbered things. The cost of a search depends mainly on how much it finds.
 #[derive(Debug, Clone, Default)]
 pub struct Places {
     tree: Bvh,
 }
 
 impl Places {
-    /// Notes the box that holds a thing.
+    /// Sets the bounding box of a thing.
     pub fn put(&mut self, number: usize, bounds: Aabb) {
         self.tree.insert(bounds.loosened(BOUNDS_MARGIN_M), number as u32);
     }
 
-    /// The things whose boxes reach within this range of a point, in metres, in either direction of x and y.
+    /// The things whose boxes reach within this range of a point, in metres, separately in x and in y.
     #[must_use]
     pub fn near(&self, point: Vector, range: f32) -> Found {
         let area = Aabb::from_half_extents(point, Vector::splat(range));
         self.find(|node| node.aabb().intersects(&area))
     }
 
-    /// The things whose boxes the way from `a` to `b` touches.
+    /// The things whose boxes the line from `a` to `b` touches.
     #[must_use]
     pub fn along(&self, a: Vector, b: Vector) -> Found {
         let way = Ray::new(a, b - a);
         self.find(|node| node.cast_ray(&way, 1.0) <= 1.0)
     }
 
-    /// The things whose boxes reach within this range of the way from `a` to `b`, in metres, in either direction of x and y.
+    /// The things whose boxes reach within this range of the line from `a` to `b`, in metres, separately in x
+    /// and in y.
     #[must_use]
     pub fn beside(&self, a: Vector, b: Vector, range: f32) -> Found {
         let way = Ray::new(a, b - a);

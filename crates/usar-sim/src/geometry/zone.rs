@@ -19,7 +19,7 @@ impl RadiationZone {
         (point - self.center).length_squared() <= self.radius * self.radius
     }
 
-    /// Length of a straight way that lies inside the zone, in metres.
+    /// Length of the part of a straight line that lies inside the zone, in metres.
     #[must_use]
     pub fn length_inside(&self, from: Vector, to: Vector) -> f32 {
         let way = to - from;

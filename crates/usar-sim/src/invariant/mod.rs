@@ -1,7 +1,9 @@
-//! What must hold at every step of every trial: a listener that keeps its own account and compares the world with it.
+//! Invariants, which hold at every step of every trial. A listener keeps its own account and compares the
+//! world with it.
 //!
-//! Independent of the mechanics: positions, levels and loads are read, never the code that moves them; of the world's own accounts only
-//! the count of changes of its rescuees is trusted. One look costs a few hundred nanoseconds for a dozen robots; `--check` switches it on.
+//! The check is independent of the mechanics: it reads positions, levels and loads, but uses none of the code
+//! that changes them. Of the world's own accounts, it trusts only the count of changes of its rescuees. A
+//! check takes a few hundred nanoseconds for a dozen robots; `--check` switches it on.
 
 mod overlaps;
 
@@ -19,30 +21,31 @@ pub use overlaps::{Overlaps, RARE_OVERLAP_M};
 /// Deepest overlap that bodies may ever have, in metres.
 pub const MAX_OVERLAP_M: f32 = 0.05;
 
-/// Beyond its top speed times the step, a robot may move this far in one step, in metres: the solver's correction of overlaps.
+/// Distance that a robot may move in one step beyond its top speed times the step, in metres: the solver's
+/// correction of overlaps.
 const STEP_SLACK_M: f32 = 1.0e-3;
 
-/// In contact, a robot may be this much faster than its layer's top speed: one at top speed that another one pushes from the side at
-/// top speed.
+/// Factor by which a robot in contact may exceed the top speed of its layer: a robot at top speed may be
+/// pushed from the side by another one at top speed.
 const PUSHED: f32 = std::f32::consts::SQRT_2;
 
-/// A level that changes by less than this has not risen, in percent points.
+/// Increase of a level that counts as rounding, in percent points.
 const ROUNDING: f64 = 1.0e-9;
 
-/// How near to its place a robot has arrived, however small it is, in metres.
+/// Distance within which a robot of any size has arrived at its place, in metres.
 const ARRIVAL_M: f32 = 0.16;
 
-/// How far from its rest place others may have pushed a robot while it rested, in metres.
+/// Distance by which others may push a resting robot from its rest place, in metres.
 const PUSHED_AT_REST_M: f32 = 1.0;
 
-/// A broken invariant: where, when and with which values.
+/// A broken invariant: the time, the robot and the values.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Violation {
-    /// When, in seconds.
+    /// The time, in seconds.
     pub time_s: f64,
-    /// The robot, where there is one.
+    /// The robot, if one is concerned.
     pub robot: Option<RobotId>,
-    /// What is wrong, with the values.
+    /// The problem, with the values.
     pub what: String,
 }
 
@@ -56,14 +59,14 @@ impl fmt::Display for Violation {
     }
 }
 
-/// What one robot was like after the last step.
+/// The state of one robot after the last step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Before {
     position: Vector,
     velocity: Vector,
     levels: [f64; 2],
     resources: u32,
-    /// Whether it touched something, or nearly.
+    /// Whether it touched something or nearly did.
     in_contact: bool,
     /// Whether it may have touched something a step later.
     may_touch: bool,
@@ -85,17 +88,19 @@ impl Before {
 /// The account of one trial.
 pub struct Invariants {
     dt: f32,
-    /// Top speed of the fastest robot of each layer, ground and air, in metres per second: it may push others.
+    /// Top speed of the fastest robot of each layer, ground and air, in metres per second. It may push
+    /// others.
     fastest: [f32; 2],
     time_s: f64,
     before: Vec<Before>,
-    /// Where each rescuee is by the events.
+    /// The state of each rescuee by the events.
     rescuees: Vec<RescueeState>,
     on_board: usize,
-    /// The changes of the world's rescuees that were compared with the account; none when the account has changed since.
+    /// The number of changes of the world's rescuees at the last comparison; none if the account has changed
+    /// since.
     checked_changes: Option<u64>,
     overlaps: Gauge,
-    /// Whether no step was looked at yet.
+    /// Whether no step was checked yet.
     is_first: bool,
 }
 
@@ -130,7 +135,7 @@ impl Invariants {
         self.overlaps.total()
     }
 
-    /// Hears the events of a step, at the time of its end, and looks at the world as it is then.
+    /// Receives the events of a step, with the time of its end, and checks the world at that time.
     ///
     /// # Errors
     /// The first invariant that is broken.
@@ -160,7 +165,7 @@ impl Invariants {
         Violation { time_s: self.time_s, robot, what }
     }
 
-    /// Keeps the account of rescuees and resources from the events alone.
+    /// Updates the account from an event, and checks the event against the account and the world.
     fn hear(&mut self, event: &Event, world: &World) -> Result<(), Violation> {
         match event {
             Event::Restocked { robot, resources } => self.before[robot.index()].resources = *resources,
@@ -240,7 +245,7 @@ impl Invariants {
         Ok(())
     }
 
-    /// A robot that rests is within this many metres of its own slot at a rest place.
+    /// Checks that a resting robot is within this distance of a slot of its own at a rest place, in metres.
     fn check_rest(&self, robot: &Robot, within: f32) -> Result<(), Violation> {
         let apart = robot.rest.iter().map(|slot| (*slot - robot.position).length());
         let nearest = apart.fold(f32::INFINITY, f32::min);
@@ -282,9 +287,10 @@ impl Invariants {
         Ok(())
     }
 
-    /// Steps, speeds, accelerations and overlaps within their limits.
+    /// Checks that steps, speeds, accelerations and overlaps are within their limits.
     fn check_motion(&self, robot: &Robot, before: &Before, now: &Before) -> Result<(), String> {
-        // The engine foresees contacts, and pushes or brakes a robot in the step before it would touch something.
+        // The engine predicts contacts, and pushes or brakes a robot in the step before it would touch
+        // something.
         let touches = [now, before].iter().any(|state| state.in_contact || state.may_touch);
         let fastest = self.fastest[usize::from(robot.is_aerial())];
         // A robot that was pushed gets slower as its drive brakes it, not at once.
@@ -317,7 +323,8 @@ impl Invariants {
         Ok(())
     }
 
-    /// Every rescuee is where the account says, once, and nobody has more on board than there is room for.
+    /// Checks that every rescuee is where the account says, exactly once, and that no robot exceeds its
+    /// capacity.
     fn check_rescuees(&mut self, world: &World) -> Result<(), Violation> {
         if world.rescuees.len() != self.rescuees.len() {
             let what = format!("{} rescuees, should be {}", world.rescuees.len(), self.rescuees.len());

@@ -12,13 +12,14 @@ use crate::world::{Debris, Robot, World};
 /// Overlap that one contact in a thousand may exceed, in metres.
 pub const RARE_OVERLAP_M: f32 = 0.01;
 
-/// Robots nearer than this touch something for the purpose of limits on speed, in metres.
+/// Gap below which a robot counts as touching something, for the limits on its motion, in metres.
 const CONTACT_M: f32 = 0.02;
 
-/// Debris farther than this from a robot is not measured, in metres: more than any way of one step.
+/// Debris farther than this from a robot is not measured, in metres: more than any robot moves in one step.
 const LOOK_M: f32 = 2.0;
 
-/// Rounding of a distance in an arena, in metres: added to every way that is taken off a distance.
+/// Rounding error of a distance in an arena, in metres: subtracted along with every distance that a robot
+/// moved.
 const ROUNDING_M: f32 = 1.0e-4;
 
 /// How deep bodies overlapped in a trial.
@@ -26,9 +27,9 @@ const ROUNDING_M: f32 = 1.0e-4;
 pub struct Overlaps {
     /// Robot-steps in contact with something.
     pub contacts: u64,
-    /// Those deeper than [`RARE_OVERLAP_M`].
+    /// Contacts deeper than [`RARE_OVERLAP_M`].
     pub rare: u64,
-    /// The deepest, in metres.
+    /// The deepest overlap, in metres.
     pub deepest_m: f32,
 }
 
@@ -43,16 +44,16 @@ impl fmt::Display for Overlaps {
     }
 }
 
-/// What is known of the debris round a robot that has not moved.
+/// The unmoved debris near a robot, as of its last measurement.
 #[derive(Debug, Clone)]
 struct Look {
-    /// Where the robot was when all of it was looked at.
+    /// Position of the robot when all unmoved debris was searched.
     at: Vector,
-    /// Where it was last.
+    /// Last position of the robot.
     last: Vector,
-    /// Numbers of the pieces that were nearer than [`LOOK_M`] then.
+    /// Numbers of the pieces that were nearer than [`LOOK_M`] at the search.
     near: Vec<usize>,
-    /// None is nearer than this now, in metres.
+    /// Lower bound for the present gap to any of this debris, in metres.
     gap: f32,
 }
 
@@ -68,19 +69,19 @@ pub(super) struct Gauge {
     dt: f32,
     /// Radius of the largest robot, in metres.
     largest: f32,
-    /// For each robot, the way that it may go in the next step, in metres.
+    /// For each robot, the distance that it may move in the next step, in metres.
     reach: Vec<f32>,
-    /// The greatest of these ways, in metres.
+    /// The greatest of these distances, in metres.
     longest_reach: f32,
-    /// For each robot, whether it may touch something within a step: the engine brakes it before it does.
+    /// For each robot, whether it may touch something within a step. The engine brakes it before it does.
     may_touch: Vec<bool>,
-    /// Numbers of the debris that has not moved yet, and where each piece is.
+    /// Numbers of the debris that has not moved yet, and the pose of each piece.
     still: Vec<(usize, Pose)>,
-    /// Numbers of the debris that was pushed.
+    /// Numbers of the debris that was pushed, and of the debris that events place or remove.
     pushed: Vec<usize>,
-    /// Numbers of the pieces that come and go by events, and where their last event left them.
+    /// Numbers of the pieces that events place or remove, and their poses after their last events.
     put: Vec<(usize, Pose)>,
-    /// For each robot, the last look at the debris that has not moved.
+    /// For each robot, its last measurement of the debris that has not moved.
     looks: Vec<Look>,
     /// Numbers of the robots in order of x.
     by_x: Vec<usize>,
@@ -89,13 +90,13 @@ pub(super) struct Gauge {
     total: Overlaps,
 }
 
-/// The pieces that do not come and go.
+/// The pieces that no event places or removes.
 fn still(world: &World) -> impl Iterator<Item = (usize, &Debris)> {
     world.debris.iter().enumerate().filter(|(_, piece)| !piece.is_gate)
 }
 
 impl Gauge {
-    /// Nothing is measured yet.
+    /// A gauge without any measurement.
     pub(super) fn new(scenario: &Scenario, world: &World) -> Self {
         let x = |robot: &usize| world.robots[*robot].position.x;
         let mut by_x: Vec<usize> = (0..world.robots.len()).collect();
@@ -117,22 +118,23 @@ impl Gauge {
         }
     }
 
-    /// Begins to count anew.
+    /// Resets the totals.
     pub(super) fn forget(&mut self) {
         self.total = Overlaps::default();
     }
 
-    /// What was measured so far.
+    /// The totals so far.
     pub(super) fn total(&self) -> Overlaps {
         self.total
     }
 
-    /// The deepest overlap of a robot in this step, in metres; negative is a gap, as far as it matters.
+    /// The deepest overlap of a robot in this step, in metres. A negative value is a gap; large gaps are not
+    /// exact.
     pub(super) fn of(&self, robot: RobotId) -> f32 {
         self.overlap[robot.index()]
     }
 
-    /// Whether a robot touches something, or nearly.
+    /// Whether a robot touches something or nearly does.
     pub(super) fn is_in_contact(&self, robot: RobotId) -> bool {
         self.of(robot) > -CONTACT_M
     }
@@ -142,7 +144,8 @@ impl Gauge {
         self.may_touch[robot.index()]
     }
 
-    /// Takes note of the ways that robots may go in a step: at their speed, and at what their drives add to it.
+    /// Notes the distances that robots may move in a step: at their speed, plus the greatest gain of their
+    /// drives.
     fn note_reach(&mut self, robots: &[Robot]) {
         for (reach, robot) in self.reach.iter_mut().zip(robots) {
             let gain = robot.spec.acceleration_mps2 as f32 * self.dt;
@@ -151,13 +154,14 @@ impl Gauge {
         self.longest_reach = self.reach.iter().copied().fold(0.0, f32::max);
     }
 
-    /// Takes note of a piece that an event has put to a place, or away.
+    /// Notes a piece that an event has put to a place, or away.
     pub(super) fn note_put(&mut self, debris: usize, world: &World) {
         let own = self.put.iter_mut().filter(|(number, _)| *number == debris);
         own.for_each(|(number, pose)| *pose = world.debris[*number].outline.pose);
     }
 
-    /// Takes note of the pieces that were pushed for the first time. Number of a fixed one that is not where it was, if there is one.
+    /// Notes the pieces that were pushed for the first time. Returns the number of a fixed piece that has
+    /// moved, if there is one.
     pub(super) fn note_pushed(&mut self, world: &World) -> Option<usize> {
         if let Some((number, _)) =
             self.put.iter().find(|(number, at)| world.debris[*number].outline.pose != *at)
@@ -177,13 +181,14 @@ impl Gauge {
         None
     }
 
-    /// The deepest overlap of each robot with another of its layer, a wall or debris; negative is a gap, as far as it matters.
+    /// Measures the deepest overlap of each robot with another robot of its layer, a wall or debris. A
+    /// negative value is a gap; large gaps are not exact.
     pub(super) fn measure(&mut self, world: &World) {
         let robots = &world.robots;
         self.overlap.fill(f32::NEG_INFINITY);
         self.may_touch.fill(false);
         self.note_reach(robots);
-        // By insertion: they are nearly sorted since the last step.
+        // Insertion sort: the order of the last step is nearly right.
         for end in 1..self.by_x.len() {
             let mut at = end;
             while at > 0 && robots[self.by_x[at - 1]].position.x > robots[self.by_x[at]].position.x {
@@ -224,8 +229,9 @@ impl Gauge {
         }
     }
 
-    /// The deepest overlap of a robot with debris; negative is a gap, as far as it matters. Debris that has not moved is looked at only when
-    /// the robot has come far enough since the last look to touch any.
+    /// The deepest overlap of a robot with debris. A negative value is a gap; large gaps are not exact.
+    /// Debris that has not moved is measured only if the robot has moved far enough since the last
+    /// measurement to touch any.
     fn with_debris(&mut self, robot: &Robot, world: &World) -> f32 {
         if robot.is_aerial() {
             return f32::NEG_INFINITY;

@@ -1,4 +1,4 @@
-//! What each robot is doing in the mission.
+//! The activity of each robot in the mission.
 
 use parry2d::math::Vector;
 use rne_core::TaskId;
@@ -7,10 +7,10 @@ use serde::{Deserialize, Serialize};
 use super::watch::Watch;
 use crate::ids::RescueeId;
 
-/// What a robot is doing.
+/// The activity of a robot.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Activity {
-    /// At its place at home, waiting for the next round.
+    /// At its home, waiting for the next round.
     Home,
     /// On its way to the task area, or sweeping it for rescuees.
     Searching,
@@ -47,25 +47,25 @@ impl Activity {
         }
     }
 
-    /// Whether it works in the field: not home, not on its way back, not resting.
+    /// Whether the robot works in the field: it is not at home, on its way back, resting, or on an errand.
     #[must_use]
     pub fn is_in_field(self) -> bool {
         matches!(self, Self::Searching | Self::Approaching(_) | Self::Loading(..) | Self::Standby)
     }
 
-    /// Whether it is on its way home or to rest, or home: where the team may wait for it.
+    /// Whether the robot is at home, or on its way home or to rest. The team may wait for it.
     #[must_use]
     pub fn is_way_back(self) -> bool {
         matches!(self, Self::Home | Self::Returning | Self::ToRest)
     }
 
-    /// Whether it rests, or is on its way to rest.
+    /// Whether the robot rests, or is on its way to rest.
     #[must_use]
     pub fn is_rest(self) -> bool {
         matches!(self, Self::ToRest | Self::Resting(_))
     }
 
-    /// The rescuee that it has claimed.
+    /// The rescuee that the robot has claimed.
     #[must_use]
     pub fn claim(self) -> Option<RescueeId> {
         match self {
@@ -78,25 +78,25 @@ impl Activity {
 /// A robot's part in the mission.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Agent {
-    /// What it is doing.
+    /// Its activity.
     pub activity: Activity,
     /// The task of its group in this round; `None` for a robot that is not grouped.
     pub task: Option<TaskId>,
     /// The task at whose rest place it rests.
     pub rest_at: TaskId,
-    /// Places still to pass on its sweep of the task area or its errand, the next one last.
+    /// Places still to pass on its sweep of the task area, or on its errand; the next one last.
     pub sweep: Vec<Vector>,
-    /// Where it waits when there is nothing to do.
+    /// Where it waits when it has nothing to do.
     pub muster: Vector,
-    /// Energy and HP when the round began, unless it rested since.
+    /// Energy and HP at the beginning of the round; none once the robot has gone to rest.
     pub levels_at_start: Option<[f64; 2]>,
     /// Whether it has rested since it last was in a group.
     pub has_rested: bool,
-    /// Whether it does not get home or to rest, and the team does not wait for it.
+    /// Whether it cannot get home or to rest, so that the team does not wait for it.
     pub is_cut_off: bool,
     /// The rest places that it has given up on in this round, a bit for each task.
     pub rests_given_up: u16,
-    /// How it comes on towards its goal.
+    /// Its progress towards its goal.
     pub watch: Watch,
     /// The most energy and HP that one round has cost it, in percent points.
     pub costliest_round: [f64; 2],
@@ -119,12 +119,12 @@ impl Agent {
         }
     }
 
-    /// Whether it rests, is on its way to rest, or on its way home from there.
+    /// Whether the robot rests, is on its way to rest, or is on its way home from a rest.
     pub(super) fn is_off_to_rest(&self) -> bool {
         self.activity.is_rest() || self.activity == Activity::Returning && self.has_rested
     }
 
-    /// Sends it to its rest place; what the round costs it no longer counts.
+    /// Sends the robot to its rest place. The cost of this round no longer counts for its costliest round.
     pub(super) fn go_to_rest(&mut self) {
         self.activity = Activity::ToRest;
         self.levels_at_start = None;

@@ -1,5 +1,5 @@
-//! Claims on rescuees. All robots that look for work in a step see the same snapshot; the nearest pairs are settled first, whatever the
-//! robots' numbers.
+//! Claims on rescuees. All robots that look for work in a step see the same snapshot. The nearest pairs are
+//! settled first, whatever the robots' ids.
 
 use parry2d::math::Vector;
 use rne_core::TaskId;
@@ -11,10 +11,11 @@ use crate::ids::{RescueeId, RobotId};
 use crate::model::Model;
 use crate::world::{RescueeState, World};
 
-/// Who claims which rescuee. Taken from the stack in teams and tasks of usual size, like all that claims need.
+/// Which robot claims which rescuee. The list lives on the stack in teams and tasks of usual size, like all
+/// that claims need.
 pub(super) type Claims = SmallVec<[(RobotId, RescueeId); 16]>;
 
-/// A robot that looks for work, and the nearest rescuee that is left for it.
+/// A robot that looks for work, and the nearest rescuee still on offer.
 struct Seeker {
     robot: RobotId,
     at: Vector,
@@ -28,7 +29,7 @@ impl Seeker {
         seeker
     }
 
-    /// Finds the nearest of the rescuees on offer; of equally near ones, that with the lowest id.
+    /// Finds the nearest of the rescuees on offer; among equally near rescuees, the one with the lowest id.
     fn look(&mut self, world: &World, offers: &[RescueeId]) {
         let distance = |id: &RescueeId| (world.rescuees[id.index()].position - self.at).length_squared();
         let offers = offers.iter().map(|id| (distance(id), *id));
@@ -37,7 +38,8 @@ impl Seeker {
 }
 
 impl Mission {
-    /// The claims of this step, by robot: for each group, as many as there are rescuees and spare resources.
+    /// The claims of this step, by robot. Each group makes at most as many claims as there are rescuees and
+    /// spare resources.
     pub(super) fn claims(&self, scene: &Scene) -> Claims {
         let mut claims = Claims::new();
         for task in scene.model.task_ids().filter(|task| self.groups[task.index()].at_work) {
@@ -65,7 +67,7 @@ impl Mission {
             seeking.map(|id| Seeker::new(id, scene.world, &offers)).collect();
         for _ in 0..spare {
             let pairs = seekers.iter().enumerate().filter_map(|(at, seeker)| Some((seeker.nearest?, at)));
-            // Seekers are in order of their ids: the first of equally near ones is taken.
+            // Seekers are in order of their ids: among equally near ones, the first is taken.
             let Some(((_, rescuee), at)) = pairs.min_by(|a, b| a.0.0.total_cmp(&b.0.0)) else { return };
             claims.push((seekers.remove(at).robot, rescuee));
             offers.retain(|offer| *offer != rescuee);
@@ -75,7 +77,8 @@ impl Mission {
         }
     }
 
-    /// Whether a robot may claim a rescuee in this step. Robots take turns, so that not all look in the same step.
+    /// Whether a robot may claim a rescuee in this step. Robots take turns, so that not all of them search in
+    /// the same step.
     fn looks_for_work(&self, id: RobotId, scene: &Scene) -> bool {
         let robot = &scene.world.robots[id.index()];
         let is_free = matches!(self.agents[id.index()].activity, Activity::Searching | Activity::Standby);
@@ -83,7 +86,8 @@ impl Mission {
         is_due && is_free && robot.is_able() && robot.free_capacity() > 0
     }
 
-    /// Rescuees that a group knows of and that nobody has claimed.
+    /// Waiting rescuees that a group knows, that no robot has claimed, and that are not given up as
+    /// unreachable.
     pub(super) fn available<'w>(
         &'w self,
         task: TaskId,
@@ -101,7 +105,8 @@ impl Mission {
         model.tasks[task.index()].rescuees.clone().filter(is_available).map(|i| RescueeId(i as u32))
     }
 
-    /// Resources of a group in the field that no claim needs; negative where there are more claims than resources.
+    /// Resources of a group in the field that no claim needs; negative if there are more claims than
+    /// resources.
     fn spare_resources(&self, task: TaskId, world: &World) -> i64 {
         let resources = |id: RobotId| i64::from(world.robots[id.index()].resources);
         let claims = |id: RobotId| i64::from(self.agents[id.index()].activity.claim().is_some());

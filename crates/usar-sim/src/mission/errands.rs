@@ -1,4 +1,4 @@
-//! Errands: robots go from place to place; they take the place of the mission in scenarios that have them.
+//! Errands: robots go from place to place. In a scenario with errands, they replace the mission.
 
 use parry2d::math::Vector;
 
@@ -19,7 +19,8 @@ impl Mission {
         }
     }
 
-    /// Ticks off the places where robots have arrived, gives up on those to which there is no way, and says when all is over.
+    /// Ticks off the places where robots have arrived, gives up on places without a route, and ends the trial
+    /// when no able robot is on an errand.
     pub(super) fn follow_errands(&mut self, scene: &mut Scene) {
         for robot in 0..scene.world.robots.len() {
             if self.is_on_errand(&scene.world.robots[robot]) {

@@ -1,4 +1,5 @@
-//! The mission: rounds of grouping, searching, rescuing and returning. Robots decide here; what they cause in the world is in `rescue`.
+//! The mission: rounds of grouping, searching, rescuing and returning. Robots decide here; `rescue` applies
+//! the effects of their decisions to the world.
 
 mod agent;
 mod claims;
@@ -34,7 +35,7 @@ const SLOT_M: f32 = 0.15;
 /// How near a robot passes the places of its sweep, in metres.
 const SWEEP_M: f32 = 0.8;
 
-/// A robot that has known no way to its goal for this long, in seconds, goes on with something else.
+/// A robot that has known no route to its goal for this long, in seconds, gives up on the goal.
 const GIVE_UP_S: f64 = 2.0;
 
 /// The group of one task in the current round.
@@ -42,7 +43,7 @@ const GIVE_UP_S: f64 = 2.0;
 pub struct Group {
     /// Its members, by id.
     pub members: Vec<RobotId>,
-    /// Whether it has work to do: it left home and was not called back.
+    /// Whether the group works: it left home and was not called back.
     pub at_work: bool,
 }
 
@@ -68,7 +69,7 @@ pub struct Mission {
     unreachable: Vec<bool>,
     /// Number of the round, from 1; 0 before the first.
     pub round: u32,
-    /// Why there is nothing left to do, once there is nothing.
+    /// Why the mission is over, once it is.
     pub ending: Option<Ending>,
     pending: Option<Pending>,
     /// For each task, whether its group has a guide that can act. Found anew in every step.
@@ -76,7 +77,7 @@ pub struct Mission {
     is_guided: Vec<bool>,
 }
 
-/// Why a mission is over before its time.
+/// Why a mission ends before the duration of the trial.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Ending {
     /// No robot that can carry is left.
@@ -86,7 +87,7 @@ pub enum Ending {
 }
 
 impl Mission {
-    /// Everybody is home, nothing is known.
+    /// A mission in which all robots are at home and know nothing.
     #[must_use]
     pub fn new(model: &Model, world: &World) -> Self {
         let nothing = Knowledge::nothing(world, Inflation::of(&model.scenario));
@@ -106,7 +107,7 @@ impl Mission {
         mission
     }
 
-    /// What a robot knows: what its group knows, or what the team at home knows.
+    /// The knowledge of a robot: that of its group, or that of the team at home if it is in no group.
     #[must_use]
     pub fn knowledge_of(&self, robot: RobotId) -> &Knowledge {
         match self.agents[robot.index()].task {
@@ -115,13 +116,14 @@ impl Mission {
         }
     }
 
-    /// What the group of a task knows.
+    /// The knowledge of the group of a task.
     #[must_use]
     pub fn knowledge_of_group(&self, task: TaskId) -> &Knowledge {
         &self.knowledge[task.index()]
     }
 
-    /// What the team at home knows: what all groups knew when a round last ended.
+    /// The knowledge of the team at home: the knowledge of all groups, pooled when the last round ended, and
+    /// what robots without a group have noticed since.
     #[must_use]
     pub fn knowledge_at_home(&self) -> &Knowledge {
         &self.knowledge_at_home
@@ -133,18 +135,18 @@ impl Mission {
         self.pending.as_ref().map(|pending| &pending.question)
     }
 
-    /// What the groups and the team at home know: a part of the hash chain.
+    /// The knowledge of the groups and of the team at home: a part of the hash chain.
     pub(crate) fn beliefs(&self) -> impl Serialize + '_ {
         (&self.knowledge, &self.knowledge_at_home)
     }
 
-    /// All but the beliefs: a part of the hash chain.
+    /// The state of the mission without the beliefs: a part of the hash chain.
     pub(crate) fn course(&self) -> impl Serialize + '_ {
         let Self { agents, groups, unreachable, round, ending, pending, .. } = self;
         (agents, groups, unreachable, round, ending, pending)
     }
 
-    /// Makes what a snapshot leaves out because it follows from the rest.
+    /// Restores the fields that a snapshot leaves out: they follow from the other fields.
     pub(crate) fn restore(&mut self, model: &Model, world: &World) {
         let inflation = Inflation::of(&model.scenario);
         let all = self.knowledge.iter_mut().chain([&mut self.knowledge_at_home]);
@@ -177,8 +179,8 @@ impl Mission {
         }
     }
 
-    /// Top speed of a robot: lower with its health, with its load, and where its group has no guide that can
-    /// act.
+    /// Top speed of a robot, in metres per second. It falls with its health and with its load, and in a group
+    /// without a guide that can act.
     #[must_use]
     pub fn speed_of(&self, model: &Model, robot: &Robot) -> f64 {
         let rules = &model.scenario.mission;
@@ -199,7 +201,8 @@ impl Mission {
         }
     }
 
-    /// Begins to decide: looks which robots are cut off, and ends and begins rounds. A new round waits for its assignment: see [`Mission::question`].
+    /// Begins the decisions of a step: notes which robots are cut off, and ends and begins rounds. A new
+    /// round waits for its assignment: see [`Mission::question`].
     pub fn prepare(&mut self, scene: &mut Scene) {
         self.look_for_guides(&scene.model.scenario.mission, scene.world);
         if !scene.model.scenario.errands.is_empty() {
@@ -216,7 +219,7 @@ impl Mission {
         }
     }
 
-    /// Decides what every robot does next, and sends it there.
+    /// Decides what every robot does next, and sets its goal.
     pub fn act(&mut self, scene: &mut Scene) {
         if self.ending.is_none() && scene.model.scenario.errands.is_empty() {
             self.turn_back(scene);
@@ -235,7 +238,7 @@ impl Mission {
         }
     }
 
-    /// Sends robots to rest that must leave the field.
+    /// Sends robots that must leave the field to rest.
     fn turn_back(&mut self, scene: &mut Scene) {
         for id in 0..self.agents.len() {
             let (robot, agent) = (&scene.world.robots[id], &self.agents[id]);
@@ -255,7 +258,7 @@ impl Mission {
         }
     }
 
-    /// Calls a group home when it can do no more.
+    /// Calls a group home if it can do no more.
     fn call_back(&mut self, task: TaskId, scene: &mut Scene) {
         if !self.groups[task.index()].at_work {
             return;
@@ -299,7 +302,7 @@ impl Mission {
         }
     }
 
-    /// Where a robot wants to be.
+    /// The goal of a robot, by its activity; none while it loads or if it can no longer act.
     fn goal_of(&self, model: &Model, robot: &Robot, world: &World) -> Option<Goal> {
         let agent = &self.agents[robot.id.index()];
         if !robot.is_able() {

@@ -1,4 +1,5 @@
-//! Between rounds: who is home, who is fit, the question, and the way out.
+//! Between rounds: which robots are home and fit, the question to the policy, and the departure of the
+//! groups.
 
 use rne_core::{Assignment, Member, Need, Question, Quota, RandomSeed, SCHEMA_VERSION, Task, TaskId};
 
@@ -12,7 +13,7 @@ use crate::seed::{Purpose, stream};
 use crate::world::{Robot, World};
 
 impl Mission {
-    /// Whether everybody is home for whom the team waits.
+    /// Whether every robot for which the team waits is at home.
     pub(super) fn everybody_is_home(&self, scene: &Scene) -> bool {
         let agent = |robot: &Robot| &self.agents[robot.id.index()];
         let waits_for_resting = scene.model.scenario.mission.round_end == RoundEnd::EverybodyHome;
@@ -24,7 +25,7 @@ impl Mission {
         awaited.peek().is_some() && awaited.all(|robot| agent(robot).activity == Activity::Home)
     }
 
-    /// Pools what the groups know, and notes what the round cost each robot.
+    /// Pools the knowledge of the groups, and notes what the round cost each robot.
     pub(super) fn end_round(&mut self, scene: &mut Scene) {
         if self.round == 0 {
             return;
@@ -40,7 +41,8 @@ impl Mission {
         }
     }
 
-    /// Restocks the robots that are home and asks how those that are fit are to be grouped. Where none is, there is nothing to ask.
+    /// Restocks the robots at home, and asks how the fit ones are to be grouped. If no robot is fit, assigns
+    /// empty groups without a question.
     pub(super) fn open_round(&mut self, scene: &mut Scene) {
         self.round += 1;
         self.unreachable.fill(false);
@@ -78,7 +80,7 @@ impl Mission {
         unfit_cause(rules, &fitness)
     }
 
-    /// Sends the robots at home that are not fit to rest, where the next round waits for that. Returns
+    /// Sends the unfit robots at home to rest, if the rules let the next round wait for their rest. Returns
     /// whether there are any.
     pub(super) fn rest_first(&mut self, scene: &mut Scene) -> bool {
         let rules = &scene.model.scenario.mission;
@@ -107,14 +109,15 @@ impl Mission {
         let agent = &mut self.agents[id.index()];
         let way = |task: &TaskId| (robot.rest_slot(*task) - robot.position).length();
         let places = scene.model.task_ids().rev().filter(|task| !agent.has_given_up_rest(*task));
-        // Of rest places that are equally far, the one of the last task.
+        // Among equally distant rest places, the one of the last task.
         let nearest = places.min_by(|a, b| way(a).total_cmp(&way(b)));
         agent.rest_at = nearest.unwrap_or_default();
         agent.go_to_rest();
         scene.log.push(Event::TurnedBack { robot: id, cause });
     }
 
-    /// Sends the groups out and the robots that are not fit to rest. The assignment must answer the question that waits for one.
+    /// Sends the groups out, and the unfit robots to rest. The assignment must answer the question that waits
+    /// for one.
     pub fn assign(&mut self, assignment: &Assignment, scene: &mut Scene) {
         let Some(Pending { unfit, .. }) = self.pending.take() else { return };
         let ids = |group: &Vec<u32>| group.iter().map(|id| RobotId(*id)).collect::<Vec<_>>();
@@ -127,7 +130,7 @@ impl Mission {
         self.look_for_guides(&scene.model.scenario.mission, scene.world);
     }
 
-    /// Sends a group to its task, unless nobody in it can carry: then it stays home.
+    /// Sends a group to its task. A group in which no robot can carry stays at home.
     fn send_out(&mut self, task: TaskId, members: Vec<RobotId>, model: &Model, world: &World) {
         let at_work = members.iter().any(|id| world.robots[id.index()].can_carry());
         self.knowledge[task.index()] = self.knowledge_at_home.clone();
@@ -152,7 +155,7 @@ impl Mission {
     }
 }
 
-/// How these robots are to be grouped. What they report is what they are.
+/// The question how these robots are to be grouped. The reported needs are the true ones.
 fn question(model: &Model, (round, closed): (u32, &[bool]), fit: &[&Robot]) -> Question {
     let scenario = &model.scenario;
     let member = |robot: &&Robot| {
@@ -193,12 +196,12 @@ fn question(model: &Model, (round, closed): (u32, &[bool]), fit: &[&Robot]) -> Q
     }
 }
 
-/// How many robots of a role each task asks for.
+/// The number of robots of a role for which each task asks.
 fn asked(scenario: &Scenario, role: usize, closed: &[bool]) -> Vec<Option<usize>> {
     let name = &scenario.roles[role].name;
     let quota = |task: &TaskFile| task.quota.get(name).map(|quota| *quota as usize);
     let mut asked: Vec<Option<usize>> = scenario.tasks.iter().map(quota).collect();
-    // A task that has not begun, or has ended, asks for nobody; an open one takes the robots that are left.
+    // A task that has not begun, or has ended, asks for no robot; an open one takes the robots that are left.
     let is_open = |number: usize| closed.get(number) != Some(&true);
     if closed.contains(&true) {
         let takes_the_rest = (0..asked.len()).any(|number| is_open(number) && asked[number].is_none());

@@ -1,4 +1,5 @@
-//! What robots cause in the world: loading, delivering, resting, and what is lost with a robot that can no longer act.
+//! Effects of robots on the world: loading, delivering, resting, and the claim of a robot that can no longer
+//! act.
 
 use rne_core::TaskId;
 use rne_core::question::MAX_TASKS;
@@ -11,11 +12,12 @@ use crate::model::Model;
 use crate::scenario::LoadAtRest;
 use crate::world::{RescueeState, World};
 
-/// For each task, the member that shares its resources, once it was looked for and until it gives one away.
+/// For each task, the member that shares its resources: found on demand, and forgotten when a resource is
+/// used.
 type Sharing = [Option<Option<RobotId>>; MAX_TASKS];
 
 impl Mission {
-    /// Settles what robots do at the places where they have arrived.
+    /// Settles the activities of robots at the places where they have arrived.
     pub fn settle(&mut self, scene: &mut Scene) {
         let mut sharing = [None; MAX_TASKS];
         for id in 0..scene.world.robots.len() {
@@ -68,8 +70,8 @@ impl Mission {
         }
     }
 
-    /// Takes a rescuee on board, for one unit of capacity and one resource. When the resource is gone by now, the robot waits for
-    /// another one.
+    /// Takes a rescuee on board, for one unit of capacity and one resource. If no resource is left by now,
+    /// the robot waits for another one.
     fn load(&mut self, robot: RobotId, rescuee: RescueeId, scene: &mut Scene, sharing: &mut Sharing) {
         let can_reach = can_reach(robot, rescuee, scene);
         let holder = self.resource_holder(robot, scene.model, scene.world, sharing);
@@ -87,7 +89,7 @@ impl Mission {
         scene.log.push(Event::Loaded { robot, rescuee, resource_of });
     }
 
-    /// The member whose resource a robot would use: itself, or the one that shares.
+    /// The member whose resource a robot would use: the robot itself, or the member that shares.
     fn resource_holder(
         &self,
         robot: RobotId,
@@ -113,7 +115,7 @@ impl Mission {
         self.in_field(task, world).filter(shares).max_by_key(|id| (resources(id), u32::MAX - id.0))
     }
 
-    /// Frees the rescuee that a robot had claimed when it could still act.
+    /// Frees the rescuee that a robot had claimed before it could no longer act.
     fn lose(&mut self, robot: RobotId, world: &mut World) {
         self.release_claim(robot, world);
         let agent = &mut self.agents[robot.index()];
@@ -123,7 +125,7 @@ impl Mission {
     }
 }
 
-/// Delivers everybody on board: they are rescued.
+/// Delivers all rescuees on board: they are rescued.
 fn deliver(robot: RobotId, place: Place, world: &mut World, log: &mut EventLog) {
     for rescuee in std::mem::take(&mut world.robots[robot.index()].load) {
         world.rescuees[rescuee.index()].state = RescueeState::Rescued;

@@ -1,9 +1,10 @@
-//! The decisions of a round, as pure functions: who takes part, who turns back, and when a group goes home.
+//! The decisions of a round, as pure functions: which robots take part, which turn back, and when a group
+//! goes home.
 
 use crate::event::{ReturnCause, TurnBackCause};
 use crate::scenario::{MissionRules, RestFills, TurnBack};
 
-/// A robot's levels before a round, and what its costliest round has cost, in percent (points).
+/// A robot's levels before a round and the cost of its costliest round, in percent (points).
 #[derive(Debug, Clone, Copy)]
 pub struct Fitness {
     /// Battery level.
@@ -12,11 +13,11 @@ pub struct Fitness {
     pub hp: f64,
     /// The most energy and HP that one round has cost.
     pub costliest_round: [f64; 2],
-    /// Whether it has rested since it last was in a group: then it is as fit as it gets.
+    /// Whether it has rested since it last was in a group. If so, another rest would not help.
     pub has_rested: bool,
 }
 
-/// Why a robot must rest during the coming round, if it must.
+/// Why a robot must rest before it can take part in a round; `None` if it is fit.
 #[must_use]
 pub fn unfit_cause(rules: &MissionRules, robot: &Fitness) -> Option<TurnBackCause> {
     let low = |level: f64, threshold: f64, rule: TurnBack, cost: f64| {
@@ -32,8 +33,8 @@ pub fn unfit_cause(rules: &MissionRules, robot: &Fitness) -> Option<TurnBackCaus
     }
 }
 
-/// Why a robot in the field must leave for its rest place now, if it must. `way_cost` is the energy that the straight way to the
-/// rest place costs, in percent points.
+/// Why a robot must leave for its rest place now; `None` if it may stay. `way_cost` is the energy that the
+/// straight line to the rest place costs, in percent points.
 #[must_use]
 pub fn turn_back_cause(rules: &MissionRules, energy: f64, hp: f64, way_cost: f64) -> Option<TurnBackCause> {
     let at_once = |rule: TurnBack, level: f64, threshold: f64| rule == TurnBack::AtOnce && level < threshold;
@@ -73,12 +74,12 @@ pub fn levels_after_rest(rules: &MissionRules, [energy, hp]: [f64; 2]) -> [f64; 
     ]
 }
 
-/// What a group in the field can still do.
+/// The remaining capabilities of a group in the field.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct FieldState {
-    /// Members in the field who can carry.
+    /// Members in the field that can carry.
     pub carrying_members: u32,
-    /// Room that they have left.
+    /// Rescuees for which these members have room.
     pub free_capacity: u32,
     /// Resources that the members in the field have left.
     pub resources: u32,
@@ -88,7 +89,7 @@ pub struct FieldState {
     pub still_searching: u32,
 }
 
-/// Why a group goes home now, if it does.
+/// Why a group goes home now; `None` if it stays.
 #[must_use]
 pub fn return_cause(field: &FieldState) -> Option<ReturnCause> {
     if field.carrying_members == 0 {

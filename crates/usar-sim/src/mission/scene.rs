@@ -1,4 +1,4 @@
-//! What robots decide in: the trial as it is in one step.
+//! The scene of a decision: the trial as it is in one step.
 
 use super::GIVE_UP_S;
 use crate::event::EventLog;
@@ -10,25 +10,25 @@ use crate::world::{Robot, World};
 
 /// The parts of a trial that decisions look at and change.
 pub struct Scene<'s> {
-    /// What is fixed.
+    /// The fixed part of the trial.
     pub model: &'s Model,
-    /// What exists.
+    /// The state of the world.
     pub world: &'s mut World,
     /// The journeys of the robots.
     pub navigator: &'s mut Navigator,
-    /// Takes the events.
+    /// The log of the step's events.
     pub log: &'s mut EventLog,
     /// Steps done.
     pub step: u64,
 }
 
 impl Scene<'_> {
-    /// Whether a robot has known no way to its goal for so long that it gives up on it.
+    /// Whether a robot has known no route to its goal for so long that it gives up on the goal.
     pub(super) fn gives_up(&self, robot: RobotId) -> bool {
         self.navigator.traveller(robot).lost_steps() >= self.model.steps(GIVE_UP_S)
     }
 
-    /// Whether a robot is where it wants to be: at the end of its route, and on the place. The route may end beside a place that debris
+    /// Whether a robot has arrived and is really at its goal. The route may end beside a place that debris
     /// covers.
     pub(super) fn is_at_place(&self, robot: &Robot) -> bool {
         let traveller = self.navigator.traveller(robot.id);
@@ -36,7 +36,7 @@ impl Scene<'_> {
         traveller.has_arrived(robot.position) && traveller.goal().is_some_and(covers)
     }
 
-    /// Energy that a way of this length costs a robot, in percent points.
+    /// Energy that a path of this length costs a robot, in percent points.
     pub(super) fn way_cost(&self, robot: &Robot, metres: f64, speed: f64) -> f64 {
         let Costs { unit, energy: rates, .. } = &self.model.scenario.costs;
         let seconds = metres / speed.max(1e-3);

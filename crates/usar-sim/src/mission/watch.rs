@@ -9,23 +9,24 @@ use crate::event::{CutOffCause, Event};
 use crate::ids::RobotId;
 use crate::world::Robot;
 
-/// A robot comes nearer when the way that is left shrinks by this much, in metres: less may be a push by another robot.
+/// Least decrease of the remaining route that counts as coming nearer, in metres. A smaller one may be a push
+/// by another robot.
 const NEARER_M: f32 = 0.5;
 
-/// How a robot comes on towards one goal.
+/// The progress of a robot towards one goal.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct Watch {
     goal: Option<Vector>,
-    /// The shortest way left so far, in metres; none before the first route.
+    /// The shortest remaining route so far, in metres; none before the first route.
     nearest_m: Option<f32>,
-    /// The longest way left since the robot last came nearer, in metres.
+    /// The longest remaining route since the robot last came nearer, in metres.
     longest_m: f32,
     /// Steps since the robot last came nearer or stood at its goal.
     pub held_up_steps: u64,
 }
 
 impl Watch {
-    /// Takes note of the way that is left to the goal. Returns whether the robot came nearer.
+    /// Notes the length of the remaining route to the goal. Returns whether the robot came nearer.
     fn note(&mut self, goal: Option<Vector>, left_m: Option<f32>) -> bool {
         if self.goal != goal {
             *self = Self { goal, ..Self::default() };
@@ -40,15 +41,15 @@ impl Watch {
         is_nearer
     }
 
-    /// The way by which the robot may go before it has to come nearer, in metres: the whole of a detour.
+    /// The distance that the robot may travel before it has to come nearer, in metres: the whole of a detour.
     fn allowed_way_m(&self) -> f32 {
         self.longest_m - self.nearest_m.unwrap_or(self.longest_m) + NEARER_M
     }
 }
 
 impl Mission {
-    /// Looks how each robot comes on. Robots that do not get to their rest place try the next one; the team does not wait for robots
-    /// that do not get home.
+    /// Watches the progress of each robot. A robot that cannot get to its rest place tries the next one. The
+    /// team does not wait for a robot that cannot get home.
     pub(super) fn watch(&mut self, scene: &mut Scene) {
         for id in (0..scene.world.robots.len() as u32).map(RobotId) {
             let robot = &scene.world.robots[id.index()];
@@ -73,7 +74,8 @@ impl Mission {
         }
     }
 
-    /// Takes note of the way that a robot has left. Returns whether it came nearer, or is where it wants to be.
+    /// Notes the remaining route of a robot. Returns whether the robot came nearer, has arrived, or has no
+    /// goal.
     fn note_way(&mut self, robot: &Robot, scene: &Scene) -> bool {
         let traveller = scene.navigator.traveller(robot.id);
         let left_m = traveller.route().map(|route| route.length(robot.position));
@@ -86,7 +88,8 @@ impl Mission {
         is_nearer || is_there
     }
 
-    /// Whether a robot has come no nearer to its goal for `mission.cut_off_s`, and for as long as its longest detour takes.
+    /// Whether a robot has come no nearer to its goal for `mission.cut_off_s` plus the time that its longest
+    /// detour takes.
     pub(super) fn is_held_up(&self, robot: &Robot, scene: &Scene) -> bool {
         let watch = &self.agents[robot.id.index()].watch;
         let limit_s = scene.model.scenario.mission.cut_off_s;
@@ -97,7 +100,7 @@ impl Mission {
         watch.held_up_steps > scene.model.steps(limit_s + detour_s)
     }
 
-    /// Why a robot does not get to its goal, if it does not.
+    /// Why a robot cannot get to its goal; `None` if it has arrived or still makes progress.
     fn held_up_cause(&self, id: RobotId, scene: &Scene) -> Option<CutOffCause> {
         let robot = &scene.world.robots[id.index()];
         if scene.navigator.traveller(id).has_arrived(robot.position) {
@@ -111,7 +114,8 @@ impl Mission {
         }
     }
 
-    /// Gives up on a rest place that a robot does not get to, or not to its own slot, and sends it to the next one; home after the last.
+    /// Gives up on a rest place if a robot cannot get to its slot there, and sends the robot to the next rest
+    /// place; after the last one, home.
     fn watch_way_to_rest(&mut self, id: RobotId, scene: &mut Scene) {
         let (robot, traveller) = (&scene.world.robots[id.index()], scene.navigator.traveller(id));
         let agent = &self.agents[id.index()];
@@ -134,14 +138,14 @@ impl Mission {
         }
     }
 
-    /// The team no longer waits for a robot, until it comes nearer. Said once.
+    /// Marks a robot for which the team no longer waits until it comes nearer. Logs this once.
     fn cut_off(&mut self, id: RobotId, place: Vector, cause: CutOffCause, scene: &mut Scene) {
         if !std::mem::replace(&mut self.agents[id.index()].is_cut_off, true) {
             scene.log.push(Event::CutOff { robot: id, place: place.into(), cause });
         }
     }
 
-    /// Whether a round can come to anything: a robot at home can go out and carry, or can go to rest.
+    /// Whether a round has a purpose: a robot at home can go out and carry, or can go to rest.
     pub(super) fn can_begin_round(&self, scene: &Scene) -> bool {
         let rules = &scene.model.scenario.mission;
         let tasks = scene.model.tasks.len() as u16;

@@ -1,4 +1,4 @@
-//! A task that ends: its rescuees are gone, and its group goes home.
+//! The end of a task: its waiting rescuees disappear, and its group goes home.
 
 use rne_core::TaskId;
 
@@ -7,8 +7,8 @@ use crate::model::Model;
 use crate::world::{RescueeState, World};
 
 impl Mission {
-    /// Takes away the rescuees of a task that still wait, and the work of its group: it goes home, since
-    /// nothing is left.
+    /// Removes the rescuees of a task that still wait, and the work of its group. The group then goes home,
+    /// because nothing is left to do.
     pub(crate) fn withdraw(&mut self, task: TaskId, model: &Model, world: &mut World) {
         for rescuee in &mut world.rescuees[model.tasks[task.index()].rescuees.clone()] {
             if rescuee.state == RescueeState::Waiting {

@@ -5,7 +5,8 @@ use crate::event::Event;
 use crate::ids::{RescueeId, RobotId};
 
 impl Mission {
-    /// A robot's next activity, where it is free to choose; `claim` is the rescuee that it may go for, if there is one.
+    /// Chooses a robot's next activity, if it is free to choose. `claim` is the rescuee that it may approach,
+    /// if there is one.
     pub(super) fn choose_activity(&mut self, id: RobotId, claim: Option<RescueeId>, scene: &mut Scene) {
         let robot = &scene.world.robots[id.index()];
         let activity = self.agents[id.index()].activity;
@@ -31,7 +32,8 @@ impl Mission {
         }
     }
 
-    /// Goes on to the next place of the sweep from one that was reached, or that cannot be reached.
+    /// Goes on to the next place of the sweep if the present one was reached or cannot be reached. A robot
+    /// with a full load ends its sweep.
     fn go_on_searching(&mut self, id: RobotId, scene: &Scene, is_held_up: bool) {
         let agent = &mut self.agents[id.index()];
         let (robot, traveller) = (&scene.world.robots[id.index()], scene.navigator.traveller(id));
@@ -47,7 +49,8 @@ impl Mission {
     }
 }
 
-/// Whether a robot's route ends, or there is none, before the rescuee is within reach.
+/// Whether a robot has no route to a rescuee, or has reached the end of its route out of reach of the
+/// rescuee.
 fn is_out_of_reach(id: RobotId, rescuee: RescueeId, scene: &Scene) -> bool {
     let traveller = scene.navigator.traveller(id);
     let robot = &scene.world.robots[id.index()];

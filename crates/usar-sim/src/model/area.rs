@@ -1,13 +1,16 @@
-//! A task's area: its block of rescuees with a margin, the lanes by which it is swept, and the places where robots wait in it.
+//! A task's area: its block of rescuees with a margin, the lanes of its sweep, and the waiting places of
+//! robots.
 
 use parry2d::math::Vector;
 
 use crate::scenario::{RoleKind, Scenario, TaskFile};
 
-/// Lanes of a sweep are at least this far apart, in metres: a robot that sees a few millimetres cannot comb an area.
+/// Least distance between the lanes of a sweep, in metres: a robot that sees only a few millimetres cannot
+/// comb an area.
 const LEAST_LANE_SPACING_M: f32 = 2.0;
 
-/// Distance between the waiting places, in metres, beyond the diameter of the largest robot on the ground or in the air.
+/// Distance between waiting places beyond the diameter of the largest robot on the ground or in the air, in
+/// metres.
 const MUSTER_GAP_M: f32 = 0.8;
 
 /// A task's area.
@@ -27,8 +30,8 @@ pub struct TaskArea {
 }
 
 impl TaskArea {
-    /// The area of one task; waiting places are on the side that faces `home`. The area reaches as far as the waiting places of all
-    /// `robots`, so that robots that wait share its resources.
+    /// The area of one task. Waiting places are on the side that faces `home`. The area contains the waiting
+    /// places of all `robots`, so that waiting robots share its resources.
     #[must_use]
     pub fn new(scenario: &Scenario, file: &TaskFile, home: Vector, robots: usize) -> Self {
         let vector = |[x, y]: [f64; 2]| Vector::new(x as f32, y as f32);
@@ -62,8 +65,9 @@ impl TaskArea {
         (self.block_min + self.block_max) / 2.0
     }
 
-    /// Places to pass, in order, so that a robot that sees `range` metres sees the whole block: lanes along its longer side, beginning
-    /// at the end that is nearer to home. The `rank`-th of `ranks` robots that sweep begins with another lane.
+    /// The waypoints of a sweep by which a robot that sees `range` metres sees the whole block. The lanes run
+    /// along the longer side and begin at the end nearer to home. The `rank`-th of `ranks` robots begins with
+    /// a lane of its own, as far as there are enough lanes.
     #[must_use]
     pub fn sweep(&self, range: f32, rank: usize, ranks: usize) -> Vec<Vector> {
         let size = self.block_max - self.block_min;
@@ -71,7 +75,7 @@ impl TaskArea {
         let (length, width) = if along_x { (size.x, size.y) } else { (size.y, size.x) };
         let spacing = (std::f32::consts::SQRT_2 * range).max(LEAST_LANE_SPACING_M);
         let lanes = (width / spacing).ceil().max(1.0);
-        // Seen from a lane's end, the corners of its strip are within range when the lane ends this far inside.
+        // With this inset, the corners of a lane's strip are within range from the lane's end.
         let inset = (spacing / 2.0).min(length / 2.0);
         let place = |along: f32, across: f32| {
             self.block_min + if along_x { Vector::new(along, across) } else { Vector::new(across, along) }
@@ -97,8 +101,9 @@ impl TaskArea {
         path
     }
 
-    /// The waiting place of the `rank`-th of `ranks` aerial members: side by side over the middle of the block, in as many rows as it takes
-    /// to stay in the area, so that they share its resources.
+    /// The waiting place of the `rank`-th of `ranks` aerial members. The places are side by side over the
+    /// middle of the block, in as many rows as needed to stay in the area, so that the robots share its
+    /// resources.
     #[must_use]
     pub fn hover(&self, rank: usize, ranks: usize) -> Vector {
         let width = self.block_max.x - self.block_min.x + 2.0 * self.margin;
@@ -110,7 +115,8 @@ impl TaskArea {
         self.center() + Vector::new(off_middle(place, in_row), off_middle(row, rows))
     }
 
-    /// The waiting place of the `rank`-th member: rows in the margin, on the side that faces home.
+    /// The waiting place of the `rank`-th member. The places form rows in the margin, on the side that faces
+    /// home.
     #[must_use]
     pub fn muster(&self, rank: usize) -> Vector {
         let toward = self.home - self.center();

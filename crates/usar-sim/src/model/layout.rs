@@ -1,4 +1,4 @@
-//! The layout of one trial: what the scenario fixes, and what is drawn from the trial's seed.
+//! The layout of one trial: what the scenario fixes, and what is drawn with the trial's seed.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -18,21 +18,21 @@ use crate::scenario::{
 };
 use crate::seed::{Purpose, normal, stream};
 
-/// Draws for one sampled thing before it is said that there is no room.
+/// Draws for one sampled thing before the layout fails for lack of room.
 pub(super) const SAMPLING_TRIES: u32 = 500;
 
-/// Layouts drawn before it is said that there is no passage.
+/// Layouts drawn before the trial fails for lack of a passage.
 const LAYOUT_ATTEMPTS: u32 = 20;
 
-/// Least initial level, in percent: a robot starts with something.
+/// Least initial level, in percent: no robot starts with nothing.
 const LEAST_LEVEL: f64 = 1.0;
 
-/// Where and how a robot starts.
+/// The initial state of a robot.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RobotStart {
     /// Identity.
     pub id: RobotId,
-    /// What it is for.
+    /// Its role.
     pub role: RoleId,
     /// Its place at home.
     pub home: Vector,
@@ -42,16 +42,16 @@ pub struct RobotStart {
     pub hp: f64,
 }
 
-/// Everything that is decided before a trial begins. The same for every policy.
+/// Everything that is drawn or fixed before a trial begins. It is the same for every policy.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Layout {
     /// Robots, by id.
     pub robots: Vec<RobotStart>,
-    /// Debris: the scenario's, then the sampled and the scattered, then what comes by events.
+    /// Debris: the scenario's, then sampled and scattered pieces, then pieces that events add.
     pub debris: Vec<DebrisFile>,
-    /// Radiation zones: the scenario's, then the sampled.
+    /// Radiation zones: the scenario's, then sampled and scattered zones, then zones that events add.
     pub zones: Vec<ZoneFile>,
-    /// Numbers of the pieces of debris that come and go by events, and whether each is there at the start.
+    /// Numbers of the pieces of debris that events place or remove, and whether each is there at the start.
     pub gates: BTreeMap<usize, bool>,
     /// Numbers of the radiation zones that are not there at the start.
     pub zones_later: BTreeSet<usize>,
@@ -61,7 +61,7 @@ impl Layout {
     /// Draws the layout of the trial with this seed. Sampled debris that leaves no passage is drawn again.
     ///
     /// # Errors
-    /// No room for what is to be sampled, or no passage between home, tasks and rest places.
+    /// No room for a sampled or scattered thing, or no passage between home, tasks and rest places.
     pub fn sample(scenario: &Scenario, trial_seed: u64) -> Result<Self, LayoutError> {
         let draws_nothing =
             scenario.tasks.iter().all(|task| task.sampled.debris == 0) && scenario.scatter.is_empty();
@@ -109,7 +109,7 @@ impl Layout {
             count,
             tries: SAMPLING_TRIES,
         };
-        // Each thing has a stream of its own: one thing more leaves the others where they are.
+        // Each thing has a stream of its own, so that one more thing leaves the others where they are.
         let entity = |i: u32| stream_of_task(number) | u64::from(attempt) << 32 | u64::from(i);
         for i in 0..debris {
             let mut draws = stream(seed, Purpose::SampledDebris, entity(i));
@@ -140,8 +140,8 @@ impl Layout {
         Ok(())
     }
 
-    /// Adds what comes and goes by events, after everything else: panels of doors, debris that falls,
-    /// radiation that appears.
+    /// Adds the things that events open, close or add, after everything else: panels of doors, debris that
+    /// falls and radiation that appears. Also notes the named debris that events open and close.
     fn add_later(&mut self, scenario: &Scenario) {
         for (panel, is_closed) in scenario.panels() {
             self.gates.insert(self.debris.len(), is_closed);
@@ -166,7 +166,7 @@ impl Layout {
         }
     }
 
-    /// Number of the piece that falls in an event of the timeline.
+    /// Number of the piece of debris that falls in an event of the timeline.
     pub(super) fn falling(&self, scenario: &Scenario, moment: usize) -> usize {
         let after = scenario.timeline[moment..].iter().filter(|moment| moment.event.falling().is_some());
         self.debris.len() - after.count()
@@ -178,10 +178,10 @@ impl Layout {
         self.zones.len() - after.count()
     }
 
-    /// Every place that a mission needs can be reached by each ground robot. Robots of one radius are looked at together, the largest
-    /// first.
+    /// Checks that each ground robot can reach every place that a mission needs. Robots of one radius are
+    /// checked together, the largest first.
     fn check_passages(&self, scenario: &Scenario) -> Result<(), LayoutError> {
-        // What comes and goes closes no way for good.
+        // Pieces that events place or remove do not block a passage for good.
         let stays = |(number, _): &(usize, &DebrisFile)| !self.gates.contains_key(number);
         let outlines: Vec<_> =
             self.debris.iter().enumerate().filter(stays).map(|(_, file)| file.outline()).collect();
@@ -209,7 +209,7 @@ impl Layout {
         let Some(first) = ground.first() else { return Ok(()) };
         let place = |task: &TaskFile| (format!("task {:?}", task.name), vector(task.center));
         let mut places: Vec<(String, Vector)> = scenario.tasks.iter().map(place).collect();
-        // Neighbours one after the other: each is looked for from the one before.
+        // Neighbouring places follow one another, because each search starts from the place before.
         places.extend(ground.iter().map(|robot| ("a robot's home".to_owned(), robot.home)));
         for (number, task) in (0..).zip(&scenario.tasks) {
             let name = format!("the rest place of task {:?}", task.name);
@@ -223,8 +223,8 @@ impl Layout {
     }
 }
 
-/// The part of a sampled thing's entity that names its task. The first task has the highest bit and the second none, as they had when there
-/// were two; so the draws of published trials stay what they were.
+/// The part of a sampled thing's entity that identifies its task. The first task has the highest bit and the
+/// second none, as when there were only two tasks. So the draws of published trials stay as they were.
 fn stream_of_task(number: usize) -> u64 {
     match number {
         0 => 1 << 63,
@@ -278,7 +278,7 @@ impl Strip {
         }
     }
 
-    /// A place and a radius that are accepted, or nothing after many tries.
+    /// A place and a radius that are accepted; `None` after [`SAMPLING_TRIES`] tries.
     fn draw(
         &self,
         draws: &mut ChaCha8Rng,
@@ -303,10 +303,10 @@ impl Strip {
     }
 }
 
-/// Homes, places to rest and rescuees, each with the radius of what stands there.
+/// Homes, rest places and rescuees, each with the radius of the robot that stands there.
 pub(super) struct KeepClear {
     list: Vec<(Point, f64)>,
-    /// Where they are.
+    /// The same by place.
     places: Places,
 }
 
@@ -329,7 +329,7 @@ impl KeepClear {
         Self { places: list.iter().map(bounds).collect(), list }
     }
 
-    /// None of them within `radius` metres.
+    /// Whether a disc of this radius, in metres, keeps clear of all of them.
     pub(super) fn allows(&self, at: Point, radius: f64) -> bool {
         let near = self.places.near(vector(at), radius as f32);
         near.into_iter()

@@ -1,4 +1,5 @@
-//! The model of one trial: everything that is fixed once its seed is known. Built once, shared by reference, and never in a snapshot.
+//! The model of one trial: everything that is fixed once its seed is known. It is built once, shared by
+//! reference, and never in a snapshot.
 
 mod area;
 mod layout;
@@ -23,9 +24,9 @@ use crate::scenario::{LayoutError, RoleFile, RoleKind, Scenario};
 /// Everything that is fixed in one trial.
 #[derive(Debug)]
 pub struct Model {
-    /// The scenario, with the values that its distributions have in this trial.
+    /// The scenario, with the values drawn from its distributions for this trial.
     pub scenario: Scenario,
-    /// The scenario with its distributions, where it has any.
+    /// The scenario with its distributions, if it has any.
     given: Option<Scenario>,
     /// Seed of the trial.
     pub seed: u64,
@@ -41,18 +42,18 @@ pub struct Model {
     pub rescuees: Vec<(TaskId, Vector)>,
     /// Ids of the rescuees that are not there at the start.
     pub rescuees_later: Vec<Range<usize>>,
-    /// What happens at which step, in order.
+    /// The actions of the timeline, in the order of their steps.
     pub timeline: Vec<Due>,
 }
 
-/// What is fixed of one robot.
+/// The fixed properties of one robot.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct RobotModel {
     /// Identity.
     pub id: RobotId,
     /// Its role.
     pub role: RoleId,
-    /// What robots of its role are and can do at full health.
+    /// Properties and abilities of its role at full health, with the changes of its row.
     pub spec: Arc<RoleFile>,
     /// Its place at home.
     pub home: Vector,
@@ -69,7 +70,7 @@ impl RobotModel {
         self.spec.kind == RoleKind::Aerial
     }
 
-    /// Whether it can have rescuees on board at all.
+    /// Whether it can take rescuees on board at all.
     #[must_use]
     pub fn can_carry(&self) -> bool {
         self.spec.capacity > 0
@@ -88,7 +89,7 @@ impl RobotModel {
     }
 }
 
-/// What is fixed of one task.
+/// The fixed properties of one task.
 #[derive(Debug)]
 pub struct TaskModel {
     /// Its area.
@@ -97,12 +98,12 @@ pub struct TaskModel {
     pub rank: u8,
     /// Ids of its rescuees.
     pub rescuees: Range<usize>,
-    /// Lower left and upper right corner of the places of its rescuees; inside out where there are none.
+    /// Lower left and upper right corner of the places of its rescuees; infinite and inverted if it has none.
     pub bounds: [Vector; 2],
 }
 
 impl Model {
-    /// Draws what the seed decides and works out what follows from it.
+    /// Draws what the seed decides, and derives the rest of the model from it.
     ///
     /// # Errors
     /// The layout cannot be drawn.
@@ -160,7 +161,7 @@ impl Model {
         self.scenario.dt_s
     }
 
-    /// Number of steps in so many seconds.
+    /// Number of steps in this many seconds.
     #[must_use]
     pub fn steps(&self, seconds: f64) -> u64 {
         (seconds / self.scenario.dt_s).round() as u64
@@ -172,14 +173,14 @@ impl Model {
     }
 }
 
-/// What each robot is and can do, by id; robots of a row share it.
+/// Properties and abilities of each robot, by id; robots of a row share them.
 fn bodies(scenario: &Scenario) -> Vec<Arc<RoleFile>> {
     let rows =
         scenario.team.iter().map(|row| (Arc::new(scenario.body_of(row).unwrap_or_default()), row.count));
     rows.flat_map(|(body, count)| (0..count).map(move |_| Arc::clone(&body))).collect()
 }
 
-/// Ids of the rescuees that appear by an event, and of those whose task begins with one.
+/// Ids of the rescuees that appear with an event, and of rescuees whose task begins with one.
 fn later(scenario: &Scenario) -> Vec<Range<usize>> {
     if scenario.timeline.is_empty() {
         return Vec::new();

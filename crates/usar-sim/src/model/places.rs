@@ -1,4 +1,4 @@
-//! Places that follow from the scenario alone: of rescuees, and of robots at rest.
+//! Places of rescuees and of resting robots, which follow from the scenario alone.
 
 use std::ops::Range;
 
@@ -8,10 +8,11 @@ use rne_core::TaskId;
 use crate::ids::RobotId;
 use crate::scenario::{Happening, RoleKind, Scenario, TaskFile};
 
-/// Free distance between two robots at a rest place, in metres: others can pass between them.
+/// Free distance between two robots at a rest place, in metres, so that others can pass between them.
 const REST_GAP_M: f64 = 1.2;
 
-/// A robot's own place at a task's rest place: a square block around its centre, in order of ids.
+/// A robot's own slot at a task's rest place. The slots form a nearly square block round the centre of the
+/// rest place, in order of ids.
 #[must_use]
 pub fn rest_slot(scenario: &Scenario, task: TaskId, robot: RobotId) -> Vector {
     let robots = scenario.robots();
@@ -27,8 +28,8 @@ pub fn rest_slot(scenario: &Scenario, task: TaskId, robot: RobotId) -> Vector {
     Vector::new(x as f32, y as f32)
 }
 
-/// The task and the place of each rescuee, by id: task by task, each in a regular grid; after it, those of
-/// the task that appear later.
+/// The task and the place of each rescuee, by id. Rescuees are ordered by task. Those of the task's own
+/// regular grid come first, and those that appear later follow.
 pub fn rescuee_places(scenario: &Scenario) -> impl Iterator<Item = (TaskId, Vector)> + '_ {
     (0..).zip(&scenario.tasks).flat_map(move |(number, task)| {
         let later = later_grids(scenario, task).flat_map(move |(_, cells)| cells_of(task, cells));
@@ -36,9 +37,9 @@ pub fn rescuee_places(scenario: &Scenario) -> impl Iterator<Item = (TaskId, Vect
     })
 }
 
-/// Rescuees that are there from the same moment on.
+/// Rescuees that appear at the same moment.
 pub(super) struct Block {
-    /// Number of the event with which they appear; none for those of the task's table.
+    /// Number of the event with which they appear; none for rescuees of the task's own grid.
     pub(super) moment: Option<usize>,
     /// Their ids.
     pub(super) ids: Range<usize>,
@@ -59,7 +60,7 @@ pub(super) fn rescuee_blocks(scenario: &Scenario) -> Vec<Block> {
     blocks
 }
 
-/// The grids of rescuees that appear in a task, each with the number of its event.
+/// The grids of rescuees that events add to a task, each with the number of its event.
 fn later_grids<'s>(scenario: &'s Scenario, of: &'s TaskFile) -> impl Iterator<Item = (usize, [u32; 2])> + 's {
     scenario.timeline.iter().enumerate().filter_map(|(number, moment)| match &moment.event {
         Happening::RescueesAppear { task, grid } if *task == of.name => Some((number, *grid)),
@@ -79,7 +80,7 @@ fn grid(task: &TaskFile) -> impl Iterator<Item = Vector> + '_ {
     (0..task.grid[1]).flat_map(move |row| (0..task.grid[0]).map(move |column| place(column, row)))
 }
 
-/// Middles of so many cells of a task's block.
+/// Middles of the cells of a grid over a task's block.
 fn cells_of(task: &TaskFile, [columns, rows]: [u32; 2]) -> impl Iterator<Item = Vector> + '_ {
     let along = |k: usize, i: u32, count: u32| {
         task.center[k] + task.size_m[k] * ((f64::from(i) + 0.5) / f64::from(count) - 0.5)

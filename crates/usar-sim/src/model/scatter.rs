@@ -25,7 +25,8 @@ impl Layout {
         for (number, entry) in (0..).zip(&scenario.scatter) {
             let [debris, zones] = [self.debris.len(), self.zones.len()];
             for i in 0..entry.count {
-                // Each thing has a stream of its own: one thing more leaves the others where they are.
+                // Each thing has a stream of its own, so that one more thing leaves the others where they
+                // are.
                 let entity = number << 48 | u64::from(attempt) << 32 | u64::from(i);
                 let mut draws = stream(seed, Purpose::Scatter, entity);
                 let radius = entry.radius_m.draw(&mut draws);
@@ -71,7 +72,7 @@ impl Layout {
     }
 }
 
-/// The debris that lies there, by place.
+/// The debris that is placed already, by place.
 struct Ground {
     outlines: Vec<Outline>,
     places: Places,
@@ -91,19 +92,19 @@ impl Ground {
     }
 }
 
-/// What is placed already.
+/// The things that are placed already.
 struct Placed<'l> {
     ground: &'l Ground,
-    /// The zones of the entry.
+    /// The zones of this entry.
     zones: &'l [ZoneFile],
-    /// Number of the first piece of the entry.
+    /// Number of the first piece of debris of this entry.
     first: usize,
     entry: &'l Scatter,
     keep_clear: &'l KeepClear,
 }
 
 impl Placed<'_> {
-    /// Whether a thing of this radius may lie there.
+    /// Whether a thing of this radius may be placed at this point.
     fn allows(&self, at: Point, radius: f64) -> bool {
         let gap = self.entry.gap_m();
         let is_clear = self.keep_clear.allows(at, radius);
@@ -112,7 +113,7 @@ impl Placed<'_> {
                 Scattered::Debris => {
                     let point = Vector::new(at[0] as f32, at[1] as f32);
                     let free = radius + gap.unwrap_or_default();
-                    // The gap is one between things of the entry; other debris is not overlapped.
+                    // The gap holds between things of this entry; other debris is only not overlapped.
                     self.ground.places.near(point, free as f32).into_iter().all(|number| {
                         let least = if number >= self.first { free } else { radius };
                         f64::from(self.ground.outlines[number].distance_to(point)) >= least
@@ -131,7 +132,7 @@ fn is_inside(at: Point, radius: f64, arena: Point) -> bool {
     (0..2).all(|k| at[k] >= radius && at[k] <= arena[k] - radius)
 }
 
-/// The middle of the `i`-th cell of the grid in which the things of an entry stand.
+/// The middle of the `i`-th cell of an entry's grid.
 fn cell(entry: &Scatter, arena_m: Point, i: u32) -> Point {
     let [low, high] = entry.region(arena_m);
     let size = [high[0] - low[0], high[1] - low[1]];

@@ -1,4 +1,4 @@
-//! The timeline of one trial: when what happens, by the numbers of things.
+//! The timeline of one trial: its actions and their steps, with things given by their numbers.
 
 use std::ops::Range;
 
@@ -9,14 +9,14 @@ use super::places::rescuee_blocks;
 use crate::ids::RobotId;
 use crate::scenario::{Happening, Scenario};
 
-/// What happens, by the numbers of the things that it happens to.
+/// An action of the timeline, with things given by their numbers.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Action {
-    /// A piece falls.
+    /// A piece of debris falls.
     Fall(usize),
-    /// A piece closes a way.
+    /// A piece of debris closes a passage.
     Close(usize),
-    /// A piece is taken away.
+    /// A piece of debris is taken away.
     Open(usize),
     /// A radiation source appears.
     Appear(usize),
@@ -24,7 +24,7 @@ pub enum Action {
     Die(usize),
     /// A robot breaks down.
     Fail(RobotId),
-    /// A robot loses so many percent points of energy and HP.
+    /// A robot loses these percent points of energy and HP.
     Lose(RobotId, [f64; 2]),
     /// These rescuees of a task appear.
     Rescuees(TaskId, Range<usize>),

@@ -1,4 +1,4 @@
-//! Keeps each robot on a route to its goal: plans when it has to, and says which velocity the robot would like.
+//! Keeps each robot on a route to its goal: plans routes when needed, and gives the preferred velocity.
 
 mod trail;
 mod traveller;
@@ -15,27 +15,28 @@ use trail::Trail;
 use traveller::{Attempt, PROGRESS_M};
 pub use traveller::{Goal, Traveller};
 
-/// A robot checks this often, in steps, that the way to its next waypoint is still free.
+/// Steps between two checks that the path to a robot's next waypoint is still free.
 const ROUTE_CHECK_STEPS: u64 = 25;
 
-/// A robot that has not come nearer for this long, in seconds, plans round the robots that stand in its way; after four times as long it
-/// goes straight again, and so on in turn: robots that it does not see may close the way round as well.
+/// A robot that has come no nearer to its goal for this long, in seconds, plans a detour round the robots
+/// that stand in its way. After four times as long it plans without a detour again, and so on in turn: robots
+/// that it does not see may block the detour as well.
 const DETOUR_AFTER_S: f64 = 4.0;
 
-/// Standing robots within this distance are planned round then, in metres.
+/// A detour leads round standing robots within this distance, in metres.
 const DETOUR_RANGE_M: f32 = 8.0;
 
 /// Share of the drive's acceleration that robots plan to brake with; the rest is in reserve.
 pub const PLANNED_BRAKING: f32 = 0.8;
 
-/// What news do to a route.
+/// The effect of news on a route.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Effect {
-    /// It stays as good as it was.
+    /// The route stays as good as it was.
     None,
-    /// It is cut, or leads through radiation.
+    /// The route is cut, or leads through radiation.
     Cut,
-    /// There may be a cheaper one, or one at all.
+    /// There may be a cheaper route, or a first one.
     Cheaper,
 }
 
@@ -50,13 +51,14 @@ pub struct Navigator {
     detour_steps: u64,
     #[serde(skip)]
     clearance: f32,
-    /// Width and height of the arena, in metres, where narrow passages are looked for; none where nobody asks for them.
+    /// Width and height of the arena, in metres, if the resolver needs the narrow passages of routes;
+    /// otherwise none.
     #[serde(skip)]
     narrow_in: Option<Vector>,
 }
 
 impl Navigator {
-    /// Nobody has anywhere to go.
+    /// A navigator of robots without goals.
     #[must_use]
     pub fn new(scenario: &Scenario, robots: usize) -> Self {
         let mut navigator = Self {
@@ -71,7 +73,7 @@ impl Navigator {
         navigator
     }
 
-    /// Makes what a snapshot leaves out because it follows from the scenario.
+    /// Restores the fields that a snapshot leaves out: they follow from the scenario.
     pub(crate) fn restore(&mut self, scenario: &Scenario) {
         self.planner = Planner::new(scenario);
         self.detour_steps = (DETOUR_AFTER_S / scenario.dt_s).round() as u64;
@@ -86,13 +88,13 @@ impl Navigator {
         &self.travellers[robot.index()]
     }
 
-    /// Places that a robot came by, the latest last.
+    /// Places that a robot passed, the latest last.
     #[must_use]
     pub fn trail(&self, robot: RobotId) -> &[Vector] {
         self.trails[robot.index()].points()
     }
 
-    /// Sends a robot somewhere, or nowhere. The same goal again changes nothing.
+    /// Sets the goal of a robot, or none. Setting the same goal again changes nothing.
     pub fn set_goal(&mut self, robot: RobotId, goal: Option<Goal>) {
         let traveller = &mut self.travellers[robot.index()];
         if traveller.goal != goal {
@@ -100,8 +102,9 @@ impl Navigator {
         }
     }
 
-    /// Plans where a robot has no route yet, where new knowledge cuts it or may make it dearer or cheaper, or where it leads nowhere. `speed_of` is a
-    /// robot's present top speed, in metres per second.
+    /// Plans routes. A robot plans if it has no route yet, if new knowledge cuts its route or may make it
+    /// dearer or cheaper, or if it makes no progress. `speed_of` is a robot's present top speed, in metres
+    /// per second.
     pub fn plan<'k>(
         &mut self,
         world: &World,
@@ -173,8 +176,8 @@ impl Navigator {
         }
     }
 
-    /// The velocity that takes a robot along its route: at most `speed`, slower before turns and the end. Zero where it has nowhere
-    /// to go.
+    /// The velocity that takes a robot along its route: at most `speed`, less before turns and the end. Zero
+    /// if the robot has no route or has arrived.
     #[must_use]
     pub fn preferred_velocity(&self, robot: &Robot, speed: f32) -> Vector {
         let traveller = &self.travellers[robot.id.index()];
@@ -200,7 +203,8 @@ impl Navigator {
     }
 }
 
-/// Robots of the same layer that stand near, as obstacles; without those at the goal: the goal stays where it is.
+/// Robots of the same layer that stand nearby, as obstacles. Robots at the goal are left out, so that the
+/// goal stays where it is.
 fn standing_near(world: &World, robot: &Robot, goal: Goal, clearance: f32) -> Vec<KnownObstacle> {
     let stands = |other: &&Robot| {
         other.id != robot.id
@@ -215,7 +219,8 @@ fn standing_near(world: &World, robot: &Robot, goal: Goal, clearance: f32) -> Ve
     world.robots.iter().filter(stands).map(obstacle).filter(is_off_goal).collect()
 }
 
-/// The cheapest route round what is in the way; where that leaves no way, through it: robots that stand may go.
+/// The cheapest route round the standing robots. If there is none, the cheapest route through them, because
+/// they may move.
 fn find_route(planner: &mut Planner, query: &Query) -> Option<Route> {
     let route = planner.route(query);
     if route.is_some() || query.in_the_way.is_empty() {
@@ -224,7 +229,7 @@ fn find_route(planner: &mut Planner, query: &Query) -> Option<Route> {
     planner.route(&Query { in_the_way: &[], ..*query })
 }
 
-/// What news do to a route.
+/// The effect of news on a route.
 fn effect(
     planner: &Planner,
     query: &Query,
@@ -241,7 +246,7 @@ fn effect(
     }
 }
 
-/// Whether something that was learned cuts the route ahead, or shows that it leads through radiation.
+/// Whether a piece of news cuts the route ahead, or shows that it leads through radiation.
 fn concerns(news: News, knowledge: &Knowledge, route: &Route, robot: &Robot) -> bool {
     match news {
         News::Obstacle(key) => {
@@ -256,7 +261,8 @@ fn concerns(news: News, knowledge: &Knowledge, route: &Route, robot: &Robot) -> 
     }
 }
 
-/// Whether debris was pushed from a place through which a cheaper way may lead now. Never `false` where one does that is worth it.
+/// Whether debris was pushed away from a place through which a cheaper route may lead now. Never `false` if
+/// there is a route that is cheaper by [`PROGRESS_M`] or more.
 fn may_cheapen(planner: &Planner, query: &Query, route: &Route, news: &[News]) -> bool {
     !query.aerial
         && news.iter().any(|news| match news {
@@ -267,7 +273,7 @@ fn may_cheapen(planner: &Planner, query: &Query, route: &Route, news: &[News]) -
         })
 }
 
-/// Whether the way to the next waypoint is cut, for a robot that was pushed or had to step aside.
+/// Whether the path to the next waypoint is cut, for a robot that was pushed or had to step aside.
 fn first_leg_cut(knowledge: &Knowledge, route: &Route, robot: &Robot) -> bool {
     let next = route.ahead()[0];
     !robot.is_aerial() && knowledge.obstacles(robot.radius()).cuts(robot.position, next)

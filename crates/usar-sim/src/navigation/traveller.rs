@@ -1,4 +1,4 @@
-//! The journey of one robot: where it wants to be, by which route, and how it comes on.
+//! The journey of one robot: its goal, its route, and its progress.
 
 use parry2d::math::Vector;
 use serde::{Deserialize, Serialize};
@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use crate::belief::Seen;
 use crate::planning::{Passage, Route};
 
-/// Coming nearer by less than this is no progress, in metres.
+/// An approach by less than this is no progress, in metres.
 pub(super) const PROGRESS_M: f32 = 0.05;
 
 /// A robot is at the end of its route within this distance, in metres.
@@ -17,16 +17,16 @@ const ROUTE_END_M: f32 = 0.15;
 pub struct Goal {
     /// The place.
     pub point: Vector,
-    /// How near is near enough, in metres.
+    /// Distance from the place within which the robot has arrived, in metres.
     pub within: f32,
 }
 
-/// What a robot tries that does not come nearer.
+/// An attempt of a robot that comes no nearer to its goal.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Attempt {
-    /// A way round the robots that stand near.
+    /// A route round the robots that stand nearby.
     Detour,
-    /// The way that takes no heed of them: whoever is in the way is asked to make room.
+    /// A route that ignores standing robots: a robot in the way is asked to make room.
     Straight,
 }
 
@@ -41,9 +41,9 @@ pub struct Traveller {
     pub(super) seen: Seen,
     /// Least length that the route ahead has had, in metres.
     best_length: f32,
-    /// Steps since it last came nearer.
+    /// Steps since the robot last came nearer to its goal.
     stalled_steps: u64,
-    /// Steps since it last knew a way.
+    /// Steps since the robot last knew a route.
     lost_steps: u64,
 }
 
@@ -61,13 +61,13 @@ impl Traveller {
         }
     }
 
-    /// Whether the robot has somewhere to go.
+    /// The goal of the robot, if it has one.
     #[must_use]
     pub fn goal(&self) -> Option<Goal> {
         self.goal
     }
 
-    /// The route, where there is one.
+    /// The route, if there is one.
     #[must_use]
     pub fn route(&self) -> Option<&Route> {
         self.route.as_ref()
@@ -79,7 +79,7 @@ impl Traveller {
         &self.passages
     }
 
-    /// Whether a robot at this place is where it wants to be, or as near as its route leads.
+    /// Whether a robot at this position is at its goal, or at the end of its route.
     #[must_use]
     pub fn has_arrived(&self, position: Vector) -> bool {
         self.goal.is_some_and(|goal| is_near(position, goal.point, goal.within))
@@ -92,19 +92,19 @@ impl Traveller {
         self.stalled_steps
     }
 
-    /// Whether a route was looked for in vain.
+    /// Whether the planner found no route to the goal.
     #[must_use]
     pub fn leads_nowhere(&self) -> bool {
         self.goal.is_some() && self.is_planned && self.route.is_none()
     }
 
-    /// Steps for which it has known no way to its goal.
+    /// Steps for which the robot has known no route to its goal.
     #[must_use]
     pub fn lost_steps(&self) -> u64 {
         self.lost_steps
     }
 
-    /// What a robot that does not come nearer tries now, if it is time to try something.
+    /// The next attempt of a robot that comes no nearer to its goal, if an attempt is due.
     pub(super) fn attempt(&self, detour_steps: u64) -> Option<Attempt> {
         if self.stalled_steps == 0 || !self.stalled_steps.is_multiple_of(detour_steps) {
             return None;
@@ -116,7 +116,8 @@ impl Traveller {
         }
     }
 
-    /// Whether a route leads as near to the goal as the present one: no robot in the way moves the goal.
+    /// Whether a route leads as near to the goal as the present one. A detour must not end farther from the
+    /// goal.
     pub(super) fn is_as_near(&self, route: Option<&Route>, goal: Goal) -> bool {
         let apart = |route: &Route| (route.end() - goal.point).length();
         let (found, present) = (route.map(apart), self.route.as_ref().map(apart));

@@ -7,7 +7,8 @@ use parry2d::math::Vector;
 use super::obstacles::{KnownObstacle, ObstacleKey, contains};
 use crate::geometry::Places;
 
-/// Obstacles, one for each key. What is found by place comes in no particular order: whoever depends on an order sorts by key.
+/// Obstacles, one for each key. Searches by place return obstacles in no particular order; callers that
+/// depend on an order sort by key.
 #[derive(Debug, Clone, Default)]
 pub struct ObstacleMap {
     obstacles: Vec<KnownObstacle>,
@@ -16,7 +17,8 @@ pub struct ObstacleMap {
 }
 
 impl ObstacleMap {
-    /// Adds an obstacle, or moves it to where it is known to be now. Returns what was known of it before.
+    /// Adds an obstacle, or replaces what was known of it. Returns the obstacle that was known by this key
+    /// before.
     pub fn insert(&mut self, obstacle: KnownObstacle) -> Option<KnownObstacle> {
         let next = self.obstacles.len();
         let slot = *self.slots.entry(obstacle.key).or_insert(next);
@@ -28,33 +30,33 @@ impl ObstacleMap {
         Some(std::mem::replace(&mut self.obstacles[slot], obstacle))
     }
 
-    /// The obstacle of this key, where there is one.
+    /// The obstacle of this key, if there is one.
     #[must_use]
     pub fn get(&self, key: ObstacleKey) -> Option<&KnownObstacle> {
         self.slots.get(&key).map(|slot| &self.obstacles[*slot])
     }
 
-    /// All of them, in order of their keys.
+    /// All obstacles, in order of their keys.
     pub fn iter(&self) -> impl Iterator<Item = &KnownObstacle> {
         self.slots.values().map(|slot| &self.obstacles[*slot])
     }
 
-    /// Those whose inflated outlines may reach within this range of a point, in metres.
+    /// Obstacles whose inflated outlines may reach within this range of a point, in metres.
     pub fn near(&self, point: Vector, range: f32) -> impl Iterator<Item = &KnownObstacle> {
         self.places.near(point, range).into_iter().map(|slot| &self.obstacles[slot])
     }
 
-    /// Those whose inflated outlines the way from `a` to `b` may touch.
+    /// Obstacles whose inflated outlines the line from `a` to `b` may touch.
     pub fn along(&self, a: Vector, b: Vector) -> impl Iterator<Item = &KnownObstacle> {
         self.places.along(a, b).into_iter().map(|slot| &self.obstacles[slot])
     }
 
-    /// Those whose inflated outlines may reach within this range of the way from `a` to `b`, in metres.
+    /// Obstacles whose inflated outlines may reach within this range of the line from `a` to `b`, in metres.
     pub fn beside(&self, a: Vector, b: Vector, range: f32) -> impl Iterator<Item = &KnownObstacle> {
         self.places.beside(a, b, range).into_iter().map(|slot| &self.obstacles[slot])
     }
 
-    /// Whether an obstacle cuts the way from `a` to `b`.
+    /// Whether an obstacle cuts the line from `a` to `b`.
     #[must_use]
     pub fn cuts(&self, a: Vector, b: Vector) -> bool {
         self.along(a, b).any(|obstacle| obstacle.cuts(a, b))

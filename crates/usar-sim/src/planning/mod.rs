@@ -1,14 +1,16 @@
-//! Routes: shortest any-angle ways that keep clear of known debris and walls and go round radiation where that is cheaper.
+//! Routes: shortest any-angle paths that keep clear of known debris and walls, and avoid radiation where that
+//! is cheaper.
 //!
-//! Obstacles are inflated by the robot's radius and the scenario's clearance. A route is looked for among the few obstacles that it has
-//! to do with: first none, then those that the best route so far runs into, until it runs into none. A shortest way among some of the
-//! obstacles that keeps clear of all is the shortest among all, so nothing is lost, and a route costs what its surroundings cost and
-//! not what the map costs. Among the few, the free plane is triangulated and searched by Polyanya (Cui, Harabor & Grastien, IJCAI
-//! 2017; the `polyanya` crate).
+//! Obstacles are inflated by the robot's radius and the scenario's clearance. A route is searched for among
+//! few obstacles: at first none, then the obstacles that the best route so far runs into, until it runs into
+//! none. A shortest path among some of the obstacles that keeps clear of all obstacles is the shortest among
+//! all, so the result is optimal. The cost of a search depends on the surroundings of the route, not on the
+//! size of the map. The free plane among the few obstacles is triangulated and searched by Polyanya (Cui,
+//! Harabor & Grastien, IJCAI 2017; the `polyanya` crate).
 //!
-//! Radiation is priced: a route costs its length plus `exposure_price_m` metres a second inside each zone. A zone is either crossed or
-//! gone round: starting from the route that ignores all zones, each zone that is crossed is closed for a try, and stays closed when the
-//! new route costs less.
+//! Radiation has a price: a route costs its length plus `exposure_price_m` metres for each second inside each
+//! zone. A route either crosses a zone or leads round it. The search starts from the route that ignores all
+//! zones. It closes each crossed zone for a try, and keeps the zone closed if the new route costs less.
 
 mod map;
 mod obstacles;
@@ -31,11 +33,12 @@ use crate::scenario::{RoleKind, Scenario};
 use obstacles::ZONE_MARGIN_M;
 use search::{Meshes, Search};
 
-/// Planner of one trial: it has settings and a cache, and no state.
+/// The planner of one trial. It has settings and a cache, but no state.
 #[derive(Default)]
 pub struct Planner {
     arena: Vector,
-    /// Radii of the classes of ground robots, rising, and the distance of their routes from obstacles, in metres.
+    /// For each class of ground robots, in ascending order: its radius, and the distance of its routes from
+    /// obstacles and from the border, in metres.
     ground: Vec<(f32, f32)>,
     /// Distance of aerial routes from the arena's walls, in metres.
     aerial_offset: f32,
@@ -48,7 +51,7 @@ pub struct Planner {
 pub struct Query<'a> {
     /// Where the robot is.
     pub from: Vector,
-    /// Where it wants to go.
+    /// Where it is to go.
     pub to: Vector,
     /// Whether it flies over debris.
     pub aerial: bool,
@@ -58,9 +61,9 @@ pub struct Query<'a> {
     pub speed: f32,
     /// The obstacles that it knows, inflated for its radius; robots that fly pass over them.
     pub obstacles: &'a ObstacleMap,
-    /// Waypoints of the route so far where it was cut, to plan the faster; none otherwise.
+    /// Waypoints of the present route if it was cut, to speed up the search; otherwise none.
     pub so_far: &'a [Vector],
-    /// Obstacles that are there for the moment only.
+    /// Temporary obstacles, such as standing robots.
     pub in_the_way: &'a [KnownObstacle],
     /// The radiation zones that it knows, with their numbers.
     pub zones: &'a [(u32, RadiationZone)],
@@ -84,14 +87,15 @@ impl Planner {
         }
     }
 
-    /// Distance of the routes of ground robots of a radius from obstacles, in metres: of the smallest class that holds it.
+    /// Distance of the routes of ground robots from obstacles and from the border, in metres: that of the
+    /// smallest class whose radius is at least `radius`.
     fn ground_offset(&self, radius: f32) -> f32 {
         let class = self.ground.partition_point(|(other, _)| *other < radius);
         self.ground.get(class).or(self.ground.last()).map_or(0.0, |(_, offset)| *offset)
     }
 
-    /// The cheapest route, or `None` where there is none. Its last waypoint is the goal, or the nearest free point to it where the
-    /// goal lies within the clearance of an obstacle.
+    /// The cheapest route, or `None` if there is none. Its last waypoint is the goal, or the free point
+    /// nearest to the goal if the goal lies within the clearance of an obstacle.
     #[must_use]
     pub fn route(&mut self, query: &Query) -> Option<Route> {
         let mut closed = Vec::new();
@@ -122,8 +126,8 @@ impl Planner {
         Some(best)
     }
 
-    /// The first of these places that a ground robot of this radius cannot reach from `from`, nor from a place before it, among these
-    /// outlines.
+    /// The first of these places that a ground robot of this radius cannot reach among these outlines,
+    /// neither from `from` nor from a place before it.
     #[must_use]
     pub fn first_unreachable<'p, T>(
         &mut self,
@@ -147,14 +151,14 @@ impl Planner {
         })
     }
 
-    /// Length of a route and the price of its exposure, in metres.
+    /// Length of a route plus the price of its exposure, in metres.
     #[must_use]
     pub fn cost(&self, query: &Query, route: &Route) -> f32 {
         let inside: f32 = query.zones.iter().map(|(_, zone)| route.length_inside(query.from, zone)).sum();
         route.length(query.from) + self.exposure_price_m * inside / query.speed.max(0.01)
     }
 
-    /// The shortest way round these zones and all obstacles.
+    /// The shortest route round the closed zones and all obstacles.
     fn route_around(&mut self, query: &Query, closed: &[u32]) -> Option<Route> {
         let zones = query.zones.iter().filter(|(number, _)| closed.contains(number));
         let zones: Vec<Vec<Vector>> =

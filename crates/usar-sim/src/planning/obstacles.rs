@@ -7,31 +7,32 @@ use parry2d::shape::SharedShape;
 use crate::geometry::Outline;
 use serde::{Deserialize, Serialize};
 
-/// Zones that are closed to a route are left by this much, in metres, so that the route does not graze them.
+/// A route keeps this distance from a closed zone, in metres, so that it does not graze the zone.
 pub(super) const ZONE_MARGIN_M: f32 = 0.1;
 
 /// Points pushed out of an obstacle end up this far outside, in metres.
 const PUSH_OUT_M: f32 = 0.02;
 
-/// What an obstacle is.
+/// The identity of an obstacle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum ObstacleKey {
     /// Debris of this number.
     Debris(u32),
-    /// A robot of this number that stands at its place for good.
+    /// The robot of this number, which can no longer move.
     Wreck(u32),
 }
 
 /// An obstacle that a robot knows.
 #[derive(Debug, Clone)]
 pub struct KnownObstacle {
-    /// What it is.
+    /// Its identity.
     pub key: ObstacleKey,
-    /// Number of the sighting in which it is known; 0 for what never moves again.
+    /// Number of the sighting in which it is known; 0 for an obstacle that never moves again.
     pub sighting: u32,
-    /// Corners, anticlockwise, inflated by radius and clearance: routes stay outside.
+    /// Corners, anticlockwise, inflated by radius and clearance: routes stay outside this polygon.
     pub planned: Vec<Vector>,
-    /// Corners, anticlockwise, inflated by radius and a third of the clearance: a way through this is cut.
+    /// Corners, anticlockwise, inflated by radius and a third of the clearance: a route through this polygon
+    /// is cut.
     pub tight: Vec<Vector>,
     bounds: Aabb,
 }
@@ -50,21 +51,21 @@ impl KnownObstacle {
         &self.bounds
     }
 
-    /// Whether the way from `a` to `b` is cut by it.
+    /// Whether the obstacle cuts the line from `a` to `b`.
     pub(crate) fn cuts(&self, a: Vector, b: Vector) -> bool {
         let Aabb { mins, maxs } = self.bounds;
         let beside = a.max(b).cmplt(mins).any() || a.min(b).cmpgt(maxs).any();
         !beside && crosses(&self.tight, a, b)
     }
 
-    /// Middle of the corners of `planned`, and the distance of the farthest from it, in metres.
+    /// Middle of the corners of `planned`, and the distance of the farthest corner from it, in metres.
     pub(crate) fn middle_and_reach(&self) -> (Vector, f32) {
         let middle = self.planned.iter().copied().sum::<Vector>() / self.planned.len() as f32;
         let distance = |corner: &Vector| (*corner - middle).length();
         (middle, self.planned.iter().map(distance).fold(0.0, f32::max))
     }
 
-    /// A robot that stands for good.
+    /// A robot that can no longer move, as an obstacle.
     #[must_use]
     pub fn wreck(number: u32, at: Vector, own_radius: f32, radius: f32, clearance: f32) -> Self {
         let outline = Outline { shape: SharedShape::ball(own_radius), ..Outline::disc(at, own_radius) };
@@ -72,7 +73,7 @@ impl KnownObstacle {
     }
 }
 
-/// Whether a convex polygon (anticlockwise) holds a point.
+/// Whether a convex polygon (anticlockwise) contains a point.
 #[must_use]
 pub fn contains(polygon: &[Vector], point: Vector) -> bool {
     edges(polygon).all(|(a, b)| (b - a).perp_dot(point - a) >= 0.0)
@@ -84,8 +85,8 @@ pub(super) fn touches(polygon: &[Vector], point: Vector) -> bool {
     edges(polygon).all(|(a, b)| (b - a).perp_dot(point - a) >= -BORDER_M * (b - a).length())
 }
 
-/// Whether the way from `a` to `b` leads through the inside of a convex polygon (anticlockwise): clips the way by each edge
-/// (Cyrus and Beck) and asks whether more than a grazing touch is left.
+/// Whether the line from `a` to `b` crosses the inside of a convex polygon (anticlockwise). Clips the line by
+/// each edge (Cyrus and Beck) and tests whether more than a grazing touch is left.
 #[must_use]
 pub fn crosses(polygon: &[Vector], a: Vector, b: Vector) -> bool {
     const GRAZE_M: f32 = 1.0e-3;
@@ -112,8 +113,8 @@ pub fn crosses(polygon: &[Vector], a: Vector, b: Vector) -> bool {
     (leave - enter) * length > GRAZE_M
 }
 
-/// The nearest point to `point` that is outside all polygons and `offset` metres inside the arena; or the best that a few rounds of
-/// pushing find.
+/// The point nearest to `point` that is outside all polygons and `offset` metres inside the arena. Where
+/// polygons overlap, a few rounds of pushing give an approximation.
 pub(super) fn push_out<P: AsRef<[Vector]>>(
     point: Vector,
     polygons: &[P],
@@ -132,7 +133,8 @@ pub(super) fn push_out<P: AsRef<[Vector]>>(
     nearest_free_corner(point, polygons, inside_arena)
 }
 
-/// Between overlapping obstacles pushing goes to and fro: then the nearest corner that lies outside all others is taken.
+/// The nearest corner that lies outside all polygons, for overlapping polygons between which pushing goes to
+/// and fro.
 fn nearest_free_corner<P: AsRef<[Vector]>>(
     point: Vector,
     polygons: &[P],
@@ -156,13 +158,13 @@ fn nearest_outside(polygon: &[Vector], point: Vector) -> Vector {
     point + outward * (depth + PUSH_OUT_M)
 }
 
-/// The unit vector that leads the shortest way out of a convex polygon (anticlockwise) that holds a point.
+/// The unit vector of the shortest exit from a convex polygon (anticlockwise) that contains a point.
 #[must_use]
 pub fn outward_normal(polygon: &[Vector], point: Vector) -> Vector {
     nearest_edge(polygon, point).0
 }
 
-/// The point of a polygon's border that is nearest to a point.
+/// The point on a polygon's border that is nearest to a point.
 #[must_use]
 pub fn nearest_border_point(polygon: &[Vector], point: Vector) -> Vector {
     let on_edge = |(a, b): (Vector, Vector)| {

@@ -7,31 +7,32 @@ use smallvec::SmallVec;
 use super::obstacles::{KnownObstacle, contains, crosses, nearest_border_point};
 use super::{ObstacleMap, Route};
 
-/// Distance between two places of a route at which its width is looked at, at least, in metres.
+/// Least distance between two places of a route at which its width is examined, in metres.
 const SAMPLE_M: f32 = 0.15;
 
 /// Room that two robots side by side need beyond their diameters, in metres.
 const SPARE_M: f32 = 0.05;
 
-/// A recess beside the route in which a robot finds room is a bay if it ends within this distance, in metres: what goes on is another way, on
-/// which others may come.
+/// A recess beside the route is a bay if it ends within this distance, in metres. A longer opening is another
+/// route, on which other robots may come.
 const BAY_DEPTH_M: f32 = 2.0;
 
-/// Obstacles whose direction has less than this (sine) to the route's lie ahead or behind, and make it no narrower.
+/// An obstacle narrows a route only if the sine between its direction and the route's is larger than this.
+/// Otherwise it lies ahead or behind.
 const ASIDE: f32 = 0.5;
 
 /// A part of a route where two robots do not fit side by side.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Passage {
-    /// The way through it, from its beginning to its end.
+    /// Points of the route through the passage, from its beginning to its end.
     pub points: Vec<Vector>,
-    /// Way that is left to the end of the route where it begins, in metres.
+    /// Route length left at the beginning of the passage, in metres.
     pub enters_at: f32,
-    /// Way that is left to the end of the route where it ends, in metres.
+    /// Route length left at the end of the passage, in metres.
     pub leaves_at: f32,
 }
 
-/// What makes a route narrow.
+/// The surroundings that make a route narrow.
 pub struct Walls<'a> {
     /// The obstacles that are known.
     pub known: &'a ObstacleMap,
@@ -64,7 +65,7 @@ impl Walls<'_> {
         passages
     }
 
-    /// Adds a narrow point to the last passage, or begins another one after a place that is wide.
+    /// Adds a narrow point to the last passage. After a wide place, begins another passage.
     fn add(passages: &mut Vec<Passage>, point: Vector, left: f32) {
         match passages.last_mut() {
             Some(last) if last.leaves_at - left < 1.5 * SAMPLE_M => {
@@ -75,7 +76,8 @@ impl Walls<'_> {
         }
     }
 
-    /// Whether a route in this direction is narrow at a point, and how far on it is wide at least, in metres.
+    /// Whether a route in this direction is narrow at a point, and the distance from the point within which
+    /// it is not, in metres.
     fn look(&self, point: Vector, along: Vector) -> (bool, f32) {
         let needed = 2.0 * self.radius + SPARE_M;
         let mut gaps = [f32::INFINITY; 2];
@@ -107,7 +109,7 @@ impl Walls<'_> {
     }
 }
 
-/// From a point to the border of an obstacle; from a point inside, a short way towards its middle.
+/// The vector from a point to the border of an obstacle. From a point inside, a short vector inwards.
 fn offset(obstacle: &KnownObstacle, point: Vector) -> Vector {
     let to_border = nearest_border_point(&obstacle.tight, point) - point;
     if contains(&obstacle.tight, point) { -to_border.normalize_or_zero() * 1e-3 } else { to_border }

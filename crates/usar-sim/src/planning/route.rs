@@ -1,14 +1,14 @@
-//! A route: waypoints to pass one after the other.
+//! A route: waypoints that a robot passes one after the other.
 
 use parry2d::math::Vector;
 use serde::{Deserialize, Serialize};
 
 use crate::geometry::RadiationZone;
 
-/// A waypoint counts as passed within this distance, in metres.
+/// A robot has passed a waypoint when it is within this distance, in metres.
 const PASSED_M: f32 = 0.25;
 
-/// Waypoints to a goal, and which of them comes next.
+/// Waypoints to a goal, and the number of the next one.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Route {
     waypoints: Vec<Vector>,
@@ -16,7 +16,7 @@ pub struct Route {
 }
 
 impl Route {
-    /// A route along these waypoints, of which there is at least one.
+    /// A route along these waypoints; there must be at least one.
     #[must_use]
     pub fn new(waypoints: Vec<Vector>) -> Self {
         debug_assert!(!waypoints.is_empty());
@@ -29,13 +29,14 @@ impl Route {
         &self.waypoints[self.next..]
     }
 
-    /// Where it ends.
+    /// The end of the route.
     #[must_use]
     pub fn end(&self) -> Vector {
         self.waypoints[self.waypoints.len() - 1]
     }
 
-    /// Skips the waypoints that the robot has passed: it is near, or beyond on the way to the one after.
+    /// Skips the waypoints that the robot has passed: it is near them, or beyond them towards the next
+    /// waypoint.
     pub fn advance(&mut self, position: Vector) {
         while self.next + 1 < self.waypoints.len() {
             let (at, after) = (self.waypoints[self.next], self.waypoints[self.next + 1]);

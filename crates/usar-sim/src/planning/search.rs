@@ -1,4 +1,4 @@
-//! The shortest way among obstacles, found among the few of them that it has to do with.
+//! The shortest path among obstacles, found among the few obstacles that matter.
 
 use std::collections::BTreeMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -9,49 +9,52 @@ use polyanya::{Mesh, Triangulation};
 use super::map::ObstacleMap;
 use super::obstacles::{KnownObstacle, ObstacleKey, contains, crosses, push_out, touches};
 
-/// Where a point is too near to an obstacle, a free one is looked for among the obstacles within this range, in metres; where that finds
-/// none, within a larger one.
+/// Range around a point within an obstacle in which the obstacles are considered when a free point is
+/// searched for, in metres. If the search finds none, the range grows.
 const PUSH_OUT_RANGE_M: f32 = 8.0;
 
-/// A way that is cut once more, after a first round of obstacles, is likely to meet what is this near to the cut leg, in metres, and twice as
-/// far in each further round: guessing saves rounds, and with them meshes.
+/// When a path is cut again after a first round, obstacles within this distance of the cut leg are added too,
+/// in metres; twice as far in each further round. The path is likely to meet them, and guessing saves rounds
+/// and meshes.
 const GUESS_RANGE_M: f32 = 2.0;
 
-/// Meshes kept; when there are more, all are dropped and made anew on demand.
+/// Number of meshes that are kept. When there are more, all are dropped and made anew on demand.
 const MAX_MESHES: usize = 64;
 
-/// Times that obstacles are triangulated before they count as impassable. Where outlines run along each other, the library may panic
-/// (docs/triangulation.md). Then the outlines are made larger by a little, each by another amount.
+/// Attempts to triangulate obstacles before they count as impassable. The library may panic where outlines
+/// run along each other (docs/triangulation.md). Each further attempt makes the outlines a little larger,
+/// each by a different amount.
 const MESH_ATTEMPTS: usize = 6;
 
-/// The most by which the second attempt makes an outline larger, in metres; twice as much in each further one.
+/// The most by which the second attempt makes an outline larger, in metres; twice as much in each further
+/// attempt.
 const NUDGE_M: f32 = 5.0e-4;
 
-/// Meshes among few obstacles, kept to save time: robots that go the same way ask for the same ones again and again. None where no
-/// attempt made one.
+/// Meshes among few obstacles, kept to save time: robots on the same route ask for the same meshes again and
+/// again. `None` if every attempt failed.
 #[derive(Default)]
 pub(super) struct Meshes(BTreeMap<MeshKey, Option<Mesh>>);
 
-/// What a mesh was made of: the distance from the border as its bits, the obstacles with the sightings in which they are known, and the
-/// numbers of the closed zones.
+/// The key of a mesh: the distance from the border as its bits, the obstacles with the sightings in which
+/// they are known, and the numbers of the closed zones.
 type MeshKey = (u32, Vec<(ObstacleKey, u32)>, Vec<u32>);
 
-/// What a way has to keep clear of.
+/// The obstacles from which a path has to keep clear.
 pub(super) struct Search<'a> {
     /// Width and height of the arena, in metres.
     pub(super) arena: Vector,
     /// Distance to keep from its border, in metres.
     pub(super) offset: f32,
-    /// Obstacles that matter as far as a way runs into them; none for a robot that flies over them.
+    /// Obstacles that matter if a path runs into them; none for a robot that flies over them.
     pub(super) known: Option<&'a ObstacleMap>,
-    /// Corners of the few obstacles that count in any case.
+    /// Corners of the few obstacles that always count.
     pub(super) always: Vec<&'a [Vector]>,
-    /// Numbers that tell these obstacles from others, where their meshes are to be kept.
+    /// Numbers that identify the `always` obstacles, if the meshes are to be kept.
     pub(super) numbers: Option<&'a [u32]>,
 }
 
 impl<'a> Search<'a> {
-    /// The free point nearest to a point, or nearly: the point itself where it is free and off the border.
+    /// The free point nearest to a point, or nearly so; the point itself if it is free and off the border.
     pub(super) fn free_point(&self, point: Vector) -> Vector {
         let mut free = push_out::<&[Vector]>(point, &[], self.arena, self.offset);
         let mut range = PUSH_OUT_RANGE_M;
@@ -78,8 +81,9 @@ impl<'a> Search<'a> {
             || self.always.iter().any(|polygon| contains(polygon, point))
     }
 
-    /// The shortest way from one free point to another, without its start; `None` where there is none. `hint` are the waypoints of a way
-    /// that may be cut, to begin with what it meets; there may be none.
+    /// The shortest path from one free point to another, without its start; `None` if there is none. `hint`
+    /// holds the waypoints of a path that may be cut; the search begins with the obstacles at its bends. It
+    /// may be empty.
     pub(super) fn way(
         &self,
         [from, to]: [Vector; 2],
@@ -103,7 +107,7 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// The obstacles at whose corners a way bends.
+    /// The obstacles at whose corners a path bends.
     fn bent_round(&self, way: &[Vector]) -> Vec<&'a KnownObstacle> {
         let Some(known) = self.known else { return Vec::new() };
         let bends = way
@@ -115,7 +119,7 @@ impl<'a> Search<'a> {
         met
     }
 
-    /// The shortest way round these obstacles.
+    /// The shortest path round these obstacles.
     fn way_round(
         &self,
         met: &[&KnownObstacle],
@@ -131,8 +135,8 @@ impl<'a> Search<'a> {
         Some(meshes.entry(key).or_insert_with(|| self.mesh(met)).as_ref()?.path(from, to)?.path)
     }
 
-    /// The obstacles near those legs of a way that run into one, beyond those that it was made to keep clear of; none for a way that runs
-    /// into none.
+    /// The obstacles near the cut legs of a path that the path was not made to avoid. Empty if it runs into
+    /// none.
     fn news_along(
         &self,
         from: Vector,
@@ -153,7 +157,7 @@ impl<'a> Search<'a> {
         news
     }
 
-    /// The free plane among obstacles, as a navigation mesh; `None` where all attempts fail.
+    /// The free plane among obstacles, as a navigation mesh; `None` if all attempts fail.
     fn mesh(&self, met: &[&KnownObstacle]) -> Option<Mesh> {
         (0..MESH_ATTEMPTS).find_map(|attempt| {
             // Nothing is shared with a triangulation that is left unfinished.
@@ -161,7 +165,7 @@ impl<'a> Search<'a> {
         })
     }
 
-    /// The mesh among obstacles that are made a little larger in each attempt but the first.
+    /// The mesh among obstacles. Each attempt but the first makes them a little larger.
     fn triangulated(&self, met: &[&KnownObstacle], attempt: usize) -> Mesh {
         let (offset, Vector { x, y }) = (self.offset, self.arena - self.offset);
         let border = [[offset, offset], [x, offset], [x, y], [offset, y]].map(Vector::from);
@@ -175,7 +179,7 @@ impl<'a> Search<'a> {
     }
 }
 
-/// An outline that is made larger, by another amount for each number. The first attempt leaves it as it is.
+/// An enlarged outline, by a different amount for each number. The first attempt leaves it as it is.
 fn nudged(outline: &[Vector], number: usize, attempt: usize) -> Vec<Vector> {
     let Some(doublings) = attempt.checked_sub(1) else { return outline.to_vec() };
     let share = (1 + 7 * number % 13) as f32 / 13.0;
@@ -189,7 +193,7 @@ mod tests {
     use super::*;
     use crate::geometry::Outline;
 
-    /// The smallest case known that panics in the library, from a room whose walls meet (docs/triangulation.md).
+    /// The smallest known case that panics in the library: a room whose walls meet (docs/triangulation.md).
     const PANICS: [[[f32; 2]; 3]; 4] = [
         [[34.8173, 73.53], [36.1, 74.6], [35.8847, 74.5]],
         [[35.1, 67.7], [34.926_003, 67.44], [36.3, 43.3]],

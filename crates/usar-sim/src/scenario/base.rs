@@ -1,8 +1,9 @@
-//! A scenario that says only what differs from another: `base: "paper.ron"`, and the fields that are different.
+//! A scenario over a base: it names the base, as in `base: "paper.ron"`, and gives only the fields that
+//! differ.
 //!
-//! A section in round brackets changes the fields that it names and leaves the others as they are; entries of a table are named, as in
-//! `roles: (carrier: (speed_mps: 3.0))`. Anything else, a list in square brackets too, takes the place of what the base has. The base
-//! has no base of its own.
+//! A section in round brackets changes the fields that it names and leaves the others as they are. Entries of
+//! a table are named, as in `roles: (carrier: (speed_mps: 3.0))`. Any other value, such as a list in square
+//! brackets, replaces the value of the base. The base must not have a base itself.
 
 use std::borrow::Cow;
 use std::path::{Path, PathBuf};
@@ -17,7 +18,7 @@ use super::{Scenario, read_text};
 /// The field that names the base.
 const FIELD: &str = "base";
 
-/// A text over its base.
+/// The text of a scenario that names a base.
 pub(super) struct Overlay<'t> {
     text: Cow<'t, str>,
     path: &'t Path,
@@ -58,7 +59,7 @@ impl<'t> Overlay<'t> {
         Scenario::try_from(file).map_err(|problems| overlay.invalid(problems))
     }
 
-    /// Puts values in the place of their names.
+    /// Replaces names by their values.
     fn expand(&mut self, names: &Names) -> Result<(), ScenarioError> {
         let text = named::expanded(&self.text, names).map_err(|problem| self.invalid(vec![*problem]))?;
         self.fields = Fields::of(&text);
@@ -66,7 +67,8 @@ impl<'t> Overlay<'t> {
         Ok(())
     }
 
-    /// Reads the base, which is found from the folder of the text, with these values of names; returns all names too.
+    /// Reads the base, whose path is relative to the folder of the text. The names in `over` replace those of
+    /// the base. Returns the values of all names too.
     fn read_base(&mut self, over: Names) -> Result<(ScenarioFile, Names), ScenarioError> {
         let place = self.fields.value(FIELD).unwrap_or_default();
         let written: Result<String, _> = ron::from_str(&self.text[place.clone()]);
@@ -98,7 +100,7 @@ impl<'t> Overlay<'t> {
         }])
     }
 
-    /// Makes the changes that a field asks for; notes what cannot be changed.
+    /// Applies the changes of a field, and notes a problem for each change that is not possible.
     fn change(&self, file: &mut ScenarioFile, path: &str, problems: &mut Vec<Problem>) {
         let Some(place) = self.fields.value(path) else { return };
         let (value, names) = (&self.text[place], self.fields.inside(path));
@@ -124,7 +126,7 @@ impl<'t> Overlay<'t> {
         }
     }
 
-    /// Problems with their files and lines: a field that only the base has stands there.
+    /// Adds files and lines to problems. The line of a field that only the base has is that in the base.
     fn invalid(&self, mut list: Vec<Problem>) -> ScenarioError {
         for problem in &mut list {
             let field = &problem.field;
@@ -155,7 +157,7 @@ impl ScenarioFile {
 mod tests {
     use super::*;
 
-    /// A folder with these files.
+    /// Creates a folder with these files.
     fn folder(files: &[(&str, &str)]) -> PathBuf {
         let name = files.iter().map(|(_, text)| text.len().to_string()).collect::<Vec<_>>().join("-");
         let folder = std::env::temp_dir().join(format!("usar-base-{}-{name}", std::process::id()));

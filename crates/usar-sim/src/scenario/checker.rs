@@ -1,4 +1,4 @@
-//! What all rules of a scenario have in common: they note what is broken.
+//! The common part of all rules of a scenario: they note problems.
 
 use std::fmt::Display;
 
@@ -9,7 +9,7 @@ use super::error::Problem;
 use super::file::Point;
 use crate::limits;
 
-/// Most problems that are told at once: the first of them are what a reader mends first.
+/// Most problems that are reported at once. A reader mends the first of them first.
 const MAX_PROBLEMS: usize = 100;
 
 pub(super) struct Checker {
@@ -37,7 +37,7 @@ impl Checker {
         self.problems.push(Problem { field, rule, found, hint, ..Problem::default() });
     }
 
-    /// Whether no more problems are taken.
+    /// Whether the list of problems is full.
     pub(super) fn is_full(&self) -> bool {
         self.problems.len() >= MAX_PROBLEMS
     }
@@ -62,7 +62,7 @@ impl Checker {
         }
     }
 
-    /// The number of entries of a table or list.
+    /// Checks the number of entries of a table or list.
     pub(super) fn entries(&mut self, field: impl Into<String>, count: usize, limit: Limit) {
         if !limit.allows(count) {
             let rule = match limit.least {
@@ -73,7 +73,7 @@ impl Checker {
         }
     }
 
-    /// A point at least `margin` metres inside the arena.
+    /// Checks that a point is at least `margin` metres inside the arena.
     pub(super) fn inside(&mut self, field: impl Into<String>, point: Point, margin: f64) {
         let fits = |x: f64, size: f64| x >= margin && x <= size - margin;
         if !fits(point[0], self.arena[0]) || !fits(point[1], self.arena[1]) {
@@ -83,12 +83,12 @@ impl Checker {
     }
 }
 
-/// The name that may have been meant, as a hint.
+/// A hint with the most similar known name; empty if there is none.
 pub(super) fn meant<'k>(name: &str, known: impl IntoIterator<Item = &'k str>) -> String {
     nearest(name, known).map_or(String::new(), |meant| format!("did you mean {meant}?"))
 }
 
-/// A name as it is told: in quotes, and not longer than a line.
+/// A name for messages: in quotes, and no longer than a line.
 pub(super) fn shown(name: &str) -> String {
     let start: String = name.chars().take(80).collect();
     if start.len() < name.len() {
@@ -98,7 +98,7 @@ pub(super) fn shown(name: &str) -> String {
     }
 }
 
-/// Whether Windows has a device of this name, with or without an extension: no file can be called that.
+/// Whether Windows has a device of this name, with or without an extension. No file can have such a name.
 pub(super) fn is_device(name: &str) -> bool {
     let stem = name.split('.').next().unwrap_or_default().to_ascii_lowercase();
     let numbered =
@@ -106,7 +106,7 @@ pub(super) fn is_device(name: &str) -> bool {
     ["con", "prn", "aux", "nul"].contains(&stem.as_str()) || numbered("com") || numbered("lpt")
 }
 
-/// Names of a table: each plain, and each once.
+/// Checks that each name of a table is plain and occurs once.
 pub(super) fn names<'n>(check: &mut Checker, table: &str, names: impl Iterator<Item = &'n str>) {
     let plain = |c: char| c.is_ascii_alphanumeric() || "-_".contains(c);
     let mut seen: Vec<&str> = Vec::new();

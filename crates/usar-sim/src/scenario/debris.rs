@@ -92,7 +92,7 @@ fn polygon(check: &mut Checker, field: &str, corners: &[Point]) {
             );
         }
     }
-    // Each corner turns left, so that one to the right of an edge is on another turn round the middle.
+    // Each corner turns left, so a corner to the right of an edge belongs to a second turn round the middle.
     let is_right = |edge| corners.iter().any(|corner| left_of(edge, corner) < -1e-9);
     if let Some([[ax, ay], [bx, by]]) = edges().find(|edge| is_right(*edge)) {
         let rule = "must go round once: no corner may lie to the right of an edge";

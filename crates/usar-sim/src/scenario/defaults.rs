@@ -1,5 +1,6 @@
-//! What a scenario file need not say. Robots, costs and rules are those of `scenarios/paper.ron`, which gives them all and explains
-//! each; a test compares the two. There is no default for the team, the arena, the duration and the tasks of a mission.
+//! The defaults of a scenario file. Robots, costs and rules are those of `scenarios/paper.ron`, which gives
+//! and explains them all; a test compares the two. There is no default for the team, the arena, the duration
+//! and the tasks of a mission.
 
 use rne_core::hierarchy::NeedLevel;
 
@@ -9,7 +10,7 @@ use super::file::{
 };
 use crate::vitals::{Rates, WorkRates};
 
-/// The format of a file that says none: the one that this program reads.
+/// The format of a file that names none: the one that this program reads.
 pub(super) fn format() -> u32 {
     super::FORMAT
 }
@@ -34,7 +35,7 @@ pub(super) fn needs() -> Vec<NeedFile> {
     ]
 }
 
-/// Weight of a need of which nothing else is said.
+/// Default weight of a need.
 pub(super) fn weight() -> f64 {
     1.0
 }

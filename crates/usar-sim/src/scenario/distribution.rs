@@ -1,4 +1,4 @@
-//! Distributions of numbers, as they are written in the place of a number.
+//! Distributions of numbers, which a scenario may have in place of a number.
 
 use rand::RngExt;
 use rand::rngs::ChaCha8Rng;
@@ -15,10 +15,11 @@ use crate::seed::normal;
 /// The names with which a distribution begins.
 pub(super) const WORDS: [&str; 5] = ["Uniform", "Normal", "Clamped", "Truncated", "Choice"];
 
-/// Draws of a truncated distribution before the nearest bound is taken.
+/// Draws of a truncated distribution before the nearest bound is used.
 const TRUNCATION_TRIES: u32 = 1000;
 
-/// A truncated normal distribution reaches at least this many standard deviations near to its mean.
+/// The bounds of a truncated normal distribution must admit values within this many standard deviations of
+/// its mean.
 const MOST_DEVIATIONS: f64 = 4.0;
 
 /// A distribution of numbers. It is bounded: a `Normal` stands within `Clamped` or `Truncated`.
@@ -56,7 +57,7 @@ impl Distribution {
         }
     }
 
-    /// What is wrong with it, as the rest of a sentence: `must ...`.
+    /// The problem of an invalid distribution, as the rest of a sentence: `must ...`.
     #[must_use]
     pub fn fault(&self) -> Option<&'static str> {
         let fault = self.fault_inside();
@@ -93,7 +94,7 @@ impl Distribution {
         (low > *most || high < *least).then_some("must have bounds within which it has values")
     }
 
-    /// One draw. Of a `whole` number, every number of a `Uniform` is as likely as the others.
+    /// One draw. For a `whole` number, every number of a `Uniform` is equally likely.
     #[must_use]
     pub fn draw(&self, stream: &mut ChaCha8Rng, whole: bool) -> f64 {
         match self {
@@ -122,7 +123,7 @@ impl Distribution {
     }
 }
 
-/// One of so many things, each alike.
+/// The index of one of `count` things, each equally likely.
 pub(super) fn index(stream: &mut ChaCha8Rng, count: usize) -> usize {
     ((stream.random::<f64>() * count as f64) as usize).min(count.saturating_sub(1))
 }
@@ -162,7 +163,7 @@ pub(super) fn is_distribution(text: &str) -> bool {
     WORDS.contains(&name) && text[name.len()..].trim_start().starts_with('(')
 }
 
-/// Says which distribution may have been meant in the place of a number.
+/// Adds a hint with the most similar distribution to a problem with a number.
 pub(super) fn hint(problem: &mut Problem) {
     let is_of_number = ["must be a number", "must be a whole number"].contains(&problem.rule.as_str());
     let name = problem.found.split('(').next().filter(|name| name.len() < problem.found.len());

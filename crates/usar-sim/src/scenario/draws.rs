@@ -1,7 +1,7 @@
-//! Values that are drawn anew in every trial: a distribution in the place of any value of a scenario.
+//! Values that are drawn anew in every trial: a distribution may stand in place of any value of a scenario.
 //!
-//! Where a distribution stands in a text, one of its values is read there, and the distribution is kept beside the file, by the path of
-//! its field. A trial has a scenario of its own, in which each has a value drawn from the stream of its path.
+//! When a text is read, each distribution is replaced by one of its values and kept with the file, by the
+//! path of its field. Each trial has its own scenario, with values drawn from the streams of these paths.
 
 use std::collections::BTreeMap;
 
@@ -15,19 +15,21 @@ use super::{Scenario, reading, ron_options, validate};
 use crate::limits;
 use crate::seed::{Purpose, stream};
 
-/// Times that the values of a trial are drawn before it is said that they do not go together.
+/// Times that the values of a trial are drawn before the trial fails because they never fit together.
 const TRIES: u32 = 100;
 
-/// The same for a scenario that is longer than [`LONG_BYTES`].
+/// The same limit for a scenario longer than [`LONG_BYTES`].
 const TRIES_OF_A_LONG_ONE: u32 = 5;
 
-/// Scenarios longer than this are read fewer times over: of a choice the first two values are checked before a trial, in bytes.
+/// Length above which a scenario is read fewer times, in bytes. Of a choice, only the first two values are
+/// then checked before a trial.
 const LONG_BYTES: usize = 1 << 18;
 
-/// The distributions of a scenario: path of the field, with numbers for names, and the distribution as it is written.
+/// The distributions of a scenario: the path of each field, with numbers instead of names, and the text of
+/// its distribution.
 pub type Draws = BTreeMap<String, String>;
 
-/// What stands in the place of one value.
+/// The replacement of one value.
 enum Draw {
     Number(Distribution),
     /// One of these, in RON.
@@ -35,7 +37,7 @@ enum Draw {
 }
 
 impl Draw {
-    /// Reads a distribution; tells what is wrong with it, as the rest of a sentence.
+    /// Reads a distribution. The error is the rest of a sentence.
     fn read(text: &str) -> Result<Self, String> {
         if text.starts_with("Choice") {
             let fields = Fields::of(text);
@@ -68,7 +70,7 @@ impl Draw {
         }
     }
 
-    /// The value that is read where the distribution stands: the greatest; of choices, the first.
+    /// The value that is read in place of the distribution: its greatest value, or the first choice.
     fn stand_in(&self, text: &str) -> String {
         match self {
             Self::Number(distribution) => {
@@ -85,7 +87,7 @@ fn written(value: f64, is_whole: bool) -> String {
     if is_whole && value.fract() == 0.0 { format!("{value:.0}") } else { format!("{value:?}") }
 }
 
-/// Whether a number is drawn there for each thing, and not once for all.
+/// Whether the field at this path draws a number for each thing instead of one for all.
 fn is_drawn_for_each(path: &str) -> bool {
     let field = |list: &str, rest: &str| {
         let inside = path.strip_prefix(list).and_then(|path| path.split_once(']'));
@@ -94,8 +96,8 @@ fn is_drawn_for_each(path: &str) -> bool {
     field("team[", ".levels.") || field("scatter[", ".radius_m")
 }
 
-/// A text in which a value stands for each distribution, at the same bytes, and the distributions. `of_file` is the path of the text's value
-/// in the scenario, empty for a whole file.
+/// Replaces each distribution in a text by a value at the same bytes. Returns the text, the distributions and
+/// the problems. `of_file` is the path of the text's value in the scenario, empty for a whole file.
 pub(super) fn take_out(text: &str, fields: &Fields, of_file: &str) -> (String, Draws, Vec<Problem>) {
     let (mut plain, mut draws, mut problems) = (text.to_owned(), Draws::new(), Vec::new());
     if !WORDS.iter().any(|word| text.contains(word)) {
@@ -128,7 +130,7 @@ pub(super) fn take_out(text: &str, fields: &Fields, of_file: &str) -> (String, D
             let (field, found) = (full.clone(), found.to_owned());
             problems.push(Problem { field, rule, found, ..Problem::default() });
         }
-        // At the same bytes, so that lines and columns stay what they were.
+        // At the same bytes, so that lines and columns stay the same.
         stand_in.truncate(place.len());
         let mut rest: Vec<u8> = found.bytes().map(|byte| if byte == b'\n' { byte } else { b' ' }).collect();
         rest[..stand_in.len()].copy_from_slice(stand_in.as_bytes());
@@ -140,12 +142,12 @@ pub(super) fn take_out(text: &str, fields: &Fields, of_file: &str) -> (String, D
 }
 
 impl ScenarioFile {
-    /// The file without its distributions: of each one value.
+    /// The file without its distributions: each is replaced by one of its values.
     fn without_draws(&self) -> Self {
         Self { draws: Draws::new(), ..self.clone() }
     }
 
-    /// The file with values of its distributions.
+    /// The file with a value in place of each distribution.
     fn with_drawn(&self, value: impl Fn(&str, &Draw, bool) -> Option<String>) -> Result<Self, Box<Problem>> {
         let problem = |field: &str, rule: String| {
             let found = self.draws.get(field).cloned().unwrap_or_default();
@@ -182,8 +184,8 @@ impl ScenarioFile {
         ron::to_string(self).is_ok_and(|text| text.len() > LONG_BYTES)
     }
 
-    /// The broken rules of a file with distributions: of its values one by one, at the ends of the distributions. What goes together is
-    /// looked at in each trial.
+    /// The broken rules of a file with distributions. Each value is checked at the ends of its distribution.
+    /// Each trial checks whether the values fit together.
     pub(super) fn problems_of_draws(&self) -> Vec<Problem> {
         let most = self.draws.values().filter_map(|text| Draw::read(text).ok());
         let most = most.map(|draw| draw.examples(false).len()).max().unwrap_or_default();
@@ -206,18 +208,18 @@ impl ScenarioFile {
 }
 
 impl Scenario {
-    /// Whether trials differ by more than the initial levels: something is drawn.
+    /// Whether trials differ by more than their initial levels.
     #[must_use]
     pub fn is_drawn(&self) -> bool {
         let samples = |task: &super::TaskFile| task.sampled != super::SampledCounts::default();
         !self.draws.is_empty() || !self.scatter.is_empty() || self.tasks.iter().any(samples)
     }
 
-    /// The scenario of one trial: with a value, drawn from the stream of its path, for each distribution. Values that do not go together
-    /// are all drawn again.
+    /// The scenario of one trial, in which each distribution is replaced by a value drawn from the stream of
+    /// its path. If the values do not fit together, all of them are drawn again.
     ///
     /// # Errors
-    /// They never go together.
+    /// The values never fit together.
     pub fn of_trial(&self, seed: u64) -> Result<Self, LayoutError> {
         if self.draws.is_empty() {
             return Ok(self.clone());

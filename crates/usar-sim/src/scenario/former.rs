@@ -1,8 +1,8 @@
-//! Files in the former format: refused with a sentence that says how to change them.
+//! Files in the former format: they are refused with a message that says how to change them.
 
 use ron_fields::Fields;
 
-/// The first field that stands in the former format, with its line, and what to write instead.
+/// The first field in the former format, with its line and its replacement.
 pub(super) fn change_needed(text: &str) -> Option<(usize, String)> {
     let fields = Fields::of(text);
     let value = |path: &str| fields.value(path).map(|place| text[place].trim_start());

@@ -1,4 +1,4 @@
-//! Homes are free: no robot begins where another robot or a piece of debris is.
+//! Homes are free: no robot starts where another robot or a piece of debris is.
 
 use parry2d::bounding_volume::Aabb;
 use parry2d::math::Vector;
@@ -14,7 +14,8 @@ struct Home<'f> {
     at: Point,
 }
 
-/// No home on another home of its layer, nor inside debris (aerial robots fly over it). Places and shapes must be sound.
+/// Checks that no home is on another home of its layer, nor inside debris (aerial robots fly over it). Places
+/// and shapes must be sound.
 pub(super) fn homes_are_free(check: &mut Checker, file: &ScenarioFile) {
     let bodies: Vec<Option<RoleFile>> = file.team.iter().map(|row| file.body_of(row)).collect();
     let mut homes: Vec<Home> = Vec::new();
@@ -37,7 +38,7 @@ pub(super) fn homes_are_free(check: &mut Checker, file: &ScenarioFile) {
     }
 }
 
-/// What may come to lie there: panels of doors, and debris that falls.
+/// Pieces that events may put into the arena: panels of doors, and debris that falls.
 pub(super) fn later_pieces(file: &ScenarioFile) -> impl Iterator<Item = (String, DebrisFile)> + '_ {
     let panels = file.panels().map(|(panel, _)| ("walls".to_owned(), panel));
     let falling = (0..).zip(&file.timeline).filter_map(|(i, moment): (usize, _)| {
@@ -46,7 +47,7 @@ pub(super) fn later_pieces(file: &ScenarioFile) -> impl Iterator<Item = (String,
     panels.chain(falling)
 }
 
-/// No home of a robot that drives in a piece of debris: the first that is.
+/// Checks that no ground robot's home is in this piece of debris. Reports the first that is.
 fn outside(check: &mut Checker, field: &str, piece: &DebrisFile, (homes, places): (&[Home], &Places)) {
     let outline = piece.outline();
     let bounds = outline.shape.compute_aabb(&outline.pose);
@@ -61,7 +62,7 @@ fn outside(check: &mut Checker, field: &str, piece: &DebrisFile, (homes, places)
     }
 }
 
-/// No home on another home of its layer: for each, the first that is too near.
+/// Checks that no home is on another home of its layer. Reports for each home the first that is too near.
 fn apart(check: &mut Checker, homes: &[Home], places: &Places) {
     for (i, Home { row, role, at }) in homes.iter().enumerate() {
         let mut near = places.near(vector(*at), role.radius_m as f32);

@@ -1,4 +1,4 @@
-//! Scenarios: read from RON, checked, and then known to be usable.
+//! Scenarios: read from RON and checked, so that every [`Scenario`] is usable.
 
 mod base;
 mod checker;
@@ -40,13 +40,15 @@ pub use reading::{check_text, parse_ron, read_text};
 pub use schema::scenario_schema;
 pub use upgrade::upgraded;
 
-/// The format of scenario files that this program reads. Format 1 had tables in round brackets; `usar fmt --upgrade` rewrites it.
+/// The format of scenario files that this program reads. Format 1 had tables in round brackets. The command
+/// `usar fmt --upgrade` rewrites it.
 pub const FORMAT: u32 = 2;
 
-/// Most radii for which ways on the ground are planned apart: each costs a map of what is known.
+/// Most radii for which ground routes are planned separately. Each radius costs a map of the known obstacles.
 pub const MAX_RADIUS_CLASSES: usize = 4;
 
-/// A scenario whose every value was checked. Reads like the [`ScenarioFile`] that it was made from.
+/// A scenario of which every value was checked. It dereferences to the [`ScenarioFile`] from which it was
+/// made.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scenario(ScenarioFile);
 
@@ -67,14 +69,15 @@ impl TryFrom<ScenarioFile> for Scenario {
     }
 }
 
-/// A scenario is at most this many times as long when every default is spelled out.
+/// Factor by which spelling out every default lengthens a scenario at most.
 const LONGEST_IN_FULL: u64 = 32;
 
 impl Scenario {
     /// Reads and checks a file; returns the scenario and its text.
     ///
     /// # Errors
-    /// A file that is missing, a folder, not text or too large; a text that is not a scenario; values that break rules.
+    /// The file is missing, a folder, not text or too large; the text is not a scenario; or values break
+    /// rules.
     pub fn load(path: &Path) -> Result<(Self, String), ScenarioError> {
         let text = read_text(path)?;
         let scenario = Self::parse(&text, path)?;
@@ -82,7 +85,8 @@ impl Scenario {
         Ok((scenario, text))
     }
 
-    /// Results hold the scenario with every default spelled out; that too must be a file that can be read.
+    /// Checks that the scenario with every default spelled out, as results hold it, is a file that can be
+    /// read.
     fn check_can_be_read_again(&self, text: &str, path: &Path) -> Result<(), ScenarioError> {
         if text.len() as u64 <= MAX_TEXT_BYTES / LONGEST_IN_FULL {
             return Ok(());
@@ -104,7 +108,7 @@ impl Scenario {
     /// Checks the text of a scenario; `path` is used in messages only.
     ///
     /// # Errors
-    /// A text that is not a scenario, or values that break rules.
+    /// The text is not a scenario, or values break rules.
     pub fn parse(text: &str, path: &Path) -> Result<Self, ScenarioError> {
         check_text(text, path)?;
         if base::is_named_in(text) {
@@ -113,7 +117,8 @@ impl Scenario {
         Self::parse_with(text, path, &named::Names::new())
     }
 
-    /// Checks the text of a scenario without a base, in which these names have these values whatever its own say.
+    /// Checks the text of a scenario without a base. The values of the names in `over` replace those in the
+    /// text.
     fn parse_with(text: &str, path: &Path, over: &named::Names) -> Result<Self, ScenarioError> {
         if !named::are_in(text) {
             return Self::parse_plain(text, path, over);
@@ -128,7 +133,8 @@ impl Scenario {
         Self::parse_plain(&text, path, &names)
     }
 
-    /// Checks the text of a scenario in which names have given way to their values; the names are used in messages only.
+    /// Checks the text of a scenario in which names are replaced by their values. The names are used in
+    /// messages only.
     fn parse_plain(text: &str, path: &Path, names: &named::Names) -> Result<Self, ScenarioError> {
         let fields = Fields::of(text);
         let (plain, draws, wrong) = draws::take_out(text, &fields, "");
@@ -165,7 +171,7 @@ impl Scenario {
             .ok_or_else(|| ScenarioError::Invalid(Problems { path: path.to_owned(), list }))
     }
 
-    /// The whole scenario with every value, as text: an entry of a list in a line.
+    /// The whole scenario with every value, as text, with one line for each entry of a list.
     ///
     /// # Panics
     /// Never: a checked scenario can be written.
@@ -204,8 +210,9 @@ impl Scenario {
         hardest_first(self.tasks.iter().map(|task| task.difficulty))
     }
 
-    /// Radii for which ways on the ground are planned, rising, in metres: those of the team's ground robots. Where there are more than
-    /// [`MAX_RADIUS_CLASSES`], robots share the ways of the next larger one. At least one; 0 where nobody drives.
+    /// Radii for which ground routes are planned, in ascending order, in metres: those of the team's ground
+    /// robots. If there are more than [`MAX_RADIUS_CLASSES`], robots use the routes of the next larger radius
+    /// that is kept. There is at least one radius; it is 0 if the team has no ground robot.
     #[must_use]
     pub fn ground_radii_m(&self) -> Vec<f64> {
         let roles = self.team.iter().filter_map(|row| self.body_of(row));
@@ -220,7 +227,7 @@ impl Scenario {
         if radii.is_empty() { vec![0.0] } else { radii }
     }
 
-    /// Radius of the largest robot of the team that moves there, in metres; 0 where there is none.
+    /// Radius of the largest robot of this kind in the team, in metres; 0 if there is none.
     #[must_use]
     pub fn largest_radius_m(&self, kind: RoleKind) -> f64 {
         let roles = self.team.iter().filter_map(|row| self.body_of(row));

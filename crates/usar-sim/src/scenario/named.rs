@@ -1,7 +1,8 @@
 //! Values with names: `values: (leak_m: 4.5)`, and then `radius_m: leak_m` wherever that value is meant.
 //!
-//! Before a text is read, each name that stands alone in the place of a value gives way to its value, on the same line. A scenario over a
-//! base uses the names of its base, and may give one of them another value, which then counts in the base too.
+//! Before a text is read, each name that stands alone in place of a value is replaced by its value, on the
+//! same line. A scenario over a base uses the names of its base. It may give a name another value, which then
+//! counts in the base too.
 
 use std::collections::BTreeMap;
 
@@ -14,18 +15,18 @@ use crate::limits;
 /// The field that holds the names and their values.
 const FIELD: &str = "values";
 
-/// Words of RON that are no names.
+/// Words of RON that are not names.
 const WORDS: [&str; 4] = ["true", "false", "inf", "r"];
 
-/// Names and their values as they are written, each on one line.
+/// Names and the texts of their values, each on one line.
 pub(super) type Names = BTreeMap<String, String>;
 
-/// Whether a text may give values names.
+/// Whether a text has the field `values`.
 pub(super) fn are_in(text: &str) -> bool {
     text.contains(FIELD) && Fields::outer(text).value(FIELD).is_some()
 }
 
-/// The names that a text gives, and what is wrong with them.
+/// The names that a text defines, and the problems with them.
 pub(super) fn names(text: &str) -> (Names, Vec<Problem>) {
     let (mut names, mut problems) = (Names::new(), Vec::new());
     if !are_in(text) {
@@ -76,10 +77,10 @@ fn is_name(word: &str) -> bool {
         && !WORDS.contains(&word)
 }
 
-/// A text without its field `values`, in which each name has given way to its value; lines stay where they are.
+/// A text without its field `values`, in which each name is replaced by its value. Lines keep their numbers.
 ///
 /// # Errors
-/// The text would be longer than is read.
+/// The text would exceed the size that is read.
 pub(super) fn expanded(text: &str, names: &Names) -> Result<String, Box<Problem>> {
     let fields = Fields::of(text);
     let own = fields.value(FIELD).unwrap_or_default();
@@ -111,7 +112,7 @@ fn without_names(text: &str) -> String {
     [&text[..start], &blank, &text[end..]].concat()
 }
 
-/// Says which name may have been meant where a word stands that is none.
+/// Adds a hint with the most similar name to a problem with an unknown word.
 pub(super) fn hint(problem: &mut Problem, names: &Names) {
     if names.is_empty() || !problem.hint.is_empty() || !is_name(&problem.found) {
         return;

@@ -1,4 +1,5 @@
-//! What is allowed but not usual: values far from the defaults, perhaps of another unit, and tasks for which there is nobody.
+//! Values that are allowed but unusual: far from the defaults, perhaps given in another unit, or a team with
+//! fewer robots than tasks.
 
 use ron_fields::Fields;
 
@@ -6,12 +7,12 @@ use super::Scenario;
 use super::error::Problem;
 use super::file::{MissionRules, PlanningRules, RoleFile};
 
-/// A value is odd that is so many times the default, or so small a part of it.
+/// A value is odd if it is larger or smaller than the default by this factor.
 const FACTOR: f64 = 1000.0;
 
 impl Scenario {
-    /// Values a thousand times as large or as small as the defaults, as by a unit that is another, and a team smaller than its tasks; `text`
-    /// says on which lines they stand.
+    /// Values that are a thousand times larger or smaller than the defaults, perhaps by a wrong unit, and a
+    /// team smaller than the number of tasks. The lines are those in `text`.
     #[must_use]
     pub fn oddities(&self, text: &str) -> Vec<Problem> {
         let fields = Fields::of(text);
@@ -27,7 +28,8 @@ impl Scenario {
         }
         let role = numbers(&RoleFile::default());
         for (i, own) in self.roles.iter().enumerate() {
-            // Ranges and counts of roles differ by design: only what all robots have about alike is compared.
+            // Ranges and counts of roles differ by design, so only properties that are similar for all robots
+            // are compared.
             let usual = ["radius_m", "mass_kg", "speed_mps", "acceleration_mps2"];
             let own = numbers(own).into_iter().filter(|(name, _)| usual.contains(&name.as_str()));
             compare(&mut odd, &format!("roles[{i}]"), own, &role);

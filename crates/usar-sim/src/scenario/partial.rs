@@ -1,4 +1,4 @@
-//! Sections of which a part may be left out, where what is left out depends on the place: it has the default of that place.
+//! Sections of which a part may be left out. A missing part gets a default that depends on its place.
 
 use ron_fields::{Fields, Misfit};
 use serde::de::Error;
@@ -68,7 +68,7 @@ impl From<Costs> for file::Costs {
     }
 }
 
-/// The text of a value, without blanks around it, to be read in one of two ways.
+/// The text of a value without surrounding blanks, to be read in one of two ways.
 pub(super) fn text_of<'de, D: Deserializer<'de>>(deserializer: D) -> Result<String, D::Error> {
     let raw: Box<ron::value::RawValue> = Deserialize::deserialize(deserializer)?;
     Ok(raw.trim().get_ron().to_owned())
@@ -141,7 +141,7 @@ struct Wall {
     doors: Vec<Door>,
 }
 
-/// Thickness of a wall of which nothing else is said.
+/// Default thickness of a wall.
 fn thickness_m() -> f64 {
     0.2
 }

@@ -1,4 +1,4 @@
-//! Where the things of a scenario are, and which outlines they have.
+//! Places and outlines of the things of a scenario.
 
 use parry2d::math::{Pose, Rotation, Vector};
 use parry2d::shape::SharedShape;
@@ -38,7 +38,8 @@ impl WallFile {
         libm::hypot(self.to[0] - self.from[0], self.to[1] - self.from[1])
     }
 
-    /// The parts of the wall between its doors, as fixed debris. A part shorter than its thickness is left out with the door.
+    /// The parts of the wall between its doors, as fixed debris. Parts shorter than the wall's thickness are
+    /// left out.
     pub fn pieces(&self) -> impl Iterator<Item = DebrisFile> + use<> {
         let (from, length) = (self.from, self.length_m());
         let along = [(self.to[0] - from[0]) / length, (self.to[1] - from[1]) / length];
@@ -64,7 +65,7 @@ impl WallFile {
 }
 
 impl ScenarioFile {
-    /// Debris at known places, and after it the parts of the walls.
+    /// Debris at known places, followed by the parts of the walls.
     #[must_use]
     pub fn obstacles(&self) -> Vec<DebrisFile> {
         let mut all = self.debris.clone();
@@ -72,7 +73,8 @@ impl ScenarioFile {
         all
     }
 
-    /// What the robots of a row are and can do: their role, with what the row says otherwise. Nothing if the role is none of the scenario's.
+    /// Properties and abilities of the robots of a row: their role's, with the changes of the row. `None` if
+    /// the scenario has no such role.
     #[must_use]
     pub fn body_of(&self, row: &Row) -> Option<RoleFile> {
         let mut body = self.roles.iter().find(|role| role.name == row.role)?.clone();
@@ -94,7 +96,7 @@ impl ScenarioFile {
 }
 
 impl ConflictRules {
-    /// The values of the paper's rule; the defaults where another resolver is at work.
+    /// The values of the paper's rule; the defaults under another resolver.
     #[must_use]
     pub fn right_of_way(&self) -> RightOfWay {
         match self.resolver {

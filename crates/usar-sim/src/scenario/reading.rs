@@ -1,4 +1,4 @@
-//! Texts of scenario and sweep files: how they are read, and what is said of one that cannot be.
+//! Reading the texts of scenario and sweep files, and the errors of texts that cannot be read.
 
 use std::ops::Range;
 use std::path::Path;
@@ -9,16 +9,16 @@ use serde::de::DeserializeOwned;
 
 use super::error::{Problem, Problems, ScenarioError};
 
-/// Most values of wrong types that are told at once: each is found by reading the text once more.
+/// Most values of wrong types that are reported at once. The text is read once more to find each.
 const MOST_MISFITS: usize = 20;
 
-/// Texts larger than this tell one value of a wrong type at a time, in bytes.
+/// For texts larger than this, one value of a wrong type is reported at a time, in bytes.
 const LARGE_BYTES: usize = 1 << 18;
 
-/// Most characters of a line that stand around a caret.
+/// Most characters of a line that are shown before a caret.
 const AROUND: usize = 48;
 
-/// How all texts of the project are read.
+/// The options with which all texts of the project are read.
 pub(crate) fn ron_options() -> ron::Options {
     ron::Options::default().with_default_extension(Extensions::IMPLICIT_SOME)
 }
@@ -26,7 +26,8 @@ pub(crate) fn ron_options() -> ron::Options {
 /// Reads the text of a scenario or sweep file.
 ///
 /// # Errors
-/// A file that is missing, no regular file, not text, empty or too large, or a text with more in it than is read.
+/// The file is missing, not a regular file, not text, empty or too large; or the text exceeds a limit on
+/// nesting, values or strings, or is not well-formed.
 pub fn read_text(path: &Path) -> Result<String, ScenarioError> {
     let unreadable = |reason: String| ScenarioError::Unreadable { path: path.to_owned(), reason };
     let text = ron_fields::file::read_text(path).map_err(|error| unreadable(error.to_string()))?;
@@ -37,10 +38,11 @@ pub fn read_text(path: &Path) -> Result<String, ScenarioError> {
     Ok(text)
 }
 
-/// Refuses a text with more in it than is read, and one that is not well-formed; `path` is used in messages only.
+/// Refuses a text that exceeds a limit on nesting, values or strings, or that is not well-formed. `path` is
+/// used in messages only.
 ///
 /// # Errors
-/// The first place where it is too much, or wrong.
+/// The first place where the text exceeds a limit or is not well-formed.
 pub fn check_text(text: &str, path: &Path) -> Result<(), ScenarioError> {
     let malformed = |at: usize, message: String| {
         let place = Place::of(text, at);
@@ -55,7 +57,7 @@ pub fn check_text(text: &str, path: &Path) -> Result<(), ScenarioError> {
     check_syntax(text).map_err(|error| malformed(error.at, error.message))
 }
 
-/// A place in a text, for people.
+/// A place in a text, for messages.
 struct Place {
     line: usize,
     column: usize,
@@ -81,7 +83,8 @@ impl Place {
 /// Reads a value from a RON text; `path` is used in messages only.
 ///
 /// # Errors
-/// A text that is too large or not well-formed; unknown, missing or doubled fields and values of wrong types, each with its line.
+/// The text exceeds a limit or is not well-formed; fields are unknown, missing or doubled, or values have
+/// wrong types, each with its line.
 pub fn parse_ron<T: DeserializeOwned>(text: &str, path: &Path) -> Result<T, ScenarioError> {
     check_text(text, path)?;
     let (value, list) = read_all(text, &Fields::of(text));
@@ -91,8 +94,8 @@ pub fn parse_ron<T: DeserializeOwned>(text: &str, path: &Path) -> Result<T, Scen
     }
 }
 
-/// Reads a value from a text that is well-formed, without the fields that do not fit: these are told. Nothing is read if one of them has no
-/// default.
+/// Reads a value from a well-formed text. Fields that do not fit are taken out and reported. No value is
+/// returned if such a field has no default.
 pub(super) fn read_all<T: DeserializeOwned>(text: &str, fields: &Fields) -> (Option<T>, Vec<Problem>) {
     let (mut rest, mut problems): (String, Vec<Problem>) = (text.to_owned(), Vec::new());
     loop {
@@ -122,7 +125,7 @@ pub(super) fn read_all<T: DeserializeOwned>(text: &str, fields: &Fields) -> (Opt
     }
 }
 
-/// Reads a value; of an error, the path too.
+/// Reads a value. An error comes with the path of its field.
 pub(super) fn read<T: DeserializeOwned>(text: &str) -> Result<T, Box<(ron::error::SpannedError, String)>> {
     let options = ron_options();
     let mut deserializer = ron::Deserializer::from_str_with_options(text, &options)
@@ -133,18 +136,19 @@ pub(super) fn read<T: DeserializeOwned>(text: &str) -> Result<T, Box<(ron::error
     })
 }
 
-/// The bytes before a line and a column.
+/// The number of bytes before a line and a column.
 pub(super) fn offset(text: &str, line: usize, column: usize) -> usize {
     let start: usize = text.split_inclusive('\n').take(line - 1).map(str::len).sum();
     let before = text[start..].chars().take(column - 1).map(char::len_utf8).sum::<usize>();
     (start + before).min(text.len())
 }
 
-/// The bytes of a field with its name and the comma after it; nothing for an entry of a list, on whose number others depend.
+/// The byte range of a field with its name and the comma after it. `None` for an entry of a list, because the
+/// numbers of other entries depend on it.
 fn entry_of(text: &str, misfit: &Misfit, fields: &Fields, at: usize) -> Option<Range<usize>> {
     let field = misfit.field.as_str();
     let name = field.rsplit('.').next().filter(|name| !name.is_empty() && !name.ends_with(']'))?;
-    // Of a field that is given twice, the second is taken out: the place where the reading stopped.
+    // If a field is given twice, the second is taken out: reading stopped there.
     let is_doubled = misfit.rule == "must not be given twice";
     let start = if is_doubled { at } else { text[..fields.value(field)?.start].rfind(name)? };
     let value = if is_doubled {

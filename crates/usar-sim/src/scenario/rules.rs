@@ -31,7 +31,7 @@ pub enum CostUnit {
 }
 
 impl CostUnit {
-    /// A cost in percent of the maximum of the robot that bears it.
+    /// Converts a cost to percent of the maximum of the robot that bears it.
     #[must_use]
     pub fn to_percent(self, cost: f64, maximum: f64) -> f64 {
         match self {
@@ -40,7 +40,7 @@ impl CostUnit {
         }
     }
 
-    /// A share of a robot's maximum, in percent, as a cost.
+    /// Converts a share of a robot's maximum, in percent, to a cost.
     #[must_use]
     pub fn of_percent(self, percent: f64, maximum: f64) -> f64 {
         match self {

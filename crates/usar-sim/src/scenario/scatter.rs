@@ -59,7 +59,7 @@ impl Scatter {
         [[a[0].min(b[0]), a[1].min(b[1])], [a[0].max(b[0]), a[1].max(b[1])]]
     }
 
-    /// Free distance between two of its things, in metres; nothing where they may overlap.
+    /// Free distance between two of its things, in metres; `None` if they may overlap.
     #[must_use]
     pub fn gap_m(&self) -> Option<f64> {
         match (self.place, self.what) {

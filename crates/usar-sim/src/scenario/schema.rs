@@ -73,8 +73,9 @@ impl JsonSchema for WallFile {
     }
 }
 
-/// The JSON Schema of a scenario file, in which structs are objects, and lists and tuples are arrays. A distribution may stand in the place of
-/// any number, as `{"Uniform": [2, 5]}`; a scenario over a base gives what differs.
+/// The JSON Schema of a scenario file. Structs are objects, and lists and tuples are arrays. A distribution
+/// may stand in place of any number, as `{"Uniform": [2, 5]}`. A scenario over a base gives only the fields
+/// that differ.
 #[must_use]
 pub fn scenario_schema() -> Value {
     let mut generator = SchemaSettings::draft2020_12().into_generator();
@@ -88,7 +89,7 @@ pub fn scenario_schema() -> Value {
         let values = json!({"description": "Values with names, as in `(leak_m: 4.5)`: a name then stands for its value wherever that is meant. A scenario over a base may give a name of the base another value.", "type": "object", "additionalProperties": true});
         properties.insert("values".to_owned(), values);
     }
-    // Sections may be given in part, and a base has what is left out.
+    // Sections may be given in part, and a base supplies the fields that are left out.
     let required = all.remove("required").unwrap_or_default();
     all.insert("anyOf".to_owned(), json!([{"required": ["base"]}, {"required": required}]));
     if let Some(types) = all.get_mut("$defs").and_then(Value::as_object_mut) {
@@ -105,7 +106,7 @@ pub fn scenario_schema() -> Value {
     schema
 }
 
-/// Lets a distribution stand in the place of each number.
+/// Allows a distribution in place of each number.
 fn let_numbers_be_drawn(schema: &mut Value) {
     match schema {
         Value::Object(fields) => {

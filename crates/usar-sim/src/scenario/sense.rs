@@ -1,4 +1,5 @@
-//! Whether the parts of a scenario go together: somebody can do the work, and nothing is where it cannot be reached.
+//! Whether the parts of a scenario fit together: a robot can do the work, and robots can reach what they
+//! need.
 
 use parry2d::query::distance;
 
@@ -8,7 +9,7 @@ use super::validate::entry;
 use crate::geometry::Outline;
 use crate::limits;
 
-/// The rules; places and shapes must be sound.
+/// Checks these rules. Places and shapes must be sound.
 pub(super) fn sense(check: &mut Checker, file: &ScenarioFile) {
     stacked(check, file);
     if !file.errands.is_empty() {
@@ -31,7 +32,7 @@ pub(super) fn sense(check: &mut Checker, file: &ScenarioFile) {
     }
 }
 
-/// Somebody can carry, and somebody has resources.
+/// Checks that a robot can carry and that a robot has resources, if there are rescuees.
 fn team(check: &mut Checker, file: &ScenarioFile) {
     if file.tasks.iter().all(|task| task.grid.contains(&0)) {
         return; // nobody to rescue
@@ -53,7 +54,7 @@ fn overlap(a: &TaskFile, b: &TaskFile) -> bool {
     (0..2).all(|k| (a.center[k] - b.center[k]).abs() < f64::midpoint(a.size_m[k], b.size_m[k]))
 }
 
-/// No two movable pieces on one point: the engine would throw them apart.
+/// Checks that no two movable pieces are on the same point. The engine would throw them apart.
 fn stacked(check: &mut Checker, file: &ScenarioFile) {
     let mut movable: Vec<(usize, Point)> = Vec::new();
     movable.extend(
@@ -70,7 +71,7 @@ fn stacked(check: &mut Checker, file: &ScenarioFile) {
     }
 }
 
-/// No task's centre and no rescuee where robots on the ground cannot come.
+/// Checks that ground robots can reach every task's centre and every rescuee.
 fn places(check: &mut Checker, file: &ScenarioFile) {
     for (i, piece) in file.debris.iter().enumerate().filter(|(_, piece)| piece.movable.is_none()) {
         covers(check, &format!("debris[{i}].at"), piece, file);
@@ -105,13 +106,13 @@ fn is_in_the_way(wall: &Outline, task: &TaskFile) -> bool {
     distance(&wall.pose, &*wall.shape, &block.pose, &*block.shape).is_ok_and(|found| found.distance <= 0.0)
 }
 
-/// What a fixed piece covers that robots are to come to.
+/// Checks that a fixed piece covers no place that robots have to reach.
 fn covers(check: &mut Checker, field: &str, piece: &DebrisFile, file: &ScenarioFile) {
     let outline = piece.outline();
     let depth = |at: Point| -f64::from(outline.signed_distance([at[0] as f32, at[1] as f32].into()));
     let smallest = file.smallest_on_the_ground_m();
     for task in &file.tasks {
-        // A rest place may be covered: robots then try the others.
+        // A rest place may be covered. Robots then try the other rest places.
         if depth(task.center) > 0.0 {
             let [x, y] = task.center;
             check.fail(
@@ -121,7 +122,7 @@ fn covers(check: &mut Checker, field: &str, piece: &DebrisFile, file: &ScenarioF
             );
             continue;
         }
-        // A robot beside the piece reaches so far into it.
+        // How far a robot beside the piece reaches into it, in metres.
         let reach = file.mission.reach_m - smallest - file.planning.clearance_m;
         let half = task.size_m.map(|size| size / 2.0);
         let bounds = outline.shape.compute_aabb(&outline.pose);

@@ -5,8 +5,8 @@ use ron_fields::{Fields, SetError};
 use super::{Problem, ScenarioFile, draws};
 
 impl ScenarioFile {
-    /// Sets the field at a path such as `costs.energy.per_step` or `tasks.village.grid[0]` to a value in RON. Rules are not checked: that
-    /// is done when the file becomes a scenario.
+    /// Sets the field at a path such as `costs.energy.per_step` or `tasks.village.grid[0]` to a value in RON.
+    /// Does not check the rules: they are checked when the file becomes a scenario.
     ///
     /// # Errors
     /// There is no such field, or the value is not of its type.

@@ -1,4 +1,4 @@
-//! Events that a scenario asks for, each at its time.
+//! The timeline of a scenario: events, each at its time.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -76,7 +76,7 @@ pub enum Happening {
 }
 
 impl Happening {
-    /// The piece that falls, if it is one that falls.
+    /// The piece of debris that falls in this event, if one falls.
     #[must_use]
     pub fn falling(&self) -> Option<DebrisFile> {
         let Self::DebrisFalls { shape, at, rotation_deg, name } = self else { return None };
@@ -84,7 +84,7 @@ impl Happening {
         Some(DebrisFile { shape, at: *at, rotation_deg: *rotation_deg, movable: None, name })
     }
 
-    /// The source that appears, if it is one that does.
+    /// The radiation source that appears in this event, if one appears.
     #[must_use]
     pub fn source(&self) -> Option<ZoneFile> {
         let Self::SourceAppears { at, radius_m, name } = self else { return None };
@@ -116,7 +116,7 @@ impl ScenarioFile {
         doors.filter(moves).map(|(wall, door)| (wall.panel(door), door.is_closed))
     }
 
-    /// The moments in the order of their times; of equal times, in the order of the file.
+    /// The moments in the order of their times. Moments of equal times keep the order of the file.
     #[must_use]
     pub fn moments(&self) -> Vec<(usize, &Moment)> {
         let mut moments: Vec<(usize, &Moment)> = self.timeline.iter().enumerate().collect();
@@ -135,7 +135,7 @@ impl ScenarioFile {
         first == Some(true)
     }
 
-    /// What can open and close and has a name.
+    /// The named things that can open and close: pieces of debris and doors.
     fn ways(&self) -> Vec<Named<'_>> {
         let mut ways = Vec::new();
         for (i, piece) in self.debris.iter().enumerate() {
@@ -185,7 +185,7 @@ impl<'f> Named<'f> {
     }
 }
 
-/// The rules of the timeline, and of the names that it uses.
+/// Checks the rules of the timeline and of the names that it uses.
 pub(super) fn timeline(check: &mut Checker, file: &ScenarioFile) {
     let ways = file.ways();
     let names: Vec<&str> = ways.iter().map(|way| way.name).collect();

@@ -1,13 +1,14 @@
-//! Files of former formats in the present one.
+//! Upgrading files of former formats to the present one.
 
 use ron_fields::{Fields, formatted};
 
 use super::{FORMAT, former};
 
-/// Values of the paper's rule that stood beside it in format 1.
+/// Values of the paper's rule that format 1 had outside the rule.
 const MOVED: [&str; 3] = ["margin_m", "horizon_s", "deadlock_steps"];
 
-/// The text of a file in the present format, with its comments. What cannot be rewritten by a program is told as line and change.
+/// Rewrites the text of a file in the present format, with its comments. A change that a program cannot make
+/// is returned as its line and the necessary change.
 ///
 /// # Errors
 /// The first field that a person has to change.
@@ -21,7 +22,7 @@ pub fn upgraded(text: &str) -> Result<String, (usize, String)> {
     }
 }
 
-/// `role: Carrier` as `role: "carrier"`.
+/// Rewrites `role: Carrier` as `role: "carrier"`.
 fn roles_in_quotes(text: &str) -> String {
     let fields = Fields::of(text);
     let rows = (0..fields.entries("team").unwrap_or_default()).rev();
@@ -35,7 +36,7 @@ fn roles_in_quotes(text: &str) -> String {
     out
 }
 
-/// `conflicts: (margin_m: 0.2)` as `conflicts: (resolver: Rotation(margin_m: 0.2))`.
+/// Rewrites `conflicts: (margin_m: 0.2)` as `conflicts: (resolver: Rotation(margin_m: 0.2))`.
 fn values_of_the_rule(text: &str) -> String {
     let fields = Fields::of(text);
     let mut values = Vec::new();
@@ -61,14 +62,14 @@ fn values_of_the_rule(text: &str) -> String {
             let takes_values = ["Rotation", "Swap"].contains(&rule.as_str());
             out.replace_range(place, &if takes_values { format!("{rule}({values})") } else { rule });
         }
-        // Format 1 had the paper's rule where it said none.
+        // In format 1, the default was the paper's rule.
         (None, Some(place)) => out.insert_str(place.start + 1, &format!("resolver: Rotation({values}), ")),
         (None, None) => {}
     }
     out
 }
 
-/// The format as the first field.
+/// Sets the number of the format, as the first field if there is none yet.
 fn with_format(text: &str) -> String {
     let fields = Fields::outer(text);
     let mut out = text.to_owned();

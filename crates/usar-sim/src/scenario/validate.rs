@@ -1,4 +1,4 @@
-//! The rules of a scenario: every value in its range, and the values in keeping with one another.
+//! The rules of a scenario: every value is in its range, and the values are consistent.
 
 use ron_fields::limits::Limit;
 
@@ -58,7 +58,7 @@ fn of_values(file: &ScenarioFile) -> Checker {
     check
 }
 
-/// The number of entries of each table and list: what comes after takes time and memory with each of them.
+/// Checks the number of entries of each table and list. The time and memory of all later checks grow with it.
 fn sizes(check: &mut Checker, file: &ScenarioFile) {
     check.entries("team", file.team.len(), limits::ROWS);
     let total: u64 = file.team.iter().map(|row| u64::from(row.count)).sum();
@@ -153,7 +153,7 @@ fn team(check: &mut Checker, file: &ScenarioFile) {
     }
 }
 
-/// Path of an entry of a table: by its name, which is how people find it.
+/// Path of an entry of a table, by the name of the entry.
 pub(super) fn entry(table: &str, name: &str) -> String {
     format!("{table}.{name}")
 }

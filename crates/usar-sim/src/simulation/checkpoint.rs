@@ -1,12 +1,12 @@
-//! The state of a trial in memory, to go on from as often as one likes.
+//! The state of a trial in memory, from which any number of trials can resume.
 
 use std::sync::Arc;
 
 use super::{Simulation, State};
 use crate::model::Model;
 
-/// The state of a trial at one moment. Trials that go on from it share the model, and all random streams:
-/// what differs between them follows from what was decided.
+/// The state of a trial at one moment. Trials that resume from it share the model and all random streams, so
+/// differences between them follow from their decisions alone.
 ///
 /// A checkpoint stays in this process; [`Simulation::snapshot`] writes the state for others.
 #[derive(Clone)]
@@ -16,7 +16,7 @@ pub struct Checkpoint {
 }
 
 impl Simulation {
-    /// The state as it is now, also while a question waits for its answer.
+    /// The present state, also while a question waits for its answer.
     ///
     /// # Panics
     /// Never: the state is of types that postcard can write to memory.
@@ -28,8 +28,8 @@ impl Simulation {
 }
 
 impl Checkpoint {
-    /// A trial that goes on from here, with the same result bit for bit if the same is decided. Invariants
-    /// are not checked, until [`Simulation::checked`] is called.
+    /// A trial that resumes from here. It has the same result bit for bit if its decisions are the same.
+    /// Invariants are not checked until [`Simulation::checked`] is called.
     ///
     /// # Panics
     /// Never: the bytes are those that [`Simulation::checkpoint`] wrote.

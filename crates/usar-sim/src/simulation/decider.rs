@@ -1,11 +1,11 @@
-//! Answers to the questions of a trial.
+//! The interface for answers to the questions of a trial.
 
 use rne_core::{Decision, Policy, PolicyError, Question};
 
 use super::Simulation;
 
-/// Answers the questions of a trial. Every [`Policy`] is a decider that looks at the question alone; an
-/// oracle looks at the trial, too.
+/// Answers the questions of a trial. Every [`Policy`] is a decider that sees only the question. An oracle
+/// also looks at the trial.
 pub trait Decider {
     /// Answers the question that the trial asks.
     ///

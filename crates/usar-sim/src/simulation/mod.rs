@@ -1,7 +1,8 @@
-//! One trial: a scenario and a seed in, a record out, and one door for decisions.
+//! One trial: a scenario and a seed in, a record out, and one interface for decisions.
 //!
-//! [`Simulation::advance`] does a step, or says that it [asks](Advance::Asks) how the team is to be grouped. [`Simulation::assign`] answers. Whoever
-//! answers, a policy, a program or a person, comes through this door.
+//! [`Simulation::advance`] does a step, or returns the [question](Advance::Asks) how the team is to be
+//! grouped. [`Simulation::assign`] takes the answer. Policies, programs and people all answer through this
+//! interface.
 
 mod checkpoint;
 mod decider;
@@ -40,29 +41,29 @@ pub struct Simulation {
     question: Option<Question>,
     failure: Option<String>,
     invariants: Option<Invariants>,
-    /// Empty between steps: its memory serves the next step.
+    /// Empty between steps; kept so that the next step reuses its memory.
     movers: Vec<Mover<'static>>,
 }
 
-/// What became of an advance.
+/// The result of an advance.
 #[derive(Debug)]
 pub enum Advance<'s> {
     /// A step was done.
     Running,
-    /// A step was begun and goes on when this is answered: see [`Simulation::assign`].
+    /// A step was begun. It continues once this question is answered: see [`Simulation::assign`].
     Asks(&'s Question),
     /// The trial is over.
     Over(Status),
 }
 
-/// An answer that cannot be taken. The question still waits.
+/// An answer that is refused. The question still waits.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 #[non_exhaustive]
 pub enum AssignError {
-    /// Nothing was asked.
+    /// No question waits for an answer.
     #[error("no question waits for an answer")]
     NotAsked,
-    /// It does not answer the question.
+    /// The assignment does not answer the question.
     #[error(transparent)]
     Refused(#[from] AssignmentError),
 }
@@ -78,7 +79,7 @@ impl Simulation {
         Ok(Self { model, state, question: None, failure: None, invariants: None, movers: Vec::new() })
     }
 
-    /// A trial that goes on from this state.
+    /// A trial that resumes from this state.
     pub(crate) fn from_state(model: Arc<Model>, mut state: State) -> Self {
         state.restore(&model);
         let mut simulation =
@@ -87,7 +88,7 @@ impl Simulation {
         simulation
     }
 
-    /// The same trial, with every invariant checked at every step: a violation ends it as failed.
+    /// The same trial with every invariant checked at every step. A violation ends the trial as failed.
     #[must_use]
     pub fn checked(mut self) -> Self {
         self.invariants = Some(Invariants::new(&self.model.scenario, &self.state.world));
@@ -106,7 +107,7 @@ impl Simulation {
         self.invariants.as_ref().map(Invariants::overlaps)
     }
 
-    /// Does the next step, or the rest of one whose question was answered.
+    /// Does the next step, or the rest of a step whose question was answered.
     pub fn advance(&mut self) -> Advance<'_> {
         self.advance_watched(|_| {})
     }
@@ -149,8 +150,8 @@ impl Simulation {
         Ok(())
     }
 
-    /// Does a whole step, in which a policy or another [`Decider`] answers what is asked. The status, once the trial is
-    /// over.
+    /// Does a whole step, in which a policy or another [`Decider`] answers questions. Returns the status once
+    /// the trial is over.
     pub fn step(&mut self, decider: &(impl Decider + ?Sized)) -> Option<Status> {
         self.step_watched(decider, |_| {})
     }
@@ -178,7 +179,8 @@ impl Simulation {
         }
     }
 
-    /// Runs to the end. `listen` hears the events of each step, with the time in seconds and the world as it is then.
+    /// Runs the trial to its end. `listen` receives the events of each step, with the time in seconds and the
+    /// world at that time.
     pub fn run(
         mut self,
         decider: &(impl Decider + ?Sized),
@@ -237,7 +239,7 @@ impl Simulation {
         }
     }
 
-    /// What is fixed in this trial.
+    /// The fixed part of this trial.
     #[must_use]
     pub fn model(&self) -> &Model {
         &self.model
@@ -273,7 +275,8 @@ impl Simulation {
         &self.state.world
     }
 
-    /// The world, to be changed: for tests that seed faults. The next step goes on from what is there.
+    /// Mutable access to the world, for tests that inject faults. The next step starts from the changed
+    /// world.
     pub fn world_mut(&mut self) -> &mut World {
         &mut self.state.world
     }
@@ -290,7 +293,7 @@ impl Simulation {
         &self.state.navigator
     }
 
-    /// What was counted and added up so far.
+    /// The metrics so far.
     #[must_use]
     pub fn metrics(&self) -> &Metrics {
         &self.state.metrics
@@ -302,18 +305,19 @@ impl Simulation {
         &self.state.decisions
     }
 
-    /// Why each robot does not move on, as far as it does not; by id.
+    /// The delay of each robot, by id.
     pub fn delays(&self) -> impl Iterator<Item = Delay> + '_ {
         self.state.tallies.iter().map(Tally::delay)
     }
 
-    /// Why a robot does not move on, as far as it does not.
+    /// The delay of a robot.
     #[must_use]
     pub fn delay(&self, robot: RobotId) -> Delay {
         self.state.tallies[robot.index()].delay()
     }
 
-    /// The conflict sets of the last step: ids of their members, in order of precedence. None under the reciprocal rule.
+    /// The conflict sets of the last step: ids of their members, in order of precedence. The reciprocal rule
+    /// forms no sets.
     pub fn conflict_sets(&self) -> impl Iterator<Item = &[usize]> {
         self.state.resolver.sets()
     }
@@ -333,7 +337,7 @@ impl Simulation {
         &mut self.state
     }
 
-    /// The first part of a step: what robots notice, and what has to be asked.
+    /// The first part of a step: robots sense, and a question may arise.
     fn begin_step(&mut self, done: &mut impl FnMut(Stage)) {
         let state = &mut self.state;
         state.log.clear();
@@ -346,7 +350,8 @@ impl Simulation {
         self.take_question();
     }
 
-    /// The rest of a step. All robots decide from the same snapshot, claims on rescuees included. Then all act.
+    /// The rest of a step. All robots decide from the same snapshot, claims on rescuees included; then all
+    /// act.
     fn finish_step(&mut self, done: &mut impl FnMut(Stage)) -> Result<(), String> {
         let (state, model) = (&mut self.state, &*self.model);
         let (mission, mut scene) = state.scene(model);
@@ -377,11 +382,12 @@ impl Simulation {
         Ok(())
     }
 
-    /// Takes the mission's question, if it has one, and tells it what earlier rounds came to.
+    /// Takes the mission's question, if it has one, and adds the history of earlier rounds.
     fn take_question(&mut self) {
         let asked = self.state.mission.question();
         self.question = asked.map(|question| {
-            // The events of this step, the end of the last round among them, are not heard yet.
+            // The metrics have not yet received the events of this step, which include the end of the last
+            // round.
             let mut question = question.clone();
             let time_s = self.state.step as f64 * self.model.dt_s();
             let mut rounds = self.state.metrics.rounds.clone();

@@ -1,4 +1,4 @@
-//! All that changes in a trial, and the stages of a step that change it.
+//! Everything that changes in a trial, and the stages of a step that change it.
 
 use parry2d::math::Vector;
 use serde::{Deserialize, Serialize};
@@ -17,7 +17,7 @@ use crate::tally::{Tally, delay_cause};
 use crate::vitals::{energy_cost, hp_cost};
 use crate::world::{Condition, Robot, STANDING_MPS, World};
 
-/// All that changes in a trial: what a snapshot holds and what the hash chain covers.
+/// Everything that changes in a trial. Snapshots hold it, and the hash chain covers it.
 #[derive(Serialize, Deserialize)]
 pub(crate) struct State {
     pub(super) step: u64,
@@ -26,9 +26,10 @@ pub(crate) struct State {
     pub(super) navigator: Navigator,
     pub(super) resolver: Resolver,
     pub(super) metrics: Metrics,
-    /// The groupings so far, with what each policy said of them. They are told, and act on nothing: no part of the hash chain.
+    /// The groupings so far, with the accounts of the policies. They are recorded only and affect nothing, so
+    /// the hash chain leaves them out.
     pub(super) decisions: Vec<DecisionRecord>,
-    /// Whether a step has begun that is not finished, because it asks something.
+    /// Whether a step has begun but is not finished, because a question waits.
     pub(super) is_midway: bool,
     pub(super) log: EventLog,
     pub(super) tallies: Vec<Tally>,
@@ -52,7 +53,7 @@ impl State {
 }
 
 impl State {
-    /// Everybody at home, before the first step.
+    /// The state before the first step: all robots at home.
     pub(super) fn new(model: &Model) -> Self {
         let world = World::build(model);
         let tally = |start: &RobotStart| Tally::new(start.energy, start.hp);
@@ -72,7 +73,8 @@ impl State {
         }
     }
 
-    /// Makes what a snapshot leaves out because it is fixed or follows from the rest. The one place where that is done.
+    /// Restores everything that a snapshot leaves out because it is fixed or follows from the rest. This is
+    /// the only place that does so.
     pub(super) fn restore(&mut self, model: &Model) {
         self.world.restore(model);
         self.navigator.restore(&model.scenario);
@@ -80,13 +82,13 @@ impl State {
         self.mission.restore(model, &self.world);
     }
 
-    /// What the mission decides in.
+    /// The mission, and the scene in which it decides.
     pub(super) fn scene<'s>(&'s mut self, model: &'s Model) -> (&'s mut Mission, Scene<'s>) {
         let Self { mission, world, navigator, log, step, .. } = self;
         (mission, Scene { model, world, navigator, log, step: *step })
     }
 
-    /// Lets the metrics hear the events from the `from`-th of this step on; returns how many there are.
+    /// Passes the events of this step from the `from`-th on to the metrics. Returns the number of all events.
     pub(super) fn listen(&mut self, from: usize, dt_s: f64) -> usize {
         let events = self.log.events();
         self.metrics.listen(&events[from..], &self.world, self.step as f64 * dt_s);
@@ -99,7 +101,7 @@ impl State {
         self.navigator.plan(world, |robot| mission.knowledge_of(robot), speed_of, self.step);
     }
 
-    /// Settles who goes and who waits, and takes note of why robots stop.
+    /// Decides which robots go and which wait, and notes why robots stop.
     pub(super) fn resolve(&mut self, model: &Model, spare: &mut Vec<Mover<'static>>) {
         let seen_by = (&self.mission, &self.navigator);
         let mut movers: Vec<Mover> = std::mem::take(spare);
@@ -115,7 +117,7 @@ impl State {
         *spare = movers.into_iter().map(|_| unreachable!("it is empty")).collect(); // the same memory
     }
 
-    /// Lets each drive come as near to what it is told as its force allows.
+    /// Changes each robot's velocity towards that of its directive, as far as its acceleration allows.
     pub(super) fn drive(&mut self, model: &Model) {
         for (robot, directive) in self.world.robots.iter().zip(self.resolver.directives()) {
             let greatest_change = (robot.spec.acceleration_mps2 * model.dt_s()) as f32;
@@ -124,8 +126,8 @@ impl State {
         }
     }
 
-    /// Energy for moving and loading, HP for radiation and work; robots that have none left stay where they
-    /// are.
+    /// Charges energy for moving and loading and HP for radiation and work. Robots whose energy or HP is 0
+    /// can no longer act.
     pub(super) fn expose(&mut self, model: &Model) {
         let unit = model.scenario.costs.unit;
         let (robots, zones_at) = self.world.robots_in_zones();
@@ -155,7 +157,7 @@ impl State {
         }
     }
 
-    /// The hash of the events, and of what the timeline has left, where there is one.
+    /// The hash of the events and, if there is a timeline, of the timeline and what it changed.
     fn part_of_events(&self) -> u128 {
         let (world, timeline) = (&self.world, &self.timeline);
         if timeline.is_empty() {
@@ -190,12 +192,12 @@ impl State {
     }
 }
 
-/// The way of a robot in this step, in metres.
+/// The distance that a robot travels in this step, in metres.
 fn way_in_a_step(robot: &Robot, model: &Model) -> f64 {
     f64::from(robot.velocity.length()) * model.dt_s()
 }
 
-/// Energy and HP that this step costs a robot that stands in so many radiation zones, in the unit of the
+/// Energy and HP that this step costs a robot in `zones` overlapping radiation zones, in the unit of the
 /// scenario's costs.
 fn step_costs(model: &Model, agent: &Agent, robot: &Robot, zones: usize) -> [f64; 2] {
     let (Costs { energy, hp, work, .. }, dt) = (&model.scenario.costs, model.dt_s());

@@ -1,4 +1,4 @@
-//! The timeline of a trial: what a scenario asks for happens at the beginning of its step.
+//! The timeline of a trial: each event of the scenario happens at the beginning of its step.
 
 use parry2d::query::distance;
 use rne_core::TaskId;
@@ -11,20 +11,20 @@ use crate::ids::RobotId;
 use crate::model::{Action, Model};
 use crate::world::{Condition, RescueeState, Robot, World};
 
-/// Nothing falls or closes on a robot that may come nearer than this within a few steps, in metres.
+/// Debris falls or closes only if no robot may come nearer than this within a few steps, in metres.
 const FREE_M: f32 = 0.1;
 
-/// Steps of a robot at its speed for which the place must stay free.
+/// Number of steps of a robot at its present speed for which the place must stay free.
 const FREE_STEPS: f32 = 3.0;
 
-/// What of the timeline has happened: for each of its events, in the order of their steps.
+/// For each event of the timeline, in the order of their steps, whether it has happened.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub(crate) struct Timeline {
     done: Vec<bool>,
 }
 
 impl Timeline {
-    /// Nothing has happened.
+    /// A timeline of which nothing has happened yet.
     pub(super) fn new(model: &Model) -> Self {
         Self { done: vec![false; model.timeline.len()] }
     }
@@ -35,7 +35,7 @@ impl Timeline {
 }
 
 impl State {
-    /// Lets happen what is due. A piece waits until nobody is where it is to lie.
+    /// Carries out the events that are due. A piece of debris waits until its place is free.
     pub(super) fn happen(&mut self, model: &Model) {
         for (number, due) in model.timeline.iter().enumerate() {
             if due.step > self.step {
@@ -47,7 +47,7 @@ impl State {
         }
     }
 
-    /// Lets an action happen; false if it has to wait.
+    /// Carries out an action. Returns false if it has to wait.
     fn act_out(&mut self, action: &Action, model: &Model) -> bool {
         match action {
             Action::Fall(debris) | Action::Close(debris) => {
@@ -100,8 +100,8 @@ impl State {
         true
     }
 
-    /// Opens a task. Its own rescuees appear when it begins for the first time; those of later events come
-    /// with them.
+    /// Opens a task. Its own rescuees appear when it begins for the first time. Rescuees of later events
+    /// appear with those events.
     fn begin_task(&mut self, task: TaskId, model: &Model) {
         if !std::mem::replace(&mut self.world.closed_tasks[task.index()], false) {
             return;
@@ -118,7 +118,8 @@ impl State {
         }
     }
 
-    /// Takes energy and HP from a robot that can still act; one that has none left stays where it is.
+    /// Takes energy and HP from a robot that can still act. A robot whose energy or HP reaches 0 stays where
+    /// it is.
     fn lose(&mut self, id: RobotId, [energy, hp]: [f64; 2], model: &Model) {
         let robot = &mut self.world.robots[id.index()];
         if !robot.is_able() {
@@ -141,7 +142,8 @@ impl State {
     }
 }
 
-/// Whether nothing that touches debris is where a piece is to lie, nor comes there within a few steps.
+/// Whether the place of a piece is free of ground robots and movable debris, and stays free of robots for a
+/// few steps.
 fn is_free(world: &World, debris: usize, model: &Model) -> bool {
     let outline = model.layout.debris[debris].outline();
     let dt = model.dt_s() as f32;

@@ -10,7 +10,7 @@ use crate::scenario::DebrisFile;
 /// A pushed piece is noticed once it lies this far, in metres, from where it was last seen.
 const NOTICED_MOVE_M: f32 = 0.2;
 
-/// Where pieces lie that are not there, in metres: far from every arena.
+/// Position of absent pieces, in metres: far from every arena.
 const AWAY: Vector = Vector::new(-20_000.0, -20_000.0);
 
 /// A piece of debris in the world.
@@ -21,18 +21,19 @@ pub struct Debris {
     /// Whether nothing can push it.
     #[serde(skip)]
     pub is_fixed: bool,
-    /// Whether it comes and goes by events.
+    /// Whether events place or remove it.
     #[serde(skip)]
     pub is_gate: bool,
-    /// No point of it is farther from its centre than this, in metres.
+    /// Distance from its centre within which the whole piece lies, in metres.
     #[serde(skip)]
     pub reach: f32,
-    /// The outlines that robots may have seen: the initial one, and one more each time it was pushed noticeably.
+    /// The outlines that robots may have seen: the initial one if the piece was there, and one more each time
+    /// that it was pushed noticeably or that an event moved it.
     pub sightings: Vec<Outline>,
 }
 
 impl Debris {
-    /// At its initial place.
+    /// A piece at its initial place.
     #[must_use]
     pub fn new(file: &DebrisFile) -> Self {
         let outline = file.outline();
@@ -42,7 +43,7 @@ impl Debris {
         Self { is_fixed, is_gate: false, sightings, reach, outline }
     }
 
-    /// One that comes and goes by events; `is_there` at the start.
+    /// A piece that events place or remove; `is_there` tells whether it is there at the start.
     #[must_use]
     pub fn gate(file: &DebrisFile, is_there: bool) -> Self {
         let mut piece = Self { is_gate: true, ..Self::new(file) };
@@ -53,13 +54,13 @@ impl Debris {
         piece
     }
 
-    /// Whether it is in the arena, and not away.
+    /// Whether the piece is in the arena.
     #[must_use]
     pub fn is_there(&self) -> bool {
         self.outline.pose.translation != AWAY
     }
 
-    /// Puts it to a place, or away; robots that come by will see it.
+    /// Puts the piece to a place, or away. Adds a sighting, so that passing robots notice the change.
     pub(super) fn put(&mut self, pose: Option<Pose>) {
         match pose {
             Some(pose) => self.outline.pose = pose,
@@ -68,7 +69,7 @@ impl Debris {
         self.sightings.push(self.outline.clone());
     }
 
-    /// Makes anew what a snapshot leaves out because it is fixed.
+    /// Restores the fields that a snapshot leaves out: they are fixed.
     pub(super) fn restore(&mut self, file: &DebrisFile) {
         let Self { outline, is_fixed, reach, .. } = Self::new(file);
         (self.is_fixed, self.reach) = (is_fixed, reach);
@@ -76,7 +77,7 @@ impl Debris {
         places.for_each(|place| place.shape = outline.shape.clone());
     }
 
-    /// The box that holds it.
+    /// The bounding box of the piece.
     #[must_use]
     pub fn bounds(&self) -> Aabb {
         self.outline.shape.compute_aabb(&self.outline.pose)

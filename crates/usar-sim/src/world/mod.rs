@@ -1,4 +1,4 @@
-//! What exists: robots, debris, radiation zones and rescuees.
+//! The world: robots, debris, radiation zones and rescuees.
 
 mod debris;
 mod rescuee;
@@ -30,17 +30,17 @@ pub struct World {
     pub robots: Vec<Robot>,
     /// Debris.
     pub debris: Vec<Debris>,
-    /// Where the debris is.
+    /// The debris by place.
     #[serde(skip)]
     pub debris_places: Places,
-    /// Numbers of the debris that comes and goes by events.
+    /// Numbers of the debris that events place or remove.
     #[serde(skip)]
     pub gates: Vec<usize>,
-    /// Radiation zones, those that are off among them.
+    /// Radiation zones, including zones that are off.
     #[serde(skip)]
     pub zones: Vec<RadiationZone>,
-    /// How often each zone was switched on or off; one that is there from the start begins with 1. An odd
-    /// number is on. Empty in a scenario without a timeline: all zones are on.
+    /// How often each zone was switched on or off. A zone that is there from the start begins with 1. With an
+    /// odd number, the zone is on. Empty in a scenario without a timeline: all zones are on.
     zone_switches: Vec<u8>,
     /// For each task, whether it has ended, or not begun. Empty in a scenario without a timeline.
     pub closed_tasks: Vec<bool>,
@@ -49,7 +49,7 @@ pub struct World {
 }
 
 impl World {
-    /// Everything at its initial place.
+    /// A world with everything at its initial place.
     #[must_use]
     pub fn build(model: &Model) -> Self {
         let layout = &model.layout;
@@ -80,7 +80,7 @@ impl World {
         }
     }
 
-    /// Moves time on by one step and reads back where everything is.
+    /// Advances time by one step and reads back all positions.
     pub fn integrate(&mut self) {
         self.physics.integrate();
         for robot in &mut self.robots {
@@ -109,7 +109,7 @@ impl World {
         self.switches_of(zone) % 2 == 1
     }
 
-    /// The robots, and the number of zones that are on at a point.
+    /// The robots, and a function that counts the zones that are on at a point.
     pub(crate) fn robots_in_zones(&mut self) -> (&mut [Robot], impl Fn(Vector) -> usize) {
         let Self { robots, zones, zone_switches, .. } = self;
         let is_on = |number: usize| zone_switches.get(number).is_none_or(|switches| switches % 2 == 1);
@@ -120,25 +120,25 @@ impl World {
         (robots, count)
     }
 
-    /// How often a radiation zone was switched on or off; 1 for one that was always on.
+    /// How often a radiation zone was switched on or off; 1 if it was always on.
     #[must_use]
     pub fn switches_of(&self, zone: usize) -> u8 {
         self.zone_switches.get(zone).copied().unwrap_or(1)
     }
 
-    /// What of the world the timeline changes, and no other part of the hash chain covers.
+    /// The part of the world that the timeline changes and no other part of the hash chain covers.
     pub(crate) fn changed_by_events(&self) -> impl Serialize + '_ {
         (&self.zone_switches, &self.closed_tasks, self.physics.gates())
     }
 
-    /// Switches a radiation zone; false where it is so already.
+    /// Switches a radiation zone. Returns false if it is in this state already.
     pub(crate) fn switch_zone(&mut self, zone: usize, on: bool) -> bool {
         let changes = self.is_on(zone) != on;
         self.zone_switches[zone] += u8::from(changes);
         changes
     }
 
-    /// Puts a piece that comes and goes to a place, or away.
+    /// Puts a piece that events place or remove to a place, or away.
     pub(crate) fn put_debris(&mut self, number: usize, pose: Option<Pose>) {
         let piece = &mut self.debris[number];
         piece.put(pose);
@@ -146,7 +146,7 @@ impl World {
         self.debris_places.put(number, piece.bounds());
     }
 
-    /// Makes anew what a snapshot leaves out because it is fixed or follows from the rest.
+    /// Restores everything that a snapshot leaves out because it is fixed or follows from the rest.
     pub(crate) fn restore(&mut self, model: &Model) {
         self.robots.iter_mut().zip(&model.robots).for_each(|(robot, model)| robot.model = Arc::clone(model));
         self.debris.iter_mut().zip(&model.layout.debris).for_each(|(piece, file)| piece.restore(file));

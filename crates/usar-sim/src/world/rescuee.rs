@@ -8,16 +8,16 @@ use serde::{Deserialize, Serialize};
 
 use crate::ids::{RescueeId, RobotId};
 
-/// Where a rescuee is in its rescue.
+/// The state of a rescuee in its rescue.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum RescueeState {
-    /// Where it was from the start.
+    /// At its initial place.
     Waiting,
     /// On board of a robot: secured, not yet rescued.
     OnBoard(RobotId),
     /// Delivered home or to a rest place.
     Rescued,
-    /// Not there: it appears later, or is gone with its task.
+    /// Not there: it appears later, or disappeared when its task ended.
     Absent,
 }
 
@@ -27,19 +27,19 @@ pub struct Rescuee {
     /// Identity.
     #[serde(skip)]
     pub id: RescueeId,
-    /// The task that it belongs to.
+    /// Its task.
     #[serde(skip)]
     pub task: TaskId,
     /// Where it waits.
     #[serde(skip)]
     pub position: Vector,
-    /// Where it is in its rescue.
+    /// The state of its rescue.
     pub state: RescueeState,
-    /// The robot that is on its way to it or loading it.
+    /// The robot that is on its way to it or is loading it.
     pub claimed_by: Option<RobotId>,
 }
 
-/// All rescuees of a world, by id. Counts how often somebody may have changed one, so that checks look only then.
+/// All rescuees of a world, by id. Counts mutable accesses, so that checks run only after possible changes.
 #[derive(Serialize, Deserialize)]
 pub struct Rescuees {
     list: Vec<Rescuee>,
@@ -48,7 +48,7 @@ pub struct Rescuees {
 }
 
 impl Rescuees {
-    /// All of them, waiting at these places.
+    /// All rescuees at these places. Rescuees in `later` are absent, the others wait.
     pub(super) fn new(places: &[(TaskId, Vector)], later: &[Range<usize>]) -> Self {
         let waiting = |(id, (task, position)): (u32, &(TaskId, Vector))| Rescuee {
             id: RescueeId(id),
@@ -64,14 +64,14 @@ impl Rescuees {
         Self { list, changes: 0 }
     }
 
-    /// Makes anew what a snapshot leaves out because it is fixed.
+    /// Restores the fields that a snapshot leaves out: they are fixed.
     pub(super) fn restore(&mut self, places: &[(TaskId, Vector)]) {
         for ((rescuee, id), (task, position)) in self.list.iter_mut().zip(0..).zip(places) {
             (rescuee.id, rescuee.task, rescuee.position) = (RescueeId(id), *task, *position);
         }
     }
 
-    /// How often the list was lent to be changed.
+    /// Number of mutable accesses to the list.
     #[must_use]
     pub fn changes(&self) -> u64 {
         self.changes

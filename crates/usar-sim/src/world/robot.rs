@@ -1,4 +1,4 @@
-//! Robots: where they are, and the levels that decide what they can do.
+//! Robots: their motion, and the levels that decide what they can do.
 
 use std::ops::Deref;
 use std::sync::Arc;
@@ -15,15 +15,15 @@ use crate::vitals::health_factor;
 /// Whether a robot can still act.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Condition {
-    /// It can.
+    /// It can act.
     Able,
-    /// Its energy is 0: it stands where it stopped, an obstacle.
+    /// Its energy is 0: it stays where it stopped, as an obstacle.
     Stranded,
-    /// Its HP is 0: likewise.
+    /// Its HP is 0: it stays where it stopped, as an obstacle.
     Disabled,
 }
 
-/// The state of a robot. What is fixed of it is its [`RobotModel`], to which a robot dereferences.
+/// The state of a robot. A robot dereferences to its fixed properties, the [`RobotModel`].
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Robot {
     #[serde(skip)]
@@ -42,7 +42,7 @@ pub struct Robot {
     pub load: Vec<RescueeId>,
     /// Whether it can still act.
     pub condition: Condition,
-    /// Where it came to stand for good, once it can no longer act.
+    /// The place where it came to rest for good, if it can no longer act.
     pub wreck_at: Option<Vector>,
 }
 
@@ -55,7 +55,7 @@ impl Deref for Robot {
 }
 
 impl Robot {
-    /// At home, at rest, with its initial levels.
+    /// A robot at home, without motion, with its initial levels.
     pub(super) fn new(model: &Arc<RobotModel>, start: &RobotStart) -> Self {
         Self {
             model: Arc::clone(model),
@@ -76,7 +76,7 @@ impl Robot {
         self.condition == Condition::Able
     }
 
-    /// Rescuees that it has room for.
+    /// Number of rescuees for which it has room.
     #[must_use]
     pub fn free_capacity(&self) -> u32 {
         self.spec.capacity - self.load.len() as u32
@@ -110,7 +110,7 @@ impl Robot {
         health_factor(self.hp, self.health_floor)
     }
 
-    /// Its needs as they are now, in the order of the table.
+    /// Its present needs, in the order of the table.
     ///
     /// # Errors
     /// None in a validated scenario: every value is finite and >= 0.

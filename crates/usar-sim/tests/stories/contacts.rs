@@ -6,7 +6,8 @@ use usar_sim::simulation::Simulation;
 
 use crate::{scenario, trial};
 
-/// A small robot drives against a large one that stands. A third one stands between their places in x, far off in y.
+/// A small robot drives against a large standing robot. A third robot is between the two in x, but far away
+/// in y.
 const UNEQUAL: &str = r#"duration_s: 20.0, arena_m: (20.0, 14.0),
     roles: [(name: "large", radius_m: 1.0), (name: "small", radius_m: 0.2)],
     mission: (energy_threshold: 30.0, hp_threshold: 30.0, rest_reserve: 1.5, rest_s: 30.0, loading_s: 2.0, reach_m: 1.2,

@@ -6,7 +6,8 @@ use usar_sim::record::Status;
 
 use crate::{scenario, trial};
 
-/// Robot 0 senses no debris. On its way home it meets a wall that nobody knows of, and pushes against it for good.
+/// Robot 0 senses no debris. On its way home it meets a wall that no robot knows, and pushes against it for
+/// good.
 const WALL: &str = r#"duration_s: 300.0, arena_m: (40.0, 40.0),
     roles: [(name: "blind", sensing_m: 0.0, observing_m: 1.0, resources: 10), (name: "seer", observing_m: 3.0)],
     team: [

@@ -1,4 +1,4 @@
-//! Small worlds, each with a story that once ended badly. One binary.
+//! Small worlds, each with a story that once ended badly, in one test binary.
 
 mod contacts;
 mod held_up;
@@ -14,7 +14,7 @@ use usar_sim::scenario::Scenario;
 use usar_sim::simulation::Simulation;
 use usar_sim::world::World;
 
-/// A scenario of a text without name, step and levels.
+/// A scenario from a text that lacks name, step and levels.
 #[track_caller]
 fn scenario(fields: &str) -> Scenario {
     let start = "name: \"story\", dt_s: 0.02, initial_levels: (energy: (mean: 100.0, sd: 0.0), hp: (mean: 100.0, sd: 0.0))";

@@ -1,11 +1,12 @@
-//! Each robot takes the ways that are wide enough for it.
+//! Each robot takes routes that are wide enough for it.
 
 use usar_sim::record::Status;
 use usar_sim::simulation::Simulation;
 
 use crate::{scenario, trial};
 
-/// A wall with a gap of 1 m, and with a wide one far off where `detour` says so. The first robot is small, the second one large.
+/// A wall with a gap of 1 m and, if `detour` is true, a wide gap far away. The first robot is small, the
+/// second one large.
 fn doorway(detour: bool) -> String {
     let [middle, height] = if detour { [9.75, 8.5] } else { [12.75, 14.5] };
     format!(

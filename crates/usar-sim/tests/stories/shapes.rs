@@ -2,7 +2,7 @@
 
 use usar_sim::scenario::Scenario;
 
-/// What is wrong with a piece of debris of this shape in an arena of this size.
+/// The problem with a piece of debris of this shape in an arena of this size.
 fn refused(shape: &str, arena: &str) -> String {
     let text = format!(
         r#"(name: "shapes", duration_s: 10.0, dt_s: 0.02, arena_m: {arena},

@@ -1,5 +1,4 @@
-//! Stories of timelines: what a scenario asks for happens, is noticed, and goes on bit for bit from a
-//! snapshot.
+//! Stories of timelines: events happen, robots notice them, and a trial resumes from a snapshot bit for bit.
 
 use rne_core::Registry;
 use usar_sim::event::Event;
@@ -20,7 +19,7 @@ const WORLD: &str = r#"
     radiation: [(at: (20, 16), radius_m: 2, name: "core")],
 "#;
 
-/// A checked trial of the world with a timeline, at its end; and what happened by the timeline.
+/// A checked trial of the world with a timeline, at its end, and the events of its timeline.
 fn trial(timeline: &str) -> (Scenario, Vec<(f64, Event)>, Simulation) {
     let scenario = scenario(&format!("{WORLD} timeline: [{timeline}]"));
     let policy = Registry::standard().parse("RNE").unwrap().policy;
@@ -87,7 +86,7 @@ fn a_closed_door_is_seen_and_gone_round_and_its_opening_is_noticed() {
 
 #[test]
 fn nothing_falls_on_a_robot() {
-    // Robots pass the door all the time: it closes when nobody is in it.
+    // Robots pass the door all the time. It closes when no robot is in it.
     let timeline: Vec<String> = (1..40)
         .map(|i| {
             format!(

@@ -1,16 +1,17 @@
 //! Partitions of roles that are too large for the exact search: a deterministic local search.
 //!
-//! Starts from the best of the partitions by rank in each need's share, then swaps pairs of robots while that
-//! helps. The result is not proven optimal; an upper bound says how far it can be from the best.
+//! The search starts from the best partition by rank in one need's share, then swaps pairs of robots as long
+//! as a swap improves the score. The result is not proven optimal; an upper bound limits its distance from
+//! the optimum.
 
 use super::partition::{Partition, distinct_orders, in_order};
 use super::scorer::{Scorer, TIE_TOLERANCE, add_pair, part_sums};
 use crate::needs::shares_of;
 
-/// Bound on the swaps that are tried for one role.
+/// Most swaps that are tried for one role.
 const MAX_SWAPS: u64 = 1_000_000;
 
-/// Orders of the parts' sizes that are tried as a start.
+/// Most orders of the parts' sizes that are tried as starts.
 const MAX_ORDERS: usize = 64;
 
 /// A partition with the score of each pair of its parts.
@@ -37,7 +38,7 @@ impl Scored {
         Self { part_of, sums, pairs, total }
     }
 
-    /// The total with other sums of two parts, `low < high`.
+    /// The total if the sums of two parts, `low < high`, are replaced.
     fn total_with(
         &self,
         [low, high]: [usize; 2],
@@ -62,7 +63,7 @@ impl Scored {
     }
 }
 
-/// A good partition into parts of these sizes, which are above 0 and in ascending order.
+/// A good partition into parts of these sizes, which must be above 0 and in ascending order.
 pub(super) fn search(rows: &[Vec<f64>], sizes: &[usize], scorer: &mut Scorer) -> Partition {
     let mut best = best_ranked_start(rows, sizes, scorer);
     let mut searched = 0;
@@ -77,7 +78,8 @@ pub(super) fn search(rows: &[Vec<f64>], sizes: &[usize], scorer: &mut Scorer) ->
     }
 }
 
-/// Tries each pair of robots once and keeps each swap that helps; whether any did.
+/// Tries to swap each pair of robots once, and keeps each swap that improves the score. Returns whether any
+/// did, but false once [`MAX_SWAPS`] is reached.
 fn improve(best: &mut Scored, rows: &[Vec<f64>], scorer: &mut Scorer, searched: &mut u64) -> bool {
     let parts = best.sums.len();
     let mut swapped = [best.sums[0].clone(), best.sums[0].clone()];

@@ -4,7 +4,7 @@ use super::options::MergeReading;
 use super::quotas::Sizes;
 use super::scorer::{Scorer, TIE_TOLERANCE, add};
 
-/// Tasks up to which all matchings are looked at: 5,040 for seven.
+/// Greatest number of tasks for which all matchings are searched: 5,040 matchings for seven tasks.
 pub const EXACT_TASKS: usize = 7;
 
 /// A group under construction: members as indices into the team, and the sum of their weighted needs.
@@ -26,7 +26,7 @@ impl Group {
 /// For each group, the part that joins it.
 pub(super) type Matching = Vec<usize>;
 
-/// The best matching and what is known of it.
+/// The best matching, its score, the runner-up, and whether the matching is proven optimal.
 pub(super) struct Merge {
     pub(super) matching: Matching,
     pub(super) score: f64,
@@ -34,18 +34,19 @@ pub(super) struct Merge {
     pub(super) proven_optimal: bool,
 }
 
-/// Judges matchings of some groups with the parts of one role.
+/// Scores matchings of the groups with the parts of one role.
 pub(super) struct Merger<'a> {
     pub(super) groups: &'a [Group],
     pub(super) parts: &'a [Group],
     pub(super) reading: MergeReading,
-    /// Sizes that groups must have, where quotas bind.
+    /// Sizes that groups must have if quotas bind.
     pub(super) sizes: &'a Sizes,
 }
 
 impl Merger<'_> {
-    /// The matching with the largest score; the first in lexicographic order of equals. Up to [`EXACT_TASKS`]
-    /// groups every matching is looked at, above that pairs are exchanged while that helps.
+    /// The matching with the largest score; among equals, the first in lexicographic order. Up to
+    /// [`EXACT_TASKS`] groups, every matching is searched. Above that, parts of two groups are exchanged as
+    /// long as that improves the score.
     pub(super) fn best(&self, scorer: &mut Scorer) -> Merge {
         let is_exact = self.groups.len() <= EXACT_TASKS;
         let mut matching: Matching = (0..self.groups.len()).collect();
@@ -70,8 +71,8 @@ impl Merger<'_> {
         self.sizes.admit(self.groups, self.parts, matching)
     }
 
-    /// Takes the matching if it is better; whether it is. One that comes to the same groups is no other
-    /// candidate.
+    /// Takes the matching if it is better, and returns whether it is. A matching that leads to the same
+    /// groups is not a candidate.
     fn consider(&self, matching: Matching, best: &mut Merge, scorer: &mut Scorer) -> bool {
         if !self.admits(&matching) || self.pairs(&matching) == self.pairs(&best.matching) {
             return false;
@@ -89,7 +90,8 @@ impl Merger<'_> {
         false
     }
 
-    /// Which group and which part are put together, ascending; all that are empty are one.
+    /// The pairs of a group and its part, in ascending order. All empty groups count as one, and so do all
+    /// empty parts.
     fn pairs(&self, matching: &[usize]) -> Vec<[usize; 2]> {
         let one = |list: &[Group], i: usize| if list[i].members.is_empty() { usize::MAX } else { i };
         let pair = |(group, part): (usize, &usize)| [one(self.groups, group), one(self.parts, *part)];
@@ -98,7 +100,8 @@ impl Merger<'_> {
         pairs
     }
 
-    /// Exchanges the parts of each pair of groups once, where that helps; whether any did.
+    /// Exchanges the parts of each pair of groups once if that improves the score. Returns whether any
+    /// exchange did.
     fn exchange(&self, best: &mut Merge, scorer: &mut Scorer) -> bool {
         let mut improved = false;
         for i in 0..self.groups.len() {

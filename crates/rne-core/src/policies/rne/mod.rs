@@ -1,10 +1,10 @@
 //! `RNE`: groups by Relative Needs Entropy (the paper's Algorithms 1 to 5), with each ambiguity as a named
 //! option.
 //!
-//! Within each role the partition into as many parts as there are tasks with the largest RNE between the
-//! parts; then the roles are merged one after the other, in the order of their table, by the matching with
-//! the largest RNE between the merged groups. The score of more than two groups is the sum over their pairs.
-//! Which group takes which task is the [`HardRule`].
+//! Each role is split into one part per task, so that the RNE between the parts is largest. Then the roles
+//! are merged one after the other, in the order of their table, by the matching with the largest RNE between
+//! the merged groups. The score of more than two groups is the sum over their pairs. The [`HardRule`] decides
+//! which group takes which task.
 
 mod local;
 mod merge;
@@ -52,7 +52,7 @@ impl Rne {
     /// Takes the options.
     ///
     /// # Errors
-    /// Weights that are no weights.
+    /// The weights in the options are not valid.
     pub fn new(options: RneOptions) -> Result<Self, NeedsError> {
         if let Some(weights) = &options.weights {
             NeedWeights::new(weights.clone())?;
@@ -60,11 +60,12 @@ impl Rne {
         Ok(Self { options })
     }
 
-    /// The weight of each need for this team: the options' or the question's, each divided by the need's
-    /// maximum over the team where the options say so. A need that nobody has gets weight 0.
+    /// The weight of each need for this team: from the options or else from the question. With the option
+    /// `scale`, each weight is divided by the need's maximum over the team. A need that is 0 for all robots
+    /// then gets weight 0.
     ///
     /// # Errors
-    /// Another number of weights than of needs.
+    /// The number of weights differs from the number of needs.
     pub fn weights(&self, question: &Question) -> Result<Vec<f64>, PolicyError> {
         let mut weights = self.unscaled_weights(question)?;
         if self.options.scale {
@@ -106,7 +107,7 @@ fn weighted_needs(question: &Question, weights: &[f64]) -> Result<Vec<Vec<f64>>,
     Ok(rows)
 }
 
-/// One answer on its way.
+/// The state of the search for one answer.
 struct Search<'q> {
     question: &'q Question,
     rne: &'q Rne,
@@ -180,8 +181,8 @@ impl Search<'_> {
         groups
     }
 
-    /// The groups so far with the parts of a role. `last` takes the groups of the runner-up, so that the last
-    /// merge's is known.
+    /// Merges the groups so far with the parts of a role. `last` receives the groups of the runner-up of this
+    /// merge; after the last merge, it holds that merge's.
     fn merge(
         &mut self,
         role: RoleId,
@@ -211,7 +212,7 @@ impl Search<'_> {
         as_score(self.scorer.total(&sums, 0))
     }
 
-    /// The groups on their tasks, by the hard rule, and how well each is suited.
+    /// Assigns the groups to tasks by the hard rule. Also returns the suitability of each group.
     fn placed(&mut self, groups: &[Group]) -> Result<(Assignment, Vec<Suitability>), PolicyError> {
         let values = self.rne.suitabilities(self.question, groups, &self.rows, &mut self.scorer)?;
         let tasks = suitability::tasks(self.question, groups, &values, &self.sizes);
@@ -223,8 +224,8 @@ impl Search<'_> {
         Ok((Assignment::new(by_task), suitability::account(&tasks, &values)))
     }
 
-    /// Gives the groups their tasks. The alternative is what the runner-up of the last merge would have come
-    /// to.
+    /// Assigns the groups to tasks and makes the decision. Its alternative is the assignment of the runner-up
+    /// of the last merge.
     fn finish(mut self, groups: &[Group], last: Option<&[Group]>) -> Result<Decision, PolicyError> {
         let (assignment, suitability) = self.placed(groups)?;
         let score = self.total(groups);
@@ -245,7 +246,7 @@ impl Search<'_> {
     }
 }
 
-/// A sum of scores; none where no two groups have members.
+/// A sum of scores; `None` if there are no two groups with members.
 fn as_score(nats: f64) -> Option<RelativeNeedsEntropy> {
     (nats != f64::NEG_INFINITY).then(|| RelativeNeedsEntropy::from_nats(nats))
 }

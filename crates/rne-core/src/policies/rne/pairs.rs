@@ -1,4 +1,4 @@
-//! What the policy sees in an assignment: the RNE between its groups, need by need.
+//! The policy's view of an assignment: the RNE between its groups, need by need.
 
 use serde::Serialize;
 
@@ -12,7 +12,7 @@ use crate::needs::NeedDistribution;
 use crate::question::Question;
 use crate::trust::RelativeNeedsEntropy;
 
-/// RNE from one group to another, and what each need adds to it.
+/// RNE from one group to another, and the contribution of each need.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct DirectedRne {
     /// The task of the group that trusts.
@@ -23,7 +23,7 @@ pub struct DirectedRne {
     pub rne: RelativeNeedsEntropy,
     /// For each need, its share in the first group's weighted needs, and in the second's.
     pub shares: Vec<[f64; 2]>,
-    /// For each need, what it adds, in nats; `None` for a need that makes the value infinite.
+    /// For each need, its contribution, in nats; `None` for a need that makes the value infinite.
     pub by_need: Vec<Option<f64>>,
 }
 
@@ -39,7 +39,8 @@ impl Rne {
         assignment: &Assignment,
     ) -> Result<Option<RelativeNeedsEntropy>, PolicyError> {
         let mut sums = self.sums(question, assignment)?;
-        // In the order of the smallest ids of the first role, as the policy forms them, should the score have a direction.
+        // The order of the groups matters if the score has a direction. They are sorted by their smallest ids
+        // of the first role, as the policy forms them.
         let first_role = question.role_ids().find(|role| question.of_role(*role).next().is_some());
         let smallest = |task: TaskId| {
             let members = first_role.into_iter().flat_map(|role| question.of_role(role));

@@ -1,23 +1,24 @@
 //! The split of one role into parts with the largest RNE between them (the paper's Algorithms 1, 2 and 3, for
 //! any number of tasks).
 //!
-//! Exact for up to [`EXACT_PARTITIONS`] partitions: each is looked at once, with sums that grow along the
-//! branch, so that no rounding depends on the way it was reached. Above that, [`super::local`].
+//! The search is exact for up to [`EXACT_PARTITIONS`] partitions. It visits each partition once and grows the
+//! sums along the branch, so that rounding does not depend on the path. For more partitions, [`super::local`]
+//! takes over.
 
 use super::local;
 use super::scorer::{Scorer, TIE_TOLERANCE};
 
-/// Partitions of one role up to which all are looked at. It suffices for 20 robots and two tasks (92,378), 13
-/// and three, 12 and four.
+/// Greatest number of partitions of one role for which all are searched. It suffices for 20 robots and two
+/// tasks (92,378), 13 and three, 12 and four.
 pub const EXACT_PARTITIONS: f64 = 1e5;
 
-/// A partition of a role and what is known of it. Parts stand in the order of their smallest members; empty
-/// parts come last.
+/// A partition of a role, with the results of the search. Parts are in the order of their smallest members;
+/// empty parts come last.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Partition {
     /// For each part, indices into the role's rows, ascending.
     pub(super) parts: Vec<Vec<usize>>,
-    /// The next best partition that was looked at, and its score.
+    /// The next best partition that was searched, and its score.
     pub(super) runner_up: Option<(Vec<Vec<usize>>, f64)>,
     pub(super) searched: u64,
     pub(super) proven_optimal: bool,
@@ -68,7 +69,7 @@ pub(super) fn partitions(sizes: &[usize]) -> f64 {
     count.round()
 }
 
-/// All distinct orders of these sizes, which are given in ascending order; in lexicographic order.
+/// All distinct orders of these sizes, in lexicographic order. The sizes must be in ascending order.
 pub(super) fn distinct_orders(sizes: &[usize]) -> Vec<Vec<usize>> {
     if sizes.is_empty() {
         return vec![Vec::new()];
@@ -92,7 +93,7 @@ pub(super) fn in_order(part_of: &[usize], parts: usize) -> Vec<Vec<usize>> {
     members
 }
 
-/// Depth-first over all partitions, in lexicographic order of the parts with the smallest members.
+/// Depth-first search over all partitions, in lexicographic order of the parts with the smallest members.
 struct ExactSearch<'a> {
     rows: &'a [Vec<f64>],
     scorer: &'a mut Scorer,
@@ -136,8 +137,8 @@ fn exact(rows: &[Vec<f64>], sizes: &[usize], scorer: &mut Scorer) -> Partition {
 }
 
 impl ExactSearch<'_> {
-    /// Puts robot `at` into each part that has room, and goes on with the next robot. A part is opened only
-    /// when all before it are.
+    /// Puts robot `at` into each part that has room, and continues with the next robot. A part is opened only
+    /// when all parts before it are open.
     fn place(&mut self, at: usize) {
         if at == self.rows.len() {
             return self.judge();

@@ -1,17 +1,17 @@
-//! Quotas that bind: groups are formed before they get their tasks, so that their sizes must fit the tasks in
-//! some order.
+//! Binding quotas. Groups are formed before they get their tasks, so their sizes must fit the tasks in some
+//! order.
 
 use super::merge::Group;
 use crate::ids::{RoleId, TaskId};
 use crate::question::Question;
 
-/// The sizes that the groups must have, role by role, where quotas bind.
+/// The sizes that the groups must have, role by role, if quotas bind.
 pub(super) struct Sizes {
     /// Role of each member of the team.
     role_of: Vec<RoleId>,
-    /// For each task, the members of each role that binds; roles by their place in this list.
+    /// For each task, the number of members of each binding role, in the order of `binding`.
     wanted: Vec<Vec<usize>>,
-    /// The roles that bind.
+    /// The roles whose quotas bind.
     binding: Vec<RoleId>,
 }
 
@@ -25,14 +25,14 @@ impl Sizes {
         Self { role_of: question.members.iter().map(|member| member.role).collect(), wanted, binding }
     }
 
-    /// How many of these members are of each role that binds; `None` for roles that are not among them and
-    /// not looked at yet.
+    /// How many of these members belong to each binding role, in the order of `binding`.
     fn sizes(&self, members: &[usize]) -> Vec<usize> {
         let of_role = |role: &RoleId| members.iter().filter(|i| self.role_of[**i] == *role).count();
         self.binding.iter().map(of_role).collect()
     }
 
-    /// The places in `binding` of the roles that stand in some of these groups.
+    /// The indices in `binding` of the roles of which some of these groups have members: the roles merged so
+    /// far.
     fn looked_at(&self, groups: &[Vec<usize>]) -> Vec<usize> {
         let all: Vec<usize> = groups.iter().flat_map(|sizes| sizes.iter().enumerate()).fold(
             vec![0; self.binding.len()],
@@ -44,7 +44,7 @@ impl Sizes {
         (0..all.len()).filter(|place| all[*place] > 0).collect()
     }
 
-    /// Tasks for groups of these sizes, each another one, if there are such.
+    /// A different task for each of the groups of these sizes; `None` if the sizes do not fit.
     fn tasks_for(&self, groups: &[Vec<usize>]) -> Option<Vec<usize>> {
         let looked_at = self.looked_at(groups);
         let mut taken = vec![false; self.wanted.len()];
@@ -73,7 +73,7 @@ impl Sizes {
         self.tasks_for(&sizes).is_some()
     }
 
-    /// A matching that is admitted: the identity where nothing binds.
+    /// An admissible matching: the identity if it is admissible, as it is if no quota binds.
     pub(super) fn start(&self, groups: &[Group], parts: &[Group]) -> Vec<usize> {
         let identity: Vec<usize> = (0..groups.len()).collect();
         if self.admit(groups, parts, &identity) {

@@ -4,10 +4,11 @@ use super::options::ScoreDirection;
 use crate::divergence::{jensen_shannon_nats, kullback_leibler};
 use crate::needs::{shares_into, shares_of};
 
-/// A later candidate must be better by more than this, in nats, so that rounding never decides a tie.
+/// A later candidate wins only if it is better by more than this, in nats, so that rounding never decides a
+/// tie.
 pub(super) const TIE_TOLERANCE: f64 = 1e-12;
 
-/// Scores groups that are given as sums of weighted needs. Its memory is used again from call to call.
+/// Scores groups given as sums of weighted needs. It reuses its memory from call to call.
 pub(super) struct Scorer {
     direction: ScoreDirection,
     sort: bool,
@@ -20,7 +21,7 @@ impl Scorer {
         Self { direction, sort, p: Vec::new(), q: Vec::new() }
     }
 
-    /// RNE between two groups in nats; minus infinity where one is empty and has no distribution.
+    /// RNE between two groups in nats; minus infinity if a group is empty and thus has no distribution.
     pub(super) fn score(&mut self, first: &[f64], second: &[f64]) -> f64 {
         if !self.normalise(first, second) {
             return f64::NEG_INFINITY;
@@ -34,13 +35,13 @@ impl Scorer {
         }
     }
 
-    /// RNE from the first to the second, whatever the direction of the scorer.
+    /// RNE from the first group to the second, whatever the direction of the scorer.
     pub(super) fn directed(&mut self, first: &[f64], second: &[f64]) -> f64 {
         if self.normalise(first, second) { kullback_leibler(&self.p, &self.q) } else { f64::NEG_INFINITY }
     }
 
-    /// Sum of the scores of all pairs of these groups; minus infinity where fewer than two have members. The sums of a group stand in its row from
-    /// `from` on.
+    /// Sum of the scores of all pairs of these groups; minus infinity if fewer than two have members. The
+    /// sums of a group begin at index `from` of its row.
     pub(super) fn total<G: AsRef<[f64]>>(&mut self, groups: &[G], from: usize) -> f64 {
         let mut total = f64::NEG_INFINITY;
         for (i, first) in groups.iter().enumerate() {
@@ -51,11 +52,12 @@ impl Scorer {
         total
     }
 
-    /// No two groups of robots with these weighted needs have a larger score; `None` where no bound is known.
+    /// An upper bound on the score of any two groups of robots with these weighted needs; `None` if no bound
+    /// is known.
     ///
-    /// A group's share of a need lies between the least and the greatest share of its members, and the
-    /// divergence is convex in the first distribution, so that it is largest for a single robot against the
-    /// least shares of all.
+    /// A group's share of a need lies between the least and the greatest share of its members. The divergence
+    /// is convex in the first distribution, so it is largest for a single robot against the least shares of
+    /// all.
     pub(super) fn bound(&self, rows: &[Vec<f64>]) -> Option<f64> {
         if self.sort {
             return None; // sorted shares of a group are no mixture of its members'
@@ -74,7 +76,7 @@ impl Scorer {
         })
     }
 
-    /// Both distributions into the scratch space; `false` where one does not exist.
+    /// Writes both distributions to the scratch space. Returns `false` if one of them does not exist.
     fn normalise(&mut self, first: &[f64], second: &[f64]) -> bool {
         let exists = shares_into(first, &mut self.p) > 0.0 && shares_into(second, &mut self.q) > 0.0;
         if exists && self.sort {
@@ -85,7 +87,8 @@ impl Scorer {
     }
 }
 
-/// Adds the score of a pair to a sum of scores, which is minus infinity before the first; a pair with an empty group does not count.
+/// Adds the score of a pair to a sum of scores, which is minus infinity before the first score. A pair with
+/// an empty group does not count.
 pub(super) fn add_pair(total: f64, score: f64) -> f64 {
     if score == f64::NEG_INFINITY {
         total

@@ -51,8 +51,8 @@ fn sum_of<'a>(
     members.map(|member| level(member).ok_or_else(|| missing("RNE", what, Some(member.id)))).sum()
 }
 
-/// The task of each group: from the hardest task on, the best-suited group that is left and may take it. Ties
-/// go to the group with the lowest id, and empty groups come last.
+/// The task of each group. From the hardest task on, each task goes to the best-suited remaining group that
+/// may take it. Ties go to the group with the lowest id, and empty groups come last.
 pub(super) fn tasks(
     question: &Question,
     groups: &[Group],
@@ -77,13 +77,13 @@ pub(super) fn tasks(
 fn best_suited(candidates: &[usize], groups: &[Group], values: &[Option<f64>]) -> Option<usize> {
     let most = candidates.iter().filter_map(|group| values[*group]).reduce(f64::max);
     let Some(most) = most else { return candidates.first().copied() };
-    // Written so that two values that are both infinite are a tie.
+    // The comparison is written so that two infinite values are a tie.
     let is_worse = |value: f64| (most - value).abs() > TIE_TOLERANCE;
     let tied = candidates.iter().filter(|group| values[**group].is_some_and(|value| !is_worse(value)));
     tied.min_by_key(|group| groups[**group].members.iter().min()).copied()
 }
 
-/// The suitability of each group as the account has it, in the order of the tasks.
+/// The suitability of each group for the account, in the order of the tasks.
 pub(super) fn account(tasks: &[TaskId], values: &[Option<f64>]) -> Vec<Suitability> {
     let of_group = |(task, value): (&TaskId, &Option<f64>)| Suitability {
         task: *task,

@@ -1,12 +1,13 @@
-//! The velocity nearest to a preferred one that keeps to a set of half-planes and to a top speed.
+//! The velocity nearest to a preferred velocity that satisfies a set of half-planes and a top speed.
 //!
-//! The incremental linear programs of ORCA (van den Berg, Guy, Lin & Manocha, "Reciprocal n-Body Collision Avoidance", 2011,
-//! section 5). Half-planes of walls come first and are always kept where that is possible. Where those of robots leave nothing, the
-//! velocity is taken that breaks the worst of them the least. O(n) on average, O(n^2) at worst.
+//! The incremental linear programs of ORCA (van den Berg, Guy, Lin & Manocha, "Reciprocal n-Body Collision
+//! Avoidance", 2011, section 5). Half-planes of walls come first and are satisfied whenever that is possible.
+//! If the half-planes of the robots leave no velocity, the solver minimizes the worst violation among them.
+//! O(n) on average, O(n^2) at worst.
 
 use parry2d::math::Vector;
 
-/// Two borders whose directions' cross product is smaller than this are parallel.
+/// Two borders are parallel if the cross product of their directions is smaller than this.
 const PARALLEL: f32 = 1e-5;
 
 /// Velocities on the left of a line through `point` along the unit vector `direction`.
@@ -24,18 +25,18 @@ impl HalfPlane {
         Self { point: along * speed, direction: -along.perp() }
     }
 
-    /// Whether a velocity keeps to it.
+    /// Whether a velocity lies in the half-plane.
     pub(super) fn holds(&self, velocity: Vector) -> bool {
         self.excess(velocity) <= 0.0
     }
 
-    /// How far outside a velocity lies, in metres per second; negative inside.
+    /// How far a velocity lies outside the half-plane, in metres per second; negative inside.
     fn excess(&self, velocity: Vector) -> f32 {
         self.direction.perp_dot(self.point - velocity)
     }
 }
 
-/// What is looked for.
+/// The objective of the linear program.
 #[derive(Clone, Copy)]
 enum Aim {
     /// The velocity nearest to this one.
@@ -44,8 +45,8 @@ enum Aim {
     Along(Vector),
 }
 
-/// The velocity nearest to `preferred`, of at most this speed, that keeps to all half-planes. The first `walls` of them are kept
-/// before all others.
+/// The velocity nearest to `preferred`, of at most `top_speed`, that satisfies all half-planes. If none does,
+/// the first `walls` half-planes take precedence over the others.
 pub(super) fn best_velocity(planes: &[HalfPlane], walls: usize, preferred: Vector, top_speed: f32) -> Vector {
     match solve(planes, Aim::Near(preferred), top_speed) {
         Ok(velocity) => velocity,
@@ -53,7 +54,8 @@ pub(super) fn best_velocity(planes: &[HalfPlane], walls: usize, preferred: Vecto
     }
 }
 
-/// The best velocity; or the number of the first half-plane that leaves none, with the best velocity that keeps to those before.
+/// The best velocity. If the half-planes leave none, the number of the first half-plane that cannot be
+/// satisfied, and the best velocity that satisfies the half-planes before it.
 fn solve(planes: &[HalfPlane], aim: Aim, top_speed: f32) -> Result<Vector, (usize, Vector)> {
     let mut best = match aim {
         Aim::Near(preferred) => preferred.clamp_length_max(top_speed),
@@ -67,7 +69,7 @@ fn solve(planes: &[HalfPlane], aim: Aim, top_speed: f32) -> Result<Vector, (usiz
     Ok(best)
 }
 
-/// The best velocity on the border of one half-plane that keeps to those before it.
+/// The best velocity on the border of one half-plane that satisfies the half-planes before it.
 fn on_border(planes: &[HalfPlane], at: usize, aim: Aim, top_speed: f32) -> Option<Vector> {
     let HalfPlane { point, direction } = planes[at];
     let middle = -point.dot(direction);
@@ -104,7 +106,7 @@ fn on_border(planes: &[HalfPlane], at: usize, aim: Aim, top_speed: f32) -> Optio
     Some(point + direction * along)
 }
 
-/// Keeps to the walls and breaks the worst of the other half-planes the least: from the one that failed on.
+/// Satisfies the walls and minimizes the worst violation of the other half-planes, from number `failed` on.
 fn least_bad(planes: &[HalfPlane], walls: usize, failed: usize, found: Vector, top_speed: f32) -> Vector {
     let mut best = found;
     let mut worst = 0.0;
@@ -125,7 +127,8 @@ fn least_bad(planes: &[HalfPlane], walls: usize, failed: usize, found: Vector, t
     best
 }
 
-/// The velocities that break `plane` no less than `other`.
+/// The velocities that violate `plane` at least as much as `other`. `None` if the two are parallel and point
+/// in the same direction.
 fn equally_bad(plane: &HalfPlane, other: &HalfPlane) -> Option<HalfPlane> {
     let cross = plane.direction.perp_dot(other.direction);
     let point = if cross.abs() > PARALLEL {

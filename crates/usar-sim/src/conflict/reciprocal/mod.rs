@@ -1,9 +1,12 @@
-//! The default rule: reciprocal avoidance in the open, right of way at once in narrow passages, and pushing where a robot is stuck.
+//! The default rule: reciprocal avoidance in the open, right of way in narrow passages, and pushing when a
+//! robot is stuck.
 //!
-//! - *Open*: each robot takes its share in avoiding the others, idle robots included ([`velocity`]).
-//! - *Narrow*: where two robots do not fit side by side, one direction goes, the others wait outside and make room ([`passage`]).
-//! - *Stuck*: a robot that has come no nearer for a while asks the robot in its way to make room, which inherits its claim
-//!   (`super::retreat`). The longer a robot is stuck, the better its claim. Robots that are parked are asked at once.
+//! - *Open*: each robot takes its share in avoiding the others, and so do idle robots ([`velocity`]).
+//! - *Narrow*: where two robots do not fit side by side, the robots of one direction go. The others wait
+//!   outside and make room ([`passage`]).
+//! - *Stuck*: a robot that has come no nearer to its goal for a while asks the robot in its way to make room.
+//!   That robot inherits its priority (`super::retreat`). The longer a robot is stuck, the better its claim.
+//!   A robot that has nowhere to go is asked at once.
 
 mod half_planes;
 mod passage;
@@ -22,26 +25,29 @@ pub(super) const STUCK_S: f64 = 4.0;
 /// A robot that has waited this long before a passage, in seconds, ends the turn of the other direction.
 pub(super) const TURN_S: f64 = 10.0;
 
-/// Robots wait this far from a passage, beyond their radius, in metres.
+/// Robots wait at this distance from a passage, beyond their radius, in metres.
 const WAIT_AT_M: f32 = 0.3;
 
-/// Robots within this distance of where they wait make room for those that come out, in metres.
+/// Robots within this distance of their waiting place make room for robots that leave the passage, in metres.
 const MAKE_ROOM_M: f32 = 1.0;
 
-/// Share in avoiding each other of the robot that goes first at a passage; the other one has the rest.
+/// Share of the avoidance that the robot with the right of way at a passage takes; the other robot takes the
+/// rest.
 const SHARE_OF_THE_FIRST: f32 = 0.3;
 
-/// Share in avoiding each other in the open of the robot with the better claim.
+/// Share of the avoidance in the open that the robot with the better claim takes.
 const SHARE_OF_PRIORITY: f32 = 0.2;
 
-/// A robot asks a moving one to make room only where their directions differ by more than this (cosine): others get on by themselves.
+/// A robot asks a moving robot to make room only if the cosine between their directions is smaller than this.
+/// Robots in similar directions get on by themselves.
 const ALONG: f32 = 0.3;
 
 /// Slower than this is no motion, in metres per second.
 const STILL_MPS: f32 = 0.005;
 
 impl Resolver {
-    /// One directive for each mover, by the default rule.
+    /// One directive for each mover, by the default rule. Limits the wishes of robots that wait before a
+    /// passage.
     pub(super) fn reciprocate(&mut self, movers: &mut [Mover], log: &mut EventLog) {
         self.neighbours.pair(movers, MARGIN_M, HORIZON_S);
         self.hold_before_passages(movers, log);
@@ -54,8 +60,9 @@ impl Resolver {
         }
     }
 
-    /// Of each ring of stuck robots, in which every one is in the way of another, the one with the best claim: it may push the next
-    /// whatever their directions, since none of them can get on by itself.
+    /// The robot with the best claim on each ring of stuck robots. On a ring, every robot is in the way of
+    /// another, and none can get on by itself. So the leader may push the next robot whatever their
+    /// directions.
     fn leaders_of_jams(&self, movers: &[Mover]) -> Vec<usize> {
         let is_stuck =
             |i: &usize| movers[*i].stalled_steps >= self.stuck_steps && movers[*i].wishes_to_move();
@@ -72,7 +79,7 @@ impl Resolver {
         rings.iter().filter_map(|ring| ring.iter().copied().min_by(claim)).collect()
     }
 
-    /// Lets robots wait before narrow passages in which others have the right of way, and make room for them there.
+    /// Lets robots wait before narrow passages in which others have the right of way, and make room there.
     fn hold_before_passages(&mut self, movers: &mut [Mover], log: &mut EventLog) {
         self.entries.resize(movers.len(), Entry::default());
         for entry in &mut self.entries {
@@ -104,7 +111,7 @@ impl Resolver {
         }
     }
 
-    /// The velocity that a robot takes among the others.
+    /// The directive of a robot: the velocity that it takes among the others, or why it stands still.
     fn steer(&self, i: usize, movers: &[Mover]) -> Directive {
         let me = &movers[i];
         if !me.can_make_room {
@@ -144,7 +151,7 @@ impl Resolver {
         }
     }
 
-    /// Lets a robot that comes no nearer ask the one in its way to make room.
+    /// Lets a robot that comes no nearer to its goal ask the robot in its way to make room.
     fn push(&mut self, i: usize, movers: &[Mover], leaders: &[usize], log: &mut EventLog) {
         let me = &movers[i];
         let is_due = me.stalled_steps > 0
@@ -161,7 +168,7 @@ impl Resolver {
         }
     }
 
-    /// Whether a robot may have another one make room that is on its own way.
+    /// Whether a robot may ask another robot with a goal of its own to make room.
     fn may_push(&self, i: usize, blocker: usize, movers: &[Mover]) -> bool {
         let (me, other) = (&movers[i], &movers[blocker]);
         let goes_after = match (self.entries[i].rank, self.entries[blocker].rank) {

@@ -1,8 +1,9 @@
 //! Right of way in narrow passages: which robots may enter, and which wait outside.
 //!
-//! Robots inside go first. Then those that are about to enter and may, those that have waited too long, those that follow a robot inside in
-//! the same direction, and the others, the nearest first. So robots go through in platoons, and the turn of a direction ends when a robot
-//! of another one has waited for [`super::TURN_S`].
+//! The order is: robots inside; robots that may enter and are about to; robots that have waited too long;
+//! robots that follow a robot inside in the same direction; and all others, the nearest first. So robots go
+//! through in platoons, and the turn of a direction ends when a robot of another direction has waited for
+//! [`super::TURN_S`].
 
 use std::cmp::Ordering;
 
@@ -11,30 +12,30 @@ use parry2d::math::Vector;
 use crate::conflict::Mover;
 use crate::planning::Passage;
 
-/// Robots within this distance of a passage, and the way that it takes them to stop, ask for it, in metres.
+/// Robots ask for a passage from this distance on, in metres, plus their stopping distance.
 const ASK_FROM_M: f32 = 2.5;
 
-/// A robot that may enter and is within this distance of a passage is not stopped any more, in metres.
+/// A robot that may enter is no longer stopped within this distance of the passage, in metres.
 const COMMITTED_M: f32 = 0.4;
 
-/// A robot that may enter keeps its place before those that are nearer by no more than this, in metres.
+/// Head start of a robot that may enter over robots that may not, in metres.
 const KEPT_PLACE_M: f32 = 1.0;
 
-/// Robots whose directions in a passage differ by less than this (cosine) go the same way.
+/// Robots go the same way if the cosine between their directions in a passage is larger than this.
 const SAME_WAY: f32 = 0.5;
 
-/// Passages meet where they come nearer than this share of the distance at which the robots touch. Less than 1: a bay between two passages
-/// keeps them apart.
+/// Passages meet if they come nearer than this share of the distance at which the robots touch. The share is
+/// less than 1, so that a bay between two passages keeps them apart.
 const MEETING: f32 = 0.5;
 
 /// A robot in a narrow passage, or soon in one.
 pub(super) struct Entrant<'a> {
-    /// Number of the robot.
+    /// Index of the robot.
     pub(super) i: usize,
-    /// Way to the passage, in metres; negative inside.
+    /// Distance to the passage along the route, in metres; negative inside.
     pub(super) ahead: f32,
     passage: &'a Passage,
-    /// Way to the end of the passage, in metres.
+    /// Distance to the end of the passage along the route, in metres.
     to_exit: f32,
     radius: f32,
     /// The box that holds the passage.
@@ -42,31 +43,31 @@ pub(super) struct Entrant<'a> {
     high: Vector,
 }
 
-/// What is remembered of a robot at a passage.
+/// The state of a robot at a passage.
 #[derive(Debug, Clone, Copy, Default, serde::Serialize, serde::Deserialize)]
 pub(in crate::conflict) struct Entry {
-    /// Steps for which it has waited.
+    /// Steps that the robot has waited.
     pub(super) waited_steps: u32,
     /// Whether it may enter, or is inside.
     pub(super) is_granted: bool,
-    /// Its place in the order of all robots at passages, in this step; none for a robot at none.
+    /// Its place in this step's order of all robots at passages; none for a robot that is not at a passage.
     #[serde(skip)]
     pub(super) rank: Option<usize>,
-    /// The robot that it waits for, in this step.
+    /// The robot for which it waits in this step.
     #[serde(skip)]
     pub(super) waits_for: Option<usize>,
 }
 
-/// How two robots stand to each other whose passages meet.
+/// How two robots relate whose passages meet.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Meeting {
     /// One follows the other.
     SameWay,
-    /// Only one can be inside.
+    /// Only one of the two can be inside.
     Opposed,
 }
 
-/// The claim to a passage. The smaller one goes first.
+/// The class of a claim to a passage. The smaller class goes first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Class {
     Inside,
@@ -77,7 +78,8 @@ enum Class {
 }
 
 impl<'a> Entrant<'a> {
-    /// A robot that is in a narrow passage of its route, or near the next one.
+    /// The entrant for a robot that is in a narrow passage of its route or near the next one; `None` for
+    /// other robots.
     pub(super) fn new(i: usize, me: &Mover<'a>) -> Option<Self> {
         if !me.wishes_to_move() || me.retreat_left.is_some() || me.passages.is_empty() {
             return None;
@@ -103,7 +105,8 @@ impl<'a> Entrant<'a> {
         self.ahead <= 0.0
     }
 
-    /// How the robots stand to each other where their passages come nearest, if they meet.
+    /// How the robots relate at the place where their passages come nearest; `None` if the passages do not
+    /// meet.
     fn meets(&self, other: &Self) -> Option<Meeting> {
         if self.low.cmpgt(other.high).any() || self.high.cmplt(other.low).any() {
             return None;
@@ -155,7 +158,8 @@ impl Meetings {
     }
 }
 
-/// Decides which robots may enter their passages, and notes it in their entries. A robot has waited too long after `turn_steps`.
+/// Decides which robots may enter their passages, and notes it in their entries. A robot has waited too long
+/// after `turn_steps` steps.
 pub(super) fn decide(entrants: &[Entrant], movers: &[Mover], entries: &mut [Entry], turn_steps: u32) {
     let meetings = Meetings::new(entrants);
     let claims: Vec<(Class, f32)> =
@@ -164,7 +168,7 @@ pub(super) fn decide(entrants: &[Entrant], movers: &[Mover], entries: &mut [Entr
     order.sort_by(|a, b| precedence(*a, *b, &claims, entrants, movers));
     let waited_too_long = |claim: &(Class, f32)| claim.0 == Class::WaitedTooLong;
     for (rank, a) in order.iter().enumerate() {
-        // A robot that has waited too long stops those behind it even while it waits for those inside.
+        // A robot that has waited too long stops the robots behind it, even while it waits for robots inside.
         let stops = |b: &&usize| {
             meetings.between(*a, **b) == Some(Meeting::Opposed)
                 && (entries[entrants[**b].i].waits_for.is_none() || waited_too_long(&claims[**b]))
@@ -217,14 +221,16 @@ mod tests {
     use super::*;
     use crate::conflict::testing::mover;
 
-    /// A passage along the x axis between these places, for a robot that is `left` metres from the end of its route.
+    /// A passage along the x axis from `from` to `to`, which begins `enters_at` metres before the end of the
+    /// route.
     fn passage(from: f32, to: f32, enters_at: f32) -> Passage {
         let points =
             (0..=10_u8).map(|i| Vector::new(from + (to - from) * f32::from(i) / 10.0, 0.0)).collect();
         Passage { points, enters_at, leaves_at: enters_at - (to - from).abs() }
     }
 
-    /// Robots at these places with these wishes, whose routes lead 10 m on through a passage between x = 10 and x = 12.
+    /// The entries of robots at these places with these wishes, whose routes lead 10 m on through a passage
+    /// between x = 10 and x = 12.
     fn decided(robots: &[(f32, f32)], before: &[Entry]) -> Vec<Entry> {
         let passages: Vec<[Passage; 1]> = robots
             .iter()

@@ -1,8 +1,9 @@
-//! Reciprocal avoidance (ORCA): the velocity nearest to the preferred one that keeps a robot clear of all others for a while, provided that
-//! each does its share.
+//! Reciprocal avoidance (ORCA): the velocity nearest to the preferred velocity that keeps a robot clear of
+//! all others for a while, provided that each robot does its share.
 //!
-//! After van den Berg, Guy, Lin & Manocha, "Reciprocal n-Body Collision Avoidance", 2011. What differs: shares need not be equal; walls and
-//! debris are one half-plane each, because outlines are convex; and robots look no farther ahead than their route goes straight.
+//! After van den Berg, Guy, Lin & Manocha, "Reciprocal n-Body Collision Avoidance", 2011. Three things
+//! differ. Shares need not be equal. Walls and debris are one half-plane each, because outlines are convex.
+//! Robots look no farther ahead than their route goes straight.
 
 use parry2d::math::Vector;
 use smallvec::SmallVec;
@@ -11,8 +12,8 @@ use super::half_planes::{HalfPlane, best_velocity};
 use crate::conflict::Mover;
 use crate::planning::{ObstacleMap, nearest_border_point, outward_normal, polygon_contains};
 
-/// Robots avoid what would bring them together within this time, in seconds. Longer: they keep farther apart than crowds allow.
-/// Shorter: they swerve late and in vain.
+/// Time within which robots avoid a collision, in seconds. With a longer horizon, robots keep farther apart
+/// than crowds allow. With a shorter one, they swerve too late.
 pub(super) const HORIZON_S: f32 = 1.5;
 
 /// The least horizon, in seconds, just before a bend of the route.
@@ -24,7 +25,7 @@ const PART_WITHIN_S: f32 = 0.5;
 /// Robots brake for walls and debris that they would reach within this time, in seconds.
 const WALL_HORIZON_S: f32 = 0.5;
 
-/// Robots may come this much nearer to walls and debris than their routes do, in metres, when they are pressed.
+/// Robots under pressure may come this much nearer to walls and debris than their routes do, in metres.
 const WALL_SLACK_M: f32 = 0.04;
 
 /// Distance that robots keep from one another, in metres.
@@ -33,27 +34,28 @@ pub(super) const MARGIN_M: f32 = 0.01;
 /// A robot heeds this many others at most: the nearest.
 const HEEDED: usize = 12;
 
-/// In the open, preferred velocities that others are in the way of are turned to the right by this much (tangent): symmetry is broken, and
-/// traffic keeps to one side.
+/// In the open, a preferred velocity that another robot obstructs is turned to the right by this much
+/// (tangent). This breaks symmetry and keeps traffic to one side.
 const KEEP_RIGHT: f32 = 0.35;
 
 /// Half-planes of one robot.
 type Planes = SmallVec<[HalfPlane; 24]>;
 
-/// Another robot as one sees it that avoids it.
+/// Another robot, as seen by the robot that avoids it.
 #[derive(Clone, Copy)]
 pub(super) struct Neighbour {
-    /// Its centre, relative to the robot's, in metres.
+    /// Its centre relative to the avoiding robot's, in metres.
     pub(super) offset: Vector,
     /// Its velocity, in metres per second.
     pub(super) velocity: Vector,
     /// Distance that the two keep between their centres, in metres.
     pub(super) apart: f32,
-    /// The robot's share in avoiding it: 0.5 where both do the same, 1 where the other does nothing.
+    /// The avoiding robot's share in the avoidance: 0.5 if both robots do the same, 1 if the other does
+    /// nothing.
     pub(super) share: f32,
 }
 
-/// The velocity that a robot takes among these neighbours. `is_open` tells that it is at no narrow passage.
+/// The velocity that a robot takes among these neighbours. `is_open` says that it is not at a narrow passage.
 pub(super) fn avoiding_velocity(
     me: &Mover,
     mut neighbours: SmallVec<[Neighbour; 16]>,
@@ -80,7 +82,7 @@ pub(super) fn avoiding_velocity(
     best_velocity(&planes, walls, preferred, me.speed)
 }
 
-/// The velocities that keep clear of another robot, as far as that is this robot's share.
+/// The velocities by which a robot does its share in keeping clear of another.
 fn robot_plane(velocity: Vector, other: &Neighbour, horizon: f32) -> HalfPlane {
     let Neighbour { offset, apart, share, .. } = *other;
     let relative = velocity - other.velocity;
@@ -102,7 +104,8 @@ fn robot_plane(velocity: Vector, other: &Neighbour, horizon: f32) -> HalfPlane {
     HalfPlane { point: velocity + change * share, direction }
 }
 
-/// The way out of a disc of relative velocities that lead to a collision: the direction of its border there, and the change to it.
+/// The shortest exit from a disc of relative velocities that lead to a collision: the direction of the disc's
+/// border there, and the change of velocity that leads to it.
 fn out_of_disc(from_center: Vector, radius: f32) -> (Vector, Vector) {
     let length = from_center.length();
     let outward = if length > 1e-6 { from_center / length } else { Vector::X };
@@ -120,7 +123,7 @@ fn border_planes(me: &Mover, arena: Vector, planes: &mut Planes) {
     planes.extend(gaps.into_iter().filter_map(|(gap, inward)| wall_plane(me, gap.max(0.0), inward)));
 }
 
-/// The velocities that keep clear of the debris that a robot knows.
+/// The velocities that keep clear of the debris that the robot knows.
 fn debris_planes(me: &Mover, known: &ObstacleMap, planes: &mut Planes) {
     let mut near: SmallVec<[_; 8]> = known.near(me.position, me.speed * WALL_HORIZON_S).collect();
     near.sort_unstable_by_key(|obstacle| obstacle.key);
@@ -135,7 +138,8 @@ fn debris_planes(me: &Mover, known: &ObstacleMap, planes: &mut Planes) {
     }));
 }
 
-/// The velocities that brake for a wall at this distance in time; none for one that is too far to matter.
+/// The velocities that brake in time for a wall at this distance; `None` for a wall that is too far away to
+/// matter.
 fn wall_plane(me: &Mover, gap: f32, away: Vector) -> Option<HalfPlane> {
     (gap < me.speed * WALL_HORIZON_S).then(|| HalfPlane::at_least(-gap / WALL_HORIZON_S, away))
 }
@@ -145,7 +149,7 @@ mod tests {
     use super::*;
     use crate::conflict::testing::mover;
 
-    /// A robot at the origin that drives east with 1 m/s, and this one.
+    /// The velocity that a robot driving east with 1 m/s takes beside one other robot.
     fn among(offset: [f32; 2], velocity: [f32; 2], share: f32) -> Vector {
         let me = Mover { velocity: Vector::X, speed: 1.0, ..mover(0, [10.0, 10.0], [1.0, 0.0]) };
         let (offset, velocity) = (Vector::from(offset), Vector::from(velocity));
@@ -153,7 +157,7 @@ mod tests {
         avoiding_velocity(&me, SmallVec::from_slice(&[other]), Vector::splat(20.0), true)
     }
 
-    /// How near two robots come within the horizon that keep their velocities.
+    /// How near two robots come within the horizon if both keep their velocities.
     fn nearest(offset: [f32; 2], mine: Vector, other: Vector) -> f32 {
         let gaps =
             (0..=150_u8).map(|i| (Vector::from(offset) + (other - mine) * (f32::from(i) * 0.01)).length());
@@ -183,11 +187,12 @@ mod tests {
         assert!(among([2.0, 0.0], [-1.0, 0.0], 0.5).y < -0.05);
     }
 
-    /// Velocity and preferred velocity of a robot, place and velocity of the others, and the velocity that it takes.
+    /// Velocity and preferred velocity of a robot, places and velocities of the others, and the velocity that
+    /// it takes.
     type Case = ([f32; 2], [f32; 2], &'static [([f32; 2], [f32; 2])], [f32; 2]);
 
-    /// Robots of 0.4 m, at most 2 m/s, horizon 1.5 s, time step 0.5 s. The last figures are those of RVO2, the code that the authors of ORCA
-    /// published (`pyrvo` 0.4.3).
+    /// Robots of 0.4 m, at most 2 m/s, horizon 1.5 s, time step 0.5 s. The expected velocities come from
+    /// RVO2, the code that the authors of ORCA published (`pyrvo` 0.4.3).
     #[rustfmt::skip]
     const RVO2: [Case; 14] = [
         ([-0.53, -1.05], [0.42, -1.2], &[([-2.21, 0.04], [-1.39, -0.2])], [0.4200, -1.2000]),
