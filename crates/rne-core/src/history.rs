@@ -12,7 +12,7 @@ use crate::ids::TaskId;
 pub struct RoundOutcome {
     /// Number of the round, from 1.
     pub round: u32,
-    /// From its start until every robot was home, in seconds.
+    /// From its start until it was complete, in seconds.
     pub duration_s: f64,
     /// One group for each task, in the order of the table of tasks.
     pub groups: Vec<GroupOutcome>,
@@ -26,9 +26,9 @@ pub struct GroupOutcome {
     pub task: TaskId,
     /// Rescuees delivered from the task.
     pub rescued: u32,
-    /// Percent points of energy spent by its members.
+    /// Energy that its members spent, in the unit of the scenario's costs: percent points, or points.
     pub energy: f64,
-    /// Percent points of HP lost by its members.
+    /// HP that its members lost, in the same unit.
     pub hp: f64,
     /// Its members, by id.
     pub members: Vec<MemberOutcome>,
@@ -42,9 +42,9 @@ pub struct MemberOutcome {
     pub id: u32,
     /// Rescuees that it delivered.
     pub rescued: u32,
-    /// Percent points of energy that it spent.
+    /// Energy that it spent, in the unit of the scenario's costs: percent points, or points.
     pub energy: f64,
-    /// Percent points of HP that it lost.
+    /// HP that it lost, in the same unit.
     pub hp: f64,
     /// Whether it turned back to rest before its group went home.
     pub turned_back: bool,
