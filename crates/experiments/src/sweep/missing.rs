@@ -19,9 +19,9 @@ pub fn missing(folder: &Folder, shard: Option<Shard>) -> Vec<Place> {
         (0..experiment.cases.len()).map(|case| experiment.trials_of(case, shard).collect()).collect();
     let most = cases.iter().map(Vec::len).max().unwrap_or(0);
     let mut missing = Vec::new();
-    // A few seeds at a time, in every case: an interrupted sweep has whole pairs, and can be compared in all cases.
-    // Within these policy by policy: policies that decide alike share their trials, and no two threads simulate
-    // what they could share.
+    // A few seeds at a time, in every case: an interrupted sweep has whole pairs, and can be compared in all
+    // cases. Within these seeds policy by policy: policies that decide alike share their trials, and no two
+    // threads simulate a trial that they could share.
     for from in (0..most).step_by(SEEDS_AT_A_TIME) {
         for (case, trials) in cases.iter().enumerate() {
             let some = &trials[from.min(trials.len())..(from + SEEDS_AT_A_TIME).min(trials.len())];

@@ -194,5 +194,5 @@ pub(super) fn clear(path: &Path) -> std::io::Result<()> {
     for name in known_names().filter(|name| *name != LOCK) {
         files::remove(&path.join(name))?;
     }
-    remove_unfinished(path)
+    Ok(())
 }
