@@ -41,3 +41,27 @@ fn a_few_robots_arrive_with_little_delay() {
         assert!(outcome.time_s < outcome.limit_s, "{name}");
     }
 }
+
+fn outcome(name: &str, seed: u64) -> trial::Outcome {
+    let problem = PROBLEMS.iter().find(|problem| problem.name == name).unwrap();
+    trial::run(problem, seed, &[]).unwrap()
+}
+
+#[test]
+fn robots_queue_before_a_bottleneck_and_do_not_touch() {
+    let outcome = outcome("bottleneck_10", FILE_SEED);
+    assert!(outcome.is_ok() && outcome.flow < 1.4, "{}", outcome.flow);
+    assert_eq!(outcome.touches, 0.0);
+}
+
+#[test]
+fn robots_enter_a_crossing_that_others_have_left_behind() {
+    let outcome = outcome("lane_crossing_8", FILE_SEED);
+    assert!(outcome.is_ok() && outcome.flow < 2.0, "{}", outcome.flow);
+}
+
+/// In this trial, a robot in a corner is asked to make room by the very robot that is in its way.
+#[test]
+fn a_robot_in_a_corner_is_let_out() {
+    assert!(outcome("swap_42", 19).is_ok());
+}

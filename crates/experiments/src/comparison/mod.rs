@@ -146,7 +146,7 @@ pub struct Choice<'a> {
 /// All comparisons of these metrics: of each pair of policies, or of each policy with the baseline.
 ///
 /// # Errors
-/// An unknown policy, or fewer than two.
+/// An unknown policy, or only one although the sweep has no axes.
 pub fn compare(folder: &Folder, metrics: &[usize], choice: Choice) -> Result<Vec<Comparison>, Failure> {
     let experiment = folder.experiment();
     let pairs = policy_pairs(experiment, choice)?;
@@ -202,6 +202,9 @@ pub(crate) fn policy_pairs(experiment: &Experiment, choice: Choice) -> Result<Ve
     let chosen = policies_of(experiment, choice)?;
     let baseline = choice.baseline.map(|name| place(experiment, "--baseline", name)).transpose()?;
     if let [only] = chosen[..] {
+        if experiment.cases.len() > 1 {
+            return Ok(Vec::new());
+        }
         let only = &experiment.policies[only].label;
         return Err(Failure::input(format!("there is nothing to compare: {only} only")));
     }

@@ -7,7 +7,7 @@ use experiments::experiment::VARIANT;
 use super::{headed, right};
 
 /// A row for each change of an axis, a column for each policy: the change of the policy's mean in percent,
-/// with its interval.
+/// with its interval. If all changes are from the same case, the first row has the means there.
 #[must_use]
 pub fn effects_table(effects: &[&Effect]) -> Table {
     let percent = |effect: &Effect| match effect.in_percent() {
@@ -23,7 +23,17 @@ pub fn effects_table(effects: &[&Effect]) -> Table {
         column: effect.policy.clone(),
         text: percent(effect),
     });
-    pivoted("change", cells)
+    pivoted("change", means_before(effects).chain(cells))
+}
+
+/// The means before any change, if all changes are from the same case.
+fn means_before<'e>(effects: &'e [&Effect]) -> impl Iterator<Item = Entry> + 'e {
+    let is_one = effects.iter().all(|effect| effect.reference == effects[0].reference);
+    effects.iter().filter(move |effect| is_one && effect.case == effects[0].case).map(|effect| Entry {
+        row: format!("mean, {}", place(&[(effect.path.clone(), effect.values[0].clone())])),
+        column: effect.policy.clone(),
+        text: effect.means.map_or_else(|| "-".to_owned(), |[there, _]| short(there)),
+    })
 }
 
 /// A row for each change of an axis, a column for each pair of policies: the change of their difference,

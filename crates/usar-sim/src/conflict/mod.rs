@@ -1,14 +1,7 @@
 //! Right of way: who moves and who waits when robots would come too close (paper: Section V and Algorithm 6).
 //!
-//! Robots whose next moves would bring them into each other's safety distance form a conflict set. The head
-//! of the set moves and passes the others at a tangent. Members in conflict with a moving member ahead of
-//! them yield. The head keeps the right of way until it leaves the set; then the next member is the head. A
-//! set in which no robot moves, or whose head moves but comes no nearer to its goal, is deadlocked. The
-//! resolver then tries, in this order: the robot in the way of the head makes room (`retreat`); another
-//! member becomes the head; once every member has been the head without success, the whole set backs off
-//! sideways.
-//!
-//! The default rule, reciprocal avoidance, forms no sets (`reciprocal`).
+//! Two rules can be chosen: the paper's, in which robots form conflict sets (`sets`), and the default rule,
+//! reciprocal avoidance, which forms none (`reciprocal`).
 //!
 //! The resolver reads positions and wishes and returns directives. Between steps it keeps only the order of
 //! the sets, the retreats, and per robot its last direction, its blocked steps and its state at a passage.
@@ -22,23 +15,21 @@ mod priority;
 mod reciprocal;
 mod retreat;
 mod room;
+mod sets;
 #[cfg(test)]
 mod testing;
-
-use std::collections::BTreeMap;
 
 use parry2d::math::Vector;
 use serde::{Deserialize, Serialize};
 
 use crate::event::{Event, EventLog};
-use crate::ids::RobotId;
 use crate::scenario::{ConflictRules, ResolverRule, RightOfWay, Scenario};
 
-use deadlock::{ConflictSet, NextTurn, Observation, Patience, Progress};
+use deadlock::{ConflictSet, Patience};
 pub use delay::{Delay, DelayCause, wait_cycles};
 pub use mover::{Directive, Mover};
 pub use passing::PASSING_RANGE_M;
-use passing::{Surroundings, nearest_in_the_way, passing_direction};
+use passing::Surroundings;
 use predict::{Conflicts, Neighbours};
 pub use priority::PriorityKey;
 use reciprocal::Entry;
@@ -61,12 +52,6 @@ const RESPITE_S: f64 = 3.0;
 
 /// How often a robot asks again for room while it is blocked or comes no nearer, in seconds.
 const ASK_AGAIN_S: f64 = 0.5;
-
-/// Margin at which robots squeeze past if nothing is free at the full margin, in metres.
-const SQUEEZE_MARGIN_M: f32 = 0.03;
-
-/// Share of the wished speed at which robots squeeze past.
-const SQUEEZE_SPEED: f32 = 0.4;
 
 /// The conflict resolver of one trial.
 #[derive(Serialize, Deserialize)]
@@ -107,6 +92,12 @@ pub struct Resolver {
     /// Steps of waiting before a passage after which a robot ends the turn of the other direction.
     #[serde(skip)]
     turn_steps: u32,
+    /// Steps without coming nearer after which a robot no longer holds up the robots behind it.
+    #[serde(skip)]
+    holds_queue_steps: u32,
+    /// Steps without coming nearer after which a robot that makes room is let out.
+    #[serde(skip)]
+    let_out_steps: u32,
 }
 
 impl Resolver {
@@ -131,6 +122,8 @@ impl Resolver {
             entries: Vec::new(),
             stuck_steps: 0,
             turn_steps: 0,
+            holds_queue_steps: 0,
+            let_out_steps: 0,
         };
         resolver.restore(scenario);
         resolver
@@ -150,6 +143,8 @@ impl Resolver {
         self.ask_again = steps(ASK_AGAIN_S).max(1);
         self.stuck_steps = steps(reciprocal::STUCK_S);
         self.turn_steps = steps(reciprocal::TURN_S);
+        self.holds_queue_steps = steps(reciprocal::HOLDS_QUEUE_S);
+        self.let_out_steps = steps(reciprocal::LET_OUT_S);
         let limits = Limits {
             underway: steps(RETREAT_PATIENCE_S),
             at_place: steps(ROOM_PATIENCE_S),
@@ -176,16 +171,7 @@ impl Resolver {
             self.reciprocate(movers, log);
             return &self.directives;
         }
-        let (margin, horizon) = (self.right_of_way.margin_m as f32, self.right_of_way.horizon_s as f32);
-        self.neighbours.pair(movers, margin, horizon);
-        self.conflicts.find(movers, &self.neighbours, margin, horizon);
-        self.carry_over(movers, log);
-        let progress: Vec<Progress> = (0..self.sets.len()).map(|set| self.judge(set, movers, log)).collect();
-        self.direct(movers, &progress);
-        for (heading, directive) in self.headings.iter_mut().zip(&self.directives) {
-            *heading = directive.velocity().normalize_or_zero();
-        }
-        self.ask_for_room(movers, log);
+        self.settle_by_sets(movers, log);
         &self.directives
     }
 
@@ -200,98 +186,6 @@ impl Resolver {
         self.sets.iter().map(|set| set.order.as_slice())
     }
 
-    /// Carries the sets of the last step over to this step. A set continues the earlier set with which it
-    /// shares the most members and keeps its order: the head stays the head until it leaves the set or a
-    /// member makes room. A set that shares no member with an earlier one is new.
-    fn carry_over(&mut self, movers: &[Mover], log: &mut EventLog) {
-        let mut before: Vec<Option<ConflictSet>> =
-            std::mem::take(&mut self.sets).into_iter().map(Some).collect();
-        note_sets(&mut self.set_of, movers.len(), before.iter().flatten());
-        let priority = |i: usize| movers[i].priority;
-        for members in self.conflicts.components() {
-            let mut set = if let Some(at) = most_shared(&members, &self.set_of, &before)
-                && let Some(mut set) = before[at].take()
-            {
-                set.regroup(&members, |i| self.set_of[i] == Some(at), priority);
-                set
-            } else {
-                log.push(Event::ConflictStarted { robots: robots(&members, movers) });
-                ConflictSet::new(&members, priority)
-            };
-            set.promote(|i| self.retreats.depth(i));
-            self.sets.push(set);
-        }
-        note_sets(&mut self.set_of, movers.len(), self.sets.iter());
-    }
-
-    /// Judges the progress of a set. A stuck set gets room, another head or a pause: first the robot in the
-    /// way of the head is asked to make room. If it makes none, the turn passes to another head, or the whole
-    /// set backs off.
-    fn judge(&mut self, at: usize, movers: &[Mover], log: &mut EventLog) -> Progress {
-        let set = &mut self.sets[at];
-        let speeds = set.order.iter().map(|i| movers[*i].velocity.length());
-        let seen = Observation {
-            fastest: speeds.fold(0.0, f32::max),
-            head_way_left: movers[set.order[0]].way_left(),
-        };
-        if self.retreats.is_served(set.order[0]) {
-            set.wait_for_room();
-        }
-        let progress = set.observe(seen, self.patience);
-        if progress != Progress::Stuck {
-            return progress;
-        }
-        let (head, order) = (set.order[0], robots(&set.order, movers));
-        log.push(Event::Deadlocked { robots: order });
-        if let Some(blocker) = self.who_stops(head, movers)
-            && self.make_room(head, blocker, movers, log)
-        {
-            self.sets[at].wait_for_room();
-            return Progress::Flowing;
-        }
-        self.retreats.give_up(head);
-        let set = &mut self.sets[at];
-        let turn = set.give_turn(self.rules.resolver, self.patience);
-        let robots = robots(&set.order, movers);
-        match turn {
-            NextTurn::OfNextHead => {
-                log.push(Event::TurnPassed { robots });
-                Progress::Flowing
-            }
-            NextTurn::OfNobody => {
-                log.push(Event::BackedOff { robots });
-                Progress::BackingOff
-            }
-        }
-    }
-
-    /// Notes which robots stop. A robot stops if it has nowhere to go, or if it is in conflict with a robot
-    /// ahead of it in the set's order that is moving.
-    fn note_who_stands(&mut self, movers: &[Mover]) {
-        self.stands.clear();
-        let is_alone = |i: usize| self.set_of[i].is_none();
-        self.stands.extend((0..movers.len()).map(|i| !is_alone(i) || !movers[i].wishes_to_move()));
-        for i in self.sets.iter().flat_map(|set| &set.order) {
-            let set = self.set_of[*i];
-            let goes_before = |j: &usize| self.set_of[*j] == set && !self.stands[*j];
-            self.stands[*i] = self.conflicts.of(*i).iter().any(goes_before);
-        }
-    }
-
-    /// The robot in the way of a robot that makes no progress: the robot that blocked it in the last step, or
-    /// else the nearest slow robot in its way.
-    fn who_stops(&self, i: usize, movers: &[Mover]) -> Option<usize> {
-        if let Directive::Blocked { by } = self.directives[i] {
-            return by.map(RobotId::index);
-        }
-        let me = &movers[i];
-        let slow = |j: &&usize| movers[**j].velocity.length() < 0.5 * me.wish.length();
-        let near: Vec<usize> = self.neighbours.of(i).iter().filter(slow).copied().collect();
-        let discs = near.iter().map(|j| (movers[*j].position - me.position, me.radius + movers[*j].radius));
-        let surroundings = self.surroundings(i, me, discs);
-        nearest_in_the_way(me.wish, &surroundings).map(|at| near[at])
-    }
-
     fn surroundings<'m>(
         &self,
         i: usize,
@@ -302,90 +196,6 @@ impl Resolver {
         Surroundings { discs: discs.collect(), margin, known: me.known, heading: self.headings[i] }
     }
 
-    /// Directs all robots. Heads, robots without conflicts and members that need not stop pass the robots
-    /// that stand. The others yield, or back off.
-    fn direct(&mut self, movers: &[Mover], progress: &[Progress]) {
-        self.note_who_stands(movers);
-        for i in 0..movers.len() {
-            let goes = movers[i].wishes_to_move() && !self.stands[i];
-            self.directives[i] = if goes { self.pass(i, movers, movers[i].wish) } else { Directive::Stand };
-        }
-        for (set, progress) in self.sets.iter().zip(progress) {
-            let backs_off = *progress == Progress::BackingOff;
-            let middle =
-                set.order.iter().map(|i| movers[*i].position).sum::<Vector>() / set.order.len() as f32;
-            for i in set.order.iter().filter(|i| backs_off || self.stands[**i]) {
-                self.directives[*i] = if backs_off {
-                    let wish = back_off_wish(&movers[*i], middle);
-                    Directive::BackOff(self.pass(*i, movers, wish).velocity())
-                } else {
-                    Directive::Yield { to: movers[set.order[0]].robot }
-                };
-            }
-        }
-        for (i, retreat) in self.retreats.iter() {
-            let room_for = movers[retreat.head].robot;
-            let velocity = match self.directives[i] {
-                Directive::Proceed(velocity) => velocity,
-                Directive::Stand => Vector::ZERO,
-                _ => continue,
-            };
-            self.directives[i] = Directive::Retreat { velocity, room_for };
-        }
-    }
-
-    /// Lets blocked and stalled robots ask for room. A robot asks if it has been blocked for a while, or if
-    /// it moves outside any set and has come no nearer to its goal for a while. A blocker that has nowhere to
-    /// go is always asked. A blocker with a goal of its own is asked only by the head of its set, by a robot
-    /// that makes room itself, or by the robot with the best claim on a cycle of waiting.
-    fn ask_for_room(&mut self, movers: &[Mover], log: &mut EventLog) {
-        let mut due = Vec::new();
-        for (i, directive) in self.directives.iter().enumerate() {
-            match directive {
-                Directive::Blocked { by } => {
-                    self.blocked_steps[i] += 1;
-                    let steps = self.blocked_steps[i];
-                    let asks = steps == self.patience.deadlock || steps.is_multiple_of(self.ask_again);
-                    due.extend(by.filter(|_| asks).map(|by| (i, by.index())));
-                }
-                Directive::Proceed(_) if self.set_of[i].is_none() => {
-                    self.blocked_steps[i] = 0;
-                    let steps = movers[i].stalled_steps;
-                    if steps >= self.patience.livelock && steps.is_multiple_of(self.ask_again) {
-                        due.extend(self.who_stops(i, movers).map(|by| (i, by)));
-                    }
-                }
-                _ => self.blocked_steps[i] = 0,
-            }
-        }
-        if due.is_empty() {
-            return;
-        }
-        let waits_for: Vec<Option<usize>> =
-            self.directives.iter().map(|directive| directive.waits_for().map(RobotId::index)).collect();
-        let cycles = wait_cycles(&waits_for);
-        for (i, blocker) in due {
-            let is_parked = !movers[blocker].wishes_to_move();
-            let set = self.set_of[i].filter(|set| self.set_of[blocker] == Some(*set));
-            let is_head = set.is_some_and(|set| self.sets[set].order[0] == i);
-            if is_parked || is_head || self.retreats.depth(i) > 0 || self.leads_cycle(i, &cycles, movers) {
-                self.make_room(i, blocker, movers, log);
-            }
-        }
-    }
-
-    /// Whether a robot has the best claim among the blocked robots of a wait cycle.
-    fn leads_cycle(&self, i: usize, cycles: &[Vec<usize>], movers: &[Mover]) -> bool {
-        let blocked = |k: &&usize| matches!(self.directives[**k], Directive::Blocked { .. });
-        cycles.iter().filter(|cycle| cycle.contains(&i)).any(|cycle| {
-            let best = cycle.iter().filter(blocked).min_by(|a, b| {
-                let depth = |k: usize| std::cmp::Reverse(self.retreats.depth(k));
-                depth(**a).cmp(&depth(**b)).then(movers[**a].priority.precedence(&movers[**b].priority))
-            });
-            best == Some(&i)
-        })
-    }
-
     fn make_room(&mut self, i: usize, blocker: usize, movers: &[Mover], log: &mut EventLog) -> bool {
         let may_ask = self.retreats.may_ask(i, blocker, movers);
         let makes = may_ask && self.retreats.ask(i, blocker, movers, &self.neighbours);
@@ -394,56 +204,4 @@ impl Resolver {
         }
         makes
     }
-
-    /// The directive of a robot that has the right of way: to pass the robots that stand, at the full margin
-    /// or squeezing through, or `Blocked`.
-    fn pass(&self, i: usize, movers: &[Mover], wish: Vector) -> Directive {
-        let me = Mover { wish, ..movers[i] };
-        let near = self.neighbours.of(i);
-        let blockers = || near.iter().filter(|j| self.stands[**j]).map(|j| &movers[*j]);
-        let discs = blockers().map(|other| (other.position - me.position, me.radius + other.radius));
-        let mut surroundings = self.surroundings(i, &me, discs);
-        if let Some(direction) = passing_direction(&me, &surroundings) {
-            return Directive::Proceed(direction * wish.length());
-        }
-        surroundings.margin = surroundings.margin.min(SQUEEZE_MARGIN_M);
-        if let Some(direction) = passing_direction(&me, &surroundings) {
-            return Directive::Proceed(direction * wish.length() * SQUEEZE_SPEED);
-        }
-        let blocker = nearest_in_the_way(wish, &surroundings).and_then(|at| blockers().nth(at));
-        Directive::Blocked { by: blocker.map(|other| other.robot) }
-    }
-}
-
-/// Notes for each robot the set of which it is a member.
-fn note_sets<'s>(
-    set_of: &mut Vec<Option<usize>>,
-    robots: usize,
-    sets: impl Iterator<Item = &'s ConflictSet>,
-) {
-    set_of.clear();
-    set_of.resize(robots, None);
-    for (at, set) in sets.enumerate() {
-        set.order.iter().for_each(|i| set_of[*i] = Some(at));
-    }
-}
-
-/// The remaining set that shares the most of these members; the first of several.
-fn most_shared(members: &[usize], set_of: &[Option<usize>], left: &[Option<ConflictSet>]) -> Option<usize> {
-    let mut shares = BTreeMap::new();
-    for at in members.iter().filter_map(|i| set_of[*i]).filter(|at| left[*at].is_some()) {
-        *shares.entry(at).or_insert(0) += 1;
-    }
-    shares.into_iter().rev().max_by_key(|(_, shared)| *shared).map(|(at, _)| at)
-}
-
-/// Sideways and away from the middle of the set, at half the wished speed.
-fn back_off_wish(me: &Mover, middle: Vector) -> Vector {
-    let away = (me.position - middle).normalize_or_zero();
-    let to_the_right = -me.wish.perp().normalize_or_zero();
-    (away + to_the_right).normalize_or(to_the_right) * (0.5 * me.wish.length())
-}
-
-fn robots(members: &[usize], movers: &[Mover]) -> Vec<RobotId> {
-    members.iter().map(|i| movers[*i].robot).collect()
 }

@@ -108,6 +108,12 @@ impl Retreats {
         self.served.range((i, 0)..=(i, usize::MAX)).any(|(_, maker)| serves(&self.of[maker]))
     }
 
+    /// Whether a robot makes room for another one, or for a robot that makes room for that one, and so on.
+    pub(super) fn serves(&self, i: usize, other: usize) -> bool {
+        let heads = std::iter::successors(self.head_of(i), |head| self.head_of(*head));
+        heads.take(MAX_DEPTH as usize).any(|head| head == other)
+    }
+
     fn is_at_place(&self, i: usize) -> bool {
         self.of.get(&i).is_some_and(|retreat| retreat.path.is_empty())
     }
@@ -296,6 +302,11 @@ fn sampled(from: Vector, path: &[Vector]) -> Vec<Vector> {
 }
 
 impl Retreat {
+    /// Whether the robot is underway and has come no nearer to its place for more than so many steps.
+    pub(super) fn is_held_up(&self, steps: u32) -> bool {
+        !self.path.is_empty() && self.idle_steps > steps
+    }
+
     /// The path from the robot's position to the place.
     fn way(&self, me: &Mover) -> Vec<Vector> {
         std::iter::once(me.position).chain(self.path.iter().rev().copied()).collect()

@@ -56,7 +56,7 @@ impl Walls<'_> {
                 let point = a + along * at;
                 let (is_narrow, skip) = self.look(point, along);
                 if is_narrow {
-                    Self::add(&mut passages, point, left - at);
+                    self.add(&mut passages, point, left - at);
                 }
                 at += skip.max(SAMPLE_M);
             }
@@ -65,10 +65,11 @@ impl Walls<'_> {
         passages
     }
 
-    /// Adds a narrow point to the last passage. After a wide place, begins another passage.
-    fn add(passages: &mut Vec<Passage>, point: Vector, left: f32) {
+    /// Adds a narrow point to the last passage. After a wide place that is longer than the robot's radius,
+    /// begins another passage: a shorter one is no place to let others pass.
+    fn add(&self, passages: &mut Vec<Passage>, point: Vector, left: f32) {
         match passages.last_mut() {
-            Some(last) if last.leaves_at - left < 1.5 * SAMPLE_M => {
+            Some(last) if last.leaves_at - left < self.radius.max(1.5 * SAMPLE_M) => {
                 last.points.push(point);
                 last.leaves_at = left;
             }

@@ -79,7 +79,8 @@ impl Arguments {
             };
             return Ok(writeln!(out, "{}", serde_json::to_string(&output).map_err(Failure::run)?)?);
         }
-        for (i, case) in experiment.cases.iter().enumerate() {
+        let cases = experiment.cases.iter().enumerate().filter(|_| !comparisons.is_empty());
+        for (i, case) in cases {
             let place = experiment.describe(case);
             if !place.is_empty() {
                 writeln!(out, "{}", place.trim_end_matches(": "))?;
@@ -99,7 +100,9 @@ impl Arguments {
         if let Some(limit) = limit_of_correction(&comparisons) {
             writeln!(out, "\n{limit}")?;
         }
-        writeln!(out, "\n{}", footnote(&comparisons))?;
+        if !comparisons.is_empty() {
+            writeln!(out, "\n{}", footnote(&comparisons))?;
+        }
         Ok(())
     }
 }
@@ -124,6 +127,9 @@ fn print_changes(
     let comparisons: Vec<&Comparison> = comparisons.iter().filter(|one| one.metric == *name).collect();
     writeln!(out, "\nBy how much each policy's mean changes, in percent of what it was: {title}")?;
     print_table(out, &effects_table(&effects))?;
+    if comparisons.is_empty() {
+        return Ok(());
+    }
     writeln!(out, "\nDifferences between policies, case by case: {title}")?;
     print_table(out, &differences_table(&comparisons))?;
     writeln!(out, "\nBy how much these differences change: {title}")?;

@@ -3,7 +3,7 @@
 //!
 //! - *Open*: each robot takes its share in avoiding the others, and so do idle robots ([`velocity`]).
 //! - *Narrow*: where two robots do not fit side by side, the robots of one direction go. The others wait
-//!   outside and make room ([`passage`]).
+//!   outside and make room. Robots of one direction enter one after another ([`passage`]).
 //! - *Stuck*: a robot that has come no nearer to its goal for a while asks the robot in its way to make room.
 //!   That robot inherits its priority (`super::retreat`). The longer a robot is stuck, the better its claim.
 //!   A robot that has nowhere to go is asked at once.
@@ -16,7 +16,7 @@ use super::passing::nearest_in_the_way;
 use super::{Directive, Mover, Resolver, wait_cycles};
 use crate::event::{Event, EventLog};
 pub(super) use passage::Entry;
-use passage::{Entrant, decide};
+use passage::{Entrant, Follows, decide};
 use velocity::{HORIZON_S, MARGIN_M, Neighbour, avoiding_velocity};
 
 /// A robot that has come no nearer for this long, in seconds, is stuck.
@@ -26,10 +26,32 @@ pub(super) const STUCK_S: f64 = 4.0;
 pub(super) const TURN_S: f64 = 10.0;
 
 /// Robots wait at this distance from a passage, beyond their radius, in metres.
-const WAIT_AT_M: f32 = 0.3;
+const WAIT_AT_M: f32 = 0.6;
 
 /// Robots within this distance of their waiting place make room for robots that leave the passage, in metres.
 const MAKE_ROOM_M: f32 = 1.0;
+
+/// Free way between robots that enter a passage one after another, in metres.
+const FOLLOWING_GAP_M: f32 = 0.05;
+
+/// A robot that enters a passage after another closes the gap between them in this time, in seconds.
+const CLOSE_UP_S: f32 = 0.3;
+
+/// A robot in a queue wishes to go at least this fast, in metres per second: it has not arrived.
+const LEAST_WISH_MPS: f32 = 0.02;
+
+/// A robot that has come no nearer for this long, in seconds, holds up no robot behind it.
+pub(super) const HOLDS_QUEUE_S: f64 = 2.0;
+
+/// A robot that makes room and gets no nearer to its place for this long, in seconds, is let out by the robot
+/// for which it does so.
+pub(super) const LET_OUT_S: f64 = 2.0;
+
+/// A robot lets another out as long as there is less than this between them, in metres.
+const LET_OUT_GAP_M: f32 = 0.15;
+
+/// Share of its top speed at which a robot lets another out.
+const LET_OUT_SPEED: f32 = 0.2;
 
 /// Share of the avoidance that the robot with the right of way at a passage takes; the other robot takes the
 /// rest.
@@ -47,10 +69,12 @@ const STILL_MPS: f32 = 0.005;
 
 impl Resolver {
     /// One directive for each mover, by the default rule. Limits the wishes of robots that wait before a
-    /// passage.
+    /// passage or queue there, and replaces those of robots that let others out.
     pub(super) fn reciprocate(&mut self, movers: &mut [Mover], log: &mut EventLog) {
         self.neighbours.pair(movers, MARGIN_M, HORIZON_S);
         self.hold_before_passages(movers, log);
+        self.queue_before_passages(movers);
+        self.let_out(movers);
         for i in 0..movers.len() {
             self.directives[i] = self.steer(i, movers);
         }
@@ -83,7 +107,7 @@ impl Resolver {
     fn hold_before_passages(&mut self, movers: &mut [Mover], log: &mut EventLog) {
         self.entries.resize(movers.len(), Entry::default());
         for entry in &mut self.entries {
-            (entry.rank, entry.waits_for) = (None, None);
+            (entry.rank, entry.waits_for, entry.follows) = (None, None, None);
         }
         let entrants: Vec<Entrant> =
             movers.iter().enumerate().filter_map(|(i, me)| Entrant::new(i, me)).collect();
@@ -108,6 +132,33 @@ impl Resolver {
             let me = &mut movers[i];
             let stops_in: f32 = (ahead - me.radius - WAIT_AT_M).max(0.0);
             me.wish = me.wish.clamp_length_max((2.0 * me.braking * stops_in).sqrt());
+        }
+    }
+
+    /// Lets robots that may enter a passage in the same direction do so one after another, at a small
+    /// distance. All at once, they would press against one another at its mouth.
+    fn queue_before_passages(&self, movers: &mut [Mover]) {
+        for (i, entry) in self.entries.iter().enumerate() {
+            let Some(Follows { robot, gap }) = entry.follows else { continue };
+            let first = &movers[robot];
+            if first.stalled_steps > self.holds_queue_steps {
+                continue;
+            }
+            let allowed = first.velocity.length() + (gap - FOLLOWING_GAP_M) / CLOSE_UP_S;
+            movers[i].wish = movers[i].wish.clamp_length_max(allowed.max(LEAST_WISH_MPS));
+        }
+    }
+
+    /// Lets robots step back from robots that cannot make room for them because they themselves are in the
+    /// way, as in a corner.
+    fn let_out(&self, movers: &mut [Mover]) {
+        for (i, retreat) in self.retreats.iter() {
+            let (me, head) = (&movers[i], &movers[retreat.head]);
+            let away = head.position - me.position;
+            let is_near = away.length() < me.radius + head.radius + LET_OUT_GAP_M;
+            if is_near && head.can_make_room && retreat.is_held_up(self.let_out_steps) {
+                movers[retreat.head].wish = away.normalize_or_zero() * LET_OUT_SPEED * head.speed;
+            }
         }
     }
 
@@ -160,6 +211,9 @@ impl Resolver {
             return;
         }
         let Some(blocker) = self.robot_in_the_way(i, movers) else { return };
+        if self.retreats.serves(i, blocker) {
+            return;
+        }
         if me.stalled_steps == self.stuck_steps {
             log.push(Event::Deadlocked { robots: vec![me.robot, movers[blocker].robot] });
         }

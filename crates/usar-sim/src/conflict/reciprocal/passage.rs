@@ -3,7 +3,7 @@
 //! The order is: robots inside; robots that may enter and are about to; robots that have waited too long;
 //! robots that follow a robot inside in the same direction; and all others, the nearest first. So robots go
 //! through in platoons, and the turn of a direction ends when a robot of another direction has waited for
-//! [`super::TURN_S`].
+//! [`super::TURN_S`]. Robots of one direction queue before the mouth, in this order.
 
 use std::cmp::Ordering;
 
@@ -13,7 +13,7 @@ use crate::conflict::Mover;
 use crate::planning::Passage;
 
 /// Robots ask for a passage from this distance on, in metres, plus their stopping distance.
-const ASK_FROM_M: f32 = 2.5;
+const ASK_FROM_M: f32 = 3.0;
 
 /// A robot that may enter is no longer stopped within this distance of the passage, in metres.
 const COMMITTED_M: f32 = 0.4;
@@ -28,6 +28,13 @@ const SAME_WAY: f32 = 0.5;
 /// less than 1, so that a bay between two passages keeps them apart.
 const MEETING: f32 = 0.5;
 
+/// A wide place between two passages is a bay, in which robots pass one another, if it is shorter than this,
+/// in metres. At a bay, nobody queues.
+const BAY_M: f32 = 2.5;
+
+/// Robots queue within this distance of a passage, in metres.
+const QUEUE_M: f32 = 2.0;
+
 /// A robot in a narrow passage, or soon in one.
 pub(super) struct Entrant<'a> {
     /// Index of the robot.
@@ -35,6 +42,8 @@ pub(super) struct Entrant<'a> {
     /// Distance to the passage along the route, in metres; negative inside.
     pub(super) ahead: f32,
     passage: &'a Passage,
+    /// Whether a bay lies before or behind the passage.
+    is_at_bay: bool,
     /// Distance to the end of the passage along the route, in metres.
     to_exit: f32,
     radius: f32,
@@ -56,6 +65,24 @@ pub(in crate::conflict) struct Entry {
     /// The robot for which it waits in this step.
     #[serde(skip)]
     pub(super) waits_for: Option<usize>,
+    /// The robot behind which it queues in this step.
+    #[serde(skip)]
+    pub(super) follows: Option<Follows>,
+}
+
+/// The robot ahead in a queue before a passage.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Follows {
+    /// Index of the robot ahead.
+    pub(super) robot: usize,
+    /// Free way between the two robots, in metres.
+    pub(super) gap: f32,
+}
+
+/// Whether a bay lies before or behind one of these passages.
+fn is_at_bay(passages: &[Passage], at: usize) -> bool {
+    let is_bay = |pair: &[Passage]| pair[0].leaves_at - pair[1].enters_at < BAY_M;
+    (at > 0 && is_bay(&passages[at - 1..=at])) || passages.get(at..at + 2).is_some_and(is_bay)
 }
 
 /// How two robots relate whose passages meet.
@@ -85,7 +112,8 @@ impl<'a> Entrant<'a> {
             return None;
         }
         let left = me.way_left();
-        let passage = me.passages.iter().find(|passage| left > passage.leaves_at - me.radius)?;
+        let at = me.passages.iter().position(|passage| left > passage.leaves_at - me.radius)?;
+        let passage = &me.passages[at];
         let ahead = left - passage.enters_at;
         let stopping = me.speed * me.speed / (2.0 * me.braking);
         let corner = |pick: fn(Vector, Vector) -> Vector| passage.points.iter().copied().reduce(pick);
@@ -94,6 +122,7 @@ impl<'a> Entrant<'a> {
             i,
             ahead,
             passage,
+            is_at_bay: is_at_bay(me.passages, at),
             to_exit: left - passage.leaves_at,
             radius: me.radius,
             low: corner(Vector::min)? - border,
@@ -105,16 +134,18 @@ impl<'a> Entrant<'a> {
         self.ahead <= 0.0
     }
 
-    /// How the robots relate at the place where their passages come nearest; `None` if the passages do not
-    /// meet.
+    /// How the robots relate at the place where their passages come nearest, without the parts that they have
+    /// left behind; `None` if the passages do not meet.
     fn meets(&self, other: &Self) -> Option<Meeting> {
         if self.low.cmpgt(other.high).any() || self.high.cmplt(other.low).any() {
             return None;
         }
-        let touch = MEETING * (self.radius + other.radius);
+        let apart = self.radius + other.radius;
+        let touch = MEETING * apart;
         let (mut nearest, mut at) = (touch * touch, None);
-        for (a, here) in self.passage.points.iter().enumerate() {
-            for (b, there) in other.passage.points.iter().enumerate() {
+        let (mine, its) = (self.left_behind(apart), other.left_behind(apart));
+        for (a, here) in self.passage.points.iter().enumerate().skip(mine) {
+            for (b, there) in other.passage.points.iter().enumerate().skip(its) {
                 let apart = (*here - *there).length_squared();
                 if apart < nearest {
                     (nearest, at) = (apart, Some((a, b)));
@@ -124,6 +155,23 @@ impl<'a> Entrant<'a> {
         let (a, b) = at?;
         let is_same = self.direction(a).dot(other.direction(b)) > SAME_WAY;
         Some(if is_same { Meeting::SameWay } else { Meeting::Opposed })
+    }
+
+    /// Number of points of the passage that lie farther behind the robot than `clearance`.
+    fn left_behind(&self, clearance: f32) -> usize {
+        let lengths = self.passage.points.windows(2).map(|pair| (pair[1] - pair[0]).length());
+        let from_mouth = lengths.scan(0.0, |sum, length| {
+            *sum += length;
+            Some(*sum)
+        });
+        from_mouth.take_while(|way| *way < -self.ahead - clearance).count()
+    }
+
+    /// The free way to the robot ahead, if this robot queues behind it.
+    fn follows(&self, first: &Self) -> Option<Follows> {
+        let queues = !self.is_at_bay && self.ahead >= 0.0 && self.ahead <= QUEUE_M;
+        let gap = self.ahead - first.ahead - self.radius - first.radius;
+        queues.then_some(Follows { robot: first.i, gap })
     }
 
     fn direction(&self, at: usize) -> Vector {
@@ -174,7 +222,15 @@ pub(super) fn decide(entrants: &[Entrant], movers: &[Mover], entries: &mut [Entr
                 && (entries[entrants[**b].i].waits_for.is_none() || waited_too_long(&claims[**b]))
         };
         let waits_for = order[..rank].iter().find(stops).map(|b| entrants[*b].i);
+        let goes_first = |b: &&usize| {
+            meetings.between(*a, **b) == Some(Meeting::SameWay)
+                && entries[entrants[**b].i].waits_for.is_none()
+        };
+        let farthest = |b: &&usize, c: &&usize| entrants[**b].ahead.total_cmp(&entrants[**c].ahead);
+        let first = order[..rank].iter().filter(goes_first).max_by(farthest).filter(|_| waits_for.is_none());
+        let follows = first.and_then(|b| entrants[*a].follows(&entrants[*b]));
         let entry = &mut entries[entrants[*a].i];
+        entry.follows = follows;
         entry.rank = Some(rank);
         entry.waits_for = waits_for;
     }
@@ -276,6 +332,42 @@ mod tests {
         let entries =
             decided(&[(10.5, 1.0), (9.0, 1.0), (12.5, -1.0)], &[Entry::default(), Entry::default(), waited]);
         assert_eq!(waits(&entries), [None, Some(2), Some(0)]);
+    }
+
+    #[test]
+    fn robots_of_one_direction_queue_in_their_order() {
+        let entries = decided(&[(9.5, 1.0), (8.5, 1.0), (9.0, 1.0), (10.5, 1.0)], &[]);
+        let ahead: Vec<Option<usize>> =
+            entries.iter().map(|entry| entry.follows.map(|first| first.robot)).collect();
+        assert_eq!(ahead, [Some(3), Some(2), Some(0), None]);
+        let gap = entries[2].follows.unwrap().gap;
+        assert!(
+            (gap - (0.5 - 0.8)).abs() < 1e-5,
+            "radii of 0.4 m, half a metre from centre to centre: {gap}"
+        );
+    }
+
+    /// Entries of a robot on the x axis and of one that is about to cross its way at x = 11, upwards.
+    fn crossed(x: f32) -> Vec<Entry> {
+        let points = (0..=10_u8).map(|i| Vector::new(11.0, f32::from(i) / 5.0 - 1.0)).collect();
+        let across = [Passage { points, enters_at: 9.5, leaves_at: 7.5 }];
+        let along = [passage(10.0, 14.0, x)];
+        let movers = [
+            Mover { passages: &along, ..mover(0, [x, 0.0], [1.0, 0.0]) },
+            Mover { passages: &across, ..mover(1, [11.0, -1.5], [0.0, 1.0]) },
+        ];
+        let entrants: Vec<Entrant> =
+            movers.iter().enumerate().filter_map(|(i, me)| Entrant::new(i, me)).collect();
+        let mut entries = vec![Entry::default(); 2];
+        decide(&entrants, &movers, &mut entries, 100);
+        entries
+    }
+
+    #[test]
+    fn a_robot_that_has_left_a_crossing_behind_is_no_longer_awaited() {
+        assert_eq!(waits(&crossed(10.5)), [None, Some(0)], "before the crossing");
+        assert_eq!(waits(&crossed(11.5)), [None, Some(0)], "just behind it");
+        assert_eq!(waits(&crossed(12.6)), [None, None], "clear of it");
     }
 
     #[test]

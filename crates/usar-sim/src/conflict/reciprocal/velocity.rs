@@ -20,7 +20,7 @@ pub(super) const HORIZON_S: f32 = 1.5;
 const LEAST_HORIZON_S: f32 = 0.3;
 
 /// Robots that are too close part within this time, in seconds.
-const PART_WITHIN_S: f32 = 0.5;
+const PART_WITHIN_S: f32 = 0.05;
 
 /// Robots brake for walls and debris that they would reach within this time, in seconds.
 const WALL_HORIZON_S: f32 = 0.5;
@@ -29,7 +29,7 @@ const WALL_HORIZON_S: f32 = 0.5;
 const WALL_SLACK_M: f32 = 0.04;
 
 /// Distance that robots keep from one another, in metres.
-pub(super) const MARGIN_M: f32 = 0.01;
+pub(super) const MARGIN_M: f32 = 0.015;
 
 /// A robot heeds this many others at most: the nearest.
 const HEEDED: usize = 12;
