@@ -1,6 +1,6 @@
 //! Exports recordings of trials for other programs: as MCAP logs for robot viewers, and as tidy tables.
 //!
-//! [`mcap`](mod@mcap) writes a log for Foxglove, Lichtblick and Rerun. [`tables`] writes the time series of
+//! [`mcap`](mod@mcap) writes a log for Foxglove and Lichtblick. [`tables`] writes the time series of
 //! robots and groups, events and decisions as CSV. [`parquet`] converts any such table to a Parquet file.
 
 mod error;

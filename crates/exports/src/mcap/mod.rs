@@ -1,4 +1,4 @@
-//! A recording as an MCAP log (<https://mcap.dev>) for Foxglove, Lichtblick and Rerun: messages in JSON,
+//! A recording as an MCAP log (<https://mcap.dev>) for Foxglove and Lichtblick: messages in JSON,
 //! with Foxglove's schemas where they exist.
 //!
 //! | topic | schema | when |
