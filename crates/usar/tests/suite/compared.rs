@@ -281,15 +281,17 @@ fn a_sweep_with_axes_says_how_differences_change_along_them() {
 fn one_policy_is_compared_with_itself_along_an_axis() {
     let folder = place();
     let here = folder.path();
-    let sweep = ["sweep", "short.ron", "--policies", "ENG", "--trials", "3", "--axis", "duration_s=60,90"];
-    succeeds(&usar(here, &sweep));
-    let told = succeeds(&usar(here, &["compare", "results/short", "--metric", "distance"]));
-    let means = told.lines().find(|line| line.contains("mean, duration_s = 60")).expect("the first row");
-    let change = told.lines().find(|line| line.contains("duration_s from 60 to 90")).expect("the change");
+    let sweep = "(name: \"one\", scenario: \"short.ron\", policies: [\"ENG\"], trials: 3, \
+                 axes: {\"mission.rest_s\": [30.0, 5.0]})";
+    std::fs::write(here.join("one.ron"), sweep).unwrap();
+    succeeds(&usar(here, &["sweep", "one.ron", "--set", "duration_s=120"]));
+    let told = succeeds(&usar(here, &["compare", "results/one", "--metric", "distance"]));
+    let line = |text: &str| told.lines().find(|line| line.contains(text)).unwrap_or_else(|| panic!("{told}"));
+    let (means, change) = (line("mean, mission.rest_s = 30"), line("mission.rest_s from 30"));
     assert!(!means.contains('%') && change.contains(" % ("), "{told}");
     assert!(!told.contains("Differences between policies"), "{told}");
-    let program = succeeds(&usar(here, &["compare", "results/short", "--metric", "distance", "--json"]));
-    let program: serde_json::Value = serde_json::from_str(&program).unwrap();
+    let program = succeeds(&usar(here, &["compare", "results/one", "--metric", "distance", "--json"]));
+    let program: Value = serde_json::from_str(&program).unwrap();
     let mean = program["effects"][0]["means"][0].as_f64().unwrap();
     let shown: f64 = means.split('┆').nth(1).unwrap().trim().trim_end_matches('│').trim().parse().unwrap();
     assert!((mean - shown).abs() < 0.01 * mean, "{mean} {means}");
