@@ -90,7 +90,7 @@ pages *pages:
     cargo build --release --package usar
     cargo run --release --package xtask -- pages {{pages}}
 
-# The results that the pages in docs/ are made of: over an hour on two cores, 5 GB of disk; goes on where it was broken off
+# The results that the pages in docs/ are made of: some hours on two cores, 10 GB of disk; goes on where it was broken off
 results:
     cargo build --release --package usar
     target/release/usar sweep scenarios/paper.ron
@@ -100,6 +100,10 @@ results:
     target/release/usar sweep scenarios/sweeps/best-reading.ron
     target/release/usar sweep scenarios/sweeps/readings.ron
     target/release/usar sweep scenarios/sweeps/readings-calibrated.ron
+    target/release/usar sweep scenarios/sweeps/what-matters.ron
+    target/release/usar sweep scenarios/sweeps/what-matters-calibrated.ron
+    target/release/usar sweep scenarios/sweeps/right-of-way.ron
+    target/release/usar sweep scenarios/sweeps/right-of-way-crowded.ron
 
 # How often each kind of interval holds what it is to hold (docs/experiments.md): a minute
 coverage *arguments:

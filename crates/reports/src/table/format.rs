@@ -60,15 +60,20 @@ fn cells(row: &Row) -> Vec<String> {
     row.cell_iter().map(|cell| cell.content().replace('\n', " ").trim().to_owned()).collect()
 }
 
-/// The header and the other rows. A column name that occurs more than once is prefixed with the name of the
-/// column before it.
+/// The header and the other rows, each as long as the header. A column name that occurs more than once is
+/// prefixed with the name of the column before it.
 fn lines(table: &Table) -> (Vec<String>, Vec<Vec<String>>) {
     let names = table.header().map(cells).unwrap_or_default();
     let unique = |(i, name): (usize, &String)| {
         let is_repeated = names[..i].contains(name) || names[i + 1..].contains(name);
         if is_repeated && i > 0 { format!("{} {name}", names[i - 1]) } else { name.clone() }
     };
-    (names.iter().enumerate().map(unique).collect(), table.row_iter().map(cells).collect())
+    let full = |row: &Row| {
+        let mut cells = cells(row);
+        cells.resize(cells.len().max(names.len()), String::new());
+        cells
+    };
+    (names.iter().enumerate().map(unique).collect(), table.row_iter().map(full).collect())
 }
 
 /// The texts of a table, for an HTML page.
@@ -188,5 +193,13 @@ mod tests {
             "[{\"policy\":\"A_1|x\",\"mean, sd\":\"3.5 ± 1\"},{\"policy\":\"b & c\",\"mean, sd\":\"< 1 %\"}]\n",
         );
         assert!(Format::Table.write(&table()).unwrap().starts_with('┌'));
+    }
+
+    #[test]
+    fn a_short_row_has_all_columns() {
+        let mut table = headed(["a", "b", "c"]);
+        table.add_row([Cell::new("1")]);
+        assert_eq!(Format::Csv.write(&table).unwrap(), "a,b,c\n1,,\n");
+        assert_eq!(Format::Markdown.write(&table).unwrap().lines().nth(3), Some("| 1 |  |  |"));
     }
 }

@@ -57,7 +57,7 @@ pub fn rivals_table(rows: &[RivalRow]) -> Table {
         "below",
         "neither",
         "corrected: above",
-        "below",
+        "corrected: below",
         "least",
         "greatest",
     ]);
