@@ -1,7 +1,8 @@
 //! Broken files, each with its exact message: `broken.txt`.
 //!
-//! A block is a title, the kind of file (`scenario`: paper.ron; `sweep`: a sweep file over it), what takes the place of what in it
-//! (`<` and `>`, with `\n` for the end of a line), and the message (`=`). `USAR_BLESS=1 cargo test --package tests broken` writes the messages anew:
+//! A block is a title, the kind of file (`scenario`: paper.ron; `sweep`: a sweep file over it), what takes
+//! the place of what in it (`<` and `>`, with `\n` for the end of a line), and the message (`=`).
+//! `USAR_BLESS=1 cargo test --package tests broken` writes the messages anew:
 //! read the difference.
 
 use std::fmt::Write;
@@ -12,7 +13,8 @@ use usar_sim::scenario::Scenario;
 
 use crate::support::{paper_text, root};
 
-const SWEEP: &str = "(\n    name: \"s\",\n    scenario: \"paper.ron\",\n    policies: [\"RNE\", \"DIS\"],\n    trials: 3,\n    axes: {\"mission.rest_s\": [20.0, 30.0]},\n)\n";
+const SWEEP: &str = "(\n    name: \"s\",\n    scenario: \"paper.ron\",\n    policies: \
+    [\"RNE\", \"DIS\"],\n    trials: 3,\n    axes: {\"mission.rest_s\": [20.0, 30.0]},\n)\n";
 
 struct Block {
     title: String,

@@ -1,4 +1,5 @@
-//! Nothing appears or vanishes: rescuees, capacity, resources, energy and HP, with every invariant checked at every step.
+//! Nothing appears or vanishes: rescuees, capacity, resources, energy and HP, with every invariant checked at
+//! every step.
 
 use usar_sim::record::{Status, TrialRecord};
 use usar_sim::scenario::Scenario;

@@ -1,5 +1,5 @@
-//! One seed, one result, bit for bit: the promises of `docs/determinism.md` that one process can test. Those about processes, threads and
-//! surroundings are tested at the command line.
+//! One seed, one result, bit for bit: the promises of `docs/determinism.md` that one process can test. Those
+//! about processes, threads and surroundings are tested at the command line.
 
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
@@ -79,7 +79,8 @@ fn asked(trial: &mut Simulation) -> Question {
     }
 }
 
-/// Runs a trial by hand: `answer` is shown each question in its trial, answers it, and may put another trial in its place.
+/// Runs a trial by hand: `answer` is shown each question in its trial, answers it, and may put another trial
+/// in its place.
 fn by_hand(scenario: &Scenario, mut answer: impl FnMut(&mut Simulation, Question)) -> TrialRecord {
     let mut trial = Simulation::new(scenario, 1).unwrap();
     loop {
@@ -203,7 +204,8 @@ fn the_order_of_trials_changes_nothing() {
     assert_eq!(records(&forwards), records(&shuffled));
 }
 
-/// Renewed by `just golden` only, with a line in the changelog. CI compares the same file with a release build.
+/// Renewed by `just golden` only, with a line in the changelog. CI compares the same file with a release
+/// build.
 #[test]
 fn the_small_worlds_have_their_golden_hashes() {
     let expected = std::fs::read_to_string(golden::path()).unwrap();

@@ -1,5 +1,5 @@
-//! The pages for people: links lead somewhere, options exist, every page is in the book, and prose can be read in a
-//! window of 110 columns.
+//! The pages for people: links lead somewhere, options exist, every page is in the book, and prose can be
+//! read in a window of 110 columns.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};

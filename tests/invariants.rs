@@ -1,4 +1,5 @@
-//! The invariant checker: sound trials pass it, and every seeded fault is caught in the step in which it is seeded.
+//! The invariant checker: sound trials pass it, and every seeded fault is caught in the step in which it is
+//! seeded.
 
 use parry2d::math::Vector;
 use usar_sim::event::{Event, Place};

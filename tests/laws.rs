@@ -1,6 +1,6 @@
 //! The laws of the architecture, checked on the sources: crates use only those below them, modules form no
-//! circle, the engine has one seam, the general crates have no words of one paper, and the laboratory draws and
-//! prints nothing.
+//! circle, the engine has one seam, the general crates have no words of one paper, and the laboratory draws
+//! and prints nothing.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -112,7 +112,8 @@ fn figures_tables_and_the_command_line_are_left_to_their_crates() {
 
 #[test]
 fn dependencies_of_every_kind_are_found() {
-    let manifest = "[package]\nname = \"x\"\n\n[dependencies]\na.workspace = true\n\n[dev-dependencies]\nb = \"1\"\n\n[lints]\nc = 1\n";
+    let manifest = "[package]\nname = \"x\"\n\n[dependencies]\na.workspace = true\n\n[dev-dependencies]\nb \
+        = \"1\"\n\n[lints]\nc = 1\n";
     assert_eq!(dependencies(manifest), BTreeSet::from(["a", "b"]));
 }
 
@@ -167,7 +168,8 @@ fn uses(sources: &[(PathBuf, String)]) -> BTreeMap<String, BTreeSet<String>> {
     uses
 }
 
-/// The modules that are left when all that use none of the others are taken away, again and again: circles, and what uses them.
+/// The modules that are left when all that use none of the others are taken away, again and again: circles,
+/// and what uses them.
 fn circle(mut uses: BTreeMap<String, BTreeSet<String>>) -> BTreeMap<String, BTreeSet<String>> {
     loop {
         let left: BTreeSet<String> = uses.keys().cloned().collect();

@@ -1,4 +1,5 @@
-//! Each limit of a scenario holds at the limit and not one above; the page of limits is made of the constants.
+//! Each limit of a scenario holds at the limit and not one above; the page of limits is made of the
+//! constants.
 
 use usar_sim::limits;
 use usar_sim::scenario::{Problem, Scenario, ScenarioFile};

@@ -44,7 +44,8 @@ fn run(file: ScenarioFile) -> (TrialRecord, f64) {
     (trial.finish(), free_path_s)
 }
 
-/// The longest time that a robot would need for its errands if it were alone and knew everything, at full speed.
+/// The longest time that a robot would need for its errands if it were alone and knew everything, at full
+/// speed.
 fn free_path_s(scenario: &Scenario, trial: &Simulation) -> f64 {
     let world = trial.world();
     let mut known = Knowledge::nothing(world, Inflation::of(scenario));

@@ -1,6 +1,6 @@
-//! Missions unlike the paper's: three tasks, one role, two roles that fly, eight needs, quotas. All policies manage them, with every invariant
-//! checked at every step, and rescue exactly as many. A change of a number is a change of what people get: it must be meant, and told in
-//! the changelog.
+//! Missions unlike the paper's: three tasks, one role, two roles that fly, eight needs, quotas. All policies
+//! manage them, with every invariant checked at every step, and rescue exactly as many. A change of a number
+//! is a change of what people get: it must be meant, and told in the changelog.
 
 use rayon::prelude::*;
 use rne_core::{Account, RoleId, TaskId};
@@ -263,7 +263,8 @@ fn a_team_of_one_serves_one_task_at_a_time() {
     }
 }
 
-/// Robots that fly are wider than those on the ground, of which there are none, and more than fit in one row over the block.
+/// Robots that fly are wider than those on the ground, of which there are none, and more than fit in one row
+/// over the block.
 #[test]
 fn a_team_that_only_flies_waits_apart_and_shares_its_resources() {
     let row = |count: u32, y: f64| {

@@ -51,7 +51,7 @@ fn outcome(name: &str, seed: u64) -> trial::Outcome {
 fn robots_queue_before_a_bottleneck_and_do_not_touch() {
     let outcome = outcome("bottleneck_10", FILE_SEED);
     assert!(outcome.is_ok() && outcome.flow < 1.4, "{}", outcome.flow);
-    assert_eq!(outcome.touches, 0.0);
+    assert!(outcome.touches < 0.01, "{}", outcome.touches);
 }
 
 #[test]

@@ -1,5 +1,5 @@
-//! What makes the crates usable by strangers: ranges of versions where these hurt nobody, and what a registry and a
-//! reader need to know.
+//! What makes the crates usable by strangers: ranges of versions where these hurt nobody, and what a registry
+//! and a reader need to know.
 
 use std::collections::BTreeSet;
 

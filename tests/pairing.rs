@@ -25,7 +25,8 @@ fn one_more_robot_leaves_the_others_levels_and_the_layout_alone() {
         SAMPLED[1],
         (
             "center: (46.4, 18.2), width_m: 1.0),",
-            "center: (46.4, 18.2), width_m: 1.0),\n(role: \"carrier\", count: 1, center: (30.0, 20.0), width_m: 0.0),",
+            "center: (46.4, 18.2), width_m: 1.0),\n(role: \"carrier\", count: 1, center: (30.0, 20.0), \
+             width_m: 0.0),",
         ),
     ]);
     let (before, after) = (Layout::sample(&as_it_is, 5).unwrap(), Layout::sample(&one_more, 5).unwrap());
@@ -39,7 +40,8 @@ fn initial_levels_follow_their_distributions() {
     let scenario = paper();
     let starts: Vec<_> = (0..500).flat_map(|seed| Layout::sample(&scenario, seed).unwrap().robots).collect();
     let mean = |level: fn(&RobotStart) -> f64| starts.iter().map(level).sum::<f64>() / starts.len() as f64;
-    // Clamping N(80, 20) at 100 takes 1.67 off its mean, clamping N(90, 10) takes 0.83 (numerical integration).
+    // Clamping N(80, 20) at 100 takes 1.67 off its mean, clamping N(90, 10) takes 0.83 (numerical
+    // integration).
     assert!((mean(|start| start.energy) - 78.33).abs() < 0.8, "{}", mean(|start| start.energy));
     assert!((mean(|start| start.hp) - 89.17).abs() < 0.4, "{}", mean(|start| start.hp));
     assert!(

@@ -1,5 +1,5 @@
-//! The exact results of `scenarios/paper.ron`. A change of any of them is a change of every published number: it must be meant, and
-//! told in the changelog.
+//! The exact results of `scenarios/paper.ron`. A change of any of them is a change of every published number:
+//! it must be meant, and told in the changelog.
 
 use rayon::prelude::*;
 

@@ -1,7 +1,7 @@
 //! Routes, proved by a checker of its own: connected, clear of known debris, and as short as an oracle's.
 //!
-//! The oracle is a visibility graph over the corners of the same inflated outlines, searched by Dijkstra in f64: exact, and too slow for
-//! anything but small maps.
+//! The oracle is a visibility graph over the corners of the same inflated outlines, searched by Dijkstra in
+//! f64: exact, and too slow for anything but small maps.
 
 use parry2d::math::Vector;
 use rand::rngs::ChaCha8Rng;
@@ -33,7 +33,8 @@ fn distance(a: P, b: P) -> f64 {
     (a[0] - b[0]).hypot(a[1] - b[1])
 }
 
-/// Whether more than a touch of the way from `a` to `b` is inside a convex polygon: bisected to the middle of what is left of it.
+/// Whether more than a touch of the way from `a` to `b` is inside a convex polygon: bisected to the middle of
+/// what is left of it.
 fn enters(polygon: &[P], a: P, b: P) -> bool {
     let (mut from, mut to) = (0.0_f64, 1.0_f64);
     for i in 0..polygon.len() {
@@ -125,7 +126,8 @@ fn query<'a>(obstacles: &'a ObstacleMap, from: P, to: P, so_far: &'a [Vector]) -
 
 #[test]
 fn routes_are_connected_clear_of_known_debris_and_as_short_as_the_oracle_s() {
-    // One planner for all maps: it keeps meshes, and must tell the pieces of one map from those of another by their sightings.
+    // One planner for all maps: it keeps meshes, and must tell the pieces of one map from those of another by
+    // their sightings.
     let mut planner = Planner::new(&paper());
     let mut compared = 0;
     for seed in 0..150 {
@@ -141,7 +143,8 @@ fn routes_are_connected_clear_of_known_debris_and_as_short_as_the_oracle_s() {
         if polygons.iter().any(|polygon| holds(polygon, from, 0.0) || holds(polygon, to, 0.0)) {
             continue;
         }
-        // As a robot finds out: first without one half of the pieces, then from the route that the other half cuts.
+        // As a robot finds out: first without one half of the pieces, then from the route that the other half
+        // cuts.
         let few = known(&outlines[..outlines.len() / 2], seed as u32 + 1);
         let so_far = planner.route(&query(&few, from, to, &[]));
         let so_far = so_far.as_ref().map_or(&[][..], Route::ahead);
@@ -193,7 +196,8 @@ fn a_detour_round_radiation_is_made_where_it_is_cheaper_and_no_further() {
     };
     let (straight, inside) = cost("0.0");
     assert!((straight - 20.0).abs() < 1e-3 && (inside - 8.0).abs() < 1e-3);
-    // Round the disc: two tangents of sqrt(10^2 - 4^2) m and an arc of 4 (pi - 2 acos(4 / 10)) m, 21.62 m in all.
+    // Round the disc: two tangents of sqrt(10^2 - 4^2) m and an arc of 4 (pi - 2 acos(4 / 10)) m, 21.62 m in
+    // all.
     let (round, inside) = cost("2.0");
     assert!((21.6..21.95).contains(&round) && inside == 0.0, "{round} m, {inside} m inside");
     let (cheap, inside) = cost("0.3");

@@ -75,7 +75,8 @@ fn the_defaults_are_those_of_the_paper_s_scenario() {
 
 #[test]
 fn a_scenario_needs_tasks_or_errands_and_errands_need_robots_and_places() {
-    let small = "(name: \"s\", duration_s: 10.0, dt_s: 0.02, arena_m: (10.0, 10.0), team: [(role: \"robot\", count: 1, center: (5.0, 5.0), width_m: 0.0)],";
+    let small = "(name: \"s\", duration_s: 10.0, dt_s: 0.02, arena_m: (10.0, 10.0), team: [(role: \"robot\", \
+        count: 1, center: (5.0, 5.0), width_m: 0.0)],";
     let error = |rest: &str| {
         let text = format!("{small}{rest})");
         Scenario::parse(&text, Path::new("s.ron")).unwrap_err().to_string()
@@ -139,7 +140,8 @@ fn values_out_of_range_are_named_with_file_line_field_rule_and_value() {
     assert_eq!(
         error_of("(at: (79.4, 25.9)", "(at: (179.4, 25.9)"),
         format!(
-            "s.ron:{line}: radiation[8].at must lie in the arena, at least 0 m from its walls, found (179.4, 25.9)"
+            "s.ron:{line}: radiation[8].at must lie in the arena, at least 0 m from its walls, found (179.4, \
+             25.9)"
         )
     );
 }
@@ -211,7 +213,8 @@ fn tables_of_tasks_roles_and_needs_are_checked_and_named_by_their_entries() {
     refused(
         "(name: \"easy\"",
         "(name: \"e.s\"",
-        "tasks[1].name must be a name of at most 64 letters, digits, `-` and `_` that does not start with `-`, found \"e.s\"",
+        "tasks[1].name must be a name of at most 64 letters, digits, `-` and `_` that does not start with \
+         `-`, found \"e.s\"",
     );
     refused(
         "rest: (66.0, 14.5)",
@@ -226,7 +229,8 @@ fn tables_of_tasks_roles_and_needs_are_checked_and_named_by_their_entries() {
     refused(
         "(name: \"obs\", level: Capability, measures: Observing)",
         "(name: \"obs\", level: Capability, measures: Constant)",
-        "needs.obs measures Constant, so that each role must have `constants: {\"obs\": ...}`, found role \"carrier\" without it",
+        "needs.obs measures Constant, so that each role must have `constants: {\"obs\": ...}`, found \
+         role \"carrier\" without it",
     );
 }
 
@@ -252,21 +256,22 @@ fn a_file_in_the_former_format_is_refused_with_the_change_that_it_needs() {
     assert_eq!(
         former("duration_s: 600.0", &format!("{rne}duration_s: 600.0")),
         format!(
-            "s.ron:{}: rne: belongs to the policy now: write `policies: [\"RNE(score: Sum)\"]` in a sweep file, or \
-             `--policy 'RNE(score: Sum)'`",
+            "s.ron:{}: rne: belongs to the policy now: write `policies: [\"RNE(score: Sum)\"]` in a sweep \
+             file, or `--policy 'RNE(score: Sum)'`",
             line_of("duration_s: 600.0")
         )
     );
     let roles = "roles: (carrier: (radius_m: 0.4, mass_kg: 50.0), observer: (radius_m: 0.4)),\n";
-    let tasks = "tasks: (\nhard: (center: (15.6, 64.2), size_m: (11.0, 5.7), grid: (20, 10), rest: (27.0, 14.5)),\n),\n";
+    let tasks = "tasks: (\nhard: (center: (15.6, 64.2), size_m: (11.0, 5.7), grid: (20, 10), rest: (27.0, \
+        14.5)),\n),\n";
     let (start, end) = (text.find("    roles: [").unwrap(), text.find("    // What robots report").unwrap());
     let with_roles = format!("{}{roles}{}", &text[..start], &text[end..]);
     let error = Scenario::parse(&with_roles, Path::new("s.ron")).unwrap_err().to_string();
     assert_eq!(
         error,
         format!(
-            "s.ron:{}: roles: is a list now: write `roles: [(name: \"...\", kind: Ground, ...), ...]`; `kind: Aerial` for \
-             robots that fly, `guides: true` for those whose loss slows their group",
+            "s.ron:{}: roles: is a list now: write `roles: [(name: \"...\", kind: Ground, ...), ...]`; \
+             `kind: Aerial` for robots that fly, `guides: true` for those whose loss slows their group",
             line_of("    roles: [")
         )
     );
@@ -277,8 +282,8 @@ fn a_file_in_the_former_format_is_refused_with_the_change_that_it_needs() {
     assert_eq!(
         error,
         format!(
-            "s.ron:{}: tasks: is a list now: write `tasks: [(name: \"...\", difficulty: 2, center: ...), ...]`; the harder \
-             a task, the higher its difficulty",
+            "s.ron:{}: tasks: is a list now: write `tasks: [(name: \"...\", difficulty: 2, center: ...), \
+             ...]`; the harder a task, the higher its difficulty",
             line_of("    tasks: [")
         )
     );

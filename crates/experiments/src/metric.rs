@@ -59,20 +59,26 @@ const RATIO: &str = "points per rescuee";
 const DECLARATIONS: &[Declaration] = &[
     per_task("rescuees", "rescuees", "", |r| Some(f64::from(r.rescued())), |t| Some(f64::from(t.rescued))).primary().in_figure("rescuees").higher()
         .means("Rescuees delivered home or to a rest place."),
-    per_task("energy_per_rescuee", "energy per rescuee", RATIO, |r| ratio(r.energy(), r.rescued()), |t| ratio(t.energy, t.rescued)).primary().of_sums("energy").in_figure("energy per rescuee").lower()
-        .means("Energy spent, divided by the rescuees delivered; empty where nobody was rescued. The total includes what robots spent outside groups."),
+    per_task("energy_per_rescuee", "energy per \
+        rescuee", RATIO, |r| ratio(r.energy(), r.rescued()), |t| ratio(t.energy, t.rescued)).primary().of_sums("energy").in_figure("energy per rescuee").lower()
+        .means("Energy spent, divided by the rescuees delivered; empty where nobody was rescued. The total \
+            includes what robots spent outside groups."),
     per_task("hp_per_rescuee", "HP per rescuee", RATIO, |r| ratio(r.hp(), r.rescued()), |t| ratio(t.hp, t.rescued)).primary().of_sums("hp").in_figure("HP per rescuee").lower()
-        .means("HP lost, divided by the rescuees delivered; empty where nobody was rescued. The total includes what robots lost outside groups."),
+        .means("HP lost, divided by the rescuees delivered; empty where nobody was rescued. The total \
+            includes what robots lost outside groups."),
     whole("rounds", "rounds", "", |r| Some(f64::from(r.completed_rounds))).primary().higher()
         .means("Rounds that ended: everybody was home again for whom the team waits."),
     whole("waiting", "time waited", "s", |r| Some(r.waiting_s())).in_figure("waiting and deadlocks").lower()
         .means("Time in which robots stood because of other robots, summed over all robots."),
-    whole("deadlocks", "deadlocks", "", |r| Some(f64::from(r.counts.deadlocks))).in_figure("waiting and deadlocks").lower()
+    whole("deadlocks", "deadlocks", "", |r| Some(f64::from(r.counts.deadlocks))).in_figure("waiting and \
+        deadlocks").lower()
         .means("Conflict sets in which nobody moved for as long as the rule of right of way allows."),
-    whole("longest_stall", "longest stall", "s", |r| Some(r.longest_stall_s())).in_figure("waiting and deadlocks").lower()
+    whole("longest_stall", "longest stall", "s", |r| Some(r.longest_stall_s())).in_figure("waiting and \
+        deadlocks").lower()
         .means("The longest time in which one robot with a goal came no nearer to it, over all robots."),
     whole("conflicts", "conflicts", "", |r| Some(f64::from(r.counts.conflicts)))
-        .means("Conflict sets that began: robots whose wishes would have brought them too near to one another."),
+        .means("Conflict sets that began: robots whose wishes would have brought them too near to one \
+            another."),
     whole("rotations", "turns passed on", "", |r| Some(f64::from(r.counts.rotations)))
         .means("Times the head of a conflict set lost its turn to the next."),
     whole("retreats", "times room was made", "", |r| Some(f64::from(r.counts.retreats)))
@@ -90,7 +96,8 @@ const DECLARATIONS: &[Declaration] = &[
     per_task("energy", "energy spent", POINTS, |r| Some(r.energy()), |t| Some(t.energy))
         .means("Energy spent by all robots; of a task, by its groups."),
     whole("energy.ungrouped", "energy spent outside groups", POINTS, |r| Some(r.ungrouped_energy))
-        .means("Energy spent by robots that were in no group: on their way to rest, and during rounds that went on without them."),
+        .means("Energy spent by robots that were in no group: on their way to rest, and during rounds that \
+            went on without them."),
     per_task("hp", "HP lost", POINTS, |r| Some(r.hp()), |t| Some(t.hp))
         .means("HP lost by all robots; of a task, by its groups."),
     whole("hp.ungrouped", "HP lost outside groups", POINTS, |r| Some(r.ungrouped_hp))

@@ -1,7 +1,8 @@
 //! A rapier2d world as bytes and back, to go on bit for bit.
 //!
-//! A crate of its own for one reason: reading and writing every type of the engine is more code than the whole simulator. Here it is
-//! compiled once and hardly optimised (`Cargo.toml` of the workspace), not again with every change of the simulator.
+//! A crate of its own for one reason: reading and writing every type of the engine is more code than the
+//! whole simulator. Here it is compiled once and hardly optimised (`Cargo.toml` of the workspace), not again
+//! with every change of the simulator.
 
 use rapier2d::pipeline::PhysicsWorld;
 

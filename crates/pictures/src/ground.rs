@@ -161,7 +161,8 @@ fn fixed_looks(unit: f64) -> String {
 fn sampled_looks(unit: f64) -> String {
     let (line, dash) = (Num(unit), Num(2.0 * unit));
     format!(
-        "fill=\"{DEBRIS}\" fill-opacity=\"0.55\" stroke=\"{INK}\" stroke-width=\"{line}\" stroke-dasharray=\"{dash}\""
+        "fill=\"{DEBRIS}\" fill-opacity=\"0.55\" stroke=\"{INK}\" stroke-width=\"{line}\" \
+         stroke-dasharray=\"{dash}\""
     )
 }
 

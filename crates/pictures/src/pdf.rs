@@ -35,8 +35,10 @@ mod tests {
 
     #[test]
     fn a_page_has_the_size_of_the_drawing_and_its_font() {
-        let svg = "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"88mm\" height=\"44mm\" viewBox=\"0 0 200 100\">\
-                   <text x=\"10\" y=\"50\" font-family=\"DejaVu Sans\" font-size=\"11\">rescuees</text></svg>";
+        let svg = "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"88mm\" height=\"44mm\" viewBox=\"0 0 \
+            200 100\">\
+                   <text x=\"10\" y=\"50\" font-family=\"DejaVu Sans\" \
+                   font-size=\"11\">rescuees</text></svg>";
         let pdf = pdf(svg).unwrap();
         let text = String::from_utf8_lossy(&pdf);
         assert!(text.starts_with("%PDF-1."));

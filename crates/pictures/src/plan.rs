@@ -64,7 +64,8 @@ pub fn plan(plan: &Plan, look: &Look) -> Picture {
 fn range_looks(unit: f64) -> String {
     let (line, dash) = (Num(0.7 * unit), Num(1.5 * unit));
     format!(
-        "fill=\"{SOFT}\" fill-opacity=\"0.02\" stroke=\"{SOFT}\" stroke-opacity=\"0.6\" stroke-width=\"{line}\" stroke-dasharray=\"{dash}\""
+        "fill=\"{SOFT}\" fill-opacity=\"0.02\" stroke=\"{SOFT}\" stroke-opacity=\"0.6\" \
+         stroke-width=\"{line}\" stroke-dasharray=\"{dash}\""
     )
 }
 

@@ -124,7 +124,8 @@ impl Svg {
         let [x, y, width, height] = [x, y, width, height].map(Num);
         let _ = writeln!(
             self.0,
-            "<svg x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\" viewBox=\"{x} {y} {width} {height}\">"
+            "<svg x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\" viewBox=\"{x} {y} {width} \
+             {height}\">"
         );
     }
 

@@ -45,7 +45,8 @@ pub fn trails(recording: &Recording, look: &Look) -> Result<Picture, PictureErro
         let colour = colour_of(world, stretch.robot, stretch.task);
         let width = Num(0.8 * sheet.unit);
         let looks = format!(
-            "fill=\"none\" stroke=\"{colour}\" stroke-opacity=\"0.5\" stroke-width=\"{width}\" stroke-linejoin=\"round\""
+            "fill=\"none\" stroke=\"{colour}\" stroke-opacity=\"0.5\" stroke-width=\"{width}\" \
+             stroke-linejoin=\"round\""
         );
         let way = way(&sheet, &stretch);
         sheet.svg.path(&way, &looks);

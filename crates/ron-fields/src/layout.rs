@@ -243,8 +243,12 @@ mod tests {
 
     #[test]
     fn indents_blanks_and_commas_are_set_and_comments_stay() {
-        let text = "#![enable(implicit_some)]\n( // start\n\n\n a:1,b : \"x, y\" ,\n   // on its own\n list:[(at:(1 ,2)),\n\n\n  Disc( 0.5 )   // aligned\n ],raw:r#\"a\n  b\"#\n, /* in */ map:{\"k\":[1\n,2]}\n\n)\n// end";
-        let expected = "#![enable(implicit_some)]\n( // start\n\n    a: 1, b: \"x, y\",\n    // on its own\n    list: [(at: (1, 2)),\n\n        Disc(0.5),   // aligned\n    ], raw: r#\"a\n  b\"#,\n    /* in */ map: {\"k\": [1,\n        2]},\n)\n// end\n";
+        let text = "#![enable(implicit_some)]\n( // start\n\n\n a:1,b : \"x, y\" ,\n   // on its own\n \
+            list:[(at:(1 ,2)),\n\n\n  Disc( 0.5 )   // aligned\n ],raw:r#\"a\n  b\"#\n, /* in */ \
+            map:{\"k\":[1\n,2]}\n\n)\n// end";
+        let expected = "#![enable(implicit_some)]\n( // start\n\n    a: 1, b: \"x, y\",\n    // on its \
+            own\n    list: [(at: (1, 2)),\n\n        Disc(0.5),   // aligned\n    ], raw: r#\"a\n  \
+            b\"#,\n    /* in */ map: {\"k\": [1,\n        2]},\n)\n// end\n";
         assert_eq!(formatted(text), expected);
         assert_eq!(formatted(expected), expected, "twice is as once");
     }

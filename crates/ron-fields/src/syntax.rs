@@ -321,7 +321,8 @@ mod tests {
     fn what_is_well_formed_passes() {
         for text in [
             "()",
-            "(a: 1, b: [1, 2.5, -3e4, +1, .5, 1_000, 0x1F, inf, -inf, NaN], c: (1, 2), d: \"x\\\\\", e: r#\"a\"b\"#,)",
+            "(a: 1, b: [1, 2.5, -3e4, +1, .5, 1_000, 0x1F, inf, -inf, NaN], c: (1, 2), d: \"x\\\\\", e: \
+             r#\"a\"b\"#,)",
             "Named(a: Some(1), b: Unit, c: Tuple(1, 2), d: {\"a\": 1, \"b\": [],}, e: (), f: true) // end",
             "/* a /* nested */ comment */ [(), [],]",
             "// first\n(a: 1 /* in */, // after\n)\n/* last */",

@@ -231,7 +231,8 @@ mod tests {
 
     #[test]
     fn every_form_of_name_and_string_is_followed() {
-        let text = "#![enable(implicit_some)] // all of it\nRoot(größe: b\"(\", r#type: br#\")\"#, k: b'(', r#a-b: r\"]\", end: 1)";
+        let text = "#![enable(implicit_some)] // all of it\nRoot(größe: b\"(\", r#type: br#\")\"#, k: b'(', \
+            r#a-b: r\"]\", end: 1)";
         let fields = Fields::of(text);
         assert_eq!(fields.inside(""), ["größe", "type", "k", "a-b", "end"]);
         for (path, value) in [("größe", "b\"(\""), ("type", "br#\")\"#"), ("a-b", "r\"]\""), ("end", "1")] {

@@ -56,7 +56,9 @@ pub fn sections(
     let predictions = predicted_worlds(predicted).into_iter().map(|predictions| Section {
         title: format!("Predictions of the mean of ten trials: {}", predictions[0].scenario),
         table: Some(predictions_table(&predictions)),
-        note: "in brackets: the mean of ten other trials lies there in 95 % of experiments, if the world is the authors'".to_owned(),
+        note: "in brackets: the mean of ten other trials lies there in 95 % of experiments, if the world is \
+            the authors'"
+            .to_owned(),
     });
     claims.chain([examples]).chain(power).chain(predictions).chain([verdicts]).collect()
 }
@@ -71,8 +73,10 @@ fn predicted_worlds(predicted: &[(Standing, Vec<Prediction>)]) -> Vec<Vec<Predic
     shown.filter(|predictions| !predictions.is_empty()).collect()
 }
 
-const POWER_NOTE: &str = "leans to: what large experiments would say, were the means of these trials the truth; pairs for 80 %: the fewest with which 80 % of\n\
-    experiments say so (of a comparison: of paired t tests at 5 %); of 10 pairs: verdicts of experiments of 10 pairs drawn from these; least found\n\
+const POWER_NOTE: &str = "leans to: what large experiments would say, were the means of these trials the \
+    truth; pairs for 80 %: the fewest with which 80 % of\n\
+    experiments say so (of a comparison: of paired t tests at 5 %); of 10 pairs: verdicts of experiments of \
+    10 pairs drawn from these; least found\n\
     by 10: the difference that 80 % of experiments of 10 pairs find";
 
 fn footnote(judged: &[Judged]) -> String {
@@ -81,15 +85,19 @@ fn footnote(judged: &[Judged]) -> String {
         String::new()
     } else {
         format!(
-            "All calibrated worlds: paper-calibrated and {alternatives} that the recorded trials cannot tell from it. A claim holds there if it\n\
+            "All calibrated worlds: paper-calibrated and {alternatives} that the recorded trials cannot tell \
+             from it. A claim holds there if it\n\
              holds in each, and does not if it does not in one.\n"
         )
     };
     worlds
         + &format!(
-            "Paired by seed; intervals: BCa bootstrap at 95 %, widened for small n. A claim holds when the interval of each of its comparisons lies on the\n\
-         claimed side, and does not when one lies on the other side (by the shared interval: 95 % for all its comparisons together); else it is\n\
-         undecided. Each verdict is wrong in about 2.5 % of experiments at most; the {} claims are not corrected for one another.\n\
+            "Paired by seed; intervals: BCa bootstrap at 95 %, widened for small n. A claim holds when the \
+             interval of each of its comparisons lies on the\n\
+         claimed side, and does not when one lies on the other side (by the shared interval: 95 % for all \
+         its comparisons together); else it is\n\
+         undecided. Each verdict is wrong in about 2.5 % of experiments at most; the {} claims are not \
+         corrected for one another.\n\
          docs/reproduction.md discusses them.",
             CLAIMS.len()
         )

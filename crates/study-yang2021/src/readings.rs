@@ -295,7 +295,8 @@ pub fn groupings_in_words(folder: &Folder, readings: &[usize], rounds: &[Round])
         .sum::<f64>()
         / rounds.len().max(1) as f64;
     Ok(format!(
-        "Of {} readings, {distinct} differ in how they group at least one of these rounds; a round is grouped in {per_round:.1} different ways on average.",
+        "Of {} readings, {distinct} differ in how they group at least one of these rounds; a round is \
+         grouped in {per_round:.1} different ways on average.",
         readings.len()
     ))
 }

@@ -93,7 +93,8 @@ mod tests {
 
     #[test]
     fn variants_of_a_sweep_file_are_worlds_with_names_and_settings() {
-        let text = "(name: \"w\", variants: {\"two\": {\"mission.rest_s\": 3.0, \"a.b[0]\": At(1)}, \"three\": {\"c\": 1}})";
+        let text = "(name: \"w\", variants: {\"two\": {\"mission.rest_s\": 3.0, \"a.b[0]\": \
+            At(1)}, \"three\": {\"c\": 1}})";
         let expected = [("two", vec!["mission.rest_s=3.0", "a.b[0]=At(1)"]), ("three", vec!["c=1"])];
         let found = alternatives(text);
         let found: Vec<(&str, Vec<&str>)> = found

@@ -18,8 +18,10 @@ fn readings_are_counted_against_each_rival_and_against_all() {
     let folder = place.path();
     let scenario = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/paper-calibrated.ron");
     std::fs::copy(scenario, folder.join("paper.ron")).unwrap();
-    let text = "(name: \"r\", scenario: \"paper.ron\", set: {\"duration_s\": 300.0}, policies: [\"RNE\", \"DIS\", \"HP_DIS\"],
-        readings: {\"hard_rule\": [IntraGroupTrust, MeanHp], \"merge\": [Apart, Together]}, trials: 8, keep: Rounds)";
+    let text = "(name: \"r\", scenario: \"paper.ron\", set: {\"duration_s\": 300.0}, policies: \
+        [\"RNE\", \"DIS\", \"HP_DIS\"],
+        readings: {\"hard_rule\": [IntraGroupTrust, MeanHp], \"merge\": [Apart, Together]}, trials: 8, keep: \
+        Rounds)";
     std::fs::write(folder.join("r.ron"), text).unwrap();
     let experiment = Experiment::load(&folder.join("r.ron"), &Overrides::default()).unwrap();
     let mut ignore = |_| ();

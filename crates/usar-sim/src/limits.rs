@@ -3,13 +3,15 @@
 use rne_core::question::MAX_TASKS;
 
 ron_fields::limits! {
-    /// Bytes of a name: a scenario's, a role's, a task's, a need's. Letters, digits, `-` and `_`, which all systems take as names of files.
+    /// Bytes of a name: a scenario's, a role's, a task's, a need's. Letters, digits, `-` and `_`, which all
+    /// systems take as names of files.
     NAME_BYTES: "*.name" = 1, 64;
     /// Simulated time of a trial, in seconds.
     DURATION_S: "duration_s" = 1, 86_400;
     /// Length of a step, in seconds.
     DT_S: "dt_s" = 0.001, 0.05;
-    /// Width and height of the arena, in metres. Positions are numbers of single precision: at 8,000 m they are 0.5 mm apart, which is what contacts and the routes between them bear.
+    /// Width and height of the arena, in metres. Positions are numbers of single precision: at 8,000 m they
+    /// are 0.5 mm apart, which is what contacts and the routes between them bear.
     ARENA_M: "arena_m[*]" = 2, 8_000;
 
     /// Robots of a team, all rows together.

@@ -41,7 +41,8 @@ Examples:
   usar figure results/paper rescuees --width 88mm      a figure for the column of a paper, as PDF
   usar view scenarios/paper.ron --policy RNE,DIS       watch two trials side by side, in a browser
   usar sensitivity scenarios/paper.ron --over mission.rest_s=0..60    what matters for the outcome?
-  usar search scenarios/paper.ron --policy RNE --against DIS --over mission.rest_s=0..60    where does it fail?
+  usar search scenarios/paper.ron --policy RNE --against DIS --over mission.rest_s=0..60    where does it \
+  fail?
   usar draw scenarios/paper.ron --out map.svg          the world before anything runs
   usar render scenarios/paper.ron --at 120 --out frame.png
   usar estimate scenarios/paper.ron --trials 1000      how long, and how much disk?

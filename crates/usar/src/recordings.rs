@@ -142,7 +142,8 @@ pub(crate) fn record_trials(folder: &mut Folder, which: &Recorded, stop: &Atomic
             let _ = std::fs::remove_file(&underway);
             let TrialKey { label, seed, .. } = key;
             return Err(Failure::run(format!(
-                "the trial of {label} with seed {seed} came out differently when it was recorded; `usar verify` says where"
+                "the trial of {label} with seed {seed} came out differently when it was recorded; `usar \
+                 verify` says where"
             )));
         }
         std::fs::rename(&underway, &path).map_err(|error| trouble(&path, &error))?;

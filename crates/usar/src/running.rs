@@ -70,7 +70,8 @@ impl Guard {
         }
         if self.begun.elapsed().as_secs_f64() > self.longest_s {
             return Err(Failure::run(format!(
-                "the trial took longer than {} s and had come to {at:.0} s of simulated time; --max-trial-s gives it longer",
+                "the trial took longer than {} s and had come to {at:.0} s of simulated time; --max-trial-s \
+                 gives it longer",
                 self.longest_s
             )));
         }

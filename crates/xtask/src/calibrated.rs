@@ -10,13 +10,16 @@ use ron_fields::{Fields, with_values};
 const NOT_TOLD_APART: f64 = 0.05;
 
 const HEADER: &str = "\
-// The paper's experiment in a world that costs what the authors recorded: paper.ron with its free values fitted to their ten trials of the
-// distance baseline (scenarios/reference/dis_trials.csv). How, how well, and what does not fit: docs/calibration.md.
+// The paper's experiment in a world that costs what the authors recorded: paper.ron with its free values \
+fitted to their ten trials of the
+// distance baseline (scenarios/reference/dis_trials.csv). How, how well, and what does not fit: \
+docs/calibration.md.
 //
 ";
 
 const WORLDS: &str = "\
-// The calibrated worlds that the authors' recorded trials cannot tell from scenarios/paper-calibrated.ron: what is claimed of it should
+// The calibrated worlds that the authors' recorded trials cannot tell from scenarios/paper-calibrated.ron: \
+what is claimed of it should
 // hold in them as well. Made by `just calibrate`; docs/calibration.md says how.
 (
     name: \"calibrated-worlds\",
@@ -85,7 +88,8 @@ mod tests {
             let folder = place.path().join(name);
             std::fs::create_dir(&folder).unwrap();
             let text = format!(
-                "// Fitted\n// Start.\n//\n// [paper] legend\n(\n    name: \"s-fitted\", only_policy: \"DIS\",\n    mission: (rest_s: {rest}), // [paper]\n)\n"
+                "// Fitted\n// Start.\n//\n// [paper] legend\n(\n    name: \"s-fitted\", \
+                 only_policy: \"DIS\",\n    mission: (rest_s: {rest}), // [paper]\n)\n"
             );
             std::fs::write(folder.join("calibrated.ron"), text).unwrap();
             folder
@@ -96,7 +100,8 @@ mod tests {
         std::fs::write(&choice, table).unwrap();
         write_worlds(&choice, &folders);
         let read = |name: &str| std::fs::read_to_string(place.path().join(name)).unwrap();
-        let expected = "// [paper] legend\n(\n    format: 2,\n    name: \"paper-calibrated\",\n    mission: (rest_s: 4.0), // [paper]\n)\n";
+        let expected = "// [paper] legend\n(\n    format: 2,\n    name: \"paper-calibrated\",\n    mission: \
+            (rest_s: 4.0), // [paper]\n)\n";
         assert_eq!(read("paper-calibrated.ron"), HEADER.to_owned() + expected);
         let expected = "        \"final-1\": {\"mission.rest_s\": 3.0},\n    },\n)\n";
         assert_eq!(read("calibrated-worlds.ron"), WORLDS.to_owned() + expected);

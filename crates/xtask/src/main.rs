@@ -33,8 +33,8 @@ fn main() -> ExitCode {
         "worlds" => worlds::run(arguments),
         _ => {
             eprintln!(
-                "xtask: no task {task:?}. Tasks: calibration, coverage, damage, golden, kills, limits, million, mutations, navigation, pages, reference, scale, \
-                 scenarios, soak, work, worlds"
+                "xtask: no task {task:?}. Tasks: calibration, coverage, damage, golden, kills, limits, \
+                 million, mutations, navigation, pages, reference, scale, scenarios, soak, work, worlds"
             );
             ExitCode::from(2)
         }

@@ -111,11 +111,15 @@ fn kinds(folder: &Path) -> Vec<Kind> {
     let snapshot = Simulation::new(&world, 1).expect("it is drawn").snapshot("RNE");
     let restored =
         move |bytes: &[u8]| Identity::of(bytes).is_ok() && Simulation::restore(&world, bytes).is_ok();
-    let walls = b"(name: \"w\", duration_s: 9, dt_s: 0.02, arena_m: (30, 20), team: [(role: \"robot\", count: 2, center: (5, 5), width_m: 3,
-        levels: (energy: 50, hp: 60), body: (speed_mps: 3, capacity: 2))], mission: (rest_s: 10), walls: [((9, 2), (9, 18)), (from: (20, 2),
-        to: (20, 18), thickness_m: 0.5, doors: [(at_m: 3, width_m: 2)])], conflicts: (resolver: Rotation(margin_m: 0.2)),
+    let walls = b"(name: \"w\", duration_s: 9, dt_s: 0.02, arena_m: (30, 20), team: [(role: \"robot\", \
+        count: 2, center: (5, 5), width_m: 3,
+        levels: (energy: 50, hp: 60), body: (speed_mps: 3, capacity: 2))], mission: (rest_s: 10), walls: \
+        [((9, 2), (9, 18)), (from: (20, 2),
+        to: (20, 18), thickness_m: 0.5, doors: [(at_m: 3, width_m: 2)])], conflicts: (resolver: \
+        Rotation(margin_m: 0.2)),
         errands: [(robot: 0, to: [(6, 15), (3, 3)])])";
-    let over = b"(base: \"minimal/pushed.ron\", name: \"over\", mission: (rest_s: 10.0), roles: (heavy: (speed_mps: 3.0)), debris: [])";
+    let over = b"(base: \"minimal/pushed.ron\", name: \"over\", mission: (rest_s: 10.0), roles: (heavy: \
+        (speed_mps: 3.0)), debris: [])";
     let based = |bytes: &[u8]| {
         let place = root().join("scenarios/damaged.ron");
         Scenario::parse(&String::from_utf8_lossy(bytes), &place).map_err(|error| error.to_string()).is_ok()

@@ -80,7 +80,8 @@ pub fn text(seed: u64) -> String {
     let mut random = Random(ChaCha8Rng::seed_from_u64(seed));
     let arena = [random.number(40.0, 80.0), random.number(40.0, 70.0)];
     let mut text = format!(
-        "(\n    format: 2,\n    name: \"random-{seed}\",\n    duration_s: {DURATION_S:?},\n    dt_s: 0.02,\n    arena_m: ({:?}, {:?}),\n{ROLES}\n",
+        "(\n    format: 2,\n    name: \"random-{seed}\",\n    duration_s: {DURATION_S:?},\n    dt_s: \
+         0.02,\n    arena_m: ({:?}, {:?}),\n{ROLES}\n",
         arena[0], arena[1]
     );
     let robots = team(&mut random, arena, &mut text);
@@ -198,7 +199,8 @@ fn tasks(random: &mut Random, (arena, tasks): ([f64; 2], u32), text: &mut String
         };
         let _ = writeln!(
             text,
-            "        (name: \"t{task}\", difficulty: {task}, center: {center}, size_m: (6.0, 4.0), grid: ({columns}, {rows}), rest: ({middle:?}, 14.0){quota}),",
+            "        (name: \"t{task}\", difficulty: {task}, center: {center}, size_m: (6.0, 4.0), grid: \
+             ({columns}, {rows}), rest: ({middle:?}, 14.0){quota}),",
         );
     }
     text.push_str("    ],\n");

@@ -10,11 +10,13 @@ use serde_json::Value;
 const HEAD: &str = "\
 # Reference of scenario files
 
-Every field of a scenario and of a sweep file. A tutorial and examples are in [scenarios](scenarios.md); limits of
+Every field of a scenario and of a sweep file. A tutorial and examples are in [scenarios](scenarios.md); \
+limits of
 the numbers are in [limits](limits.md). In the place of a number may stand a
 [distribution](scenarios.md#a-value-or-a-distribution).
 
-The comments of the types are the source of this page: `cargo run --package xtask -- reference` makes it, and a test
+The comments of the types are the source of this page: `cargo run --package xtask -- reference` makes it, \
+and a test
 compares it with them.
 ";
 

@@ -24,7 +24,8 @@ The comments of the type are the source of this page: `cargo run --package xtask
 const COLUMNS: &str = "\
 # Columns: metrics and the tables of a sweep
 
-The tables in the folder of `usar sweep scenarios/paper.ron`. A sweep's own `columns.md` has its tasks, needs and
+The tables in the folder of `usar sweep scenarios/paper.ron`. A sweep's own `columns.md` has its tasks, \
+needs and
 axes. The name of a metric on the command line has a dot before the task: the column `rescuees_hard` is
 `rescuees.hard`. [Experiments](experiments.md#what-is-in-the-folder) has the other files of the folder.
 

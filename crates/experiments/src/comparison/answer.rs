@@ -32,6 +32,9 @@ pub fn answer(folder: &Folder, case: usize, metric: usize, comparisons: &[&Compa
     if let Some(best) = found.iter().find(|c| c.a == first.1 || c.b == first.1) {
         return Some(format!("{lead}. {}", shown(best, first.1)));
     }
+    if own.is_empty() {
+        return Some(format!("{lead}."));
+    }
     let range = format!("{lead}; {} has {}", last.1, value(last.0).trim_end());
     if found.is_empty() {
         let n = own.iter().map(|c| c.n).max().unwrap_or(0);
@@ -40,8 +43,8 @@ pub fn answer(folder: &Folder, case: usize, metric: usize, comparisons: &[&Compa
         let precision =
             if widest > 0.0 { format!(", known to about ± {} each", short(widest)) } else { String::new() };
         return Some(format!(
-            "No policy is shown to differ in {} from those that it was compared with. {range}. The differences stand on up to {n} \
-             pairs of trials{precision}.",
+            "No policy is shown to differ in {} from those that it was compared with. {range}. The \
+             differences stand on up to {n} pairs of trials{precision}.",
             declared.title
         ));
     }
@@ -66,7 +69,8 @@ fn shown(comparison: &Comparison, policy: &str) -> String {
     };
     let direction = if difference > 0.0 { "more" } else { "less" };
     format!(
-        "{policy} has {} {direction} than {other} (95 % interval of the mean difference {} to {}, {} pairs, corrected {}).",
+        "{policy} has {} {direction} than {other} (95 % interval of the mean difference {} to {}, {} pairs, \
+         corrected {}).",
         short(difference.abs()),
         short(low),
         short(high),

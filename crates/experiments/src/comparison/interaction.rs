@@ -58,7 +58,7 @@ impl Interaction {
 /// The interactions of a sweep's axes with differences between these policies; empty without axes.
 ///
 /// # Errors
-/// An unknown policy, or fewer than two.
+/// An unknown policy.
 pub fn interactions(folder: &Folder, metrics: &[usize], choice: Choice) -> Result<Vec<Interaction>, Failure> {
     let experiment = folder.experiment();
     let pairs = policy_pairs(experiment, choice)?;

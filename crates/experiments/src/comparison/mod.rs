@@ -109,8 +109,9 @@ pub fn limit_of_correction(comparisons: &[Comparison]) -> Option<String> {
     let least = smallest * family as f64;
     (family > 0 && least >= LEVEL).then(|| {
         format!(
-            "At n = {most} the smallest p there is, {}, becomes {} after correction over {family} comparisons: none can show a difference, \
-             however large. Compare fewer things, chosen beforehand (--metric, --baseline), or run more trials.",
+            "At n = {most} the smallest p there is, {}, becomes {} after correction over {family} \
+             comparisons: none can show a difference, however large. Compare fewer things, chosen beforehand \
+             (--metric, --baseline), or run more trials.",
             short(smallest),
             short(least.min(1.0))
         )
@@ -127,7 +128,8 @@ pub fn test_in_words(comparisons: &[Comparison]) -> String {
         format!("p exact to {EXACT_PAIRS} pairs, beyond from {DRAWS} random choices of signs")
     } else {
         format!(
-            "p exact to {EXACT_PAIRS} pairs, to {DRAWN_PAIRS} from {DRAWS} random choices of signs, beyond normal"
+            "p exact to {EXACT_PAIRS} pairs, to {DRAWN_PAIRS} from {DRAWS} random choices of signs, beyond \
+             normal"
         )
     }
 }
@@ -272,7 +274,8 @@ fn in_words(comparison: &Comparison, metrics: &Catalogue) -> String {
     let place = place.chain([title]).collect::<Vec<_>>().join(", ");
     let (Some(difference), Some(p)) = (comparison.difference, comparison.p_holm) else {
         return format!(
-            "{place}: nothing can be said of {a} and {b}: there is no pair of trials in which both have a value."
+            "{place}: nothing can be said of {a} and {b}: there is no pair of trials in which both have a \
+             value."
         );
     };
     let Some([low, high]) = comparison.interval else {
@@ -285,7 +288,10 @@ fn in_words(comparison: &Comparison, metrics: &Catalogue) -> String {
     let size = short(difference.abs());
     let direction = if difference > 0.0 { "above" } else { "below" };
     let needed = comparison.pairs_needed.map_or(String::new(), |needed| {
-        format!(" Were this the true difference, about {needed} pairs would show it in four of five experiments to a single, uncorrected test.")
+        format!(
+            " Were this the true difference, about {needed} pairs would show it in four of five \
+            experiments to a single, uncorrected test."
+        )
     });
     let is_clear =
         (low > 0.0 || high < 0.0) && comparison.effect.is_some_and(|effect| effect * difference > 0.0);
@@ -308,8 +314,8 @@ fn in_words(comparison: &Comparison, metrics: &Catalogue) -> String {
     if comparison.is_found() && !is_clear {
         let shift = comparison.shift.unwrap_or(0.0);
         return format!(
-            "{place}: {a} and {b} differ, but not plainly in the mean: by ranks {a} is {} (shift {}; corrected {}), while the mean \
-             difference is {} ({range}).",
+            "{place}: {a} and {b} differ, but not plainly in the mean: by ranks {a} is {} (shift {}; \
+             corrected {}), while the mean difference is {} ({range}).",
             if comparison.effect.unwrap_or(0.0) > 0.0 { "above" } else { "below" },
             short(shift),
             p_in_words(p),
@@ -321,8 +327,9 @@ fn in_words(comparison: &Comparison, metrics: &Catalogue) -> String {
     }
     if is_clear && !comparison.is_found() {
         return format!(
-            "{place}: {a} is {size} {direction} {b} ({range}). Taken alone this interval excludes zero, but among so many comparisons \
-             one like it comes up by chance (corrected {}): the difference is not shown.{needed}",
+            "{place}: {a} is {size} {direction} {b} ({range}). Taken alone this interval excludes zero, but \
+             among so many comparisons one like it comes up by chance (corrected {}): the difference is not \
+             shown.{needed}",
             p_in_words(p)
         );
     }
@@ -330,7 +337,8 @@ fn in_words(comparison: &Comparison, metrics: &Catalogue) -> String {
         return format!("{place}: no difference shows between {a} and {b}: their means are equal ({range}).");
     }
     format!(
-        "{place}: no difference shows between {a} and {b}: {a} is {size} {direction} ({range}; corrected {}).{needed}",
+        "{place}: no difference shows between {a} and {b}: {a} is {size} {direction} ({range}; corrected \
+         {}).{needed}",
         p_in_words(p)
     )
 }

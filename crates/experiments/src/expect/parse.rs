@@ -15,8 +15,10 @@ pub struct Bad {
     found: String,
 }
 
-const FORMS: &str = "must be like \"rescuees.total >= 60 in 90 % of seeds\", \"DIS: rounds > 2 in 50 % of seeds\", \
-                     \"rescuees.total: RNE > DIS by 5 (95 %)\" or \"rescuees.total: RNE = ENG within 3 (95 %)\"";
+const FORMS: &str = "must be like \"rescuees.total >= 60 in 90 % of seeds\", \"DIS: rounds > 2 in 50 % of \
+    seeds\", \
+                     \"rescuees.total: RNE > DIS by 5 (95 %)\" or \"rescuees.total: RNE = ENG within 3 \
+                     (95 %)\"";
 
 /// Reads an expectation of a sweep with these metrics and policies.
 ///

@@ -68,7 +68,8 @@ impl Experiment {
         let named = of_variants.into_iter().flat_map(|axis| axis.values.iter().zip(&axis.variants));
         let variants = named.map(variant).collect::<Result<Vec<_>, Failure>>()?.concat();
         Ok(format!(
-            "(\n    name: {},\n    scenario: {},\n    policies: [{}],\n    trials: {},\n    {seeds},\n    keep: {},\n    variants: {{\n{variants}    }},\n    axes: {{\n{axes}    }},\n)\n",
+            "(\n    name: {},\n    scenario: {},\n    policies: [{}],\n    trials: {},\n    {seeds},\n    \
+             keep: {},\n    variants: {{\n{variants}    }},\n    axes: {{\n{axes}    }},\n)\n",
             quoted(&self.name)?,
             quoted(scenario)?,
             policies.join(", "),

@@ -44,8 +44,8 @@ impl Cost {
         let Self { bodies, steps, trials } = self;
         let trials = if *trials > 1.0 { format!(" x {trials} trials") } else { String::new() };
         Err(Failure::input(format!(
-            "{bodies} robots and pieces of debris x {steps} steps{trials} is {work:.1e}, more than {:.0e}: about {} on one thread. \
-             --allow-expensive runs it all the same",
+            "{bodies} robots and pieces of debris x {steps} steps{trials} is {work:.1e}, more than {:.0e}: \
+             about {} on one thread. --allow-expensive runs it all the same",
             limit.most,
             duration(work / PER_SECOND)
         )))

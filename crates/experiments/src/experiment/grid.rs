@@ -103,7 +103,8 @@ pub(super) fn check_bytes(base: &Scenario, count: usize) -> Result<(), Failure> 
     }
     let (most, mib) = (CASE_BYTES.count() >> 20, bytes >> 20);
     Err(Failure::input(format!(
-        "axes: {count} cases of this scenario take {mib} MiB, at most {most} MiB: fewer cases, or a smaller scenario"
+        "axes: {count} cases of this scenario take {mib} MiB, at most {most} MiB: fewer cases, or a smaller \
+         scenario"
     )))
 }
 

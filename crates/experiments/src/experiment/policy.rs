@@ -119,7 +119,8 @@ impl PolicySpec {
             return Ok(());
         }
         Err(Failure::input(format!(
-            "{}: only_policy allows {only} alone, found {}; a candidate of a calibration runs no other policy before it is chosen",
+            "{}: only_policy allows {only} alone, found {}; a candidate of a calibration runs no other \
+             policy before it is chosen",
             scenario.name, self.label
         )))
     }

@@ -34,7 +34,8 @@ impl Free {
     pub fn parse(spec: &str, fields: &Fields, known: &Fields) -> Result<Self, String> {
         let form = || {
             format!(
-                "must be 'PATH=LOW..HIGH' or 'PATH + PATH*RATIO=LOW..HIGH log' with finite numbers, found {spec:?}"
+                "must be 'PATH=LOW..HIGH' or 'PATH + PATH*RATIO=LOW..HIGH log' with finite numbers, found \
+                 {spec:?}"
             )
         };
         let (paths, range) = spec.rsplit_once('=').ok_or_else(form)?;

@@ -26,10 +26,14 @@ const RATIO: &str = "points per rescuee";
 #[rustfmt::skip]
 const QUANTITIES: [Quantity; 7] = [
     Quantity { name: "rescuees", title: "rescuees", unit: "", is_cost: false, value: |t, _| Some(f64::from(t.rescued)) },
-    Quantity { name: "rescue_rate", title: "rescuees per minute", unit: "1/min", is_cost: false, value: rate },
-    Quantity { name: "energy_per_rescuee", title: "energy per rescuee", unit: RATIO, is_cost: true, value: |t, _| ratio(t.energy, t.rescued) },
-    Quantity { name: "hp_per_rescuee", title: "HP per rescuee", unit: RATIO, is_cost: true, value: |t, _| ratio(t.hp, t.rescued) },
-    Quantity { name: "energy", title: "energy spent", unit: POINTS, is_cost: true, value: |t, _| Some(t.energy) },
+    Quantity { name: "rescue_rate", title: "rescuees per \
+        minute", unit: "1/min", is_cost: false, value: rate },
+    Quantity { name: "energy_per_rescuee", title: "energy per \
+        rescuee", unit: RATIO, is_cost: true, value: |t, _| ratio(t.energy, t.rescued) },
+    Quantity { name: "hp_per_rescuee", title: "HP per \
+        rescuee", unit: RATIO, is_cost: true, value: |t, _| ratio(t.hp, t.rescued) },
+    Quantity { name: "energy", title: "energy \
+        spent", unit: POINTS, is_cost: true, value: |t, _| Some(t.energy) },
     Quantity { name: "hp", title: "HP lost", unit: POINTS, is_cost: true, value: |t, _| Some(t.hp) },
     Quantity { name: "time", title: "time", unit: "s", is_cost: true, value: |_, seconds| Some(seconds) },
 ];
@@ -168,7 +172,8 @@ mod tests {
     #[test]
     fn an_unknown_objective_lists_the_known_ones() {
         let error = Objective::parse("luck", &["hard".to_owned()]).unwrap_err();
-        let expected = "unknown metric \"luck\"; decisions are judged by rescuees.total, rescuees.hard, rescue_rate.total, ";
+        let expected = "unknown metric \"luck\"; decisions are judged by rescuees.total, rescuees.hard, \
+            rescue_rate.total, ";
         assert!(error.to_string().starts_with(expected), "{error}");
     }
 

@@ -139,7 +139,8 @@ impl StudyFolder {
             let found = Self::read(path)?;
             if !found.study.is_as(&study) {
                 return Err(Failure::input(format!(
-                    "{}: has another study (scenario, policies, rounds, seeds, limit or program differ); --out names another folder",
+                    "{}: has another study (scenario, policies, rounds, seeds, limit or program differ); \
+                     --out names another folder",
                     path.display()
                 )));
             }

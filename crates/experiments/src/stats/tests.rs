@@ -66,7 +66,8 @@ fn drawn_signs_agree_with_counted_ones() {
     assert!((counted.p - drawn.p).abs() < 0.02, "{} {}", counted.p, drawn.p);
 }
 
-/// `bootstrap((d,), np.mean, method="BCa", n_resamples=2_000_000, batch=100_000, rng=np.random.default_rng(1))`.
+/// `bootstrap((d,), np.mean, method="BCa", n_resamples=2_000_000, batch=100_000,
+/// rng=np.random.default_rng(1))`.
 #[test]
 fn the_plain_interval_is_scipys() {
     for (differences, [low, high], tolerance) in [

@@ -26,8 +26,9 @@ pub fn difference(folder: &mut Folder, again: &Outcome) -> Result<Option<String>
     let round = again.record().and_then(|record| experiment.answers_otherwise(&again.key, record));
     Ok(Some(round.map_or(what.clone(), |round| {
         format!(
-            "{what}\nThe reason: policy {} is no function of its question: asked the same question of round {round} again, it \
-             answers otherwise. A policy may use nothing but the question: no clock, no counter, no random numbers of its own.",
+            "{what}\nThe reason: policy {} is no function of its question: asked the same question of round \
+             {round} again, it answers otherwise. A policy may use nothing but the question: no clock, no \
+             counter, no random numbers of its own.",
             again.key.label
         )
     })))

@@ -109,7 +109,8 @@ const DESCRIBED: &[(&str, &str, &str, &str)] = &[
         "parts",
         "string",
         "",
-        "Hashes of the parts of the state, four hexadecimal digits each; docs/determinism.md lists the parts.",
+        "Hashes of the parts of the state, four hexadecimal digits each; docs/determinism.md lists the \
+         parts.",
     ),
 ];
 
@@ -194,14 +195,15 @@ fn described(file: &str, name: &str) -> Column {
 
 fn markdown(experiment: &Experiment, tables: &[Described]) -> String {
     let mut text = format!(
-        "# Tables of {}\n\nEmpty cells are values that are not defined. Energy and HP costs are in points: percent of a robot's own maximum, unless the \
-         scenario counts otherwise (`costs.unit`).\n",
+        "# Tables of {}\n\nEmpty cells are values that are not defined. Energy and HP costs are in points: \
+         percent of a robot's own maximum, unless the scenario counts otherwise (`costs.unit`).\n",
         experiment.name
     );
     for (file, row, columns) in tables {
         let _ = write!(
             text,
-            "\n## {file}\n\nA row is {row}.\n\n| column | type | unit | meaning |\n| --- | --- | --- | --- |\n"
+            "\n## {file}\n\nA row is {row}.\n\n| column | type | unit | meaning |\n| --- | --- | --- | --- \
+             |\n"
         );
         for Column { name, kind, unit, meaning } in columns {
             let cell = |text: &str| text.replace('|', "\\|");

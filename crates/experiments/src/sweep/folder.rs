@@ -166,7 +166,8 @@ impl Folder {
         };
         if !broken.is_empty() {
             damages.push(format!(
-                "{}: these files do not have the checksums of the manifest: {}; the sweep's command makes them again",
+                "{}: these files do not have the checksums of the manifest: {}; the sweep's command makes \
+                 them again",
                 path.display(),
                 broken.join(", ")
             ));

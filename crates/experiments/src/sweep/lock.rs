@@ -175,7 +175,8 @@ impl Lock {
         if was_lost || is_late && !self.held.beat() {
             let path = self.held.path.display();
             return Err(Failure::storage(format!(
-                "{path}: was taken over by another process while this one was silent; the same command goes on"
+                "{path}: was taken over by another process while this one was silent; the same command goes \
+                 on"
             )));
         }
         Ok(())

@@ -172,7 +172,8 @@ fn check_program(path: &Path, there: &Manifest) -> Result<(), Failure> {
         return Ok(());
     }
     Err(Failure::input(format!(
-        "{} is of usar {} with source {}; this is {} with source {}: merge with the program that ran the shards",
+        "{} is of usar {} with source {}; this is {} with source {}: merge with the program that ran the \
+         shards",
         path.display(),
         there.version,
         there.source,

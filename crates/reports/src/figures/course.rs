@@ -57,7 +57,8 @@ pub(super) fn over_time(
         name: "rescuees-over-time".into(),
         title: "Rescuees over time".into(),
         caption: format!(
-            "Mean delivered up to each time, with its 95 % t interval (band). n = {n} trials or more for each policy."
+            "Mean delivered up to each time, with its 95 % t interval (band). n = {n} trials or more for \
+             each policy."
         ),
         drawing: Drawing::new(panels, 3, [420.0, 320.0]),
         csv: table(&["metric", "policy", "time_s", "n", "mean", "half_width"], rows)?,
@@ -119,8 +120,8 @@ pub(super) fn membership(
         name: "groups".into(),
         title: "Groups over rounds".into(),
         caption: format!(
-            "Share of trials in which a robot was sent to task {task}, of those in which it was grouped (n = {} or more a cell). \
-             Rounds that not every robot saw are in the table only.",
+            "Share of trials in which a robot was sent to task {task}, of those in which it was grouped (n = \
+             {} or more a cell). Rounds that not every robot saw are in the table only.",
             if least == u32::MAX { 0 } else { least }
         ),
         drawing: Drawing::new(panels, 2, [520.0, 380.0]),
@@ -172,8 +173,9 @@ pub(super) fn levels(
     Ok(Sketch {
         name: "levels".into(),
         title: "Levels of the groups".into(),
-        caption: "Mean battery and health level of each group's robots when it was formed, with the 95 % t interval over trials (band), for rounds that \
-                  half of the trials reached; the table has all rounds with their n."
+        caption: "Mean battery and health level of each group's robots when it was formed, with the 95 % t \
+            interval over trials (band), for rounds that half of the trials reached; the table has all \
+            rounds with their n."
             .into(),
         drawing: Drawing::new(panels, 2, [480.0, 300.0]),
         csv: table(&["level", "task", "policy", "round", "n", "mean", "half_width"], rows)?,

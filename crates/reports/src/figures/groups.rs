@@ -47,9 +47,10 @@ pub(super) fn trust(experiment: &Experiment, gathered: &[Gathered]) -> Result<Op
         name: "trust".into(),
         title: "Relative Needs Entropy within each role".into(),
         caption: format!(
-            "RNE from each robot to each other of its role when the first round of trial {} under {} was grouped, in thousandths of a nat; lower is \
-             more trust. It is infinite wherever one robot lacks a need that the other has: such cells have the darkest colour, beyond the scale, \
-             and the table says so. The table has all pairs, those between roles too. n = 1 trial.",
+            "RNE from each robot to each other of its role when the first round of trial {} under {} was \
+             grouped, in thousandths of a nat; lower is more trust. It is infinite wherever one robot lacks \
+             a need that the other has: such cells have the darkest colour, beyond the scale, and the table \
+             says so. The table has all pairs, those between roles too. n = 1 trial.",
             gathered.first_trial, policy.label
         ),
         drawing: Drawing::new(panels, 3, [400.0, 360.0]),
@@ -130,8 +131,8 @@ pub(super) fn sorting(
         name: "sorting".into(),
         title: "What the groups amount to".into(),
         caption: format!(
-            "Shares of the rounds with two groups. Left: each role is split as sorting it would, whichever half takes which task (by \
-             chance in the table). n = {n} rounds or more for each policy."
+            "Shares of the rounds with two groups. Left: each role is split as sorting it would, whichever \
+             half takes which task (by chance in the table). n = {n} rounds or more for each policy."
         ),
         drawing: Drawing::new(if is_empty { Vec::new() } else { panels }, 2, [520.0, 320.0]),
         csv: table(&columns, rows)?,

@@ -74,7 +74,8 @@ fn box_figure(
         name: name.replace(' ', "-").to_lowercase(),
         title: capitalised(name),
         caption: format!(
-            "Median, quartiles, and whiskers to the last trial within 1.5 times the distance of the quartiles; {}. {}",
+            "Median, quartiles, and whiskers to the last trial within 1.5 times the distance of the \
+             quartiles; {}. {}",
             if step > 1 {
                 format!("points: one trial in {step}")
             } else {
@@ -175,7 +176,8 @@ pub(super) fn costs(folder: &Folder, case: usize, only: Option<&[String]>) -> Re
         name: "costs".into(),
         title: "Energy and HP per rescuee".into(),
         caption: format!(
-            "Percent points per rescuee delivered; each point is a trial, of {MAX_POINTS} at most for each policy. {}",
+            "Percent points per rescuee delivered; each point is a trial, of {MAX_POINTS} at most for each \
+             policy. {}",
             per_box(&counts)
         ),
         drawing: Drawing::new(panels, 3, [400.0, 320.0]),
@@ -252,8 +254,9 @@ pub(super) fn forest(experiment: &Experiment, comparisons: &[&Comparison]) -> Re
     Ok(Sketch {
         name: "differences".into(),
         title: "Paired differences".into(),
-        caption: "First policy less second over the same seeds, with the 95 % bootstrap interval of the mean; the number of pairs in brackets. \
-                  The intervals are one by one; p after correction is in the table below."
+        caption: "First policy less second over the same seeds, with the 95 % bootstrap interval of the \
+            mean; the number of pairs in brackets. The intervals are one by one; p after correction is in \
+            the table below."
             .into(),
         drawing: Drawing::new(panels, 3, [420.0, 280.0]),
         csv: table(&header, comparisons.iter().map(row))?,

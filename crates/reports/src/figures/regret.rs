@@ -51,8 +51,8 @@ fn by_round(analyses: &[Analysis]) -> Result<Sketch, Failure> {
     Ok(Sketch {
         name: "regret-by-round".to_owned(),
         title: "Regret, round by round".to_owned(),
-        caption: "Mean distance to the best assignment, with 95 % t intervals; 0 is the best, the lines `fair draw` and `worst` are those of the mean and of \
-                  the worst assignment"
+        caption: "Mean distance to the best assignment, with 95 % t intervals; 0 is the best, the lines \
+            `fair draw` and `worst` are those of the mean and of the worst assignment"
             .to_owned(),
         drawing: Drawing::new(panels, 2, [460.0, 340.0]),
         csv: table(&["metric", "policy", "round", "mean", "half_width"], rows)?,
@@ -97,7 +97,9 @@ fn achieved(analyses: &[Analysis]) -> Result<Sketch, Failure> {
     Ok(Sketch {
         name: "achieved".to_owned(),
         title: "How much of the achievable is achieved".to_owned(),
-        caption: "0 is a fair draw, 100 % the best assignment of each decision; 95 % bootstrap intervals over trials".to_owned(),
+        caption: "0 is a fair draw, 100 % the best assignment of each decision; 95 % bootstrap intervals \
+            over trials"
+            .to_owned(),
         drawing: Drawing::new(panels, 2, [460.0, 280.0]),
         csv: table(&["metric", "policy", "achieved_percent", "low", "high"], rows)?,
     })

@@ -7,7 +7,8 @@ use experiments::experiment::VARIANT;
 use super::{headed, right};
 
 /// A row for each change of an axis, a column for each policy: the change of the policy's mean in percent,
-/// with its interval. If all changes are from the same case, the first row has the means there.
+/// with its interval. If all changes are from the same case and over the same seeds, the first row has the
+/// means there.
 #[must_use]
 pub fn effects_table(effects: &[&Effect]) -> Table {
     let percent = |effect: &Effect| match effect.in_percent() {
@@ -26,13 +27,18 @@ pub fn effects_table(effects: &[&Effect]) -> Table {
     pivoted("change", means_before(effects).chain(cells))
 }
 
-/// The means before any change, if all changes are from the same case.
+/// The means before any change, if all changes are from the same case and each policy has the same mean there
+/// in all of them.
 fn means_before<'e>(effects: &'e [&Effect]) -> impl Iterator<Item = Entry> + 'e {
-    let is_one = effects.iter().all(|effect| effect.reference == effects[0].reference);
-    effects.iter().filter(move |effect| is_one && effect.case == effects[0].case).map(|effect| Entry {
+    let before = |effect: &Effect| effect.means.map(|[there, _]| there);
+    let is_alike = |a: &Effect, b: &Effect| a.policy != b.policy || before(a) == before(b);
+    let is_one = effects.iter().all(|effect| {
+        effect.reference == effects[0].reference && effects.iter().all(|other| is_alike(effect, other))
+    });
+    effects.iter().filter(move |effect| is_one && effect.case == effects[0].case).map(move |effect| Entry {
         row: format!("mean, {}", place(&[(effect.path.clone(), effect.values[0].clone())])),
         column: effect.policy.clone(),
-        text: effect.means.map_or_else(|| "-".to_owned(), |[there, _]| short(there)),
+        text: before(effect).map_or_else(|| "-".to_owned(), short),
     })
 }
 

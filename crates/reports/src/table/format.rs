@@ -185,12 +185,14 @@ mod tests {
         is(Format::Csv, "policy,\"mean, sd\"\nA_1|x,3.5 ± 1\nb & c,< 1 %\n");
         is(
             Format::Latex,
-            "\\begin{tabular}{lr}\n\\toprule\npolicy & mean, sd \\\\\n\\midrule\nA\\_1|x & 3.5 $\\pm$ 1 \\\\\nb \\& c & $<$ 1 \\% \\\\\n\
+            "\\begin{tabular}{lr}\n\\toprule\npolicy & mean, sd \\\\\n\\midrule\nA\\_1|x & 3.5 $\\pm$ \
+             1 \\\\\nb \\& c & $<$ 1 \\% \\\\\n\
              \\bottomrule\n\\end{tabular}\n",
         );
         is(
             Format::Json,
-            "[{\"policy\":\"A_1|x\",\"mean, sd\":\"3.5 ± 1\"},{\"policy\":\"b & c\",\"mean, sd\":\"< 1 %\"}]\n",
+            "[{\"policy\":\"A_1|x\",\"mean, sd\":\"3.5 ± 1\"},{\"policy\":\"b & c\",\"mean, sd\":\"< \
+             1 %\"}]\n",
         );
         assert!(Format::Table.write(&table()).unwrap().starts_with('┌'));
     }

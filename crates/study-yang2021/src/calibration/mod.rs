@@ -116,7 +116,8 @@ impl Calibration {
         let text = candidate(text);
         let names: Vec<&str> = self.free.iter().map(|free| free.name.as_str()).collect();
         Ok(format!(
-            "{ORIGIN_LINE} (misfit {} over {} trials of {POLICY}), whatever comments below say of them: {}\n{text}",
+            "{ORIGIN_LINE} (misfit {} over {} trials of {POLICY}), whatever comments below say of them: \
+             {}\n{text}",
             short(evaluation.misfit),
             self.trials,
             names.join(", "),

@@ -155,7 +155,7 @@ impl Resolver {
     }
 
     /// One directive for each mover, in the order of the movers. Replaces the wishes of robots that make
-    /// room, and limits those of robots that wait before a passage.
+    /// room or let others out, and limits those of robots that wait or queue before a passage.
     pub fn resolve(&mut self, movers: &mut [Mover], log: &mut EventLog) -> &[Directive] {
         if self.rules.resolver == ResolverRule::None {
             self.directives.clear();

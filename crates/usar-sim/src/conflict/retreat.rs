@@ -346,3 +346,26 @@ impl Retreat {
         me.wish = to_next.normalize_or_zero() * (RETREAT_SPEED * me.speed).min(reachable);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_robot_serves_all_robots_up_its_chain() {
+        let retreat = |head| Retreat {
+            head,
+            depth: 1,
+            path: Vec::new(),
+            line: Vec::new(),
+            least_left: f32::INFINITY,
+            idle_steps: 0,
+            held_steps: 0,
+        };
+        let mut retreats = Retreats::default();
+        retreats.begin(2, retreat(1));
+        retreats.begin(1, retreat(0));
+        let serves = |i: usize| (0..3).filter(|other| retreats.serves(i, *other)).collect::<Vec<_>>();
+        assert_eq!([serves(0), serves(1), serves(2)], [vec![], vec![0], vec![0, 1]]);
+    }
+}

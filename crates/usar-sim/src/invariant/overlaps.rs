@@ -39,7 +39,8 @@ impl fmt::Display for Overlaps {
         let (deepest_mm, limit_mm) = (1000.0 * deepest_m.max(0.0), 1000.0 * RARE_OVERLAP_M);
         write!(
             f,
-            "{contacts} robot-steps in contact, {rare} deeper than {limit_mm:.0} mm, deepest {deepest_mm:.1} mm"
+            "{contacts} robot-steps in contact, {rare} deeper than {limit_mm:.0} mm, deepest {deepest_mm:.1} \
+             mm"
         )
     }
 }

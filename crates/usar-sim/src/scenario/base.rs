@@ -183,8 +183,10 @@ mod tests {
         let base =
             Scenario::parse(include_str!("../../../../scenarios/paper.ron"), "paper.ron".as_ref()).unwrap();
         let over = scenario(
-            "(base: \"paper.ron\", name: \"over\", mission: (rest_s: 10.0), roles: (carrier: (speed_mps: 3.0)),\n radiation: [],
-             tasks: (easy: (grid: (2, 3))), conflicts: (resolver: Rotation(margin_m: 0.3)), team: [(role: \"carrier\", count: 1,
+            "(base: \"paper.ron\", name: \"over\", mission: (rest_s: 10.0), roles: (carrier: (speed_mps: \
+             3.0)),\n radiation: [],
+             tasks: (easy: (grid: (2, 3))), conflicts: (resolver: Rotation(margin_m: 0.3)), team: \
+             [(role: \"carrier\", count: 1,
              center: (40, 10), width_m: 0)])",
         )
         .unwrap();
@@ -207,7 +209,8 @@ mod tests {
             1,
         );
         let base = base.replacen("rest_s: 30.0", "rest_s: rest", 1);
-        let over = "(base: \"named.ron\", name: \"over\", values: (rest: 7, far: 9), mission: (loading_s: near), roles: (carrier: (speed_mps: far)))";
+        let over = "(base: \"named.ron\", name: \"over\", values: (rest: 7, far: 9), mission: (loading_s: \
+            near), roles: (carrier: (speed_mps: far)))";
         let wrong = "(base: \"named.ron\", mission: (loading_s: neer))";
         let folder = folder(&[("named.ron", &base), ("over.ron", over), ("wrong.ron", wrong)]);
         let (scenario, _) = Scenario::load(&folder.join("over.ron")).unwrap();

@@ -97,7 +97,8 @@ pub enum ScenarioError {
 pub enum LayoutError {
     /// No room for one more sampled thing.
     #[error(
-        "tasks.{task}.sampled: no room for {what} {number} of {count} after {tries} tries; lower the count, the radius or gap_m"
+        "tasks.{task}.sampled: no room for {what} {number} of {count} after {tries} tries; lower the count, \
+         the radius or gap_m"
     )]
     NoRoom {
         /// Name of the task.
@@ -113,7 +114,8 @@ pub enum LayoutError {
     },
     /// No place for one more scattered thing.
     #[error(
-        "{field}: no place for {what} {number} of {count}{tried}; lower the count, the radius or the gap, or enlarge `within`"
+        "{field}: no place for {what} {number} of {count}{tried}; lower the count, the radius or the gap, or \
+         enlarge `within`"
     )]
     NoPlace {
         /// Path of the field.
@@ -137,7 +139,8 @@ pub enum LayoutError {
     },
     /// Debris and walls leave no way for a ground robot.
     #[error(
-        "debris leaves no way from home to {to} that is wide enough for a robot of radius {radius_m} m with clearance"
+        "debris leaves no way from home to {to} that is wide enough for a robot of radius {radius_m} m with \
+         clearance"
     )]
     NoPassage {
         /// Where to.

@@ -13,25 +13,29 @@ pub(super) fn change_needed(text: &str) -> Option<(usize, String)> {
     if value("sweep").is_some() {
         return found(
             "sweep",
-            "belongs in a sweep file now: move it to NAME.sweep.ron beside NAME.ron, as `(scenario: \"NAME.ron\", policies: [...], trials: ...)`",
+            "belongs in a sweep file now: move it to NAME.sweep.ron beside NAME.ron, as \
+             `(scenario: \"NAME.ron\", policies: [...], trials: ...)`",
         );
     }
     if value("rne").is_some() {
         return found(
             "rne",
-            "belongs to the policy now: write `policies: [\"RNE(score: Sum)\"]` in a sweep file, or `--policy 'RNE(score: Sum)'`",
+            "belongs to the policy now: write `policies: [\"RNE(score: Sum)\"]` in a sweep file, or \
+             `--policy 'RNE(score: Sum)'`",
         );
     }
     if is_struct("roles") {
         return found(
             "roles",
-            "is a list now: write `roles: [(name: \"...\", kind: Ground, ...), ...]`; `kind: Aerial` for robots that fly, `guides: true` for those whose loss slows their group",
+            "is a list now: write `roles: [(name: \"...\", kind: Ground, ...), ...]`; `kind: Aerial` for \
+             robots that fly, `guides: true` for those whose loss slows their group",
         );
     }
     if is_struct("tasks") {
         return found(
             "tasks",
-            "is a list now: write `tasks: [(name: \"...\", difficulty: 2, center: ...), ...]`; the harder a task, the higher its difficulty",
+            "is a list now: write `tasks: [(name: \"...\", difficulty: 2, center: ...), ...]`; the harder a \
+             task, the higher its difficulty",
         );
     }
     if is_bare("team[0].role") {
@@ -42,7 +46,8 @@ pub(super) fn change_needed(text: &str) -> Option<(usize, String)> {
         .find(|name| value(&format!("conflicts.{name}")).is_some())
     {
         let change = format!(
-            "belongs to the paper's rule now: write `conflicts: (resolver: Rotation({name}: ...))`; other resolvers have no use for it"
+            "belongs to the paper's rule now: write `conflicts: (resolver: Rotation({name}: ...))`; other \
+             resolvers have no use for it"
         );
         return found(&format!("conflicts.{name}"), &change);
     }
@@ -78,7 +83,8 @@ mod tests {
             let (found, change) = change_needed(text).unwrap();
             assert!(found == line && change.starts_with(start), "{found}: {change}");
         }
-        let new = "(roles: [(name: \"walker\")], team: [(role: \"walker\")], tasks: [(name: \"near\")], sampled: (gap_m: 1.0))";
+        let new = "(roles: [(name: \"walker\")], team: [(role: \"walker\")], tasks: [(name: \"near\")], \
+            sampled: (gap_m: 1.0))";
         assert_eq!(change_needed(new), None);
     }
 }

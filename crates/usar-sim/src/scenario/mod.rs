@@ -94,7 +94,8 @@ impl Scenario {
         let in_full = self.resolved();
         let reason = if in_full.len() as u64 > MAX_TEXT_BYTES {
             format!(
-                "is {:.1} MiB long when every default is spelled out, as results hold it; at most {} MiB can be read again",
+                "is {:.1} MiB long when every default is spelled out, as results hold it; at most {} MiB can \
+                 be read again",
                 in_full.len() as f64 / f64::from(1 << 20),
                 MAX_TEXT_BYTES >> 20
             )

@@ -35,12 +35,15 @@ impl JsonSchema for ResolverRule {
         json_schema!({
             "description": "What resolves conflicts and deadlocks.",
             "oneOf": [
-                plain("Reciprocal", "Reciprocal avoidance in the open, right of way in narrow passages, and pushing where a robot is stuck. The default."),
+                plain("Reciprocal", "Reciprocal avoidance in the open, right of way in narrow passages, and \
+                    pushing where a robot is stuck. The default."),
                 plain("None", "Nothing: robots drive as they wish and bump into each other. For comparison."),
                 plain("Rotation", "The paper's rule with its defaults."),
                 plain("Swap", "The paper's Algorithm 6, literally, with its defaults."),
-                with_values("Rotation", "The paper's rule: the head of a conflict set goes, the others stop. The order of a deadlocked set is rotated, head to tail."),
-                with_values("Swap", "The paper's rule; the head of a deadlocked set changes places with the next in line: the paper's Algorithm 6, literally."),
+                with_values("Rotation", "The paper's rule: the head of a conflict set goes, the others stop. \
+                    The order of a deadlocked set is rotated, head to tail."),
+                with_values("Swap", "The paper's rule; the head of a deadlocked set changes places with the \
+                    next in line: the paper's Algorithm 6, literally."),
             ],
         })
     }
@@ -54,7 +57,8 @@ impl JsonSchema for WallFile {
     fn json_schema(generator: &mut SchemaGenerator) -> Schema {
         let (point, doors) = (generator.subschema_for::<Point>(), generator.subschema_for::<Vec<Door>>());
         json_schema!({
-            "description": "A straight wall, with doors. Written `(from: (0, 0), to: (10, 0))`, or short `((0, 0), (10, 0))`.",
+            "description": "A straight wall, with doors. Written `(from: (0, 0), to: (10, 0))`, or short \
+                `((0, 0), (10, 0))`.",
             "anyOf": [
                 {"type": "array", "items": point, "minItems": 2, "maxItems": 2},
                 {
@@ -62,8 +66,10 @@ impl JsonSchema for WallFile {
                     "properties": {
                         "from": {"description": "Where its middle line begins.", "allOf": [point]},
                         "to": {"description": "Where its middle line ends.", "allOf": [point]},
-                        "thickness_m": {"description": "Thickness, in metres.", "type": "number", "default": 0.2},
-                        "doors": {"description": "Its doors, which are gaps.", "allOf": [doors], "default": []},
+                        "thickness_m": {"description": "Thickness, in \
+                            metres.", "type": "number", "default": 0.2},
+                        "doors": {"description": "Its doors, which are \
+                            gaps.", "allOf": [doors], "default": []},
                     },
                     "required": ["from", "to"],
                     "additionalProperties": false,
@@ -84,9 +90,12 @@ pub fn scenario_schema() -> Value {
     let all = schema.as_object_mut();
     let Some(all) = all else { return schema };
     if let Some(properties) = all.get_mut("properties").and_then(Value::as_object_mut) {
-        let base = json!({"description": "Path of another scenario, from this file's folder, of which this one says what differs.", "type": "string"});
+        let base = json!({"description": "Path of another scenario, from this file's folder, of which this \
+            one says what differs.", "type": "string"});
         properties.insert("base".to_owned(), base);
-        let values = json!({"description": "Values with names, as in `(leak_m: 4.5)`: a name then stands for its value wherever that is meant. A scenario over a base may give a name of the base another value.", "type": "object", "additionalProperties": true});
+        let values = json!({"description": "Values with names, as in `(leak_m: 4.5)`: a name then stands for \
+            its value wherever that is meant. A scenario over a base may give a name of the base another \
+            value.", "type": "object", "additionalProperties": true});
         properties.insert("values".to_owned(), values);
     }
     // Sections may be given in part, and a base supplies the fields that are left out.

@@ -78,7 +78,8 @@ mod tests {
         };
         assert_eq!(
             refused("costs.energy.per_stop", "1"),
-            "costs.energy.per_stop: no such field; costs.energy has per_step, per_metre, per_second; did you mean per_step?"
+            "costs.energy.per_stop: no such field; costs.energy has per_step, per_metre, per_second; did you \
+             mean per_step?"
         );
         assert!(refused("cots.energy", "1").contains("a scenario has format, name, description, duration_s"));
         assert_eq!(

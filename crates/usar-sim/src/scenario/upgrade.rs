@@ -94,8 +94,11 @@ mod tests {
 
     #[test]
     fn a_file_of_format_1_is_rewritten_with_its_comments() {
-        let text = "(\n    name: \"a\", // the name\n    team: [(role: Walker, count: 1)],\n    conflicts: (priority: LowestEnergyFirst, margin_m: 0.2, // near\n        deadlock_steps: 9),\n)";
-        let expected = "(\n    format: 2,\n    name: \"a\", // the name\n    team: [(role: \"walker\", count: 1)],\n    conflicts: (resolver: Rotation(margin_m: 0.2, deadlock_steps: 9), priority: LowestEnergyFirst,  // near\n    ),\n)\n";
+        let text = "(\n    name: \"a\", // the name\n    team: [(role: Walker, count: 1)],\n    conflicts: \
+            (priority: LowestEnergyFirst, margin_m: 0.2, // near\n        deadlock_steps: 9),\n)";
+        let expected = "(\n    format: 2,\n    name: \"a\", // the name\n    team: [(role: \"walker\", \
+            count: 1)],\n    conflicts: (resolver: Rotation(margin_m: 0.2, deadlock_steps: 9), priority: \
+            LowestEnergyFirst,  // near\n    ),\n)\n";
         let out = upgraded(text).unwrap();
         assert_eq!(out, expected);
         assert_eq!(upgraded(&out).unwrap(), out);

@@ -115,7 +115,8 @@ fn general(check: &mut Checker, file: &ScenarioFile) {
     let plain = |c: char| c.is_ascii_alphanumeric() || "-_.".contains(c);
     let is_name = limits::NAME_BYTES.allows(file.name.len()) && file.name.chars().all(plain);
     if !is_name || file.name.starts_with(['.', '-']) || file.name.ends_with('.') {
-        let rule = "must be a name of at most 64 letters, digits, `-`, `_` and `.` that does not start with `.` or `-` nor end with `.`";
+        let rule = "must be a name of at most 64 letters, digits, `-`, `_` and `.` that does not start with \
+            `.` or `-` nor end with `.`";
         check.fail("name", rule, shown(&file.name));
     } else if is_device(&file.name) {
         check.fail("name", "must not be the name of a device on Windows", shown(&file.name));

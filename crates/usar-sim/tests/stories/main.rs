@@ -17,7 +17,8 @@ use usar_sim::world::World;
 /// A scenario from a text that lacks name, step and levels.
 #[track_caller]
 fn scenario(fields: &str) -> Scenario {
-    let start = "name: \"story\", dt_s: 0.02, initial_levels: (energy: (mean: 100.0, sd: 0.0), hp: (mean: 100.0, sd: 0.0))";
+    let start = "name: \"story\", dt_s: 0.02, initial_levels: (energy: (mean: 100.0, sd: 0.0), hp: (mean: \
+        100.0, sd: 0.0))";
     Scenario::parse(&format!("({start}, {fields})"), "story.ron".as_ref())
         .unwrap_or_else(|error| panic!("{error}"))
 }

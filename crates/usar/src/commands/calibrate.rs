@@ -25,15 +25,18 @@ const CALIBRATED: &str = "calibrated.ron";
 #[command(after_help = "\
 Only DIS is ever run: how other policies fare in the calibrated world is a result, not an aim.
 
-A parameter is a field of the scenario and its range; with `+` it sets several fields, each in a fixed ratio; `[*]` is every entry of a \
-list; `log` searches the range by factors. Each must be written in FILE: what is found takes its place there, and comments stay.
+A parameter is a field of the scenario and its range; with `+` it sets several fields, each in a fixed \
+ratio; `[*]` is every entry of a list; `log` searches the range by factors. Each must be written in FILE: \
+what is found takes its place there, and comments stay.
 
-The misfit is the sum, over the columns that the target shares with trials.csv (rescuees, energy, HP of each task; rounds), of the squared \
-distance of the means in standard errors, plus the squared logarithm of the ratio of the standard deviations in standard errors, so that \
-few recorded trials bind less: of a true model it is about twice the number of columns. A value near an end of its range adds up to 4. The \
-search is by least squares: each distance is modelled as linear in the parameters, by a regression on the candidates near the present one, \
-and the model's minimum is tried next. Each evaluation is on disk as soon as it is done; the same command resumes where it stopped, and more \
---evaluations go on from there. The folder gets evaluations.csv (the log), calibrated.ron, fit.csv and calibration.json.
+The misfit is the sum, over the columns that the target shares with trials.csv (rescuees, energy, HP of each \
+task; rounds), of the squared distance of the means in standard errors, plus the squared logarithm of the \
+ratio of the standard deviations in standard errors, so that few recorded trials bind less: of a true model \
+it is about twice the number of columns. A value near an end of its range adds up to 4. The search is by \
+least squares: each distance is modelled as linear in the parameters, by a regression on the candidates near \
+the present one, and the model's minimum is tried next. Each evaluation is on disk as soon as it is done; \
+the same command resumes where it stopped, and more --evaluations go on from there. The folder gets \
+evaluations.csv (the log), calibrated.ron, fit.csv and calibration.json.
 
 Examples:
   usar calibrate scenarios/paper.ron --target scenarios/reference/dis_trials.csv \\
@@ -64,7 +67,8 @@ pub(crate) struct Arguments {
     /// Trials, with seeds from 1, on which what was found is looked at afterwards
     #[arg(long, default_value_t = 100, value_parser = clap::value_parser!(u32).range(2..=100_000))]
     fresh_trials: u32,
-    /// How far the first candidates are from the scenario as it is, as a share of each range; small to refine what was found
+    /// How far the first candidates are from the scenario as it is, as a share of each range; small to refine
+    /// what was found
     #[arg(long, default_value_t = 0.1, value_name = "SHARE")]
     first_step: f64,
     /// Threads [default: one per core]
@@ -205,7 +209,8 @@ impl Arguments {
         let last = first + u64::from(trials) - 1;
         writeln!(
             out,
-            "mean ± sample standard deviation of {POLICY}; fitted: {trials} trials (seeds {first} to {last}), misfit {} after {evaluations} evaluations;\n\
+            "mean ± sample standard deviation of {POLICY}; fitted: {trials} trials (seeds {first} to \
+             {last}), misfit {} after {evaluations} evaluations;\n\
              fresh: {} trials (seeds from 1) that no candidate was judged by; data: {} trials",
             short(best.misfit),
             self.fresh_trials,

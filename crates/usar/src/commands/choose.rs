@@ -18,9 +18,10 @@ use crate::running::{STOP, default_jobs, progress_bar, stop_on_signals};
 /// Choose between what several calibrations found, by trials that none was fitted to
 #[derive(Debug, Args)]
 #[command(after_help = "\
-Each DIR is the folder of a finished `usar calibrate`; only DIS is run. The candidates run the same seeds, which none was fitted to. The one \
-with the least misfit is the choice. Then the recorded trials and the seeds are drawn anew 4,000 times: a candidate that is the nearest in at \
-least 5 % of the draws cannot be told from the choice by these data.
+Each DIR is the folder of a finished `usar calibrate`; only DIS is run. The candidates run the same seeds, \
+which none was fitted to. The one with the least misfit is the choice. Then the recorded trials and the \
+seeds are drawn anew 4,000 times: a candidate that is the nearest in at least 5 % of the draws cannot be \
+told from the choice by these data.
 
 Examples:
   usar choose results/calibration/* --target scenarios/reference/dis_trials.csv
@@ -89,7 +90,8 @@ impl Arguments {
         let (trials, first) = (self.trials, self.first_seed);
         writeln!(
             out,
-            "mean ± sample standard deviation of {POLICY} over {trials} trials (seeds {first} to {}); data: {} trials",
+            "mean ± sample standard deviation of {POLICY} over {trials} trials (seeds {first} to {}); data: \
+             {} trials",
             first + u64::from(trials) - 1,
             target.trials
         )?;

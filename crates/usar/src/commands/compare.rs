@@ -21,10 +21,12 @@ use super::{SCHEMA_VERSION, ShownArguments, print_table};
 /// Is A better than B, by how much, and how sure is that? Paired by seed
 #[derive(Debug, Args)]
 #[command(after_help = "\
-For each metric and pair of policies: mean of each, mean difference with its 95 % bootstrap interval, Hodges-Lehmann shift, Wilcoxon's \
-signed-rank test, its p after Holm's correction over all comparisons shown, effect size (matched-pairs rank-biserial), how many pairs \
-would be needed for 80 % power, and one sentence. For a sweep with axes, also how each policy's mean, and each difference, changes along an axis, paired by seed. With a margin, two \
-policies are equivalent if the 90 % interval of their difference lies within it (two one-sided tests at 5 %). Choose metrics before looking: the correction knows only what is shown together.
+For each metric and pair of policies: mean of each, mean difference with its 95 % bootstrap interval, \
+Hodges-Lehmann shift, Wilcoxon's signed-rank test, its p after Holm's correction over all comparisons shown, \
+effect size (matched-pairs rank-biserial), how many pairs would be needed for 80 % power, and one sentence. \
+For a sweep with axes, also how each policy's mean, and each difference, changes along an axis, paired by \
+seed. With a margin, two policies are equivalent if the 90 % interval of their difference lies within it \
+(two one-sided tests at 5 %). Choose metrics before looking: the correction knows only what is shown together.
 
 Examples:
   usar compare results/paper
@@ -96,6 +98,9 @@ impl Arguments {
                 print_changes(out, experiment, *metric, (&comparisons, &effects, &interactions))?;
             }
             writeln!(out, "{CHANGES_NOTE}")?;
+            let counts = || effects.iter().map(|one| one.n);
+            let (least, most) = (counts().min().unwrap_or(0), counts().max().unwrap_or(0));
+            writeln!(out, "Pairs of each change: {least} to {most}")?;
         }
         if let Some(limit) = limit_of_correction(&comparisons) {
             writeln!(out, "\n{limit}")?;
@@ -109,8 +114,10 @@ impl Arguments {
 
 /// Note below the tables of [`print_changes`].
 const CHANGES_NOTE: &str = "\
-Each change is paired by seed, between two cases that differ in one axis, of which the first has its first value. In brackets 95 %
-bootstrap intervals; *: shown after Holm's correction over all changes (of means, and of differences), or over all comparisons";
+Each change is paired by seed, between two cases that differ in one axis, of which the first has its first \
+value. In brackets 95 %
+bootstrap intervals; *: shown after Holm's correction over all changes (of means, and of differences), or \
+over all comparisons";
 
 /// Prints the effects of the axes on one metric: each policy's mean, the differences case by case, and
 /// their changes.
@@ -144,8 +151,11 @@ fn footnote(comparisons: &[Comparison]) -> String {
     let least = drawn_from.min().unwrap_or(resamples(0));
     let drawn = test_in_words(comparisons);
     format!(
-        "Paired by seed. Interval: BCa bootstrap of the mean difference, widened for small n, {least} resamples, fixed seed. {drawn}; two-sided;\n\
-         Holm's correction over the {count} comparisons above. Pairs left out, over all comparisons: {failed} with a failed trial, {missing} with\n\
-         a missing one, {undefined} in which the metric is not defined (no rescuee). docs/experiments.md explains each figure."
+        "Paired by seed. Interval: BCa bootstrap of the mean difference, widened for small n, {least} \
+         resamples, fixed seed. {drawn}; two-sided;\n\
+         Holm's correction over the {count} comparisons above. Pairs left out, over all comparisons: \
+         {failed} with a failed trial, {missing} with\n\
+         a missing one, {undefined} in which the metric is not defined (no rescuee). docs/experiments.md \
+         explains each figure."
     )
 }

@@ -18,7 +18,8 @@ const TEST_BYTES: usize = 1 << 12;
 /// Show version, machine and threads, and whether results can be written
 #[derive(Debug, Args)]
 #[command(after_help = "\
-The write test leaves nothing behind. Where the folder does not exist yet, it tests the folder that it would be made in.
+The write test leaves nothing behind. Where the folder does not exist yet, it tests the folder that it would \
+be made in.
 
 Exit status: 0 when results can be written, 3 when they cannot.
 

@@ -16,8 +16,8 @@ use super::{load, output};
 /// Draw the map of a scenario, before anything runs
 #[derive(Debug, Args)]
 #[command(after_help = "\
-The map has walls, debris, radiation, tasks with those to rescue, rest places, homes, sensing ranges at full health, errands, a scale and a \
-legend. What the seed draws has dashed outlines.
+The map has walls, debris, radiation, tasks with those to rescue, rest places, homes, sensing ranges at full \
+health, errands, a scale and a legend. What the seed draws has dashed outlines.
 
 Examples:
   usar draw scenarios/paper.ron --out paper.svg

@@ -21,8 +21,9 @@ use crate::running::{default_jobs, stop_on_signals};
 /// How many trials, how long, and how much disk a sweep takes, from a short calibration run
 #[derive(Debug, Args)]
 #[command(after_help = "\
-Runs all policies on one or a few seeds of one or a few of the sweep's cases (about 24 trials, or all policies once), and throws the trials away. \
-The journal of a finished sweep is compressed; while it runs it is not, and takes the room that is told.
+Runs all policies on one or a few seeds of one or a few of the sweep's cases (about 24 trials, or all \
+policies once), and throws the trials away. The journal of a finished sweep is compressed; while it runs it \
+is not, and takes the room that is told.
 
 Examples:
   usar estimate scenarios/paper.ron --trials 1000
@@ -142,7 +143,8 @@ impl Output {
         }
         writeln!(
             out,
-            "from {} trials, of which policies that decide alike shared {}; times depend on what else the machine does",
+            "from {} trials, of which policies that decide alike shared {}; times depend on what else the \
+             machine does",
             self.measured,
             self.measured - self.simulated
         )?;

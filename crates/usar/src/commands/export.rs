@@ -18,11 +18,11 @@ use super::trials::Asked;
 #[command(
     group(ArgGroup::new("what").args(["mcap", "csv", "parquet"]).multiple(true).required(true)),
     after_help = "\
-FILE is a recording (`usar run --record`), a scenario, which is simulated first, or the folder of a sweep, whose trial is taken from its \
-recordings or simulated again.
+FILE is a recording (`usar run --record`), a scenario, which is simulated first, or the folder of a sweep, \
+whose trial is taken from its recordings or simulated again.
 
-An MCAP log opens in Foxglove and Lichtblick. The tables are robots, groups, events and decisions: a row for each thing at each time, \
-one header, units in the names.
+An MCAP log opens in Foxglove and Lichtblick. The tables are robots, groups, events and decisions: a row for \
+each thing at each time, one header, units in the names.
 
 Examples:
   usar export paper.usrec --mcap paper.mcap

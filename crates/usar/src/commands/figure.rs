@@ -16,9 +16,10 @@ use super::output;
 /// Draw one figure of a sweep for the column of a paper, as PDF, SVG or PNG
 #[derive(Debug, Args)]
 #[command(after_help = "\
-The names are those of the report's figures: rescuees, differences, rescuees-over-time, energy-per-rescuee, costs, groups, levels, sorting; a wrong \
-name lists those of the sweep. Panels stand below each other where the column is narrow, and no text is smaller than 7 points. A PDF has its \
-font embedded. --grey takes the colours away: policies still differ by their dashes and their places.
+The names are those of the report's figures: rescuees, differences, rescuees-over-time, energy-per-rescuee, \
+costs, groups, levels, sorting; a wrong name lists those of the sweep. Panels stand below each other where \
+the column is narrow, and no text is smaller than 7 points. A PDF has its font embedded. --grey takes the \
+colours away: policies still differ by their dashes and their places.
 
 Examples:
   usar figure results/paper rescuees --width 88mm --metric rescuees.total
@@ -35,7 +36,8 @@ pub(crate) struct Arguments {
     /// Kind of file
     #[arg(long, value_enum, default_value = "pdf")]
     format: Kind,
-    /// The panel of this metric alone; for `differences`, which metrics are compared: can be given several times
+    /// The panel of this metric alone; for `differences`, which metrics are compared: can be given several
+    /// times
     #[arg(long)]
     metric: Vec<String>,
     /// Draw these policies only, by their labels, separated by commas

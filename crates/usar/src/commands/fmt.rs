@@ -13,7 +13,8 @@ use super::output;
 /// Format scenario and sweep files, and upgrade those of an older format
 #[derive(Debug, Args)]
 #[command(after_help = "\
-Indents, blanks and commas are set; line breaks and comments stay where they are, and no value changes. The files are written over.
+Indents, blanks and commas are set; line breaks and comments stay where they are, and no value changes. The \
+files are written over.
 
 Examples:
   usar fmt mine.ron

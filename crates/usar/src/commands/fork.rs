@@ -20,12 +20,14 @@ use crate::running::{STOP, stop_on_signals};
 /// What if round N had been decided otherwise? Both trials, side by side
 #[derive(Debug, Args)]
 #[command(group(ArgGroup::new("otherwise").required(true).args(["policy", "assign"])), after_help = "\
-Plays a trial to the decision of a round, decides otherwise, and goes on with the same random streams. What differs between the two trials \
-follows from that decision.
+Plays a trial to the decision of a round, decides otherwise, and goes on with the same random streams. What \
+differs between the two trials follows from that decision.
 
 Examples:
-  usar fork scenarios/paper.ron --seed 3 --at-round 3 --policy DIS              DIS decides round 3, RNE goes on
-  usar fork scenarios/paper.ron --seed 3 --at-round 3 --policy DIS --onwards    DIS decides round 3 and all later ones
+  usar fork scenarios/paper.ron --seed 3 --at-round 3 --policy DIS              DIS decides round 3, RNE \
+  goes on
+  usar fork scenarios/paper.ron --seed 3 --at-round 3 --policy DIS --onwards    DIS decides round 3 and all \
+  later ones
   usar fork scenarios/paper.ron --at-round 1 --assign 'hard=0,2,5,6,8,11; easy=1,3,4,7,9,10'
   usar fork results/paper --base ENG --seed 7 --at-round 2 --policy RNE --json")]
 pub(crate) struct Arguments {

@@ -19,8 +19,9 @@ use super::numbers;
 /// Group a team from a table, or answer a question in JSON, by any policy
 #[derive(Debug, Args)]
 #[command(after_help = "\
-The table (CSV with a header) has the columns id, role, x, y (metres), and optionally energy_level and hp_level (percent), which ENG and HP_DIS \
-need. Every other column is a need. Roles are merged in the order in which the table names them first.
+The table (CSV with a header) has the columns id, role, x, y (metres), and optionally energy_level and \
+hp_level (percent), which ENG and HP_DIS need. Every other column is a need. Roles are merged in the order \
+in which the table names them first.
 
 A file that ends with .json is a question (docs/decisions.md). --json prints the decision in its JSON form.
 
@@ -36,7 +37,8 @@ pub(crate) struct Arguments {
     /// Grouping policy, with its options in brackets
     #[arg(long, default_value = "RNE")]
     policy: String,
-    /// A task: name, difficulty and, for policies that need it, its place `x,y` in metres [default: first,2 and second,1]
+    /// A task: name, difficulty and, for policies that need it, its place `x,y` in metres [default: first,2
+    /// and second,1]
     #[arg(long = "task", value_name = "NAME,DIFFICULTY[,X,Y]", allow_hyphen_values = true)]
     tasks: Vec<String>,
     /// Weight of each need, separated by commas [default: all 1]
@@ -170,7 +172,8 @@ fn print_text(
     if !decision.proven_optimal {
         writeln!(
             out,
-            "note: the team is too large to look at every grouping; this one was found by local search and is not proven optimal"
+            "note: the team is too large to look at every grouping; this one was found by local search and \
+             is not proven optimal"
         )?;
     }
     Ok(())

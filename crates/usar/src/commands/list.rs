@@ -25,7 +25,8 @@ Examples:
 pub(crate) struct Arguments {
     /// What to list
     of: Of,
-    /// A folder of scenarios, or the scenario whose roles and metrics are listed [default: scenarios, scenarios/paper.ron]
+    /// A folder of scenarios, or the scenario whose roles and metrics are listed [default: scenarios,
+    /// scenarios/paper.ron]
     path: Option<PathBuf>,
 }
 

@@ -17,7 +17,8 @@ use super::output::{check_folder, make_folder, write};
 #[command(after_help = "\
 Examples:
   usar man | man -l -                     read it
-  usar man --out ~/.local/share/man/man1  usar.1, and usar-sweep.1 and so on for each command; then: man usar-sweep
+  usar man --out ~/.local/share/man/man1  usar.1, and usar-sweep.1 and so on for each command; then: man \
+  usar-sweep
   usar man --markdown                     all commands on one page: docs/commands.md")]
 pub(crate) struct Arguments {
     /// Write the pages of `usar` and of each command to this folder

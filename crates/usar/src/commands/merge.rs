@@ -14,7 +14,8 @@ use crate::running::{STOP, stop_on_signals, tell};
 /// Join the shards of a sweep into what a single run would have written, byte for byte
 #[derive(Debug, Args)]
 #[command(after_help = "\
-Refuses shards of different sweeps or programs, shards that disagree about a trial, and a sum of shards that lacks a trial.
+Refuses shards of different sweeps or programs, shards that disagree about a trial, and a sum of shards that \
+lacks a trial.
 
 Example:
   usar sweep scenarios/sweeps/energy.ron --shard 1/2     (on one machine)

@@ -10,7 +10,8 @@ use usar_sim::scenario::Scenario;
 /// Write a commented scenario to begin with
 #[derive(Debug, Args)]
 #[command(after_help = "\
-Writes NAME.ron, which must not exist yet. Every field is optional that the comments call so; edit the file, then `usar check NAME.ron`.
+Writes NAME.ron, which must not exist yet. Every field is optional that the comments call so; edit the file, \
+then `usar check NAME.ron`.
 
 Examples:
   usar new mine                            a small mission: four robots, one task

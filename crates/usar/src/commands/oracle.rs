@@ -30,11 +30,13 @@ const CHUNK: usize = 16;
 /// How good was this decision? Every assignment of a round, played
 #[derive(Debug, Args)]
 #[command(after_help = "\
-Plays each assignment that the quotas allow from the moment of the decision, with the same random streams: to the end of the round, or to the \
-end of the trial. Prints the best and the worst, and where each policy's choice stands. Regret is the best value minus that of the choice.
+Plays each assignment that the quotas allow from the moment of the decision, with the same random streams: \
+to the end of the round, or to the end of the trial. Prints the best and the worst, and where each policy's \
+choice stands. Regret is the best value minus that of the choice.
 
-With more assignments than --limit, it plays a random sample and goes on from the best of it by exchanging two robots at a time; the best \
-found may not be the best there is, so that regrets are lower bounds. Outcomes are kept in --cache: an interrupted run resumes, and `usar why` finds them there.
+With more assignments than --limit, it plays a random sample and goes on from the best of it by exchanging \
+two robots at a time; the best found may not be the best there is, so that regrets are lower bounds. \
+Outcomes are kept in --cache: an interrupted run resumes, and `usar why` finds them there.
 
 Examples:
   usar oracle scenarios/paper.ron --seed 1 --round 1
@@ -276,7 +278,8 @@ fn coverage_in_words(survey: &Survey) -> String {
         Coverage::Sample { of, drawn, searched } => {
             let of = if of == u64::MAX { "more than 10^19".to_owned() } else { of.to_string() };
             format!(
-                "{drawn} of {of} assignments, drawn at random, and {searched} of a local search: regrets are lower bounds"
+                "{drawn} of {of} assignments, drawn at random, and {searched} of a local search: regrets are \
+                 lower bounds"
             )
         }
     }

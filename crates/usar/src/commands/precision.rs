@@ -77,16 +77,18 @@ impl Precision {
             (&folder.experiment().metrics[self.metric].name, &self.labels, short(self.bound));
         match self.state(folder) {
             Some(State { half_width, pairs }) if half_width <= self.bound => format!(
-                "precision reached: the 95 % interval of {metric}, {a} less {b}, is its mean ± {} or narrower ({pairs} pairs, bound {bound})",
+                "precision reached: the 95 % interval of {metric}, {a} less {b}, is its mean ± {} or \
+                 narrower ({pairs} pairs, bound {bound})",
                 short(half_width)
             ),
             Some(State { half_width, pairs }) => format!(
-                "precision NOT reached: the 95 % interval of {metric}, {a} less {b}, is its mean ± {} after {pairs} pairs, bound {bound}; \
-                 more trials (--max-trials) go on",
+                "precision NOT reached: the 95 % interval of {metric}, {a} less {b}, is its mean ± {} after \
+                 {pairs} pairs, bound {bound}; more trials (--max-trials) go on",
                 short(half_width)
             ),
             None => format!(
-                "precision NOT reached: there are too few pairs in which {metric} is defined for both, or they do not differ among themselves"
+                "precision NOT reached: there are too few pairs in which {metric} is defined for both, or \
+                 they do not differ among themselves"
             ),
         }
     }

@@ -16,8 +16,9 @@ use super::{ShownArguments, print_table};
 /// Which reading of the paper's ambiguous places decides what?
 #[derive(Debug, Args)]
 #[command(after_help = "\
-For a sweep with `readings` (scenarios/sweeps/readings.ron): how often each reading of RNE groups the teams that the default reading met otherwise \
-than the default does, and what that does to the outcome, paired by seed; first each reading by itself, then averaged over all others.
+For a sweep with `readings` (scenarios/sweeps/readings.ron): how often each reading of RNE groups the teams \
+that the default reading met otherwise than the default does, and what that does to the outcome, paired by \
+seed; first each reading by itself, then averaged over all others.
 
 Examples:
   usar sweep scenarios/sweeps/readings.ron
@@ -65,8 +66,10 @@ impl Arguments {
         print_table(out, &readings_table(&rows, &folder.experiment().metrics))?;
         writeln!(
             out,
-            "regrouped: share of the {} rounds of the default's trials that the reading would group otherwise, and of those that it would split otherwise\n\
-             whichever half takes which task; trials: share that go otherwise; differences: reading less default, with 95 % paired t intervals\n",
+            "regrouped: share of the {} rounds of the default's trials that the reading would group \
+             otherwise, and of those that it would split otherwise\n\
+             whichever half takes which task; trials: share that go otherwise; differences: reading less \
+             default, with 95 % paired t intervals\n",
             rounds.len()
         )?;
         let averaged = averaged(&trials, &readings);
@@ -83,14 +86,16 @@ impl Arguments {
         if !rivals.is_empty() {
             writeln!(
                 out,
-                "The {} of {} readings whose trials differ, against each other policy: how many are above, below, neither",
+                "The {} of {} readings whose trials differ, against each other policy: how many are above, \
+                 below, neither",
                 distinct.len(),
                 readings.len()
             )?;
             print_table(out, &rivals_table(&rivals))?;
             writeln!(
                 out,
-                "95 % paired t intervals; corrected: at 95 % shared by these readings (Bonferroni); all: above, or below, each of the others; least and\n\
+                "95 % paired t intervals; corrected: at 95 % shared by these readings (Bonferroni); all: \
+                 above, or below, each of the others; least and\n\
                  greatest are the extremes of so many\n"
             )?;
         }

@@ -18,11 +18,14 @@ use crate::running::{STOP, default_jobs, progress_bar, stop_on_signals, tell};
 /// How far does each policy's decision stay behind the best one? A study over all rounds of many trials
 #[derive(Debug, Args)]
 #[command(after_help = "\
-Plays every assignment at every decision of the trials of a sweep file; trial by trial, each of its policies in turn decides. Tells each \
-policy's regret, how often grouping matters at all, how much of what can be achieved each policy achieves, and which features of an \
-assignment go with its outcome. The paper's team has 240 assignments: about two minutes of one core for each trial.
+Plays every assignment at every decision of the trials of a sweep file; trial by trial, each of its policies \
+in turn decides. Tells each policy's regret, how often grouping matters at all, how much of what can be \
+achieved each policy achieves, and which features of an assignment go with its outcome. The paper's team has \
+240 assignments: about two minutes of one core for each trial.
 
-The folder has `decisions.jsonl` (every outcome), `regret.csv` (a row for each decision, policy and metric) and `summary.json`. An interrupted study resumes; with a folder instead of a file, only its tables and figures are made anew.
+The folder has `decisions.jsonl` (every outcome), `regret.csv` (a row for each decision, policy and metric) \
+and `summary.json`. An interrupted study resumes; with a folder instead of a file, only its tables and \
+figures are made anew.
 
 Examples:
   usar regret scenarios/sweeps/regret.ron
@@ -45,7 +48,8 @@ pub(crate) struct Arguments {
     /// Most assignments of one decision
     #[arg(long, default_value_t = DEFAULT_LIMIT, value_parser = clap::value_parser!(u64).range(2..=1_000_000))]
     limit: u64,
-    /// What decisions are judged by; can be given several times [default: `rescuees`, `rescue_rate` and `energy_per_rescuee`]
+    /// What decisions are judged by; can be given several times [default: `rescuees`, `rescue_rate` and
+    /// `energy_per_rescuee`]
     #[arg(long)]
     metric: Vec<String>,
     /// Folder of the study [default: results/NAME]

@@ -21,8 +21,9 @@ use super::trials::Asked;
     group(ArgGroup::new("what").args(["at", "trails", "every"]).required(true)),
     group(ArgGroup::new("film").args(["frames", "gif", "mp4"])),
     after_help = "\
-FILE is a recording (`usar run --record`), a scenario, which is simulated first, or the folder of a sweep, whose trial is taken from its \
-recordings or simulated again. Nothing else is needed: no display, no fonts. Only --mp4 needs ffmpeg.
+FILE is a recording (`usar run --record`), a scenario, which is simulated first, or the folder of a sweep, \
+whose trial is taken from its recordings or simulated again. Nothing else is needed: no display, no fonts. \
+Only --mp4 needs ffmpeg.
 
 Examples:
   usar render scenarios/paper.ron --at 120 --out frame.svg

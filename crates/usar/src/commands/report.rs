@@ -17,11 +17,12 @@ use crate::recordings::{path_of, recording_of};
 /// Write a report: means, comparisons, figures, and where it all comes from
 #[derive(Debug, Args)]
 #[command(after_help = "\
-Writes report.html into the folder, which opens from disk and prints, and plots/: each figure as SVG and its numbers as CSV. It answers first \
-what `usar compare` with the same flags says. Where the sweep has axes, report.html says how differences change along them, and links to a page \
-for each case. With --trial, \
-the trajectories of all robots in the trials with this seed are drawn; with --with-replays, these trials can be watched from the report: each is a \
-page of its own in plots/, as `usar view` writes it. Both take the recordings of the sweep, or simulate again.
+Writes report.html into the folder, which opens from disk and prints, and plots/: each figure as SVG and its \
+numbers as CSV. It answers first what `usar compare` with the same flags says. Where the sweep has axes, \
+report.html says how differences change along them, and links to a page for each case. With --trial, \
+the trajectories of all robots in the trials with this seed are drawn; with --with-replays, these trials can \
+be watched from the report: each is a page of its own in plots/, as `usar view` writes it. Both take the \
+recordings of the sweep, or simulate again.
 
 Examples:
   usar report results/paper

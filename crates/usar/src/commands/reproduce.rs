@@ -27,15 +27,19 @@ const TRIAL_LIMIT: Duration = Duration::from_mins(10);
 /// Put the paper's claims to the test: four policies, two scenarios, paired trials
 #[derive(Debug, Args)]
 #[command(after_help = "\
-Runs RNE, DIS, ENG and HP_DIS on paper.ron (printed constants) and paper-calibrated.ron (fitted to the authors' recorded trials of DIS), and \
-says of each of the paper's claims whether it holds: over the first 10 trials, as many as the paper has, and over all. Where the recorded trials \
-cannot tell other fits from the calibrated one, a quarter of the trials runs in each of those worlds, too.
+Runs RNE, DIS, ENG and HP_DIS on paper.ron (printed constants) and paper-calibrated.ron (fitted to the \
+authors' recorded trials of DIS), and says of each of the paper's claims whether it holds: over the first 10 \
+trials, as many as the paper has, and over all. Where the recorded trials cannot tell other fits from the \
+calibrated one, a quarter of the trials runs in each of those worlds, too.
 
-A claim holds when the 95 % interval of each of its comparisons lies on the claimed side; it does not when one lies on the other side, at 95 % \
-shared by its comparisons; else it is undecided. The last table says how many paired trials each claim would need, and what 10 could have shown.
+A claim holds when the 95 % interval of each of its comparisons lies on the claimed side; it does not when \
+one lies on the other side, at 95 % shared by its comparisons; else it is undecided. The last table says how \
+many paired trials each claim would need, and what 10 could have shown.
 
-The folder gets report.html, the verdicts as a page; a sweep's folder for each scenario, with a report.html of its own; claims.csv, power.csv and examples.csv; predictions.csv, what each policy does in each world, with intervals of the mean of ten trials; and for each scenario a CSV with \
-exactly the authors' columns. docs/experiments.md says what is in each. The same command resumes an interrupted run; more --trials only add.
+The folder gets report.html, the verdicts as a page; a sweep's folder for each scenario, with a report.html \
+of its own; claims.csv, power.csv and examples.csv; predictions.csv, what each policy does in each world, \
+with intervals of the mean of ten trials; and for each scenario a CSV with exactly the authors' columns. \
+docs/experiments.md says what is in each. The same command resumes an interrupted run; more --trials only add.
 
 Examples:
   usar reproduce

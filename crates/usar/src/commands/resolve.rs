@@ -14,7 +14,8 @@ use super::load;
 /// Print every value that a scenario ends up with, and where it comes from
 #[derive(Debug, Args)]
 #[command(after_help = "\
-A line for each value: its path, the value, and its origin: file and line, --set, or default. The path is that of --set and of axes.
+A line for each value: its path, the value, and its origin: file and line, --set, or default. The path is \
+that of --set and of axes.
 
 Examples:
   usar resolve scenarios/three-tasks.ron

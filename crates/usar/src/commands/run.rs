@@ -33,16 +33,20 @@ Examples:
   usar run scenarios/paper.ron --policy DIS --seed 7 --json
   usar run scenarios/minimal/head_on.ron --check
   usar run scenarios/paper.ron --policy 'RNE(hard_rule: MeanEnergy)' --set duration_s=300
-  usar run scenarios/paper.ron --seed 3 --save half.snapshot --save-at 300    the trial, and a snapshot of it on the way
-  usar run scenarios/paper.ron --from half.snapshot                           the rest of that trial, with the same result
-  usar run scenarios/paper.ron --from half.snapshot --policy DIS              another policy goes on from there
+  usar run scenarios/paper.ron --seed 3 --save half.snapshot --save-at 300    the trial, and a snapshot of \
+  it on the way
+  usar run scenarios/paper.ron --from half.snapshot                           the rest of that trial, with \
+  the same result
+  usar run scenarios/paper.ron --from half.snapshot --policy DIS              another policy goes on from \
+  there
   usar run scenarios/paper.ron --events events.jsonl                          every event with its time
   usar run scenarios/paper.ron --record paper.usrec                           then: usar view paper.usrec")]
 #[expect(clippy::struct_excessive_bools, reason = "each is a switch of the command line")]
 pub(crate) struct Arguments {
     /// Scenario file (RON)
     file: PathBuf,
-    /// Grouping policy, with its options in brackets [default: the first of FILE's sweep file, or of the snapshot]
+    /// Grouping policy, with its options in brackets [default: the first of FILE's sweep file, or of the
+    /// snapshot]
     #[arg(long)]
     policy: Option<String>,
     /// Seed of the trial [default: the first of FILE's sweep file]
@@ -66,7 +70,8 @@ pub(crate) struct Arguments {
     /// Longest time that the trial may take, in seconds of this machine
     #[arg(long, default_value_t = 600.0, value_name = "SECONDS")]
     max_trial_s: f64,
-    /// Set a field of the scenario, by its path, to a value in RON, e.g. `costs.energy.per_step=0.009`; can be given several times
+    /// Set a field of the scenario, by its path, to a value in RON, e.g. `costs.energy.per_step=0.009`; can
+    /// be given several times
     #[arg(long, value_name = "PATH=VALUE")]
     set: Vec<String>,
     /// Write a recording of the trial to this file, for `usar view`; the file must not exist yet

@@ -11,8 +11,9 @@ use usar_sim::scenario::scenario_schema;
 /// Print the JSON Schema of scenario and sweep files, of a question or of a decision
 #[derive(Debug, Args)]
 #[command(after_help = "\
-docs/scenarios-reference.md and docs/decisions.md tell what the fields mean. RON has no schemas of its own: that of a file describes it as JSON, \
-with structs as objects, lists and tuples as arrays, and `Disc(0.5)` as {\"Disc\": 0.5}.
+docs/scenarios-reference.md and docs/decisions.md tell what the fields mean. RON has no schemas of its own: \
+that of a file describes it as JSON, with structs as objects, lists and tuples as arrays, and `Disc(0.5)` as \
+{\"Disc\": 0.5}.
 
 Examples:
   usar schema scenario > scenario.schema.json

@@ -26,12 +26,14 @@ const CONFIRMATION: &str = "confirmation";
 /// Where does a policy fail the most? Searches the parameters of a scenario, and confirms on fresh seeds
 #[derive(Debug, Args)]
 #[command(after_help = "\
-Searches for the scenario in which --policy is worst in --metric; with --against, in which it is the farthest behind that policy over paired \
-seeds. The search is CMA-ES, seeded. All candidates are judged by the same seeds, and the best of many is flattered by chance: so what was \
-found is run again with seeds that no candidate was judged by, and only that is a result.
+Searches for the scenario in which --policy is worst in --metric; with --against, in which it is the \
+farthest behind that policy over paired seeds. The search is CMA-ES, seeded. All candidates are judged by \
+the same seeds, and the best of many is flattered by chance: so what was found is run again with seeds that \
+no candidate was judged by, and only that is a result.
 
-Each candidate is on disk as soon as it is done; the same command resumes where it stopped, and more --evaluations go on from there. \
-The folder gets evaluations.csv (the log), search.json, found.ron, and the sweep that confirms it, confirmation/, which `usar report` shows.
+Each candidate is on disk as soon as it is done; the same command resumes where it stopped, and more \
+--evaluations go on from there. The folder gets evaluations.csv (the log), search.json, found.ron, and the \
+sweep that confirms it, confirmation/, which `usar report` shows.
 
 Examples:
   usar search scenarios/paper.ron --policy RNE --against DIS \\
@@ -257,7 +259,8 @@ impl Found<'_> {
         let start = start.map_or("-".to_owned(), short);
         writeln!(
             out,
-            "\n{} is {} there, and {start} in the scenario as it is, on the {trials} seeds of the search ({first} to {last});\n\
+            "\n{} is {} there, and {start} in the scenario as it is, on the {trials} seeds of the search \
+             ({first} to {last});\n\
              the {} of {count} candidates, and so flattered by chance.",
             self.hunt.space.outcomes[0].name(),
             short(self.outcome),

@@ -19,19 +19,23 @@ use crate::running::{STOP, progress_bar, stop_on_signals, tell};
 /// Which parameters matter for the outcome, and which for the difference between policies?
 #[derive(Debug, Args)]
 #[command(after_help = "\
-morris (elementary effects) ranks many parameters with few trials: along each trajectory one parameter after another moves by two thirds of \
-its range. mu* is the mean size of the effect on the outcome, in units of the outcome over the whole range; mu has its sign; sigma is large \
-where a parameter acts through others. sobol tells shares of the variance: of each parameter alone (first order) and with all in which it \
-has a part (total). All points of a trajectory or sample have the same seeds, and each trajectory has its own; `chance` is what other seeds \
-alone do. Intervals are bootstraps over trajectories or samples.
+morris (elementary effects) ranks many parameters with few trials: along each trajectory one parameter after \
+another moves by two thirds of its range. mu* is the mean size of the effect on the outcome, in units of the \
+outcome over the whole range; mu has its sign; sigma is large where a parameter acts through others. sobol \
+tells shares of the variance: of each parameter alone (first order) and with all in which it has a part \
+(total). All points of a trajectory or sample have the same seeds, and each trajectory has its own; `chance` \
+is what other seeds alone do. Intervals are bootstraps over trajectories or samples.
 
-Each point is on disk as soon as its batch is done; the same command resumes where it stopped, and more --trajectories or --samples \
-go on from there. The folder gets evaluations.csv (the log), indices.csv, indices.svg and sensitivity.json.
+Each point is on disk as soon as its batch is done; the same command resumes where it stopped, and more \
+--trajectories or --samples go on from there. The folder gets evaluations.csv (the log), indices.csv, \
+indices.svg and sensitivity.json.
 
 Examples:
   usar sensitivity scenarios/paper.ron --policies RNE,DIS \\
-      --over mission.rest_s=0..60 --over 'radiation[*].radius_m=3..9' --over 'costs.energy.per_metre=0.1..1 log'
-  usar sensitivity scenarios/paper.ron --policies RNE,DIS --method sobol --samples 64 --over mission.rest_s=0..60")]
+      --over mission.rest_s=0..60 --over 'radiation[*].radius_m=3..9' --over 'costs.energy.per_metre=0.1..1 \
+      log'
+  usar sensitivity scenarios/paper.ron --policies RNE,DIS --method sobol --samples 64 --over \
+  mission.rest_s=0..60")]
 pub(crate) struct Arguments {
     #[command(flatten)]
     explored: ExploredArguments,
@@ -200,7 +204,8 @@ impl Arguments {
             MethodName::Morris => (
                 "trajectories",
                 "A parameter is told apart from chance if the\n\
-                 interval of its mean effect excludes 0, or its effects are larger than those of other seeds (95 %).",
+                 interval of its mean effect excludes 0, or its effects are larger than those of other seeds \
+                 (95 %).",
             ),
             MethodName::Sobol => (
                 "samples",
@@ -208,7 +213,8 @@ impl Arguments {
             ),
         };
         format!(
-            "{blocks} {what}, {points} points, {} trials of each policy at a point. {shown}\nIntervals are one by one, not corrected.",
+            "{blocks} {what}, {points} points, {} trials of each policy at a point. {shown}\nIntervals are \
+             one by one, not corrected.",
             self.trials
         )
     }

@@ -18,8 +18,9 @@ use super::{ShownArguments, print_table};
 /// What do the policies' groups amount to: sorting by energy, by HP, or by what?
 #[derive(Debug, Args)]
 #[command(after_help = "\
-Prints, for each policy of a finished sweep, how often its split of the team is the one that sorting each role by energy, by HP or by their ratio \
-would give; the mean levels of the groups round by round; and an example of how blind relative entropy is to magnitude.
+Prints, for each policy of a finished sweep, how often its split of the team is the one that sorting each \
+role by energy, by HP or by their ratio would give; the mean levels of the groups round by round; and an \
+example of how blind relative entropy is to magnitude.
 
 Examples:
   usar sorting results/paper
@@ -93,12 +94,14 @@ fn print(
     let hardest = scenario.hardest_first().first().map_or("", |task| &scenario.tasks[task.index()].name);
     writeln!(
         out,
-        "In which share of the rounds a policy's split is the one that sorting each role gives (in brackets: by chance)"
+        "In which share of the rounds a policy's split is the one that sorting each role gives (in brackets: \
+         by chance)"
     )?;
     print_table(out, &likeness_table(likenesses))?;
     writeln!(
         out,
-        "split: in all roles, whichever half takes which task; higher: the group of the {hardest} task has the higher mean of that level. Ties count as sorted,\n\
+        "split: in all roles, whichever half takes which task; higher: the group of the {hardest} task has \
+         the higher mean of that level. Ties count as sorted,\n\
          by chance too\n"
     )?;
     writeln!(out, "Mean levels of the groups when a round begins, in percent")?;
@@ -121,7 +124,8 @@ fn print_blindness(
     if let Some(Example { trial, seed, round, role, unlike, alike, .. }) = &blindness.plainest {
         writeln!(
             out,
-            "Blind to magnitude: the plainest of the {rounds} rounds of {label}: trial {trial} (seed {seed}), round {round}, {}s",
+            "Blind to magnitude: the plainest of the {rounds} rounds of {label}: trial {trial} (seed \
+             {seed}), round {round}, {}s",
             role.to_lowercase()
         )?;
         for (pair, what) in [(unlike, "farther apart, more trust"), (alike, "nearer, less trust")] {
@@ -139,7 +143,8 @@ fn print_blindness(
     if let Some(misjudged) = blindness.misjudged() {
         writeln!(
             out,
-            "Of all two pairs of robots of one role and round, in {:.1} % the one whose levels are nearer to each other has the higher entropy (unrelated: 50 %).",
+            "Of all two pairs of robots of one role and round, in {:.1} % the one whose levels are nearer to \
+             each other has the higher entropy (unrelated: 50 %).",
             100.0 * misjudged
         )?;
     }

@@ -25,12 +25,14 @@ use plan::Wishes;
 /// Run a sweep on a cluster: shards as an array of Slurm jobs, then merge and report
 #[derive(Debug, Args)]
 #[command(after_help = "\
-Measures a few trials, deals the sweep into shards of ten minutes or more (at most 500, and what the site takes), writes two job scripts to \
-the folder of the shards, and submits them: an array, and a job after it that merges and reports. The merged folder has the bytes of a single \
-machine's. A task that is stopped, by preemption, its time or a lost node, goes on where it was. docs/cluster.md has the rest.
+Measures a few trials, deals the sweep into shards of ten minutes or more (at most 500, and what the site \
+takes), writes two job scripts to the folder of the shards, and submits them: an array, and a job after it \
+that merges and reports. The merged folder has the bytes of a single machine's. A task that is stopped, by \
+preemption, its time or a lost node, goes on where it was. docs/cluster.md has the rest.
 
-A template is a job script with words between @: @name@, @shards@, @at_once@, @cpus@, @time@, @merge_time@, @directives@ (account and \
-partition), @directory@, @folder@ (of the shards), @out@, @usar@ and @arguments@. --dry-run prints the default one, filled in.
+A template is a job script with words between @: @name@, @shards@, @at_once@, @cpus@, @time@, @merge_time@, \
+@directives@ (account and partition), @directory@, @folder@ (of the shards), @out@, @usar@ and @arguments@. \
+--dry-run prints the default one, filled in.
 
 Examples:
   usar submit scenarios/sweeps/energy.ron --slurm --dry-run

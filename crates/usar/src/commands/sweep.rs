@@ -29,11 +29,14 @@ const MAX_TABLES: usize = 8;
 #[command(after_help = "\
 FILE is a scenario, or a sweep file: a scenario with policies, trials and axes (scenarios/sweeps/).
 
-Each trial is on disk as soon as it is done. The same command again resumes where the last one stopped, and skips what is finished; more --trials only adds. Nothing in the folder depends on --jobs or on interruptions. It holds trials.csv (a row per trial), rounds.csv, \
-groups.csv, robots.csv, series.csv, hashes.csv (for `usar verify`), journal.jsonl, manifest.json, the file as given (experiment.ron), \
-and its scenario as run (resolved.ron).
+Each trial is on disk as soon as it is done. The same command again resumes where the last one stopped, and \
+skips what is finished; more --trials only adds. Nothing in the folder depends on --jobs or on \
+interruptions. It holds trials.csv (a row per trial), rounds.csv, groups.csv, robots.csv, series.csv, \
+hashes.csv (for `usar verify`), journal.jsonl, manifest.json, the file as given (experiment.ron), and its \
+scenario as run (resolved.ron).
 
-Exit status: 0 when all trials gave numbers, 1 when one did not, 2 for bad input, 3 for a disk error, 130 after Ctrl-C.
+Exit status: 0 when all trials gave numbers, 1 when one did not, 2 for bad input, 3 for a disk error, 130 \
+after Ctrl-C.
 
 Examples:
   usar sweep scenarios/paper.ron
@@ -60,7 +63,8 @@ pub(crate) struct Arguments {
     /// Run part i of n only
     #[arg(long, value_name = "i/n")]
     shard: Option<Shard>,
-    /// Add trials until the 95 % interval of a difference is at most this far from its mean, e.g. 'rescuees.hard: RNE-DIS: 2.0'
+    /// Add trials until the 95 % interval of a difference is at most this far from its mean, e.g.
+    /// 'rescuees.hard: RNE-DIS: 2.0'
     #[arg(long, value_name = "METRIC: A-B: BOUND", conflicts_with = "shard")]
     precision: Option<String>,
     /// Trials at which --precision gives up
@@ -72,7 +76,8 @@ pub(crate) struct Arguments {
     /// Run it even if it takes very long: more bodies x steps than docs/limits.md has
     #[arg(long)]
     allow_expensive: bool,
-    /// Record trials for `usar view`: `all`, the first N of each policy, or `seeds=3,7`; files go to the folder `recordings/` of the results
+    /// Record trials for `usar view`: `all`, the first N of each policy, or `seeds=3,7`; files go to the
+    /// folder `recordings/` of the results
     #[arg(long, value_name = "all|N|seeds=LIST")]
     record: Option<Recorded>,
     /// Form of the tables: with `parquet`, Parquet files stand beside the CSV
@@ -192,7 +197,8 @@ fn footnote(folder: &Folder) -> String {
     };
     let part = shard.map_or(String::new(), |shard| format!(", shard {} of {}", shard.number, shard.of));
     format!(
-        "mean ± sample standard deviation over {} paired trials (seeds {first} to {last}{part}); energy and HP in points per rescuee delivered;\n\
+        "mean ± sample standard deviation over {} paired trials (seeds {first} to {last}{part}); energy and \
+         HP in points per rescuee delivered;\n\
          totals include what robots spent outside a group, on their way to rest{gaps}",
         experiment.count(shard) / experiment.policies.len() / experiment.cases.len().max(1),
     )

@@ -30,8 +30,9 @@ A sweep file says what is expected of its outcome:
       \"rescuees.total: RNE = ENG within 3\",
   ]
 
-Trials are added (10, 20, 40, ...) until every expectation holds or fails at its confidence (95 % where none is named), shared over the \
-planned looks. The exit status is 0 if all hold, and 1 if one fails or is still undecided after --max-trials.
+Trials are added (10, 20, 40, ...) until every expectation holds or fails at its confidence (95 % where none \
+is named), shared over the planned looks. The exit status is 0 if all hold, and 1 if one fails or is still \
+undecided after --max-trials.
 
 Examples:
   usar test scenarios/paper.ron

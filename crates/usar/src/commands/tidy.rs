@@ -14,13 +14,15 @@ use super::output::place;
 /// Print everything that a sweep measured as one long table: a row for each value
 #[derive(Debug, Args)]
 #[command(after_help = "\
-Columns: case, the sweep's axes, policy, trial, seed, round, task, metric, value. Values of a whole trial have no round, those of all tasks \
-together no task. columns.md in the sweep's folder says what each metric means.
+Columns: case, the sweep's axes, policy, trial, seed, round, task, metric, value. Values of a whole trial \
+have no round, those of all tasks together no task. columns.md in the sweep's folder says what each metric \
+means.
 
 Examples:
   usar tidy results/paper | head
   usar tidy results/paper --out tidy.csv
-  python3 -c \"import pandas; print(pandas.read_csv('tidy.csv').query('metric == \\\"rescuees\\\"').groupby('policy').value.describe())\"")]
+  python3 -c \"import pandas; print(pandas.read_csv('tidy.csv').query('metric \
+  == \\\"rescuees\\\"').groupby('policy').value.describe())\"")]
 pub(crate) struct Arguments {
     /// Folder of a sweep
     folder: PathBuf,

@@ -130,7 +130,8 @@ impl Asked {
             find(label).ok_or_else(|| {
                 let (last, cases) = (experiment.seed(experiment.trials), experiment.cases.len());
                 Failure::input(format!(
-                    "no trial of policy {label:?} with seed {seed} in case {}; the sweep has {}, seeds {} to {last}, {cases} cases",
+                    "no trial of policy {label:?} with seed {seed} in case {}; the sweep has {}, seeds {} to \
+                     {last}, {cases} cases",
                     self.case,
                     labels.join(", "),
                     experiment.seed(1),

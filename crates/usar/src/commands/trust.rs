@@ -16,7 +16,8 @@ Lower RNE means more trust. It is not symmetric: try both directions.
 
 Examples:
   usar trust --weights 6,4,2 --from 86,120,30 --to 20,30,10
-  usar trust --weights 6,4,2 --from 86,120,30 --to 82,114,24 --to 79,117,23 --json    towards a group of two")]
+  usar trust --weights 6,4,2 --from 86,120,30 --to 82,114,24 --to 79,117,23 --json    towards a group of \
+  two")]
 pub(crate) struct Arguments {
     /// Weight of each need, separated by commas; only their ratios matter
     #[arg(long, allow_hyphen_values = true)]

@@ -27,9 +27,9 @@ use robot::{RobotStory, Watched};
 /// Why is this robot in this group, and why does it stand still?
 #[derive(Debug, Args)]
 #[command(after_help = "\
-Tells from the recorded decision of a round what drove it, need by need; how close the call was; what every other policy would have \
-decided; and, if `usar oracle` was run for it, how good it was. With --robot: why the robot is in its group, why it does not move, why it \
-turned back.
+Tells from the recorded decision of a round what drove it, need by need; how close the call was; what every \
+other policy would have decided; and, if `usar oracle` was run for it, how good it was. With --robot: why \
+the robot is in its group, why it does not move, why it turned back.
 
 Examples:
   usar why scenarios/paper.ron --seed 3 --round 3

@@ -162,7 +162,8 @@ fn a_sweep_file_names_its_metrics_its_baseline_and_which_differences_matter() {
     let here = folder.path();
     let sweep = |rest: &str| {
         let text = format!(
-            "(name: \"asked\", scenario: \"short.ron\", policies: [\"RNE\", \"DIS\", \"ENG\"], trials: 4, {rest})"
+            "(name: \"asked\", scenario: \"short.ron\", policies: [\"RNE\", \"DIS\", \"ENG\"], trials: 4, \
+             {rest})"
         );
         std::fs::write(here.join("asked.ron"), text).unwrap();
     };

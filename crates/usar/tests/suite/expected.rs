@@ -7,7 +7,8 @@ use crate::support::{succeeds, usar};
 
 fn write(folder: &std::path::Path, expect: &str) {
     let text = format!(
-        "(name: \"expected\", scenario: \"short.ron\", policies: [\"RNE\", \"DIS\"], trials: 2, expect: [{expect}])"
+        "(name: \"expected\", scenario: \"short.ron\", policies: [\"RNE\", \"DIS\"], trials: 2, expect: \
+         [{expect}])"
     );
     std::fs::write(folder.join("expected.ron"), text).unwrap();
 }
@@ -18,7 +19,8 @@ fn expectations_hold_fail_or_stay_undecided() {
     let here = folder.path();
     write(
         here,
-        "\"time >= 30 in 90 % of seeds\", \"DIS: time >= 30 in 100 % of seeds\", \"time: RNE = DIS within 1\"",
+        "\"time >= 30 in 90 % of seeds\", \"DIS: time >= 30 in 100 % of seeds\", \"time: RNE = DIS within \
+         1\"",
     );
     let arguments = ["test", "expected.ron", "--max-trials", "80", "--quiet", "--junit", "all.xml"];
     let text = succeeds(&usar(here, &arguments));
@@ -28,7 +30,8 @@ fn expectations_hold_fail_or_stay_undecided() {
 
     write(
         here,
-        "\"time > 30 in 50 % of seeds\", \"distance: RNE > DIS by 1e6\", \"rescuees < 1 in 90 % of seeds (99.9 %)\"",
+        "\"time > 30 in 50 % of seeds\", \"distance: RNE > DIS by 1e6\", \"rescuees < 1 in 90 % of seeds \
+         (99.9 %)\"",
     );
     let output = usar(
         here,

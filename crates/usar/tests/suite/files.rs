@@ -42,7 +42,8 @@ fn each_value_is_told_with_its_origin() {
     let folder = tempfile::tempdir().unwrap();
     let here = folder.path();
     succeeds(&usar(here, &["new", "first"]));
-    let over = "(\n    base: \"first.ron\", name: \"over\",\n    roles: (carrier: (speed_mps: 3.0)),\n    mission: (loading_s: 1.0),\n    walls: [((5, 14), (15, 14))],\n)";
+    let over = "(\n    base: \"first.ron\", name: \"over\",\n    roles: (carrier: (speed_mps: 3.0)),\n    \
+        mission: (loading_s: 1.0),\n    walls: [((5, 14), (15, 14))],\n)";
     std::fs::write(here.join("over.ron"), over).unwrap();
     let told = succeeds(&usar(here, &["resolve", "over.ron", "--set", "mission.reach_m=2"]));
     let line = |path: &str| {

@@ -9,7 +9,8 @@ use crate::support::{succeeds, usar};
 
 const START: &str = "(name: \"s\", duration_s: 10.0, dt_s: 0.02, arena_m: (1000.0, 1000.0),";
 const TEAM: &str = "team: [(role: \"robot\", count: 1, center: (5.0, 5.0), width_m: 0.0)],";
-const TASK: &str = "tasks: [(name: \"t\", difficulty: 1, center: (500.0, 500.0), size_m: (1.0, 1.0), grid: (1, 1), rest: (800.0, 800.0))],";
+const TASK: &str = "tasks: [(name: \"t\", difficulty: 1, center: (500.0, 500.0), size_m: (1.0, 1.0), grid: \
+    (1, 1), rest: (800.0, 800.0))],";
 
 /// This many entries; `#` in an entry is replaced by its number.
 fn entries(count: usize, entry: &str) -> String {
@@ -163,7 +164,8 @@ fn work_that_takes_long_needs_a_word_and_says_what_it_takes() {
     let pieces = entries(40, "(shape: Disc(0.5), at: (7#.0, 500.0))");
     std::fs::write(here.join("long.ron"), long.replace("tasks:", &format!("debris: [{pieces}], tasks:")))
         .unwrap();
-    let words = "41 robots and pieces of debris x 86400000 steps is 3.5e9, more than 1e9: about 39 minutes on one thread. --allow-expensive";
+    let words = "41 robots and pieces of debris x 86400000 steps is 3.5e9, more than 1e9: about 39 minutes \
+        on one thread. --allow-expensive";
     refused(here, 2, &["run", "long.ron"], &[words]);
     refused(here, 2, &["sweep", "long.ron"], &[words]);
     refused(here, 2, &["view", "long.ron"], &[words]);
@@ -171,6 +173,13 @@ fn work_that_takes_long_needs_a_word_and_says_what_it_takes() {
     let allowed = ["run", "long.ron", "--allow-expensive", "--max-trial-s", "0.01"];
     refused(here, 1, &allowed, &["the trial took longer than 0.01 s"]);
     std::fs::write(here.join("ok.ron"), scenario("")).unwrap();
-    std::fs::write(here.join("many.ron"), sweep("trials: 1000000, axes: {\"mission.rest_s\": [1, 2], \"duration_s\": [1000, 2000]}, policies: [\"RNE\", \"DIS\", \"ENG\"]")).unwrap();
+    std::fs::write(
+        here.join("many.ron"),
+        sweep(
+            "trials: 1000000, axes: {\"mission.rest_s\": [1, \
+        2], \"duration_s\": [1000, 2000]}, policies: [\"RNE\", \"DIS\", \"ENG\"]",
+        ),
+    )
+    .unwrap();
     refused(here, 2, &["sweep", "many.ron"], &["x 12000000 trials is 1.2e12, more than 1e12"]);
 }

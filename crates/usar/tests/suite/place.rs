@@ -10,7 +10,8 @@ pub fn place() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     let text = text.replace("duration_s: 600.0", "duration_s: 30.0");
     std::fs::write(folder.path().join("short.ron"), text).unwrap();
-    let sweep = "(name: \"paper\", scenario: \"short.ron\", policies: [\"RNE\", \"DIS\", \"ENG\", \"HP_DIS\"], trials: 10)";
+    let sweep = "(name: \"paper\", scenario: \"short.ron\", policies: \
+        [\"RNE\", \"DIS\", \"ENG\", \"HP_DIS\"], trials: 10)";
     std::fs::write(folder.path().join("short.sweep.ron"), sweep).unwrap();
     let grid = "(
     name: \"grid\",

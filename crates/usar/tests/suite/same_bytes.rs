@@ -16,7 +16,8 @@ fn short() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     let text = paper_text().replace("duration_s: 600.0", "duration_s: 60.0");
     std::fs::write(folder.path().join("short.ron"), text).unwrap();
-    let sweep = "(name: \"paper\", scenario: \"short.ron\", policies: [\"RNE\", \"DIS\", \"ENG\", \"HP_DIS\"], trials: 10)";
+    let sweep = "(name: \"paper\", scenario: \"short.ron\", policies: \
+        [\"RNE\", \"DIS\", \"ENG\", \"HP_DIS\"], trials: 10)";
     std::fs::write(folder.path().join("short.sweep.ron"), sweep).unwrap();
     folder
 }

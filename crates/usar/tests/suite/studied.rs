@@ -163,7 +163,8 @@ fn readings_stand_for_every_combination_and_are_named_by_what_differs() {
     let folder = place.path();
     let sweep = |readings: &str, policies: &str| {
         let text = format!(
-            "(name: \"r\", scenario: \"short.ron\", set: {{\"duration_s\": 30.0}}, policies: {policies}, readings: {readings}, trials: 2, keep: Rounds)"
+            "(name: \"r\", scenario: \"short.ron\", set: {{\"duration_s\": 30.0}}, policies: {policies}, \
+             readings: {readings}, trials: 2, keep: Rounds)"
         );
         std::fs::write(folder.join("r.ron"), text).unwrap();
         usar(folder, &["sweep", "r.ron", "--quiet", "--out", "out", "--fresh"])
@@ -229,7 +230,8 @@ old
 stays
 ```
 ";
-    let answer = "First\n\n| a | b |\n| --- | --- |\n| 1, 2 | x\\|y |\n\nSecond one\n\n| c |\n| --- |\n| 3 |\n\nNote: so\nit is\n\nno more\n";
+    let answer = "First\n\n| a | b |\n| --- | --- |\n| 1, 2 | x\\|y |\n\nSecond one\n\n| c |\n| --- |\n| 3 \
+        |\n\nNote: so\nit is\n\nno more\n";
     let renewed = pages::renewed(page, |command| command.starts_with("x ").then(|| answer.to_owned()));
     let expected = page.replacen("| old |\n| --- |", "| c |\n| --- |\n| 3 |", 1);
     let expected = expected.replacen("```text\nold\n", "```text\nNote: so\nit is\n", 1);

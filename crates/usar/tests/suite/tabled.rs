@@ -9,12 +9,14 @@ fn variants_set_several_fields_at_once_and_are_an_axis() {
     let here = folder.path();
     let write = |variants: &str| {
         let text = format!(
-            "(name: \"varied\", scenario: \"short.ron\", policies: [\"RNE\", \"DIS\"], trials: 2,\n variants: {variants})"
+            "(name: \"varied\", scenario: \"short.ron\", policies: [\"RNE\", \"DIS\"], trials: 2,\n \
+             variants: {variants})"
         );
         std::fs::write(here.join("varied.ron"), text).unwrap();
     };
     write(
-        "{\"as it is\": {}, \"calm\": {\"radiation\": [], \"debris\": []}, \"faster\": {\"roles.carrier.speed_mps\": 3.0}}",
+        "{\"as it is\": {}, \"calm\": {\"radiation\": [], \"debris\": []}, \"faster\": \
+         {\"roles.carrier.speed_mps\": 3.0}}",
     );
     succeeds(&usar(here, &["sweep", "varied.ron", "--quiet"]));
     let results = here.join("results/varied");

@@ -21,7 +21,8 @@ pub fn run(arguments: &[String]) -> ExitCode {
     let sound = Sound::of(&results);
     let Report { damaged, found, refused, mended } = sound.flip(flips, 1);
     println!(
-        "{damaged} flipped bits: {found} found by verify, {refused} refused by the others, {mended} mended or refused by sweep"
+        "{damaged} flipped bits: {found} found by verify, {refused} refused by the others, {mended} mended \
+         or refused by sweep"
     );
     let all_flips = found == flips && mended == flips;
     let Report { damaged, found, .. } = sound.forge(forgeries, 1);

@@ -15,7 +15,8 @@ pub fn run(arguments: &[String]) -> ExitCode {
     let arguments = ["sweep", scenario, "--trials", "25", "--set", "duration_s=120.0"];
     let report = kills::kill_sweeps(&usar, &arguments, folder.path(), kills, 1_500);
     println!(
-        "{} kills, {} sweeps came to their end, each with the files of an undisturbed one; {} times a finished trial was found again",
+        "{} kills, {} sweeps came to their end, each with the files of an undisturbed one; {} times a \
+         finished trial was found again",
         report.kills, report.sweeps, report.kept
     );
     ExitCode::SUCCESS

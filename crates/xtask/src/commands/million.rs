@@ -59,8 +59,8 @@ fn experiment(place: &Path, trials: u32, keep: Keep) -> Experiment {
     let scenario = scenario.canonicalize().expect("the scenario is there");
     let speeds: Vec<String> = (0..CASES).map(|case| format!("{}.5", case + 1)).collect();
     let sweep = format!(
-        "(name: \"million\", scenario: \"{}\", set: {{\"duration_s\": 120.0}}, policies: {POLICIES:?}, trials: {}, \
-         axes: {{\"roles.carrier.speed_mps\": [{}]}})",
+        "(name: \"million\", scenario: \"{}\", set: {{\"duration_s\": 120.0}}, policies: {POLICIES:?}, \
+         trials: {}, axes: {{\"roles.carrier.speed_mps\": [{}]}})",
         scenario.display(),
         trials as usize / POLICIES.len() / CASES,
         speeds.join(", ")

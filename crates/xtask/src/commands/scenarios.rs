@@ -41,8 +41,9 @@ pub fn run(arguments: &[String]) -> ExitCode {
     }
     let [events, draws, scattered, refused, errands, tasks] = totals;
     println!(
-        "{count} scenarios, {bad} with a violation or an internal error; {tasks} tasks, {errands} scenarios with errands, {events} events, \
-         {draws} distributions, {scattered} entries of scatter; {refused} texts whose values did not go together; {:.0} s",
+        "{count} scenarios, {bad} with a violation or an internal error; {tasks} tasks, {errands} scenarios \
+         with errands, {events} events, {draws} distributions, {scattered} entries of scatter; {refused} \
+         texts whose values did not go together; {:.0} s",
         began.elapsed().as_secs_f64()
     );
     ExitCode::from(u8::from(bad > 0))

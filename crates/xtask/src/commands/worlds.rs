@@ -106,9 +106,10 @@ impl Totals {
         let Self { family, robots, stalls, violations, internal, refused, standstills, .. } = self;
         let share = 100.0 * f64::from(*stalls) / (*robots).max(1) as f64;
         println!(
-            "{family}: {count} worlds, {robots} robots: {violations} violations, {internal} internal errors, {refused} \
-             other failures, {standstills} fleets that stood for {STANDSTILL_S} s (longest {:.1} s), {stalls} robots \
-             ({share:.2} %) without progress for 30 s, {} cut off, {} worlds with errands left",
+            "{family}: {count} worlds, {robots} robots: {violations} violations, {internal} internal errors, \
+             {refused} other failures, {standstills} fleets that stood for {STANDSTILL_S} s (longest {:.1} \
+             s), {stalls} robots ({share:.2} %) without progress for 30 s, {} cut off, {} worlds with \
+             errands left",
             self.longest, self.cut_off, self.undone
         );
         violations + internal + refused + standstills == 0 && share <= 1.0

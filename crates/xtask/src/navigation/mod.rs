@@ -56,8 +56,8 @@ struct Options {
 }
 
 const AFTER_HELP: &str = "\
-flow: the sum of arrival times by the sum of the times that each robot needs alone. A robot that does not arrive counts with the limit, \
-five times the longest time alone and half a minute.
+flow: the sum of arrival times by the sum of the times that each robot needs alone. A robot that does not \
+arrive counts with the limit, five times the longest time alone and half a minute.
 ok: share of the trials in which all arrived and no bodies overlapped by more than a centimetre.
 given up: places given up as unreachable, in all trials.
 touches: times that a robot came to touch another, for each robot.

@@ -82,7 +82,8 @@ impl Table {
         let mean = (logs / self.flows.len() as f64).exp();
         let ok = 100.0 * self.ok as f64 / self.trials as f64;
         println!(
-            "{:16} {:>6} {mean:>7.3} {:>7} {ok:>6.1} {:>8}   geometric mean of {} problems, {} trials, {:.0} s",
+            "{:16} {:>6} {mean:>7.3} {:>7} {ok:>6.1} {:>8}   geometric mean of {} problems, {} trials, {:.0} \
+             s",
             "all",
             "",
             "",
@@ -131,7 +132,8 @@ pub(super) fn explain(outcome: &Outcome) {
         let left = libm::hypot(goal[0] - f64::from(at[0]), goal[1] - f64::from(at[1]));
         let gave_up = late.gave_up_s.map(|time| format!(", gave up at {time:.1} s")).unwrap_or_default();
         println!(
-            "    robot {robot}: at ({:.2}, {:.2}), goal ({:.2}, {:.2}), {left:.2} m away: {}{waits_for}, not nearer for {stalled_s:.1} s{gave_up}",
+            "    robot {robot}: at ({:.2}, {:.2}), goal ({:.2}, {:.2}), {left:.2} m away: {}{waits_for}, not \
+             nearer for {stalled_s:.1} s{gave_up}",
             at[0],
             at[1],
             goal[0],

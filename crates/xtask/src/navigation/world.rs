@@ -116,7 +116,8 @@ impl World {
         for Robot { start: [x, y], energy, .. } in &self.robots {
             writeln!(
                 to,
-                "        (role: \"robot\", count: 1, center: ({x:.3}, {y:.3}), width_m: 0.0, levels: (energy: {energy:.1}, hp: 100.0)),"
+                "        (role: \"robot\", count: 1, center: ({x:.3}, {y:.3}), width_m: 0.0, levels: \
+                 (energy: {energy:.1}, hp: 100.0)),"
             )?;
         }
         writeln!(to, "    ],\n    errands: [")?;

@@ -75,7 +75,8 @@ pub(in crate::conflict) struct Entry {
 pub(super) struct Follows {
     /// Index of the robot ahead.
     pub(super) robot: usize,
-    /// Free way between the two robots, in metres.
+    /// Difference of the robots' ways to the mouths of their own passages, less their radii, in metres: the
+    /// free way between them if both have the same mouth.
     pub(super) gap: f32,
 }
 
@@ -157,7 +158,7 @@ impl<'a> Entrant<'a> {
         Some(if is_same { Meeting::SameWay } else { Meeting::Opposed })
     }
 
-    /// Number of points of the passage that lie farther behind the robot than `clearance`.
+    /// Number of points of the passage that lie farther behind the robot than `clearance`, less one.
     fn left_behind(&self, clearance: f32) -> usize {
         let lengths = self.passage.points.windows(2).map(|pair| (pair[1] - pair[0]).length());
         let from_mouth = lengths.scan(0.0, |sum, length| {
@@ -361,6 +362,14 @@ mod tests {
         let mut entries = vec![Entry::default(); 2];
         decide(&entrants, &movers, &mut entries, 100);
         entries
+    }
+
+    #[test]
+    fn a_short_wide_place_between_two_passages_is_a_bay() {
+        let with_gap = |gap: f32| [passage(0.0, 4.0, 20.0), passage(4.0 + gap, 8.0, 16.0 - gap)];
+        assert!(is_at_bay(&with_gap(2.0), 0) && is_at_bay(&with_gap(2.0), 1));
+        assert!(!is_at_bay(&with_gap(3.0), 0) && !is_at_bay(&with_gap(3.0), 1));
+        assert!(!is_at_bay(&with_gap(2.0)[..1], 0));
     }
 
     #[test]

@@ -17,7 +17,8 @@ pub(super) fn check_program() -> Result<(), Failure> {
         Ok(status) if status.success() => Ok(()),
         Ok(status) => Err(Failure::input(format!("--mp4: `{PROGRAM} -version` ended with {status}"))),
         Err(error) if error.kind() == ErrorKind::NotFound => Err(Failure::input(format!(
-            "--mp4: needs the program {PROGRAM}, which is not installed (or not on PATH); --gif and --frames need nothing"
+            "--mp4: needs the program {PROGRAM}, which is not installed (or not on PATH); --gif and --frames \
+             need nothing"
         ))),
         Err(error) => Err(Failure::input(format!("--mp4: {PROGRAM} cannot be run: {error}"))),
     }

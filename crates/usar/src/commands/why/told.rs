@@ -170,7 +170,8 @@ fn oracle(out: &mut dyn Write, account: &Account, asked: &AskedTrial) -> Result<
     let Some(OracleSays { metric, value, best, worst, rank, played }) = &account.oracle else {
         return Ok(writeln!(
             out,
-            "\nHow good it was: not known; `usar oracle ... --seed {} --round {} --base '{}'` plays all assignments",
+            "\nHow good it was: not known; `usar oracle ... --seed {} --round {} --base '{}'` plays all \
+             assignments",
             asked.seed,
             account.round,
             asked.spec.plain()
@@ -178,7 +179,8 @@ fn oracle(out: &mut dyn Write, account: &Account, asked: &AskedTrial) -> Result<
     };
     Ok(writeln!(
         out,
-        "\nHow good it was: rank {rank} of {played} by {metric} of the round: {value}, where the best has {best} and the worst {worst}"
+        "\nHow good it was: rank {rank} of {played} by {metric} of the round: {value}, where the best has \
+         {best} and the worst {worst}"
     )?)
 }
 
@@ -192,7 +194,8 @@ fn robot(
     let task = task.as_deref().unwrap_or("no");
     writeln!(
         out,
-        "\nRobot {robot}, {role}, in the {task} group; at {at_s:.1} s it has energy {energy:.1} % and HP {hp:.1} %"
+        "\nRobot {robot}, {role}, in the {task} group; at {at_s:.1} s it has energy {energy:.1} % and HP \
+         {hp:.1} %"
     )?;
     let score = decision.score.and_then(RelativeNeedsEntropy::nats);
     if let (Some(best), Some(score)) = (story.exchanges.first(), score) {
@@ -202,12 +205,14 @@ fn robot(
                 "no exchange with a robot of its role would have raised the score"
             }
             _ => {
-                "an exchange would have raised the score: the roles are split one by one, and not all together"
+                "an exchange would have raised the score: the roles are split one by one, and not all \
+                 together"
             }
         };
         writeln!(
             out,
-            "  In its group because {verdict}:\n  in the place of robot {} the score is {then} instead of {score:.3e} nats",
+            "  In its group because {verdict}:\n  in the place of robot {} the score is {then} instead of \
+             {score:.3e} nats",
             best.with
         )?;
     }
