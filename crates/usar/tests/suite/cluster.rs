@@ -11,7 +11,8 @@ use xtask::kills::files;
 use crate::place::{place, refused};
 use crate::support::{program, read, root, succeeds, usar};
 
-const SWEEP: [&str; 5] = ["short.ron", "--policies", "RNE,DIS", "--trials", "20"];
+/// Of trials that are long enough for a task to be killed after its first one.
+const SWEEP: [&str; 7] = ["short.ron", "--policies", "RNE,DIS", "--trials", "20", "--set", "duration_s=600"];
 
 /// Runs a command with the script as `sbatch`.
 fn with_slurm(here: &Path, command: &mut Command, more: &[(&str, &str)]) -> Output {
@@ -99,7 +100,10 @@ fn a_dry_run_prints_readable_scripts_and_writes_nothing() {
     ] {
         assert!(said.lines().any(|found| found == line), "{line}: {said}");
     }
-    assert!(said.contains("short.ron --policies RNE,DIS --trials 20 --set dt_s=0.02 \\"), "{said}");
+    assert!(
+        said.contains("short.ron --policies RNE,DIS --trials 20 --set duration_s=600 --set dt_s=0.02 \\"),
+        "{said}"
+    );
     assert!(said.contains("nothing was written or submitted"), "{said}");
     assert_eq!(std::fs::read_dir(here).unwrap().count(), before);
     std::fs::write(here.join("mine.sh"), "#!/bin/bash\n@uasr@ sweep @arguments@\n").unwrap();

@@ -34,7 +34,12 @@ fn scenarios_policies_roles_and_metrics_are_listed() {
     );
     assert!(listed(&["roles"]).contains("carrier\t6 robots; drives at 2.25 m/s"));
     assert!(listed(&["metrics", "scenarios/three-tasks.ron"]).contains("rescuees.medium\t"));
-    refused(&root, 2, &["list", "scenarios", "nowhere"], &["nowhere: cannot be read"]);
+    refused(
+        tempfile::tempdir().unwrap().path(),
+        2,
+        &["list", "scenarios", "nowhere"],
+        &["nowhere: cannot be read"],
+    );
 }
 
 #[test]

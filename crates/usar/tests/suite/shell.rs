@@ -47,7 +47,12 @@ fn each_shell_has_completions_of_every_verb() {
         }
         assert!(script.contains("--max-trial-s") || script.contains("max-trial-s"), "{shell}: no options");
     }
-    refused(&root, 2, &["completions", "csh"], &["possible values: bash, elvish, fish, powershell, zsh"]);
+    refused(
+        tempfile::tempdir().unwrap().path(),
+        2,
+        &["completions", "csh"],
+        &["possible values: bash, elvish, fish, powershell, zsh"],
+    );
 }
 
 #[test]
