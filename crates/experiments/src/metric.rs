@@ -59,8 +59,7 @@ const RATIO: &str = "points per rescuee";
 const DECLARATIONS: &[Declaration] = &[
     per_task("rescuees", "rescuees", "", |r| Some(f64::from(r.rescued())), |t| Some(f64::from(t.rescued))).primary().in_figure("rescuees").higher()
         .means("Rescuees delivered home or to a rest place."),
-    per_task("energy_per_rescuee", "energy per \
-        rescuee", RATIO, |r| ratio(r.energy(), r.rescued()), |t| ratio(t.energy, t.rescued)).primary().of_sums("energy").in_figure("energy per rescuee").lower()
+    per_task("energy_per_rescuee", "energy per rescuee", RATIO, |r| ratio(r.energy(), r.rescued()), |t| ratio(t.energy, t.rescued)).primary().of_sums("energy").in_figure("energy per rescuee").lower()
         .means("Energy spent, divided by the rescuees delivered; empty where nobody was rescued. The total \
             includes what robots spent outside groups."),
     per_task("hp_per_rescuee", "HP per rescuee", RATIO, |r| ratio(r.hp(), r.rescued()), |t| ratio(t.hp, t.rescued)).primary().of_sums("hp").in_figure("HP per rescuee").lower()
@@ -70,11 +69,9 @@ const DECLARATIONS: &[Declaration] = &[
         .means("Rounds that ended: everybody was home again for whom the team waits."),
     whole("waiting", "time waited", "s", |r| Some(r.waiting_s())).in_figure("waiting and deadlocks").lower()
         .means("Time in which robots stood because of other robots, summed over all robots."),
-    whole("deadlocks", "deadlocks", "", |r| Some(f64::from(r.counts.deadlocks))).in_figure("waiting and \
-        deadlocks").lower()
+    whole("deadlocks", "deadlocks", "", |r| Some(f64::from(r.counts.deadlocks))).in_figure("waiting and deadlocks").lower()
         .means("Conflict sets in which nobody moved for as long as the rule of right of way allows."),
-    whole("longest_stall", "longest stall", "s", |r| Some(r.longest_stall_s())).in_figure("waiting and \
-        deadlocks").lower()
+    whole("longest_stall", "longest stall", "s", |r| Some(r.longest_stall_s())).in_figure("waiting and deadlocks").lower()
         .means("The longest time in which one robot with a goal came no nearer to it, over all robots."),
     whole("conflicts", "conflicts", "", |r| Some(f64::from(r.counts.conflicts)))
         .means("Conflict sets that began: robots whose wishes would have brought them too near to one \

@@ -66,10 +66,8 @@ impl JsonSchema for WallFile {
                     "properties": {
                         "from": {"description": "Where its middle line begins.", "allOf": [point]},
                         "to": {"description": "Where its middle line ends.", "allOf": [point]},
-                        "thickness_m": {"description": "Thickness, in \
-                            metres.", "type": "number", "default": 0.2},
-                        "doors": {"description": "Its doors, which are \
-                            gaps.", "allOf": [doors], "default": []},
+                        "thickness_m": {"description": "Thickness, in metres.", "type": "number", "default": 0.2},
+                        "doors": {"description": "Its doors, which are gaps.", "allOf": [doors], "default": []},
                     },
                     "required": ["from", "to"],
                     "additionalProperties": false,

@@ -176,8 +176,8 @@ fn work_that_takes_long_needs_a_word_and_says_what_it_takes() {
     std::fs::write(
         here.join("many.ron"),
         sweep(
-            "trials: 1000000, axes: {\"mission.rest_s\": [1, \
-        2], \"duration_s\": [1000, 2000]}, policies: [\"RNE\", \"DIS\", \"ENG\"]",
+            "trials: 1000000, axes: {\"mission.rest_s\": [1, 2], \"duration_s\": [1000, 2000]}, \
+             policies: [\"RNE\", \"DIS\", \"ENG\"]",
         ),
     )
     .unwrap();
