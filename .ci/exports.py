@@ -8,6 +8,7 @@ import sys
 import pyarrow
 import pyarrow.parquet
 from mcap.reader import make_reader
+from mcap_protobuf.decoder import DecoderFactory
 
 place = pathlib.Path(sys.argv[1])
 
@@ -20,15 +21,19 @@ def rows(path):
 def check_log():
     robots = {(round(float(row["time_s"]) * 1e9), int(row["robot"])): row for row in rows(place / "csv/robots.csv")}
     topics = {}
+    decoders = DecoderFactory()
     with open(place / "trial.mcap", "rb") as log:
         for schema, channel, message in make_reader(log, validate_crcs=True).iter_messages():
             topics[channel.topic] = topics.get(channel.topic, 0) + 1
-            assert schema.encoding == "jsonschema" and json.loads(schema.data)["type"] == "object"
-            told = json.loads(message.data)
+            if schema.name.startswith("foxglove."):
+                told = decoders.decoder_for(channel.message_encoding, schema)(message.data)
+            else:
+                assert schema.encoding == "jsonschema" and json.loads(schema.data)["type"] == "object"
+                told = json.loads(message.data)
             if channel.topic == "/tf":
-                for robot, transform in enumerate(told["transforms"]):
+                for robot, transform in enumerate(told.transforms):
                     row = robots[message.log_time, robot]
-                    place_m = [transform["translation"][axis] for axis in "xy"]
+                    place_m = [transform.translation.x, transform.translation.y]
                     assert place_m == [float(row["x_m"]), float(row["y_m"])], (row, transform)
             if channel.topic.startswith("/robot/"):
                 row = robots[message.log_time, int(channel.topic.rsplit("/", 1)[1])]
@@ -36,7 +41,7 @@ def check_log():
                 assert told["activity"] == row["activity"], row
     assert sum(count for topic, count in topics.items() if topic.startswith("/robot/")) == len(robots)
     assert topics["/events"] == len(rows(place / "csv/events.csv")), topics
-    assert {"/world", "/debris", "/robots", "/rescuees", "/team"} <= topics.keys(), topics
+    assert {"/world", "/debris", "/radiation", "/robots", "/positions", "/rescuees", "/team"} <= topics.keys(), topics
     return sum(topics.values())
 
 

@@ -12,6 +12,9 @@ pub enum ExportError {
     /// The MCAP log cannot be written.
     #[error("cannot be written: {0}")]
     Mcap(#[from] ::mcap::McapError),
+    /// A message cannot be encoded.
+    #[error("cannot be written: {0}")]
+    Message(String),
     /// A table cannot be written or read.
     #[error("cannot be written: {0}")]
     Csv(#[from] csv::Error),

@@ -7,6 +7,8 @@ use std::path::Path;
 use exports::parquet::{Kind, from_csv};
 use exports::tables::Table;
 use exports::{ExportError, mcap};
+use foxglove::Decode;
+use foxglove::messages::{FrameTransforms, PointCloud, SceneEntity, SceneUpdate};
 use parquet::file::metadata::RowGroupMetaData;
 use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::record::Field;
@@ -29,15 +31,15 @@ fn recorded(file: &str, duration_s: f64) -> Recording {
 }
 
 /// The messages of each topic, with their times in nanoseconds.
-fn messages(log: &[u8]) -> BTreeMap<String, Vec<(u64, Value)>> {
-    let mut topics: BTreeMap<String, Vec<(u64, Value)>> = BTreeMap::new();
+fn messages(log: &[u8]) -> BTreeMap<String, Vec<(u64, Vec<u8>)>> {
+    let mut topics: BTreeMap<String, Vec<(u64, Vec<u8>)>> = BTreeMap::new();
     for message in ::mcap::MessageStream::new(log).unwrap() {
         let message = message.unwrap();
-        assert_eq!(message.channel.message_encoding, "json");
-        let schema = message.channel.schema.as_ref().unwrap();
-        assert_eq!(schema.encoding, "jsonschema");
-        let value = serde_json::from_slice(&message.data).unwrap();
-        topics.entry(message.channel.topic.clone()).or_default().push((message.log_time, value));
+        let (channel, schema) = (&message.channel, message.channel.schema.as_ref().unwrap());
+        let encodings = (channel.message_encoding.as_str(), schema.encoding.as_str());
+        let is_foxglove = schema.name.starts_with("foxglove.");
+        assert_eq!(encodings, if is_foxglove { ("protobuf", "protobuf") } else { ("json", "jsonschema") });
+        topics.entry(channel.topic.clone()).or_default().push((message.log_time, message.data.to_vec()));
     }
     topics
 }
@@ -55,21 +57,23 @@ fn a_log_has_what_the_recording_has() {
     for (place, number) in (0..recording.frames()).step_by(5).enumerate() {
         let frame = recording.frame(number).unwrap();
         let (time, transforms) = &topics["/tf"][place];
+        let transforms = FrameTransforms::decode(&**transforms).unwrap().transforms;
         assert_eq!(*time, (recording.header.time_s_of(number) * 1e9).round() as u64);
         for (id, robot) in frame.robots.iter().enumerate() {
-            let transform = &transforms["transforms"][id];
-            assert_eq!(transform["child_frame_id"], format!("robot/{id}"));
-            assert_eq!(transform["translation"]["x"], f64::from(robot.motion.position_mm[0]) / 1000.0);
+            let transform = &transforms[id];
+            assert_eq!(transform.child_frame_id, format!("robot/{id}"));
+            let x = f64::from(robot.motion.position_mm[0]) / 1000.0;
+            assert_eq!(transform.translation.unwrap().x.to_bits(), x.to_bits());
             let (_, told) = &topics[&format!("/robot/{id}")][place];
+            let told: Value = serde_json::from_slice(told).unwrap();
             assert_eq!(told["energy_percent"], f64::from(robot.motion.energy_millipercent) / 1000.0);
             assert_eq!(told["needs"].as_object().unwrap().len(), recording.header.world.needs.len());
         }
     }
-    let (_, cloud) = &topics["/rescuees"][0];
-    assert_eq!(
-        cloud["data"].as_str().unwrap().len(),
-        (13 * recording.header.world.rescuees.len()).div_ceil(3) * 4
-    );
+    let cloud = PointCloud::decode(&*topics["/rescuees"][0].1).unwrap();
+    assert_eq!((cloud.point_stride, cloud.data.len()), (13, 13 * recording.header.world.rescuees.len()));
+    let cloud = PointCloud::decode(&*topics["/positions"][0].1).unwrap();
+    assert_eq!((cloud.point_stride, cloud.data.len()), (16, 16 * recording.header.world.robots.len()));
     let summary = ::mcap::Summary::read(&log).unwrap().unwrap();
     let names: Vec<&str> = summary.schemas.values().map(|schema| schema.name.as_str()).collect();
     for name in [
@@ -81,7 +85,33 @@ fn a_log_has_what_the_recording_has() {
     ] {
         assert!(names.contains(&name), "{names:?}");
     }
-    assert!(summary.schemas.values().all(|schema| !String::from_utf8_lossy(&schema.data).contains("$ref")));
+}
+
+/// Names of the entities of each message of a topic, each with whether something of it is drawn.
+fn drawn(topic: &[(u64, Vec<u8>)]) -> Vec<Vec<(String, bool)>> {
+    let entity = |entity: SceneEntity| {
+        let is_drawn =
+            !(entity.cubes.is_empty() && entity.cylinders.is_empty() && entity.triangles.is_empty());
+        (entity.id, is_drawn)
+    };
+    let names = |data: &[u8]| SceneUpdate::decode(data).unwrap().entities.into_iter().map(entity).collect();
+    topic.iter().map(|(_, data)| names(data)).collect()
+}
+
+#[test]
+fn debris_that_falls_and_radiation_that_appears_are_drawn_from_then_on() {
+    let recording = recorded("gallery/collapse.ron", 300.0);
+    let topics = messages(&mcap::write(&recording, 5, Vec::new()).unwrap());
+    let world = &recording.header.world;
+    let slab = format!("debris/{}", world.debris_later[0]);
+    let debris = drawn(&topics["/debris"]);
+    assert_eq!(debris[0].len(), world.debris.len());
+    assert!(debris[0].contains(&(slab.clone(), false)));
+    assert!(debris[1..].concat().contains(&(slab, true)));
+    let zone = format!("radiation/{}", world.zones_later[0]);
+    let radiation = drawn(&topics["/radiation"]);
+    assert!(radiation[0].contains(&(zone.clone(), false)));
+    assert!(radiation[1..].concat().contains(&(zone, true)));
 }
 
 #[test]

@@ -170,7 +170,8 @@ pub enum Event {
         /// The conflict set.
         robots: Vec<RobotId>,
     },
-    /// A conflict set came to nothing: nobody moved, or its head came no nearer. One of the next three solves it.
+    /// A conflict set came to nothing: nobody moved, or its head came no nearer. One of the next three solves
+    /// it.
     Deadlocked {
         /// The conflict set, in order of precedence.
         robots: Vec<RobotId>,
@@ -197,7 +198,8 @@ pub enum Event {
         /// The robot.
         robot: RobotId,
     },
-    /// A robot gave up on a place to which it knows no way, or to which it came no nearer: the rescuee, the errand or the rest place there.
+    /// A robot gave up on a place to which it knows no way, or to which it came no nearer: the rescuee, the
+    /// errand or the rest place there.
     Unreachable {
         /// The robot.
         robot: RobotId,

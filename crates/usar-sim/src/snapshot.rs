@@ -185,7 +185,8 @@ mod tests {
             name: "fields", description: "", duration_s: 60.0, dt_s: 0.02, arena_m: (24.0, 16.0),
             roles: [
                 (name: "walker"),
-                (name: "flyer", kind: Aerial, mass_kg: 5.0, sensing_m: 18.0, observing_m: 6.0, capacity: 0, guides: true),
+                (name: "flyer", kind: Aerial, mass_kg: 5.0, sensing_m: 18.0, observing_m: 6.0, capacity: 0,
+                 guides: true),
             ],
             team: [
                 (role: "walker", count: 2, center: (12.0, 2.0), width_m: 1.5),
@@ -193,19 +194,25 @@ mod tests {
                 (role: "flyer", count: 2, center: (12.0, 6.0), width_m: 1.5),
             ],
             tasks: [
-                (name: "far", difficulty: 2, center: (5.0, 12.0), size_m: (2.0, 1.0), grid: (3, 2), rest: (5.0, 5.0)),
-                (name: "near", difficulty: 1, center: (19.0, 12.0), size_m: (2.0, 1.0), grid: (3, 2), rest: (19.0, 5.0)),
+                (name: "far", difficulty: 2, center: (5.0, 12.0), size_m: (2.0, 1.0), grid: (3, 2),
+                 rest: (5.0, 5.0)),
+                (name: "near", difficulty: 1, center: (19.0, 12.0), size_m: (2.0, 1.0), grid: (3, 2),
+                 rest: (19.0, 5.0)),
             ],
             debris: [
-                (shape: Box(1.0, 0.6), at: (9.0, 7.0), rotation_deg: 20.0, movable: (mass_kg: 5.0, friction: 0.3)),
+                (shape: Box(1.0, 0.6), at: (9.0, 7.0), rotation_deg: 20.0,
+                 movable: (mass_kg: 5.0, friction: 0.3)),
                 (shape: Disc(0.5), at: (16.0, 8.0)),
             ],
             radiation: [(at: (8.0, 9.0), radius_m: 2.0, name: "leak")],
             walls: [(from: (20, 0), to: (20, 8), doors: [(at_m: 4, width_m: 1.5, name: "gate")])],
             timeline: [
-                (at_s: 2, event: DebrisFalls(shape: Disc(0.6), at: (12, 9))), (at_s: 3, event: Closes("gate")),
-                (at_s: 4, event: SourceDies("leak")), (at_s: 5, event: TaskEnds("near")), (at_s: 30, event: Opens("gate")),
-                (at_s: 6, event: SourceAppears(at: (14, 12), radius_m: 2)), (at_s: 1, event: RobotLoses(robot: 1, hp: 20)),
+                (at_s: 2, event: DebrisFalls(shape: Disc(0.6), at: (12, 9))),
+                (at_s: 3, event: Closes("gate")),
+                (at_s: 4, event: SourceDies("leak")), (at_s: 5, event: TaskEnds("near")),
+                (at_s: 30, event: Opens("gate")),
+                (at_s: 6, event: SourceAppears(at: (14, 12), radius_m: 2)),
+                (at_s: 1, event: RobotLoses(robot: 1, hp: 20)),
                 (at_s: 2.5, event: RescueesAppear(task: "far", grid: (2, 1))),
             ],
         )"#;

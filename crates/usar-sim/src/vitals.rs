@@ -3,11 +3,13 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Costs of moving or of radiation, in the unit of the scenario's costs (percent of the robot's own maximum, or points). The three add up.
+/// Costs of moving or of radiation, in the unit of the scenario's costs (percent of the robot's own maximum,
+/// or points). The three add up.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Rates {
-    /// Per simulation step, as the paper prints it (energy: a step in which the robot moves; HP: a step inside a zone).
+    /// Per simulation step, as the paper prints it (energy: a step in which the robot moves; HP: a step
+    /// inside a zone).
     pub per_step: f64,
     /// Per metre travelled (HP: inside a zone).
     pub per_metre: f64,

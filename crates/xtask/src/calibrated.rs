@@ -10,17 +10,15 @@ use ron_fields::{Fields, with_values};
 const NOT_TOLD_APART: f64 = 0.05;
 
 const HEADER: &str = "\
-// The paper's experiment in a world that costs what the authors recorded: paper.ron with its free values \
-fitted to their ten trials of the
-// distance baseline (scenarios/reference/dis_trials.csv). How, how well, and what does not fit: \
-docs/calibration.md.
+// The paper's experiment in a world that costs what the authors recorded: paper.ron with its free values
+// fitted to their ten trials of the distance baseline (scenarios/reference/dis_trials.csv). How, how well,
+// and what does not fit: docs/calibration.md.
 //
 ";
 
 const WORLDS: &str = "\
-// The calibrated worlds that the authors' recorded trials cannot tell from scenarios/paper-calibrated.ron: \
-what is claimed of it should
-// hold in them as well. Made by `just calibrate`; docs/calibration.md says how.
+// The calibrated worlds that the authors' recorded trials cannot tell from scenarios/paper-calibrated.ron:
+// what is claimed of it should hold in them as well. Made by `just calibrate`; docs/calibration.md says how.
 (
     name: \"calibrated-worlds\",
     scenario: \"../paper-calibrated.ron\",
@@ -46,7 +44,8 @@ pub fn write_worlds(choice: &Path, folders: &[PathBuf]) {
     let mut worlds = WORLDS.to_owned();
     for row in others {
         if row[3].parse::<f64>().expect("a share") >= NOT_TOLD_APART {
-            writeln!(worlds, "        {:?}: {{{}}},", &row[0], changes(&chosen, &text(row))).expect("memory");
+            let changes = changes(&chosen, &text(row));
+            writeln!(worlds, "        {:?}: {{{changes}\n        }},", &row[0]).expect("memory");
         }
     }
     worlds.push_str("    },\n)\n");
@@ -65,7 +64,7 @@ fn named(text: &str) -> String {
     HEADER.to_owned() + &text.replacen("(\n", "(\n    format: 2,\n", 1)
 }
 
-/// The values in which the second scenario differs from the first, as entries of a variant.
+/// The values in which the second scenario differs from the first, as entries of a variant, one a line.
 fn changes(from: &str, to: &str) -> String {
     let (from_fields, to_fields) = (Fields::of(from), Fields::of(to));
     let differs = |path: &&str| {
@@ -73,8 +72,11 @@ fn changes(from: &str, to: &str) -> String {
         *path != "name" && from_fields.value(path).map(|place| &from[place]) != there
     };
     let paths = to_fields.leaves().map(|(path, _)| path).filter(differs);
-    let entry = |path: &str| format!("{path:?}: {}", &to[to_fields.value(path).unwrap_or_default()]);
-    paths.map(entry).collect::<Vec<_>>().join(", ")
+    let entry = |path: &str| {
+        let value = &to[to_fields.value(path).unwrap_or_default()];
+        format!("\n            {path:?}: {value},")
+    };
+    paths.map(entry).collect()
 }
 
 #[cfg(test)]
@@ -96,14 +98,16 @@ mod tests {
         };
         let folders = [candidate("final-1", "3.0"), candidate("final-2", "4.0"), candidate("final-3", "5.0")];
         let choice = place.path().join("choice.csv");
-        let table = "candidate,misfit,edge_penalty,share_nearest\nfinal-2,1,0,0.9\nfinal-1,2,0,0.06\nfinal-3,9,0,0.04\n";
+        let table = "candidate,misfit,edge_penalty,share_nearest\n\
+            final-2,1,0,0.9\nfinal-1,2,0,0.06\nfinal-3,9,0,0.04\n";
         std::fs::write(&choice, table).unwrap();
         write_worlds(&choice, &folders);
         let read = |name: &str| std::fs::read_to_string(place.path().join(name)).unwrap();
         let expected = "// [paper] legend\n(\n    format: 2,\n    name: \"paper-calibrated\",\n    mission: \
             (rest_s: 4.0), // [paper]\n)\n";
         assert_eq!(read("paper-calibrated.ron"), HEADER.to_owned() + expected);
-        let expected = "        \"final-1\": {\"mission.rest_s\": 3.0},\n    },\n)\n";
+        let expected =
+            "        \"final-1\": {\n            \"mission.rest_s\": 3.0,\n        },\n    },\n)\n";
         assert_eq!(read("calibrated-worlds.ron"), WORLDS.to_owned() + expected);
     }
 }

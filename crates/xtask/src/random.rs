@@ -23,7 +23,8 @@ const ROLES: &str = r#"
     roles: [
         (name: "carrier", observing_m: 3.0, capacity: 4),
         (name: "supplier", capacity: 1, resources: 10, radius_m: 0.3),
-        (name: "observer", kind: Aerial, guides: true, mass_kg: 5.0, sensing_m: 18.0, observing_m: 6.0, capacity: 0, resources: 0),
+        (name: "observer", kind: Aerial, guides: true, mass_kg: 5.0, sensing_m: 18.0, observing_m: 6.0,
+         capacity: 0, resources: 0),
     ],"#;
 
 /// The result of a random scenario.

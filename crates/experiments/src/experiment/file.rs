@@ -59,7 +59,8 @@ pub(super) struct SweepFile {
     /// What is expected of the outcome: see `usar test --help`.
     #[serde(default)]
     pub expect: Vec<String>,
-    /// Scenarios that differ in several fields at once, each by a name with what it sets: an axis of its own, before the others.
+    /// Scenarios that differ in several fields at once, each by a name with what it sets: an axis of its own,
+    /// before the others.
     #[serde(default)]
     #[schemars(with = "BTreeMap<String, BTreeMap<String, serde_json::Value>>")]
     pub variants: Map<Map<Box<RawValue>>>,

@@ -1,16 +1,20 @@
-//! A recording as an MCAP log (<https://mcap.dev>) for Foxglove and Lichtblick: messages in JSON,
-//! with Foxglove's schemas where they exist.
+//! A recording as an MCAP log (<https://mcap.dev>) for Foxglove, Lichtblick and Rerun: Foxglove's messages in
+//! Protobuf, and messages of our own in JSON.
 //!
-//! | topic | schema | when |
+//! | topic | message | when |
 //! | --- | --- | --- |
-//! | `/world` | foxglove.SceneUpdate | at the start: floor, walls, debris, radiation, names of the places |
-//! | `/debris` | foxglove.SceneUpdate | movable debris, where it changes |
-//! | `/robots` | foxglove.SceneUpdate | at the start and where groups change: a cylinder each, in the frame `robot/ID` |
+//! | `/world` | foxglove.SceneUpdate | at the start: floor, walls, names of the places |
+//! | `/debris` | foxglove.SceneUpdate | debris, where it changes |
+//! | `/radiation` | foxglove.SceneUpdate | radiation zones, where they change |
+//! | `/robots` | foxglove.SceneUpdate | where groups change: a cylinder each, in the frame `robot/ID` |
 //! | `/tf` | foxglove.FrameTransforms | each frame: `world` to `robot/ID` |
-//! | `/rescuees` | foxglove.PointCloud | where it changes: places with `state` 0 waiting, 1 claimed, 2 on board, 3 delivered |
+//! | `/positions` | foxglove.PointCloud | each frame: robots as points, in the colours of their groups |
+//! | `/rescuees` | foxglove.PointCloud | where they change: places with a `state`, 0 to 3 |
 //! | `/robot/ID` | usar.Robot | each frame: levels, needs, activity |
 //! | `/team` | usar.Team | each frame: the round, rescuees by state |
 //! | `/events` | foxglove.Log | each event |
+//!
+//! The states of a rescuee are 0 waiting, 1 claimed, 2 on board, 3 delivered.
 
 mod messages;
 mod scene;
@@ -18,17 +22,15 @@ mod writer;
 
 use std::io::Write;
 
+use foxglove::messages::{FrameTransform, FrameTransforms, Log, Timestamp, log};
 use recording::{Frame, Recording};
 use serde_json::{Map, Value, json};
 
-use self::messages::{FrameTransform, FrameTransforms, Log, Pose, Time};
-use self::scene::{debris_scene, rescuees, robots_scene, world_scene};
+use self::messages::{WORLD, timestamp, turned, vector};
+use self::scene::{debris_scene, positions, radiation_scene, rescuees, robots_scene, world_scene};
 use self::writer::{Channel, Channels};
 use crate::error::ExportError;
 use crate::tables::events;
-
-/// Severities of an event, in Foxglove's numbers: information, and warning.
-const LEVELS: [u8; 2] = [2, 3];
 
 /// Names of events that are warnings.
 const WARNINGS: [&str; 6] = ["stranded", "disabled", "deadlocked", "unreachable", "cut_off", "mission_over"];
@@ -57,13 +59,14 @@ fn write_event<W: Write>(
     channels: &mut Channels<W>,
     event: &recording::ToldEvent,
 ) -> Result<(), ExportError> {
+    let is_warning = WARNINGS.contains(&event.event.as_str());
+    let level = if is_warning { log::Level::Warning } else { log::Level::Info };
     let log = Log {
-        timestamp: Time::of(event.time_s),
-        level: LEVELS[usize::from(WARNINGS.contains(&event.event.as_str()))],
+        timestamp: Some(timestamp(event.time_s)),
+        level: level.into(),
         message: event.says.clone(),
         name: event.event.clone(),
-        file: String::new(),
-        line: 0,
+        ..Log::default()
     };
     channels.write(Channel::Events, event.time_s, &log)
 }
@@ -74,7 +77,7 @@ fn write_frame<W: Write>(
     (frame, time_s): (&Frame, f64),
     before: Option<&Frame>,
 ) -> Result<(), ExportError> {
-    let (world, time) = (&recording.header.world, Time::of(time_s));
+    let (world, time) = (&recording.header.world, timestamp(time_s));
     if before.is_none() {
         channels.write(Channel::World, time_s, &world_scene(world, time))?;
     }
@@ -85,26 +88,31 @@ fn write_frame<W: Write>(
     if let Some(scene) = debris_scene(world, frame, before, time) {
         channels.write(Channel::Debris, time_s, &scene)?;
     }
+    let (on, were_on) =
+        (recording.zones_on(frame.step), before.map(|before| recording.zones_on(before.step)));
+    if let Some(scene) = radiation_scene(world, &on, were_on.as_deref(), time) {
+        channels.write(Channel::Radiation, time_s, &scene)?;
+    }
     if !world.rescuees.is_empty() && before.is_none_or(|before| before.rescuees != frame.rescuees) {
         channels.write(Channel::Rescuees, time_s, &rescuees(world, frame, time))?;
     }
     channels.write(Channel::Transforms, time_s, &transforms(frame, time))?;
+    channels.write(Channel::Positions, time_s, &positions(world, frame, time))?;
     for (id, robot) in frame.robots.iter().enumerate() {
-        channels.write(Channel::Robot(id), time_s, &robot_message(recording, id, robot))?;
+        channels.write_json(Channel::Robot(id), time_s, &robot_message(recording, id, robot))?;
     }
-    channels.write(Channel::Team, time_s, &team_message(recording, frame))
+    channels.write_json(Channel::Team, time_s, &team_message(recording, frame))
 }
 
-fn transforms(frame: &Frame, time: Time) -> FrameTransforms {
+fn transforms(frame: &Frame, time: Timestamp) -> FrameTransforms {
     let transform = |(id, robot): (usize, &recording::RobotFrame)| {
         let [x, y] = robot.motion.position_mm.map(|mm| f64::from(mm) / 1000.0);
-        let Pose { position, orientation } = Pose::at([x, y, 0.0]);
         FrameTransform {
-            timestamp: time,
-            parent_frame_id: "world".to_owned(),
+            timestamp: Some(time),
+            parent_frame_id: WORLD.to_owned(),
             child_frame_id: format!("robot/{id}"),
-            translation: position,
-            rotation: orientation,
+            translation: Some(vector([x, y, 0.0])),
+            rotation: Some(turned(0.0)),
         }
     };
     FrameTransforms { transforms: frame.robots.iter().enumerate().map(transform).collect() }

@@ -1,14 +1,12 @@
 //! The world, the robots and the rescuees as objects in space. Lengths are in metres.
 
-use base64::Engine;
-use base64::prelude::BASE64_STANDARD;
-use recording::{Frame, World};
+use foxglove::messages::{
+    Color, Point3, PointCloud, SceneEntity, SceneUpdate, Timestamp, TriangleListPrimitive,
+};
+use recording::{Frame, MovedDebris, World};
 use usar_sim::scenario::{DebrisShape, RoleKind};
 
-use super::messages::{
-    Color, CubePrimitive, CylinderPrimitive, PackedElementField, PointCloud, Pose, Quaternion, SceneEntity,
-    SceneUpdate, TextPrimitive, Time, TriangleListPrimitive, Vector3,
-};
+use super::messages::{WORLD, cube, disc, entity, grey, points, pose, text};
 
 const FLOOR: Color = grey(0.97, 1.0);
 const WALL: Color = grey(0.3, 1.0);
@@ -35,145 +33,138 @@ const DEBRIS_HEIGHT_M: f64 = 0.6;
 const ROBOT_HEIGHT_M: f64 = 0.4;
 const FLIGHT_M: f64 = 2.0;
 
-const fn grey(value: f64, a: f64) -> Color {
-    Color { r: value, g: value, b: value, a }
+/// Debris with less than this coordinate is not there: an event has not brought it yet, or took it away.
+const AWAY_MM: i32 = -10_000_000;
+
+fn group_color(task: Option<u32>) -> Color {
+    task.map_or(UNGROUPED, |task| GROUPS[task as usize % GROUPS.len()])
 }
 
-fn vector(x: f64, y: f64, z: f64) -> Vector3 {
-    Vector3 { x, y, z }
-}
-
-fn cube(place: [f64; 3], size: [f64; 3], color: Color) -> CubePrimitive {
-    CubePrimitive { pose: Pose::at(place), size: size.into(), color }
-}
-
-fn disc([x, y]: [f64; 2], radius: f64, [low, height]: [f64; 2], color: Color) -> CylinderPrimitive {
-    let (pose, size) = (Pose::at([x, y, low + height / 2.0]), vector(2.0 * radius, 2.0 * radius, height));
-    CylinderPrimitive { pose, size, bottom_scale: 1.0, top_scale: 1.0, color }
-}
-
-fn text([x, y, z]: [f64; 3], text: &str, font_size: f64) -> TextPrimitive {
-    let pose = Pose::at([x, y, z]);
-    TextPrimitive {
-        pose,
-        billboard: true,
-        font_size,
-        scale_invariant: false,
-        color: INK,
-        text: text.to_owned(),
-    }
-}
-
-/// Floor, walls, radiation, fixed debris, and the names of the places.
-pub(super) fn world_scene(world: &World, time: Time) -> SceneUpdate {
+/// Floor, walls, and the names of the places.
+pub(super) fn world_scene(world: &World, time: Timestamp) -> SceneUpdate {
     let [width, height] = world.arena_m;
-    let mut ground = SceneEntity::new(time, "world", "ground");
-    ground.cubes.push(cube([width / 2.0, height / 2.0, -0.05], [width, height, 0.08], FLOOR));
+    let mut ground = entity(time, WORLD, "ground");
+    let mut slab = |place, size, color| ground.cubes.push(cube(pose(place, 0.0), size, color));
+    slab([width / 2.0, height / 2.0, -0.05], [width, height, 0.08], FLOOR);
     for x in [-WALL_M / 2.0, width + WALL_M / 2.0] {
-        ground.cubes.push(cube([x, height / 2.0, 0.5], [WALL_M, height + 2.0 * WALL_M, 1.0], WALL));
+        slab([x, height / 2.0, 0.5], [WALL_M, height + 2.0 * WALL_M, 1.0], WALL);
     }
     for y in [-WALL_M / 2.0, height + WALL_M / 2.0] {
-        ground.cubes.push(cube([width / 2.0, y, 0.5], [width, WALL_M, 1.0], WALL));
+        slab([width / 2.0, y, 0.5], [width, WALL_M, 1.0], WALL);
     }
-    let from_start = |(number, _): &(usize, _)| !world.zones_later.contains(number);
-    for (_, zone) in world.zones.iter().enumerate().filter(from_start) {
-        ground.cylinders.push(disc(zone.at, zone.radius_m, [0.0, 0.05], RADIATION));
-    }
-    for (number, task) in world.tasks.iter().enumerate() {
-        let Color { r, g, b, .. } = GROUPS[number % GROUPS.len()];
+    for (number, task) in (0..).zip(&world.tasks) {
         let ([x, y], [width, height]) = (task.center, task.size_m);
-        ground.cubes.push(cube([x, y, 0.0], [width + 3.0, height + 3.0, 0.02], Color { r, g, b, a: 0.15 }));
-        ground.texts.push(text([x, y + height / 2.0 + 2.0, 0.5], &task.name, 1.5));
-        ground.texts.push(text([task.rest[0], task.rest[1], 0.5], "rest", 1.0));
+        let color = Color { a: 0.15, ..group_color(Some(number)) };
+        slab([x, y, 0.0], [width + 3.0, height + 3.0, 0.02], color);
     }
-    let fixed = world.debris.iter().enumerate().filter(|(_, piece)| piece.movable.is_none());
-    let debris = fixed.map(|(number, piece)| {
-        debris_entity((number, &piece.shape, DEBRIS), (piece.at, piece.rotation_deg.to_radians()), time)
-    });
-    SceneUpdate { entities: std::iter::once(ground).chain(debris).collect() }
+    for task in &world.tasks {
+        let ([x, y], [rest_x, rest_y]) = (task.center, task.rest);
+        let above = [x, y + task.size_m[1] / 2.0 + 2.0, 0.5];
+        ground
+            .texts
+            .extend([text(above, &task.name, 1.5, INK), text([rest_x, rest_y, 0.5], "rest", 1.0, INK)]);
+    }
+    SceneUpdate { entities: vec![ground], ..SceneUpdate::default() }
 }
 
-/// A piece of debris in its pose.
-fn debris_entity(
-    (number, shape, color): (usize, &DebrisShape, Color),
-    ([x, y], angle): ([f64; 2], f64),
-    time: Time,
-) -> SceneEntity {
-    let mut entity = SceneEntity::new(time, "world", format!("debris/{number}"));
-    let pose = |z: f64| Pose { position: vector(x, y, z), orientation: Quaternion::turned(angle) };
+/// The radiation zones whose state changed; all of them where nothing is known of them. A zone that is off
+/// is an empty entity.
+pub(super) fn radiation_scene(
+    world: &World,
+    on: &[bool],
+    before: Option<&[bool]>,
+    time: Timestamp,
+) -> Option<SceneUpdate> {
+    let changed = |number: &usize| before.is_none_or(|before| before[*number] != on[*number]);
+    let zone = |number: usize| {
+        let mut entity = entity(time, WORLD, format!("radiation/{number}"));
+        let zone = &world.zones[number];
+        entity.cylinders.extend(on[number].then(|| disc(zone.at, zone.radius_m, [0.0, 0.05], RADIATION)));
+        entity
+    };
+    update((0..on.len()).filter(changed).map(zone))
+}
+
+/// The pieces of debris whose pose changed since the frame before; all of them in the first frame. A piece
+/// that is not there is an empty entity.
+pub(super) fn debris_scene(
+    world: &World,
+    frame: &Frame,
+    before: Option<&Frame>,
+    time: Timestamp,
+) -> Option<SceneUpdate> {
+    let moved = |number: &usize| before.is_none_or(|before| before.debris[*number] != frame.debris[*number]);
+    let piece = |number: usize| {
+        let (file, lies) = (&world.debris[number], &frame.debris[number]);
+        let mut entity = entity(time, WORLD, format!("debris/{number}"));
+        if lies.position_mm[0] > AWAY_MM {
+            let color = if file.movable.is_some() { MOVABLE } else { DEBRIS };
+            draw_debris(&mut entity, &file.shape, lies, color);
+        }
+        entity
+    };
+    update((0..frame.debris.len()).filter(moved).map(piece))
+}
+
+fn update(entities: impl Iterator<Item = SceneEntity>) -> Option<SceneUpdate> {
+    let entities: Vec<SceneEntity> = entities.collect();
+    (!entities.is_empty()).then_some(SceneUpdate { entities, ..SceneUpdate::default() })
+}
+
+/// Adds a piece of debris in its pose to its entity.
+fn draw_debris(entity: &mut SceneEntity, shape: &DebrisShape, lies: &MovedDebris, color: Color) {
+    let [x, y] = lies.position_mm.map(|mm| f64::from(mm) / 1000.0);
+    let at = |z: f64| pose([x, y, z], f64::from(lies.angle) / 10_000.0);
     match shape {
         DebrisShape::Disc(radius) => {
             entity.cylinders.push(disc([x, y], *radius, [0.0, DEBRIS_HEIGHT_M], color));
         }
         DebrisShape::Box(width, height) => {
-            let size = vector(*width, *height, DEBRIS_HEIGHT_M);
-            entity.cubes.push(CubePrimitive { pose: pose(DEBRIS_HEIGHT_M / 2.0), size, color });
+            entity.cubes.push(cube(at(DEBRIS_HEIGHT_M / 2.0), [*width, *height, DEBRIS_HEIGHT_M], color));
         }
-        DebrisShape::Polygon(corners) => {
-            let points = corners.iter().map(|[x, y]| vector(*x, *y, 0.0)).collect();
-            let indices = (2..corners.len() as u32).flat_map(|corner| [0, corner - 1, corner]).collect();
-            let pose = pose(DEBRIS_HEIGHT_M);
-            entity.triangles.push(TriangleListPrimitive { pose, points, color, colors: Vec::new(), indices });
-        }
+        DebrisShape::Polygon(corners) => entity.triangles.push(TriangleListPrimitive {
+            pose: Some(at(DEBRIS_HEIGHT_M)),
+            points: corners.iter().map(|[x, y]| Point3 { x: *x, y: *y, z: 0.0 }).collect(),
+            color: Some(color),
+            colors: Vec::new(),
+            indices: (2..corners.len() as u32).flat_map(|corner| [0, corner - 1, corner]).collect(),
+        }),
     }
-    entity
 }
 
-/// The movable pieces of debris whose pose changed since the frame before; all of them in the first frame.
-pub(super) fn debris_scene(
-    world: &World,
-    frame: &Frame,
-    before: Option<&Frame>,
-    time: Time,
-) -> Option<SceneUpdate> {
-    let movable = world.debris.iter().enumerate().filter(|(_, piece)| piece.movable.is_some());
-    let moved = movable
-        .filter(|(number, _)| before.is_none_or(|before| before.debris[*number] != frame.debris[*number]));
-    let entities: Vec<SceneEntity> = moved
-        .map(|(number, piece)| {
-            let now = &frame.debris[number];
-            let at = now.position_mm.map(|mm| f64::from(mm) / 1000.0);
-            debris_entity((number, &piece.shape, MOVABLE), (at, f64::from(now.angle) / 10_000.0), time)
-        })
-        .collect();
-    (!entities.is_empty()).then_some(SceneUpdate { entities })
+/// Height of the lower end of a robot.
+fn low(world: &World, id: usize) -> f64 {
+    if world.body_of(id).kind == RoleKind::Aerial { FLIGHT_M } else { 0.0 }
 }
 
 /// The robots as cylinders in the colours of their groups; flying robots are drawn above the ground.
-pub(super) fn robots_scene(world: &World, frame: &Frame, time: Time) -> SceneUpdate {
-    let entity = |id: usize| {
-        let role = world.body_of(id);
-        let low = if role.kind == RoleKind::Aerial { FLIGHT_M } else { 0.0 };
-        let task = frame.robots[id].state.task;
-        let color = task.map_or(UNGROUPED, |task| GROUPS[task as usize % GROUPS.len()]);
-        let mut entity = SceneEntity::new(time, &format!("robot/{id}"), format!("robot/{id}"));
-        entity.cylinders.push(disc([0.0; 2], role.radius_m, [low, ROBOT_HEIGHT_M], color));
-        entity.texts.push(text([0.0, 0.0, low + 2.0 * ROBOT_HEIGHT_M], &format!("{} {id}", role.name), 0.6));
+pub(super) fn robots_scene(world: &World, frame: &Frame, time: Timestamp) -> SceneUpdate {
+    let robot = |id: usize| {
+        let (body, low) = (world.body_of(id), low(world, id));
+        let name = format!("robot/{id}");
+        let mut entity = entity(time, &name, &*name);
+        let color = group_color(frame.robots[id].state.task);
+        entity.cylinders.push(disc([0.0; 2], body.radius_m, [low, ROBOT_HEIGHT_M], color));
+        let above = [0.0, 0.0, low + 2.0 * ROBOT_HEIGHT_M];
+        entity.texts.push(text(above, &format!("{} {id}", body.name), 0.6, INK));
         entity
     };
-    SceneUpdate { entities: (0..world.robots.len()).map(entity).collect() }
+    SceneUpdate { entities: (0..world.robots.len()).map(robot).collect(), ..SceneUpdate::default() }
+}
+
+/// The robots as points in the colours of their groups, for programs that draw no scenes.
+pub(super) fn positions(world: &World, frame: &Frame, time: Timestamp) -> PointCloud {
+    let robots = frame.robots.iter().enumerate().map(|(id, robot)| {
+        let [x, y] = robot.motion.position_mm.map(|mm| f64::from(mm) / 1000.0);
+        let Color { r, g, b, a } = group_color(robot.state.task);
+        let bytes = [r, g, b, a].map(|share| (share * 255.0).round() as u8).to_vec();
+        ([x, y, low(world, id) + ROBOT_HEIGHT_M], bytes)
+    });
+    points(time, &["red", "green", "blue", "alpha"], robots)
 }
 
 /// The rescuees as points with their states.
-pub(super) fn rescuees(world: &World, frame: &Frame, time: Time) -> PointCloud {
-    /// Foxglove's numbers of types.
-    const UINT8: u8 = 1;
-    const FLOAT32: u8 = 7;
-    let mut data = Vec::new();
-    for ([x, y], rescuee) in world.rescuees.iter().zip(&frame.rescuees) {
-        [*x as f32, *y as f32, 0.2].iter().for_each(|value| data.extend(value.to_le_bytes()));
-        data.push(rescuee.state);
-    }
-    let field =
-        |(name, offset, kind): (&str, u32, u8)| PackedElementField { name: name.to_owned(), offset, kind };
-    PointCloud {
-        timestamp: time,
-        frame_id: "world".to_owned(),
-        pose: Pose::at([0.0; 3]),
-        point_stride: 13,
-        fields: [("x", 0, FLOAT32), ("y", 4, FLOAT32), ("z", 8, FLOAT32), ("state", 12, UINT8)]
-            .map(field)
-            .to_vec(),
-        data: BASE64_STANDARD.encode(data),
-    }
+pub(super) fn rescuees(world: &World, frame: &Frame, time: Timestamp) -> PointCloud {
+    let rescuees = world.rescuees.iter().zip(&frame.rescuees);
+    points(time, &["state"], rescuees.map(|([x, y], rescuee)| ([*x, *y, 0.2], vec![rescuee.state])))
 }

@@ -3,16 +3,15 @@
 use std::collections::BTreeMap;
 use std::io::Write;
 
+use foxglove::messages::{FrameTransforms, Log, PointCloud, SceneUpdate};
+use foxglove::{Encode, Schema};
 use mcap::records::MessageHeader;
 use mcap::write::NoSeek;
 use mcap::{WriteOptions, Writer};
 use recording::Recording;
-use schemars::JsonSchema;
-use schemars::generate::SchemaSettings;
-use serde::Serialize;
 use serde_json::{Map, Value, json};
 
-use super::messages::{FrameTransforms, Log, PointCloud, SceneUpdate, nanoseconds};
+use super::messages::nanoseconds;
 use crate::error::ExportError;
 
 /// The topic of a message.
@@ -20,8 +19,10 @@ use crate::error::ExportError;
 pub(super) enum Channel {
     World,
     Debris,
+    Radiation,
     Robots,
     Transforms,
+    Positions,
     Rescuees,
     Robot(usize),
     Team,
@@ -33,12 +34,6 @@ pub(super) struct Channels<W: Write> {
     log: Writer<NoSeek<W>>,
     /// The number of each channel in the log, and its number of messages.
     channels: BTreeMap<Channel, (u16, u32)>,
-}
-
-/// The schema of a message. Subschemas are inlined, because not every reader follows references.
-fn schema<T: JsonSchema>() -> Value {
-    let settings = SchemaSettings::draft07().with(|settings| settings.inline_subschemas = true);
-    settings.into_generator().into_root_schema_for::<T>().to_value()
 }
 
 /// The schema of an object with these properties, each with its type in JSON.
@@ -56,56 +51,79 @@ impl<W: Write> Channels<W> {
         let options = WriteOptions::new().disable_seeking(true).library(&recording.header.program);
         let log = options.create(NoSeek::new(out))?;
         let mut channels = Self { log, channels: BTreeMap::new() };
-        let scene = schema::<SceneUpdate>();
-        channels.add(Channel::World, "/world", ("foxglove.SceneUpdate", &scene))?;
-        channels.add(Channel::Debris, "/debris", ("foxglove.SceneUpdate", &scene))?;
-        channels.add(Channel::Robots, "/robots", ("foxglove.SceneUpdate", &scene))?;
-        channels.add(
-            Channel::Transforms,
-            "/tf",
-            ("foxglove.FrameTransforms", &schema::<FrameTransforms>()),
-        )?;
-        channels.add(Channel::Rescuees, "/rescuees", ("foxglove.PointCloud", &schema::<PointCloud>()))?;
+        channels.add_foxglove::<SceneUpdate>(Channel::World, "/world")?;
+        channels.add_foxglove::<SceneUpdate>(Channel::Debris, "/debris")?;
+        channels.add_foxglove::<SceneUpdate>(Channel::Radiation, "/radiation")?;
+        channels.add_foxglove::<SceneUpdate>(Channel::Robots, "/robots")?;
+        channels.add_foxglove::<FrameTransforms>(Channel::Transforms, "/tf")?;
+        channels.add_foxglove::<PointCloud>(Channel::Positions, "/positions")?;
+        channels.add_foxglove::<PointCloud>(Channel::Rescuees, "/rescuees")?;
+        channels.add_foxglove::<Log>(Channel::Events, "/events")?;
         let world = &recording.header.world;
         let robot = robot_schema(world.needs.iter().map(|need| need.name.as_str()));
         for id in 0..world.robots.len() {
-            channels.add(Channel::Robot(id), &format!("/robot/{id}"), ("usar.Robot", &robot))?;
+            channels.add_json(Channel::Robot(id), &format!("/robot/{id}"), ("usar.Robot", &robot))?;
         }
-        let counts = ["round", "waiting", "claimed", "on_board", "delivered"];
-        channels.add(
-            Channel::Team,
-            "/team",
-            ("usar.Team", &object("usar.Team", typed(&counts, "integer"))),
-        )?;
-        channels.add(Channel::Events, "/events", ("foxglove.Log", &schema::<Log>()))?;
+        let counts = typed(&["round", "waiting", "claimed", "on_board", "delivered"], "integer");
+        channels.add_json(Channel::Team, "/team", ("usar.Team", &object("usar.Team", counts)))?;
         Ok(channels)
     }
 
-    fn add(
+    fn add_foxglove<M: Encode>(&mut self, channel: Channel, topic: &str) -> Result<(), ExportError> {
+        let Some(Schema { name, encoding, data }) = M::get_schema() else { return Ok(()) };
+        let schema = self.log.add_schema(&name, &encoding, &data)?;
+        self.add(channel, (schema, topic, &M::get_message_encoding()))
+    }
+
+    fn add_json(
         &mut self,
         channel: Channel,
         topic: &str,
         (name, schema): (&str, &Value),
     ) -> Result<(), ExportError> {
         let schema = self.log.add_schema(name, "jsonschema", &serde_json::to_vec(schema)?)?;
-        let id = self.log.add_channel(schema, topic, "json", &BTreeMap::new())?;
+        self.add(channel, (schema, topic, "json"))
+    }
+
+    fn add(
+        &mut self,
+        channel: Channel,
+        (schema, topic, encoding): (u16, &str, &str),
+    ) -> Result<(), ExportError> {
+        let id = self.log.add_channel(schema, topic, encoding, &BTreeMap::new())?;
         self.channels.insert(channel, (id, 0));
         Ok(())
     }
 
-    /// Writes a message with a time in seconds.
-    pub(super) fn write(
+    /// Writes a message of Foxglove's, with a time in seconds.
+    pub(super) fn write<M: Encode>(
         &mut self,
         channel: Channel,
         time_s: f64,
-        message: &impl Serialize,
+        message: &M,
     ) -> Result<(), ExportError> {
+        let mut bytes = Vec::new();
+        message.encode(&mut bytes).map_err(|error| ExportError::Message(error.to_string()))?;
+        self.write_bytes(channel, time_s, &bytes)
+    }
+
+    /// Writes a message of our own, with a time in seconds.
+    pub(super) fn write_json(
+        &mut self,
+        channel: Channel,
+        time_s: f64,
+        message: &Value,
+    ) -> Result<(), ExportError> {
+        self.write_bytes(channel, time_s, &serde_json::to_vec(message)?)
+    }
+
+    fn write_bytes(&mut self, channel: Channel, time_s: f64, bytes: &[u8]) -> Result<(), ExportError> {
         let Some((channel_id, sequence)) = self.channels.get_mut(&channel) else { return Ok(()) };
         let log_time = nanoseconds(time_s);
         let header =
             MessageHeader { channel_id: *channel_id, sequence: *sequence, log_time, publish_time: log_time };
         *sequence += 1;
-        Ok(self.log.write_to_known_channel(&header, &serde_json::to_vec(message)?)?)
+        Ok(self.log.write_to_known_channel(&header, bytes)?)
     }
 
     /// Ends the log.

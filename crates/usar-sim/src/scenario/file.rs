@@ -1,6 +1,8 @@
-//! The scenario file as it is written: a serde mirror of the RON text, with its defaults. What a value may be is in `validate`.
+//! The scenario file as it is written: a serde mirror of the RON text, with its defaults. What a value may be
+//! is in `validate`.
 //!
-//! SI units; points are `(x, y)` in metres from the arena's lower left corner; levels are percent of a robot's own maximum.
+//! SI units; points are `(x, y)` in metres from the arena's lower left corner; levels are percent of a
+//! robot's own maximum.
 
 use std::collections::BTreeMap;
 
@@ -29,8 +31,8 @@ pub struct ScenarioFile {
     /// What the scenario is for.
     #[serde(default)]
     pub description: String,
-    /// The one policy that may run here, by name; empty for any. A candidate of a calibration names the policy that it is fitted with, so that
-    /// no other can be tried before a candidate is chosen.
+    /// The one policy that may run here, by name; empty for any. A candidate of a calibration names the
+    /// policy that it is fitted with, so that no other can be tried before a candidate is chosen.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub only_policy: String,
     /// Simulated time of a trial, in seconds.
@@ -53,8 +55,8 @@ pub struct ScenarioFile {
     /// The tasks. A mission has at least one.
     #[serde(default)]
     pub tasks: Vec<TaskFile>,
-    /// Places that robots are to go to: when there are any, they take the place of the mission, and the trial is over when all are
-    /// done. Robots without an errand stand at home.
+    /// Places that robots are to go to: when there are any, they take the place of the mission, and the trial
+    /// is over when all are done. Robots without an errand stand at home.
     #[serde(default)]
     pub errands: Vec<Errand>,
     /// Debris at known places.
@@ -105,7 +107,8 @@ pub struct Row {
     pub center: Point,
     /// Distance between the first and the last robot, in metres.
     pub width_m: f64,
-    /// Initial levels of the robots of the row, instead of `initial_levels`. A distribution is drawn for each robot.
+    /// Initial levels of the robots of the row, instead of `initial_levels`. A distribution is drawn for each
+    /// robot.
     #[serde(default)]
     pub levels: Option<Levels>,
     /// What is different in this row from the robots of its role.
@@ -189,7 +192,8 @@ pub struct RoleFile {
     pub capacity: u32,
     /// Rescuing resources that it takes along each round.
     pub resources: u32,
-    /// Whether it guides its group: a group without a guide that can act is slower, by `mission.blind_speed_loss`.
+    /// Whether it guides its group: a group without a guide that can act is slower, by
+    /// `mission.blind_speed_loss`.
     pub guides: bool,
     /// Values of the needs that measure a constant of the role, by the name of the need.
     pub constants: BTreeMap<String, f64>,
@@ -278,8 +282,8 @@ pub struct TaskFile {
     pub grid: [u32; 2],
     /// Centre of the rest place.
     pub rest: Point,
-    /// How many robots of a role its group gets, by the name of the role. Without it, tasks share a role as equally as possible, and
-    /// harder tasks get the extra robots.
+    /// How many robots of a role its group gets, by the name of the role. Without it, tasks share a role as
+    /// equally as possible, and harder tasks get the extra robots.
     #[serde(default)]
     pub quota: BTreeMap<String, u32>,
     /// Debris and radiation zones drawn between home and this task, in addition.

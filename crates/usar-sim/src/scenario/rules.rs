@@ -26,7 +26,8 @@ pub enum CostUnit {
     /// Percent of the robot's own maximum. The default.
     #[default]
     Percent,
-    /// Points of the scale in which roles give their `energy` and `hp`: a robot with 150 of them lasts 1.5 times as long as one with 100.
+    /// Points of the scale in which roles give their `energy` and `hp`: a robot with 150 of them lasts 1.5
+    /// times as long as one with 100.
     Points,
 }
 
@@ -116,7 +117,8 @@ pub struct MissionRules {
     pub energy_turn_back: TurnBack,
     /// When a robot with little health turns back.
     pub hp_turn_back: TurnBack,
-    /// A robot also turns back when its energy is less than this many times what the straight way to its rest place costs.
+    /// A robot also turns back when its energy is less than this many times what the straight way to its rest
+    /// place costs.
     pub rest_reserve: f64,
     /// Time at a rest place, in seconds.
     pub rest_s: f64,
@@ -142,8 +144,8 @@ pub struct MissionRules {
     pub load_speed_loss: f64,
     /// Factor on speed, sensing and observing range at health 0 %; it rises linearly to 1 at 100 %.
     pub health_floor: f64,
-    /// A robot that comes no nearer to its home, its rest place or its work for this long, in seconds, gives up on the place: the team
-    /// does not wait for it. A detour adds the time that it takes.
+    /// A robot that comes no nearer to its home, its rest place or its work for this long, in seconds, gives
+    /// up on the place: the team does not wait for it. A detour adds the time that it takes.
     pub cut_off_s: f64,
 }
 
@@ -173,7 +175,8 @@ pub enum PriorityRule {
     /// The robot with the lowest battery level. The default.
     #[default]
     LowestEnergyFirst,
-    /// Robots of the hardest task, then of the next, and at last those without a group; among them the lowest battery level.
+    /// Robots of the hardest task, then of the next, and at last those without a group; among them the lowest
+    /// battery level.
     TaskThenEnergy,
     /// The robot with the highest battery level.
     HighestEnergyFirst,
@@ -184,15 +187,16 @@ pub enum PriorityRule {
 /// What resolves conflicts and deadlocks.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum ResolverRule {
-    /// Reciprocal avoidance in the open, right of way in narrow passages, and pushing where a robot is stuck. The default. It keeps margins
-    /// and horizons of its own.
+    /// Reciprocal avoidance in the open, right of way in narrow passages, and pushing where a robot is stuck.
+    /// The default. It keeps margins and horizons of its own.
     #[default]
     Reciprocal,
-    /// The paper's rule: the head of a conflict set goes, the others stop. The order of a deadlocked set is rotated, head to tail. Written
-    /// `Rotation`, or `Rotation(margin_m: 0.2)` with the values that differ from the defaults.
+    /// The paper's rule: the head of a conflict set goes, the others stop. The order of a deadlocked set is
+    /// rotated, head to tail. Written `Rotation`, or `Rotation(margin_m: 0.2)` with the values that differ
+    /// from the defaults.
     Rotation(RightOfWay),
-    /// The paper's rule; the head of a deadlocked set changes places with the next in line, then with the one after: the paper's
-    /// Algorithm 6, literally. Written like `Rotation`.
+    /// The paper's rule; the head of a deadlocked set changes places with the next in line, then with the one
+    /// after: the paper's Algorithm 6, literally. Written like `Rotation`.
     Swap(RightOfWay),
     /// Nothing: robots drive as they wish and bump into each other. For comparison.
     None,

@@ -8,8 +8,8 @@ use super::distribution::Amount;
 use super::file::{Movable, Point, ScenarioFile};
 use crate::limits;
 
-/// Discs of debris or radiation zones, placed anew in every trial. They keep clear of homes, rest places and rescuees, and debris leaves a way
-/// from home to each task and rest place.
+/// Discs of debris or radiation zones, placed anew in every trial. They keep clear of homes, rest places and
+/// rescuees, and debris leaves a way from home to each task and rest place.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Scatter {

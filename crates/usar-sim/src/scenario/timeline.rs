@@ -20,7 +20,8 @@ pub struct Moment {
 /// What happens at a time.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub enum Happening {
-    /// A fixed piece of debris falls: `DebrisFalls(shape: Disc(1.5), at: (20, 30))`. It falls once no robot on the ground is below it.
+    /// A fixed piece of debris falls: `DebrisFalls(shape: Disc(1.5), at: (20, 30))`. It falls once no robot
+    /// on the ground is below it.
     DebrisFalls {
         /// Its outline.
         shape: DebrisShape,
@@ -35,7 +36,8 @@ pub enum Happening {
     },
     /// A door opens, or a fixed piece of debris is cleared away: `Opens("gate")`.
     Opens(String),
-    /// A door closes, or a piece of debris that was cleared away is back: `Closes("gate")`. It closes once no robot is in it.
+    /// A door closes, or a piece of debris that was cleared away is back: `Closes("gate")`. It closes once no
+    /// robot is in it.
     Closes(String),
     /// A radiation source appears: `SourceAppears(at: (30, 30), radius_m: 4)`.
     SourceAppears {
@@ -62,7 +64,8 @@ pub enum Happening {
         #[serde(default)]
         hp: f64,
     },
-    /// Rescuees appear in a task's block, in a grid of their own: `RescueesAppear(task: "north", grid: (4, 2))`.
+    /// Rescuees appear in a task's block, in a grid of their own:
+    /// `RescueesAppear(task: "north", grid: (4, 2))`.
     RescueesAppear {
         /// Name of the task.
         task: String,

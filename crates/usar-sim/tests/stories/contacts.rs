@@ -10,7 +10,8 @@ use crate::{scenario, trial};
 /// in y.
 const UNEQUAL: &str = r#"duration_s: 20.0, arena_m: (20.0, 14.0),
     roles: [(name: "large", radius_m: 1.0), (name: "small", radius_m: 0.2)],
-    mission: (energy_threshold: 30.0, hp_threshold: 30.0, rest_reserve: 1.5, rest_s: 30.0, loading_s: 2.0, reach_m: 1.2,
+    mission: (energy_threshold: 30.0, hp_threshold: 30.0, rest_reserve: 1.5, rest_s: 30.0, loading_s: 2.0,
+              reach_m: 1.2,
         area_margin_m: 4.0, blind_speed_loss: 0.3, health_floor: 0.5),
     conflicts: (resolver: None),
     team: [

@@ -9,15 +9,18 @@ use crate::{scenario, trial};
 /// Robot 0 senses no debris. On its way home it meets a wall that no robot knows, and pushes against it for
 /// good.
 const WALL: &str = r#"duration_s: 300.0, arena_m: (40.0, 40.0),
-    roles: [(name: "blind", sensing_m: 0.0, observing_m: 1.0, resources: 10), (name: "seer", observing_m: 3.0)],
+    roles: [(name: "blind", sensing_m: 0.0, observing_m: 1.0, resources: 10),
+            (name: "seer", observing_m: 3.0)],
     team: [
         (role: "blind", count: 1, center: (6.0, 5.0), width_m: 0.0),
         (role: "seer", count: 1, center: (30.0, 5.0), width_m: 0.0),
     ],
     tasks: [
-        (name: "far", difficulty: 2, center: (15.0, 30.0), size_m: (20.0, 0.0), grid: (3, 1), rest: (36.0, 36.0),
+        (name: "far", difficulty: 2, center: (15.0, 30.0), size_m: (20.0, 0.0), grid: (3, 1),
+         rest: (36.0, 36.0),
          quota: {"blind": 1, "seer": 0}),
-        (name: "near", difficulty: 1, center: (32.0, 20.0), size_m: (2.0, 1.0), grid: (5, 2), rest: (36.0, 10.0),
+        (name: "near", difficulty: 1, center: (32.0, 20.0), size_m: (2.0, 1.0), grid: (5, 2),
+         rest: (36.0, 10.0),
          quota: {"blind": 0, "seer": 1}),
     ],
     debris: [(shape: Box(6.0, 0.5), at: (6.0, 17.0))]"#;
@@ -55,10 +58,13 @@ fn tired(covered: [bool; 2]) -> String {
     let debris: Vec<String> = places.filter(|(_, covered)| *covered).map(|(at, _)| disc(at)).collect();
     format!(
         r#"duration_s: 400.0, arena_m: (40.0, 40.0), roles: [(name: "carrier", observing_m: 3.0)],
-        team: [(role: "carrier", count: 1, center: (20.0, 5.0), width_m: 0.0, levels: (energy: 33.0, hp: 100.0))],
+        team: [(role: "carrier", count: 1, center: (20.0, 5.0), width_m: 0.0,
+                levels: (energy: 33.0, hp: 100.0))],
         tasks: [
-            (name: "left", difficulty: 2, center: (10.0, 32.0), size_m: (2.0, 1.0), grid: (5, 2), rest: (10.0, 20.0)),
-            (name: "right", difficulty: 1, center: (30.0, 32.0), size_m: (2.0, 1.0), grid: (5, 2), rest: (30.0, 20.0)),
+            (name: "left", difficulty: 2, center: (10.0, 32.0), size_m: (2.0, 1.0), grid: (5, 2),
+             rest: (10.0, 20.0)),
+            (name: "right", difficulty: 1, center: (30.0, 32.0), size_m: (2.0, 1.0), grid: (5, 2),
+             rest: (30.0, 20.0)),
         ],
         debris: [{}]"#,
         debris.join(", ")

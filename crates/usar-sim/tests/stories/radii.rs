@@ -17,7 +17,8 @@ fn doorway(detour: bool) -> String {
             (role: "large", count: 1, center: (5.0, 7.0), width_m: 0.0),
         ],
         errands: [(robot: 0, to: [(15.0, 5.0)]), (robot: 1, to: [(15.0, 7.0)])],
-        debris: [(shape: Box(0.4, 4.5), at: (10.0, 2.25)), (shape: Box(0.4, {height:?}), at: (10.0, {middle:?}))]"#
+        debris: [(shape: Box(0.4, 4.5), at: (10.0, 2.25)),
+                 (shape: Box(0.4, {height:?}), at: (10.0, {middle:?}))]"#
     )
 }
 
@@ -58,7 +59,8 @@ fn a_mission_whose_small_robots_live_behind_a_small_gap_is_no_layout_without_pas
                 (role: "small", count: 1, center: {small}, width_m: 0.0),
                 (role: "large", count: 1, center: {large}, width_m: 0.0),
             ],
-            tasks: [(name: "task", difficulty: 1, center: (30.0, 10.0), size_m: (1.0, 1.0), grid: (1, 1), rest: (30.0, 5.0))],
+            tasks: [(name: "task", difficulty: 1, center: (30.0, 10.0), size_m: (1.0, 1.0), grid: (1, 1),
+                     rest: (30.0, 5.0))],
             debris: [(shape: Box(0.4, 4.5), at: (10.0, 2.25)), (shape: Box(0.4, 14.5), at: (10.0, 12.75))]"#
         );
         Simulation::new(&scenario(&text), 1).map(|_| ()).map_err(|error| error.to_string())

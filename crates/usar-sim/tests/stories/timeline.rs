@@ -15,7 +15,8 @@ const WORLD: &str = r#"
         (name: "far", difficulty: 2, center: (10, 34), size_m: (4, 2), grid: (3, 2), rest: (8, 12)),
         (name: "near", difficulty: 1, center: (30, 34), size_m: (4, 2), grid: (3, 2), rest: (32, 12)),
     ],
-    walls: [(from: (0, 22), to: (40, 22), doors: [(at_m: 10, width_m: 3, name: "west"), (at_m: 30, width_m: 3)])],
+    walls: [(from: (0, 22), to: (40, 22),
+             doors: [(at_m: 10, width_m: 3, name: "west"), (at_m: 30, width_m: 3)])],
     radiation: [(at: (20, 16), radius_m: 2, name: "core")],
 "#;
 
@@ -44,7 +45,8 @@ fn everything_happens_at_its_time() {
         r#"(at_s: 10, event: DebrisFalls(shape: Disc(1), at: (20, 30), name: "rock")), (at_s: 60, event: Opens("rock")),
            (at_s: 12, event: SourceAppears(at: (33, 26), radius_m: 2)), (at_s: 14, event: SourceDies("core")),
            (at_s: 16, event: RobotFails(3)), (at_s: 17, event: RobotLoses(robot: 1, energy: 20, hp: 5)),
-           (at_s: 20, event: RescueesAppear(task: "near", grid: (2, 1))), (at_s: 90, event: TaskEnds("far"))"#,
+           (at_s: 20, event: RescueesAppear(task: "near", grid: (2, 1))),
+           (at_s: 90, event: TaskEnds("far"))"#,
     );
     for (at_s, is_it) in [
         (10.0, (|event| matches!(event, Event::DebrisFell { .. })) as fn(&Event) -> bool),
@@ -119,7 +121,8 @@ fn a_task_that_begins_later_gets_robots_then_and_none_after_its_end() {
 fn a_trial_goes_on_bit_for_bit_from_before_and_after_each_event() {
     let (scenario, _, whole) = trial(
         r#"(at_s: 10, event: DebrisFalls(shape: Box(3, 1), at: (11, 25), name: "slab")), (at_s: 20, event: Closes("west")),
-           (at_s: 30, event: SourceDies("core")), (at_s: 35, event: RobotLoses(robot: 2, energy: 95)), (at_s: 50, event: Opens("slab")),
+           (at_s: 30, event: SourceDies("core")), (at_s: 35, event: RobotLoses(robot: 2, energy: 95)),
+           (at_s: 50, event: Opens("slab")),
            (at_s: 52, event: Opens("west")), (at_s: 60, event: TaskEnds("far"))"#,
     );
     let policy = Registry::standard().parse("RNE").unwrap().policy;

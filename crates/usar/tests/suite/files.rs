@@ -57,12 +57,12 @@ fn each_value_is_told_with_its_origin() {
     };
     for expected in [
         "name = \"over\" # over.ron:2",
-        "duration_s = 180.0 # first.ron:11",
+        "duration_s = 180.0 # first.ron:12",
         "roles[0].speed_mps = 3.0 # over.ron:3",
-        "roles[0].capacity = 6 # first.ron:25",
+        "roles[0].capacity = 6 # first.ron:26",
         "roles[0].mass_kg = 50.0 # default",
         "mission.loading_s = 1.0 # over.ron:4",
-        "mission.rest_s = 20.0 # first.ron:44",
+        "mission.rest_s = 20.0 # first.ron:48",
         "mission.reach_m = 2.0 # --set",
         "mission.health_floor = 0.5 # default",
         "walls[0].from[0] = 5.0 # over.ron:5",

@@ -82,8 +82,8 @@ impl Problem {
         world.jitter(&mut draws);
         let Self { name, what, source, .. } = self;
         format!(
-            "// {what}. After: {source}.\n// Seed {seed} of the benchmark of right of way; written by `just \
-             navigation --write`.\n{}",
+            "// {what}.\n// After: {source}.\n// Seed {seed} of the benchmark of right of way; written by \
+             `just navigation --write`.\n{}",
             world.text(name, what)
         )
     }

@@ -40,8 +40,8 @@ const CLOSE_UP_S: f32 = 0.3;
 /// A robot in a queue wishes to go at least this fast, in metres per second: it has not arrived.
 const LEAST_WISH_MPS: f32 = 0.02;
 
-/// A robot that has come no nearer for this long, in seconds, holds up no robot behind it. At the least wish a
-/// robot may count as such for a moment; then the robot behind closes up.
+/// A robot that has come no nearer for this long, in seconds, holds up no robot behind it. At the least wish
+/// a robot may count as such for a moment; then the robot behind closes up.
 pub(super) const HOLDS_QUEUE_S: f64 = 2.0;
 
 /// A robot that makes room and gets no nearer to its place for this long, in seconds, is let out by the robot
