@@ -102,6 +102,7 @@ results:
     target/release/usar sweep scenarios/sweeps/readings-calibrated.ron
     target/release/usar sweep scenarios/sweeps/what-matters.ron
     target/release/usar sweep scenarios/sweeps/what-matters-calibrated.ron
+    target/release/usar sweep scenarios/sweeps/what-matters-leak.ron
     target/release/usar sweep scenarios/sweeps/right-of-way.ron
     target/release/usar sweep scenarios/sweeps/right-of-way-crowded.ron
 

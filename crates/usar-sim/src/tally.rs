@@ -105,7 +105,7 @@ pub(crate) fn delay_cause(
     }
     match directive {
         Directive::Yield { .. } => DelayCause::RightOfWay,
-        Directive::Blocked { .. } => DelayCause::Blocked,
+        Directive::Blocked { .. } | Directive::Follow { .. } => DelayCause::Blocked,
         Directive::Retreat { .. } | Directive::GiveWay(_) => DelayCause::MakingRoom,
         Directive::BackOff(_) => DelayCause::BackingOff,
         Directive::Proceed(_) => DelayCause::UnderWay,

@@ -40,7 +40,7 @@ impl Asked {
     /// Resolves the command line's wishes and the sweep file.
     ///
     /// # Errors
-    /// An unknown metric, or a margin that is not a number above 0.
+    /// An unknown metric, a margin that is not a number above 0, or a margin with only one policy.
     pub fn of(experiment: &Experiment, wishes: &Wishes) -> Result<Self, Failure> {
         let asks = experiment.asks()?;
         let catalogue = &experiment.metrics;
@@ -64,8 +64,14 @@ impl Asked {
         }
         let is_compared =
             |label: &&str| wishes.policies.as_ref().is_none_or(|only| only.iter().any(|one| one == label));
-        let mut labels = experiment.policies.iter().map(|policy| policy.label.as_str());
-        let first = labels.find(is_compared).filter(|_| !is_declared).map(str::to_owned);
+        let labels = experiment.policies.iter().map(|policy| policy.label.as_str());
+        let compared: Vec<&str> = labels.filter(is_compared).collect();
+        if let ([only], false) = (&*compared, wishes.margins.is_empty()) {
+            return Err(Failure::input(format!(
+                "--margin: a margin is for the difference of two policies, and {only} is the only one here"
+            )));
+        }
+        let first = compared.first().filter(|_| !is_declared).map(|label| (*label).to_owned());
         let exploratory =
             catalogue.chosen(&[])?.into_iter().filter(|place| !metrics.contains(place)).collect();
         Ok(Self {

@@ -18,7 +18,7 @@ pub enum DelayCause {
     Resting,
     /// It yields to a robot with the right of way.
     RightOfWay,
-    /// Its route is blocked by a robot that stands, or by debris.
+    /// Its route is blocked by debris or by a robot that stands or queues.
     Blocked,
     /// It makes room for a robot with the right of way, or gives way while it has nowhere to go.
     MakingRoom,

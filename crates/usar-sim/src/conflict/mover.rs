@@ -88,6 +88,14 @@ pub enum Directive {
     },
     /// Stand: the robot has nowhere to go.
     Stand,
+    /// Move with this low velocity behind another robot: it queues behind it, or comes no nearer because of
+    /// it.
+    Follow {
+        /// Metres per second.
+        velocity: Vector,
+        /// The robot ahead.
+        behind: RobotId,
+    },
 }
 
 impl Directive {
@@ -103,7 +111,8 @@ impl Directive {
             Self::Proceed(velocity)
             | Self::BackOff(velocity)
             | Self::GiveWay(velocity)
-            | Self::Retreat { velocity, .. } => velocity,
+            | Self::Retreat { velocity, .. }
+            | Self::Follow { velocity, .. } => velocity,
             Self::Yield { .. } | Self::Blocked { .. } | Self::Stand => Vector::ZERO,
         }
     }
@@ -113,6 +122,7 @@ impl Directive {
     pub fn waits_for(self) -> Option<RobotId> {
         match self {
             Self::Yield { to } => Some(to),
+            Self::Follow { behind, .. } => Some(behind),
             Self::Blocked { by } => by,
             Self::Retreat { velocity, room_for } if velocity == Vector::ZERO => Some(room_for),
             _ => None,

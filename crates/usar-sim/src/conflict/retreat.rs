@@ -348,6 +348,17 @@ impl Retreat {
 }
 
 #[cfg(test)]
+impl Retreats {
+    /// Robot `i` is on its way to a place at `to` for its head, and has come no nearer for so many steps.
+    pub(super) fn begin_held_up(&mut self, i: usize, head: usize, to: Vector, steps: u32) {
+        let (path, line) = (vec![to], vec![to]);
+        let retreat =
+            Retreat { head, depth: 1, path, line, least_left: 0.0, idle_steps: steps, held_steps: steps };
+        self.begin(i, retreat);
+    }
+}
+
+#[cfg(test)]
 mod tests {
     use super::*;
 

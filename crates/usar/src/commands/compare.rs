@@ -11,12 +11,11 @@ use experiments::comparison::{
 };
 use experiments::experiment::Experiment;
 use experiments::stats::bootstrap::resamples;
-use experiments::sweep::folder::Folder;
 use reports::table::{comparison_table, differences_table, effects_table, interactions_table};
 use serde::Serialize;
 
 use super::family::FamilyArguments;
-use super::{SCHEMA_VERSION, ShownArguments, print_table};
+use super::{SCHEMA_VERSION, ShownArguments, print_table, read_sweep};
 
 /// Is A better than B, by how much, and how sure is that? Paired by seed
 #[derive(Debug, Args)]
@@ -61,7 +60,7 @@ struct Output<'a> {
 
 impl Arguments {
     pub(crate) fn execute(&self, out: &mut dyn Write) -> Result<(), Failure> {
-        let folder = Folder::read(&self.folder)?;
+        let folder = read_sweep(&self.folder)?;
         let experiment = folder.experiment();
         let asked = self.family.asked(experiment)?;
         let comparisons = compare(&folder, &asked.metrics, asked.choice())?;

@@ -11,7 +11,7 @@ use experiments::sweep::folder::Folder;
 use pictures::Picture;
 use reports::{ColumnLook, Wanted, column_figure};
 
-use super::output;
+use super::{output, read_sweep};
 
 /// Draw one figure of a sweep for the column of a paper, as PDF, SVG or PNG
 #[derive(Debug, Args)]
@@ -85,7 +85,7 @@ const DIFFERENCES: &str = "differences";
 
 impl Arguments {
     pub(crate) fn execute(&self, out: &mut dyn Write) -> Result<(), Failure> {
-        let mut folder = Folder::read(&self.folder)?;
+        let mut folder = read_sweep(&self.folder)?;
         let cases = folder.experiment().cases.len();
         if !(1..=cases).contains(&self.case) {
             return Err(Failure::input(format!("--case: must be from 1 to {cases}, found {}", self.case)));

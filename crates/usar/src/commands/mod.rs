@@ -53,6 +53,7 @@ pub(crate) mod why;
 use std::path::Path;
 
 use experiments::Failure;
+use experiments::sweep::folder::Folder;
 use usar_sim::scenario::Scenario;
 
 use crate::running::tell;
@@ -71,6 +72,17 @@ pub(crate) fn load(path: &Path) -> Result<(Scenario, String), Failure> {
         tell(format_args!("note: {}{line}: {odd}", path.display()));
     }
     Ok((scenario, text))
+}
+
+/// Reads the folder of a sweep. A note on stderr tells if trials are missing.
+pub(crate) fn read_sweep(path: &Path) -> Result<Folder, Failure> {
+    let folder = Folder::read(path)?;
+    if !folder.manifest().is_complete {
+        let (there, of) = (folder.results().len(), folder.experiment().keys(None).count());
+        let path = path.display();
+        tell(format_args!("note: {path}: the sweep is not complete: {there} of {of} trials are there"));
+    }
+    Ok(folder)
 }
 
 /// Parses a time interval from the command line.

@@ -6,12 +6,11 @@ use std::path::PathBuf;
 use clap::Args;
 use experiments::Failure;
 use experiments::rounds::rounds_in;
-use experiments::sweep::folder::Folder;
 use study_yang2021::readings::{Trials, averaged, groupings_in_words, rivals, single};
 use study_yang2021::table::{averaged_table, readings_table, rivals_table};
 
 use super::sorting::gaps;
-use super::{ShownArguments, print_table};
+use super::{ShownArguments, print_table, read_sweep};
 
 /// Which reading of the paper's ambiguous places decides what?
 #[derive(Debug, Args)]
@@ -32,7 +31,7 @@ pub(crate) struct Arguments {
 
 impl Arguments {
     pub(crate) fn execute(&self, out: &mut dyn Write) -> Result<(), Failure> {
-        let mut folder = Folder::read(&self.folder)?;
+        let mut folder = read_sweep(&self.folder)?;
         if folder.experiment().cases.len() > 1 {
             return Err(Failure::input(format!(
                 "{}: has axes; readings are compared in a sweep of one case",

@@ -10,6 +10,7 @@ use experiments::sweep::folder::Folder;
 use reports::{ShownTrial, Wanted, write_report};
 
 use super::family::FamilyArguments;
+use super::read_sweep;
 use super::trials::Shown;
 use super::view::page;
 use crate::recordings::{path_of, recording_of};
@@ -50,7 +51,7 @@ pub(crate) struct Arguments {
 
 impl Arguments {
     pub(crate) fn execute(&self, out: &mut dyn Write) -> Result<(), Failure> {
-        let mut folder = Folder::read(&self.folder)?;
+        let mut folder = read_sweep(&self.folder)?;
         let cases = folder.experiment().cases.len();
         if let Some(case) = self.case.filter(|case| !(1..=cases).contains(case)) {
             return Err(Failure::input(format!("--case: must be from 1 to {cases}, found {case}")));

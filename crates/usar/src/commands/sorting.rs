@@ -13,7 +13,7 @@ use rne_core::Member;
 use rne_core::policies::rne::Rne;
 use usar_sim::scenario::Scenario;
 
-use super::{ShownArguments, print_table};
+use super::{ShownArguments, print_table, read_sweep};
 
 /// What do the policies' groups amount to: sorting by energy, by HP, or by what?
 #[derive(Debug, Args)]
@@ -37,7 +37,7 @@ pub(crate) struct Arguments {
 
 impl Arguments {
     pub(crate) fn execute(&self, out: &mut dyn Write) -> Result<(), Failure> {
-        let mut folder = Folder::read(&self.folder)?;
+        let mut folder = read_sweep(&self.folder)?;
         let cases = folder.experiment().cases.len();
         if !(1..=cases).contains(&self.case) {
             return Err(Failure::input(format!("--case: must be from 1 to {cases}, found {}", self.case)));

@@ -10,6 +10,7 @@ use experiments::sweep::folder::Folder;
 use experiments::sweep::{tidy_columns, tidy_rows};
 
 use super::output::place;
+use super::read_sweep;
 
 /// Print everything that a sweep measured as one long table: a row for each value
 #[derive(Debug, Args)]
@@ -36,7 +37,7 @@ pub(crate) struct Arguments {
 
 impl Arguments {
     pub(crate) fn execute(&self, out: &mut dyn Write) -> Result<(), Failure> {
-        let mut folder = Folder::read(&self.folder)?;
+        let mut folder = read_sweep(&self.folder)?;
         let Some(path) = &self.out else { return print(&mut folder, out) };
         let (place, name) = place("--out", path, self.force)?;
         let mut file = NewFile::new(&place, name)?;

@@ -209,6 +209,12 @@ fn a_sweep_file_names_its_metrics_its_baseline_and_which_differences_matter() {
         &["compare", "results/asked", "--margin", "luck=1"],
         &["--margin: unknown metric \"luck\""],
     );
+    refused(
+        here,
+        2,
+        &["compare", "results/asked", "--policies", "ENG", "--margin", "distance=1"],
+        &["--margin: a margin is for the difference of two policies, and ENG is the only one here"],
+    );
     sweep("primary: [\"luck\"]");
     refused(here, 2, &["sweep", "asked.ron"], &["asked.ron: primary: unknown metric \"luck\""]);
     sweep("margins: {\"distance\": -1}");

@@ -96,8 +96,12 @@ fn an_interrupted_sweep_stops_at_once_and_goes_on() {
     assert!(since.elapsed() < Duration::from_secs(2));
     assert_eq!(output.status.code(), Some(130));
     assert!(String::from_utf8_lossy(&output.stderr).contains("and the same command goes on"));
+    let tidy = usar(here, &["tidy", "results/paper"]);
+    succeeds(&tidy);
+    assert!(String::from_utf8_lossy(&tidy.stderr).contains("the sweep is not complete: "));
     let again = usar(here, &sweep);
     succeeds(&again);
+    assert!(usar(here, &["tidy", "results/paper"]).stderr.is_empty());
     assert!(String::from_utf8_lossy(&again.stderr).contains("of 60 trials are there already"));
     assert_eq!(rows(&here.join("results/paper"), "trials.csv").len(), 60);
 }

@@ -26,7 +26,10 @@ pub fn run(arguments: &[String]) -> ExitCode {
     let chosen = arguments.iter().find(|text| !is_number(text));
     let is_chosen = |family: &&Family| chosen.is_none_or(|name| name == family.0);
     let families: Vec<&Family> = FAMILIES.iter().filter(is_chosen).collect();
-    assert!(!families.is_empty(), "the last word is open or rooms");
+    if families.is_empty() || arguments.len() > 3 {
+        eprintln!("usage: worlds [FIRST_SEED] [WORLDS] [open|rooms]");
+        return ExitCode::from(2);
+    }
     std::panic::set_hook(Box::new(|_| {})); // a panic is counted, and told in one line
     let sound =
         families.iter().map(|family| run_family(family, first..first + count)).filter(|is_sound| *is_sound);

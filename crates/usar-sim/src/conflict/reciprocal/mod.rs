@@ -12,6 +12,8 @@ mod half_planes;
 mod passage;
 mod velocity;
 
+use parry2d::math::Vector;
+
 use super::passing::nearest_in_the_way;
 use super::{Directive, Mover, Resolver, wait_cycles};
 use crate::event::{Event, EventLog};
@@ -67,6 +69,9 @@ const ALONG: f32 = 0.3;
 
 /// Slower than this is no motion, in metres per second.
 const STILL_MPS: f32 = 0.005;
+
+/// A robot in a queue waits for the robot ahead if it is slower than this, in metres per second.
+const QUEUES_MPS: f32 = 0.05;
 
 impl Resolver {
     /// One directive for each mover, by the default rule. Limits the wishes of robots that wait before a
@@ -180,10 +185,21 @@ impl Resolver {
             _ if me.wishes_to_move() && is_still => {
                 Directive::Blocked { by: self.robot_in_the_way(i, movers).map(|j| movers[j].robot) }
             }
-            _ if me.wishes_to_move() => Directive::Proceed(velocity),
+            _ if me.wishes_to_move() => match self.robot_ahead(i, velocity, movers) {
+                Some(ahead) => Directive::Follow { velocity, behind: movers[ahead].robot },
+                None => Directive::Proceed(velocity),
+            },
             _ if is_still => Directive::Stand,
             _ => Directive::GiveWay(velocity),
         }
+    }
+
+    /// The robot behind which a robot with this velocity queues, or comes no nearer to its goal.
+    fn robot_ahead(&self, i: usize, velocity: Vector, movers: &[Mover]) -> Option<usize> {
+        let queues = velocity.length() < QUEUES_MPS;
+        let first = self.entries[i].follows.filter(|_| queues).map(|first| first.robot);
+        let is_stuck = movers[i].stalled_steps >= self.stuck_steps;
+        first.or_else(|| is_stuck.then(|| self.robot_in_the_way(i, movers)).flatten())
     }
 
     fn neighbour(&self, i: usize, j: usize, movers: &[Mover]) -> Neighbour {
@@ -244,5 +260,76 @@ impl Resolver {
         let (me, near) = (&movers[i], self.neighbours.of(i));
         let discs = near.iter().map(|j| (movers[*j].position - me.position, me.radius + movers[*j].radius));
         nearest_in_the_way(me.wish, &self.surroundings(i, me, discs)).map(|at| near[at])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::conflict::testing::mover;
+    use crate::ids::RobotId;
+    use crate::planning::Passage;
+    use crate::scenario::Scenario;
+
+    /// A resolver with the default rule, for steps of 0.02 s in an arena of 20 m.
+    fn resolver() -> Resolver {
+        let text = "(name: \"t\", duration_s: 10, dt_s: 0.02, arena_m: (20, 20), team: [(role: \"robot\", \
+                    count: 1, center: (5, 5), width_m: 0)], roles: [(name: \"robot\")], errands: [(robot: 0, \
+                    to: [(9, 9)])])";
+        Resolver::new(&Scenario::parse(text, "t.ron".as_ref()).unwrap())
+    }
+
+    /// A robot that is to go 10 m east, through a passage between x = 10 and x = 12.
+    fn entering(id: u32, [x, y]: [f32; 2]) -> Mover<'static> {
+        let points = (0..=10_u8).map(|i| Vector::new(10.0 + f32::from(i) / 5.0, 8.0)).collect();
+        let way = 10.0 - x;
+        let passage = Passage { points, enters_at: 10.0 - way, leaves_at: 8.0 - way };
+        Mover { passages: Box::leak(Box::new([passage])), ..mover(id, [x, y], [2.0, 0.0]) }
+    }
+
+    #[test]
+    fn a_robot_beside_another_before_a_mouth_waits_for_it_unless_it_stands() {
+        let directives = |stalled_steps: u32| {
+            let mut movers = [entering(0, [9.0, 8.0]), entering(1, [8.8, 9.0])];
+            movers[0].stalled_steps = stalled_steps;
+            resolver().resolve(&mut movers, &mut EventLog::default()).to_vec()
+        };
+        let queue = directives(0);
+        assert!(matches!(queue[0], Directive::Proceed(velocity) if velocity.length() > 1.0), "{queue:?}");
+        assert!(matches!(queue[1], Directive::Follow { behind: RobotId(0), .. }), "{queue:?}");
+        assert_eq!(queue[1].waits_for(), Some(RobotId(0)));
+        assert!(queue[1].velocity().length() <= LEAST_WISH_MPS, "{queue:?}");
+        let released = directives(resolver().holds_queue_steps + 1);
+        assert!(
+            matches!(released[1], Directive::Proceed(velocity) if velocity.length() > 0.5),
+            "{released:?}"
+        );
+    }
+
+    #[test]
+    fn a_robot_that_comes_no_nearer_waits_for_the_robot_in_its_way() {
+        let mut resolver = resolver();
+        let mut movers = [mover(0, [5.0, 5.0], [1.0, 0.0]), mover(1, [5.9, 5.05], [0.0, 0.0])];
+        movers[0].stalled_steps = resolver.stuck_steps;
+        let directives = resolver.resolve(&mut movers, &mut EventLog::default());
+        assert_eq!(directives[0].waits_for(), Some(RobotId(1)), "{directives:?}");
+    }
+
+    #[test]
+    fn a_robot_steps_back_from_one_that_cannot_make_room_for_it() {
+        let wish = |gap: f32, steps: u32, can_move: bool| {
+            let mut resolver = resolver();
+            let mut movers =
+                [mover(0, [5.0, 5.0], [1.0, 0.0]), mover(1, [5.0 + 0.8 + gap, 5.0], [-1.0, 0.0])];
+            movers[0].can_make_room = can_move;
+            resolver.retreats.begin_held_up(1, 0, Vector::new(5.0, 7.0), steps);
+            resolver.let_out(&mut movers);
+            movers[0].wish
+        };
+        let held = resolver().let_out_steps + 1;
+        assert_eq!(wish(0.05, held, true), Vector::new(-LET_OUT_SPEED * 2.0, 0.0));
+        assert_eq!(wish(0.05, held - 1, true), Vector::X, "not held up for long enough");
+        assert_eq!(wish(0.3, held, true), Vector::X, "not beside it");
+        assert_eq!(wish(0.05, held, false), Vector::X, "it cannot move");
     }
 }

@@ -183,6 +183,19 @@ mod tests {
     }
 
     #[test]
+    fn robots_within_the_margin_part_at_once() {
+        let me = mover(0, [10.0, 10.0], [0.0, 0.0]);
+        for missing in [0.001, MARGIN_M, 0.05] {
+            let offset = Vector::new(0.8 - missing, 0.0);
+            let other = Neighbour { offset, velocity: Vector::ZERO, apart: 0.8, share: 0.5 };
+            let velocity = avoiding_velocity(&me, SmallVec::from_slice(&[other]), Vector::splat(20.0), true);
+            // Each takes half of the missing distance upon itself.
+            let expected = Vector::new(-0.5 * missing / PART_WITHIN_S, 0.0);
+            assert!((velocity - expected).length() < 1e-4, "{missing}: {velocity} instead of {expected}");
+        }
+    }
+
+    #[test]
     fn head_on_both_keep_to_the_right() {
         assert!(among([2.0, 0.0], [-1.0, 0.0], 0.5).y < -0.05);
     }

@@ -4,6 +4,8 @@
 use std::collections::BTreeMap;
 
 use recording::robots_in_words;
+use usar_sim::conflict::DelayCause;
+use usar_sim::event::Event;
 use usar_sim::simulation::Simulation;
 
 use super::event_lines::told;
@@ -16,8 +18,8 @@ const LARGEST_TEAM: usize = 12;
 const MEET_M: f32 = 0.5;
 const PART_M: f32 = 1.5;
 
-/// Waits with a shorter break than this between them count as one wait, in seconds. Waits shorter than the
-/// second limit are left out.
+/// Delays with a shorter break than this between them count as one, in seconds. Waits shorter than the second
+/// limit are left out.
 const BREAK_S: f64 = 1.0;
 const SHORTEST_WAIT_S: f64 = 0.2;
 
@@ -28,9 +30,8 @@ const MOST: usize = 16;
 const COLUMNS: usize = 80;
 
 /// Events that the story mentions.
-const TOLD: [&str; 14] = [
+const TOLD: [&str; 13] = [
     "deadlocked",
-    "made_room",
     "turn_passed",
     "backed_off",
     "errand_done",
@@ -52,11 +53,29 @@ struct Meeting {
     is_over: bool,
 }
 
-/// A robot that waits for another robot: start, end and total waiting time, in seconds.
-struct Wait {
+/// A robot that waits, or makes room, for another robot: start, end, and time without its breaks, in seconds.
+struct Spell {
     begun_s: f64,
     last_s: f64,
-    waited: f64,
+    total_s: f64,
+}
+
+/// The spells of each robot, by the robot for which it waits or makes room.
+#[derive(Default)]
+struct Spells(BTreeMap<(u32, u32), Vec<Spell>>);
+
+impl Spells {
+    fn add(&mut self, pair: (u32, u32), time_s: f64, dt_s: f64) {
+        let spells = self.0.entry(pair).or_default();
+        match spells.last_mut().filter(|spell| time_s - spell.last_s < BREAK_S) {
+            Some(spell) => (spell.last_s, spell.total_s) = (time_s, spell.total_s + dt_s),
+            None => spells.push(Spell { begun_s: time_s - dt_s, last_s: time_s, total_s: dt_s }),
+        }
+    }
+
+    fn iter(&self) -> impl Iterator<Item = (&(u32, u32), &Spell)> {
+        self.0.iter().flat_map(|(pair, spells)| spells.iter().map(move |spell| (pair, spell)))
+    }
 }
 
 /// An event, and how often it happened.
@@ -65,11 +84,14 @@ struct Happening {
     times: u32,
 }
 
-/// The meetings, waits and events of a trial.
+/// The meetings, delays and events of a trial.
 #[derive(Default)]
 pub(super) struct Story {
     meetings: BTreeMap<(u32, u32), Vec<Meeting>>,
-    waits: BTreeMap<(u32, u32), Vec<Wait>>,
+    waits: Spells,
+    making_room: Spells,
+    /// For each robot that made room, the robot for which it last did.
+    room_for: BTreeMap<u32, u32>,
     happenings: BTreeMap<String, Happening>,
 }
 
@@ -84,9 +106,18 @@ impl Story {
     pub(super) fn listen(&mut self, simulation: &Simulation) {
         let time_s = simulation.time_s();
         self.listen_for_meetings(simulation, time_s);
+        for event in simulation.events() {
+            if let Event::MadeRoom { robot, room_for } = event {
+                self.room_for.insert(robot.0, room_for.0);
+            }
+        }
         for (robot, delay) in (0..).zip(simulation.delays()) {
-            if let Some(other) = delay.waits_for {
-                self.add_wait((robot, other.0), time_s, simulation.scenario().dt_s);
+            let dt_s = simulation.scenario().dt_s;
+            if delay.cause == DelayCause::MakingRoom {
+                let head = self.room_for.get(&robot);
+                head.into_iter().for_each(|head| self.making_room.add((robot, *head), time_s, dt_s));
+            } else if let Some(other) = delay.waits_for {
+                self.waits.add((robot, other.0), time_s, dt_s);
             }
         }
         for event in told(simulation).filter(|event| TOLD.contains(&event.event.as_str())) {
@@ -123,14 +154,6 @@ impl Story {
         }
     }
 
-    fn add_wait(&mut self, pair: (u32, u32), time_s: f64, dt_s: f64) {
-        let waits = self.waits.entry(pair).or_default();
-        match waits.last_mut().filter(|wait| time_s - wait.last_s < BREAK_S) {
-            Some(wait) => (wait.last_s, wait.waited) = (time_s, wait.waited + dt_s),
-            None => waits.push(Wait { begun_s: time_s - dt_s, last_s: time_s, waited: dt_s }),
-        }
-    }
-
     /// The sentences in the order of time, each as lines of at most 80 columns.
     pub(super) fn tell(&self) -> Vec<String> {
         let mut sentences: Vec<(f64, String)> = Vec::new();
@@ -144,13 +167,13 @@ impl Story {
                 )
             }));
         }
-        for ((robot, other), waits) in &self.waits {
-            let told = waits.iter().filter(|wait| wait.waited >= SHORTEST_WAIT_S);
-            sentences.extend(told.map(|wait| {
-                let Wait { begun_s, waited, .. } = wait;
-                (*begun_s, format!("robot {robot} begins to wait for robot {other}, {waited:.1} s in all"))
-            }));
-        }
+        let waits = self.waits.iter().filter(|(_, wait)| wait.total_s >= SHORTEST_WAIT_S);
+        sentences.extend(waits.map(|((robot, other), Spell { begun_s, total_s, .. })| {
+            (*begun_s, format!("robot {robot} begins to wait for robot {other}, {total_s:.1} s in all"))
+        }));
+        sentences.extend(self.making_room.iter().map(|((robot, other), Spell { begun_s, total_s, .. })| {
+            (*begun_s, format!("robot {robot} makes room for robot {other}, for {total_s:.1} s"))
+        }));
         for (says, Happening { first_s, times }) in &self.happenings {
             let often = if *times > 1 { format!(", for the first of {times} times") } else { String::new() };
             sentences.push((*first_s, format!("{says}{often}")));
@@ -193,10 +216,12 @@ mod tests {
         for step in 0..100 {
             let time_s = 3.0 + f64::from(step) * 0.02;
             if !(40..60).contains(&step) {
-                story.add_wait((1, 0), time_s, 0.02);
+                story.waits.add((1, 0), time_s, 0.02);
             }
         }
-        story.add_wait((2, 0), 9.0, 0.02);
+        story.waits.add((2, 0), 9.0, 0.02);
+        story.making_room.add((2, 1), 5.0, 0.5);
+        story.making_room.add((2, 1), 5.5, 0.5);
         for (between, time_s) in [(2.0, 0.0), (0.4, 1.0), (0.1, 2.0), (2.0, 3.0), (0.3, 8.0)] {
             story.add_distance((0, 1), between, time_s);
         }
@@ -207,6 +232,7 @@ mod tests {
                 "At 1.0 s robots 0 and 1 meet; at the nearest there are 0.10 m between them.",
                 "At 3.0 s robot 1 begins to wait for robot 0, 1.6 s in all.",
                 "At 4.0 s robot 0 has arrived, for the first of 2 times.",
+                "At 4.5 s robot 2 makes room for robot 1, for 1.0 s.",
                 "At 8.0 s robots 0 and 1 meet; at the nearest there are 0.30 m between them.",
             ]
         );
