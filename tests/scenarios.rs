@@ -200,8 +200,8 @@ fn tables_of_tasks_roles_and_needs_are_checked_and_named_by_their_entries() {
         assert!(error.starts_with(&format!("s.ron:{}: ", line_of(from))), "{error}");
     };
     refused(
-        "grid: (20, 10), rest: (27",
-        "grid: (1001, 10), rest: (27",
+        "size_m: (11.0, 5.7), grid: (20, 10)",
+        "size_m: (11.0, 5.7), grid: (1001, 10)",
         "tasks.hard.grid[0] must be a count from 0 to 1000, found 1001",
     );
     refused(

@@ -16,7 +16,7 @@ use crate::trust::Trust;
 pub const DEFAULT_FPS: f64 = 10.0;
 
 /// Simulated time of a segment, in seconds.
-const SEGMENT_S: f64 = 10.0;
+const SEGMENT_S: f64 = 30.0;
 
 /// Compression level of chunks, from 1 to 9. Higher levels save a few percent, but slow the trial down too
 /// much.

@@ -112,7 +112,7 @@ impl World {
              acceleration_mps2: {ACCELERATION_MPS2:?}, sensing_m: {SENSING_M:?})],"
         )?;
         let free = "(per_step: 0.0, per_metre: 0.0, per_second: 0.0)";
-        writeln!(to, "    costs: (energy: {free},\n            hp: {free}),\n    team: [")?;
+        writeln!(to, "    costs: (energy: {free},\n        hp: {free}),\n    team: [")?;
         for Robot { start: [x, y], energy, .. } in &self.robots {
             writeln!(
                 to,
