@@ -48,7 +48,6 @@ pub(super) struct Costs {
 
 #[derive(Default, Deserialize)]
 #[serde(rename = "Rates", deny_unknown_fields, default)]
-#[expect(clippy::struct_field_names, reason = "the names of the file")]
 struct PartOfRates {
     per_step: Option<f64>,
     per_metre: Option<f64>,
