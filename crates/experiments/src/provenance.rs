@@ -5,16 +5,16 @@ use serde::{Deserialize, Deserializer, Serialize};
 use usar_sim::physics::ENGINE_FEATURES;
 use xxhash_rust::xxh3::xxh3_128;
 
-use crate::experiment::{Axis, Experiment, Keep, Seeds, Shard};
+use crate::experiment::{Axis, Experiment, Keep, Program, Seeds, Shard};
 use crate::failure::Failure;
 use crate::files::FileHash;
 
 /// Version of the folder's layout.
-pub const SCHEMA_VERSION: u32 = 5;
+pub const SCHEMA_VERSION: u32 = 6;
 
-/// The oldest version that can be read. Its folders cannot be continued. Its shards cannot be read, because
-/// they were dealt in another way.
-const READABLE_VERSION: u32 = 4;
+/// Older versions that can be read. Their folders cannot be continued. The shards of version 4 cannot be
+/// read, because they were dealt in another way.
+const READABLE_VERSIONS: [u32; 2] = [4, 5];
 
 /// Largest number of trials that a sweep may have for each case and policy.
 const MAX_TRIALS: u32 = 1_000_000;
@@ -33,7 +33,7 @@ pub struct Manifest {
     pub version: String,
     /// Commit of the source, with `-dirty` where it was changed.
     pub commit: String,
-    /// Hash of the source.
+    /// Hash of the sources that decide every trial: all but those of the policies.
     pub source: String,
     /// Features that change numbers.
     features: Vec<String>,
@@ -41,6 +41,9 @@ pub struct Manifest {
     pub name: String,
     /// The policies as they were written.
     pub policies: Vec<String>,
+    /// Hash of the sources of each policy. Version 5 has none: its `source` covers the policies.
+    #[serde(default)]
+    pub policy_sources: Vec<String>,
     /// The axes.
     pub axes: Vec<Axis>,
     /// Paired trials for each case and policy.
@@ -75,6 +78,7 @@ impl Manifest {
             features: ENGINE_FEATURES.map(str::to_owned).to_vec(),
             name: experiment.name.clone(),
             policies: experiment.policies.iter().map(|policy| policy.written().to_owned()).collect(),
+            policy_sources: experiment.program.policies.clone(),
             axes: experiment.axes.clone(),
             trials: experiment.trials,
             seeds: experiment.seeds.clone(),
@@ -121,8 +125,9 @@ impl Manifest {
     /// Whether this program can read the folder.
     #[must_use]
     pub fn is_readable(&self) -> bool {
-        let is_former = self.schema_version == READABLE_VERSION && self.shard.is_none();
-        is_former || self.schema_version == SCHEMA_VERSION
+        let is_former = READABLE_VERSIONS.contains(&self.schema_version);
+        let is_dealt_otherwise = self.schema_version == 4 && self.shard.is_some();
+        self.schema_version == SCHEMA_VERSION || is_former && !is_dealt_otherwise
     }
 
     /// The manifest as it was before the first trial.
@@ -137,8 +142,37 @@ impl Manifest {
         self.shard.map_or("whole".into(), |shard| format!("shard {}/{}", shard.number, shard.of))
     }
 
+    /// The program that made the results.
+    #[must_use]
+    pub fn program(&self) -> Program {
+        let (version, source) = (self.version.clone(), self.source.clone());
+        Program { version, source, policies: self.policy_sources.clone() }
+    }
+
+    /// Why the other results do not have all policies of these; `None` if they do.
+    #[must_use]
+    pub fn policies_lost(&self, other: &Self) -> Option<String> {
+        let has = |policy: &String| other.policies.contains(policy);
+        let lists = || [self, other].map(|manifest| manifest.policies.join(", "));
+        (!self.policies.iter().all(has)).then(|| {
+            let [there, now] = lists();
+            format!("policies: {there} there, {now} now")
+        })
+    }
+
+    /// The policies of both whose sources differ, as they were written.
+    #[must_use]
+    pub fn policies_changed(&self, other: &Self) -> Vec<&str> {
+        let sources = |manifest: &Self, policy: &String| {
+            let number = manifest.policies.iter().position(|other| other == policy)?;
+            manifest.policy_sources.get(number).cloned()
+        };
+        let both = self.policies.iter().filter(|policy| other.policies.contains(policy));
+        both.filter(|policy| sources(self, policy) != sources(other, policy)).map(String::as_str).collect()
+    }
+
     /// Reasons why results of this manifest must not be continued by or merged with results of the other,
-    /// one sentence each. The number of trials and the part of the sweep are not compared.
+    /// one sentence each. The policies, the number of trials and the part of the sweep are not compared.
     #[must_use]
     pub fn differences(&self, other: &Self) -> Vec<String> {
         let mut differences = Vec::new();
@@ -150,7 +184,6 @@ impl Manifest {
         let program = |m: &Self| format!("usar {} with source {}", m.version, m.source);
         compare("layout", self.schema_version.to_string(), other.schema_version.to_string());
         compare("program", program(self), program(other));
-        compare("policies", self.policies.join(", "), other.policies.join(", "));
         let axes = |m: &Self| {
             let set = |axis: &Axis, value: &String| {
                 let settings =

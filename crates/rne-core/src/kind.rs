@@ -1,6 +1,7 @@
 //! A kind of policy: the entry of a registry, from which policies are made.
 
 use std::fmt;
+use std::panic::Location;
 use std::sync::Arc;
 
 use ron::extensions::Extensions;
@@ -18,6 +19,9 @@ pub struct PolicyKind {
     pub about: String,
     /// Its options with their defaults in RON; empty for a policy without options.
     pub defaults: String,
+    /// The source file that made this entry, as the compiler names it. Results are kept as long as it does
+    /// not change.
+    pub file: &'static str,
     pub(crate) make: Arc<Make>,
 }
 
@@ -33,16 +37,18 @@ impl fmt::Debug for PolicyKind {
 
 impl PolicyKind {
     /// A policy without options.
+    #[track_caller]
     pub fn plain<P: Policy + Clone + 'static>(name: &str, about: &str, policy: P) -> Self {
         let make = move |options: &str| match options.trim() {
             "" | "()" => Ok((Arc::new(policy.clone()) as Arc<dyn Policy>, String::new())),
             _ => Err("it has no options".to_owned()),
         };
-        Self { name: name.into(), about: about.into(), defaults: String::new(), make: Arc::new(make) }
+        Self::new(name, about, String::new(), Arc::new(make))
     }
 
     /// A policy that is made from options: a struct with defaults, read from RON such as `(score: Sum)`.
     /// `make` checks the options.
+    #[track_caller]
     pub fn with_options<O, P, E>(
         name: &str,
         about: &str,
@@ -66,7 +72,12 @@ impl PolicyKind {
             let policy = make(options).map_err(|error| error.to_string())?;
             Ok((Arc::new(policy) as Arc<dyn Policy>, all))
         };
-        Self { name: name.into(), about: about.into(), defaults, make: Arc::new(make) }
+        Self::new(name, about, defaults, Arc::new(make))
+    }
+
+    #[track_caller]
+    fn new(name: &str, about: &str, defaults: String, make: Arc<Make>) -> Self {
+        Self { name: name.into(), about: about.into(), defaults, file: Location::caller().file(), make }
     }
 }
 

@@ -23,6 +23,8 @@ pub struct MadePolicy {
     /// All its options in RON, including the defaults. Policies with the same name and options give the same
     /// answers. Empty for a policy without options.
     pub options: String,
+    /// See [`PolicyKind::file`].
+    pub file: &'static str,
     /// The policy.
     pub policy: Arc<dyn Policy>,
 }
@@ -88,7 +90,7 @@ impl Registry {
             found: options.trim().to_owned(),
             options: kind.defaults.clone(),
         })?;
-        Ok(MadePolicy { name: name.to_owned(), options: all, policy })
+        Ok(MadePolicy { name: name.to_owned(), options: all, file: kind.file, policy })
     }
 
     /// Makes a policy from one text: `DIS`, `RNE(score: Sum)`.

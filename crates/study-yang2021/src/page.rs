@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use askama::Template;
 use comfy_table::Table;
 use experiments::Failure;
-use experiments::experiment::Program;
+use experiments::experiment::Build;
 use experiments::sweep::disk::REPORT;
 use experiments::sweep::ours;
 use reports::STYLE;
@@ -154,7 +154,7 @@ impl Shown {
 pub fn write_page(out: &Path, judged: &[Judged], sections: &[Section]) -> Result<PathBuf, Failure> {
     let mut sections: Vec<Shown> = sections.iter().map(Shown::of).collect();
     sections.rotate_right(1);
-    let Program { version, source } = Program::this();
+    let Build { version, source } = Build::this();
     let trials = judged.first().map_or(0, |scenario| scenario.trials);
     let page = Page {
         style: STYLE.trim_end(),

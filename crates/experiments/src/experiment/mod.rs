@@ -7,6 +7,7 @@ mod file;
 mod grid;
 mod keep;
 mod policy;
+mod program;
 mod read;
 mod shard;
 
@@ -25,6 +26,7 @@ pub use file::sweep_schema;
 pub use grid::{Axis, Case, VARIANT};
 pub use keep::Keep;
 pub use policy::{PolicySpec, registry, set_registry, split_list};
+pub use program::{Build, Program};
 pub use read::{companion, defaults, with_settings};
 pub use shard::{Place, Shard};
 
@@ -42,23 +44,6 @@ pub enum Seeds {
     From(u64),
     /// Each trial has its own listed seed.
     Listed(Vec<u64>),
-}
-
-/// A build of this program.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Program {
-    /// Its version.
-    pub version: String,
-    /// Hash of its source.
-    pub source: String,
-}
-
-impl Program {
-    /// The build that runs now.
-    #[must_use]
-    pub fn this() -> Self {
-        Self { version: env!("CARGO_PKG_VERSION").to_owned(), source: env!("USAR_SOURCE").to_owned() }
-    }
 }
 
 /// Settings of the command line that replace those of the file.
@@ -120,7 +105,8 @@ pub(crate) struct Parts {
     pub seeds: Seeds,
     pub is_checked: bool,
     pub keep: Keep,
-    pub program: Program,
+    /// The program that made the results; `None` for this one.
+    pub program: Option<Program>,
 }
 
 impl Experiment {
@@ -198,13 +184,16 @@ impl Experiment {
             return Err(Failure::input(format!("trials: must be a count from 1 to {most}, found {trials}")));
         }
         let cases = cases(&base, &axes, &policies)?;
-        let id = |case: &Case, policy: &PolicySpec| {
+        let program = program.map_or_else(|| Program::running(&policies), Ok)?;
+        let id = |case: &Case, (i, policy): (usize, &PolicySpec)| {
             let made = policy.make().map_err(Failure::input)?;
-            let scenario = deciding_text(&case.scenario);
-            let text = format!("{program:?} {is_checked} {} {} {scenario}", made.name, made.options);
+            let (program, scenario) = (program.deciding(i), deciding_text(&case.scenario));
+            let text = format!("{program} {is_checked} {} {} {scenario}", made.name, made.options);
             Ok(xxh3_128(text.as_bytes()))
         };
-        let ids = |case| policies.iter().map(|policy| id(case, policy)).collect::<Result<Vec<_>, Failure>>();
+        let ids = |case| {
+            policies.iter().enumerate().map(|policy| id(case, policy)).collect::<Result<Vec<_>, Failure>>()
+        };
         let ids = cases.iter().map(ids).collect::<Result<Vec<_>, Failure>>()?;
         Ok(Self {
             name,
@@ -283,7 +272,7 @@ impl Experiment {
             seeds: self.seeds.clone(),
             is_checked: self.is_checked,
             keep: self.keep,
-            program: self.program.clone(),
+            program: Some(self.program.clone()),
         })
     }
 

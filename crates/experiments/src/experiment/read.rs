@@ -12,7 +12,7 @@ use xxhash_rust::xxh3::xxh3_128;
 use super::file::{Map, SweepFile};
 use super::grid::{VARIANT, check_bytes};
 use super::policy::{PolicySpec, registry};
-use super::{Axis, Keep, Parts, Program, Seeds};
+use super::{Axis, Keep, Parts, Seeds};
 use crate::failure::Failure;
 use crate::limits;
 
@@ -83,7 +83,7 @@ pub(super) fn from_scenario(text: String, path: &Path) -> Result<(Parts, Vec<Rea
         seeds: Seeds::From(1),
         is_checked: false,
         keep: Keep::default(),
-        program: Program::this(),
+        program: None,
         base,
     };
     Ok((parts, Vec::new()))
@@ -163,7 +163,7 @@ pub(super) fn from_sweep_file(text: String, path: &Path) -> Result<(Parts, Vec<R
         seeds,
         is_checked: false,
         keep: file.keep,
-        program: Program::this(),
+        program: None,
         base,
     };
     Ok((parts, readings))

@@ -7,7 +7,7 @@ use ron_fields::with_values;
 
 use super::space::{Point, Space};
 use super::{Descent, EvaluationLog, Free, Purpose, WORST};
-use crate::experiment::Program;
+use crate::experiment::Build;
 use crate::failure::Failure;
 
 /// Name of the file with the found scenario.
@@ -84,7 +84,7 @@ impl Hunt {
 
     /// Everything that decides the evaluations.
     fn origin(&self) -> serde_json::Value {
-        let Program { version, source } = Program::this();
+        let Build { version, source } = Build::this();
         let experiment = &self.space.experiment;
         serde_json::json!({
             "program": format!("usar {version} with source {source}"),

@@ -9,7 +9,7 @@ use rne_core::Assignment;
 use serde::{Deserialize, Serialize};
 use xxhash_rust::xxh3::xxh3_64;
 
-use crate::experiment::Program;
+use crate::experiment::Build;
 use crate::failure::Failure;
 use crate::files;
 use crate::oracle::Outcome;
@@ -34,7 +34,7 @@ impl DecisionKey {
     /// decides numbers.
     #[must_use]
     pub fn path(&self, folder: &Path) -> PathBuf {
-        let Program { version, source } = Program::this();
+        let Build { version, source } = Build::this();
         let Self { scenario, resolved, seed, base, round } = self;
         let hash = xxh3_64(format!("{version} {source} {resolved} {seed} {base} {round}").as_bytes());
         let plain = |text: &str| {

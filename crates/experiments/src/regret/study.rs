@@ -11,7 +11,7 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::decision::{Plan, PlayedDecision, play_decisions};
-use crate::experiment::{Experiment, PolicySpec, Program};
+use crate::experiment::{Build, Experiment, PolicySpec};
 use crate::failure::Failure;
 use crate::files::{self, NewFile};
 use crate::metric::task_names;
@@ -87,7 +87,7 @@ impl Study {
                 oracle.label
             )));
         }
-        let Program { version, source } = Program::this();
+        let Build { version, source } = Build::this();
         Ok(Self {
             name: experiment.name.clone(),
             tasks: task_names(&experiment.base),

@@ -10,7 +10,7 @@ use usar_sim::scenario::Scenario;
 use super::dictionary::{DICTIONARY, dictionary};
 use super::tables::tables_of;
 use super::{archive, journal, ours, parquet};
-use crate::experiment::{Experiment, Parts, Program, Shard};
+use crate::experiment::{Experiment, Parts, Shard};
 use crate::failure::Failure;
 use crate::files::{self, FileHash, NewFile, file_hash};
 use crate::provenance::{Manifest, SCHEMA_VERSION, scenario_differences};
@@ -133,7 +133,7 @@ pub(super) fn resolved_in(path: &Path) -> String {
     String::from_utf8_lossy(&text).into_owned()
 }
 
-/// Refuses to continue a different sweep, or to continue with fewer trials than there are.
+/// Refuses to continue a different sweep, or to continue with fewer trials or policies than there are.
 pub(super) fn check_continues(
     path: &Path,
     there: &Manifest,
@@ -141,6 +141,7 @@ pub(super) fn check_continues(
     resolved: &str,
 ) -> Result<(), Failure> {
     let mut differences = there.differences(now);
+    differences.extend(there.policies_lost(now));
     if there.shard != now.shard {
         differences.push(format!("shard: {} there, {} now", there.part(), now.part()));
     }
@@ -184,7 +185,7 @@ pub fn experiment_of(path: &Path, manifest: &Manifest) -> Result<Experiment, Fai
         seeds: manifest.seeds.clone(),
         is_checked: manifest.is_checked,
         keep: manifest.keep,
-        program: Program { version: manifest.version.clone(), source: manifest.source.clone() },
+        program: Some(manifest.program()),
     })
 }
 

@@ -4,6 +4,8 @@
 //! the journal, and its lines go in order into `journal.jsonl.gz`. The manifest defines the sweep from the
 //! first moment on. The same command therefore resumes it, and a different sweep is refused.
 
+#[cfg(test)]
+mod tests;
 mod writing;
 
 use std::fs;
@@ -85,9 +87,16 @@ impl Folder {
             let path = path.to_owned();
             return Ok(Self { path, experiment, manifest: done, store, results, lock: Some(lock) });
         }
+        let changed = Self::policies_changed(path, &manifest, &experiment)?;
         // The manifest and the inputs are on disk before the journal.
         let manifest = write_start(path, &experiment, opening.shard)?;
         thaw(path)?;
+        for (policy, trials) in journal::without(path, &changed)? {
+            say(format!(
+                "{}: policy {policy} has changed since; its trials are run again: {trials}",
+                path.display()
+            ));
+        }
         let mut say = |damage: String| say(damage + "; what it held is run again");
         let folder = Self::with_journal(path, experiment, manifest, true, &mut say)?;
         Ok(Self { lock: Some(lock), ..folder })
@@ -118,6 +127,18 @@ impl Folder {
         }
         let is_same = there.is_complete && there.started() == *manifest;
         Ok((is_same && broken.is_empty()).then_some(there))
+    }
+
+    /// The labels of the policies whose sources have changed since the folder was written.
+    fn policies_changed(
+        path: &Path,
+        manifest: &Manifest,
+        experiment: &Experiment,
+    ) -> Result<Vec<String>, Failure> {
+        let Some(there) = read_manifest(path)? else { return Ok(Vec::new()) };
+        let changed = there.policies_changed(manifest);
+        let specs = experiment.policies.iter().filter(|spec| changed.contains(&spec.written()));
+        Ok(specs.map(|spec| spec.label.clone()).collect())
     }
 
     /// The trials and results of a sweep or shard that is finished and sound.

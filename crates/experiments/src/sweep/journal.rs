@@ -3,10 +3,11 @@
 
 use std::collections::BTreeMap;
 use std::fs::{File, OpenOptions};
-use std::io::{BufRead, BufReader, Read, Seek, SeekFrom, Write};
+use std::io::{BufRead, BufReader, BufWriter, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
-use super::line::{Finished, HEAD, finished_of};
+use super::disk::sync_folder;
+use super::line::{Finished, HEAD, finished_of, policy_of};
 use crate::experiment::{Experiment, Place, Shard};
 use crate::failure::Failure;
 use crate::files;
@@ -33,6 +34,37 @@ pub(super) struct Damage {
     pub what: String,
     /// Whether it is the last line and lacks its end.
     pub is_cut_off: bool,
+}
+
+/// Removes the trials of these policies from the journal of a folder. Returns how many there were of each
+/// that had any.
+///
+/// # Errors
+/// The file cannot be read, or the disk does not take the new one. The journal is then unchanged.
+pub(super) fn without(folder: &Path, policies: &[String]) -> Result<BTreeMap<String, usize>, Failure> {
+    let path = folder.join(FILE);
+    let mut removed = BTreeMap::new();
+    if policies.is_empty() || path.symlink_metadata().is_err() {
+        return Ok(removed);
+    }
+    let trouble = |error: std::io::Error| Failure::storage(format!("{}: {error}", path.display()));
+    let new = folder.join(format!("{FILE}.new"));
+    let mut kept = BufWriter::new(files::create(&new).map_err(trouble)?);
+    let mut lines = BufReader::new(files::open(&path).map_err(trouble)?);
+    let mut line = Vec::new();
+    while lines.by_ref().take(JOURNAL_LINE_BYTES.most as u64).read_until(b'\n', &mut line).map_err(trouble)?
+        > 0
+    {
+        match policy_of(&line).filter(|policy| policies.contains(policy)) {
+            Some(policy) => *removed.entry(policy).or_default() += 1,
+            None => kept.write_all(&line).map_err(trouble)?,
+        }
+        line.clear();
+    }
+    let kept = kept.into_inner().map_err(|error| trouble(error.into_error()))?;
+    kept.sync_all().and_then(|()| std::fs::rename(&new, &path)).map_err(trouble)?;
+    sync_folder(folder)?;
+    Ok(removed)
 }
 
 /// Whether a folder has a journal of this program.

@@ -137,6 +137,15 @@ pub(super) fn finished_of(
     Ok(Finished { key, result })
 }
 
+/// The label of a line's policy, if the line's checksum matches.
+pub(super) fn policy_of(line: &[u8]) -> Option<String> {
+    #[derive(Deserialize)]
+    struct Head {
+        policy: String,
+    }
+    serde_json::from_slice(sound(line)?).ok().map(|Head { policy }| policy)
+}
+
 /// The trial in a line whose checksum matches.
 fn sound(line: &[u8]) -> Option<&[u8]> {
     let rest = line.strip_prefix(HEAD.as_bytes())?;

@@ -9,7 +9,7 @@ use super::disk::{broken_files, experiment_of, manifest_in, resolved_in};
 use super::folder::{Folder, Opening};
 use super::host::Hosts;
 use super::store::{Order, Store};
-use crate::experiment::{Experiment, Place, Program, Shard};
+use crate::experiment::{Experiment, Place, PolicySpec, Program, Shard};
 use crate::failure::Failure;
 use crate::provenance::{Manifest, scenario_differences};
 use crate::run::TrialKey;
@@ -46,8 +46,8 @@ impl Merge {
     pub fn of(folders: &[PathBuf]) -> Result<Self, Failure> {
         let [first, ..] = folders else { return Err(Failure::input("there is nothing to merge")) };
         let manifest = manifest_in(first)?;
-        check_program(first, &manifest)?;
         let experiment = Arc::new(experiment_of(first, &manifest)?);
+        check_program(first, &manifest, &experiment.policies)?;
         let resolved = experiment.base.resolved();
         let part = |path: &PathBuf| {
             let there = manifest_in(path)?;
@@ -166,19 +166,25 @@ impl Part {
 }
 
 /// Refuses shards of another program than this one.
-fn check_program(path: &Path, there: &Manifest) -> Result<(), Failure> {
-    let this = Program::this();
-    if (&there.version, &there.source) == (&this.version, &this.source) {
+fn check_program(path: &Path, there: &Manifest, policies: &[PolicySpec]) -> Result<(), Failure> {
+    let this = Program::running(policies)?;
+    let that = there.program();
+    if that == this {
         return Ok(());
     }
+    let is_same_engine = (&that.version, &that.source) == (&this.version, &this.source);
+    let sources = if is_same_engine {
+        [&that, &this].map(|program| program.policies.join(", "))
+    } else {
+        [that.source, this.source]
+    };
+    let [there, here] = sources;
     Err(Failure::input(format!(
-        "{} is of usar {} with source {}; this is {} with source {}: merge with the program that ran the \
-         shards",
+        "{} is of usar {} with source {there}; this is {} with source {here}: merge with the program that ran \
+         the shards",
         path.display(),
-        there.version,
-        there.source,
+        that.version,
         this.version,
-        this.source
     )))
 }
 
@@ -186,6 +192,9 @@ fn check_program(path: &Path, there: &Manifest) -> Result<(), Failure> {
 fn check_same(paths: [&Path; 2], manifests: [&Manifest; 2], resolved: &str) -> Result<(), Failure> {
     let [first, other] = manifests;
     let mut differences = first.differences(other);
+    differences.extend(first.policies_lost(other).or_else(|| other.policies_lost(first)));
+    let changed = first.policies_changed(other);
+    differences.extend(changed.iter().map(|policy| format!("policy {policy}: its sources differ")));
     let scenario = resolved_in(paths[1]);
     if scenario != resolved {
         differences.extend(scenario_differences(resolved, &scenario));

@@ -1,6 +1,6 @@
 //! `DIS`: the nearest task from the initial position until its group is full (paper: Section VI; baseline).
 
-use super::{missing, squared_distance};
+use super::facts::{missing, squared_distance};
 use crate::decision::Decision;
 use crate::error::PolicyError;
 use crate::ids::TaskId;

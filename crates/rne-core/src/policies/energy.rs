@@ -1,6 +1,6 @@
 //! `ENG`: the robots with more energy take the harder tasks (paper: Section VI, after Yang et al. 2020).
 
-use super::missing;
+use super::facts::missing;
 use super::ranking::deal_by_rank;
 use crate::decision::Decision;
 use crate::error::PolicyError;

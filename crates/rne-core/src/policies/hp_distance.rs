@@ -1,7 +1,7 @@
 //! `HP_DIS`: the healthier robots take the harder tasks, ties by distance (paper: Section VI).
 
+use super::facts::{missing, squared_distance};
 use super::ranking::deal_by_rank;
-use super::{missing, squared_distance};
 use crate::decision::Decision;
 use crate::error::PolicyError;
 use crate::kind::PolicyKind;

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use experiments::Failure;
-use experiments::experiment::Program;
+use experiments::experiment::Build;
 use experiments::explore::{EvaluationLog, Free, Purpose};
 
 use super::{Calibration, Evaluation, POLICY, Spread};
@@ -96,7 +96,7 @@ fn evaluation(row: &[String], calibration: &Calibration) -> Option<Evaluation> {
 
 /// Everything that decides the evaluations.
 fn origin_of(calibration: &Calibration) -> serde_json::Value {
-    let Program { version, source } = Program::this();
+    let Build { version, source } = Build::this();
     let spreads = calibration.target.quantities.iter().zip(&calibration.target.spreads);
     let target: serde_json::Map<String, serde_json::Value> =
         spreads.map(|(q, s)| (q.name.clone(), serde_json::json!([s.mean, s.sd]))).collect();

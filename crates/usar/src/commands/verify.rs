@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use clap::Args;
 use experiments::Failure;
-use experiments::experiment::Program;
+use experiments::experiment::{Experiment, Program};
 use experiments::provenance::{COMMIT, Manifest};
 use experiments::run::{Limits, Run, TrialKey, run_all};
 use experiments::sweep::audit::{difference, strange_files};
@@ -59,7 +59,7 @@ impl Arguments {
         damages.iter().for_each(tell);
         let chosen = self.choose(&all);
         let count = chosen.len();
-        self.mention_other_version(&manifest);
+        self.mention_other_program(&experiment, &manifest)?;
         let mut differences = self.run_again(&mut folder, chosen)?;
         differences.sort();
         let strange = strange_files(&mut folder)?;
@@ -114,13 +114,14 @@ impl Arguments {
 
     /// Notes that another program made the results. Identical numbers are guaranteed only for the same
     /// program.
-    fn mention_other_version(&self, manifest: &Manifest) {
-        let Program { version, source } = Program::this();
-        if !self.quiet && (manifest.version != version || manifest.source != source) {
+    fn mention_other_program(&self, experiment: &Experiment, manifest: &Manifest) -> Result<(), Failure> {
+        let this = Program::running(&experiment.policies)?;
+        if !self.quiet && manifest.program() != this {
             tell(format_args!(
-                "note: the sweep is of usar {} ({}), this is usar {version} ({COMMIT})",
-                manifest.version, manifest.commit
+                "note: the sweep is of usar {} ({}), this is usar {} ({COMMIT})",
+                manifest.version, manifest.commit, this.version
             ));
         }
+        Ok(())
     }
 }

@@ -6,11 +6,13 @@ mod table;
 pub mod trial;
 mod world;
 
+use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::Parser;
 use rayon::prelude::*;
+use serde::Serialize;
 
 use problems::{PROBLEMS, Problem};
 use table::Table;
@@ -50,6 +52,9 @@ struct Options {
     /// Writes `scenarios/navigation/` instead: seed 1 of each problem
     #[arg(long)]
     write: bool,
+    /// Writes the instances for other programs instead, one line of JSON for each
+    #[arg(long, value_name = "FILE")]
+    worlds: Option<PathBuf>,
     /// Lists the problems instead
     #[arg(long)]
     list: bool,
@@ -97,6 +102,10 @@ impl Options {
         if self.write {
             return write(&problems);
         }
+        let seeds = self.seed.map_or(1..=self.seeds, |seed| seed..=seed);
+        if let Some(file) = &self.worlds {
+            return write_worlds(file, &problems, &seeds);
+        }
         let mut changes = Vec::new();
         for change in &self.set {
             let parts =
@@ -108,10 +117,10 @@ impl Options {
         let pool = pool.map_err(|error| error.to_string())?;
         let mut table = Table::new(self.csv.as_deref())?;
         for problem in problems {
-            let seeds = self.seed.map_or(1..=self.seeds, |seed| seed..=seed);
             let run = |seed| trial::run(problem, seed, &changes);
-            let outcomes =
-                pool.install(|| seeds.into_par_iter().map(run).collect::<Result<Vec<Outcome>, String>>())?;
+            let outcomes = pool.install(|| {
+                seeds.clone().into_par_iter().map(run).collect::<Result<Vec<Outcome>, String>>()
+            })?;
             table.add(problem, &outcomes)?;
             if self.verbose {
                 outcomes.iter().for_each(table::explain);
@@ -145,4 +154,29 @@ fn write(problems: &[&Problem]) -> Result<(), String> {
             .map_err(|error| format!("{}: {error}", path.display()))?;
     }
     Ok(())
+}
+
+/// An instance of a problem, for programs that try other methods on it.
+#[derive(Serialize)]
+struct Instance {
+    problem: &'static str,
+    seed: u64,
+    radius_m: f64,
+    speed_mps: f64,
+    #[serde(flatten)]
+    world: world::World,
+}
+
+fn write_worlds(file: &Path, problems: &[&Problem], seeds: &RangeInclusive<u64>) -> Result<(), String> {
+    let mut text = String::new();
+    for problem in problems {
+        for seed in seeds.clone() {
+            let (radius_m, speed_mps) = (world::RADIUS_M, world::SPEED_MPS);
+            let world = problem.world(seed);
+            let instance = Instance { problem: problem.name, seed, radius_m, speed_mps, world };
+            text += &serde_json::to_string(&instance).map_err(|error| error.to_string())?;
+            text += "\n";
+        }
+    }
+    std::fs::write(file, text).map_err(|error| format!("{}: {error}", file.display()))
 }

@@ -74,12 +74,18 @@ impl Problem {
         Self { name, what, source, make }
     }
 
-    /// The scenario of a seed, as text.
-    #[must_use]
-    pub fn text(&self, seed: u64) -> String {
+    /// The instance of a seed.
+    pub(super) fn world(&self, seed: u64) -> World {
         let mut draws = ChaCha8Rng::seed_from_u64(seed);
         let mut world = (self.make)(&mut draws);
         world.jitter(&mut draws);
+        world
+    }
+
+    /// The scenario of a seed, as text.
+    #[must_use]
+    pub fn text(&self, seed: u64) -> String {
+        let world = self.world(seed);
         let Self { name, what, source, .. } = self;
         format!(
             "// {what}.\n// After: {source}.\n// Seed {seed} of the benchmark of right of way; written by \

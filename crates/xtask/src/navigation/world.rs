@@ -4,6 +4,7 @@ use std::fmt::Write;
 
 use rand::RngExt;
 use rand::rngs::ChaCha8Rng;
+use serde::Serialize;
 use usar_sim::scenario::Point;
 
 /// Radius of every robot, in metres.
@@ -27,7 +28,7 @@ const JITTER_M: f64 = 0.03;
 const ENERGY: [f64; 2] = [50.0, 100.0];
 
 /// A robot of a world.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Serialize)]
 pub(super) struct Robot {
     start: Point,
     /// Its goal; a robot without one is parked.
@@ -36,7 +37,7 @@ pub(super) struct Robot {
 }
 
 /// An instance of a problem.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize)]
 pub(super) struct World {
     size: Point,
     robots: Vec<Robot>,

@@ -8,7 +8,7 @@ use super::{Rne, scale_by_maximum};
 use crate::decision::Suitability;
 use crate::error::PolicyError;
 use crate::ids::TaskId;
-use crate::policies::missing;
+use crate::policies::facts::missing;
 use crate::question::{Member, Question};
 
 impl Rne {
