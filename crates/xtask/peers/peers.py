@@ -1,8 +1,7 @@
-"""Other methods on the problems of `xtask navigation`: ORCA as published (RVO2), and ORCA, HRVO and HL of navground.
+"""Other methods on the problems of `xtask navigation`: ORCA as published (RVO2); ORCA, HRVO and HL of navground.
 
-    cargo run --release --package xtask -- navigation --worlds worlds.jsonl
-    pip install navground==0.7.0 pyrvo==0.4.3 numpy
-    python crates/xtask/peers/peers.py worlds.jsonl docs/right-of-way/peers.csv
+`just peers` runs it, in half an hour on two cores, and renews peers.csv beside this file, from which `xtask
+navigation` has its column. The seconds behind ORCA (RVO2) are its time horizon.
 
 A peer gets all that it needs to do well: the shortest way round the known walls, seen anew every 0.25 s, and
 robots that change their velocity at once. This project's robots need half a second to reach their speed.
@@ -42,9 +41,11 @@ class Roadmap:
         size = numpy.array(world["size"])
         reach = self.radius + SPARE_M
         corners = [(low - reach, high + reach) for low, high in self.walls]
-        places = [numpy.array((x, y)) for low, high in corners for x in (low[0], high[0]) for y in (low[1], high[1])]
+        places = [numpy.array((x, y)) for low, high in corners for x in (low[0], high[0])
+                  for y in (low[1], high[1])]
         inside = [p for p in places if (p >= self.radius).all() and (p <= size - self.radius).all()]
-        self.places = numpy.array([p for p in inside if self.depth(p[None], self.radius).max() <= 0]).reshape(-1, 2)
+        clear = [p for p in inside if self.depth(p[None], self.radius).max() <= 0]
+        self.places = numpy.array(clear).reshape(-1, 2)
         self.sees = self.seen(self.places, self.places, self.radius + SPARE_M / 2)
         self.ways = {}
 
@@ -117,8 +118,8 @@ class Rvo2:
         for start in starts:
             self.simulator.add_agent(tuple(start))
         width, height = world["size"]
-        for low, high in world["walls"]:
-            self.simulator.add_obstacle([(low[0], low[1]), (high[0], low[1]), (high[0], high[1]), (low[0], high[1])])
+        for (x, y), (right, top) in world["walls"]:
+            self.simulator.add_obstacle([(x, y), (right, y), (right, top), (x, top)])
         self.simulator.add_obstacle([(0.0, 0.0), (0.0, height), (width, height), (width, 0.0)])
         self.simulator.process_obstacles()
         self.ahead, self.random = list(starts), random.Random(world["seed"])
@@ -163,7 +164,7 @@ class Navground:
             way.kinematics = core.kinematics.OmnidirectionalKinematics(speed)
             way.radius, way.optimal_speed, way.horizon, way.safety_margin = radius, speed, 10.0, 0.01
             seen = sim.state_estimations.BoundedStateEstimation(range=10.0)
-            agent = sim.Agent(radius=radius, behavior=way, kinematics=way.kinematics, state_estimations=[seen])
+            agent = sim.Agent(radius, way, way.kinematics, state_estimations=[seen])
             agent.position = tuple(start)
             self.world.add_agent(agent)
         self.ahead = None
@@ -186,8 +187,8 @@ class Navground:
 
 
 METHODS = {
-    "ORCA (RVO2), horizon 3 s": lambda world, starts: Rvo2(world, starts, 3.0),
-    "ORCA (RVO2), horizon 1.5 s": lambda world, starts: Rvo2(world, starts, 1.5),
+    "ORCA (RVO2; 3 s)": lambda world, starts: Rvo2(world, starts, 3.0),
+    "ORCA (RVO2; 1.5 s)": lambda world, starts: Rvo2(world, starts, 1.5),
     "ORCA (navground)": lambda world, starts: Navground(world, starts, "ORCA"),
     "HRVO (navground)": lambda world, starts: Navground(world, starts, "HRVO"),
     "HL (navground)": lambda world, starts: Navground(world, starts, "HL"),
@@ -195,7 +196,8 @@ METHODS = {
 
 
 def drive(method, world, roadmap, robots, limit_s):
-    """Arrival time of each robot with a goal or None, the deepest overlap, and seconds of computing per step of a robot."""
+    """Arrival time or None of each robot with a goal, the deepest overlap, and seconds of computing per step of
+    a robot."""
     starts = [tuple(robot["start"]) for robot in robots]
     goals = [tuple(robot["goal"] or robot["start"]) for robot in robots]
     peer = METHODS[method](world, starts)

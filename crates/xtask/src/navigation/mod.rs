@@ -64,6 +64,7 @@ const AFTER_HELP: &str = "\
 flow: the sum of arrival times by the sum of the times that each robot needs alone. A robot that does not \
 arrive counts with the limit, five times the longest time alone and half a minute.
 ok: share of the trials in which all arrived and no bodies overlapped by more than a centimetre.
+peer: the least flow of ORCA, HRVO or HL, by their libraries, if ok in all trials (crates/xtask/peers).
 given up: places given up as unreachable, in all trials.
 touches: times that a robot came to touch another, for each robot.
 

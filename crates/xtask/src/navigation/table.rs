@@ -1,9 +1,10 @@
 //! The results of trials, as printed tables and as CSV.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 use std::time::Instant;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::problems::Problem;
 use super::trial::{Late, Outcome};
@@ -11,6 +12,8 @@ use super::trial::{Late, Outcome};
 /// A table that prints the line of each problem as soon as its trials have ended.
 pub(super) struct Table {
     csv: Option<csv::Writer<std::fs::File>>,
+    /// The least flow of another method that was ok in all trials, by problem.
+    peers: BTreeMap<String, f64>,
     start: Instant,
     flows: Vec<f64>,
     trials: usize,
@@ -44,10 +47,11 @@ impl Table {
         };
         let csv = csv.map(open).transpose()?;
         println!(
-            "{:16} {:>6} {:>7} {:>7} {:>6} {:>8} {:>8} {:>8}",
-            "problem", "robots", "flow", "worst", "ok %", "given up", "touches", "us/step"
+            "{:16} {:>6} {:>7} {:>7} {:>7} {:>6} {:>8} {:>8} {:>8}",
+            "problem", "robots", "flow", "worst", "peer", "ok %", "given up", "touches", "us/step"
         );
-        Ok(Self { csv, start: Instant::now(), flows: Vec::new(), trials: 0, ok: 0, given_up: 0 })
+        let peers = best_peers().map_err(|error| format!("peers.csv: {error}"))?;
+        Ok(Self { csv, peers, start: Instant::now(), flows: Vec::new(), trials: 0, ok: 0, given_up: 0 })
     }
 
     /// Prints the line of a problem, and writes its trials.
@@ -56,8 +60,9 @@ impl Table {
         let flow = mean(|outcome| outcome.flow);
         let ok = outcomes.iter().filter(|outcome| outcome.is_ok()).count();
         let given_up: u32 = outcomes.iter().map(|outcome| outcome.given_up).sum();
+        let peer = self.peers.get(problem.name).map_or("none".to_owned(), |flow| format!("{flow:.3}"));
         println!(
-            "{:16} {:>6} {flow:>7.3} {:>7.3} {:>6.0} {given_up:>8} {:>8.2} {:>8.2}",
+            "{:16} {:>6} {flow:>7.3} {:>7.3} {peer:>7} {:>6.0} {given_up:>8} {:>8.2} {:>8.2}",
             problem.name,
             outcomes.first().map_or(0, |outcome| outcome.robots),
             outcomes.iter().map(|outcome| outcome.flow).fold(0.0, f64::max),
@@ -82,9 +87,10 @@ impl Table {
         let mean = (logs / self.flows.len() as f64).exp();
         let ok = 100.0 * self.ok as f64 / self.trials as f64;
         println!(
-            "{:16} {:>6} {mean:>7.3} {:>7} {ok:>6.1} {:>8}   geometric mean of {} problems, {} trials, {:.0} \
-             s",
+            "{:16} {:>6} {mean:>7.3} {:>7} {:>7} {ok:>6.1} {:>8}   geometric mean of {} problems, {} trials, \
+             {:.0} s",
             "all",
+            "",
             "",
             "",
             self.given_up,
@@ -93,6 +99,25 @@ impl Table {
             self.start.elapsed().as_secs_f64()
         );
     }
+}
+
+/// The least flow among the other methods that were ok in all trials of a problem, by problem.
+fn best_peers() -> Result<BTreeMap<String, f64>, csv::Error> {
+    #[derive(Deserialize)]
+    struct Peer {
+        problem: String,
+        flow: f64,
+        ok_percent: f64,
+    }
+    let mut best = BTreeMap::new();
+    for peer in csv::Reader::from_reader(include_bytes!("../../peers/peers.csv").as_slice()).deserialize() {
+        let Peer { problem, flow, ok_percent } = peer?;
+        if ok_percent >= 100.0 {
+            let least = best.entry(problem).or_insert(flow);
+            *least = flow.min(*least);
+        }
+    }
+    Ok(best)
 }
 
 fn line<'o>(problem: &Problem, outcome: &'o Outcome) -> Line<'o> {
