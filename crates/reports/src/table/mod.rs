@@ -21,17 +21,31 @@ pub(crate) use format::Lines;
 pub use format::{Format, show_as, shown_as};
 pub use grouping::{levels_table, likeness_table};
 
-/// A row for each metric, a column for each policy: mean ± sample standard deviation in one case.
+/// Largest number of policies that are columns of a table; more are rows.
+const MOST_COLUMNS: usize = 8;
+
+/// Mean ± sample standard deviation of each metric and policy in one case. A row for each metric, or, if there
+/// are more than eight policies, for each policy.
 #[must_use]
 pub fn policy_table(folder: &Folder, case: usize) -> Table {
     let Experiment { policies, metrics, .. } = folder.experiment();
     let trials = folder.trials_of(case);
+    let cell = |policy, metric| right(&moments(&Moments::of(&folder.values(case, policy, metric)), trials));
+    let primary = || metrics.iter().enumerate().filter(|(_, metric)| metric.is_primary);
+    if policies.len() > MOST_COLUMNS {
+        let titles = primary().map(|(_, metric)| right(&metric.title));
+        let mut table = headed(std::iter::once(Cell::new("policy")).chain(titles));
+        for (policy, spec) in policies.iter().enumerate() {
+            let cells = primary().map(|(metric, _)| cell(policy, metric));
+            table.add_row(std::iter::once(Cell::new(&spec.label)).chain(cells));
+        }
+        return table;
+    }
     let header = std::iter::once(Cell::new("policy"));
     let mut table = headed(header.chain(policies.iter().map(|policy| right(&policy.label))));
     let mut last = "";
-    for (i, metric) in metrics.iter().enumerate().filter(|(_, metric)| metric.is_primary) {
-        let cells = (0..policies.len())
-            .map(|policy| right(&moments(&Moments::of(&folder.values(case, policy, i)), trials)));
+    for (i, metric) in primary() {
+        let cells = (0..policies.len()).map(|policy| cell(policy, i));
         table.add_row(std::iter::once(Cell::new(indented(&metric.title, last))).chain(cells));
         last = &metric.title;
     }

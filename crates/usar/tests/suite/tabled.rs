@@ -164,3 +164,21 @@ fn the_long_table_has_every_value_once() {
         &["tidy.csv exists; nothing was overwritten"],
     );
 }
+
+#[test]
+fn many_policies_are_rows() {
+    let folder = place();
+    let labels: Vec<String> = (1..=9).map(|i| format!("nearest-{i}=DIS")).collect();
+    let policies = labels.join(",");
+    let told = succeeds(&usar(
+        folder.path(),
+        &["sweep", "short.ron", "--trials", "1", "--policies", &policies, "--quiet"],
+    ));
+    let row = |start: &str| told.lines().filter(|line| line.starts_with(start)).count();
+    assert_eq!(
+        [row("│ policy"), row("│ nearest-1"), row("│ nearest-9"), row("│ rescuees")],
+        [1, 1, 1, 0],
+        "{told}"
+    );
+    assert!(told.lines().next().unwrap().chars().count() < 300, "{told}");
+}
