@@ -21,8 +21,8 @@ use super::trials::Asked;
 FILE is a recording (`usar run --record`), a scenario, which is simulated first, or the folder of a sweep, \
 whose trial is taken from its recordings or simulated again.
 
-An MCAP log opens in Foxglove, Lichtblick and Rerun. The tables are robots, groups, events and decisions: a row for \
-each thing at each time, one header, units in the names.
+An MCAP log is for Foxglove, Lichtblick and Rerun. The tables are robots, groups, events and decisions: a \
+row for each thing at each time, one header, units in the names.
 
 Examples:
   usar export paper.usrec --mcap paper.mcap
