@@ -2,6 +2,8 @@
 //! experiment has a [`Catalogue`] of them, including one for each of its tasks. `trials.csv`, comparisons,
 //! stopping rules, reports and calibrations look metrics up there.
 
+mod values;
+
 use std::ops::Deref;
 
 use usar_sim::metrics::TaskTotals;
@@ -9,6 +11,8 @@ use usar_sim::record::TrialRecord;
 use usar_sim::scenario::Scenario;
 
 use crate::failure::Failure;
+
+pub use values::Values;
 
 /// Name of the metric of all tasks together, in the place of a task's name.
 pub const TOTAL: &str = "total";

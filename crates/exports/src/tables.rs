@@ -3,7 +3,7 @@
 
 use std::io::Write;
 
-use recording::{Frame, Recording, ToldEvent, World};
+use recording::{Frame, Names, Recording, ToldEvent, World};
 use usar_sim::scenario::{Measure, NeedFile};
 
 use crate::error::ExportError;
@@ -122,7 +122,10 @@ impl Table {
 pub(crate) fn events(recording: &Recording) -> impl Iterator<Item = ToldEvent> + '_ {
     let header = &recording.header;
     let tasks: Vec<&str> = header.world.tasks.iter().map(|task| task.name.as_str()).collect();
-    recording.events.iter().map(move |(step, event)| ToldEvent::new((*step, header.dt_s), event, &tasks))
+    recording.events.iter().map(move |(step, event)| {
+        let names = Names { tasks: &tasks, debris: &header.world.debris, zones: &header.world.zones };
+        ToldEvent::new((*step, header.dt_s), event, names)
+    })
 }
 
 /// A time in seconds, rounded to microseconds.

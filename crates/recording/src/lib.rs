@@ -43,7 +43,7 @@ pub use frame::{Frame, GroupFrame, Motion, MovedDebris, RescueeFrame, RobotFrame
 pub use header::{Codes, Header, RobotPlace, ScenarioText, TaskPlace, VERSION, World};
 pub use reader::{Recording, TimedDecision};
 pub use trust::Trust;
-pub use words::{ToldEvent, robots_in_words};
+pub use words::{Names, ToldEvent, robots_in_words};
 pub use writer::{DEFAULT_FPS, Options, Recorder, record};
 
 /// The programs in the README compile and run.

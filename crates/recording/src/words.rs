@@ -4,6 +4,7 @@ use serde::Serialize;
 use serde_json::{Map, Value};
 use usar_sim::event::{CutOffCause, Event, Place, ReturnCause, TurnBackCause};
 use usar_sim::ids::RobotId;
+use usar_sim::scenario::{DebrisFile, ZoneFile};
 
 /// An event with its time, its name and a sentence.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -21,10 +22,37 @@ pub struct ToldEvent {
     pub fields: Map<String, Value>,
 }
 
+/// What events in words call by its name, each kind in the order of its numbers.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Names<'a> {
+    /// Names of the tasks.
+    pub tasks: &'a [&'a str],
+    /// The debris, of which some has a name.
+    pub debris: &'a [DebrisFile],
+    /// The radiation zones, of which some have names.
+    pub zones: &'a [ZoneFile],
+}
+
+impl Names<'_> {
+    fn task(&self, number: usize) -> &str {
+        self.tasks.get(number).copied().unwrap_or("?")
+    }
+
+    fn debris(&self, number: u32) -> String {
+        let name = self.debris.get(number as usize).and_then(|debris| debris.name.clone());
+        name.unwrap_or_else(|| format!("debris {number}"))
+    }
+
+    fn zone(&self, number: u32) -> String {
+        let name = self.zones.get(number as usize).and_then(|zone| zone.name.clone());
+        name.unwrap_or_else(|| format!("radiation {number}"))
+    }
+}
+
 impl ToldEvent {
-    /// An event that had happened at the end of a step; `tasks` are the names of the tasks.
+    /// An event that had happened at the end of a step.
     #[must_use]
-    pub fn new((step, dt_s): (u64, f64), event: &Event, tasks: &[&str]) -> Self {
+    pub fn new((step, dt_s): (u64, f64), event: &Event, names: Names) -> Self {
         let (name, fields) = match serde_json::to_value(event) {
             Ok(Value::Object(kinds)) => kinds.into_iter().next().unwrap_or_default(),
             Ok(Value::String(name)) => (name, Value::Null),
@@ -32,7 +60,7 @@ impl ToldEvent {
         };
         let fields = if let Value::Object(fields) = fields { fields } else { Map::new() };
         let time_s = (step as f64 * dt_s * 1e6).round() / 1e6;
-        Self { time_s, step, event: snake(&name), says: sentence(event, tasks), fields }
+        Self { time_s, step, event: snake(&name), says: sentence(event, names), fields }
     }
 
     /// The ids of the robots that the event concerns.
@@ -82,9 +110,9 @@ fn set(robots: &[RobotId]) -> String {
     robots_in_words(&robots.iter().map(|robot| robot.0).collect::<Vec<_>>())
 }
 
-/// An event in a sentence without its time and without a full stop; `tasks` are the names of the tasks.
-fn sentence(event: &Event, tasks: &[&str]) -> String {
-    let task = |task: usize| tasks.get(task).copied().unwrap_or("?");
+/// An event in a sentence without its time and without a full stop.
+fn sentence(event: &Event, names: Names) -> String {
+    let task = |task: usize| names.task(task);
     let at = |[x, y]: [f32; 2]| format!("({x:.1}, {y:.1})");
     match event {
         Event::RoundStarted { round, groups } => {
@@ -97,8 +125,10 @@ fn sentence(event: &Event, tasks: &[&str]) -> String {
             format!("the group of {} goes home: {}", task(number.index()), cause.name())
         }
         Event::Restocked { robot, resources } => format!("robot {robot} takes resources: {resources}"),
-        Event::DebrisDiscovered { robot, debris } => format!("robot {robot} notices debris {debris}"),
-        Event::ZoneDiscovered { robot, zone } => format!("robot {robot} notices radiation {zone}"),
+        Event::DebrisDiscovered { robot, debris } => {
+            format!("robot {robot} notices {}", names.debris(*debris))
+        }
+        Event::ZoneDiscovered { robot, zone } => format!("robot {robot} notices {}", names.zone(*zone)),
         Event::Sighted { robot, rescuee } => format!("robot {robot} sees rescuee {}", rescuee.0),
         Event::Loaded { robot, rescuee, .. } => format!("robot {robot} has rescuee {} on board", rescuee.0),
         Event::Delivered { robot, rescuee, place } => {
@@ -129,11 +159,11 @@ fn sentence(event: &Event, tasks: &[&str]) -> String {
         }
         Event::ErrandsOver => "all errands are over".to_owned(),
         Event::MissionOver => "no robot that can carry is left".to_owned(),
-        Event::DebrisFell { debris } => format!("debris {debris} falls"),
-        Event::WayClosed { debris } => format!("a way closes: debris {debris}"),
-        Event::WayOpened { debris } => format!("a way opens: debris {debris} is gone"),
-        Event::SourceAppeared { zone } => format!("radiation {zone} appears"),
-        Event::SourceDied { zone } => format!("radiation {zone} dies"),
+        Event::DebrisFell { debris } => format!("{} falls", names.debris(*debris)),
+        Event::WayClosed { debris } => format!("a way closes: {}", names.debris(*debris)),
+        Event::WayOpened { debris } => format!("a way opens: {} is gone", names.debris(*debris)),
+        Event::SourceAppeared { zone } => format!("{} appears", names.zone(*zone)),
+        Event::SourceDied { zone } => format!("{} dies", names.zone(*zone)),
         Event::Damaged { robot, energy, hp } => {
             format!("robot {robot} is damaged: it loses {energy:.1} % energy and {hp:.1} % HP")
         }
@@ -148,21 +178,32 @@ fn sentence(event: &Event, tasks: &[&str]) -> String {
 #[cfg(test)]
 mod tests {
     use rne_core::TaskId;
+    use usar_sim::scenario::DebrisShape;
 
     use super::*;
 
     #[test]
     fn an_event_is_told_with_its_fields() {
         let event = Event::MadeRoom { robot: RobotId(3), room_for: RobotId(1) };
-        let told = ToldEvent::new((125, 0.02), &event, &[]);
+        let told = ToldEvent::new((125, 0.02), &event, Names::default());
         assert_eq!((told.time_s, told.event.as_str(), told.robots()), (2.5, "made_room", vec![3, 1]));
         let line = serde_json::to_string(&told).unwrap();
         let expected = r#"{"time_s":2.5,"step":125,"event":"made_room","says":"robot 3 makes room for robot 1","robot":3,"room_for":1}"#;
         assert_eq!(line, expected);
         let returned = Event::GroupReturned { task: TaskId(0), cause: ReturnCause::NothingLeft };
-        let told = ToldEvent::new((1, 1.0), &returned, &["north"]);
+        let told = ToldEvent::new((1, 1.0), &returned, Names { tasks: &["north"], ..Names::default() });
         assert_eq!(told.says, "the group of north goes home: nothing left");
-        assert_eq!(ToldEvent::new((1, 1.0), &Event::ErrandsOver, &[]).event, "errands_over");
+        assert_eq!(ToldEvent::new((1, 1.0), &Event::ErrandsOver, Names::default()).event, "errands_over");
+        let slab = DebrisFile {
+            shape: DebrisShape::Disc(1.0),
+            at: [0.0; 2],
+            rotation_deg: 0.0,
+            movable: None,
+            name: Some("slab".to_owned()),
+        };
+        let names = Names { debris: &[slab], ..Names::default() };
+        let says = |debris| ToldEvent::new((1, 1.0), &Event::DebrisFell { debris }, names).says;
+        assert_eq!([says(0), says(1)], ["slab falls", "debris 1 falls"]);
         assert_eq!(robots_in_words(&[0, 2, 5]), "robots 0, 2 and 5");
     }
 }

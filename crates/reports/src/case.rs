@@ -6,10 +6,11 @@ use experiments::Failure;
 use experiments::comparison::{
     Comparison, answer, digits, limit_of_correction, short, short_p, test_in_words,
 };
-use experiments::experiment::{Axis, Experiment, Seeds};
+use experiments::experiment::{Axis, Experiment, PolicySpec, Seeds, registry};
 use experiments::stats::Moments;
 use experiments::sweep::disk::PLOTS;
 use experiments::sweep::folder::Folder;
+use experiments::sweep::host::Hosts;
 
 use crate::decisions::{Decisions, decisions};
 use crate::drawing::{self, Figure};
@@ -31,6 +32,8 @@ struct Page<'a> {
     missing: usize,
     trials: u32,
     labels: Vec<&'a str>,
+    /// Each policy's label, and what its kind does.
+    policies: Vec<(&'a str, &'a str)>,
     /// The names that figures use for policies with too long labels, each with its label.
     abbreviations: Vec<(String, &'a str)>,
     /// The answer to the first question of the sweep.
@@ -109,7 +112,7 @@ pub(crate) fn write_case(
         let beside = links.strip_suffix(prefix.as_str()).unwrap_or(links).trim_end_matches('/');
         maps.push(trails_map(number, trial, beside)?);
     }
-    let decided = decisions(folder, *case)?;
+    let decided = decisions(folder, *case, shown.first().map(|trial| trial.seed))?;
     let mut page = page(folder, *case, (&here, &all.asked), (&figures, &maps));
     page.decisions = decided;
     page.answer = wanted.asked.metrics.first().and_then(|metric| answer(folder, *case, *metric, &here));
@@ -146,17 +149,18 @@ fn page<'a>(
         Seeds::Listed(list) => format!("{list:?}"),
     };
     let part = manifest.shard.map_or(String::new(), |_| format!(", dealt out: this is {}", manifest.part()));
-    let facts = vec![
+    let mut facts = vec![
         (
             "program",
             format!("usar {}, commit {}, source {}", manifest.version, manifest.commit, manifest.source),
         ),
         ("trials", format!("{} for each case and policy, seeds {seeds}{part}", experiment.trials)),
         ("policies", manifest.policies.join(", ")),
-        ("checked", if manifest.is_checked { "every invariant at every step".into() } else { "no".into() }),
+        ("invariants checked", if manifest.is_checked { "all, at every step".into() } else { "no".into() }),
     ];
-    let sentences = |is_found: bool| {
-        let wanted = comparisons.iter().filter(|comparison| comparison.is_found() == is_found);
+    facts.extend(Hosts::read(folder.path()).rules.into_iter().map(|rule| ("stopping rule", rule)));
+    let sentences = |is_settled: bool| {
+        let wanted = comparisons.iter().filter(|comparison| comparison.is_settled() == is_settled);
         wanted.map(|comparison| comparison.in_words.as_str()).collect()
     };
     let names = drawing::names(experiment).into_iter();
@@ -173,6 +177,7 @@ fn page<'a>(
         missing: asked - folder.results().len().min(asked),
         trials: folder.trials_of(case) as u32,
         labels: experiment.policies.iter().map(|policy| policy.label.as_str()).collect(),
+        policies: experiment.policies.iter().map(|spec| (spec.label.as_str(), about(spec))).collect(),
         answer: None,
         is_declared: false,
         summary: summary(folder, case),
@@ -192,6 +197,12 @@ fn page<'a>(
         command: command(folder),
         scenario: experiment.cases[case].scenario.resolved(),
     }
+}
+
+/// What a policy does, in the registry's words; empty for an unknown one.
+fn about(spec: &PolicySpec) -> &'static str {
+    let kinds = registry().kinds().iter();
+    kinds.filter(|kind| kind.name == spec.name).map(|kind| kind.about.as_str()).next().unwrap_or_default()
 }
 
 /// Titles of the metrics of figures that are zero in every trial of a case.

@@ -16,8 +16,13 @@ pub(crate) struct Decisions {
     pub rows: Vec<Vec<String>>,
 }
 
-/// The decisions of the first trial of a case that all policies finished; `None` if there is no such trial.
-pub(crate) fn decisions(folder: &mut Folder, case: usize) -> Result<Option<Decisions>, Failure> {
+/// The decisions of a trial of a case that all policies finished: the one with this seed, or the first;
+/// `None` if there is no such trial.
+pub(crate) fn decisions(
+    folder: &mut Folder,
+    case: usize,
+    seed: Option<u64>,
+) -> Result<Option<Decisions>, Failure> {
     let policies: Vec<String> =
         folder.experiment().policies.iter().map(|policy| policy.label.clone()).collect();
     if !folder.experiment().keep.has_records() {
@@ -30,7 +35,9 @@ pub(crate) fn decisions(folder: &mut Folder, case: usize) -> Result<Option<Decis
             measured.is_some_and(|measured| measured.metrics.is_some())
         })
     };
-    let Some(trial) = (1..=trials).find(|trial| is_finished(*trial)) else { return Ok(None) };
+    let is_wanted = |trial: u32| seed.is_none_or(|seed| folder.experiment().seed(trial) == seed);
+    let wanted = (1..=trials).find(|trial| is_wanted(*trial) && is_finished(*trial));
+    let Some(trial) = wanted else { return Ok(None) };
     let tasks = experiments::metric::task_names(&folder.experiment().cases[case].scenario);
     let before = ["policy", "round", "from s"].map(str::to_owned);
     let of_tasks = |what: &str| tasks.iter().map(|task| format!("{task}: {what}")).collect::<Vec<_>>();

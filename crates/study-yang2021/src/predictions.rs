@@ -51,8 +51,7 @@ pub fn predictions(folder: &Folder, trials: u32) -> Result<Vec<Prediction>, Fail
         let policy = policy
             .ok_or_else(|| Failure::input(format!("{}: has no policy {name}", folder.path().display())))?;
         for place in QUANTITIES.iter().flat_map(|name| experiment.metrics.declared(name)) {
-            let value =
-                |trial| folder.results().get(&(0, policy, trial))?.metrics.as_ref()?.get(place).copied()?;
+            let value = |trial| folder.value((0, policy, trial), place);
             let values: Vec<f64> = (1..=trials).filter_map(value).collect();
             let (scenario, quantity) = (experiment.name.clone(), experiment.metrics[place].column());
             predictions.extend(of_values(&values).map(|[mean, sd, low, high]| Prediction {

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use experiments::Failure;
 use experiments::comparison::CONFIDENCE;
 use experiments::experiment::PolicySpec;
-use experiments::metric::Catalogue;
+use experiments::metric::{Catalogue, Values};
 use experiments::rounds::Round;
 use experiments::stats::Moments;
 use experiments::stats::paired::t_half_width_at;
@@ -105,13 +105,13 @@ impl<'f> Trials<'f> {
         &self.folder.experiment().metrics
     }
 
-    fn metrics(&self, policy: usize, trial: u32) -> Option<&'f Vec<Option<f64>>> {
+    fn metrics(&self, policy: usize, trial: u32) -> Option<&'f Values> {
         self.folder.results().get(&(0, policy, trial))?.metrics.as_ref()
     }
 
     /// Metric of one policy minus that of another, trial by trial; `None` where it is undefined.
     fn differences(&self, metric: usize, a: usize, b: usize) -> Vec<Option<f64>> {
-        let value = |policy: usize, trial: u32| self.metrics(policy, trial)?[metric];
+        let value = |policy: usize, trial: u32| self.metrics(policy, trial)?.get(metric);
         self.numbers.iter().map(|trial| Some(value(a, *trial)? - value(b, *trial)?)).collect()
     }
 

@@ -14,6 +14,7 @@ pub const PAPERS_TRIALS: u32 = 10;
 
 // The scenarios are part of the program, so that it runs from any folder.
 const PRINTED: &str = include_str!("../../../scenarios/paper.ron");
+const SWEEP: &str = include_str!("../../../scenarios/paper.sweep.ron");
 const CALIBRATED: &str = include_str!("../../../scenarios/paper-calibrated.ron");
 
 /// The calibrated worlds that the data cannot tell apart from the chosen one, as variants of it.
@@ -72,6 +73,17 @@ fn overrides(trials: u32, set: Vec<String>) -> Overrides {
     Overrides { policies, trials: Some(trials), set, ..Overrides::default() }
 }
 
+/// The largest differences that do not matter, by metric, as the paper's sweep file declares them.
+#[must_use]
+pub fn margins() -> Vec<(String, f64)> {
+    let fields = Fields::of(SWEEP);
+    let margin = |key: &str| {
+        let value = fields.value(&format!("margins.{key}")).and_then(|place| SWEEP[place].parse().ok());
+        value.map(|value| (key.trim_matches('"').to_owned(), value))
+    };
+    fields.inside("margins").into_iter().filter_map(margin).collect()
+}
+
 /// Names of variants of a sweep file, and their settings as `path=value`.
 fn alternatives(sweep: &str) -> Vec<(String, Vec<String>)> {
     let fields = Fields::of(sweep);
@@ -102,6 +114,13 @@ mod tests {
             .map(|(name, set)| (name.as_str(), set.iter().map(String::as_str).collect()))
             .collect();
         assert_eq!(found, expected);
+    }
+
+    #[test]
+    fn margins_are_those_of_the_papers_sweep_file() {
+        let expected =
+            ["rescuees.total", "rescuees.hard", "rescuees.easy"].map(|name| (name.to_owned(), 5.0));
+        assert_eq!(margins(), expected);
     }
 
     #[test]

@@ -32,9 +32,7 @@ fn readings_are_counted_against_each_rival_and_against_all() {
     let rows = rivals(&Trials::of(&sweep), &[0, 1, 2, 3]);
     let sides = |metric: &str, rival: usize, tail: f64| -> Vec<i32> {
         let metric = sweep.experiment().metrics.named(metric).unwrap();
-        let value = |policy: usize, trial: u32| {
-            sweep.results()[&(0, policy, trial)].metrics.as_ref().unwrap()[metric].unwrap()
-        };
+        let value = |policy: usize, trial: u32| sweep.value((0, policy, trial), metric).unwrap();
         let t = StudentsT::new(0.0, 1.0, 7.0).unwrap().inverse_cdf(1.0 - tail);
         let side = |reading: usize| {
             let differences: Vec<f64> =

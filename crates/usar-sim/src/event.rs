@@ -22,7 +22,7 @@ pub enum ReturnCause {
     CapacityUsed,
     /// No member in the field has a resource left.
     ResourcesUsed,
-    /// All members searched the whole area and know of nobody who is left.
+    /// All members searched the whole area and know of nobody who is left, or know no way there.
     NothingLeft,
     /// No robot that can carry is left in the field.
     NobodyCanCarry,
@@ -89,7 +89,8 @@ pub enum Event {
     GroupReturned {
         /// Its task.
         task: TaskId,
-        /// Why.
+        /// Why: `CapacityUsed`, `ResourcesUsed`, `NothingLeft` (nobody is left to whom it knows a way), or
+        /// `NobodyCanCarry`.
         cause: ReturnCause,
     },
     /// A robot filled up its resources at home.
@@ -142,7 +143,7 @@ pub enum Event {
     TurnedBack {
         /// The robot.
         robot: RobotId,
-        /// Why.
+        /// Why: `Energy` or `Hp`.
         cause: TurnBackCause,
     },
     /// A robot began to rest.
@@ -212,7 +213,7 @@ pub enum Event {
         robot: RobotId,
         /// Where it does not get, in metres.
         place: [f32; 2],
-        /// Why.
+        /// Why: `NoWay` or `NoProgress`.
         cause: CutOffCause,
     },
     /// All errands are done or given up.

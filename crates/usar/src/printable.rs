@@ -18,6 +18,15 @@ pub(crate) fn printable(text: &str) -> Cow<'_, str> {
     Cow::Owned(text.chars().map(escaped).collect())
 }
 
+/// A number of things: `1 case`, `2 cases`, `3 policies`.
+pub(crate) fn counted(count: usize, thing: &str) -> String {
+    match thing.strip_suffix('y') {
+        _ if count == 1 => format!("1 {thing}"),
+        Some(stem) => format!("{count} {stem}ies"),
+        None => format!("{count} {thing}s"),
+    }
+}
+
 /// Passes text on after making it [`printable`].
 pub(crate) struct Printable<W> {
     to: W,

@@ -16,7 +16,7 @@ use indicatif::{HumanDuration, ProgressBar, ProgressStyle};
 use signal_hook::consts::{SIGINT, SIGTERM};
 use usar_sim::simulation::Simulation;
 
-use crate::printable::printable;
+use crate::printable::{counted, printable};
 
 /// A trial checks once in this many steps whether it is to stop.
 const CLOCK_CHECK_STEPS: u64 = 64;
@@ -132,8 +132,15 @@ fn report_progress(bar: &ProgressBar, of: &str) {
             let Some(bar) = bar.upgrade().filter(|bar| !bar.is_finished()) else { return };
             if second.is_multiple_of(REPORT_S) {
                 let (done, all) = (bar.position(), bar.length().unwrap_or(0));
-                let (gone, left) = (HumanDuration(bar.elapsed()), HumanDuration(bar.eta()));
-                tell(format_args!("{done} of {all} {of} after {gone}; {left} left at this pace"));
+                let gone = bar.elapsed();
+                // The bar's own estimate forgets the beginning, and a trial may take minutes.
+                let left = if done == 0 {
+                    String::new()
+                } else {
+                    let left = gone.mul_f64((all - done) as f64 / done as f64);
+                    format!("; {} left at this pace", HumanDuration(left))
+                };
+                tell(format_args!("{done} of {all} {of} after {}{left}", HumanDuration(gone)));
             }
         }
     });
@@ -148,8 +155,7 @@ pub(crate) fn progress_bar(count: usize, of: &str, jobs: usize, quiet: bool) -> 
     let style = format!("{{bar:32}} {{pos}}/{{len}} {of}, {{elapsed}} gone, {{eta}} left {{msg}}");
     bar.set_style(ProgressStyle::with_template(&style).unwrap_or_else(|_| ProgressStyle::default_bar()));
     if bar.is_hidden() {
-        let plural = if jobs == 1 { "" } else { "s" };
-        tell(format_args!("{count} {of} on {jobs} thread{plural}"));
+        tell(format_args!("{count} {of} on {}", counted(jobs, "thread")));
         report_progress(&bar, of);
     }
     bar.enable_steady_tick(Duration::from_millis(200));

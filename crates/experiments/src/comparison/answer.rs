@@ -37,18 +37,64 @@ pub fn answer(folder: &Folder, case: usize, metric: usize, comparisons: &[&Compa
     }
     let range = format!("{lead}; {} has {}", last.1, value(last.0).trim_end());
     if found.is_empty() {
-        let n = own.iter().map(|c| c.n).max().unwrap_or(0);
-        let widest =
-            own.iter().filter_map(|c| c.interval).map(|[low, high]| (high - low) / 2.0).fold(0.0, f64::max);
-        let precision =
-            if widest > 0.0 { format!(", known to about ± {} each", short(widest)) } else { String::new() };
-        return Some(format!(
-            "No policy is shown to differ in {} from those that it was compared with. {range}. The \
-             differences stand on up to {n} pairs of trials{precision}.",
-            declared.title
-        ));
+        return Some(format!("{} {range}.", not_shown(declared, &own)));
     }
     Some(format!("{range}. {}", shown(found[0], &found[0].a)))
+}
+
+/// What comparisons say of which none shows a difference: what is equivalent, and how open the rest is.
+fn not_shown(metric: &Metric, comparisons: &[&Comparison]) -> String {
+    let (equal, open): (Vec<&Comparison>, Vec<&Comparison>) =
+        comparisons.iter().copied().partition(|comparison| comparison.is_equivalent());
+    let mut said: Vec<String> = equal.iter().map(|comparison| equivalent(metric, comparison)).collect();
+    said.extend(match open[..] {
+        [] => None,
+        [only] => undecided(only),
+        _ => Some(several(metric, &open)),
+    });
+    said.join(" ")
+}
+
+/// Two equivalent policies, and how near to each other they are.
+fn equivalent(metric: &Metric, comparison: &Comparison) -> String {
+    let Comparison { a, b, n, .. } = comparison;
+    let Some((margin, difference, [low, high])) = comparison
+        .judged
+        .and_then(|judged| Some((judged.margin, comparison.difference?, judged.interval_90?)))
+    else {
+        return comparison.in_words.clone();
+    };
+    let [margin, difference, low, high] = [margin, difference, low, high].map(short);
+    format!(
+        "{a} and {b} are equivalent in {}, within the margin of {margin}: {a} less {b} is {difference} (90 % \
+         interval {low} to {high}, {n} pairs).",
+        metric.title
+    )
+}
+
+/// Two policies that the trials cannot tell apart.
+fn undecided(comparison: &Comparison) -> Option<String> {
+    let Comparison { a, b, n, .. } = comparison;
+    let [low, high] = comparison.interval?;
+    let side = |value: f64| format!("{} {}", short(value.abs()), if value < 0.0 { "less" } else { "more" });
+    let [low, high] = [low, high].map(side);
+    Some(format!(
+        "{n} pairs of trials cannot tell {a} from {b}: {a} may have {low} or {high} (95 % interval)."
+    ))
+}
+
+/// Several comparisons that show nothing.
+fn several(metric: &Metric, comparisons: &[&Comparison]) -> String {
+    let n = comparisons.iter().map(|c| c.n).max().unwrap_or(0);
+    let half = |[low, high]: [f64; 2]| (high - low) / 2.0;
+    let widest = comparisons.iter().filter_map(|c| c.interval).map(half).fold(0.0, f64::max);
+    let precision =
+        if widest > 0.0 { format!(", known to about ± {} each", short(widest)) } else { String::new() };
+    format!(
+        "No policy is shown to differ in {} from those that it was compared with: the differences stand on \
+         up to {n} pairs of trials{precision}.",
+        metric.title
+    )
 }
 
 fn unit_of(metric: &Metric) -> &str {

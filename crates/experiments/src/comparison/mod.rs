@@ -93,6 +93,18 @@ impl Comparison {
     pub fn is_found(&self) -> bool {
         self.p_holm.is_some_and(|p| p < LEVEL)
     }
+
+    /// Whether the trials answer it: they show a difference, or that it is smaller than the margin.
+    #[must_use]
+    pub fn is_settled(&self) -> bool {
+        self.is_found() || self.is_equivalent()
+    }
+
+    /// Whether the difference is shown to be smaller than the margin.
+    #[must_use]
+    pub fn is_equivalent(&self) -> bool {
+        self.judged.is_some_and(|judged| judged.verdict == Verdict::Equivalent)
+    }
 }
 
 /// A warning if the family of comparisons is so large, and the pairs are so few, that no difference can be
@@ -287,12 +299,13 @@ fn in_words(comparison: &Comparison, metrics: &Catalogue) -> String {
     let range = format!("95 % interval {} to {}, n = {n}", short(low), short(high));
     let size = short(difference.abs());
     let direction = if difference > 0.0 { "above" } else { "below" };
-    let needed = comparison.pairs_needed.map_or(String::new(), |needed| {
-        format!(
-            " Were this the true difference, about {needed} pairs would show it in four of five \
+    let needed =
+        comparison.pairs_needed.filter(|needed| *needed > *n as u64).map_or(String::new(), |needed| {
+            format!(
+                " Were this the true difference, about {needed} pairs would show it in four of five \
             experiments to a single, uncorrected test."
-        )
-    });
+            )
+        });
     let is_clear =
         (low > 0.0 || high < 0.0) && comparison.effect.is_some_and(|effect| effect * difference > 0.0);
     if let Some(Judged { margin, interval_90: Some([low, high]), verdict: Verdict::Equivalent }) =

@@ -31,7 +31,7 @@ impl Pairs {
         let mut pairs = Self::default();
         for trial in folder.experiment().trials_of(a.0, folder.manifest().shard) {
             let result = |(case, policy): Cell| folder.results().get(&(case, policy, trial));
-            let value = |measured: &Measured| Some(measured.metrics.as_ref()?[metric]);
+            let value = |measured: &Measured| Some(measured.metrics.as_ref()?.get(metric));
             match (result(a), result(b)) {
                 (Some(a), Some(b)) => match (value(a), value(b)) {
                     (Some(Some(a)), Some(Some(b))) => {
@@ -65,12 +65,10 @@ impl Pairs {
         let trials = 1..=folder.experiment().trials;
         if let Some(sums) = Sums::of(folder, metric, [a, b]) {
             let [a, b] = sums.linearised();
-            let place = |trial: u32| sums.trials.iter().position(|other| *other == trial);
+            let place = |trial: u32| sums.trials.binary_search(&trial).ok();
             return trials.map(|trial| place(trial).map(|place| a[place] - b[place])).collect();
         }
-        let value = |(case, policy): Cell, trial| {
-            folder.results().get(&(case, policy, trial))?.metrics.as_ref()?[metric]
-        };
+        let value = |(case, policy): Cell, trial| folder.value((case, policy, trial), metric);
         trials.map(|trial| Some(value(a, trial)? - value(b, trial)?)).collect()
     }
 

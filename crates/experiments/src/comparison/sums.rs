@@ -8,7 +8,7 @@
 
 use super::pairs::Cell;
 use crate::stats::bootstrap::statistic_interval;
-use crate::sweep::folder::{Folder, Measured};
+use crate::sweep::folder::Folder;
 
 /// If a trial has fewer rescuees than this, ratios of sums are compared. One rescuee more or less would
 /// change the trial's own ratio by a fifth.
@@ -17,7 +17,7 @@ pub const FEW: f64 = 5.0;
 /// Costs and rescuees of both cells, pair by pair.
 #[derive(Debug, Default, Clone, PartialEq)]
 pub(super) struct Sums {
-    /// Number of each pair's trial.
+    /// Number of each pair's trial, ascending.
     pub trials: Vec<u32>,
     /// Cost and rescuees of the first cell, then of the second.
     pub pairs: Vec<[f64; 4]>,
@@ -31,11 +31,8 @@ impl Sums {
         let [cost, count] = experiment.metrics.sums(metric)?;
         let mut sums = Self::default();
         for trial in experiment.trials_of(a.0, folder.manifest().shard) {
-            let parts = |(case, policy): Cell| {
-                let Measured { metrics, .. } = folder.results().get(&(case, policy, trial))?;
-                let metrics = metrics.as_ref()?;
-                Some([metrics[cost]?, metrics[count]?])
-            };
+            let value = |(case, policy): Cell, metric| folder.value((case, policy, trial), metric);
+            let parts = |cell: Cell| Some([value(cell, cost)?, value(cell, count)?]);
             if let (Some([cost_a, count_a]), Some([cost_b, count_b])) = (parts(a), parts(b)) {
                 sums.trials.push(trial);
                 sums.pairs.push([cost_a, count_a, cost_b, count_b]);

@@ -7,7 +7,6 @@ use xxhash_rust::xxh3::xxh3_64;
 
 use super::policy::PolicySpec;
 use crate::failure::Failure;
-use crate::files;
 use crate::oracle::NotSimulated;
 
 /// The sources of this program that decide numbers, as a whole.
@@ -44,10 +43,10 @@ impl Program {
     /// The program that runs now, with these policies.
     ///
     /// # Errors
-    /// None: a policy that was read can be made.
+    /// A policy is of another crate, and the file of the running program cannot be read.
     pub fn running(policies: &[PolicySpec]) -> Result<Self, Failure> {
-        let source = |spec: &PolicySpec| spec.make().map(|made| source_of(&made));
-        let policies = policies.iter().map(source).collect::<Result<_, _>>().map_err(Failure::input)?;
+        let source = |spec: &PolicySpec| source_of(&spec.make().map_err(Failure::input)?);
+        let policies = policies.iter().map(source).collect::<Result<_, _>>()?;
         let version = env!("CARGO_PKG_VERSION").to_owned();
         Ok(Self { version, source: env!("USAR_ENGINE").to_owned(), policies })
     }
@@ -63,23 +62,29 @@ impl Program {
 /// Hash of the sources that decide a policy's answers besides the simulator. The oracle plays trials on with
 /// any policy, so that it has the hash of all. For a policy of another crate it is a hash of the running
 /// program.
-fn source_of(policy: &MadePolicy) -> String {
+fn source_of(policy: &MadePolicy) -> Result<String, Failure> {
     if policy.name == NotSimulated::NAME {
-        return env!("USAR_SOURCE").to_owned();
+        return Ok(env!("USAR_SOURCE").to_owned());
     }
     let file = policy.file.replace('\\', "/");
     let own = file.split_once("rne-core/src/policies/").and_then(|(_, rest)| rest.split('/').next());
     let built_in = env!("USAR_POLICIES").split(';').filter_map(|entry| entry.split_once('='));
     let found = built_in.into_iter().find(|(name, _)| Some(*name) == own);
-    found.map_or_else(|| executable().to_owned(), |(_, hash)| hash.to_owned())
+    found.map_or_else(executable, |(_, hash)| Ok(hash.to_owned()))
 }
 
-/// Hash of the running program's file; of nothing where the system does not tell it.
-fn executable() -> &'static str {
-    static HASH: OnceLock<String> = OnceLock::new();
-    HASH.get_or_init(|| {
-        let file = std::env::current_exe().and_then(|file| files::read(&file)).unwrap_or_default();
-        format!("{:016x}", xxh3_64(&file))
+/// Hash of the running program's file.
+fn executable() -> Result<String, Failure> {
+    static HASH: OnceLock<Result<String, String>> = OnceLock::new();
+    let hash = HASH.get_or_init(|| {
+        let file = std::env::current_exe().and_then(std::fs::read).map_err(|error| error.to_string())?;
+        Ok(format!("{:016x}", xxh3_64(&file)))
+    });
+    hash.clone().map_err(|error| {
+        Failure::storage(format!(
+            "the file of this program, by which results know a policy of another crate, cannot be read: \
+             {error}"
+        ))
     })
 }
 
@@ -88,17 +93,26 @@ mod tests {
     use super::*;
 
     fn source(text: &str) -> String {
-        source_of(&PolicySpec::parse(text).unwrap().make().unwrap())
+        source_of(&PolicySpec::parse(text).unwrap().make().unwrap()).unwrap()
     }
 
     #[test]
     fn each_built_in_policy_has_sources_of_its_own() {
         let names = ["RNE", "DIS", "ENG", "HP_DIS", "RANDOM", "ORACLE"];
         let mut sources: Vec<String> = names.map(source).to_vec();
-        assert!(!sources.contains(&executable().to_owned()));
+        assert!(!sources.contains(&executable().unwrap()));
         assert_eq!(source("RNE(score: Sum)"), sources[0]);
         sources.sort();
         sources.dedup();
         assert_eq!(sources.len(), names.len());
+    }
+
+    #[test]
+    fn a_policy_of_another_crate_has_the_hash_of_the_program_that_has_it() {
+        let mut policy = PolicySpec::parse("DIS").unwrap().make().unwrap();
+        policy.file = "src/main.rs";
+        let program = std::fs::read(std::env::current_exe().unwrap()).unwrap();
+        assert!(program.len() > 1 << 20);
+        assert_eq!(source_of(&policy).unwrap(), format!("{:016x}", xxh3_64(&program)));
     }
 }

@@ -1,6 +1,6 @@
 //! Outcomes on disk. An interrupted survey resumes from them, and results can be looked up in them.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs::{self, File};
 use std::io::{BufRead, BufReader, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
@@ -95,6 +95,13 @@ impl OutcomeLog {
     #[must_use]
     pub fn get(&self, then: Option<&str>, assignment: &Assignment) -> Option<&Outcome> {
         self.known.get(&(then.map(str::to_owned), assignment.groups.clone()))
+    }
+
+    /// How far the outcomes go: `None` for the end of the round, or the policy that decided the rest of the
+    /// trial.
+    #[must_use]
+    pub fn horizons(&self) -> BTreeSet<Option<String>> {
+        self.known.keys().map(|(then, _)| then.clone()).collect()
     }
 
     /// All played assignments with their outcomes.

@@ -147,8 +147,10 @@ pub(super) fn check_continues(
     }
     differences.extend(scenario_differences(&resolved_in(path), resolved));
     if now.trials < there.trials {
-        differences
-            .push(format!("trials: {} there, {} now; trials can only be added", there.trials, now.trials));
+        differences.push(format!(
+            "trials: {} there, more than the {} asked for; none are taken away",
+            there.trials, now.trials
+        ));
     }
     if differences.is_empty() {
         return Ok(());

@@ -273,13 +273,19 @@ impl Folder {
         self.results.range((case, policy, 0)..=(case, policy, u32::MAX)).map(|(place, _)| *place).collect()
     }
 
+    /// The value of a metric in one trial; `None` if the trial has no value, failed, or has not been run.
+    #[must_use]
+    pub fn value(&self, place: Place, metric: usize) -> Option<f64> {
+        self.results.get(&place)?.metrics.as_ref()?.get(metric)
+    }
+
     /// The values of a metric for one case and policy, from the trials that ran to their end and have a
     /// value.
     #[must_use]
     pub fn values(&self, case: usize, policy: usize, metric: usize) -> Vec<f64> {
         let trials = self.results.range((case, policy, 0)..=(case, policy, u32::MAX));
         let measured = trials.filter_map(|(_, Measured { metrics, .. })| metrics.as_ref());
-        measured.filter_map(|metrics| metrics[metric]).collect()
+        measured.filter_map(|metrics| metrics.get(metric)).collect()
     }
 
     /// Number of trials that the folder is to have for a case and each policy: of its shard, or of the

@@ -27,6 +27,9 @@ pub struct Hosts {
     schema_version: u32,
     /// The runs, in the order of their starts.
     pub runs: Vec<HostRun>,
+    /// What stopping rules said in the end, if trials were added by such rules.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub rules: Vec<String>,
 }
 
 /// One run of the program that added trials.
@@ -100,7 +103,7 @@ impl Hosts {
     #[must_use]
     pub fn read(folder: &Path) -> Self {
         let text = files::read(&folder.join(FILE)).unwrap_or_default();
-        let none = Self { schema_version: SCHEMA_VERSION, runs: Vec::new() };
+        let none = Self { schema_version: SCHEMA_VERSION, runs: Vec::new(), rules: Vec::new() };
         serde_json::from_slice(&text).unwrap_or(none)
     }
 
@@ -113,7 +116,24 @@ impl Hosts {
         hosts.runs.extend(runs);
         hosts.runs.sort_by(|a, b| a.begun.cmp(&b.begun));
         hosts.runs.drain(..hosts.runs.len().saturating_sub(MOST_RUNS));
-        let text = serde_json::to_string_pretty(&hosts).map_err(Failure::run)? + "\n";
+        hosts.write(folder)
+    }
+
+    /// Notes what a stopping rule says of the trials in a folder, once.
+    ///
+    /// # Errors
+    /// The disk does not take it.
+    pub fn note_rule(folder: &Path, rule: String) -> Result<(), Failure> {
+        let mut hosts = Self::read(folder);
+        if hosts.rules.contains(&rule) {
+            return Ok(());
+        }
+        hosts.rules.push(rule);
+        hosts.write(folder)
+    }
+
+    fn write(&self, folder: &Path) -> Result<(), Failure> {
+        let text = serde_json::to_string_pretty(self).map_err(Failure::run)? + "\n";
         NewFile::write(folder, FILE, text.as_bytes()).map(drop)
     }
 }

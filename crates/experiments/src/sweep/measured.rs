@@ -10,7 +10,7 @@ use super::line::Finished;
 use super::rows::{FIRST_METRIC, trial_columns};
 use crate::experiment::{Experiment, Place, Shard};
 use crate::files;
-use crate::metric::Catalogue;
+use crate::metric::{Catalogue, Values};
 use crate::run::{Fault, FaultKind, Outcome, TrialKey};
 
 /// Results of trials, by place.
@@ -22,9 +22,9 @@ pub struct Measured {
     /// Its status in one word.
     pub status: &'static str,
     /// Values of all metrics, in the order of the experiment's catalogue; `None` for a trial without numbers.
-    pub metrics: Option<Vec<Option<f64>>>,
+    pub metrics: Option<Values>,
     /// Why it has no values.
-    pub failure: Option<String>,
+    pub failure: Option<Box<str>>,
 }
 
 /// The summary of a trial that ran to its end.
@@ -63,8 +63,8 @@ fn status_of(name: &str) -> Option<&'static str> {
 
 impl Measured {
     pub(super) fn of(outcome: &Outcome, metrics: &Catalogue) -> Self {
-        let metrics = outcome.record().map(|record| metrics.measure(record));
-        Self { status: outcome.status(), metrics, failure: outcome.failure() }
+        let metrics = outcome.record().map(|record| metrics.measure(record).into_iter().collect());
+        Self { status: outcome.status(), metrics, failure: outcome.failure().map(Into::into) }
     }
 
     pub(super) fn of_finished(finished: &Finished, experiment: &Experiment) -> Self {
@@ -75,13 +75,12 @@ impl Measured {
     }
 
     fn ended(summary: Summary) -> Self {
-        let mut metrics = summary.metrics;
-        metrics.shrink_to_fit();
-        Self { status: status_of(&summary.status).unwrap_or_default(), metrics: Some(metrics), failure: None }
+        let metrics = Some(summary.metrics.into_iter().collect());
+        Self { status: status_of(&summary.status).unwrap_or_default(), metrics, failure: None }
     }
 
     fn failed(key: &TrialKey, fault: &Fault) -> Self {
-        Self { status: fault.kind.name(), metrics: None, failure: Some(fault.sentence(key)) }
+        Self { status: fault.kind.name(), metrics: None, failure: Some(fault.sentence(key).into()) }
     }
 
     /// Whether the trial exceeded its time limit.
@@ -124,10 +123,7 @@ fn measured_in(cells: &[&str], key: &TrialKey, metrics: usize) -> Option<Measure
         let reason = cells[FIRST_METRIC + metrics + 1].to_owned();
         return Some(Measured::failed(key, &Fault { kind, reason }));
     }
-    // Allocated in the final size, because a million of these stay in memory.
-    let mut values = Vec::with_capacity(metrics);
-    for cell in &cells[FIRST_METRIC..FIRST_METRIC + metrics] {
-        values.push(if cell.is_empty() { None } else { Some(cell.parse().ok()?) });
-    }
-    Some(Measured { status, metrics: Some(values), failure: None })
+    let value = |cell: &&str| if cell.is_empty() { Some(None) } else { Some(Some(cell.parse().ok()?)) };
+    let values: Option<Values> = cells[FIRST_METRIC..FIRST_METRIC + metrics].iter().map(value).collect();
+    Some(Measured { status, metrics: Some(values?), failure: None })
 }

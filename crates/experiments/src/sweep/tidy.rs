@@ -7,6 +7,7 @@ use usar_sim::metrics::RoundRecord;
 use super::folder::Folder;
 use crate::experiment::Place;
 use crate::failure::Failure;
+use crate::metric::Values;
 
 /// A quantity of a group in a round, named as in `rounds.csv`.
 type OfRound = (&'static str, fn(&RoundRecord) -> Option<f64>);
@@ -58,7 +59,7 @@ fn trial_rows(folder: &mut Folder, place: Place) -> Result<Vec<[String; 4]>, Fai
     let mut rows = Vec::new();
     let experiment = folder.experiment();
     let measured = folder.results().get(&place).and_then(|measured| measured.metrics.as_ref());
-    for (metric, value) in experiment.metrics.iter().zip(measured.into_iter().flatten()) {
+    for (metric, value) in experiment.metrics.iter().zip(measured.into_iter().flat_map(Values::iter)) {
         let task = if metric.is_total() { "" } else { metric.part() };
         rows.extend(
             value.map(|value| [String::new(), task.to_owned(), metric.declared_column(), value.to_string()]),

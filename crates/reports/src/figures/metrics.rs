@@ -4,7 +4,7 @@
 use experiments::Failure;
 use experiments::comparison::Comparison;
 use experiments::experiment::Experiment;
-use experiments::metric::Metric;
+use experiments::metric::{Metric, Values};
 use experiments::stats::Moments;
 use experiments::stats::paired::t_half_width;
 use experiments::sweep::folder::Folder;
@@ -43,7 +43,7 @@ fn box_figure(
         points = points.with_marker_opacity(if step > 1 { 0.45 } else { 0.8 });
         let (mut colours, mut all) = (Vec::new(), Vec::new());
         for (i, policy) in policies.iter().enumerate().filter(|(_, policy)| is_drawn(only, &policy.label)) {
-            let found = trials(folder, (case, i), |metrics| metrics[*place]);
+            let found = trials(folder, (case, i), |metrics| metrics.get(*place));
             rows.extend(found.iter().map(|(seed, value)| {
                 vec![metric.name.clone(), policy.label.clone(), seed.to_string(), value.to_string()]
             }));
@@ -92,7 +92,7 @@ fn box_figure(
 fn trials<T>(
     folder: &Folder,
     (case, policy): (usize, usize),
-    value: impl Fn(&[Option<f64>]) -> Option<T>,
+    value: impl Fn(&Values) -> Option<T>,
 ) -> Vec<(u64, T)> {
     let trials = folder.results().range((case, policy, 0)..=(case, policy, u32::MAX));
     let found = trials.filter_map(|((_, _, trial), measured)| {
@@ -144,7 +144,7 @@ pub(super) fn costs(folder: &Folder, case: usize, only: Option<&[String]>) -> Re
         let part = metrics[energy].part();
         let (mut plots, mut all) = (Vec::new(), Vec::new());
         for (i, policy) in policies.iter().enumerate().filter(|(_, policy)| is_drawn(only, &policy.label)) {
-            let found = trials(folder, (case, i), |metrics| Some((metrics[energy]?, metrics[hp]?)));
+            let found = trials(folder, (case, i), |metrics| Some((metrics.get(energy)?, metrics.get(hp)?)));
             rows.extend(found.iter().map(|(seed, (energy, hp))| {
                 let first = [part.to_owned(), policy.label.clone(), seed.to_string()];
                 [first.to_vec(), vec![energy.to_string(), hp.to_string()]].concat()
@@ -210,8 +210,10 @@ pub(super) fn forest(experiment: &Experiment, comparisons: &[&Comparison]) -> Re
         if ends.len() > 1 {
             let plots = vec![Plot::Forest(plot)];
             let [low, high] = forest_range(&ends);
+            let of_unit = if unit.is_empty() { String::new() } else { format!(" ({unit})") };
+            let x_label = format!("first less second{of_unit}");
             let layout = layout(&plots, title)
-                .with_x_label(if unit.is_empty() { "difference" } else { unit })
+                .with_x_label(x_label)
                 .with_ticks(4)
                 .with_x_axis_min(low)
                 .with_x_axis_max(high);

@@ -6,9 +6,12 @@
 //! - *Holds*: the 95 % interval of every part lies entirely on the claimed side. Since all parts must hold,
 //!   no correction is needed (intersection-union test, Berger 1982). A false claim is called true in at
 //!   most about 2.5 % of experiments.
-//! - *Does not hold*: the interval of some part lies entirely on the other side, at 95 % shared by the
-//!   parts (Bonferroni). With three parts, each interval is at 98.3 %. A true claim is called false in at
-//!   most about 2.5 % of experiments.
+//! - *Equivalent*: not that, but each part holds or is within its margin: the 90 % interval of the difference
+//!   lies inside the margin that `paper.sweep.ron` declares (two one-sided tests at 5 %). What the paper claims
+//!   to be more, or less, is practically the same.
+//! - *Does not hold*: neither of these, and the interval of some part lies entirely on the other side, at
+//!   95 % shared by the parts (Bonferroni). With three parts, each interval is at 98.3 %. A true claim is
+//!   called false in at most about 2.5 % of experiments.
 //! - *Undecided*: otherwise.
 
 mod examples;
@@ -17,7 +20,7 @@ mod papers;
 mod power;
 
 use experiments::Failure;
-use experiments::comparison::CONFIDENCE;
+use experiments::comparison::{CONFIDENCE, TOST_CONFIDENCE};
 use experiments::metric::Catalogue;
 use experiments::stats::Moments;
 use experiments::stats::bootstrap::interval;
@@ -25,7 +28,7 @@ use experiments::stats::paired::pairs_needed;
 use experiments::sweep::folder::Folder;
 use serde::Serialize;
 
-use crate::scenarios::{PAPERS_TRIALS, Standing};
+use crate::scenarios::{PAPERS_TRIALS, Standing, margins};
 
 pub use examples::{Example, examples};
 pub use files::{write_authors_columns, write_claims, write_examples, write_power};
@@ -78,6 +81,9 @@ pub enum Verdict {
     /// The claim is false.
     #[serde(rename = "does not hold")]
     DoesNotHold,
+    /// What is claimed to differ is the same, within the margin.
+    #[serde(rename = "equivalent")]
+    Equivalent,
     /// The trials do not decide.
     #[serde(rename = "undecided")]
     Undecided,
@@ -90,6 +96,7 @@ impl Verdict {
         match self {
             Self::Holds => "holds",
             Self::DoesNotHold => "does not hold",
+            Self::Equivalent => "equivalent",
             Self::Undecided => "undecided",
         }
     }
@@ -98,14 +105,17 @@ impl Verdict {
     fn over(mut worlds: impl Iterator<Item = Self> + Clone) -> Self {
         if worlds.clone().any(|verdict| verdict == Self::DoesNotHold) {
             Self::DoesNotHold
-        } else if worlds.all(|verdict| verdict == Self::Holds) {
+        } else if worlds.clone().all(|verdict| verdict == Self::Holds) {
             Self::Holds
+        } else if worlds.all(|verdict| verdict != Self::Undecided) {
+            Self::Equivalent
         } else {
             Self::Undecided
         }
     }
 
-    /// The verdict from the intervals of all parts: each at 95 %, and each at 95 % shared by the parts.
+    /// The verdict from the intervals of all parts: each at 95 %, within its margin, and each at 95 % shared by
+    /// the parts.
     #[must_use]
     fn of(parts: &[PartFinding]) -> Self {
         let on = |interval: Option<[f64; 2]>, side: Side| {
@@ -114,8 +124,11 @@ impl Verdict {
                 Side::Less => high < 0.0,
             })
         };
-        if !parts.is_empty() && parts.iter().all(|part| on(part.interval, part.claimed)) {
+        let holds = |part: &PartFinding| on(part.interval, part.claimed);
+        if !parts.is_empty() && parts.iter().all(holds) {
             Self::Holds
+        } else if !parts.is_empty() && parts.iter().all(|part| holds(part) || part.is_equivalent) {
+            Self::Equivalent
         } else if parts.iter().any(|part| on(part.shared_interval, part.claimed.other())) {
             Self::DoesNotHold
         } else {
@@ -156,6 +169,8 @@ pub struct PartFinding {
     pub interval: Option<[f64; 2]>,
     /// Interval at 95 % shared by all parts of the claim.
     pub shared_interval: Option<[f64; 2]>,
+    /// Whether the 90 % interval lies within the margin of the metric.
+    pub is_equivalent: bool,
     /// Pairs that a paired t test needs for 80 % power, if the true difference is the observed one.
     pub pairs_needed: Option<u64>,
 }
@@ -242,7 +257,8 @@ pub fn judge(folder: &Folder, claim: &Claim, trials: u32) -> Result<Finding, Fai
     let count = claim.parts.len();
     let find = |part: &Part| {
         let differences = differences(folder, part, trials)?;
-        Ok(part_finding(part, differences, count))
+        let is_equivalent = is_within(&differences, margin_of(part));
+        Ok(PartFinding { is_equivalent, ..part_finding(part, differences, count) })
     };
     let parts = claim.parts.iter().map(find).collect::<Result<Vec<_>, Failure>>()?;
     Ok(Finding { verdict: Verdict::of(&parts), parts })
@@ -256,9 +272,25 @@ fn part_finding(part: &Part, differences: Vec<(u32, f64)>, count: usize) -> Part
         difference: Moments::of(&values).mean,
         interval: interval(CONFIDENCE),
         shared_interval: interval(1.0 - (1.0 - CONFIDENCE) / count as f64),
+        is_equivalent: false,
         pairs_needed: pairs_needed(&values),
         differences,
     }
+}
+
+/// The margin of a comparison of two policies in one metric, if the paper's sweep file declares one.
+fn margin_of(part: &Part) -> Option<f64> {
+    let [_, metric] = part.a;
+    let declared = margins().into_iter().find(|(name, _)| name == metric);
+    declared.map(|(_, margin)| margin).filter(|_| metric == part.b[1])
+}
+
+/// Whether the mean difference is shown to be smaller than the margin.
+fn is_within(differences: &[(u32, f64)], margin: Option<f64>) -> bool {
+    let values: Vec<f64> = differences.iter().map(|(_, difference)| *difference).collect();
+    let interval = interval(&values, TOST_CONFIDENCE).filter(|_| values.len() >= LEAST_PAIRS);
+    let (Some(margin), Some([low, high])) = (margin, interval) else { return false };
+    -margin < low && high < margin
 }
 
 /// First minus second, trial by trial, where both are defined.
@@ -267,9 +299,7 @@ fn differences(folder: &Folder, part: &Part, trials: u32) -> Result<Vec<(u32, f6
     let place =
         |[policy, metric]: [&str; 2]| Ok::<_, Failure>((place_of(folder, policy)?, metrics.named(metric)?));
     let (a, b) = (place(part.a)?, place(part.b)?);
-    let value = |(policy, metric): (usize, usize), trial: u32| {
-        folder.results().get(&(0, policy, trial))?.metrics.as_ref()?[metric]
-    };
+    let value = |(policy, metric): (usize, usize), trial: u32| folder.value((0, policy, trial), metric);
     Ok((1..=trials).filter_map(|trial| Some((trial, value(a, trial)? - value(b, trial)?))).collect())
 }
 
@@ -306,6 +336,7 @@ mod tests {
             difference: None,
             interval: Some([*low, *high]),
             shared_interval: Some([*wide_low, *wide_high]),
+            is_equivalent: false,
             pairs_needed: None,
         };
         intervals.iter().map(part).collect()
@@ -318,6 +349,8 @@ mod tests {
         assert_eq!(over(&[holds, holds]), holds);
         assert_eq!(over(&[holds, open]), open);
         assert_eq!(over(&[holds, open, falls]), falls);
+        assert_eq!(over(&[holds, Verdict::Equivalent]), Verdict::Equivalent);
+        assert_eq!(over(&[open, Verdict::Equivalent]), open);
     }
 
     #[test]
@@ -334,6 +367,21 @@ mod tests {
         assert_eq!(verdict(&[below, below], Side::Less), Verdict::Holds);
         assert_eq!(verdict(&[below, above], Side::Less), Verdict::DoesNotHold);
         assert_eq!(verdict(&[], Side::More), Verdict::Undecided);
+    }
+
+    #[test]
+    fn a_claim_is_equivalent_when_what_does_not_hold_is_within_its_margin() {
+        let mut found = parts(&[[1.0, 3.0, 0.5, 3.5], [-3.0, -1.0, -3.5, -0.5]], Side::More);
+        assert_eq!(Verdict::of(&found), Verdict::DoesNotHold);
+        found[1].is_equivalent = true;
+        assert_eq!(Verdict::of(&found), Verdict::Equivalent);
+        let within = |half: f64, margin| {
+            let differences = (1..=40).map(|i| (i, if i % 2 == 0 { half } else { -half }));
+            is_within(&differences.collect::<Vec<_>>(), margin)
+        };
+        assert!(within(1.0, Some(5.0)));
+        assert!(!within(30.0, Some(5.0)));
+        assert!(!within(1.0, None));
     }
 
     #[test]

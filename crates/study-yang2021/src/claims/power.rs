@@ -225,6 +225,7 @@ mod tests {
         let sd = Moments::of(&values).sd.unwrap();
         let differences = values.iter().zip(1..).map(|(value, trial)| (trial, mean + value / sd)).collect();
         let part = PartFinding {
+            is_equivalent: false,
             claimed: Side::More,
             differences,
             difference: None,

@@ -23,7 +23,7 @@ pub use watch::Watch;
 
 use crate::belief::{Inflation, Knowledge, SENSING_PERIOD_STEPS, look_around};
 use crate::event::{Event, EventLog, TurnBackCause};
-use crate::ids::RobotId;
+use crate::ids::{RescueeId, RobotId};
 use crate::model::Model;
 use crate::navigation::Goal;
 use crate::scenario::MissionRules;
@@ -66,6 +66,7 @@ pub struct Mission {
     knowledge: Vec<Knowledge>,
     /// Knowledge of the team at home.
     knowledge_at_home: Knowledge,
+    /// For each rescuee, whether its group gave up on it in this round.
     unreachable: Vec<bool>,
     /// Number of the round, from 1; 0 before the first.
     pub round: u32,
@@ -127,6 +128,12 @@ impl Mission {
     #[must_use]
     pub fn knowledge_at_home(&self) -> &Knowledge {
         &self.knowledge_at_home
+    }
+
+    /// Whether a rescuee's group gave up on it in this round, because it knows no way there or came no nearer.
+    #[must_use]
+    pub fn has_given_up(&self, rescuee: RescueeId) -> bool {
+        self.unreachable[rescuee.index()]
     }
 
     /// The question that waits for an assignment, if there is one.

@@ -283,7 +283,7 @@ pub struct TaskFile {
     /// Centre of the rest place.
     pub rest: Point,
     /// How many robots of a role its group gets, by the name of the role. Without it, tasks share a role as
-    /// equally as possible, and harder tasks get the extra robots.
+    /// equally as possible; which of them gets a robot more is for the policy to decide.
     #[serde(default)]
     pub quota: BTreeMap<String, u32>,
     /// Debris and radiation zones drawn between home and this task, in addition.

@@ -1,18 +1,19 @@
-//! Values that are allowed but unusual: far from the defaults, perhaps given in another unit, or a team with
-//! fewer robots than tasks.
+//! Values that are allowed but unusual: far from the defaults, perhaps given in another unit; a team with
+//! fewer robots than tasks; or a row that changes nothing.
 
 use ron_fields::Fields;
 
 use super::Scenario;
 use super::error::Problem;
 use super::file::{MissionRules, PlanningRules, RoleFile};
+use super::timeline::{Happening, Moment};
 
 /// A value is odd if it is larger or smaller than the default by this factor.
 const FACTOR: f64 = 1000.0;
 
 impl Scenario {
-    /// Values that are a thousand times larger or smaller than the defaults, perhaps by a wrong unit, and a
-    /// team smaller than the number of tasks. The lines are those in `text`.
+    /// Values that are a thousand times larger or smaller than the defaults, perhaps by a wrong unit; a team
+    /// smaller than the number of tasks; and rows that change nothing. The lines are those in `text`.
     #[must_use]
     pub fn oddities(&self, text: &str) -> Vec<Problem> {
         let fields = Fields::of(text);
@@ -38,10 +39,37 @@ impl Scenario {
         compare(&mut odd, "mission", numbers(&self.mission).into_iter(), &mission);
         let planning = numbers(&PlanningRules::default());
         compare(&mut odd, "planning", numbers(&self.planning).into_iter(), &planning);
+        self.without_effect(&mut odd);
         for problem in &mut odd {
             problem.line = fields.line(&problem.field);
         }
         odd
+    }
+
+    /// Rows that change nothing, and doors that stay closed.
+    fn without_effect(&self, odd: &mut Vec<Problem>) {
+        let mut say = |field: String, rule: String, found: String, hint: &str| {
+            odd.push(Problem { field, rule, found, hint: hint.to_owned(), ..Problem::default() });
+        };
+        for (i, row) in self.team.iter().enumerate().filter(|(_, row)| row.count == 0) {
+            let rule = format!("gives the team no {}", row.role);
+            say(format!("team[{i}].count"), rule, row.count.to_string(), "the row can be left out");
+        }
+        let late = |moment: &Moment| moment.at_s > self.duration_s;
+        for (i, moment) in self.timeline.iter().enumerate().filter(|(_, moment)| late(moment)) {
+            let rule = format!("is after the end of the trial, {} s", self.duration_s);
+            say(format!("timeline[{i}].at_s"), rule, moment.at_s.to_string(), "it never happens");
+        }
+        let opens =
+            |name: &str| self.timeline.iter().any(|moment| moment.event == Happening::Opens(name.to_owned()));
+        for (i, wall) in self.walls.iter().enumerate() {
+            for (k, door) in wall.doors.iter().enumerate().filter(|(_, door)| door.is_closed) {
+                if !door.name.as_deref().is_some_and(opens) {
+                    let rule = "closes the door for good: no event opens it".to_owned();
+                    say(format!("walls[{i}].doors[{k}].closed"), rule, "true".to_owned(), "");
+                }
+            }
+        }
     }
 }
 

@@ -58,7 +58,8 @@ impl JsonSchema for WallFile {
         let (point, doors) = (generator.subschema_for::<Point>(), generator.subschema_for::<Vec<Door>>());
         json_schema!({
             "description": "A straight wall, with doors. Written `(from: (0, 0), to: (10, 0))`, or short \
-                `((0, 0), (10, 0))`.",
+                `((0, 0), (10, 0))`. The long form also takes `thickness_m`, its thickness in metres (0.2 \
+                without it), and `doors`, a list of Door.",
             "anyOf": [
                 {"type": "array", "items": point, "minItems": 2, "maxItems": 2},
                 {

@@ -33,6 +33,8 @@ pub(crate) struct TrialArguments {
 
 /// A trial, defined by everything that decides its numbers.
 pub(super) struct AskedTrial {
+    /// The scenario file or the folder that was named.
+    pub file: PathBuf,
     pub scenario: Scenario,
     /// The policy that decides in it.
     pub spec: PolicySpec,
@@ -54,7 +56,7 @@ impl TrialArguments {
             check_open(&scenario)?;
             let spec = parse(policy.unwrap_or(&first_policy))?;
             let seed = self.seed.unwrap_or(first_seed);
-            return Ok(AskedTrial { scenario, spec, seed, policies: Vec::new() });
+            return Ok(AskedTrial { file: self.file.clone(), scenario, spec, seed, policies: Vec::new() });
         }
         let (experiment, _) = experiment_in(&self.file)?;
         let cases = experiment.cases.len();
@@ -69,7 +71,7 @@ impl TrialArguments {
             Some(text) => labelled(text).map_or_else(|| parse(text), Ok)?,
         };
         let seed = self.seed.unwrap_or_else(|| experiment.seed(1));
-        Ok(AskedTrial { scenario, spec, seed, policies: experiment.policies })
+        Ok(AskedTrial { file: self.file.clone(), scenario, spec, seed, policies: experiment.policies })
     }
 }
 

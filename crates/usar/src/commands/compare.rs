@@ -11,11 +11,13 @@ use experiments::comparison::{
 };
 use experiments::experiment::Experiment;
 use experiments::stats::bootstrap::resamples;
+use experiments::sweep::host::Hosts;
 use reports::table::{comparison_table, differences_table, effects_table, interactions_table};
 use serde::Serialize;
 
 use super::family::FamilyArguments;
 use super::{SCHEMA_VERSION, ShownArguments, print_table, read_sweep};
+use crate::printable::counted;
 
 /// Is A better than B, by how much, and how sure is that? Paired by seed
 #[derive(Debug, Args)]
@@ -106,6 +108,8 @@ impl Arguments {
         }
         if !comparisons.is_empty() {
             writeln!(out, "\n{}", footnote(&comparisons))?;
+            let rules = Hosts::read(folder.path()).rules;
+            rules.iter().try_for_each(|rule| writeln!(out, "Pairs were added by a rule: {rule}"))?;
         }
         Ok(())
     }
@@ -152,9 +156,10 @@ fn footnote(comparisons: &[Comparison]) -> String {
     format!(
         "Paired by seed. Interval: BCa bootstrap of the mean difference, widened for small n, {least} \
          resamples, fixed seed. {drawn}; two-sided;\n\
-         Holm's correction over the {count} comparisons above. Pairs left out, over all comparisons: \
+         Holm's correction over the {} above. Pairs left out, over all comparisons: \
          {failed} with a failed trial, {missing} with\n\
          a missing one, {undefined} in which the metric is not defined (no rescuee). docs/experiments.md \
-         explains each figure."
+         explains each figure.",
+        counted(count, "comparison")
     )
 }

@@ -16,9 +16,10 @@ pub(crate) use measured::Measured;
 
 use super::SCHEMA_VERSION;
 use super::chosen::Chosen;
+use crate::printable::counted;
 use crate::running::{default_jobs, stop_on_signals};
 
-/// How many trials, how long, and how much disk a sweep takes, from a short calibration run
+/// How long a sweep takes, and how much disk, from a few of its trials
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Runs all policies on one or a few seeds of one or a few of the sweep's cases (about 24 trials, or all \
@@ -128,9 +129,11 @@ fn one_shard(
 impl Output {
     fn print(&self, out: &mut dyn Write) -> Result<(), Failure> {
         let Self { cases, policies, trials_each, trials, jobs, .. } = self;
-        writeln!(out, "trials  {trials}: {cases} cases x {policies} policies x {trials_each}")?;
+        let (cases, policies) = (counted(*cases, "case"), counted(*policies, "policy"));
+        let threads = counted(*jobs, "thread");
+        writeln!(out, "trials  {trials}: {cases} x {policies} x {trials_each}")?;
         let (time, each) = (duration(self.seconds), self.seconds_per_trial);
-        writeln!(out, "time    about {time} on {jobs} threads ({each:.2} s a trial)")?;
+        writeln!(out, "time    about {time} on {threads} ({each:.2} s a trial)")?;
         let (bytes, running) = (size(self.bytes), size(self.bytes_while_running));
         writeln!(out, "disk    about {bytes}; the journal takes {running} while it runs")?;
         let keep = |keep: &Keep| format!("{} {}", keep.name(), size(self.bytes_by_keep[keep.name()]));
@@ -138,7 +141,7 @@ impl Output {
         writeln!(out, "--keep  {}", keeps.join(", "))?;
         if let Some(OneShard { shards, trials, seconds, bytes, bytes_while_running }) = &self.shard {
             let (time, bytes, running) = (duration(*seconds), size(*bytes), size(*bytes_while_running));
-            writeln!(out, "shards  {shards} of up to {trials} trials: each about {time} on {jobs} threads,")?;
+            writeln!(out, "shards  {shards} of up to {trials} trials: each about {time} on {threads},")?;
             writeln!(out, "        {bytes} when it is done, {running} while it runs")?;
         }
         writeln!(

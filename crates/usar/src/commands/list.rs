@@ -10,6 +10,7 @@ use experiments::metric::{Catalogue, task_names};
 use usar_sim::scenario::{RoleKind, Scenario};
 
 use super::load;
+use super::new::PAPER;
 
 /// List scenarios, policies, roles or metrics, a line each
 #[derive(Debug, Args)]
@@ -25,8 +26,8 @@ Examples:
 pub(crate) struct Arguments {
     /// What to list
     of: Of,
-    /// A folder of scenarios, or the scenario whose roles and metrics are listed [default: scenarios,
-    /// scenarios/paper.ron]
+    /// A folder of scenarios, or the scenario whose roles and metrics are listed [default: the folder
+    /// scenarios, the paper's scenario]
     path: Option<PathBuf>,
 }
 
@@ -48,8 +49,16 @@ impl Arguments {
         match self.of {
             Of::Scenarios => scenarios(out, path("scenarios")),
             Of::Policies => policies(out),
-            Of::Roles => roles(out, &load(path("scenarios/paper.ron"))?.0),
-            Of::Metrics => metrics(out, &load(path("scenarios/paper.ron"))?.0),
+            Of::Roles => roles(out, &self.scenario()?),
+            Of::Metrics => metrics(out, &self.scenario()?),
+        }
+    }
+
+    /// The scenario that was named, or the paper's, which the program has with it.
+    fn scenario(&self) -> Result<Scenario, Failure> {
+        match &self.path {
+            Some(path) => Ok(load(path)?.0),
+            None => Scenario::parse(PAPER, Path::new("paper.ron")).map_err(Failure::input),
         }
     }
 }

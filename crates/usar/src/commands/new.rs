@@ -29,6 +29,9 @@ pub(crate) struct Arguments {
     folder: PathBuf,
 }
 
+/// The paper's scenario.
+pub(super) const PAPER: &str = include_str!("../../../../scenarios/paper.ron");
+
 #[derive(Debug, Clone, Copy, ValueEnum)]
 enum From {
     /// As little as a mission needs
@@ -43,7 +46,7 @@ impl From {
     fn text(self) -> &'static str {
         match self {
             Self::Minimal => include_str!("../../assets/minimal.ron"),
-            Self::Paper => include_str!("../../../../scenarios/paper.ron"),
+            Self::Paper => PAPER,
             Self::ThreeTasks => include_str!("../../../../scenarios/three-tasks.ron"),
         }
     }

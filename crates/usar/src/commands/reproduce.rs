@@ -33,7 +33,9 @@ trials, as many as the paper has, and over all. Where the recorded trials cannot
 calibrated one, a quarter of the trials runs in each of those worlds, too.
 
 A claim holds when the 95 % interval of each of its comparisons lies on the claimed side; it does not when \
-one lies on the other side, at 95 % shared by its comparisons; else it is undecided. The last table says how \
+one lies on the other side, at 95 % shared by its comparisons. It is equivalent when each comparison holds or \
+differs by less than the margin that the paper's sweep file declares, by its 90 % interval; else it is \
+undecided. The last table says how \
 many paired trials each claim would need, and what 10 could have shown.
 
 The folder gets report.html, the verdicts as a page; a sweep's folder for each scenario, with a report.html \

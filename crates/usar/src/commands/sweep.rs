@@ -12,6 +12,7 @@ use experiments::experiment::{Experiment, Shard};
 use experiments::run::Limits;
 use experiments::sweep::disk::trials_in;
 use experiments::sweep::folder::{Folder, Opening};
+use experiments::sweep::host::Hosts;
 use experiments::sweep::write_parquet;
 use reports::table::policy_table;
 
@@ -136,7 +137,9 @@ impl Arguments {
         }
         print(out, &folder)?;
         if let Some(precision) = &precision {
-            writeln!(out, "{}", precision.verdict(&folder))?;
+            let verdict = precision.verdict(&folder);
+            writeln!(out, "{verdict}")?;
+            Hosts::note_rule(folder.path(), verdict)?;
         }
         if !self.quiet {
             tell(format_args!("results in {}", path.display()));

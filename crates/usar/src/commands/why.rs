@@ -61,10 +61,12 @@ pub(crate) struct Arguments {
     pub(crate) shown: ShownArguments,
 }
 
-/// The oracle's judgement of a decision.
+/// The oracle's judgement of a decision, in one metric, over one horizon.
 #[derive(Debug, Serialize)]
 struct OracleSays {
     metric: String,
+    /// The policy that decides the rest of the trial; absent if the outcome is that of the round.
+    then: Option<String>,
     value: f64,
     best: f64,
     worst: f64,
@@ -86,7 +88,8 @@ struct Account<'a> {
     /// RNE between the groups, need by need; empty for other kinds of policies.
     directed: Vec<DirectedRne>,
     others: Vec<OtherChoice>,
-    oracle: Option<OracleSays>,
+    /// Empty if the oracle was not run for this decision.
+    oracle: Vec<OracleSays>,
     robot: Option<RobotStory>,
 }
 
@@ -181,30 +184,46 @@ impl Arguments {
         })
     }
 
-    /// The oracle's judgement of a decision, if its outcomes are known.
-    fn oracle(&self, asked: &AskedTrial, question: &Question, chosen: &Assignment) -> Option<OracleSays> {
-        let log = OutcomeLog::find(&self.cache, &decision_key(asked, question.round))?;
-        let evaluations: Vec<Evaluation> = log
-            .outcomes(None)
-            .map(|(assignment, outcome)| Evaluation { assignment, outcome: outcome.clone() })
-            .collect();
-        // An interrupted survey gives no judgement.
-        if (evaluations.len() as u64) < assignments::count(question) {
-            return None;
+    /// The oracle's judgements of a decision, as far as outcomes are known.
+    fn oracle(&self, asked: &AskedTrial, question: &Question, chosen: &Assignment) -> Vec<OracleSays> {
+        let Some(log) = OutcomeLog::find(&self.cache, &decision_key(asked, question.round)) else {
+            return Vec::new();
+        };
+        let tasks = asked.tasks();
+        let mut said = Vec::new();
+        for then in log.horizons() {
+            let evaluations = log.outcomes(then.as_deref());
+            let evaluations: Vec<Evaluation> = evaluations
+                .map(|(assignment, outcome)| Evaluation { assignment, outcome: outcome.clone() })
+                .collect();
+            // An interrupted survey gives no judgement.
+            if evaluations.len() as u64 == assignments::count(question) {
+                let survey = Survey { evaluations, coverage: Coverage::All };
+                let judged = JUDGED_BY.map(|metric| judgement(&survey, metric, &tasks, chosen));
+                let of_horizon = judged.into_iter().flatten();
+                said.extend(of_horizon.map(|judged| OracleSays { then: then.clone(), ..judged }));
+            }
         }
-        let survey = Survey { evaluations, coverage: Coverage::All };
-        let objective = Objective::parse("rescuees", &asked.tasks()).ok()?;
-        let [best, worst] = survey.range(&objective)?;
-        let standing = survey.standing(&objective, chosen)?;
-        Some(OracleSays {
-            metric: objective.name().to_owned(),
-            value: standing.value,
-            best,
-            worst,
-            rank: standing.rank,
-            played: survey.evaluations.len(),
-        })
+        said
     }
+}
+
+/// The metrics in which a decision is judged.
+const JUDGED_BY: [&str; 2] = ["rescuees", "rescue_rate"];
+
+fn judgement(survey: &Survey, metric: &str, tasks: &[String], chosen: &Assignment) -> Option<OracleSays> {
+    let objective = Objective::parse(metric, tasks).ok()?;
+    let [best, worst] = survey.range(&objective)?;
+    let standing = survey.standing(&objective, chosen)?;
+    Some(OracleSays {
+        metric: objective.name().to_owned(),
+        then: None,
+        value: standing.value,
+        best,
+        worst,
+        rank: standing.rank,
+        played: survey.evaluations.len(),
+    })
 }
 
 /// The policies other than the one that decided.

@@ -136,7 +136,12 @@ fn print_answer(out: &mut dyn Write, asked: &Asked, answer: &Answer, top: usize)
     let end = then.as_ref().map_or("the end of the round".to_owned(), |then| {
         format!("the end of the trial, in which {} goes on", then.label)
     });
-    writeln!(out, "played to {end}: {}", coverage_in_words(survey))?;
+    writeln!(
+        out,
+        "played to {end}, and counted from {:.1} s on: {}",
+        asked.time_s,
+        coverage_in_words(survey)
+    )?;
     let Some([best, worst]) = survey.range(objective) else {
         return Ok(writeln!(out, "{objective} is undefined for all of them")?);
     };
@@ -144,6 +149,13 @@ fn print_answer(out: &mut dyn Write, asked: &Asked, answer: &Answer, top: usize)
     let mean = survey.mean(objective).unwrap_or(best);
     let [best, worst, mean] = [best, worst, mean].map(short);
     writeln!(out, "\n{objective}, {better} is better: best {best}, mean {mean}, worst {worst}")?;
+    if best == worst {
+        writeln!(
+            out,
+            "All of them come to the same, so that this metric tells nothing of the decision; --metric \
+             rescue_rate or --horizon trial may."
+        )?;
+    }
     print_table(out, &ranking(asked, survey, top))?;
     print_table(out, &choices(asked, survey))?;
     Ok(())
@@ -163,10 +175,11 @@ fn ranking(asked: &Asked, survey: &Survey, top: usize) -> Table {
     for (place, found) in ranked.iter().enumerate().filter(|(place, _)| *place < top || *place == last) {
         let standing = survey.standing(&asked.objective, &found.assignment);
         let rank = standing.map_or(place + 1, |standing| standing.rank);
+        let rank = if place == last { format!("{rank} (the worst)") } else { rank.to_string() };
         let total = found.outcome.total();
         let value = asked.objective.value(&found.outcome).map_or("-".to_owned(), short);
         let cells = [
-            rank.to_string(),
+            rank,
             value,
             rescued(&found.outcome),
             format!("{:.1}", total.energy),

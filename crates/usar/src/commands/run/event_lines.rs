@@ -5,7 +5,7 @@ use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 use experiments::Failure;
-use recording::ToldEvent;
+use recording::{Names, ToldEvent};
 use usar_sim::simulation::Simulation;
 
 /// The file that is being written.
@@ -50,5 +50,9 @@ pub(super) fn told(simulation: &Simulation) -> impl Iterator<Item = ToldEvent> +
     let scenario = simulation.scenario();
     let tasks: Vec<&str> = scenario.tasks.iter().map(|task| task.name.as_str()).collect();
     let at = (simulation.steps(), scenario.dt_s);
-    simulation.events().iter().map(move |event| ToldEvent::new(at, event, &tasks))
+    let layout = &simulation.model().layout;
+    simulation.events().iter().map(move |event| {
+        let names = Names { tasks: &tasks, debris: &layout.debris, zones: &layout.zones };
+        ToldEvent::new(at, event, names)
+    })
 }

@@ -1,12 +1,13 @@
 //! The history of a robot up to a moment.
 
 use experiments::why::Exchange;
-use rne_core::{Decision, Question};
+use rne_core::{Decision, Question, TaskId};
 use serde::Serialize;
 use usar_sim::conflict::{Delay, DelayCause};
 use usar_sim::event::{Event, TurnBackCause};
-use usar_sim::ids::RobotId;
+use usar_sim::ids::{RescueeId, RobotId};
 use usar_sim::simulation::Simulation;
+use usar_sim::world::RescueeState;
 
 /// A robot that is observed while its trial is played.
 pub(super) struct Watched {
@@ -42,6 +43,8 @@ pub(super) struct RobotStory {
     /// Its delay cause; `under_way` if nothing holds it up.
     pub delay: &'static str,
     pub waits_for: Option<u32>,
+    /// Rescuees of its task that wait and that its group gave up on in this round.
+    pub given_up: usize,
     /// Time when this delay began, in seconds.
     pub since_s: f64,
     /// The last time it turned back, if any.
@@ -102,11 +105,20 @@ impl Watched {
             activity: simulation.mission().agents[self.robot.index()].activity.name(),
             delay: self.delay.cause.name(),
             waits_for: self.delay.waits_for.map(|other| other.0),
+            given_up: task.map_or(0, |task| given_up(simulation, task)),
             since_s: self.since_s,
             turned_back: self.turned_back,
             exchanges,
         }
     }
+}
+
+/// Rescuees of a task that wait and that its group gave up on in this round.
+fn given_up(simulation: &Simulation, task: TaskId) -> usize {
+    let of_task = simulation.model().tasks[task.index()].rescuees.clone();
+    let is_waiting = |i: &usize| simulation.world().rescuees[*i].state == RescueeState::Waiting;
+    let waiting = of_task.filter(is_waiting).map(|i| RescueeId(i as u32));
+    waiting.filter(|rescuee| simulation.mission().has_given_up(*rescuee)).count()
 }
 
 /// The explanation of a delay, as the continuation of "robot 3 ...".

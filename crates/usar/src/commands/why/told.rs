@@ -3,6 +3,7 @@
 use std::io::Write;
 
 use experiments::Failure;
+use experiments::comparison::digits;
 use experiments::why::OtherChoice;
 use reports::table::{headed, right};
 use rne_core::decision::{Ranking, RneAccount};
@@ -14,6 +15,7 @@ use super::{Account, OracleSays};
 use crate::commands::asked::AskedTrial;
 use crate::commands::fork::ids;
 use crate::commands::print_table;
+use crate::printable::counted;
 
 /// A score that exceeds the next best by a smaller share than this is called close.
 const CLOSE: f64 = 0.05;
@@ -104,10 +106,16 @@ fn rne(out: &mut dyn Write, question: &Question, account: &RneAccount) -> Result
         });
         writeln!(out, "  {role} joins the groups so far: {}{next}", nats(merge.score))?;
     }
+    if account.suitability.iter().any(|suited| suited.value.is_some()) {
+        writeln!(
+            out,
+            "  then the hardest task takes the best-suited group (option hard_rule), the next the next"
+        )?;
+    }
     for suited in &account.suitability {
         let name = &question.tasks[suited.task.index()].name;
         let value = suited.value.map_or("undefined".to_owned(), |value| format!("{value:.3e}"));
-        writeln!(out, "  {name} got the group with suitability {value} for a hard task")?;
+        writeln!(out, "  {name} got the group whose suitability for a hard task is {value}")?;
     }
     Ok(())
 }
@@ -167,21 +175,32 @@ fn others(out: &mut dyn Write, question: &Question, others: &[OtherChoice]) -> R
 }
 
 fn oracle(out: &mut dyn Write, account: &Account, asked: &AskedTrial) -> Result<(), Failure> {
-    let Some(OracleSays { metric, value, best, worst, rank, played }) = &account.oracle else {
+    if account.oracle.is_empty() {
         return Ok(writeln!(
             out,
-            "\nHow good it was: not known; `usar oracle ... --seed {} --round {} --base '{}'` plays all \
+            "\nHow good it was: not known; `usar oracle {} --seed {} --round {} --base '{}'` plays all \
              assignments",
+            asked.file.display(),
             asked.seed,
             account.round,
             asked.spec.plain()
         )?);
-    };
-    Ok(writeln!(
-        out,
-        "\nHow good it was: rank {rank} of {played} by {metric} of the round: {value}, where the best has \
-         {best} and the worst {worst}"
-    )?)
+    }
+    writeln!(out, "\nHow good it was, among all assignments that the quotas allow")?;
+    account.oracle.iter().try_for_each(|said| Ok(writeln!(out, "  {}", judged(said))?))
+}
+
+/// A judgement of the oracle in words.
+fn judged(said: &OracleSays) -> String {
+    let OracleSays { metric, then, value, best, worst, rank, played } = said;
+    let [value, best, worst] = [value, best, worst].map(|number| digits(*number, 4));
+    let over = then.as_ref().map_or("in this round".to_owned(), |then| {
+        format!("from here to the trial's end, where {then} decides the later rounds")
+    });
+    if best == worst {
+        return format!("{metric} {over}: {value} with each of the {played}, so that it tells nothing here");
+    }
+    format!("{metric} {over}: rank {rank} of {played}, with {value}; the best has {best}, the worst {worst}")
 }
 
 fn robot(
@@ -222,6 +241,15 @@ fn robot(
         "  At {at_s:.1} s it {delay} (since {:.1} s; {}, {:.2} m/s)",
         story.since_s, story.activity, story.speed_mps
     )?;
+    if story.given_up > 0 {
+        writeln!(
+            out,
+            "  Its group gave up on {} that {} still: it knows no way there, or came no nearer. It tries \
+             again in the next round, with the ways that it knows then",
+            counted(story.given_up, "rescuee"),
+            if story.given_up == 1 { "waits" } else { "wait" }
+        )?;
+    }
     if let Some(turned) = &story.turned_back {
         let (rules, level) =
             (&asked.scenario.mission, if turned.cause == "hp" { turned.hp } else { turned.energy });
