@@ -11,12 +11,13 @@ use experiments::stats::Moments;
 use experiments::sweep::disk::PLOTS;
 use experiments::sweep::folder::Folder;
 use experiments::sweep::host::Hosts;
+use experiments::sweep::ours::Report;
 
 use crate::decisions::{Decisions, decisions};
 use crate::drawing::{self, Figure};
 use crate::figures::{figures, is_quiet};
 use crate::maps::{Map, ShownTrial, trails_map, world_map};
-use crate::wanted::{Files, Wanted};
+use crate::wanted::Wanted;
 
 #[derive(Template)]
 #[template(path = "report.html")]
@@ -98,7 +99,7 @@ pub(crate) fn write_case(
     wanted: &Wanted,
     all: &Compared,
     (place, shown): (&PagePlace, Vec<ShownTrial>),
-    files: &mut Files,
+    files: &mut Report,
 ) -> Result<(), Failure> {
     let PagePlace { case, file, links, prefix } = place;
     let of_case = |all: &'_ [Comparison]| -> Vec<Comparison> {
@@ -122,17 +123,16 @@ pub(crate) fn write_case(
     if let Some(title) = &wanted.title {
         page.title = title;
     }
-    files.push((file.clone(), page.render().map_err(Failure::run)?.into_bytes()));
+    files.add(file.clone(), page.render().map_err(Failure::run)?.as_bytes())?;
     for Figure { name, svg, csv, .. } in figures {
-        files.push((format!("{PLOTS}/{prefix}{name}.svg"), svg.into_bytes()));
-        files.push((format!("{PLOTS}/{prefix}{name}.csv"), csv.into_bytes()));
+        files.add(format!("{PLOTS}/{prefix}{name}.svg"), svg.as_bytes())?;
+        files.add(format!("{PLOTS}/{prefix}{name}.csv"), csv.as_bytes())?;
     }
     for Map { name, svg, .. } in maps {
-        files.push((format!("{PLOTS}/{prefix}{name}.svg"), svg.into_bytes()));
+        files.add(format!("{PLOTS}/{prefix}{name}.svg"), svg.as_bytes())?;
     }
-    let replays = shown.into_iter().filter_map(|trial| trial.replay);
-    files.extend(replays.map(|(name, content)| (format!("{PLOTS}/{name}"), content)));
-    Ok(())
+    let mut replays = shown.into_iter().filter_map(|trial| trial.replay);
+    replays.try_for_each(|(name, content)| files.add(format!("{PLOTS}/{name}"), &content))
 }
 
 fn page<'a>(

@@ -256,12 +256,30 @@ fn with_view_box(svg: &str) -> String {
     }
 }
 
+/// A table in CSV that is written row by row.
+pub(crate) struct Rows(csv::Writer<Vec<u8>>);
+
+impl Rows {
+    pub fn new(header: &[&str]) -> Result<Self, Failure> {
+        let mut rows = Self(csv::Writer::from_writer(Vec::new()));
+        rows.push(header)?;
+        Ok(rows)
+    }
+
+    pub fn push(&mut self, row: &[impl AsRef<[u8]>]) -> Result<(), Failure> {
+        self.0.write_record(row).map_err(Failure::run)
+    }
+
+    pub fn finish(self) -> Result<String, Failure> {
+        String::from_utf8(self.0.into_inner().map_err(Failure::run)?).map_err(Failure::run)
+    }
+}
+
 /// A table from its header and rows.
 pub(crate) fn table(header: &[&str], rows: impl IntoIterator<Item = Vec<String>>) -> Result<String, Failure> {
-    let mut writer = csv::Writer::from_writer(Vec::new());
-    writer.write_record(header).map_err(Failure::run)?;
+    let mut table = Rows::new(header)?;
     for row in rows {
-        writer.write_record(row).map_err(Failure::run)?;
+        table.push(&row)?;
     }
-    String::from_utf8(writer.into_inner().map_err(Failure::run)?).map_err(Failure::run)
+    table.finish()
 }

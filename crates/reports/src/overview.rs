@@ -7,11 +7,12 @@ use experiments::comparison::{Comparison, Effect, Interaction, answer, effects, 
 use experiments::metric::Metric;
 use experiments::sweep::disk::{PLOTS, REPORT};
 use experiments::sweep::folder::Folder;
+use experiments::sweep::ours::Report;
 
 use crate::drawing::Figure;
 use crate::figures::along_axes;
 use crate::table::{Lines, differences_table, effects_table};
-use crate::wanted::{Files, Wanted};
+use crate::wanted::Wanted;
 
 #[derive(Template)]
 #[template(path = "overview.html")]
@@ -65,7 +66,7 @@ pub(crate) fn write_overview(
     wanted: &Wanted,
     comparisons: &[Comparison],
     pages: &[usize],
-    files: &mut Files,
+    files: &mut Report,
 ) -> Result<(), Failure> {
     let experiment = folder.experiment();
     let changes = if experiment.policies.len() > 1 {
@@ -110,10 +111,10 @@ pub(crate) fn write_overview(
         open: sentences(false),
         figures: &figures,
     };
-    files.push((REPORT.to_owned(), overview.render().map_err(Failure::run)?.into_bytes()));
+    files.add(REPORT.to_owned(), overview.render().map_err(Failure::run)?.as_bytes())?;
     for Figure { name, svg, csv, .. } in figures {
-        files.push((format!("{PLOTS}/{name}.svg"), svg.into_bytes()));
-        files.push((format!("{PLOTS}/{name}.csv"), csv.into_bytes()));
+        files.add(format!("{PLOTS}/{name}.svg"), svg.as_bytes())?;
+        files.add(format!("{PLOTS}/{name}.csv"), csv.as_bytes())?;
     }
     Ok(())
 }

@@ -6,11 +6,11 @@ use experiments::Failure;
 use experiments::comparison::compare;
 use experiments::sweep::disk::{PLOTS, REPORT};
 use experiments::sweep::folder::Folder;
-use experiments::sweep::ours;
+use experiments::sweep::ours::Report;
 
 use crate::case::{Compared, PagePlace, write_case};
 use crate::overview::write_overview;
-use crate::wanted::{Files, Wanted};
+use crate::wanted::Wanted;
 
 /// Largest number of cases that get a page, if no case is selected.
 const MOST_PAGES: usize = 24;
@@ -31,7 +31,7 @@ pub fn write_report(folder: &mut Folder, mut wanted: Wanted) -> Result<PathBuf, 
     };
     let cases = folder.experiment().cases.len();
     let shown = std::mem::take(&mut wanted.shown);
-    let mut files = Files::new();
+    let mut files = Report::of(folder.path());
     if cases == 1 {
         let place =
             PagePlace { case: 0, file: REPORT.to_owned(), links: format!("{PLOTS}/"), prefix: String::new() };
@@ -48,6 +48,6 @@ pub fn write_report(folder: &mut Folder, mut wanted: Wanted) -> Result<PathBuf, 
         }
         write_overview(folder, &wanted, &all.asked, &chosen, &mut files)?;
     }
-    ours::write_report(folder.path(), &files)?;
+    files.write()?;
     Ok(folder.path().join(REPORT))
 }

@@ -1,4 +1,4 @@
-//! The requested content of a report, and the files of which it consists.
+//! The requested content of a report.
 
 use experiments::Failure;
 use experiments::comparison::{Asked, Wishes};
@@ -29,6 +29,3 @@ impl Wanted {
         Ok(Self { asked, title: None, case: None, shown: Vec::new() })
     }
 }
-
-/// The files of a report, by their names relative to the folder.
-pub(crate) type Files = Vec<(String, Vec<u8>)>;

@@ -7,7 +7,7 @@ use comfy_table::Table;
 use experiments::Failure;
 use experiments::experiment::Build;
 use experiments::sweep::disk::REPORT;
-use experiments::sweep::ours;
+use experiments::sweep::ours::Report;
 use reports::STYLE;
 
 use crate::claims::{CLAIMS, Example, Judged, LEAST_TRIALS};
@@ -166,6 +166,8 @@ pub fn write_page(out: &Path, judged: &[Judged], sections: &[Section]) -> Result
         program: format!("usar {version}, source {source}"),
     };
     let page = page.render().map_err(Failure::run)?;
-    ours::write_report(out, &[(REPORT.to_owned(), page.into_bytes())])?;
+    let mut report = Report::of(out);
+    report.add(REPORT.to_owned(), page.as_bytes())?;
+    report.write()?;
     Ok(out.join(REPORT))
 }

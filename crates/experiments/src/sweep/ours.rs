@@ -2,7 +2,10 @@
 //! link is followed.
 
 use std::fs;
-use std::path::Path;
+use std::io::{Seek, Write};
+use std::path::{Path, PathBuf};
+
+use tempfile::{SpooledTempFile, spooled_tempfile_in};
 
 use super::disk::{INPUTS, LOCK, MANIFEST, PLOTS, RECORDINGS, REPORT, is_sweeps};
 use super::parquet::PARQUETS;
@@ -106,37 +109,72 @@ fn reported(path: &Path) -> Vec<String> {
     names.into_iter().filter(|name| name == REPORT || is_figure(name)).collect()
 }
 
-/// Writes the files of a report, by their names relative to the folder. An existing file must belong to the
-/// previous report.
-///
-/// # Errors
-/// A file with one of these names exists that no report has written, or the disk does not take it.
-pub fn write_report(path: &Path, report: &[(String, Vec<u8>)]) -> Result<(), Failure> {
-    let trouble = |error| Failure::storage(format!("cannot write to {}: {error}", path.display()));
-    let before = reported(path);
-    let plots = path.join(PLOTS);
-    if plots.symlink_metadata().is_ok_and(|there| !there.is_dir()) {
-        return Err(Failure::input(format!("{}: is not a folder", plots.display())));
+/// A file of a report that is larger than this waits on the disk until all are made, in bytes.
+const MOST_IN_MEMORY: usize = 1 << 20;
+
+/// The files of a report until all of them are made.
+pub struct Report {
+    folder: PathBuf,
+    /// Names relative to the folder. A large file waits without a name in the folder.
+    files: Vec<(String, SpooledTempFile)>,
+}
+
+impl Report {
+    /// A report in this folder, without any file yet.
+    #[must_use]
+    pub fn of(folder: &Path) -> Self {
+        Self { folder: folder.to_owned(), files: Vec::new() }
     }
-    for (name, _) in report {
-        if !before.contains(name) && path.join(name).symlink_metadata().is_ok() {
-            let name = path.join(name);
-            return Err(Failure::input(format!(
-                "{}: is not of a report of this program; nothing was overwritten",
-                name.display()
-            )));
+
+    /// Adds a file, by its name relative to the folder.
+    ///
+    /// # Errors
+    /// The disk does not take it.
+    pub fn add(&mut self, name: String, content: &[u8]) -> Result<(), Failure> {
+        let mut file = spooled_tempfile_in(MOST_IN_MEMORY, &self.folder);
+        let written = file.write_all(content).and_then(|()| file.rewind());
+        written.map_err(|error| self.trouble(&error))?;
+        self.files.push((name, file));
+        Ok(())
+    }
+
+    /// Writes the files in the place of those of the previous report.
+    ///
+    /// # Errors
+    /// A file with one of these names exists that no report has written, or the disk does not take it.
+    pub fn write(mut self) -> Result<(), Failure> {
+        let (path, before) = (&self.folder, reported(&self.folder));
+        let plots = path.join(PLOTS);
+        if plots.symlink_metadata().is_ok_and(|there| !there.is_dir()) {
+            return Err(Failure::input(format!("{}: is not a folder", plots.display())));
         }
+        for (name, _) in &self.files {
+            if !before.contains(name) && path.join(name).symlink_metadata().is_ok() {
+                let name = path.join(name);
+                return Err(Failure::input(format!(
+                    "{}: is not of a report of this program; nothing was overwritten",
+                    name.display()
+                )));
+            }
+        }
+        remove_report(path).map_err(|error| self.trouble(&error))?;
+        if self.files.iter().any(|(name, _)| name.starts_with(PLOTS)) {
+            fs::create_dir_all(&plots).map_err(|error| self.trouble(&error))?;
+        }
+        let names: Vec<&str> = self.files.iter().map(|(name, _)| name.as_str()).collect();
+        NewFile::write(path, REPORTED, (names.join("\n") + "\n").as_bytes())?;
+        for (name, content) in &mut self.files {
+            let mut file = NewFile::new(&self.folder, name)?;
+            std::io::copy(content, &mut file)
+                .map_err(|error| files::trouble(&self.folder.join(&*name), &error))?;
+            file.finish()?;
+        }
+        Ok(())
     }
-    remove_report(path).map_err(trouble)?;
-    if report.iter().any(|(name, _)| name.starts_with(PLOTS)) {
-        fs::create_dir_all(&plots).map_err(trouble)?;
+
+    fn trouble(&self, error: &std::io::Error) -> Failure {
+        Failure::storage(format!("cannot write to {}: {error}", self.folder.display()))
     }
-    let names: Vec<&str> = report.iter().map(|(name, _)| name.as_str()).collect();
-    NewFile::write(path, REPORTED, (names.join("\n") + "\n").as_bytes())?;
-    for (name, content) in report {
-        NewFile::write(path, name, content)?;
-    }
-    Ok(())
 }
 
 /// Deletes the files that a report wrote.

@@ -13,7 +13,9 @@ use kuva::plot::{BoxPlot, ForestPlot, ScatterPlot, StripPlot};
 use kuva::render::plots::Plot;
 
 use super::is_quiet;
-use crate::drawing::{Drawing, Panel, Sketch, colour, is_drawn, layout, line_panel, names, range, table};
+use crate::drawing::{
+    Drawing, Panel, Rows, Sketch, colour, is_drawn, layout, line_panel, names, range, table,
+};
 
 /// About the largest number of a policy's trials that are drawn as points; more would hide the boxes.
 const MAX_POINTS: usize = 40;
@@ -35,7 +37,8 @@ fn box_figure(
     let Experiment { policies, metrics, .. } = folder.experiment();
     let names = names(folder.experiment());
     let step = (folder.experiment().trials as usize).div_ceil(MAX_POINTS).max(1);
-    let (mut panels, mut rows, mut counts) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut panels, mut counts) = (Vec::new(), Vec::new());
+    let mut rows = Rows::new(&["metric", "policy", "seed", "value"])?;
     for place in places.iter().filter(|place| !is_quiet(folder, case, **place)) {
         let metric = &metrics[*place];
         let mut plot = BoxPlot::new().with_width(0.6);
@@ -44,9 +47,9 @@ fn box_figure(
         let (mut colours, mut all) = (Vec::new(), Vec::new());
         for (i, policy) in policies.iter().enumerate().filter(|(_, policy)| is_drawn(only, &policy.label)) {
             let found = trials(folder, (case, i), |metrics| metrics.get(*place));
-            rows.extend(found.iter().map(|(seed, value)| {
-                vec![metric.name.clone(), policy.label.clone(), seed.to_string(), value.to_string()]
-            }));
+            for (seed, value) in &found {
+                rows.push(&[&metric.name, &policy.label, &seed.to_string(), &value.to_string()])?;
+            }
             let values: Vec<f64> = found.into_iter().map(|(_, value)| value).collect();
             counts.push(values.len());
             all.extend_from_slice(&values);
@@ -84,7 +87,7 @@ fn box_figure(
             per_box(&counts)
         ),
         drawing: Drawing::new(panels, 3, PANEL),
-        csv: table(&["metric", "policy", "seed", "value"], rows)?,
+        csv: rows.finish()?,
     })
 }
 
@@ -138,17 +141,18 @@ pub(super) fn capitalised(text: &str) -> String {
 pub(super) fn costs(folder: &Folder, case: usize, only: Option<&[String]>) -> Result<Sketch, Failure> {
     let Experiment { policies, metrics, .. } = folder.experiment();
     let names = names(folder.experiment());
-    let (mut panels, mut rows, mut counts) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut panels, mut counts) = (Vec::new(), Vec::new());
+    let mut rows = Rows::new(&["task", "policy", "seed", "energy_per_rescuee", "hp_per_rescuee"])?;
     let [energies, hps] = ["energy_per_rescuee", "hp_per_rescuee"].map(|name| metrics.declared(name));
     for (energy, hp) in energies.into_iter().zip(hps) {
         let part = metrics[energy].part();
         let (mut plots, mut all) = (Vec::new(), Vec::new());
         for (i, policy) in policies.iter().enumerate().filter(|(_, policy)| is_drawn(only, &policy.label)) {
             let found = trials(folder, (case, i), |metrics| Some((metrics.get(energy)?, metrics.get(hp)?)));
-            rows.extend(found.iter().map(|(seed, (energy, hp))| {
-                let first = [part.to_owned(), policy.label.clone(), seed.to_string()];
-                [first.to_vec(), vec![energy.to_string(), hp.to_string()]].concat()
-            }));
+            for (seed, (energy, hp)) in &found {
+                let numbers = [seed.to_string(), energy.to_string(), hp.to_string()];
+                rows.push(&[part, &policy.label, &numbers[0], &numbers[1], &numbers[2]])?;
+            }
             let points: Vec<(f64, f64)> = found.into_iter().map(|(_, point)| point).collect();
             counts.push(points.len());
             all.extend_from_slice(&points);
@@ -181,7 +185,7 @@ pub(super) fn costs(folder: &Folder, case: usize, only: Option<&[String]>) -> Re
             per_box(&counts)
         ),
         drawing: Drawing::new(panels, 3, [400.0, 320.0]),
-        csv: table(&["task", "policy", "seed", "energy_per_rescuee", "hp_per_rescuee"], rows)?,
+        csv: rows.finish()?,
     })
 }
 

@@ -7,8 +7,8 @@
 //!   no correction is needed (intersection-union test, Berger 1982). A false claim is called true in at
 //!   most about 2.5 % of experiments.
 //! - *Equivalent*: not that, but each part holds or is within its margin: the 90 % interval of the difference
-//!   lies inside the margin that `paper.sweep.ron` declares (two one-sided tests at 5 %). What the paper claims
-//!   to be more, or less, is practically the same.
+//!   lies inside the margin that `paper.sweep.ron` declares (two one-sided tests at 5 %). What the paper
+//!   claims to be more, or less, is practically the same.
 //! - *Does not hold*: neither of these, and the interval of some part lies entirely on the other side, at
 //!   95 % shared by the parts (Bonferroni). With three parts, each interval is at 98.3 %. A true claim is
 //!   called false in at most about 2.5 % of experiments.
@@ -114,8 +114,8 @@ impl Verdict {
         }
     }
 
-    /// The verdict from the intervals of all parts: each at 95 %, within its margin, and each at 95 % shared by
-    /// the parts.
+    /// The verdict from the intervals of all parts: each at 95 %, within its margin, and each at 95 % shared
+    /// by the parts.
     #[must_use]
     fn of(parts: &[PartFinding]) -> Self {
         let on = |interval: Option<[f64; 2]>, side: Side| {

@@ -12,7 +12,6 @@ use rne_core::question::hardest_first;
 use rne_core::{
     Decision, Member, Need, NeedVector, Question, Quota, RandomSeed, RoleId, SCHEMA_VERSION, Task,
 };
-use serde::Serialize;
 
 use super::numbers;
 
@@ -52,15 +51,6 @@ pub(crate) struct Arguments {
     json: bool,
 }
 
-#[derive(Serialize)]
-struct Output<'a> {
-    policy: &'a str,
-    /// The names of the tasks, in the order of the decision's groups.
-    tasks: Vec<&'a str>,
-    #[serde(flatten)]
-    decision: &'a Decision,
-}
-
 impl Arguments {
     pub(crate) fn execute(&self, out: &mut dyn Write) -> Result<(), Failure> {
         let spec = PolicySpec::parse(&self.policy);
@@ -72,9 +62,7 @@ impl Arguments {
         let decision = policy.decide(&question).map_err(|error| named(&error))?;
         decision.assignment.check(&question).map_err(|error| named(&error))?;
         if self.json {
-            let tasks = question.tasks.iter().map(|task| task.name.as_str()).collect();
-            let output = Output { policy: &spec.label, tasks, decision: &decision };
-            return Ok(writeln!(out, "{}", serde_json::to_string(&output).map_err(Failure::run)?)?);
+            return Ok(writeln!(out, "{}", serde_json::to_string(&decision).map_err(Failure::run)?)?);
         }
         print_text(out, &question, &decision, &spec)
     }

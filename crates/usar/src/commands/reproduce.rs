@@ -24,7 +24,7 @@ use crate::running::{STOP, default_jobs, run_missing, stop_on_signals, tell};
 /// Time limit of one trial.
 const TRIAL_LIMIT: Duration = Duration::from_mins(10);
 
-/// Put the paper's claims to the test: four policies, two scenarios, paired trials
+/// Put the paper's claims to the test: four policies, paired trials, the printed and calibrated worlds
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Runs RNE, DIS, ENG and HP_DIS on paper.ron (printed constants) and paper-calibrated.ron (fitted to the \

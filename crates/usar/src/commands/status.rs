@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use experiments::Failure;
+use experiments::experiment::Shard;
 use experiments::sweep::disk::{experiment_in, is_sweeps, sweeps_in};
 use serde::Serialize;
 
@@ -23,8 +24,8 @@ const MOST_LISTED: usize = 20;
 #[command(after_help = "\
 Looks at the folder of each shard (its manifest, its journal and its lock) and, where there are `squeue` and \
 `sacct`, asks Slurm. A shard is done; running; waiting in the queue; failed, with what Slurm says of its \
-task; or lost: nothing is at work in it and no queue has it. The last line submits what is failed or lost, \
-and nothing else; each of these goes on where it was.
+task; or lost: nothing is at work in it and no queue has it. For a folder that `usar submit` made, the last line \
+submits what is failed or lost, and nothing else; each of these goes on where it was.
 
 Examples:
   usar status results/energy-shards        the folder that `usar submit` made, or one that contains shards
@@ -88,12 +89,26 @@ fn by_hand(folder: &Path) -> Result<Output, Failure> {
         return Err(Failure::input(format!("{}: has neither shards nor a sweep in it", folder.display())));
     }
     let said = Said { queued: None, ended: slurm::Tasks::new() };
-    let of = |folder: PathBuf| {
-        let (experiment, manifest) = experiment_in(&folder)?;
+    let (mut shards, mut all) = (Vec::new(), None);
+    for place in folders {
+        let (experiment, manifest) = experiment_in(&place)?;
         let number = manifest.shard.map_or(1, |shard| shard.number);
-        OneShard::of(number, folder, experiment.count(manifest.shard), &said)
-    };
-    let shards = folders.into_iter().map(of).collect::<Result<Vec<_>, _>>()?;
+        let mut shard = OneShard::of(number, place, experiment.count(manifest.shard), &said)?;
+        if let Some(Shard { number, of }) = manifest.shard.filter(|_| shard.state == State::Lost) {
+            shard.why = format!("nothing is at work in its folder: --shard {number}/{of} goes on");
+        }
+        all = manifest.shard.map(|shard| (experiment, shard.of));
+        shards.push(shard);
+    }
+    if let Some((experiment, of)) = all.filter(|_| !is_sweeps(folder)) {
+        let is_there = |number: &u32| shards.iter().any(|shard| shard.number == *number);
+        let absent: Vec<u32> = (1..=of).filter(|number| !is_there(number)).collect();
+        shards.extend(absent.into_iter().map(|number| {
+            let trials = experiment.count(Some(Shard { number, of }));
+            OneShard::absent((number, of), folder.join(number.to_string()), trials)
+        }));
+        shards.sort_by_key(|shard| shard.number);
+    }
     Ok(Output::of(shards, 1, 0.0))
 }
 

@@ -19,6 +19,7 @@ pub(crate) use submission::{ARRAY, LOGS, MERGE, Submission};
 use super::chosen::Chosen;
 use super::estimate::{Measured, duration};
 use super::slurm;
+use crate::printable::counted;
 use crate::running::stop_on_signals;
 use plan::Wishes;
 
@@ -55,7 +56,8 @@ pub(crate) struct Arguments {
     /// Slurm partition
     #[arg(long, value_parser = word)]
     partition: Option<String>,
-    /// Time limit of each shard, in Slurm's notation [default: twice what was estimated]
+    /// Time limit of each shard, in Slurm's notation [default: twice what was estimated, at least
+    /// half an hour]
     #[arg(long, value_parser = word)]
     time: Option<String>,
     /// Threads of each shard
@@ -116,7 +118,8 @@ impl Arguments {
         let scripts = self.scripts(&experiment.name, &plan, [&folder, &whole])?;
         let (shards, trials) = (plan.shards(), plan.trials.iter().max().copied().unwrap_or(0));
         let (time, cpus) = (duration(plan.seconds()), plan.cpus);
-        writeln!(out, "{shards} shards of up to {trials} trials, each about {time} on {cpus} threads")?;
+        let (shards, cpus) = (counted(shards, "shard"), counted(cpus as usize, "thread"));
+        writeln!(out, "{shards} of up to {trials} trials, each about {time} on {cpus}")?;
         if self.dry_run {
             return print(out, &scripts, &folder);
         }

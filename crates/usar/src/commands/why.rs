@@ -83,7 +83,8 @@ struct Account<'a> {
     policy: &'a str,
     round: u32,
     time_s: f64,
-    question: &'a Question,
+    /// Complete, with the history of the rounds before.
+    question: Question,
     decision: &'a Decision,
     /// RNE between the groups, need by need; empty for other kinds of policies.
     directed: Vec<DirectedRne>,
@@ -179,8 +180,8 @@ impl Arguments {
             others: other_choices(&full, &decision.assignment, &others(asked)?),
             oracle: self.oracle(asked, question, &decision.assignment),
             robot: story.transpose()?,
-            question,
             decision,
+            question: full,
         })
     }
 

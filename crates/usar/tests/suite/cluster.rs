@@ -127,6 +127,10 @@ fn shards_that_were_run_by_hand_have_a_status_too() {
     let here = folder.path();
     succeeds(&usar(here, &[&["sweep"], &SWEEP[..], &["--shard", "1/2"]].concat()));
     let said = succeeds(&usar(here, &["status", "results"]));
+    assert!(said.starts_with("shards  2: 1 done, 1 lost\ntrials  20 of 40\n"), "{said}");
+    assert!(said.contains("has no folder here: --shard 2/2 --out results/2 runs it"), "{said}");
+    let own = std::fs::read_dir(here.join("results")).unwrap().next().unwrap().unwrap().path();
+    let said = succeeds(&usar(here, &["status", own.to_str().unwrap()]));
     assert!(said.starts_with("shards  1: 1 done\ntrials  20 of 20\n"), "{said}");
     std::fs::create_dir(here.join("empty")).unwrap();
     refused(here, 2, &["status", "empty"], &["has neither shards nor a sweep in it"]);

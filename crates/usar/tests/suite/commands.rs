@@ -118,7 +118,7 @@ fn group_splits_a_table_by_any_policy() {
     for policy in ["RNE", "ENG", "HP_DIS", "DIS", "RANDOM"] {
         let tasks = ["--task", "near,1,73,51", "--task", "far,2,15,64"];
         let value = json(&[&["group", &path, "--policy", policy, "--json"], &tasks[..]].concat());
-        assert_eq!(value["tasks"], serde_json::json!(["near", "far"]));
+        assert!(serde_json::from_value::<rne_core::Decision>(value.clone()).is_ok(), "{value}");
         let ids = |task: usize| {
             let group = &value["assignment"]["groups"][task];
             group.as_array().unwrap().iter().map(|id| id.as_u64().unwrap()).collect::<Vec<_>>()

@@ -66,7 +66,7 @@ fn another_sweep_in_the_folder_is_refused_and_each_difference_named() {
         here,
         2,
         &["sweep", "short.ron", "--policies", "RNE,DIS", "--trials", "1"],
-        &["trials: 2 there, 1 now"],
+        &["trials: 2 there, more than the 1 asked for; none are taken away"],
     );
     refused(
         here,

@@ -175,7 +175,7 @@ fn ranking(asked: &Asked, survey: &Survey, top: usize) -> Table {
     for (place, found) in ranked.iter().enumerate().filter(|(place, _)| *place < top || *place == last) {
         let standing = survey.standing(&asked.objective, &found.assignment);
         let rank = standing.map_or(place + 1, |standing| standing.rank);
-        let rank = if place == last { format!("{rank} (the worst)") } else { rank.to_string() };
+        let rank = if place == last && rank > 1 { format!("{rank} (the worst)") } else { rank.to_string() };
         let total = found.outcome.total();
         let value = asked.objective.value(&found.outcome).map_or("-".to_owned(), short);
         let cells = [

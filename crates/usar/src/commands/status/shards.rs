@@ -74,6 +74,12 @@ impl OneShard {
         let (state, why) = state(there.as_ref(), number, said);
         Ok(Self { number, state, why, finished, trials, folder })
     }
+
+    /// A shard that has no folder yet.
+    pub(super) fn absent((number, of): (u32, u32), folder: PathBuf, trials: usize) -> Self {
+        let why = format!("has no folder here: --shard {number}/{of} --out {} runs it", folder.display());
+        Self { number, state: State::Lost, why, finished: 0, trials, folder }
+    }
 }
 
 fn state(there: Option<&Progress>, number: u32, said: &Said) -> (State, String) {
