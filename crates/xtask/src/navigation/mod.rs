@@ -37,7 +37,7 @@ struct Options {
     /// Sets `conflicts.resolver`
     #[arg(long, value_name = "R")]
     resolver: Option<String>,
-    /// Sets a field of every scenario, as in `conflicts.margin_m=0.1`
+    /// Sets a field of every scenario, as in `conflicts.priority=LowestHpFirst`
     #[arg(long, value_name = "FIELD=VALUE")]
     set: Vec<String>,
     /// Writes a line for every trial
