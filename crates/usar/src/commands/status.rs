@@ -24,8 +24,8 @@ const MOST_LISTED: usize = 20;
 #[command(after_help = "\
 Looks at the folder of each shard (its manifest, its journal and its lock) and, where there are `squeue` and \
 `sacct`, asks Slurm. A shard is done; running; waiting in the queue; failed, with what Slurm says of its \
-task; or lost: nothing is at work in it and no queue has it. For a folder that `usar submit` made, the last line \
-submits what is failed or lost, and nothing else; each of these goes on where it was.
+task; or lost: nothing is at work in it and no queue has it. For a folder that `usar submit` made, the last \
+line submits what is failed or lost, and nothing else; each of these goes on where it was.
 
 Examples:
   usar status results/energy-shards        the folder that `usar submit` made, or one that contains shards
