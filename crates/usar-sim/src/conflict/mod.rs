@@ -33,7 +33,7 @@ use passing::Surroundings;
 use predict::{Conflicts, Neighbours};
 pub use priority::PriorityKey;
 use reciprocal::Entry;
-use retreat::{Limits, Retreats};
+use retreat::{Limits, Manner, Retreats};
 
 /// How long a deadlocked set backs off, in seconds.
 const BACK_OFF_S: f64 = 1.0;
@@ -49,6 +49,13 @@ const ROOM_PATIENCE_S: f64 = 15.0;
 
 /// How long a robot is not asked again after a retreat that failed, in seconds.
 const RESPITE_S: f64 = 3.0;
+
+/// Share of its top speed at which a robot retreats under the paper's rule.
+const RETREAT_SPEED: f32 = 0.8;
+
+/// Under the default rule, a robot that made room goes on as soon as its route is clear of the other robot's
+/// for this distance, in metres.
+const GOES_ON_WITHIN_M: f32 = 3.0;
 
 /// How often a robot asks again for room while it is blocked or comes no nearer, in seconds.
 const ASK_AGAIN_S: f64 = 0.5;
@@ -82,7 +89,8 @@ pub struct Resolver {
     directives: Vec<Directive>,
     /// For each robot, the direction of its last directive; zero if it stood.
     headings: Vec<Vector>,
-    /// For each robot, the number of successive steps in which it was blocked.
+    /// For each robot, the number of successive steps in which it was blocked; under the default rule, in which
+    /// a parked robot slowed it down.
     blocked_steps: Vec<u32>,
     /// For each robot, its state at a narrow passage.
     entries: Vec<Entry>,
@@ -151,7 +159,13 @@ impl Resolver {
             respite: steps(RESPITE_S),
         };
         self.arena = Vector::new(scenario.arena_m[0] as f32, scenario.arena_m[1] as f32);
-        self.retreats.restore(limits, self.right_of_way.margin_m as f32, self.arena);
+        let margin = self.right_of_way.margin_m as f32;
+        let manner = if self.rules.resolver == ResolverRule::Reciprocal {
+            Manner { limits, margin, speed: 1.0, goes_on_within: Some(GOES_ON_WITHIN_M) }
+        } else {
+            Manner { limits, margin, speed: RETREAT_SPEED, goes_on_within: None }
+        };
+        self.retreats.restore(manner, self.arena);
     }
 
     /// One directive for each mover, in the order of the movers. Replaces the wishes of robots that make

@@ -17,9 +17,6 @@ use crate::world::STANDING_MPS;
 /// Longest chain of robots that make room for one another.
 const MAX_DEPTH: u32 = 12;
 
-/// Share of its top speed at which a robot retreats.
-const RETREAT_SPEED: f32 = 0.8;
-
 /// A waypoint of a retreat counts as passed within this distance, in metres.
 const PASSED_M: f32 = 0.1;
 
@@ -37,6 +34,20 @@ const PLATOON_M: f32 = 5.0;
 
 /// Robots go in the same direction if the cosine between their preferred velocities is larger than this.
 const PLATOON_COS: f32 = 0.5;
+
+/// How robots retreat under a rule.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Manner {
+    /// How long a retreat may last.
+    pub(super) limits: Limits,
+    /// Distance that a retreating robot keeps from the other robot's route, in metres.
+    pub(super) margin: f32,
+    /// Share of its top speed at which a robot retreats.
+    pub(super) speed: f32,
+    /// A robot goes on as soon as its own route ahead is clear of the other robot's for this distance, in
+    /// metres; `None` if the other robot has to pass the whole line of the retreat.
+    pub(super) goes_on_within: Option<f32>,
+}
 
 /// How long a retreat may last without progress, in steps.
 #[derive(Debug, Clone, Copy, Default)]
@@ -77,9 +88,7 @@ pub(super) struct Retreats {
     /// For each robot, steps during which it is not asked again.
     respite: Vec<u32>,
     #[serde(skip)]
-    limits: Limits,
-    #[serde(skip)]
-    margin: f32,
+    manner: Manner,
     #[serde(skip)]
     arena: Vector,
 }
@@ -119,8 +128,8 @@ impl Retreats {
     }
 
     /// Restores the fields that a snapshot leaves out: they are fixed or follow from the other fields.
-    pub(super) fn restore(&mut self, limits: Limits, margin: f32, arena: Vector) {
-        (self.limits, self.margin, self.arena) = (limits, margin, arena);
+    pub(super) fn restore(&mut self, manner: Manner, arena: Vector) {
+        (self.manner, self.arena) = (manner, arena);
         self.served = self.of.iter().map(|(i, retreat)| (retreat.head, *i)).collect();
     }
 
@@ -152,7 +161,7 @@ impl Retreats {
             }
         }
         for (i, retreat) in &self.of {
-            retreat.guide(&mut movers[*i]);
+            retreat.guide(&mut movers[*i], self.manner.speed);
         }
     }
 
@@ -165,13 +174,16 @@ impl Retreats {
             }
             None => return true,
         };
+        let apart = me.radius + head.radius + self.manner.margin;
         !me.can_make_room
             || self.is_out_of_patience(retreat)
-            || retreat.is_passed(&head_way, me.radius + head.radius + self.margin)
+            || retreat.is_passed(&head_way, apart)
+            || self.manner.goes_on_within.is_some_and(|within| is_clear_ahead(me, within, &head_way, apart))
     }
 
     fn is_out_of_patience(&self, retreat: &Retreat) -> bool {
-        let limit = if retreat.path.is_empty() { self.limits.at_place } else { self.limits.underway };
+        let limit =
+            if retreat.path.is_empty() { self.manner.limits.at_place } else { self.manner.limits.underway };
         retreat.idle_steps > limit
     }
 
@@ -194,9 +206,11 @@ impl Retreats {
                 && other.aerial == me.aerial
                 && self.depth(*k) == 0
                 && other.wish.normalize_or_zero().dot(direction) > PLATOON_COS
-                && !retreat.is_passed(&ways(other)[0], me.radius + other.radius + self.margin)
+                && !retreat.is_passed(&ways(other)[0], me.radius + other.radius + self.manner.margin)
         };
-        if !me.can_make_room || self.is_out_of_patience(&retreat) || retreat.held_steps > self.limits.at_place
+        if !me.can_make_room
+            || self.is_out_of_patience(&retreat)
+            || retreat.held_steps > self.manner.limits.at_place
         {
             return None;
         }
@@ -214,7 +228,7 @@ impl Retreats {
     /// Ends the retreat of a robot as failed, if it retreats.
     pub(super) fn give_up(&mut self, i: usize) {
         if self.end(i).is_some() {
-            self.respite[i] = self.limits.respite;
+            self.respite[i] = self.manner.limits.respite;
         }
     }
 
@@ -279,7 +293,7 @@ impl Retreats {
             through_head: false,
             crowd: others().map(|(_, other)| disc(other.position, other)).collect(),
             reserved: reserved.collect(),
-            margin: self.margin,
+            margin: self.manner.margin,
             arena: self.arena,
         };
         ask.find().or_else(|| {
@@ -288,6 +302,19 @@ impl Retreats {
             ask.find()
         })
     }
+}
+
+/// Whether another robot's path keeps this distance, in metres, from a robot and from the next `within`
+/// metres of its route. `false` for a robot without a route.
+fn is_clear_ahead(me: &Mover, within: f32, other_way: &[Vector], apart: f32) -> bool {
+    let count = 1 + (within / SAMPLE_M).ceil() as usize;
+    let points = sampled(me.position, me.route);
+    !me.route.is_empty() && points.iter().take(count).all(|point| keeps_apart(*point, other_way, apart))
+}
+
+/// Whether a path keeps nearly this distance, in metres, from a point.
+fn keeps_apart(point: Vector, way: &[Vector], apart: f32) -> bool {
+    distance_to_way(point, way) > 0.95 * apart
 }
 
 /// Points along a path, at most `SAMPLE_M` apart.
@@ -314,7 +341,7 @@ impl Retreat {
 
     /// Whether the other robot's path keeps this distance, in metres, from the whole line of the retreat.
     fn is_passed(&self, head_way: &[Vector], apart: f32) -> bool {
-        self.line.iter().all(|point| distance_to_way(*point, head_way) > 0.95 * apart)
+        self.line.iter().all(|point| keeps_apart(*point, head_way, apart))
     }
 
     fn advance(&mut self, me: &Mover, head: &Mover, is_served: bool) {
@@ -334,7 +361,7 @@ impl Retreat {
     }
 
     /// Sets the robot's wish: to go to the place where it makes room, or to stay there.
-    fn guide(&self, me: &mut Mover) {
+    fn guide(&self, me: &mut Mover, speed_share: f32) {
         let Some(next) = self.path.last() else {
             me.wish = Vector::ZERO;
             return;
@@ -343,7 +370,7 @@ impl Retreat {
         me.retreat_left = Some(self.way(me).windows(2).map(|leg| (leg[1] - leg[0]).length()).sum());
         me.leg_left = to_next.length();
         let reachable = (2.0 * me.braking * me.leg_left).sqrt().max(0.05);
-        me.wish = to_next.normalize_or_zero() * (RETREAT_SPEED * me.speed).min(reachable);
+        me.wish = to_next.normalize_or_zero() * (speed_share * me.speed).min(reachable);
     }
 }
 

@@ -8,18 +8,21 @@
 //!   That robot inherits its priority (`super::retreat`). The longer a robot is stuck, the better its claim.
 //!   A robot that has nowhere to go is asked at once.
 
+mod encounter;
 mod half_planes;
 mod passage;
+mod stuck;
 mod velocity;
 
 use parry2d::math::Vector;
 
 use super::passing::nearest_in_the_way;
-use super::{Directive, Mover, Resolver, wait_cycles};
+use super::{Directive, Mover, Resolver};
 use crate::event::{Event, EventLog};
+use encounter::{Encounter, LONGEST_HORIZON_S};
 pub(super) use passage::Entry;
 use passage::{Entrant, Follows, decide};
-use velocity::{HORIZON_S, MARGIN_M, Neighbour, avoiding_velocity};
+use velocity::{MARGIN_M, Neighbour, avoiding_velocity};
 
 /// A robot that has come no nearer for this long, in seconds, is stuck.
 pub(super) const STUCK_S: f64 = 4.0;
@@ -60,12 +63,9 @@ const LET_OUT_SPEED: f32 = 0.2;
 /// rest.
 const SHARE_OF_THE_FIRST: f32 = 0.3;
 
-/// Share of the avoidance in the open that the robot with the better claim takes.
+/// Share of the avoidance in the open that the robot with the better claim takes, and share of a robot in
+/// the avoidance of one that makes room for it.
 const SHARE_OF_PRIORITY: f32 = 0.2;
-
-/// A robot asks a moving robot to make room only if the cosine between their directions is smaller than this.
-/// Robots in similar directions get on by themselves.
-const ALONG: f32 = 0.3;
 
 /// Slower than this is no motion, in metres per second.
 const STILL_MPS: f32 = 0.005;
@@ -77,7 +77,7 @@ impl Resolver {
     /// One directive for each mover, by the default rule. Limits the wishes of robots that wait before a
     /// passage or queue there, and replaces those of robots that let others out.
     pub(super) fn reciprocate(&mut self, movers: &mut [Mover], log: &mut EventLog) {
-        self.neighbours.pair(movers, MARGIN_M, HORIZON_S);
+        self.neighbours.pair(movers, MARGIN_M, LONGEST_HORIZON_S);
         self.hold_before_passages(movers, log);
         self.queue_before_passages(movers);
         self.let_out(movers);
@@ -88,25 +88,6 @@ impl Resolver {
         for i in 0..movers.len() {
             self.push(i, movers, &leaders, log);
         }
-    }
-
-    /// The robot with the best claim on each ring of stuck robots. On a ring, every robot is in the way of
-    /// another, and none can get on by itself. So the leader may push the next robot whatever their
-    /// directions.
-    fn leaders_of_jams(&self, movers: &[Mover]) -> Vec<usize> {
-        let is_stuck =
-            |i: &usize| movers[*i].stalled_steps >= self.stuck_steps && movers[*i].wishes_to_move();
-        if !(0..movers.len()).any(|i| is_stuck(&i)) {
-            return Vec::new();
-        }
-        let in_the_way = |i: usize| Some(i).filter(is_stuck).and_then(|i| self.robot_in_the_way(i, movers));
-        let waits_for: Vec<Option<usize>> = (0..movers.len()).map(in_the_way).collect();
-        let claim = |a: &usize, b: &usize| {
-            let longest_first = movers[*b].stalled_steps.cmp(&movers[*a].stalled_steps);
-            longest_first.then(movers[*a].priority.precedence(&movers[*b].priority))
-        };
-        let rings = wait_cycles(&waits_for);
-        rings.iter().filter_map(|ring| ring.iter().copied().min_by(claim)).collect()
     }
 
     /// Lets robots wait before narrow passages in which others have the right of way, and make room there.
@@ -134,10 +115,23 @@ impl Resolver {
                 self.make_room(*first, *i, movers, log);
             }
         }
+        self.make_room_in_bays(&entrants, movers, log);
         for (i, _, ahead) in waiting {
             let me = &mut movers[i];
             let stops_in: f32 = (ahead - me.radius - WAIT_AT_M).max(0.0);
             me.wish = me.wish.clamp_length_max((2.0 * me.braking * stops_in).sqrt());
+        }
+    }
+
+    /// Lets the first of two robots that come to a bay from both sides make room in it for the second.
+    fn make_room_in_bays(&mut self, entrants: &[Entrant], movers: &[Mover], log: &mut EventLog) {
+        for me in entrants {
+            let Some(other) = entrants.iter().find(|other| me.makes_room_in_bay(other, movers)) else {
+                continue;
+            };
+            if self.retreats.depth(me.i) == 0 && self.retreats.depth(other.i) == 0 {
+                self.make_room(other.i, me.i, movers, log);
+            }
         }
     }
 
@@ -204,10 +198,14 @@ impl Resolver {
 
     fn neighbour(&self, i: usize, j: usize, movers: &[Mover]) -> Neighbour {
         let (me, other) = (&movers[i], &movers[j]);
+        let encounter = self.encounter(i, j, movers);
         let share = match (self.entries[i].rank, self.entries[j].rank) {
             _ if !other.can_make_room => 1.0,
+            _ if self.retreats.head_of(j) == Some(i) => SHARE_OF_PRIORITY,
+            _ if self.retreats.head_of(i) == Some(j) => 1.0 - SHARE_OF_PRIORITY,
             (Some(mine), Some(its)) if mine < its => SHARE_OF_THE_FIRST,
             (Some(_), Some(_)) => 1.0 - SHARE_OF_THE_FIRST,
+            _ if matches!(encounter, Encounter::Crossing | Encounter::Parallel) => 0.5,
             _ if me.priority.precedence(&other.priority).is_lt() => SHARE_OF_PRIORITY,
             _ => 1.0 - SHARE_OF_PRIORITY,
         };
@@ -216,46 +214,18 @@ impl Resolver {
             velocity: other.velocity,
             apart: me.radius + other.radius + MARGIN_M,
             share,
+            encounter,
         }
     }
 
-    /// Lets a robot that comes no nearer to its goal ask the robot in its way to make room.
-    fn push(&mut self, i: usize, movers: &[Mover], leaders: &[usize], log: &mut EventLog) {
-        let me = &movers[i];
-        let is_due = me.stalled_steps > 0
-            && (me.stalled_steps.is_multiple_of(self.ask_again) || me.stalled_steps == self.stuck_steps);
-        if !is_due || !me.wishes_to_move() || self.entries[i].waits_for.is_some() {
-            return;
+    fn encounter(&self, i: usize, j: usize, movers: &[Mover]) -> Encounter {
+        if self.retreats.head_of(i) == Some(j) || self.retreats.head_of(j) == Some(i) {
+            return Encounter::MakesRoom;
         }
-        let Some(blocker) = self.robot_in_the_way(i, movers) else { return };
-        if self.retreats.serves(i, blocker) {
-            return;
-        }
-        if me.stalled_steps == self.stuck_steps {
-            log.push(Event::Deadlocked { robots: vec![me.robot, movers[blocker].robot] });
-        }
-        if !movers[blocker].wishes_to_move() || leaders.contains(&i) || self.may_push(i, blocker, movers) {
-            self.make_room(i, blocker, movers, log);
-        }
+        Encounter::of(movers[i].wish, movers[j].wish)
     }
 
-    /// Whether a robot may ask another robot with a goal of its own to make room.
-    fn may_push(&self, i: usize, blocker: usize, movers: &[Mover]) -> bool {
-        let (me, other) = (&movers[i], &movers[blocker]);
-        let goes_after = match (self.entries[i].rank, self.entries[blocker].rank) {
-            (Some(mine), Some(its)) => its < mine,
-            _ => false,
-        };
-        let has_better_claim = || {
-            let longest_first = other.stalled_steps.cmp(&me.stalled_steps);
-            longest_first.then(me.priority.precedence(&other.priority)).is_lt()
-        };
-        me.stalled_steps >= self.stuck_steps
-            && !goes_after
-            && me.wish.normalize_or_zero().dot(other.wish.normalize_or_zero()) < ALONG
-            && has_better_claim()
-    }
-
+    /// The nearest robot in the way of a robot's wish.
     fn robot_in_the_way(&self, i: usize, movers: &[Mover]) -> Option<usize> {
         let (me, near) = (&movers[i], self.neighbours.of(i));
         let discs = near.iter().map(|j| (movers[*j].position - me.position, me.radius + movers[*j].radius));

@@ -32,6 +32,10 @@ const MEETING: f32 = 0.5;
 /// in metres. At a bay, nobody queues.
 const BAY_M: f32 = 2.5;
 
+/// The first of two robots that come to a bay from both sides begins to make room this far before it, in
+/// metres. Earlier, its way would hold up the second robot.
+const BAY_AHEAD_M: f32 = 1.0;
+
 /// Robots queue within this distance of a passage, in metres.
 const QUEUE_M: f32 = 2.0;
 
@@ -44,6 +48,8 @@ pub(super) struct Entrant<'a> {
     passage: &'a Passage,
     /// Whether a bay lies before or behind the passage.
     is_at_bay: bool,
+    /// The passage behind the bay at the end of this one.
+    behind_bay: Option<&'a Passage>,
     /// Distance to the end of the passage along the route, in metres.
     to_exit: f32,
     radius: f32,
@@ -80,10 +86,15 @@ pub(super) struct Follows {
     pub(super) gap: f32,
 }
 
+/// Whether the wide place between a passage and the next one is a bay.
+fn is_bay(passage: &Passage, next: &Passage) -> bool {
+    passage.leaves_at - next.enters_at < BAY_M
+}
+
 /// Whether a bay lies before or behind one of these passages.
 fn is_at_bay(passages: &[Passage], at: usize) -> bool {
-    let is_bay = |pair: &[Passage]| pair[0].leaves_at - pair[1].enters_at < BAY_M;
-    (at > 0 && is_bay(&passages[at - 1..=at])) || passages.get(at..at + 2).is_some_and(is_bay)
+    let is_pair = |pair: &[Passage]| is_bay(&pair[0], &pair[1]);
+    (at > 0 && is_pair(&passages[at - 1..=at])) || passages.get(at..at + 2).is_some_and(is_pair)
 }
 
 /// How two robots relate whose passages meet.
@@ -124,6 +135,7 @@ impl<'a> Entrant<'a> {
             ahead,
             passage,
             is_at_bay: is_at_bay(me.passages, at),
+            behind_bay: me.passages.get(at + 1).filter(|next| is_bay(passage, next)),
             to_exit: left - passage.leaves_at,
             radius: me.radius,
             low: corner(Vector::min)? - border,
@@ -168,6 +180,17 @@ impl<'a> Entrant<'a> {
         from_mouth.take_while(|way| *way < -self.ahead - clearance).count()
     }
 
+    /// Whether this robot has to make room in a bay for another robot that comes to it from the other side:
+    /// it is inside, near the bay, and the first to be there.
+    pub(super) fn makes_room_in_bay(&self, other: &Self, movers: &[Mover]) -> bool {
+        let (Some(mine), Some(its)) = (self.behind_bay, other.behind_bay) else { return false };
+        let touch = MEETING * (self.radius + other.radius);
+        let by_priority = || movers[other.i].priority.precedence(&movers[self.i].priority);
+        let is_first = self.to_exit.total_cmp(&other.to_exit).then_with(by_priority).is_lt();
+        let is_near = self.is_inside() && other.is_inside() && self.to_exit < BAY_AHEAD_M;
+        is_first && is_near && come_near(mine, other.passage, touch) && come_near(its, self.passage, touch)
+    }
+
     /// The free way to the robot ahead, if this robot queues behind it.
     fn follows(&self, first: &Self) -> Option<Follows> {
         let queues = !self.is_at_bay && self.ahead >= 0.0 && self.ahead <= QUEUE_M;
@@ -180,6 +203,12 @@ impl<'a> Entrant<'a> {
         let (from, to) = (at.saturating_sub(1), (at + 1).min(points.len() - 1));
         (points[to] - points[from]).normalize_or_zero()
     }
+}
+
+/// Whether two passages come nearer to each other than this, in metres.
+fn come_near(a: &Passage, b: &Passage, touch: f32) -> bool {
+    let is_near = |here: &Vector, there: &Vector| (*here - *there).length_squared() < touch * touch;
+    a.points.iter().any(|here| b.points.iter().any(|there| is_near(here, there)))
 }
 
 /// Which robots at passages meet, and how.

@@ -8,13 +8,10 @@
 use parry2d::math::Vector;
 use smallvec::SmallVec;
 
+use super::encounter::Encounter;
 use super::half_planes::{HalfPlane, best_velocity};
 use crate::conflict::Mover;
 use crate::planning::{ObstacleMap, nearest_border_point, outward_normal, polygon_contains};
-
-/// Time within which robots avoid a collision, in seconds. With a longer horizon, robots keep farther apart
-/// than crowds allow. With a shorter one, they swerve too late.
-pub(super) const HORIZON_S: f32 = 1.5;
 
 /// The least horizon, in seconds, just before a bend of the route.
 const LEAST_HORIZON_S: f32 = 0.3;
@@ -35,7 +32,8 @@ pub(super) const MARGIN_M: f32 = 0.015;
 const HEEDED: usize = 12;
 
 /// In the open, a preferred velocity that another robot obstructs is turned to the right by this much
-/// (tangent). This breaks symmetry and keeps traffic to one side.
+/// (tangent) if any robot nearby heads the other way or stands. This breaks symmetry and keeps traffic to one
+/// side. Robots that only cross pass between one another, and would lose by turning.
 const KEEP_RIGHT: f32 = 0.35;
 
 /// Half-planes of one robot.
@@ -53,6 +51,8 @@ pub(super) struct Neighbour {
     /// The avoiding robot's share in the avoidance: 0.5 if both robots do the same, 1 if the other does
     /// nothing.
     pub(super) share: f32,
+    /// How its way relates to the avoiding robot's.
+    pub(super) encounter: Encounter,
 }
 
 /// The velocity that a robot takes among these neighbours. `is_open` says that it is not at a narrow passage.
@@ -74,10 +74,14 @@ pub(super) fn avoiding_velocity(
     }
     let walls = planes.len();
     let straight_for_s = me.leg_left / me.speed.max(0.01);
-    let horizon = HORIZON_S.min(straight_for_s.max(LEAST_HORIZON_S));
-    planes.extend(neighbours.iter().map(|other| robot_plane(me.velocity, other, horizon)));
+    let looks_ahead_s = straight_for_s.max(LEAST_HORIZON_S);
+    let plane =
+        |other: &Neighbour| robot_plane(me.velocity, other, other.encounter.horizon_s().min(looks_ahead_s));
+    planes.extend(neighbours.iter().map(plane));
     let is_in_the_way = |plane: &HalfPlane| !plane.holds(me.wish);
-    let keeps_right = is_open && planes[walls..].iter().any(is_in_the_way);
+    let keeps_right = is_open
+        && planes[walls..].iter().any(is_in_the_way)
+        && neighbours.iter().any(|other| other.encounter.needs_a_side());
     let preferred = if keeps_right { me.wish - me.wish.perp() * KEEP_RIGHT } else { me.wish };
     best_velocity(&planes, walls, preferred, me.speed)
 }
@@ -153,7 +157,7 @@ mod tests {
     fn among(offset: [f32; 2], velocity: [f32; 2], share: f32) -> Vector {
         let me = Mover { velocity: Vector::X, speed: 1.0, ..mover(0, [10.0, 10.0], [1.0, 0.0]) };
         let (offset, velocity) = (Vector::from(offset), Vector::from(velocity));
-        let other = Neighbour { offset, velocity, apart: 0.8, share };
+        let other = Neighbour { offset, velocity, apart: 0.8, share, encounter: Encounter::Other };
         avoiding_velocity(&me, SmallVec::from_slice(&[other]), Vector::splat(20.0), true)
     }
 
@@ -187,7 +191,8 @@ mod tests {
         let me = mover(0, [10.0, 10.0], [0.0, 0.0]);
         for missing in [0.001, MARGIN_M, 0.05] {
             let offset = Vector::new(0.8 - missing, 0.0);
-            let other = Neighbour { offset, velocity: Vector::ZERO, apart: 0.8, share: 0.5 };
+            let encounter = Encounter::Other;
+            let other = Neighbour { offset, velocity: Vector::ZERO, apart: 0.8, share: 0.5, encounter };
             let velocity = avoiding_velocity(&me, SmallVec::from_slice(&[other]), Vector::splat(20.0), true);
             // Each takes half of the missing distance upon itself.
             let expected = Vector::new(-0.5 * missing / PART_WITHIN_S, 0.0);
@@ -233,6 +238,7 @@ mod tests {
                 velocity: Vector::from(*velocity),
                 apart: 0.8,
                 share: 0.5,
+                encounter: Encounter::Other,
             };
             let neighbours = others.iter().map(neighbour).collect();
             let found = avoiding_velocity(&me, neighbours, Vector::splat(20.0), false);

@@ -1,0 +1,95 @@
+//! What stuck robots do: they ask the robots in their way to make room.
+
+use super::super::{Mover, Resolver, wait_cycles};
+use crate::event::{Event, EventLog};
+
+/// A robot asks a moving robot to make room only if the cosine between their directions is smaller than this.
+/// Robots in similar directions get on by themselves.
+const ALONG: f32 = 0.3;
+
+/// A parked robot in the way is asked to make room as soon as it slows another down to less than this share
+/// of its preferred speed.
+const SLOWED: f32 = 0.9;
+
+impl Resolver {
+    /// The robot with the best claim on each ring of stuck robots. On a ring, every robot is in the way of
+    /// another, and none can get on by itself. So the leader may push the next robot whatever their
+    /// directions.
+    pub(super) fn leaders_of_jams(&self, movers: &[Mover]) -> Vec<usize> {
+        let is_stuck =
+            |i: &usize| movers[*i].stalled_steps >= self.stuck_steps && movers[*i].wishes_to_move();
+        if !(0..movers.len()).any(|i| is_stuck(&i)) {
+            return Vec::new();
+        }
+        let in_the_way = |i: usize| Some(i).filter(is_stuck).and_then(|i| self.robot_in_the_way(i, movers));
+        let waits_for: Vec<Option<usize>> = (0..movers.len()).map(in_the_way).collect();
+        let claim = |a: &usize, b: &usize| {
+            let longest_first = movers[*b].stalled_steps.cmp(&movers[*a].stalled_steps);
+            longest_first.then(movers[*a].priority.precedence(&movers[*b].priority))
+        };
+        let rings = wait_cycles(&waits_for);
+        rings.iter().filter_map(|ring| ring.iter().copied().min_by(claim)).collect()
+    }
+
+    /// Lets a robot ask a parked robot that slows it down to make room. Returns whether the parked robot does.
+    fn ask_parked(&mut self, i: usize, movers: &[Mover], log: &mut EventLog) -> bool {
+        let blocker = self.parked_robot_that_slows(i, movers);
+        let steps = &mut self.blocked_steps[i];
+        *steps = if blocker.is_some() { *steps + 1 } else { 0 };
+        let is_due = *steps == 1 || steps.is_multiple_of(self.ask_again);
+        let asked = blocker.filter(|blocker| is_due && !self.retreats.serves(i, *blocker));
+        asked.is_some_and(|blocker| self.make_room(i, blocker, movers, log))
+    }
+
+    fn parked_robot_that_slows(&self, i: usize, movers: &[Mover]) -> Option<usize> {
+        let me = &movers[i];
+        let is_parked = |j: &usize| !movers[*j].wishes_to_move();
+        let is_slowed = self.directives[i].velocity().dot(me.wish) < SLOWED * me.wish.length_squared();
+        let may_ask = is_slowed && self.entries[i].waits_for.is_none();
+        if !may_ask || !self.neighbours.of(i).iter().any(is_parked) {
+            return None;
+        }
+        self.robot_in_the_way(i, movers).filter(is_parked)
+    }
+
+    /// Lets a robot ask the robot in its way to make room: a parked one as soon as it slows the robot down,
+    /// any other once the robot comes no nearer to its goal.
+    pub(super) fn push(&mut self, i: usize, movers: &[Mover], leaders: &[usize], log: &mut EventLog) {
+        if self.ask_parked(i, movers, log) {
+            return;
+        }
+        let me = &movers[i];
+        let is_due = me.stalled_steps > 0
+            && (me.stalled_steps.is_multiple_of(self.ask_again) || me.stalled_steps == self.stuck_steps);
+        if !is_due || !me.wishes_to_move() || self.entries[i].waits_for.is_some() {
+            return;
+        }
+        let Some(blocker) = self.robot_in_the_way(i, movers) else { return };
+        if self.retreats.serves(i, blocker) {
+            return;
+        }
+        if me.stalled_steps == self.stuck_steps {
+            log.push(Event::Deadlocked { robots: vec![me.robot, movers[blocker].robot] });
+        }
+        if !movers[blocker].wishes_to_move() || leaders.contains(&i) || self.may_push(i, blocker, movers) {
+            self.make_room(i, blocker, movers, log);
+        }
+    }
+
+    /// Whether a robot may ask another robot with a goal of its own to make room.
+    fn may_push(&self, i: usize, blocker: usize, movers: &[Mover]) -> bool {
+        let (me, other) = (&movers[i], &movers[blocker]);
+        let goes_after = match (self.entries[i].rank, self.entries[blocker].rank) {
+            (Some(mine), Some(its)) => its < mine,
+            _ => false,
+        };
+        let has_better_claim = || {
+            let longest_first = other.stalled_steps.cmp(&me.stalled_steps);
+            longest_first.then(me.priority.precedence(&other.priority)).is_lt()
+        };
+        me.stalled_steps >= self.stuck_steps
+            && !goes_after
+            && me.wish.normalize_or_zero().dot(other.wish.normalize_or_zero()) < ALONG
+            && has_better_claim()
+    }
+}
