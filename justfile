@@ -8,7 +8,7 @@ ci:
 soak:
     cargo run --release --package xtask -- soak
 
-# 500 random worlds in the open and 500 with rooms: violations, internal errors, fleets and robots that do not get on
+# 500 random worlds in the open and 500 with rooms, 900 s each: violations, internal errors, fleets and robots that do not get on
 worlds:
     cargo run --release --package xtask -- worlds
 

@@ -2,14 +2,14 @@
 //! than one robot in a hundred makes no progress for half a minute, an invariant is violated, or a panic
 //! occurs.
 //!
-//! `worlds [FIRST_SEED] [WORLDS] [open|rooms]`: worlds in the open, or rooms whose walls meet; by default
-//! both.
+//! `worlds [FIRST_SEED] [WORLDS] [SECONDS] [open|rooms]`: worlds in the open, or rooms whose walls meet, for
+//! so many simulated seconds; by default 500 of both, for 900 s.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::process::ExitCode;
 
 use rayon::prelude::*;
-use usar_sim::scenario::Scenario;
+use usar_sim::scenario::{Scenario, ScenarioFile};
 use xtask::journeys::{Journeys, STANDSTILL_S};
 use xtask::{rooms, worlds};
 
@@ -23,32 +23,39 @@ pub fn run(arguments: &[String]) -> ExitCode {
     let numbers: Vec<u64> =
         arguments.iter().filter(is_number).map(|text| text.parse().expect("a number")).collect();
     let (first, count) = (numbers.first().copied().unwrap_or(0), numbers.get(1).copied().unwrap_or(500));
+    let duration_s = numbers.get(2).map_or(900.0, |seconds| *seconds as f64);
     let chosen = arguments.iter().find(|text| !is_number(text));
     let is_chosen = |family: &&Family| chosen.is_none_or(|name| name == family.0);
     let families: Vec<&Family> = FAMILIES.iter().filter(is_chosen).collect();
-    if families.is_empty() || arguments.len() > 3 {
-        eprintln!("usage: worlds [FIRST_SEED] [WORLDS] [open|rooms]");
+    if families.is_empty() || arguments.len() > 4 {
+        eprintln!("usage: worlds [FIRST_SEED] [WORLDS] [SECONDS] [open|rooms]");
         return ExitCode::from(2);
     }
     std::panic::set_hook(Box::new(|_| {})); // a panic is counted, and told in one line
-    let sound =
-        families.iter().map(|family| run_family(family, first..first + count)).filter(|is_sound| *is_sound);
+    let is_sound = |family: &&&Family| run_family(family, first..first + count, duration_s);
+    let sound = families.iter().filter(is_sound);
     ExitCode::from(u8::from(sound.count() < families.len()))
 }
 
 /// Runs a family's worlds; returns whether they are sound.
-fn run_family((name, world): &Family, seeds: std::ops::Range<u64>) -> bool {
+fn run_family((name, world): &Family, seeds: std::ops::Range<u64>, duration_s: f64) -> bool {
     let mut totals = Totals { family: name, ..Totals::default() };
     for start in seeds.clone().step_by(CHUNK) {
         let chunk = start..(start + CHUNK as u64).min(seeds.end);
         let run = |seed: u64| {
-            let result = catch_unwind(AssertUnwindSafe(|| Journeys::run(&world(seed), seed)));
+            let result = catch_unwind(AssertUnwindSafe(|| Journeys::run(&lasting(&world(seed), duration_s), seed)));
             (seed, result.unwrap_or_else(|_| Err(INTERNAL.to_owned())))
         };
         let results: Vec<(u64, Result<Journeys, String>)> = chunk.into_par_iter().map(run).collect();
         results.iter().for_each(|(seed, result)| totals.add(*seed, result));
     }
     totals.print(seeds.end - seeds.start)
+}
+
+/// A world with another duration.
+fn lasting(scenario: &Scenario, duration_s: f64) -> Scenario {
+    let file = ScenarioFile { duration_s, ..(**scenario).clone() };
+    Scenario::try_from(file).unwrap_or_else(|problems| panic!("{problems:?}"))
 }
 
 /// The text that stands for the message of a panic.
