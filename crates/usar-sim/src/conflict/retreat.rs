@@ -390,6 +390,21 @@ mod tests {
     use super::*;
 
     #[test]
+    fn a_robot_goes_on_once_its_route_is_clear_for_a_while() {
+        let me = crate::conflict::testing::mover(0, [5.0, 6.0], [1.0, 0.0]);
+        let is_clear = |other_way: &[[f32; 2]], within: f32| {
+            let way: Vec<Vector> = other_way.iter().copied().map(Vector::from).collect();
+            is_clear_ahead(&me, within, &way, 0.8)
+        };
+        assert!(is_clear(&[[4.0, 5.0], [0.0, 5.0]], 3.0), "the other robot has passed");
+        assert!(!is_clear(&[[6.0, 5.5], [0.0, 5.5]], 3.0), "it has still to pass");
+        assert!(is_clear(&[[12.0, 6.0], [12.0, 9.0]], 3.0), "it crosses the route farther on");
+        assert!(!is_clear(&[[12.0, 6.0], [12.0, 9.0]], 8.0), "and that counts if it is within the distance");
+        let parked = Mover { route: &[], ..me };
+        assert!(!is_clear_ahead(&parked, 3.0, &[Vector::ZERO], 0.8), "a robot without a route stays");
+    }
+
+    #[test]
     fn a_robot_serves_all_robots_up_its_chain() {
         let retreat = |head| Retreat {
             head,

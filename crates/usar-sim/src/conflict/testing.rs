@@ -1,9 +1,10 @@
-//! Robots for unit tests.
+//! Robots and a resolver for unit tests.
 
 use parry2d::math::Vector;
 
-use super::{Mover, PriorityKey};
+use super::{Mover, PriorityKey, Resolver};
 use crate::ids::RobotId;
+use crate::scenario::Scenario;
 
 /// A ground robot of 0.4 m radius with this preferred velocity, whose route leads 10 m in that direction.
 pub(super) fn mover(id: u32, at: [f32; 2], wish: [f32; 2]) -> Mover<'static> {
@@ -31,4 +32,12 @@ pub(super) fn mover(id: u32, at: [f32; 2], wish: [f32; 2]) -> Mover<'static> {
         known: None,
         can_make_room: true,
     }
+}
+
+/// A resolver with the default rule, for steps of 0.02 s in an arena of 20 m.
+pub(super) fn resolver() -> Resolver {
+    let text = "(name: \"t\", duration_s: 10, dt_s: 0.02, arena_m: (20, 20), team: [(role: \"robot\", \
+                count: 1, center: (5, 5), width_m: 0)], roles: [(name: \"robot\")], errands: [(robot: 0, \
+                to: [(9, 9)])])";
+    Resolver::new(&Scenario::parse(text, "t.ron".as_ref()).unwrap())
 }

@@ -43,7 +43,8 @@ fn run_family((name, world): &Family, seeds: std::ops::Range<u64>, duration_s: f
     for start in seeds.clone().step_by(CHUNK) {
         let chunk = start..(start + CHUNK as u64).min(seeds.end);
         let run = |seed: u64| {
-            let result = catch_unwind(AssertUnwindSafe(|| Journeys::run(&lasting(&world(seed), duration_s), seed)));
+            let result =
+                catch_unwind(AssertUnwindSafe(|| Journeys::run(&lasting(&world(seed), duration_s), seed)));
             (seed, result.unwrap_or_else(|_| Err(INTERNAL.to_owned())))
         };
         let results: Vec<(u64, Result<Journeys, String>)> = chunk.into_par_iter().map(run).collect();

@@ -236,18 +236,9 @@ impl Resolver {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::conflict::testing::mover;
+    use crate::conflict::testing::{mover, resolver};
     use crate::ids::RobotId;
     use crate::planning::Passage;
-    use crate::scenario::Scenario;
-
-    /// A resolver with the default rule, for steps of 0.02 s in an arena of 20 m.
-    fn resolver() -> Resolver {
-        let text = "(name: \"t\", duration_s: 10, dt_s: 0.02, arena_m: (20, 20), team: [(role: \"robot\", \
-                    count: 1, center: (5, 5), width_m: 0)], roles: [(name: \"robot\")], errands: [(robot: 0, \
-                    to: [(9, 9)])])";
-        Resolver::new(&Scenario::parse(text, "t.ron".as_ref()).unwrap())
-    }
 
     /// A robot that is to go 10 m east, through a passage between x = 10 and x = 12.
     fn entering(id: u32, [x, y]: [f32; 2]) -> Mover<'static> {

@@ -408,6 +408,44 @@ mod tests {
         assert_eq!(waits(&crossed(12.6)), [None, None], "clear of it");
     }
 
+    /// Whether each of two robots in a corridor from x = 0 to 10, with a bay from 4.5 to 5.5, has to make room
+    /// in the bay. The first drives east, the second west if `meets`, otherwise east.
+    fn makes_room_in_bay(first: f32, second: f32, meets: bool) -> [bool; 2] {
+        let east = [passage(0.0, 4.5, 10.0), passage(5.5, 10.0, 4.5)];
+        let west = [passage(10.0, 5.5, 10.0), passage(4.5, 0.0, 4.5)];
+        let on_the_way = |id: u32, left: f32, wish: f32| {
+            let at = if wish > 0.0 { 10.0 - left } else { left };
+            mover(id, [at, 0.0], [wish, 0.0])
+        };
+        let (x, way) = if meets { (-1.0, &west) } else { (1.0, &east) };
+        let movers = [
+            Mover { passages: &east, ..on_the_way(0, first, 1.0) },
+            Mover { passages: way, ..on_the_way(1, second, x) },
+        ];
+        // Routes of test robots lead 10 m on, so that the passages are shifted by the way that is left.
+        let shifted = movers.map(|me| {
+            let shift = me.way_left() - if me.robot.0 == 0 { first } else { second };
+            let passages = me.passages.iter().map(|passage| Passage {
+                enters_at: passage.enters_at + shift,
+                leaves_at: passage.leaves_at + shift,
+                ..passage.clone()
+            });
+            passages.collect::<Vec<Passage>>()
+        });
+        let movers = [0, 1].map(|i| Mover { passages: &shifted[i], ..movers[i] });
+        let entrants = [0, 1].map(|i| Entrant::new(i, &movers[i]).unwrap());
+        [0, 1].map(|i| entrants[i].makes_room_in_bay(&entrants[1 - i], &movers))
+    }
+
+    #[test]
+    fn the_first_of_two_robots_at_a_bay_makes_room_in_it() {
+        assert_eq!(makes_room_in_bay(6.3, 7.0, true), [true, false]);
+        assert_eq!(makes_room_in_bay(7.0, 6.3, true), [false, true]);
+        assert_eq!(makes_room_in_bay(6.3, 6.3, true), [false, true], "as near: the worse claim");
+        assert_eq!(makes_room_in_bay(7.0, 8.0, true), [false, false], "still far from the bay");
+        assert_eq!(makes_room_in_bay(6.3, 7.0, false), [false, false], "the same way");
+    }
+
     #[test]
     fn a_robot_far_from_any_passage_is_none_of_its_business() {
         assert_eq!(decided(&[(2.0, 1.0)], &[])[0].rank, None);

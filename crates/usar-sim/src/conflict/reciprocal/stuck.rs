@@ -93,3 +93,36 @@ impl Resolver {
             && has_better_claim()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::conflict::Directive;
+    use crate::conflict::testing::{mover, resolver};
+    use crate::ids::RobotId;
+
+    /// Robots that make room when a robot drives east towards robots that stand on a line across its way.
+    fn asked(gap: f32, standing: &[f32]) -> Vec<RobotId> {
+        let mut movers = vec![mover(0, [5.0, 8.0], [2.0, 0.0])];
+        movers[0].velocity = movers[0].wish;
+        let at = |y: &f32| [5.8 + gap, *y];
+        movers.extend((1..).zip(standing).map(|(id, y)| mover(id, at(y), [0.0, 0.0])));
+        let mut resolver = resolver();
+        resolver.resolve(&mut movers, &mut EventLog::default());
+        let directives = resolver.resolve(&mut movers, &mut EventLog::default()).iter();
+        let makes_room = |directive: &Directive| matches!(directive, Directive::Retreat { .. });
+        (0..)
+            .zip(directives)
+            .filter(|(_, directive)| makes_room(directive))
+            .map(|(i, _)| RobotId(i))
+            .collect()
+    }
+
+    #[test]
+    fn a_parked_robot_is_asked_as_soon_as_it_slows_another_down() {
+        let row = [6.1, 7.05, 8.0, 8.95, 9.9];
+        assert_eq!(asked(1.0, &row), [RobotId(3)], "the row leaves no gap");
+        assert_eq!(asked(6.0, &row), [], "far away");
+        assert_eq!(asked(1.0, &[6.5, 9.5]), [], "between two robots there is room");
+    }
+}
