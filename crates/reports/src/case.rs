@@ -232,9 +232,7 @@ fn row(c: &Comparison) -> Row {
             .interval
             .map_or("-".to_owned(), |[low, high]| format!("{} to {}", short(low), short(high))),
         p: c.p.map_or("-".to_owned(), short_p),
-        verdict: c
-            .judged
-            .map_or(String::new(), |judged| format!("{} ({})", judged.verdict.name(), short(judged.margin))),
+        verdict: c.judged.map_or(String::new(), |judged| judged.in_words()),
         p_holm: c.p_holm.map_or("-".to_owned(), short_p),
         needed: c.pairs_needed.map_or("-".to_owned(), |pairs| pairs.to_string()),
         pairing: c.pairing.map_or("-".to_owned(), |times| format!("{} x", digits(times, 2))),

@@ -79,6 +79,21 @@ pub fn all(question: &Question) -> Vec<Assignment> {
     assignments.into_iter().map(Assignment::new).collect()
 }
 
+/// Whether the quotas allow an assignment: whether it is one of [`all`].
+#[must_use]
+pub fn allows(question: &Question, assignment: &Assignment) -> bool {
+    question.role_ids().zip(&question.quotas).all(|(role, quota)| {
+        let is_of_role = |id: &&u32| question.of_role(role).any(|member| member.id == **id);
+        let sizes = assignment.groups.iter().map(|group| group.iter().filter(is_of_role).count());
+        let (mut found, mut wanted): (Vec<usize>, _) = (sizes.collect(), quota.members.clone());
+        if !quota.is_binding {
+            found.sort_unstable();
+            wanted.sort_unstable();
+        }
+        found == wanted
+    })
+}
+
 /// The distinct orders of a quota's sizes, the given order first.
 fn orders(quota: &Quota) -> Vec<Vec<usize>> {
     let mut orders = vec![quota.members.clone()];
@@ -239,7 +254,10 @@ mod tests {
                 found == wanted
             })
         };
-        choices.filter(fits).collect()
+        let (fitting, others): (Vec<_>, Vec<_>) = choices.partition(fits);
+        let is_allowed = |groups: &Vec<Vec<u32>>| allows(question, &Assignment::new(groups.clone()));
+        assert!(fitting.iter().all(is_allowed) && !others.iter().any(is_allowed));
+        fitting.into_iter().collect()
     }
 
     fn groups(assignments: &[Assignment]) -> BTreeSet<Vec<Vec<u32>>> {

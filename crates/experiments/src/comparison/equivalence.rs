@@ -2,12 +2,13 @@
 //!
 //! Two policies are *equivalent within a margin* if the 90 % interval of their mean difference lies inside
 //! the margin on both sides. That is the two one-sided tests (TOST, Schuirmann 1987) at 5 %. Otherwise one
-//! policy is *better* if a difference shows after correction and the 95 % interval excludes zero. All other
-//! comparisons are *undecided*: more trials would decide them.
+//! policy is *better* if a difference shows after correction and the 95 % interval excludes zero. It is better
+//! *by over the margin* if that whole interval lies beyond the margin. All other comparisons are *undecided*:
+//! more trials would decide them.
 
 use serde::Serialize;
 
-use super::Comparison;
+use super::{Comparison, short};
 use crate::metric::Direction;
 
 /// Confidence of the interval whose inclusion in the margin is two one-sided tests at 5 %.
@@ -46,6 +47,16 @@ impl Verdict {
     }
 }
 
+/// Whether a difference that is shown is larger than the margin.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Beyond {
+    /// The whole 95 % interval lies beyond the margin.
+    Yes,
+    /// The interval lies on both sides of the margin.
+    Undecided,
+}
+
 /// A margin and the verdict that a comparison gets with it.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Judged {
@@ -55,6 +66,23 @@ pub struct Judged {
     pub interval_90: Option<[f64; 2]>,
     /// The verdict.
     pub verdict: Verdict,
+    /// For a difference that is shown: whether it is larger than the margin.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub beyond: Option<Beyond>,
+}
+
+impl Judged {
+    /// The verdict and what is known of the margin, for a table.
+    #[must_use]
+    pub fn in_words(&self) -> String {
+        let (verdict, margin) = (self.verdict.name(), short(self.margin));
+        match (self.verdict, self.beyond) {
+            (Verdict::Equivalent, _) => format!("{verdict} within {margin}"),
+            (_, Some(Beyond::Yes)) => format!("{verdict} by over {margin}"),
+            (_, Some(Beyond::Undecided)) => format!("{verdict}; over {margin}?"),
+            (_, None) => format!("{verdict} (margin {margin})"),
+        }
+    }
 }
 
 /// Judges a comparison by a margin and the 90 % interval of its difference.
@@ -83,7 +111,10 @@ pub fn judge(
             (Direction::Neither, false) => Verdict::Below,
         }
     };
-    Judged { margin, interval_90, verdict }
+    let is_shown = !matches!(verdict, Verdict::Equivalent | Verdict::Undecided);
+    let is_beyond = |[low, high]: [f64; 2]| low > margin || high < -margin;
+    let beyond = |interval| if is_beyond(interval) { Beyond::Yes } else { Beyond::Undecided };
+    Judged { margin, interval_90, verdict, beyond: comparison.interval.filter(|_| is_shown).map(beyond) }
 }
 
 #[cfg(test)]
@@ -111,6 +142,12 @@ mod tests {
         assert_eq!(judge(&clear, far, 20.0, Direction::Higher).verdict, Verdict::Equivalent);
         let uncorrected = comparison([9.0, 13.0], 0.2);
         assert_eq!(judge(&uncorrected, far, 3.0, Direction::Higher).verdict, Verdict::Undecided);
+        let of = |interval, margin| judge(&comparison(interval, 0.001), far, margin, Direction::Higher);
+        assert_eq!(of([9.0, 13.0], 3.0).in_words(), "better by over 3.00");
+        assert_eq!(of([1.0, 13.0], 3.0).in_words(), "better; over 3.00?");
+        assert_eq!(of([9.0, 13.0], 20.0).in_words(), "equivalent within 20.0");
+        assert_eq!(of([-1.0, 13.0], 3.0).in_words(), "undecided (margin 3.00)");
+        assert_eq!(of([-13.0, -9.0], 3.0).in_words(), "worse by over 3.00");
         let wide = comparison([-1.0, 13.0], 0.001);
         assert_eq!(judge(&wide, far, 3.0, Direction::Higher).verdict, Verdict::Undecided);
     }

@@ -22,7 +22,7 @@ use crate::sweep::folder::Folder;
 pub use answer::answer;
 pub use asked::{Asked, Wishes};
 pub use effect::{Effect, effects};
-pub use equivalence::{Judged, TOST_CONFIDENCE, Verdict, judge};
+pub use equivalence::{Beyond, Judged, TOST_CONFIDENCE, Verdict, judge};
 pub use interaction::{Interaction, interactions};
 pub use pairs::{Cell, Pairs};
 pub use sums::FEW;
@@ -302,13 +302,13 @@ fn in_words(comparison: &Comparison, metrics: &Catalogue) -> String {
     let needed =
         comparison.pairs_needed.filter(|needed| *needed > *n as u64).map_or(String::new(), |needed| {
             format!(
-                " Were this the true difference, about {needed} pairs would show it in four of five \
-            experiments to a single, uncorrected test."
+                " If this is the true difference, one uncorrected test needs about {needed} pairs to detect it \
+                 with 80 % power: a rough figure, since it stands on these trials."
             )
         });
     let is_clear =
         (low > 0.0 || high < 0.0) && comparison.effect.is_some_and(|effect| effect * difference > 0.0);
-    if let Some(Judged { margin, interval_90: Some([low, high]), verdict: Verdict::Equivalent }) =
+    if let Some(Judged { margin, interval_90: Some([low, high]), verdict: Verdict::Equivalent, .. }) =
         comparison.judged
     {
         let (difference, margin) = (short(difference), short(margin));
@@ -336,7 +336,11 @@ fn in_words(comparison: &Comparison, metrics: &Catalogue) -> String {
         );
     }
     if comparison.is_found() {
-        return format!("{place}: {a} is {size} {direction} {b} ({range}; corrected {}).", p_in_words(p));
+        let margin = comparison.judged.map_or(String::new(), beyond_in_words);
+        return format!(
+            "{place}: {a} is {size} {direction} {b} ({range}; corrected {}).{margin}",
+            p_in_words(p)
+        );
     }
     if is_clear && !comparison.is_found() {
         return format!(
@@ -354,6 +358,18 @@ fn in_words(comparison: &Comparison, metrics: &Catalogue) -> String {
          {}).{needed}",
         p_in_words(p)
     )
+}
+
+/// What is known of the margin where a difference is shown.
+fn beyond_in_words(judged: Judged) -> String {
+    let margin = short(judged.margin);
+    match judged.beyond {
+        Some(Beyond::Yes) => format!(" The whole interval lies beyond the margin of {margin}."),
+        Some(Beyond::Undecided) => {
+            format!(" Whether the difference is larger than the margin of {margin} is undecided.")
+        }
+        None => String::new(),
+    }
 }
 
 /// About three significant digits.

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use ron_fields::Fields;
 use ron_fields::limits::Limit;
+use ron_fields::nearest;
 use usar_sim::scenario::{FORMAT, Problem, Scenario, ScenarioFile, parse_ron, read_text};
 
 use xxhash_rust::xxh3::xxh3_128;
@@ -136,8 +137,18 @@ pub(super) fn from_sweep_file(text: String, path: &Path) -> Result<(Parts, Vec<R
     let axes = axes(file.axes, &base, (variants, &bad))?;
     let readings = readings(file.readings, &bad)?;
     let policies = file.policies.unwrap_or_else(|| vec!["RNE".to_owned()]);
+    let mut labels = Vec::new();
     for (i, policy) in policies.iter().enumerate() {
-        PolicySpec::parse(policy).map_err(|error| bad(&format!("policies[{i}]"), &error))?;
+        let spec = PolicySpec::parse(policy).map_err(|error| bad(&format!("policies[{i}]"), &error))?;
+        labels.push(spec.label);
+    }
+    if let Some(baseline) = &file.baseline {
+        let is_reading = !readings.is_empty() && baseline.starts_with("RNE(");
+        if !is_reading && !labels.contains(baseline) {
+            let known = labels.join(", ");
+            let rule = format!("must be a policy of the sweep ({known}), found {baseline:?}");
+            return Err(bad("baseline", &did_you_mean(rule, baseline, &labels)));
+        }
     }
     let seeds = match (file.seeds, file.first_seed) {
         (Some(_), Some(_)) => return Err(bad("seeds", &"must not be given beside first_seed")),
@@ -173,6 +184,14 @@ pub(super) fn from_sweep_file(text: String, path: &Path) -> Result<(Parts, Vec<R
 /// `roles.carrier.speed_mps`.
 pub(super) fn canonical(scenario: &Scenario, path: &str) -> String {
     Fields::of(&scenario.resolved()).canonical(path).unwrap_or_else(|| path.to_owned())
+}
+
+/// A message, with the nearest of the known names where one is near.
+fn did_you_mean(message: String, found: &str, known: &[String]) -> String {
+    match nearest(found, known.iter().map(String::as_str)) {
+        Some(meant) => format!("{message}; did you mean {meant}?"),
+        None => message,
+    }
 }
 
 type Bad<'a> = dyn Fn(&str, &dyn std::fmt::Display) -> Failure + 'a;

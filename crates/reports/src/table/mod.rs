@@ -82,17 +82,14 @@ pub fn comparison_table(comparisons: &[&Comparison]) -> Table {
         "effect",
         "pairs for 80 %",
     ];
-    let mut table =
-        headed(header.into_iter().chain(is_judged.then_some("verdict (margin)")).collect::<Vec<_>>());
+    let mut table = headed(header.into_iter().chain(is_judged.then_some("verdict")).collect::<Vec<_>>());
     let number = |value: Option<f64>| right(&value.map_or("-".to_owned(), short));
     let mean = |value: Option<f64>| right(&value.map_or("-".to_owned(), |value| digits(value, 4)));
     for c in comparisons {
         let interval =
             c.interval.map_or("-".to_owned(), |[low, high]| format!("{} to {}", short(low), short(high)));
         let p = |p: Option<f64>| right(&p.map_or("-".to_owned(), short_p));
-        let verdict = c
-            .judged
-            .map_or("-".to_owned(), |judged| format!("{} ({})", judged.verdict.name(), short(judged.margin)));
+        let verdict = c.judged.map_or("-".to_owned(), |judged| judged.in_words());
         let cells = [
             Cell::new(&c.metric),
             Cell::new(format!("{} - {}", c.a, c.b)),

@@ -8,14 +8,14 @@ use experiments::experiment::PolicySpec;
 use experiments::oracle::{Branch, BranchError, Outcome, advance_to};
 use experiments::run::Driver;
 use reports::table::{headed, right};
-use rne_core::{Assignment, Decision, Question};
+use rne_core::{Assignment, Decision, Question, assignments};
 use serde::Serialize;
 use usar_sim::record::TrialRecord;
 use usar_sim::simulation::{Checkpoint, Decider, Simulation};
 
 use super::asked::{AskedTrial, TrialArguments};
 use super::{SCHEMA_VERSION, ShownArguments, print_table};
-use crate::running::{STOP, stop_on_signals};
+use crate::running::{STOP, stop_on_signals, tell};
 
 /// What if round N had been decided otherwise? Both trials, side by side
 #[derive(Debug, Args)]
@@ -141,6 +141,12 @@ impl Arguments {
                 let assignment = parse_groups(written.as_deref().unwrap_or_default(), question);
                 let assignment = assignment.map_err(|error| Failure::input(format!("--assign: {error}")))?;
                 assignment.check(question).map_err(|error| Failure::input(format!("--assign: {error}")))?;
+                if !assignments::allows(question, &assignment) {
+                    tell(format_args!(
+                        "note: --assign: no policy can choose these groups, because the quotas do not allow \
+                         them; `usar oracle` plays those that they allow"
+                    ));
+                }
                 Ok(Decision::unscored(assignment.groups))
             }
         }

@@ -19,6 +19,7 @@ use usar_sim::simulation::{Decider, Simulation};
 use self::event_lines::EventLines;
 use self::live::Live;
 use self::story::Story;
+use crate::printable::counted;
 use crate::recordings;
 
 use super::snapshot::{Snapshot, save};
@@ -218,20 +219,22 @@ fn print(out: &mut dyn Write, [scenario, policy]: [&str; 2], record: &TrialRecor
     let (waiting, stall) = (record.waiting_s(), record.longest_stall_s());
     writeln!(
         out,
-        "robots       turned back {} times, {} stranded, {} disabled",
-        record.counts.turned_back,
+        "robots       turned back {}, {} stranded, {} disabled",
+        counted(record.counts.turned_back as usize, "time"),
         record.stranded(),
         record.disabled()
     )?;
     writeln!(
         out,
-        "conflicts    {} conflicts, {} deadlocks, {waiting:.0} s waited in all, longest stall {stall:.1} s",
+        "conflicts    {}, deadlocks {}, {waiting:.0} s waited in all, longest stall {stall:.1} s",
         record.counts.conflicts, record.counts.deadlocks
     )?;
     writeln!(
         out,
-        "deadlocks    {} times a robot made room, {} times the turn passed, {} times a set backed off",
-        record.counts.retreats, record.counts.rotations, record.counts.back_offs
+        "right of way a robot made room {}, the turn passed {}, a set backed off {}",
+        counted(record.counts.retreats as usize, "time"),
+        counted(record.counts.rotations as usize, "time"),
+        counted(record.counts.back_offs as usize, "time")
     )?;
     if record.counts.errands_done + record.counts.unreachable > 0 {
         let (done, unreachable) = (record.counts.errands_done, record.counts.unreachable);
