@@ -17,6 +17,9 @@ pub struct OtherChoice {
     pub assignment: Assignment,
     /// Robots that the policy would have sent to another task.
     pub moved: Vec<u32>,
+    /// Why the answer would be refused, if it would be.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub refused: Option<String>,
 }
 
 /// An exchange of two robots of one role, and the policy's score after it.
@@ -35,7 +38,8 @@ pub fn other_choices(question: &Question, chosen: &Assignment, policies: &[Polic
         let assignment = spec.make().ok()?.policy.decide(question).ok()?.assignment;
         let moved = |id: &u32| assignment.task_of(*id) != chosen.task_of(*id);
         let moved = question.members.iter().map(|member| member.id).filter(moved).collect();
-        Some(OtherChoice { policy: spec.label.clone(), assignment, moved })
+        let refused = assignment.check(question).err().map(|error| error.to_string());
+        Some(OtherChoice { policy: spec.label.clone(), assignment, moved, refused })
     };
     policies.iter().filter(|spec| spec.name != NotSimulated::NAME).filter_map(choice).collect()
 }

@@ -6,7 +6,7 @@ use serde::ser::SerializeStructVariant;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use super::file::{self, Door, Normal, Point, ResolverRule, RightOfWay, WallFile};
-use super::ron_options;
+use super::{reading, ron_options};
 use crate::vitals;
 
 /// Initial levels as they are written.
@@ -75,8 +75,9 @@ pub(super) fn text_of<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Stri
 
 fn read<T: for<'de> Deserialize<'de>, E: Error>(text: &str) -> Result<T, E> {
     ron_options().from_str(text).map_err(|error| {
-        let at = error.span.start.col.saturating_sub(1);
-        E::custom(Misfit::new(&error.code, "", (text, at), &Fields::of(text)).packed())
+        let path = reading::read::<T>(text).err().map_or(String::new(), |found| found.1);
+        let at = reading::offset(text, error.span.start.line, error.span.start.col);
+        E::custom(Misfit::new(&error.code, &path, (text, at), &Fields::of(text)).packed())
     })
 }
 

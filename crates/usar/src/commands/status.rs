@@ -12,7 +12,7 @@ use experiments::sweep::disk::{experiment_in, is_sweeps, sweeps_in};
 use serde::Serialize;
 
 use super::estimate::duration;
-use super::submit::{LOGS, Submission, line};
+use super::submit::{LOGS, Submission, line, quoted};
 use super::{SCHEMA_VERSION, slurm};
 use shards::{OneShard, Said, State, ranges, seconds_each};
 
@@ -49,6 +49,8 @@ struct Output {
     seconds_left: Option<f64>,
     /// The command that submits the missing shards.
     submit: Option<String>,
+    /// The command that merges the shards, if all are done and none has merged them.
+    merge: Option<String>,
 }
 
 impl Arguments {
@@ -66,7 +68,7 @@ impl Arguments {
 
 /// The state of the shards of a submission.
 fn submitted(folder: &Path, submission: &Submission) -> Result<Output, Failure> {
-    let Submission { array, plan, name, .. } = submission;
+    let Submission { array, plan, name, out, .. } = submission;
     let array = array.as_deref().unwrap_or_default();
     let said = Said { queued: slurm::queued(array, name), ended: slurm::ended(array) };
     let of = |(number, trials): (u32, &usize)| {
@@ -79,6 +81,7 @@ fn submitted(folder: &Path, submission: &Submission) -> Result<Output, Failure> 
     let is_under_way = |shard: &OneShard| matches!(shard.state, State::Running | State::Waiting);
     let other = output.shards.iter().any(is_under_way).then_some(array);
     output.submit = (!missing.is_empty()).then(|| line(folder, Some(&tasks), other));
+    output.merge = merge_line(&output.shards, folder, out);
     Ok(output)
 }
 
@@ -94,22 +97,46 @@ fn by_hand(folder: &Path) -> Result<Output, Failure> {
         let (experiment, manifest) = experiment_in(&place)?;
         let number = manifest.shard.map_or(1, |shard| shard.number);
         let mut shard = OneShard::of(number, place, experiment.count(manifest.shard), &said)?;
-        if let Some(Shard { number, of }) = manifest.shard.filter(|_| shard.state == State::Lost) {
-            shard.why = format!("nothing is at work in its folder: --shard {number}/{of} goes on");
+        if let Some(of) = manifest.shard.filter(|_| shard.state == State::Lost) {
+            shard.why =
+                format!("nothing is at work in its folder; to go on: {}", shard.command(&shard.folder, of));
         }
         all = manifest.shard.map(|shard| (experiment, shard.of));
         shards.push(shard);
     }
     if let Some((experiment, of)) = all.filter(|_| !is_sweeps(folder)) {
+        let like = shards[0].folder.clone();
         let is_there = |number: &u32| shards.iter().any(|shard| shard.number == *number);
         let absent: Vec<u32> = (1..=of).filter(|number| !is_there(number)).collect();
         shards.extend(absent.into_iter().map(|number| {
-            let trials = experiment.count(Some(Shard { number, of }));
-            OneShard::absent((number, of), folder.join(number.to_string()), trials)
+            let shard = Shard { number, of };
+            let trials = experiment.count(Some(shard));
+            OneShard::absent(shard, folder.join(number.to_string()), (trials, &like))
         }));
         shards.sort_by_key(|shard| shard.number);
     }
-    Ok(Output::of(shards, 1, 0.0))
+    let whole = (!is_sweeps(folder)).then(|| whole_of(folder));
+    Ok(Output {
+        merge: whole.and_then(|whole| merge_line(&shards, folder, &whole)),
+        ..Output::of(shards, 1, 0.0)
+    })
+}
+
+/// The folder that the shards of a folder are merged into: `results/x` for `results/x-shards`.
+fn whole_of(folder: &Path) -> PathBuf {
+    let name = folder.file_name().unwrap_or_default().to_string_lossy();
+    folder.with_file_name(name.strip_suffix("-shards").map_or(format!("{name}-merged"), str::to_owned))
+}
+
+/// The command that merges the shards, if all are done and the merged folder is not there.
+fn merge_line(shards: &[OneShard], folder: &Path, whole: &Path) -> Option<String> {
+    let is_due = shards.iter().all(|shard| shard.state == State::Done) && !whole.exists();
+    is_due.then(|| format!("usar merge {} --out {}", shown(folder), shown(whole)))
+}
+
+/// A path as it is typed in a shell.
+fn shown(path: &Path) -> String {
+    quoted(&path.display().to_string())
 }
 
 impl Output {
@@ -122,7 +149,15 @@ impl Output {
         let at_a_time = if running > 0 { running } else { at_once as usize }.min(open).max(1);
         let seconds_left = each * (trials - finished) as f64 / at_a_time as f64;
         let seconds_left = (each > 0.0).then_some(seconds_left);
-        Self { schema_version: SCHEMA_VERSION, shards, finished, trials, seconds_left, submit: None }
+        Self {
+            schema_version: SCHEMA_VERSION,
+            shards,
+            finished,
+            trials,
+            seconds_left,
+            submit: None,
+            merge: None,
+        }
     }
 
     /// The shards that no process or queued task will finish.
@@ -146,6 +181,9 @@ impl Output {
         }
         if open.len() > MOST_LISTED {
             writeln!(out, "  ... and {} more: --json has all", open.len() - MOST_LISTED)?;
+        }
+        if let Some(line) = &self.merge {
+            writeln!(out, "all shards are done, and none has merged them:\n{line}")?;
         }
         if let Some(line) = &self.submit {
             writeln!(

@@ -119,7 +119,11 @@ impl Arguments {
         let (shards, trials) = (plan.shards(), plan.trials.iter().max().copied().unwrap_or(0));
         let (time, cpus) = (duration(plan.seconds()), plan.cpus);
         let (shards, cpus) = (counted(shards, "shard"), counted(cpus as usize, "thread"));
-        writeln!(out, "{shards} of up to {trials} trials, each about {time} on {cpus}")?;
+        let each = if plan.shards() == 1 { "" } else { "each " };
+        writeln!(out, "{shards}: {each}up to {trials} trials, about {time} on {cpus}")?;
+        if plan.shards() == 1 && self.shards.is_none() {
+            writeln!(out, "the sweep is short, so that one task is enough; --shards N splits it")?;
+        }
         if self.dry_run {
             return print(out, &scripts, &folder);
         }

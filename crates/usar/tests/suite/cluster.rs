@@ -41,7 +41,7 @@ fn a_sweep_on_a_cluster_goes_on_after_kills_and_has_the_bytes_of_a_single_run() 
     let troubles = [("FAKE_KILLED", "2"), ("FAKE_LOST", "4")];
     let mut command = Command::new(program());
     let said = succeeds(&with_slurm(here, command.args(submit(&["--shards", "4"])), &troubles));
-    assert!(said.starts_with("4 shards of up to 10 trials, each about "), "{said}");
+    assert!(said.starts_with("4 shards: each up to 10 trials, about "), "{said}");
     assert!(said.contains("submitted: array 1, and after it 2, which writes "), "{said}");
     assert!(!here.join("results/paper").exists(), "the job after it waits for all");
     let before = status(here);
@@ -128,10 +128,19 @@ fn shards_that_were_run_by_hand_have_a_status_too() {
     succeeds(&usar(here, &[&["sweep"], &SWEEP[..], &["--shard", "1/2"]].concat()));
     let said = succeeds(&usar(here, &["status", "results"]));
     assert!(said.starts_with("shards  2: 1 done, 1 lost\ntrials  20 of 40\n"), "{said}");
-    assert!(said.contains("has no folder here: --shard 2/2 --out results/2 runs it"), "{said}");
     let own = std::fs::read_dir(here.join("results")).unwrap().next().unwrap().unwrap().path();
+    let own = own.strip_prefix(here).unwrap();
+    let command = format!("usar sweep {}/sweep.ron --shard 2/2 --out results/2", own.display());
+    assert!(said.contains(&format!("not started; to run it: {command}")), "{said}");
     let said = succeeds(&usar(here, &["status", own.to_str().unwrap()]));
     assert!(said.starts_with("shards  1: 1 done\ntrials  20 of 20\n"), "{said}");
+    // The command runs the shard, and then the command that merges is told.
+    succeeds(&usar(here, &command.split(' ').skip(1).collect::<Vec<_>>()));
+    let said = succeeds(&usar(here, &["status", "results"]));
+    assert!(said.ends_with("none has merged them:\nusar merge results --out results-merged\n"), "{said}");
+    succeeds(&usar(here, &["merge", "results", "--out", "results-merged"]));
+    let said = succeeds(&usar(here, &["status", "results"]));
+    assert!(said.ends_with("trials  40 of 40\n"), "{said}");
     std::fs::create_dir(here.join("empty")).unwrap();
     refused(here, 2, &["status", "empty"], &["has neither shards nor a sweep in it"]);
 }

@@ -3,11 +3,13 @@
 use std::path::{Path, PathBuf};
 
 use experiments::Failure;
+use experiments::experiment::Shard;
 use experiments::sweep::host::Hosts;
 use experiments::sweep::progress::{Progress, progress};
 use serde::Serialize;
 
 use super::super::slurm::Tasks;
+use super::super::submit::quoted;
 
 /// The state of a shard.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
@@ -75,10 +77,19 @@ impl OneShard {
         Ok(Self { number, state, why, finished, trials, folder })
     }
 
-    /// A shard that has no folder yet.
-    pub(super) fn absent((number, of): (u32, u32), folder: PathBuf, trials: usize) -> Self {
-        let why = format!("has no folder here: --shard {number}/{of} --out {} runs it", folder.display());
-        Self { number, state: State::Lost, why, finished: 0, trials, folder }
+    /// A shard that has no folder yet, with the number of its trials and the folder of another shard.
+    pub(super) fn absent(shard: Shard, folder: PathBuf, (trials, like): (usize, &Path)) -> Self {
+        let number = shard.number;
+        let mut absent = Self { number, state: State::Lost, why: String::new(), finished: 0, trials, folder };
+        absent.why = format!("not started; to run it: {}", absent.command(like, shard));
+        absent
+    }
+
+    /// The command that runs this shard, from the sweep file in the folder of this or another shard.
+    pub(super) fn command(&self, like: &Path, Shard { number, of }: Shard) -> String {
+        let [file, out] =
+            [&like.join("sweep.ron"), &self.folder].map(|path| quoted(&path.display().to_string()));
+        format!("usar sweep {file} --shard {number}/{of} --out {out}")
     }
 }
 

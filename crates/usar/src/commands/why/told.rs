@@ -165,9 +165,10 @@ fn others(out: &mut dyn Write, question: &Question, others: &[OtherChoice]) -> R
             .task_ids()
             .map(|task| format!("{} {}", question.tasks[task.index()].name, ids(other.assignment.of(task))));
         let groups = groups.collect::<Vec<_>>().join("; ");
-        let moved = match other.moved.len() {
-            0 => "the same".to_owned(),
-            count => format!("{count} robots elsewhere: {groups}"),
+        let moved = match (&other.refused, other.moved.len()) {
+            (Some(reason), _) => format!("an answer that is refused: {reason}"),
+            (None, 0) => "the same".to_owned(),
+            (None, count) => format!("{count} robots elsewhere: {groups}"),
         };
         writeln!(out, "  {}: {moved}", other.policy)?;
     }
