@@ -165,7 +165,7 @@ impl Resolver {
     /// The directive of a robot: the velocity that it takes among the others, or why it stands still.
     fn steer(&self, i: usize, movers: &[Mover]) -> Directive {
         let me = &movers[i];
-        if !me.can_make_room {
+        if !me.can_make_room && !me.wishes_to_move() {
             return Directive::Stand;
         }
         let neighbours = self.neighbours.of(i).iter().map(|j| self.neighbour(i, *j, movers)).collect();
@@ -274,6 +274,17 @@ mod tests {
         movers[0].stalled_steps = resolver.stuck_steps;
         let directives = resolver.resolve(&mut movers, &mut EventLog::default());
         assert_eq!(directives[0].waits_for(), Some(RobotId(1)), "{directives:?}");
+    }
+
+    #[test]
+    fn a_resting_robot_that_was_pushed_aside_goes_back() {
+        let directive = |wish: [f32; 2]| {
+            let mut movers = [mover(0, [5.0, 5.0], wish)];
+            movers[0].can_make_room = false;
+            resolver().resolve(&mut movers, &mut EventLog::default())[0]
+        };
+        assert_eq!(directive([1.0, 0.0]), Directive::Proceed(Vector::X));
+        assert_eq!(directive([0.0, 0.0]), Directive::Stand);
     }
 
     #[test]
