@@ -79,7 +79,7 @@ bench:
 instructions *arguments:
     bash .ci/instructions {{arguments}}
 
-# 10,000 robots for a minute: time and memory
+# 10,000 robots for a minute: time, memory, rescuees; other numbers and a resolver as arguments
 scale *arguments:
     cargo run --release --package xtask -- scale {{arguments}}
 

@@ -1,20 +1,27 @@
-//! A large team at the usual density: whether it runs, the time of a step, and the memory that it needs.
+//! A large team at the usual density: whether it runs, how many it rescues, the time of a step, and the memory
+//! that it needs.
 //!
-//! `scale [ROBOTS] [SECONDS]`
+//! `scale [ROBOTS] [SECONDS] [RESOLVER]`; the resolver is that of `conflicts.resolver`.
 
 use std::process::ExitCode;
 use std::time::Instant;
 
 use rne_core::Registry;
 use usar_sim::record::Status;
+use usar_sim::scenario::Scenario;
 use usar_sim::simulation::Simulation;
 use xtask::density;
 
 pub fn run(arguments: &[String]) -> ExitCode {
-    let mut arguments = arguments.iter().map(|text| text.parse::<u32>().expect("a whole number"));
-    let robots = arguments.next().unwrap_or(10_000);
-    let seconds = arguments.next().unwrap_or(60);
-    let scenario = density::mission(robots, f64::from(seconds), None);
+    let number =
+        |at: usize, usual: u32| arguments.get(at).map_or(usual, |text| text.parse().expect("a whole number"));
+    let (robots, seconds) = (number(0, 10_000), number(1, 60));
+    let mut scenario = density::mission(robots, f64::from(seconds), None);
+    if let Some(resolver) = arguments.get(2) {
+        let mut file = (*scenario).clone();
+        file.set("conflicts.resolver", resolver).expect("a resolver");
+        scenario = Scenario::try_from(file).expect("a scenario that can be used");
+    }
     let eng = Registry::standard().parse("ENG").expect("known");
     let start = Instant::now();
     let mut trial = Simulation::new(&scenario, 1).expect("drawn");
