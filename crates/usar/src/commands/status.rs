@@ -49,7 +49,7 @@ struct Output {
     seconds_left: Option<f64>,
     /// The command that submits the missing shards.
     submit: Option<String>,
-    /// The command that merges the shards, if all are done and none has merged them.
+    /// The command that merges the shards, if all are done and the merged folder is not beside them.
     merge: Option<String>,
 }
 
@@ -92,16 +92,19 @@ fn by_hand(folder: &Path) -> Result<Output, Failure> {
         return Err(Failure::input(format!("{}: has neither shards nor a sweep in it", folder.display())));
     }
     let said = Said { queued: None, ended: slurm::Tasks::new() };
-    let (mut shards, mut all) = (Vec::new(), None);
+    let (mut shards, mut all, mut is_checked) = (Vec::new(), None, false);
     for place in folders {
         let (experiment, manifest) = experiment_in(&place)?;
         let number = manifest.shard.map_or(1, |shard| shard.number);
         let mut shard = OneShard::of(number, place, experiment.count(manifest.shard), &said)?;
         if let Some(of) = manifest.shard.filter(|_| shard.state == State::Lost) {
-            shard.why =
-                format!("nothing is at work in its folder; to go on: {}", shard.command(&shard.folder, of));
+            shard.why = format!(
+                "nothing is at work in its folder; to go on: {}",
+                shard.command((&shard.folder, manifest.is_checked), of)
+            );
         }
         all = manifest.shard.map(|shard| (experiment, shard.of));
+        is_checked = manifest.is_checked;
         shards.push(shard);
     }
     if let Some((experiment, of)) = all.filter(|_| !is_sweeps(folder)) {
@@ -111,7 +114,7 @@ fn by_hand(folder: &Path) -> Result<Output, Failure> {
         shards.extend(absent.into_iter().map(|number| {
             let shard = Shard { number, of };
             let trials = experiment.count(Some(shard));
-            OneShard::absent(shard, folder.join(number.to_string()), (trials, &like))
+            OneShard::absent(shard, folder.join(number.to_string()), trials, (&like, is_checked))
         }));
         shards.sort_by_key(|shard| shard.number);
     }
@@ -125,6 +128,9 @@ fn by_hand(folder: &Path) -> Result<Output, Failure> {
 /// The folder that the shards of a folder are merged into: `results/x` for `results/x-shards`.
 fn whole_of(folder: &Path) -> PathBuf {
     let name = folder.file_name().unwrap_or_default().to_string_lossy();
+    if name.is_empty() {
+        return folder.join("../merged"); // `.` or `..`
+    }
     folder.with_file_name(name.strip_suffix("-shards").map_or(format!("{name}-merged"), str::to_owned))
 }
 
@@ -183,7 +189,7 @@ impl Output {
             writeln!(out, "  ... and {} more: --json has all", open.len() - MOST_LISTED)?;
         }
         if let Some(line) = &self.merge {
-            writeln!(out, "all shards are done, and none has merged them:\n{line}")?;
+            writeln!(out, "all shards are done; this merges them:\n{line}")?;
         }
         if let Some(line) = &self.submit {
             writeln!(

@@ -137,7 +137,7 @@ fn shards_that_were_run_by_hand_have_a_status_too() {
     // The command runs the shard, and then the command that merges is told.
     succeeds(&usar(here, &command.split(' ').skip(1).collect::<Vec<_>>()));
     let said = succeeds(&usar(here, &["status", "results"]));
-    assert!(said.ends_with("none has merged them:\nusar merge results --out results-merged\n"), "{said}");
+    assert!(said.ends_with("this merges them:\nusar merge results --out results-merged\n"), "{said}");
     succeeds(&usar(here, &["merge", "results", "--out", "results-merged"]));
     let said = succeeds(&usar(here, &["status", "results"]));
     assert!(said.ends_with("trials  40 of 40\n"), "{said}");
