@@ -1,5 +1,5 @@
-//! A large team at the usual density: whether it runs, how many it rescues, the time of a step, and the memory
-//! that it needs.
+//! A large team at the usual density: whether it runs, how many it rescues, the time of a step, and the
+//! memory that it needs.
 //!
 //! `scale [ROBOTS] [SECONDS] [RESOLVER]`; the resolver is that of `conflicts.resolver`.
 
