@@ -302,27 +302,14 @@ fn in_words(comparison: &Comparison, metrics: &Catalogue) -> String {
     let needed =
         comparison.pairs_needed.filter(|needed| *needed > *n as u64).map_or(String::new(), |needed| {
             format!(
-                " If this is the true difference, one uncorrected test needs about {needed} pairs to detect it \
-                 with 80 % power: a rough figure, since it stands on these trials."
+                " If this is the true difference, one uncorrected test needs about {needed} pairs to \
+                 detect it with 80 % power: a rough figure, since it stands on these trials."
             )
         });
     let is_clear =
         (low > 0.0 || high < 0.0) && comparison.effect.is_some_and(|effect| effect * difference > 0.0);
-    if let Some(Judged { margin, interval_90: Some([low, high]), verdict: Verdict::Equivalent, .. }) =
-        comparison.judged
-    {
-        let (difference, margin) = (short(difference), short(margin));
-        let range =
-            format!("difference {difference}, 90 % interval {} to {}, n = {n}", short(low), short(high));
-        let shown = if comparison.is_found() {
-            format!(
-                "; the difference is shown (corrected {}), and smaller than what was said to matter",
-                p_in_words(p)
-            )
-        } else {
-            String::new()
-        };
-        return format!("{place}: {a} and {b} are equivalent within {margin} ({range}){shown}.");
+    if let Some(equivalence) = equivalence_in_words(comparison, difference, p) {
+        return format!("{place}: {equivalence}");
     }
     if comparison.is_found() && !is_clear {
         let shift = comparison.shift.unwrap_or(0.0);
@@ -358,6 +345,23 @@ fn in_words(comparison: &Comparison, metrics: &Catalogue) -> String {
          {}).{needed}",
         p_in_words(p)
     )
+}
+
+/// That two policies are equivalent, in words; `None` if they are not shown to be.
+fn equivalence_in_words(comparison: &Comparison, difference: f64, p: f64) -> Option<String> {
+    let Judged { margin, interval_90, .. } = comparison.judged.filter(|_| comparison.is_equivalent())?;
+    let ([low, high], Comparison { a, b, n, .. }) = (interval_90?, comparison);
+    let [low, high, difference, margin] = [low, high, difference, margin].map(short);
+    let shown = if comparison.is_found() {
+        let p = p_in_words(p);
+        format!("; the difference is shown (corrected {p}), and smaller than what was said to matter")
+    } else {
+        String::new()
+    };
+    Some(format!(
+        "{a} and {b} are equivalent within {margin} (difference {difference}, 90 % interval {low} to {high}, n = \
+         {n}){shown}."
+    ))
 }
 
 /// What is known of the margin where a difference is shown.

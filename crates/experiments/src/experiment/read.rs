@@ -142,13 +142,9 @@ pub(super) fn from_sweep_file(text: String, path: &Path) -> Result<(Parts, Vec<R
         let spec = PolicySpec::parse(policy).map_err(|error| bad(&format!("policies[{i}]"), &error))?;
         labels.push(spec.label);
     }
-    if let Some(baseline) = &file.baseline {
-        let is_reading = !readings.is_empty() && baseline.starts_with("RNE(");
-        if !is_reading && !labels.contains(baseline) {
-            let known = labels.join(", ");
-            let rule = format!("must be a policy of the sweep ({known}), found {baseline:?}");
-            return Err(bad("baseline", &did_you_mean(rule, baseline, &labels)));
-        }
+    let is_reading = |name: &str| !readings.is_empty() && name.starts_with("RNE(");
+    if let Some(baseline) = file.baseline.as_deref().filter(|name| !is_reading(name)) {
+        check_baseline(baseline, &labels).map_err(|problem| bad("baseline", &problem))?;
     }
     let seeds = match (file.seeds, file.first_seed) {
         (Some(_), Some(_)) => return Err(bad("seeds", &"must not be given beside first_seed")),
@@ -186,12 +182,14 @@ pub(super) fn canonical(scenario: &Scenario, path: &str) -> String {
     Fields::of(&scenario.resolved()).canonical(path).unwrap_or_else(|| path.to_owned())
 }
 
-/// A message, with the nearest of the known names where one is near.
-fn did_you_mean(message: String, found: &str, known: &[String]) -> String {
-    match nearest(found, known.iter().map(String::as_str)) {
-        Some(meant) => format!("{message}; did you mean {meant}?"),
-        None => message,
+/// Checks that a baseline is one of the policies of its sweep.
+fn check_baseline(found: &str, policies: &[String]) -> Result<(), String> {
+    if policies.iter().any(|policy| policy == found) {
+        return Ok(());
     }
+    let meant = nearest(found, policies.iter().map(String::as_str));
+    let hint = meant.map_or(String::new(), |meant| format!("; did you mean {meant}?"));
+    Err(format!("must be a policy of the sweep ({}), found {found:?}{hint}", policies.join(", ")))
 }
 
 type Bad<'a> = dyn Fn(&str, &dyn std::fmt::Display) -> Failure + 'a;

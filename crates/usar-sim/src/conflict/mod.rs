@@ -89,8 +89,8 @@ pub struct Resolver {
     directives: Vec<Directive>,
     /// For each robot, the direction of its last directive; zero if it stood.
     headings: Vec<Vector>,
-    /// For each robot, the number of successive steps in which it was blocked; under the default rule, in which
-    /// a parked robot slowed it down.
+    /// For each robot, the number of successive steps in which it was blocked. Under the default rule: in
+    /// which a parked robot slowed it down.
     blocked_steps: Vec<u32>,
     /// For each robot, its state at a narrow passage.
     entries: Vec<Entry>,

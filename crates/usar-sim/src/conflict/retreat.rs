@@ -308,7 +308,8 @@ impl Retreats {
 /// metres of its route. `false` for a robot without a route.
 fn is_clear_ahead(me: &Mover, within: f32, other_way: &[Vector], apart: f32) -> bool {
     let count = 1 + (within / SAMPLE_M).ceil() as usize;
-    let points = sampled(me.position, me.route);
+    let legs = me.route.len().min(count); // each leg has a point at least
+    let points = sampled(me.position, &me.route[..legs]);
     !me.route.is_empty() && points.iter().take(count).all(|point| keeps_apart(*point, other_way, apart))
 }
 
