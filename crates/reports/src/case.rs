@@ -41,6 +41,10 @@ struct Page<'a> {
     answer: Option<String>,
     /// Whether the sweep file names its metrics.
     is_declared: bool,
+    /// Whether some comparison has a margin.
+    has_margins: bool,
+    /// The margins, and who named them.
+    margins: String,
     summary: Vec<Vec<String>>,
     decisions: Option<Decisions>,
     comparisons: Vec<Row>,
@@ -72,7 +76,8 @@ struct Row {
     p: String,
     p_holm: String,
     verdict: String,
-    needed: String,
+    detectable: String,
+    pairs: String,
     pairing: String,
     is_found: bool,
 }
@@ -118,6 +123,7 @@ pub(crate) fn write_case(
     page.decisions = decided;
     page.answer = wanted.asked.metrics.first().and_then(|metric| answer(folder, *case, *metric, &here));
     page.is_declared = wanted.asked.is_declared;
+    page.margins = wanted.asked.margins_in_words(folder.experiment());
     page.exploratory = exploratory.iter().map(row).collect();
     page.links.clone_from(links);
     if let Some(title) = &wanted.title {
@@ -180,6 +186,8 @@ fn page<'a>(
         policies: experiment.policies.iter().map(|spec| (spec.label.as_str(), about(spec))).collect(),
         answer: None,
         is_declared: false,
+        has_margins: comparisons.iter().any(|comparison| comparison.judged.is_some()),
+        margins: String::new(),
         summary: summary(folder, case),
         decisions: None,
         comparisons: comparisons.iter().map(|comparison| row(comparison)).collect(),
@@ -221,6 +229,7 @@ fn command(folder: &Folder) -> String {
 fn row(c: &Comparison) -> Row {
     let number = |value: Option<f64>| value.map_or("-".to_owned(), short);
     let mean = |value: Option<f64>| value.map_or("-".to_owned(), |value| digits(value, 4));
+    let pairs = c.judged.and_then(|judged| judged.pairs_for_margin);
     Row {
         metric: c.metric.clone(),
         pair: format!("{} - {}", c.a, c.b),
@@ -234,7 +243,8 @@ fn row(c: &Comparison) -> Row {
         p: c.p.map_or("-".to_owned(), short_p),
         verdict: c.judged.map_or(String::new(), |judged| judged.in_words()),
         p_holm: c.p_holm.map_or("-".to_owned(), short_p),
-        needed: c.pairs_needed.map_or("-".to_owned(), |pairs| pairs.to_string()),
+        detectable: number(c.detectable),
+        pairs: pairs.map_or("-".to_owned(), |pairs| pairs.to_string()),
         pairing: c.pairing.map_or("-".to_owned(), |times| format!("{} x", digits(times, 2))),
         is_found: c.is_found(),
     }

@@ -1,10 +1,13 @@
 //! Setting one field of a value by its path.
 
+use std::ops::Range;
+
 use ron::extensions::Extensions;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use thiserror::Error;
 
+use crate::path::is_segment;
 use crate::{Fields, Misfit};
 
 /// Why a field cannot be set.
@@ -39,8 +42,8 @@ fn asked(meant: Option<&str>) -> String {
 }
 
 /// Sets the field at a path such as `costs.energy` or `tasks.hard.grid[0]` to `new`, in RON, and returns
-/// the changed value. `what` describes the whole value in messages, for example `a scenario`. A field that
-/// serde omits when it writes the value cannot be set.
+/// the changed value. `what` describes the whole value in messages, for example `a scenario`. The value's types
+/// refuse unknown fields (`deny_unknown_fields`).
 ///
 /// # Errors
 /// The field does not exist, or the new value does not have its type.
@@ -50,16 +53,22 @@ pub fn set<T: Serialize + DeserializeOwned>(
     new: &str,
     what: &str,
 ) -> Result<T, SetError> {
-    let malformed =
-        |reason: String| SetError::Malformed { path: path.to_owned(), reason, found: new.trim().to_owned() };
+    let found = || new.trim().to_owned();
+    let malformed = |reason: String| SetError::Malformed { path: path.to_owned(), reason, found: found() };
     let text = ron::to_string(value).map_err(|error| malformed(error.to_string()))?;
     let fields = Fields::of(&text);
-    let place = fields.value(path).ok_or_else(|| fields.unknown(path, what))?;
+    let (place, written) = match fields.value(path) {
+        Some(place) => (place, new.to_owned()),
+        None => omitted(&fields, path, new).ok_or_else(|| fields.unknown(path, what))?,
+    };
     if !is_one_value(new) {
         return Err(malformed("must be one value in RON".into()));
     }
-    let text = [&text[..place.start], new, &text[place.end..]].concat();
+    let text = [&text[..place.start], &written, &text[place.end..]].concat();
     options().from_str(&text).map_err(|error| {
+        if matches!(error.code, ron::Error::NoSuchStructField { .. }) && place.is_empty() {
+            return fields.unknown(path, what);
+        }
         let Misfit { field, rule, hint, .. } =
             Misfit::new(&error.code, path, (&text, place.start), &Fields::of(&text));
         let inner = field.strip_prefix(path).map_or("", |rest| rest.trim_start_matches('.'));
@@ -67,6 +76,16 @@ pub fn set<T: Serialize + DeserializeOwned>(
         let hint = if hint.is_empty() { hint } else { format!(" ({hint})") };
         malformed(format!("{inner}{rule}{hint}"))
     })
+}
+
+/// Where to write a field that serde omits as long as it has its default, and what to write there: `None` if
+/// nothing of what is around it is written.
+fn omitted(fields: &Fields, path: &str, new: &str) -> Option<(Range<usize>, String)> {
+    let (around, name) = path.rsplit_once('.').unwrap_or(("", path));
+    let first = *fields.inside(around).first().filter(|first| !first.starts_with('['))?;
+    let path = if around.is_empty() { first.to_owned() } else { format!("{around}.{first}") };
+    let before = fields.value(&path)?.start.checked_sub(first.len() + 1)?; // RON writes `first:`
+    is_segment(name).then(|| (before..before, format!("{name}:{new},")))
 }
 
 fn options() -> ron::Options {
@@ -88,6 +107,7 @@ mod tests {
     use super::*;
 
     #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+    #[serde(deny_unknown_fields)]
     struct Mission {
         duration_s: f64,
         arena_m: [f64; 2],
@@ -97,6 +117,7 @@ mod tests {
     }
 
     #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+    #[serde(deny_unknown_fields)]
     struct Levels {
         energy: f64,
     }
@@ -108,6 +129,7 @@ mod tests {
     }
 
     #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+    #[serde(deny_unknown_fields)]
     struct Task {
         name: String,
         grid: [u32; 2],
@@ -115,13 +137,16 @@ mod tests {
     }
 
     #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+    #[serde(deny_unknown_fields)]
     struct Step {
         name: String,
         cost: f64,
+        #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+        is_last: bool,
     }
 
     fn mission() -> Mission {
-        let step = |name: &str, cost| Step { name: name.to_owned(), cost };
+        let step = |name: &str, cost| Step { name: name.to_owned(), cost, is_last: false };
         let task = |name: &str, grid| Task {
             name: name.to_owned(),
             grid,
@@ -148,6 +173,7 @@ mod tests {
             ("tasks[1].grid[1]", "2"),
             ("tasks.hard.grid[0]", "9"),
             ("tasks.easy.steps.lift.cost", "0.5"),
+            ("tasks.easy.steps.lift.is_last", "true"),
         ] {
             found = set(&found, path, new, "a mission").unwrap();
         }
@@ -159,6 +185,7 @@ mod tests {
         expected.tasks[1].grid[1] = 2;
         expected.tasks[0].grid[0] = 9;
         expected.tasks[1].steps[1].cost = 0.5;
+        expected.tasks[1].steps[1].is_last = true;
         assert_eq!(found, expected);
     }
 
@@ -177,12 +204,15 @@ mod tests {
             ("duration", "a mission has duration_s, arena_m, order, levels, tasks"),
             ("arena_m[2]", "arena_m has 2 entries, from [0] on"),
             ("tasks.medium", "tasks has hard, easy (or [0] to [2])"),
+            ("tasks.hard.steps.go.price", "tasks.hard.steps.go has name, cost"),
             ("tasks.hard.steps.fly.cost", "tasks.hard.steps has go, lift (or [0] to [1])"),
         ] {
             let error = refused(path, "1");
             assert!(error.starts_with(&format!("{path}: no such field; {says}")), "{error}");
         }
         assert!(refused("duration_s", "\"long\"").ends_with(", found \"long\""));
+        let error = refused("tasks.hard.steps.go.is_last", "3");
+        assert!(error.starts_with("tasks.hard.steps.go.is_last: ") && error.ends_with("found 3"), "{error}");
         assert!(refused("order", "Far").starts_with("order: "));
         for new in ["1, dt_s: 1", "1) //", "1 /* ", "", "(1", "a: 1"] {
             let error = refused("duration_s", new);

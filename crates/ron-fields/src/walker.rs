@@ -153,6 +153,7 @@ impl<'a> Walker<'a> {
     /// Stores the value of a node's field `name`, in case the node is an entry of a list.
     fn note_name(&mut self, node: usize, start: usize) {
         let value = self.cursor.since(start);
+        let value = value.strip_prefix("Some(").and_then(|value| value.strip_suffix(')')).unwrap_or(value);
         let name = value.strip_prefix('"').and_then(|value| value.strip_suffix('"'));
         let node = &mut self.nodes[node];
         node.name = node.name.take().or(name.filter(|name| is_segment(name)).map(Into::into));

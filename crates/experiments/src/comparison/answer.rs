@@ -1,6 +1,6 @@
 //! The answer to the first question of a sweep, in a sentence or two.
 
-use super::{Comparison, digits, p_in_words, short};
+use super::{Comparison, beyond_in_words, digits, p_in_words, short};
 use crate::metric::{Direction, Metric};
 use crate::stats::Moments;
 use crate::sweep::folder::Folder;
@@ -79,8 +79,21 @@ fn undecided(comparison: &Comparison) -> Option<String> {
     let side = |value: f64| format!("{} {}", short(value.abs()), if value < 0.0 { "less" } else { "more" });
     let [low, high] = [low, high].map(side);
     Some(format!(
-        "{n} pairs of trials cannot tell {a} from {b}: {a} may have {low} or {high} (95 % interval)."
+        "{n} pairs of trials cannot tell {a} from {b}: {a} may have {low} or {high} (95 % interval).{}",
+        settled_by(&[comparison])
     ))
+}
+
+/// With a margin: how many pairs would settle whether these differences are larger.
+fn settled_by(comparisons: &[&Comparison]) -> String {
+    let pairs = |comparison: &&Comparison| comparison.judged.and_then(|judged| judged.pairs_for_margin);
+    let most = comparisons.iter().max_by_key(|comparison| pairs(comparison));
+    let told = most.and_then(|most| {
+        let needed = pairs(most).filter(|needed| *needed > most.n as u64)?;
+        let margin = short(most.judged?.margin);
+        Some(format!(" About {needed} pairs would tell whether the margin of {margin} is exceeded."))
+    });
+    told.unwrap_or_default()
 }
 
 /// Several comparisons that show nothing.
@@ -92,8 +105,9 @@ fn several(metric: &Metric, comparisons: &[&Comparison]) -> String {
         if widest > 0.0 { format!(", known to about ± {} each", short(widest)) } else { String::new() };
     format!(
         "No policy is shown to differ in {} from those that it was compared with: the differences stand on \
-         up to {n} pairs of trials{precision}.",
-        metric.title
+         up to {n} pairs of trials{precision}.{}",
+        metric.title,
+        settled_by(comparisons)
     )
 }
 
@@ -114,9 +128,18 @@ fn shown(comparison: &Comparison, policy: &str) -> String {
         (&comparison.a, -difference, [-high, -low])
     };
     let direction = if difference > 0.0 { "more" } else { "less" };
+    let margin = match comparison.judged {
+        Some(judged) if comparison.is_equivalent() => {
+            let margin = short(judged.margin);
+            format!(
+                " The difference is smaller than the margin of {margin}: the two are equivalent within it."
+            )
+        }
+        judged => judged.map_or(String::new(), beyond_in_words),
+    };
     format!(
         "{policy} has {} {direction} than {other} (95 % interval of the mean difference {} to {}, {} pairs, \
-         corrected {}).",
+         corrected {}).{margin}",
         short(difference.abs()),
         short(low),
         short(high),

@@ -2,7 +2,7 @@
 //! family is compared: the rescuees, in total and of each task, of every policy against the first.
 //! `compare` and `report` both ask here and therefore agree.
 
-use super::Choice;
+use super::{Choice, short};
 use crate::experiment::Experiment;
 use crate::failure::Failure;
 
@@ -30,6 +30,8 @@ pub struct Asked {
     pub baseline: Option<String>,
     /// For metrics, the largest difference that does not matter.
     pub margins: Vec<(usize, f64)>,
+    /// How many of these the command line names; the others are the sweep file's.
+    pub margins_wished: usize,
     /// The only policies to compare; `None` for all.
     pub policies: Option<Vec<String>>,
     /// Whether the command line or the sweep file names the metrics.
@@ -56,6 +58,7 @@ impl Asked {
         for text in &wishes.margins {
             margins.push(margin(experiment, text)?);
         }
+        let margins_wished = margins.len();
         for (name, margin) in &asks.margins {
             let place = catalogue.named(name)?;
             if margins.iter().all(|(known, _)| *known != place) {
@@ -79,9 +82,29 @@ impl Asked {
             exploratory,
             baseline: wishes.baseline.clone().or(asks.baseline).or(first),
             margins,
+            margins_wished,
             policies: wishes.policies.clone(),
             is_declared,
         })
+    }
+
+    /// The margins of the metrics that are compared, in a sentence that says who named them; empty without
+    /// any.
+    #[must_use]
+    pub fn margins_in_words(&self, experiment: &Experiment) -> String {
+        let of = |margins: &[(usize, f64)]| {
+            let asked = margins.iter().filter(|(place, _)| self.metrics.contains(place));
+            let named = asked
+                .map(|(place, margin)| format!("{} {}", experiment.metrics[*place].name, short(*margin)));
+            named.collect::<Vec<_>>().join(", ")
+        };
+        let (wished, filed) = self.margins.split_at(self.margins_wished);
+        match [of(wished), of(filed)] {
+            [wished, filed] if wished.is_empty() && filed.is_empty() => String::new(),
+            [wished, filed] if filed.is_empty() => format!("Margins: {wished} (--margin)."),
+            [wished, filed] if wished.is_empty() => format!("Margins: {filed} (sweep file)."),
+            [wished, filed] => format!("Margins: {wished} (--margin), {filed} (sweep file)."),
+        }
     }
 
     /// The same comparisons as a [`Choice`].

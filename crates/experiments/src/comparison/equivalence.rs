@@ -64,6 +64,10 @@ pub struct Judged {
     pub margin: f64,
     /// 90 % interval of the mean difference.
     pub interval_90: Option<[f64; 2]>,
+    /// Pairs with 80 % power to detect a difference as large as the margin, and to show equivalence if there
+    /// is none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub pairs_for_margin: Option<u64>,
     /// The verdict.
     pub verdict: Verdict,
     /// For a difference that is shown: whether it is larger than the margin.
@@ -85,7 +89,7 @@ impl Judged {
     }
 }
 
-/// Judges a comparison by a margin and the 90 % interval of its difference.
+/// Judges a comparison by a margin and the 90 % interval of its difference. The number of pairs is left open.
 #[must_use]
 pub fn judge(
     comparison: &Comparison,
@@ -114,7 +118,8 @@ pub fn judge(
     let is_shown = !matches!(verdict, Verdict::Equivalent | Verdict::Undecided);
     let is_beyond = |[low, high]: [f64; 2]| low > margin || high < -margin;
     let beyond = |interval| if is_beyond(interval) { Beyond::Yes } else { Beyond::Undecided };
-    Judged { margin, interval_90, verdict, beyond: comparison.interval.filter(|_| is_shown).map(beyond) }
+    let beyond = comparison.interval.filter(|_| is_shown).map(beyond);
+    Judged { margin, interval_90, pairs_for_margin: None, verdict, beyond }
 }
 
 #[cfg(test)]

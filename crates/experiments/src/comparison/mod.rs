@@ -15,7 +15,7 @@ use crate::experiment::Experiment;
 use crate::failure::Failure;
 use crate::metric::{Catalogue, Metric};
 use crate::stats::Moments;
-use crate::stats::paired::{hodges_lehmann, holm, pairs_needed};
+use crate::stats::paired::{detectable, hodges_lehmann, holm, pairs_for_margin};
 use crate::stats::wilcoxon::{DRAWN_PAIRS, DRAWS, EXACT_PAIRS, SignedRank};
 use crate::sweep::folder::Folder;
 
@@ -78,8 +78,8 @@ pub struct Comparison {
     /// same precision. The variance of the difference without pairing (the sum of both variances) over the
     /// variance with pairing.
     pub pairing: Option<f64>,
-    /// Pairs needed for 80 % power, if the true effect is the observed one.
-    pub pairs_needed: Option<u64>,
+    /// The least true mean difference that this many pairs detect with 80 % power, in a single test.
+    pub detectable: Option<f64>,
     /// The verdict, where a margin is known.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub judged: Option<Judged>,
@@ -181,10 +181,11 @@ pub fn compare(folder: &Folder, metrics: &[usize], choice: Choice) -> Result<Vec
     }
     for (comparison, (case, metric, pair)) in comparisons.iter_mut().zip(&all) {
         if let Some((_, margin)) = choice.margins.iter().find(|(place, _)| place == metric) {
-            let interval_90 =
-                Pairs::of(folder, *metric, pair.map(|policy| (*case, policy))).interval(TOST_CONFIDENCE);
+            let pairs = Pairs::of(folder, *metric, pair.map(|policy| (*case, policy)));
             let direction = experiment.metrics[*metric].direction;
-            comparison.judged = Some(judge(comparison, interval_90, *margin, direction));
+            let judged = judge(comparison, pairs.interval(TOST_CONFIDENCE), *margin, direction);
+            let pairs_for_margin = pairs_for_margin(&pairs.differences(), *margin);
+            comparison.judged = Some(Judged { pairs_for_margin, ..judged });
         }
         comparison.in_words = in_words(comparison, &experiment.metrics);
     }
@@ -263,7 +264,7 @@ fn comparison(
         p_holm: None,
         effect: has_pairs.then(|| test.effect()),
         pairing: pairing(pairs, &differences),
-        pairs_needed: pairs_needed(&differences),
+        detectable: Moments::of(&differences).sd.and_then(|sd| detectable(sd, differences.len())),
         judged: None,
         in_words: String::new(),
     }
@@ -299,13 +300,7 @@ fn in_words(comparison: &Comparison, metrics: &Catalogue) -> String {
     let range = format!("95 % interval {} to {}, n = {n}", short(low), short(high));
     let size = short(difference.abs());
     let direction = if difference > 0.0 { "above" } else { "below" };
-    let needed =
-        comparison.pairs_needed.filter(|needed| *needed > *n as u64).map_or(String::new(), |needed| {
-            format!(
-                " If this is the true difference, one uncorrected test needs about {needed} pairs to \
-                 detect it with 80 % power: a rough figure, since it stands on these trials."
-            )
-        });
+    let power = power_in_words(comparison);
     let is_clear =
         (low > 0.0 || high < 0.0) && comparison.effect.is_some_and(|effect| effect * difference > 0.0);
     if let Some(equivalence) = equivalence_in_words(comparison, difference, p) {
@@ -333,7 +328,7 @@ fn in_words(comparison: &Comparison, metrics: &Catalogue) -> String {
         return format!(
             "{place}: {a} is {size} {direction} {b} ({range}). Taken alone this interval excludes zero, but \
              among so many comparisons one like it comes up by chance (corrected {}): the difference is not \
-             shown.{needed}",
+             shown.{power}",
             p_in_words(p)
         );
     }
@@ -342,9 +337,32 @@ fn in_words(comparison: &Comparison, metrics: &Catalogue) -> String {
     }
     format!(
         "{place}: no difference shows between {a} and {b}: {a} is {size} {direction} ({range}; corrected \
-         {}).{needed}",
+         {}).{power}",
         p_in_words(p)
     )
+}
+
+/// What the trials could have shown, where they show nothing: with a margin, how many pairs would settle
+/// it; without, the least difference that they detect.
+fn power_in_words(comparison: &Comparison) -> String {
+    let n = comparison.n;
+    if let Some(Judged { margin, pairs_for_margin: Some(pairs), .. }) = comparison.judged {
+        let margin = short(margin);
+        return if pairs > n as u64 {
+            format!(
+                " About {pairs} pairs have 80 % power to detect a difference as large as the margin of \
+                 {margin}, and to show equivalence if there is none."
+            )
+        } else {
+            format!(" These pairs have 80 % power to detect a difference as large as the margin of {margin}.")
+        };
+    }
+    comparison.detectable.map_or(String::new(), |least| {
+        format!(
+            " With {n} pairs, one uncorrected test has 80 % power to detect a difference of {}.",
+            short(least)
+        )
+    })
 }
 
 /// That two policies are equivalent, in words; `None` if they are not shown to be.

@@ -10,6 +10,7 @@ mod policy;
 mod program;
 mod read;
 mod shard;
+mod sweep_file;
 
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
@@ -35,7 +36,8 @@ use crate::limits::TRIALS;
 use crate::metric::{Catalogue, task_names};
 use crate::run::{Driver, Fault, SharedTrials, Trial, TrialKey, run_trial};
 use grid::{cases, checked_policies, deciding_text};
-use read::{canonical, from_scenario, from_sweep_file, with_readings};
+use read::{canonical, from_scenario, with_readings};
+use sweep_file::from_sweep_file;
 
 /// The seeds of the trials.
 #[derive(Debug, Clone, PartialEq, Eq, serde::Serialize, serde::Deserialize)]

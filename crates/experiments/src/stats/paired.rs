@@ -1,4 +1,5 @@
-//! Smaller parts of a paired comparison: shift, correction for many tests, and the number of pairs needed.
+//! Smaller parts of a paired comparison: shift, correction for many tests, and what a number of pairs can
+//! detect.
 
 use statrs::distribution::{ContinuousCDF, Normal, StudentsT};
 
@@ -78,6 +79,35 @@ pub fn pairs_needed(differences: &[f64]) -> Option<u64> {
     let (level, power) = (normal.inverse_cdf(0.975), normal.inverse_cdf(0.8));
     let pairs = ((level + power) / effect).powi(2) + level * level / 2.0;
     (pairs.is_finite() && pairs < 1e12).then(|| (pairs.ceil() as u64).max(2))
+}
+
+/// The least true mean difference that a two-sided paired t test at 5 % with this many pairs detects with
+/// 80 % power, if the differences have this standard deviation (Guenther's approximation to the noncentral
+/// t, 1981, solved for the difference). It depends on the spread of the trials, not on the observed effect.
+/// `None` for too few pairs, or without any spread.
+#[must_use]
+pub fn detectable(sd: f64, pairs: usize) -> Option<f64> {
+    let normal = Normal::standard();
+    let (level, power) = (normal.inverse_cdf(0.975), normal.inverse_cdf(0.8));
+    let pairs = pairs as f64 - level * level / 2.0;
+    (pairs > 0.0 && sd > 0.0).then(|| (level + power) * sd / pairs.sqrt())
+}
+
+/// Number of pairs that settle whether a difference matters. With these, a true difference as large as the
+/// margin is detected with 80 % power by a two-sided paired t test at 5 %, and policies without any
+/// difference are shown to be equivalent with 80 % power by two one-sided tests at 5 %. It depends on the
+/// spread of the differences, not on their mean. `None` without any spread.
+#[must_use]
+pub fn pairs_for_margin(differences: &[f64], margin: f64) -> Option<u64> {
+    let sd = Moments::of(differences).sd.filter(|sd| *sd > 0.0)?;
+    let normal = Normal::standard();
+    // Guenther's approximation (1981), with the level's and the power's quantiles of each test.
+    let pairs = |level: f64, power: f64| {
+        let (level, power) = (normal.inverse_cdf(level), normal.inverse_cdf(power));
+        ((level + power) * sd / margin).powi(2) + level * level / 2.0
+    };
+    let most = pairs(0.975, 0.8).max(pairs(0.95, 0.9));
+    (most.is_finite() && most < 1e12).then(|| (most.ceil() as u64).max(2))
 }
 
 /// Half the width of the 95 % paired t interval; `None` for fewer than two differences.

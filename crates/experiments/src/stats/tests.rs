@@ -3,10 +3,13 @@
 
 use rand::SeedableRng;
 use rand::rngs::ChaCha8Rng;
-use rand_distr::{Distribution, Exp1, StandardNormal};
+use rand_distr::{Distribution, Exp1, Normal, StandardNormal};
 
+use super::Moments;
 use super::bootstrap::{Width, bca_interval, bca_ratio_interval, interval, ratio_interval, resamples};
-use super::paired::{hodges_lehmann, holm, pairs_needed, t_half_width};
+use super::paired::{
+    detectable, hodges_lehmann, holm, pairs_for_margin, pairs_needed, t_half_width, t_half_width_at,
+};
 use super::wilcoxon::{EXACT_PAIRS, SignedRank};
 
 const PLANTS: [f64; 15] =
@@ -197,6 +200,37 @@ fn the_pairs_needed_are_those_of_the_noncentral_t() {
     }
     assert_eq!(pairs_needed(&[1.0, 1.0]), None);
     assert_eq!(pairs_needed(&[-1.0, 1.0]), None);
+}
+
+#[test]
+fn the_detectable_difference_and_the_pairs_needed_are_two_sides_of_one_thing() {
+    let least = detectable(2.0, 34).unwrap();
+    assert!((least - 1.0).abs() < 0.03, "{least}");
+    assert_eq!(detectable(1.0, 1), None);
+    assert_eq!(detectable(0.0, 34), None);
+}
+
+/// With the pairs that a margin needs, at least about 80 % of experiments detect a true difference as large
+/// as the margin, and about 80 % show equivalence where there is no difference.
+#[test]
+fn the_pairs_for_a_margin_settle_it_in_four_of_five_experiments() {
+    let spread = [-1.0, 1.0].map(|sign| sign * 0.5_f64.sqrt()); // of standard deviation 1
+    let (margin, times) = (0.5, 4_000);
+    let pairs = pairs_for_margin(&spread, margin).unwrap();
+    let mut draws = ChaCha8Rng::seed_from_u64(8);
+    let mut share = |truth: f64, is_told: &dyn Fn(f64, &[f64]) -> bool| {
+        let of = Normal::new(truth, 1.0).unwrap();
+        let told = (0..times).filter(|_| {
+            let values: Vec<f64> = (0..pairs).map(|_| of.sample(&mut draws)).collect();
+            is_told(Moments::of(&values).mean.unwrap(), &values)
+        });
+        told.count() as f64 / f64::from(times)
+    };
+    let detected = share(margin, &|mean, values| mean > t_half_width(values).unwrap());
+    let equivalent = share(0.0, &|mean, values| mean.abs() + t_half_width_at(values, 0.9).unwrap() < margin);
+    assert!((0.80..0.87).contains(&detected), "{detected}");
+    assert!((0.78..0.84).contains(&equivalent), "{equivalent}");
+    assert_eq!(pairs_for_margin(&[1.0, 1.0], margin), None);
 }
 
 /// `scipy.stats.t.interval(0.95, 9, scale=scipy.stats.sem(d))` of [`ALL_POSITIVE`].

@@ -2,10 +2,11 @@
 //! an axis.
 
 use experiments::Failure;
-use experiments::comparison::Comparison;
+use experiments::comparison::{Comparison, Judged};
 use experiments::experiment::Experiment;
 use experiments::metric::{Metric, Values};
 use experiments::stats::Moments;
+use experiments::stats::bootstrap::quantile;
 use experiments::stats::paired::t_half_width;
 use experiments::sweep::folder::Folder;
 use kuva::plot::annotations::ReferenceLine;
@@ -17,7 +18,8 @@ use crate::drawing::{
     Drawing, Panel, Rows, Sketch, colour, is_drawn, layout, line_panel, names, range, table,
 };
 
-/// About the largest number of a policy's trials that are drawn as points; more would hide the boxes.
+/// About the largest number of a policy's trials that are drawn as points, beside those beyond the whiskers;
+/// more would hide the boxes.
 const MAX_POINTS: usize = 40;
 
 const PANEL: [f64; 2] = [360.0, 320.0];
@@ -54,7 +56,7 @@ fn box_figure(
             counts.push(values.len());
             all.extend_from_slice(&values);
             if !values.is_empty() {
-                points = points.with_group(names[i].clone(), values.iter().copied().step_by(step));
+                points = points.with_group(names[i].clone(), thinned(&values, step));
                 plot = plot.with_group(names[i].clone(), values);
                 colours.push(lighter(colour(i)));
             }
@@ -80,7 +82,7 @@ fn box_figure(
             "Median, quartiles, and whiskers to the last trial within 1.5 times the distance of the \
              quartiles; {}. {}",
             if step > 1 {
-                format!("points: one trial in {step}")
+                format!("points: one trial in {step}, and each trial beyond the whiskers")
             } else {
                 "each point is a trial".to_owned()
             },
@@ -89,6 +91,20 @@ fn box_figure(
         drawing: Drawing::new(panels, 3, PANEL),
         csv: rows.finish()?,
     })
+}
+
+/// One value in so many, and all that lie beyond the whiskers of a box plot.
+fn thinned(values: &[f64], step: usize) -> Vec<f64> {
+    if step == 1 || values.is_empty() {
+        return values.to_vec();
+    }
+    let mut sorted = values.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    let [low, high] = [0.25, 0.75].map(|share| quantile(&sorted, share));
+    let reach = 1.5 * (high - low);
+    let is_shown =
+        |(place, value): &(usize, &f64)| place % step == 0 || **value < low - reach || **value > high + reach;
+    values.iter().enumerate().filter(is_shown).map(|(_, value)| *value).collect()
 }
 
 /// The values of a policy's trials, where defined, each with its seed.
@@ -211,12 +227,17 @@ pub(super) fn forest(experiment: &Experiment, comparisons: &[&Comparison]) -> Re
             plot = plot.with_colored_row(label, difference, low, high, "#0072B2");
             ends.extend([low, high]);
         }
+        let margin = comparisons.iter().filter(|c| c.metric == metric).find_map(|c| c.judged);
+        let margins: Vec<f64> = margin.map_or(Vec::new(), |Judged { margin, .. }| vec![-margin, margin]);
         if ends.len() > 1 {
             let plots = vec![Plot::Forest(plot)];
+            ends.extend(&margins);
             let [low, high] = forest_range(&ends);
-            let of_unit = if unit.is_empty() { String::new() } else { format!(" ({unit})") };
-            let x_label = format!("first less second{of_unit}");
-            let layout = layout(&plots, title)
+            let x_label = format!("first less second ({})", if unit.is_empty() { "count" } else { unit });
+            let line = |at: &f64| ReferenceLine::vertical(*at).with_color("#555555").with_dasharray("2 3");
+            let layout = margins
+                .iter()
+                .fold(layout(&plots, title), |layout, at| layout.with_reference_line(line(at)))
                 .with_x_label(x_label)
                 .with_ticks(4)
                 .with_x_axis_min(low)
@@ -239,7 +260,9 @@ pub(super) fn forest(experiment: &Experiment, comparisons: &[&Comparison]) -> Re
             number(c.shift),
             number(c.effect),
             number(c.pairing),
-            c.pairs_needed.map_or(String::new(), |pairs| pairs.to_string()),
+            number(c.detectable),
+            number(c.judged.map(|judged| judged.margin)),
+            c.judged.and_then(|judged| judged.pairs_for_margin).map_or(String::new(), |n| n.to_string()),
         ]
     };
     let header = [
@@ -255,15 +278,23 @@ pub(super) fn forest(experiment: &Experiment, comparisons: &[&Comparison]) -> Re
         "shift",
         "effect",
         "pairing",
-        "pairs_needed",
+        "detectable",
+        "margin",
+        "pairs_for_margin",
     ];
+    let dotted = if comparisons.iter().any(|comparison| comparison.judged.is_some()) {
+        " Dotted: the margin, the largest difference that does not matter."
+    } else {
+        ""
+    };
     Ok(Sketch {
         name: "differences".into(),
         title: "Paired differences".into(),
-        caption: "First policy less second over the same seeds, with the 95 % bootstrap interval of the \
-            mean; the number of pairs in brackets. The intervals are one by one; p after correction is in \
-            the table below."
-            .into(),
+        caption: format!(
+            "First policy less second over the same seeds, with the 95 % bootstrap interval of the mean; the \
+             number of pairs in brackets. The intervals are one by one; p after correction is in the table \
+             below.{dotted}"
+        ),
         drawing: Drawing::new(panels, 3, [420.0, 280.0]),
         csv: table(&header, comparisons.iter().map(row))?,
     })

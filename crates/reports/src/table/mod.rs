@@ -80,9 +80,10 @@ pub fn comparison_table(comparisons: &[&Comparison]) -> Table {
         "p",
         "p Holm",
         "effect",
-        "pairs for 80 %",
+        "detectable",
     ];
-    let mut table = headed(header.into_iter().chain(is_judged.then_some("verdict")).collect::<Vec<_>>());
+    let of_margin = ["verdict", "pairs for margin"].into_iter().filter(|_| is_judged);
+    let mut table = headed(header.into_iter().chain(of_margin).collect::<Vec<_>>());
     let number = |value: Option<f64>| right(&value.map_or("-".to_owned(), short));
     let mean = |value: Option<f64>| right(&value.map_or("-".to_owned(), |value| digits(value, 4)));
     for c in comparisons {
@@ -90,6 +91,8 @@ pub fn comparison_table(comparisons: &[&Comparison]) -> Table {
             c.interval.map_or("-".to_owned(), |[low, high]| format!("{} to {}", short(low), short(high)));
         let p = |p: Option<f64>| right(&p.map_or("-".to_owned(), short_p));
         let verdict = c.judged.map_or("-".to_owned(), |judged| judged.in_words());
+        let pairs = c.judged.and_then(|judged| judged.pairs_for_margin);
+        let of_margin = [Cell::new(verdict), right(&pairs.map_or("-".to_owned(), |pairs| pairs.to_string()))];
         let cells = [
             Cell::new(&c.metric),
             Cell::new(format!("{} - {}", c.a, c.b)),
@@ -102,9 +105,9 @@ pub fn comparison_table(comparisons: &[&Comparison]) -> Table {
             p(c.p),
             p(c.p_holm),
             right(&c.effect.map_or("-".to_owned(), |effect| format!("{effect:.2}"))),
-            right(&c.pairs_needed.map_or("-".to_owned(), |pairs| pairs.to_string())),
+            number(c.detectable),
         ];
-        table.add_row(cells.into_iter().chain(is_judged.then(|| Cell::new(verdict))));
+        table.add_row(cells.into_iter().chain(of_margin.into_iter().filter(|_| is_judged)));
     }
     table
 }

@@ -24,7 +24,7 @@ use experiments::comparison::{CONFIDENCE, TOST_CONFIDENCE};
 use experiments::metric::Catalogue;
 use experiments::stats::Moments;
 use experiments::stats::bootstrap::interval;
-use experiments::stats::paired::pairs_needed;
+use experiments::stats::paired::{detectable, pairs_needed};
 use experiments::sweep::folder::Folder;
 use serde::Serialize;
 
@@ -33,8 +33,8 @@ use crate::scenarios::{PAPERS_TRIALS, Standing, margins};
 pub use examples::{Example, examples};
 pub use files::{write_authors_columns, write_claims, write_examples, write_power};
 pub use papers::CLAIMS;
+use power::TIMES;
 pub use power::{Power, Shares, power};
-use power::{TIMES, least_difference};
 
 /// With fewer pairs, a claim stays undecided: chance signs alone would decide it too often.
 const LEAST_PAIRS: usize = 6;
@@ -186,7 +186,7 @@ impl PartFinding {
     /// The difference that 80 % of experiments with the paper's number of trials would find.
     #[must_use]
     pub fn least_found(&self) -> Option<f64> {
-        least_difference(self.sd()?, PAPERS_TRIALS as usize)
+        detectable(self.sd()?, PAPERS_TRIALS as usize)
     }
 }
 

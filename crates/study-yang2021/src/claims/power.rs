@@ -201,17 +201,6 @@ fn least_pairs(reaches: impl Fn(u32) -> bool) -> Option<u32> {
     Some(enough)
 }
 
-/// The least difference that a paired t test at 5 % with this many pairs finds with 80 % power, if the
-/// differences have this standard deviation (Guenther's approximation, 1981, solved for the difference).
-/// `None` for too few pairs.
-#[must_use]
-pub fn least_difference(sd: f64, pairs: usize) -> Option<f64> {
-    let normal = Normal::standard();
-    let (level, power) = (normal.inverse_cdf(0.975), normal.inverse_cdf(WANTED));
-    let pairs = pairs as f64 - level * level / 2.0;
-    (pairs > 0.0).then(|| (level + power) * sd / pairs.sqrt())
-}
-
 #[cfg(test)]
 mod tests {
     use super::super::PartFinding;
@@ -263,12 +252,5 @@ mod tests {
         nothing.parts[0].differences.iter_mut().for_each(|(_, difference)| *difference = 0.0);
         let nothing = power(&nothing, 10, 1).unwrap();
         assert_eq!((nothing.leaning, nothing.pairs_needed), (Verdict::Undecided, None));
-    }
-
-    #[test]
-    fn the_least_difference_and_the_pairs_needed_are_two_sides_of_one_thing() {
-        let least = least_difference(2.0, 34).unwrap();
-        assert!((least - 1.0).abs() < 0.03, "{least}");
-        assert_eq!(least_difference(1.0, 1), None);
     }
 }

@@ -15,6 +15,9 @@ use super::{Scenario, reading, ron_options, validate};
 use crate::limits;
 use crate::seed::{Purpose, stream};
 
+/// The seed whose draws show whether the values of a file fit together at all.
+const CHECKED_SEED: u64 = 1;
+
 /// Times that the values of a trial are drawn before the trial fails because they never fit together.
 const TRIES: u32 = 100;
 
@@ -185,7 +188,8 @@ impl ScenarioFile {
     }
 
     /// The broken rules of a file with distributions. Each value is checked at the ends of its distribution.
-    /// Each trial checks whether the values fit together.
+    /// Whether the values fit together is checked for one seed, and by each trial for its own: if none of a
+    /// trial's draws fits, most often values that are not drawn do not fit together.
     pub(super) fn problems_of_draws(&self) -> Vec<Problem> {
         let most = self.draws.values().filter_map(|text| Draw::read(text).ok());
         let most = most.map(|draw| draw.examples(false).len()).max().unwrap_or_default();
@@ -203,7 +207,39 @@ impl ScenarioFile {
                 return problems;
             }
         }
-        Vec::new()
+        if self.is_long() {
+            return Vec::new(); // a draw of it takes long
+        }
+        let Err((tries, problem)) = self.of_trial(CHECKED_SEED) else { return Vec::new() };
+        let hint = format!("so it is in each of {tries} draws of the distributions");
+        problem.map(|problem| Problem { hint, ..*problem }).into_iter().collect()
+    }
+
+    /// The scenario of one trial, in which each distribution is replaced by a value drawn from the stream of
+    /// its path. If the values do not fit together, all of them are drawn again. The error is the number of
+    /// tries, and what was wrong with the last one.
+    fn of_trial(&self, seed: u64) -> Result<Scenario, (u32, Option<Box<Problem>>)> {
+        let mut last = None;
+        let tries = if self.is_long() { TRIES_OF_A_LONG_ONE } else { TRIES };
+        for attempt in 0..tries {
+            let drawn = self.with_drawn(|path, draw, is_whole| {
+                let entity = if attempt == 0 { path.to_owned() } else { format!("{path} {attempt}") };
+                let mut draws = stream(seed, Purpose::Slot, xxh3_64(entity.as_bytes()));
+                Some(match draw {
+                    Draw::Number(distribution) => written(distribution.draw(&mut draws, is_whole), is_whole),
+                    Draw::Choice(texts) => texts[index(&mut draws, texts.len())].clone(),
+                })
+            });
+            let problem = match drawn {
+                Err(problem) => Some(problem),
+                Ok(file) => match Scenario::try_from(file) {
+                    Ok(scenario) => return Ok(scenario),
+                    Err(problems) => problems.into_iter().next().map(Box::new),
+                },
+            };
+            last = problem.or(last);
+        }
+        Err((tries, last))
     }
 }
 
@@ -224,28 +260,10 @@ impl Scenario {
         if self.draws.is_empty() {
             return Ok(self.clone());
         }
-        let mut last = None;
-        let tries = if self.is_long() { TRIES_OF_A_LONG_ONE } else { TRIES };
-        for attempt in 0..tries {
-            let drawn = self.with_drawn(|path, draw, is_whole| {
-                let entity = if attempt == 0 { path.to_owned() } else { format!("{path} {attempt}") };
-                let mut draws = stream(seed, Purpose::Slot, xxh3_64(entity.as_bytes()));
-                Some(match draw {
-                    Draw::Number(distribution) => written(distribution.draw(&mut draws, is_whole), is_whole),
-                    Draw::Choice(texts) => texts[index(&mut draws, texts.len())].clone(),
-                })
-            });
-            let problem = match drawn {
-                Err(problem) => Some(*problem),
-                Ok(file) => match Self::try_from(file) {
-                    Ok(scenario) => return Ok(scenario),
-                    Err(problems) => problems.into_iter().next(),
-                },
-            };
-            last = problem.or(last);
-        }
-        let problem = last.map(|problem| problem.to_string()).unwrap_or_default();
-        Err(LayoutError::NeverFits { tries, problem })
+        self.0.of_trial(seed).map_err(|(tries, problem)| {
+            let problem = problem.map(|problem| problem.to_string()).unwrap_or_default();
+            LayoutError::NeverFits { tries, problem }
+        })
     }
 }
 
@@ -368,9 +386,20 @@ mod tests {
     }
 
     #[test]
-    fn values_that_never_go_together_are_told() {
+    fn values_that_never_go_together_are_told_with_their_line() {
         let text = TEXT.replace("at: (20, 20)", "at: (20, Uniform(4.9, 5.1))").replace("Uniform(2, 4)", "3");
-        let error = scenario(&text).of_trial(1).unwrap_err().to_string();
+        let error = Scenario::parse(&text, "t.ron".as_ref()).unwrap_err().to_string();
+        assert!(error.contains("t.ron:6: debris[0].at must leave every robot's home free"), "{error}");
+        assert!(error.contains("in each of 100 draws"), "{error}");
+    }
+
+    /// Here one draw in about thirty fits.
+    #[test]
+    fn a_trial_whose_values_never_go_together_fails() {
+        let text = TEXT.replace("at: (20, 20)", "at: (20, Uniform(4.9, 5.95))").replace("Uniform(2, 4)", "3");
+        let scenario = scenario(&text);
+        let errors = (1..200).filter_map(|seed| scenario.of_trial(seed).err());
+        let error = errors.map(|error| error.to_string()).next().expect("some seed fails");
         assert!(
             error.contains("100 times") && error.contains("must leave every robot's home free"),
             "{error}"

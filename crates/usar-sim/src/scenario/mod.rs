@@ -146,6 +146,7 @@ impl Scenario {
         list.iter_mut().for_each(|problem| {
             named::hint(problem, names);
             distribution::hint(problem);
+            problem.hint = problem.hint.replace(", draws", ""); // where distributions are kept: no file has it
         });
         if fields.value("draws").is_some() {
             let rule = "is no field".to_owned();

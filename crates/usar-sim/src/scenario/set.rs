@@ -24,7 +24,7 @@ impl ScenarioFile {
             return Err(SetError::Malformed { path: path.to_owned(), reason, found });
         }
         let inner = if draws.is_empty() { value } else { plain[1..plain.len() - 1].trim_end() };
-        let mut set = ron_fields::set(self, path, inner, "a scenario")?;
+        let mut set: Self = ron_fields::set(self, path, inner, "a scenario").map_err(without_draws)?;
         let is_inside = |key: &str| {
             key.strip_prefix(canonical.as_str())
                 .is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']))
@@ -33,6 +33,16 @@ impl ScenarioFile {
         set.draws.extend(draws);
         *self = set;
         Ok(())
+    }
+}
+
+/// Leaves out of a message the field in which distributions are kept: no file has it.
+fn without_draws(error: SetError) -> SetError {
+    match error {
+        SetError::Unknown { path, within, known, meant } => {
+            SetError::Unknown { path, within, known: known.replace(", draws", ""), meant }
+        }
+        SetError::Malformed { .. } => error,
     }
 }
 

@@ -24,7 +24,8 @@ use crate::printable::counted;
 #[command(after_help = "\
 For each metric and pair of policies: mean of each, mean difference with its 95 % bootstrap interval, \
 Hodges-Lehmann shift, Wilcoxon's signed-rank test, its p after Holm's correction over all comparisons shown, \
-effect size (matched-pairs rank-biserial), how many pairs would be needed for 80 % power, and one sentence. \
+effect size (matched-pairs rank-biserial), the least difference that this many pairs detect with 80 % power, \
+and one sentence. \
 For a sweep with axes, also how each policy's mean, and each difference, changes along an axis, paired by \
 seed. With a margin, two policies are equivalent if the 90 % interval of their difference lies within it \
 (two one-sided tests at 5 %). Choose metrics before looking: the correction knows only what is shown together.
@@ -108,6 +109,10 @@ impl Arguments {
         }
         if !comparisons.is_empty() {
             writeln!(out, "\n{}", footnote(&comparisons))?;
+            let margins = asked.margins_in_words(experiment);
+            if !margins.is_empty() {
+                writeln!(out, "{margins}")?;
+            }
             let rules = Hosts::read(folder.path()).rules;
             rules.iter().try_for_each(|rule| writeln!(out, "Pairs were added by a rule: {rule}"))?;
         }

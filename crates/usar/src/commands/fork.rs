@@ -219,20 +219,28 @@ pub(super) fn ids(group: &[u32]) -> String {
     if ids.is_empty() { "-".to_owned() } else { ids.join(" ") }
 }
 
+/// How many robots of a group are others, in words.
+fn changes(before: &[u32], after: &[u32]) -> String {
+    let only = |here: &[u32], there: &[u32]| here.iter().filter(|id| !there.contains(id)).count();
+    match (only(after, before), only(before, after)) {
+        (0, 0) => "the same".to_owned(),
+        (join, 0) => format!("{join} join"),
+        (0, leave) => format!("{leave} leave"),
+        (join, leave) => format!("{join} join, {leave} leave"),
+    }
+}
+
 fn print(out: &mut dyn Write, asked: &AskedTrial, sides: &[Side; 2]) -> Result<(), Failure> {
     let mut table = headed(["", "as it was", "the fork", "difference"]);
     let tasks = asked.tasks();
     for (place, task) in tasks.iter().enumerate() {
         let [was, fork] = sides.each_ref().map(|side| ids(&side.assignment.groups[place]));
-        let moved = sides[1].assignment.groups[place]
-            .iter()
-            .filter(|id| !sides[0].assignment.groups[place].contains(id))
-            .count();
+        let [before, after] = sides.each_ref().map(|side| &side.assignment.groups[place]);
         table.add_row([
             right(&format!("group of {task}")),
             right(&was),
             right(&fork),
-            right(&format!("{moved} others")),
+            right(&changes(before, after)),
         ]);
     }
     let mut row = |name: String, value: &dyn Fn(&Side) -> f64, decimals: usize| {
@@ -269,6 +277,14 @@ fn print(out: &mut dyn Write, asked: &AskedTrial, sides: &[Side; 2]) -> Result<(
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn robots_that_join_and_that_leave_are_counted() {
+        let told =
+            [(vec![1, 2], vec![2, 1]), (vec![1, 2], vec![]), (vec![], vec![3]), (vec![1, 2], vec![3, 1])];
+        let words = told.map(|(before, after)| changes(&before, &after));
+        assert_eq!(words, ["the same", "2 leave", "1 join", "1 join, 1 leave"]);
+    }
 
     #[test]
     fn groups_are_read_by_the_names_of_tasks() {

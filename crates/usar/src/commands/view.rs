@@ -18,7 +18,7 @@ use crate::running::tell;
 #[command(after_help = "\
 FILE is a recording (`usar run --record`), a scenario, which is simulated first, or the folder of a sweep, \
 whose trial is taken from its recordings or simulated again. The page has everything in it: it needs no \
-server and no network, and can be sent to others.
+server and no network, and can be sent to others. An earlier page of this command is replaced, no other file.
 
 In the page: space plays and pauses, the arrows step, + and - change the speed, a click on a robot shows its \
 levels, needs and delays, f follows it, ? lists all keys.

@@ -189,6 +189,10 @@ fn a_sweep_file_names_its_metrics_its_baseline_and_which_differences_matter() {
         assert!(lower <= low && high <= higher, "the 90 % interval lies in the 95 % interval");
         assert!(comparison["in_words"].as_str().unwrap().contains("are equivalent within 1000000"));
     }
+    let told = succeeds(&usar(here, &["compare", "results/asked"]));
+    assert!(told.contains("Margins: distance 1000000 (sweep file)."), "{told}");
+    let told = succeeds(&usar(here, &["compare", "results/asked", "--margin", "distance=2e6"]));
+    assert!(told.contains("Margins: distance 2000000 (--margin)."), "{told}");
     let tight = json(&["--metric", "distance", "--baseline", "ENG", "--margin", "distance=1e-9"]);
     let verdicts: Vec<_> = tight["comparisons"]
         .as_array()
@@ -216,13 +220,13 @@ fn a_sweep_file_names_its_metrics_its_baseline_and_which_differences_matter() {
         &["--margin: a margin is for the difference of two policies, and ENG is the only one here"],
     );
     sweep("primary: [\"luck\"]");
-    refused(here, 2, &["sweep", "asked.ron"], &["asked.ron: primary: unknown metric \"luck\""]);
+    refused(here, 2, &["sweep", "asked.ron"], &["asked.ron:1: primary[0]: unknown metric \"luck\""]);
     sweep("margins: {\"distance\": -1}");
     refused(
         here,
         2,
         &["sweep", "asked.ron"],
-        &["asked.ron: margins: distance: must be a number above 0, found -1"],
+        &["asked.ron:1: margins.\"distance\": must be a number above 0, found -1"],
     );
 }
 

@@ -68,6 +68,21 @@ fn bad_sweep_files_are_refused_with_their_lines() {
         "trials: must be at most the number of listed seeds, 2, found 3",
     );
     refuse("trials: 2", "seeds: [1, 2], first_seed: 1", "seeds: must not be given beside first_seed");
+    // Several mistakes at once, each with its line.
+    let bad = grid
+        .replace("\"mission.loading_s\"", "\"mission.loading\"")
+        .replace("score: Sum", "score: Most")
+        .replace("trials: 2", "trials: 2, primary: [\"rescued\"], margins: {\"rescuees\": 0}")
+        .replace("[1.5, 3.0]", "[1.5, \"fast\"]");
+    std::fs::write(here.join("bad.ron"), bad).unwrap();
+    let told = [
+        "bad.ron:5: set.\"mission.loading\": ",
+        "bad.ron:6: policies[1]: ",
+        "bad.ron:7: primary[0]: ",
+        "bad.ron:7: margins.\"rescuees\": must be a number above 0, found 0",
+        "bad.ron:9: axes.\"roles.carrier.speed_mps\"[1]: ",
+    ];
+    refused(here, 2, &["sweep", "bad.ron"], &told);
 }
 
 #[test]

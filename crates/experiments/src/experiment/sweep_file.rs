@@ -1,0 +1,322 @@
+//! Reads a sweep file as parts of an experiment. All its problems are told at once, each with its line.
+
+use std::collections::BTreeSet;
+use std::fmt::Display;
+use std::path::Path;
+
+use ron::value::RawValue;
+use ron_fields::limits::Limit;
+use ron_fields::{Fields, nearest};
+use usar_sim::scenario::{FORMAT, Scenario, ScenarioFile, parse_ron};
+use xxhash_rust::xxh3::xxh3_128;
+
+use super::file::{Map, SweepFile};
+use super::grid::{VARIANT, check_bytes};
+use super::policy::{PolicySpec, registry};
+use super::read::{canonical, checked, decides};
+use super::{Axis, Parts, Seeds};
+use crate::failure::Failure;
+use crate::limits;
+use crate::metric::{Catalogue, task_names};
+
+/// Most problems that are told at once.
+const MOST_PROBLEMS: usize = 20;
+
+/// An option of RNE with its values.
+pub(super) type Reading = (String, Vec<String>);
+
+/// The parts of an experiment, and the readings of RNE.
+pub(super) fn from_sweep_file(text: String, path: &Path) -> Result<(Parts, Vec<Reading>), Failure> {
+    let file: SweepFile = parse_ron(&text, path).map_err(Failure::input)?;
+    let mut check = Check { path, fields: Fields::of(&text), problems: Vec::new() };
+    check.sizes(&file);
+    check.must_be_sound()?; // the rules below take time with each entry
+    let base = check.base(&file);
+    let mut axes = Vec::new();
+    if let Some(base) = &base {
+        axes.extend(check.variants(&file.variants, base));
+        check.axes(&file.axes, base, &mut axes);
+        check.questions(&file, base);
+    }
+    let readings = check.readings(&file.readings);
+    let policies = file.policies.clone().unwrap_or_else(|| vec!["RNE".to_owned()]);
+    check.policies(&policies, file.baseline.as_deref(), !readings.is_empty());
+    let seeds = check.seeds(&file);
+    check.must_be_sound()?;
+    let base = base.ok_or_else(|| Failure::input(path.display()))?; // without one there is a problem
+    let listed = if let Seeds::Listed(list) = &seeds { Some(list.len() as u32) } else { None };
+    let parts = Parts {
+        name: file.name,
+        given: text,
+        axes,
+        policies,
+        trials: file.trials.or(listed).unwrap_or(1),
+        seeds,
+        is_checked: false,
+        keep: file.keep,
+        program: None,
+        base,
+    };
+    Ok((parts, readings))
+}
+
+/// The rules of a sweep file, and the problems found so far.
+struct Check<'a> {
+    path: &'a Path,
+    fields: Fields,
+    problems: Vec<String>,
+}
+
+impl Check<'_> {
+    fn fail(&mut self, field: &str, reason: &dyn Display) {
+        let line = self.fields.line(field).map_or(String::new(), |line| format!(":{line}"));
+        self.problems.push(format!("{}{line}: {field}: {reason}", self.path.display()));
+    }
+
+    /// Takes the value, or notes why there is none.
+    fn take<T>(&mut self, field: &str, result: Result<T, impl Display>) -> Option<T> {
+        result.map_err(|reason| self.fail(field, &reason)).ok()
+    }
+
+    fn must_be_sound(&self) -> Result<(), Failure> {
+        if self.problems.is_empty() {
+            return Ok(());
+        }
+        let shown = &self.problems[..self.problems.len().min(MOST_PROBLEMS)];
+        let rest = match self.problems.len() - shown.len() {
+            0 => String::new(),
+            more => format!("\nand {more} more"),
+        };
+        Err(Failure::Input(format!("{}{rest}", shown.join("\n"))))
+    }
+
+    /// Format, name, and how much there is of everything.
+    fn sizes(&mut self, file: &SweepFile) {
+        let format = file.format.unwrap_or(FORMAT);
+        if format != FORMAT {
+            self.fail("format", &format!("must be {FORMAT}, which this program reads, found {format}"));
+        }
+        let usable = |c: char| c.is_ascii_alphanumeric() || "-_.".contains(c);
+        if file.name.is_empty() || file.name.starts_with(['.', '-']) || !file.name.chars().all(usable) {
+            let rule = "must be letters, digits, -, _ and ., the first no . and no -";
+            self.fail("name", &format!("{rule}, found {:?}", file.name));
+        }
+        for (field, count, limit) in [
+            ("set", file.set.0.len(), limits::SETTINGS),
+            ("axes", file.axes.0.len(), limits::AXES),
+            ("policies", file.policies.as_ref().map_or(1, Vec::len), limits::POLICIES),
+            ("variants", file.variants.0.len(), limits::AXIS_VALUES),
+        ] {
+            if count > limit.count() {
+                self.fail(field, &too_many(count, limit));
+            }
+        }
+        if let Some(trials) = file.trials.filter(|trials| !limits::TRIALS.allows(*trials as usize)) {
+            let most = limits::TRIALS.most;
+            self.fail("trials", &format!("must be a count from 1 to {most}, found {trials}"));
+        }
+    }
+
+    /// The scenario with what the sweep sets in it.
+    fn base(&mut self, file: &SweepFile) -> Option<Scenario> {
+        let scenario = self.path.parent().unwrap_or(Path::new("")).join(&file.scenario);
+        let (base, _) = match Scenario::load(&scenario) {
+            Ok(loaded) => loaded,
+            Err(error) => {
+                self.problems.push(error.to_string());
+                return None;
+            }
+        };
+        let mut set: ScenarioFile = (*base).clone();
+        if !file.description.is_empty() {
+            set.description.clone_from(&file.description);
+        }
+        for (field, value) in &file.set.0 {
+            let result = set.set(field, value.trim().get_ron());
+            self.take(&format!("set.{field:?}"), result);
+        }
+        match checked(set, &format!("{}: set: ", self.path.display())) {
+            Ok(base) => Some(base),
+            Err(error) => {
+                self.problems.push(error.to_string());
+                None
+            }
+        }
+    }
+
+    /// Checks each value of each axis alone, so that a problem names the wrong value and its line.
+    fn axes(&mut self, map: &Map<Vec<Box<RawValue>>>, base: &Scenario, axes: &mut Vec<Axis>) {
+        for (path, values) in &map.0 {
+            let field = format!("axes.{path:?}");
+            let values = ron_of(values);
+            if !self.are_some(&field, &values) {
+                continue;
+            }
+            if !decides(path) {
+                self.fail(&field, &"decides no number of a trial, so that it can be no axis");
+                continue;
+            }
+            if let Some(other) = overlapping(axes, base, path) {
+                self.fail(&field, &format!("must not be a part of another axis, found {other}"));
+                continue;
+            }
+            if self.take(&field, check_bytes(base, values.len())).is_none() {
+                continue;
+            }
+            let mut files = BTreeSet::new();
+            for (i, value) in values.iter().enumerate() {
+                let entry = format!("{field}[{i}]");
+                let mut file: ScenarioFile = (**base).clone();
+                let is_set = self.take(&entry, file.set(path, value)).is_some();
+                if is_set && !files.insert(hash(&file)) {
+                    self.fail(&entry, &format!("must not be listed twice, found {value}"));
+                }
+            }
+            axes.push(Axis { path: path.clone(), values, variants: Vec::new() });
+        }
+    }
+
+    /// Whether an axis or a reading has values, and not too many.
+    fn are_some(&mut self, field: &str, values: &[String]) -> bool {
+        if values.is_empty() {
+            self.fail(field, &"must have at least one value, found none");
+        } else if !limits::AXIS_VALUES.allows(values.len()) {
+            let most = limits::AXIS_VALUES.most;
+            self.fail(field, &format!("must have at most {most} values, found {}", values.len()));
+        }
+        limits::AXIS_VALUES.allows(values.len())
+    }
+
+    /// The axis of the variants. Each is checked alone.
+    fn variants(&mut self, map: &Map<Map<Box<RawValue>>>, base: &Scenario) -> Option<Axis> {
+        if map.0.is_empty() || self.take("variants", check_bytes(base, map.0.len())).is_none() {
+            return None;
+        }
+        let mut axis = Axis { path: VARIANT.to_owned(), values: Vec::new(), variants: Vec::new() };
+        let mut files = BTreeSet::new();
+        for (name, settings) in &map.0 {
+            let field = format!("variants.{name:?}");
+            let is_hidden = name.trim().is_empty() || name.chars().any(char::is_control);
+            if is_hidden || name.starts_with(['=', '+', '-', '@']) {
+                let rule = "must have a name of visible characters that does not begin like a formula";
+                self.fail(&field, &rule);
+            }
+            let mut file: ScenarioFile = (**base).clone();
+            let mut set = Vec::new();
+            for (path, value) in &settings.0 {
+                let (entry, value) = (format!("{field}.{path:?}"), value.trim().get_ron());
+                if !decides(path) {
+                    self.fail(&entry, &"decides no number of a trial, so that no variant can set it");
+                } else if self.take(&entry, file.set(path, value)).is_some() {
+                    set.push((path.clone(), value.to_owned()));
+                }
+            }
+            if set.len() == settings.0.len() && !files.insert(hash(&file)) {
+                self.fail(&field, &"is the same scenario as a variant before it");
+            }
+            axis.values.push(name.clone());
+            axis.variants.push(set);
+        }
+        Some(axis)
+    }
+
+    /// Primary metrics and margins.
+    fn questions(&mut self, file: &SweepFile, base: &Scenario) {
+        let metrics = Catalogue::of(&task_names(base));
+        for (i, name) in file.primary.iter().enumerate() {
+            self.take(&format!("primary[{i}]"), metrics.named(name));
+        }
+        for (name, margin) in &file.margins.0 {
+            let field = format!("margins.{name:?}");
+            self.take(&field, metrics.named(name));
+            if !margin.is_finite() || *margin <= 0.0 {
+                self.fail(&field, &format!("must be a number above 0, found {margin}"));
+            }
+        }
+    }
+
+    /// Checks each value of each option of RNE alone.
+    fn readings(&mut self, map: &Map<Vec<Box<RawValue>>>) -> Vec<Reading> {
+        let mut readings: Vec<Reading> = Vec::new();
+        for (option, values) in &map.0 {
+            let field = format!("readings.{option:?}");
+            let values = ron_of(values);
+            if !self.are_some(&field, &values) {
+                continue;
+            }
+            for (i, value) in values.iter().enumerate() {
+                let entry = format!("{field}[{i}]");
+                self.take(&entry, registry().make("RNE", &format!("({option}: {value})")));
+                if values[..i].contains(value) {
+                    self.fail(&entry, &format!("must not be listed twice, found {value}"));
+                }
+            }
+            readings.push((option.clone(), values));
+        }
+        let count = readings.iter().map(|(_, values)| values.len()).try_fold(1_usize, usize::checked_mul);
+        if count.is_none_or(|count| !limits::READINGS.allows(count)) {
+            self.fail("readings", &format!("must be at most {} combinations", limits::READINGS.most));
+        }
+        readings
+    }
+
+    /// Each policy alone, and whether the baseline is one of them.
+    fn policies(&mut self, policies: &[String], baseline: Option<&str>, has_readings: bool) {
+        let mut labels = Vec::new();
+        for (i, policy) in policies.iter().enumerate() {
+            let spec = self.take(&format!("policies[{i}]"), PolicySpec::parse(policy));
+            labels.extend(spec.map(|spec| spec.label));
+        }
+        let is_reading = |name: &str| has_readings && name.starts_with("RNE(");
+        if let Some(found) = baseline.filter(|name| !is_reading(name) && labels.len() == policies.len())
+            && !labels.iter().any(|label| label == found)
+        {
+            let meant = nearest(found, labels.iter().map(String::as_str));
+            let hint = meant.map_or(String::new(), |meant| format!("; did you mean {meant}?"));
+            let known = labels.join(", ");
+            self.fail("baseline", &format!("must be a policy of the sweep ({known}), found {found:?}{hint}"));
+        }
+    }
+
+    fn seeds(&mut self, file: &SweepFile) -> Seeds {
+        let Some(list) = &file.seeds else { return Seeds::From(file.first_seed.unwrap_or(1)) };
+        if file.first_seed.is_some() {
+            self.fail("seeds", &"must not be given beside first_seed");
+        } else if list.is_empty() {
+            self.fail("seeds", &"must have at least one, found none");
+        } else if !limits::SEEDS.allows(list.len()) {
+            self.fail("seeds", &too_many(list.len(), limits::SEEDS));
+        } else if list.iter().collect::<BTreeSet<_>>().len() < list.len() {
+            self.fail("seeds", &"must differ: trials of one seed are one trial");
+        }
+        Seeds::Listed(list.clone())
+    }
+}
+
+fn too_many(count: usize, limit: Limit) -> String {
+    format!("must have at most {} entries, found {count}", limit.most)
+}
+
+fn ron_of(values: &[Box<RawValue>]) -> Vec<String> {
+    values.iter().map(|value| value.trim().get_ron().to_owned()).collect()
+}
+
+/// A hash of a whole scenario file.
+fn hash(file: &ScenarioFile) -> u128 {
+    xxh3_128(ron::to_string(file).unwrap_or_default().as_bytes())
+}
+
+/// The path of the axis of which this path is a part, or the other way round.
+fn overlapping<'a>(axes: &'a [Axis], base: &Scenario, path: &str) -> Option<&'a str> {
+    let holds = |outer: &str, inner: &str| {
+        inner.strip_prefix(outer).is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']))
+    };
+    let here = canonical(base, path);
+    let overlaps = |axis: &&Axis| {
+        axis.paths().any(|path| {
+            let there = canonical(base, path);
+            holds(&there, &here) || holds(&here, &there)
+        })
+    };
+    axes.iter().find(overlaps).map(|axis| axis.path.as_str())
+}
