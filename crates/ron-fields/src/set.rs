@@ -8,6 +8,7 @@ use serde::de::DeserializeOwned;
 use thiserror::Error;
 
 use crate::path::is_segment;
+use crate::told::NO_FIELD;
 use crate::{Fields, Misfit};
 
 /// Why a field cannot be set.
@@ -66,11 +67,11 @@ pub fn set<T: Serialize + DeserializeOwned>(
     }
     let text = [&text[..place.start], &written, &text[place.end..]].concat();
     options().from_str(&text).map_err(|error| {
-        if matches!(error.code, ron::Error::NoSuchStructField { .. }) && place.is_empty() {
-            return fields.unknown(path, what);
-        }
         let Misfit { field, rule, hint, .. } =
             Misfit::new(&error.code, path, (&text, place.start), &Fields::of(&text));
+        if rule == NO_FIELD && place.is_empty() {
+            return fields.unknown(path, what);
+        }
         let inner = field.strip_prefix(path).map_or("", |rest| rest.trim_start_matches('.'));
         let inner = if inner.is_empty() { String::new() } else { format!("{inner} ") };
         let hint = if hint.is_empty() { hint } else { format!(" ({hint})") };

@@ -4,6 +4,9 @@ use ron::error::Error;
 
 use crate::{Fields, nearest};
 
+/// The rule that a field breaks which does not exist.
+pub(crate) const NO_FIELD: &str = "is no field";
+
 /// A value that does not fit its field.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Misfit {
@@ -47,12 +50,7 @@ impl Misfit {
         match error {
             Error::NoSuchStructField { expected, found: name, .. } => {
                 let field = if field == *name { field } else { within(name) };
-                Self {
-                    field,
-                    rule: "is no field".to_owned(),
-                    hint: meant(name, expected),
-                    found: String::new(),
-                }
+                Self { field, rule: NO_FIELD.to_owned(), hint: meant(name, expected), found: String::new() }
             }
             Error::MissingStructField { field: name, .. } => {
                 Self { field: within(name), rule: "must be given".to_owned(), ..Self::default() }

@@ -79,6 +79,27 @@ mod tests {
     }
 
     #[test]
+    fn doors_and_sources_are_found_by_their_names() {
+        let door = "(at_m: 3, width_m: 2), (at_m: 9, width_m: 2, name: \"gate\")";
+        let mut set: ScenarioFile = ron_options()
+            .from_str(&format!(
+                "(name: \"t\", duration_s: 60, dt_s: 0.02, arena_m: (20, 20), team: [], radiation: [(at: (1, 1), \
+                 radius_m: 2, name: \"leak\")], walls: [(from: (0, 9), to: (20, 9), doors: [{door}])])"
+            ))
+            .unwrap();
+        set.set("walls[0].doors.gate.width_m", "3").unwrap();
+        set.set("walls[0].doors.gate.closed", "true").unwrap();
+        set.set("walls[0].doors[0].name", "\"left\"").unwrap();
+        set.set("radiation.leak.radius_m", "4").unwrap();
+        let [left, gate] = &set.walls[0].doors[..] else { panic!("two doors") };
+        assert_eq!((left.name.as_deref(), left.is_closed), (Some("left"), false));
+        assert_eq!((gate.width_m, gate.is_closed), (3.0, true));
+        assert_eq!(set.radiation[0].radius_m, 4.0);
+        let error = set.set("walls[0].doors.gate.open", "true").unwrap_err().to_string();
+        assert!(error.contains("walls[0].doors.gate has at_m, width_m, name"), "{error}");
+    }
+
+    #[test]
     fn what_cannot_be_set_is_named_and_nothing_changes() {
         let refused = |path: &str, value: &str| {
             let mut set = file();
