@@ -94,7 +94,7 @@ mod tests {
         let [left, gate] = &set.walls[0].doors[..] else { panic!("two doors") };
         assert_eq!((left.name.as_deref(), left.is_closed), (Some("left"), false));
         assert_eq!((gate.width_m, gate.is_closed), (3.0, true));
-        assert_eq!(set.radiation[0].radius_m, 4.0);
+        assert!((set.radiation[0].radius_m - 4.0).abs() < 1e-9);
         let error = set.set("walls[0].doors.gate.open", "true").unwrap_err().to_string();
         assert!(error.contains("walls[0].doors.gate has at_m, width_m, name"), "{error}");
     }
