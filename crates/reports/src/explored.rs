@@ -58,6 +58,9 @@ fn interval(interval: Option<[f64; 2]>) -> String {
     interval.map_or("-".to_owned(), |[low, high]| format!("{} to {}", short(low), short(high)))
 }
 
+/// Most parameters whose effects a sentence tells; the others are named.
+const MOST_IN_WORDS: usize = 3;
+
 /// The ranking of one outcome's parameters in words, the largest first.
 #[must_use]
 pub fn ranking(outcome: &Outcome, rows: &[&Row]) -> String {
@@ -74,9 +77,15 @@ pub fn ranking(outcome: &Outcome, rows: &[&Row]) -> String {
     let mut sentences = vec![match shown.split_first() {
         None => format!("{place}: no parameter is told apart from chance."),
         Some((most, rest)) => {
-            let rest = rest.iter().map(|row| format!("; then {}{}", row.parameter, in_words(row)));
+            let (next, further) = rest.split_at(rest.len().min(MOST_IN_WORDS - 1));
+            let next = next.iter().map(|row| format!("; then {}{}", row.parameter, in_words(row)));
+            let further: Vec<&str> = further.iter().map(|row| row.parameter.as_str()).collect();
+            let further = match further.len() {
+                0 => String::new(),
+                _ => format!(" Also told apart from chance: {}.", further.join(", ")),
+            };
             let first = format!("{place}: {} matters most{}", most.parameter, in_words(most));
-            format!("{first}{}.", rest.collect::<String>())
+            format!("{first}{}.{further}", next.collect::<String>())
         }
     }];
     if !shown.is_empty() && !others.is_empty() {

@@ -9,7 +9,7 @@ use thiserror::Error;
 
 use crate::path::is_segment;
 use crate::told::NO_FIELD;
-use crate::{Fields, Misfit};
+use crate::{Fields, Misfit, nearest};
 
 /// Why a field cannot be set.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
@@ -70,7 +70,7 @@ pub fn set<T: Serialize + DeserializeOwned>(
         let Misfit { field, rule, hint, .. } =
             Misfit::new(&error.code, path, (&text, place.start), &Fields::of(&text));
         if rule == NO_FIELD && place.is_empty() {
-            return fields.unknown(path, what);
+            return no_such_field(path, &hint);
         }
         let inner = field.strip_prefix(path).map_or("", |rest| rest.trim_start_matches('.'));
         let inner = if inner.is_empty() { String::new() } else { format!("{inner} ") };
@@ -82,11 +82,19 @@ pub fn set<T: Serialize + DeserializeOwned>(
 /// Where to write a field that serde omits as long as it has its default, and what to write there: `None` if
 /// nothing of what is around it is written.
 fn omitted(fields: &Fields, path: &str, new: &str) -> Option<(Range<usize>, String)> {
-    let (around, name) = path.rsplit_once('.').unwrap_or(("", path));
+    let (around, name) = path.rsplit_once('.')?;
     let first = *fields.inside(around).first().filter(|first| !first.starts_with('['))?;
-    let path = if around.is_empty() { first.to_owned() } else { format!("{around}.{first}") };
-    let before = fields.value(&path)?.start.checked_sub(first.len() + 1)?; // RON writes `first:`
+    let before = fields.value(&format!("{around}.{first}"))?.start.checked_sub(first.len() + 1)?; // RON writes `first:`
     is_segment(name).then(|| (before..before, format!("{name}:{new},")))
+}
+
+/// The error for a field that was written where serde may omit one. The misfit's hint ends with the known
+/// names.
+fn no_such_field(path: &str, hint: &str) -> SetError {
+    let (within, name) = path.rsplit_once('.').unwrap_or_default();
+    let known = hint.rsplit("here are ").next().unwrap_or_default();
+    let meant = nearest(name, known.split(", ")).map(str::to_owned);
+    SetError::Unknown { path: path.to_owned(), within: within.to_owned(), known: known.to_owned(), meant }
 }
 
 fn options() -> ron::Options {
@@ -205,7 +213,7 @@ mod tests {
             ("duration", "a mission has duration_s, arena_m, order, levels, tasks"),
             ("arena_m[2]", "arena_m has 2 entries, from [0] on"),
             ("tasks.medium", "tasks has hard, easy (or [0] to [2])"),
-            ("tasks.hard.steps.go.price", "tasks.hard.steps.go has name, cost"),
+            ("tasks.hard.steps.go.price", "tasks.hard.steps.go has name, cost, is_last"),
             ("tasks.hard.steps.fly.cost", "tasks.hard.steps has go, lift (or [0] to [1])"),
         ] {
             let error = refused(path, "1");

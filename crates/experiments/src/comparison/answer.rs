@@ -1,6 +1,6 @@
 //! The answer to the first question of a sweep, in a sentence or two.
 
-use super::{Comparison, beyond_in_words, digits, p_in_words, short};
+use super::{Comparison, Judged, beyond_in_words, digits, p_in_words, pairs_in_words, short};
 use crate::metric::{Direction, Metric};
 use crate::stats::Moments;
 use crate::sweep::folder::Folder;
@@ -80,18 +80,25 @@ fn undecided(comparison: &Comparison) -> Option<String> {
     let [low, high] = [low, high].map(side);
     Some(format!(
         "{n} pairs of trials cannot tell {a} from {b}: {a} may have {low} or {high} (95 % interval).{}",
-        settled_by(&[comparison])
+        power_for_margin(&[comparison])
     ))
 }
 
-/// With a margin: how many pairs would settle whether these differences are larger.
-fn settled_by(comparisons: &[&Comparison]) -> String {
+/// With a margin: that the question of it is open, and how many pairs have power for it.
+fn power_for_margin(comparisons: &[&Comparison]) -> String {
     let pairs = |comparison: &&Comparison| comparison.judged.and_then(|judged| judged.pairs_for_margin);
     let most = comparisons.iter().max_by_key(|comparison| pairs(comparison));
     let told = most.and_then(|most| {
-        let needed = pairs(most).filter(|needed| *needed > most.n as u64)?;
-        let margin = short(most.judged?.margin);
-        Some(format!(" About {needed} pairs would tell whether the margin of {margin} is exceeded."))
+        let (needed, margin) = (pairs(most)?, short(most.judged?.margin));
+        if needed <= most.n as u64 {
+            return Some(format!(
+                " Whether a difference is larger than the margin of {margin} is undecided."
+            ));
+        }
+        let needed = pairs_in_words(needed);
+        Some(format!(
+            " To detect a difference of {margin}, the margin, about {needed} pairs have 80 % power."
+        ))
     });
     told.unwrap_or_default()
 }
@@ -107,7 +114,7 @@ fn several(metric: &Metric, comparisons: &[&Comparison]) -> String {
         "No policy is shown to differ in {} from those that it was compared with: the differences stand on \
          up to {n} pairs of trials{precision}.{}",
         metric.title,
-        settled_by(comparisons)
+        power_for_margin(comparisons)
     )
 }
 
@@ -129,10 +136,12 @@ fn shown(comparison: &Comparison, policy: &str) -> String {
     };
     let direction = if difference > 0.0 { "more" } else { "less" };
     let margin = match comparison.judged {
-        Some(judged) if comparison.is_equivalent() => {
-            let margin = short(judged.margin);
+        Some(Judged { margin, interval_90: Some([low, high]), .. }) if comparison.is_equivalent() => {
+            let ([low, high], margin) = ([low, high].map(short), short(margin));
             format!(
-                " The difference is smaller than the margin of {margin}: the two are equivalent within it."
+                " The difference is also shown to be smaller than the margin of {margin} (90 % interval of {} \
+                 less {}: {low} to {high}).",
+                comparison.a, comparison.b
             )
         }
         judged => judged.map_or(String::new(), beyond_in_words),

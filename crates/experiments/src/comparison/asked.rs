@@ -31,7 +31,7 @@ pub struct Asked {
     /// For metrics, the largest difference that does not matter.
     pub margins: Vec<(usize, f64)>,
     /// How many of these the command line names; the others are the sweep file's.
-    pub margins_wished: usize,
+    pub margins_of_command: usize,
     /// The only policies to compare; `None` for all.
     pub policies: Option<Vec<String>>,
     /// Whether the command line or the sweep file names the metrics.
@@ -56,9 +56,19 @@ impl Asked {
         };
         let mut margins = Vec::new();
         for text in &wishes.margins {
-            margins.push(margin(experiment, text)?);
+            let (place, value) = margin(experiment, text)?;
+            let name = &catalogue[place].name;
+            if margins.iter().any(|(known, _)| *known == place) {
+                return Err(Failure::input(format!("--margin: {name} has two margins")));
+            }
+            if !metrics.contains(&place) {
+                return Err(Failure::input(format!(
+                    "--margin: {name} is not compared here; --metric {name} compares it"
+                )));
+            }
+            margins.push((place, value));
         }
-        let margins_wished = margins.len();
+        let of_command = margins.len();
         for (name, margin) in &asks.margins {
             let place = catalogue.named(name)?;
             if margins.iter().all(|(known, _)| *known != place) {
@@ -82,7 +92,7 @@ impl Asked {
             exploratory,
             baseline: wishes.baseline.clone().or(asks.baseline).or(first),
             margins,
-            margins_wished,
+            margins_of_command: of_command,
             policies: wishes.policies.clone(),
             is_declared,
         })
@@ -98,12 +108,12 @@ impl Asked {
                 .map(|(place, margin)| format!("{} {}", experiment.metrics[*place].name, short(*margin)));
             named.collect::<Vec<_>>().join(", ")
         };
-        let (wished, filed) = self.margins.split_at(self.margins_wished);
-        match [of(wished), of(filed)] {
-            [wished, filed] if wished.is_empty() && filed.is_empty() => String::new(),
-            [wished, filed] if filed.is_empty() => format!("Margins: {wished} (--margin)."),
-            [wished, filed] if wished.is_empty() => format!("Margins: {filed} (sweep file)."),
-            [wished, filed] => format!("Margins: {wished} (--margin), {filed} (sweep file)."),
+        let (commanded, filed) = self.margins.split_at(self.margins_of_command);
+        match [of(commanded), of(filed)] {
+            [commanded, filed] if commanded.is_empty() && filed.is_empty() => String::new(),
+            [commanded, filed] if filed.is_empty() => format!("Margins: {commanded} (--margin)."),
+            [commanded, filed] if commanded.is_empty() => format!("Margins: {filed} (sweep file)."),
+            [commanded, filed] => format!("Margins: {commanded} (--margin), {filed} (sweep file)."),
         }
     }
 

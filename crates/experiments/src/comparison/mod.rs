@@ -292,8 +292,9 @@ fn in_words(comparison: &Comparison, metrics: &Catalogue) -> String {
         );
     };
     let Some([low, high]) = comparison.interval else {
+        let from = if *n == 1 { "in the only pair".to_owned() } else { format!("over {n} pairs") };
         return format!(
-            "{place}: {a} less {b} is {} in the only pair; that says nothing.",
+            "{place}: {a} less {b} is {} {from}; they are too few for an interval, and say nothing.",
             short(difference)
         );
     };
@@ -327,8 +328,7 @@ fn in_words(comparison: &Comparison, metrics: &Catalogue) -> String {
     if is_clear && !comparison.is_found() {
         return format!(
             "{place}: {a} is {size} {direction} {b} ({range}). Taken alone this interval excludes zero, but \
-             among so many comparisons one like it comes up by chance (corrected {}): the difference is not \
-             shown.{power}",
+             the corrected test does not confirm it ({}): the difference is not shown.{power}",
             p_in_words(p)
         );
     }
@@ -342,7 +342,7 @@ fn in_words(comparison: &Comparison, metrics: &Catalogue) -> String {
     )
 }
 
-/// What the trials could have shown, where they show nothing: with a margin, how many pairs would settle
+/// What the trials could have shown, where they show nothing: with a margin, how many pairs have power for
 /// it; without, the least difference that they detect.
 fn power_in_words(comparison: &Comparison) -> String {
     let n = comparison.n;
@@ -350,11 +350,15 @@ fn power_in_words(comparison: &Comparison) -> String {
         let margin = short(margin);
         return if pairs > n as u64 {
             format!(
-                " About {pairs} pairs have 80 % power to detect a difference as large as the margin of \
-                 {margin}, and to show equivalence if there is none."
+                " In one uncorrected test, about {} pairs have 80 % power to detect a difference as large as \
+                 the margin of {margin}, and to show equivalence if there is none.",
+                pairs_in_words(pairs)
             )
         } else {
-            format!(" These pairs have 80 % power to detect a difference as large as the margin of {margin}.")
+            format!(
+                " In one uncorrected test, these pairs have 80 % power to detect a difference as large as the \
+                 margin of {margin}."
+            )
         };
     }
     comparison.detectable.map_or(String::new(), |least| {
@@ -363,6 +367,13 @@ fn power_in_words(comparison: &Comparison) -> String {
             short(least)
         )
     })
+}
+
+/// A number of pairs to about two significant digits.
+fn pairs_in_words(pairs: u64) -> String {
+    let unit = 10_u64.pow(pairs.max(1).ilog10().saturating_sub(1));
+    let rounded = pairs.div_ceil(unit) * unit;
+    if rounded > 1_000_000 { "more than a million".to_owned() } else { rounded.to_string() }
 }
 
 /// That two policies are equivalent, in words; `None` if they are not shown to be.
@@ -387,10 +398,9 @@ fn beyond_in_words(judged: Judged) -> String {
     let margin = short(judged.margin);
     match judged.beyond {
         Some(Beyond::Yes) => format!(" The whole interval lies beyond the margin of {margin}."),
-        Some(Beyond::Undecided) => {
+        Some(Beyond::Undecided) | None => {
             format!(" Whether the difference is larger than the margin of {margin} is undecided.")
         }
-        None => String::new(),
     }
 }
 

@@ -85,9 +85,15 @@ pub(super) fn from_scenario(text: String, path: &Path) -> Result<(Parts, Vec<Rea
 }
 
 /// The path of a field with indices instead of the names of list entries: `roles[0].speed_mps` for
-/// `roles.carrier.speed_mps`.
+/// `roles.carrier.speed_mps`. Of a field that the scenario's text leaves out, the part that is there has
+/// indices.
 pub(super) fn canonical(scenario: &Scenario, path: &str) -> String {
-    Fields::of(&scenario.resolved()).canonical(path).unwrap_or_else(|| path.to_owned())
+    let text = scenario.resolved();
+    let fields = Fields::of(&text);
+    let mut ends: Vec<usize> = path.match_indices(['.', '[']).map(|(end, _)| end).collect();
+    ends.push(path.len());
+    let known = ends.into_iter().rev().find_map(|end| Some((end, fields.canonical(&path[..end])?)));
+    known.map_or_else(|| path.to_owned(), |(end, part)| part + &path[end..])
 }
 
 /// The policies, with RNE replaced by every combination of the readings. Each combination is named by the

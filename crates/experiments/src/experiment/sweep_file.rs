@@ -13,7 +13,7 @@ use xxhash_rust::xxh3::xxh3_128;
 use super::file::{Map, SweepFile};
 use super::grid::{VARIANT, check_bytes};
 use super::policy::{PolicySpec, registry};
-use super::read::{canonical, checked, decides};
+use super::read::{canonical, decides};
 use super::{Axis, Parts, Seeds};
 use crate::failure::Failure;
 use crate::limits;
@@ -64,13 +64,16 @@ pub(super) fn from_sweep_file(text: String, path: &Path) -> Result<(Parts, Vec<R
 struct Check<'a> {
     path: &'a Path,
     fields: Fields,
-    problems: Vec<String>,
+    /// Each problem with its line, 0 where it has none.
+    problems: Vec<(usize, String)>,
 }
 
 impl Check<'_> {
     fn fail(&mut self, field: &str, reason: &dyn Display) {
-        let line = self.fields.line(field).map_or(String::new(), |line| format!(":{line}"));
-        self.problems.push(format!("{}{line}: {field}: {reason}", self.path.display()));
+        let line = self.fields.line(field);
+        let place = line.map_or(String::new(), |line| format!(":{line}"));
+        let problem = format!("{}{place}: {field}: {reason}", self.path.display());
+        self.problems.push((line.unwrap_or_default(), problem));
     }
 
     /// Takes the value, or notes why there is none.
@@ -82,8 +85,10 @@ impl Check<'_> {
         if self.problems.is_empty() {
             return Ok(());
         }
-        let shown = &self.problems[..self.problems.len().min(MOST_PROBLEMS)];
-        let rest = match self.problems.len() - shown.len() {
+        let mut problems: Vec<&(usize, String)> = self.problems.iter().collect();
+        problems.sort_by_key(|(line, _)| *line);
+        let shown: Vec<&str> = problems.iter().take(MOST_PROBLEMS).map(|(_, text)| text.as_str()).collect();
+        let rest = match problems.len() - shown.len() {
             0 => String::new(),
             more => format!("\nand {more} more"),
         };
@@ -123,7 +128,7 @@ impl Check<'_> {
         let (base, _) = match Scenario::load(&scenario) {
             Ok(loaded) => loaded,
             Err(error) => {
-                self.problems.push(error.to_string());
+                self.problems.push((0, error.to_string()));
                 return None;
             }
         };
@@ -131,17 +136,27 @@ impl Check<'_> {
         if !file.description.is_empty() {
             set.description.clone_from(&file.description);
         }
+        let known = self.problems.len();
         for (field, value) in &file.set.0 {
             let result = set.set(field, value.trim().get_ron());
             self.take(&format!("set.{field:?}"), result);
         }
-        match checked(set, &format!("{}: set: ", self.path.display())) {
-            Ok(base) => Some(base),
-            Err(error) => {
-                self.problems.push(error.to_string());
-                None
+        if self.problems.len() > known {
+            return None; // what else is wrong may come from that
+        }
+        let broken = match Scenario::try_from(set) {
+            Ok(base) => return Some(base),
+            Err(broken) => broken,
+        };
+        for problem in broken {
+            let entry =
+                file.set.0.iter().map(|(path, _)| path).find(|path| is_part(&base, &problem.field, path));
+            match entry {
+                Some(path) => self.fail(&format!("set.{path:?}"), &problem),
+                None => self.fail("set", &problem),
             }
         }
+        None
     }
 
     /// Checks each value of each axis alone, so that a problem names the wrong value and its line.
@@ -265,7 +280,11 @@ impl Check<'_> {
         let mut labels = Vec::new();
         for (i, policy) in policies.iter().enumerate() {
             let spec = self.take(&format!("policies[{i}]"), PolicySpec::parse(policy));
-            labels.extend(spec.map(|spec| spec.label));
+            let Some(label) = spec.map(|spec| spec.label) else { continue };
+            if labels.contains(&label) {
+                self.fail(&format!("policies[{i}]"), &format!("must not be listed twice, found {label:?}"));
+            }
+            labels.push(label);
         }
         let is_reading = |name: &str| has_readings && name.starts_with("RNE(");
         if let Some(found) = baseline.filter(|name| !is_reading(name) && labels.len() == policies.len())
@@ -288,6 +307,10 @@ impl Check<'_> {
             self.fail("seeds", &too_many(list.len(), limits::SEEDS));
         } else if list.iter().collect::<BTreeSet<_>>().len() < list.len() {
             self.fail("seeds", &"must differ: trials of one seed are one trial");
+        } else if let Some(trials) = file.trials.filter(|trials| *trials as usize > list.len()) {
+            let most = list.len();
+            let rule = format!("must be at most the number of listed seeds, {most}, found {trials}");
+            self.fail("trials", &rule);
         }
         Seeds::Listed(list.clone())
     }
@@ -306,17 +329,15 @@ fn hash(file: &ScenarioFile) -> u128 {
     xxh3_128(ron::to_string(file).unwrap_or_default().as_bytes())
 }
 
+/// Whether a field is this one, or a part of it.
+fn is_part(base: &Scenario, field: &str, whole: &str) -> bool {
+    let [field, whole] = [field, whole].map(|path| canonical(base, path));
+    field.strip_prefix(&*whole).is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']))
+}
+
 /// The path of the axis of which this path is a part, or the other way round.
 fn overlapping<'a>(axes: &'a [Axis], base: &Scenario, path: &str) -> Option<&'a str> {
-    let holds = |outer: &str, inner: &str| {
-        inner.strip_prefix(outer).is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']))
-    };
-    let here = canonical(base, path);
-    let overlaps = |axis: &&Axis| {
-        axis.paths().any(|path| {
-            let there = canonical(base, path);
-            holds(&there, &here) || holds(&here, &there)
-        })
-    };
+    let overlaps =
+        |axis: &&Axis| axis.paths().any(|other| is_part(base, path, other) || is_part(base, other, path));
     axes.iter().find(overlaps).map(|axis| axis.path.as_str())
 }

@@ -22,6 +22,9 @@ use crate::drawing::{
 /// more would hide the boxes.
 const MAX_POINTS: usize = 40;
 
+/// The axis of the differences is widened to show a margin at most so many times as far as the intervals go.
+const FARTHEST_MARGIN: f64 = 3.0;
+
 const PANEL: [f64; 2] = [360.0, 320.0];
 
 /// Box plots with points, a figure for each group of metrics.
@@ -231,7 +234,10 @@ pub(super) fn forest(experiment: &Experiment, comparisons: &[&Comparison]) -> Re
         let margins: Vec<f64> = margin.map_or(Vec::new(), |Judged { margin, .. }| vec![-margin, margin]);
         if ends.len() > 1 {
             let plots = vec![Plot::Forest(plot)];
-            ends.extend(&margins);
+            let widest = ends.iter().fold(0.0, |most: f64, end| most.max(end.abs()));
+            if margin.is_some_and(|judged| judged.margin <= FARTHEST_MARGIN * widest) {
+                ends.extend(&margins);
+            }
             let [low, high] = forest_range(&ends);
             let x_label = format!("first less second ({})", if unit.is_empty() { "count" } else { unit });
             let line = |at: &f64| ReferenceLine::vertical(*at).with_color("#555555").with_dasharray("2 3");
@@ -283,7 +289,8 @@ pub(super) fn forest(experiment: &Experiment, comparisons: &[&Comparison]) -> Re
         "pairs_for_margin",
     ];
     let dotted = if comparisons.iter().any(|comparison| comparison.judged.is_some()) {
-        " Dotted: the margin, the largest difference that does not matter."
+        " Dotted: the margin, the largest difference that does not matter; without it, the margin lies beyond the \
+         axis."
     } else {
         ""
     };

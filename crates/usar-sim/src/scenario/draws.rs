@@ -146,7 +146,7 @@ pub(super) fn take_out(text: &str, fields: &Fields, of_file: &str) -> (String, D
 
 impl ScenarioFile {
     /// The file without its distributions: each is replaced by one of its values.
-    fn without_draws(&self) -> Self {
+    pub(super) fn without_draws(&self) -> Self {
         Self { draws: Draws::new(), ..self.clone() }
     }
 
@@ -188,8 +188,8 @@ impl ScenarioFile {
     }
 
     /// The broken rules of a file with distributions. Each value is checked at the ends of its distribution.
-    /// Whether the values fit together is checked for one seed, and by each trial for its own: if none of a
-    /// trial's draws fits, most often values that are not drawn do not fit together.
+    /// Each trial checks whether its values fit together. Here they are refused only if each of a trial's draws
+    /// breaks the same rule in the same field: most often that is between values that are not drawn.
     pub(super) fn problems_of_draws(&self) -> Vec<Problem> {
         let most = self.draws.values().filter_map(|text| Draw::read(text).ok());
         let most = most.map(|draw| draw.examples(false).len()).max().unwrap_or_default();
@@ -210,16 +210,20 @@ impl ScenarioFile {
         if self.is_long() {
             return Vec::new(); // a draw of it takes long
         }
-        let Err((tries, problem)) = self.of_trial(CHECKED_SEED) else { return Vec::new() };
-        let hint = format!("so it is in each of {tries} draws of the distributions");
-        problem.map(|problem| Problem { hint, ..*problem }).into_iter().collect()
+        let Err(problems) = self.of_trial(CHECKED_SEED) else { return Vec::new() };
+        let hint = format!("none of {} draws of the distributions avoids this", problems.len());
+        let is_in_all = |problem: &Problem| {
+            problems.iter().all(|other| (&other.field, &other.rule) == (&problem.field, &problem.rule))
+        };
+        let first = problems.first().filter(|problem| is_in_all(problem));
+        first.map(|problem| Problem { hint, ..problem.clone() }).into_iter().collect()
     }
 
     /// The scenario of one trial, in which each distribution is replaced by a value drawn from the stream of
-    /// its path. If the values do not fit together, all of them are drawn again. The error is the number of
-    /// tries, and what was wrong with the last one.
-    fn of_trial(&self, seed: u64) -> Result<Scenario, (u32, Option<Box<Problem>>)> {
-        let mut last = None;
+    /// its path. If the values do not fit together, all of them are drawn again. The error is what was wrong
+    /// with each draw.
+    fn of_trial(&self, seed: u64) -> Result<Scenario, Vec<Problem>> {
+        let mut problems = Vec::new();
         let tries = if self.is_long() { TRIES_OF_A_LONG_ONE } else { TRIES };
         for attempt in 0..tries {
             let drawn = self.with_drawn(|path, draw, is_whole| {
@@ -230,16 +234,15 @@ impl ScenarioFile {
                     Draw::Choice(texts) => texts[index(&mut draws, texts.len())].clone(),
                 })
             });
-            let problem = match drawn {
-                Err(problem) => Some(problem),
+            match drawn {
+                Err(problem) => problems.push(*problem),
                 Ok(file) => match Scenario::try_from(file) {
                     Ok(scenario) => return Ok(scenario),
-                    Err(problems) => problems.into_iter().next().map(Box::new),
+                    Err(found) => problems.extend(found.into_iter().next()),
                 },
-            };
-            last = problem.or(last);
+            }
         }
-        Err((tries, last))
+        Err(problems)
     }
 }
 
@@ -260,9 +263,9 @@ impl Scenario {
         if self.draws.is_empty() {
             return Ok(self.clone());
         }
-        self.0.of_trial(seed).map_err(|(tries, problem)| {
-            let problem = problem.map(|problem| problem.to_string()).unwrap_or_default();
-            LayoutError::NeverFits { tries, problem }
+        self.0.of_trial(seed).map_err(|problems| LayoutError::NeverFits {
+            tries: problems.len() as u32,
+            problem: problems.last().map(ToString::to_string).unwrap_or_default(),
         })
     }
 }
@@ -390,7 +393,7 @@ mod tests {
         let text = TEXT.replace("at: (20, 20)", "at: (20, Uniform(4.9, 5.1))").replace("Uniform(2, 4)", "3");
         let error = Scenario::parse(&text, "t.ron".as_ref()).unwrap_err().to_string();
         assert!(error.contains("t.ron:6: debris[0].at must leave every robot's home free"), "{error}");
-        assert!(error.contains("in each of 100 draws"), "{error}");
+        assert!(error.contains("none of 100 draws"), "{error}");
     }
 
     /// Here one draw in about thirty fits.

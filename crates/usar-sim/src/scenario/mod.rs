@@ -146,7 +146,8 @@ impl Scenario {
         list.iter_mut().for_each(|problem| {
             named::hint(problem, names);
             distribution::hint(problem);
-            problem.hint = problem.hint.replace(", draws", ""); // where distributions are kept: no file has it
+            // Where distributions are kept: no file has this field.
+            problem.hint = problem.hint.strip_suffix(", draws").unwrap_or(&problem.hint).to_owned();
         });
         if fields.value("draws").is_some() {
             let rule = "is no field".to_owned();

@@ -17,14 +17,15 @@ impl ScenarioFile {
             *self = ron_fields::set(self, path, value, "a scenario")?;
             return Ok(());
         }
-        let text = ron::to_string(self).unwrap_or_default();
+        let text = ron::to_string(&self.without_draws()).unwrap_or_default();
         let canonical = Fields::of(&text).canonical(path).unwrap_or_else(|| path.to_owned());
         let (plain, draws, wrong) = draws::take_out(&wrapped, &Fields::of(&wrapped), &canonical);
         if let Some(Problem { rule: reason, found, .. }) = wrong.into_iter().next() {
             return Err(SetError::Malformed { path: path.to_owned(), reason, found });
         }
         let inner = if draws.is_empty() { value } else { plain[1..plain.len() - 1].trim_end() };
-        let mut set: Self = ron_fields::set(self, path, inner, "a scenario").map_err(without_draws)?;
+        let mut set = ron_fields::set(&self.without_draws(), path, inner, "a scenario")?;
+        set.draws.clone_from(&self.draws);
         let is_inside = |key: &str| {
             key.strip_prefix(canonical.as_str())
                 .is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']))
@@ -33,16 +34,6 @@ impl ScenarioFile {
         set.draws.extend(draws);
         *self = set;
         Ok(())
-    }
-}
-
-/// Leaves out of a message the field in which distributions are kept: no file has it.
-fn without_draws(error: SetError) -> SetError {
-    match error {
-        SetError::Unknown { path, within, known, meant } => {
-            SetError::Unknown { path, within, known: known.replace(", draws", ""), meant }
-        }
-        SetError::Malformed { .. } => error,
     }
 }
 
@@ -96,7 +87,14 @@ mod tests {
         assert_eq!((gate.width_m, gate.is_closed), (3.0, true));
         assert!((set.radiation[0].radius_m - 4.0).abs() < 1e-9);
         let error = set.set("walls[0].doors.gate.open", "true").unwrap_err().to_string();
-        assert!(error.contains("walls[0].doors.gate has at_m, width_m, name"), "{error}");
+        assert!(error.contains("walls[0].doors.gate has at_m, width_m, name, closed"), "{error}");
+        let error = set.set("walls[0].doors[0].closd", "true").unwrap_err().to_string();
+        assert!(error.ends_with("did you mean closed?"), "{error}");
+        for value in ["{\"dt_s\": \"Uniform(0.01, 0.02)\"}", "1"] {
+            let error = set.set("draws", value).unwrap_err().to_string();
+            assert!(error.starts_with("draws: no such field; a scenario has format, name"), "{error}");
+            assert!(error.ends_with("planning, conflicts"), "{error}");
+        }
     }
 
     #[test]

@@ -25,7 +25,7 @@ use crate::printable::counted;
 For each metric and pair of policies: mean of each, mean difference with its 95 % bootstrap interval, \
 Hodges-Lehmann shift, Wilcoxon's signed-rank test, its p after Holm's correction over all comparisons shown, \
 effect size (matched-pairs rank-biserial), the least difference that this many pairs detect with 80 % power, \
-and one sentence. \
+with a margin how many pairs have this power for it, and one sentence. \
 For a sweep with axes, also how each policy's mean, and each difference, changes along an axis, paired by \
 seed. With a margin, two policies are equivalent if the 90 % interval of their difference lies within it \
 (two one-sided tests at 5 %). Choose metrics before looking: the correction knows only what is shown together.

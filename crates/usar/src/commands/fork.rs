@@ -224,9 +224,9 @@ fn changes(before: &[u32], after: &[u32]) -> String {
     let only = |here: &[u32], there: &[u32]| here.iter().filter(|id| !there.contains(id)).count();
     match (only(after, before), only(before, after)) {
         (0, 0) => "the same".to_owned(),
-        (join, 0) => format!("{join} join"),
-        (0, leave) => format!("{leave} leave"),
-        (join, leave) => format!("{join} join, {leave} leave"),
+        (join, 0) => format!("{join} more"),
+        (0, leave) => format!("{leave} fewer"),
+        (join, leave) => format!("{join} new, {leave} gone"),
     }
 }
 
@@ -283,7 +283,7 @@ mod tests {
         let told =
             [(vec![1, 2], vec![2, 1]), (vec![1, 2], vec![]), (vec![], vec![3]), (vec![1, 2], vec![3, 1])];
         let words = told.map(|(before, after)| changes(&before, &after));
-        assert_eq!(words, ["the same", "2 leave", "1 join", "1 join, 1 leave"]);
+        assert_eq!(words, ["the same", "2 fewer", "1 more", "1 new, 1 gone"]);
     }
 
     #[test]

@@ -61,11 +61,11 @@ fn bad_sweep_files_are_refused_with_their_lines() {
     refuse("trials: 2", "trails: 2", "bad.ron:7:");
     refuse("short.ron", "long.ron", "long.ron: cannot be read");
     refuse("score: Sum", "score: Most", "bad.ron:6: policies[1]: policy RNE: ");
-    refuse("\"DIS\"", "\"RNE\"", "policies: must not be listed twice, found \"RNE\"");
+    refuse("\"DIS\"", "\"RNE\"", "bad.ron:6: policies[2]: must not be listed twice, found \"RNE\"");
     refuse(
         "trials: 2",
         "trials: 3, seeds: [1, 2]",
-        "trials: must be at most the number of listed seeds, 2, found 3",
+        "bad.ron:7: trials: must be at most the number of listed seeds, 2, found 3",
     );
     refuse("trials: 2", "seeds: [1, 2], first_seed: 1", "seeds: must not be given beside first_seed");
     // Several mistakes at once, each with its line.
@@ -74,15 +74,67 @@ fn bad_sweep_files_are_refused_with_their_lines() {
         .replace("score: Sum", "score: Most")
         .replace("trials: 2", "trials: 2, primary: [\"rescued\"], margins: {\"rescuees\": 0}")
         .replace("[1.5, 3.0]", "[1.5, \"fast\"]");
+    let axis = "bad.ron:9: axes.\"roles.carrier.speed_mps\"[1]: ";
     std::fs::write(here.join("bad.ron"), bad).unwrap();
     let told = [
         "bad.ron:5: set.\"mission.loading\": ",
         "bad.ron:6: policies[1]: ",
         "bad.ron:7: primary[0]: ",
         "bad.ron:7: margins.\"rescuees\": must be a number above 0, found 0",
-        "bad.ron:9: axes.\"roles.carrier.speed_mps\"[1]: ",
     ];
     refused(here, 2, &["sweep", "bad.ron"], &told);
+    // Without a scenario that can be used, values on axes cannot be judged.
+    let bad = grid
+        .replace("score: Sum", "score: Most")
+        .replace("trials: 2", "trials: 2, primary: [\"rescued\"], margins: {\"rescuees\": 0}")
+        .replace("[1.5, 3.0]", "[1.5, \"fast\"]");
+    std::fs::write(here.join("bad.ron"), bad).unwrap();
+    refused(here, 2, &["sweep", "bad.ron"], &[told[1], told[2], told[3], axis]);
+    // A rule that a value of `set` breaks has its line; what else is wrong may come from it.
+    std::fs::write(
+        here.join("bad.ron"),
+        grid.replace("\"mission.loading_s\"", "\"mission.rest_s\": -1, \"mission.loading_s\""),
+    )
+    .unwrap();
+    refused(here, 2, &["sweep", "bad.ron"], &["bad.ron:5: set.\"mission.rest_s\": mission.rest_s must be"]);
+}
+
+#[test]
+fn a_door_is_one_axis_only_by_whatever_name() {
+    let folder = place();
+    let here = folder.path();
+    let walls = "[(from: (0, 8), to: (20, 8), doors: [(at_m: 3, width_m: 2, name: \"gate\")])]";
+    let short = std::fs::read_to_string(here.join("short.ron")).unwrap();
+    let arena = short.find("arena_m").unwrap();
+    std::fs::write(
+        here.join("walled.ron"),
+        format!("{}walls: {walls}, {}", &short[..arena], &short[arena..]),
+    )
+    .unwrap();
+    let sweep = |axes: &str| {
+        let text =
+            format!("(name: \"doors\", scenario: \"walled.ron\", policies: [\"RNE\"], axes: {{{axes}}})");
+        std::fs::write(here.join("doors.ron"), text).unwrap();
+    };
+    sweep("\"walls[0].doors.gate.closed\": [true, false]");
+    succeeds(&usar(here, &["check", "doors.ron"]));
+    for both in ["closed\": [true, false]", "width_m\": [2, 3]"] {
+        sweep(&format!("\"walls[0].doors.gate.{both}, \"walls[0].doors[0].{both}"));
+        refused(
+            here,
+            2,
+            &["sweep", "doors.ron"],
+            &["must not be a part of another axis, found walls[0].doors.gate"],
+        );
+    }
+    sweep("\"walls[0].doors[0].closed\": [true, false]");
+    let set = "walls[0].doors.gate.closed=false";
+    refused(
+        here,
+        2,
+        &["sweep", "doors.ron", "--set", set],
+        &["--set: walls[0].doors[0].closed is on an axis"],
+    );
 }
 
 #[test]
