@@ -387,3 +387,20 @@ pub(super) fn axes(folder: &Folder, case: usize, only: Option<&[String]>) -> Res
     }
     Ok(all)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_thinned_box_keeps_every_trial_beyond_its_whiskers() {
+        let mut values: Vec<f64> = (0..200).map(|i| f64::from(i % 10)).collect();
+        values[7] = 100.0;
+        values[11] = -100.0;
+        let shown = thinned(&values, 5);
+        assert_eq!(shown.len(), 42);
+        assert!(shown.contains(&100.0) && shown.contains(&-100.0));
+        assert_eq!(thinned(&values, 1), values);
+        assert!(thinned(&[], 5).is_empty());
+    }
+}

@@ -37,7 +37,7 @@ fn panel<'a>(outcome: &str, rows: impl Iterator<Item = &'a Row>) -> Option<Panel
     let mut plot = ForestPlot::new().with_null_value(0.0).with_cap_size(4.0);
     let (mut ends, mut label) = (vec![0.0], "");
     for row in rows {
-        let shown = if row.is_shown() { OF_SHOWN } else { OF_OTHERS };
+        let shown = if row.is_shown() && !row.is_chance() { OF_SHOWN } else { OF_OTHERS };
         let mut add = |name: String, Known { value, interval }: Known, colour: &str| {
             let [low, high] = interval.unwrap_or([value; 2]);
             plot = std::mem::replace(&mut plot, ForestPlot::new())
