@@ -148,8 +148,9 @@ fn page<'a>(
     (figures, maps): (&'a [Figure], &'a [Map]),
 ) -> Page<'a> {
     let (experiment, manifest) = (folder.experiment(), folder.manifest());
-    let failed = folder.results().values().filter(|measured| measured.metrics.is_none()).count();
-    let asked = experiment.count(manifest.shard);
+    let here = || folder.results().iter().filter(|((of, ..), _)| *of == case);
+    let failed = here().filter(|(_, measured)| measured.metrics.is_none()).count();
+    let asked = folder.trials_of(case) * experiment.policies.len();
     let seeds = match &experiment.seeds {
         Seeds::From(first) => format!("{first} to {}", experiment.seed(experiment.trials)),
         Seeds::Listed(list) => format!("{list:?}"),
@@ -178,9 +179,9 @@ fn page<'a>(
         description: &experiment.base.description,
         place: experiment.describe(&experiment.cases[case]).trim_end_matches(": ").to_owned(),
         is_complete: manifest.is_complete,
-        finished: folder.results().len() - failed,
+        finished: here().count() - failed,
         failed,
-        missing: asked - folder.results().len().min(asked),
+        missing: asked.saturating_sub(here().count()),
         trials: folder.trials_of(case) as u32,
         labels: experiment.policies.iter().map(|policy| policy.label.as_str()).collect(),
         policies: experiment.policies.iter().map(|spec| (spec.label.as_str(), about(spec))).collect(),

@@ -3,7 +3,9 @@
 
 use askama::Template;
 use experiments::Failure;
-use experiments::comparison::{Comparison, Effect, Interaction, answer, effects, interactions};
+use experiments::comparison::{
+    Comparison, Effect, Interaction, answer, effects, interactions, limit_of_changes,
+};
 use experiments::metric::Metric;
 use experiments::sweep::disk::{PLOTS, REPORT};
 use experiments::sweep::folder::Folder;
@@ -30,6 +32,8 @@ struct Overview<'a> {
     found: Vec<&'a str>,
     /// Changes of differences that are not shown.
     open: Vec<&'a str>,
+    /// That no change can be shown, where that is so.
+    limit: Option<String>,
     figures: &'a [Figure],
 }
 
@@ -109,6 +113,7 @@ pub(crate) fn write_overview(
         changes: asked.map(|metric| Change::of(metric, &effects, comparisons)).collect(),
         found: sentences(true),
         open: sentences(false),
+        limit: limit_of_changes(&effects, &changes),
         figures: &figures,
     };
     files.add(REPORT.to_owned(), overview.render().map_err(Failure::run)?.as_bytes())?;

@@ -29,8 +29,17 @@ pub fn answer(folder: &Folder, case: usize, metric: usize, comparisons: &[&Compa
     let most = if sign > 0.0 { "highest" } else { "lowest" };
     let lead =
         format!("{} has the {most} mean of {}: {}", first.1, declared.title, value(first.0).trim_end());
-    if let Some(best) = found.iter().find(|c| c.a == first.1 || c.b == first.1) {
-        return Some(format!("{lead}. {}", shown(best, first.1)));
+    let ahead: Vec<&Comparison> =
+        found.iter().filter(|c| c.a == first.1 || c.b == first.1).copied().collect();
+    let size = |c: &Comparison| c.difference.map_or(0.0, f64::abs);
+    if let Some(nearest) = ahead.iter().min_by(|a, b| size(a).total_cmp(&size(b))) {
+        let others: Vec<&str> =
+            ahead.iter().map(|c| if c.a == first.1 { c.b.as_str() } else { c.a.as_str() }).collect();
+        let all = match &others[..] {
+            [_] => String::new(),
+            several => format!(" The difference to each of {} is shown; the smallest:", several.join(", ")),
+        };
+        return Some(format!("{lead}.{all} {}", shown(nearest, first.1)));
     }
     if own.is_empty() {
         return Some(format!("{lead}."));
@@ -96,8 +105,10 @@ fn power_for_margin(comparisons: &[&Comparison]) -> String {
             ));
         }
         let needed = pairs_in_words(needed);
+        let widest = if comparisons.len() > 1 { " in the widest of these comparisons" } else { "" };
         Some(format!(
-            " To detect a difference of {margin}, the margin, about {needed} pairs have 80 % power."
+            " A rough guess from these trials: about {needed} pairs would detect a true difference of {margin}, \
+             the margin, with 80 % power{widest}, before correction."
         ))
     });
     told.unwrap_or_default()
@@ -109,7 +120,7 @@ fn several(metric: &Metric, comparisons: &[&Comparison]) -> String {
     let half = |[low, high]: [f64; 2]| (high - low) / 2.0;
     let widest = comparisons.iter().filter_map(|c| c.interval).map(half).fold(0.0, f64::max);
     let precision =
-        if widest > 0.0 { format!(", known to about ± {} each", short(widest)) } else { String::new() };
+        if widest > 0.0 { format!(", known to ± {} or better", short(widest)) } else { String::new() };
     format!(
         "No policy is shown to differ in {} from those that it was compared with: the differences stand on \
          up to {n} pairs of trials{precision}.{}",

@@ -113,6 +113,20 @@ impl Comparison {
 pub fn limit_of_correction(comparisons: &[Comparison]) -> Option<String> {
     let family = comparisons.iter().filter(|comparison| comparison.p.is_some()).count();
     let most = comparisons.iter().map(|comparison| comparison.n).max()?;
+    limit(most, family, "comparisons")
+}
+
+/// The same warning for the changes along axes: of means, or of differences.
+#[must_use]
+pub fn limit_of_changes(effects: &[Effect], interactions: &[Interaction]) -> Option<String> {
+    let of_effects = || effects.iter().filter(|effect| effect.p.is_some()).map(|effect| effect.n);
+    let of_interactions = || interactions.iter().filter(|one| one.p.is_some()).map(|one| one.n);
+    limit(of_effects().max()?, of_effects().count(), "changes of means")
+        .or_else(|| limit(of_interactions().max()?, of_interactions().count(), "changes of differences"))
+}
+
+/// The warning for a family of tests on so many pairs at most.
+fn limit(most: usize, family: usize, what: &str) -> Option<String> {
     let smallest = if most > EXACT_PAIRS {
         2.0 / f64::from(DRAWS + 1)
     } else {
@@ -121,9 +135,9 @@ pub fn limit_of_correction(comparisons: &[Comparison]) -> Option<String> {
     let least = smallest * family as f64;
     (family > 0 && least >= LEVEL).then(|| {
         format!(
-            "At n = {most} the smallest p there is, {}, becomes {} after correction over {family} \
-             comparisons: none can show a difference, however large. Compare fewer things, chosen beforehand \
-             (--metric, --baseline), or run more trials.",
+            "At n = {most} the smallest p there is, {}, becomes {} after correction over {family} {what}: none \
+             can be shown, however large. Compare fewer things, chosen beforehand (--metric, --baseline), or \
+             run more trials.",
             short(smallest),
             short(least.min(1.0))
         )

@@ -2,6 +2,7 @@
 
 use usar_sim::record::{DecisionRecord, TrialRecord};
 
+use super::asks::Asks;
 use super::{Axis, Experiment, Seeds};
 use crate::failure::Failure;
 use crate::run::TrialKey;
@@ -67,14 +68,39 @@ impl Experiment {
         };
         let named = of_variants.into_iter().flat_map(|axis| axis.values.iter().zip(&axis.variants));
         let variants = named.map(variant).collect::<Result<Vec<_>, Failure>>()?.concat();
+        let questions = self.questions_in_ron()?;
         Ok(format!(
             "(\n    name: {},\n    scenario: {},\n    policies: [{}],\n    trials: {},\n    {seeds},\n    \
-             keep: {},\n    variants: {{\n{variants}    }},\n    axes: {{\n{axes}    }},\n)\n",
+             keep: {},\n{questions}    variants: {{\n{variants}    }},\n    axes: {{\n{axes}    }},\n)\n",
             quoted(&self.name)?,
             quoted(scenario)?,
             policies.join(", "),
             self.trials,
             self.keep.in_files(),
         ))
+    }
+
+    /// The fields of a sweep file with what is asked of the results; empty if nothing is.
+    fn questions_in_ron(&self) -> Result<String, Failure> {
+        let quoted = |text: &String| ron::to_string(text).map_err(Failure::run);
+        let list = |texts: &[String]| -> Result<String, Failure> {
+            Ok(texts.iter().map(quoted).collect::<Result<Vec<_>, _>>()?.join(", "))
+        };
+        let Asks { primary, baseline, margins, expect } = self.asks()?;
+        let mut lines = Vec::new();
+        if !primary.is_empty() {
+            lines.push(format!("primary: [{}]", list(&primary)?));
+        }
+        if let Some(baseline) = &baseline {
+            lines.push(format!("baseline: {}", quoted(baseline)?));
+        }
+        if !margins.is_empty() {
+            let margins = margins.iter().map(|(name, margin)| Ok(format!("{}: {margin:?}", quoted(name)?)));
+            lines.push(format!("margins: {{{}}}", margins.collect::<Result<Vec<_>, Failure>>()?.join(", ")));
+        }
+        if !expect.is_empty() {
+            lines.push(format!("expect: [{}]", list(&expect)?));
+        }
+        Ok(lines.into_iter().map(|line| format!("    {line},\n")).collect::<Vec<_>>().concat())
     }
 }

@@ -199,8 +199,8 @@ pub(super) fn costs(folder: &Folder, case: usize, only: Option<&[String]>) -> Re
         name: "costs".into(),
         title: "Energy and HP per rescuee".into(),
         caption: format!(
-            "Percent points per rescuee delivered; each point is a trial, of {MAX_POINTS} at most for each \
-             policy. {}",
+            "Percent points per rescuee delivered; each point is a trial, at most the first {MAX_POINTS} of each \
+             policy are drawn. {}",
             per_box(&counts)
         ),
         drawing: Drawing::new(panels, 3, [400.0, 320.0]),
@@ -289,8 +289,8 @@ pub(super) fn forest(experiment: &Experiment, comparisons: &[&Comparison]) -> Re
         "pairs_for_margin",
     ];
     let dotted = if comparisons.iter().any(|comparison| comparison.judged.is_some()) {
-        " Dotted: the margin, the largest difference that does not matter; without it, the margin lies beyond the \
-         axis."
+        " Dotted: the margin, the largest difference that does not matter; if no dotted line is drawn, it lies beyond \
+         the axis."
     } else {
         ""
     };

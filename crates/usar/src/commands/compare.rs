@@ -6,8 +6,8 @@ use std::path::PathBuf;
 use clap::Args;
 use experiments::Failure;
 use experiments::comparison::{
-    CONFIDENCE, Comparison, Effect, Interaction, LEVEL, compare, effects, interactions, limit_of_correction,
-    test_in_words,
+    CONFIDENCE, Comparison, Effect, Interaction, LEVEL, compare, effects, interactions, limit_of_changes,
+    limit_of_correction, test_in_words,
 };
 use experiments::experiment::Experiment;
 use experiments::stats::bootstrap::resamples;
@@ -107,6 +107,9 @@ impl Arguments {
         if let Some(limit) = limit_of_correction(&comparisons) {
             writeln!(out, "\n{limit}")?;
         }
+        if let Some(limit) = limit_of_changes(&effects, &interactions) {
+            writeln!(out, "\n{limit}")?;
+        }
         if !comparisons.is_empty() {
             writeln!(out, "\n{}", footnote(&comparisons))?;
             let margins = asked.margins_in_words(experiment);
@@ -122,9 +125,8 @@ impl Arguments {
 
 /// Note below the tables of [`print_changes`].
 const CHANGES_NOTE: &str = "\
-Each change is paired by seed, between two cases that differ in one axis, of which the first has its first \
-value. In brackets 95 %
-bootstrap intervals; *: shown after Holm's correction over all changes (of means, and of differences), or \
+Each change goes from the first value of one axis to another value, all else equal, and is paired by seed. In
+brackets 95 % bootstrap intervals; *: shown after Holm's correction over all changes (of means, and of differences), or \
 over all comparisons";
 
 /// Prints the effects of the axes on one metric: each policy's mean, the differences case by case, and

@@ -193,6 +193,23 @@ fn a_sweep_file_names_its_metrics_its_baseline_and_which_differences_matter() {
     assert!(told.contains("Margins: distance 1000000 (sweep file)."), "{told}");
     let told = succeeds(&usar(here, &["compare", "results/asked", "--margin", "distance=2e6"]));
     assert!(told.contains("Margins: distance 2000000 (--margin)."), "{told}");
+    // The sweep file in the folder asks the same.
+    succeeds(&usar(&here.join("results/asked"), &["sweep", "sweep.ron", "--out", "again", "--quiet"]));
+    let [asked, again] =
+        ["results/asked", "results/asked/again"].map(|folder| succeeds(&usar(here, &["compare", folder])));
+    assert_eq!(asked, again);
+    refused(
+        here,
+        2,
+        &["compare", "results/asked", "--margin", "waiting=1"],
+        &["--margin: waiting is not compared here; --metric waiting compares it"],
+    );
+    refused(
+        here,
+        2,
+        &["compare", "results/asked", "--margin", "distance=1", "--margin", "distance=2"],
+        &["--margin: distance has two margins"],
+    );
     let tight = json(&["--metric", "distance", "--baseline", "ENG", "--margin", "distance=1e-9"]);
     let verdicts: Vec<_> = tight["comparisons"]
         .as_array()
@@ -240,6 +257,9 @@ fn a_sweep_with_axes_says_how_differences_change_along_them() {
         &["compare", "results/grid", "--metric", "distance", "--baseline", "DIS", "--json"],
     ));
     let told: Value = serde_json::from_str(&told).unwrap();
+    let words =
+        succeeds(&usar(here, &["compare", "results/grid", "--metric", "distance", "--baseline", "DIS"]));
+    assert!(words.contains("changes of means: none can be shown, however large"), "{words}");
     let interactions = told["interactions"].as_array().unwrap();
     // Two axes of two values: each value but the first, at both values of the other axis, for each policy
     // but the baseline.
