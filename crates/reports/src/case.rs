@@ -232,7 +232,7 @@ fn row(c: &Comparison) -> Row {
     let mean = |value: Option<f64>| value.map_or("-".to_owned(), |value| digits(value, 4));
     let pairs = c.judged.and_then(|judged| judged.pairs_for_margin);
     Row {
-        metric: c.metric.clone(),
+        metric: if c.is_of_sums { format!("{} (ratio of sums)", c.metric) } else { c.metric.clone() },
         pair: format!("{} - {}", c.a, c.b),
         n: c.n,
         left_out: c.failed + c.missing + c.undefined,

@@ -122,8 +122,8 @@ fn several(metric: &Metric, comparisons: &[&Comparison]) -> String {
     let precision =
         if widest > 0.0 { format!(", known to ± {} or better", short(widest)) } else { String::new() };
     format!(
-        "No policy is shown to differ in {} from those that it was compared with: the differences stand on \
-         up to {n} pairs of trials{precision}.{}",
+        "No policy is shown to differ in {} from those that it was compared with. That does not mean that \
+         they are equal: the differences stand on up to {n} pairs of trials{precision}.{}",
         metric.title,
         power_for_margin(comparisons)
     )
