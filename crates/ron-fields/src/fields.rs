@@ -268,7 +268,8 @@ mod tests {
         Some((grid: (6, 7), name: "easy")),
         Task(name: "hard", grid: (8, 9)),
         (name: "a.b", grid: (0, 0)),
-        (name: Some("roof"), grid: (1, 1)), (name: "grid[0]"), (name: ""), (name: "q\"q"), (name: r"raw"), (name: 3), 1,
+        (name: Some("roof"), grid: (1, 1)), (name: "grid[0]"),
+        (name: ""), (name: "q\"q"), (name: r"raw"), (name: 3), 1,
     ],
     site: (name: "hall", size: 3),
     pair: ((name: "left", x: 1), (name: "right", x: 2)),
@@ -285,7 +286,7 @@ mod tests {
             ("tasks.hard.steps[1].cost", "tasks[0].steps[1].cost", 5, "2"),
             ("tasks[2].grid[0]", "tasks[2].grid[0]", 8, "8"),
             ("tasks.roof.grid[1]", "tasks[4].grid[1]", 10, "1"),
-            ("pair.right.x", "pair[1].x", 13, "2"),
+            ("pair.right.x", "pair[1].x", 14, "2"),
         ] {
             assert_eq!(fields.canonical(path).as_deref(), Some(canonical));
             assert_eq!(fields.line(path), Some(line), "{path}");

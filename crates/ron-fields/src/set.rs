@@ -43,8 +43,8 @@ fn asked(meant: Option<&str>) -> String {
 }
 
 /// Sets the field at a path such as `costs.energy` or `tasks.hard.grid[0]` to `new`, in RON, and returns
-/// the changed value. `what` describes the whole value in messages, for example `a scenario`. The value's types
-/// refuse unknown fields (`deny_unknown_fields`).
+/// the changed value. `what` describes the whole value in messages, for example `a scenario`. The value's
+/// types refuse unknown fields (`deny_unknown_fields`).
 ///
 /// # Errors
 /// The field does not exist, or the new value does not have its type.
@@ -84,7 +84,7 @@ pub fn set<T: Serialize + DeserializeOwned>(
 fn omitted(fields: &Fields, path: &str, new: &str) -> Option<(Range<usize>, String)> {
     let (around, name) = path.rsplit_once('.')?;
     let first = *fields.inside(around).first().filter(|first| !first.starts_with('['))?;
-    let before = fields.value(&format!("{around}.{first}"))?.start.checked_sub(first.len() + 1)?; // RON writes `first:`
+    let before = fields.value(&format!("{around}.{first}"))?.start.checked_sub(first.len() + ":".len())?;
     is_segment(name).then(|| (before..before, format!("{name}:{new},")))
 }
 

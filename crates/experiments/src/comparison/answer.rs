@@ -1,6 +1,7 @@
 //! The answer to the first question of a sweep, in a sentence or two.
 
-use super::{Comparison, Judged, beyond_in_words, digits, p_in_words, pairs_in_words, short};
+use super::words::{beyond_in_words, digits, p_in_words, pairs_in_words, short};
+use super::{Comparison, Judged};
 use crate::metric::{Direction, Metric};
 use crate::stats::Moments;
 use crate::sweep::folder::Folder;
@@ -107,8 +108,8 @@ fn power_for_margin(comparisons: &[&Comparison]) -> String {
         let needed = pairs_in_words(needed);
         let widest = if comparisons.len() > 1 { " in the widest of these comparisons" } else { "" };
         Some(format!(
-            " A rough guess from these trials: about {needed} pairs would detect a true difference of {margin}, \
-             the margin, with 80 % power{widest}, before correction."
+            " A rough guess from these trials: about {needed} pairs would detect a true difference of \
+             {margin}, the margin, with 80 % power{widest}, before correction."
         ))
     });
     told.unwrap_or_default()

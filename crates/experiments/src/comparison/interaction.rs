@@ -5,7 +5,8 @@
 use serde::Serialize;
 
 use super::effect::{Contrast, contrasts, corrected, is_shown};
-use super::{CONFIDENCE, Choice, Pairs, p_in_words, policy_pairs, short};
+use super::words::p_in_words;
+use super::{CONFIDENCE, Choice, Pairs, policy_pairs, short};
 use crate::failure::Failure;
 use crate::stats::Moments;
 use crate::stats::bootstrap::interval;

@@ -2,7 +2,7 @@
 //! an axis.
 
 use experiments::Failure;
-use experiments::comparison::{Comparison, Judged};
+use experiments::comparison::Comparison;
 use experiments::experiment::Experiment;
 use experiments::metric::{Metric, Values};
 use experiments::stats::Moments;
@@ -199,8 +199,8 @@ pub(super) fn costs(folder: &Folder, case: usize, only: Option<&[String]>) -> Re
         name: "costs".into(),
         title: "Energy and HP per rescuee".into(),
         caption: format!(
-            "Percent points per rescuee delivered; each point is a trial, at most the first {MAX_POINTS} of each \
-             policy are drawn. {}",
+            "Percent points per rescuee delivered; each point is a trial, at most the first {MAX_POINTS} of \
+             each policy are drawn. {}",
             per_box(&counts)
         ),
         drawing: Drawing::new(panels, 3, [400.0, 320.0]),
@@ -210,87 +210,17 @@ pub(super) fn costs(folder: &Folder, case: usize, only: Option<&[String]>) -> Re
 
 /// Paired differences with their intervals.
 pub(super) fn forest(experiment: &Experiment, comparisons: &[&Comparison]) -> Result<Sketch, Failure> {
-    let names = names(experiment);
-    let name = |label: &String| {
-        let place = experiment.policies.iter().position(|policy| policy.label == *label);
-        place.map_or("", |place| names[place].as_str())
-    };
     let mut metrics: Vec<&str> = comparisons.iter().map(|comparison| comparison.metric.as_str()).collect();
     metrics.dedup();
     let mut panels = Vec::new();
     for metric in metrics {
-        let Metric { title, unit, .. } = &experiment.metrics[experiment.metrics.named(metric)?];
-        let mut plot = ForestPlot::new().with_null_value(0.0).with_cap_size(4.0);
-        let mut ends = vec![0.0];
-        for comparison in comparisons.iter().filter(|comparison| comparison.metric == metric) {
-            let (Some(difference), Some([low, high])) = (comparison.difference, comparison.interval) else {
-                continue;
-            };
-            let label = format!("{} - {} ({})", name(&comparison.a), name(&comparison.b), comparison.n);
-            plot = plot.with_colored_row(label, difference, low, high, "#0072B2");
-            ends.extend([low, high]);
-        }
-        let margin = comparisons.iter().filter(|c| c.metric == metric).find_map(|c| c.judged);
-        let margins: Vec<f64> = margin.map_or(Vec::new(), |Judged { margin, .. }| vec![-margin, margin]);
-        if ends.len() > 1 {
-            let plots = vec![Plot::Forest(plot)];
-            let widest = ends.iter().fold(0.0, |most: f64, end| most.max(end.abs()));
-            if margin.is_some_and(|judged| judged.margin <= FARTHEST_MARGIN * widest) {
-                ends.extend(&margins);
-            }
-            let [low, high] = forest_range(&ends);
-            let x_label = format!("first less second ({})", if unit.is_empty() { "count" } else { unit });
-            let line = |at: &f64| ReferenceLine::vertical(*at).with_color("#555555").with_dasharray("2 3");
-            let layout = margins
-                .iter()
-                .fold(layout(&plots, title), |layout, at| layout.with_reference_line(line(at)))
-                .with_x_label(x_label)
-                .with_ticks(4)
-                .with_x_axis_min(low)
-                .with_x_axis_max(high);
-            panels.push(Panel { metric: metric.to_owned(), plots, layout });
-        }
+        let of_metric: Vec<&Comparison> =
+            comparisons.iter().filter(|comparison| comparison.metric == metric).copied().collect();
+        panels.extend(forest_panel(experiment, metric, &of_metric)?);
     }
-    let row = |c: &&Comparison| {
-        let number = |value: Option<f64>| value.map_or(String::new(), |value| value.to_string());
-        vec![
-            c.metric.clone(),
-            c.a.clone(),
-            c.b.clone(),
-            c.n.to_string(),
-            number(c.difference),
-            number(c.interval.map(|i| i[0])),
-            number(c.interval.map(|i| i[1])),
-            number(c.p),
-            number(c.p_holm),
-            number(c.shift),
-            number(c.effect),
-            number(c.pairing),
-            number(c.detectable),
-            number(c.judged.map(|judged| judged.margin)),
-            c.judged.and_then(|judged| judged.pairs_for_margin).map_or(String::new(), |n| n.to_string()),
-        ]
-    };
-    let header = [
-        "metric",
-        "a",
-        "b",
-        "n",
-        "difference",
-        "low",
-        "high",
-        "p",
-        "p_holm",
-        "shift",
-        "effect",
-        "pairing",
-        "detectable",
-        "margin",
-        "pairs_for_margin",
-    ];
     let dotted = if comparisons.iter().any(|comparison| comparison.judged.is_some()) {
-        " Dotted: the margin, the largest difference that does not matter; if no dotted line is drawn, it lies beyond \
-         the axis."
+        " Dotted: the margin, the largest difference that does not matter; if no dotted line is drawn, it \
+         lies beyond the axis."
     } else {
         ""
     };
@@ -303,8 +233,94 @@ pub(super) fn forest(experiment: &Experiment, comparisons: &[&Comparison]) -> Re
              below.{dotted}"
         ),
         drawing: Drawing::new(panels, 3, [420.0, 280.0]),
-        csv: table(&header, comparisons.iter().map(row))?,
+        csv: table(&DIFFERENCES, comparisons.iter().copied().map(differences_row))?,
     })
+}
+
+/// The differences in one metric, with its margin; `None` if there is no interval to draw.
+fn forest_panel(
+    experiment: &Experiment,
+    metric: &str,
+    comparisons: &[&Comparison],
+) -> Result<Option<Panel>, Failure> {
+    let names = names(experiment);
+    let name = |label: &String| {
+        let place = experiment.policies.iter().position(|policy| policy.label == *label);
+        place.map_or("", |place| names[place].as_str())
+    };
+    let Metric { title, unit, .. } = &experiment.metrics[experiment.metrics.named(metric)?];
+    let mut plot = ForestPlot::new().with_null_value(0.0).with_cap_size(4.0);
+    let mut ends = Vec::new();
+    for comparison in comparisons {
+        let (Some(difference), Some([low, high])) = (comparison.difference, comparison.interval) else {
+            continue;
+        };
+        let label = format!("{} - {} ({})", name(&comparison.a), name(&comparison.b), comparison.n);
+        plot = plot.with_colored_row(label, difference, low, high, "#0072B2");
+        ends.extend([low, high]);
+    }
+    if ends.is_empty() {
+        return Ok(None);
+    }
+    let plots = vec![Plot::Forest(plot)];
+    let mut layout = layout(&plots, title);
+    let widest = ends.iter().fold(0.0, |most: f64, end| most.max(end.abs()));
+    let margin = comparisons.iter().find_map(|comparison| comparison.judged).map(|judged| judged.margin);
+    if let Some(margin) = margin.filter(|margin| *margin <= FARTHEST_MARGIN * widest) {
+        ends.extend([-margin, margin]);
+        for at in [-margin, margin] {
+            let line = ReferenceLine::vertical(at).with_color("#555555").with_dasharray("2 3");
+            layout = layout.with_reference_line(line);
+        }
+    }
+    let [low, high] = forest_range(&ends);
+    let layout = layout
+        .with_x_label(format!("first less second ({})", if unit.is_empty() { "count" } else { unit }))
+        .with_ticks(4)
+        .with_x_axis_min(low)
+        .with_x_axis_max(high);
+    Ok(Some(Panel { metric: metric.to_owned(), plots, layout }))
+}
+
+/// Columns of `differences.csv`.
+const DIFFERENCES: [&str; 15] = [
+    "metric",
+    "a",
+    "b",
+    "n",
+    "difference",
+    "low",
+    "high",
+    "p",
+    "p_holm",
+    "shift",
+    "effect",
+    "pairing",
+    "detectable",
+    "margin",
+    "pairs_for_margin",
+];
+
+fn differences_row(c: &Comparison) -> Vec<String> {
+    let number = |value: Option<f64>| value.map_or(String::new(), |value| value.to_string());
+    let pairs = c.judged.and_then(|judged| judged.pairs_for_margin);
+    vec![
+        c.metric.clone(),
+        c.a.clone(),
+        c.b.clone(),
+        c.n.to_string(),
+        number(c.difference),
+        number(c.interval.map(|interval| interval[0])),
+        number(c.interval.map(|interval| interval[1])),
+        number(c.p),
+        number(c.p_holm),
+        number(c.shift),
+        number(c.effect),
+        number(c.pairing),
+        number(c.detectable),
+        number(c.judged.map(|judged| judged.margin)),
+        pairs.map_or(String::new(), |pairs| pairs.to_string()),
+    ]
 }
 
 /// A range that shows all of these values and zero.

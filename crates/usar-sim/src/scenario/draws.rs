@@ -188,8 +188,8 @@ impl ScenarioFile {
     }
 
     /// The broken rules of a file with distributions. Each value is checked at the ends of its distribution.
-    /// Each trial checks whether its values fit together. Here they are refused only if each of a trial's draws
-    /// breaks the same rule in the same field: most often that is between values that are not drawn.
+    /// Each trial checks whether its values fit together. The file is refused only if every draw for one seed
+    /// breaks the same rule in the same field: most often, values that are not drawn contradict each other.
     pub(super) fn problems_of_draws(&self) -> Vec<Problem> {
         let most = self.draws.values().filter_map(|text| Draw::read(text).ok());
         let most = most.map(|draw| draw.examples(false).len()).max().unwrap_or_default();

@@ -126,8 +126,8 @@ impl Arguments {
 /// Note below the tables of [`print_changes`].
 const CHANGES_NOTE: &str = "\
 Each change goes from the first value of one axis to another value, all else equal, and is paired by seed. In
-brackets 95 % bootstrap intervals; *: shown after Holm's correction over all changes (of means, and of differences), or \
-over all comparisons";
+brackets 95 % bootstrap intervals; *: shown after Holm's correction over all changes (of means, and of
+differences), or over all comparisons";
 
 /// Prints the effects of the axes on one metric: each policy's mean, the differences case by case, and
 /// their changes.
