@@ -213,6 +213,18 @@ fn the_engine_is_named_in_its_seam_only() {
 }
 
 #[test]
+fn beliefs_and_plans_know_reports_and_no_world() {
+    let uses = uses(&sources("usar-sim"));
+    for module in ["report", "medium", "belief", "planning"] {
+        let others = &uses[module];
+        let truth =
+            ["world", "physics", "sensors", "simulation"].into_iter().find(|name| others.contains(*name));
+        assert_eq!(truth, None, "{module} must not see the truth");
+    }
+    assert!(uses["sensors"].contains("world"), "sensors are where the truth is seen");
+}
+
+#[test]
 fn the_general_crates_have_no_words_of_one_paper() {
     let words = ["carrier", "supplier", "observer", "hard", "easy"];
     for name in GENERAL {

@@ -3,13 +3,13 @@
 use std::fmt::Write;
 
 use parry2d::math::Vector;
-use usar_sim::belief::{Inflation, Knowledge};
+use usar_sim::belief::{Belief, Inflation};
 use usar_sim::planning::{Planner, Query};
 use usar_sim::record::{Status, TrialRecord};
 use usar_sim::scenario::{PriorityRule, Scenario, ScenarioFile};
 use usar_sim::simulation::Simulation;
 
-use crate::support::{policy, root};
+use crate::support::{lies, policy, root};
 
 const NAMES: [&str; 11] = [
     "closed_road",
@@ -48,8 +48,10 @@ fn run(file: ScenarioFile) -> (TrialRecord, f64) {
 /// speed.
 fn free_path_s(scenario: &Scenario, trial: &Simulation) -> f64 {
     let world = trial.world();
-    let mut known = Knowledge::nothing(world, Inflation::of(scenario));
-    (0..world.debris.len()).filter(|i| world.debris[*i].is_fixed).for_each(|i| known.learn_debris(world, i));
+    let mut known = Belief::nothing(Inflation::of(scenario));
+    (0..world.debris.len()).filter(|i| world.debris[*i].is_fixed).for_each(|i| {
+        known.hear(&lies(i, &world.debris[i].outline, 0));
+    });
     let mut planner = Planner::new(scenario);
     let mut time = |errand: &usar_sim::scenario::Errand| {
         let robot = &world.robots[errand.robot as usize];

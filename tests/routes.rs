@@ -6,7 +6,7 @@
 use parry2d::math::Vector;
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
-use usar_sim::belief::{Inflation, Knowledge};
+use usar_sim::belief::{Belief, Inflation};
 use usar_sim::geometry::{Outline, RadiationZone};
 use usar_sim::model::Model;
 use usar_sim::navigation::{Goal, Navigator};
@@ -14,7 +14,7 @@ use usar_sim::planning::{KnownObstacle, ObstacleKey, ObstacleMap, Planner, Query
 use usar_sim::scenario::{DebrisFile, DebrisShape, Scenario};
 use usar_sim::world::World;
 
-use crate::support::{paper, paper_with};
+use crate::support::{lies, paper, paper_with};
 
 type P = [f64; 2];
 
@@ -99,9 +99,9 @@ fn random_debris(draws: &mut ChaCha8Rng) -> Vec<Outline> {
         .collect()
 }
 
-fn known(outlines: &[Outline], sighting: u32) -> ObstacleMap {
+fn known(outlines: &[Outline]) -> ObstacleMap {
     let key = |i: usize| ObstacleKey::Debris(i as u32);
-    outlines.iter().enumerate().map(|(i, o)| KnownObstacle::new(key(i), sighting, o, 0.4, 0.15)).collect()
+    outlines.iter().enumerate().map(|(i, o)| KnownObstacle::new(key(i), o, 0.4, 0.15)).collect()
 }
 
 fn vector(p: P) -> Vector {
@@ -127,13 +127,13 @@ fn query<'a>(obstacles: &'a ObstacleMap, from: P, to: P, so_far: &'a [Vector]) -
 #[test]
 fn routes_are_connected_clear_of_known_debris_and_as_short_as_the_oracle_s() {
     // One planner for all maps: it keeps meshes, and must tell the pieces of one map from those of another by
-    // their sightings.
+    // their outlines.
     let mut planner = Planner::new(&paper());
     let mut compared = 0;
     for seed in 0..150 {
         let mut draws = ChaCha8Rng::seed_from_u64(seed);
         let outlines = random_debris(&mut draws);
-        let obstacles = known(&outlines, seed as u32 + 1);
+        let obstacles = known(&outlines);
         let polygons: Vec<Vec<P>> = obstacles
             .iter()
             .map(|obstacle| obstacle.planned.iter().map(|p| [f64::from(p.x), f64::from(p.y)]).collect())
@@ -145,7 +145,7 @@ fn routes_are_connected_clear_of_known_debris_and_as_short_as_the_oracle_s() {
         }
         // As a robot finds out: first without one half of the pieces, then from the route that the other half
         // cuts.
-        let few = known(&outlines[..outlines.len() / 2], seed as u32 + 1);
+        let few = known(&outlines[..outlines.len() / 2]);
         let so_far = planner.route(&query(&few, from, to, &[]));
         let so_far = so_far.as_ref().map_or(&[][..], Route::ahead);
         let route = planner.route(&query(&obstacles, from, to, so_far));
@@ -218,7 +218,7 @@ fn observers_fly_over_debris() {
         name: None,
     }
     .outline();
-    let obstacles = known(&[wall], 1);
+    let obstacles = known(&[wall]);
     let length = |aerial| {
         let query = Query {
             from: Vector::new(30.0, 30.0),
@@ -252,23 +252,24 @@ const CLOSED_GAP: &str = r#"(
 fn a_way_that_a_pushed_piece_leaves_free_is_taken_once_it_is_noticed_and_others_do_not_count() {
     let scenario = Scenario::parse(CLOSED_GAP, "closed_gap.ron".as_ref()).unwrap();
     let length_after_move = |by: [f32; 2]| {
-        let mut world = World::build(&Model::compile(&scenario, 1).unwrap());
-        let mut known = Knowledge::nothing(&world, Inflation { radii: vec![0.4], clearance: 0.15 });
-        (0..3).for_each(|piece| known.learn_debris(&world, piece));
+        let world = World::build(&Model::compile(&scenario, 1).unwrap());
+        let mut known = Belief::nothing(Inflation { radii: vec![0.4], clearance: 0.15 });
+        (0..3).for_each(|piece| {
+            known.hear(&lies(piece, &world.debris[piece].outline, 0));
+        });
         let mut navigator = Navigator::new(&scenario, 1);
         let robot = world.robots[0].id;
         navigator.set_goal(robot, Some(Goal { point: Vector::new(20.0, 5.0), within: 0.15 }));
-        let mut length = |world: &World, known: &Knowledge| {
-            navigator.plan(world, |_| known, |_| 2.0, 1);
+        let mut length = |known: &Belief| {
+            navigator.plan(&world, |_| known, |_| 2.0, 1);
             navigator.traveller(robot).route().unwrap().length(world.robots[0].position)
         };
-        let before = length(&world, &known);
+        let before = length(&known);
         let mut moved = world.debris[2].outline.clone();
         moved.pose.translation += Vector::from(by);
-        world.debris[2].sightings.push(moved);
-        assert!((length(&world, &known) - before).abs() < 1e-6, "nobody has noticed yet");
-        known.learn_debris(&world, 2);
-        (before, length(&world, &known))
+        assert!((length(&known) - before).abs() < 1e-6, "nobody has noticed yet");
+        known.hear(&lies(2, &moved, 1));
+        (before, length(&known))
     };
     let (before, after) = length_after_move([5.0, 8.0]);
     assert!(before > 40.0 && (after - 10.0).abs() < 1e-3, "{before} m, then {after} m");

@@ -14,6 +14,7 @@ mod minimal;
 mod mission_readings;
 mod missions;
 mod navigation;
+mod no_peeking;
 mod packages;
 mod pairing;
 mod paper_counts;

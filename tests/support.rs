@@ -4,7 +4,10 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use rne_core::{Policy, Registry};
+use usar_sim::geometry::Outline;
+use usar_sim::ids::RobotId;
 use usar_sim::record::TrialRecord;
+use usar_sim::report::{Report, Speaker, Statement};
 use usar_sim::scenario::Scenario;
 use usar_sim::simulation::Simulation;
 
@@ -48,4 +51,11 @@ pub fn policy(text: &str) -> Arc<dyn Policy> {
 /// One trial, with every invariant checked at every step.
 pub fn trial(scenario: &Scenario, name: &str, seed: u64) -> TrialRecord {
     Simulation::new(scenario, seed).unwrap().checked().run(&*policy(name), |_, _, _| {})
+}
+
+/// Robot 0's report that a piece of debris lies here.
+pub fn lies(piece: usize, outline: &Outline, at_step: u64) -> Report {
+    let (shape, pose) = (outline.shape.clone(), outline.pose);
+    let says = Statement::DebrisLies { debris: piece as u32, shape, pose };
+    Report { from: Speaker::Robot(RobotId(0)), says, at_step, sd_m: 0.0 }
 }

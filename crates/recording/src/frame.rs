@@ -306,7 +306,7 @@ impl Route {
 impl RescueeFrame {
     pub(crate) fn of(simulation: &Simulation, id: usize) -> Self {
         let rescuee = &simulation.world().rescuees[id];
-        let (state, robot) = match (rescuee.state, rescuee.claimed_by) {
+        let (state, robot) = match (rescuee.state, simulation.mission().claimed().by(rescuee.id)) {
             (RescueeState::Waiting, None) => (0, None),
             (RescueeState::Waiting, by) => (1, by),
             (RescueeState::OnBoard(robot), _) => (2, Some(robot)),
@@ -349,21 +349,20 @@ impl MovedDebris {
 }
 
 impl GroupFrame {
-    /// Appends the numbers of a group's current knowledge.
+    /// Appends the numbers of a group's current belief.
     pub(crate) fn write_now(simulation: &Simulation, number: usize, out: &mut Vec<i32>) {
-        let mission = simulation.mission();
-        let group = mission.groups.get(number);
-        let known = match group {
-            Some(_) => mission.knowledge_of_group(TaskId(number as u16)),
-            None => mission.knowledge_at_home(),
-        };
+        let group = simulation.mission().groups.get(number);
+        let belief = simulation.beliefs().of(group.map(|_| TaskId(number as u16)));
+        let pieces = &simulation.world().debris;
         out.extend_from_slice(&[i32::from(group.is_some_and(|group| group.at_work)), 0]);
         let before = out.len();
-        for (number, sighting) in (0..).zip(&known.debris).filter(|(_, sighting)| **sighting > 0) {
-            out.extend_from_slice(&[number, sighting.cast_signed()]);
+        for (number, known) in belief.debris.iter() {
+            // Recordings keep places as sightings; a piece that does not exist has none.
+            let Some(piece) = pieces.get(number as usize) else { continue };
+            out.extend_from_slice(&[number.cast_signed(), count(piece.sightings_until(known.at_step))]);
         }
         out[before - 1] = count((out.len() - before) / 2);
-        out.extend(known.known_zones().iter().map(|(number, _)| number.cast_signed()));
+        out.extend(belief.zones_on().iter().map(|(number, _)| number.cast_signed()));
     }
 
     pub(crate) fn read(numbers: &[i32]) -> Result<Self, NotNumbers> {

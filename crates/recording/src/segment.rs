@@ -59,8 +59,8 @@ pub(crate) struct Draft {
     frames: usize,
     columns: Vec<Column>,
     rows: Vec<Vec<ChangingRow>>,
-    /// The world's count of rescuee changes when the rescuees were last checked.
-    rescuee_changes: Option<u64>,
+    /// The counts of changes of rescuees and of claims when the rescuees were last checked.
+    rescuee_changes: Option<[u64; 2]>,
     row: Vec<i32>,
 }
 
@@ -90,7 +90,7 @@ impl Draft {
                 column.push(value, self.frames, field < POSITIONS);
             }
         }
-        let changes = Some(simulation.world().rescuees.changes());
+        let changes = Some([simulation.world().rescuees.changes(), simulation.mission().claimed().changes()]);
         for (stream, rows) in self.rows.iter_mut().enumerate() {
             if stream == RESCUEES && self.rescuee_changes == changes {
                 continue;

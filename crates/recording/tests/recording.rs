@@ -76,8 +76,10 @@ fn assert_is_now(recording: &Recording, number: usize, now: &Simulation) {
     }
     for (kept, rescuee) in frame.rescuees.iter().zip(now.world().rescuees.iter()) {
         let (state, robot) = match rescuee.state {
-            RescueeState::Waiting if rescuee.claimed_by.is_none() => ("waiting", None),
-            RescueeState::Waiting => ("claimed", rescuee.claimed_by),
+            RescueeState::Waiting => match now.mission().claimed().by(rescuee.id) {
+                None => ("waiting", None),
+                by => ("claimed", by),
+            },
             RescueeState::OnBoard(robot) => ("on_board", Some(robot)),
             RescueeState::Rescued => ("delivered", None),
             RescueeState::Absent => ("absent", None),
@@ -91,15 +93,17 @@ fn assert_is_now(recording: &Recording, number: usize, now: &Simulation) {
         assert_eq!(kept.sightings as usize, piece.sightings.len());
     }
     let tasks = (0..now.mission().groups.len() as u16).map(TaskId);
-    let known =
-        tasks.map(|task| now.mission().knowledge_of_group(task)).chain([now.mission().knowledge_at_home()]);
+    let known = tasks.map(Some).chain([None]).map(|group| now.beliefs().of(group));
     assert_eq!(frame.groups.len(), now.mission().groups.len() + 1);
     for (kept, known) in frame.groups.iter().zip(known) {
-        let mut sightings = vec![0; known.debris.len()];
-        kept.debris.iter().for_each(|(number, sighting)| sightings[*number as usize] = *sighting);
-        assert_eq!(sightings, known.debris);
-        let zones = (0..known.zones.len()).map(|zone| kept.zones.contains(&(zone as u32)));
-        assert!(zones.eq(known.zones.iter().map(|switches| switches % 2 == 1)));
+        assert!(
+            kept.debris.iter().map(|(number, _)| *number).eq(known.debris.iter().map(|(number, _)| number))
+        );
+        for (number, sighting) in &kept.debris {
+            let seen = &now.world().debris[*number as usize].sightings[*sighting as usize - 1];
+            assert_eq!(seen.pose, known.debris.get(*number as usize).unwrap().pose);
+        }
+        assert!(kept.zones.iter().eq(known.zones_on().iter().map(|(number, _)| number)));
     }
     let sets: Vec<Vec<u32>> =
         now.conflict_sets().map(|set| set.iter().map(|id| *id as u32).collect()).collect();

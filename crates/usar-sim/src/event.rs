@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::hash::part;
 use crate::ids::{RescueeId, RobotId};
+use crate::report::{Report, Speaker, Statement};
 
 /// Why a robot turned back to its rest place.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -273,6 +274,19 @@ pub enum Event {
         /// The task.
         task: TaskId,
     },
+}
+
+impl Event {
+    /// The event that a report is news to those who share the sender's belief, if there is one of its kind.
+    pub(crate) fn of_report(report: &Report) -> Option<Self> {
+        let Speaker::Robot(robot) = report.from else { return None };
+        match report.says {
+            Statement::DebrisLies { debris, .. } => Some(Self::DebrisDiscovered { robot, debris }),
+            Statement::ZoneIs { zone, .. } => Some(Self::ZoneDiscovered { robot, zone }),
+            Statement::RescueeWaits { rescuee, .. } => Some(Self::Sighted { robot, rescuee }),
+            Statement::RescueeIsGone { .. } | Statement::WreckLies { .. } => None,
+        }
+    }
 }
 
 /// The events of the current step, in order, and a hash over all before.

@@ -258,7 +258,7 @@ mod tests {
     fn wall(number: u32, center: [f32; 2], size: [f32; 2]) -> KnownObstacle {
         let shape = parry2d::shape::SharedShape::cuboid(size[0] / 2.0, size[1] / 2.0);
         let outline = Outline { shape, ..Outline::disc(center.into(), 1.0) };
-        KnownObstacle::new(ObstacleKey::Debris(number), 1, &outline, 0.4, 0.15)
+        KnownObstacle::new(ObstacleKey::Debris(number), &outline, 0.4, 0.15)
     }
 
     /// A passage along x at y = 10, 1.2 m wide, from x = 5 to x = 15. Its northern wall has a bay between x =

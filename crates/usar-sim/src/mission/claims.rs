@@ -3,17 +3,50 @@
 
 use parry2d::math::Vector;
 use rne_core::TaskId;
+use serde::{Deserialize, Serialize};
 use smallvec::SmallVec;
 
 use super::{Activity, Mission, Scene};
-use crate::belief::SENSING_PERIOD_STEPS;
 use crate::ids::{RescueeId, RobotId};
-use crate::model::Model;
-use crate::world::{RescueeState, World};
+use crate::sensors::SENSING_PERIOD_STEPS;
+use crate::world::World;
 
 /// Which robot claims which rescuee. The list lives on the stack in teams and tasks of usual size, like all
 /// that claims need.
 pub(super) type Claims = SmallVec<[(RobotId, RescueeId); 16]>;
+
+/// The claims that hold: for each rescuee, the robot that is on its way to it or is loading it.
+#[derive(Serialize, Deserialize)]
+pub struct Claimed {
+    by: Vec<Option<RobotId>>,
+    changes: u64,
+}
+
+impl Claimed {
+    pub(super) fn nothing(rescuees: usize) -> Self {
+        Self { by: vec![None; rescuees], changes: 0 }
+    }
+
+    /// The robot that claims a rescuee.
+    #[must_use]
+    pub fn by(&self, rescuee: RescueeId) -> Option<RobotId> {
+        self.by[rescuee.index()]
+    }
+
+    /// Number of claims made and given up so far.
+    #[must_use]
+    pub fn changes(&self) -> u64 {
+        self.changes
+    }
+
+    pub(super) fn set(&mut self, rescuee: RescueeId, robot: Option<RobotId>) {
+        self.by[rescuee.index()] = robot;
+        self.changes += 1;
+    }
+}
+
+/// A rescuee on offer, and where it is believed to wait.
+type Offer = (RescueeId, Vector);
 
 /// A robot that looks for work, and the nearest rescuee still on offer.
 struct Seeker {
@@ -23,16 +56,15 @@ struct Seeker {
 }
 
 impl Seeker {
-    fn new(robot: RobotId, world: &World, offers: &[RescueeId]) -> Self {
-        let mut seeker = Self { robot, at: world.robots[robot.index()].position, nearest: None };
-        seeker.look(world, offers);
+    fn new(robot: RobotId, at: Vector, offers: &[Offer]) -> Self {
+        let mut seeker = Self { robot, at, nearest: None };
+        seeker.look(offers);
         seeker
     }
 
     /// Finds the nearest of the rescuees on offer; among equally near rescuees, the one with the lowest id.
-    fn look(&mut self, world: &World, offers: &[RescueeId]) {
-        let distance = |id: &RescueeId| (world.rescuees[id.index()].position - self.at).length_squared();
-        let offers = offers.iter().map(|id| (distance(id), *id));
+    fn look(&mut self, offers: &[Offer]) {
+        let offers = offers.iter().map(|(id, place)| ((*place - self.at).length_squared(), *id));
         self.nearest = offers.min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
     }
 }
@@ -59,21 +91,22 @@ impl Mission {
         if spare <= 0 {
             return;
         }
-        let mut offers: SmallVec<[RescueeId; 256]> = self.available(task, scene.model, scene.world).collect();
+        let mut offers: SmallVec<[Offer; 256]> = self.available(task, scene).collect();
         if offers.is_empty() {
             return;
         }
+        let place = |id: RobotId| scene.world.robots[id.index()].position;
         let mut seekers: SmallVec<[Seeker; 16]> =
-            seeking.map(|id| Seeker::new(id, scene.world, &offers)).collect();
+            seeking.map(|id| Seeker::new(id, place(id), &offers)).collect();
         for _ in 0..spare {
             let pairs = seekers.iter().enumerate().filter_map(|(at, seeker)| Some((seeker.nearest?, at)));
             // Seekers are in order of their ids: among equally near ones, the first is taken.
             let Some(((_, rescuee), at)) = pairs.min_by(|a, b| a.0.0.total_cmp(&b.0.0)) else { return };
             claims.push((seekers.remove(at).robot, rescuee));
-            offers.retain(|offer| *offer != rescuee);
+            offers.retain(|(offer, _)| *offer != rescuee);
             let losers =
                 seekers.iter_mut().filter(|seeker| seeker.nearest.is_some_and(|(_, id)| id == rescuee));
-            losers.for_each(|seeker| seeker.look(scene.world, &offers));
+            losers.for_each(|seeker| seeker.look(&offers));
         }
     }
 
@@ -86,23 +119,17 @@ impl Mission {
         is_due && is_free && robot.is_able() && robot.free_capacity() > 0
     }
 
-    /// Waiting rescuees that a group knows, that no robot has claimed, and that are not given up as
-    /// unreachable.
-    pub(super) fn available<'w>(
-        &'w self,
+    /// Rescuees that a group believes to wait, with their places: those that no robot has claimed and that are
+    /// not given up as unreachable.
+    pub(super) fn available<'s>(
+        &'s self,
         task: TaskId,
-        model: &Model,
-        world: &'w World,
-    ) -> impl Iterator<Item = RescueeId> + use<'w> {
-        let known = &self.knowledge[task.index()].rescuees;
-        let is_available = move |i: &usize| {
-            let rescuee = &world.rescuees[*i];
-            known[*i]
-                && rescuee.state == RescueeState::Waiting
-                && rescuee.claimed_by.is_none()
-                && !self.unreachable[*i]
-        };
-        model.tasks[task.index()].rescuees.clone().filter(is_available).map(|i| RescueeId(i as u32))
+        scene: &'s Scene,
+    ) -> impl Iterator<Item = (RescueeId, Vector)> + use<'s> {
+        let believed = &scene.beliefs.of(Some(task)).rescuees;
+        let is_free = |i: &usize| self.claimed.by[*i].is_none() && !self.unreachable[*i];
+        let waiting = move |i: usize| Some((RescueeId(i as u32), believed.get(i)?.waits_at?));
+        scene.model.tasks[task.index()].rescuees.clone().filter(is_free).filter_map(waiting)
     }
 
     /// Resources of a group in the field that no claim needs; negative if there are more claims than

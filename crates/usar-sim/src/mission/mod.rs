@@ -14,15 +14,15 @@ mod work;
 
 use rne_core::{Question, TaskId};
 use serde::{Deserialize, Serialize};
-use smallvec::SmallVec;
 
 pub use agent::{Activity, Agent};
+pub use claims::Claimed;
 pub use round::{FieldState, Fitness, return_cause, turn_back_cause, unfit_cause};
 pub use scene::Scene;
 pub use watch::Watch;
 
-use crate::belief::{Inflation, Knowledge, SENSING_PERIOD_STEPS, look_around};
-use crate::event::{Event, EventLog, TurnBackCause};
+use crate::belief::Beliefs;
+use crate::event::{Event, TurnBackCause};
 use crate::ids::{RescueeId, RobotId};
 use crate::model::Model;
 use crate::navigation::Goal;
@@ -62,10 +62,7 @@ pub struct Mission {
     pub agents: Vec<Agent>,
     /// The group of each task.
     pub groups: Vec<Group>,
-    /// Knowledge of the group of each task.
-    knowledge: Vec<Knowledge>,
-    /// Knowledge of the team at home.
-    knowledge_at_home: Knowledge,
+    claimed: Claimed,
     /// For each rescuee, whether its group gave up on it in this round.
     unreachable: Vec<bool>,
     /// Number of the round, from 1; 0 before the first.
@@ -88,17 +85,15 @@ pub enum Ending {
 }
 
 impl Mission {
-    /// A mission in which all robots are at home and know nothing.
+    /// A mission in which all robots are at home.
     #[must_use]
-    pub fn new(model: &Model, world: &World) -> Self {
-        let nothing = Knowledge::nothing(world, Inflation::of(&model.scenario));
+    pub fn new(model: &Model) -> Self {
         let tasks = model.tasks.len();
         let mut mission = Self {
-            agents: vec![Agent::new(); world.robots.len()],
+            agents: vec![Agent::new(); model.robots.len()],
             groups: vec![Group::default(); tasks],
-            knowledge: vec![nothing.clone(); tasks],
-            knowledge_at_home: nothing,
-            unreachable: vec![false; world.rescuees.len()],
+            claimed: Claimed::nothing(model.rescuees.len()),
+            unreachable: vec![false; model.rescuees.len()],
             round: 0,
             ending: None,
             pending: None,
@@ -108,26 +103,16 @@ impl Mission {
         mission
     }
 
-    /// The knowledge of a robot: that of its group, or that of the team at home if it is in no group.
+    /// The task of a robot's group in this round; none for a robot without a group.
     #[must_use]
-    pub fn knowledge_of(&self, robot: RobotId) -> &Knowledge {
-        match self.agents[robot.index()].task {
-            Some(task) => &self.knowledge[task.index()],
-            None => &self.knowledge_at_home,
-        }
+    pub fn group_of(&self, robot: RobotId) -> Option<TaskId> {
+        self.agents[robot.index()].task
     }
 
-    /// The knowledge of the group of a task.
+    /// Which robots are on their way to rescuees, or are loading them. A part of the hash chain.
     #[must_use]
-    pub fn knowledge_of_group(&self, task: TaskId) -> &Knowledge {
-        &self.knowledge[task.index()]
-    }
-
-    /// The knowledge of the team at home: the knowledge of all groups, pooled when the last round ended, and
-    /// what robots without a group have noticed since.
-    #[must_use]
-    pub fn knowledge_at_home(&self) -> &Knowledge {
-        &self.knowledge_at_home
+    pub fn claimed(&self) -> &Claimed {
+        &self.claimed
     }
 
     /// Whether a rescuee's group gave up on it in this round, because it knows no way there or came no nearer.
@@ -142,12 +127,7 @@ impl Mission {
         self.pending.as_ref().map(|pending| &pending.question)
     }
 
-    /// The knowledge of the groups and of the team at home: a part of the hash chain.
-    pub(crate) fn beliefs(&self) -> impl Serialize + '_ {
-        (&self.knowledge, &self.knowledge_at_home)
-    }
-
-    /// The state of the mission without the beliefs: a part of the hash chain.
+    /// The state of the mission without the claims: a part of the hash chain.
     pub(crate) fn course(&self) -> impl Serialize + '_ {
         let Self { agents, groups, unreachable, round, ending, pending, .. } = self;
         (agents, groups, unreachable, round, ending, pending)
@@ -155,35 +135,12 @@ impl Mission {
 
     /// Restores the fields that a snapshot leaves out: they follow from the other fields.
     pub(crate) fn restore(&mut self, model: &Model, world: &World) {
-        let inflation = Inflation::of(&model.scenario);
-        let all = self.knowledge.iter_mut().chain([&mut self.knowledge_at_home]);
-        all.for_each(|knowledge| knowledge.restore(world, inflation.clone()));
         self.is_guided = vec![false; self.groups.len()];
         self.look_for_guides(&model.scenario.mission, world);
     }
 
     fn agent(&mut self, robot: RobotId) -> &mut Agent {
         &mut self.agents[robot.index()]
-    }
-
-    /// Lets every robot look around.
-    pub fn sense(&mut self, model: &Model, world: &World, step: u64, log: &mut EventLog) {
-        if !step.is_multiple_of(SENSING_PERIOD_STEPS) {
-            return;
-        }
-        let wrecks: SmallVec<[usize; 16]> = world
-            .robots
-            .iter()
-            .filter(|robot| robot.wreck_at.is_some())
-            .map(|robot| robot.id.index())
-            .collect();
-        for robot in world.robots.iter().filter(|robot| robot.is_able()) {
-            let knowledge = match self.agents[robot.id.index()].task {
-                Some(task) => &mut self.knowledge[task.index()],
-                None => &mut self.knowledge_at_home,
-            };
-            look_around(world, (&model.tasks, &wrecks), robot, knowledge, log);
-        }
     }
 
     /// Top speed of a robot, in metres per second. It falls with its health and with its load, and in a group
@@ -240,7 +197,7 @@ impl Mission {
             }
         }
         for robot in &scene.world.robots {
-            let goal = self.goal_of(scene.model, robot, scene.world);
+            let goal = self.goal_of(robot, scene.model, scene.beliefs);
             scene.navigator.set_goal(robot.id, goal);
         }
     }
@@ -258,7 +215,7 @@ impl Mission {
             let way_cost = scene.way_cost(robot, way, self.speed_of(scene.model, robot));
             let rules = &scene.model.scenario.mission;
             if let Some(cause) = turn_back_cause(rules, robot.energy, robot.hp, way_cost) {
-                self.release_claim(RobotId(id as u32), scene.world);
+                self.release_claim(RobotId(id as u32));
                 self.agents[id].go_to_rest();
                 scene.log.push(Event::TurnedBack { robot: RobotId(id as u32), cause });
             }
@@ -270,11 +227,11 @@ impl Mission {
         if !self.groups[task.index()].at_work {
             return;
         }
-        let Some(cause) = return_cause(&self.field_state(task, scene.model, scene.world)) else { return };
+        let Some(cause) = return_cause(&self.field_state(task, scene)) else { return };
         scene.log.push(Event::GroupReturned { task, cause });
         self.groups[task.index()].at_work = false;
         for id in self.in_field(task, scene.world).collect::<Vec<_>>() {
-            self.release_claim(id, scene.world);
+            self.release_claim(id);
             self.agent(id).activity = Activity::Returning;
         }
     }
@@ -287,10 +244,10 @@ impl Mission {
         self.groups[task.index()].members.iter().copied().filter(is_in_field)
     }
 
-    fn field_state(&self, task: TaskId, model: &Model, world: &World) -> FieldState {
+    fn field_state(&self, task: TaskId, scene: &Scene) -> FieldState {
         let mut field = FieldState::default();
-        for id in self.in_field(task, world) {
-            let (robot, agent) = (&world.robots[id.index()], &self.agents[id.index()]);
+        for id in self.in_field(task, scene.world) {
+            let (robot, agent) = (&scene.world.robots[id.index()], &self.agents[id.index()]);
             field.carrying_members += u32::from(robot.can_carry());
             field.free_capacity += robot.free_capacity();
             field.resources += robot.resources;
@@ -298,19 +255,19 @@ impl Mission {
             field.still_searching += u32::from(!agent.sweep.is_empty());
         }
         if field.still_searching == 0 && field.known_rescuees == 0 {
-            field.known_rescuees = self.available(task, model, world).count() as u32;
+            field.known_rescuees = self.available(task, scene).count() as u32;
         }
         field
     }
 
-    fn release_claim(&mut self, id: RobotId, world: &mut World) {
+    fn release_claim(&mut self, id: RobotId) {
         if let Some(rescuee) = self.agents[id.index()].activity.claim() {
-            world.rescuees[rescuee.index()].claimed_by = None;
+            self.claimed.set(rescuee, None);
         }
     }
 
     /// The goal of a robot, by its activity; none while it loads or if it can no longer act.
-    fn goal_of(&self, model: &Model, robot: &Robot, world: &World) -> Option<Goal> {
+    fn goal_of(&self, robot: &Robot, model: &Model, beliefs: &Beliefs) -> Option<Goal> {
         let agent = &self.agents[robot.id.index()];
         if !robot.is_able() {
             return None;
@@ -321,7 +278,7 @@ impl Mission {
             Activity::Searching => agent.sweep.last().map(|place| Goal { point: *place, within: SWEEP_M }),
             Activity::Standby => Some(Goal { point: agent.muster, within: SWEEP_M }),
             Activity::Approaching(rescuee) => Some(Goal {
-                point: world.rescuees[rescuee.index()].position,
+                point: beliefs.of(agent.task).rescuees.get(rescuee.index())?.waits_at?,
                 within: 0.95 * model.scenario.mission.reach_m as f32,
             }),
             Activity::Home | Activity::Returning => Some(Goal { point: robot.home, within: SLOT_M }),

@@ -25,13 +25,13 @@ impl Mission {
         awaited.peek().is_some() && awaited.all(|robot| agent(robot).activity == Activity::Home)
     }
 
-    /// Pools the knowledge of the groups, and notes what the round cost each robot.
+    /// Pools the beliefs of the groups, and notes what the round cost each robot.
     pub(super) fn end_round(&mut self, scene: &mut Scene) {
         if self.round == 0 {
             return;
         }
         scene.log.push(Event::RoundEnded { round: self.round });
-        self.knowledge_at_home.pool(scene.world, &self.knowledge);
+        scene.beliefs.pool();
         for (agent, robot) in self.agents.iter_mut().zip(&scene.world.robots) {
             agent.task = None;
             if let Some([energy, hp]) = agent.levels_at_start {
@@ -124,6 +124,7 @@ impl Mission {
         let groups: Vec<Vec<RobotId>> = assignment.groups.iter().map(ids).collect();
         scene.log.push(Event::RoundStarted { round: self.round, groups: groups.clone() });
         for (task, members) in scene.model.task_ids().zip(groups) {
+            scene.beliefs.depart(task);
             self.send_out(task, members, scene.model, scene.world);
         }
         unfit.iter().for_each(|(id, cause)| self.send_to_rest(*id, *cause, scene));
@@ -133,7 +134,6 @@ impl Mission {
     /// Sends a group to its task. A group in which no robot can carry stays at home.
     fn send_out(&mut self, task: TaskId, members: Vec<RobotId>, model: &Model, world: &World) {
         let at_work = members.iter().any(|id| world.robots[id.index()].can_carry());
-        self.knowledge[task.index()] = self.knowledge_at_home.clone();
         let area = &model.tasks[task.index()].area;
         let (mut ground, mut aerial) = (0, 0);
         let flying = members.iter().filter(|id| world.robots[id.index()].is_aerial()).count();

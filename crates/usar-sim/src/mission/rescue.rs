@@ -9,6 +9,7 @@ use super::{Activity, Mission, Scene};
 use crate::event::{Event, EventLog, Place};
 use crate::ids::{RescueeId, RobotId};
 use crate::model::Model;
+use crate::report::{Report, Speaker, Statement};
 use crate::scenario::LoadAtRest;
 use crate::world::{RescueeState, World};
 
@@ -25,7 +26,7 @@ impl Mission {
             if scene.world.robots[id].is_able() {
                 self.settle_robot(robot, scene, &mut sharing);
             } else {
-                self.lose(robot, scene.world);
+                self.lose(robot);
             }
         }
     }
@@ -82,9 +83,10 @@ impl Mission {
         scene.world.robots[resource_of.index()].resources -= 1;
         *sharing = [None; MAX_TASKS];
         scene.world.robots[robot.index()].load.push(rescuee);
-        let state = &mut scene.world.rescuees[rescuee.index()];
-        state.state = RescueeState::OnBoard(robot);
-        state.claimed_by = None;
+        scene.world.rescuees[rescuee.index()].state = RescueeState::OnBoard(robot);
+        self.claimed.set(rescuee, None);
+        let says = Statement::RescueeIsGone { rescuee };
+        scene.sent.push(Report { from: Speaker::Robot(robot), says, at_step: scene.step, sd_m: 0.0 });
         self.agents[robot.index()].activity = Activity::Searching;
         scene.log.push(Event::Loaded { robot, rescuee, resource_of });
     }
@@ -116,8 +118,8 @@ impl Mission {
     }
 
     /// Frees the rescuee that a robot had claimed before it could no longer act.
-    fn lose(&mut self, robot: RobotId, world: &mut World) {
-        self.release_claim(robot, world);
+    fn lose(&mut self, robot: RobotId) {
+        self.release_claim(robot);
         let agent = &mut self.agents[robot.index()];
         if agent.activity.claim().is_some() {
             agent.activity = Activity::Standby;
@@ -133,7 +135,9 @@ fn deliver(robot: RobotId, place: Place, world: &mut World, log: &mut EventLog) 
     }
 }
 
+/// Whether a rescuee is really there and within a robot's reach.
 fn can_reach(robot: RobotId, rescuee: RescueeId, scene: &Scene) -> bool {
-    let apart = scene.world.rescuees[rescuee.index()].position - scene.world.robots[robot.index()].position;
-    apart.length() <= scene.model.scenario.mission.reach_m as f32
+    let rescuee = &scene.world.rescuees[rescuee.index()];
+    let apart = rescuee.position - scene.world.robots[robot.index()].position;
+    rescuee.state == RescueeState::Waiting && apart.length() <= scene.model.scenario.mission.reach_m as f32
 }

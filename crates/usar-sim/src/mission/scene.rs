@@ -1,10 +1,15 @@
 //! The scene of a decision: the trial as it is in one step.
 
+use parry2d::math::Vector;
+use rne_core::TaskId;
+
 use super::GIVE_UP_S;
+use crate::belief::Beliefs;
 use crate::event::EventLog;
-use crate::ids::RobotId;
+use crate::ids::{RescueeId, RobotId};
 use crate::model::Model;
 use crate::navigation::{Goal, Navigator};
+use crate::report::Report;
 use crate::scenario::Costs;
 use crate::world::{Robot, World};
 
@@ -14,6 +19,10 @@ pub struct Scene<'s> {
     pub model: &'s Model,
     /// The state of the world.
     pub world: &'s mut World,
+    /// The beliefs of the groups and of the team at home.
+    pub beliefs: &'s mut Beliefs,
+    /// The reports that are under way.
+    pub sent: &'s mut Vec<Report>,
     /// The journeys of the robots.
     pub navigator: &'s mut Navigator,
     /// The log of the step's events.
@@ -23,6 +32,11 @@ pub struct Scene<'s> {
 }
 
 impl Scene<'_> {
+    /// Where a rescuee waits, as the group of a task believes.
+    pub(super) fn place_of(&self, task: TaskId, rescuee: RescueeId) -> Option<Vector> {
+        self.beliefs.of(Some(task)).rescuees.get(rescuee.index())?.waits_at
+    }
+
     /// Whether a robot has known no route to its goal for so long that it gives up on the goal.
     pub(super) fn gives_up(&self, robot: RobotId) -> bool {
         self.navigator.traveller(robot).lost_steps() >= self.model.steps(GIVE_UP_S)

@@ -1,5 +1,7 @@
 //! Work in the field: approaching rescuees, and the search for more.
 
+use parry2d::math::Vector;
+
 use super::{Activity, Mission, Scene};
 use crate::event::Event;
 use crate::ids::{RescueeId, RobotId};
@@ -13,16 +15,19 @@ impl Mission {
         let Some(task) = self.agents[id.index()].task.filter(|_| robot.is_able()) else { return };
         let is_held_up = activity.is_in_field() && self.is_held_up(robot, scene);
         match activity {
-            Activity::Approaching(rescuee) if is_held_up || is_out_of_reach(id, rescuee, scene) => {
+            Activity::Approaching(rescuee)
+                if is_held_up || is_out_of_reach(id, scene.place_of(task, rescuee), scene) =>
+            {
                 self.unreachable[rescuee.index()] = true;
-                let place = scene.world.rescuees[rescuee.index()].position.into();
-                scene.log.push(Event::Unreachable { robot: id, place });
-                self.release_claim(id, scene.world);
+                if let Some(place) = scene.place_of(task, rescuee) {
+                    scene.log.push(Event::Unreachable { robot: id, place: place.into() });
+                }
+                self.release_claim(id);
                 self.agent(id).activity = Activity::Searching;
             }
             Activity::Searching | Activity::Standby if self.groups[task.index()].at_work => {
                 if let Some(rescuee) = claim {
-                    scene.world.rescuees[rescuee.index()].claimed_by = Some(id);
+                    self.claimed.set(rescuee, Some(id));
                     self.agent(id).activity = Activity::Approaching(rescuee);
                     return;
                 }
@@ -51,11 +56,10 @@ impl Mission {
 
 /// Whether a robot has no route to a rescuee, or has reached the end of its route out of reach of the
 /// rescuee.
-fn is_out_of_reach(id: RobotId, rescuee: RescueeId, scene: &Scene) -> bool {
+fn is_out_of_reach(id: RobotId, rescuee_at: Option<Vector>, scene: &Scene) -> bool {
     let traveller = scene.navigator.traveller(id);
     let robot = &scene.world.robots[id.index()];
-    let apart = (scene.world.rescuees[rescuee.index()].position - robot.position).length();
     let reach = scene.model.scenario.mission.reach_m as f32;
-    let at_end = traveller.has_arrived(robot.position) && apart > reach;
-    at_end || traveller.leads_nowhere()
+    let is_far = || rescuee_at.is_none_or(|at| (at - robot.position).length() > reach);
+    traveller.has_arrived(robot.position) && is_far() || traveller.leads_nowhere()
 }

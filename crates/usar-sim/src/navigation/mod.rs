@@ -6,7 +6,7 @@ mod traveller;
 use parry2d::math::Vector;
 use serde::{Deserialize, Serialize};
 
-use crate::belief::{Knowledge, News};
+use crate::belief::{Belief, News};
 use crate::ids::RobotId;
 use crate::planning::{KnownObstacle, Planner, Query, Route, Walls, polygon_contains};
 use crate::scenario::{ResolverRule, Scenario};
@@ -108,7 +108,7 @@ impl Navigator {
     pub fn plan<'k>(
         &mut self,
         world: &World,
-        knowledge_of: impl Fn(RobotId) -> &'k Knowledge,
+        belief_of: impl Fn(RobotId) -> &'k Belief,
         speed_of: impl Fn(&Robot) -> f64,
         step: u64,
     ) {
@@ -119,7 +119,7 @@ impl Navigator {
             if !robot.is_able() || traveller.has_arrived(robot.position) {
                 continue;
             }
-            let knowledge = knowledge_of(robot.id);
+            let belief = belief_of(robot.id);
             if let Some(route) = &mut traveller.route {
                 route.advance(robot.position);
             }
@@ -131,23 +131,23 @@ impl Navigator {
                 aerial: robot.is_aerial(),
                 speed: speed_of(robot) as f32,
                 radius: robot.radius(),
-                obstacles: knowledge.obstacles(robot.radius()),
+                obstacles: belief.obstacles(robot.radius()),
                 so_far: &[],
                 in_the_way: &[],
-                zones: knowledge.known_zones(),
+                zones: belief.zones_on(),
             };
             let check_due = (step + robot.id.0 as u64).is_multiple_of(ROUTE_CHECK_STEPS);
             let attempt = traveller.attempt(self.detour_steps);
-            let news = knowledge.news_since(traveller.seen);
-            traveller.seen = knowledge.seen();
+            let news = belief.news_since(traveller.seen);
+            traveller.seen = belief.seen();
             let (replan, effect) = match &traveller.route {
                 None => (
                     !news.is_empty() || check_due,
                     if news.is_empty() { Effect::None } else { Effect::Cheaper },
                 ),
                 Some(route) => {
-                    let effect = effect(&self.planner, &query, route, (news, knowledge), robot);
-                    let cut_ahead = || check_due && first_leg_cut(knowledge, route, robot);
+                    let effect = effect(&self.planner, &query, route, (news, belief), robot);
+                    let cut_ahead = || check_due && first_leg_cut(belief, route, robot);
                     (attempt.is_some() || effect != Effect::None || cut_ahead(), effect)
                 }
             };
@@ -169,7 +169,7 @@ impl Navigator {
                     (self.narrow_in, &traveller.route, robot.is_aerial())
                 {
                     let walls =
-                        Walls { known: knowledge.obstacles(robot.radius()), arena, radius: robot.radius() };
+                        Walls { known: belief.obstacles(robot.radius()), arena, radius: robot.radius() };
                     traveller.passages = walls.passages(robot.position, route);
                 }
             }
@@ -234,10 +234,10 @@ fn effect(
     planner: &Planner,
     query: &Query,
     route: &Route,
-    (news, knowledge): (&[News], &Knowledge),
+    (news, belief): (&[News], &Belief),
     robot: &Robot,
 ) -> Effect {
-    if news.iter().any(|news| concerns(*news, knowledge, route, robot)) {
+    if news.iter().any(|news| concerns(*news, belief, route, robot)) {
         Effect::Cut
     } else if may_cheapen(planner, query, route, news) {
         Effect::Cheaper
@@ -247,14 +247,14 @@ fn effect(
 }
 
 /// Whether a piece of news cuts the route ahead, or shows that it leads through radiation.
-fn concerns(news: News, knowledge: &Knowledge, route: &Route, robot: &Robot) -> bool {
+fn concerns(news: News, belief: &Belief, route: &Route, robot: &Robot) -> bool {
     match news {
         News::Obstacle(key) => {
-            let obstacle = knowledge.obstacles(robot.radius()).get(key).filter(|_| !robot.is_aerial());
+            let obstacle = belief.obstacles(robot.radius()).get(key).filter(|_| !robot.is_aerial());
             obstacle.is_some_and(|obstacle| route.legs(robot.position).any(|(a, b)| obstacle.cuts(a, b)))
         }
         News::Zone(number) => {
-            let zone = knowledge.known_zones().iter().find(|(other, _)| *other == number);
+            let zone = belief.zones_on().iter().find(|(other, _)| *other == number);
             zone.is_some_and(|(_, zone)| route.length_inside(robot.position, zone) > 0.0)
         }
         News::Opening(_) => false,
@@ -274,7 +274,7 @@ fn may_cheapen(planner: &Planner, query: &Query, route: &Route, news: &[News]) -
 }
 
 /// Whether the path to the next waypoint is cut, for a robot that was pushed or had to step aside.
-fn first_leg_cut(knowledge: &Knowledge, route: &Route, robot: &Robot) -> bool {
+fn first_leg_cut(belief: &Belief, route: &Route, robot: &Robot) -> bool {
     let next = route.ahead()[0];
-    !robot.is_aerial() && knowledge.obstacles(robot.radius()).cuts(robot.position, next)
+    !robot.is_aerial() && belief.obstacles(robot.radius()).cuts(robot.position, next)
 }

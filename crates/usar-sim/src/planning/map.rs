@@ -86,7 +86,7 @@ mod tests {
     use crate::planning::obstacles::crosses;
 
     fn disc(number: u32, at: [f32; 2]) -> KnownObstacle {
-        KnownObstacle::new(ObstacleKey::Debris(number), 1, &Outline::disc(at.into(), 1.0), 0.4, 0.15)
+        KnownObstacle::new(ObstacleKey::Debris(number), &Outline::disc(at.into(), 1.0), 0.4, 0.15)
     }
 
     #[test]

@@ -138,7 +138,7 @@ impl Planner {
     ) -> Option<&'p (T, Vector)> {
         let offset = self.ground_offset(radius);
         let obstacle =
-            |(outline, number)| KnownObstacle::new(ObstacleKey::Debris(number), 1, outline, offset, 0.0);
+            |(outline, number)| KnownObstacle::new(ObstacleKey::Debris(number), outline, offset, 0.0);
         let known: ObstacleMap = outlines.iter().zip(0..).map(obstacle).collect();
         let search =
             Search { arena: self.arena, offset, known: Some(&known), always: Vec::new(), numbers: None };

@@ -6,6 +6,7 @@ use parry2d::shape::SharedShape;
 
 use crate::geometry::Outline;
 use serde::{Deserialize, Serialize};
+use xxhash_rust::xxh3::xxh3_64;
 
 /// A route keeps this distance from a closed zone, in metres, so that it does not graze the zone.
 pub(super) const ZONE_MARGIN_M: f32 = 0.1;
@@ -27,8 +28,8 @@ pub enum ObstacleKey {
 pub struct KnownObstacle {
     /// Its identity.
     pub key: ObstacleKey,
-    /// Number of the sighting in which it is known; 0 for an obstacle that never moves again.
-    pub sighting: u32,
+    /// Hash of the corners of `planned`: equal hashes, equal outlines.
+    pub digest: u64,
     /// Corners, anticlockwise, inflated by radius and clearance: routes stay outside this polygon.
     pub planned: Vec<Vector>,
     /// Corners, anticlockwise, inflated by radius and a third of the clearance: a route through this polygon
@@ -40,10 +41,16 @@ pub struct KnownObstacle {
 impl KnownObstacle {
     /// An outline inflated for robots of `radius` that keep `clearance`, in metres.
     #[must_use]
-    pub fn new(key: ObstacleKey, sighting: u32, outline: &Outline, radius: f32, clearance: f32) -> Self {
+    pub fn new(key: ObstacleKey, outline: &Outline, radius: f32, clearance: f32) -> Self {
         let planned = outline.inflated(radius + clearance);
         let tight = outline.inflated(radius + clearance / 3.0);
-        Self { key, sighting, bounds: Aabb::from_points(planned.iter().copied()), planned, tight }
+        let bytes: Vec<u8> = planned
+            .iter()
+            .flat_map(|at| [at.x, at.y])
+            .flat_map(|value| value.to_bits().to_le_bytes())
+            .collect();
+        let bounds = Aabb::from_points(planned.iter().copied());
+        Self { key, digest: xxh3_64(&bytes), bounds, planned, tight }
     }
 
     /// The box that holds `planned`.
@@ -69,7 +76,7 @@ impl KnownObstacle {
     #[must_use]
     pub fn wreck(number: u32, at: Vector, own_radius: f32, radius: f32, clearance: f32) -> Self {
         let outline = Outline { shape: SharedShape::ball(own_radius), ..Outline::disc(at, own_radius) };
-        Self::new(ObstacleKey::Wreck(number), 0, &outline, radius, clearance)
+        Self::new(ObstacleKey::Wreck(number), &outline, radius, clearance)
     }
 }
 

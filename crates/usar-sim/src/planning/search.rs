@@ -35,9 +35,9 @@ const NUDGE_M: f32 = 5.0e-4;
 #[derive(Default)]
 pub(super) struct Meshes(BTreeMap<MeshKey, Option<Mesh>>);
 
-/// The key of a mesh: the distance from the border as its bits, the obstacles with the sightings in which
-/// they are known, and the numbers of the closed zones.
-type MeshKey = (u32, Vec<(ObstacleKey, u32)>, Vec<u32>);
+/// The key of a mesh: the distance from the border as its bits, the obstacles with the hashes of
+/// their outlines, and the numbers of the closed zones.
+type MeshKey = (u32, Vec<(ObstacleKey, u64)>, Vec<u32>);
 
 /// The obstacles from which a path has to keep clear.
 pub(super) struct Search<'a> {
@@ -127,7 +127,7 @@ impl<'a> Search<'a> {
         Meshes(meshes): &mut Meshes,
     ) -> Option<Vec<Vector>> {
         let Some(numbers) = self.numbers else { return Some(self.mesh(met)?.path(from, to)?.path) };
-        let seen = met.iter().map(|obstacle| (obstacle.key, obstacle.sighting)).collect();
+        let seen = met.iter().map(|obstacle| (obstacle.key, obstacle.digest)).collect();
         let key = (self.offset.to_bits(), seen, numbers.to_vec());
         if meshes.len() >= MAX_MESHES && !meshes.contains_key(&key) {
             meshes.clear();
@@ -225,7 +225,7 @@ mod tests {
     fn points_in_the_strip_along_the_border_find_a_free_point_beside_what_stands_there() {
         let disc = Outline::disc(Vector::new(10.0, 1.4), 0.3);
         let known: ObstacleMap =
-            std::iter::once(KnownObstacle::new(ObstacleKey::Debris(0), 1, &disc, 0.4, 0.15)).collect();
+            std::iter::once(KnownObstacle::new(ObstacleKey::Debris(0), &disc, 0.4, 0.15)).collect();
         let search = Search {
             arena: Vector::splat(20.0),
             offset: 0.55,

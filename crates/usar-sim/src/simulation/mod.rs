@@ -14,16 +14,19 @@ use std::sync::Arc;
 use rne_core::{Assignment, AssignmentError, Decision, Question};
 use thiserror::Error;
 
+use crate::belief::Beliefs;
 use crate::conflict::{Delay, Mover};
 use crate::event::Event;
 use crate::hash::PERIOD_STEPS;
 use crate::ids::RobotId;
 use crate::invariant::{Invariants, Overlaps};
+use crate::medium::Perfect;
 use crate::metrics::{Metrics, history};
 use crate::mission::{Ending, Mission};
 use crate::model::Model;
 use crate::navigation::Navigator;
 use crate::record::{DecisionRecord, Status, TaskRecord, TrialRecord};
+use crate::report::Report;
 use crate::scenario::{LayoutError, Scenario};
 use crate::stage::Stage;
 use crate::tally::Tally;
@@ -41,7 +44,9 @@ pub struct Simulation {
     question: Option<Question>,
     failure: Option<String>,
     invariants: Option<Invariants>,
-    /// Empty between steps; kept so that the next step reuses its memory.
+    /// Empty between steps, like `movers`; kept so that the next step reuses its memory.
+    heard: Vec<Report>,
+    /// See `heard`.
     movers: Vec<Mover<'static>>,
 }
 
@@ -76,14 +81,29 @@ impl Simulation {
     pub fn new(scenario: &Scenario, seed: u64) -> Result<Self, LayoutError> {
         let model = Model::compile(scenario, seed)?;
         let state = State::new(&model);
-        Ok(Self { model, state, question: None, failure: None, invariants: None, movers: Vec::new() })
+        Ok(Self {
+            model,
+            state,
+            question: None,
+            failure: None,
+            invariants: None,
+            heard: Vec::new(),
+            movers: Vec::new(),
+        })
     }
 
     /// A trial that resumes from this state.
     pub(crate) fn from_state(model: Arc<Model>, mut state: State) -> Self {
         state.restore(&model);
-        let mut simulation =
-            Self { model, state, question: None, failure: None, invariants: None, movers: Vec::new() };
+        let mut simulation = Self {
+            model,
+            state,
+            question: None,
+            failure: None,
+            invariants: None,
+            heard: Vec::new(),
+            movers: Vec::new(),
+        };
         simulation.take_question();
         simulation
     }
@@ -287,6 +307,12 @@ impl Simulation {
         &self.state.mission
     }
 
+    /// The beliefs of the groups and of the team at home as they are now.
+    #[must_use]
+    pub fn beliefs(&self) -> &Beliefs {
+        &self.state.beliefs
+    }
+
     /// The journeys of the robots as they are now.
     #[must_use]
     pub fn navigator(&self) -> &Navigator {
@@ -342,7 +368,7 @@ impl Simulation {
         let state = &mut self.state;
         state.log.clear();
         state.happen(&self.model);
-        state.mission.sense(&self.model, &state.world, state.step, &mut state.log);
+        state.sense(&self.model, &Perfect, &mut self.heard);
         done(Stage::Sense);
         let (mission, mut scene) = state.scene(&self.model);
         mission.prepare(&mut scene);
@@ -364,8 +390,8 @@ impl Simulation {
         done(Stage::Resolve);
         state.drive(model);
         done(Stage::Drive);
-        state.world.integrate();
         state.step += 1;
+        state.world.integrate(state.step);
         state.is_midway = false;
         done(Stage::Integrate);
         state.expose(model);

@@ -4,15 +4,19 @@ use parry2d::math::Vector;
 use serde::{Deserialize, Serialize};
 
 use super::timeline::Timeline;
+use crate::belief::{Beliefs, Inflation};
 use crate::conflict::{Delay, Mover, PriorityKey, Resolver};
 use crate::event::{Event, EventLog};
 use crate::hash::{HashChain, PARTS, part};
+use crate::medium::Medium;
 use crate::metrics::Metrics;
 use crate::mission::{Activity, Agent, Mission, Scene};
 use crate::model::{Model, RobotStart};
 use crate::navigation::{Navigator, PLANNED_BRAKING};
 use crate::record::DecisionRecord;
+use crate::report::Report;
 use crate::scenario::Costs;
+use crate::sensors::look_around;
 use crate::tally::{Tally, delay_cause};
 use crate::vitals::{energy_cost, hp_cost};
 use crate::world::{Condition, Robot, STANDING_MPS, World};
@@ -22,6 +26,9 @@ use crate::world::{Condition, Robot, STANDING_MPS, World};
 pub(crate) struct State {
     pub(super) step: u64,
     pub(super) world: World,
+    /// Reports that are under way.
+    pub(super) sent: Vec<Report>,
+    pub(super) beliefs: Beliefs,
     pub(super) mission: Mission,
     pub(super) navigator: Navigator,
     pub(super) resolver: Resolver,
@@ -59,7 +66,9 @@ impl State {
         let tally = |start: &RobotStart| Tally::new(start.energy, start.hp);
         Self {
             step: 0,
-            mission: Mission::new(model, &world),
+            sent: Vec::new(),
+            beliefs: Beliefs::nothing(model.tasks.len(), Inflation::of(&model.scenario)),
+            mission: Mission::new(model),
             navigator: Navigator::new(&model.scenario, world.robots.len()),
             resolver: Resolver::new(&model.scenario),
             metrics: Metrics::new(model.tasks.len(), world.robots.len()),
@@ -79,13 +88,14 @@ impl State {
         self.world.restore(model);
         self.navigator.restore(&model.scenario);
         self.resolver.restore(&model.scenario);
+        self.beliefs.restore(&Inflation::of(&model.scenario));
         self.mission.restore(model, &self.world);
     }
 
     /// The mission, and the scene in which it decides.
     pub(super) fn scene<'s>(&'s mut self, model: &'s Model) -> (&'s mut Mission, Scene<'s>) {
-        let Self { mission, world, navigator, log, step, .. } = self;
-        (mission, Scene { model, world, navigator, log, step: *step })
+        let Self { mission, world, beliefs, sent, navigator, log, step, .. } = self;
+        (mission, Scene { model, world, beliefs, sent, navigator, log, step: *step })
     }
 
     /// Passes the events of this step from the `from`-th on to the metrics. Returns the number of all events.
@@ -95,15 +105,28 @@ impl State {
         events.len()
     }
 
+    /// Robots look around and report; the medium carries; the groups and the team at home hear.
+    pub(super) fn sense(&mut self, model: &Model, medium: &impl Medium, heard: &mut Vec<Report>) {
+        let Self { world, mission, beliefs, sent, log, step, .. } = self;
+        look_around(world, model, |robot| beliefs.of(mission.group_of(robot.id)), *step, sent);
+        medium.carry(*step, sent, heard);
+        for report in heard.drain(..) {
+            if beliefs.hear(&report, |robot| mission.group_of(robot)) {
+                Event::of_report(&report).into_iter().for_each(|event| log.push(event));
+            }
+        }
+    }
+
     pub(super) fn plan(&mut self, model: &Model) {
-        let (mission, world) = (&self.mission, &self.world);
+        let (mission, beliefs, world) = (&self.mission, &self.beliefs, &self.world);
         let speed_of = |robot: &Robot| mission.speed_of(model, robot);
-        self.navigator.plan(world, |robot| mission.knowledge_of(robot), speed_of, self.step);
+        let belief_of = |robot| beliefs.of(mission.group_of(robot));
+        self.navigator.plan(world, belief_of, speed_of, self.step);
     }
 
     /// Decides which robots go and which wait, and notes why robots stop.
     pub(super) fn resolve(&mut self, model: &Model, spare: &mut Vec<Mover<'static>>) {
-        let seen_by = (&self.mission, &self.navigator);
+        let seen_by = (&self.mission, &self.beliefs, &self.navigator);
         let mut movers: Vec<Mover> = std::mem::take(spare);
         movers.extend(self.world.robots.iter().map(|robot| mover(robot, model, seen_by)));
         let directives = self.resolver.resolve(&mut movers, &mut self.log);
@@ -180,9 +203,9 @@ impl State {
         [
             part(&self.world.physics.motions()),
             part(&self.world.robots),
-            part(&self.world.debris),
-            part(&self.world.rescuees),
-            part(&self.mission.beliefs()),
+            part(&self.world.lying_debris()),
+            part(&(&self.world.rescuees, self.mission.claimed())),
+            part(&(&self.beliefs, &self.sent, self.world.changes())),
             part(&(self.mission.course(), self.is_midway)),
             part(&self.navigator),
             part(&self.resolver),
@@ -218,7 +241,11 @@ fn step_costs(model: &Model, agent: &Agent, robot: &Robot, zones: usize) -> [f64
 }
 
 /// A robot as the resolver sees it.
-fn mover<'s>(robot: &Robot, model: &Model, (mission, navigator): (&'s Mission, &'s Navigator)) -> Mover<'s> {
+fn mover<'s>(
+    robot: &Robot,
+    model: &Model,
+    (mission, beliefs, navigator): (&'s Mission, &'s Beliefs, &'s Navigator),
+) -> Mover<'s> {
     let speed = mission.speed_of(model, robot) as f32;
     let wish = if robot.is_able() { navigator.preferred_velocity(robot, speed) } else { Vector::ZERO };
     let route = navigator.traveller(robot.id).route();
@@ -243,7 +270,7 @@ fn mover<'s>(robot: &Robot, model: &Model, (mission, navigator): (&'s Mission, &
         speed,
         braking: PLANNED_BRAKING * robot.spec.acceleration_mps2 as f32,
         priority: PriorityKey::new(rule, robot.id, class, [robot.energy, robot.hp]),
-        known: (!robot.is_aerial()).then(|| mission.knowledge_of(robot.id).obstacles(robot.radius())),
+        known: (!robot.is_aerial()).then(|| beliefs.of(agent.task).obstacles(robot.radius())),
         can_make_room: robot.is_able() && !is_busy,
     }
 }

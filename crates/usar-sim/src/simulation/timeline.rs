@@ -9,6 +9,7 @@ use crate::event::Event;
 use crate::geometry::Outline;
 use crate::ids::RobotId;
 use crate::model::{Action, Model};
+use crate::report::{Report, Speaker, Statement};
 use crate::world::{Condition, RescueeState, Robot, World};
 
 /// Debris falls or closes only if no robot may come nearer than this within a few steps, in metres.
@@ -57,24 +58,24 @@ impl State {
                 if !is_free(&self.world, *debris, model) {
                     return false;
                 }
-                self.world.put_debris(*debris, Some(model.layout.debris[*debris].outline().pose));
+                self.world.put_debris(*debris, Some(model.layout.debris[*debris].outline().pose), self.step);
                 let debris = *debris as u32;
                 let falls = matches!(action, Action::Fall(_));
                 self.log.push(if falls { Event::DebrisFell { debris } } else { Event::WayClosed { debris } });
             }
             Action::Open(debris) => {
                 if self.world.debris[*debris].is_there() {
-                    self.world.put_debris(*debris, None);
+                    self.world.put_debris(*debris, None, self.step);
                     self.log.push(Event::WayOpened { debris: *debris as u32 });
                 }
             }
             Action::Appear(zone) => {
-                if self.world.switch_zone(*zone, true) {
+                if self.world.switch_zone(*zone, true, self.step) {
                     self.log.push(Event::SourceAppeared { zone: *zone as u32 });
                 }
             }
             Action::Die(zone) => {
-                if self.world.switch_zone(*zone, false) {
+                if self.world.switch_zone(*zone, false, self.step) {
                     self.log.push(Event::SourceDied { zone: *zone as u32 });
                 }
             }
@@ -94,10 +95,22 @@ impl State {
             Action::End(task) => {
                 self.world.closed_tasks[task.index()] = true;
                 self.log.push(Event::TaskEnded { task: *task });
-                self.mission.withdraw(*task, model, &mut self.world);
+                self.withdraw(*task, model);
             }
         }
         true
+    }
+
+    /// Removes the rescuees of a task that still wait. The base tells all robots that they are gone.
+    fn withdraw(&mut self, task: TaskId, model: &Model) {
+        for rescuee in &mut self.world.rescuees[model.tasks[task.index()].rescuees.clone()] {
+            if rescuee.state == RescueeState::Waiting {
+                rescuee.state = RescueeState::Absent;
+                let says = Statement::RescueeIsGone { rescuee: rescuee.id };
+                self.sent.push(Report { from: Speaker::Base, says, at_step: self.step, sd_m: 0.0 });
+            }
+        }
+        self.mission.withdraw(task);
     }
 
     /// Opens a task. Its own rescuees appear when it begins for the first time. Rescuees of later events

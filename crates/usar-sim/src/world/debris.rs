@@ -30,6 +30,8 @@ pub struct Debris {
     /// The outlines that robots may have seen: the initial one if the piece was there, and one more each time
     /// that it was pushed noticeably or that an event moved it.
     pub sightings: Vec<Outline>,
+    /// For each of these outlines, the step from which on it could be seen.
+    pub since: Vec<u64>,
 }
 
 impl Debris {
@@ -40,7 +42,7 @@ impl Debris {
         let bounds = outline.shape.compute_local_bounding_sphere();
         let reach = bounds.center.length() + bounds.radius;
         let (is_fixed, sightings) = (file.movable.is_none(), vec![outline.clone()]);
-        Self { is_fixed, is_gate: false, sightings, reach, outline }
+        Self { is_fixed, is_gate: false, sightings, since: vec![0], reach, outline }
     }
 
     /// A piece that events place or remove; `is_there` tells whether it is there at the start.
@@ -49,6 +51,7 @@ impl Debris {
         let mut piece = Self { is_gate: true, ..Self::new(file) };
         if !is_there {
             piece.sightings.clear();
+            piece.since.clear();
             piece.outline.pose.translation = AWAY;
         }
         piece
@@ -61,12 +64,12 @@ impl Debris {
     }
 
     /// Puts the piece to a place, or away. Adds a sighting, so that passing robots notice the change.
-    pub(super) fn put(&mut self, pose: Option<Pose>) {
+    pub(super) fn put(&mut self, pose: Option<Pose>, step: u64) {
         match pose {
             Some(pose) => self.outline.pose = pose,
             None => self.outline.pose.translation = AWAY,
         }
-        self.sightings.push(self.outline.clone());
+        self.note_sighting(step);
     }
 
     /// Restores the fields that a snapshot leaves out: they are fixed.
@@ -83,8 +86,19 @@ impl Debris {
         self.outline.shape.compute_aabb(&self.outline.pose)
     }
 
+    fn note_sighting(&mut self, step: u64) {
+        self.sightings.push(self.outline.clone());
+        self.since.push(step);
+    }
+
+    /// How many of the sightings could be made up to a step, that step included.
+    #[must_use]
+    pub fn sightings_until(&self, step: u64) -> usize {
+        self.since.partition_point(|since| *since <= step)
+    }
+
     /// Takes a new pose from the physics.
-    pub(super) fn moved_to(&mut self, pose: Pose) {
+    pub(super) fn moved_to(&mut self, pose: Pose, step: u64) {
         self.outline.pose = pose;
         let seen = &self.sightings[self.sightings.len() - 1].pose;
         let arm = self.outline.shape.compute_local_bounding_sphere().radius;
@@ -92,7 +106,7 @@ impl Debris {
             Vector::new(pose.rotation.cos() - seen.rotation.cos(), pose.rotation.sin() - seen.rotation.sin());
         let moved = (seen.translation - pose.translation).length() + arm * turned.length();
         if moved > NOTICED_MOVE_M {
-            self.sightings.push(self.outline.clone());
+            self.note_sighting(step);
         }
     }
 }

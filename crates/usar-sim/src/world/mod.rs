@@ -42,6 +42,8 @@ pub struct World {
     /// How often each zone was switched on or off. A zone that is there from the start begins with 1. With an
     /// odd number, the zone is on. Empty in a scenario without a timeline: all zones are on.
     zone_switches: Vec<u8>,
+    /// The step of each zone's last switch. Empty in a scenario without a timeline.
+    zone_since: Vec<u64>,
     /// For each task, whether it has ended, or not begun. Empty in a scenario without a timeline.
     pub closed_tasks: Vec<bool>,
     /// Rescuees, by id.
@@ -75,13 +77,14 @@ impl World {
                 .take(many)
                 .map(|i| u8::from(!layout.zones_later.contains(&i)))
                 .collect(),
+            zone_since: layout.zones.iter().take(many).map(|_| 0).collect(),
             closed_tasks: scenario.tasks.iter().take(many).map(|task| scenario.begins_later(task)).collect(),
             rescuees: Rescuees::new(&model.rescuees, &model.rescuees_later),
         }
     }
 
-    /// Advances time by one step and reads back all positions.
-    pub fn integrate(&mut self) {
+    /// Advances time by one step and reads back all positions. `step` is the number of steps done then.
+    pub fn integrate(&mut self, step: u64) {
         self.physics.integrate();
         for robot in &mut self.robots {
             (robot.position, robot.velocity) = self.physics.robot_motion(robot.id);
@@ -92,7 +95,7 @@ impl World {
         for (number, pose) in self.physics.debris_poses() {
             let piece = &mut self.debris[number];
             if piece.outline.pose != pose {
-                piece.moved_to(pose);
+                piece.moved_to(pose, step);
                 self.debris_places.put(number, piece.bounds());
             }
         }
@@ -126,22 +129,41 @@ impl World {
         self.zone_switches.get(zone).copied().unwrap_or(1)
     }
 
+    /// The step since which a radiation zone is as it is; none if it never was on.
+    #[must_use]
+    pub fn zone_since(&self, zone: usize) -> Option<u64> {
+        (self.switches_of(zone) > 0).then(|| self.zone_since.get(zone).copied().unwrap_or(0))
+    }
+
+    /// The outlines of the debris, now and as they could be seen: a part of the hash chain.
+    pub(crate) fn lying_debris(&self) -> impl Serialize + '_ {
+        self.debris.iter().map(|piece| (&piece.outline, &piece.sightings)).collect::<Vec<_>>()
+    }
+
+    /// The steps since which debris and zones are as they are: a part of the hash chain.
+    pub(crate) fn changes(&self) -> impl Serialize + '_ {
+        (self.debris.iter().map(|piece| &piece.since).collect::<Vec<_>>(), &self.zone_since)
+    }
+
     /// The part of the world that the timeline changes and no other part of the hash chain covers.
     pub(crate) fn changed_by_events(&self) -> impl Serialize + '_ {
         (&self.zone_switches, &self.closed_tasks, self.physics.gates())
     }
 
     /// Switches a radiation zone. Returns false if it is in this state already.
-    pub(crate) fn switch_zone(&mut self, zone: usize, on: bool) -> bool {
+    pub(crate) fn switch_zone(&mut self, zone: usize, on: bool, step: u64) -> bool {
         let changes = self.is_on(zone) != on;
-        self.zone_switches[zone] += u8::from(changes);
+        if changes {
+            self.zone_switches[zone] += 1;
+            self.zone_since[zone] = step;
+        }
         changes
     }
 
     /// Puts a piece that events place or remove to a place, or away.
-    pub(crate) fn put_debris(&mut self, number: usize, pose: Option<Pose>) {
+    pub(crate) fn put_debris(&mut self, number: usize, pose: Option<Pose>, step: u64) {
         let piece = &mut self.debris[number];
-        piece.put(pose);
+        piece.put(pose, step);
         self.physics.put_debris(number, piece.outline.pose);
         self.debris_places.put(number, piece.bounds());
     }

@@ -35,8 +35,6 @@ pub struct Rescuee {
     pub position: Vector,
     /// The state of its rescue.
     pub state: RescueeState,
-    /// The robot that is on its way to it or is loading it.
-    pub claimed_by: Option<RobotId>,
 }
 
 /// All rescuees of a world, by id. Counts mutable accesses, so that checks run only after possible changes.
@@ -55,7 +53,6 @@ impl Rescuees {
             task: *task,
             position: *position,
             state: RescueeState::Waiting,
-            claimed_by: None,
         };
         let mut list: Vec<Rescuee> = (0..).zip(places).map(waiting).collect();
         for ids in later {

@@ -1,0 +1,80 @@
+//! Reports: who says what about which thing, as of when, and how sure.
+//!
+//! Sensors make reports, a [medium](crate::medium) carries them, and a [belief](crate::belief) is a fold over
+//! the reports that were heard. A report may be late, missing or false.
+
+use parry2d::math::{Pose, Vector};
+use parry2d::shape::SharedShape;
+use serde::{Deserialize, Serialize};
+
+use crate::geometry::RadiationZone;
+use crate::ids::{RescueeId, RobotId};
+
+/// A report.
+#[derive(Clone, Serialize, Deserialize)]
+pub struct Report {
+    /// The sender.
+    pub from: Speaker,
+    /// The thing and the statement about it.
+    pub says: Statement,
+    /// The step as of which the statement holds.
+    pub at_step: u64,
+    /// Standard deviation of a stated place, in metres; 0 for an exact one.
+    pub sd_m: f32,
+}
+
+/// The sender of a report.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Speaker {
+    /// A robot.
+    Robot(RobotId),
+    /// The base. Its reports are for all.
+    Base,
+}
+
+/// A statement about one thing. The number is the one under which robots speak of the thing: something that
+/// does not exist can have a number, too.
+#[derive(Clone, Serialize, Deserialize)]
+pub enum Statement {
+    /// A piece of debris lies at a place.
+    DebrisLies {
+        /// The piece.
+        debris: u32,
+        /// Its shape.
+        shape: SharedShape,
+        /// Its place.
+        pose: Pose,
+    },
+    /// A radiation zone is on or off.
+    ZoneIs {
+        /// The zone.
+        zone: u32,
+        /// Its source and radius.
+        disc: RadiationZone,
+        /// Whether it radiates.
+        on: bool,
+    },
+    /// A rescuee waits at a place.
+    RescueeWaits {
+        /// The rescuee.
+        rescuee: RescueeId,
+        /// Its place.
+        at: Vector,
+    },
+    /// A rescuee no longer waits: a robot took it on board, or its task ended.
+    RescueeIsGone {
+        /// The rescuee.
+        rescuee: RescueeId,
+    },
+    /// A robot has stopped for good.
+    WreckLies {
+        /// The robot.
+        robot: RobotId,
+        /// Its place.
+        at: Vector,
+        /// Its radius, in metres.
+        radius: f32,
+        /// Whether it is in nobody's way, because it flies.
+        is_aerial: bool,
+    },
+}

@@ -1,0 +1,57 @@
+//! Decisions see reports: the truth is changed and the reports are not, and no decision changes.
+
+use usar_sim::ids::{RescueeId, RobotId};
+use usar_sim::mission::Activity;
+use usar_sim::navigation::Goal;
+use usar_sim::simulation::Simulation;
+use usar_sim::world::RescueeState;
+
+use crate::support::{paper, policy};
+
+/// Rescuees that their group believes to wait and that no robot claims.
+fn believed(trial: &Simulation) -> Vec<RescueeId> {
+    let of_task = |task: rne_core::TaskId| {
+        let known = &trial.beliefs().of(Some(task)).rescuees;
+        let own = trial.model().tasks[task.index()].rescuees.clone();
+        own.filter(|id| known.get(*id).is_some_and(|known| known.waits_at.is_some()))
+    };
+    let ids = trial.model().task_ids().flat_map(of_task).map(|id| RescueeId(id as u32));
+    ids.filter(|id| trial.mission().claimed().by(*id).is_none()).collect()
+}
+
+/// The claim and the goal of each robot, until a robot is where it can touch what it claimed.
+fn decisions(trial: &Simulation) -> Vec<(Option<RescueeId>, Option<Goal>)> {
+    let agents = (0..).map(RobotId).zip(&trial.mission().agents);
+    agents.map(|(id, agent)| (agent.activity.claim(), trial.navigator().traveller(id).goal())).collect()
+}
+
+#[test]
+fn robots_go_for_rescuees_that_are_gone_until_somebody_says_so() {
+    let (scenario, rne) = (paper(), policy("RNE"));
+    let mut trial = Simulation::new(&scenario, 1).unwrap();
+    while believed(&trial).is_empty() {
+        assert_eq!(trial.step(&*rne), None);
+    }
+    let mut changed = trial.checkpoint().resume();
+    let gone = believed(&changed);
+    for id in &gone {
+        let rescuee = &mut changed.world_mut().rescuees[id.index()];
+        rescuee.state = RescueeState::Absent;
+        rescuee.position.x += 3.0;
+    }
+    let mut chased = 0;
+    loop {
+        assert_eq!((trial.step(&*rne), changed.step(&*rne)), (None, None));
+        if trial
+            .mission()
+            .agents
+            .iter()
+            .any(|agent| matches!(agent.activity, Activity::Loading(id, _) if gone.contains(&id)))
+        {
+            break; // a robot touches what it claimed: from here on, the truth may tell
+        }
+        assert_eq!(decisions(&trial), decisions(&changed), "at {} s", trial.time_s());
+        chased = gone.iter().filter(|id| changed.mission().claimed().by(**id).is_some()).count();
+    }
+    assert!(chased > 0, "nobody went for a rescuee that is gone: the test shows nothing");
+}
