@@ -4,7 +4,7 @@
 use usar_sim::record::{Status, TrialRecord};
 use usar_sim::scenario::Scenario;
 
-use crate::support::{paper, paper_with, trial};
+use crate::support::{paper, paper_with, root, trial};
 
 fn check_trial(scenario: &Scenario, policy: &str, seed: u64) -> TrialRecord {
     let record = trial(scenario, policy, seed);
@@ -31,4 +31,12 @@ fn they_are_conserved_when_energy_and_health_bind_and_robots_are_lost() {
     ]);
     let record = check_trial(&harsh, "RANDOM", 2);
     assert!(record.stranded() + record.disabled() > 0, "robots are lost");
+}
+
+#[test]
+fn what_events_take_from_robots_is_charged_to_the_trial_too() {
+    let (failures, _) = Scenario::load(&root().join("scenarios/gallery/failures.ron")).unwrap();
+    let record = check_trial(&failures, "DIS", 1);
+    assert!(record.hp() > 50.0, "three robots failed and one was hurt: {} HP", record.hp());
+    assert!((record.energy() - 580.57).abs() < 0.01, "60 of it by an event: {}", record.energy());
 }

@@ -302,6 +302,11 @@ impl EventLog {
         self.events.push(event);
     }
 
+    /// Publishes several events, or none.
+    pub(crate) fn extend(&mut self, events: impl IntoIterator<Item = Event>) {
+        self.events.extend(events);
+    }
+
     /// The events since the last [`EventLog::clear`].
     #[must_use]
     pub fn events(&self) -> &[Event] {

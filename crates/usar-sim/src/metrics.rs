@@ -132,6 +132,11 @@ impl Metrics {
         }
     }
 
+    /// The energy and HP that the whole team was charged so far, in the unit of the scenario's costs.
+    pub(crate) fn spent(&self) -> [f64; 2] {
+        self.tasks.iter().fold(self.ungrouped, |[energy, hp], task| [energy + task.energy, hp + task.hp])
+    }
+
     /// Receives the events of a step. `time_s` is their time, in seconds.
     pub fn listen(&mut self, events: &[Event], world: &World, time_s: f64) {
         for event in events {

@@ -49,6 +49,11 @@ impl Tally {
         self.spent = [self.spent[0] + energy, self.spent[1] + hp];
     }
 
+    /// The energy and HP that were spent so far, in the unit of the scenario's costs.
+    pub(crate) fn spent(&self) -> [f64; 2] {
+        self.spent
+    }
+
     /// Notes why the robot stops, and the `steps` since it last came nearer to its goal. The cause that took
     /// most of these steps counts as the cause of the stall.
     pub(crate) fn note_delay(&mut self, delay: Delay, steps: u64) {

@@ -431,6 +431,8 @@ impl Simulation {
         let State { log, world, .. } = &self.state;
         if let Some(invariants) = &mut self.invariants {
             invariants.listen(time_s, log.events(), world).map_err(|broken| broken.to_string())?;
+            let broken = |what| format!("invariant violated at {time_s:.2} s: {what}");
+            self.state.check_costs().map_err(broken)?;
         }
         if world.physics.is_broken() {
             return Err(format!("the physics broke down at {time_s:.2} s: a body's state is not finite"));

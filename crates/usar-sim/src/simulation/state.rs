@@ -15,11 +15,14 @@ use crate::model::{Model, RobotStart};
 use crate::navigation::{Navigator, PLANNED_BRAKING};
 use crate::record::DecisionRecord;
 use crate::report::Report;
-use crate::scenario::Costs;
+use crate::scenario::{CostUnit, Costs};
 use crate::sensors::look_around;
 use crate::tally::{Tally, delay_cause};
 use crate::vitals::{energy_cost, hp_cost};
 use crate::world::{Condition, Robot, STANDING_MPS, World};
+
+/// Difference between two sums of the same costs that counts as rounding, as a share.
+const COSTS_ROUNDING: f64 = 1e-9;
 
 /// Everything that changes in a trial. Snapshots hold it, and the hash chain covers it.
 #[derive(Serialize, Deserialize)]
@@ -112,7 +115,7 @@ impl State {
         medium.carry(*step, sent, heard);
         for report in heard.drain(..) {
             if beliefs.hear(&report, |robot| mission.group_of(robot)) {
-                Event::of_report(&report).into_iter().for_each(|event| log.push(event));
+                log.extend(Event::of_report(&report));
             }
         }
     }
@@ -163,21 +166,23 @@ impl State {
             let [energy, hp] = step_costs(model, agent, robot, zones_at(robot.position));
             let energy = unit.to_percent(energy, robot.spec.energy).min(robot.energy);
             let hp = unit.to_percent(hp, robot.spec.hp).min(robot.hp);
-            robot.energy -= energy;
-            robot.hp -= hp;
             if energy > 0.0 || hp > 0.0 {
-                let spent = [unit.of_percent(energy, robot.spec.energy), unit.of_percent(hp, robot.spec.hp)];
-                tally.note_costs(spent);
-                self.metrics.charge(robot.id, spent);
+                spend(robot, [energy, hp], unit, tally, &mut self.metrics);
             }
-            if robot.energy <= 0.0 {
-                robot.condition = Condition::Stranded;
-                self.log.push(Event::Stranded { robot: robot.id });
-            } else if robot.hp <= 0.0 {
-                robot.condition = Condition::Disabled;
-                self.log.push(Event::Disabled { robot: robot.id });
+            self.log.extend(last_event(robot));
+        }
+    }
+
+    /// Checks that what the robots spent is what the trial was charged.
+    pub(super) fn check_costs(&self) -> Result<(), String> {
+        let spent = self.tallies.iter().map(Tally::spent);
+        let spent = spent.fold([0.0; 2], |[energy, hp], own| [energy + own[0], hp + own[1]]);
+        for ((what, robots), trial) in ["energy", "HP"].into_iter().zip(spent).zip(self.metrics.spent()) {
+            if (robots - trial).abs() > COSTS_ROUNDING * (1.0 + trial) {
+                return Err(format!("the robots spent {robots} {what}, the trial was charged {trial}"));
             }
         }
+        Ok(())
     }
 
     /// The hash of the events and, if there is a timeline, of the timeline and what it changed.
@@ -212,6 +217,35 @@ impl State {
             part(&(&self.metrics, &self.tallies)),
             self.part_of_events(),
         ]
+    }
+}
+
+/// Takes energy and HP, in percent, from a robot, and charges them to the robot and to its group.
+pub(super) fn spend(
+    robot: &mut Robot,
+    [energy, hp]: [f64; 2],
+    unit: CostUnit,
+    tally: &mut Tally,
+    metrics: &mut Metrics,
+) {
+    robot.energy -= energy;
+    robot.hp -= hp;
+    let spent = [unit.of_percent(energy, robot.spec.energy), unit.of_percent(hp, robot.spec.hp)];
+    tally.note_costs(spent);
+    metrics.charge(robot.id, spent);
+}
+
+/// The end of a robot that has no HP or no energy left, as its condition and as an event. Without HP it is
+/// disabled, whatever its energy.
+pub(super) fn last_event(robot: &mut Robot) -> Option<Event> {
+    if robot.hp <= 0.0 {
+        robot.condition = Condition::Disabled;
+        Some(Event::Disabled { robot: robot.id })
+    } else if robot.energy <= 0.0 {
+        robot.condition = Condition::Stranded;
+        Some(Event::Stranded { robot: robot.id })
+    } else {
+        None
     }
 }
 

@@ -5,12 +5,13 @@ use rne_core::TaskId;
 use serde::{Deserialize, Serialize};
 
 use super::State;
+use super::state::{last_event, spend};
 use crate::event::Event;
 use crate::geometry::Outline;
 use crate::ids::RobotId;
 use crate::model::{Action, Model};
 use crate::report::{Report, Speaker, Statement};
-use crate::world::{Condition, RescueeState, Robot, World};
+use crate::world::{RescueeState, Robot, World};
 
 /// Debris falls or closes only if no robot may come nearer than this within a few steps, in metres.
 const FREE_M: f32 = 0.1;
@@ -139,19 +140,10 @@ impl State {
             return;
         }
         let (energy, hp) = (energy.min(robot.energy), hp.min(robot.hp));
-        robot.energy -= energy;
-        robot.hp -= hp;
         self.log.push(Event::Damaged { robot: id, energy, hp });
-        let (unit, spec) = (model.scenario.costs.unit, &robot.spec);
-        let spent = [unit.of_percent(energy, spec.energy), unit.of_percent(hp, spec.hp)];
-        self.tallies[id.index()].note_costs(spent);
-        if robot.hp <= 0.0 {
-            robot.condition = Condition::Disabled;
-            self.log.push(Event::Disabled { robot: id });
-        } else if robot.energy <= 0.0 {
-            robot.condition = Condition::Stranded;
-            self.log.push(Event::Stranded { robot: id });
-        }
+        let (unit, tally) = (model.scenario.costs.unit, &mut self.tallies[id.index()]);
+        spend(robot, [energy, hp], unit, tally, &mut self.metrics);
+        self.log.extend(last_event(robot));
     }
 }
 
