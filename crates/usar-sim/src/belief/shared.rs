@@ -1,10 +1,11 @@
-//! The beliefs of a team, and which robots share which: what a member of a group hears, all members know; robots
-//! without a group share the belief of the team at home.
+//! The beliefs of a team, and which robots share which. What a member of a group hears, all members know.
+//! Robots without a group share the belief of the team at home.
 
 use rne_core::TaskId;
 use serde::{Deserialize, Serialize};
 
 use super::{Belief, Inflation};
+use crate::ids::RobotId;
 use crate::report::{Report, Speaker};
 
 /// The beliefs of all groups, and of the team at home.
@@ -32,11 +33,7 @@ impl Beliefs {
     /// Lets a report be heard by all who share the sender's belief, or by all groups if the base speaks.
     /// `group_of` is a function from a robot to its group. Returns whether the report was newer than what the
     /// sender's belief had heard before.
-    pub(crate) fn hear(
-        &mut self,
-        report: &Report,
-        group_of: impl Fn(crate::ids::RobotId) -> Option<TaskId>,
-    ) -> bool {
+    pub(crate) fn hear(&mut self, report: &Report, group_of: impl Fn(RobotId) -> Option<TaskId>) -> bool {
         match report.from {
             Speaker::Robot(robot) => {
                 let group = group_of(robot).map(|task| &mut self.groups[task.index()]);

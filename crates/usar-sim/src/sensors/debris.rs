@@ -3,7 +3,7 @@
 use smallvec::SmallVec;
 
 use super::View;
-use crate::belief::Belief;
+use crate::belief::{Belief, KnownDebris};
 use crate::report::{Report, Statement};
 use crate::world::Debris;
 
@@ -26,7 +26,7 @@ pub(super) fn sense(view: &View, belief: &Belief, sent: &mut Vec<Report>) {
         // A robot notices that a piece was taken away where the piece was seen last. A piece that is in range
         // where it lies now was reported above.
         let is_seen = debris[number].outline.distance_to(at) <= view.sensing;
-        let was_seen = |known: &crate::belief::KnownDebris| known.outline().distance_to(at) <= view.sensing;
+        let was_seen = |known: &KnownDebris| known.outline().distance_to(at) <= view.sensing;
         if !is_seen && belief.debris.get(number).is_some_and(was_seen) {
             sent.extend(report(view, number, &debris[number]));
         }

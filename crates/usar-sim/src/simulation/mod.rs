@@ -81,7 +81,12 @@ impl Simulation {
     pub fn new(scenario: &Scenario, seed: u64) -> Result<Self, LayoutError> {
         let model = Model::compile(scenario, seed)?;
         let state = State::new(&model);
-        Ok(Self {
+        Ok(Self::at(model, state))
+    }
+
+    /// A trial in this state, with nothing asked, failed or checked yet.
+    fn at(model: Arc<Model>, state: State) -> Self {
+        Self {
             model,
             state,
             question: None,
@@ -89,21 +94,13 @@ impl Simulation {
             invariants: None,
             heard: Vec::new(),
             movers: Vec::new(),
-        })
+        }
     }
 
     /// A trial that resumes from this state.
     pub(crate) fn from_state(model: Arc<Model>, mut state: State) -> Self {
         state.restore(&model);
-        let mut simulation = Self {
-            model,
-            state,
-            question: None,
-            failure: None,
-            invariants: None,
-            heard: Vec::new(),
-            movers: Vec::new(),
-        };
+        let mut simulation = Self::at(model, state);
         simulation.take_question();
         simulation
     }
