@@ -213,9 +213,9 @@ fn the_engine_is_named_in_its_seam_only() {
 }
 
 #[test]
-fn beliefs_and_plans_know_reports_and_no_world() {
+fn decisions_know_reports_and_no_world() {
     let uses = uses(&sources("usar-sim"));
-    for module in ["report", "medium", "belief", "planning"] {
+    for module in ["report", "medium", "belief", "mission", "navigation", "planning", "conflict", "intent"] {
         let others = &uses[module];
         let truth =
             ["world", "physics", "sensors", "simulation"].into_iter().find(|name| others.contains(*name));

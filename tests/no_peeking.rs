@@ -3,7 +3,7 @@
 use usar_sim::ids::{RescueeId, RobotId};
 use usar_sim::mission::Activity;
 use usar_sim::navigation::Goal;
-use usar_sim::simulation::Simulation;
+use usar_sim::simulation::{Advance, Simulation};
 use usar_sim::world::RescueeState;
 
 use crate::support::{paper, policy};
@@ -54,4 +54,36 @@ fn robots_go_for_rescuees_that_are_gone_until_somebody_says_so() {
         chased = gone.iter().filter(|id| changed.mission().claimed().by(**id).is_some()).count();
     }
     assert!(chased > 0, "nobody went for a rescuee that is gone: the test shows nothing");
+}
+
+#[test]
+fn the_question_has_what_robots_said_and_the_record_the_truth_beside_it() {
+    let (scenario, rne) = (paper(), policy("RNE"));
+    let asked = |change: &dyn Fn(&mut Simulation)| {
+        let mut trial = Simulation::new(&scenario, 1).unwrap();
+        change(&mut trial);
+        assert!(matches!(trial.advance(), Advance::Asks(_)));
+        let question = trial.question().unwrap().clone();
+        trial.assign(rne.decide(&question).unwrap()).unwrap();
+        trial.decisions()[0].clone()
+    };
+    let honest = asked(&|_| {});
+    let changed = asked(&|trial| trial.world_mut().robots[2].energy = 31.0); // it has not felt that yet
+    assert_eq!((&honest.question, &honest.decision), (&changed.question, &changed.decision));
+    assert_eq!((&honest.truth, honest.team()), (&None, honest.question.members.as_slice()));
+    let levels: Vec<_> = changed.team().iter().map(|member| member.energy_level).collect();
+    let said: Vec<_> = changed.question.members.iter().map(|member| member.energy_level).collect();
+    assert_eq!((levels[2], &levels[3..]), (Some(31.0), &said[3..]));
+    assert!(said[2] > levels[2]);
+}
+
+#[test]
+fn robots_learn_of_a_team_mate_what_it_says() {
+    let (scenario, rne) = (paper(), policy("RNE"));
+    let mut trial = Simulation::new(&scenario, 1).unwrap();
+    (0..10).for_each(|_| assert_eq!(trial.step(&*rne), None));
+    trial.world_mut().robots[2].energy = 31.0;
+    assert!(trial.beliefs().team[2].energy > 31.0, "nobody can know yet");
+    assert_eq!(trial.step(&*rne), None);
+    assert_eq!(trial.beliefs().team[2].energy, trial.world().robots[2].energy);
 }

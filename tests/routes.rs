@@ -261,7 +261,7 @@ fn a_way_that_a_pushed_piece_leaves_free_is_taken_once_it_is_noticed_and_others_
         let robot = world.robots[0].id;
         navigator.set_goal(robot, Some(Goal { point: Vector::new(20.0, 5.0), within: 0.15 }));
         let mut length = |known: &Belief| {
-            navigator.plan(&world, |_| known, |_| 2.0, 1);
+            navigator.plan(&world.robots, |_| known, |_| 2.0, 1);
             navigator.traveller(robot).route().unwrap().length(world.robots[0].position)
         };
         let before = length(&known);

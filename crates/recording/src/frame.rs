@@ -4,8 +4,9 @@ use rne_core::TaskId;
 use serde::Serialize;
 use usar_sim::conflict::DelayCause;
 use usar_sim::mission::Activity;
+use usar_sim::robot::{Condition, Robot};
 use usar_sim::simulation::Simulation;
-use usar_sim::world::{Condition, RescueeState, Robot};
+use usar_sim::world::RescueeState;
 
 use crate::numbers::NotNumbers;
 

@@ -30,7 +30,7 @@ pub struct Trust {
 impl Trust {
     /// The matrices of a decision; `None` if needs give no distribution.
     pub(crate) fn of(decided: &DecisionRecord) -> Option<Self> {
-        let DecisionRecord { question, decision } = decided;
+        let DecisionRecord { question, decision, .. } = decided;
         let weights = match &decision.account {
             Account::Rne(account) => account.weights.clone(),
             _ => Rne::new(RneOptions::default()).ok()?.weights(question).ok()?,

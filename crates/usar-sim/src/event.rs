@@ -284,7 +284,10 @@ impl Event {
             Statement::DebrisLies { debris, .. } => Some(Self::DebrisDiscovered { robot, debris }),
             Statement::ZoneIs { zone, .. } => Some(Self::ZoneDiscovered { robot, zone }),
             Statement::RescueeWaits { rescuee, .. } => Some(Self::Sighted { robot, rescuee }),
-            Statement::RescueeIsGone { .. } | Statement::WreckLies { .. } => None,
+            Statement::RescueeIsGone { .. }
+            | Statement::IAm(_)
+            | Statement::TaskIs { .. }
+            | Statement::WreckLies { .. } => None,
         }
     }
 }

@@ -1,6 +1,6 @@
 //! The counts and totals of a trial, gathered from events and charges.
 
-use rne_core::{GroupOutcome, MemberOutcome, RoundOutcome, TaskId};
+use rne_core::{MemberOutcome, TaskId};
 use serde::{Deserialize, Serialize};
 
 use crate::event::{CutOffCause, Event, ReturnCause};
@@ -256,26 +256,4 @@ impl RoundRecord {
         let place = self.members.binary_search_by_key(&robot.0, |member| member.id).ok()?;
         Some(&mut self.members[place])
     }
-}
-
-/// The outcomes of the rounds before round `before`, as questions report them.
-#[must_use]
-pub fn history(rounds: &[RoundRecord], before: u32) -> Vec<RoundOutcome> {
-    let mut history: Vec<RoundOutcome> = Vec::new();
-    for record in rounds.iter().filter(|record| record.round < before) {
-        if history.last().is_none_or(|last| last.round != record.round) {
-            let duration_s = record.end_s.map_or(0.0, |end| end - record.start_s);
-            history.push(RoundOutcome { round: record.round, duration_s, groups: Vec::new() });
-        }
-        if let Some(round) = history.last_mut() {
-            round.groups.push(GroupOutcome {
-                task: record.task,
-                rescued: record.rescued,
-                energy: record.energy,
-                hp: record.hp,
-                members: record.members.clone(),
-            });
-        }
-    }
-    history
 }

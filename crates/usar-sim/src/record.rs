@@ -1,12 +1,12 @@
 //! The record of a trial: its results once it is over.
 
-use rne_core::{Decision, Question};
+use rne_core::{Decision, Member, Question, RoundOutcome};
 use serde::{Deserialize, Serialize};
 
 use crate::conflict::Delay;
 use crate::hash::HashChain;
 use crate::invariant::Overlaps;
-use crate::metrics::{Counts, CutOff, RoundRecord, TaskTotals, history};
+use crate::metrics::{Counts, CutOff, RoundRecord, TaskTotals};
 
 /// How a trial ended.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -80,11 +80,22 @@ pub struct TaskRecord {
 /// One grouping of the team.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct DecisionRecord {
-    /// The question without its history. The history is in [`TrialRecord::rounds`], and
+    /// The question without its history. The history is in [`TrialRecord::ledger`], and
     /// [`TrialRecord::question`] restores it.
     pub question: Question,
     /// The answer.
     pub decision: Decision,
+    /// The members as they really were; absent where the question had them as they were. See
+    /// [`DecisionRecord::team`].
+    pub truth: Option<Vec<Member>>,
+}
+
+impl DecisionRecord {
+    /// The members as they really were, by id.
+    #[must_use]
+    pub fn team(&self) -> &[Member] {
+        self.truth.as_ref().unwrap_or(&self.question.members)
+    }
 }
 
 /// One trial.
@@ -106,6 +117,10 @@ pub struct TrialRecord {
     pub completed_rounds: u32,
     /// Rounds, each with one record per task.
     pub rounds: Vec<RoundRecord>,
+    /// The rounds that ended before the trial did as the base knew them: what it witnessed, and the costs that
+    /// robots reported. Questions have them as their history.
+    #[serde(default)]
+    pub ledger: Vec<RoundOutcome>,
     /// How the team was grouped, round by round.
     pub decisions: Vec<DecisionRecord>,
     /// Robots, by id.
@@ -130,7 +145,9 @@ impl TrialRecord {
     /// The question as it was asked, with its history.
     #[must_use]
     pub fn question(&self, asked: &DecisionRecord) -> Question {
-        Question { history: history(&self.rounds, asked.question.round), ..asked.question.clone() }
+        let before = |round: &&RoundOutcome| round.round < asked.question.round;
+        let history = self.ledger.iter().filter(before).cloned().collect();
+        Question { history, ..asked.question.clone() }
     }
 
     /// Results and costs of the task of this name.

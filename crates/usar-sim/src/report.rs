@@ -5,10 +5,12 @@
 
 use parry2d::math::{Pose, Vector};
 use parry2d::shape::SharedShape;
+use rne_core::TaskId;
 use serde::{Deserialize, Serialize};
 
 use crate::geometry::RadiationZone;
 use crate::ids::{RescueeId, RobotId};
+use crate::robot::Robot;
 
 /// A report.
 #[derive(Clone, Serialize, Deserialize)]
@@ -65,6 +67,15 @@ pub enum Statement {
     RescueeIsGone {
         /// The rescuee.
         rescuee: RescueeId,
+    },
+    /// The sender's own state.
+    IAm(Robot),
+    /// A task is open, or closed.
+    TaskIs {
+        /// The task.
+        task: TaskId,
+        /// Whether it is open: it has begun and not ended.
+        open: bool,
     },
     /// A robot has stopped for good.
     WreckLies {

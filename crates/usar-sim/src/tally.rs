@@ -7,7 +7,7 @@ use crate::ids::RobotId;
 use crate::mission::Activity;
 use crate::navigation::Traveller;
 use crate::record::RobotRecord;
-use crate::world::{Condition, Robot};
+use crate::robot::{Condition, Robot};
 
 /// The totals of one robot.
 #[derive(Debug, Clone, Copy, Default, Serialize, Deserialize)]

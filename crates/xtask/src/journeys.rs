@@ -3,9 +3,9 @@
 use rne_core::Registry;
 use usar_sim::conflict::DelayCause;
 use usar_sim::record::{Status, TrialRecord};
+use usar_sim::robot::STANDING_MPS;
 use usar_sim::scenario::Scenario;
 use usar_sim::simulation::Simulation;
-use usar_sim::world::STANDING_MPS;
 
 /// A robot with a goal is counted if it comes no nearer for longer than this, in seconds.
 pub const STALL_S: f64 = 30.0;

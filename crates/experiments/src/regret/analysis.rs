@@ -177,7 +177,7 @@ fn look(
         .filter_map(|evaluation| Some((&evaluation.assignment, objective.score(&evaluation.outcome)?)))
         .collect();
     let (assignments, scores): (Vec<&Assignment>, Vec<f64>) = defined.into_iter().unzip();
-    let features = values(&decision.question, &assignments);
+    let features = values(&decision.true_question(), &assignments);
     let correlation = |feature: &Vec<Option<f64>>| {
         let feature: Option<Vec<f64>> = feature.iter().copied().collect();
         rank_correlation(&feature?, &scores)

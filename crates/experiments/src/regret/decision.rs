@@ -2,7 +2,7 @@
 
 use std::sync::atomic::AtomicBool;
 
-use rne_core::{Assignment, Decision, Policy, Question, assignments};
+use rne_core::{Assignment, Decision, Member, Policy, Question, assignments};
 use serde::{Deserialize, Serialize};
 use usar_sim::scenario::Scenario;
 use usar_sim::simulation::{Advance, Decider, Simulation};
@@ -14,6 +14,8 @@ use crate::oracle::{BranchError, Coverage, Evaluation, Objective, Outcome, Surve
 pub struct PlayedDecision {
     /// The question, with the results of earlier rounds.
     pub question: Question,
+    /// The members as they really were; absent where the question had them as they were.
+    pub truth: Option<Vec<Member>>,
     /// Time of the question, in seconds.
     pub time_s: f64,
     /// The assignment that the trial went on with.
@@ -35,6 +37,13 @@ pub struct Sample {
 }
 
 impl PlayedDecision {
+    /// The question as it would have been if all members had been reported as they were.
+    #[must_use]
+    pub fn true_question(&self) -> Question {
+        let members = self.truth.as_ref().unwrap_or(&self.question.members).clone();
+        Question { members, ..self.question.clone() }
+    }
+
     /// The assignments and their outcomes.
     #[must_use]
     pub fn survey(&self) -> Survey {
@@ -124,6 +133,7 @@ impl Plan<'_> {
             Coverage::Sample { drawn, .. } => Some(Sample { assignments, drawn }),
         };
         let chosen = decision.assignment.clone();
-        Ok(PlayedDecision { question, time_s: trial.time_s(), chosen, sample, outcomes })
+        let (truth, time_s) = (trial.truth(), trial.time_s());
+        Ok(PlayedDecision { question, truth, time_s, chosen, sample, outcomes })
     }
 }

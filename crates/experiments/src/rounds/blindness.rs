@@ -84,7 +84,7 @@ impl Blindness {
         let weights = rne.weights(&round.question).map_err(Failure::run)?;
         let weights = NeedWeights::new(weights).map_err(Failure::run)?;
         for role in round.question.role_ids() {
-            let members: Vec<&Member> = round.question.of_role(role).collect();
+            let members: Vec<&Member> = round.of_role(role).collect();
             let distribution =
                 |member: &&Member| NeedDistribution::of_agent(&member.needs, &weights).map_err(Failure::run);
             let shares = members.iter().map(distribution).collect::<Result<Vec<_>, _>>()?;

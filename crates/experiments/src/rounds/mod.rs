@@ -5,7 +5,7 @@ mod blindness;
 mod levels;
 mod sorting;
 
-use rne_core::{Assignment, Decision, Member, Policy, Question, TaskId};
+use rne_core::{Assignment, Decision, Member, Policy, Question, RoleId, TaskId};
 
 pub use blindness::{Blindness, Example, Pair};
 pub use levels::{GroupLevels, levels, mean_levels};
@@ -26,6 +26,8 @@ pub struct Round {
     pub question: Question,
     /// The answer.
     pub decision: Decision,
+    /// The members as they really were, by id.
+    pub team: Vec<Member>,
 }
 
 /// The rounds of a trial.
@@ -35,6 +37,7 @@ pub fn rounds_of(number: u32, trial: &Trial) -> impl Iterator<Item = Round> + '_
         seed: trial.record.seed,
         question: trial.record.question(asked),
         decision: asked.decision.clone(),
+        team: asked.team().to_vec(),
     })
 }
 
@@ -61,10 +64,15 @@ impl Round {
         Ok(policy.decide(&self.question).map_err(Failure::run)?.assignment)
     }
 
+    /// The members of a role, by id.
+    pub fn of_role(&self, role: RoleId) -> impl Iterator<Item = &Member> {
+        self.team.iter().filter(move |member| member.role == role)
+    }
+
     /// The members of a task's group, by id.
     pub fn group(&self, task: TaskId) -> impl Iterator<Item = &Member> {
         let group = self.decision.assignment.of(task);
-        self.question.members.iter().filter(move |member| group.contains(&member.id))
+        self.team.iter().filter(move |member| group.contains(&member.id))
     }
 
     /// The tasks whose groups have members, from the hardest to the easiest.
@@ -136,6 +144,7 @@ pub(crate) mod testing {
             history: Vec::new(),
             random_seed: RandomSeed::from(1),
         };
-        Round { trial: 3, seed: 7, question, decision: Decision::unscored(vec![ids(0), ids(1)]) }
+        let (decision, team) = (Decision::unscored(vec![ids(0), ids(1)]), question.members.clone());
+        Round { trial: 3, seed: 7, question, decision, team }
     }
 }

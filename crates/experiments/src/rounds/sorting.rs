@@ -78,7 +78,7 @@ impl Likeness {
         self.roles.resize(roles.len(), RoleShare::default());
         for (role, of_role) in roles.iter().zip(&mut self.roles) {
             of_role.role.clone_from(&round.question.roles[role.index()]);
-            of_role.most = of_role.most.max(round.question.of_role(*role).count());
+            of_role.most = of_role.most.max(round.of_role(*role).count());
             if tasks.iter().all(|task| members(round, *task, *role).next().is_some()) {
                 let chance = chance(round, tasks, key, &[*role]);
                 of_role.share.add(is_sorted(round, tasks, key, &[*role]), chance);
@@ -128,7 +128,7 @@ fn is_sorted(round: &Round, [a, b]: [TaskId; 2], key: &Key, roles: &[RoleId]) ->
 fn chance(round: &Round, [a, _]: [TaskId; 2], key: &Key, roles: &[RoleId]) -> f64 {
     let (mut all, mut first_up, mut second_up, mut both) = (1.0, 1.0, 1.0, 1.0);
     for role in roles {
-        let mut values: Vec<f64> = round.question.of_role(*role).map(key.value).collect();
+        let mut values: Vec<f64> = round.of_role(*role).map(key.value).collect();
         values.sort_by(|a, b| b.total_cmp(a));
         let first = members(round, a, *role).count();
         let splits = choose(values.len(), first);

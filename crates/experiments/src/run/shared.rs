@@ -25,7 +25,7 @@ fn as_decided_by(trial: &Trial, policy: &dyn Policy) -> Option<Trial> {
     let decide = |asked: &DecisionRecord| {
         let decision = policy.decide(&trial.record.question(asked)).ok()?;
         let is_same = decision.assignment == asked.decision.assignment;
-        is_same.then(|| DecisionRecord { question: asked.question.clone(), decision })
+        is_same.then(|| DecisionRecord { decision, ..asked.clone() })
     };
     let decisions = trial.record.decisions.iter().map(decide).collect::<Option<Vec<_>>>()?;
     let mut trial = trial.clone();

@@ -156,13 +156,13 @@ pub(super) fn group_rows<'a>(
 
 fn group_of<'a>(
     key: &'a TrialKey,
-    DecisionRecord { question, decision }: &'a DecisionRecord,
+    asked: &'a DecisionRecord,
     task: TaskId,
 ) -> impl Iterator<Item = Vec<String>> + 'a {
     let TrialKey { label, trial, seed, .. } = key;
-    let group = decision.assignment.of(task);
+    let (question, group) = (&asked.question, asked.decision.assignment.of(task));
     let level = |level: Option<f64>| level.map_or(String::new(), |level| level.to_string());
-    question.members.iter().filter(|member| group.contains(&member.id)).map(move |member| {
+    asked.team().iter().filter(|member| group.contains(&member.id)).map(move |member| {
         let mut row = vec![label.clone(), trial.to_string(), seed.to_string(), question.round.to_string()];
         row.push(member.id.to_string());
         row.push(question.roles[member.role.index()].clone());

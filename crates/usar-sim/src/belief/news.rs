@@ -3,7 +3,6 @@
 use parry2d::math::Vector;
 use serde::{Deserialize, Serialize};
 
-use super::Belief;
 use crate::planning::ObstacleKey;
 
 /// A piece of news that concerns routes.
@@ -37,19 +36,6 @@ impl Opening {
 /// A mark in the news: how much of it has been taken into account.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub(crate) struct Seen {
-    pool: u32,
-    news: usize,
-}
-
-impl Belief {
-    /// The mark after all present news.
-    pub(crate) fn seen(&self) -> Seen {
-        Seen { pool: self.pool, news: self.news.len() }
-    }
-
-    /// The news since a mark. All news, if the groups have pooled their beliefs since the mark.
-    pub(crate) fn news_since(&self, seen: Seen) -> &[News] {
-        let from = if seen.pool == self.pool { seen.news.min(self.news.len()) } else { 0 };
-        &self.news[from..]
-    }
+    pub(super) pool: u32,
+    pub(super) news: usize,
 }

@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 use super::Mover;
 use super::predict::Neighbours;
 use super::room::{Ask, distance_to_way, ways};
-use crate::world::STANDING_MPS;
+use crate::robot::STANDING_MPS;
 
 /// Longest chain of robots that make room for one another.
 const MAX_DEPTH: u32 = 12;

@@ -13,8 +13,9 @@ use parry2d::math::Vector;
 
 use crate::event::Event;
 use crate::ids::RobotId;
+use crate::robot::Robot;
 use crate::scenario::Scenario;
-use crate::world::{RescueeState, Robot, World};
+use crate::world::{RescueeState, World};
 use overlaps::Gauge;
 pub use overlaps::{Overlaps, RARE_OVERLAP_M};
 

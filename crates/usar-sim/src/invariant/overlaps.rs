@@ -6,8 +6,9 @@ use parry2d::math::{Pose, Vector};
 use serde::{Deserialize, Serialize};
 
 use crate::ids::RobotId;
+use crate::robot::Robot;
 use crate::scenario::Scenario;
-use crate::world::{Debris, Robot, World};
+use crate::world::{Debris, World};
 
 /// Overlap that one contact in a thousand may exceed, in metres.
 pub const RARE_OVERLAP_M: f32 = 0.01;

@@ -8,8 +8,8 @@ use smallvec::SmallVec;
 
 use super::{Activity, Mission, Scene};
 use crate::ids::{RescueeId, RobotId};
-use crate::sensors::SENSING_PERIOD_STEPS;
-use crate::world::World;
+use crate::model::SENSING_PERIOD_STEPS;
+use crate::robot::Robot;
 
 /// Which robot claims which rescuee. The list lives on the stack in teams and tasks of usual size, like all
 /// that claims need.
@@ -87,7 +87,7 @@ impl Mission {
         if seeking.peek().is_none() {
             return;
         }
-        let spare = self.spare_resources(task, scene.world);
+        let spare = self.spare_resources(task, &scene.beliefs.team);
         if spare <= 0 {
             return;
         }
@@ -95,7 +95,7 @@ impl Mission {
         if offers.is_empty() {
             return;
         }
-        let place = |id: RobotId| scene.world.robots[id.index()].position;
+        let place = |id: RobotId| scene.beliefs.team[id.index()].position;
         let mut seekers: SmallVec<[Seeker; 16]> =
             seeking.map(|id| Seeker::new(id, place(id), &offers)).collect();
         for _ in 0..spare {
@@ -113,7 +113,7 @@ impl Mission {
     /// Whether a robot may claim a rescuee in this step. Robots take turns, so that not all of them search in
     /// the same step.
     fn looks_for_work(&self, id: RobotId, scene: &Scene) -> bool {
-        let robot = &scene.world.robots[id.index()];
+        let robot = &scene.beliefs.team[id.index()];
         let is_free = matches!(self.agents[id.index()].activity, Activity::Searching | Activity::Standby);
         let is_due = (scene.step + u64::from(id.0)).is_multiple_of(SENSING_PERIOD_STEPS);
         is_due && is_free && robot.is_able() && robot.free_capacity() > 0
@@ -134,9 +134,9 @@ impl Mission {
 
     /// Resources of a group in the field that no claim needs; negative if there are more claims than
     /// resources.
-    fn spare_resources(&self, task: TaskId, world: &World) -> i64 {
-        let resources = |id: RobotId| i64::from(world.robots[id.index()].resources);
+    fn spare_resources(&self, task: TaskId, team: &[Robot]) -> i64 {
+        let resources = |id: RobotId| i64::from(team[id.index()].resources);
         let claims = |id: RobotId| i64::from(self.agents[id.index()].activity.claim().is_some());
-        self.in_field(task, world).map(|id| resources(id) - claims(id)).sum()
+        self.in_field(task, team).map(|id| resources(id) - claims(id)).sum()
     }
 }

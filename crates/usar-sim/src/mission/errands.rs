@@ -5,8 +5,8 @@ use parry2d::math::Vector;
 use super::{Activity, Ending, Mission, Scene};
 use crate::event::Event;
 use crate::ids::RobotId;
+use crate::robot::Robot;
 use crate::scenario::Scenario;
-use crate::world::Robot;
 
 impl Mission {
     /// Hands out the errands of a scenario.
@@ -22,12 +22,12 @@ impl Mission {
     /// Ticks off the places where robots have arrived, gives up on places without a route, and ends the trial
     /// when no able robot is on an errand.
     pub(super) fn follow_errands(&mut self, scene: &mut Scene) {
-        for robot in 0..scene.world.robots.len() {
-            if self.is_on_errand(&scene.world.robots[robot]) {
+        for robot in 0..scene.beliefs.team.len() {
+            if self.is_on_errand(&scene.beliefs.team[robot]) {
                 self.follow_errand(RobotId(robot as u32), scene);
             }
         }
-        if !scene.world.robots.iter().any(|robot| self.is_on_errand(robot)) {
+        if !scene.beliefs.team.iter().any(|robot| self.is_on_errand(robot)) {
             self.ending = Some(Ending::ErrandsOver);
             scene.log.push(Event::ErrandsOver);
         }
@@ -39,7 +39,7 @@ impl Mission {
 
     fn follow_errand(&mut self, id: RobotId, scene: &mut Scene) {
         let traveller = scene.navigator.traveller(id);
-        let robot = &scene.world.robots[id.index()];
+        let robot = &scene.beliefs.team[id.index()];
         let (gives_up, is_at_place) = (scene.gives_up(id), scene.is_at_place(robot));
         let agent = &mut self.agents[id.index()];
         let Some(place) = agent.sweep.last().copied() else { return };

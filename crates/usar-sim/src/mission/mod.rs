@@ -1,13 +1,13 @@
-//! The mission: rounds of grouping, searching, rescuing and returning. Robots decide here; `rescue` applies
-//! the effects of their decisions to the world.
+//! The mission: rounds of grouping, searching, rescuing and returning. Robots decide here, from what they
+//! heard; what they want done becomes an [`Intent`](crate::intent::Intent), and the world has the last word.
 
 mod agent;
 mod claims;
 mod errands;
 mod regroup;
-mod rescue;
 mod round;
 mod scene;
+mod settle;
 mod watch;
 mod withdraw;
 mod work;
@@ -19,6 +19,7 @@ pub use agent::{Activity, Agent};
 pub use claims::Claimed;
 pub use round::{FieldState, Fitness, return_cause, turn_back_cause, unfit_cause};
 pub use scene::Scene;
+pub use settle::Sharing;
 pub use watch::Watch;
 
 use crate::belief::Beliefs;
@@ -26,8 +27,8 @@ use crate::event::{Event, TurnBackCause};
 use crate::ids::{RescueeId, RobotId};
 use crate::model::Model;
 use crate::navigation::Goal;
+use crate::robot::Robot;
 use crate::scenario::MissionRules;
-use crate::world::{Robot, World};
 
 /// How near a robot comes to its place at home or at a rest place, in metres.
 const SLOT_M: f32 = 0.15;
@@ -134,9 +135,9 @@ impl Mission {
     }
 
     /// Restores the fields that a snapshot leaves out: they follow from the other fields.
-    pub(crate) fn restore(&mut self, model: &Model, world: &World) {
+    pub(crate) fn restore(&mut self, model: &Model, team: &[Robot]) {
         self.is_guided = vec![false; self.groups.len()];
-        self.look_for_guides(&model.scenario.mission, world);
+        self.look_for_guides(&model.scenario.mission, team);
     }
 
     fn agent(&mut self, robot: RobotId) -> &mut Agent {
@@ -154,9 +155,9 @@ impl Mission {
         unladen * (1.0 - rules.load_speed_loss * robot.load_share())
     }
 
-    fn look_for_guides(&mut self, rules: &MissionRules, world: &World) {
+    fn look_for_guides(&mut self, rules: &MissionRules, team: &[Robot]) {
         let guides = |id: &RobotId| {
-            let robot = &world.robots[id.index()];
+            let robot = &team[id.index()];
             let is_there = rules.resting_guides || !self.agents[id.index()].activity.is_rest();
             robot.spec.guides && robot.is_able() && is_there
         };
@@ -166,21 +167,22 @@ impl Mission {
     }
 
     /// Begins the decisions of a step: notes which robots are cut off, and ends and begins rounds. A new
-    /// round waits for its assignment: see [`Mission::question`].
-    pub fn prepare(&mut self, scene: &mut Scene) {
-        self.look_for_guides(&scene.model.scenario.mission, scene.world);
+    /// round waits for its assignment: see [`Mission::question`]. Returns the robots that the base restocks.
+    pub fn prepare(&mut self, scene: &mut Scene) -> Vec<RobotId> {
+        self.look_for_guides(&scene.model.scenario.mission, &scene.beliefs.team);
         if !scene.model.scenario.errands.is_empty() {
             self.follow_errands(scene);
-        } else if scene.world.robots.iter().any(|robot| robot.is_able() && robot.can_carry()) {
+        } else if scene.beliefs.team.iter().any(|robot| robot.is_able() && robot.can_carry()) {
             self.watch(scene);
             if self.everybody_is_home(scene) && self.can_begin_round(scene) && !self.rest_first(scene) {
                 self.end_round(scene);
-                self.open_round(scene);
+                return self.open_round(scene);
             }
         } else {
             self.ending = Some(Ending::NobodyCanCarry);
             scene.log.push(Event::MissionOver);
         }
+        Vec::new()
     }
 
     /// Decides what every robot does next, and sets its goal.
@@ -191,12 +193,12 @@ impl Mission {
                 self.call_back(task, scene);
             }
             let mut claims = self.claims(scene).into_iter().peekable();
-            for robot in (0..scene.world.robots.len() as u32).map(RobotId) {
+            for robot in (0..scene.beliefs.team.len() as u32).map(RobotId) {
                 let claim = claims.next_if(|(by, _)| *by == robot).map(|(_, rescuee)| rescuee);
                 self.choose_activity(robot, claim, scene);
             }
         }
-        for robot in &scene.world.robots {
+        for robot in &scene.beliefs.team {
             let goal = self.goal_of(robot, scene.model, scene.beliefs);
             scene.navigator.set_goal(robot.id, goal);
         }
@@ -205,7 +207,7 @@ impl Mission {
     /// Sends robots that must leave the field to rest.
     fn turn_back(&mut self, scene: &mut Scene) {
         for id in 0..self.agents.len() {
-            let (robot, agent) = (&scene.world.robots[id], &self.agents[id]);
+            let (robot, agent) = (&scene.beliefs.team[id], &self.agents[id]);
             let underway = agent.activity.is_in_field()
                 || agent.activity == Activity::Returning && agent.levels_at_start.is_some();
             if !robot.is_able() || !underway {
@@ -230,24 +232,23 @@ impl Mission {
         let Some(cause) = return_cause(&self.field_state(task, scene)) else { return };
         scene.log.push(Event::GroupReturned { task, cause });
         self.groups[task.index()].at_work = false;
-        for id in self.in_field(task, scene.world).collect::<Vec<_>>() {
+        for id in self.in_field(task, &scene.beliefs.team).collect::<Vec<_>>() {
             self.release_claim(id);
             self.agent(id).activity = Activity::Returning;
         }
     }
 
     /// The members of a group that can act and work in the field, by id.
-    fn in_field<'m>(&'m self, task: TaskId, world: &'m World) -> impl Iterator<Item = RobotId> + 'm {
-        let is_in_field = |id: &RobotId| {
-            world.robots[id.index()].is_able() && self.agents[id.index()].activity.is_in_field()
-        };
+    fn in_field<'m>(&'m self, task: TaskId, team: &'m [Robot]) -> impl Iterator<Item = RobotId> + 'm {
+        let is_in_field =
+            |id: &RobotId| team[id.index()].is_able() && self.agents[id.index()].activity.is_in_field();
         self.groups[task.index()].members.iter().copied().filter(is_in_field)
     }
 
     fn field_state(&self, task: TaskId, scene: &Scene) -> FieldState {
         let mut field = FieldState::default();
-        for id in self.in_field(task, scene.world) {
-            let (robot, agent) = (&scene.world.robots[id.index()], &self.agents[id.index()]);
+        for id in self.in_field(task, &scene.beliefs.team) {
+            let (robot, agent) = (&scene.beliefs.team[id.index()], &self.agents[id.index()]);
             field.carrying_members += u32::from(robot.can_carry());
             field.free_capacity += robot.free_capacity();
             field.resources += robot.resources;

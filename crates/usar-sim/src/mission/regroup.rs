@@ -1,16 +1,17 @@
 //! Between rounds: which robots are home and fit, the question to the policy, and the departure of the
 //! groups.
 
-use rne_core::{Assignment, Member, Need, Question, Quota, RandomSeed, SCHEMA_VERSION, Task, TaskId};
+use rne_core::{Assignment, Need, Question, Quota, RandomSeed, SCHEMA_VERSION, Task, TaskId};
 
 use super::round::{Fitness, unfit_cause};
 use super::{Activity, Agent, Group, Mission, Pending, Scene};
+use crate::belief::{Belief, Beliefs};
 use crate::event::{Event, TurnBackCause};
 use crate::ids::RobotId;
 use crate::model::Model;
+use crate::robot::Robot;
 use crate::scenario::{MissionRules, RestAtHome, RoundEnd, Scenario, TaskFile};
 use crate::seed::{Purpose, stream};
-use crate::world::{Robot, World};
 
 impl Mission {
     /// Whether every robot for which the team waits is at home.
@@ -21,7 +22,7 @@ impl Mission {
             let agent = agent(robot);
             robot.is_able() && !agent.is_cut_off && (waits_for_resting || !agent.is_off_to_rest())
         };
-        let mut awaited = scene.world.robots.iter().filter(waited_for).peekable();
+        let mut awaited = scene.beliefs.team.iter().filter(waited_for).peekable();
         awaited.peek().is_some() && awaited.all(|robot| agent(robot).activity == Activity::Home)
     }
 
@@ -32,7 +33,11 @@ impl Mission {
         }
         scene.log.push(Event::RoundEnded { round: self.round });
         scene.beliefs.pool();
-        for (agent, robot) in self.agents.iter_mut().zip(&scene.world.robots) {
+        let went_to_rest = |id: RobotId| self.agents[id.index()].levels_at_start.is_none();
+        let unit = scene.model.scenario.costs.unit;
+        let Beliefs { team, ledger, .. } = &mut *scene.beliefs;
+        ledger.end(team, unit, scene.step as f64 * scene.model.dt_s(), went_to_rest);
+        for (agent, robot) in self.agents.iter_mut().zip(&scene.beliefs.team) {
             agent.task = None;
             if let Some([energy, hp]) = agent.levels_at_start {
                 let [most_energy, most_hp] = agent.costliest_round;
@@ -42,22 +47,24 @@ impl Mission {
     }
 
     /// Restocks the robots at home, and asks how the fit ones are to be grouped. If no robot is fit, assigns
-    /// empty groups without a question.
-    pub(super) fn open_round(&mut self, scene: &mut Scene) {
+    /// empty groups without a question. Returns the robots that the base restocks; it knows what it hands out.
+    pub(super) fn open_round(&mut self, scene: &mut Scene) -> Vec<RobotId> {
         self.round += 1;
         self.unreachable.fill(false);
         let is_home: Vec<bool> = self.agents.iter().map(|a| a.activity == Activity::Home).collect();
         let takes_part = |robot: &Robot| robot.is_able() && is_home[robot.id.index()];
-        for robot in scene.world.robots.iter_mut().filter(|robot| takes_part(robot)) {
+        let mut restocked = Vec::new();
+        for robot in scene.beliefs.team.iter_mut().filter(|robot| takes_part(robot)) {
             if robot.resources < robot.spec.resources {
                 robot.resources = robot.spec.resources;
+                restocked.push(robot.id);
                 scene.log.push(Event::Restocked { robot: robot.id, resources: robot.resources });
             }
             self.agents[robot.id.index()].levels_at_start = Some([robot.energy, robot.hp]);
         }
         let (mut fit, mut unfit) = (Vec::new(), Vec::new());
         let tasks = self.groups.len() as u16;
-        for robot in scene.world.robots.iter().filter(|robot| takes_part(robot)) {
+        for robot in scene.beliefs.team.iter().filter(|robot| takes_part(robot)) {
             let agent = &self.agents[robot.id.index()];
             match self.unfit_cause(&scene.model.scenario.mission, robot) {
                 None => fit.push(robot),
@@ -65,13 +72,14 @@ impl Mission {
                 Some(cause) => unfit.push((robot.id, cause)),
             }
         }
-        let question = question(scene.model, (self.round, &scene.world.closed_tasks), &fit);
+        let question = question(scene.model, self.round, scene.beliefs.of(None), &fit);
         self.agents.iter_mut().for_each(|agent| agent.rests_given_up = 0);
         let is_empty = question.members.is_empty();
         self.pending = Some(Pending { question, unfit });
         if is_empty {
             self.assign(&Assignment { groups: vec![Vec::new(); self.groups.len()] }, scene);
         }
+        restocked
     }
 
     pub(super) fn unfit_cause(&self, rules: &MissionRules, robot: &Robot) -> Option<TurnBackCause> {
@@ -89,8 +97,8 @@ impl Mission {
         }
         let tasks = self.groups.len() as u16;
         let unfit: Vec<(RobotId, TurnBackCause)> = scene
-            .world
-            .robots
+            .beliefs
+            .team
             .iter()
             .filter(|robot| robot.is_able())
             .filter(|robot| {
@@ -105,7 +113,7 @@ impl Mission {
 
     /// Sends a robot to the nearest rest place that it has not given up on.
     fn send_to_rest(&mut self, id: RobotId, cause: TurnBackCause, scene: &mut Scene) {
-        let robot = &scene.world.robots[id.index()];
+        let robot = &scene.beliefs.team[id.index()];
         let agent = &mut self.agents[id.index()];
         let way = |task: &TaskId| (robot.rest_slot(*task) - robot.position).length();
         let places = scene.model.task_ids().rev().filter(|task| !agent.has_given_up_rest(*task));
@@ -122,23 +130,24 @@ impl Mission {
         let Some(Pending { unfit, .. }) = self.pending.take() else { return };
         let ids = |group: &Vec<u32>| group.iter().map(|id| RobotId(*id)).collect::<Vec<_>>();
         let groups: Vec<Vec<RobotId>> = assignment.groups.iter().map(ids).collect();
+        scene.beliefs.ledger.begin(self.round, &groups, scene.step as f64 * scene.model.dt_s());
         scene.log.push(Event::RoundStarted { round: self.round, groups: groups.clone() });
         for (task, members) in scene.model.task_ids().zip(groups) {
             scene.beliefs.depart(task);
-            self.send_out(task, members, scene.model, scene.world);
+            self.send_out(task, members, scene.model, &scene.beliefs.team);
         }
         unfit.iter().for_each(|(id, cause)| self.send_to_rest(*id, *cause, scene));
-        self.look_for_guides(&scene.model.scenario.mission, scene.world);
+        self.look_for_guides(&scene.model.scenario.mission, &scene.beliefs.team);
     }
 
     /// Sends a group to its task. A group in which no robot can carry stays at home.
-    fn send_out(&mut self, task: TaskId, members: Vec<RobotId>, model: &Model, world: &World) {
-        let at_work = members.iter().any(|id| world.robots[id.index()].can_carry());
+    fn send_out(&mut self, task: TaskId, members: Vec<RobotId>, model: &Model, team: &[Robot]) {
+        let at_work = members.iter().any(|id| team[id.index()].can_carry());
         let area = &model.tasks[task.index()].area;
         let (mut ground, mut aerial) = (0, 0);
-        let flying = members.iter().filter(|id| world.robots[id.index()].is_aerial()).count();
+        let flying = members.iter().filter(|id| team[id.index()].is_aerial()).count();
         for id in &members {
-            let robot = &world.robots[id.index()];
+            let robot = &team[id.index()];
             let (rank, ranks) =
                 if robot.is_aerial() { (&mut aerial, flying) } else { (&mut ground, members.len() - flying) };
             let agent = &mut self.agents[id.index()];
@@ -155,19 +164,9 @@ impl Mission {
     }
 }
 
-/// The question how these robots are to be grouped. The reported needs are the true ones.
-fn question(model: &Model, (round, closed): (u32, &[bool]), fit: &[&Robot]) -> Question {
+/// The question how these robots, as they said they are, are to be grouped.
+fn question(model: &Model, round: u32, belief: &Belief, fit: &[&Robot]) -> Question {
     let scenario = &model.scenario;
-    let member = |robot: &&Robot| {
-        Some(Member {
-            id: robot.id.0,
-            role: robot.role,
-            home: [f64::from(robot.home.x), f64::from(robot.home.y)],
-            needs: robot.needs(&scenario.needs).ok()?, // of a validated scenario: every value is finite and >= 0
-            energy_level: Some(robot.energy),
-            hp_level: Some(robot.hp),
-        })
-    };
     let count = |role: usize| fit.iter().filter(|robot| robot.role.index() == role).count();
     Question {
         schema_version: SCHEMA_VERSION,
@@ -188,22 +187,22 @@ fn question(model: &Model, (round, closed): (u32, &[bool]), fit: &[&Robot]) -> Q
             })
             .collect(),
         quotas: (0..scenario.roles.len())
-            .map(|role| Quota::share(count(role), &asked(scenario, role, closed), &model.hardest_first))
+            .map(|role| Quota::share(count(role), &asked(scenario, role, belief), &model.hardest_first))
             .collect(),
-        members: fit.iter().filter_map(member).collect(),
+        members: fit.iter().filter_map(|robot| robot.member(&scenario.needs)).collect(),
         history: Vec::new(),
         random_seed: RandomSeed(stream(model.seed, Purpose::Grouping, u64::from(round)).get_seed()),
     }
 }
 
 /// The number of robots of a role for which each task asks.
-fn asked(scenario: &Scenario, role: usize, closed: &[bool]) -> Vec<Option<usize>> {
+fn asked(scenario: &Scenario, role: usize, belief: &Belief) -> Vec<Option<usize>> {
     let name = &scenario.roles[role].name;
     let quota = |task: &TaskFile| task.quota.get(name).map(|quota| *quota as usize);
     let mut asked: Vec<Option<usize>> = scenario.tasks.iter().map(quota).collect();
     // A task that has not begun, or has ended, asks for no robot; an open one takes the robots that are left.
-    let is_open = |number: usize| closed.get(number) != Some(&true);
-    if closed.contains(&true) {
+    let is_open = |number: usize| belief.tasks.get(number).is_none_or(|task| task.open);
+    if !(0..asked.len()).all(is_open) {
         let takes_the_rest = (0..asked.len()).any(|number| is_open(number) && asked[number].is_none());
         for (number, asked) in asked.iter_mut().enumerate() {
             *asked = if is_open(number) { asked.filter(|_| takes_the_rest) } else { Some(0) };

@@ -1,4 +1,4 @@
-//! The scene of a decision: the trial as it is in one step.
+//! The scene of a decision: the trial as the robots know it in one step.
 
 use parry2d::math::Vector;
 use rne_core::TaskId;
@@ -10,16 +10,14 @@ use crate::ids::{RescueeId, RobotId};
 use crate::model::Model;
 use crate::navigation::{Goal, Navigator};
 use crate::report::Report;
+use crate::robot::Robot;
 use crate::scenario::Costs;
-use crate::world::{Robot, World};
 
 /// The parts of a trial that decisions look at and change.
 pub struct Scene<'s> {
     /// The fixed part of the trial.
     pub model: &'s Model,
-    /// The state of the world.
-    pub world: &'s mut World,
-    /// The beliefs of the groups and of the team at home.
+    /// The beliefs of the groups and of the team at home, and the robots as they said they are.
     pub beliefs: &'s mut Beliefs,
     /// The reports that are under way.
     pub sent: &'s mut Vec<Report>,

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::{Activity, Mission, Scene};
 use crate::event::{CutOffCause, Event};
 use crate::ids::RobotId;
-use crate::world::Robot;
+use crate::robot::Robot;
 
 /// Least decrease of the remaining route that counts as coming nearer, in metres. A smaller one may be a push
 /// by another robot.
@@ -51,8 +51,8 @@ impl Mission {
     /// Watches the progress of each robot. A robot that cannot get to its rest place tries the next one. The
     /// team does not wait for a robot that cannot get home.
     pub(super) fn watch(&mut self, scene: &mut Scene) {
-        for id in (0..scene.world.robots.len() as u32).map(RobotId) {
-            let robot = &scene.world.robots[id.index()];
+        for id in (0..scene.beliefs.team.len() as u32).map(RobotId) {
+            let robot = &scene.beliefs.team[id.index()];
             if !robot.is_able() {
                 continue;
             }
@@ -65,7 +65,7 @@ impl Mission {
                 Activity::ToRest | Activity::Resting(_) => self.watch_way_to_rest(id, scene),
                 Activity::Returning | Activity::Home => {
                     if let Some(cause) = self.held_up_cause(id, scene) {
-                        let home = scene.world.robots[id.index()].home;
+                        let home = scene.beliefs.team[id.index()].home;
                         self.cut_off(id, home, cause, scene);
                     }
                 }
@@ -102,7 +102,7 @@ impl Mission {
 
     /// Why a robot cannot get to its goal; `None` if it has arrived or still makes progress.
     fn held_up_cause(&self, id: RobotId, scene: &Scene) -> Option<CutOffCause> {
-        let robot = &scene.world.robots[id.index()];
+        let robot = &scene.beliefs.team[id.index()];
         if scene.navigator.traveller(id).has_arrived(robot.position) {
             None
         } else if scene.gives_up(id) {
@@ -117,7 +117,7 @@ impl Mission {
     /// Gives up on a rest place if a robot cannot get to its slot there, and sends the robot to the next rest
     /// place; after the last one, home.
     fn watch_way_to_rest(&mut self, id: RobotId, scene: &mut Scene) {
-        let (robot, traveller) = (&scene.world.robots[id.index()], scene.navigator.traveller(id));
+        let (robot, traveller) = (&scene.beliefs.team[id.index()], scene.navigator.traveller(id));
         let agent = &self.agents[id.index()];
         let slot = robot.rest_slot(agent.rest_at);
         let is_for_slot = traveller.goal().is_some_and(|goal| goal.point == slot);
@@ -149,7 +149,7 @@ impl Mission {
     pub(super) fn can_begin_round(&self, scene: &Scene) -> bool {
         let rules = &scene.model.scenario.mission;
         let tasks = scene.model.tasks.len() as u16;
-        scene.world.robots.iter().any(|robot| {
+        scene.beliefs.team.iter().any(|robot| {
             let agent = &self.agents[robot.id.index()];
             robot.is_able()
                 && agent.activity == Activity::Home

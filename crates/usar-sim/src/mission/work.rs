@@ -10,7 +10,7 @@ impl Mission {
     /// Chooses a robot's next activity, if it is free to choose. `claim` is the rescuee that it may approach,
     /// if there is one.
     pub(super) fn choose_activity(&mut self, id: RobotId, claim: Option<RescueeId>, scene: &mut Scene) {
-        let robot = &scene.world.robots[id.index()];
+        let robot = &scene.beliefs.team[id.index()];
         let activity = self.agents[id.index()].activity;
         let Some(task) = self.agents[id.index()].task.filter(|_| robot.is_able()) else { return };
         let is_held_up = activity.is_in_field() && self.is_held_up(robot, scene);
@@ -41,7 +41,7 @@ impl Mission {
     /// with a full load ends its sweep.
     fn go_on_searching(&mut self, id: RobotId, scene: &Scene, is_held_up: bool) {
         let agent = &mut self.agents[id.index()];
-        let (robot, traveller) = (&scene.world.robots[id.index()], scene.navigator.traveller(id));
+        let (robot, traveller) = (&scene.beliefs.team[id.index()], scene.navigator.traveller(id));
         if robot.can_carry() && robot.free_capacity() == 0 {
             agent.sweep.clear();
         } else if agent.activity == Activity::Searching
@@ -58,7 +58,7 @@ impl Mission {
 /// rescuee.
 fn is_out_of_reach(id: RobotId, rescuee_at: Option<Vector>, scene: &Scene) -> bool {
     let traveller = scene.navigator.traveller(id);
-    let robot = &scene.world.robots[id.index()];
+    let robot = &scene.beliefs.team[id.index()];
     let reach = scene.model.scenario.mission.reach_m as f32;
     let is_far = || rescuee_at.is_none_or(|at| (at - robot.position).length() > reach);
     traveller.has_arrived(robot.position) && is_far() || traveller.leads_nowhere()

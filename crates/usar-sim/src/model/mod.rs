@@ -21,6 +21,9 @@ pub use timeline::{Action, Due};
 use crate::ids::RobotId;
 use crate::scenario::{LayoutError, RoleFile, RoleKind, Scenario};
 
+/// Robots look around, and look for work, once in this many steps (0.1 s at the usual step).
+pub const SENSING_PERIOD_STEPS: u64 = 5;
+
 /// Everything that is fixed in one trial.
 #[derive(Debug)]
 pub struct Model {

@@ -9,8 +9,8 @@ use serde::{Deserialize, Serialize};
 use crate::belief::{Belief, News};
 use crate::ids::RobotId;
 use crate::planning::{KnownObstacle, Planner, Query, Route, Walls, polygon_contains};
+use crate::robot::{Robot, STANDING_MPS};
 use crate::scenario::{ResolverRule, Scenario};
-use crate::world::{Robot, STANDING_MPS, World};
 use trail::Trail;
 use traveller::{Attempt, PROGRESS_M};
 pub use traveller::{Goal, Traveller};
@@ -103,16 +103,16 @@ impl Navigator {
     }
 
     /// Plans routes. A robot plans if it has no route yet, if new knowledge cuts its route or may make it
-    /// dearer or cheaper, or if it makes no progress. `speed_of` is a robot's present top speed, in metres
+    /// dearer or cheaper, or if it makes no progress. `team` are the robots as they said they are. `speed_of` is a robot's present top speed, in metres
     /// per second.
     pub fn plan<'k>(
         &mut self,
-        world: &World,
+        team: &[Robot],
         belief_of: impl Fn(RobotId) -> &'k Belief,
         speed_of: impl Fn(&Robot) -> f64,
         step: u64,
     ) {
-        for robot in &world.robots {
+        for robot in team {
             self.trails[robot.id.index()].note(robot.position);
             let traveller = &mut self.travellers[robot.id.index()];
             let Some(goal) = traveller.goal else { continue };
@@ -125,7 +125,7 @@ impl Navigator {
             }
             traveller.note_progress(robot.position);
 
-            let query = Query {
+            let query = || Query {
                 from: robot.position,
                 to: goal.point,
                 aerial: robot.is_aerial(),
@@ -146,7 +146,7 @@ impl Navigator {
                     if news.is_empty() { Effect::None } else { Effect::Cheaper },
                 ),
                 Some(route) => {
-                    let effect = effect(&self.planner, &query, route, (news, belief), robot);
+                    let effect = effect(&self.planner, query, route, (news, belief), robot);
                     let cut_ahead = || check_due && first_leg_cut(belief, route, robot);
                     (attempt.is_some() || effect != Effect::None || cut_ahead(), effect)
                 }
@@ -154,12 +154,12 @@ impl Navigator {
             if replan || !traveller.is_planned {
                 let fresh = effect != Effect::None || !traveller.is_planned;
                 let in_the_way = match attempt {
-                    Some(Attempt::Detour) => standing_near(world, robot, goal, self.clearance),
+                    Some(Attempt::Detour) => standing_near(team, robot, goal, self.clearance),
                     _ => Vec::new(),
                 };
                 let cut = traveller.route.as_ref().filter(|_| effect == Effect::Cut);
                 let so_far = cut.map_or(&[][..], Route::ahead);
-                let query = Query { so_far, in_the_way: &in_the_way, ..query };
+                let query = Query { so_far, in_the_way: &in_the_way, ..query() };
                 let route = find_route(&mut self.planner, &query);
                 if attempt == Some(Attempt::Detour) && !traveller.is_as_near(route.as_ref(), goal) {
                     continue;
@@ -205,7 +205,7 @@ impl Navigator {
 
 /// Robots of the same layer that stand nearby, as obstacles. Robots at the goal are left out, so that the
 /// goal stays where it is.
-fn standing_near(world: &World, robot: &Robot, goal: Goal, clearance: f32) -> Vec<KnownObstacle> {
+fn standing_near(team: &[Robot], robot: &Robot, goal: Goal, clearance: f32) -> Vec<KnownObstacle> {
     let stands = |other: &&Robot| {
         other.id != robot.id
             && other.is_aerial() == robot.is_aerial()
@@ -216,7 +216,7 @@ fn standing_near(world: &World, robot: &Robot, goal: Goal, clearance: f32) -> Ve
         KnownObstacle::wreck(other.id.0, other.position, other.radius(), robot.radius(), clearance)
     };
     let is_off_goal = |other: &KnownObstacle| !polygon_contains(&other.planned, goal.point);
-    world.robots.iter().filter(stands).map(obstacle).filter(is_off_goal).collect()
+    team.iter().filter(stands).map(obstacle).filter(is_off_goal).collect()
 }
 
 /// The cheapest route round the standing robots. If there is none, the cheapest route through them, because
@@ -230,16 +230,16 @@ fn find_route(planner: &mut Planner, query: &Query) -> Option<Route> {
 }
 
 /// The effect of news on a route.
-fn effect(
+fn effect<'q>(
     planner: &Planner,
-    query: &Query,
+    query: impl Fn() -> Query<'q>,
     route: &Route,
     (news, belief): (&[News], &Belief),
     robot: &Robot,
 ) -> Effect {
     if news.iter().any(|news| concerns(*news, belief, route, robot)) {
         Effect::Cut
-    } else if may_cheapen(planner, query, route, news) {
+    } else if !robot.is_aerial() && may_cheapen(planner, query, route, news) {
         Effect::Cheaper
     } else {
         Effect::None
@@ -261,16 +261,16 @@ fn concerns(news: News, belief: &Belief, route: &Route, robot: &Robot) -> bool {
     }
 }
 
-/// Whether debris was pushed away from a place through which a cheaper route may lead now. Never `false` if
+/// Whether debris was pushed away from a place through which a cheaper route of a ground robot may lead now. Never `false` if
 /// there is a route that is cheaper by [`PROGRESS_M`] or more.
-fn may_cheapen(planner: &Planner, query: &Query, route: &Route, news: &[News]) -> bool {
-    !query.aerial
-        && news.iter().any(|news| match news {
-            News::Opening(opening) => {
-                opening.least_way(query.from, query.to) < planner.cost(query, route) - PROGRESS_M
-            }
-            _ => false,
-        })
+fn may_cheapen<'q>(planner: &Planner, query: impl Fn() -> Query<'q>, route: &Route, news: &[News]) -> bool {
+    news.iter().any(|news| match news {
+        News::Opening(opening) => {
+            let query = query();
+            opening.least_way(query.from, query.to) < planner.cost(&query, route) - PROGRESS_M
+        }
+        News::Obstacle(_) | News::Zone(_) => false,
+    })
 }
 
 /// Whether the path to the next waypoint is cut, for a robot that was pushed or had to step aside.

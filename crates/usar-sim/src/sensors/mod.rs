@@ -4,6 +4,7 @@
 //! belief that it shares heard of it last.
 
 mod debris;
+pub(crate) mod oneself;
 mod radiation;
 mod rescuees;
 mod wrecks;
@@ -12,12 +13,10 @@ use parry2d::math::Vector;
 use smallvec::SmallVec;
 
 use crate::belief::Belief;
-use crate::model::Model;
+use crate::model::{Model, SENSING_PERIOD_STEPS};
 use crate::report::{Report, Speaker, Statement};
-use crate::world::{Robot, World};
-
-/// Robots look around once in this many steps (0.1 s at the usual step).
-pub const SENSING_PERIOD_STEPS: u64 = 5;
+use crate::robot::Robot;
+use crate::world::World;
 
 /// The surroundings of one robot at one step.
 struct View<'v> {

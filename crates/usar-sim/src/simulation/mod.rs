@@ -6,12 +6,13 @@
 
 mod checkpoint;
 mod decider;
+mod rescue;
 mod state;
 mod timeline;
 
 use std::sync::Arc;
 
-use rne_core::{Assignment, AssignmentError, Decision, Question};
+use rne_core::{Assignment, AssignmentError, Decision, Member, Question};
 use thiserror::Error;
 
 use crate::belief::Beliefs;
@@ -21,7 +22,7 @@ use crate::hash::PERIOD_STEPS;
 use crate::ids::RobotId;
 use crate::invariant::{Invariants, Overlaps};
 use crate::medium::Perfect;
-use crate::metrics::{Metrics, history};
+use crate::metrics::Metrics;
 use crate::mission::{Ending, Mission};
 use crate::model::Model;
 use crate::navigation::Navigator;
@@ -158,13 +159,24 @@ impl Simulation {
         // A hand-made decision may name the members of a group in any order.
         decision.assignment = Assignment::new(decision.assignment.groups);
         decision.assignment.check(question)?;
+        let truth = self.truth();
         let (mission, mut scene) = self.state.scene(&self.model);
         mission.assign(&decision.assignment, &mut scene);
         if let Some(question) = self.question.take() {
             let question = Question { history: Vec::new(), ..question };
-            self.state.decisions.push(DecisionRecord { question, decision });
+            self.state.decisions.push(DecisionRecord { question, decision, truth });
         }
         Ok(())
+    }
+
+    /// The members of the question that waits as they really are; none if the question has them so.
+    #[must_use]
+    pub fn truth(&self) -> Option<Vec<Member>> {
+        let (asked, robots) = (&self.question.as_ref()?.members, &self.state.world.robots);
+        let needs = &self.model.scenario.needs;
+        let members: Vec<Member> =
+            asked.iter().filter_map(|member| robots[member.id as usize].member(needs)).collect();
+        (members != *asked).then_some(members)
     }
 
     /// Does a whole step, in which a policy or another [`Decider`] answers questions. Returns the status once
@@ -232,7 +244,7 @@ impl Simulation {
         let status = status.unwrap_or_else(|| Status::Failed("it was not run to its end".to_owned()));
         self.state.add_link();
         let (time_s, overlaps, dt_s) = (self.time_s(), self.overlaps(), self.model.dt_s());
-        let State { world, metrics, decisions, tallies, chain, .. } = self.state;
+        let State { world, metrics, decisions, tallies, chain, beliefs, .. } = self.state;
         let robots = world.robots.iter().zip(&tallies);
         let tasks = self.model.scenario.tasks.iter().zip(&metrics.tasks);
         TrialRecord {
@@ -245,6 +257,7 @@ impl Simulation {
             ungrouped_energy: metrics.ungrouped[0],
             ungrouped_hp: metrics.ungrouped[1],
             completed_rounds: metrics.completed_rounds,
+            ledger: beliefs.ledger.rounds().to_vec(),
             decisions,
             robots: robots.map(|(robot, tally)| tally.record(robot, dt_s)).collect(),
             counts: metrics.counts,
@@ -293,7 +306,7 @@ impl Simulation {
     }
 
     /// Mutable access to the world, for tests that inject faults. The next step starts from the changed
-    /// world.
+    /// world; robots notice at its end what was changed of themselves.
     pub fn world_mut(&mut self) -> &mut World {
         &mut self.state.world
     }
@@ -367,8 +380,7 @@ impl Simulation {
         state.happen(&self.model);
         state.sense(&self.model, &Perfect, &mut self.heard);
         done(Stage::Sense);
-        let (mission, mut scene) = state.scene(&self.model);
-        mission.prepare(&mut scene);
+        state.prepare(&self.model);
         state.is_midway = true;
         self.take_question();
     }
@@ -393,8 +405,7 @@ impl Simulation {
         done(Stage::Integrate);
         state.expose(model);
         done(Stage::Exposure);
-        let (mission, mut scene) = state.scene(model);
-        mission.settle(&mut scene);
+        state.rescue(model, &Perfect, &mut self.heard);
         done(Stage::Rescue);
         state.listen(decided, model.dt_s());
         if state.step.is_multiple_of(PERIOD_STEPS) {
@@ -407,20 +418,9 @@ impl Simulation {
 
     /// Takes the mission's question, if it has one, and adds the history of earlier rounds.
     fn take_question(&mut self) {
+        let history = || self.state.beliefs.ledger.rounds().to_vec();
         let asked = self.state.mission.question();
-        self.question = asked.map(|question| {
-            // The metrics have not yet received the events of this step, which include the end of the last
-            // round.
-            let mut question = question.clone();
-            let time_s = self.state.step as f64 * self.model.dt_s();
-            let mut rounds = self.state.metrics.rounds.clone();
-            rounds
-                .iter_mut()
-                .filter(|round| round.end_s.is_none())
-                .for_each(|round| round.end_s = Some(time_s));
-            question.history = history(&rounds, question.round);
-            question
-        });
+        self.question = asked.map(|question| Question { history: history(), ..question.clone() });
     }
 
     fn check(&mut self) -> Result<(), String> {

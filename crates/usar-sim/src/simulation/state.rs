@@ -1,6 +1,7 @@
 //! Everything that changes in a trial, and the stages of a step that change it.
 
 use parry2d::math::Vector;
+use rne_core::TaskId;
 use serde::{Deserialize, Serialize};
 
 use super::timeline::Timeline;
@@ -14,12 +15,13 @@ use crate::mission::{Activity, Agent, Mission, Scene};
 use crate::model::{Model, RobotStart};
 use crate::navigation::{Navigator, PLANNED_BRAKING};
 use crate::record::DecisionRecord;
-use crate::report::Report;
+use crate::report::{Report, Speaker, Statement};
+use crate::robot::{Condition, Robot, STANDING_MPS};
 use crate::scenario::{CostUnit, Costs};
-use crate::sensors::look_around;
+use crate::sensors::{look_around, oneself};
 use crate::tally::{Tally, delay_cause};
 use crate::vitals::{energy_cost, hp_cost};
-use crate::world::{Condition, Robot, STANDING_MPS, World};
+use crate::world::World;
 
 /// Difference between two sums of the same costs that counts as rounding, as a share.
 const COSTS_ROUNDING: f64 = 1e-9;
@@ -69,8 +71,12 @@ impl State {
         let tally = |start: &RobotStart| Tally::new(start.energy, start.hp);
         Self {
             step: 0,
-            sent: Vec::new(),
-            beliefs: Beliefs::nothing(model.tasks.len(), Inflation::of(&model.scenario)),
+            sent: closed_tasks(&world),
+            beliefs: Beliefs::nothing(
+                model.tasks.len(),
+                Inflation::of(&model.scenario),
+                world.robots.clone(),
+            ),
             mission: Mission::new(model),
             navigator: Navigator::new(&model.scenario, world.robots.len()),
             resolver: Resolver::new(&model.scenario),
@@ -91,14 +97,14 @@ impl State {
         self.world.restore(model);
         self.navigator.restore(&model.scenario);
         self.resolver.restore(&model.scenario);
-        self.beliefs.restore(&Inflation::of(&model.scenario));
-        self.mission.restore(model, &self.world);
+        self.beliefs.restore(&Inflation::of(&model.scenario), &model.robots);
+        self.mission.restore(model, &self.beliefs.team);
     }
 
     /// The mission, and the scene in which it decides.
     pub(super) fn scene<'s>(&'s mut self, model: &'s Model) -> (&'s mut Mission, Scene<'s>) {
-        let Self { mission, world, beliefs, sent, navigator, log, step, .. } = self;
-        (mission, Scene { model, world, beliefs, sent, navigator, log, step: *step })
+        let Self { mission, beliefs, sent, navigator, log, step, .. } = self;
+        (mission, Scene { model, beliefs, sent, navigator, log, step: *step })
     }
 
     /// Passes the events of this step from the `from`-th on to the metrics. Returns the number of all events.
@@ -110,28 +116,54 @@ impl State {
 
     /// Robots look around and report; the medium carries; the groups and the team at home hear.
     pub(super) fn sense(&mut self, model: &Model, medium: &impl Medium, heard: &mut Vec<Report>) {
-        let Self { world, mission, beliefs, sent, log, step, .. } = self;
+        let Self { world, mission, beliefs, sent, step, .. } = self;
         look_around(world, model, |robot| beliefs.of(mission.group_of(robot.id)), *step, sent);
+        self.hear(medium, heard);
+    }
+
+    /// Robots notice their own state, and say so.
+    pub(super) fn feel(&mut self, medium: &impl Medium, heard: &mut Vec<Report>) {
+        oneself::sense(&self.world.robots, &self.beliefs.team, self.step, &mut self.sent);
+        self.hear(medium, heard);
+    }
+
+    /// The medium carries the reports that are under way; the groups and the team hear them.
+    fn hear(&mut self, medium: &impl Medium, heard: &mut Vec<Report>) {
+        let Self { mission, beliefs, sent, log, step, .. } = self;
         medium.carry(*step, sent, heard);
         for report in heard.drain(..) {
-            if beliefs.hear(&report, |robot| mission.group_of(robot)) {
-                log.extend(Event::of_report(&report));
+            match report {
+                Report { from: Speaker::Robot(id), says: Statement::IAm(robot), at_step, .. } => {
+                    beliefs.hear_of_self(id, robot, at_step);
+                }
+                report if beliefs.hear(&report, |robot| mission.group_of(robot)) => {
+                    log.extend(Event::of_report(&report));
+                }
+                _ => {}
             }
         }
     }
 
+    /// Rounds end and begin; the base restocks robots.
+    pub(super) fn prepare(&mut self, model: &Model) {
+        let (mission, mut scene) = self.scene(model);
+        for robot in mission.prepare(&mut scene) {
+            self.world.restock(robot);
+        }
+    }
+
     pub(super) fn plan(&mut self, model: &Model) {
-        let (mission, beliefs, world) = (&self.mission, &self.beliefs, &self.world);
+        let (mission, beliefs) = (&self.mission, &self.beliefs);
         let speed_of = |robot: &Robot| mission.speed_of(model, robot);
         let belief_of = |robot| beliefs.of(mission.group_of(robot));
-        self.navigator.plan(world, belief_of, speed_of, self.step);
+        self.navigator.plan(&beliefs.team, belief_of, speed_of, self.step);
     }
 
     /// Decides which robots go and which wait, and notes why robots stop.
     pub(super) fn resolve(&mut self, model: &Model, spare: &mut Vec<Mover<'static>>) {
         let seen_by = (&self.mission, &self.beliefs, &self.navigator);
         let mut movers: Vec<Mover> = std::mem::take(spare);
-        movers.extend(self.world.robots.iter().map(|robot| mover(robot, model, seen_by)));
+        movers.extend(self.beliefs.team.iter().map(|robot| mover(robot, model, seen_by)));
         let directives = self.resolver.resolve(&mut movers, &mut self.log);
         for ((robot, directive), tally) in self.world.robots.iter().zip(directives).zip(&mut self.tallies) {
             let traveller = self.navigator.traveller(robot.id);
@@ -158,12 +190,13 @@ impl State {
         let unit = model.scenario.costs.unit;
         let (robots, zones_at) = self.world.robots_in_zones();
         for (robot, tally) in robots.iter_mut().zip(&mut self.tallies) {
-            tally.note_way(way_in_a_step(robot, model));
+            let metres = f64::from(robot.velocity.length()) * model.dt_s();
+            tally.note_way(metres);
             let agent = &self.mission.agents[robot.id.index()];
             if !robot.is_able() || matches!(agent.activity, Activity::Resting(_)) {
                 continue;
             }
-            let [energy, hp] = step_costs(model, agent, robot, zones_at(robot.position));
+            let [energy, hp] = step_costs(model, agent, robot, metres, zones_at(robot.position));
             let energy = unit.to_percent(energy, robot.spec.energy).min(robot.energy);
             let hp = unit.to_percent(hp, robot.spec.hp).min(robot.hp);
             if energy > 0.0 || hp > 0.0 {
@@ -220,6 +253,13 @@ impl State {
     }
 }
 
+/// What the base says at the start: which tasks have not begun.
+fn closed_tasks(world: &World) -> Vec<Report> {
+    let tasks = (0..).map(TaskId).zip(&world.closed_tasks).filter(|(_, is_closed)| **is_closed);
+    let says = tasks.map(|(task, _)| Statement::TaskIs { task, open: false });
+    says.map(|says| Report { from: Speaker::Base, says, at_step: 0, sd_m: 0.0 }).collect()
+}
+
 /// Takes energy and HP, in percent, from a robot, and charges them to the robot and to its group.
 pub(super) fn spend(
     robot: &mut Robot,
@@ -249,16 +289,10 @@ pub(super) fn last_event(robot: &mut Robot) -> Option<Event> {
     }
 }
 
-/// The distance that a robot travels in this step, in metres.
-fn way_in_a_step(robot: &Robot, model: &Model) -> f64 {
-    f64::from(robot.velocity.length()) * model.dt_s()
-}
-
-/// Energy and HP that this step costs a robot in `zones` overlapping radiation zones, in the unit of the
-/// scenario's costs.
-fn step_costs(model: &Model, agent: &Agent, robot: &Robot, zones: usize) -> [f64; 2] {
+/// Energy and HP that a step of this length costs a robot in `zones` overlapping radiation zones, in the unit
+/// of the scenario's costs.
+fn step_costs(model: &Model, agent: &Agent, robot: &Robot, metres: f64, zones: usize) -> [f64; 2] {
     let (Costs { energy, hp, work, .. }, dt) = (&model.scenario.costs, model.dt_s());
-    let metres = way_in_a_step(robot, model);
     let mut costs = [
         energy_cost(energy, robot.velocity.length() > STANDING_MPS, metres, dt),
         hp_cost(hp, zones, metres, dt),

@@ -11,7 +11,9 @@ use crate::geometry::Outline;
 use crate::ids::RobotId;
 use crate::model::{Action, Model};
 use crate::report::{Report, Speaker, Statement};
-use crate::world::{RescueeState, Robot, World};
+use crate::robot::Robot;
+use crate::sensors::oneself;
+use crate::world::{RescueeState, World};
 
 /// Debris falls or closes only if no robot may come nearer than this within a few steps, in metres.
 const FREE_M: f32 = 0.1;
@@ -95,11 +97,18 @@ impl State {
             Action::End(task) if self.world.closed_tasks[task.index()] => {}
             Action::End(task) => {
                 self.world.closed_tasks[task.index()] = true;
+                self.announce(*task, false);
                 self.log.push(Event::TaskEnded { task: *task });
                 self.withdraw(*task, model);
             }
         }
         true
+    }
+
+    /// The base tells all robots that a task is open, or closed.
+    fn announce(&mut self, task: TaskId, open: bool) {
+        let says = Statement::TaskIs { task, open };
+        self.sent.push(Report { from: Speaker::Base, says, at_step: self.step, sd_m: 0.0 });
     }
 
     /// Removes the rescuees of a task that still wait. The base tells all robots that they are gone.
@@ -120,6 +129,7 @@ impl State {
         if !std::mem::replace(&mut self.world.closed_tasks[task.index()], false) {
             return;
         }
+        self.announce(task, true);
         self.log.push(Event::TaskBegan { task });
         let begins = |action: &Action| *action == Action::Begin(task) || *action == Action::End(task);
         let mut done = model.timeline.iter().zip(&self.timeline.done);
@@ -144,6 +154,7 @@ impl State {
         let (unit, tally) = (model.scenario.costs.unit, &mut self.tallies[id.index()]);
         spend(robot, [energy, hp], unit, tally, &mut self.metrics);
         self.log.extend(last_event(robot));
+        self.sent.push(oneself::report(robot, self.step));
     }
 }
 

@@ -1,8 +1,8 @@
 //! The world: robots, debris, radiation zones and rescuees.
 
 mod debris;
+mod effects;
 mod rescuee;
-mod robot;
 
 use std::sync::Arc;
 
@@ -11,15 +11,12 @@ use serde::{Deserialize, Serialize};
 
 pub use debris::Debris;
 pub use rescuee::{Rescuee, RescueeState, Rescuees};
-pub use robot::{Condition, Robot};
 
 use crate::geometry::{Places, RadiationZone};
 use crate::model::{Layout, Model};
 use crate::physics::{DebrisBody, Physics, RobotBody};
+use crate::robot::{Robot, STANDING_MPS};
 use crate::scenario::{DebrisFile, ZoneFile};
-
-/// A robot slower than this stands, in metres per second.
-pub const STANDING_MPS: f32 = 0.05;
 
 /// The state of everything that is in the arena.
 #[derive(Serialize, Deserialize)]

@@ -151,7 +151,7 @@ impl Arguments {
         record: &'a DecisionRecord,
         watched: Option<Watched>,
     ) -> Result<Account<'a>, Failure> {
-        let DecisionRecord { question, decision } = record;
+        let DecisionRecord { question, decision, .. } = record;
         let rne = rne_of(&asked.spec);
         let compared = rne.as_ref().filter(|_| asked.spec.rne_options().is_some_and(|options| !options.sort));
         let directed = compared.map(|rne| directed(rne, question, decision)).transpose()?;
@@ -167,8 +167,9 @@ impl Arguments {
             ))
         });
         // The recorded question lacks the results of earlier rounds.
-        let mut full = question.clone();
-        full.history = usar_sim::metrics::history(&simulation.metrics().rounds, question.round);
+        let before = simulation.beliefs().ledger.rounds().iter();
+        let history = before.filter(|round| round.round < question.round).cloned().collect();
+        let full = Question { history, ..question.clone() };
         Ok(Account {
             schema_version: SCHEMA_VERSION,
             scenario: &asked.scenario.name,

@@ -1,16 +1,21 @@
-//! Robots: their motion, and the levels that decide what they can do.
+//! Robots: their motion, and the levels that decide what they can do. The world holds them as they are, a
+//! belief as they were heard to be.
 
 use std::ops::Deref;
 use std::sync::Arc;
 
 use parry2d::math::Vector;
-use rne_core::{NeedVector, NeedsError};
+use rne_core::{Member, NeedVector, NeedsError};
 use serde::{Deserialize, Serialize};
+use smallvec::SmallVec;
 
 use crate::ids::RescueeId;
 use crate::model::{RobotModel, RobotStart};
 use crate::scenario::{Measure, NeedFile};
 use crate::vitals::health_factor;
+
+/// A robot slower than this stands, in metres per second.
+pub const STANDING_MPS: f32 = 0.05;
 
 /// Whether a robot can still act.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -24,10 +29,10 @@ pub enum Condition {
 }
 
 /// The state of a robot. A robot dereferences to its fixed properties, the [`RobotModel`].
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, PartialEq, Serialize, Deserialize)]
 pub struct Robot {
     #[serde(skip)]
-    pub(super) model: Arc<RobotModel>,
+    pub(crate) model: Arc<RobotModel>,
     /// Centre, in metres.
     pub position: Vector,
     /// Velocity, in metres per second.
@@ -39,11 +44,17 @@ pub struct Robot {
     /// Rescuing resources left in this round.
     pub resources: u32,
     /// Rescuees on board.
-    pub load: Vec<RescueeId>,
+    pub load: SmallVec<[RescueeId; 8]>,
     /// Whether it can still act.
     pub condition: Condition,
     /// The place where it came to rest for good, if it can no longer act.
     pub wreck_at: Option<Vector>,
+}
+
+impl Clone for Robot {
+    fn clone(&self) -> Self {
+        Self { model: Arc::clone(&self.model), load: SmallVec::from_slice(&self.load), ..*self }
+    }
 }
 
 impl Deref for Robot {
@@ -56,7 +67,7 @@ impl Deref for Robot {
 
 impl Robot {
     /// A robot at home, without motion, with its initial levels.
-    pub(super) fn new(model: &Arc<RobotModel>, start: &RobotStart) -> Self {
+    pub(crate) fn new(model: &Arc<RobotModel>, start: &RobotStart) -> Self {
         Self {
             model: Arc::clone(model),
             position: start.home,
@@ -64,10 +75,29 @@ impl Robot {
             energy: start.energy,
             hp: start.hp,
             resources: 0,
-            load: Vec::new(),
+            load: SmallVec::new(),
             condition: Condition::Able,
             wreck_at: None,
         }
+    }
+
+    /// Takes over the state of another. Its fixed properties stay.
+    pub(crate) fn be_as(&mut self, mut other: Self) {
+        std::mem::swap(&mut self.model, &mut other.model);
+        *self = other;
+    }
+
+    /// Whether it is in the same state as another. Their fixed properties are not compared.
+    #[must_use]
+    pub fn is_as(&self, other: &Self) -> bool {
+        let Self { model: _, position, velocity, energy, hp, resources, load, condition, wreck_at } = self;
+        *position == other.position
+            && *velocity == other.velocity
+            && [*energy, *hp] == [other.energy, other.hp]
+            && *resources == other.resources
+            && *load == other.load
+            && *condition == other.condition
+            && *wreck_at == other.wreck_at
     }
 
     /// Whether it can still act.
@@ -116,6 +146,20 @@ impl Robot {
     /// None in a validated scenario: every value is finite and >= 0.
     pub fn needs(&self, table: &[NeedFile]) -> Result<NeedVector, NeedsError> {
         NeedVector::new(table.iter().map(|need| self.need(need)).collect())
+    }
+
+    /// The robot as a member of a team that is to be grouped; none if its needs are no numbers, which is never
+    /// so in a validated scenario.
+    #[must_use]
+    pub fn member(&self, table: &[NeedFile]) -> Option<Member> {
+        Some(Member {
+            id: self.id.0,
+            role: self.role,
+            home: [f64::from(self.home.x), f64::from(self.home.y)],
+            needs: self.needs(table).ok()?,
+            energy_level: Some(self.energy),
+            hp_level: Some(self.hp),
+        })
     }
 
     fn need(&self, need: &NeedFile) -> f64 {

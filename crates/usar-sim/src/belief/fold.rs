@@ -1,0 +1,235 @@
+//! A belief as a fold over reports.
+
+use serde::{Deserialize, Serialize};
+
+use super::known::{Inflation, KnownDebris, KnownRescuee, KnownTask, KnownWreck, KnownZone};
+use super::news::{News, Opening, Seen};
+use super::table::Table;
+use crate::geometry::{Outline, RadiationZone};
+use crate::planning::{KnownObstacle, ObstacleKey, ObstacleMap};
+use crate::report::{Report, Statement};
+
+/// A belief about the things of the world, by their numbers.
+#[derive(Clone, Serialize, Deserialize)]
+pub struct Belief {
+    /// Debris.
+    pub debris: Table<KnownDebris>,
+    /// Radiation zones.
+    pub zones: Table<KnownZone>,
+    /// Rescuees.
+    pub rescuees: Table<KnownRescuee>,
+    /// Robots that have stopped for good.
+    pub wrecks: Table<KnownWreck>,
+    /// Tasks that were said to be open or closed.
+    pub tasks: Table<KnownTask>,
+    /// Number of times that this belief was pooled. Between two poolings, each group's belief extends the
+    /// team's.
+    pool: u32,
+    /// The news that concern routes, in the order in which they were heard.
+    news: Vec<News>,
+    /// One map for each class of radii. Follows from `debris` and `wrecks`.
+    #[serde(skip)]
+    obstacles: Vec<ObstacleMap>,
+    /// Follows from `zones`.
+    #[serde(skip)]
+    zones_on: Vec<(u32, RadiationZone)>,
+    /// How much obstacles are inflated.
+    #[serde(skip)]
+    inflation: Inflation,
+}
+
+impl Belief {
+    /// A belief about nothing.
+    #[must_use]
+    pub fn nothing(inflation: Inflation) -> Self {
+        Self {
+            debris: Table::default(),
+            zones: Table::default(),
+            rescuees: Table::default(),
+            wrecks: Table::default(),
+            tasks: Table::default(),
+            pool: 0,
+            news: Vec::new(),
+            obstacles: vec![ObstacleMap::default(); inflation.radii.len()],
+            zones_on: Vec::new(),
+            inflation,
+        }
+    }
+
+    /// The known obstacles, inflated for a robot of this radius, in metres: those of the smallest class whose
+    /// radius is at least as large.
+    #[must_use]
+    pub fn obstacles(&self, radius: f32) -> &ObstacleMap {
+        let class = self.inflation.radii.partition_point(|other| *other < radius);
+        &self.obstacles[class.min(self.obstacles.len() - 1)]
+    }
+
+    /// The radiation zones that are held to be on, with their numbers.
+    #[must_use]
+    pub fn zones_on(&self) -> &[(u32, RadiationZone)] {
+        &self.zones_on
+    }
+
+    /// Takes a report into account. Returns whether it is newer than what was heard of the thing before.
+    pub fn hear(&mut self, report: &Report) -> bool {
+        let (at_step, sd_m) = (report.at_step, report.sd_m);
+        match &report.says {
+            Statement::DebrisLies { debris, shape, pose } => {
+                let known = KnownDebris { shape: shape.clone(), pose: *pose, at_step, sd_m };
+                self.hear_of_debris(*debris, known)
+            }
+            Statement::ZoneIs { zone, disc, on } => {
+                self.hear_of_zone(*zone, KnownZone { disc: *disc, on: *on, at_step, sd_m })
+            }
+            Statement::RescueeWaits { rescuee, at } => {
+                let known = KnownRescuee { waits_at: Some(*at), at_step, sd_m };
+                self.hear_of_rescuee(rescuee.index(), known)
+            }
+            Statement::RescueeIsGone { rescuee } => {
+                self.hear_of_rescuee(rescuee.index(), KnownRescuee { waits_at: None, at_step, sd_m })
+            }
+            Statement::TaskIs { task, open } => {
+                self.hear_of_task(task.index(), KnownTask { open: *open, at_step })
+            }
+            Statement::IAm(_) => false, // for the whole team
+            Statement::WreckLies { robot, at, radius, is_aerial } => {
+                let known = KnownWreck { at: *at, radius: *radius, is_aerial: *is_aerial, at_step };
+                self.hear_of_wreck(robot.0, known)
+            }
+        }
+    }
+
+    fn hear_of_debris(&mut self, number: u32, heard: KnownDebris) -> bool {
+        let known = self.debris.get(number as usize);
+        if known.is_some_and(|known| known.at_step >= heard.at_step) {
+            return false;
+        }
+        let is_moved = known.is_none_or(|known| known.pose != heard.pose);
+        let outline = heard.outline();
+        self.debris.set(number as usize, heard);
+        if is_moved {
+            self.insert(|inflation, radius| debris_obstacle(number, &outline, radius, inflation.clearance));
+        }
+        true
+    }
+
+    fn hear_of_zone(&mut self, number: u32, heard: KnownZone) -> bool {
+        let known = self.zones.get(number as usize);
+        if known.is_some_and(|known| known.at_step >= heard.at_step) {
+            return false;
+        }
+        let was_on = known.is_some_and(|known| known.on);
+        self.zones.set(number as usize, heard);
+        let at = self.zones_on.partition_point(|(other, _)| *other < number);
+        if heard.on && !was_on {
+            self.zones_on.insert(at, (number, heard.disc));
+            self.news.push(News::Zone(number));
+        } else if was_on && !heard.on {
+            self.zones_on.remove(at);
+            self.news.push(News::Opening(Opening { center: heard.disc.center, reach: heard.disc.radius }));
+        }
+        true
+    }
+
+    fn hear_of_rescuee(&mut self, number: usize, heard: KnownRescuee) -> bool {
+        let is_newer = self.rescuees.get(number).is_none_or(|known| known.at_step < heard.at_step);
+        if is_newer {
+            self.rescuees.set(number, heard);
+        }
+        is_newer
+    }
+
+    /// A task may begin and end in one step: the last report counts.
+    fn hear_of_task(&mut self, number: usize, heard: KnownTask) -> bool {
+        let is_newer = self.tasks.get(number).is_none_or(|known| known.at_step <= heard.at_step);
+        if is_newer {
+            self.tasks.set(number, heard);
+        }
+        is_newer
+    }
+
+    /// A wreck lies for good: the first report of it counts.
+    fn hear_of_wreck(&mut self, number: u32, heard: KnownWreck) -> bool {
+        if self.wrecks.get(number as usize).is_some() {
+            return false;
+        }
+        self.wrecks.set(number as usize, heard);
+        if !heard.is_aerial {
+            self.insert(|inflation, radius| wreck_obstacle(number, &heard, radius, inflation.clearance));
+        }
+        true
+    }
+
+    /// Takes over all that others have heard and this belief has not.
+    pub(super) fn pool(&mut self, others: &[Self]) {
+        for other in others {
+            other.debris.iter().for_each(|(number, known)| {
+                self.hear_of_debris(number, known.clone());
+            });
+            other.zones.iter().for_each(|(number, known)| {
+                self.hear_of_zone(number, *known);
+            });
+            other.wrecks.iter().for_each(|(number, known)| {
+                self.hear_of_wreck(number, *known);
+            });
+            other.rescuees.iter().for_each(|(number, known)| {
+                self.hear_of_rescuee(number as usize, *known);
+            });
+            other.tasks.iter().for_each(|(number, known)| {
+                self.hear_of_task(number as usize, *known);
+            });
+        }
+        self.pool += 1;
+    }
+
+    /// The mark after all present news.
+    pub(crate) fn seen(&self) -> Seen {
+        Seen { pool: self.pool, news: self.news.len() }
+    }
+
+    /// The news since a mark. All news, if the groups have pooled their beliefs since the mark.
+    pub(crate) fn news_since(&self, seen: Seen) -> &[News] {
+        let from = if seen.pool == self.pool { seen.news.min(self.news.len()) } else { 0 };
+        &self.news[from..]
+    }
+
+    /// Makes again what follows from the other fields, after a snapshot was read.
+    pub(super) fn restore(&mut self, inflation: &Inflation) {
+        self.obstacles =
+            inflation.radii.iter().map(|radius| self.map(*radius, inflation.clearance)).collect();
+        self.inflation = inflation.clone();
+        let on = self.zones.iter().filter(|(_, known)| known.on);
+        self.zones_on = on.map(|(number, known)| (number, known.disc)).collect();
+    }
+
+    /// The map of all known obstacles for robots of this radius.
+    fn map(&self, radius: f32, clearance: f32) -> ObstacleMap {
+        let debris = self.debris.iter();
+        let debris =
+            debris.map(|(number, known)| debris_obstacle(number, &known.outline(), radius, clearance));
+        let wrecks = self.wrecks.iter().filter(|(_, known)| !known.is_aerial);
+        debris.chain(wrecks.map(|(number, known)| wreck_obstacle(number, known, radius, clearance))).collect()
+    }
+
+    /// Adds an obstacle to the maps of all classes. The news use its outline for the largest robots.
+    fn insert(&mut self, obstacle: impl Fn(&Inflation, f32) -> KnownObstacle) {
+        let mut news = None;
+        for (map, radius) in self.obstacles.iter_mut().zip(&self.inflation.radii) {
+            let obstacle = obstacle(&self.inflation, *radius);
+            let key = obstacle.key;
+            let before = map.insert(obstacle);
+            news = Some((key, before.map(|before| before.middle_and_reach())));
+        }
+        let Some((key, opening)) = news else { return };
+        let opening = opening.map(|(center, reach)| News::Opening(Opening { center, reach }));
+        self.news.extend(opening.into_iter().chain([News::Obstacle(key)]));
+    }
+}
+
+fn debris_obstacle(number: u32, outline: &Outline, radius: f32, clearance: f32) -> KnownObstacle {
+    KnownObstacle::new(ObstacleKey::Debris(number), outline, radius, clearance)
+}
+
+fn wreck_obstacle(number: u32, wreck: &KnownWreck, radius: f32, clearance: f32) -> KnownObstacle {
+    KnownObstacle::wreck(number, wreck.at, wreck.radius, radius, clearance)
+}

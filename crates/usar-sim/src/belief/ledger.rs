@@ -1,0 +1,101 @@
+//! The ledger of the base: what it can witness of each round, and what the robots say that it cost them.
+
+use rne_core::{GroupOutcome, MemberOutcome, RoundOutcome, TaskId};
+use serde::{Deserialize, Serialize};
+
+use crate::ids::RobotId;
+use crate::robot::Robot;
+use crate::scenario::CostUnit;
+
+/// What the base knows of the rounds.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct Ledger {
+    /// The rounds, the last one open until it ends.
+    rounds: Vec<RoundOutcome>,
+    is_open: bool,
+    /// When the last round began, in seconds.
+    start_s: f64,
+    /// What each robot has spent so far: all falls of the energy and HP that it reported, in percent.
+    spent: Vec<[f64; 2]>,
+    /// The same when the last round began.
+    spent_at_start: Vec<[f64; 2]>,
+}
+
+impl Ledger {
+    pub(super) fn empty(robots: usize) -> Self {
+        let nothing = vec![[0.0; 2]; robots];
+        Self {
+            rounds: Vec::new(),
+            is_open: false,
+            start_s: 0.0,
+            spent: nothing.clone(),
+            spent_at_start: nothing,
+        }
+    }
+
+    /// The rounds that are over.
+    #[must_use]
+    pub fn rounds(&self) -> &[RoundOutcome] {
+        &self.rounds[..self.rounds.len() - usize::from(self.is_open)]
+    }
+
+    /// Notes the levels that a robot reports after others.
+    pub(super) fn note_levels(&mut self, robot: RobotId, before: [f64; 2], now: [f64; 2]) {
+        for ((spent, before), now) in self.spent[robot.index()].iter_mut().zip(before).zip(now) {
+            *spent += (before - now).max(0.0);
+        }
+    }
+
+    /// Groups left home.
+    pub(crate) fn begin(&mut self, round: u32, groups: &[Vec<RobotId>], time_s: f64) {
+        let member = |id: &RobotId| MemberOutcome { id: id.0, ..MemberOutcome::default() };
+        let group = |(task, ids): (u16, &Vec<RobotId>)| GroupOutcome {
+            task: TaskId(task),
+            rescued: 0,
+            energy: 0.0,
+            hp: 0.0,
+            members: ids.iter().map(member).collect(),
+        };
+        let groups = (0..).zip(groups).map(group).collect();
+        self.rounds.push(RoundOutcome { round, duration_s: 0.0, groups });
+        (self.is_open, self.start_s) = (true, time_s);
+        self.spent_at_start.clone_from(&self.spent);
+    }
+
+    /// A robot delivered a rescuee of a task.
+    pub(crate) fn note_delivery(&mut self, robot: RobotId, task: TaskId) {
+        let Some(round) = self.rounds.last_mut() else { return };
+        if let Some(group) = round.groups.get_mut(task.index()) {
+            group.rescued += 1;
+        }
+        let members = round.groups.iter_mut().flat_map(|group| &mut group.members);
+        members.filter(|member| member.id == robot.0).for_each(|member| member.rescued += 1);
+    }
+
+    /// The round is over. `turned_back` tells which robots went to rest in it.
+    pub(crate) fn end(
+        &mut self,
+        team: &[Robot],
+        unit: CostUnit,
+        time_s: f64,
+        turned_back: impl Fn(RobotId) -> bool,
+    ) {
+        let Some(round) = self.rounds.last_mut() else { return };
+        round.duration_s = time_s - self.start_s;
+        self.is_open = false;
+        for group in &mut round.groups {
+            for member in &mut group.members {
+                let robot = &team[member.id as usize];
+                let [energy, hp] = [0, 1].map(|level| {
+                    self.spent[robot.id.index()][level] - self.spent_at_start[robot.id.index()][level]
+                });
+                member.energy = unit.of_percent(energy, robot.spec.energy);
+                member.hp = unit.of_percent(hp, robot.spec.hp);
+                member.turned_back = turned_back(robot.id);
+                member.lost = !robot.is_able();
+            }
+            group.energy = group.members.iter().map(|member| member.energy).sum();
+            group.hp = group.members.iter().map(|member| member.hp).sum();
+        }
+    }
+}

@@ -1,0 +1,60 @@
+//! Intents: what robots want to do to the world where they are, and what comes of it.
+
+use smallvec::SmallVec;
+
+use crate::event::Place;
+use crate::ids::{RescueeId, RobotId};
+
+/// What a robot wants to do.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Intent {
+    /// To begin to load a rescuee, for a resource of `resource_of`.
+    BeginLoading {
+        /// The rescuee.
+        rescuee: RescueeId,
+        /// The robot itself, or a team-mate.
+        resource_of: RobotId,
+    },
+    /// To take the rescuee on board that it was loading.
+    Load {
+        /// The rescuee.
+        rescuee: RescueeId,
+        /// The robot itself, or a team-mate.
+        resource_of: RobotId,
+    },
+    /// To deliver all rescuees on board.
+    Deliver {
+        /// Where.
+        place: Place,
+    },
+    /// To end a rest with these levels (energy and HP), in percent.
+    Refill {
+        /// The levels.
+        levels: [f64; 2],
+    },
+}
+
+/// What came of an intent.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Outcome {
+    /// The robot loads the rescuee now.
+    LoadingBegan(RescueeId),
+    /// The rescuee is on board.
+    Loaded {
+        /// The rescuee.
+        rescuee: RescueeId,
+        /// The robot whose resource was used.
+        resource_of: RobotId,
+    },
+    /// The rescuee is not there, or out of reach, or there is no resource for it.
+    CannotLoad(RescueeId),
+    /// The rescuees are delivered.
+    Delivered {
+        /// Where.
+        place: Place,
+        /// The rescuees.
+        rescuees: SmallVec<[RescueeId; 8]>,
+    },
+    /// The levels are refilled.
+    Refilled,
+}

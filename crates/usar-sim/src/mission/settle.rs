@@ -1,0 +1,163 @@
+//! Robots at the places where they wanted to be: what they want to do there, and what follows from what came
+//! of it.
+
+use std::ops::Range;
+
+use rne_core::TaskId;
+use rne_core::question::MAX_TASKS;
+
+use super::round::{levels_after_rest, rest_time_s};
+use super::{Activity, Mission, Scene};
+use crate::event::{Event, Place};
+use crate::ids::{RescueeId, RobotId};
+use crate::intent::{Intent, Outcome};
+use crate::report::{Report, Speaker, Statement};
+use crate::scenario::LoadAtRest;
+
+/// For each task, the member that shares its resources: found on demand, and forgotten when a resource is
+/// used.
+pub type Sharing = [Option<Option<RobotId>>; MAX_TASKS];
+
+impl Mission {
+    /// The first robot in `robots` that wants to do something where it is, and what it wants.
+    pub fn settle(
+        &mut self,
+        robots: &mut Range<u32>,
+        scene: &mut Scene,
+        sharing: &mut Sharing,
+    ) -> Option<(RobotId, Intent)> {
+        let mut wants = |robot| Some((robot, self.settle_robot(robot, scene, sharing)?));
+        robots.map(RobotId).find_map(&mut wants)
+    }
+
+    fn settle_robot(&mut self, robot: RobotId, scene: &mut Scene, sharing: &mut Sharing) -> Option<Intent> {
+        if !scene.beliefs.team[robot.index()].is_able() {
+            self.lose(robot);
+            return None;
+        }
+        match self.agents[robot.index()].activity {
+            Activity::Approaching(rescuee) => {
+                let resource_of = self.resource_for(robot, rescuee, scene, sharing)?;
+                Some(Intent::BeginLoading { rescuee, resource_of })
+            }
+            Activity::Loading(rescuee, done) if scene.step >= done => {
+                let holder = self.resource_for(robot, rescuee, scene, sharing);
+                if holder.is_none() {
+                    self.agent(robot).activity = Activity::Approaching(rescuee);
+                }
+                holder.map(|resource_of| Intent::Load { rescuee, resource_of })
+            }
+            Activity::Returning if has_arrived(robot, scene) => Some(Intent::Deliver { place: Place::Home }),
+            Activity::ToRest if is_at_slot(robot, scene) => {
+                if scene.model.scenario.mission.load_at_rest == LoadAtRest::Delivered {
+                    return Some(Intent::Deliver { place: Place::Rest });
+                }
+                self.begin_rest(robot, scene);
+                None
+            }
+            Activity::Resting(done) => self.rest(robot, done, scene),
+            _ => None,
+        }
+    }
+
+    /// Takes into account what came of the intent of a robot.
+    pub fn note(&mut self, robot: RobotId, outcome: Outcome, scene: &mut Scene, sharing: &mut Sharing) {
+        match outcome {
+            Outcome::LoadingBegan(rescuee) => {
+                let done = scene.step + scene.model.steps(scene.model.scenario.mission.loading_s);
+                self.agent(robot).activity = Activity::Loading(rescuee, done);
+            }
+            Outcome::CannotLoad(rescuee) => self.agent(robot).activity = Activity::Approaching(rescuee),
+            Outcome::Loaded { rescuee, resource_of } => {
+                *sharing = [None; MAX_TASKS];
+                self.claimed.set(rescuee, None);
+                let says = Statement::RescueeIsGone { rescuee };
+                scene.sent.push(Report { from: Speaker::Robot(robot), says, at_step: scene.step, sd_m: 0.0 });
+                self.agent(robot).activity = Activity::Searching;
+                scene.log.push(Event::Loaded { robot, rescuee, resource_of });
+            }
+            Outcome::Delivered { place, rescuees } => {
+                for rescuee in rescuees {
+                    let task = scene.model.rescuees[rescuee.index()].0;
+                    scene.beliefs.ledger.note_delivery(robot, task);
+                    scene.log.push(Event::Delivered { robot, rescuee, place });
+                }
+                match place {
+                    Place::Home => self.agent(robot).activity = Activity::Home,
+                    Place::Rest => self.begin_rest(robot, scene),
+                }
+            }
+            Outcome::Refilled => {
+                let agent = self.agent(robot);
+                (agent.activity, agent.has_rested) = (Activity::Returning, true);
+                scene.log.push(Event::RestEnded { robot });
+            }
+        }
+    }
+
+    fn begin_rest(&mut self, robot: RobotId, scene: &mut Scene) {
+        let state = &scene.beliefs.team[robot.index()];
+        let rest_s = rest_time_s(&scene.model.scenario.mission, [state.energy, state.hp]);
+        self.agent(robot).activity = Activity::Resting(scene.step + scene.model.steps(rest_s));
+        scene.log.push(Event::RestStarted { robot });
+    }
+
+    /// Goes on with a rest until its end. Time off the rest place does not count.
+    fn rest(&mut self, robot: RobotId, done: u64, scene: &Scene) -> Option<Intent> {
+        if !is_at_slot(robot, scene) {
+            self.agent(robot).activity = Activity::Resting(done + 1);
+            return None;
+        }
+        let state = &scene.beliefs.team[robot.index()];
+        let levels = || levels_after_rest(&scene.model.scenario.mission, [state.energy, state.hp]);
+        (scene.step >= done).then(|| Intent::Refill { levels: levels() })
+    }
+
+    /// The member whose resource a robot would use for a rescuee within its reach: the robot itself, or the
+    /// member that shares. None if the rescuee is not within reach, or no resource is left.
+    fn resource_for(
+        &self,
+        robot: RobotId,
+        rescuee: RescueeId,
+        scene: &Scene,
+        sharing: &mut Sharing,
+    ) -> Option<RobotId> {
+        let task = self.agents[robot.index()].task?;
+        let (place, state) = (scene.place_of(task, rescuee)?, &scene.beliefs.team[robot.index()]);
+        if (place - state.position).length() > scene.model.scenario.mission.reach_m as f32 {
+            return None;
+        }
+        if state.resources > 0 {
+            return Some(robot);
+        }
+        *sharing[task.index()].get_or_insert_with(|| self.sharing_member(task, scene))
+    }
+
+    /// The member in the task area with the most resources left (the lowest id among equals).
+    fn sharing_member(&self, task: TaskId, scene: &Scene) -> Option<RobotId> {
+        let (area, team) = (&scene.model.tasks[task.index()].area, &scene.beliefs.team);
+        let shares = |id: &RobotId| {
+            let member = &team[id.index()];
+            member.resources > 0 && area.contains(member.position)
+        };
+        let resources = |id: &RobotId| team[id.index()].resources;
+        self.in_field(task, team).filter(shares).max_by_key(|id| (resources(id), u32::MAX - id.0))
+    }
+
+    /// Frees the rescuee that a robot had claimed before it could no longer act.
+    fn lose(&mut self, robot: RobotId) {
+        self.release_claim(robot);
+        let agent = &mut self.agents[robot.index()];
+        if agent.activity.claim().is_some() {
+            agent.activity = Activity::Standby;
+        }
+    }
+}
+
+fn has_arrived(robot: RobotId, scene: &Scene) -> bool {
+    scene.navigator.traveller(robot).has_arrived(scene.beliefs.team[robot.index()].position)
+}
+
+fn is_at_slot(robot: RobotId, scene: &Scene) -> bool {
+    scene.is_at_place(&scene.beliefs.team[robot.index()])
+}

@@ -1,0 +1,53 @@
+//! Effects: what comes of the intents of robots, as far as the world allows them.
+
+use super::{RescueeState, World};
+use crate::ids::{RescueeId, RobotId};
+use crate::intent::{Intent, Outcome};
+use crate::model::Model;
+
+impl World {
+    /// Carries out what a robot wants, or refuses it.
+    pub(crate) fn carry_out(&mut self, robot: RobotId, intent: Intent, model: &Model) -> Outcome {
+        let id = robot.index();
+        match intent {
+            Intent::BeginLoading { rescuee, resource_of } | Intent::Load { rescuee, resource_of }
+                if !self.can_load(robot, rescuee, resource_of, model) =>
+            {
+                Outcome::CannotLoad(rescuee)
+            }
+            Intent::BeginLoading { rescuee, .. } => Outcome::LoadingBegan(rescuee),
+            Intent::Load { rescuee, resource_of } => {
+                self.robots[resource_of.index()].resources -= 1;
+                self.robots[id].load.push(rescuee);
+                self.rescuees[rescuee.index()].state = RescueeState::OnBoard(robot);
+                Outcome::Loaded { rescuee, resource_of }
+            }
+            Intent::Deliver { place } => {
+                let rescuees = std::mem::take(&mut self.robots[id].load);
+                for rescuee in &rescuees {
+                    self.rescuees[rescuee.index()].state = RescueeState::Rescued;
+                }
+                Outcome::Delivered { place, rescuees }
+            }
+            Intent::Refill { levels } => {
+                [self.robots[id].energy, self.robots[id].hp] = levels;
+                Outcome::Refilled
+            }
+        }
+    }
+
+    /// The base restocks a robot.
+    pub(crate) fn restock(&mut self, robot: RobotId) {
+        let robot = &mut self.robots[robot.index()];
+        robot.resources = robot.spec.resources;
+    }
+
+    /// Whether a rescuee waits within a robot's reach, and there is a resource for it.
+    fn can_load(&self, robot: RobotId, rescuee: RescueeId, resource_of: RobotId, model: &Model) -> bool {
+        let rescuee = &self.rescuees[rescuee.index()];
+        let apart = rescuee.position - self.robots[robot.index()].position;
+        rescuee.state == RescueeState::Waiting
+            && apart.length() <= model.scenario.mission.reach_m as f32
+            && self.robots[resource_of.index()].resources > 0
+    }
+}
