@@ -8,7 +8,8 @@
 use std::fmt::Write;
 use std::path::Path;
 
-use experiments::experiment::{Experiment, Overrides};
+use experiments::experiment::{Experiment, Overrides, with_oracle};
+use rne_core::Registry;
 use usar_sim::scenario::Scenario;
 
 use crate::support::{paper_text, root};
@@ -67,9 +68,14 @@ fn said(block: &Block) -> String {
     }
     let folder = root().join("scenarios");
     let error = match block.kind.as_str() {
-        "sweep" => Experiment::parse(text, &folder.join("s.ron"), &Overrides::default())
-            .err()
-            .map(|error| error.to_string()),
+        "sweep" => Experiment::parse(
+            text,
+            &folder.join("s.ron"),
+            &Overrides::default(),
+            &with_oracle(Registry::standard()),
+        )
+        .err()
+        .map(|error| error.to_string()),
         _ => Scenario::parse(&text, Path::new("s.ron")).err().map(|error| error.to_string()),
     };
     let error = error.unwrap_or_else(|| "NOTHING".to_owned());

@@ -1,13 +1,15 @@
 //! The readings of the paper's mission that are options: each does what docs/readings.md says, with every
 //! invariant checked.
 
+use rne_core::{Decision, Policy, PolicyError, Question};
 use usar_sim::event::{Event, Place};
 use usar_sim::ids::RobotId;
 use usar_sim::mission::Activity;
+use usar_sim::record::{DecisionRecord, Status};
 use usar_sim::scenario::Scenario;
 use usar_sim::simulation::Simulation;
 
-use crate::support::{paper_with, policy};
+use crate::support::{paper_with, policy, trial};
 
 /// Robots get low soon, so that a trial has many rests.
 const TIRING: (&str, &str) = ("per_step: 0.0045", "per_step: 0.012");
@@ -221,4 +223,80 @@ fn work_costs_energy_hp_and_speed_if_the_reading_says_so() {
         before = now;
     });
     assert!(loading > 1000 && laden > 100, "{loading} {laden}");
+}
+
+/// The hard task has six rescuees, which are soon rescued.
+const SIX: (&str, &str) = ("size_m: (11.0, 5.7), grid: (20, 10)", "size_m: (11.0, 5.7), grid: (3, 2)");
+
+/// For each round, the rescuees of the hard task as the question has them, and its robots.
+fn hard_task(scenario: &Scenario) -> Vec<(Option<u32>, usize)> {
+    let record = trial(scenario, "DIS", 7);
+    let of_round = |asked: &DecisionRecord| {
+        (asked.question.tasks[0].rescuees, asked.decision.assignment.groups[0].len())
+    };
+    record.decisions.iter().map(of_round).collect()
+}
+
+#[test]
+fn a_task_where_nobody_waits_gets_no_robots_unless_the_scenario_asks_for_it() {
+    let groups = hard_task(&paper_with(&[SIX]));
+    assert_eq!(groups[0], (Some(6), 6));
+    assert!(groups.contains(&(Some(0), 6)), "{groups:?}");
+    let nobody = hard_task(&paper_with(&[SIX, ("empty_tasks: GetGroups", "empty_tasks: GetNobody")]));
+    assert_eq!(nobody[0], (Some(6), 6));
+    let emptied = nobody.iter().position(|(waiting, _)| *waiting == Some(0)).unwrap();
+    assert!(nobody[emptied..].iter().all(|round| *round == (Some(0), 0)), "{nobody:?}");
+    assert!(nobody[..emptied].iter().all(|(_, robots)| *robots > 0), "{nobody:?}");
+}
+
+#[test]
+fn an_answer_that_sends_all_robots_to_one_task_is_for_scenarios_with_free_sizes() {
+    struct AllToTheFirst;
+    impl Policy for AllToTheFirst {
+        fn decide(&self, question: &Question) -> Result<Decision, PolicyError> {
+            let all = question.members.iter().map(|member| member.id).collect();
+            Ok(Decision::unscored(vec![all, Vec::new()]))
+        }
+    }
+    let run = |scenario: &Scenario| {
+        Simulation::new(scenario, 7).unwrap().checked().run(&AllToTheFirst, |_, _, _| {})
+    };
+    let Status::Failed(reason) = run(&paper_with(&[])).status else { panic!("it is refused") };
+    assert_eq!(
+        reason,
+        "the policy failed: role \"carrier\" must be split into parts of [3, 3] members, found [0, 6]"
+    );
+    let record = run(&paper_with(&[("group_sizes: Parts", "group_sizes: Free")]));
+    assert_eq!(record.status, Status::Completed);
+    assert!(record.task("hard").unwrap().rescued > 0 && record.task("easy").unwrap().rescued == 0);
+}
+
+#[test]
+fn idle_robots_stay_at_home() {
+    struct FirstIsIdle;
+    impl Policy for FirstIsIdle {
+        fn decide(&self, question: &Question) -> Result<Decision, PolicyError> {
+            let mut decision = policy("DIS").decide(question)?;
+            let groups = &mut decision.assignment.groups;
+            groups.iter_mut().for_each(|group| group.retain(|id| *id != 0));
+            decision.assignment.idle = vec![0];
+            Ok(decision)
+        }
+    }
+    let first_second = |scenario: &Scenario| {
+        let mut trial = Simulation::new(scenario, 7).unwrap().checked();
+        let status = (0..500).find_map(|_| trial.step(&FirstIsIdle));
+        (status, trial)
+    };
+    let (refused, _) = first_second(&paper_with(&[]));
+    let reason = "the policy failed: robot 0 is left idle, and this question does not allow that";
+    assert_eq!(refused, Some(Status::Failed(reason.to_owned())));
+    let (status, trial) = first_second(&paper_with(&[("may_idle: false", "may_idle: true")]));
+    assert_eq!(status, None);
+    let [home, away] = [0, 1].map(|id| {
+        let robot = &trial.world().robots[id];
+        (robot.position - robot.home).length()
+    });
+    assert!(home < 0.5 && away > 5.0, "{home} {away}");
+    assert_eq!(trial.mission().agents[0].activity, Activity::Home);
 }

@@ -137,7 +137,7 @@ fn quotas_are_kept_under_every_policy() {
         assert_eq!(first, [[4, 3, 2], [1, 3, 2], [1, 1, 1]]);
         for (i, asked) in record.decisions.iter().enumerate() {
             let [carriers, suppliers, observers] = &asked.question.quotas[..] else { panic!("three roles") };
-            assert!(carriers.is_binding && suppliers.is_binding && !observers.is_binding);
+            assert!(carriers.binds() && suppliers.binds() && !observers.binds());
             assert_eq!(shares(&record, i, 0), carriers.members);
             assert_eq!(shares(&record, i, 1), suppliers.members);
             let fit = |role| asked.question.of_role(RoleId(role)).count();

@@ -35,7 +35,7 @@ pub struct Exchange {
 #[must_use]
 pub fn other_choices(question: &Question, chosen: &Assignment, policies: &[PolicySpec]) -> Vec<OtherChoice> {
     let choice = |spec: &PolicySpec| {
-        let assignment = spec.make().ok()?.policy.decide(question).ok()?.assignment;
+        let assignment = spec.made().policy.decide(question).ok()?.assignment;
         let moved = |id: &u32| assignment.task_of(*id) != chosen.task_of(*id);
         let moved = question.members.iter().map(|member| member.id).filter(moved).collect();
         let refused = assignment.check(question).err().map(|error| error.to_string());

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 use experiments::catch_panics_quietly;
-use experiments::experiment::{Experiment, Overrides, set_registry};
+use experiments::experiment::{Experiment, Overrides};
 use experiments::run::{Limits, run_all};
 use rne_core::{Decision, Policy, PolicyError, PolicyKind, Question, Registry};
 
@@ -38,16 +38,16 @@ fn fickle_policies_and_panics_are_named() {
     let mut registry = Registry::standard();
     registry.add(PolicyKind::plain("FICKLE", "now here, now there", Fickle)).unwrap();
     registry.add(PolicyKind::plain("PANICS", "never answers", Panics)).unwrap();
-    set_registry(registry).unwrap();
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).ancestors().nth(2).unwrap();
     let policies = ["FICKLE", "DIS", "PANICS"].map(str::to_owned).to_vec();
     let overrides = Overrides {
         policies: Some(policies),
         trials: Some(1),
-        set: vec!["duration_s=60.0".to_owned()],
+        set: vec!["duration_s=60.0".to_owned(), "mission.group_sizes=Free".to_owned()],
         ..Overrides::default()
     };
-    let experiment = Arc::new(Experiment::load(&root.join("scenarios/paper.ron"), &overrides).unwrap());
+    let experiment =
+        Arc::new(Experiment::load(&root.join("scenarios/paper.ron"), &overrides, &registry).unwrap());
     let halt = AtomicBool::new(false);
     let otherwise = |policy: usize| {
         let key = experiment.key((0, policy, 1));

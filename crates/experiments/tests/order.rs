@@ -6,6 +6,7 @@ use std::sync::Arc;
 use experiments::experiment::{Experiment, Overrides};
 use experiments::sweep::folder::{Folder, Opening};
 use experiments::sweep::missing;
+use rne_core::Registry;
 
 #[test]
 fn an_interrupted_sweep_has_the_first_seeds_of_every_case() {
@@ -15,7 +16,9 @@ fn an_interrupted_sweep_has_the_first_seeds_of_every_case() {
         trials: Some(20),
         ..Overrides::default()
     };
-    let experiment = Experiment::load(&root.join("scenarios/sweeps/energy.ron"), &overrides).unwrap();
+    let experiment =
+        Experiment::load(&root.join("scenarios/sweeps/energy.ron"), &overrides, &Registry::standard())
+            .unwrap();
     let cases = experiment.cases.len();
     assert!(cases > 1);
     let place = tempfile::tempdir().unwrap();

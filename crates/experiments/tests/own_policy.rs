@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
-use experiments::experiment::{Experiment, Overrides, set_registry};
+use experiments::experiment::{Experiment, Overrides};
 use rne_core::{Decision, Policy, PolicyError, PolicyKind, Question, Registry};
 
 /// Sends all robots to the easiest task.
@@ -24,15 +24,14 @@ impl Policy for Lazy {
 fn a_policy_of_another_crate_is_swept_beside_the_built_in_ones() {
     let mut registry = Registry::standard();
     registry.add(PolicyKind::plain("LAZY", "everybody goes to the easiest task", Lazy)).unwrap();
-    set_registry(registry).unwrap();
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).ancestors().nth(2).unwrap();
     let overrides = Overrides {
         policies: Some(vec!["LAZY".to_owned(), "DIS".to_owned()]),
         trials: Some(1),
-        set: vec!["duration_s=200.0".to_owned()],
+        set: vec!["duration_s=200.0".to_owned(), "mission.group_sizes=Free".to_owned()],
         ..Overrides::default()
     };
-    let experiment = Experiment::load(&root.join("scenarios/paper.ron"), &overrides).unwrap();
+    let experiment = Experiment::load(&root.join("scenarios/paper.ron"), &overrides, &registry).unwrap();
     experiment.check_start("paper.ron".as_ref()).unwrap();
     let halt = AtomicBool::new(false);
     let rescued = |policy: usize| {

@@ -6,7 +6,7 @@ use experiments::Failure;
 use experiments::comparison::{
     Comparison, answer, digits, limit_of_correction, short, short_p, test_in_words,
 };
-use experiments::experiment::{Axis, Experiment, PolicySpec, Seeds, registry};
+use experiments::experiment::{Axis, Experiment, PolicySpec, Seeds};
 use experiments::stats::Moments;
 use experiments::sweep::disk::PLOTS;
 use experiments::sweep::folder::Folder;
@@ -184,7 +184,11 @@ fn page<'a>(
         missing: asked.saturating_sub(here().count()),
         trials: folder.trials_of(case) as u32,
         labels: experiment.policies.iter().map(|policy| policy.label.as_str()).collect(),
-        policies: experiment.policies.iter().map(|spec| (spec.label.as_str(), about(spec))).collect(),
+        policies: experiment
+            .policies
+            .iter()
+            .map(|spec| (spec.label.as_str(), about(spec, experiment)))
+            .collect(),
         answer: None,
         is_declared: false,
         has_margins: comparisons.iter().any(|comparison| comparison.judged.is_some()),
@@ -209,8 +213,8 @@ fn page<'a>(
 }
 
 /// What a policy does, in the registry's words; empty for an unknown one.
-fn about(spec: &PolicySpec) -> &'static str {
-    let kinds = registry().kinds().iter();
+fn about<'e>(spec: &PolicySpec, experiment: &'e Experiment) -> &'e str {
+    let kinds = experiment.registry.kinds().iter();
     kinds.filter(|kind| kind.name == spec.name).map(|kind| kind.about.as_str()).next().unwrap_or_default()
 }
 

@@ -1,18 +1,19 @@
 //! Every assignment that the quotas of a question allow. A policy chooses from these.
 //!
-//! If a quota binds, each task gets exactly its number of members of the role. Otherwise the numbers are the
-//! sizes of the parts of the role, and any task may get any part.
+//! If a quota binds, each task gets exactly its number of members of the role. If its numbers are the sizes of
+//! parts, any task may get any part. If it is free, any task may get any member. No robot is left idle.
 
-use rand::Rng;
 use rand::seq::{IndexedRandom, SliceRandom};
+use rand::{Rng, RngExt};
 
 use crate::decision::Assignment;
-use crate::question::{Question, Quota};
+use crate::ids::TaskId;
+use crate::question::{GroupSizes, Question, Quota};
 
 /// The number of assignments that the quotas of a question allow; `u64::MAX` for that number and more.
 ///
 /// A role with members `n` and parts of sizes `n_1 ... n_k` has `n! / (n_1! ... n_k!)` splits for each
-/// distinct order of the sizes; the roles multiply.
+/// distinct order of the sizes, and `tasks^n` if sizes are free; the roles multiply.
 /// Six carriers, four suppliers and two observers over two tasks: 20 * 6 * 2 = 240.
 #[must_use]
 pub fn count(question: &Question) -> u64 {
@@ -21,6 +22,10 @@ pub fn count(question: &Question) -> u64 {
 
 fn splits_of(quota: &Quota) -> u64 {
     let members: usize = quota.members.iter().sum();
+    if quota.sizes == GroupSizes::Free {
+        let members = u32::try_from(members).unwrap_or(u32::MAX);
+        return (quota.members.len() as u64).saturating_pow(members);
+    }
     let mut left = members;
     let mut splits = 1_u64;
     for size in &quota.members {
@@ -32,7 +37,7 @@ fn splits_of(quota: &Quota) -> u64 {
 
 /// The number of distinct orders of the parts' sizes; 1 for a quota that binds.
 fn orders_of(quota: &Quota) -> u64 {
-    if quota.is_binding {
+    if quota.binds() {
         return 1;
     }
     let mut sizes = quota.members.clone();
@@ -79,26 +84,24 @@ pub fn all(question: &Question) -> Vec<Assignment> {
     assignments.into_iter().map(Assignment::new).collect()
 }
 
-/// Whether the quotas allow an assignment: whether it is one of [`all`].
-#[must_use]
-pub fn allows(question: &Question, assignment: &Assignment) -> bool {
-    question.role_ids().zip(&question.quotas).all(|(role, quota)| {
-        let is_of_role = |id: &&u32| question.of_role(role).any(|member| member.id == **id);
-        let sizes = assignment.groups.iter().map(|group| group.iter().filter(is_of_role).count());
-        let (mut found, mut wanted): (Vec<usize>, _) = (sizes.collect(), quota.members.clone());
-        if !quota.is_binding {
-            found.sort_unstable();
-            wanted.sort_unstable();
-        }
-        found == wanted
-    })
+/// All ways to write `members` as a sum of `tasks` sizes.
+fn compositions(members: usize, tasks: usize) -> Vec<Vec<usize>> {
+    if tasks <= 1 {
+        return vec![vec![members; tasks]];
+    }
+    let with_first = |first: usize| {
+        compositions(members - first, tasks - 1).into_iter().map(move |rest| [&[first][..], &rest].concat())
+    };
+    (0..=members).flat_map(with_first).collect()
 }
 
-/// The distinct orders of a quota's sizes, the given order first.
+/// The distinct orders of a quota's sizes, the given order first; all sizes if they are free.
 fn orders(quota: &Quota) -> Vec<Vec<usize>> {
     let mut orders = vec![quota.members.clone()];
-    if quota.is_binding {
-        return orders;
+    match quota.sizes {
+        GroupSizes::Binding => return orders,
+        GroupSizes::Free => return compositions(quota.members.iter().sum(), quota.members.len()),
+        GroupSizes::Parts => {}
     }
     let mut sizes = quota.members.clone();
     sizes.sort_unstable();
@@ -148,6 +151,10 @@ pub fn draw(question: &Question, draws: &mut impl Rng) -> Assignment {
     let mut groups = vec![Vec::new(); question.tasks.len()];
     for (role, quota) in question.role_ids().zip(&question.quotas) {
         let mut ids: Vec<u32> = question.of_role(role).map(|member| member.id).collect();
+        if quota.sizes == GroupSizes::Free {
+            ids.iter().for_each(|id| groups[draws.random_range(0..question.tasks.len())].push(*id));
+            continue;
+        }
         ids.shuffle(draws);
         let orders = orders(quota);
         let Some(sizes) = orders.choose(draws) else { continue };
@@ -161,12 +168,18 @@ pub fn draw(question: &Question, draws: &mut impl Rng) -> Assignment {
     Assignment::new(groups)
 }
 
-/// The assignments that result from this one if two robots of one role change places.
+/// The assignments that result from this one if two robots of one role change places or, where sizes are
+/// free, if one robot goes to another task.
 #[must_use]
 pub fn neighbours(question: &Question, assignment: &Assignment) -> Vec<Assignment> {
     let mut found = Vec::new();
-    for role in question.role_ids() {
+    for (role, quota) in question.role_ids().zip(&question.quotas) {
         let ids: Vec<u32> = question.of_role(role).map(|member| member.id).collect();
+        if quota.sizes == GroupSizes::Free {
+            let moves = ids.iter().flat_map(|id| question.task_ids().map(move |task| (*id, task)));
+            let moves = moves.filter(|(id, task)| assignment.task_of(*id) != Some(*task));
+            found.extend(moves.map(|(id, task)| moved(assignment, id, task)));
+        }
         for (at, first) in ids.iter().enumerate() {
             for second in &ids[at + 1..] {
                 if assignment.task_of(*first) != assignment.task_of(*second) {
@@ -176,6 +189,13 @@ pub fn neighbours(question: &Question, assignment: &Assignment) -> Vec<Assignmen
         }
     }
     found
+}
+
+fn moved(assignment: &Assignment, id: u32, to: TaskId) -> Assignment {
+    let mut groups = assignment.groups.clone();
+    groups.iter_mut().for_each(|group| group.retain(|other| *other != id));
+    groups[to.index()].push(id);
+    Assignment::new(groups)
 }
 
 fn exchanged(assignment: &Assignment, [first, second]: [u32; 2]) -> Assignment {
@@ -219,11 +239,10 @@ mod tests {
             round: 1,
             roles: (0..counts.len()).map(|role| format!("role {role}")).collect(),
             needs: vec![Need { name: "constant".to_owned(), weight: 1.0 }],
-            tasks: tasks
-                .map(|(name, difficulty)| Task { name: name.to_owned(), difficulty, place: None })
-                .to_vec(),
+            tasks: tasks.map(|(name, difficulty)| Task::new(name, difficulty)).to_vec(),
             quotas: Quota::equal(counts, &order),
             members: (0..).zip(roles).map(member).collect(),
+            may_idle: false,
             history: Vec::new(),
             random_seed: RandomSeed::from(1),
         }
@@ -247,15 +266,15 @@ mod tests {
         let fits = |groups: &Vec<Vec<u32>>| {
             question.role_ids().zip(&question.quotas).all(|(role, quota)| {
                 let (mut found, mut wanted) = (sizes(groups, role), quota.members.clone());
-                if !quota.is_binding {
+                if quota.sizes == GroupSizes::Parts {
                     found.sort_unstable();
                     wanted.sort_unstable();
                 }
-                found == wanted
+                quota.sizes == GroupSizes::Free || found == wanted
             })
         };
         let (fitting, others): (Vec<_>, Vec<_>) = choices.partition(fits);
-        let is_allowed = |groups: &Vec<Vec<u32>>| allows(question, &Assignment::new(groups.clone()));
+        let is_allowed = |groups: &Vec<Vec<u32>>| Assignment::new(groups.clone()).check(question).is_ok();
         assert!(fitting.iter().all(is_allowed) && !others.iter().any(is_allowed));
         fitting.into_iter().collect()
     }
@@ -267,13 +286,13 @@ mod tests {
     #[test]
     fn all_assignments_are_those_of_brute_force_each_once() {
         for counts in [&[6, 4][..], &[3, 2, 1], &[5], &[0, 2], &[1, 1, 1]] {
-            for binds in [false, true] {
+            for sizes in [GroupSizes::Binding, GroupSizes::Parts, GroupSizes::Free] {
                 let mut question = example(counts);
-                question.quotas.iter_mut().for_each(|quota| quota.is_binding = binds);
+                question.quotas.iter_mut().for_each(|quota| quota.sizes = sizes);
                 let found = all(&question);
-                assert_eq!(found.len() as u64, count(&question), "{counts:?} {binds}");
-                assert_eq!(groups(&found), by_brute_force(&question), "{counts:?} {binds}");
-                assert_eq!(groups(&found).len(), found.len(), "{counts:?} {binds}");
+                assert_eq!(found.len() as u64, count(&question), "{counts:?} {sizes:?}");
+                assert_eq!(groups(&found), by_brute_force(&question), "{counts:?} {sizes:?}");
+                assert_eq!(groups(&found).len(), found.len(), "{counts:?} {sizes:?}");
             }
         }
     }

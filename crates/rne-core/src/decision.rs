@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::AssignmentError;
 use crate::ids::{RoleId, TaskId};
-use crate::question::{Question, SCHEMA_VERSION};
+use crate::question::{GroupSizes, Question, SCHEMA_VERSION};
 use crate::trust::RelativeNeedsEntropy;
 
 /// Who goes to which task.
@@ -15,14 +15,23 @@ use crate::trust::RelativeNeedsEntropy;
 pub struct Assignment {
     /// For each task, in the order of the table, the ids of its group, ascending.
     pub groups: Vec<Vec<u32>>,
+    /// The ids of the members that stay at home, where the question allows it.
+    #[serde(default)]
+    pub idle: Vec<u32>,
 }
 
 impl Assignment {
-    /// Groups with their ids in any order.
+    /// Groups with their ids in any order; nobody is idle.
     #[must_use]
-    pub fn new(mut groups: Vec<Vec<u32>>) -> Self {
-        groups.iter_mut().for_each(|group| group.sort_unstable());
-        Self { groups }
+    pub fn new(groups: Vec<Vec<u32>>) -> Self {
+        Self { groups, idle: Vec::new() }.sorted()
+    }
+
+    /// The same assignment with all ids in ascending order.
+    #[must_use]
+    pub fn sorted(mut self) -> Self {
+        self.groups.iter_mut().chain([&mut self.idle]).for_each(|group| group.sort_unstable());
+        self
     }
 
     /// The ids of one task's group.
@@ -38,8 +47,8 @@ impl Assignment {
         u16::try_from(place).ok().map(TaskId)
     }
 
-    /// Checks that this answers a question: a group for each task, each member in exactly one, binding quotas
-    /// kept.
+    /// Checks that this answers a question: a group for each task, each member in exactly one or, where the
+    /// question allows it, idle, and the quotas kept as far as they ask for it.
     ///
     /// # Errors
     /// What does not fit, with the robot or the task.
@@ -48,7 +57,13 @@ impl Assignment {
         if found != tasks {
             return Err(AssignmentError::Groups { found, tasks });
         }
-        let mut grouped: Vec<u32> = self.groups.iter().flatten().copied().collect();
+        if let Some(robot) = self.idle.first().filter(|_| !question.may_idle) {
+            return Err(AssignmentError::Idle { robot: *robot });
+        }
+        if !self.idle.is_empty() && self.groups.iter().all(Vec::is_empty) {
+            return Err(AssignmentError::AllIdle);
+        }
+        let mut grouped: Vec<u32> = self.groups.iter().chain([&self.idle]).flatten().copied().collect();
         grouped.sort_unstable();
         if let Some(pair) = grouped.windows(2).find(|pair| pair[0] == pair[1]) {
             return Err(AssignmentError::Twice { robot: pair[0] });
@@ -64,17 +79,31 @@ impl Assignment {
     }
 
     fn check_quotas(&self, question: &Question) -> Result<(), AssignmentError> {
-        for (role, quota) in question.role_ids().zip(&question.quotas).filter(|(_, quota)| quota.is_binding) {
-            for (task, quota) in question.task_ids().zip(&quota.members) {
-                let group = self.of(task);
-                let found = question.of_role(role).filter(|member| group.contains(&member.id)).count();
-                if found != *quota {
-                    return Err(AssignmentError::Quota {
-                        task: question.tasks[task.index()].name.clone(),
-                        role: question.roles[role.index()].clone(),
-                        quota: *quota,
-                        found,
-                    });
+        for (role, quota) in question.role_ids().zip(&question.quotas) {
+            let count =
+                |group: &Vec<u32>| question.of_role(role).filter(|member| group.contains(&member.id)).count();
+            let found: Vec<usize> = self.groups.iter().map(count).collect();
+            let misses =
+                |found: usize, wanted: usize| found > wanted || self.idle.is_empty() && found < wanted;
+            let name = || question.roles[role.index()].clone();
+            match quota.sizes {
+                GroupSizes::Free => {}
+                GroupSizes::Binding => {
+                    let mut pairs = question.tasks.iter().zip(&found).zip(&quota.members);
+                    if let Some(((task, found), quota)) =
+                        pairs.find(|((_, found), quota)| misses(**found, **quota))
+                    {
+                        let (task, role) = (task.name.clone(), name());
+                        return Err(AssignmentError::Quota { task, role, quota: *quota, found: *found });
+                    }
+                }
+                GroupSizes::Parts => {
+                    let [mut found, mut parts] = [found, quota.members.clone()];
+                    found.sort_unstable();
+                    parts.sort_unstable();
+                    if found.iter().zip(&parts).any(|(found, part)| misses(*found, *part)) {
+                        return Err(AssignmentError::Parts { role: name(), parts, found });
+                    }
                 }
             }
         }
@@ -251,7 +280,7 @@ impl Decision {
             .map_err(|error| QuestionError::Json { what: "decision", reason: error.to_string() })?;
         let others = decision.alternatives.iter_mut().map(|other| &mut other.assignment);
         let all = std::iter::once(&mut decision.assignment).chain(others);
-        all.flat_map(|assignment| &mut assignment.groups).for_each(|group| group.sort_unstable());
+        all.for_each(|assignment| *assignment = std::mem::take(assignment).sorted());
         if decision.schema_version == SCHEMA_VERSION {
             Ok(decision)
         } else {

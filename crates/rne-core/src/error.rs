@@ -86,6 +86,32 @@ pub enum QuestionError {
         /// Its place.
         found: [f64; 2],
     },
+    /// A fact of a task that cannot be.
+    #[error("{what} of task {task:?} must be finite and >= 0, found {found}")]
+    Fact {
+        /// The task.
+        task: String,
+        /// The field, or the need that the task requires.
+        what: String,
+        /// The value.
+        found: f64,
+    },
+    /// A task requires a need that members do not report.
+    #[error("task {task:?} requires {need:?}, which is not in the table of needs")]
+    Requires {
+        /// The task.
+        task: String,
+        /// The need.
+        need: String,
+    },
+    /// A task comes after one that is not there.
+    #[error("task {task:?} comes after task {found}, which is not in the table of tasks")]
+    After {
+        /// The task.
+        task: String,
+        /// The row that was named.
+        found: u16,
+    },
     /// A weight that is NaN, infinite or negative.
     #[error("the weight of need {need:?} must be a finite number >= 0, found {found}")]
     Weight {
@@ -241,6 +267,25 @@ pub enum AssignmentError {
     Missing {
         /// The robot.
         robot: u32,
+    },
+    /// A robot is left idle, and the question does not allow that.
+    #[error("robot {robot} is left idle, and this question does not allow that")]
+    Idle {
+        /// The robot.
+        robot: u32,
+    },
+    /// All robots are left idle.
+    #[error("an assignment must not leave all robots idle")]
+    AllIdle,
+    /// Groups of other sizes than the parts of a role.
+    #[error("role {role:?} must be split into parts of {parts:?} members, found {found:?}")]
+    Parts {
+        /// The role.
+        role: String,
+        /// The sizes of its parts, ascending.
+        parts: Vec<usize>,
+        /// Its members in each group, ascending.
+        found: Vec<usize>,
     },
     /// A group that does not keep a binding quota.
     #[error("task {task:?} must get {quota} members of role {role:?}, found {found}")]

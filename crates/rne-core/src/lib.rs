@@ -46,7 +46,7 @@ pub use kind::PolicyKind;
 pub use needs::{NeedDistribution, NeedVector, NeedWeights};
 pub use policies::rne::RneOptions;
 pub use policy::Policy;
-pub use question::{Member, Need, Question, Quota, RandomSeed, SCHEMA_VERSION, Task};
+pub use question::{GroupSizes, Member, Need, Question, Quota, RandomSeed, SCHEMA_VERSION, Task};
 pub use registry::{MadePolicy, Registry};
 pub use trust::{LogBase, RelativeNeedsEntropy};
 

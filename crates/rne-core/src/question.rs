@@ -5,7 +5,7 @@
 //! too. Its JSON form is documented in `docs/decisions.md`.
 
 use std::cmp::Reverse;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use rand::SeedableRng;
 use rand::rngs::ChaCha8Rng;
@@ -37,6 +37,9 @@ pub struct Question {
     pub quotas: Vec<Quota>,
     /// The members as reported, by id.
     pub members: Vec<Member>,
+    /// Whether an answer may leave robots idle.
+    #[serde(default)]
+    pub may_idle: bool,
     /// The rounds that are over, the first one first.
     pub history: Vec<RoundOutcome>,
     /// Seed of the policy's own draws in this round.
@@ -65,6 +68,39 @@ pub struct Task {
     /// Centre of its area, in metres; absent where it is not known.
     #[serde(default)]
     pub place: Option<[f64; 2]>,
+    /// Rescuees that wait there, as far as the team knows; absent where it does not know.
+    #[serde(default)]
+    pub rescuees: Option<u32>,
+    /// What one rescuee of the task is worth, finite and >= 0; absent where the mission does not say.
+    #[serde(default)]
+    pub value: Option<f64>,
+    /// The least that the needs of its group must add up to, by the names of needs. A wish of the mission: no
+    /// answer is refused for it.
+    #[serde(default)]
+    pub requires: BTreeMap<String, f64>,
+    /// How long its work is expected to take, in seconds, finite and >= 0; absent where nobody says.
+    #[serde(default)]
+    pub duration_s: Option<f64>,
+    /// The tasks after which it should be done.
+    #[serde(default)]
+    pub after: Vec<TaskId>,
+}
+
+impl Task {
+    /// A task of which no more is known than its name and its rank.
+    #[must_use]
+    pub fn new(name: &str, difficulty: u32) -> Self {
+        Self {
+            name: name.to_owned(),
+            difficulty,
+            place: None,
+            rescuees: None,
+            value: None,
+            requires: BTreeMap::new(),
+            duration_s: None,
+            after: Vec::new(),
+        }
+    }
 }
 
 /// How many members of one role each task gets.
@@ -73,9 +109,20 @@ pub struct Task {
 pub struct Quota {
     /// Members for each task, in the order of the table. They add up to the members of the role.
     pub members: Vec<usize>,
-    /// Whether an answer must keep these numbers task by task. Otherwise they say into parts of which sizes a
-    /// role is split, and the policy decides which task gets which part.
-    pub is_binding: bool,
+    /// How far an answer must keep these numbers.
+    pub sizes: GroupSizes,
+}
+
+/// How far an answer must keep the numbers of a [`Quota`]. If robots are left idle, numbers may be smaller.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+pub enum GroupSizes {
+    /// Task by task.
+    Binding,
+    /// As sizes of parts: the policy decides which task gets which part. The default.
+    #[default]
+    Parts,
+    /// Not at all: they are a suggestion.
+    Free,
 }
 
 /// What a robot reports of itself.
@@ -142,9 +189,7 @@ impl Question {
             return Err(QuestionError::Tasks { found: self.tasks.len() });
         }
         for task in &self.tasks {
-            if let Some(place) = task.place.filter(|place| place.iter().any(|v| !v.is_finite())) {
-                return Err(QuestionError::Place { task: task.name.clone(), found: place });
-            }
+            self.check_task(task)?;
         }
         if let Some(need) = self.needs.iter().find(|need| !need.weight.is_finite() || need.weight < 0.0) {
             return Err(QuestionError::Weight { need: need.name.clone(), found: need.weight });
@@ -158,6 +203,26 @@ impl Question {
         }
         self.check_quotas()?;
         Ok(self)
+    }
+
+    fn check_task(&self, task: &Task) -> Result<(), QuestionError> {
+        if let Some(place) = task.place.filter(|place| place.iter().any(|v| !v.is_finite())) {
+            return Err(QuestionError::Place { task: task.name.clone(), found: place });
+        }
+        let required = task.requires.iter().map(|(need, least)| (need.as_str(), *least));
+        let facts = [("value", task.value), ("duration_s", task.duration_s)].into_iter();
+        let mut facts = facts.filter_map(|(what, value)| Some((what, value?))).chain(required);
+        if let Some((what, found)) = facts.find(|(_, value)| !value.is_finite() || *value < 0.0) {
+            return Err(QuestionError::Fact { task: task.name.clone(), what: what.to_owned(), found });
+        }
+        let is_known = |name: &&String| self.needs.iter().any(|need| need.name == **name);
+        if let Some(need) = task.requires.keys().find(|name| !is_known(name)) {
+            return Err(QuestionError::Requires { task: task.name.clone(), need: need.clone() });
+        }
+        match task.after.iter().find(|other| other.index() >= self.tasks.len()) {
+            Some(other) => Err(QuestionError::After { task: task.name.clone(), found: other.0 }),
+            None => Ok(()),
+        }
     }
 
     fn check_member(&self, member: &Member) -> Result<(), QuestionError> {
@@ -250,21 +315,33 @@ pub fn hardest_first(difficulties: impl Iterator<Item = u32>) -> Vec<TaskId> {
 }
 
 impl Quota {
+    /// Whether an answer must keep its numbers task by task.
+    #[must_use]
+    pub fn binds(&self) -> bool {
+        self.sizes == GroupSizes::Binding
+    }
+
     /// Shares `members` out over tasks, which are given from the hardest to the easiest. Some tasks may ask
     /// for a number of members.
     ///
     /// If no task asks for a number, the shares are as equal as possible, and the harder tasks get the extra
-    /// members. Otherwise the tasks that ask are served first, and the rest is shared equally over the other
+    /// members; an answer must keep them as far as `sizes` says. Otherwise the numbers bind: the tasks that ask
+    /// are served first, and the rest is shared equally over the other
     /// tasks (over all tasks if every task asks). If there are too few members, each next member goes to the
     /// task with the smallest filled share; among equals, to the harder task.
     #[must_use]
-    pub fn share(members: usize, asked: &[Option<usize>], hardest_first: &[TaskId]) -> Self {
-        let is_binding = asked.iter().any(Option::is_some);
+    pub fn share(
+        members: usize,
+        asked: &[Option<usize>],
+        hardest_first: &[TaskId],
+        sizes: GroupSizes,
+    ) -> Self {
+        let sizes = if asked.iter().any(Option::is_some) { GroupSizes::Binding } else { sizes };
         let wanted = asked.iter().flatten().copied().fold(0, usize::saturating_add);
         let mut shares = vec![0; asked.len()];
         if members < wanted {
             fill_by_share(&mut shares, members, asked, hardest_first);
-            return Self { members: shares, is_binding };
+            return Self { members: shares, sizes };
         }
         for (share, asked) in shares.iter_mut().zip(asked) {
             *share = asked.unwrap_or(0);
@@ -276,7 +353,7 @@ impl Quota {
             let extra = usize::from(rank < rest % receivers.len());
             shares[task.index()] += rest / receivers.len() + extra;
         }
-        Self { members: shares, is_binding }
+        Self { members: shares, sizes }
     }
 
     /// The quotas of a team whose tasks ask for no number: as equal as possible.
@@ -284,7 +361,10 @@ impl Quota {
     pub fn equal(counts: &[usize], hardest_first: &[TaskId]) -> Vec<Self> {
         counts
             .iter()
-            .map(|count| Self::share(*count, &vec![None; hardest_first.len()], hardest_first))
+            .map(|count| {
+                let asked = vec![None; hardest_first.len()];
+                Self::share(*count, &asked, hardest_first, GroupSizes::Parts)
+            })
             .collect()
     }
 }
@@ -308,7 +388,7 @@ mod tests {
 
     fn shares(members: usize, asked: &[Option<usize>]) -> Vec<usize> {
         let order = hardest_first([1, 3, 2][..asked.len()].iter().copied());
-        Quota::share(members, asked, &order).members
+        Quota::share(members, asked, &order, GroupSizes::Parts).members
     }
 
     #[test]
@@ -325,7 +405,10 @@ mod tests {
         assert_eq!(shares(6, &[Some(1), None, None]), [1, 3, 2]);
         assert_eq!(shares(6, &[Some(1), Some(1), Some(1)]), [2, 2, 2]);
         assert_eq!(shares(3, &[Some(4), Some(2), None]), [2, 1, 0]);
-        assert!(Quota::share(3, &[Some(1), None], &hardest_first([1, 2].into_iter())).is_binding);
+        let order = hardest_first([1, 2].into_iter());
+        let sizes = |asked, sizes| Quota::share(3, &[asked, None], &order, sizes).sizes;
+        assert_eq!(sizes(Some(1), GroupSizes::Free), GroupSizes::Binding);
+        assert_eq!(sizes(None, GroupSizes::Free), GroupSizes::Free);
     }
 
     #[test]

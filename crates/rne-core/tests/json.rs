@@ -1,16 +1,16 @@
 //! Questions and decisions as JSON: texts that are written can be read again, and texts that are not
 //! questions are refused with a reason.
 
-use rne_core::{Assignment, Decision, Question, QuestionError, Registry, Task};
+use rne_core::{Assignment, AssignmentError, Decision, Question, QuestionError, Registry, Task};
 
 const TEAM: &str = r#"{
-  "schema_version": 1, "round": 2,
+  "schema_version": 2, "round": 2,
   "roles": ["carrier", "observer"],
   "needs": [{"name": "hp", "weight": 1.0}, {"name": "v", "weight": 0.5}],
   "tasks": [
     {"name": "easy", "difficulty": 1, "place": [70.0, 50.0]},
     {"name": "hard", "difficulty": 2, "place": [15.0, 60.0]}],
-  "quotas": [{"members": [1, 2], "is_binding": false}, {"members": [0, 1], "is_binding": true}],
+  "quotas": [{"members": [1, 2], "sizes": "Parts"}, {"members": [0, 1], "sizes": "Binding"}],
   "members": [
     {"id": 4, "role": 0, "home": [0.0, 0.0], "needs": [90.1, 1.5], "energy_level": 33.3, "hp_level": 90.1},
     {"id": 2, "role": 0, "home": [2.0, 0.0], "needs": [60.0, 2.0], "energy_level": 44.4, "hp_level": 60.0},
@@ -50,7 +50,7 @@ fn every_policys_decision_is_read_as_it_was_written() {
 #[test]
 fn a_decision_needs_no_more_than_its_groups() {
     let decision =
-        Decision::from_json(r#"{"schema_version": 1, "assignment": {"groups": [[3], [4, 1, 2]]}}"#);
+        Decision::from_json(r#"{"schema_version": 2, "assignment": {"groups": [[3], [4, 1, 2]]}}"#);
     let decision = decision.unwrap();
     assert_eq!(decision, Decision::unscored(vec![vec![3], vec![1, 2, 4]]));
     assert_eq!(decision.assignment, Assignment::new(vec![vec![3], vec![4, 2, 1]]));
@@ -60,16 +60,16 @@ fn a_decision_needs_no_more_than_its_groups() {
 fn what_is_no_decision_is_refused() {
     let refused = |text: &str| Decision::from_json(text).unwrap_err().to_string();
     assert_eq!(
-        refused(r#"{"schema_version": 2, "assignment": {"groups": []}}"#),
-        "schema_version must be 1, found 2"
+        refused(r#"{"schema_version": 3, "assignment": {"groups": []}}"#),
+        "schema_version must be 2, found 3"
     );
     assert_eq!(
-        refused(r#"{"schema_version": 1, "groups": []}"#),
+        refused(r#"{"schema_version": 2, "groups": []}"#),
         "not the JSON of a decision: unknown field `groups`, expected one of `schema_version`, `assignment`, \
          `score`, `proven_optimal`, `alternatives`, `account` at line 1 column 30"
     );
     assert_eq!(
-        refused(r#"{"schema_version": 1}"#),
+        refused(r#"{"schema_version": 2}"#),
         "not the JSON of a decision: missing field `assignment` at line 1 column 21"
     );
 }
@@ -78,13 +78,13 @@ fn what_is_no_decision_is_refused() {
 fn what_is_no_question_is_refused_with_the_reason() {
     let not_json = |reason: &str| format!("not the JSON of a question: {reason}");
     for (from, to, message) in [
-        ("\"schema_version\": 1", "\"schema_version\": 7", "schema_version must be 1, found 7".to_owned()),
+        ("\"schema_version\": 2", "\"schema_version\": 7", "schema_version must be 2, found 7".to_owned()),
         (
             "\"round\": 2",
             "\"turn\": 2",
             not_json(
                 "unknown field `turn`, expected one of `schema_version`, `round`, `roles`, `needs`, `tasks`, \
-                 `quotas`, `members`, `history`, `random_seed` at line 2 column 29",
+                 `quotas`, `members`, `may_idle`, `history`, `random_seed` at line 2 column 29",
             ),
         ),
         (
@@ -111,28 +111,43 @@ fn what_is_no_question_is_refused_with_the_reason() {
             "robot 1: its role must be a row of the table of 2 roles (from 0), found 2".to_owned(),
         ),
         (
-            "[1, 2], \"is_binding\"",
-            "[1, 1], \"is_binding\"",
+            "[1, 2], \"sizes\"",
+            "[1, 1], \"sizes\"",
             "the quota of role \"carrier\" must share its 3 members out over all tasks, found [1, 1]"
                 .to_owned(),
         ),
         (
-            "[1, 2], \"is_binding\"",
-            "[18446744073709551615, 4], \"is_binding\"",
+            "[1, 2], \"sizes\"",
+            "[18446744073709551615, 4], \"sizes\"",
             "the quota of role \"carrier\" must share its 3 members out over all tasks, \
              found [18446744073709551615, 4]"
                 .to_owned(),
         ),
         (
-            "[0, 1], \"is_binding\"",
-            "[1], \"is_binding\"",
+            "[0, 1], \"sizes\"",
+            "[1], \"sizes\"",
             "the quota of role \"observer\" must share its 1 members out over all tasks, found [1]"
                 .to_owned(),
         ),
         (
-            ", {\"members\": [0, 1], \"is_binding\": true}",
+            ", {\"members\": [0, 1], \"sizes\": \"Binding\"}",
             "",
             "there must be a quota for each of the 2 roles, found 1".to_owned(),
+        ),
+        (
+            "\"difficulty\": 1,",
+            "\"difficulty\": 1, \"value\": -2.5,",
+            "value of task \"easy\" must be finite and >= 0, found -2.5".to_owned(),
+        ),
+        (
+            "\"difficulty\": 1,",
+            "\"difficulty\": 1, \"requires\": {\"v\": 1, \"wings\": 2},",
+            "task \"easy\" requires \"wings\", which is not in the table of needs".to_owned(),
+        ),
+        (
+            "\"difficulty\": 1,",
+            "\"difficulty\": 1, \"after\": [2],",
+            "task \"easy\" comes after task 2, which is not in the table of tasks".to_owned(),
         ),
         (
             "\"weight\": 0.5",
@@ -173,11 +188,40 @@ fn numbers_that_json_cannot_write_are_refused_by_name() {
 }
 
 #[test]
-fn a_question_has_1_to_16_tasks() {
-    for tasks in [0, 17] {
+fn a_question_has_1_to_64_tasks() {
+    for tasks in [0, 65] {
         let mut question = Question::from_json(TEAM).unwrap();
-        question.tasks =
-            (0..tasks).map(|i| Task { name: format!("{i}"), difficulty: i, place: None }).collect();
+        question.tasks = (0..tasks).map(|i| Task::new(&format!("{i}"), i)).collect();
         assert_eq!(question.checked(), Err(QuestionError::Tasks { found: tasks as usize }));
     }
+}
+
+#[test]
+fn an_answer_keeps_the_sizes_that_the_question_asks_for() {
+    let parts = Question::from_json(TEAM).unwrap();
+    let check = |question: &Question, groups: [&[u32]; 2], idle: &[u32]| {
+        let groups = groups.map(<[u32]>::to_vec).to_vec();
+        Assignment { groups, idle: idle.to_vec() }.check(question)
+    };
+    assert_eq!(check(&parts, [&[2], &[1, 3, 4]], &[]), Ok(()));
+    assert_eq!(check(&parts, [&[2, 3], &[1, 4]], &[]), Ok(()), "any task may get any part");
+    let refused = check(&parts, [&[2, 3, 4], &[1]], &[]).unwrap_err();
+    assert_eq!(
+        refused.to_string(),
+        "role \"carrier\" must be split into parts of [1, 2] members, found [0, 3]"
+    );
+    let refused = check(&parts, [&[1, 2], &[3, 4]], &[]).unwrap_err();
+    assert_eq!(refused.to_string(), "task \"easy\" must get 0 members of role \"observer\", found 1");
+
+    let mut free = parts.clone();
+    free.quotas.iter_mut().for_each(|quota| quota.sizes = rne_core::GroupSizes::Free);
+    assert_eq!(check(&free, [&[1, 2, 3, 4], &[]], &[]), Ok(()));
+    assert_eq!(check(&free, [&[1, 2, 3], &[]], &[4]), Err(AssignmentError::Idle { robot: 4 }));
+
+    let may_idle = Question { may_idle: true, ..parts };
+    assert_eq!(check(&may_idle, [&[2], &[1, 3]], &[4]), Ok(()), "with idle robots, groups may be smaller");
+    assert_eq!(check(&may_idle, [&[], &[1]], &[2, 3, 4]), Ok(()));
+    assert!(matches!(check(&may_idle, [&[], &[1, 2, 3, 4]], &[]), Err(AssignmentError::Parts { .. })));
+    assert_eq!(check(&may_idle, [&[2], &[1, 3]], &[3]), Err(AssignmentError::Twice { robot: 3 }));
+    assert_eq!(check(&may_idle, [&[], &[]], &[1, 2, 3, 4]), Err(AssignmentError::AllIdle));
 }

@@ -58,12 +58,12 @@ fn registry() -> Registry {
 }
 
 const TEAM: &str = r#"{
-    "schema_version": 1,
+    "schema_version": 2,
     "round": 1,
     "roles": ["carrier"],
     "needs": [{"name": "hp", "weight": 1.0}, {"name": "v", "weight": 1.0}],
     "tasks": [{"name": "easy", "difficulty": 1}, {"name": "hard", "difficulty": 2}],
-    "quotas": [{"members": [1, 2], "is_binding": false}],
+    "quotas": [{"members": [1, 2], "sizes": "Parts"}],
     "members": [
         {"id": 1, "role": 0, "home": [0.0, 0.0], "needs": [90.0, 1.5]},
         {"id": 2, "role": 0, "home": [2.0, 0.0], "needs": [60.0, 2.0]},

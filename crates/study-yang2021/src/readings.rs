@@ -1,6 +1,7 @@
 //! The readings of RNE in a sweep: which reading forms other groups, and how that changes the outcome.
 
 use std::collections::BTreeSet;
+use std::sync::Arc;
 
 use experiments::Failure;
 use experiments::comparison::CONFIDENCE;
@@ -165,7 +166,7 @@ fn options_in_words(policy: &PolicySpec) -> String {
 
 /// Shares of the rounds in which a reading forms other groups, and another split.
 fn regrouped(folder: &Folder, reading: usize, rounds: &[Round]) -> Result<[f64; 2], Failure> {
-    let policy = folder.experiment().policies[reading].make().map_err(Failure::run)?.policy;
+    let policy = Arc::clone(&folder.experiment().policies[reading].made().policy);
     let same = rounds.par_iter().map(|round| Ok(round.is_as(&round.grouped_by(&*policy)?)));
     let same = same.collect::<Result<Vec<[bool; 2]>, Failure>>()?;
     let share =
@@ -284,7 +285,7 @@ fn ends(found: &[(String, Difference)]) -> Option<[(String, Difference); 2]> {
 /// A policy cannot group one of the rounds.
 pub fn groupings_in_words(folder: &Folder, readings: &[usize], rounds: &[Round]) -> Result<String, Failure> {
     let groups = |reading: &usize| {
-        let policy = folder.experiment().policies[*reading].make().map_err(Failure::run)?.policy;
+        let policy = Arc::clone(&folder.experiment().policies[*reading].made().policy);
         let groups = rounds.iter().map(|round| Ok(round.grouped_by(&*policy)?.groups));
         groups.collect::<Result<Vec<Vec<Vec<u32>>>, Failure>>()
     };

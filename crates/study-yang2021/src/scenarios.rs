@@ -4,6 +4,7 @@ use std::path::Path;
 
 use experiments::Failure;
 use experiments::experiment::{Experiment, Overrides};
+use rne_core::Registry;
 use ron_fields::Fields;
 
 /// Policies of the paper.
@@ -46,8 +47,7 @@ pub struct World {
 /// world that the data cannot tell apart from the calibrated one, with a quarter of the trials.
 ///
 /// # Errors
-/// None: the scenarios are part of the program. A program that was started with policies of its own may
-/// lack one of [`POLICIES`].
+/// None: the scenarios and the policies are part of the program.
 pub fn worlds(trials: u32) -> Result<Vec<World>, Failure> {
     let printed = world(Standing::Printed, "scenarios/paper.ron", PRINTED, &overrides(trials, Vec::new()))?;
     let calibrated = |standing, overrides: &Overrides| {
@@ -64,7 +64,7 @@ pub fn worlds(trials: u32) -> Result<Vec<World>, Failure> {
 }
 
 fn world(standing: Standing, path: &str, text: &str, overrides: &Overrides) -> Result<World, Failure> {
-    let experiment = Experiment::parse(text.to_owned(), Path::new(path), overrides)?;
+    let experiment = Experiment::parse(text.to_owned(), Path::new(path), overrides, &Registry::standard())?;
     Ok(World { standing, experiment })
 }
 

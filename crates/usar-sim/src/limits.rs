@@ -71,6 +71,12 @@ ron_fields::limits! {
     RESCUEES: "tasks" = 0, 1_000_000;
     /// Members of a role that a task asks for.
     QUOTA: "tasks.*.quota.*" = 0, ROBOTS.most;
+    /// Worth of a rescuee.
+    VALUE: "tasks.*.value" = 0, 1e9;
+    /// What the needs of a group should add up to.
+    REQUIRED: "tasks.*.requires.*" = 0, 1e9;
+    /// Expected time of a task's work, in seconds.
+    WORK_S: "tasks.*.duration_s" = 0, DURATION_S.most;
     /// Pieces of debris drawn for one task.
     SAMPLED_DEBRIS: "tasks.*.sampled.debris" = 0, 10_000;
     /// Radiation zones drawn for one task.

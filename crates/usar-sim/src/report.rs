@@ -70,12 +70,14 @@ pub enum Statement {
     },
     /// The sender's own state.
     IAm(Robot),
-    /// A task is open, or closed.
+    /// A task is open or closed, and so many rescuees wait there.
     TaskIs {
         /// The task.
         task: TaskId,
         /// Whether it is open: it has begun and not ended.
         open: bool,
+        /// Number of rescuees.
+        waiting: u32,
     },
     /// A robot has stopped for good.
     WreckLies {

@@ -89,6 +89,7 @@ impl Robot {
 
     /// Whether it is in the same state as another. Their fixed properties are not compared.
     #[must_use]
+    #[expect(clippy::float_cmp, reason = "a report is as the robot is, bit for bit, or it is not")]
     pub fn is_as(&self, other: &Self) -> bool {
         let Self { model: _, position, velocity, energy, hp, resources, load, condition, wreck_at } = self;
         *position == other.position

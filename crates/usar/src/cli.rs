@@ -5,7 +5,7 @@ use std::process::ExitCode;
 use std::sync::LazyLock;
 
 use clap::{CommandFactory, Parser, Subcommand};
-use experiments::experiment::set_registry;
+use experiments::experiment::with_oracle;
 use experiments::provenance::COMMIT;
 use experiments::{Failure, catch_panics_quietly, panic_message};
 use reports::table::{Format, fold_at, show_as};
@@ -114,8 +114,16 @@ enum Command {
     Man(man::Arguments),
 }
 
-/// Runs the command with which the process was called. The caller's own policies are available beside the
-/// built-in ones. This is the `main` of a program that adds policies.
+/// Runs the command with which the process was called. The exit status is 0 for a result, 1 for a failure
+/// of the run, 2 for unusable input, 3 for a disk error, 130 after Ctrl-C, 143 after SIGTERM and 129 after
+/// SIGHUP.
+#[must_use]
+pub fn main() -> ExitCode {
+    main_with(Registry::standard())
+}
+
+/// The same with policies of the caller's own beside the built-in ones: the `main` of a program that adds
+/// policies.
 ///
 /// ```no_run
 /// # fn my_policy() -> rne_core::PolicyKind { rne_core::policies::random::kind() }
@@ -127,16 +135,7 @@ enum Command {
 /// ```
 #[must_use]
 pub fn main_with(policies: Registry) -> ExitCode {
-    // A program that calls this twice keeps its first set of policies.
-    let _ = set_registry(policies);
-    main()
-}
-
-/// Runs the command with which the process was called. The exit status is 0 for a result, 1 for a failure
-/// of the run, 2 for unusable input, 3 for a disk error, 130 after Ctrl-C, 143 after SIGTERM and 129 after
-/// SIGHUP.
-#[must_use]
-pub fn main() -> ExitCode {
+    let registry = with_oracle(policies);
     // A panic is a defect of the program. It is caught and reported in one sentence, never as a backtrace.
     catch_panics_quietly();
     let cli = Cli::parse();
@@ -146,8 +145,9 @@ pub fn main() -> ExitCode {
     let (format, has_json) = cli.command.shown();
     show_as(format);
     let mut out = sentences(format, has_json);
-    let result = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| cli.command.execute(&mut *out)))
-        .unwrap_or_else(|panic| Err(Failure::run(format!("internal error: {}", panic_message(&*panic)))));
+    let result =
+        std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| cli.command.execute(&registry, &mut *out)))
+            .unwrap_or_else(|panic| Err(Failure::run(format!("internal error: {}", panic_message(&*panic)))));
     let result = result.and_then(|()| Ok(out.flush()?));
     match result {
         Ok(()) | Err(Failure::ClosedOutput) => ExitCode::SUCCESS,
@@ -190,43 +190,43 @@ impl Command {
         (shown.format(), has_json)
     }
 
-    fn execute(&self, out: &mut dyn Write) -> Result<(), Failure> {
+    fn execute(&self, registry: &Registry, out: &mut dyn Write) -> Result<(), Failure> {
         match self {
-            Self::Run(arguments) => arguments.execute(out),
-            Self::Sorting(arguments) => arguments.execute(out),
-            Self::Sweep(arguments) => arguments.execute(out),
-            Self::Test(arguments) => arguments.execute(out),
-            Self::Estimate(arguments) => arguments.execute(out),
-            Self::Merge(arguments) => arguments.execute(out),
-            Self::Submit(arguments) => arguments.execute(out),
-            Self::Status(arguments) => arguments.execute(out),
-            Self::Compare(arguments) => arguments.execute(out),
+            Self::Run(arguments) => arguments.execute(registry, out),
+            Self::Sorting(arguments) => arguments.execute(registry, out),
+            Self::Sweep(arguments) => arguments.execute(registry, out),
+            Self::Test(arguments) => arguments.execute(registry, out),
+            Self::Estimate(arguments) => arguments.execute(registry, out),
+            Self::Merge(arguments) => arguments.execute(registry, out),
+            Self::Submit(arguments) => arguments.execute(registry, out),
+            Self::Status(arguments) => arguments.execute(registry, out),
+            Self::Compare(arguments) => arguments.execute(registry, out),
             Self::Reproduce(arguments) => arguments.execute(out),
-            Self::Report(arguments) => arguments.execute(out),
-            Self::Figure(arguments) => arguments.execute(out),
-            Self::Tidy(arguments) => arguments.execute(out),
-            Self::Fork(arguments) => arguments.execute(out),
-            Self::Oracle(arguments) => arguments.execute(out),
-            Self::Readings(arguments) => arguments.execute(out),
-            Self::Regret(arguments) => arguments.execute(out),
-            Self::Sensitivity(arguments) => arguments.execute(out),
-            Self::Search(arguments) => arguments.execute(out),
-            Self::Verify(arguments) => arguments.execute(out),
+            Self::Report(arguments) => arguments.execute(registry, out),
+            Self::Figure(arguments) => arguments.execute(registry, out),
+            Self::Tidy(arguments) => arguments.execute(registry, out),
+            Self::Fork(arguments) => arguments.execute(registry, out),
+            Self::Oracle(arguments) => arguments.execute(registry, out),
+            Self::Readings(arguments) => arguments.execute(registry, out),
+            Self::Regret(arguments) => arguments.execute(registry, out),
+            Self::Sensitivity(arguments) => arguments.execute(registry, out),
+            Self::Search(arguments) => arguments.execute(registry, out),
+            Self::Verify(arguments) => arguments.execute(registry, out),
             Self::Calibrate(arguments) => arguments.execute(out),
             Self::Choose(arguments) => arguments.execute(out),
             Self::New(arguments) => arguments.execute(out),
-            Self::Check(arguments) => arguments.execute(out),
+            Self::Check(arguments) => arguments.execute(registry, out),
             Self::Fmt(arguments) => arguments.execute(out),
             Self::Resolve(arguments) => arguments.execute(out),
-            Self::List(arguments) => arguments.execute(out),
+            Self::List(arguments) => arguments.execute(registry, out),
             Self::Trust(arguments) => arguments.execute(out),
-            Self::Group(arguments) => arguments.execute(out),
+            Self::Group(arguments) => arguments.execute(registry, out),
             Self::Schema(arguments) => arguments.execute(out),
-            Self::View(arguments) => arguments.execute(out),
-            Self::Why(arguments) => arguments.execute(out),
-            Self::Draw(arguments) => arguments.execute(out),
-            Self::Render(arguments) => arguments.execute(out),
-            Self::Export(arguments) => arguments.execute(out),
+            Self::View(arguments) => arguments.execute(registry, out),
+            Self::Why(arguments) => arguments.execute(registry, out),
+            Self::Draw(arguments) => arguments.execute(registry, out),
+            Self::Render(arguments) => arguments.execute(registry, out),
+            Self::Export(arguments) => arguments.execute(registry, out),
             Self::Doctor(arguments) => arguments.execute(out),
             Self::Completions(arguments) => arguments.execute(Cli::command(), out),
             Self::Man(arguments) => arguments.execute(Cli::command(), out),

@@ -1,13 +1,11 @@
 //! Worlds of any size at one density, for the raw physics and for the full simulator. A walled square of 40
 //! sqrt(N / 12) m holds N robots and 5 boxes for each robot; two of twelve robots are aerial.
 
-use std::collections::BTreeMap;
-
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 use usar_sim::scenario::{
     ConflictRules, Costs, DebrisFile, DebrisShape, Draws, InitialLevels, MissionRules, Normal, PlanningRules,
-    Point, RoleFile, Row, Sampled, SampledCounts, Scenario, ScenarioFile, TaskFile,
+    Point, RoleFile, Row, Sampled, Scenario, ScenarioFile, TaskFile,
 };
 
 /// The scenario from which the robots have their roles and needs, but not their size and speed.
@@ -84,8 +82,7 @@ pub fn mission(robots: u32, duration_s: f64, to_tasks_m: Option<f64>) -> Scenari
         size_m: [0.2 * side, 0.1 * side],
         grid: [robots.min(100), 5],
         rest: [x, to_tasks_m.map_or(0.5 * side, |gap| y + gap + 0.1 * side + block)],
-        quota: BTreeMap::new(),
-        sampled: SampledCounts::default(),
+        ..TaskFile::default()
     };
     let tasks = vec![task("hard", 2, 0.25 * side), task("easy", 1, 0.75 * side)];
     let is_taken = |[x, at]: Point| {

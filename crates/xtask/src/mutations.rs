@@ -9,7 +9,7 @@ use experiments::experiment::{Experiment, Overrides};
 use experiments::input_table::InputTable;
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
-use rne_core::Question;
+use rne_core::{Question, Registry};
 use usar_sim::scenario::Scenario;
 use usar_sim::simulation::Simulation;
 use usar_sim::snapshot::Identity;
@@ -100,7 +100,9 @@ fn kinds(folder: &Path) -> Vec<Kind> {
     let sweep = |bytes: &[u8]| {
         let text = String::from_utf8_lossy(bytes).into_owned();
         let place = root().join("scenarios/sweeps/damaged.ron");
-        Experiment::parse(text, &place, &Overrides::default()).map_err(|error| error.to_string()).is_ok()
+        Experiment::parse(text, &place, &Overrides::default(), &Registry::standard())
+            .map_err(|error| error.to_string())
+            .is_ok()
     };
     let path = folder.join("damaged.csv");
     let table = move |bytes: &[u8]| {
@@ -151,4 +153,4 @@ fn kinds(folder: &Path) -> Vec<Kind> {
     ]
 }
 
-const QUESTION: &str = r#"{"schema_version":1,"round":1,"roles":["a"],"needs":[{"name":"n","weight":1.0}],"tasks":[{"name":"x","difficulty":2,"place":[1.0,2.0]},{"name":"y","difficulty":1,"place":null}],"quotas":[{"members":[1,1]}],"members":[{"id":0,"role":0,"home":[0.0,0.0],"needs":[1.0],"energy_level":50.0,"hp_level":50.0},{"id":1,"role":0,"home":[1.0,0.0],"needs":[2.0],"energy_level":60.0,"hp_level":70.0}],"history":[],"random_seed":"0000"}"#;
+const QUESTION: &str = r#"{"schema_version":2,"round":1,"roles":["a"],"needs":[{"name":"n","weight":1.0}],"tasks":[{"name":"x","difficulty":2,"place":[1.0,2.0]},{"name":"y","difficulty":1,"place":null}],"quotas":[{"members":[1,1],"sizes":"Parts"}],"members":[{"id":0,"role":0,"home":[0.0,0.0],"needs":[1.0],"energy_level":50.0,"hp_level":50.0},{"id":1,"role":0,"home":[1.0,0.0],"needs":[2.0],"energy_level":60.0,"hp_level":70.0}],"history":[],"random_seed":"0000"}"#;

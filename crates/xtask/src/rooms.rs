@@ -2,15 +2,13 @@
 //! debris, steps of 0.01 to 0.05 s. Even seeds have errands, odd seeds a rescue mission. At first, every
 //! robot can reach every place of its own. Pushed debris may close a passage later.
 
-use std::collections::BTreeMap;
-
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 use rne_core::TaskId;
 use usar_sim::ids::RobotId;
 use usar_sim::model::rest_slot;
 use usar_sim::scenario::{
-    DebrisFile, DebrisShape, Errand, Movable, Point, Row, SampledCounts, Scenario, ScenarioFile, TaskFile,
+    DebrisFile, DebrisShape, Errand, Movable, Point, Row, Scenario, ScenarioFile, TaskFile,
 };
 
 use crate::worlds::{FreeSpace, base};
@@ -100,8 +98,7 @@ fn mission(mut file: ScenarioFile, draws: &mut ChaCha8Rng, kinds: &[FreeSpace; 2
             size_m: [2.0, 1.0],
             grid: [4, 3],
             rest: center,
-            quota: BTreeMap::new(),
-            sampled: SampledCounts::default(),
+            ..TaskFile::default()
         });
     }
     let scenario = Scenario::try_from(file.clone()).ok()?;

@@ -27,7 +27,7 @@ pub fn question(counts: [u32; 3]) -> Question {
         }
     });
     let members = members.collect();
-    let task = |name: &str, difficulty, x| Task { name: name.to_owned(), difficulty, place: Some([x, 80.0]) };
+    let task = |name: &str, difficulty, x| Task { place: Some([x, 80.0]), ..Task::new(name, difficulty) };
     let tasks = vec![task("hard", 2, 20.0), task("easy", 1, 80.0)];
     let order = hardest_first(tasks.iter().map(|task| task.difficulty));
     let question = Question {
@@ -40,6 +40,7 @@ pub fn question(counts: [u32; 3]) -> Question {
         tasks,
         quotas: Quota::equal(&counts.map(|count| count as usize), &order),
         members,
+        may_idle: false,
         history: Vec::new(),
         random_seed: RandomSeed::from(1),
     };

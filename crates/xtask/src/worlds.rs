@@ -4,8 +4,6 @@
 //! a fine grid and keep a robot's radius and clearance from all debris and walls. The largest connected
 //! part of these points is feasible.
 
-use std::collections::BTreeMap;
-
 use parry2d::bounding_volume::{Aabb, BoundingVolume};
 use parry2d::math::Vector;
 use rand::RngExt;
@@ -17,7 +15,7 @@ use usar_sim::ids::RobotId;
 use usar_sim::model::rest_slot;
 use usar_sim::scenario::{
     ConflictRules, Costs, DebrisFile, DebrisShape, Draws, Errand, InitialLevels, MissionRules, Movable,
-    Normal, PlanningRules, Point, Row, Sampled, SampledCounts, Scenario, ScenarioFile, TaskFile, ZoneFile,
+    Normal, PlanningRules, Point, Row, Sampled, Scenario, ScenarioFile, TaskFile, ZoneFile,
 };
 
 /// The scenario from which the robots have their roles and needs.
@@ -109,8 +107,7 @@ fn mission(seed: u64, draws: &mut ChaCha8Rng) -> Option<ScenarioFile> {
         size_m: [6.0, 3.0],
         grid: [8, 5],
         rest: [x, arena[1] * 0.35 + 2.0],
-        quota: BTreeMap::new(),
-        sampled: SampledCounts::default(),
+        ..TaskFile::default()
     };
     let tasks = vec![task("hard", 2, arena[0] * 0.2), task("easy", 1, arena[0] * 0.8)];
     let debris = debris(draws, arena, (8.0, robots), [0.01, 0.08]);

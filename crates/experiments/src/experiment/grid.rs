@@ -2,6 +2,7 @@
 
 use std::collections::BTreeSet;
 
+use rne_core::Registry;
 use usar_sim::scenario::{Scenario, ScenarioFile};
 
 use super::policy::PolicySpec;
@@ -58,14 +59,15 @@ pub struct Case {
 ///
 /// # Errors
 /// A policy cannot be read or is listed twice, or there is none.
-pub(super) fn checked_policies(written: &[String]) -> Result<Vec<PolicySpec>, Failure> {
+pub(super) fn checked_policies(written: &[String], registry: &Registry) -> Result<Vec<PolicySpec>, Failure> {
     if written.len() > POLICIES.count() {
         let most = POLICIES.most;
         return Err(Failure::input(format!("policies: must be at most {most}, found {}", written.len())));
     }
     let (mut policies, mut labels): (Vec<PolicySpec>, _) = (Vec::new(), BTreeSet::new());
     for text in written {
-        let policy = PolicySpec::parse(text).map_err(|error| Failure::input(format!("policies: {error}")))?;
+        let policy = PolicySpec::parse(text, registry);
+        let policy = policy.map_err(|error| Failure::input(format!("policies: {error}")))?;
         if !labels.insert(policy.label.clone()) {
             return Err(Failure::input(format!(
                 "policies: must not be listed twice, found {:?}",
@@ -136,9 +138,7 @@ impl Grid<'_> {
         let places = self.axes.iter().zip(values).map(|(axis, value)| format!("{}={value}: ", axis.path));
         let place = places.collect::<Vec<_>>().concat();
         let scenario = checked(file, &place)?;
-        let made = self.policies.iter().map(PolicySpec::driver);
-        let drivers =
-            made.collect::<Result<_, _>>().map_err(|error| Failure::input(format!("{place}{error}")))?;
+        let drivers = self.policies.iter().map(PolicySpec::driver).collect();
         self.cases.push(Case { values: values.to_vec(), scenario, drivers });
         Ok(())
     }

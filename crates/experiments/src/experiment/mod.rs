@@ -15,6 +15,7 @@ mod sweep_file;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
+use rne_core::Registry;
 use usar_sim::simulation::{Advance, Simulation};
 use xxhash_rust::xxh3::xxh3_128;
 
@@ -26,7 +27,7 @@ pub use cost::{Cost, check_cost};
 pub use file::sweep_schema;
 pub use grid::{Axis, Case, VARIANT};
 pub use keep::Keep;
-pub use policy::{PolicySpec, registry, set_registry, split_list};
+pub use policy::{PolicySpec, split_list, with_oracle};
 pub use program::{Build, Program};
 pub use read::{companion, defaults, with_settings};
 pub use shard::{Place, Shard};
@@ -79,6 +80,8 @@ pub struct Experiment {
     pub cases: Vec<Case>,
     /// The policies to compare.
     pub policies: Vec<PolicySpec>,
+    /// The policies that there are.
+    pub registry: Registry,
     /// The metrics of each trial.
     pub metrics: Catalogue,
     /// Number of paired trials for each case and policy.
@@ -103,6 +106,7 @@ pub(crate) struct Parts {
     pub base: Scenario,
     pub axes: Vec<Axis>,
     pub policies: Vec<String>,
+    pub registry: Registry,
     pub trials: u32,
     pub seeds: Seeds,
     pub is_checked: bool,
@@ -112,12 +116,12 @@ pub(crate) struct Parts {
 }
 
 impl Experiment {
-    /// Reads a scenario or a sweep file.
+    /// Reads a scenario or a sweep file, with policies of a registry.
     ///
     /// # Errors
     /// Bad input, with file, line, field, rule and found value.
-    pub fn load(path: &Path, overrides: &Overrides) -> Result<Self, Failure> {
-        Self::parse(read_text(path).map_err(Failure::input)?, path, overrides)
+    pub fn load(path: &Path, overrides: &Overrides, registry: &Registry) -> Result<Self, Failure> {
+        Self::parse(read_text(path).map_err(Failure::input)?, path, overrides, registry)
     }
 
     /// Reads the text of a scenario or a sweep file. `path` says where its scenario is, and appears in
@@ -125,11 +129,19 @@ impl Experiment {
     ///
     /// # Errors
     /// Those of [`Experiment::load`].
-    pub fn parse(text: String, path: &Path, overrides: &Overrides) -> Result<Self, Failure> {
+    pub fn parse(
+        text: String,
+        path: &Path,
+        overrides: &Overrides,
+        registry: &Registry,
+    ) -> Result<Self, Failure> {
         check_text(&text, path).map_err(Failure::input)?;
         let is_sweep = Fields::outer(&text).inside("").contains(&"scenario");
-        let (mut parts, readings) =
-            if is_sweep { from_sweep_file(text, path)? } else { from_scenario(text, path)? };
+        let (mut parts, readings) = if is_sweep {
+            from_sweep_file(text, path, registry)?
+        } else {
+            from_scenario(text, path, registry)?
+        };
         parts.base = with_settings(&parts.base, &overrides.set)?;
         let is_set = |path: &str| {
             let set = overrides.set.iter().map(|entry| entry.split('=').next().unwrap_or_default().trim());
@@ -150,7 +162,7 @@ impl Experiment {
                 "`readings` vary the policy RNE, but this sweep does not run RNE. Add it to `policies`.",
             ));
         }
-        parts.policies = with_readings(parts.policies, &readings);
+        parts.policies = with_readings(parts.policies, &readings, registry);
         parts.trials = overrides.trials.unwrap_or(parts.trials);
         parts.is_checked = overrides.is_checked;
         parts.keep = overrides.keep.unwrap_or(parts.keep);
@@ -164,8 +176,9 @@ impl Experiment {
     /// # Errors
     /// A policy, an axis or a case cannot be used.
     pub(crate) fn assemble(parts: Parts) -> Result<Self, Failure> {
-        let Parts { name, given, base, axes, policies, trials, seeds, is_checked, keep, program } = parts;
-        let policies = checked_policies(&policies)?;
+        let Parts { name, given, base, axes, policies, registry, trials, seeds, is_checked, keep, program } =
+            parts;
+        let policies = checked_policies(&policies, &registry)?;
         if let Seeds::Listed(list) = &seeds
             && list.len() < trials as usize
         {
@@ -188,15 +201,13 @@ impl Experiment {
         let cases = cases(&base, &axes, &policies)?;
         let program = program.map_or_else(|| Program::running(&policies), Ok)?;
         let id = |case: &Case, (i, policy): (usize, &PolicySpec)| {
-            let made = policy.make().map_err(Failure::input)?;
-            let (program, scenario) = (program.deciding(i), deciding_text(&case.scenario));
+            let (program, made) = (program.deciding(i), policy.made());
+            let scenario = deciding_text(&case.scenario);
             let text = format!("{program} {is_checked} {} {} {scenario}", made.name, made.options);
-            Ok(xxh3_128(text.as_bytes()))
+            xxh3_128(text.as_bytes())
         };
-        let ids = |case| {
-            policies.iter().enumerate().map(|policy| id(case, policy)).collect::<Result<Vec<_>, Failure>>()
-        };
-        let ids = cases.iter().map(ids).collect::<Result<Vec<_>, Failure>>()?;
+        let ids = |case| policies.iter().enumerate().map(|policy| id(case, policy)).collect();
+        let ids = cases.iter().map(ids).collect();
         Ok(Self {
             name,
             given,
@@ -205,6 +216,7 @@ impl Experiment {
             axes,
             cases,
             policies,
+            registry,
             trials,
             seeds,
             is_checked,
@@ -270,6 +282,7 @@ impl Experiment {
             base: self.base.clone(),
             axes: self.axes.clone(),
             policies: self.policies.iter().map(|policy| policy.written().to_owned()).collect(),
+            registry: self.registry.clone(),
             trials,
             seeds: self.seeds.clone(),
             is_checked: self.is_checked,

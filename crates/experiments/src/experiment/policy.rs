@@ -1,8 +1,9 @@
 //! Policies as a sweep names them: `RNE`, `RNE(score: Sum)`, or `label=RNE(score: Sum, sort: true)`.
 
-use std::sync::OnceLock;
+use std::fmt;
+use std::sync::Arc;
 
-use rne_core::{MadePolicy, Registry, RneOptions};
+use rne_core::{MadePolicy, Policy, Registry, RneOptions};
 use ron_fields::{Fields, nearest};
 use serde::de::DeserializeOwned;
 use usar_sim::scenario::Scenario;
@@ -11,31 +12,16 @@ use crate::Failure;
 use crate::oracle::{NotSimulated, Oracle, OracleOptions};
 use crate::run::Driver;
 
-static REGISTRY: OnceLock<Registry> = OnceLock::new();
-
-/// The policies that this program knows, with the oracle: the built-in policies, or those given by
-/// [`set_registry`].
-pub fn registry() -> &'static Registry {
-    REGISTRY.get_or_init(|| with_oracle(Registry::standard()))
-}
-
 /// A registry with the oracle, unless it has one of its own.
-fn with_oracle(mut registry: Registry) -> Registry {
+#[must_use]
+pub fn with_oracle(mut registry: Registry) -> Registry {
     // A caller's policy with the oracle's name stays.
     let _ = registry.add(NotSimulated::kind());
     registry
 }
 
-/// Gives this program its policies. Call it before any policy is looked up.
-///
-/// # Errors
-/// The program already has a registry. The error holds the refused registry, with the oracle.
-pub fn set_registry(registry: Registry) -> Result<(), Registry> {
-    REGISTRY.set(with_oracle(registry))
-}
-
 /// A policy with its options.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Clone)]
 pub struct PolicySpec {
     /// Its name in tables and figures.
     pub label: String,
@@ -45,14 +31,23 @@ pub struct PolicySpec {
     options: Vec<(String, String)>,
     /// Text that reads to the same policy.
     written: String,
+    made: MadePolicy,
+    /// The options of the oracle, and the policy that decides after its round; none for another policy.
+    oracle: Option<(OracleOptions, Option<Arc<dyn Policy>>)>,
+}
+
+impl fmt::Debug for PolicySpec {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.written)
+    }
 }
 
 impl PolicySpec {
-    /// Reads a policy.
+    /// Reads a policy of a registry.
     ///
     /// # Errors
     /// An unknown name, options that the policy does not have, or unclosed brackets; in one sentence.
-    pub fn parse(text: &str) -> Result<Self, String> {
+    pub fn parse(text: &str, registry: &Registry) -> Result<Self, String> {
         let text = text.trim();
         let open = text.find('(').unwrap_or(text.len());
         let (label, rest) = match text[..open].find('=') {
@@ -61,13 +56,13 @@ impl PolicySpec {
         };
         let (name, options) = rest.split_at(rest.find('(').unwrap_or(rest.len()));
         let name = name.trim();
-        registry().make(name, "").map_err(|error| {
-            let meant = nearest(name, registry().names());
+        registry.make(name, "").map_err(|error| {
+            let meant = nearest(name, registry.names());
             meant.map_or(error.to_string(), |meant| format!("{error}; did you mean {meant}?"))
         })?;
         let options = parse_options(options)?;
         let plain = plain(name, &options);
-        registry().parse(&plain).map_err(|error| with_hint(error.to_string()))?;
+        let made = registry.parse(&plain).map_err(|error| with_hint(error.to_string()))?;
         if label.is_some_and(|label| label.is_empty() || label.chars().any(char::is_control)) {
             return Err(format!("the label before `=` must be visible characters, found {text:?}"));
         }
@@ -76,37 +71,32 @@ impl PolicySpec {
                 "the label before `=` must not begin like a formula, with =, +, - or @, found {text:?}"
             ));
         }
-        if label.is_some_and(|label| label != name && registry().names().contains(&label)) {
+        if label.is_some_and(|label| label != name && registry.names().contains(&label)) {
             return Err(format!(
                 "the label before `=` must not be the name of another policy, found {text:?}"
             ));
         }
         let written = label.map_or(plain.clone(), |label| format!("{label}={plain}"));
         let label = label.map_or(plain, str::to_owned);
-        Ok(Self { label, name: name.to_owned(), options, written })
+        let oracle = (name == NotSimulated::NAME).then(|| oracle_of(&made, registry)).transpose()?;
+        Ok(Self { label, name: name.to_owned(), options, written, made, oracle })
     }
 
     /// The policy.
-    ///
-    /// # Errors
-    /// None: a policy that was read can be made.
-    pub fn make(&self) -> Result<MadePolicy, String> {
-        registry().parse(&self.plain()).map_err(|error| error.to_string())
+    #[must_use]
+    pub fn made(&self) -> &MadePolicy {
+        &self.made
     }
 
     /// The driver that answers for this policy in a trial.
-    ///
-    /// # Errors
-    /// The policy that decides after the oracle's round cannot be made.
-    pub fn driver(&self) -> Result<Driver, String> {
-        let made = self.make()?;
-        if self.name != NotSimulated::NAME {
-            return Ok(Driver::Policy(made.policy));
+    #[must_use]
+    pub fn driver(&self) -> Driver {
+        match &self.oracle {
+            Some((options, onwards)) => {
+                Driver::Oracle(Box::new(Oracle::new(options.clone(), onwards.clone())))
+            }
+            None => Driver::Policy(Arc::clone(&self.made.policy)),
         }
-        let options: OracleOptions = from_ron(&made.options)?;
-        let onwards = options.onwards(|then| Self::parse(then)?.make().map(|made| made.policy));
-        let onwards = onwards.map_err(|error| format!("policy ORACLE: then: {error}"))?;
-        Ok(Driver::Oracle(Box::new(Oracle::new(options, onwards))))
     }
 
     /// Refuses a policy that may not run in a scenario.
@@ -134,8 +124,7 @@ impl PolicySpec {
     /// All options of an RNE policy, with the defaults; `None` for another policy.
     #[must_use]
     pub fn rne_options(&self) -> Option<RneOptions> {
-        let all = self.make().ok().filter(|_| self.name == "RNE")?.options;
-        from_ron(&all).ok()
+        from_ron(&self.made.options).ok().filter(|_| self.name == "RNE")
     }
 
     /// The written options, with their values in RON.
@@ -149,6 +138,17 @@ impl PolicySpec {
     pub fn written(&self) -> &str {
         &self.written
     }
+}
+
+/// The options of an oracle, and the policy of the registry that decides after its round.
+fn oracle_of(
+    made: &MadePolicy,
+    registry: &Registry,
+) -> Result<(OracleOptions, Option<Arc<dyn Policy>>), String> {
+    let options: OracleOptions = from_ron(&made.options)?;
+    let make = |then: &str| PolicySpec::parse(then, registry).map(|spec| Arc::clone(&spec.made.policy));
+    let onwards = options.onwards(make).map_err(|error| format!("policy ORACLE: then: {error}"))?;
+    Ok((options, onwards))
 }
 
 /// Reads options as a registry writes them.
@@ -212,7 +212,7 @@ mod tests {
 
     #[test]
     fn policies_have_names_options_and_labels() {
-        let spec = |text| PolicySpec::parse(text).unwrap();
+        let spec = |text| PolicySpec::parse(text, &Registry::standard()).unwrap();
         assert_eq!(spec("DIS").label, "DIS");
         let options = spec("RNE( score : Sum, weights: [1, 2, 3, 4, 5, 6, 7], )");
         assert_eq!(options.label, "RNE(score: Sum, weights: [1, 2, 3, 4, 5, 6, 7])");
@@ -223,7 +223,7 @@ mod tests {
 
     #[test]
     fn bad_policies_are_refused() {
-        let refused = |text| PolicySpec::parse(text).unwrap_err();
+        let refused = |text| PolicySpec::parse(text, &Registry::standard()).unwrap_err();
         assert!(refused("NEAREST").contains("unknown policy"));
         assert!(refused("DIS(score: Sum)").contains("policy DIS: it has no options"));
         assert!(refused("RNE(luck: 3)").contains("policy RNE: "));

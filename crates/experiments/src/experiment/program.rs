@@ -45,8 +45,7 @@ impl Program {
     /// # Errors
     /// A policy is of another crate, and the file of the running program cannot be read.
     pub fn running(policies: &[PolicySpec]) -> Result<Self, Failure> {
-        let source = |spec: &PolicySpec| source_of(&spec.make().map_err(Failure::input)?);
-        let policies = policies.iter().map(source).collect::<Result<_, _>>()?;
+        let policies = policies.iter().map(|spec| source_of(spec.made())).collect::<Result<_, _>>()?;
         let version = env!("CARGO_PKG_VERSION").to_owned();
         Ok(Self { version, source: env!("USAR_ENGINE").to_owned(), policies })
     }
@@ -90,10 +89,13 @@ fn executable() -> Result<String, Failure> {
 
 #[cfg(test)]
 mod tests {
+    use rne_core::Registry;
+
     use super::*;
+    use crate::experiment::with_oracle;
 
     fn source(text: &str) -> String {
-        source_of(&PolicySpec::parse(text).unwrap().make().unwrap()).unwrap()
+        source_of(PolicySpec::parse(text, &with_oracle(Registry::standard())).unwrap().made()).unwrap()
     }
 
     #[test]
@@ -109,7 +111,7 @@ mod tests {
 
     #[test]
     fn a_policy_of_another_crate_has_the_hash_of_the_program_that_has_it() {
-        let mut policy = PolicySpec::parse("DIS").unwrap().make().unwrap();
+        let mut policy = PolicySpec::parse("DIS", &Registry::standard()).unwrap().made().clone();
         policy.file = "src/main.rs";
         let program = std::fs::read(std::env::current_exe().unwrap()).unwrap();
         assert!(program.len() > 1 << 20);

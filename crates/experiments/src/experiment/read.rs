@@ -2,11 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
+use rne_core::Registry;
 use ron_fields::Fields;
 use usar_sim::scenario::{Problem, Scenario, ScenarioFile, parse_ron, read_text};
 
 use super::file::SweepFile;
-use super::policy::registry;
 use super::sweep_file::{Reading, from_sweep_file};
 use super::{Keep, Parts, Seeds};
 use crate::failure::Failure;
@@ -42,8 +42,8 @@ pub fn companion(scenario: &Path) -> PathBuf {
 ///
 /// # Errors
 /// A scenario or a companion that cannot be used.
-pub fn defaults(scenario: &Path) -> Result<(String, u64), Failure> {
-    let (parts, _) = from_scenario(read_text(scenario).map_err(Failure::input)?, scenario)?;
+pub fn defaults(scenario: &Path, registry: &Registry) -> Result<(String, u64), Failure> {
+    let (parts, _) = from_scenario(read_text(scenario).map_err(Failure::input)?, scenario, registry)?;
     let seed = match &parts.seeds {
         Seeds::From(first) => *first,
         Seeds::Listed(list) => list.first().copied().unwrap_or(1),
@@ -52,7 +52,11 @@ pub fn defaults(scenario: &Path) -> Result<(String, u64), Failure> {
 }
 
 /// The sweep of a scenario: its companion's sweep, or one trial of RNE.
-pub(super) fn from_scenario(text: String, path: &Path) -> Result<(Parts, Vec<Reading>), Failure> {
+pub(super) fn from_scenario(
+    text: String,
+    path: &Path,
+    registry: &Registry,
+) -> Result<(Parts, Vec<Reading>), Failure> {
     let companion = companion(path);
     if companion.is_file() {
         Scenario::parse(&text, path).map_err(Failure::input)?;
@@ -66,7 +70,7 @@ pub(super) fn from_scenario(text: String, path: &Path) -> Result<(Parts, Vec<Rea
                 file.scenario
             )));
         }
-        return from_sweep_file(sweep, &companion);
+        return from_sweep_file(sweep, &companion, registry);
     }
     let base = Scenario::parse(&text, path).map_err(Failure::input)?;
     let parts = Parts {
@@ -74,6 +78,7 @@ pub(super) fn from_scenario(text: String, path: &Path) -> Result<(Parts, Vec<Rea
         given: text,
         axes: Vec::new(),
         policies: vec!["RNE".to_owned()],
+        registry: registry.clone(),
         trials: 1,
         seeds: Seeds::From(1),
         is_checked: false,
@@ -98,8 +103,8 @@ pub(super) fn canonical(scenario: &Scenario, path: &str) -> String {
 
 /// The policies, with RNE replaced by every combination of the readings. Each combination is named by the
 /// options that differ from the default.
-pub(super) fn with_readings(policies: Vec<String>, readings: &[Reading]) -> Vec<String> {
-    let all_options = |text: &str| registry().make("RNE", text).ok().map(|made| made.options);
+pub(super) fn with_readings(policies: Vec<String>, readings: &[Reading], registry: &Registry) -> Vec<String> {
+    let all_options = |text: &str| registry.make("RNE", text).ok().map(|made| made.options);
     let default = all_options("");
     let mut combinations = vec![Vec::new()];
     for (option, values) in readings {

@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 use std::fmt::Display;
 use std::path::Path;
 
+use rne_core::Registry;
 use ron::value::RawValue;
 use ron_fields::limits::Limit;
 use ron_fields::{Fields, nearest};
@@ -12,7 +13,7 @@ use xxhash_rust::xxh3::xxh3_128;
 
 use super::file::{Map, SweepFile};
 use super::grid::{VARIANT, check_bytes};
-use super::policy::{PolicySpec, registry};
+use super::policy::PolicySpec;
 use super::read::{canonical, decides};
 use super::{Axis, Parts, Seeds};
 use crate::failure::Failure;
@@ -26,9 +27,13 @@ const MOST_PROBLEMS: usize = 20;
 pub(super) type Reading = (String, Vec<String>);
 
 /// The parts of an experiment, and the readings of RNE.
-pub(super) fn from_sweep_file(text: String, path: &Path) -> Result<(Parts, Vec<Reading>), Failure> {
+pub(super) fn from_sweep_file(
+    text: String,
+    path: &Path,
+    registry: &Registry,
+) -> Result<(Parts, Vec<Reading>), Failure> {
     let file: SweepFile = parse_ron(&text, path).map_err(Failure::input)?;
-    let mut check = Check { path, fields: Fields::of(&text), problems: Vec::new() };
+    let mut check = Check { path, fields: Fields::of(&text), registry, problems: Vec::new() };
     check.sizes(&file);
     check.must_be_sound()?; // the rules below take time with each entry
     let base = check.base(&file);
@@ -50,6 +55,7 @@ pub(super) fn from_sweep_file(text: String, path: &Path) -> Result<(Parts, Vec<R
         given: text,
         axes,
         policies,
+        registry: registry.clone(),
         trials: file.trials.or(listed).unwrap_or(1),
         seeds,
         is_checked: false,
@@ -64,6 +70,7 @@ pub(super) fn from_sweep_file(text: String, path: &Path) -> Result<(Parts, Vec<R
 struct Check<'a> {
     path: &'a Path,
     fields: Fields,
+    registry: &'a Registry,
     /// Each problem with its line, 0 where it has none.
     problems: Vec<(usize, String)>,
 }
@@ -261,7 +268,7 @@ impl Check<'_> {
             }
             for (i, value) in values.iter().enumerate() {
                 let entry = format!("{field}[{i}]");
-                self.take(&entry, registry().make("RNE", &format!("({option}: {value})")));
+                self.take(&entry, self.registry.make("RNE", &format!("({option}: {value})")));
                 if values[..i].contains(value) {
                     self.fail(&entry, &format!("must not be listed twice, found {value}"));
                 }
@@ -279,7 +286,7 @@ impl Check<'_> {
     fn policies(&mut self, policies: &[String], baseline: Option<&str>, has_readings: bool) {
         let mut labels = Vec::new();
         for (i, policy) in policies.iter().enumerate() {
-            let spec = self.take(&format!("policies[{i}]"), PolicySpec::parse(policy));
+            let spec = self.take(&format!("policies[{i}]"), PolicySpec::parse(policy, self.registry));
             let Some(label) = spec.map(|spec| spec.label) else { continue };
             if labels.contains(&label) {
                 self.fail(&format!("policies[{i}]"), &format!("must not be listed twice, found {label:?}"));

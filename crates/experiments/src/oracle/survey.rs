@@ -192,9 +192,9 @@ mod tests {
         let member = |id| json!({"id": id, "role": 0, "home": [0, 0], "needs": [1], "energy_level": null, "hp_level": null});
         let task = |name| json!({"name": name, "difficulty": 1});
         let text = json!({
-            "schema_version": 1, "round": 1, "roles": ["walker"], "needs": [{"name": "constant", "weight": 1}],
+            "schema_version": 2, "round": 1, "roles": ["walker"], "needs": [{"name": "constant", "weight": 1}],
             "tasks": [task("far"), task("near")], "members": (0..robots).map(member).collect::<Vec<_>>(),
-            "quotas": [{"members": [robots / 2, robots / 2], "is_binding": false}],
+            "quotas": [{"members": [robots / 2, robots / 2], "sizes": "Parts"}],
             "history": [], "random_seed": "00".repeat(32),
         });
         Question::from_json(&text.to_string()).unwrap()

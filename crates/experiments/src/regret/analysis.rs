@@ -1,10 +1,11 @@
 //! The analysis of a study of regret.
 
-use rne_core::Assignment;
+use rne_core::{Assignment, Registry};
 use serde::Serialize;
 
 use super::features::{FEATURES, values};
 use super::study::{PlayedTrial, StudyFolder};
+use crate::experiment::PolicySpec;
 use crate::failure::Failure;
 use crate::oracle::{Objective, Standing, Survey};
 use crate::stats::bootstrap::{interval, ratio_interval};
@@ -141,19 +142,20 @@ struct Looked {
 ///
 /// # Errors
 /// A policy that this program does not know.
-pub fn analyse(folder: &StudyFolder, objective: &Objective) -> Result<Analysis, Failure> {
-    let specs = folder.study.specs()?;
-    let made = specs.iter().map(|spec| spec.make().map(|made| made.policy).map_err(Failure::input));
-    let policies = made.collect::<Result<Vec<_>, _>>()?;
+pub fn analyse(
+    folder: &StudyFolder,
+    objective: &Objective,
+    registry: &Registry,
+) -> Result<Analysis, Failure> {
+    let specs = folder.study.specs(registry)?;
     let labels: Vec<&str> = specs.iter().map(|spec| spec.label.as_str()).collect();
     let (mut looked, mut rows) = (Vec::new(), Vec::new());
     for trial in &folder.trials {
         for decision in &trial.decisions {
             let survey = decision.survey();
-            let choices: Vec<Option<Assignment>> = policies
-                .iter()
-                .map(|policy| policy.decide(&decision.question).ok().map(|decision| decision.assignment))
-                .collect();
+            let choice = |spec: &PolicySpec| spec.made().policy.decide(&decision.question).ok();
+            let choices: Vec<Option<Assignment>> =
+                specs.iter().map(|spec| Some(choice(spec)?.assignment)).collect();
             let Some(found) = look(trial, &survey, objective, &choices, decision) else { continue };
             rows.extend(rows_of(trial, decision.question.round, &labels, &found));
             looked.push(found);

@@ -108,7 +108,7 @@ impl OutcomeLog {
     pub fn outcomes(&self, then: Option<&str>) -> impl Iterator<Item = (Assignment, &Outcome)> {
         let is_asked = move |key: &(Option<String>, _)| key.0.as_deref() == then;
         let asked = self.known.iter().filter(move |(key, _)| is_asked(key));
-        asked.map(|((_, groups), outcome)| (Assignment { groups: groups.clone() }, outcome))
+        asked.map(|((_, groups), outcome)| (Assignment::new(groups.clone()), outcome))
     }
 
     /// Adds the outcome of an assignment.

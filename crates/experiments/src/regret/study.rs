@@ -8,6 +8,7 @@ use std::sync::Mutex;
 use std::sync::atomic::AtomicBool;
 
 use rayon::prelude::*;
+use rne_core::Registry;
 use serde::{Deserialize, Serialize};
 
 use super::decision::{Plan, PlayedDecision, play_decisions};
@@ -105,8 +106,8 @@ impl Study {
     ///
     /// # Errors
     /// A policy that this program does not know.
-    pub fn specs(&self) -> Result<Vec<PolicySpec>, Failure> {
-        let parse = |text: &String| PolicySpec::parse(text).map_err(Failure::input);
+    pub fn specs(&self, registry: &Registry) -> Result<Vec<PolicySpec>, Failure> {
+        let parse = |text: &String| PolicySpec::parse(text, registry).map_err(Failure::input);
         self.policies.iter().map(parse).collect()
     }
 
@@ -204,7 +205,7 @@ impl StudyFolder {
         if journal.metadata().map_err(trouble)?.len() > 0 {
             journal.write_all(b"\n").map_err(trouble)?;
         }
-        let specs = self.study.specs()?;
+        let specs = self.study.specs(&experiment.registry)?;
         let (missing, study) = (self.missing(), &self.study);
         let shared = Mutex::new((journal, Vec::new()));
         missing.into_par_iter().try_for_each(|number| {
@@ -244,21 +245,19 @@ fn play_trial(
 ) -> Result<PlayedTrial, Failure> {
     let seed = study.seeds[number as usize - 1];
     let driver = &specs[(number as usize - 1) % specs.len()];
-    let make = |spec: &PolicySpec| spec.make().map(|made| made.policy).map_err(Failure::input);
-    let named = specs.iter().map(make).collect::<Result<Vec<_>, _>>()?;
-    let named: Vec<_> = named.iter().map(|policy| &**policy).collect();
-    let then = study.then.as_deref().map(PolicySpec::parse).transpose().map_err(Failure::input)?;
-    let onwards = then.as_ref().map(make).transpose()?;
+    let named: Vec<_> = specs.iter().map(|spec| &*spec.made().policy).collect();
+    let parse = |then| PolicySpec::parse(then, &experiment.registry);
+    let then = study.then.as_deref().map(parse).transpose().map_err(Failure::input)?;
     let objective = Objective::parse("rescuees", &study.tasks).map_err(Failure::run)?;
     let plan = Plan {
         objective: &objective,
         limit: study.limit,
-        onwards: onwards.as_deref(),
+        onwards: then.as_ref().map(|spec| &*spec.made().policy),
         named: &named,
         rounds: &study.rounds,
     };
     let scenario = &experiment.cases[0].scenario;
-    let decisions = play_decisions((scenario, seed), &*make(driver)?, &plan, halt);
+    let decisions = play_decisions((scenario, seed), &*driver.made().policy, &plan, halt);
     let decisions = decisions.map_err(|error| match error {
         BranchError::Halted => Failure::Interrupted("stopped; the same command goes on".to_owned()),
         error => Failure::run(format!("trial {number}: {error}")),

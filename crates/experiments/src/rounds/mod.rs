@@ -130,8 +130,7 @@ pub(crate) mod testing {
             let of_task = (0..).zip(robots).filter(|(_, robot)| robot.2 == task);
             of_task.map(|(id, _)| id).collect::<Vec<u32>>()
         };
-        let task = |name: &str, difficulty| Task { name: name.into(), difficulty, place: None };
-        let tasks = vec![task("far", 2), task("near", 1)];
+        let tasks = vec![Task::new("far", 2), Task::new("near", 1)];
         let order = hardest_first(tasks.iter().map(|task| task.difficulty));
         let question = Question {
             schema_version: SCHEMA_VERSION,
@@ -141,6 +140,7 @@ pub(crate) mod testing {
             tasks,
             quotas: Quota::equal(&[robots.len()], &order),
             members: (0..).zip(robots).map(member).collect(),
+            may_idle: false,
             history: Vec::new(),
             random_seed: RandomSeed::from(1),
         };

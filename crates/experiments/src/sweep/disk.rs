@@ -5,6 +5,7 @@ use std::fs::{self, File};
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
+use rne_core::Registry;
 use usar_sim::scenario::Scenario;
 
 use super::dictionary::{DICTIONARY, dictionary};
@@ -169,11 +170,11 @@ pub fn broken_files(path: &Path, manifest: &Manifest) -> Vec<String> {
     manifest.files.iter().filter(is_broken).map(|file| file.name.clone()).collect()
 }
 
-/// The experiment of a folder.
+/// The experiment of a folder, with policies of a registry.
 ///
 /// # Errors
 /// Its resolved scenario cannot be read.
-pub fn experiment_of(path: &Path, manifest: &Manifest) -> Result<Experiment, Failure> {
+pub fn experiment_of(path: &Path, manifest: &Manifest, registry: &Registry) -> Result<Experiment, Failure> {
     let (base, _) = Scenario::load(&path.join(RESOLVED)).map_err(Failure::input)?;
     let given = files::read(&path.join(GIVEN)).unwrap_or_default();
     let given = String::from_utf8(given).unwrap_or_default();
@@ -183,6 +184,7 @@ pub fn experiment_of(path: &Path, manifest: &Manifest) -> Result<Experiment, Fai
         base,
         axes: manifest.axes.clone(),
         policies: manifest.policies.clone(),
+        registry: registry.clone(),
         trials: manifest.trials,
         seeds: manifest.seeds.clone(),
         is_checked: manifest.is_checked,
@@ -195,10 +197,10 @@ pub fn experiment_of(path: &Path, manifest: &Manifest) -> Result<Experiment, Fai
 ///
 /// # Errors
 /// The folder does not hold a sweep.
-pub fn experiment_in(path: &Path) -> Result<(Experiment, Manifest), Failure> {
+pub fn experiment_in(path: &Path, registry: &Registry) -> Result<(Experiment, Manifest), Failure> {
     let missing = || Failure::input(format!("{}: is not the folder of a finished sweep", path.display()));
     let manifest = read_manifest(path)?.ok_or_else(missing)?;
-    Ok((experiment_of(path, &manifest)?, manifest))
+    Ok((experiment_of(path, &manifest, registry)?, manifest))
 }
 
 /// Whether a folder holds a sweep. The program that made it may be another one.

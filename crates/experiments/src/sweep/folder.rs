@@ -12,6 +12,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use rne_core::Registry;
+
 use super::archive;
 use super::damages::Damages;
 use super::disk::{
@@ -155,12 +157,12 @@ impl Folder {
         Ok((store, results))
     }
 
-    /// Reads a folder, complete or not.
+    /// Reads a folder, complete or not, with policies of a registry.
     ///
     /// # Errors
     /// It is not the folder of a sweep, or its files are damaged.
-    pub fn read(path: &Path) -> Result<Self, Failure> {
-        let (folder, damages) = Self::read_damaged(path)?;
+    pub fn read(path: &Path, registry: &Registry) -> Result<Self, Failure> {
+        let (folder, damages) = Self::read_damaged(path, registry)?;
         if damages.is_empty() { Ok(folder) } else { Err(Failure::input(damages.join("\n"))) }
     }
 
@@ -168,9 +170,9 @@ impl Folder {
     ///
     /// # Errors
     /// The folder does not hold a sweep.
-    pub fn read_damaged(path: &Path) -> Result<(Self, Vec<String>), Failure> {
+    pub fn read_damaged(path: &Path, registry: &Registry) -> Result<(Self, Vec<String>), Failure> {
         let manifest = manifest_in(path)?;
-        let experiment = Arc::new(experiment_of(path, &manifest)?);
+        let experiment = Arc::new(experiment_of(path, &manifest, registry)?);
         let broken = broken_files(path, &manifest);
         let mut damages = Vec::new();
         let is_archived = manifest.files.iter().any(|file| file.name == archive::FILE);

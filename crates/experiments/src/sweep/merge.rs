@@ -4,6 +4,8 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
+use rne_core::Registry;
+
 use super::archive;
 use super::disk::{broken_files, experiment_of, manifest_in, resolved_in};
 use super::folder::{Folder, Opening};
@@ -43,10 +45,10 @@ impl Merge {
     /// # Errors
     /// A folder is damaged or does not hold a sweep; the folders hold different sweeps or come from
     /// different programs; two of them disagree about a trial; or a trial is missing.
-    pub fn of(folders: &[PathBuf]) -> Result<Self, Failure> {
+    pub fn of(folders: &[PathBuf], registry: &Registry) -> Result<Self, Failure> {
         let [first, ..] = folders else { return Err(Failure::input("there is nothing to merge")) };
         let manifest = manifest_in(first)?;
-        let experiment = Arc::new(experiment_of(first, &manifest)?);
+        let experiment = Arc::new(experiment_of(first, &manifest, registry)?);
         check_program(first, &manifest, &experiment.policies)?;
         let resolved = experiment.base.resolved();
         let part = |path: &PathBuf| {
@@ -160,7 +162,7 @@ impl Part {
             })?;
             return Ok(Self { path: path.to_owned(), manifest, store, places: None });
         }
-        let (store, places) = Folder::read(path)?.into_store();
+        let (store, places) = Folder::read(path, &experiment.registry)?.into_store();
         Ok(Self { path: path.to_owned(), manifest, store, places: Some(places) })
     }
 }

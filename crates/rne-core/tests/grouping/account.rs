@@ -3,7 +3,7 @@
 use proptest::prelude::*;
 use rne_core::decision::RneAccount;
 use rne_core::policies::rne::MergeReading;
-use rne_core::{Account, Question, RneOptions};
+use rne_core::{Account, GroupSizes, Question, RneOptions};
 
 use crate::oracle::{Oracle, as_set, is_close, nats};
 use crate::support::{all_options, decide, drawn_team, question, rne};
@@ -115,7 +115,7 @@ fn check_account(question: &Question, options: &RneOptions) {
             Some(value) => assert!(is_close(value, oracle.suitability(group))),
         }
     }
-    if question.quotas.iter().all(|quota| !quota.is_binding) {
+    if question.quotas.iter().all(|quota| !quota.binds()) {
         let value = |task: &rne_core::TaskId| account.suitability[task.index()].value.unwrap_or(f64::MIN);
         let from_the_hardest: Vec<f64> = question.hardest_first().iter().map(value).collect();
         assert!(from_the_hardest.windows(2).all(|pair| pair[0] >= pair[1] - 1e-12), "{from_the_hardest:?}");
@@ -141,8 +141,8 @@ proptest! {
         seed in 0..1000_u64,
     ) {
         let mut question = question(drawn_team(&counts, seed), &[2, 1, 2, 3][..tasks]);
-        for (quota, is_binding) in question.quotas.iter_mut().zip(binding) {
-            quota.is_binding = is_binding;
+        for (quota, binds) in question.quotas.iter_mut().zip(binding) {
+            quota.sizes = if binds { GroupSizes::Binding } else { GroupSizes::Parts };
         }
         check_account(&question, &RneOptions::default());
     }

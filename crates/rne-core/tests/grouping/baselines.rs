@@ -1,7 +1,7 @@
 //! DIS, ENG, HP_DIS and RANDOM by their definitions, for any number of tasks.
 
 use proptest::prelude::*;
-use rne_core::{Account, Member, Question, Quota, RandomSeed, RoleId};
+use rne_core::{Account, GroupSizes, Member, Question, Quota, RandomSeed, RoleId};
 
 use crate::support::{any_team, decide, drawn_team, question, two_tasks};
 
@@ -59,7 +59,7 @@ proptest! {
     fn baselines_keep_uneven_quotas_task_by_task(seed in 0..1000_u64) {
         let mut question = question(drawn_team(&[6, 3, 4], seed), &[1, 3, 2]);
         for (quota, members) in question.quotas.iter_mut().zip([[1, 1, 4], [0, 0, 3], [3, 0, 1]]) {
-            *quota = Quota { members: members.to_vec(), is_binding: false };
+            *quota = Quota { members: members.to_vec(), sizes: GroupSizes::Parts };
         }
         for policy in ["DIS", "ENG", "HP_DIS", "RANDOM"] {
             decide(policy, &question); // checks the sizes

@@ -110,7 +110,7 @@ impl<'a> Oracle<'a> {
     fn fits(&self, all: &[Vec<u32>], group: &[u32], task: usize) -> bool {
         let count = |ids: &[u32], role| ids.iter().filter(|id| self.member(**id).role == role).count();
         let roles = self.question.role_ids().zip(&self.question.quotas);
-        let mut binding = roles.filter(|(role, quota)| quota.is_binding && count(&all.concat(), *role) > 0);
+        let mut binding = roles.filter(|(role, quota)| quota.binds() && count(&all.concat(), *role) > 0);
         binding.all(|(role, quota)| count(group, role) == quota.members[task])
     }
 

@@ -1,7 +1,7 @@
 //! Binding quotas: every policy keeps them task by task, and RNE finds the best groups that do.
 
 use proptest::prelude::*;
-use rne_core::{Assignment, Question, Quota, RneOptions};
+use rne_core::{Assignment, GroupSizes, Question, Quota, RneOptions};
 
 use crate::many_tasks::check_against_oracle;
 use crate::support::{all_options, decide, drawn_team, names, question, rne};
@@ -10,7 +10,8 @@ use crate::support::{all_options, decide, drawn_team, names, question, rne};
 fn with_quotas(quotas: [(&[usize], bool); 3], difficulties: &[u32], seed: u64) -> Question {
     let counts = quotas.map(|(members, _)| members.iter().sum());
     let mut question = question(drawn_team(&counts, seed), difficulties);
-    let quota = |(members, is_binding): (&[usize], bool)| Quota { members: members.to_vec(), is_binding };
+    let sizes = |binds| if binds { GroupSizes::Binding } else { GroupSizes::Parts };
+    let quota = |(members, binds): (&[usize], bool)| Quota { members: members.to_vec(), sizes: sizes(binds) };
     question.quotas = quotas.into_iter().map(quota).collect();
     question.checked().unwrap()
 }
@@ -106,7 +107,7 @@ fn more_tasks_than_are_matched_exactly_keep_binding_quotas_too() {
     let mut question = question(drawn_team(&[12, 10, 9], 2), &[1, 2, 3, 4, 5, 6, 7, 8, 9]);
     let quotas = [[4, 1, 1, 1, 1, 1, 1, 1, 1], [2, 1, 1, 1, 1, 1, 1, 1, 1], [0, 1, 2, 1, 1, 1, 1, 1, 1]];
     for (quota, members) in question.quotas.iter_mut().zip(quotas) {
-        *quota = Quota { members: members.to_vec(), is_binding: true };
+        *quota = Quota { members: members.to_vec(), sizes: GroupSizes::Binding };
     }
     for policy in names().into_iter().chain([rne(&all_options()[70])]) {
         let is_exact = !policy.starts_with("RNE");

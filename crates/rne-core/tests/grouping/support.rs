@@ -76,9 +76,8 @@ pub fn question(members: Vec<Member>, difficulties: &[u32]) -> Question {
     let names = names.chain((5..).map(|number| format!("task {number}")));
     let places = PLACES.into_iter().chain((5..).map(|x| [f64::from(x), 90.0]));
     let task = |((name, place), difficulty): ((String, [f64; 2]), &u32)| Task {
-        name,
-        difficulty: *difficulty,
         place: Some(place),
+        ..Task::new(&name, *difficulty)
     };
     let count = |role| members.iter().filter(|member| member.role == RoleId(role)).count();
     let counts: Vec<usize> = (0..3).map(count).collect();
@@ -91,6 +90,7 @@ pub fn question(members: Vec<Member>, difficulties: &[u32]) -> Question {
         tasks: names.zip(places).zip(difficulties).map(task).collect(),
         quotas: Quota::equal(&counts, &hardest_first(difficulties.iter().copied())),
         members,
+        may_idle: false,
         history: Vec::new(),
         random_seed: RandomSeed::from(5),
     };

@@ -17,12 +17,11 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use experiments::comparison::short;
-use experiments::experiment::registry;
 use experiments::explore::{Free, WORST};
 use experiments::run::run_trial;
 use experiments::{Failure, panic_message};
 use rayon::prelude::*;
-use rne_core::Policy;
+use rne_core::{Policy, Registry};
 use ron_fields::{Fields, with_values};
 use usar_sim::scenario::{Scenario, ScenarioFile};
 
@@ -284,5 +283,5 @@ fn candidate(text: &str) -> String {
 }
 
 fn the_policy() -> Result<Arc<dyn Policy>, String> {
-    registry().parse(POLICY).map(|made| made.policy).map_err(|error| error.to_string())
+    Registry::standard().parse(POLICY).map(|made| made.policy).map_err(|error| error.to_string())
 }

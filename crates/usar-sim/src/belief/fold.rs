@@ -1,5 +1,8 @@
 //! A belief as a fold over reports.
 
+use std::ops::Range;
+
+use rne_core::TaskId;
 use serde::{Deserialize, Serialize};
 
 use super::known::{Inflation, KnownDebris, KnownRescuee, KnownTask, KnownWreck, KnownZone};
@@ -70,6 +73,16 @@ impl Belief {
         &self.zones_on
     }
 
+    /// Number of rescuees that are believed to wait in a task with these rescuees: as many as were said to,
+    /// without those that were reported gone since. None if nobody said.
+    #[must_use]
+    pub fn waiting(&self, task: TaskId, rescuees: Range<usize>) -> Option<u32> {
+        let said = self.tasks.get(task.index())?;
+        let is_gone = |known: &&KnownRescuee| known.waits_at.is_none() && known.at_step > said.at_step;
+        let gone = rescuees.filter_map(|id| self.rescuees.get(id)).filter(is_gone).count();
+        Some(said.waiting.saturating_sub(gone as u32))
+    }
+
     /// Takes a report into account. Returns whether it is newer than what was heard of the thing before.
     pub fn hear(&mut self, report: &Report) -> bool {
         let (at_step, sd_m) = (report.at_step, report.sd_m);
@@ -88,8 +101,9 @@ impl Belief {
             Statement::RescueeIsGone { rescuee } => {
                 self.hear_of_rescuee(rescuee.index(), KnownRescuee { waits_at: None, at_step, sd_m })
             }
-            Statement::TaskIs { task, open } => {
-                self.hear_of_task(task.index(), KnownTask { open: *open, at_step })
+            Statement::TaskIs { task, open, waiting } => {
+                let known = KnownTask { open: *open, waiting: *waiting, at_step };
+                self.hear_of_task(task.index(), known)
             }
             Statement::IAm(_) => false, // for the whole team
             Statement::WreckLies { robot, at, radius, is_aerial } => {

@@ -70,6 +70,8 @@ pub struct KnownWreck {
 pub struct KnownTask {
     /// Whether it is open: it has begun and not ended.
     pub open: bool,
+    /// Number of rescuees that waited there.
+    pub waiting: u32,
     /// The step of the last report.
     pub at_step: u64,
 }

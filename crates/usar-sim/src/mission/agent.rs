@@ -95,7 +95,7 @@ pub struct Agent {
     /// Whether it cannot get home or to rest, so that the team does not wait for it.
     pub is_cut_off: bool,
     /// The rest places that it has given up on in this round, a bit for each task.
-    pub rests_given_up: u16,
+    pub rests_given_up: u64,
     /// Its progress towards its goal.
     pub watch: Watch,
     /// The most energy and HP that one round has cost it, in percent points.

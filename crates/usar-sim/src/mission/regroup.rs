@@ -10,7 +10,7 @@ use crate::event::{Event, TurnBackCause};
 use crate::ids::RobotId;
 use crate::model::Model;
 use crate::robot::Robot;
-use crate::scenario::{MissionRules, RestAtHome, RoundEnd, Scenario, TaskFile};
+use crate::scenario::{EmptyTasks, MissionRules, NeedFile, RestAtHome, RoundEnd, Scenario, TaskFile};
 use crate::seed::{Purpose, stream};
 
 impl Mission {
@@ -77,7 +77,7 @@ impl Mission {
         let is_empty = question.members.is_empty();
         self.pending = Some(Pending { question, unfit });
         if is_empty {
-            self.assign(&Assignment { groups: vec![Vec::new(); self.groups.len()] }, scene);
+            self.assign(&Assignment::new(vec![Vec::new(); self.groups.len()]), scene);
         }
         restocked
     }
@@ -167,45 +167,66 @@ impl Mission {
 /// The question how these robots, as they said they are, are to be grouped.
 fn question(model: &Model, round: u32, belief: &Belief, fit: &[&Robot]) -> Question {
     let scenario = &model.scenario;
+    let need = |need: &NeedFile| Need { name: need.name.clone(), weight: need.weight };
+    let tasks: Vec<Task> = scenario
+        .tasks
+        .iter()
+        .zip(model.task_ids())
+        .map(|(file, id)| {
+            let after = |name: &String| scenario.tasks.iter().position(|task| task.name == *name);
+            Task {
+                name: file.name.clone(),
+                difficulty: file.difficulty,
+                place: Some(file.center),
+                rescuees: belief.waiting(id, model.tasks[id.index()].rescuees.clone()),
+                value: file.value,
+                requires: file.requires.clone(),
+                duration_s: file.duration_s,
+                after: file.after.iter().filter_map(after).map(|number| TaskId(number as u16)).collect(),
+            }
+        })
+        .collect();
     let count = |role: usize| fit.iter().filter(|robot| robot.role.index() == role).count();
+    let is_open = open_tasks(belief, &tasks, scenario.mission.empty_tasks);
+    let quota = |role: usize| {
+        let asked = asked(scenario, role, &is_open);
+        Quota::share(count(role), &asked, &model.hardest_first, scenario.mission.group_sizes)
+    };
     Question {
         schema_version: SCHEMA_VERSION,
         round,
         roles: scenario.roles.iter().map(|role| role.name.clone()).collect(),
-        needs: scenario
-            .needs
-            .iter()
-            .map(|need| Need { name: need.name.clone(), weight: need.weight })
-            .collect(),
-        tasks: scenario
-            .tasks
-            .iter()
-            .map(|task| Task {
-                name: task.name.clone(),
-                difficulty: task.difficulty,
-                place: Some(task.center),
-            })
-            .collect(),
-        quotas: (0..scenario.roles.len())
-            .map(|role| Quota::share(count(role), &asked(scenario, role, belief), &model.hardest_first))
-            .collect(),
+        needs: scenario.needs.iter().map(need).collect(),
+        quotas: (0..scenario.roles.len()).map(quota).collect(),
+        tasks,
         members: fit.iter().filter_map(|robot| robot.member(&scenario.needs)).collect(),
+        may_idle: scenario.mission.may_idle,
         history: Vec::new(),
         random_seed: RandomSeed(stream(model.seed, Purpose::Grouping, u64::from(round)).get_seed()),
     }
 }
 
+/// For each task, whether it gets robots: whether it has begun and not ended and, if the rules ask for it and
+/// another task has, whether it has work that the team knows of.
+fn open_tasks(belief: &Belief, tasks: &[Task], rule: EmptyTasks) -> Vec<bool> {
+    let has_begun = |number: usize| belief.tasks.get(number).is_none_or(|task| task.open);
+    let is_empty = |task: &Task| rule == EmptyTasks::GetNobody && task.rescuees == Some(0);
+    let has_begun: Vec<bool> = (0..tasks.len()).map(has_begun).collect();
+    let has_work: Vec<bool> =
+        has_begun.iter().zip(tasks).map(|(begun, task)| *begun && !is_empty(task)).collect();
+    if has_work.contains(&true) { has_work } else { has_begun }
+}
+
 /// The number of robots of a role for which each task asks.
-fn asked(scenario: &Scenario, role: usize, belief: &Belief) -> Vec<Option<usize>> {
+fn asked(scenario: &Scenario, role: usize, is_open: &[bool]) -> Vec<Option<usize>> {
     let name = &scenario.roles[role].name;
     let quota = |task: &TaskFile| task.quota.get(name).map(|quota| *quota as usize);
     let mut asked: Vec<Option<usize>> = scenario.tasks.iter().map(quota).collect();
-    // A task that has not begun, or has ended, asks for no robot; an open one takes the robots that are left.
-    let is_open = |number: usize| belief.tasks.get(number).is_none_or(|task| task.open);
-    if !(0..asked.len()).all(is_open) {
-        let takes_the_rest = (0..asked.len()).any(|number| is_open(number) && asked[number].is_none());
-        for (number, asked) in asked.iter_mut().enumerate() {
-            *asked = if is_open(number) { asked.filter(|_| takes_the_rest) } else { Some(0) };
+    // A task that is not open asks for no robot; an open one takes the robots that are left.
+    if is_open.contains(&false) {
+        let takes_the_rest = (0..asked.len()).any(|number| is_open[number] && asked[number].is_none());
+        for (asked, is_open) in asked.iter_mut().zip(is_open) {
+            *asked = if *is_open { asked.filter(|_| takes_the_rest) } else { Some(0) };
         }
     }
     asked

@@ -2,10 +2,11 @@
 //! and explains them all; a test compares the two. There is no default for the team, the arena, the duration
 //! and the tasks of a mission.
 
+use rne_core::GroupSizes;
 use rne_core::hierarchy::NeedLevel;
 
 use super::file::{
-    CostUnit, Costs, InitialLevels, LoadAtRest, Measure, MissionRules, Movable, NeedFile, Normal,
+    CostUnit, Costs, EmptyTasks, InitialLevels, LoadAtRest, Measure, MissionRules, Movable, NeedFile, Normal,
     PlanningRules, RestAtHome, RestFills, RightOfWay, RoleFile, RoleKind, RoundEnd, TurnBack,
 };
 use crate::vitals::{Rates, WorkRates};
@@ -92,6 +93,9 @@ impl Default for MissionRules {
             rest_at_home: RestAtHome::DuringRound,
             load_at_rest: LoadAtRest::Delivered,
             round_end: RoundEnd::EverybodyHome,
+            group_sizes: GroupSizes::Parts,
+            may_idle: false,
+            empty_tasks: EmptyTasks::GetNobody,
             resting_guides: true,
             loading_s: 2.0,
             reach_m: 1.0,

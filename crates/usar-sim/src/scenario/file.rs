@@ -267,7 +267,7 @@ pub struct Normal {
 }
 
 /// A block of rescuees and the rest place that belongs to it.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct TaskFile {
     /// Name of the task.
@@ -289,6 +289,19 @@ pub struct TaskFile {
     /// Debris and radiation zones drawn between home and this task, in addition.
     #[serde(default)]
     pub sampled: SampledCounts,
+    /// What one of its rescuees is worth. Policies are told this and the next three; the mission itself does
+    /// not use them.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub value: Option<f64>,
+    /// The least that the needs of its group should add up to, by the names of needs.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub requires: BTreeMap<String, f64>,
+    /// How long its work is expected to take, in seconds.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub duration_s: Option<f64>,
+    /// Names of the tasks after which it should be done.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub after: Vec<String>,
 }
 
 /// A piece of debris.

@@ -1,5 +1,6 @@
 //! The rules of a scenario as they are written: costs, the mission, planning and right of way.
 
+use rne_core::GroupSizes;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -105,6 +106,16 @@ pub enum RoundEnd {
     WithoutResting,
 }
 
+/// Who goes to a task of which the team knows that no rescuee waits there.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+pub enum EmptyTasks {
+    /// Nobody, as long as another task has work. The default.
+    #[default]
+    GetNobody,
+    /// A group like that of any other task.
+    GetGroups,
+}
+
 /// Rules of the mission.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
@@ -130,6 +141,12 @@ pub struct MissionRules {
     pub load_at_rest: LoadAtRest,
     /// Who must be home before the next round begins.
     pub round_end: RoundEnd,
+    /// How far groups must have the sizes that the question says, where no quota of a task binds.
+    pub group_sizes: GroupSizes,
+    /// Whether a policy may leave robots idle at home.
+    pub may_idle: bool,
+    /// Who goes to a task of which the team knows that no rescuee waits there.
+    pub empty_tasks: EmptyTasks,
     /// Whether a robot that rests, or is on its way to rest, still guides its group.
     pub resting_guides: bool,
     /// Time to load one rescuee, in seconds.

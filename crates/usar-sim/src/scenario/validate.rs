@@ -74,6 +74,12 @@ fn sizes(check: &mut Checker, file: &ScenarioFile) {
     check.entries("tasks", file.tasks.len(), tasks);
     for (i, task) in file.tasks.iter().enumerate() {
         check.entries(format!("tasks[{i}].quota"), task.quota.len(), Limit { least: 0.0, ..limits::ROLES });
+        check.entries(
+            format!("tasks[{i}].requires"),
+            task.requires.len(),
+            Limit { least: 0.0, ..limits::NEEDS },
+        );
+        check.entries(format!("tasks[{i}].after"), task.after.len(), tasks);
     }
     let rescuees = file.tasks.iter().map(|task| u64::from(task.grid[0]) * u64::from(task.grid[1]));
     let later = file.timeline.iter().filter_map(|moment| match &moment.event {
@@ -261,6 +267,7 @@ fn tasks(check: &mut Checker, file: &ScenarioFile) {
         check.count(format!("{field}.difficulty"), task.difficulty, limits::DIFFICULTY);
         check.count(format!("{field}.sampled.debris"), task.sampled.debris, limits::SAMPLED_DEBRIS);
         check.count(format!("{field}.sampled.radiation"), task.sampled.radiation, limits::SAMPLED_ZONES);
+        told_facts(check, &field, file, task);
         for (role, quota) in &task.quota {
             check.count(format!("{field}.quota.{role:?}"), *quota, limits::QUOTA);
             if !file.roles.iter().any(|known| known.name == *role) {
@@ -268,6 +275,31 @@ fn tasks(check: &mut Checker, file: &ScenarioFile) {
                 let rule = ("must name roles of the scenario".to_owned(), meant(role, known));
                 check.fail_with(format!("{field}.quota"), rule, shown(role));
             }
+        }
+    }
+}
+
+/// Checks what policies are told of a task.
+fn told_facts(check: &mut Checker, field: &str, file: &ScenarioFile, task: &TaskFile) {
+    if let Some(value) = task.value {
+        check.number(format!("{field}.value"), value, limits::VALUE);
+    }
+    if let Some(seconds) = task.duration_s {
+        check.number(format!("{field}.duration_s"), seconds, limits::WORK_S);
+    }
+    for (need, least) in &task.requires {
+        check.number(format!("{field}.requires.{need:?}"), *least, limits::REQUIRED);
+        if !file.needs.iter().any(|known| known.name == *need) {
+            let known = file.needs.iter().map(|need| need.name.as_str());
+            let rule = ("must name needs of the scenario".to_owned(), meant(need, known));
+            check.fail_with(format!("{field}.requires"), rule, shown(need));
+        }
+    }
+    for other in &task.after {
+        if *other == task.name || !file.tasks.iter().any(|known| known.name == *other) {
+            let known = file.tasks.iter().map(|task| task.name.as_str());
+            let rule = ("must name other tasks of the scenario".to_owned(), meant(other, known));
+            check.fail_with(format!("{field}.after"), rule, shown(other));
         }
     }
 }

@@ -3,6 +3,7 @@
 //! Ranges are discs that shrink with health; nothing occludes. A robot reports only what changed since the
 //! belief that it shares heard of it last.
 
+pub(crate) mod base;
 mod debris;
 pub(crate) mod oneself;
 mod radiation;

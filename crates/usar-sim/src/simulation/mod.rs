@@ -12,7 +12,7 @@ mod timeline;
 
 use std::sync::Arc;
 
-use rne_core::{Assignment, AssignmentError, Decision, Member, Question};
+use rne_core::{AssignmentError, Decision, Member, Question};
 use thiserror::Error;
 
 use crate::belief::Beliefs;
@@ -157,7 +157,7 @@ impl Simulation {
     pub fn assign(&mut self, mut decision: Decision) -> Result<(), AssignError> {
         let question = self.question.as_ref().ok_or(AssignError::NotAsked)?;
         // A hand-made decision may name the members of a group in any order.
-        decision.assignment = Assignment::new(decision.assignment.groups);
+        decision.assignment = decision.assignment.sorted();
         decision.assignment.check(question)?;
         let truth = self.truth();
         let (mission, mut scene) = self.state.scene(&self.model);

@@ -1,7 +1,6 @@
 //! Everything that changes in a trial, and the stages of a step that change it.
 
 use parry2d::math::Vector;
-use rne_core::TaskId;
 use serde::{Deserialize, Serialize};
 
 use super::timeline::Timeline;
@@ -18,7 +17,7 @@ use crate::record::DecisionRecord;
 use crate::report::{Report, Speaker, Statement};
 use crate::robot::{Condition, Robot, STANDING_MPS};
 use crate::scenario::{CostUnit, Costs};
-use crate::sensors::{look_around, oneself};
+use crate::sensors::{base, look_around, oneself};
 use crate::tally::{Tally, delay_cause};
 use crate::vitals::{energy_cost, hp_cost};
 use crate::world::World;
@@ -71,7 +70,7 @@ impl State {
         let tally = |start: &RobotStart| Tally::new(start.energy, start.hp);
         Self {
             step: 0,
-            sent: closed_tasks(&world),
+            sent: model.task_ids().map(|task| base::report(&world, model, task, 0)).collect(),
             beliefs: Beliefs::nothing(
                 model.tasks.len(),
                 Inflation::of(&model.scenario),
@@ -251,13 +250,6 @@ impl State {
             self.part_of_events(),
         ]
     }
-}
-
-/// What the base says at the start: which tasks have not begun.
-fn closed_tasks(world: &World) -> Vec<Report> {
-    let tasks = (0..).map(TaskId).zip(&world.closed_tasks).filter(|(_, is_closed)| **is_closed);
-    let says = tasks.map(|(task, _)| Statement::TaskIs { task, open: false });
-    says.map(|says| Report { from: Speaker::Base, says, at_step: 0, sd_m: 0.0 }).collect()
 }
 
 /// Takes energy and HP, in percent, from a robot, and charges them to the robot and to its group.

@@ -12,7 +12,7 @@ use crate::ids::RobotId;
 use crate::model::{Action, Model};
 use crate::report::{Report, Speaker, Statement};
 use crate::robot::Robot;
-use crate::sensors::oneself;
+use crate::sensors::{base, oneself};
 use crate::world::{RescueeState, World};
 
 /// Debris falls or closes only if no robot may come nearer than this within a few steps, in metres.
@@ -92,23 +92,23 @@ impl State {
                 rescuees.iter_mut().for_each(|rescuee| rescuee.state = RescueeState::Waiting);
                 let (first, count) = (ids.start as u32, ids.len() as u32);
                 self.log.push(Event::RescueesAppeared { task: *task, first, count });
+                self.announce(*task, model);
             }
             Action::Begin(task) => self.begin_task(*task, model),
             Action::End(task) if self.world.closed_tasks[task.index()] => {}
             Action::End(task) => {
                 self.world.closed_tasks[task.index()] = true;
-                self.announce(*task, false);
                 self.log.push(Event::TaskEnded { task: *task });
                 self.withdraw(*task, model);
+                self.announce(*task, model);
             }
         }
         true
     }
 
-    /// The base tells all robots that a task is open, or closed.
-    fn announce(&mut self, task: TaskId, open: bool) {
-        let says = Statement::TaskIs { task, open };
-        self.sent.push(Report { from: Speaker::Base, says, at_step: self.step, sd_m: 0.0 });
+    /// The base tells all robots how a task is.
+    fn announce(&mut self, task: TaskId, model: &Model) {
+        self.sent.push(base::report(&self.world, model, task, self.step));
     }
 
     /// Removes the rescuees of a task that still wait. The base tells all robots that they are gone.
@@ -129,7 +129,7 @@ impl State {
         if !std::mem::replace(&mut self.world.closed_tasks[task.index()], false) {
             return;
         }
-        self.announce(task, true);
+        self.announce(task, model);
         self.log.push(Event::TaskBegan { task });
         let begins = |action: &Action| *action == Action::Begin(task) || *action == Action::End(task);
         let mut done = model.timeline.iter().zip(&self.timeline.done);

@@ -4,8 +4,9 @@ use std::path::PathBuf;
 
 use clap::Args;
 use experiments::Failure;
-use experiments::experiment::{PolicySpec, check_cost, defaults, with_settings};
+use experiments::experiment::{Experiment, PolicySpec, check_cost, defaults, with_settings};
 use experiments::sweep::disk::experiment_in;
+use rne_core::Registry;
 use usar_sim::scenario::Scenario;
 use usar_sim::simulation::Simulation;
 
@@ -41,24 +42,33 @@ pub(super) struct AskedTrial {
     pub seed: u64,
     /// The policies of the sweep to which the trial belongs; empty for a scenario.
     pub policies: Vec<PolicySpec>,
+    /// The policies that there are.
+    pub registry: Registry,
 }
 
 impl TrialArguments {
     /// The trial in which this policy decides. Without a policy, the first policy of the sweep decides.
-    pub(super) fn open(&self, flag: &str, policy: Option<&str>) -> Result<AskedTrial, Failure> {
-        let parse =
-            |text: &str| PolicySpec::parse(text).map_err(|error| Failure::input(format!("{flag}: {error}")));
+    pub(super) fn open(
+        &self,
+        flag: &str,
+        policy: Option<&str>,
+        registry: &Registry,
+    ) -> Result<AskedTrial, Failure> {
+        let parse = |text: &str| {
+            PolicySpec::parse(text, registry).map_err(|error| Failure::input(format!("{flag}: {error}")))
+        };
         if !self.file.is_dir() {
             let (scenario, _) = load(&self.file)?;
             let scenario = with_settings(&scenario, &self.set)?;
             check_cost(&scenario, self.allow_expensive)?;
-            let (first_policy, first_seed) = defaults(&self.file)?;
+            let (first_policy, first_seed) = defaults(&self.file, registry)?;
             check_open(&scenario)?;
             let spec = parse(policy.unwrap_or(&first_policy))?;
             let seed = self.seed.unwrap_or(first_seed);
-            return Ok(AskedTrial { file: self.file.clone(), scenario, spec, seed, policies: Vec::new() });
+            let (file, policies, registry) = (self.file.clone(), Vec::new(), registry.clone());
+            return Ok(AskedTrial { file, scenario, spec, seed, policies, registry });
         }
-        let (experiment, _) = experiment_in(&self.file)?;
+        let (experiment, _) = experiment_in(&self.file, registry)?;
         let cases = experiment.cases.len();
         let Some(case) = self.case.checked_sub(1).and_then(|case| experiment.cases.get(case)) else {
             return Err(Failure::input(format!("--case: must be from 1 to {cases}, found {}", self.case)));
@@ -71,7 +81,8 @@ impl TrialArguments {
             Some(text) => labelled(text).map_or_else(|| parse(text), Ok)?,
         };
         let seed = self.seed.unwrap_or_else(|| experiment.seed(1));
-        Ok(AskedTrial { file: self.file.clone(), scenario, spec, seed, policies: experiment.policies })
+        let Experiment { policies, registry, .. } = experiment;
+        Ok(AskedTrial { file: self.file.clone(), scenario, spec, seed, policies, registry })
     }
 }
 

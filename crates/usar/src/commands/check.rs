@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use experiments::experiment::{Experiment, Overrides};
 use experiments::{Failure, panic_message};
+use rne_core::Registry;
 
 use crate::running::tell;
 
@@ -20,8 +21,8 @@ pub(crate) struct Arguments {
 }
 
 /// Checks one file, and returns a sentence about a sound file.
-fn check(file: &Path) -> Result<String, Failure> {
-    let experiment = Experiment::load(file, &Overrides::default())?;
+fn check(file: &Path, registry: &Registry) -> Result<String, Failure> {
+    let experiment = Experiment::load(file, &Overrides::default(), registry)?;
     experiment.with_trials(1)?.check_start(file)?;
     for odd in experiment.base.oddities(&experiment.given) {
         let line = odd.line.map_or(String::new(), |line| format!(":{line}"));
@@ -53,8 +54,8 @@ fn check_each(
 }
 
 impl Arguments {
-    pub(crate) fn execute(&self, out: &mut dyn Write) -> Result<(), Failure> {
-        check_each(&self.files, check, out)
+    pub(crate) fn execute(&self, registry: &Registry, out: &mut dyn Write) -> Result<(), Failure> {
+        check_each(&self.files, |file| check(file, registry), out)
     }
 }
 

@@ -13,6 +13,7 @@ use experiments::experiment::Experiment;
 use experiments::stats::bootstrap::resamples;
 use experiments::sweep::host::Hosts;
 use reports::table::{comparison_table, differences_table, effects_table, interactions_table};
+use rne_core::Registry;
 use serde::Serialize;
 
 use super::family::FamilyArguments;
@@ -62,8 +63,8 @@ struct Output<'a> {
 }
 
 impl Arguments {
-    pub(crate) fn execute(&self, out: &mut dyn Write) -> Result<(), Failure> {
-        let folder = read_sweep(&self.folder)?;
+    pub(crate) fn execute(&self, registry: &Registry, out: &mut dyn Write) -> Result<(), Failure> {
+        let folder = read_sweep(&self.folder, registry)?;
         let experiment = folder.experiment();
         let asked = self.family.asked(experiment)?;
         let comparisons = compare(&folder, &asked.metrics, asked.choice())?;

@@ -8,6 +8,7 @@ use experiments::Failure;
 use experiments::experiment::{defaults, with_settings};
 use pictures::{Plan, Width, plan};
 use recording::World;
+use rne_core::Registry;
 use usar_sim::simulation::Simulation;
 
 use super::drawn::{Kind, Looks};
@@ -40,14 +41,14 @@ pub(crate) struct Arguments {
 }
 
 impl Arguments {
-    pub(crate) fn execute(&self, out: &mut dyn Write) -> Result<(), Failure> {
+    pub(crate) fn execute(&self, registry: &Registry, out: &mut dyn Write) -> Result<(), Failure> {
         let kind = Kind::of(&self.out)?;
         let place = output::place("--out", &self.out, self.looks.force)?;
         let (scenario, _) = load(&self.file)?;
         let scenario = with_settings(&scenario, &self.set)?;
         let seed = match self.seed {
             Some(seed) => seed,
-            None => defaults(&self.file)?.1,
+            None => defaults(&self.file, registry)?.1,
         };
         let simulation = Simulation::new(&scenario, seed)
             .map_err(|error| Failure::input(format!("{}: {error}", self.file.display())))?;

@@ -10,6 +10,7 @@ use clap::Args;
 use experiments::Failure;
 use experiments::experiment::{Experiment, Keep, Shard};
 use experiments::sweep::Sizes;
+use rne_core::Registry;
 use serde::Serialize;
 
 pub(crate) use measured::Measured;
@@ -77,9 +78,9 @@ struct OneShard {
 }
 
 impl Arguments {
-    pub(crate) fn execute(&self, out: &mut dyn Write) -> Result<(), Failure> {
+    pub(crate) fn execute(&self, registry: &Registry, out: &mut dyn Write) -> Result<(), Failure> {
         stop_on_signals();
-        let experiment = Experiment::load(&self.file, &self.chosen.overrides())?;
+        let experiment = Experiment::load(&self.file, &self.chosen.overrides(), registry)?;
         experiment.check_policies()?;
         let measured = Measured::of(&experiment)?;
         let output = self.output(&experiment, &measured)?;

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use experiments::Failure;
 use experiments::experiment::{Experiment, Overrides};
+use rne_core::Registry;
 
 use crate::running::default_jobs;
 
@@ -44,6 +45,7 @@ impl ExploredArguments {
         &self,
         policies: Option<Vec<String>>,
         trials: u32,
+        registry: &Registry,
     ) -> Result<Experiment, Failure> {
         let overrides = Overrides {
             policies,
@@ -52,7 +54,7 @@ impl ExploredArguments {
             set: self.set.clone(),
             ..Overrides::default()
         };
-        let experiment = Experiment::load(&self.file, &overrides)?;
+        let experiment = Experiment::load(&self.file, &overrides, registry)?;
         experiment.check(self.allow_expensive)?;
         Ok(experiment)
     }

@@ -9,6 +9,7 @@ use experiments::files::NewFile;
 use exports::tables::Table;
 use exports::{ExportError, mcap, parquet};
 use recording::Recording;
+use rne_core::Registry;
 
 use super::output;
 use super::trials::Asked;
@@ -60,12 +61,12 @@ fn failed(path: &Path, error: &ExportError) -> Failure {
 }
 
 impl Arguments {
-    pub(crate) fn execute(&self, out: &mut dyn Write) -> Result<(), Failure> {
+    pub(crate) fn execute(&self, registry: &Registry, out: &mut dyn Write) -> Result<(), Failure> {
         let log = self.mcap.as_deref().map(|path| output::place("--mcap", path, self.force)).transpose()?;
         let folders = [("--csv", &self.csv), ("--parquet", &self.parquet)];
         let folders = folders.iter().filter_map(|(flag, path)| Some((*flag, path.as_deref()?)));
         folders.clone().try_for_each(|(flag, path)| output::check_folder(flag, path, self.force))?;
-        let recording = self.asked.open_one(&self.file)?;
+        let recording = self.asked.open_one(&self.file, registry)?;
         let every = self.frames(&recording);
         if let Some((folder, name)) = &log {
             let path = folder.join(name);

@@ -10,6 +10,7 @@ use experiments::experiment::split_list;
 use experiments::sweep::folder::Folder;
 use pictures::Picture;
 use reports::{ColumnLook, Wanted, column_figure};
+use rne_core::Registry;
 
 use super::{output, read_sweep};
 
@@ -84,8 +85,8 @@ impl Kind {
 const DIFFERENCES: &str = "differences";
 
 impl Arguments {
-    pub(crate) fn execute(&self, out: &mut dyn Write) -> Result<(), Failure> {
-        let mut folder = read_sweep(&self.folder)?;
+    pub(crate) fn execute(&self, registry: &Registry, out: &mut dyn Write) -> Result<(), Failure> {
+        let mut folder = read_sweep(&self.folder, registry)?;
         let cases = folder.experiment().cases.len();
         if !(1..=cases).contains(&self.case) {
             return Err(Failure::input(format!("--case: must be from 1 to {cases}, found {}", self.case)));

@@ -8,14 +8,14 @@ use experiments::experiment::PolicySpec;
 use experiments::oracle::{Branch, BranchError, Outcome, advance_to};
 use experiments::run::Driver;
 use reports::table::{headed, right};
-use rne_core::{Assignment, Decision, Question, assignments};
+use rne_core::{Assignment, Decision, Question, Registry};
 use serde::Serialize;
 use usar_sim::record::TrialRecord;
 use usar_sim::simulation::{Checkpoint, Decider, Simulation};
 
 use super::asked::{AskedTrial, TrialArguments};
 use super::{SCHEMA_VERSION, ShownArguments, print_table};
-use crate::running::{STOP, stop_on_signals, tell};
+use crate::running::{STOP, stop_on_signals};
 
 /// What if round N had been decided otherwise? Both trials, side by side
 #[derive(Debug, Args)]
@@ -82,11 +82,11 @@ struct Output<'a> {
 }
 
 impl Arguments {
-    pub(crate) fn execute(&self, out: &mut dyn Write) -> Result<(), Failure> {
+    pub(crate) fn execute(&self, registry: &Registry, out: &mut dyn Write) -> Result<(), Failure> {
         stop_on_signals();
-        let asked = self.trial.open("--base", self.base.as_deref())?;
-        let base = asked.spec.driver().map_err(Failure::input)?;
-        let other = self.policy.as_deref().map(PolicySpec::parse).transpose();
+        let asked = self.trial.open("--base", self.base.as_deref(), registry)?;
+        let base = asked.spec.driver();
+        let other = self.policy.as_deref().map(|text| PolicySpec::parse(text, registry)).transpose();
         let other = other.map_err(|error| Failure::input(format!("--policy: {error}")))?;
         let mut trial = asked.begin()?;
         advance_to(&mut trial, &base, self.at_round, &STOP)
@@ -95,8 +95,8 @@ impl Arguments {
         let start = trial.checkpoint();
         let was = base.decide(&trial, question).map_err(Failure::run)?;
         let otherwise = self.decision(&trial, question, other.as_ref())?;
-        let driver = other.as_ref().filter(|_| self.onwards).map(PolicySpec::driver).transpose();
-        let onwards = driver.map_err(Failure::input)?.unwrap_or_else(|| base.clone());
+        let driver = other.as_ref().filter(|_| self.onwards).map(PolicySpec::driver);
+        let onwards = driver.unwrap_or_else(|| base.clone());
         let sides = [side(&start, was, &base)?, side(&start, otherwise, &onwards)?];
         let fork = self.in_words(other.as_ref(), &asked.spec.label);
         if self.json || self.shown.is_json() {
@@ -134,19 +134,13 @@ impl Arguments {
     ) -> Result<Decision, Failure> {
         match (other, &self.assign) {
             (Some(spec), _) => {
-                let driver = spec.driver().map_err(Failure::input)?;
+                let driver = spec.driver();
                 driver.decide(trial, question).map_err(Failure::run)
             }
             (None, written) => {
                 let assignment = parse_groups(written.as_deref().unwrap_or_default(), question);
                 let assignment = assignment.map_err(|error| Failure::input(format!("--assign: {error}")))?;
                 assignment.check(question).map_err(|error| Failure::input(format!("--assign: {error}")))?;
-                if !assignments::allows(question, &assignment) {
-                    tell(format_args!(
-                        "note: --assign: no policy can choose these groups, because the quotas do not allow \
-                         them; `usar oracle` plays those that they allow"
-                    ));
-                }
                 Ok(Decision::unscored(assignment.groups))
             }
         }
@@ -289,7 +283,7 @@ mod tests {
     #[test]
     fn groups_are_read_by_the_names_of_tasks() {
         let question = serde_json::json!({
-            "schema_version": 1, "round": 1, "roles": [], "needs": [], "quotas": [], "members": [], "history": [],
+            "schema_version": 2, "round": 1, "roles": [], "needs": [], "quotas": [], "members": [], "history": [],
             "tasks": [{"name": "hard", "difficulty": 2}, {"name": "easy", "difficulty": 1}],
             "random_seed": "00".repeat(32),
         });

@@ -10,7 +10,7 @@ use experiments::experiment::PolicySpec;
 use experiments::input_table::InputTable;
 use rne_core::question::hardest_first;
 use rne_core::{
-    Decision, Member, Need, NeedVector, Question, Quota, RandomSeed, RoleId, SCHEMA_VERSION, Task,
+    Decision, Member, Need, NeedVector, Question, Quota, RandomSeed, Registry, RoleId, SCHEMA_VERSION, Task,
 };
 
 use super::numbers;
@@ -52,13 +52,13 @@ pub(crate) struct Arguments {
 }
 
 impl Arguments {
-    pub(crate) fn execute(&self, out: &mut dyn Write) -> Result<(), Failure> {
-        let spec = PolicySpec::parse(&self.policy);
+    pub(crate) fn execute(&self, registry: &Registry, out: &mut dyn Write) -> Result<(), Failure> {
+        let spec = PolicySpec::parse(&self.policy, registry);
         let spec = spec.map_err(|error| Failure::input(format!("--policy: {error}")))?;
         let question = self.question()?;
         let named =
             |error: &dyn std::fmt::Display| Failure::input(format!("{}: {error}", self.file.display()));
-        let policy = spec.make().map_err(Failure::input)?.policy;
+        let policy = &spec.made().policy;
         let decision = policy.decide(&question).map_err(|error| named(&error))?;
         decision.assignment.check(&question).map_err(|error| named(&error))?;
         if self.json {
@@ -100,6 +100,7 @@ impl Arguments {
             quotas: Quota::equal(&counts, &order),
             tasks,
             members,
+            may_idle: false,
             history: Vec::new(),
             random_seed: RandomSeed::from(self.seed),
         };
@@ -108,8 +109,7 @@ impl Arguments {
 
     fn tasks(&self) -> Result<Vec<Task>, Failure> {
         if self.tasks.is_empty() {
-            let task = |name: &str, difficulty| Task { name: name.to_owned(), difficulty, place: None };
-            return Ok(vec![task("first", 2), task("second", 1)]);
+            return Ok(vec![Task::new("first", 2), Task::new("second", 1)]);
         }
         self.tasks.iter().map(|text| task(text)).collect()
     }
@@ -128,7 +128,7 @@ fn task(text: &str) -> Result<Task, Failure> {
         _ => return Err(bad()),
     };
     let difficulty = difficulty.parse().map_err(|_| bad())?;
-    if name.is_empty() { Err(bad()) } else { Ok(Task { name: name.to_owned(), difficulty, place }) }
+    if name.is_empty() { Err(bad()) } else { Ok(Task { place, ..Task::new(name, difficulty) }) }
 }
 
 fn print_text(
@@ -148,7 +148,7 @@ fn print_text(
         let roles: Vec<String> = question.role_ids().map(of_role).collect();
         writeln!(out, "{:<width$}  {}", question.tasks[task.index()].name, roles.join(" | "))?;
     }
-    let made = spec.make().map_err(Failure::input)?;
+    let made = spec.made();
     if let Some(score) = decision.score {
         let base = spec.rne_options().unwrap_or_default().log_base;
         let value = score.in_base(base).map_or("infinite".to_owned(), |value| format!("{value:.9}"));

@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 use experiments::Failure;
-use experiments::experiment::registry;
 use experiments::metric::{Catalogue, task_names};
+use rne_core::Registry;
 use usar_sim::scenario::{RoleKind, Scenario};
 
 use super::load;
@@ -44,11 +44,11 @@ enum Of {
 }
 
 impl Arguments {
-    pub(crate) fn execute(&self, out: &mut dyn Write) -> Result<(), Failure> {
+    pub(crate) fn execute(&self, registry: &Registry, out: &mut dyn Write) -> Result<(), Failure> {
         let path = |default: &'static str| self.path.as_deref().unwrap_or(Path::new(default));
         match self.of {
             Of::Scenarios => scenarios(out, path("scenarios")),
-            Of::Policies => policies(out),
+            Of::Policies => policies(out, registry),
             Of::Roles => roles(out, &self.scenario()?),
             Of::Metrics => metrics(out, &self.scenario()?),
         }
@@ -78,8 +78,8 @@ fn scenarios(out: &mut dyn Write, folder: &Path) -> Result<(), Failure> {
     Ok(())
 }
 
-fn policies(out: &mut dyn Write) -> Result<(), Failure> {
-    for kind in registry().kinds() {
+fn policies(out: &mut dyn Write, registry: &Registry) -> Result<(), Failure> {
+    for kind in registry.kinds() {
         writeln!(out, "{}\t{} {}", kind.name, kind.about, kind.defaults)?;
     }
     Ok(())

@@ -7,6 +7,7 @@ use clap::Args;
 use experiments::Failure;
 use experiments::sweep::disk::{is_sweeps, sweeps_in};
 use experiments::sweep::merge::Merge;
+use rne_core::Registry;
 
 use super::sweep::print;
 use crate::running::{STOP, stop_on_signals, tell};
@@ -32,11 +33,12 @@ pub(crate) struct Arguments {
 }
 
 impl Arguments {
-    pub(crate) fn execute(&self, out: &mut dyn Write) -> Result<(), Failure> {
+    pub(crate) fn execute(&self, registry: &Registry, out: &mut dyn Write) -> Result<(), Failure> {
         stop_on_signals();
-        let whole = Merge::of(&shards_in(&self.folders))?.write_to(&self.out, &STOP, &mut |note| {
-            tell(format_args!("note: {note}"));
-        })?;
+        let whole =
+            Merge::of(&shards_in(&self.folders), registry)?.write_to(&self.out, &STOP, &mut |note| {
+                tell(format_args!("note: {note}"));
+            })?;
         print(out, &whole)?;
         let failed: Vec<&str> =
             whole.results().values().filter_map(|measured| measured.failure.as_deref()).collect();

@@ -54,6 +54,7 @@ use std::path::Path;
 
 use experiments::Failure;
 use experiments::sweep::folder::Folder;
+use rne_core::Registry;
 use usar_sim::scenario::Scenario;
 
 use crate::running::tell;
@@ -75,8 +76,8 @@ pub(crate) fn load(path: &Path) -> Result<(Scenario, String), Failure> {
 }
 
 /// Reads the folder of a sweep. A note on stderr tells if trials are missing.
-pub(crate) fn read_sweep(path: &Path) -> Result<Folder, Failure> {
-    let folder = Folder::read(path)?;
+pub(crate) fn read_sweep(path: &Path, registry: &Registry) -> Result<Folder, Failure> {
+    let folder = Folder::read(path, registry)?;
     if !folder.manifest().is_complete {
         let (there, of) = (folder.results().len(), folder.experiment().keys(None).count());
         let path = path.display();

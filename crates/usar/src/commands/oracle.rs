@@ -9,14 +9,14 @@ use std::sync::atomic::Ordering;
 
 use clap::{Args, ValueEnum};
 use experiments::Failure;
-use experiments::experiment::{PolicySpec, registry, split_list};
+use experiments::experiment::{PolicySpec, split_list};
 use experiments::oracle::{
     BranchError, Coverage, DEFAULT_LIMIT, NotSimulated, Objective, Outcome, Survey, advance_to, play, survey,
 };
 use experiments::regret::{DecisionKey, OutcomeLog};
 use indicatif::ProgressBar;
 use rayon::prelude::*;
-use rne_core::{Assignment, Decision, Policy, Question, assignments};
+use rne_core::{Assignment, Decision, Policy, Question, Registry, assignments};
 use usar_sim::simulation::Checkpoint;
 
 use super::ShownArguments;
@@ -116,13 +116,13 @@ struct Asked<'a> {
 }
 
 impl Arguments {
-    pub(crate) fn execute(&self, out: &mut dyn Write) -> Result<(), Failure> {
+    pub(crate) fn execute(&self, registry: &Registry, out: &mut dyn Write) -> Result<(), Failure> {
         stop_on_signals();
-        let trial = self.trial.open("--base", self.base.as_deref())?;
+        let trial = self.trial.open("--base", self.base.as_deref(), registry)?;
         let objective = Objective::parse(&self.metric, &trial.tasks());
         let objective = objective.map_err(|error| Failure::input(format!("--metric: {error}")))?;
         let onwards = self.onwards(&trial)?;
-        let base = trial.spec.driver().map_err(Failure::input)?;
+        let base = trial.spec.driver();
         let mut simulation = trial.begin()?;
         advance_to(&mut simulation, &base, self.round, &STOP).map_err(|error| failure(error, "--round: "))?;
         let question =
@@ -153,17 +153,17 @@ impl Arguments {
     /// The choices of the policies that are judged.
     fn choices(&self, trial: &AskedTrial, question: &Question) -> Result<Vec<(String, Assignment)>, Failure> {
         let parse = |text: &str| {
-            PolicySpec::parse(text).map_err(|error| Failure::input(format!("--policies: {error}")))
+            PolicySpec::parse(text, &trial.registry)
+                .map_err(|error| Failure::input(format!("--policies: {error}")))
         };
         let specs = match &self.policies {
             Some(list) => split_list(list).into_iter().map(parse).collect::<Result<Vec<_>, _>>()?,
             None if !trial.policies.is_empty() => trial.policies.clone(),
-            None => registry().names().into_iter().map(parse).collect::<Result<Vec<_>, _>>()?,
+            None => trial.registry.names().into_iter().map(parse).collect::<Result<Vec<_>, _>>()?,
         };
         let is_policy = |spec: &&PolicySpec| spec.name != NotSimulated::NAME;
         let choice = |spec: &PolicySpec| {
-            let policy = spec.make().map_err(Failure::input)?.policy;
-            let decision = policy.decide(question);
+            let decision = spec.made().policy.decide(question);
             let decision =
                 decision.map_err(|error| Failure::input(format!("policy {}: {error}", spec.label)))?;
             Ok((spec.label.clone(), decision.assignment))
@@ -181,7 +181,7 @@ impl Arguments {
             (HorizonName::Trial, None) => Ok(vec![Some(trial.spec.clone())]),
             (HorizonName::Trial, Some(list)) => {
                 let parse = |text: &str| {
-                    let spec = PolicySpec::parse(text);
+                    let spec = PolicySpec::parse(text, &trial.registry);
                     spec.map(Some).map_err(|error| Failure::input(format!("--then: {error}")))
                 };
                 split_list(list).into_iter().map(parse).collect()
@@ -196,13 +196,17 @@ impl Arguments {
         then: Option<&PolicySpec>,
         log: &mut OutcomeLog,
     ) -> Result<Survey, Failure> {
-        let policy = then.map(PolicySpec::make).transpose().map_err(Failure::input)?.map(|made| made.policy);
         let name = then.map(PolicySpec::plain);
         let count = assignments::count(&asked.question).min(self.limit);
         let of = then.map_or("assignments".to_owned(), |then| format!("assignments, {} goes on", then.label));
         let progress = progress_bar(count as usize, &of, self.jobs.unwrap_or_else(default_jobs), self.quiet);
         let named: Vec<Assignment> = asked.choices.iter().map(|(_, choice)| choice.clone()).collect();
-        let batch = Batch { start, policy: policy.as_deref(), then: name.as_deref(), progress: &progress };
+        let batch = Batch {
+            start,
+            policy: then.map(|spec| &*spec.made().policy),
+            then: name.as_deref(),
+            progress: &progress,
+        };
         let survey = survey(&asked.question, (&asked.objective, self.limit), &named, |assignments| {
             batch.play(assignments, log).map_err(Trouble)
         });

@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use clap::Args;
 use experiments::Failure;
 use experiments::rounds::rounds_in;
+use rne_core::Registry;
 use study_yang2021::readings::{Trials, averaged, groupings_in_words, rivals, single};
 use study_yang2021::table::{averaged_table, readings_table, rivals_table};
 
@@ -30,8 +31,8 @@ pub(crate) struct Arguments {
 }
 
 impl Arguments {
-    pub(crate) fn execute(&self, out: &mut dyn Write) -> Result<(), Failure> {
-        let mut folder = read_sweep(&self.folder)?;
+    pub(crate) fn execute(&self, registry: &Registry, out: &mut dyn Write) -> Result<(), Failure> {
+        let mut folder = read_sweep(&self.folder, registry)?;
         if folder.experiment().cases.len() > 1 {
             return Err(Failure::input(format!(
                 "{}: has axes; readings are compared in a sweep of one case",

@@ -11,6 +11,7 @@ use experiments::oracle::{DEFAULT_LIMIT, Objective};
 use experiments::regret::{Analysis, Choices, Estimate, Study, StudyFolder, analyse};
 use reports::regret_figures;
 use reports::table::{headed, right};
+use rne_core::Registry;
 
 use super::{SCHEMA_VERSION, ShownArguments, print_table};
 use crate::running::{STOP, default_jobs, progress_bar, stop_on_signals, tell};
@@ -72,11 +73,11 @@ pub(crate) struct Arguments {
 }
 
 impl Arguments {
-    pub(crate) fn execute(&self, out: &mut dyn Write) -> Result<(), Failure> {
+    pub(crate) fn execute(&self, registry: &Registry, out: &mut dyn Write) -> Result<(), Failure> {
         stop_on_signals();
-        let folder = if self.file.is_dir() { StudyFolder::read(&self.file)? } else { self.play()? };
+        let folder = if self.file.is_dir() { StudyFolder::read(&self.file)? } else { self.play(registry)? };
         let objectives = self.objectives(&folder.study.tasks)?;
-        let analyses = objectives.iter().map(|objective| analyse(&folder, objective));
+        let analyses = objectives.iter().map(|objective| analyse(&folder, objective, registry));
         let analyses = analyses.collect::<Result<Vec<_>, Failure>>()?;
         write_tables(folder.path(), &analyses)?;
         for (name, content) in regret_figures(&analyses)? {
@@ -99,11 +100,11 @@ impl Arguments {
     }
 
     /// Plays the missing trials of the study.
-    fn play(&self) -> Result<StudyFolder, Failure> {
+    fn play(&self, registry: &Registry) -> Result<StudyFolder, Failure> {
         let overrides = Overrides { trials: self.trials, ..Overrides::default() };
-        let experiment = Experiment::load(&self.file, &overrides)?;
+        let experiment = Experiment::load(&self.file, &overrides, registry)?;
         experiment.check(self.allow_expensive)?;
-        let then = self.horizon_trial.as_deref().map(PolicySpec::parse).transpose();
+        let then = self.horizon_trial.as_deref().map(|text| PolicySpec::parse(text, registry)).transpose();
         let then = then.map_err(|error| Failure::input(format!("--horizon-trial: {error}")))?;
         let choices =
             Choices { then: then.map(|spec| spec.plain()), rounds: self.rounds.clone(), limit: self.limit };

@@ -10,6 +10,7 @@ use clap::{ArgGroup, Args};
 use experiments::Failure;
 use pictures::{Picture, Width, moment, trails};
 use recording::Recording;
+use rne_core::Registry;
 
 use super::drawn::{Kind, Looks};
 use super::output;
@@ -73,16 +74,16 @@ pub(crate) struct Arguments {
 }
 
 impl Arguments {
-    pub(crate) fn execute(&self, out: &mut dyn Write) -> Result<(), Failure> {
+    pub(crate) fn execute(&self, registry: &Registry, out: &mut dyn Write) -> Result<(), Failure> {
         match &self.out {
             Some(path) => {
                 let kind = Kind::of(path)?;
                 let place = output::place("--out", path, self.looks.force)?;
-                let recording = self.asked.open_one(&self.file)?;
+                let recording = self.asked.open_one(&self.file, registry)?;
                 output::write(&place, &kind.content(&self.picture(&recording)?)?)?;
                 Ok(writeln!(out, "{}", path.display())?)
             }
-            None => self.film(out),
+            None => self.film(registry, out),
         }
     }
 

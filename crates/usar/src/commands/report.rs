@@ -8,6 +8,7 @@ use experiments::Failure;
 use experiments::run::TrialKey;
 use experiments::sweep::folder::Folder;
 use reports::{ShownTrial, Wanted, write_report};
+use rne_core::Registry;
 
 use super::family::FamilyArguments;
 use super::read_sweep;
@@ -50,8 +51,8 @@ pub(crate) struct Arguments {
 }
 
 impl Arguments {
-    pub(crate) fn execute(&self, out: &mut dyn Write) -> Result<(), Failure> {
-        let mut folder = read_sweep(&self.folder)?;
+    pub(crate) fn execute(&self, registry: &Registry, out: &mut dyn Write) -> Result<(), Failure> {
+        let mut folder = read_sweep(&self.folder, registry)?;
         let cases = folder.experiment().cases.len();
         if let Some(case) = self.case.filter(|case| !(1..=cases).contains(case)) {
             return Err(Failure::input(format!("--case: must be from 1 to {cases}, found {case}")));

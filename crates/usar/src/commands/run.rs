@@ -11,6 +11,7 @@ use clap::Args;
 use experiments::Failure;
 use experiments::experiment::{PolicySpec, check_cost, defaults, with_settings};
 use reports::table::rounds_table;
+use rne_core::Registry;
 use serde::Serialize;
 use usar_sim::metrics::CutOff;
 use usar_sim::record::{Status, TrialRecord};
@@ -105,20 +106,21 @@ struct Output<'a> {
 }
 
 impl Arguments {
-    pub(crate) fn execute(&self, out: &mut dyn Write) -> Result<(), Failure> {
+    pub(crate) fn execute(&self, registry: &Registry, out: &mut dyn Write) -> Result<(), Failure> {
         let (scenario, _) = load(&self.file)?;
         let scenario = with_settings(&scenario, &self.set)?;
         check_cost(&scenario, self.allow_expensive)?;
         let snapshot = self.from.as_deref().map(Snapshot::read).transpose()?;
-        let (first_policy, first_seed) = defaults(&self.file)?;
+        let (first_policy, first_seed) = defaults(&self.file, registry)?;
         let asked = match (&self.policy, &snapshot) {
             (Some(policy), _) => policy,
             (None, Some(snapshot)) => &snapshot.identity.policy,
             (None, None) => &first_policy,
         };
-        let spec = PolicySpec::parse(asked).map_err(|error| Failure::input(format!("--policy: {error}")))?;
+        let spec = PolicySpec::parse(asked, registry)
+            .map_err(|error| Failure::input(format!("--policy: {error}")))?;
         spec.check_allowed(&scenario)?;
-        let driver = spec.driver().map_err(Failure::input)?;
+        let driver = spec.driver();
         let simulation = match &snapshot {
             Some(snapshot) => snapshot.restore(&scenario)?,
             None => Simulation::new(&scenario, self.seed.unwrap_or(first_seed))

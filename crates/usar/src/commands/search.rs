@@ -15,6 +15,7 @@ use experiments::run::Limits;
 use experiments::stats::Moments;
 use experiments::stats::bootstrap::interval;
 use experiments::sweep::folder::{Folder, Opening};
+use rne_core::Registry;
 
 use super::SCHEMA_VERSION;
 use super::explored::ExploredArguments;
@@ -85,8 +86,8 @@ pub(crate) struct Arguments {
 }
 
 impl Arguments {
-    pub(crate) fn execute(&self, out: &mut dyn Write) -> Result<(), Failure> {
-        let hunt = self.hunt()?;
+    pub(crate) fn execute(&self, registry: &Registry, out: &mut dyn Write) -> Result<(), Failure> {
+        let hunt = self.hunt(registry)?;
         let name = format!("{}-search", hunt.space.experiment.name);
         let folder = self.out.clone().unwrap_or_else(|| Path::new("results").join(name));
         let mut trail = hunt.open(&folder, self.explored.fresh)?;
@@ -105,7 +106,7 @@ impl Arguments {
         let what =
             format!("{} is {} on the seeds of the search", hunt.space.outcomes[0].name(), short(outcome));
         NewFile::write(&folder, FOUND, hunt.text(best, &what)?.as_bytes())?;
-        let confirmed = self.confirm(&folder)?;
+        let confirmed = self.confirm(&folder, registry)?;
         let found = Found { hunt: &hunt, trail: &trail, best, outcome };
         self.print(out, &found, &confirmed)?;
         if !self.explored.quiet {
@@ -118,7 +119,7 @@ impl Arguments {
         [Some(self.policy.clone()), self.against.clone()].into_iter().flatten().collect()
     }
 
-    fn hunt(&self) -> Result<Hunt, Failure> {
+    fn hunt(&self, registry: &Registry) -> Result<Hunt, Failure> {
         if !(self.first_step > 0.0 && self.first_step <= 1.0) {
             let step = self.first_step;
             return Err(Failure::input(format!("--first-step: must be above 0 and at most 1, found {step}")));
@@ -130,7 +131,7 @@ impl Arguments {
                 "--confirm-seed: the seeds that confirm must be others than those of the search",
             ));
         }
-        let experiment = self.explored.experiment(Some(self.policies()), self.trials)?;
+        let experiment = self.explored.experiment(Some(self.policies()), self.trials, registry)?;
         let metric = experiment.metrics.named(&self.metric);
         let metric = metric.map_err(|error| Failure::input(format!("--metric: {error}")))?;
         let is_lowest = match experiment.metrics[metric].direction {
@@ -168,18 +169,18 @@ impl Arguments {
     }
 
     /// Runs the found scenario with fresh seeds.
-    fn confirm(&self, folder: &Path) -> Result<Folder, Failure> {
+    fn confirm(&self, folder: &Path, registry: &Registry) -> Result<Folder, Failure> {
         let overrides = Overrides {
             policies: Some(self.policies()),
             trials: Some(self.confirm_trials),
             first_seed: Some(self.confirm_seed),
             ..Overrides::default()
         };
-        let experiment = Arc::new(Experiment::load(&folder.join(FOUND), &overrides)?);
+        let experiment = Arc::new(Experiment::load(&folder.join(FOUND), &overrides, registry)?);
         let path = folder.join(CONFIRMATION);
         // Existing trials of another found scenario are useless.
         let is_other = path.exists()
-            && Folder::read(&path).map_or(true, |there| {
+            && Folder::read(&path, registry).map_or(true, |there| {
                 there.experiment().base.resolved() != experiment.base.resolved()
                     || there.experiment().trials > experiment.trials
             });

@@ -10,6 +10,7 @@ use experiments::experiment::split_list;
 use experiments::explore::{Evaluations, FIGURE, INDICES, Method, Row, Sensitivity, Space};
 use experiments::files::NewFile;
 use reports::{ranking, sensitivity_figure, sensitivity_table};
+use rne_core::Registry;
 use serde::Serialize;
 
 use super::explored::ExploredArguments;
@@ -91,8 +92,8 @@ struct Output<'a> {
 }
 
 impl Arguments {
-    pub(crate) fn execute(&self, out: &mut dyn Write) -> Result<(), Failure> {
-        let study = self.study()?;
+    pub(crate) fn execute(&self, registry: &Registry, out: &mut dyn Write) -> Result<(), Failure> {
+        let study = self.study(registry)?;
         let name = format!("{}-sensitivity", study.space.experiment.name);
         let folder = self.out.clone().unwrap_or_else(|| Path::new("results").join(name));
         let mut evaluations = study.open(&folder, self.explored.fresh)?;
@@ -123,10 +124,10 @@ impl Arguments {
         }
     }
 
-    fn study(&self) -> Result<Sensitivity, Failure> {
+    fn study(&self, registry: &Registry) -> Result<Sensitivity, Failure> {
         let policies = self.policies.as_deref();
         let policies = policies.map(|list| split_list(list).into_iter().map(str::to_owned).collect());
-        let experiment = self.explored.experiment(policies, self.trials)?;
+        let experiment = self.explored.experiment(policies, self.trials, registry)?;
         let wishes =
             Wishes { metrics: self.metric.clone(), baseline: self.baseline.clone(), ..Wishes::default() };
         let mut asked = Asked::of(&experiment, &wishes)?;

@@ -46,7 +46,7 @@ pub(super) fn save(
     spec: &PolicySpec,
     (path, seconds): (&Path, f64),
 ) -> Result<(), Failure> {
-    let driver = spec.driver().map_err(Failure::input)?;
+    let driver = spec.driver();
     let (now, end) = (simulation.time_s(), simulation.scenario().duration_s);
     if !(now..=end).contains(&seconds) {
         return Err(Failure::input(format!("--save-at: must be from {now} to {end} s, found {seconds}")));

@@ -9,8 +9,8 @@ use experiments::metric::task_names;
 use experiments::rounds::{self, Blindness, Example, GroupLevels, Likeness, likeness, rounds_in};
 use experiments::sweep::folder::Folder;
 use reports::table::{levels_table, likeness_table};
-use rne_core::Member;
 use rne_core::policies::rne::Rne;
+use rne_core::{Member, Registry};
 use usar_sim::scenario::Scenario;
 
 use super::{ShownArguments, print_table, read_sweep};
@@ -36,8 +36,8 @@ pub(crate) struct Arguments {
 }
 
 impl Arguments {
-    pub(crate) fn execute(&self, out: &mut dyn Write) -> Result<(), Failure> {
-        let mut folder = read_sweep(&self.folder)?;
+    pub(crate) fn execute(&self, registry: &Registry, out: &mut dyn Write) -> Result<(), Failure> {
+        let mut folder = read_sweep(&self.folder, registry)?;
         let cases = folder.experiment().cases.len();
         if !(1..=cases).contains(&self.case) {
             return Err(Failure::input(format!("--case: must be from 1 to {cases}, found {}", self.case)));

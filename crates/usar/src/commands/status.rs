@@ -9,6 +9,7 @@ use clap::Args;
 use experiments::Failure;
 use experiments::experiment::Shard;
 use experiments::sweep::disk::{experiment_in, is_sweeps, sweeps_in};
+use rne_core::Registry;
 use serde::Serialize;
 
 use super::estimate::duration;
@@ -54,10 +55,10 @@ struct Output {
 }
 
 impl Arguments {
-    pub(crate) fn execute(&self, out: &mut dyn Write) -> Result<(), Failure> {
+    pub(crate) fn execute(&self, registry: &Registry, out: &mut dyn Write) -> Result<(), Failure> {
         let output = match Submission::read(&self.folder)? {
             Some(submission) => submitted(&std::path::absolute(&self.folder)?, &submission)?,
-            None => by_hand(&self.folder)?,
+            None => by_hand(&self.folder, registry)?,
         };
         if self.json {
             return Ok(writeln!(out, "{}", serde_json::to_string(&output).map_err(Failure::run)?)?);
@@ -86,7 +87,7 @@ fn submitted(folder: &Path, submission: &Submission) -> Result<Output, Failure> 
 }
 
 /// The state of shards that were run without `usar submit`, or of a single sweep.
-fn by_hand(folder: &Path) -> Result<Output, Failure> {
+fn by_hand(folder: &Path, registry: &Registry) -> Result<Output, Failure> {
     let folders = if is_sweeps(folder) { vec![folder.to_owned()] } else { sweeps_in(folder) };
     if folders.is_empty() {
         return Err(Failure::input(format!("{}: has neither shards nor a sweep in it", folder.display())));
@@ -94,7 +95,7 @@ fn by_hand(folder: &Path) -> Result<Output, Failure> {
     let said = Said { queued: None, ended: slurm::Tasks::new() };
     let (mut shards, mut all, mut is_checked) = (Vec::new(), None, false);
     for place in folders {
-        let (experiment, manifest) = experiment_in(&place)?;
+        let (experiment, manifest) = experiment_in(&place, registry)?;
         let number = manifest.shard.map_or(1, |shard| shard.number);
         let mut shard = OneShard::of(number, place, experiment.count(manifest.shard), &said)?;
         if let Some(of) = manifest.shard.filter(|_| shard.state == State::Lost) {

@@ -22,6 +22,7 @@ use super::slurm;
 use crate::printable::counted;
 use crate::running::stop_on_signals;
 use plan::Wishes;
+use rne_core::Registry;
 
 /// Run a sweep on a cluster: shards as an array of Slurm jobs, then merge and report
 #[derive(Debug, Args)]
@@ -95,9 +96,9 @@ struct Scripts {
 }
 
 impl Arguments {
-    pub(crate) fn execute(&self, out: &mut dyn Write) -> Result<(), Failure> {
+    pub(crate) fn execute(&self, registry: &Registry, out: &mut dyn Write) -> Result<(), Failure> {
         stop_on_signals();
-        let experiment = Experiment::load(&self.file, &self.chosen.overrides())?;
+        let experiment = Experiment::load(&self.file, &self.chosen.overrides(), registry)?;
         experiment.check_start(&self.file)?;
         let whole = self.out.clone().unwrap_or_else(|| Path::new("results").join(&experiment.name));
         let whole = absolute(&whole)?;

@@ -15,6 +15,7 @@ use experiments::sweep::folder::{Folder, Opening};
 use experiments::sweep::host::Hosts;
 use experiments::sweep::write_parquet;
 use reports::table::policy_table;
+use rne_core::Registry;
 
 use super::chosen::Chosen;
 use super::precision::Precision;
@@ -92,14 +93,14 @@ pub(crate) struct Arguments {
 }
 
 impl Arguments {
-    pub(crate) fn execute(&self, out: &mut dyn Write) -> Result<(), Failure> {
+    pub(crate) fn execute(&self, registry: &Registry, out: &mut dyn Write) -> Result<(), Failure> {
         if !(self.max_trial_s > 0.0 && self.max_trial_s <= 1e9) {
             return Err(Failure::input(format!(
                 "--max-trial-s: must be above 0, found {}",
                 self.max_trial_s
             )));
         }
-        let mut experiment = Experiment::load(&self.file, &self.chosen.overrides())?;
+        let mut experiment = Experiment::load(&self.file, &self.chosen.overrides(), registry)?;
         let path = self.out.clone().unwrap_or_else(|| default_path(&experiment.name, self.shard));
         if (self.chosen.trials.is_none() || self.precision.is_some())
             && !self.fresh

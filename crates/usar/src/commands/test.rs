@@ -13,6 +13,7 @@ use experiments::experiment::{Experiment, Overrides};
 use experiments::files::NewFile;
 use experiments::run::{Limits, Outcome, TrialKey, run_all};
 use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
+use rne_core::Registry;
 use serde::Serialize;
 
 use super::SCHEMA_VERSION;
@@ -77,11 +78,11 @@ struct Tested {
 }
 
 impl Arguments {
-    pub(crate) fn execute(&self, out: &mut dyn Write) -> Result<(), Failure> {
+    pub(crate) fn execute(&self, registry: &Registry, out: &mut dyn Write) -> Result<(), Failure> {
         stop_on_signals();
         let mut suites = Vec::new();
         for file in &self.files {
-            let suite = Suite::load(file, self.max_trials)?;
+            let suite = Suite::load(file, self.max_trials, registry)?;
             suite.experiment.check(self.allow_expensive)?;
             suites.push(suite);
         }
@@ -121,8 +122,8 @@ struct Suite {
 }
 
 impl Suite {
-    fn load(file: &Path, most: u32) -> Result<Self, Failure> {
-        let experiment = Experiment::load(file, &Overrides::default())?;
+    fn load(file: &Path, most: u32, registry: &Registry) -> Result<Self, Failure> {
+        let experiment = Experiment::load(file, &Overrides::default(), registry)?;
         let expected = experiment.asks()?.expect;
         if expected.is_empty() {
             return Err(Failure::input(format!(

@@ -8,6 +8,7 @@ use experiments::Failure;
 use experiments::files::NewFile;
 use experiments::sweep::folder::Folder;
 use experiments::sweep::{tidy_columns, tidy_rows};
+use rne_core::Registry;
 
 use super::output::place;
 use super::read_sweep;
@@ -36,8 +37,8 @@ pub(crate) struct Arguments {
 }
 
 impl Arguments {
-    pub(crate) fn execute(&self, out: &mut dyn Write) -> Result<(), Failure> {
-        let mut folder = read_sweep(&self.folder)?;
+    pub(crate) fn execute(&self, registry: &Registry, out: &mut dyn Write) -> Result<(), Failure> {
+        let mut folder = read_sweep(&self.folder, registry)?;
         let Some(path) = &self.out else { return print(&mut folder, out) };
         let (place, name) = place("--out", path, self.force)?;
         let mut file = NewFile::new(&place, name)?;

@@ -10,6 +10,7 @@ use experiments::limits::RECORDING_BYTES;
 use experiments::run::TrialKey;
 use experiments::sweep::disk::experiment_in;
 use recording::{Options, Recording};
+use rne_core::Registry;
 use ron_fields::file::read_start;
 use usar_sim::simulation::Simulation;
 
@@ -60,26 +61,26 @@ impl Shown {
 
 impl Asked {
     /// The selected trials, file by file.
-    pub(crate) fn open(&self, files: &[PathBuf]) -> Result<Vec<Shown>, Failure> {
+    pub(crate) fn open(&self, files: &[PathBuf], registry: &Registry) -> Result<Vec<Shown>, Failure> {
         let mut shown = Vec::new();
-        files.iter().try_for_each(|file| self.open_file(file, &mut shown))?;
+        files.iter().try_for_each(|file| self.open_file(file, registry, &mut shown))?;
         Ok(shown)
     }
 
     /// The one selected trial.
-    pub(crate) fn open_one(&self, file: &Path) -> Result<Recording, Failure> {
+    pub(crate) fn open_one(&self, file: &Path, registry: &Registry) -> Result<Recording, Failure> {
         if self.policy.as_deref().is_some_and(|policy| split_list(policy).len() != 1) {
             return Err(Failure::input("--policy: must be one policy here"));
         }
-        let shown = self.open(&[file.to_owned()])?;
+        let shown = self.open(&[file.to_owned()], registry)?;
         let recording = shown.first().map(Shown::read).transpose()?;
         let recording = recording.filter(|recording| recording.frames() > 0);
         recording.ok_or_else(|| Failure::input(format!("{}: has no frames", file.display())))
     }
 
-    fn open_file(&self, file: &Path, shown: &mut Vec<Shown>) -> Result<(), Failure> {
+    fn open_file(&self, file: &Path, registry: &Registry, shown: &mut Vec<Shown>) -> Result<(), Failure> {
         if file.is_dir() {
-            return self.open_folder(file, shown);
+            return self.open_folder(file, registry, shown);
         }
         let unreadable = |error| Failure::input(format!("{}: {error}", file.display()));
         let most = RECORDING_BYTES.most as u64;
@@ -92,13 +93,13 @@ impl Asked {
         let (scenario, _) = load(file)?;
         let scenario = with_settings(&scenario, &self.set)?;
         check_cost(&scenario, self.allow_expensive)?;
-        let (first_policy, first_seed) = defaults(file)?;
+        let (first_policy, first_seed) = defaults(file, registry)?;
         let seed = self.seed.unwrap_or(first_seed);
         for policy in split_list(self.policy.as_deref().unwrap_or(&first_policy)) {
-            let spec =
-                PolicySpec::parse(policy).map_err(|error| Failure::input(format!("--policy: {error}")))?;
+            let spec = PolicySpec::parse(policy, registry)
+                .map_err(|error| Failure::input(format!("--policy: {error}")))?;
             spec.check_allowed(&scenario)?;
-            let driver = spec.driver().map_err(Failure::input)?;
+            let driver = spec.driver();
             let simulation = Simulation::new(&scenario, seed)
                 .map_err(|error| Failure::input(format!("{}: {error}", file.display())))?;
             let bytes = recorded(simulation, &driver, &Options::new(&spec.label))?;
@@ -107,8 +108,8 @@ impl Asked {
         Ok(())
     }
 
-    fn open_folder(&self, folder: &Path, shown: &mut Vec<Shown>) -> Result<(), Failure> {
-        let (experiment, _) = experiment_in(folder)?;
+    fn open_folder(&self, folder: &Path, registry: &Registry, shown: &mut Vec<Shown>) -> Result<(), Failure> {
+        let (experiment, _) = experiment_in(folder, registry)?;
         for key in self.keys(&experiment)? {
             let path = path_of(folder, &experiment, &key);
             let bytes = recording_of(folder, &experiment, &key)?;

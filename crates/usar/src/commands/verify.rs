@@ -12,6 +12,7 @@ use experiments::provenance::{COMMIT, Manifest};
 use experiments::run::{Limits, Run, TrialKey, run_all};
 use experiments::sweep::audit::{difference, strange_files};
 use experiments::sweep::folder::Folder;
+use rne_core::Registry;
 
 use crate::running::{STOP, default_jobs, progress_bar, stop_on_signals, tell};
 
@@ -44,8 +45,8 @@ pub(crate) struct Arguments {
 const LONGEST_TRIAL: Duration = Duration::from_hours(1);
 
 impl Arguments {
-    pub(crate) fn execute(&self, out: &mut dyn Write) -> Result<(), Failure> {
-        let (mut folder, damages) = Folder::read_damaged(&self.folder)?;
+    pub(crate) fn execute(&self, registry: &Registry, out: &mut dyn Write) -> Result<(), Failure> {
+        let (mut folder, damages) = Folder::read_damaged(&self.folder, registry)?;
         let (experiment, manifest) = (folder.shared_experiment(), folder.manifest().clone());
         let all: Vec<TrialKey> = experiment.keys(manifest.shard).collect();
         if !manifest.is_complete {

@@ -9,6 +9,7 @@ use std::process::{Command, Stdio};
 
 use clap::Args;
 use experiments::Failure;
+use rne_core::Registry;
 
 use super::trials::{Asked, Shown};
 use crate::running::tell;
@@ -47,8 +48,8 @@ pub(crate) struct Arguments {
 }
 
 impl Arguments {
-    pub(crate) fn execute(&self, out: &mut dyn Write) -> Result<(), Failure> {
-        let shown = self.asked.open(&self.files)?;
+    pub(crate) fn execute(&self, registry: &Registry, out: &mut dyn Write) -> Result<(), Failure> {
+        let shown = self.asked.open(&self.files, registry)?;
         let recordings = shown.iter().map(Shown::read).collect::<Result<Vec<_>, Failure>>()?;
         if let Some(time_s) = self.at {
             return at::print(out, &recordings, time_s);

@@ -8,12 +8,12 @@ use std::path::PathBuf;
 
 use clap::Args;
 use experiments::Failure;
-use experiments::experiment::{PolicySpec, registry};
+use experiments::experiment::PolicySpec;
 use experiments::oracle::{Coverage, Evaluation, Objective, Survey};
 use experiments::regret::OutcomeLog;
 use experiments::why::{OtherChoice, directed, exchanges, other_choices, rne_of};
 use rne_core::policies::rne::DirectedRne;
-use rne_core::{Assignment, Decision, Question, assignments};
+use rne_core::{Assignment, Decision, Question, Registry, assignments};
 use serde::Serialize;
 use usar_sim::record::{DecisionRecord, Status};
 use usar_sim::simulation::Simulation;
@@ -95,9 +95,9 @@ struct Account<'a> {
 }
 
 impl Arguments {
-    pub(crate) fn execute(&self, out: &mut dyn Write) -> Result<(), Failure> {
+    pub(crate) fn execute(&self, registry: &Registry, out: &mut dyn Write) -> Result<(), Failure> {
         stop_on_signals();
-        let asked = self.trial.open("--policy", self.policy.as_deref())?;
+        let asked = self.trial.open("--policy", self.policy.as_deref(), registry)?;
         let mut simulation = asked.begin()?;
         let watched = self.play(&asked, &mut simulation)?;
         let round = self.round.unwrap_or_else(|| simulation.decisions().len().max(1) as u32);
@@ -126,7 +126,7 @@ impl Arguments {
             return Err(Failure::input(format!("--at: must be from 0 to {end} s, found {at}")));
         }
         let mut watched = self.robot.map(Watched::new);
-        let (driver, guard) = (asked.spec.driver().map_err(Failure::input)?, Guard::new(f64::INFINITY));
+        let (driver, guard) = (asked.spec.driver(), Guard::new(f64::INFINITY));
         let last_round = self.round.unwrap_or(1);
         loop {
             let is_decided = simulation.decisions().len() >= last_round as usize;
@@ -231,7 +231,8 @@ fn judgement(survey: &Survey, metric: &str, tasks: &[String], chosen: &Assignmen
 /// The policies other than the one that decided.
 fn others(asked: &AskedTrial) -> Result<Vec<PolicySpec>, Failure> {
     let all = if asked.policies.is_empty() {
-        let names = registry().names().into_iter().map(PolicySpec::parse);
+        let parse = |name| PolicySpec::parse(name, &asked.registry);
+        let names = asked.registry.names().into_iter().map(parse);
         names.collect::<Result<Vec<_>, String>>().map_err(Failure::run)?
     } else {
         asked.policies.clone()

@@ -222,9 +222,9 @@ fn the_schemas_in_the_documents_are_those_of_the_types() {
 #[test]
 fn a_question_in_json_is_answered_in_json() {
     let folder = tempfile::tempdir().unwrap();
-    let question = r#"{"schema_version": 1, "round": 1, "roles": ["walker"], "needs": [{"name": "hp", "weight": 1.0}],
+    let question = r#"{"schema_version": 2, "round": 1, "roles": ["walker"], "needs": [{"name": "hp", "weight": 1.0}],
         "tasks": [{"name": "a", "difficulty": 1}, {"name": "b", "difficulty": 3}, {"name": "c", "difficulty": 2}],
-        "quotas": [{"members": [1, 1, 1], "is_binding": false}], "history": [],
+        "quotas": [{"members": [1, 1, 1], "sizes": "Parts"}], "history": [],
         "members": [{"id": 4, "role": 0, "home": [0, 0], "needs": [1.0], "energy_level": 10.0},
             {"id": 2, "role": 0, "home": [0, 0], "needs": [2.0], "energy_level": 90.0},
             {"id": 7, "role": 0, "home": [0, 0], "needs": [3.0], "energy_level": 50.0}],

@@ -24,7 +24,7 @@ pub fn run(arguments: &[String]) -> ExitCode {
         is_checked: true,
         ..Overrides::default()
     };
-    let experiment = match Experiment::load(path.as_ref(), &overrides) {
+    let experiment = match Experiment::load(path.as_ref(), &overrides, &Registry::standard()) {
         Ok(experiment) => Arc::new(experiment),
         Err(error) => {
             eprintln!("error: {error}");

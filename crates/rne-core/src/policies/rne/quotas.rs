@@ -17,7 +17,7 @@ pub(super) struct Sizes {
 
 impl Sizes {
     pub(super) fn of(question: &Question) -> Self {
-        let binds = |role: &RoleId| question.quotas[role.index()].is_binding;
+        let binds = |role: &RoleId| question.quotas[role.index()].binds();
         let binding: Vec<RoleId> = question.role_ids().filter(binds).collect();
         let quota = |role: &RoleId, task: TaskId| question.quotas[role.index()].members[task.index()];
         let of_task = |task: TaskId| binding.iter().map(|role| quota(role, task)).collect();

@@ -7,6 +7,7 @@ use experiments::Failure;
 use experiments::files::NewFile;
 use pictures::{Animation, Look, PictureError, Pixels, Width, moment};
 use recording::Recording;
+use rne_core::Registry;
 
 use super::{Arguments, video};
 use crate::commands::output;
@@ -51,7 +52,7 @@ fn failed(error: PictureError) -> Failure {
 
 impl Arguments {
     /// Writes the pictures of --every.
-    pub(super) fn film(&self, out: &mut dyn Write) -> Result<(), Failure> {
+    pub(super) fn film(&self, registry: &Registry, out: &mut dyn Write) -> Result<(), Failure> {
         let force = self.looks.force;
         let films = [("--gif", &self.gif), ("--mp4", &self.mp4)];
         let film = films.into_iter().find_map(|(flag, path)| Some((flag, path.as_ref()?)));
@@ -62,7 +63,7 @@ impl Arguments {
         if self.mp4.is_some() {
             video::check_program()?;
         }
-        let recording = self.asked.open_one(&self.file)?;
+        let recording = self.asked.open_one(&self.file, registry)?;
         let look = self.looks.look(Width::Pixels(640));
         let row = Row { numbers: self.numbers(&recording)?, recording: &recording, look };
         stop_on_signals();
