@@ -9,7 +9,6 @@ use std::fmt::Write;
 use std::path::Path;
 
 use experiments::experiment::{Experiment, Overrides, with_oracle};
-use rne_core::Registry;
 use usar_sim::scenario::Scenario;
 
 use crate::support::{paper_text, root};
@@ -72,7 +71,7 @@ fn said(block: &Block) -> String {
             text,
             &folder.join("s.ron"),
             &Overrides::default(),
-            &with_oracle(Registry::standard()),
+            &with_oracle(policies::standard()),
         )
         .err()
         .map(|error| error.to_string()),
@@ -150,7 +149,7 @@ fn vocabularies() -> Vec<Vec<String>> {
     ];
     let owned = |names: Vec<&str>| names.into_iter().map(str::to_owned).collect::<Vec<_>>();
     let mut all: Vec<Vec<String>> = sections.iter().map(|section| owned(fields.inside(section))).collect();
-    all.push(owned(rne_core::Registry::standard().names()));
+    all.push(owned(policies::standard().names()));
     all.push(owned(vec!["Reciprocal", "Rotation", "Swap", "None"]));
     all.push(owned(vec!["AtOnce", "WhenHome", "BeforeRound"]));
     all.push(owned(vec!["carrier", "supplier", "observer"]));

@@ -8,7 +8,7 @@ use experiments::experiment::{Experiment, Overrides};
 use experiments::run::{Limits, Run, TrialKey, run_all};
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
-use rne_core::{Policy, Question, Registry};
+use rne_core::{Policy, Question};
 use usar_sim::record::{Status, TrialRecord};
 use usar_sim::scenario::Scenario;
 use usar_sim::simulation::{Advance, AssignError, Simulation};
@@ -183,7 +183,7 @@ fn the_order_of_trials_changes_nothing() {
     let overrides =
         Overrides { trials: Some(2), set: vec!["duration_s=30.0".to_owned()], ..Overrides::default() };
     let experiment = Arc::new(
-        Experiment::load(&support::root().join("scenarios/paper.ron"), &overrides, &Registry::standard())
+        Experiment::load(&support::root().join("scenarios/paper.ron"), &overrides, &policies::standard())
             .unwrap(),
     );
     let forwards: Vec<TrialKey> = experiment.keys(None).collect();

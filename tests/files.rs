@@ -2,7 +2,6 @@
 
 use std::path::PathBuf;
 
-use rne_core::Registry;
 use usar_sim::record::Status;
 use usar_sim::scenario::{Scenario, scenario_schema};
 use usar_sim::simulation::Simulation;
@@ -35,7 +34,7 @@ fn files(folder: &str) -> Vec<PathBuf> {
 
 #[test]
 fn every_step_of_the_tutorial_and_every_file_of_the_gallery_runs() {
-    let rne = Registry::standard().parse("RNE").unwrap().policy;
+    let rne = policies::standard().parse("RNE").unwrap().policy;
     let (steps, gallery) = (files("tutorial"), files("gallery"));
     assert_eq!(steps.len(), 10);
     for path in steps.iter().chain(&gallery) {

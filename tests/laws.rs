@@ -8,9 +8,10 @@ use std::path::{Path, PathBuf};
 use crate::support::root;
 
 /// The crates from the bottom up. Each may use those before it, for its tests as well.
-const CRATES: [&str; 12] = [
+const CRATES: [&str; 13] = [
     "ron-fields",
     "rne-core",
+    "policies",
     "frozen-physics",
     "usar-sim",
     "recording",
@@ -24,9 +25,10 @@ const CRATES: [&str; 12] = [
 ];
 
 /// The crates that know no single paper.
-const GENERAL: [&str; 9] = [
+const GENERAL: [&str; 10] = [
     "ron-fields",
     "rne-core",
+    "policies",
     "frozen-physics",
     "usar-sim",
     "recording",
@@ -222,6 +224,16 @@ fn decisions_know_reports_and_no_world() {
         assert_eq!(truth, None, "{module} must not see the truth");
     }
     assert!(uses["sensors"].contains("world"), "sensors are where the truth is seen");
+}
+
+#[test]
+fn a_registry_is_a_value_that_no_crate_keeps_for_the_process() {
+    for name in CRATES {
+        for (path, text) in sources(name) {
+            let kept = text.lines().find(|line| line.contains("static ") && line.contains("Registry"));
+            assert_eq!(kept, None, "{name}/{}", path.display());
+        }
+    }
 }
 
 #[test]

@@ -3,7 +3,6 @@
 use std::path::{Path, PathBuf};
 
 use experiments::experiment::{Experiment, Overrides};
-use rne_core::Registry;
 use usar_sim::model::Layout;
 use usar_sim::scenario::{EmptyTasks, MissionRules, ResolverRule, RightOfWay, RoleFile, Scenario};
 
@@ -37,7 +36,7 @@ fn every_sweep_file_loads_and_every_mission_has_one() {
     let companions = files("scenarios").into_iter().filter(|path| path.is_file() && !is_scenario(path));
     let mut found = 0;
     for path in files("scenarios/sweeps").into_iter().chain(companions) {
-        let sweep = Experiment::load(&path, &Overrides::default(), &Registry::standard())
+        let sweep = Experiment::load(&path, &Overrides::default(), &policies::standard())
             .unwrap_or_else(|error| panic!("{error}"));
         assert!(sweep.keys(None).count() > 0);
         found += 1;
@@ -179,7 +178,7 @@ fn unknown_fields_wrong_types_and_missing_fields_are_named_with_their_place() {
 
 #[test]
 fn an_option_of_a_policy_that_is_not_there_is_named_with_the_known_ones() {
-    let variant = Registry::standard().parse("RNE(hard_rule: Best)").unwrap_err().to_string();
+    let variant = policies::standard().parse("RNE(hard_rule: Best)").unwrap_err().to_string();
     assert!(variant.contains("Best") && variant.contains("Capability"), "{variant}");
 }
 
@@ -189,7 +188,7 @@ fn an_unknown_policy_in_a_sweep_file_lists_the_known_ones() {
     let text = std::fs::read_to_string(&path).unwrap();
     assert!(text.contains("\"DIS\""));
     let text = text.replacen("\"DIS\"", "\"NEAREST\"", 1);
-    let error = Experiment::parse(text, &path, &Overrides::default(), &Registry::standard())
+    let error = Experiment::parse(text, &path, &Overrides::default(), &policies::standard())
         .err()
         .unwrap()
         .to_string();

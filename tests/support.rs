@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use rne_core::{Policy, Registry};
+use rne_core::Policy;
 use usar_sim::geometry::Outline;
 use usar_sim::ids::RobotId;
 use usar_sim::record::TrialRecord;
@@ -45,7 +45,7 @@ pub fn paper_with(replacements: &[(&str, &str)]) -> Scenario {
 
 /// The policy of that name, with options where they are given: `RNE(score: Sum)`.
 pub fn policy(text: &str) -> Arc<dyn Policy> {
-    Registry::standard().parse(text).unwrap_or_else(|error| panic!("{error}")).policy
+    policies::standard().parse(text).unwrap_or_else(|error| panic!("{error}")).policy
 }
 
 /// One trial, with every invariant checked at every step.

@@ -40,9 +40,10 @@ fn main() {
 }
 
 /// The crates that the program consists of, including the crates above this one.
-const CRATES: [&str; 11] = [
+const CRATES: [&str; 12] = [
     "ron-fields",
     "rne-core",
+    "policies",
     "frozen-physics",
     "usar-sim",
     "recording",
@@ -55,18 +56,18 @@ const CRATES: [&str; 11] = [
 ];
 
 /// The crates that decide the numbers of a trial, or of a study.
-const DECIDING: [&str; 6] =
-    ["ron-fields", "rne-core", "frozen-physics", "usar-sim", "experiments", "study-yang2021"];
+const DECIDING: [&str; 7] =
+    ["ron-fields", "rne-core", "policies", "frozen-physics", "usar-sim", "experiments", "study-yang2021"];
 
 /// The folder of the built-in policies, each a file or a folder with its entry for the registry. Its other
 /// files are shared by the policies.
-const POLICIES: &str = "crates/rne-core/src/policies";
+const POLICIES: &str = "crates/policies/src";
 
 /// Text by which the file of a policy is known.
 const ENTRY: &str = "pub fn kind() -> PolicyKind";
 
-/// Lists of the policies, which a new policy changes and which decide no number.
-const LISTS: [&str; 2] = ["crates/rne-core/src/policies/mod.rs", "crates/rne-core/src/registry.rs"];
+/// The list of the policies, which a new policy changes and which decides no number.
+const LISTS: [&str; 1] = ["crates/policies/src/lib.rs"];
 
 /// Path below the project's folder, and content.
 type Source = (String, Vec<u8>);

@@ -7,10 +7,9 @@
 //! use std::sync::atomic::AtomicBool;
 //!
 //! use experiments::experiment::{Experiment, Overrides};
-//! use rne_core::Registry;
 //!
 //! let scenario = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenarios/minimal/head_on.ron");
-//! let experiment = Experiment::load(scenario.as_ref(), &Overrides::default(), &Registry::standard())?;
+//! let experiment = Experiment::load(scenario.as_ref(), &Overrides::default(), &policies::standard())?;
 //! let first = experiment.key((0, 0, 1)); // case, policy, trial
 //! let trial = experiment.run(&first, &AtomicBool::new(false)).expect("it runs to its end");
 //! assert_eq!(trial.record.counts.errands_done, 2);

@@ -1,6 +1,6 @@
 //! Explanations of a decision: what drove it, how close it was, and what other policies would have decided.
 
-use rne_core::policies::rne::{DirectedRne, Rne};
+use policies::rne::{DirectedRne, Rne};
 use rne_core::{Assignment, Decision, Question};
 use serde::Serialize;
 

@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use experiments::catch_panics_quietly;
 use experiments::experiment::{Experiment, Overrides};
 use experiments::run::{Limits, run_all};
-use rne_core::{Decision, Policy, PolicyError, PolicyKind, Question, Registry};
+use rne_core::{Decision, Policy, PolicyError, PolicyKind, Question};
 
 static ASKED: AtomicU64 = AtomicU64::new(0);
 
@@ -35,7 +35,7 @@ impl Policy for Panics {
 
 #[test]
 fn fickle_policies_and_panics_are_named() {
-    let mut registry = Registry::standard();
+    let mut registry = policies::standard();
     registry.add(PolicyKind::plain("FICKLE", "now here, now there", Fickle)).unwrap();
     registry.add(PolicyKind::plain("PANICS", "never answers", Panics)).unwrap();
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).ancestors().nth(2).unwrap();

@@ -7,7 +7,6 @@ use experiments::experiment::with_settings;
 use experiments::oracle::{Branch, advance_to};
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
-use rne_core::Registry;
 use usar_sim::scenario::Scenario;
 use usar_sim::simulation::{Decider, Simulation};
 
@@ -18,7 +17,7 @@ const SCENARIOS: [&str; 6] =
 fn a_fork_without_a_change_has_the_same_hash_for_20_drawn_trials() {
     let halt = AtomicBool::new(false);
     let mut draws = ChaCha8Rng::seed_from_u64(20);
-    let registry = Registry::standard();
+    let registry = policies::standard();
     let names = registry.names();
     for _ in 0..20 {
         let scenario = SCENARIOS[draws.random_range(0..SCENARIOS.len())];

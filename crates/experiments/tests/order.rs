@@ -6,7 +6,6 @@ use std::sync::Arc;
 use experiments::experiment::{Experiment, Overrides};
 use experiments::sweep::folder::{Folder, Opening};
 use experiments::sweep::missing;
-use rne_core::Registry;
 
 #[test]
 fn an_interrupted_sweep_has_the_first_seeds_of_every_case() {
@@ -17,7 +16,7 @@ fn an_interrupted_sweep_has_the_first_seeds_of_every_case() {
         ..Overrides::default()
     };
     let experiment =
-        Experiment::load(&root.join("scenarios/sweeps/energy.ron"), &overrides, &Registry::standard())
+        Experiment::load(&root.join("scenarios/sweeps/energy.ron"), &overrides, &policies::standard())
             .unwrap();
     let cases = experiment.cases.len();
     assert!(cases > 1);

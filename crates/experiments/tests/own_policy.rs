@@ -4,7 +4,7 @@ use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
 use experiments::experiment::{Experiment, Overrides};
-use rne_core::{Decision, Policy, PolicyError, PolicyKind, Question, Registry};
+use rne_core::{Decision, Policy, PolicyError, PolicyKind, Question};
 
 /// Sends all robots to the easiest task.
 #[derive(Clone)]
@@ -22,7 +22,7 @@ impl Policy for Lazy {
 
 #[test]
 fn a_policy_of_another_crate_is_swept_beside_the_built_in_ones() {
-    let mut registry = Registry::standard();
+    let mut registry = policies::standard();
     registry.add(PolicyKind::plain("LAZY", "everybody goes to the easiest task", Lazy)).unwrap();
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).ancestors().nth(2).unwrap();
     let overrides = Overrides {

@@ -13,7 +13,6 @@ use parquet::file::metadata::RowGroupMetaData;
 use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::record::Field;
 use recording::{Options, Recording, record};
-use rne_core::Registry;
 use serde_json::Value;
 use usar_sim::scenario::Scenario;
 use usar_sim::simulation::Simulation;
@@ -24,7 +23,7 @@ fn recorded(file: &str, duration_s: f64) -> Recording {
     let mut file = (*scenario).clone();
     file.duration_s = duration_s;
     let simulation = Simulation::new(&Scenario::try_from(file).unwrap(), 1).unwrap();
-    let policy = Registry::standard().parse("RNE").unwrap().policy;
+    let policy = policies::standard().parse("RNE").unwrap().policy;
     let mut bytes = Vec::new();
     record(simulation, &*policy, &Options::new("RNE"), &mut bytes).unwrap();
     Recording::read(&bytes).unwrap()

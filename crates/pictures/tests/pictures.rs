@@ -4,7 +4,6 @@ use std::path::Path;
 
 use pictures::{Animation, Look, Picture, PictureError, Pixels, Plan, Width, moment, plan, trails};
 use recording::{Options, Recording, World, record};
-use rne_core::Registry;
 use usar_sim::scenario::Scenario;
 use usar_sim::simulation::Simulation;
 
@@ -17,7 +16,7 @@ fn scenario(file: &str, duration_s: f64) -> Scenario {
 }
 
 fn recorded(scenario: &Scenario) -> Recording {
-    let policy = Registry::standard().parse("RNE").unwrap().policy;
+    let policy = policies::standard().parse("RNE").unwrap().policy;
     let mut bytes = Vec::new();
     let simulation = Simulation::new(scenario, 1).unwrap();
     record(simulation, &*policy, &Options::new("RNE"), &mut bytes).unwrap();

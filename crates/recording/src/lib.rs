@@ -11,11 +11,10 @@
 //!
 //! ```no_run
 //! use recording::{Options, Recording, record};
-//! use rne_core::Registry;
 //! use usar_sim::{scenario::Scenario, simulation::Simulation};
 //!
 //! let (scenario, _text) = Scenario::load("scenarios/paper.ron".as_ref())?;
-//! let policy = Registry::standard().parse("RNE")?.policy;
+//! let policy = policies::standard().parse("RNE")?.policy;
 //! let simulation = Simulation::new(&scenario, 1)?;
 //! let mut bytes = Vec::new();
 //! record(simulation, &*policy, &Options::new("RNE"), &mut bytes)?;

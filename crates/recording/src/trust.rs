@@ -1,8 +1,9 @@
 //! The matrices of trust at a decision: between robots, and between groups.
 
+use policies::RneOptions;
+use policies::rne::Rne;
 use rne_core::decision::Account;
-use rne_core::policies::rne::Rne;
-use rne_core::{NeedDistribution, NeedVector, NeedWeights, Question, RneOptions, relative_entropy};
+use rne_core::{NeedDistribution, NeedVector, NeedWeights, Question, relative_entropy};
 use serde::{Deserialize, Serialize};
 use usar_sim::record::DecisionRecord;
 

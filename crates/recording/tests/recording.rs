@@ -5,7 +5,7 @@ use std::path::Path;
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 use recording::{Options, ReadError, Recorder, Recording, record};
-use rne_core::{Policy, Registry, TaskId};
+use rne_core::{Policy, TaskId};
 use usar_sim::mission::Activity;
 use usar_sim::scenario::{Measure, Scenario};
 use usar_sim::simulation::Simulation;
@@ -20,7 +20,7 @@ fn scenario(file: &str, duration_s: f64) -> Scenario {
 }
 
 fn policy(name: &str) -> std::sync::Arc<dyn Policy> {
-    Registry::standard().parse(name).unwrap().policy
+    policies::standard().parse(name).unwrap().policy
 }
 
 fn recorded(file: &str, duration_s: f64) -> Vec<u8> {

@@ -96,7 +96,9 @@ pub fn mutual_information(joint: &DMatrix<f64>) -> Result<f64, NeedsError> {
 }
 
 /// Kullback-Leibler sum over raw shares; `f64::INFINITY` if a need has a share in `p` but none in `q`.
-pub(crate) fn kullback_leibler(p: &[f64], q: &[f64]) -> f64 {
+#[must_use]
+#[inline]
+pub fn kullback_leibler(p: &[f64], q: &[f64]) -> f64 {
     let mut sum = 0.0;
     for (p, q) in p.iter().zip(q) {
         match summand(*p, *q) {
@@ -108,6 +110,7 @@ pub(crate) fn kullback_leibler(p: &[f64], q: &[f64]) -> f64 {
 }
 
 /// The summand `p ln(p / q)`; 0 if `p` is 0, and `None` if it is infinite.
+#[inline]
 fn summand(p: f64, q: f64) -> Option<f64> {
     if p <= 0.0 {
         return Some(0.0);
@@ -116,13 +119,16 @@ fn summand(p: f64, q: f64) -> Option<f64> {
 }
 
 /// `ln(p / q)` for shares above zero, also where the quotient leaves the range of `f64`.
+#[inline]
 fn log_ratio(p: f64, q: f64) -> f64 {
     let ratio = p / q;
     if ratio.is_normal() { libm::log(ratio) } else { libm::log(p) - libm::log(q) }
 }
 
 /// Jensen-Shannon sum over raw shares.
-pub(crate) fn jensen_shannon_nats(p: &[f64], q: &[f64]) -> f64 {
+#[must_use]
+#[inline]
+pub fn jensen_shannon_nats(p: &[f64], q: &[f64]) -> f64 {
     let half = |a: f64, b: f64| if a > 0.0 { a * libm::log(a / f64::midpoint(a, b)) } else { 0.0 };
     let sum: f64 = p.iter().zip(q).map(|(p, q)| 0.5 * (half(*p, *q) + half(*q, *p))).sum();
     sum.max(0.0)

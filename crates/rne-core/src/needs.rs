@@ -118,8 +118,11 @@ impl NeedDistribution {
         Ok(Self(shares))
     }
 
-    /// Divides each value by their sum.
-    pub(crate) fn normalise(what: &'static str, values: &[f64]) -> Result<Self, NeedsError> {
+    /// Divides each value by their sum. `what` names the values in errors.
+    ///
+    /// # Errors
+    /// All values are 0, or their sum is too large.
+    pub fn normalise(what: &'static str, values: &[f64]) -> Result<Self, NeedsError> {
         let mut shares = Vec::with_capacity(values.len());
         let sum = shares_into(values, &mut shares);
         if sum.is_normal() {
@@ -147,7 +150,8 @@ impl NeedDistribution {
 
 /// Writes the share of each value in their sum to `shares` (Eqs. 8 and 9) and returns the sum. No other
 /// function turns sums of weighted needs into shares.
-pub(crate) fn shares_into(values: &[f64], shares: &mut Vec<f64>) -> f64 {
+#[inline]
+pub fn shares_into(values: &[f64], shares: &mut Vec<f64>) -> f64 {
     let sum: f64 = values.iter().sum();
     shares.clear();
     shares.extend(values.iter().map(|value| value / sum));
@@ -155,7 +159,8 @@ pub(crate) fn shares_into(values: &[f64], shares: &mut Vec<f64>) -> f64 {
 }
 
 /// The share of each value in their sum.
-pub(crate) fn shares_of(values: &[f64]) -> Vec<f64> {
+#[must_use]
+pub fn shares_of(values: &[f64]) -> Vec<f64> {
     let mut shares = Vec::with_capacity(values.len());
     shares_into(values, &mut shares);
     shares
@@ -172,8 +177,11 @@ pub(crate) fn check_entries(what: &'static str, values: &[f64]) -> Result<(), Ne
     }
 }
 
-/// Checks that the lengths agree.
-pub(crate) fn check_length(what: &'static str, expected: usize, found: usize) -> Result<(), NeedsError> {
+/// Checks that the lengths agree. `what` names the list in the error.
+///
+/// # Errors
+/// They do not.
+pub fn check_length(what: &'static str, expected: usize, found: usize) -> Result<(), NeedsError> {
     if expected == found { Ok(()) } else { Err(NeedsError::Length { what, expected, found }) }
 }
 

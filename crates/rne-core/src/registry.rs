@@ -1,12 +1,11 @@
-//! The registry: policies by name, each with its options. A built-in policy is one file and one line in
-//! [`Registry::standard`]; a program that uses this crate adds its own with [`Registry::add`].
+//! The registry: policies by name, each with its options. It is a value: whoever has one adds kinds with
+//! [`Registry::add`].
 
 use std::fmt;
 use std::sync::Arc;
 
 use crate::error::RegistryError;
 use crate::kind::PolicyKind;
-use crate::policies::{distance, energy, hp_distance, random, rne};
 use crate::policy::Policy;
 
 /// Policies by name.
@@ -35,15 +34,14 @@ impl fmt::Debug for MadePolicy {
     }
 }
 
-impl Registry {
-    /// The built-in policies.
-    #[must_use]
-    pub fn standard() -> Self {
-        Self {
-            kinds: vec![rne::kind(), distance::kind(), energy::kind(), hp_distance::kind(), random::kind()],
-        }
+impl FromIterator<PolicyKind> for Registry {
+    /// A registry of kinds of different names.
+    fn from_iter<I: IntoIterator<Item = PolicyKind>>(kinds: I) -> Self {
+        Self { kinds: kinds.into_iter().collect() }
     }
+}
 
+impl Registry {
     /// Adds a policy.
     ///
     /// # Errors
@@ -70,12 +68,6 @@ impl Registry {
 
     /// Makes a policy from its name and its options in RON, such as `(score: Sum)`; empty for the defaults.
     ///
-    /// ```
-    /// let rne = rne_core::Registry::standard().make("RNE", "(score: Sum)")?;
-    /// assert!(rne.options.contains("score: Sum, "));
-    /// # Ok::<(), rne_core::RegistryError>(())
-    /// ```
-    ///
     /// # Errors
     /// An unknown name, with the known names; or options that the policy does not have or cannot use, with
     /// the options that it has.
@@ -101,47 +93,5 @@ impl Registry {
         let text = text.trim();
         let (name, options) = text.split_at(text.find('(').unwrap_or(text.len()));
         self.make(name.trim(), options)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn an_unknown_policy_lists_the_known_ones() {
-        let error = Registry::standard().make("NEAREST", "").unwrap_err();
-        assert_eq!(
-            error.to_string(),
-            "unknown policy \"NEAREST\"; known policies: RNE, DIS, ENG, HP_DIS, RANDOM"
-        );
-    }
-
-    #[test]
-    fn options_are_read_written_in_full_and_refused_with_the_known_ones() {
-        let registry = Registry::standard();
-        let made = registry.parse("RNE( weights: [1, 2], sort: true )").unwrap();
-        assert_eq!(
-            made.options,
-            "(log_base: E, sort: true, score: MaxOfBoth, weights: [1.0, 2.0], scale: true, \
-             merge: Apart, hard_rule: IntraGroupTrust)"
-        );
-        assert_eq!(registry.parse(&format!("RNE{}", made.options)).unwrap().options, made.options);
-        let refused = |text| registry.parse(text).unwrap_err().to_string();
-        assert_eq!(refused("DIS(score: Sum)"), "policy DIS: it has no options, found \"(score: Sum)\"");
-        let error = refused("RNE(scale: 3)");
-        assert!(
-            error.contains("policy RNE: ") && error.contains("options and defaults: (log_base: E"),
-            "{error}"
-        );
-        assert!(refused("RNE(weights: [-1.0])").contains("weights[0] must be a finite number >= 0"));
-        assert!(refused("RNE(sort: true").contains("policy RNE: "));
-    }
-
-    #[test]
-    fn a_name_can_be_taken_only_once() {
-        let mut registry = Registry::standard();
-        let error = registry.add(random::kind()).unwrap_err();
-        assert_eq!(error, RegistryError::DuplicateName { name: "RANDOM".into() });
     }
 }

@@ -25,7 +25,9 @@ impl RelativeNeedsEntropy {
     ///
     /// Relative entropy is never negative; the tiny negative values that rounding can produce are returned as
     /// 0.
-    pub(crate) fn from_nats(nats: f64) -> Self {
+    #[must_use]
+    #[inline]
+    pub fn from_nats(nats: f64) -> Self {
         debug_assert!(!nats.is_nan());
         if nats == f64::INFINITY { Self::Infinite } else { Self::Finite(nats.max(0.0)) }
     }

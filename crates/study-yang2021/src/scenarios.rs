@@ -4,7 +4,6 @@ use std::path::Path;
 
 use experiments::Failure;
 use experiments::experiment::{Experiment, Overrides};
-use rne_core::Registry;
 use ron_fields::Fields;
 
 /// Policies of the paper.
@@ -64,7 +63,7 @@ pub fn worlds(trials: u32) -> Result<Vec<World>, Failure> {
 }
 
 fn world(standing: Standing, path: &str, text: &str, overrides: &Overrides) -> Result<World, Failure> {
-    let experiment = Experiment::parse(text.to_owned(), Path::new(path), overrides, &Registry::standard())?;
+    let experiment = Experiment::parse(text.to_owned(), Path::new(path), overrides, &policies::standard())?;
     Ok(World { standing, experiment })
 }
 

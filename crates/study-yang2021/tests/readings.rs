@@ -8,7 +8,6 @@ use experiments::experiment::{Experiment, Overrides};
 use experiments::run::Limits;
 use experiments::sweep::folder::{Folder, Opening};
 use experiments::sweep::{missing, run_trials};
-use rne_core::Registry;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 use study_yang2021::readings::{Trials, rivals};
 
@@ -25,7 +24,7 @@ fn readings_are_counted_against_each_rival_and_against_all() {
         Rounds)";
     std::fs::write(folder.join("r.ron"), text).unwrap();
     let experiment =
-        Experiment::load(&folder.join("r.ron"), &Overrides::default(), &Registry::standard()).unwrap();
+        Experiment::load(&folder.join("r.ron"), &Overrides::default(), &policies::standard()).unwrap();
     let mut ignore = |_| ();
     let mut sweep =
         Folder::open(&folder.join("out"), Arc::new(experiment), Opening::default(), &mut ignore).unwrap();

@@ -5,11 +5,10 @@
 //! with a [`record::TrialRecord`]:
 //!
 //! ```no_run
-//! use rne_core::Registry;
 //! use usar_sim::{scenario::Scenario, simulation::Simulation};
 //!
 //! let (scenario, _text) = Scenario::load("scenarios/paper.ron".as_ref())?;
-//! let rne = Registry::standard().parse("RNE")?;
+//! let rne = policies::standard().parse("RNE")?;
 //! let record = Simulation::new(&scenario, 1)?.run(&*rne.policy, |_time, _events, _world| {});
 //! println!("{} rescued", record.rescued());
 //! # Ok::<(), Box<dyn std::error::Error>>(())

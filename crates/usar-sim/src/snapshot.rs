@@ -174,7 +174,6 @@ impl Simulation {
 
 #[cfg(test)]
 mod tests {
-    use rne_core::Registry;
 
     use super::*;
     use crate::hash::HashChain;
@@ -220,7 +219,7 @@ mod tests {
     }
 
     fn after(scenario: &Scenario, steps: u64) -> Simulation {
-        let rne = Registry::standard().parse("RNE").unwrap();
+        let rne = policies::standard().parse("RNE").unwrap();
         let mut trial = Simulation::new(scenario, 1).unwrap();
         (0..steps).for_each(|_| assert_eq!(trial.step(&*rne.policy), None));
         trial

@@ -3,7 +3,7 @@
 
 use std::alloc::System;
 
-use rne_core::{Policy, Registry};
+use rne_core::Policy;
 use stats_alloc::{INSTRUMENTED_SYSTEM, Region, StatsAlloc};
 use usar_sim::conflict::DelayCause;
 use usar_sim::hash::PERIOD_STEPS;
@@ -40,7 +40,7 @@ fn is_in_conflict(trial: &Simulation) -> bool {
 fn a_step_without_events_plans_and_conflicts_takes_no_memory() {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenarios/paper.ron");
     let (scenario, _) = Scenario::load(path.as_ref()).unwrap();
-    let policy = Registry::standard().parse("RNE").unwrap().policy;
+    let policy = policies::standard().parse("RNE").unwrap().policy;
     let mut trial = Simulation::new(&scenario, 1).unwrap();
     let (mut steady, mut planned, mut longer) = (0, 0, 0);
     for _ in 0..10_000 {

@@ -119,18 +119,18 @@ enum Command {
 /// SIGHUP.
 #[must_use]
 pub fn main() -> ExitCode {
-    main_with(Registry::standard())
+    main_with(policies::standard())
 }
 
 /// The same with policies of the caller's own beside the built-in ones: the `main` of a program that adds
 /// policies.
 ///
 /// ```no_run
-/// # fn my_policy() -> rne_core::PolicyKind { rne_core::policies::random::kind() }
+/// # fn my_policy() -> rne_core::PolicyKind { policies::random::kind() }
 /// fn main() -> std::process::ExitCode {
-///     let mut policies = rne_core::Registry::standard();
-///     policies.add(my_policy()).expect("a new name");
-///     usar::main_with(policies)
+///     let mut registry = policies::standard();
+///     registry.add(my_policy()).expect("a new name");
+///     usar::main_with(registry)
 /// }
 /// ```
 #[must_use]

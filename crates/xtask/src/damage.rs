@@ -15,7 +15,6 @@ use experiments::sweep::{missing, run_trials};
 use flate2::{Compression, GzBuilder};
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
-use rne_core::Registry;
 use xxhash_rust::xxh3::{xxh3_64, xxh3_128};
 
 use crate::kills::{files, journal};
@@ -43,7 +42,7 @@ pub struct Sound {
 impl Sound {
     /// Runs the trials of a finished sweep again.
     pub fn of(path: &Path) -> Self {
-        let folder = Folder::read(path, &Registry::standard()).expect("a sound folder");
+        let folder = Folder::read(path, &policies::standard()).expect("a sound folder");
         let experiment = folder.shared_experiment();
         let keys: Vec<TrialKey> = experiment.keys(None).collect();
         let halt = AtomicBool::new(false);
@@ -93,7 +92,7 @@ impl Sound {
 
     fn judge(&self, report: &mut Report, what: &str, is_to_be_mended: bool) {
         report.damaged += 1;
-        report.refused += u32::from(Folder::read(&self.folder, &Registry::standard()).is_err());
+        report.refused += u32::from(Folder::read(&self.folder, &policies::standard()).is_err());
         if self.is_found() {
             report.found += 1;
         } else {
@@ -110,7 +109,7 @@ impl Sound {
 
     /// Whether verification finds a difference.
     fn is_found(&self) -> bool {
-        let Ok((mut folder, damages)) = Folder::read_damaged(&self.folder, &Registry::standard()) else {
+        let Ok((mut folder, damages)) = Folder::read_damaged(&self.folder, &policies::standard()) else {
             return true;
         };
         let differs = |outcome| difference(&mut folder, outcome).is_ok_and(|difference| difference.is_some());
@@ -137,7 +136,7 @@ impl Sound {
         for (name, bytes) in &self.forged.sound {
             std::fs::write(place.path().join(name), bytes).expect("the file can be written");
         }
-        Folder::read(place.path(), &Registry::standard()).expect("a sound folder").shared_experiment()
+        Folder::read(place.path(), &policies::standard()).expect("a sound folder").shared_experiment()
     }
 }
 

@@ -3,7 +3,6 @@
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
-use rne_core::Registry;
 use usar_sim::scenario::Scenario;
 use usar_sim::simulation::Simulation;
 
@@ -24,7 +23,7 @@ pub fn hashes() -> String {
         .map(|entry| entry.expect("readable").path())
         .collect();
     files.sort();
-    let rne = Registry::standard().parse("RNE").expect("known");
+    let rne = policies::standard().parse("RNE").expect("known");
     let mut text = String::new();
     for path in files {
         let (scenario, _) = Scenario::load(&path).unwrap_or_else(|error| panic!("{error}"));

@@ -1,6 +1,5 @@
 //! The requirements on every trial of the random worlds, and how violations are counted.
 
-use rne_core::Registry;
 use usar_sim::conflict::DelayCause;
 use usar_sim::record::{Status, TrialRecord};
 use usar_sim::robot::STANDING_MPS;
@@ -27,7 +26,7 @@ impl Journeys {
     /// # Errors
     /// The reason why the trial failed, in words.
     pub fn run(scenario: &Scenario, seed: u64) -> Result<Self, String> {
-        let random = Registry::standard().parse("RANDOM").expect("known");
+        let random = policies::standard().parse("RANDOM").expect("known");
         let mut trial = Simulation::new(scenario, seed).map_err(|error| error.to_string())?.checked();
         let (mut still, mut longest) = (0_u64, 0_u64);
         while trial.ending().is_none() {

@@ -9,7 +9,7 @@ use experiments::experiment::{Experiment, Overrides};
 use experiments::input_table::InputTable;
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
-use rne_core::{Question, Registry};
+use rne_core::Question;
 use usar_sim::scenario::Scenario;
 use usar_sim::simulation::Simulation;
 use usar_sim::snapshot::Identity;
@@ -100,7 +100,7 @@ fn kinds(folder: &Path) -> Vec<Kind> {
     let sweep = |bytes: &[u8]| {
         let text = String::from_utf8_lossy(bytes).into_owned();
         let place = root().join("scenarios/sweeps/damaged.ron");
-        Experiment::parse(text, &place, &Overrides::default(), &Registry::standard())
+        Experiment::parse(text, &place, &Overrides::default(), &policies::standard())
             .map_err(|error| error.to_string())
             .is_ok()
     };

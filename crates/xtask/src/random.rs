@@ -6,7 +6,6 @@ use std::fmt::Write;
 
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
-use rne_core::Registry;
 use usar_sim::record::Status;
 use usar_sim::scenario::Scenario;
 use usar_sim::simulation::Simulation;
@@ -48,7 +47,7 @@ pub struct Ran {
 /// Writes the scenario of a seed and runs a trial of it.
 pub fn run(seed: u64) -> Ran {
     let (text, scenario, mut trial, refused) = start(seed);
-    let policies = Registry::standard();
+    let policies = policies::standard();
     let named = policies.parse(POLICIES[(seed % 5) as usize]).or_else(|_| policies.parse("RNE"));
     let policy = named.expect("a policy of the paper").policy;
     let status = loop {

@@ -6,7 +6,6 @@ use std::path::{Path, PathBuf};
 
 use experiments::experiment::{Experiment, Overrides};
 use experiments::sweep::columns_page;
-use rne_core::Registry;
 
 const EVENTS: &str = "\
 # Events: what can happen in a trial
@@ -45,7 +44,7 @@ fn place(path: &str) -> PathBuf {
 /// The columns of the paper's sweep.
 fn columns() -> String {
     let file = place("scenarios/paper.ron");
-    let experiment = Experiment::load(&file, &Overrides::default(), &Registry::standard())
+    let experiment = Experiment::load(&file, &Overrides::default(), &policies::standard())
         .expect("the paper's sweep is sound");
     let page = columns_page(&experiment).expect("its tables have columns");
     let (_, tables) = page.split_once("\n\n").expect("a title");

@@ -1,7 +1,6 @@
 use rand::SeedableRng;
 use rand::rngs::ChaCha8Rng;
 use rand_distr::{Bernoulli, Distribution, Normal};
-use rne_core::Registry;
 
 use super::*;
 use crate::experiment::PolicySpec;
@@ -9,7 +8,7 @@ use crate::metric::Catalogue;
 
 fn read(text: &str) -> Result<Expected, String> {
     let metrics = Catalogue::of(&["far".to_owned()]);
-    let policies = ["RNE", "DIS"].map(|name| PolicySpec::parse(name, &Registry::standard()).unwrap());
+    let policies = ["RNE", "DIS"].map(|name| PolicySpec::parse(name, &policies::standard()).unwrap());
     parse(text, &metrics, &policies).map_err(|error| error.to_string())
 }
 

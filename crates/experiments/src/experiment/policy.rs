@@ -3,7 +3,8 @@
 use std::fmt;
 use std::sync::Arc;
 
-use rne_core::{MadePolicy, Policy, Registry, RneOptions};
+use policies::RneOptions;
+use rne_core::{MadePolicy, Policy, Registry};
 use ron_fields::{Fields, nearest};
 use serde::de::DeserializeOwned;
 use usar_sim::scenario::Scenario;
@@ -146,8 +147,8 @@ fn oracle_of(
     registry: &Registry,
 ) -> Result<(OracleOptions, Option<Arc<dyn Policy>>), String> {
     let options: OracleOptions = from_ron(&made.options)?;
-    let make = |then: &str| PolicySpec::parse(then, registry).map(|spec| Arc::clone(&spec.made.policy));
-    let onwards = options.onwards(make).map_err(|error| format!("policy ORACLE: then: {error}"))?;
+    let parse = |then: &str| PolicySpec::parse(then, registry).map(|spec| Arc::clone(&spec.made.policy));
+    let onwards = options.onwards(parse).map_err(|error| format!("policy ORACLE: then: {error}"))?;
     Ok((options, onwards))
 }
 
@@ -212,7 +213,7 @@ mod tests {
 
     #[test]
     fn policies_have_names_options_and_labels() {
-        let spec = |text| PolicySpec::parse(text, &Registry::standard()).unwrap();
+        let spec = |text| PolicySpec::parse(text, &policies::standard()).unwrap();
         assert_eq!(spec("DIS").label, "DIS");
         let options = spec("RNE( score : Sum, weights: [1, 2, 3, 4, 5, 6, 7], )");
         assert_eq!(options.label, "RNE(score: Sum, weights: [1, 2, 3, 4, 5, 6, 7])");
@@ -223,7 +224,7 @@ mod tests {
 
     #[test]
     fn bad_policies_are_refused() {
-        let refused = |text| PolicySpec::parse(text, &Registry::standard()).unwrap_err();
+        let refused = |text| PolicySpec::parse(text, &policies::standard()).unwrap_err();
         assert!(refused("NEAREST").contains("unknown policy"));
         assert!(refused("DIS(score: Sum)").contains("policy DIS: it has no options"));
         assert!(refused("RNE(luck: 3)").contains("policy RNE: "));

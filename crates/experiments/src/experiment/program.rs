@@ -66,7 +66,7 @@ fn source_of(policy: &MadePolicy) -> Result<String, Failure> {
         return Ok(env!("USAR_SOURCE").to_owned());
     }
     let file = policy.file.replace('\\', "/");
-    let own = file.split_once("rne-core/src/policies/").and_then(|(_, rest)| rest.split('/').next());
+    let own = file.split_once("crates/policies/src/").and_then(|(_, rest)| rest.split('/').next());
     let built_in = env!("USAR_POLICIES").split(';').filter_map(|entry| entry.split_once('='));
     let found = built_in.into_iter().find(|(name, _)| Some(*name) == own);
     found.map_or_else(executable, |(_, hash)| Ok(hash.to_owned()))
@@ -89,13 +89,12 @@ fn executable() -> Result<String, Failure> {
 
 #[cfg(test)]
 mod tests {
-    use rne_core::Registry;
 
     use super::*;
     use crate::experiment::with_oracle;
 
     fn source(text: &str) -> String {
-        source_of(PolicySpec::parse(text, &with_oracle(Registry::standard())).unwrap().made()).unwrap()
+        source_of(PolicySpec::parse(text, &with_oracle(policies::standard())).unwrap().made()).unwrap()
     }
 
     #[test]
@@ -111,7 +110,7 @@ mod tests {
 
     #[test]
     fn a_policy_of_another_crate_has_the_hash_of_the_program_that_has_it() {
-        let mut policy = PolicySpec::parse("DIS", &Registry::standard()).unwrap().made().clone();
+        let mut policy = PolicySpec::parse("DIS", &policies::standard()).unwrap().made().clone();
         policy.file = "src/main.rs";
         let program = std::fs::read(std::env::current_exe().unwrap()).unwrap();
         assert!(program.len() > 1 << 20);

@@ -1,7 +1,8 @@
 //! Features of an assignment that a policy can see before it decides, and that may predict the outcome.
 
-use rne_core::policies::rne::Rne;
-use rne_core::{Assignment, Member, NeedDistribution, NeedWeights, Question, RneOptions, relative_entropy};
+use policies::RneOptions;
+use policies::rne::Rne;
+use rne_core::{Assignment, Member, NeedDistribution, NeedWeights, Question, relative_entropy};
 
 use crate::rounds::{energy, hp};
 

@@ -2,7 +2,7 @@
 //! levels differ greatly can have full trust in each other. This module looks for an example in real
 //! trials.
 
-use rne_core::policies::rne::Rne;
+use policies::rne::Rne;
 use rne_core::{Member, NeedDistribution, NeedWeights, relative_entropy};
 
 use super::{Round, energy, hp};
@@ -154,7 +154,7 @@ struct Candidate {
 
 #[cfg(test)]
 mod tests {
-    use rne_core::RneOptions;
+    use policies::RneOptions;
 
     use super::super::testing;
     use super::*;

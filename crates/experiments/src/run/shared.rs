@@ -106,8 +106,6 @@ impl SharedTrials {
 mod tests {
     use std::path::Path;
 
-    use rne_core::Registry;
-
     use super::*;
     use crate::experiment::with_settings;
 
@@ -117,7 +115,7 @@ mod tests {
         let (scenario, _) = Scenario::load(&path).unwrap();
         let scenario = with_settings(&scenario, &["duration_s=120".to_owned()]).unwrap();
         let (shared, halt) = (SharedTrials::new(false), AtomicBool::new(false));
-        let registry = Registry::standard();
+        let registry = policies::standard();
         let names = registry.names();
         let mut policies: Vec<_> = names.iter().map(|name| registry.parse(name).unwrap()).collect();
         policies.push(registry.parse("RNE(log_base: Two)").unwrap());
@@ -142,7 +140,7 @@ mod tests {
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/paper.ron");
         let (scenario, _) = Scenario::load(&path).unwrap();
         let short = with_settings(&scenario, &["duration_s=60".to_owned()]).unwrap();
-        let dis = Driver::Policy(Registry::standard().parse("DIS").unwrap().policy);
+        let dis = Driver::Policy(policies::standard().parse("DIS").unwrap().policy);
         let (shared, halt) = (SharedTrials::new(false), AtomicBool::new(false));
         let first = shared.run((0, &scenario), &dis, 1, &halt).unwrap();
         let second = shared.run((1, &short), &dis, 1, &halt).unwrap();

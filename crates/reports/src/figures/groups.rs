@@ -3,7 +3,7 @@
 use experiments::Failure;
 use experiments::experiment::Experiment;
 use experiments::rounds::{KEYS, Likeness, Share};
-use rne_core::policies::rne::Rne;
+use policies::rne::Rne;
 use rne_core::{Member, NeedDistribution, NeedWeights, PolicyError, RelativeNeedsEntropy, relative_entropy};
 
 use super::gather::Gathered;

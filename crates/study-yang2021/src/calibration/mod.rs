@@ -21,7 +21,7 @@ use experiments::explore::{Free, WORST};
 use experiments::run::run_trial;
 use experiments::{Failure, panic_message};
 use rayon::prelude::*;
-use rne_core::{Policy, Registry};
+use rne_core::Policy;
 use ron_fields::{Fields, with_values};
 use usar_sim::scenario::{Scenario, ScenarioFile};
 
@@ -283,5 +283,5 @@ fn candidate(text: &str) -> String {
 }
 
 fn the_policy() -> Result<Arc<dyn Policy>, String> {
-    Registry::standard().parse(POLICY).map(|made| made.policy).map_err(|error| error.to_string())
+    policies::standard().parse(POLICY).map(|made| made.policy).map_err(|error| error.to_string())
 }

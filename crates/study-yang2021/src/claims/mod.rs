@@ -391,7 +391,7 @@ mod tests {
         for part in CLAIMS.iter().flat_map(|claim| claim.parts) {
             for [policy, metric] in [part.a, part.b] {
                 assert!(metrics.named(metric).is_ok(), "{metric}");
-                assert!(rne_core::Registry::standard().names().contains(&policy), "{policy}");
+                assert!(policies::standard().names().contains(&policy), "{policy}");
             }
         }
     }

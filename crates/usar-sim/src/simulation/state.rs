@@ -189,13 +189,13 @@ impl State {
         let unit = model.scenario.costs.unit;
         let (robots, zones_at) = self.world.robots_in_zones();
         for (robot, tally) in robots.iter_mut().zip(&mut self.tallies) {
-            let metres = f64::from(robot.velocity.length()) * model.dt_s();
-            tally.note_way(metres);
+            let speed = robot.velocity.length();
+            tally.note_way(f64::from(speed) * model.dt_s());
             let agent = &self.mission.agents[robot.id.index()];
             if !robot.is_able() || matches!(agent.activity, Activity::Resting(_)) {
                 continue;
             }
-            let [energy, hp] = step_costs(model, agent, robot, metres, zones_at(robot.position));
+            let [energy, hp] = step_costs(model, agent, robot, speed, zones_at(robot.position));
             let energy = unit.to_percent(energy, robot.spec.energy).min(robot.energy);
             let hp = unit.to_percent(hp, robot.spec.hp).min(robot.hp);
             if energy > 0.0 || hp > 0.0 {
@@ -281,14 +281,12 @@ pub(super) fn last_event(robot: &mut Robot) -> Option<Event> {
     }
 }
 
-/// Energy and HP that a step of this length costs a robot in `zones` overlapping radiation zones, in the unit
-/// of the scenario's costs.
-fn step_costs(model: &Model, agent: &Agent, robot: &Robot, metres: f64, zones: usize) -> [f64; 2] {
+/// Energy and HP that a step at this speed costs a robot in `zones` overlapping radiation zones, in the unit of
+/// the scenario's costs.
+fn step_costs(model: &Model, agent: &Agent, robot: &Robot, speed: f32, zones: usize) -> [f64; 2] {
     let (Costs { energy, hp, work, .. }, dt) = (&model.scenario.costs, model.dt_s());
-    let mut costs = [
-        energy_cost(energy, robot.velocity.length() > STANDING_MPS, metres, dt),
-        hp_cost(hp, zones, metres, dt),
-    ];
+    let metres = f64::from(speed) * dt;
+    let mut costs = [energy_cost(energy, speed > STANDING_MPS, metres, dt), hp_cost(hp, zones, metres, dt)];
     if matches!(agent.activity, Activity::Loading(..)) {
         costs[0] += work.energy_per_second * dt;
     }

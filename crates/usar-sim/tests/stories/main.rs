@@ -7,7 +7,6 @@ mod rooms;
 mod shapes;
 mod timeline;
 
-use rne_core::Registry;
 use usar_sim::event::Event;
 use usar_sim::record::TrialRecord;
 use usar_sim::scenario::Scenario;
@@ -25,6 +24,6 @@ fn scenario(fields: &str) -> Scenario {
 
 /// The trial with seed 1, with every invariant checked at every step.
 fn trial(scenario: &Scenario, listen: impl FnMut(f64, &[Event], &World)) -> TrialRecord {
-    let rne = Registry::standard().parse("RNE").unwrap();
+    let rne = policies::standard().parse("RNE").unwrap();
     Simulation::new(scenario, 1).unwrap().checked().run(&*rne.policy, listen)
 }

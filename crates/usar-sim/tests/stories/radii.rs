@@ -41,7 +41,7 @@ fn a_small_robot_passes_the_small_gap_and_a_large_one_gives_up() {
 #[test]
 fn a_snapshot_goes_on_with_the_same_ways_for_each_radius() {
     let scenario = scenario(&doorway(true));
-    let policy = rne_core::Registry::standard().parse("RNE").unwrap().policy;
+    let policy = policies::standard().parse("RNE").unwrap().policy;
     let mut whole = Simulation::new(&scenario, 1).unwrap();
     (0..150).for_each(|_| assert_eq!(whole.step(&*policy), None));
     let restored = Simulation::restore(&scenario, &whole.snapshot("RNE")).unwrap();

@@ -1,6 +1,5 @@
 //! Stories of timelines: events happen, robots notice them, and a trial resumes from a snapshot bit for bit.
 
-use rne_core::Registry;
 use usar_sim::event::Event;
 use usar_sim::record::Status;
 use usar_sim::scenario::Scenario;
@@ -23,7 +22,7 @@ const WORLD: &str = r#"
 /// A checked trial of the world with a timeline, at its end, and the events of its timeline.
 fn trial(timeline: &str) -> (Scenario, Vec<(f64, Event)>, Simulation) {
     let scenario = scenario(&format!("{WORLD} timeline: [{timeline}]"));
-    let policy = Registry::standard().parse("RNE").unwrap().policy;
+    let policy = policies::standard().parse("RNE").unwrap().policy;
     let mut trial = Simulation::new(&scenario, 1).unwrap().checked();
     let mut heard = Vec::new();
     let mut status = None;
@@ -125,7 +124,7 @@ fn a_trial_goes_on_bit_for_bit_from_before_and_after_each_event() {
            (at_s: 50, event: Opens("slab")),
            (at_s: 52, event: Opens("west")), (at_s: 60, event: TaskEnds("far"))"#,
     );
-    let policy = Registry::standard().parse("RNE").unwrap().policy;
+    let policy = policies::standard().parse("RNE").unwrap().policy;
     let mut trial = Simulation::new(&scenario, 1).unwrap();
     let moments: Vec<f64> =
         scenario.timeline.iter().flat_map(|moment| [-0.02, 0.0, 0.02].map(|by| moment.at_s + by)).collect();

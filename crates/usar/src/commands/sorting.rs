@@ -8,8 +8,8 @@ use experiments::Failure;
 use experiments::metric::task_names;
 use experiments::rounds::{self, Blindness, Example, GroupLevels, Likeness, likeness, rounds_in};
 use experiments::sweep::folder::Folder;
+use policies::rne::Rne;
 use reports::table::{levels_table, likeness_table};
-use rne_core::policies::rne::Rne;
 use rne_core::{Member, Registry};
 use usar_sim::scenario::Scenario;
 

@@ -12,7 +12,7 @@ use experiments::experiment::PolicySpec;
 use experiments::oracle::{Coverage, Evaluation, Objective, Survey};
 use experiments::regret::OutcomeLog;
 use experiments::why::{OtherChoice, directed, exchanges, other_choices, rne_of};
-use rne_core::policies::rne::DirectedRne;
+use policies::rne::DirectedRne;
 use rne_core::{Assignment, Decision, Question, Registry, assignments};
 use serde::Serialize;
 use usar_sim::record::{DecisionRecord, Status};

@@ -3,7 +3,6 @@
 use std::path::Path;
 
 use experiments::sweep::folder::Folder;
-use rne_core::Registry;
 use serde_json::Value;
 use xtask::kills::files;
 
@@ -122,7 +121,7 @@ fn a_report_shows_chosen_trials_and_links_their_replays() {
 
 /// Checks that the table of trials has each metric of each trial, to the bit.
 fn every_metric_is_a_column(results: &Path, trials: &[csv::StringRecord]) {
-    let sweep = Folder::read(results, &Registry::standard()).unwrap();
+    let sweep = Folder::read(results, &policies::standard()).unwrap();
     let metrics = &sweep.experiment().metrics;
     let places: Vec<usize> = metrics.iter().map(|metric| column(results, &metric.column())).collect();
     assert_eq!(trials.len(), sweep.results().len());

@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use rne_core::{Question, Registry};
+use rne_core::Question;
 use xtask::team::question;
 
 /// Number of groupings of each team; the median is printed.
@@ -25,7 +25,7 @@ pub fn print_table() {
 }
 
 fn seconds(question: &Question) -> f64 {
-    let rne = Registry::standard().parse("RNE").expect("known");
+    let rne = policies::standard().parse("RNE").expect("known");
     let mut turns: Vec<f64> = (0..TURNS)
         .map(|_| {
             let start = Instant::now();

@@ -10,7 +10,7 @@ mod raw;
 use std::sync::Arc;
 use std::time::Instant;
 
-use rne_core::{Policy, Registry};
+use rne_core::Policy;
 use usar_sim::scenario::Scenario;
 use usar_sim::simulation::Simulation;
 use usar_sim::stage::Stage;
@@ -73,7 +73,7 @@ fn raw_us(robots: u32, steps: u64) -> f64 {
 }
 
 fn made(policy: &str) -> Arc<dyn Policy> {
-    Registry::standard().parse(policy).expect("known").policy
+    policies::standard().parse(policy).expect("known").policy
 }
 
 fn full_us(scenario: &Scenario, policy: &str, steps: u64) -> f64 {

@@ -12,7 +12,6 @@ use std::time::{Duration, Instant};
 use experiments::experiment::{Experiment, Keep, Overrides, Shard};
 use experiments::run::{Outcome, Trial, TrialKey};
 use experiments::sweep::folder::{Folder, Opening};
-use rne_core::Registry;
 
 use super::scale::peak_memory;
 use super::usar;
@@ -69,7 +68,7 @@ fn experiment(place: &Path, trials: u32, keep: Keep) -> Experiment {
     let path = place.join("million.ron");
     std::fs::write(&path, sweep).expect("it can be written");
     let overrides = Overrides { keep: Some(keep), ..Overrides::default() };
-    Experiment::load(&path, &overrides, &Registry::standard()).expect("a sweep")
+    Experiment::load(&path, &overrides, &policies::standard()).expect("a sweep")
 }
 
 /// A real trial of each case and policy.

@@ -6,7 +6,6 @@
 use std::process::ExitCode;
 use std::time::Instant;
 
-use rne_core::Registry;
 use usar_sim::record::Status;
 use usar_sim::scenario::Scenario;
 use usar_sim::simulation::Simulation;
@@ -22,7 +21,7 @@ pub fn run(arguments: &[String]) -> ExitCode {
         file.set("conflicts.resolver", resolver).expect("a resolver");
         scenario = Scenario::try_from(file).expect("a scenario that can be used");
     }
-    let eng = Registry::standard().parse("ENG").expect("known");
+    let eng = policies::standard().parse("ENG").expect("known");
     let start = Instant::now();
     let mut trial = Simulation::new(&scenario, 1).expect("drawn");
     println!(

@@ -9,7 +9,6 @@ use std::sync::atomic::AtomicBool;
 
 use experiments::experiment::{Experiment, Overrides};
 use experiments::run::{Limits, Outcome, run_all};
-use rne_core::Registry;
 use usar_sim::invariant::Overlaps;
 use usar_sim::record::TrialRecord;
 
@@ -19,12 +18,12 @@ pub fn run(arguments: &[String]) -> ExitCode {
     let path = arguments.first().map_or("scenarios/paper.ron", String::as_str);
     let seeds = arguments.get(1).and_then(|seeds| seeds.parse().ok()).unwrap_or(100);
     let overrides = Overrides {
-        policies: Some(Registry::standard().names().into_iter().map(str::to_owned).collect()),
+        policies: Some(policies::standard().names().into_iter().map(str::to_owned).collect()),
         trials: Some(seeds),
         is_checked: true,
         ..Overrides::default()
     };
-    let experiment = match Experiment::load(path.as_ref(), &overrides, &Registry::standard()) {
+    let experiment = match Experiment::load(path.as_ref(), &overrides, &policies::standard()) {
         Ok(experiment) => Arc::new(experiment),
         Err(error) => {
             eprintln!("error: {error}");

@@ -5,7 +5,7 @@
 use std::process::ExitCode;
 use std::sync::Arc;
 
-use rne_core::{Policy, Registry};
+use rne_core::Policy;
 use usar_sim::scenario::Scenario;
 use usar_sim::simulation::Simulation;
 use xtask::team;
@@ -31,7 +31,7 @@ fn trial() {
 }
 
 fn rne() -> Arc<dyn Policy> {
-    Registry::standard().parse("RNE").expect("known").policy
+    policies::standard().parse("RNE").expect("known").policy
 }
 
 /// Searches for the best split of a role: 20 robots, the largest number that is exact, and 60 robots by

@@ -2,8 +2,6 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use rne_core::Registry;
-
 use super::{Folder, Opening};
 use crate::experiment::{Experiment, Overrides, Parts};
 use crate::run::Limits;
@@ -19,7 +17,7 @@ fn experiment(policies: &[&str]) -> Experiment {
         set: vec!["duration_s=20.0".to_owned()],
         ..Overrides::default()
     };
-    Experiment::load(&paper, &overrides, &Registry::standard()).unwrap()
+    Experiment::load(&paper, &overrides, &policies::standard()).unwrap()
 }
 
 /// The same experiment by a program in which the policy with this number had other sources.
@@ -27,7 +25,7 @@ fn before_an_edit(experiment: Experiment, policy: usize) -> Experiment {
     let mut program = experiment.program.clone();
     program.policies[policy] = "before the edit".to_owned();
     Experiment::assemble(Parts {
-        registry: Registry::standard(),
+        registry: policies::standard(),
         policies: experiment.policies.iter().map(|policy| policy.written().to_owned()).collect(),
         name: experiment.name,
         given: experiment.given,

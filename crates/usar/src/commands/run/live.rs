@@ -129,7 +129,7 @@ fn bar(share: f64, width: usize) -> String {
 
 #[cfg(test)]
 mod tests {
-    use rne_core::Registry;
+
     use usar_sim::scenario::Scenario;
 
     use super::*;
@@ -138,7 +138,7 @@ mod tests {
     fn a_screen_has_the_time_the_tasks_and_the_robots_in_80_columns() {
         let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/paper.ron");
         let mut simulation = Simulation::new(&Scenario::load(&path).unwrap().0, 1).unwrap();
-        let policy = Registry::standard().parse("RNE").unwrap().policy;
+        let policy = policies::standard().parse("RNE").unwrap().policy;
         (0..500).for_each(|_| drop(simulation.step(&*policy)));
         let screen = screen(&simulation, "RNE", 12.0);
         let lines: Vec<&str> = screen.lines().collect();

@@ -72,7 +72,6 @@ mod tests {
     use std::path::Path;
 
     use experiments::experiment::Overrides;
-    use rne_core::Registry;
 
     use super::*;
 
@@ -80,7 +79,7 @@ mod tests {
     fn shards_take_ten_minutes_or_more_and_are_as_many_as_the_site_takes() {
         let paper = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/paper.ron");
         let overrides = Overrides { trials: Some(1000), ..Overrides::default() };
-        let experiment = Experiment::load(&paper, &overrides, &Registry::standard()).unwrap();
+        let experiment = Experiment::load(&paper, &overrides, &policies::standard()).unwrap();
         let trials = experiment.count(None) as f64;
         let shards = |hours: f64, shards, most_tasks| {
             let wishes = Wishes { shards, at_once: None, cpus: 4, most_tasks };

@@ -5,9 +5,9 @@ use std::io::Write;
 use experiments::Failure;
 use experiments::comparison::digits;
 use experiments::why::OtherChoice;
+use policies::rne::DirectedRne;
 use reports::table::{headed, right};
 use rne_core::decision::{Ranking, RneAccount};
-use rne_core::policies::rne::DirectedRne;
 use rne_core::{Account as PolicyAccount, Decision, Question, RelativeNeedsEntropy};
 
 use super::robot::{RobotStory, in_words};

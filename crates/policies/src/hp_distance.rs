@@ -1,12 +1,12 @@
 //! `HP_DIS`: the healthier robots take the harder tasks, ties by distance (paper: Section VI).
 
-use super::facts::{missing, squared_distance};
-use super::ranking::deal_by_rank;
-use crate::decision::Decision;
-use crate::error::PolicyError;
-use crate::kind::PolicyKind;
-use crate::policy::Policy;
-use crate::question::Question;
+use crate::facts::{missing, squared_distance};
+use crate::ranking::deal_by_rank;
+use rne_core::decision::Decision;
+use rne_core::error::PolicyError;
+use rne_core::kind::PolicyKind;
+use rne_core::policy::Policy;
+use rne_core::question::Question;
 
 const NAME: &str = "HP_DIS";
 

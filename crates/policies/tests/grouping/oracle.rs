@@ -1,10 +1,11 @@
 //! The RNE policy by its definition: an exhaustive search that is not fast. It uses only the distributions
 //! and divergences of the crate.
 
-use rne_core::policies::rne::{HardRule, MergeReading, ScoreDirection};
+use policies::RneOptions;
+use policies::rne::{HardRule, MergeReading, ScoreDirection};
 use rne_core::{
-    Member, NeedDistribution, NeedVector, NeedWeights, Question, RelativeNeedsEntropy, RneOptions, RoleId,
-    jeffreys, jensen_shannon, relative_entropy,
+    Member, NeedDistribution, NeedVector, NeedWeights, Question, RelativeNeedsEntropy, RoleId, jeffreys,
+    jensen_shannon, relative_entropy,
 };
 
 /// Scores that differ by less than this are equal.

@@ -1,12 +1,12 @@
 //! `ENG`: the robots with more energy take the harder tasks (paper: Section VI, after Yang et al. 2020).
 
-use super::facts::missing;
-use super::ranking::deal_by_rank;
-use crate::decision::Decision;
-use crate::error::PolicyError;
-use crate::kind::PolicyKind;
-use crate::policy::Policy;
-use crate::question::Question;
+use crate::facts::missing;
+use crate::ranking::deal_by_rank;
+use rne_core::decision::Decision;
+use rne_core::error::PolicyError;
+use rne_core::kind::PolicyKind;
+use rne_core::policy::Policy;
+use rne_core::question::Question;
 
 const NAME: &str = "ENG";
 

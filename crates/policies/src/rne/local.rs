@@ -6,7 +6,7 @@
 
 use super::partition::{Partition, distinct_orders, in_order};
 use super::scorer::{Scorer, TIE_TOLERANCE, add_pair, part_sums};
-use crate::needs::shares_of;
+use rne_core::needs::shares_of;
 
 /// Most swaps that are tried for one role.
 const MAX_SWAPS: u64 = 1_000_000;

@@ -1,6 +1,7 @@
 //! Two, three and four tasks against the oracle.
 
-use rne_core::{NeedVector, Question, RneOptions};
+use policies::RneOptions;
+use rne_core::{NeedVector, Question};
 
 use crate::oracle::{Oracle, as_set, is_close, nats};
 use crate::support::{all_options, decide, drawn_team, question, rne};

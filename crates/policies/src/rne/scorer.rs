@@ -1,8 +1,8 @@
 //! The score of groups: Relative Needs Entropy between their distributions, by the direction of the options.
 
 use super::options::ScoreDirection;
-use crate::divergence::{jensen_shannon_nats, kullback_leibler};
-use crate::needs::{shares_into, shares_of};
+use rne_core::divergence::{jensen_shannon_nats, kullback_leibler};
+use rne_core::needs::{shares_into, shares_of};
 
 /// A later candidate wins only if it is better by more than this, in nats, so that rounding never decides a
 /// tie.

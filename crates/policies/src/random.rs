@@ -2,12 +2,12 @@
 
 use rand::seq::SliceRandom;
 
-use super::ranking::deal;
-use crate::decision::Decision;
-use crate::error::PolicyError;
-use crate::kind::PolicyKind;
-use crate::policy::Policy;
-use crate::question::Question;
+use crate::ranking::deal;
+use rne_core::decision::Decision;
+use rne_core::error::PolicyError;
+use rne_core::kind::PolicyKind;
+use rne_core::policy::Policy;
+use rne_core::question::Question;
 
 /// Per role, shuffles the robots and deals them out over the tasks by quota.
 #[derive(Debug, Clone, Copy)]

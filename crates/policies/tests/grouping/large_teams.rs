@@ -1,11 +1,12 @@
 //! Teams that are too large for an exhaustive search: the answer says so, and bounds its distance from the
 //! optimum.
 
+use policies::RneOptions;
+use policies::rne::EXACT_TASKS;
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 use rne_core::decision::RneAccount;
-use rne_core::policies::rne::EXACT_TASKS;
-use rne_core::{Account, Decision, RneOptions};
+use rne_core::{Account, Decision};
 
 use crate::oracle::Oracle;
 use crate::support::{SCORES, decide, drawn_team, names, question, rne, team, two_tasks};

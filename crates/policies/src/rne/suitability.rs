@@ -5,11 +5,11 @@ use super::options::HardRule;
 use super::quotas::Sizes;
 use super::scorer::{Scorer, TIE_TOLERANCE};
 use super::{Rne, scale_by_maximum};
-use crate::decision::Suitability;
-use crate::error::PolicyError;
-use crate::ids::TaskId;
-use crate::policies::facts::missing;
-use crate::question::{Member, Question};
+use crate::facts::missing;
+use rne_core::decision::Suitability;
+use rne_core::error::PolicyError;
+use rne_core::ids::TaskId;
+use rne_core::question::{Member, Question};
 
 impl Rne {
     /// How well each group is suited for a hard task: higher is better, `None` for an empty group.

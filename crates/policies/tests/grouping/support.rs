@@ -1,13 +1,13 @@
 //! Teams and questions.
 
+use policies::RneOptions;
+use policies::rne::{HardRule, MergeReading, ScoreDirection};
 use proptest::prelude::*;
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
-use rne_core::policies::rne::{HardRule, MergeReading, ScoreDirection};
 use rne_core::question::hardest_first;
 use rne_core::{
-    Decision, Member, Need, NeedVector, Question, Quota, RandomSeed, Registry, RneOptions, RoleId,
-    SCHEMA_VERSION, Task,
+    Decision, Member, Need, NeedVector, Question, Quota, RandomSeed, RoleId, SCHEMA_VERSION, Task,
 };
 
 pub const ROLES: [&str; 3] = ["Carrier", "Supplier", "Observer"];
@@ -105,7 +105,7 @@ pub fn two_tasks(members: Vec<Member>) -> Question {
 /// The decision of a policy, given in RON. Panics if it does not answer the question.
 #[track_caller]
 pub fn decide(policy: &str, question: &Question) -> Decision {
-    let decision = Registry::standard().parse(policy).unwrap().policy.decide(question).unwrap();
+    let decision = policies::standard().parse(policy).unwrap().policy.decide(question).unwrap();
     let alternatives = decision.alternatives.iter().map(|other| &other.assignment);
     for assignment in std::iter::once(&decision.assignment).chain(alternatives) {
         assignment.check(question).unwrap_or_else(|error| panic!("{policy}: {error}"));
@@ -130,7 +130,7 @@ fn check_sizes(policy: &str, question: &Question, groups: &[Vec<u32>]) {
 }
 
 pub fn names() -> Vec<String> {
-    Registry::standard().names().into_iter().map(str::to_owned).collect()
+    policies::standard().names().into_iter().map(str::to_owned).collect()
 }
 
 /// The RNE policy with these options, as a text.

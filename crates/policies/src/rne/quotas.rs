@@ -2,8 +2,8 @@
 //! order.
 
 use super::merge::Group;
-use crate::ids::{RoleId, TaskId};
-use crate::question::Question;
+use rne_core::ids::{RoleId, TaskId};
+use rne_core::question::Question;
 
 /// The sizes that the groups must have, role by role, if quotas bind.
 pub(super) struct Sizes {

@@ -1,12 +1,12 @@
 //! `DIS`: the nearest task from the initial position until its group is full (paper: Section VI; baseline).
 
-use super::facts::{missing, squared_distance};
-use crate::decision::Decision;
-use crate::error::PolicyError;
-use crate::ids::TaskId;
-use crate::kind::PolicyKind;
-use crate::policy::Policy;
-use crate::question::{Member, Question};
+use crate::facts::{missing, squared_distance};
+use rne_core::decision::Decision;
+use rne_core::error::PolicyError;
+use rne_core::ids::TaskId;
+use rne_core::kind::PolicyKind;
+use rne_core::policy::Policy;
+use rne_core::question::{Member, Question};
 
 const NAME: &str = "DIS";
 

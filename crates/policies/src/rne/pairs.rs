@@ -4,13 +4,13 @@ use serde::Serialize;
 
 use super::scorer::{Scorer, add};
 use super::{Rne, as_score, weighted_needs};
-use crate::decision::Assignment;
-use crate::divergence::relative_entropy_by_need;
-use crate::error::PolicyError;
-use crate::ids::TaskId;
-use crate::needs::NeedDistribution;
-use crate::question::Question;
-use crate::trust::RelativeNeedsEntropy;
+use rne_core::decision::Assignment;
+use rne_core::divergence::relative_entropy_by_need;
+use rne_core::error::PolicyError;
+use rne_core::ids::TaskId;
+use rne_core::needs::NeedDistribution;
+use rne_core::question::Question;
+use rne_core::trust::RelativeNeedsEntropy;
 
 /// RNE from one group to another, and the contribution of each need.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -32,7 +32,7 @@ impl Rne {
     /// `None` where fewer than two groups have members.
     ///
     /// # Errors
-    /// Those of [`crate::Policy::decide`].
+    /// Those of [`rne_core::Policy::decide`].
     pub fn score(
         &self,
         question: &Question,
@@ -59,7 +59,7 @@ impl Rne {
     /// `sort` the policy compares sorted shares instead, which belong to no need.
     ///
     /// # Errors
-    /// Those of [`crate::Policy::decide`].
+    /// Those of [`rne_core::Policy::decide`].
     pub fn directed(
         &self,
         question: &Question,

@@ -51,7 +51,7 @@ impl Policy for Speed {
 
 /// The built-in policies and this one.
 fn registry() -> Registry {
-    let mut registry = Registry::standard();
+    let mut registry = policies::standard();
     let speed = PolicyKind::with_options("SPEED", "the faster robots take the harder tasks", Speed::new);
     registry.add(speed).expect("no built-in policy has this name");
     registry

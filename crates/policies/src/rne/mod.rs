@@ -20,20 +20,20 @@ pub use options::{HardRule, MergeReading, RneOptions, ScoreDirection};
 pub use pairs::DirectedRne;
 pub use partition::EXACT_PARTITIONS;
 
-use crate::decision::{
-    Account, Alternative, Assignment, Decision, MatchingCandidate, RneAccount, RoleMerge, RoleSplit,
-    SplitCandidate, Suitability,
-};
-use crate::error::{NeedsError, PolicyError};
-use crate::ids::RoleId;
-use crate::kind::PolicyKind;
-use crate::needs::{NeedWeights, check_length};
-use crate::policy::Policy;
-use crate::question::{Member, Question, SCHEMA_VERSION};
-use crate::trust::RelativeNeedsEntropy;
 use merge::{Group, Merge, Merger};
 use partition::best_partition;
 use quotas::Sizes;
+use rne_core::decision::{
+    Account, Alternative, Assignment, Decision, MatchingCandidate, RneAccount, RoleMerge, RoleSplit,
+    SplitCandidate, Suitability,
+};
+use rne_core::error::{NeedsError, PolicyError};
+use rne_core::ids::RoleId;
+use rne_core::kind::PolicyKind;
+use rne_core::needs::{NeedWeights, check_length};
+use rne_core::policy::Policy;
+use rne_core::question::{Member, Question, SCHEMA_VERSION};
+use rne_core::trust::RelativeNeedsEntropy;
 use scorer::{Scorer, part_sums};
 
 /// The registry's line.

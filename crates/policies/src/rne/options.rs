@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::trust::LogBase;
+use rne_core::trust::LogBase;
 
 /// Which RNE between two groups is maximised. RNE is not symmetric and the paper does not say.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]

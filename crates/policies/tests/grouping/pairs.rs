@@ -1,7 +1,8 @@
 //! The RNE between the groups of an assignment, need by need.
 
-use rne_core::policies::rne::Rne;
-use rne_core::{Policy, RneOptions};
+use policies::RneOptions;
+use policies::rne::Rne;
+use rne_core::Policy;
 
 use crate::oracle::nats;
 use crate::support::{all_options, drawn_team, question};

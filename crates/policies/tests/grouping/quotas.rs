@@ -1,7 +1,8 @@
 //! Binding quotas: every policy keeps them task by task, and RNE finds the best groups that do.
 
+use policies::RneOptions;
 use proptest::prelude::*;
-use rne_core::{Assignment, GroupSizes, Question, Quota, RneOptions};
+use rne_core::{Assignment, GroupSizes, Question, Quota};
 
 use crate::many_tasks::check_against_oracle;
 use crate::support::{all_options, decide, drawn_team, names, question, rne};

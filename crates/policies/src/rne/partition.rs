@@ -214,7 +214,7 @@ mod tests {
     fn every_partition_is_looked_at_once() {
         let rows: Vec<Vec<f64>> = (0..6).map(|i| vec![1.0 + f64::from(i * i), 7.0]).collect();
         for sizes in [vec![3, 3], vec![2, 4], vec![2, 2, 2], vec![1, 2, 3], vec![1, 1, 2, 2]] {
-            let mut scorer = Scorer::new(crate::policies::rne::ScoreDirection::MaxOfBoth, false);
+            let mut scorer = Scorer::new(crate::rne::ScoreDirection::MaxOfBoth, false);
             let found = best_partition(&rows, &sizes, &mut scorer);
             assert!((found.searched as f64 - partitions(&sizes)).abs() < 0.5, "{sizes:?}");
             assert!(found.runner_up.is_some_and(|(parts, _)| parts != found.parts), "{sizes:?}");

@@ -6,7 +6,7 @@ use rand::rngs::ChaCha8Rng;
 use rand::seq::SliceRandom;
 use rne_core::Member;
 
-use crate::support::{all_options, any_team, decide, names, question, rne, team, two_tasks};
+use crate::support::{all_options, any_team, decide, drawn_team, names, question, rne, team, two_tasks};
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(32))]
@@ -126,7 +126,7 @@ fn missing_facts_are_named_with_their_robot() {
     no_place.tasks[1].place = None;
     let mut no_needs = without(|_| ());
     no_needs.needs.iter_mut().for_each(|need| need.weight = 0.0);
-    let registry = rne_core::Registry::standard();
+    let registry = policies::standard();
     for (question, policy, message) in [
         (&no_energy, "ENG", "policy ENG needs the energy level, which is missing for robot 2"),
         (
@@ -142,5 +142,18 @@ fn missing_facts_are_named_with_their_robot() {
     ] {
         let error = registry.parse(policy).unwrap().policy.decide(question).unwrap_err();
         assert_eq!(error.to_string(), message, "{policy}");
+    }
+}
+
+#[test]
+fn every_policys_decision_is_read_as_it_was_written() {
+    let question = question(drawn_team(&[5, 3, 2], 4), &[1, 2]);
+    let registry = policies::standard();
+    let with_options = ["RNE(score: JensenShannon)", "RNE(merge: Together, sort: true, hard_rule: MeanHp)"];
+    for policy in registry.names().into_iter().chain(with_options) {
+        let decision = registry.parse(policy).unwrap().policy.decide(&question).unwrap();
+        decision.assignment.check(&question).unwrap();
+        let text = serde_json::to_string(&decision).unwrap();
+        assert_eq!(rne_core::Decision::from_json(&text).unwrap(), decision, "{policy}");
     }
 }

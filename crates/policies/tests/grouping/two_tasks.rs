@@ -1,12 +1,13 @@
 //! Two tasks, the paper's case: brute force over halves, written independently of the oracle for any number
 //! of tasks.
 
+use policies::RneOptions;
+use policies::rne::{HardRule, ScoreDirection};
 use proptest::prelude::*;
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
-use rne_core::policies::rne::{HardRule, ScoreDirection};
 use rne_core::{
-    Member, NeedDistribution, NeedVector, NeedWeights, RelativeNeedsEntropy, RneOptions, RoleId, jeffreys,
+    Member, NeedDistribution, NeedVector, NeedWeights, RelativeNeedsEntropy, RoleId, jeffreys,
     jensen_shannon, relative_entropy,
 };
 

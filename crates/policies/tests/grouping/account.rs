@@ -1,9 +1,10 @@
 //! The RNE policy's account of itself agrees with its answer.
 
+use policies::RneOptions;
+use policies::rne::MergeReading;
 use proptest::prelude::*;
 use rne_core::decision::RneAccount;
-use rne_core::policies::rne::MergeReading;
-use rne_core::{Account, GroupSizes, Question, RneOptions};
+use rne_core::{Account, GroupSizes, Question};
 
 use crate::oracle::{Oracle, as_set, is_close, nats};
 use crate::support::{all_options, decide, drawn_team, question, rne};

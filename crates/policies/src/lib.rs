@@ -1,0 +1,77 @@
+//! The policies of the house, one file each, with their options. They answer the questions of [`rne_core`].
+//!
+//! ```
+//! let rne = policies::standard().make("RNE", "(score: Sum)")?;
+//! assert!(rne.options.contains("score: Sum, "));
+//! # Ok::<(), rne_core::RegistryError>(())
+//! ```
+//!
+//! A policy is one file and one line in [`standard`]; a program adds its own with
+//! [`Registry::add`](rne_core::Registry::add).
+
+pub mod distance;
+pub mod energy;
+mod facts;
+pub mod hp_distance;
+pub mod random;
+mod ranking;
+pub mod rne;
+
+use rne_core::Registry;
+
+pub use rne::RneOptions;
+
+/// The built-in policies.
+#[must_use]
+pub fn standard() -> Registry {
+    [rne::kind(), distance::kind(), energy::kind(), hp_distance::kind(), random::kind()].into_iter().collect()
+}
+
+/// The README's example is compiled and run.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;
+
+#[cfg(test)]
+mod tests {
+    use rne_core::RegistryError;
+
+    use super::*;
+
+    #[test]
+    fn an_unknown_policy_lists_the_known_ones() {
+        let error = standard().make("NEAREST", "").unwrap_err();
+        assert_eq!(
+            error.to_string(),
+            "unknown policy \"NEAREST\"; known policies: RNE, DIS, ENG, HP_DIS, RANDOM"
+        );
+    }
+
+    #[test]
+    fn options_are_read_written_in_full_and_refused_with_the_known_ones() {
+        let registry = standard();
+        let made = registry.parse("RNE( weights: [1, 2], sort: true )").unwrap();
+        assert_eq!(
+            made.options,
+            "(log_base: E, sort: true, score: MaxOfBoth, weights: [1.0, 2.0], scale: true, \
+             merge: Apart, hard_rule: IntraGroupTrust)"
+        );
+        assert_eq!(registry.parse(&format!("RNE{}", made.options)).unwrap().options, made.options);
+        let refused = |text| registry.parse(text).unwrap_err().to_string();
+        assert_eq!(refused("DIS(score: Sum)"), "policy DIS: it has no options, found \"(score: Sum)\"");
+        let error = refused("RNE(scale: 3)");
+        assert!(
+            error.contains("policy RNE: ") && error.contains("options and defaults: (log_base: E"),
+            "{error}"
+        );
+        assert!(refused("RNE(weights: [-1.0])").contains("weights[0] must be a finite number >= 0"));
+        assert!(refused("RNE(sort: true").contains("policy RNE: "));
+    }
+
+    #[test]
+    fn a_name_can_be_taken_only_once() {
+        let mut registry = standard();
+        let error = registry.add(random::kind()).unwrap_err();
+        assert_eq!(error, RegistryError::DuplicateName { name: "RANDOM".into() });
+    }
+}
