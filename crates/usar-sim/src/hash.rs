@@ -1,4 +1,5 @@
-//! The hash chain over the whole state of a trial: equal chains, equal trials, step by step.
+//! The hash chain over the whole state of a trial: equal chains, equal trials, step by step. What only listens,
+//! metrics and decisions, is no part of it: a new counter changes no hash.
 //!
 //! Every [`PERIOD_STEPS`] steps and at the end, each part of the state is written as bytes (postcard) and
 //! hashed (XXH3, 128 bits). The digests of all parts, the step and the previous link make the next link. Each
@@ -11,9 +12,8 @@ use xxhash_rust::xxh3::xxh3_128;
 pub const PERIOD_STEPS: u64 = 50;
 
 /// The parts of the state, in the order of [`Link::parts`].
-pub const PARTS: [&str; 10] = [
-    "bodies", "robots", "debris", "rescuees", "beliefs", "mission", "routes", "resolver", "metrics", "events",
-];
+pub const PARTS: [&str; 9] =
+    ["bodies", "robots", "debris", "rescuees", "beliefs", "mission", "routes", "resolver", "events"];
 
 /// One link of the chain.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]

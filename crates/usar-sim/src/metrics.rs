@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::event::{CutOffCause, Event, ReturnCause};
 use crate::ids::RobotId;
+use crate::tally::Tally;
 use crate::world::World;
 
 /// The results of one group in one round.
@@ -101,19 +102,23 @@ pub struct Metrics {
     pub counts: Counts,
     /// Robots that were cut off, in the order in which each was cut off first.
     pub cut_off: Vec<CutOff>,
+    /// Totals of each robot, by id.
+    pub(crate) robots: Vec<Tally>,
     /// The task of each robot's group in the current round.
     task_of: Vec<Option<TaskId>>,
 }
 
 impl Metrics {
-    /// Metrics without any entries.
-    #[must_use]
-    pub fn new(tasks: usize, robots: usize) -> Self {
-        Self { tasks: vec![TaskTotals::default(); tasks], task_of: vec![None; robots], ..Self::default() }
+    /// Metrics of a trial in which nothing has happened yet.
+    pub(crate) fn new(tasks: usize, robots: Vec<Tally>) -> Self {
+        let (tasks, task_of) = (vec![TaskTotals::default(); tasks], vec![None; robots.len()]);
+        Self { tasks, task_of, robots, ..Self::default() }
     }
 
-    /// Charges the energy and HP that a robot spent in this step.
+    /// Charges the energy and HP that a robot spent in this step, to the robot and to its group.
     pub fn charge(&mut self, robot: RobotId, [energy, hp]: [f64; 2]) {
+        let own = &mut self.robots[robot.index()].spent;
+        *own = [own[0] + energy, own[1] + hp];
         let Some(task) = self.task_of[robot.index()] else {
             self.ungrouped[0] += energy;
             self.ungrouped[1] += hp;

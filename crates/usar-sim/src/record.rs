@@ -7,6 +7,8 @@ use crate::conflict::Delay;
 use crate::hash::HashChain;
 use crate::invariant::Overlaps;
 use crate::metrics::{Counts, CutOff, RoundRecord, TaskTotals};
+use crate::robot::{Condition, Robot};
+use crate::tally::Tally;
 
 /// How a trial ended.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -65,6 +67,29 @@ pub struct RobotRecord {
     pub stranded: bool,
     /// Whether it ended disabled (HP 0).
     pub disabled: bool,
+}
+
+impl RobotRecord {
+    /// The record of a robot with these totals.
+    pub(crate) fn of(robot: &Robot, tally: &Tally, dt_s: f64) -> Self {
+        let seconds = |steps: u64| steps as f64 * dt_s;
+        Self {
+            robot: robot.id.0,
+            role: robot.spec.name.clone(),
+            initial_energy: tally.initial[0],
+            initial_hp: tally.initial[1],
+            final_energy: robot.energy,
+            final_hp: robot.hp,
+            energy_spent: tally.spent[0],
+            hp_lost: tally.spent[1],
+            distance_m: tally.distance_m,
+            waiting_s: seconds(tally.waiting_steps),
+            longest_stall_s: seconds(tally.longest_stall.0),
+            stall: tally.longest_stall.1,
+            stranded: robot.condition == Condition::Stranded,
+            disabled: robot.condition == Condition::Disabled,
+        }
+    }
 }
 
 /// The results of one task in a trial.

@@ -6,19 +6,18 @@ use crate::conflict::{Delay, DelayCause, Directive};
 use crate::ids::RobotId;
 use crate::mission::Activity;
 use crate::navigation::Traveller;
-use crate::record::RobotRecord;
 use crate::robot::{Condition, Robot};
 
 /// The totals of one robot.
 #[derive(Debug, Clone, Copy, Default, Serialize, Deserialize)]
 pub(crate) struct Tally {
-    initial: [f64; 2],
-    spent: [f64; 2],
-    distance_m: f64,
-    waiting_steps: u64,
+    pub(crate) initial: [f64; 2],
+    pub(crate) spent: [f64; 2],
+    pub(crate) distance_m: f64,
+    pub(crate) waiting_steps: u64,
     delay: Delay,
     stall: Stall,
-    longest_stall: (u64, Delay),
+    pub(crate) longest_stall: (u64, Delay),
 }
 
 /// The delays of a robot since it last came nearer to its goal.
@@ -44,16 +43,6 @@ impl Tally {
         self.distance_m += metres;
     }
 
-    /// Adds the energy and HP that were spent, in the unit of the scenario's costs.
-    pub(crate) fn note_costs(&mut self, [energy, hp]: [f64; 2]) {
-        self.spent = [self.spent[0] + energy, self.spent[1] + hp];
-    }
-
-    /// The energy and HP that were spent so far, in the unit of the scenario's costs.
-    pub(crate) fn spent(&self) -> [f64; 2] {
-        self.spent
-    }
-
     /// Notes why the robot stops, and the `steps` since it last came nearer to its goal. The cause that took
     /// most of these steps counts as the cause of the stall.
     pub(crate) fn note_delay(&mut self, delay: Delay, steps: u64) {
@@ -71,27 +60,6 @@ impl Tally {
             let most = causes.rev().max_by_key(|(_, (count, _))| *count);
             let delay = most.map(|(cause, (_, waits_for))| Delay { cause, waits_for });
             self.longest_stall = (steps, delay.unwrap_or_default());
-        }
-    }
-
-    /// The robot's record of the trial.
-    pub(crate) fn record(&self, robot: &Robot, dt_s: f64) -> RobotRecord {
-        let seconds = |steps: u64| steps as f64 * dt_s;
-        RobotRecord {
-            robot: robot.id.0,
-            role: robot.spec.name.clone(),
-            initial_energy: self.initial[0],
-            initial_hp: self.initial[1],
-            final_energy: robot.energy,
-            final_hp: robot.hp,
-            energy_spent: self.spent[0],
-            hp_lost: self.spent[1],
-            distance_m: self.distance_m,
-            waiting_s: seconds(self.waiting_steps),
-            longest_stall_s: seconds(self.longest_stall.0),
-            stall: self.longest_stall.1,
-            stranded: robot.condition == Condition::Stranded,
-            disabled: robot.condition == Condition::Disabled,
         }
     }
 }

@@ -26,7 +26,7 @@ use crate::metrics::Metrics;
 use crate::mission::{Ending, Mission};
 use crate::model::Model;
 use crate::navigation::Navigator;
-use crate::record::{DecisionRecord, Status, TaskRecord, TrialRecord};
+use crate::record::{DecisionRecord, RobotRecord, Status, TaskRecord, TrialRecord};
 use crate::report::Report;
 use crate::scenario::{LayoutError, Scenario};
 use crate::stage::Stage;
@@ -35,6 +35,7 @@ use crate::world::World;
 
 pub use checkpoint::Checkpoint;
 pub use decider::Decider;
+use state::Listeners;
 pub(crate) use state::State;
 
 /// A running trial.
@@ -164,7 +165,7 @@ impl Simulation {
         mission.assign(&decision.assignment, &mut scene);
         if let Some(question) = self.question.take() {
             let question = Question { history: Vec::new(), ..question };
-            self.state.decisions.push(DecisionRecord { question, decision, truth });
+            self.state.listeners.decisions.push(DecisionRecord { question, decision, truth });
         }
         Ok(())
     }
@@ -244,8 +245,9 @@ impl Simulation {
         let status = status.unwrap_or_else(|| Status::Failed("it was not run to its end".to_owned()));
         self.state.add_link();
         let (time_s, overlaps, dt_s) = (self.time_s(), self.overlaps(), self.model.dt_s());
-        let State { world, metrics, decisions, tallies, chain, beliefs, .. } = self.state;
-        let robots = world.robots.iter().zip(&tallies);
+        let State { world, listeners, chain, beliefs, .. } = self.state;
+        let Listeners { metrics, decisions } = listeners;
+        let robots = world.robots.iter().zip(&metrics.robots);
         let tasks = self.model.scenario.tasks.iter().zip(&metrics.tasks);
         TrialRecord {
             seed: self.model.seed,
@@ -259,7 +261,7 @@ impl Simulation {
             completed_rounds: metrics.completed_rounds,
             ledger: beliefs.ledger.rounds().to_vec(),
             decisions,
-            robots: robots.map(|(robot, tally)| tally.record(robot, dt_s)).collect(),
+            robots: robots.map(|(robot, tally)| RobotRecord::of(robot, tally, dt_s)).collect(),
             counts: metrics.counts,
             cut_off: metrics.cut_off,
             overlaps,
@@ -332,24 +334,24 @@ impl Simulation {
     /// The metrics so far.
     #[must_use]
     pub fn metrics(&self) -> &Metrics {
-        &self.state.metrics
+        &self.state.listeners.metrics
     }
 
     /// The groupings so far.
     #[must_use]
     pub fn decisions(&self) -> &[DecisionRecord] {
-        &self.state.decisions
+        &self.state.listeners.decisions
     }
 
     /// The delay of each robot, by id.
     pub fn delays(&self) -> impl Iterator<Item = Delay> + '_ {
-        self.state.tallies.iter().map(Tally::delay)
+        self.state.listeners.metrics.robots.iter().map(Tally::delay)
     }
 
     /// The delay of a robot.
     #[must_use]
     pub fn delay(&self, robot: RobotId) -> Delay {
-        self.state.tallies[robot.index()].delay()
+        self.state.listeners.metrics.robots[robot.index()].delay()
     }
 
     /// The conflict sets of the last step: ids of their members, in order of precedence. The reciprocal rule

@@ -36,16 +36,21 @@ pub(crate) struct State {
     pub(super) mission: Mission,
     pub(super) navigator: Navigator,
     pub(super) resolver: Resolver,
-    pub(super) metrics: Metrics,
-    /// The groupings so far, with the accounts of the policies. They are recorded only and affect nothing, so
-    /// the hash chain leaves them out.
-    pub(super) decisions: Vec<DecisionRecord>,
     /// Whether a step has begun but is not finished, because a question waits.
     pub(super) is_midway: bool,
     pub(super) log: EventLog,
-    pub(super) tallies: Vec<Tally>,
     pub(super) timeline: Timeline,
     pub(super) chain: HashChain,
+    pub(super) listeners: Listeners,
+}
+
+/// What listens to a trial and acts on nothing: the hash chain leaves it out, so that a new counter changes no
+/// hash.
+#[derive(Serialize, Deserialize)]
+pub(crate) struct Listeners {
+    pub(super) metrics: Metrics,
+    /// The groupings so far, with the accounts of the policies.
+    pub(super) decisions: Vec<DecisionRecord>,
 }
 
 #[cfg(test)]
@@ -54,8 +59,8 @@ impl State {
         self.step
     }
 
-    pub(crate) fn forget_decisions(&mut self) {
-        self.decisions.clear();
+    pub(crate) fn listeners(&self) -> &Listeners {
+        &self.listeners
     }
 
     pub(crate) fn chain_mut(&mut self) -> &mut HashChain {
@@ -68,6 +73,7 @@ impl State {
     pub(super) fn new(model: &Model) -> Self {
         let world = World::build(model);
         let tally = |start: &RobotStart| Tally::new(start.energy, start.hp);
+        let tallies = model.layout.robots.iter().map(tally).collect();
         Self {
             step: 0,
             sent: model.task_ids().map(|task| base::report(&world, model, task, 0)).collect(),
@@ -79,13 +85,11 @@ impl State {
             mission: Mission::new(model),
             navigator: Navigator::new(&model.scenario, world.robots.len()),
             resolver: Resolver::new(&model.scenario),
-            metrics: Metrics::new(model.tasks.len(), world.robots.len()),
-            decisions: Vec::new(),
             is_midway: false,
             log: EventLog::default(),
-            tallies: model.layout.robots.iter().map(tally).collect(),
             timeline: Timeline::new(model),
             chain: HashChain::default(),
+            listeners: Listeners { metrics: Metrics::new(model.tasks.len(), tallies), decisions: Vec::new() },
             world,
         }
     }
@@ -109,7 +113,7 @@ impl State {
     /// Passes the events of this step from the `from`-th on to the metrics. Returns the number of all events.
     pub(super) fn listen(&mut self, from: usize, dt_s: f64) -> usize {
         let events = self.log.events();
-        self.metrics.listen(&events[from..], &self.world, self.step as f64 * dt_s);
+        self.listeners.metrics.listen(&events[from..], &self.world, self.step as f64 * dt_s);
         events.len()
     }
 
@@ -164,7 +168,9 @@ impl State {
         let mut movers: Vec<Mover> = std::mem::take(spare);
         movers.extend(self.beliefs.team.iter().map(|robot| mover(robot, model, seen_by)));
         let directives = self.resolver.resolve(&mut movers, &mut self.log);
-        for ((robot, directive), tally) in self.world.robots.iter().zip(directives).zip(&mut self.tallies) {
+        for ((robot, directive), tally) in
+            self.world.robots.iter().zip(directives).zip(&mut self.listeners.metrics.robots)
+        {
             let traveller = self.navigator.traveller(robot.id);
             let activity = self.mission.agents[robot.id.index()].activity;
             let cause = delay_cause(robot, activity, traveller, *directive);
@@ -188,9 +194,10 @@ impl State {
     pub(super) fn expose(&mut self, model: &Model) {
         let unit = model.scenario.costs.unit;
         let (robots, zones_at) = self.world.robots_in_zones();
-        for (robot, tally) in robots.iter_mut().zip(&mut self.tallies) {
+        let metrics = &mut self.listeners.metrics;
+        for robot in robots {
             let speed = robot.velocity.length();
-            tally.note_way(f64::from(speed) * model.dt_s());
+            metrics.robots[robot.id.index()].note_way(f64::from(speed) * model.dt_s());
             let agent = &self.mission.agents[robot.id.index()];
             if !robot.is_able() || matches!(agent.activity, Activity::Resting(_)) {
                 continue;
@@ -199,7 +206,7 @@ impl State {
             let energy = unit.to_percent(energy, robot.spec.energy).min(robot.energy);
             let hp = unit.to_percent(hp, robot.spec.hp).min(robot.hp);
             if energy > 0.0 || hp > 0.0 {
-                spend(robot, [energy, hp], unit, tally, &mut self.metrics);
+                spend(robot, [energy, hp], unit, metrics);
             }
             self.log.extend(last_event(robot));
         }
@@ -207,9 +214,10 @@ impl State {
 
     /// Checks that what the robots spent is what the trial was charged.
     pub(super) fn check_costs(&self) -> Result<(), String> {
-        let spent = self.tallies.iter().map(Tally::spent);
+        let metrics = &self.listeners.metrics;
+        let spent = metrics.robots.iter().map(|robot| robot.spent);
         let spent = spent.fold([0.0; 2], |[energy, hp], own| [energy + own[0], hp + own[1]]);
-        for ((what, robots), trial) in ["energy", "HP"].into_iter().zip(spent).zip(self.metrics.spent()) {
+        for ((what, robots), trial) in ["energy", "HP"].into_iter().zip(spent).zip(metrics.spent()) {
             if (robots - trial).abs() > COSTS_ROUNDING * (1.0 + trial) {
                 return Err(format!("the robots spent {robots} {what}, the trial was charged {trial}"));
             }
@@ -246,25 +254,17 @@ impl State {
             part(&(self.mission.course(), self.is_midway)),
             part(&self.navigator),
             part(&self.resolver),
-            part(&(&self.metrics, &self.tallies)),
             self.part_of_events(),
         ]
     }
 }
 
 /// Takes energy and HP, in percent, from a robot, and charges them to the robot and to its group.
-pub(super) fn spend(
-    robot: &mut Robot,
-    [energy, hp]: [f64; 2],
-    unit: CostUnit,
-    tally: &mut Tally,
-    metrics: &mut Metrics,
-) {
+pub(super) fn spend(robot: &mut Robot, [energy, hp]: [f64; 2], unit: CostUnit, metrics: &mut Metrics) {
     robot.energy -= energy;
     robot.hp -= hp;
-    let spent = [unit.of_percent(energy, robot.spec.energy), unit.of_percent(hp, robot.spec.hp)];
-    tally.note_costs(spent);
-    metrics.charge(robot.id, spent);
+    metrics
+        .charge(robot.id, [unit.of_percent(energy, robot.spec.energy), unit.of_percent(hp, robot.spec.hp)]);
 }
 
 /// The end of a robot that has no HP or no energy left, as its condition and as an event. Without HP it is

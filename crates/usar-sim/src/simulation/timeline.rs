@@ -151,8 +151,7 @@ impl State {
         }
         let (energy, hp) = (energy.min(robot.energy), hp.min(robot.hp));
         self.log.push(Event::Damaged { robot: id, energy, hp });
-        let (unit, tally) = (model.scenario.costs.unit, &mut self.tallies[id.index()]);
-        spend(robot, [energy, hp], unit, tally, &mut self.metrics);
+        spend(robot, [energy, hp], model.scenario.costs.unit, &mut self.listeners.metrics);
         self.log.extend(last_event(robot));
         self.sent.push(oneself::report(robot, self.step));
     }
