@@ -1,5 +1,5 @@
-//! The laws of the architecture, checked on the sources: crates use only those below them, modules form no
-//! circle, the engine has one seam, the general crates have no words of one paper, and the laboratory draws
+//! The laws of the architecture, checked on the sources: crates use only those below them, modules and
+//! files form no circle, the engine has one seam, the general crates have no words of one paper, and the laboratory draws
 //! and prints nothing.
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -192,6 +192,63 @@ fn modules_form_no_circle() {
     }
 }
 
+/// Every path that a source names from `crate` or `super` on, with the braces of imports written out. What it
+/// only hands on (`pub use`) and names in attributes are left out.
+fn paths(text: &str) -> Vec<String> {
+    let is_path = |c: char| c.is_alphanumeric() || "_:".contains(c);
+    let statements = text.split_inclusive(';').filter(|part| !part.trim_start().starts_with("pub use "));
+    let text: String = statements.flat_map(|part| part.split('"').step_by(2)).collect();
+    let mut found = Vec::new();
+    for (at, _) in text.match_indices("crate::").chain(text.match_indices("super::")) {
+        let is_inside = text[..at].ends_with(is_path);
+        let rest = &text[at..];
+        let end = rest.find(|c| !is_path(c)).unwrap_or(rest.len());
+        match rest[end..].starts_with('{') && rest[..end].ends_with("::") {
+            _ if is_inside => {}
+            false => found.push(rest[..end].to_owned()),
+            true => {
+                let inside = rest[end + 1..].split('}').next().unwrap_or_default();
+                let names = inside.split(|c| !is_path(c)).filter(|name| !name.is_empty());
+                found.extend(names.map(|name| format!("{}{name}", &rest[..end])));
+            }
+        }
+    }
+    found
+}
+
+/// For each source, the other sources of its crate that it names. The `mod.rs` of a folder only hands on what
+/// its files define.
+fn files_used(sources: &[(PathBuf, String)]) -> BTreeMap<String, BTreeSet<String>> {
+    let module = |path: &Path| path.with_extension("").display().to_string().replace("/mod", "");
+    let modules: BTreeSet<String> = sources.iter().map(|(path, _)| module(path)).collect();
+    let used = |(path, text): &(PathBuf, String)| {
+        let own = module(path);
+        let target = |named: &String| {
+            let mut base: Vec<&str> = own.split('/').collect();
+            for step in named.split("::") {
+                match step {
+                    "crate" => base.clear(),
+                    "super" => drop(base.pop()),
+                    step => base.push(step),
+                }
+            }
+            let ends = (1..=base.len()).rev().map(|end| base[..end].join("/"));
+            let target = ends.into_iter().find(|end| modules.contains(end))?;
+            (!own.starts_with(&target)).then_some(target)
+        };
+        (own.clone(), paths(text).iter().filter_map(target).collect())
+    };
+    sources.iter().map(used).collect()
+}
+
+#[test]
+fn files_form_no_circle() {
+    for name in CRATES {
+        let left = circle(files_used(&sources(name)));
+        assert!(left.is_empty(), "crate {name}: these files use each other in a circle: {left:#?}");
+    }
+}
+
 #[test]
 fn a_circle_would_be_found() {
     let source = |path: &str, text: &str| (PathBuf::from(path), code(text));
@@ -202,6 +259,14 @@ fn a_circle_would_be_found() {
     assert!(circle(uses(&apart)).is_empty());
     let round = [source("a/x.rs", "fn f() { crate::b::g() }"), source("b.rs", "use crate::a;")];
     assert_eq!(circle(uses(&round)).len(), 2);
+    let files = [
+        source("a/mod.rs", "mod x;\nmod y;\npub use x::X;"),
+        source("a/x.rs", "use super::y::{self, Y};"),
+        source("a/y.rs", "fn f(_: super::x::X) {}"),
+        source("b.rs", "use crate::a::x::X;"),
+    ];
+    assert_eq!(circle(files_used(&files)).len(), 3, "x and y, and b, which uses them");
+    assert!(circle(files_used(&files[..2])).is_empty());
 }
 
 #[test]

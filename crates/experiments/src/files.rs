@@ -173,3 +173,10 @@ pub(crate) fn file_hash(path: &Path) -> std::io::Result<String> {
     io::copy(&mut open(path)?, &mut hash)?;
     Ok(format!("{:032x}", hash.0.digest128()))
 }
+
+/// Syncs a folder to disk, and with it the names of its files.
+pub(crate) fn sync_folder(path: &Path) -> Result<(), Failure> {
+    let path = if path.as_os_str().is_empty() { Path::new(".") } else { path };
+    let synced = File::open(path).and_then(|folder| folder.sync_all());
+    synced.map_err(|error| Failure::storage(format!("{}: {error}", path.display())))
+}

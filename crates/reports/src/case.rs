@@ -8,9 +8,9 @@ use experiments::comparison::{
 };
 use experiments::experiment::{Axis, Experiment, PolicySpec, Seeds};
 use experiments::stats::Moments;
-use experiments::sweep::disk::PLOTS;
 use experiments::sweep::folder::Folder;
 use experiments::sweep::host::Hosts;
+use experiments::sweep::names::PLOTS;
 use experiments::sweep::ours::Report;
 
 use crate::decisions::{Decisions, decisions};

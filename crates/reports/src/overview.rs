@@ -7,8 +7,8 @@ use experiments::comparison::{
     Comparison, Effect, Interaction, answer, effects, interactions, limit_of_changes,
 };
 use experiments::metric::Metric;
-use experiments::sweep::disk::{PLOTS, REPORT};
 use experiments::sweep::folder::Folder;
+use experiments::sweep::names::{PLOTS, REPORT};
 use experiments::sweep::ours::Report;
 
 use crate::drawing::Figure;

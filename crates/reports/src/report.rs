@@ -4,8 +4,8 @@ use std::path::PathBuf;
 
 use experiments::Failure;
 use experiments::comparison::compare;
-use experiments::sweep::disk::{PLOTS, REPORT};
 use experiments::sweep::folder::Folder;
+use experiments::sweep::names::{PLOTS, REPORT};
 use experiments::sweep::ours::Report;
 
 use crate::case::{Compared, PagePlace, write_case};

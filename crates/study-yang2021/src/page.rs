@@ -6,7 +6,7 @@ use askama::Template;
 use comfy_table::Table;
 use experiments::Failure;
 use experiments::experiment::Build;
-use experiments::sweep::disk::REPORT;
+use experiments::sweep::names::REPORT;
 use experiments::sweep::ours::Report;
 use reports::STYLE;
 

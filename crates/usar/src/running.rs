@@ -104,7 +104,7 @@ pub(crate) fn run_missing(
         return Ok(());
     }
     let progress = progress_bar(missing.len(), "trials", limits.jobs, quiet);
-    let (mut host, begun) = (HostRun::new(folder, limits.jobs), Instant::now());
+    let (mut host, begun) = (HostRun::of_part(folder.manifest().part(), limits.jobs), Instant::now());
     let ran = run_trials(folder, missing, limits, &STOP, |outcome| {
         if let Some(failure) = outcome.failure() {
             progress.suspend(|| tell(failure));

@@ -2,6 +2,7 @@
 
 mod answer;
 mod asked;
+mod cell;
 mod effect;
 mod equivalence;
 mod interaction;
@@ -22,10 +23,11 @@ use crate::sweep::folder::Folder;
 
 pub use answer::answer;
 pub use asked::{Asked, Wishes};
+pub use cell::Cell;
 pub use effect::{Effect, effects};
 pub use equivalence::{Beyond, Judged, TOST_CONFIDENCE, Verdict, judge};
 pub use interaction::{Interaction, interactions};
-pub use pairs::{Cell, Pairs};
+pub use pairs::Pairs;
 pub use sums::FEW;
 use words::in_words;
 pub use words::{digits, short, short_p};

@@ -1,11 +1,9 @@
 //! Values of two cells of a sweep, paired by seed.
 
+use super::cell::Cell;
 use super::sums::Sums;
 use crate::stats::bootstrap::interval;
 use crate::sweep::folder::{Folder, Measured};
-
-/// A cell of a sweep: the places of a case and of a policy.
-pub type Cell = (usize, usize);
 
 /// The values of two cells in one metric.
 #[derive(Debug, Default, Clone, PartialEq)]

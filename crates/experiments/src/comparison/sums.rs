@@ -6,7 +6,7 @@
 //! rescuees), where R is the ratio of both cells together. The mean of a cell's linearised values is the
 //! cell's ratio of sums. Tests and standard deviations of these values are therefore valid for the ratio.
 
-use super::pairs::Cell;
+use super::cell::Cell;
 use crate::stats::bootstrap::statistic_interval;
 use crate::sweep::folder::Folder;
 

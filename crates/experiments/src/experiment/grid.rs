@@ -6,7 +6,7 @@ use rne_core::Registry;
 use usar_sim::scenario::{Scenario, ScenarioFile};
 
 use super::policy::PolicySpec;
-use super::read::checked;
+use super::setting::checked;
 use crate::failure::Failure;
 use crate::limits::{CASE_BYTES, CASES, POLICIES};
 use crate::run::Driver;

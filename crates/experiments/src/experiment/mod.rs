@@ -9,6 +9,7 @@ mod keep;
 mod policy;
 mod program;
 mod read;
+mod setting;
 mod shard;
 mod sweep_file;
 
@@ -37,7 +38,8 @@ use crate::limits::TRIALS;
 use crate::metric::{Catalogue, task_names};
 use crate::run::{Driver, Fault, SharedTrials, Trial, TrialKey, run_trial};
 use grid::{cases, checked_policies, deciding_text};
-use read::{canonical, from_scenario, with_readings};
+use read::{from_scenario, with_readings};
+use setting::canonical;
 use sweep_file::from_sweep_file;
 
 /// The seeds of the trials.

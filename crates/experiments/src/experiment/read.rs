@@ -3,10 +3,10 @@
 use std::path::{Path, PathBuf};
 
 use rne_core::Registry;
-use ron_fields::Fields;
-use usar_sim::scenario::{Problem, Scenario, ScenarioFile, parse_ron, read_text};
+use usar_sim::scenario::{Scenario, ScenarioFile, parse_ron, read_text};
 
 use super::file::SweepFile;
+use super::setting::{checked, decides};
 use super::sweep_file::{Reading, from_sweep_file};
 use super::{Keep, Parts, Seeds};
 use crate::failure::Failure;
@@ -89,18 +89,6 @@ pub(super) fn from_scenario(
     Ok((parts, Vec::new()))
 }
 
-/// The path of a field with indices instead of the names of list entries: `roles[0].speed_mps` for
-/// `roles.carrier.speed_mps`. Of a field that the scenario's text leaves out, the part that is there has
-/// indices.
-pub(super) fn canonical(scenario: &Scenario, path: &str) -> String {
-    let text = scenario.resolved();
-    let fields = Fields::of(&text);
-    let mut ends: Vec<usize> = path.match_indices(['.', '[']).map(|(end, _)| end).collect();
-    ends.push(path.len());
-    let known = ends.into_iter().rev().find_map(|end| Some((end, fields.canonical(&path[..end])?)));
-    known.map_or_else(|| path.to_owned(), |(end, part)| part + &path[end..])
-}
-
 /// The policies, with RNE replaced by every combination of the readings. Each combination is named by the
 /// options that differ from the default.
 pub(super) fn with_readings(policies: Vec<String>, readings: &[Reading], registry: &Registry) -> Vec<String> {
@@ -126,17 +114,4 @@ pub(super) fn with_readings(policies: Vec<String>, readings: &[Reading], registr
         if policy.trim() == "RNE" { combinations.iter().map(named).collect() } else { vec![policy] }
     };
     policies.into_iter().flat_map(expand).collect()
-}
-
-pub(super) fn checked(file: ScenarioFile, prefix: &str) -> Result<Scenario, Failure> {
-    Scenario::try_from(file).map_err(|problems| {
-        let line = |p: &Problem| format!("{prefix}{p}");
-        Failure::Input(problems.iter().map(line).collect::<Vec<_>>().join("\n"))
-    })
-}
-
-/// Whether a field decides numbers: not the scenario's name, its description, nor `only_policy`.
-pub(super) fn decides(path: &str) -> bool {
-    let first = path.split(['.', '[']).next().unwrap_or_default();
-    !["name", "description", "only_policy"].contains(&first)
 }

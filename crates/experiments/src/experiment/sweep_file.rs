@@ -14,7 +14,7 @@ use xxhash_rust::xxh3::xxh3_128;
 use super::file::{Map, SweepFile};
 use super::grid::{VARIANT, check_bytes};
 use super::policy::PolicySpec;
-use super::read::{canonical, decides};
+use super::setting::{canonical, decides};
 use super::{Axis, Parts, Seeds};
 use crate::failure::Failure;
 use crate::limits;

@@ -10,8 +10,8 @@ use xxhash_rust::xxh3::Xxh3;
 
 use crate::failure::Failure;
 use crate::files::{self, NewFile};
-use crate::sweep::disk;
 use crate::sweep::lock::Lock;
+use crate::sweep::names;
 
 /// Name of the log.
 const LOG: &str = "evaluations.csv";
@@ -109,7 +109,7 @@ fn check_folder(
     let has_others = |folder: &Path| -> std::io::Result<bool> {
         let mut names = fs::read_dir(folder)?.flatten().map(|entry| entry.file_name());
         Ok(names.any(|name| {
-            !name.to_string_lossy().starts_with(disk::LOCK) && !name.to_string_lossy().ends_with(".new")
+            !name.to_string_lossy().starts_with(names::LOCK) && !name.to_string_lossy().ends_with(".new")
         }))
     };
     if folder.exists() && !origin.exists() && has_others(folder).map_err(trouble)? {

@@ -1,36 +1,20 @@
 //! The files of a sweep's folder besides its journal and tables: the manifest, the sweep itself, and the
 //! lock.
 
-use std::fs::{self, File};
 use std::io::ErrorKind;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use rne_core::Registry;
 use usar_sim::scenario::Scenario;
 
-use super::dictionary::{DICTIONARY, dictionary};
+use super::dictionary::dictionary;
+use super::names::{AGAIN, GIVEN, INPUTS, MANIFEST, RESOLVED, sweeps_in};
 use super::tables::tables_of;
-use super::{archive, journal, ours, parquet};
+use super::{archive, journal, ours};
 use crate::experiment::{Experiment, Parts, Shard};
 use crate::failure::Failure;
-use crate::files::{self, FileHash, NewFile, file_hash};
+use crate::files::{self, FileHash, NewFile, file_hash, sync_folder};
 use crate::provenance::{Manifest, SCHEMA_VERSION, scenario_differences};
-
-pub(super) const MANIFEST: &str = "manifest.json";
-const GIVEN: &str = "experiment.ron";
-const RESOLVED: &str = "resolved.ron";
-/// The sweep as a file for the resolved scenario: running it reproduces the folder.
-const AGAIN: &str = "sweep.ron";
-/// Files that are written before the trials.
-pub(super) const INPUTS: [&str; 5] = [GIVEN, RESOLVED, AGAIN, DICTIONARY[0], DICTIONARY[1]];
-/// The report; [`PLOTS`] is the folder of its figures.
-pub const REPORT: &str = "report.html";
-/// See [`REPORT`].
-pub const PLOTS: &str = "plots";
-/// The folder of recordings of trials.
-pub const RECORDINGS: &str = "recordings";
-/// Held by the process that writes to the folder.
-pub const LOCK: &str = ".lock";
 
 /// Writes the manifest and the inputs of a sweep.
 pub(super) fn write_start(
@@ -48,7 +32,7 @@ pub(super) fn write_start(
     }
     // An existing report and existing Parquet files would belong to the previous contents.
     let trouble = |error| Failure::storage(format!("cannot write to {}: {error}", path.display()));
-    ours::remove_report(path).and_then(|()| parquet::remove(path)).map_err(trouble)?;
+    ours::remove_report(path).and_then(|()| ours::remove_parquets(path)).map_err(trouble)?;
     Ok(manifest)
 }
 
@@ -70,13 +54,6 @@ fn listed(manifest: &Manifest) -> Vec<&'static str> {
 pub(super) fn write_manifest(path: &Path, manifest: &Manifest) -> Result<(), Failure> {
     NewFile::write(path, MANIFEST, manifest.text()?.as_bytes())?;
     sync_folder(path)
-}
-
-/// Syncs a folder to disk, and with it the names of its files.
-pub(super) fn sync_folder(path: &Path) -> Result<(), Failure> {
-    let path = if path.as_os_str().is_empty() { Path::new(".") } else { path };
-    let synced = File::open(path).and_then(|folder| folder.sync_all());
-    synced.map_err(|error| Failure::storage(format!("{}: {error}", path.display())))
 }
 
 /// Whether a sweep has begun in a folder: it has inputs or trials.
@@ -201,23 +178,6 @@ pub fn experiment_in(path: &Path, registry: &Registry) -> Result<(Experiment, Ma
     let missing = || Failure::input(format!("{}: is not the folder of a finished sweep", path.display()));
     let manifest = read_manifest(path)?.ok_or_else(missing)?;
     Ok((experiment_of(path, &manifest, registry)?, manifest))
-}
-
-/// Whether a folder holds a sweep. The program that made it may be another one.
-#[must_use]
-pub fn is_sweeps(path: &Path) -> bool {
-    let manifest = files::read(&path.join(MANIFEST)).unwrap_or_default();
-    let manifest: serde_json::Value = serde_json::from_slice(&manifest).unwrap_or_default();
-    manifest["program"] == "usar"
-}
-
-/// The folders inside a folder that hold sweeps, by name.
-#[must_use]
-pub fn sweeps_in(path: &Path) -> Vec<PathBuf> {
-    let entries = fs::read_dir(path).into_iter().flatten().flatten().map(|entry| entry.path());
-    let mut sweeps: Vec<PathBuf> = entries.filter(|entry| is_sweeps(entry)).collect();
-    sweeps.sort();
-    sweeps
 }
 
 /// Number of trials of a folder's sweep, if it holds one.

@@ -17,13 +17,13 @@ use rne_core::Registry;
 use super::archive;
 use super::damages::Damages;
 use super::disk::{
-    MANIFEST, broken_files, check_continues, experiment_of, has_begun, manifest_in, read_manifest,
-    sync_folder, write_start,
+    broken_files, check_continues, experiment_of, has_begun, manifest_in, read_manifest, write_start,
 };
 use super::journal::{self, Damage, Journal};
 use super::line::{Finished, Kept};
 use super::lock::Lock;
 use super::measured::{Results, read_results};
+use super::names::MANIFEST;
 use super::ours::{check_is_ours, check_may_be_cleared, clear, remove_unfinished};
 use super::store::{Order, Store, thaw};
 use super::tables::TRIALS;
@@ -69,7 +69,7 @@ impl Folder {
         check_is_ours(path)?;
         let trouble = |error| Failure::storage(format!("cannot write to {}: {error}", path.display()));
         fs::create_dir_all(path).map_err(trouble)?;
-        path.parent().map_or(Ok(()), sync_folder)?;
+        path.parent().map_or(Ok(()), files::sync_folder)?;
         let lock = Lock::take(path, say)?;
         if opening.is_fresh {
             check_may_be_cleared(path)?;

@@ -10,7 +10,6 @@ use sysinfo::{
     CpuRefreshKind, DiskRefreshKind, Disks, MemoryRefreshKind, Pid, ProcessesToUpdate, RefreshKind, System,
 };
 
-use super::folder::Folder;
 use crate::failure::Failure;
 use crate::files::{self, NewFile};
 
@@ -65,12 +64,6 @@ pub struct HostRun {
 }
 
 impl HostRun {
-    /// A run on this machine, for the part of a sweep that a folder holds.
-    #[must_use]
-    pub fn new(folder: &Folder, threads: usize) -> Self {
-        Self::of_part(folder.manifest().part(), threads)
-    }
-
     /// A run on this machine, for a part in words.
     #[must_use]
     pub fn of_part(part: String, threads: usize) -> Self {

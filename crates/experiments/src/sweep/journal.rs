@@ -6,7 +6,6 @@ use std::fs::{File, OpenOptions};
 use std::io::{BufRead, BufReader, BufWriter, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
-use super::disk::sync_folder;
 use super::line::{Finished, HEAD, finished_of, policy_of};
 use crate::experiment::{Experiment, Place, Shard};
 use crate::failure::Failure;
@@ -63,7 +62,7 @@ pub(super) fn without(folder: &Path, policies: &[String]) -> Result<BTreeMap<Str
     }
     let kept = kept.into_inner().map_err(|error| trouble(error.into_error()))?;
     kept.sync_all().and_then(|()| std::fs::rename(&new, &path)).map_err(trouble)?;
-    sync_folder(folder)?;
+    files::sync_folder(folder)?;
     Ok(removed)
 }
 

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use xxhash_rust::xxh3::xxh3_64;
 
 use super::links;
-use super::measured::Summary;
+use super::summary::Summary;
 use crate::experiment::{Experiment, Keep, Place, Shard};
 use crate::failure::Failure;
 use crate::run::{Fault, Outcome, Trial, TrialKey};

@@ -20,8 +20,8 @@ use std::time::{Duration, SystemTime};
 
 use serde::{Deserialize, Serialize};
 
-use super::disk::LOCK;
 use super::host;
+use super::names::LOCK;
 use crate::failure::Failure;
 use crate::files;
 

@@ -3,11 +3,9 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use serde::{Deserialize, Serialize};
-use usar_sim::record::{Status, TrialRecord};
-
 use super::line::Finished;
 use super::rows::{FIRST_METRIC, trial_columns};
+use super::summary::{Summary, status_of};
 use crate::experiment::{Experiment, Place, Shard};
 use crate::files;
 use crate::metric::{Catalogue, Values};
@@ -25,40 +23,6 @@ pub struct Measured {
     pub metrics: Option<Values>,
     /// Why it has no values.
     pub failure: Option<Box<str>>,
-}
-
-/// The summary of a trial that ran to its end.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(super) struct Summary {
-    /// Its status in one word.
-    pub status: String,
-    /// Values of all metrics, in the order of the experiment's catalogue.
-    pub metrics: Vec<Option<f64>>,
-    /// Hash of its last state.
-    pub state_hash: String,
-}
-
-impl Summary {
-    pub(super) fn of(record: &TrialRecord, metrics: &Catalogue) -> Self {
-        let status = record.status.name().to_owned();
-        Self { status, metrics: metrics.measure(record), state_hash: record.state_hash.clone() }
-    }
-
-    /// Checks that this can be the summary of a trial with these metrics.
-    pub(super) fn check(&self, metrics: &Catalogue) -> Result<(), String> {
-        let (count, found) = (metrics.len(), self.metrics.len());
-        if count != found {
-            return Err(format!("must have {count} metrics, found {found}"));
-        }
-        status_of(&self.status).map(drop).ok_or_else(|| format!("has no status {:?}", self.status))
-    }
-}
-
-/// The status with this name.
-fn status_of(name: &str) -> Option<&'static str> {
-    let ended = [Status::Completed, Status::NobodyCanCarry, Status::ErrandsOver].map(|status| status.name());
-    let faults = FaultKind::ALL.map(FaultKind::name);
-    ended.into_iter().chain(faults).find(|known| *known == name)
 }
 
 impl Measured {

@@ -7,8 +7,7 @@ use std::path::{Path, PathBuf};
 
 use tempfile::{SpooledTempFile, spooled_tempfile_in};
 
-use super::disk::{INPUTS, LOCK, MANIFEST, PLOTS, RECORDINGS, REPORT, is_sweeps};
-use super::parquet::PARQUETS;
+use super::names::{INPUTS, LOCK, MANIFEST, PARQUETS, PLOTS, RECORDINGS, REPORT, is_sweeps};
 use super::tables::TABLES;
 use super::{archive, host, journal};
 use crate::failure::Failure;
@@ -25,6 +24,11 @@ const RECORDING: &str = ".usrec";
 fn known_names() -> impl Iterator<Item = &'static str> {
     let logs = [MANIFEST, LOCK, journal::FILE, archive::FILE, host::FILE];
     logs.into_iter().chain(INPUTS).chain(TABLES).chain(PARQUETS)
+}
+
+/// Deletes the Parquet files, because they would belong to other tables.
+pub(super) fn remove_parquets(path: &Path) -> std::io::Result<()> {
+    PARQUETS.iter().try_for_each(|name| files::remove(&path.join(name)))
 }
 
 /// Refuses a folder that is not a sweep's. A sweep's folder has a manifest or a journal of this program, or

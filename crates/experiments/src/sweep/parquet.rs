@@ -7,20 +7,11 @@ use exports::ExportError;
 use exports::parquet::{Kind, from_csv};
 
 use super::folder::Folder;
+use super::names::PARQUETS;
 use super::tables::TABLES;
 use crate::experiment::Experiment;
 use crate::failure::Failure;
 use crate::files::{self, NewFile, file_hash};
-
-/// Names of the Parquet files, in the order of the tables.
-pub(super) const PARQUETS: [&str; TABLES.len()] = [
-    "trials.parquet",
-    "rounds.parquet",
-    "robots.parquet",
-    "groups.parquet",
-    "series.parquet",
-    "hashes.parquet",
-];
 
 /// The table in which the columns `stranded` and `disabled` are no counts.
 const ROBOTS: &str = "robots.csv";
@@ -63,11 +54,6 @@ fn kind(table: &Path, column: &str, experiment: &Experiment) -> Kind {
         | "return_cause" | "role" | "stall_cause" | "digest" | "parts" => Kind::Text,
         _ => Kind::Number,
     }
-}
-
-/// Deletes the Parquet files, because they would belong to other tables.
-pub(super) fn remove(path: &Path) -> std::io::Result<()> {
-    PARQUETS.iter().try_for_each(|name| files::remove(&path.join(name)))
 }
 
 /// The Parquet files in the folder that differ from their tables, one sentence each.

@@ -6,7 +6,7 @@ use usar_sim::record::{DecisionRecord, TrialRecord};
 use usar_sim::scenario::NeedFile;
 
 use super::line::Finished;
-use super::measured::Summary;
+use super::summary::Summary;
 use crate::experiment::Experiment;
 use crate::metric::{Catalogue, Metric};
 use crate::run::{Trial, TrialKey, series_times};

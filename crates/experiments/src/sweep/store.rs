@@ -7,7 +7,6 @@ use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 use super::archive::{self, Archive};
-use super::disk::sync_folder;
 use super::journal::{self, Journal};
 use super::line::{Finished, finished_of};
 use super::measured::{Measured, Results};
@@ -131,7 +130,7 @@ pub(super) fn thaw(folder: &Path) -> Result<(), Failure> {
         }
         let file: File = file.into_inner().map_err(|error| trouble(&new)(error.into_error()))?;
         file.sync_all().and_then(|()| std::fs::rename(&new, &journal)).map_err(trouble(&new))?;
-        sync_folder(folder)?;
+        files::sync_folder(folder)?;
     }
     files::remove(&pressed).map_err(trouble(&pressed))
 }

@@ -4,7 +4,7 @@
 //! as a swap improves the score. The result is not proven optimal; an upper bound limits its distance from
 //! the optimum.
 
-use super::partition::{Partition, distinct_orders, in_order};
+use super::parts::{Partition, distinct_orders, in_order};
 use super::scorer::{Scorer, TIE_TOLERANCE, add_pair, part_sums};
 use rne_core::needs::shares_of;
 

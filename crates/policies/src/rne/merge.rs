@@ -1,27 +1,12 @@
 //! The merge of one role's parts with the groups so far: the matching with the largest score.
 
+use super::group::Group;
 use super::options::MergeReading;
 use super::quotas::Sizes;
-use super::scorer::{Scorer, TIE_TOLERANCE, add};
+use super::scorer::{Scorer, TIE_TOLERANCE};
 
 /// Greatest number of tasks for which all matchings are searched: 5,040 matchings for seven tasks.
 pub const EXACT_TASKS: usize = 7;
-
-/// A group under construction: members as indices into the team, and the sum of their weighted needs.
-#[derive(Debug, Clone)]
-pub(super) struct Group {
-    pub(super) members: Vec<usize>,
-    pub(super) sum: Vec<f64>,
-}
-
-impl Group {
-    pub(super) fn joined(&self, other: &Self) -> Self {
-        let mut joined = self.clone();
-        joined.members.extend(&other.members);
-        add(&mut joined.sum, &other.sum);
-        joined
-    }
-}
 
 /// For each group, the part that joins it.
 pub(super) type Matching = Vec<usize>;

@@ -6,11 +6,13 @@
 //! the merged groups. The score of more than two groups is the sum over their pairs. The [`HardRule`] decides
 //! which group takes which task.
 
+mod group;
 mod local;
 mod merge;
 mod options;
 mod pairs;
 mod partition;
+mod parts;
 mod quotas;
 mod scorer;
 mod suitability;
@@ -20,7 +22,8 @@ pub use options::{HardRule, MergeReading, RneOptions, ScoreDirection};
 pub use pairs::DirectedRne;
 pub use partition::EXACT_PARTITIONS;
 
-use merge::{Group, Merge, Merger};
+use group::Group;
+use merge::{Merge, Merger};
 use partition::best_partition;
 use quotas::Sizes;
 use rne_core::decision::{

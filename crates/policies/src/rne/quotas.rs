@@ -1,7 +1,7 @@
 //! Binding quotas. Groups are formed before they get their tasks, so their sizes must fit the tasks in some
 //! order.
 
-use super::merge::Group;
+use super::group::Group;
 use rne_core::ids::{RoleId, TaskId};
 use rne_core::question::Question;
 

@@ -1,6 +1,6 @@
 //! Which group takes which task: the best-suited group takes the hardest one.
 
-use super::merge::Group;
+use super::group::Group;
 use super::options::HardRule;
 use super::quotas::Sizes;
 use super::scorer::{Scorer, TIE_TOLERANCE};

@@ -124,3 +124,8 @@ pub(super) fn names<'n>(check: &mut Checker, table: &str, names: impl Iterator<I
         seen.push(name);
     }
 }
+
+/// Path of an entry of a table, by the name of the entry.
+pub(super) fn entry(table: &str, name: &str) -> String {
+    format!("{table}.{name}")
+}

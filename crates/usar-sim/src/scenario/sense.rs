@@ -3,9 +3,9 @@
 
 use parry2d::query::distance;
 
-use super::checker::Checker;
+use super::checker::{Checker, entry};
 use super::file::{DebrisFile, DebrisShape, Point, RoleFile, RoleKind, ScenarioFile, TaskFile};
-use super::validate::entry;
+
 use crate::geometry::Outline;
 use crate::limits;
 

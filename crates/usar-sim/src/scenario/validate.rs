@@ -2,7 +2,7 @@
 
 use ron_fields::limits::Limit;
 
-use super::checker::{Checker, is_device, meant, names, shown};
+use super::checker::{Checker, entry, is_device, meant, names, shown};
 use super::debris::debris;
 use super::error::Problem;
 use super::file::{
@@ -158,11 +158,6 @@ fn team(check: &mut Checker, file: &ScenarioFile) {
         check.inside(format!("{field}.center"), [row.center[0] - row.width_m / 2.0, row.center[1]], radius);
         check.inside(format!("{field}.center"), [row.center[0] + row.width_m / 2.0, row.center[1]], radius);
     }
-}
-
-/// Path of an entry of a table, by the name of the entry.
-pub(super) fn entry(table: &str, name: &str) -> String {
-    format!("{table}.{name}")
 }
 
 fn roles(check: &mut Checker, file: &ScenarioFile) {

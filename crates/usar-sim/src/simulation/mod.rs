@@ -4,8 +4,10 @@
 //! grouped. [`Simulation::assign`] takes the answer. Policies, programs and people all answer through this
 //! interface.
 
+mod charge;
 mod checkpoint;
 mod decider;
+mod moments;
 mod rescue;
 mod state;
 mod timeline;

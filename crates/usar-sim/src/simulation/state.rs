@@ -3,7 +3,8 @@
 use parry2d::math::Vector;
 use serde::{Deserialize, Serialize};
 
-use super::timeline::Timeline;
+use super::charge::{last_event, spend};
+use super::moments::Moments;
 use crate::belief::{Beliefs, Inflation};
 use crate::conflict::{Delay, Mover, PriorityKey, Resolver};
 use crate::event::{Event, EventLog};
@@ -15,8 +16,8 @@ use crate::model::{Model, RobotStart};
 use crate::navigation::{Navigator, PLANNED_BRAKING};
 use crate::record::DecisionRecord;
 use crate::report::{Report, Speaker, Statement};
-use crate::robot::{Condition, Robot, STANDING_MPS};
-use crate::scenario::{CostUnit, Costs};
+use crate::robot::{Robot, STANDING_MPS};
+use crate::scenario::Costs;
 use crate::sensors::{base, look_around, oneself};
 use crate::tally::{Tally, delay_cause};
 use crate::vitals::{energy_cost, hp_cost};
@@ -39,7 +40,7 @@ pub(crate) struct State {
     /// Whether a step has begun but is not finished, because a question waits.
     pub(super) is_midway: bool,
     pub(super) log: EventLog,
-    pub(super) timeline: Timeline,
+    pub(super) timeline: Moments,
     pub(super) chain: HashChain,
     pub(super) listeners: Listeners,
 }
@@ -87,7 +88,7 @@ impl State {
             resolver: Resolver::new(&model.scenario),
             is_midway: false,
             log: EventLog::default(),
-            timeline: Timeline::new(model),
+            timeline: Moments::of(model),
             chain: HashChain::default(),
             listeners: Listeners { metrics: Metrics::new(model.tasks.len(), tallies), decisions: Vec::new() },
             world,
@@ -256,28 +257,6 @@ impl State {
             part(&self.resolver),
             self.part_of_events(),
         ]
-    }
-}
-
-/// Takes energy and HP, in percent, from a robot, and charges them to the robot and to its group.
-pub(super) fn spend(robot: &mut Robot, [energy, hp]: [f64; 2], unit: CostUnit, metrics: &mut Metrics) {
-    robot.energy -= energy;
-    robot.hp -= hp;
-    metrics
-        .charge(robot.id, [unit.of_percent(energy, robot.spec.energy), unit.of_percent(hp, robot.spec.hp)]);
-}
-
-/// The end of a robot that has no HP or no energy left, as its condition and as an event. Without HP it is
-/// disabled, whatever its energy.
-pub(super) fn last_event(robot: &mut Robot) -> Option<Event> {
-    if robot.hp <= 0.0 {
-        robot.condition = Condition::Disabled;
-        Some(Event::Disabled { robot: robot.id })
-    } else if robot.energy <= 0.0 {
-        robot.condition = Condition::Stranded;
-        Some(Event::Stranded { robot: robot.id })
-    } else {
-        None
     }
 }
 

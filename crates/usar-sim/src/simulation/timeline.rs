@@ -2,10 +2,9 @@
 
 use parry2d::query::distance;
 use rne_core::TaskId;
-use serde::{Deserialize, Serialize};
 
 use super::State;
-use super::state::{last_event, spend};
+use super::charge::{last_event, spend};
 use crate::event::Event;
 use crate::geometry::Outline;
 use crate::ids::RobotId;
@@ -20,23 +19,6 @@ const FREE_M: f32 = 0.1;
 
 /// Number of steps of a robot at its present speed for which the place must stay free.
 const FREE_STEPS: f32 = 3.0;
-
-/// For each event of the timeline, in the order of their steps, whether it has happened.
-#[derive(Debug, Clone, Default, Serialize, Deserialize)]
-pub(crate) struct Timeline {
-    done: Vec<bool>,
-}
-
-impl Timeline {
-    /// A timeline of which nothing has happened yet.
-    pub(super) fn new(model: &Model) -> Self {
-        Self { done: vec![false; model.timeline.len()] }
-    }
-
-    pub(super) fn is_empty(&self) -> bool {
-        self.done.is_empty()
-    }
-}
 
 impl State {
     /// Carries out the events that are due. A piece of debris waits until its place is free.

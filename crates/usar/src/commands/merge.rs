@@ -5,8 +5,8 @@ use std::path::PathBuf;
 
 use clap::Args;
 use experiments::Failure;
-use experiments::sweep::disk::{is_sweeps, sweeps_in};
 use experiments::sweep::merge::Merge;
+use experiments::sweep::names::{is_sweeps, sweeps_in};
 use rne_core::Registry;
 
 use super::sweep::print;

@@ -8,8 +8,8 @@ use std::time::Duration;
 use clap::Args;
 use experiments::Failure;
 use experiments::run::Limits;
-use experiments::sweep::disk::is_sweeps;
 use experiments::sweep::folder::{Folder, Opening};
+use experiments::sweep::names::is_sweeps;
 use reports::{Wanted, write_report};
 use study_yang2021::claims::{
     Judged, examples, write_authors_columns, write_claims, write_examples, write_power,

@@ -8,7 +8,8 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use experiments::Failure;
 use experiments::experiment::Shard;
-use experiments::sweep::disk::{experiment_in, is_sweeps, sweeps_in};
+use experiments::sweep::disk::experiment_in;
+use experiments::sweep::names::{is_sweeps, sweeps_in};
 use rne_core::Registry;
 use serde::Serialize;
 

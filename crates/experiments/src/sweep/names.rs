@@ -1,0 +1,54 @@
+//! The names of the files in a sweep's folder, and how such a folder is known.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use super::dictionary::DICTIONARY;
+use super::tables::TABLES;
+use crate::files;
+
+/// What the folder holds, with the hashes of its files.
+pub(super) const MANIFEST: &str = "manifest.json";
+/// The file that was run.
+pub(super) const GIVEN: &str = "experiment.ron";
+/// The scenario with all that is set in it.
+pub(super) const RESOLVED: &str = "resolved.ron";
+/// The sweep as a file for the resolved scenario: running it reproduces the folder.
+pub(super) const AGAIN: &str = "sweep.ron";
+/// Files that are written before the trials.
+pub(super) const INPUTS: [&str; 5] = [GIVEN, RESOLVED, AGAIN, DICTIONARY[0], DICTIONARY[1]];
+/// The report; [`PLOTS`] is the folder of its figures.
+pub const REPORT: &str = "report.html";
+/// See [`REPORT`].
+pub const PLOTS: &str = "plots";
+/// The folder of recordings of trials.
+pub const RECORDINGS: &str = "recordings";
+/// Held by the process that writes to the folder.
+pub const LOCK: &str = ".lock";
+
+/// The tables as Parquet files, in the order of the tables.
+pub(super) const PARQUETS: [&str; TABLES.len()] = [
+    "trials.parquet",
+    "rounds.parquet",
+    "robots.parquet",
+    "groups.parquet",
+    "series.parquet",
+    "hashes.parquet",
+];
+
+/// Whether a folder holds a sweep. The program that made it may be another one.
+#[must_use]
+pub fn is_sweeps(path: &Path) -> bool {
+    let manifest = files::read(&path.join(MANIFEST)).unwrap_or_default();
+    let manifest: serde_json::Value = serde_json::from_slice(&manifest).unwrap_or_default();
+    manifest["program"] == "usar"
+}
+
+/// The folders inside a folder that hold sweeps, by name.
+#[must_use]
+pub fn sweeps_in(path: &Path) -> Vec<PathBuf> {
+    let entries = fs::read_dir(path).into_iter().flatten().flatten().map(|entry| entry.path());
+    let mut sweeps: Vec<PathBuf> = entries.filter(|entry| is_sweeps(entry)).collect();
+    sweeps.sort();
+    sweeps
+}
