@@ -112,7 +112,7 @@ impl Metrics {
     /// Metrics of a trial in which nothing has happened yet.
     pub(crate) fn new(tasks: usize, robots: Vec<Tally>) -> Self {
         let (tasks, task_of) = (vec![TaskTotals::default(); tasks], vec![None; robots.len()]);
-        Self { tasks, task_of, robots, ..Self::default() }
+        Self { tasks, robots, task_of, ..Self::default() }
     }
 
     /// Charges the energy and HP that a robot spent in this step, to the robot and to its group.
