@@ -1,13 +1,13 @@
 //! The readings of the paper's mission that are options: each does what docs/readings.md says, with every
 //! invariant checked.
 
-use rne_core::{Decision, Policy, PolicyError, Question};
+use rne_core::{Decision, Policy, PolicyError, Question, TaskId};
 use usar_sim::event::{Event, Place};
 use usar_sim::ids::RobotId;
 use usar_sim::mission::Activity;
 use usar_sim::record::{DecisionRecord, Status};
 use usar_sim::scenario::Scenario;
-use usar_sim::simulation::Simulation;
+use usar_sim::simulation::{Advance, Simulation};
 
 use crate::support::{paper_with, policy, trial};
 
@@ -299,4 +299,42 @@ fn idle_robots_stay_at_home() {
     });
     assert!(home < 0.5 && away > 5.0, "{home} {away}");
     assert_eq!(trial.mission().agents[0].activity, Activity::Home);
+}
+
+#[test]
+fn policies_are_told_what_the_scenario_says_of_its_tasks() {
+    let facts = "grid: (3, 2), value: 2.5, requires: {\"sen\": 20}, duration_s: 300, after: [\"easy\"]";
+    let scenario =
+        paper_with(&[("size_m: (11.0, 5.7), grid: (20, 10)", &format!("size_m: (11.0, 5.7), {facts}"))]);
+    let mut trial = Simulation::new(&scenario, 1).unwrap();
+    let Advance::Asks(question) = trial.advance() else { panic!("it asks first") };
+    let [hard, easy] = &question.tasks[..] else { panic!("two tasks") };
+    let told = (hard.rescuees, hard.value, hard.duration_s, &hard.after[..]);
+    assert_eq!(told, (Some(6), Some(2.5), Some(300.0), &[TaskId(1)][..]));
+    assert_eq!(hard.requires, [("sen".to_owned(), 20.0)].into());
+    assert_eq!((easy.rescuees, easy.value, easy.duration_s), (Some(200), None, None));
+    assert!(easy.requires.is_empty() && easy.after.is_empty());
+}
+
+#[test]
+fn a_mission_may_have_64_tasks() {
+    let task = |i: u32| {
+        let [x, y] = [10 * (i % 8) + 5, 10 * (i / 8) + 15];
+        format!(
+            "(name: \"t{i}\", difficulty: {i}, center: ({x}, {y}), size_m: (1, 1), grid: (1, 1), rest: ({x}, {y}))"
+        )
+    };
+    let tasks: Vec<String> = (0..64).map(task).collect();
+    let text = format!(
+        "(name: \"many\", duration_s: 20, dt_s: 0.02, arena_m: (80, 100), tasks: [{}],
+            team: [(role: \"robot\", count: 64, center: (40, 4), width_m: 78)])",
+        tasks.join(",")
+    );
+    let scenario = Scenario::parse(&text, "many.ron".as_ref()).unwrap_or_else(|error| panic!("{error}"));
+    let record = trial(&scenario, "DIS", 1);
+    assert_eq!(record.status, Status::Completed);
+    assert!(record.decisions[0].decision.assignment.groups.iter().all(|group| group.len() == 1));
+    let one_more = text.replace("tasks: [", &format!("tasks: [{},", task(63).replace("t63", "t64")));
+    let error = Scenario::parse(&one_more, "many.ron".as_ref()).unwrap_err().to_string();
+    assert!(error.contains("tasks must have at most 64 entries, found 65"), "{error}");
 }
