@@ -1,6 +1,6 @@
-//! The laws of the architecture, checked on the sources: crates use only those below them, modules and
-//! files form no circle, the engine has one seam, the general crates have no words of one paper, and the laboratory draws
-//! and prints nothing.
+//! The laws of the architecture, checked on the sources: crates use only those below them, modules and files
+//! form no circle, decisions see no world, the engine has one seam, the general crates have no words of one
+//! paper, and the laboratory draws and prints nothing.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};

@@ -269,6 +269,10 @@ fn an_answer_that_sends_all_robots_to_one_task_is_for_scenarios_with_free_sizes(
     let record = run(&paper_with(&[("group_sizes: Parts", "group_sizes: Free")]));
     assert_eq!(record.status, Status::Completed);
     assert!(record.task("hard").unwrap().rescued > 0 && record.task("easy").unwrap().rescued == 0);
+    let empty_gets_nobody = ("empty_tasks: GetGroups", "empty_tasks: GetNobody");
+    let record = run(&paper_with(&[("group_sizes: Parts", "group_sizes: Free"), SIX, empty_gets_nobody]));
+    let last = record.decisions.last().map(|asked| asked.question.tasks[0].rescuees);
+    assert!(last == Some(Some(0)) && record.status == Status::Completed, "free sizes stay free");
 }
 
 #[test]
@@ -299,6 +303,22 @@ fn idle_robots_stay_at_home() {
     });
     assert!(home < 0.5 && away > 5.0, "{home} {away}");
     assert_eq!(trial.mission().agents[0].activity, Activity::Home);
+}
+
+#[test]
+fn an_answer_that_keeps_all_who_can_carry_at_home_is_refused() {
+    struct OnlyObservers;
+    impl Policy for OnlyObservers {
+        fn decide(&self, question: &Question) -> Result<Decision, PolicyError> {
+            let mut decision = Decision::unscored(vec![vec![10], vec![11]]);
+            let others = question.members.iter().map(|member| member.id).filter(|id| *id < 10);
+            decision.assignment.idle = others.collect();
+            Ok(decision)
+        }
+    }
+    let mut trial = Simulation::new(&paper_with(&[("may_idle: false", "may_idle: true")]), 7).unwrap();
+    let reason = "the policy failed: an assignment must send out a robot that can carry, if there is one";
+    assert_eq!(trial.step(&OnlyObservers), Some(Status::Failed(reason.to_owned())));
 }
 
 #[test]

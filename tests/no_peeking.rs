@@ -54,6 +54,13 @@ fn robots_go_for_rescuees_that_are_gone_until_somebody_says_so() {
         chased = gone.iter().filter(|id| changed.mission().claimed().by(**id).is_some()).count();
     }
     assert!(chased > 0, "nobody went for a rescuee that is gone: the test shows nothing");
+    (0..1_000).for_each(|_| assert_eq!(changed.step(&*rne), None));
+    let known_gone = |id: &RescueeId| {
+        let task = changed.world().rescuees[id.index()].task;
+        let known = changed.beliefs().of(Some(task)).rescuees.get(id.index());
+        known.is_some_and(|known| known.waits_at.is_none())
+    };
+    assert!(gone.iter().any(known_gone), "who finds nobody there says so");
 }
 
 #[test]

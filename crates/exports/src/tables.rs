@@ -205,7 +205,7 @@ fn decision_rows(recording: &Recording) -> impl Iterator<Item = Vec<String>> + '
         let question = &decided.question;
         let groups = question.task_ids().zip(&decided.decision.assignment.groups);
         groups.flat_map(move |(task, group)| {
-            let members = question.members.iter().filter(move |member| group.contains(&member.id));
+            let members = decided.team().iter().filter(move |member| group.contains(&member.id));
             members.map(move |member| {
                 let mut row =
                     vec![time(decided.step as f64 * recording.header.dt_s), question.round.to_string()];

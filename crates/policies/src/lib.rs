@@ -24,7 +24,11 @@ pub use rne::RneOptions;
 /// The built-in policies.
 #[must_use]
 pub fn standard() -> Registry {
-    [rne::kind(), distance::kind(), energy::kind(), hp_distance::kind(), random::kind()].into_iter().collect()
+    let mut registry = Registry::default();
+    for kind in [rne::kind(), distance::kind(), energy::kind(), hp_distance::kind(), random::kind()] {
+        let _ = registry.add(kind); // their names differ
+    }
+    registry
 }
 
 /// The README's example is compiled and run.

@@ -1,6 +1,6 @@
 //! Reads recordings.
 
-use rne_core::{Decision, Question};
+use rne_core::{Decision, Member, Question};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use usar_sim::event::Event;
@@ -39,8 +39,18 @@ pub struct TimedDecision {
     pub question: Question,
     /// The answer.
     pub decision: Decision,
-    /// The matrix of trust at the decision.
+    /// The members as they really were; absent where the question had them as they were.
+    pub truth: Option<Vec<Member>>,
+    /// The matrix of trust at the decision, by what was reported.
     pub trust: Option<Trust>,
+}
+
+impl TimedDecision {
+    /// The members as they really were, by id.
+    #[must_use]
+    pub fn team(&self) -> &[Member] {
+        self.truth.as_ref().unwrap_or(&self.question.members)
+    }
 }
 
 #[derive(Deserialize)]

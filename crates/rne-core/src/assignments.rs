@@ -192,21 +192,22 @@ pub fn neighbours(question: &Question, assignment: &Assignment) -> Vec<Assignmen
 }
 
 fn moved(assignment: &Assignment, id: u32, to: TaskId) -> Assignment {
-    let mut groups = assignment.groups.clone();
-    groups.iter_mut().for_each(|group| group.retain(|other| *other != id));
-    groups[to.index()].push(id);
-    Assignment::new(groups)
+    let mut moved = assignment.clone();
+    moved.groups.iter_mut().chain([&mut moved.idle]).for_each(|group| group.retain(|other| *other != id));
+    moved.groups[to.index()].push(id);
+    moved.sorted()
 }
 
 fn exchanged(assignment: &Assignment, [first, second]: [u32; 2]) -> Assignment {
-    let other = |id: u32| match id {
-        id if id == first => second,
-        id if id == second => first,
-        id => id,
-    };
-    Assignment::new(
-        assignment.groups.iter().map(|group| group.iter().copied().map(other).collect()).collect(),
-    )
+    let mut exchanged = assignment.clone();
+    for id in exchanged.groups.iter_mut().chain([&mut exchanged.idle]).flatten() {
+        *id = match *id {
+            id if id == first => second,
+            id if id == second => first,
+            id => id,
+        };
+    }
+    exchanged.sorted()
 }
 
 #[cfg(test)]

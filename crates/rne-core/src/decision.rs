@@ -10,7 +10,7 @@ use crate::question::{GroupSizes, Question, SCHEMA_VERSION};
 use crate::trust::RelativeNeedsEntropy;
 
 /// Who goes to which task.
-#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Assignment {
     /// For each task, in the order of the table, the ids of its group, ascending.
@@ -257,12 +257,18 @@ pub struct Suitability {
 }
 
 impl Decision {
-    /// An assignment without a score.
+    /// Groups without a score; nobody is idle.
     #[must_use]
     pub fn unscored(groups: Vec<Vec<u32>>) -> Self {
+        Self::of(Assignment::new(groups))
+    }
+
+    /// An assignment without a score.
+    #[must_use]
+    pub fn of(assignment: Assignment) -> Self {
         Self {
             schema_version: SCHEMA_VERSION,
-            assignment: Assignment::new(groups),
+            assignment,
             score: None,
             proven_optimal: true,
             alternatives: Vec::new(),

@@ -1,5 +1,5 @@
-//! Trust between robots as *Relative Needs Entropy* (RNE), and policies that group a mixed team over any
-//! number of tasks.
+//! Trust between robots as *Relative Needs Entropy* (RNE), and the question how a mixed team is to be grouped
+//! over any number of tasks, with its answer.
 //!
 //! The mathematics of Yang & Parasuraman, *How Can Robots Trust Each Other For Better Cooperation?* (IEEE SMC
 //! 2021, arXiv 2105.07443), with every ambiguity of the text as a named option. This crate has no world,

@@ -113,7 +113,8 @@ pub struct Quota {
     pub sizes: GroupSizes,
 }
 
-/// How far an answer must keep the numbers of a [`Quota`]. If robots are left idle, numbers may be smaller.
+/// How far an answer must keep the numbers of the question's quotas. If robots are left idle, numbers may be
+/// smaller.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 pub enum GroupSizes {
     /// Task by task.
@@ -325,8 +326,8 @@ impl Quota {
     /// for a number of members.
     ///
     /// If no task asks for a number, the shares are as equal as possible, and the harder tasks get the extra
-    /// members; an answer must keep them as far as `sizes` says. Otherwise the numbers bind: the tasks that ask
-    /// are served first, and the rest is shared equally over the other
+    /// members; an answer must keep them as far as `sizes` says. Otherwise the numbers bind: the tasks that
+    /// ask are served first, and the rest is shared equally over the other
     /// tasks (over all tasks if every task asks). If there are too few members, each next member goes to the
     /// task with the smallest filled share; among equals, to the harder task.
     #[must_use]

@@ -34,13 +34,6 @@ impl fmt::Debug for MadePolicy {
     }
 }
 
-impl FromIterator<PolicyKind> for Registry {
-    /// A registry of kinds of different names.
-    fn from_iter<I: IntoIterator<Item = PolicyKind>>(kinds: I) -> Self {
-        Self { kinds: kinds.into_iter().collect() }
-    }
-}
-
 impl Registry {
     /// Adds a policy.
     ///

@@ -46,8 +46,10 @@ pub enum Outcome {
         /// The robot whose resource was used.
         resource_of: RobotId,
     },
-    /// The rescuee is not there, or out of reach, or there is no resource for it.
-    CannotLoad(RescueeId),
+    /// The rescuee does not wait within reach.
+    NotThere(RescueeId),
+    /// There is no resource for the rescuee.
+    NoResource(RescueeId),
     /// The rescuees are delivered.
     Delivered {
         /// Where.

@@ -60,7 +60,7 @@ pub enum SnapshotError {
 pub struct Identity {
     /// Name of the scenario.
     pub scenario: String,
-    /// XXH3-128 of the whole scenario.
+    /// XXH3-128 of the whole scenario as text.
     pub scenario_hash: u128,
     /// The policy that decided so far, as it was requested. Another policy may decide from here on.
     pub policy: String,
@@ -72,7 +72,7 @@ impl Identity {
     fn new(scenario: &Scenario, policy: &str, seed: u64) -> Self {
         Self {
             scenario: scenario.name.clone(),
-            scenario_hash: crate::hash::part(&**scenario),
+            scenario_hash: xxh3_128(scenario.resolved().as_bytes()),
             policy: policy.to_owned(),
             seed,
         }

@@ -112,7 +112,7 @@ impl Decider for Oracle {
         let objective = Objective::parse(&self.options.metric, &tasks).map_err(|error| refused(&error))?;
         let (start, halt) = (trial.checkpoint(), AtomicBool::new(false));
         let outcome = |assignment: &Assignment| {
-            let decision = Decision::unscored(assignment.groups.clone());
+            let decision = Decision::of(assignment.clone());
             play(&start, decision, self.onwards.as_deref(), &halt)
         };
         let survey = survey(question, (&objective, self.options.limit), &[], |batch| {
@@ -135,7 +135,7 @@ impl Decider for Oracle {
             proven_optimal: survey.coverage == Coverage::All,
             alternatives: next.into_iter().collect(),
             account: Account::Text(account),
-            ..Decision::unscored(best.assignment.groups.clone())
+            ..Decision::of(best.assignment.clone())
         })
     }
 }

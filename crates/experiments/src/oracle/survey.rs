@@ -107,7 +107,7 @@ impl Survey {
 
 /// Plays all assignments of a question if there are at most `limit`. If there are more, plays the `named`
 /// assignments and a uniform sample that fills half of the limit. A local search then moves from the best
-/// assignment to its best neighbour (two robots of one role change places), until no neighbour is better or
+/// assignment to its best neighbour (see [`assignments::neighbours`]), until no neighbour is better or
 /// the limit is reached.
 ///
 /// `play` returns the outcomes of a batch of assignments, in their order.

@@ -117,9 +117,8 @@ impl Plan<'_> {
             // A policy that cannot group this team is skipped. The tables leave it out, too.
             named.extend(policy.decide(&question).map(|decision| decision.assignment));
         }
-        let outcome = |assignment: &Assignment| {
-            play(&start, Decision::unscored(assignment.groups.clone()), self.onwards, halt)
-        };
+        let outcome =
+            |assignment: &Assignment| play(&start, Decision::of(assignment.clone()), self.onwards, halt);
         let survey = survey(&question, (self.objective, self.limit), &named, |batch| {
             batch.iter().map(outcome).collect::<Result<Vec<Outcome>, BranchError>>()
         })?;

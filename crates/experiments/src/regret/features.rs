@@ -1,4 +1,4 @@
-//! Features of an assignment that a policy can see before it decides, and that may predict the outcome.
+//! Features of an assignment that may predict the outcome: of the team as it really is before the decision.
 
 use policies::RneOptions;
 use policies::rne::Rne;

@@ -53,6 +53,8 @@ struct Line {
     /// The policy that decided the rest of the trial; `None` for the outcome of the round.
     then: Option<String>,
     groups: Vec<Vec<u32>>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    idle: Vec<u32>,
     outcome: Outcome,
 }
 
@@ -60,7 +62,7 @@ struct Line {
 pub struct OutcomeLog {
     path: PathBuf,
     file: File,
-    known: BTreeMap<(Option<String>, Vec<Vec<u32>>), Outcome>,
+    known: Known,
 }
 
 impl OutcomeLog {
@@ -94,7 +96,7 @@ impl OutcomeLog {
     /// The outcome of an assignment, if it was played.
     #[must_use]
     pub fn get(&self, then: Option<&str>, assignment: &Assignment) -> Option<&Outcome> {
-        self.known.get(&(then.map(str::to_owned), assignment.groups.clone()))
+        self.known.get(&(then.map(str::to_owned), assignment.clone()))
     }
 
     /// How far the outcomes go: `None` for the end of the round, or the policy that decided the rest of the
@@ -108,7 +110,7 @@ impl OutcomeLog {
     pub fn outcomes(&self, then: Option<&str>) -> impl Iterator<Item = (Assignment, &Outcome)> {
         let is_asked = move |key: &(Option<String>, _)| key.0.as_deref() == then;
         let asked = self.known.iter().filter(move |(key, _)| is_asked(key));
-        asked.map(|((_, groups), outcome)| (Assignment::new(groups.clone()), outcome))
+        asked.map(|((_, assignment), outcome)| (assignment.clone(), outcome))
     }
 
     /// Adds the outcome of an assignment.
@@ -124,18 +126,19 @@ impl OutcomeLog {
         let line = Line {
             then: then.map(str::to_owned),
             groups: assignment.groups.clone(),
+            idle: assignment.idle.clone(),
             outcome: outcome.clone(),
         };
         let mut text = serde_json::to_string(&line).map_err(Failure::run)?;
         text.push('\n');
         let written = self.file.write_all(text.as_bytes());
         written.map_err(|error| Failure::storage(format!("{}: {error}", self.path.display())))?;
-        self.known.insert((line.then, line.groups), line.outcome);
+        self.known.insert((line.then, assignment.clone()), line.outcome);
         Ok(())
     }
 }
 
-type Known = BTreeMap<(Option<String>, Vec<Vec<u32>>), Outcome>;
+type Known = BTreeMap<(Option<String>, Assignment), Outcome>;
 
 /// The outcomes in a file, and the number of bytes up to its first damaged line.
 fn read(file: &mut File) -> std::io::Result<(Known, u64)> {
@@ -143,11 +146,12 @@ fn read(file: &mut File) -> std::io::Result<(Known, u64)> {
     let mut reader = BufReader::new(file);
     let mut text = String::new();
     while reader.read_line(&mut text)? > 0 {
-        let Some(Ok(Line { then, groups, outcome })) = text.strip_suffix('\n').map(serde_json::from_str)
+        let Some(Ok(Line { then, groups, idle, outcome })) =
+            text.strip_suffix('\n').map(serde_json::from_str)
         else {
             break;
         };
-        known.insert((then, groups), outcome);
+        known.insert((then, Assignment { groups, idle }), outcome);
         sound += text.len() as u64;
         text.clear();
     }

@@ -81,7 +81,7 @@ impl Blindness {
     /// # Errors
     /// Needs or weights that cannot be used.
     pub fn add(&mut self, round: &Round, rne: &Rne) -> Result<(), Failure> {
-        let weights = rne.weights(&round.question).map_err(Failure::run)?;
+        let weights = rne.weights(&round.true_question()).map_err(Failure::run)?;
         let weights = NeedWeights::new(weights).map_err(Failure::run)?;
         for role in round.question.role_ids() {
             let members: Vec<&Member> = round.of_role(role).collect();

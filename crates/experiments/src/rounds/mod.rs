@@ -64,6 +64,12 @@ impl Round {
         Ok(policy.decide(&self.question).map_err(Failure::run)?.assignment)
     }
 
+    /// The question as it would have been if all members had been reported as they were.
+    #[must_use]
+    pub fn true_question(&self) -> Question {
+        Question { members: self.team.clone(), ..self.question.clone() }
+    }
+
     /// The members of a role, by id.
     pub fn of_role(&self, role: RoleId) -> impl Iterator<Item = &Member> {
         self.team.iter().filter(move |member| member.role == role)

@@ -27,7 +27,7 @@ const ROWS: [(&str, &str); TABLES.len()] = [
     (TABLES[0], "a trial"),
     (TABLES[1], "a task's group in a round of a trial"),
     (TABLES[2], "a robot in a trial"),
-    (TABLES[3], "a robot when it was grouped, in a round of a trial, with the needs that the policy saw"),
+    (TABLES[3], "a robot when it was grouped, in a round of a trial, with its needs as they really were"),
     (TABLES[4], "a moment of a trial, every ten seconds"),
     (links::FILE, "a link of a trial's hash chain"),
 ];
@@ -178,7 +178,7 @@ fn column(file: &str, name: &str, experiment: &Experiment) -> Column {
         return Column { name: name.to_owned(), kind: "number", unit: metric.unit, meaning: what + until };
     }
     if let Some(need) = name.strip_prefix("need_").filter(|_| file == TABLES[3]) {
-        let meaning = format!("The need {need:?} as the robot reported it, in the units of the scenario.");
+        let meaning = format!("The need {need:?} as it really was, in the units of the scenario.");
         return Column { name: name.to_owned(), kind: "number", unit: "", meaning };
     }
     described(file, name)

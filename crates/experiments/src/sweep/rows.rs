@@ -135,7 +135,7 @@ impl<'a> RobotRow<'a> {
     }
 }
 
-/// The columns of `groups.csv`: a robot at the time of grouping, with the needs that the policy saw.
+/// The columns of `groups.csv`: a robot at the time of grouping, with its needs as they really were.
 pub(super) fn group_columns(needs: &[NeedFile]) -> Vec<String> {
     let first = ["policy", "trial", "seed", "round", "robot", "role", "task", "energy", "hp"];
     let needs = needs.iter().map(|need| format!("need_{}", need.name));

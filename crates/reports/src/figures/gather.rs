@@ -70,7 +70,7 @@ impl Gathered {
             }
             if self.first_question.is_none() {
                 self.first_trial = number;
-                self.first_question = Some(round.question);
+                self.first_question = Some(round.true_question());
             }
         }
     }

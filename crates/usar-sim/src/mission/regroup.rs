@@ -1,7 +1,7 @@
 //! Between rounds: which robots are home and fit, the question to the policy, and the departure of the
 //! groups.
 
-use rne_core::{Assignment, Need, Question, Quota, RandomSeed, SCHEMA_VERSION, Task, TaskId};
+use rne_core::{Assignment, GroupSizes, Need, Question, Quota, RandomSeed, SCHEMA_VERSION, Task, TaskId};
 
 use super::round::{Fitness, unfit_cause};
 use super::{Activity, Agent, Group, Mission, Pending, Scene};
@@ -189,8 +189,13 @@ fn question(model: &Model, round: u32, belief: &Belief, fit: &[&Robot]) -> Quest
     let count = |role: usize| fit.iter().filter(|robot| robot.role.index() == role).count();
     let is_open = open_tasks(belief, &tasks, scenario.mission.empty_tasks);
     let quota = |role: usize| {
-        let asked = asked(scenario, role, &is_open);
-        Quota::share(count(role), &asked, &model.hardest_first, scenario.mission.group_sizes)
+        let (asked, sizes) = (asked(scenario, role, &is_open), scenario.mission.group_sizes);
+        let mut quota = Quota::share(count(role), &asked, &model.hardest_first, sizes);
+        let name = &scenario.roles[role].name;
+        if sizes == GroupSizes::Free && !scenario.tasks.iter().any(|task| task.quota.contains_key(name)) {
+            quota.sizes = sizes; // that a task is closed binds parts; free sizes stay a suggestion
+        }
+        quota
     };
     Question {
         schema_version: SCHEMA_VERSION,

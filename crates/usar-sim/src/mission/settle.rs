@@ -67,13 +67,11 @@ impl Mission {
                 let done = scene.step + scene.model.steps(scene.model.scenario.mission.loading_s);
                 self.agent(robot).activity = Activity::Loading(rescuee, done);
             }
-            Outcome::CannotLoad(rescuee) => self.agent(robot).activity = Activity::Approaching(rescuee),
+            Outcome::NoResource(rescuee) => self.agent(robot).activity = Activity::Approaching(rescuee),
+            Outcome::NotThere(rescuee) => self.go_on_without(rescuee, robot, scene),
             Outcome::Loaded { rescuee, resource_of } => {
                 *sharing = [None; MAX_TASKS];
-                self.claimed.set(rescuee, None);
-                let says = Statement::RescueeIsGone { rescuee };
-                scene.sent.push(Report { from: Speaker::Robot(robot), says, at_step: scene.step, sd_m: 0.0 });
-                self.agent(robot).activity = Activity::Searching;
+                self.go_on_without(rescuee, robot, scene);
                 scene.log.push(Event::Loaded { robot, rescuee, resource_of });
             }
             Outcome::Delivered { place, rescuees } => {
@@ -93,6 +91,14 @@ impl Mission {
                 scene.log.push(Event::RestEnded { robot });
             }
         }
+    }
+
+    /// A rescuee no longer waits: its robot says so, and goes on searching.
+    fn go_on_without(&mut self, rescuee: RescueeId, robot: RobotId, scene: &mut Scene) {
+        self.claimed.set(rescuee, None);
+        let says = Statement::RescueeIsGone { rescuee };
+        scene.sent.push(Report { from: Speaker::Robot(robot), says, at_step: scene.step, sd_m: 0.0 });
+        self.agent(robot).activity = Activity::Searching;
     }
 
     fn begin_rest(&mut self, robot: RobotId, scene: &mut Scene) {

@@ -103,8 +103,8 @@ impl Navigator {
     }
 
     /// Plans routes. A robot plans if it has no route yet, if new knowledge cuts its route or may make it
-    /// dearer or cheaper, or if it makes no progress. `team` are the robots as they said they are. `speed_of` is a robot's present top speed, in metres
-    /// per second.
+    /// dearer or cheaper, or if it makes no progress. `team` are the robots as they said they are. `speed_of` is a
+    /// robot's present top speed, in metres per second.
     pub fn plan<'k>(
         &mut self,
         team: &[Robot],
@@ -261,8 +261,8 @@ fn concerns(news: News, belief: &Belief, route: &Route, robot: &Robot) -> bool {
     }
 }
 
-/// Whether debris was pushed away from a place through which a cheaper route of a ground robot may lead now. Never `false` if
-/// there is a route that is cheaper by [`PROGRESS_M`] or more.
+/// Whether debris was pushed away from a place through which a cheaper route of a ground robot may lead now.
+/// Never `false` if there is a route that is cheaper by [`PROGRESS_M`] or more.
 fn may_cheapen<'q>(planner: &Planner, query: impl Fn() -> Query<'q>, route: &Route, news: &[News]) -> bool {
     news.iter().any(|news| match news {
         News::Opening(opening) => {

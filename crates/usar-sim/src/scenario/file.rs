@@ -289,17 +289,16 @@ pub struct TaskFile {
     /// Debris and radiation zones drawn between home and this task, in addition.
     #[serde(default)]
     pub sampled: SampledCounts,
-    /// What one of its rescuees is worth. Policies are told this and the next three; the mission itself does
-    /// not use them.
+    /// What one of its rescuees is worth. For policies; the mission itself does not use it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub value: Option<f64>,
-    /// The least that the needs of its group should add up to, by the names of needs.
+    /// The least that the needs of its group should add up to, by the names of needs. For policies.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub requires: BTreeMap<String, f64>,
-    /// How long its work is expected to take, in seconds.
+    /// How long its work is expected to take, in seconds. For policies.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub duration_s: Option<f64>,
-    /// Names of the tasks after which it should be done.
+    /// Names of the tasks after which it should be done. For policies.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub after: Vec<String>,
 }

@@ -5,7 +5,6 @@ use parry2d::query::distance;
 
 use super::checker::{Checker, entry};
 use super::file::{DebrisFile, DebrisShape, Point, RoleFile, RoleKind, ScenarioFile, TaskFile};
-
 use crate::geometry::Outline;
 use crate::limits;
 

@@ -72,6 +72,9 @@ pub enum AssignError {
     /// No question waits for an answer.
     #[error("no question waits for an answer")]
     NotAsked,
+    /// Only robots that cannot carry are sent out, so that the round would be over at once.
+    #[error("an assignment must send out a robot that can carry, if there is one")]
+    NobodyCarries,
     /// The assignment does not answer the question.
     #[error(transparent)]
     Refused(#[from] AssignmentError),
@@ -162,6 +165,11 @@ impl Simulation {
         // A hand-made decision may name the members of a group in any order.
         decision.assignment = decision.assignment.sorted();
         decision.assignment.check(question)?;
+        let can_carry = |id: &u32| self.model.robots[*id as usize].can_carry();
+        let idle_carrier = decision.assignment.idle.iter().any(can_carry);
+        if idle_carrier && !decision.assignment.groups.iter().flatten().any(can_carry) {
+            return Err(AssignError::NobodyCarries);
+        }
         let truth = self.truth();
         let (mission, mut scene) = self.state.scene(&self.model);
         mission.assign(&decision.assignment, &mut scene);

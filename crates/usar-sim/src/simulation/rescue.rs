@@ -22,5 +22,6 @@ impl State {
             let (mission, mut scene) = self.scene(model);
             mission.note(robot, outcome, &mut scene, &mut sharing);
         }
+        self.hear(medium, heard);
     }
 }

@@ -132,7 +132,7 @@ impl State {
     }
 
     /// The medium carries the reports that are under way; the groups and the team hear them.
-    fn hear(&mut self, medium: &impl Medium, heard: &mut Vec<Report>) {
+    pub(super) fn hear(&mut self, medium: &impl Medium, heard: &mut Vec<Report>) {
         let Self { mission, beliefs, sent, log, step, .. } = self;
         medium.carry(*step, sent, heard);
         for report in heard.drain(..) {

@@ -10,10 +10,15 @@ impl World {
     pub(crate) fn carry_out(&mut self, robot: RobotId, intent: Intent, model: &Model) -> Outcome {
         let id = robot.index();
         match intent {
-            Intent::BeginLoading { rescuee, resource_of } | Intent::Load { rescuee, resource_of }
-                if !self.can_load(robot, rescuee, resource_of, model) =>
+            Intent::BeginLoading { rescuee, .. } | Intent::Load { rescuee, .. }
+                if !self.is_in_reach(robot, rescuee, model) =>
             {
-                Outcome::CannotLoad(rescuee)
+                Outcome::NotThere(rescuee)
+            }
+            Intent::BeginLoading { rescuee, resource_of } | Intent::Load { rescuee, resource_of }
+                if self.robots[resource_of.index()].resources == 0 =>
+            {
+                Outcome::NoResource(rescuee)
             }
             Intent::BeginLoading { rescuee, .. } => Outcome::LoadingBegan(rescuee),
             Intent::Load { rescuee, resource_of } => {
@@ -42,12 +47,10 @@ impl World {
         robot.resources = robot.spec.resources;
     }
 
-    /// Whether a rescuee waits within a robot's reach, and there is a resource for it.
-    fn can_load(&self, robot: RobotId, rescuee: RescueeId, resource_of: RobotId, model: &Model) -> bool {
+    /// Whether a rescuee waits within a robot's reach.
+    fn is_in_reach(&self, robot: RobotId, rescuee: RescueeId, model: &Model) -> bool {
         let rescuee = &self.rescuees[rescuee.index()];
         let apart = rescuee.position - self.robots[robot.index()].position;
-        rescuee.state == RescueeState::Waiting
-            && apart.length() <= model.scenario.mission.reach_m as f32
-            && self.robots[resource_of.index()].resources > 0
+        rescuee.state == RescueeState::Waiting && apart.length() <= model.scenario.mission.reach_m as f32
     }
 }

@@ -141,7 +141,7 @@ impl Arguments {
                 let assignment = parse_groups(written.as_deref().unwrap_or_default(), question);
                 let assignment = assignment.map_err(|error| Failure::input(format!("--assign: {error}")))?;
                 assignment.check(question).map_err(|error| Failure::input(format!("--assign: {error}")))?;
-                Ok(Decision::unscored(assignment.groups))
+                Ok(Decision::of(assignment))
             }
         }
     }

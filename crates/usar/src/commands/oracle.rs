@@ -256,7 +256,7 @@ impl Batch<'_> {
         if STOP.load(Ordering::Relaxed) {
             return Err(Failure::Interrupted("stopped; the same command goes on".to_owned()));
         }
-        let decision = Decision::unscored(assignment.groups.clone());
+        let decision = Decision::of(assignment.clone());
         let outcome = play(self.start, decision, self.policy, &STOP).map_err(|error| failure(error, ""));
         self.progress.inc(1);
         outcome

@@ -21,8 +21,8 @@ use crate::running::{STOP, default_jobs, progress_bar, stop_on_signals, tell};
 #[command(after_help = "\
 Exit status 0 only when every trial that was run again has the same hash chain and the same line in the \
 journal, byte for byte, and every table is what the journal gives. Otherwise the first trial, step and part \
-of the state that differ are named (bodies, robots, debris, rescuees, beliefs, mission, routes, resolver, \
-metrics or events), or the number, or the file.
+of the state that differ are named (bodies, robots, debris, rescuees, beliefs, mission, routes, resolver \
+or events), or the number, or the file.
 
 Examples:
   usar verify results/paper
