@@ -1,5 +1,5 @@
-//! The hash chain over the whole state of a trial: equal chains, equal trials, step by step. What only listens,
-//! metrics and decisions, is no part of it: a new counter changes no hash.
+//! The hash chain over the whole state of a trial: equal chains, equal trials, step by step. What only
+//! listens, metrics and decisions, is no part of it: a new counter changes no hash.
 //!
 //! Every [`PERIOD_STEPS`] steps and at the end, each part of the state is written as bytes (postcard) and
 //! hashed (XXH3, 128 bits). The digests of all parts, the step and the previous link make the next link. Each

@@ -168,24 +168,7 @@ impl Mission {
 fn question(model: &Model, round: u32, belief: &Belief, fit: &[&Robot]) -> Question {
     let scenario = &model.scenario;
     let need = |need: &NeedFile| Need { name: need.name.clone(), weight: need.weight };
-    let tasks: Vec<Task> = scenario
-        .tasks
-        .iter()
-        .zip(model.task_ids())
-        .map(|(file, id)| {
-            let after = |name: &String| scenario.tasks.iter().position(|task| task.name == *name);
-            Task {
-                name: file.name.clone(),
-                difficulty: file.difficulty,
-                place: Some(file.center),
-                rescuees: belief.waiting(id, model.tasks[id.index()].rescuees.clone()),
-                value: file.value,
-                requires: file.requires.clone(),
-                duration_s: file.duration_s,
-                after: file.after.iter().filter_map(after).map(|number| TaskId(number as u16)).collect(),
-            }
-        })
-        .collect();
+    let tasks = tasks(model, belief);
     let count = |role: usize| fit.iter().filter(|robot| robot.role.index() == role).count();
     let is_open = open_tasks(belief, &tasks, scenario.mission.empty_tasks);
     let quota = |role: usize| {
@@ -209,6 +192,23 @@ fn question(model: &Model, round: u32, belief: &Belief, fit: &[&Robot]) -> Quest
         history: Vec::new(),
         random_seed: RandomSeed(stream(model.seed, Purpose::Grouping, u64::from(round)).get_seed()),
     }
+}
+
+/// The tasks: what the scenario says of them, and how many rescuees wait there by this belief.
+fn tasks(model: &Model, belief: &Belief) -> Vec<Task> {
+    let files = &model.scenario.tasks;
+    let number = |name: &String| files.iter().position(|task| task.name == *name);
+    let task = |(file, id): (&TaskFile, TaskId)| Task {
+        name: file.name.clone(),
+        difficulty: file.difficulty,
+        place: Some(file.center),
+        rescuees: belief.waiting(id, model.tasks[id.index()].rescuees.clone()),
+        value: file.value,
+        requires: file.requires.clone(),
+        duration_s: file.duration_s,
+        after: file.after.iter().filter_map(number).map(|number| TaskId(number as u16)).collect(),
+    };
+    files.iter().zip(model.task_ids()).map(task).collect()
 }
 
 /// For each task, whether it gets robots: whether it has begun and not ended and, if the rules ask for it and

@@ -103,8 +103,8 @@ impl Navigator {
     }
 
     /// Plans routes. A robot plans if it has no route yet, if new knowledge cuts its route or may make it
-    /// dearer or cheaper, or if it makes no progress. `team` are the robots as they said they are. `speed_of` is a
-    /// robot's present top speed, in metres per second.
+    /// dearer or cheaper, or if it makes no progress. `team` are the robots as they said they are. `speed_of`
+    /// is a robot's present top speed, in metres per second.
     pub fn plan<'k>(
         &mut self,
         team: &[Robot],

@@ -260,8 +260,8 @@ impl State {
     }
 }
 
-/// Energy and HP that a step at this speed costs a robot in `zones` overlapping radiation zones, in the unit of
-/// the scenario's costs.
+/// Energy and HP that a step at this speed costs a robot in `zones` overlapping radiation zones, in the unit
+/// of the scenario's costs.
 fn step_costs(model: &Model, agent: &Agent, robot: &Robot, speed: f32, zones: usize) -> [f64; 2] {
     let (Costs { energy, hp, work, .. }, dt) = (&model.scenario.costs, model.dt_s());
     let metres = f64::from(speed) * dt;
