@@ -8,10 +8,10 @@ use experiments::experiment::{Experiment, Overrides};
 use experiments::run::{Limits, Run, TrialKey, run_all};
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
-use rne_core::{Policy, Question};
+use rne_core::{Asked, Question, Session};
 use usar_sim::record::{Status, TrialRecord};
 use usar_sim::scenario::Scenario;
-use usar_sim::simulation::{Advance, AssignError, Simulation};
+use usar_sim::simulation::{Advance, Ask, AssignError, Simulation};
 use usar_sim::snapshot::Identity;
 use xtask::golden;
 
@@ -24,9 +24,9 @@ fn sound(record: TrialRecord) -> TrialRecord {
 }
 
 /// Runs a trial and restores it from its own snapshot wherever `when` says so.
-fn restored(scenario: &Scenario, policy: &dyn Policy, mut when: impl FnMut(u64) -> bool) -> TrialRecord {
+fn restored(scenario: &Scenario, policy: &mut dyn Session, mut when: impl FnMut(u64) -> bool) -> TrialRecord {
     let mut trial = Simulation::new(scenario, 1).unwrap();
-    while trial.step(policy).is_none() {
+    while trial.step(&mut *policy).is_none() {
         if when(trial.steps()) {
             trial = Simulation::restore(scenario, &trial.snapshot("RNE")).unwrap();
         }
@@ -37,9 +37,9 @@ fn restored(scenario: &Scenario, policy: &dyn Policy, mut when: impl FnMut(u64) 
 #[test]
 fn a_trial_restored_at_every_step_of_1200_ends_as_if_it_had_not_been() {
     let scenario = paper_with(&[("duration_s: 600.0", "duration_s: 24.0")]);
-    let policy = policy("RNE");
-    let whole = restored(&scenario, &*policy, |_| false);
-    let pieces = restored(&scenario, &*policy, |_| true);
+    let mut policy = policy("RNE");
+    let whole = restored(&scenario, &mut *policy, |_| false);
+    let pieces = restored(&scenario, &mut *policy, |_| true);
     assert_eq!(whole.chain.links().len(), 24);
     assert_eq!(whole, pieces);
 }
@@ -48,10 +48,10 @@ fn a_trial_restored_at_every_step_of_1200_ends_as_if_it_had_not_been() {
 fn a_trial_restored_at_random_steps_ends_as_if_it_had_not_been() {
     let scenario = paper();
     for (seed, name) in ["RANDOM", "RNE"].into_iter().enumerate() {
-        let policy = policy(name);
+        let mut policy = policy(name);
         let mut draws = ChaCha8Rng::seed_from_u64(seed as u64);
-        let whole = restored(&scenario, &*policy, |_| false);
-        let pieces = restored(&scenario, &*policy, |_| draws.random_range(0..1000_u32) == 0);
+        let whole = restored(&scenario, &mut *policy, |_| false);
+        let pieces = restored(&scenario, &mut *policy, |_| draws.random_range(0..1000_u32) == 0);
         assert_eq!(whole, pieces, "{name}");
     }
 }
@@ -59,12 +59,12 @@ fn a_trial_restored_at_random_steps_ends_as_if_it_had_not_been() {
 #[test]
 fn checking_and_listening_change_nothing() {
     let scenario = paper_with(&[("duration_s: 600.0", "duration_s: 60.0")]);
-    let policy = policy("ENG");
+    let mut policy = policy("ENG");
     let trial = || Simulation::new(&scenario, 3).unwrap();
     let mut heard = 0;
-    let plain = trial().run(&*policy, |_, _, _| {});
-    let listened = trial().run(&*policy, |_, events, _| heard += events.len());
-    let checked = trial().checked().run(&*policy, |_, _, _| {});
+    let plain = trial().run(&mut *policy, |_, _, _| {});
+    let listened = trial().run(&mut *policy, |_, events, _| heard += events.len());
+    let checked = trial().checked().run(&mut *policy, |_, _, _| {});
     assert!(heard > 0);
     assert_eq!(plain.chain, listened.chain);
     assert_eq!(plain.chain, checked.chain);
@@ -74,7 +74,7 @@ fn checking_and_listening_change_nothing() {
 #[track_caller]
 fn asked(trial: &mut Simulation) -> Question {
     match trial.advance() {
-        Advance::Asks(question) => question.clone(),
+        Advance::Asks(Ask::Grouping(question)) => question.clone(),
         other => panic!("nothing is asked: {other:?}"),
     }
 }
@@ -86,7 +86,7 @@ fn by_hand(scenario: &Scenario, mut answer: impl FnMut(&mut Simulation, Question
     loop {
         let question = match trial.advance() {
             Advance::Running => None,
-            Advance::Asks(question) => Some(question.clone()),
+            Advance::Asks(Ask::Grouping(question)) => Some(question.clone()),
             Advance::Over(_) => break,
         };
         question.into_iter().for_each(|question| answer(&mut trial, question));
@@ -100,7 +100,7 @@ fn three_rounds() -> Scenario {
 }
 
 fn undisturbed(scenario: &Scenario, name: &str) -> TrialRecord {
-    let record = sound(Simulation::new(scenario, 1).unwrap().run(&*policy(name), |_, _, _| {}));
+    let record = sound(Simulation::new(scenario, 1).unwrap().run(&mut *policy(name), |_, _, _| {}));
     assert!(record.decisions.len() >= 3, "{} decisions", record.decisions.len());
     record
 }
@@ -109,14 +109,14 @@ fn undisturbed(scenario: &Scenario, name: &str) -> TrialRecord {
 fn a_trial_restored_whenever_it_asks_ends_as_if_it_had_not_been() {
     let scenario = three_rounds();
     for name in ["RNE", "RANDOM"] {
-        let policy = policy(name);
+        let mut policy = policy(name);
         let pieces = by_hand(&scenario, |trial, question| {
             *trial = Simulation::restore(&scenario, &trial.snapshot(name)).unwrap();
             assert_eq!(trial.ending(), None);
             assert_eq!(asked(trial), question, "it asks the same again, history included");
             *trial = Simulation::restore(&scenario, &trial.snapshot(name)).unwrap();
             // Without another advance: a restored trial knows what it asks.
-            trial.assign(policy.decide(&question).unwrap()).unwrap();
+            trial.assign(policy.decide(&Asked::of(&question)).unwrap()).unwrap();
             // Answered, and not gone on yet.
             *trial = Simulation::restore(&scenario, &trial.snapshot(name)).unwrap();
         });
@@ -127,10 +127,10 @@ fn a_trial_restored_whenever_it_asks_ends_as_if_it_had_not_been() {
 #[test]
 fn decisions_by_hand_are_as_good_as_a_policy_s_and_questions_can_be_read_back() {
     let scenario = three_rounds();
-    let policy = policy("RNE");
+    let mut policy = policy("RNE");
     let mut live = Vec::new();
     let record = by_hand(&scenario, |trial, question| {
-        let decision = policy.decide(&question).unwrap();
+        let decision = policy.decide(&Asked::of(&question)).unwrap();
         assert_eq!(asked(trial), question, "asking twice changes nothing");
         let mut refused = decision.clone();
         refused.assignment.groups.pop();
@@ -146,7 +146,7 @@ fn decisions_by_hand_are_as_good_as_a_policy_s_and_questions_can_be_read_back() 
     for (decision, question) in record.decisions.iter().zip(&live) {
         assert_eq!(question.history.len(), question.round as usize - 1);
         assert_eq!(record.question(decision), *question, "round {}", question.round);
-        assert_eq!(policy.decide(question).unwrap(), decision.decision);
+        assert_eq!(policy.decide(&Asked::of(question)).unwrap(), decision.decision);
     }
     let last = &live[live.len() - 1].history;
     assert!(last.iter().all(|round| round.duration_s > 0.0 && round.groups.len() == 2));
@@ -156,24 +156,24 @@ fn decisions_by_hand_are_as_good_as_a_policy_s_and_questions_can_be_read_back() 
 #[test]
 fn another_policy_may_go_on_from_a_snapshot() {
     let scenario = three_rounds();
-    let (rne, eng) = (policy("RNE"), policy("ENG"));
+    let (mut rne, mut eng) = (policy("RNE"), policy("ENG"));
     let mut trial = Simulation::new(&scenario, 1).unwrap();
     while trial.decisions().len() < 2 {
-        assert_eq!(trial.step(&*rne), None);
+        assert_eq!(trial.step(&mut *rne), None);
     }
     let bytes = trial.snapshot("RNE");
     assert_eq!(Identity::of(&bytes).unwrap().policy, "RNE");
-    let go_on = |policy: &dyn Policy| {
+    let go_on = |policy: &mut dyn Session| {
         let trial = Simulation::restore(&scenario, &bytes).unwrap();
         sound(trial.run(policy, |_, _, _| {}))
     };
     let whole = undisturbed(&scenario, "RNE");
-    assert_eq!(go_on(&*rne), whole);
-    let mixed = go_on(&*eng);
+    assert_eq!(go_on(&mut *rne), whole);
+    let mixed = go_on(&mut *eng);
     assert_eq!(mixed.decisions[..2], whole.decisions[..2]);
     assert!(mixed.decisions.len() > 2);
     for decision in &mixed.decisions[2..] {
-        assert_eq!(decision.decision, eng.decide(&mixed.question(decision)).unwrap());
+        assert_eq!(decision.decision, eng.decide(&Asked::of(&mixed.question(decision))).unwrap());
     }
     assert_ne!(mixed.state_hash, whole.state_hash);
 }
@@ -192,7 +192,7 @@ fn the_order_of_trials_changes_nothing() {
     shuffled.swap(1, 5);
     let records = |keys: &[TrialKey]| {
         let experiment = Arc::clone(&experiment);
-        let run: Arc<Run> = Arc::new(move |key, halt| experiment.run(key, halt));
+        let run: Arc<Run> = Arc::new(move |key, sessions, halt| experiment.run(key, sessions, halt));
         let limits = Limits { jobs: 2, trial: None };
         let mut outcomes = Vec::new();
         let all = run_all(keys.to_vec(), limits, run, &AtomicBool::new(false), |outcome| {

@@ -34,7 +34,7 @@ fn files(folder: &str) -> Vec<PathBuf> {
 
 #[test]
 fn every_step_of_the_tutorial_and_every_file_of_the_gallery_runs() {
-    let rne = policies::standard().parse("RNE").unwrap().policy;
+    let mut rne = policies::standard().open("RNE").unwrap();
     let (steps, gallery) = (files("tutorial"), files("gallery"));
     assert_eq!(steps.len(), 10);
     for path in steps.iter().chain(&gallery) {
@@ -45,7 +45,7 @@ fn every_step_of_the_tutorial_and_every_file_of_the_gallery_runs() {
         let mut trial = Simulation::new(&scenario, 1).unwrap().checked();
         let until_s = if trial.world().robots.len() > 100 { 2.0 } else { 45.0 };
         while trial.time_s() < until_s {
-            match trial.step(&*rne) {
+            match trial.step(&mut *rne) {
                 None => {}
                 Some(Status::Failed(reason)) => panic!("{}: {reason}", path.display()),
                 Some(_) => break,

@@ -75,12 +75,12 @@ const FAULTS: [Fault; 25] = [
 #[test]
 fn each_of_25_faults_is_caught_within_one_step() {
     let scenario = paper();
-    let policy = policy("RNE");
+    let mut policy = policy("RNE");
     for (said, fault) in FAULTS {
         let mut trial = Simulation::new(&scenario, 1).unwrap();
         let mut check = Invariants::new(&scenario, trial.world());
         let robot = loop {
-            assert_eq!(trial.step(&*policy), None);
+            assert_eq!(trial.step(&mut *policy), None);
             check.listen(trial.time_s(), trial.events(), trial.world()).unwrap();
             let carries = |robot: &&usar_sim::robot::Robot| {
                 !robot.load.is_empty() && robot.velocity.length() > 1.0 && robot.hp < 99.0
@@ -89,7 +89,7 @@ fn each_of_25_faults_is_caught_within_one_step() {
                 break robot.id.index();
             }
         };
-        assert_eq!(trial.step(&*policy), None);
+        assert_eq!(trial.step(&mut *policy), None);
         let (time_s, events) = (trial.time_s(), trial.events().to_vec());
         let mut shown = Shown { time_s, events, world: trial.world_mut(), robot };
         fault(&mut shown);
@@ -101,12 +101,12 @@ fn each_of_25_faults_is_caught_within_one_step() {
 #[test]
 fn a_violation_ends_the_trial_as_failed_with_robot_step_and_values() {
     let scenario = paper();
-    let policy = policy("RNE");
+    let mut policy = policy("RNE");
     let mut trial = Simulation::new(&scenario, 1).unwrap().checked();
     for _ in 0..100 {
-        assert_eq!(trial.step(&*policy), None);
+        assert_eq!(trial.step(&mut *policy), None);
     }
     trial.world_mut().robots[3].energy = 150.0;
-    let Some(Status::Failed(reason)) = trial.step(&*policy) else { panic!("the trial goes on") };
+    let Some(Status::Failed(reason)) = trial.step(&mut *policy) else { panic!("the trial goes on") };
     assert!(reason.starts_with("invariant violated at 2.02 s: robot 3: energy 1"), "{reason}");
 }

@@ -92,12 +92,28 @@ fn every_crate_has_its_floor_and_is_tested_without_a_name() {
     assert_eq!(CRATES.iter().filter(runs).collect::<Vec<_>>(), [&"usar"], "`cargo run` runs one program");
 }
 
-/// Results are refused to a program of other sources: it is known by the sources of all its crates.
+/// Results are refused to a program of other sources: it is known by the sources of all crates that decide
+/// numbers, and each policy by its own.
 #[test]
-fn the_program_is_known_by_the_sources_of_all_its_crates() {
+fn the_program_is_known_by_the_sources_that_decide_its_numbers() {
     let build = text("crates/experiments/build.rs");
-    for name in CRATES.iter().filter(|name| **name != "xtask") {
+    let listeners = ["recording", "pictures", "exports", "reports", "xtask", "usar"];
+    for name in CRATES.iter().filter(|name| **name != "policies" && !listeners.contains(name)) {
         assert!(build.contains(&format!("\"{name}\"")), "crates/experiments/build.rs leaves out {name}");
+    }
+    for kind in policies::standard().kinds() {
+        let made = policies::standard().parse(&kind.name).unwrap();
+        assert!(made.fingerprint().is_some(), "{} brings no hash of its sources", kind.name);
+    }
+}
+
+/// An edited policy builds its crate and the command, and nothing between them.
+#[test]
+fn only_the_command_is_built_on_policies() {
+    for name in CRATES.iter().filter(|name| !["policies", "usar", "xtask"].contains(name)) {
+        let manifest = text(&format!("crates/{name}/Cargo.toml"));
+        let dependencies = manifest.split("[dev-dependencies]").next().unwrap_or_default();
+        assert!(!dependencies.contains("\npolicies"), "{name} is built on policies");
     }
 }
 

@@ -33,11 +33,11 @@ fn load(name: &str) -> ScenarioFile {
 
 fn run(file: ScenarioFile) -> (TrialRecord, f64) {
     let scenario = Scenario::try_from(file).unwrap();
-    let policy = policy("RNE");
+    let mut policy = policy("RNE");
     let mut trial = Simulation::new(&scenario, 1).unwrap().checked();
     let free_path_s = free_path_s(&scenario, &trial);
     while trial.ending().is_none() {
-        if let Some(Status::Failed(reason)) = trial.step(&*policy) {
+        if let Some(Status::Failed(reason)) = trial.step(&mut *policy) {
             panic!("{}: {reason}", scenario.name);
         }
     }

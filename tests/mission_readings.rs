@@ -1,13 +1,13 @@
 //! The readings of the paper's mission that are options: each does what docs/readings.md says, with every
 //! invariant checked.
 
-use rne_core::{Decision, Policy, PolicyError, Question, TaskId};
+use rne_core::{Asked, Decision, Policy, PolicyError, Question, TaskId};
 use usar_sim::event::{Event, Place};
 use usar_sim::ids::RobotId;
 use usar_sim::mission::Activity;
 use usar_sim::record::{DecisionRecord, Status};
 use usar_sim::scenario::Scenario;
-use usar_sim::simulation::{Advance, Simulation};
+use usar_sim::simulation::{Advance, Ask, Simulation};
 
 use crate::support::{paper_with, policy, trial};
 
@@ -17,8 +17,8 @@ const TIRING: (&str, &str) = ("per_step: 0.0045", "per_step: 0.012");
 /// Runs a trial of DIS and shows each step to `look`.
 fn watch(scenario: &Scenario, mut look: impl FnMut(&Simulation)) {
     let mut simulation = Simulation::new(scenario, 7).unwrap().checked();
-    let dis = policy("DIS");
-    while simulation.step(&*dis).is_none() {
+    let mut dis = policy("DIS");
+    while simulation.step(&mut *dis).is_none() {
         look(&simulation);
     }
 }
@@ -83,8 +83,8 @@ fn points_last_longer_where_a_robot_has_more_of_them() {
         let mut last = Vec::new();
         let mut simulation = Simulation::new(&scenario, 7).unwrap();
         let first: Vec<[f64; 2]> = (0..12).map(|id| levels(&simulation, RobotId(id))).collect();
-        let dis = policy("DIS");
-        while simulation.step(&*dis).is_none() {
+        let mut dis = policy("DIS");
+        while simulation.step(&mut *dis).is_none() {
             last = (0..12).map(|id| levels(&simulation, RobotId(id))).collect();
         }
         let spent: Vec<f64> = simulation.finish().robots.iter().map(|robot| robot.energy_spent).collect();
@@ -280,7 +280,7 @@ fn idle_robots_stay_at_home() {
     struct FirstIsIdle;
     impl Policy for FirstIsIdle {
         fn decide(&self, question: &Question) -> Result<Decision, PolicyError> {
-            let mut decision = policy("DIS").decide(question)?;
+            let mut decision = policy("DIS").decide(&Asked::of(question))?;
             let groups = &mut decision.assignment.groups;
             groups.iter_mut().for_each(|group| group.retain(|id| *id != 0));
             decision.assignment.idle = vec![0];
@@ -327,7 +327,7 @@ fn policies_are_told_what_the_scenario_says_of_its_tasks() {
     let scenario =
         paper_with(&[("size_m: (11.0, 5.7), grid: (20, 10)", &format!("size_m: (11.0, 5.7), {facts}"))]);
     let mut trial = Simulation::new(&scenario, 1).unwrap();
-    let Advance::Asks(question) = trial.advance() else { panic!("it asks first") };
+    let Advance::Asks(Ask::Grouping(question)) = trial.advance() else { panic!("it asks first") };
     let [hard, easy] = &question.tasks[..] else { panic!("two tasks") };
     let told = (hard.rescuees, hard.value, hard.duration_s, &hard.after[..]);
     assert_eq!(told, (Some(6), Some(2.5), Some(300.0), &[TaskId(1)][..]));

@@ -3,11 +3,11 @@
 //! is a change of what people get: it must be meant, and told in the changelog.
 
 use rayon::prelude::*;
-use rne_core::{Account, RoleId, TaskId};
+use rne_core::{Account, Asked, RoleId, TaskId};
 use usar_sim::ids::RobotId;
 use usar_sim::record::{Status, TrialRecord};
 use usar_sim::scenario::{RoleKind, Scenario};
-use usar_sim::simulation::{Advance, Simulation};
+use usar_sim::simulation::{Advance, Ask, Simulation};
 
 use crate::support::{policy, root, trial};
 
@@ -231,13 +231,13 @@ fn eight_needs_are_reported_and_compared() {
 fn a_mission_restored_from_snapshots_ends_as_if_it_had_not_been() {
     for name in NAMES {
         let scenario = load(name);
-        let policy = policy("RNE");
-        let whole = Simulation::new(&scenario, 1).unwrap().checked().run(&*policy, |_, _, _| {});
+        let mut policy = policy("RNE");
+        let whole = Simulation::new(&scenario, 1).unwrap().checked().run(&mut *policy, |_, _, _| {});
         let mut trial = Simulation::new(&scenario, 1).unwrap().checked();
         loop {
             let answer = match trial.advance() {
                 Advance::Running => None,
-                Advance::Asks(question) => Some(policy.decide(question).unwrap()),
+                Advance::Asks(Ask::Grouping(question)) => Some(policy.decide(&Asked::of(question)).unwrap()),
                 Advance::Over(_) => break,
             };
             if answer.is_some() || trial.steps().is_multiple_of(997) {
@@ -280,7 +280,7 @@ fn a_team_that_only_flies_waits_apart_and_shares_its_resources() {
         checked_trial(&scenario, name, 1);
     }
     let mut simulation = Simulation::new(&scenario, 1).unwrap();
-    assert_eq!(simulation.step(&*policy("RNE")), None);
+    assert_eq!(simulation.step(&mut *policy("RNE")), None);
     let areas: Vec<_> = simulation.model().tasks.iter().map(|task| task.area).collect();
     let mission = simulation.mission();
     for (area, group) in areas.iter().zip(&mission.groups) {

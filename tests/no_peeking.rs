@@ -1,5 +1,6 @@
 //! Decisions see reports: the truth is changed and the reports are not, and no decision changes.
 
+use rne_core::Asked;
 use usar_sim::ids::{RescueeId, RobotId};
 use usar_sim::mission::Activity;
 use usar_sim::navigation::Goal;
@@ -27,10 +28,10 @@ fn decisions(trial: &Simulation) -> Vec<(Option<RescueeId>, Option<Goal>)> {
 
 #[test]
 fn robots_go_for_rescuees_that_are_gone_until_somebody_says_so() {
-    let (scenario, rne) = (paper(), policy("RNE"));
+    let (scenario, mut rne) = (paper(), policy("RNE"));
     let mut trial = Simulation::new(&scenario, 1).unwrap();
     while believed(&trial).is_empty() {
-        assert_eq!(trial.step(&*rne), None);
+        assert_eq!(trial.step(&mut *rne), None);
     }
     let mut changed = trial.checkpoint().resume();
     let gone = believed(&changed);
@@ -41,7 +42,7 @@ fn robots_go_for_rescuees_that_are_gone_until_somebody_says_so() {
     }
     let mut chased = 0;
     loop {
-        assert_eq!((trial.step(&*rne), changed.step(&*rne)), (None, None));
+        assert_eq!((trial.step(&mut *rne), changed.step(&mut *rne)), (None, None));
         if trial
             .mission()
             .agents
@@ -54,7 +55,7 @@ fn robots_go_for_rescuees_that_are_gone_until_somebody_says_so() {
         chased = gone.iter().filter(|id| changed.mission().claimed().by(**id).is_some()).count();
     }
     assert!(chased > 0, "nobody went for a rescuee that is gone: the test shows nothing");
-    (0..1_000).for_each(|_| assert_eq!(changed.step(&*rne), None));
+    (0..1_000).for_each(|_| assert_eq!(changed.step(&mut *rne), None));
     let known_gone = |id: &RescueeId| {
         let task = changed.world().rescuees[id.index()].task;
         let known = changed.beliefs().of(Some(task)).rescuees.get(id.index());
@@ -65,13 +66,13 @@ fn robots_go_for_rescuees_that_are_gone_until_somebody_says_so() {
 
 #[test]
 fn the_question_has_what_robots_said_and_the_record_the_truth_beside_it() {
-    let (scenario, rne) = (paper(), policy("RNE"));
-    let asked = |change: &dyn Fn(&mut Simulation)| {
+    let (scenario, mut rne) = (paper(), policy("RNE"));
+    let mut asked = |change: &dyn Fn(&mut Simulation)| {
         let mut trial = Simulation::new(&scenario, 1).unwrap();
         change(&mut trial);
         assert!(matches!(trial.advance(), Advance::Asks(_)));
         let question = trial.question().unwrap().clone();
-        trial.assign(rne.decide(&question).unwrap()).unwrap();
+        trial.assign(rne.decide(&Asked::of(&question)).unwrap()).unwrap();
         trial.decisions()[0].clone()
     };
     let honest = asked(&|_| {});
@@ -86,11 +87,11 @@ fn the_question_has_what_robots_said_and_the_record_the_truth_beside_it() {
 
 #[test]
 fn robots_learn_of_a_team_mate_what_it_says() {
-    let (scenario, rne) = (paper(), policy("RNE"));
+    let (scenario, mut rne) = (paper(), policy("RNE"));
     let mut trial = Simulation::new(&scenario, 1).unwrap();
-    (0..10).for_each(|_| assert_eq!(trial.step(&*rne), None));
+    (0..10).for_each(|_| assert_eq!(trial.step(&mut *rne), None));
     trial.world_mut().robots[2].energy = 31.0;
     assert!(trial.beliefs().team[2].energy > 31.0, "nobody can know yet");
-    assert_eq!(trial.step(&*rne), None);
+    assert_eq!(trial.step(&mut *rne), None);
     assert!(trial.beliefs().team[2].is_as(&trial.world().robots[2]));
 }

@@ -1,9 +1,8 @@
 //! What several tests need.
 
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
-use rne_core::Policy;
+use rne_core::Session;
 use usar_sim::geometry::Outline;
 use usar_sim::ids::RobotId;
 use usar_sim::record::TrialRecord;
@@ -43,14 +42,14 @@ pub fn paper_with(replacements: &[(&str, &str)]) -> Scenario {
     Scenario::parse(&text, "paper.ron".as_ref()).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// The policy of that name, with options where they are given: `RNE(score: Sum)`.
-pub fn policy(text: &str) -> Arc<dyn Policy> {
-    policies::standard().parse(text).unwrap_or_else(|error| panic!("{error}")).policy
+/// A session of the policy of that name, with options where they are given: `RNE(score: Sum)`.
+pub fn policy(text: &str) -> Box<dyn Session> {
+    policies::standard().open(text).unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// One trial, with every invariant checked at every step.
 pub fn trial(scenario: &Scenario, name: &str, seed: u64) -> TrialRecord {
-    Simulation::new(scenario, seed).unwrap().checked().run(&*policy(name), |_, _, _| {})
+    Simulation::new(scenario, seed).unwrap().checked().run(&mut *policy(name), |_, _, _| {})
 }
 
 /// Robot 0's report that a piece of debris lies here.

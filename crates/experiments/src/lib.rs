@@ -7,11 +7,13 @@
 //! use std::sync::atomic::AtomicBool;
 //!
 //! use experiments::experiment::{Experiment, Overrides};
+//! use experiments::run::Sessions;
 //!
 //! let scenario = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenarios/minimal/head_on.ron");
 //! let experiment = Experiment::load(scenario.as_ref(), &Overrides::default(), &policies::standard())?;
 //! let first = experiment.key((0, 0, 1)); // case, policy, trial
-//! let trial = experiment.run(&first, &AtomicBool::new(false)).expect("it runs to its end");
+//! let (mut sessions, halt) = (Sessions::default(), AtomicBool::new(false));
+//! let trial = experiment.run(&first, &mut sessions, &halt).expect("it runs to its end");
 //! assert_eq!(trial.record.counts.errands_done, 2);
 //! # Ok::<(), experiments::Failure>(())
 //! ```

@@ -19,7 +19,8 @@ const READABLE_VERSIONS: [u32; 2] = [4, 5];
 /// Largest number of trials that a sweep may have for each case and policy.
 const MAX_TRIALS: u32 = 1_000_000;
 
-/// Commit of the source that this program was built from, with `-dirty` where it was changed.
+/// Commit of the source that this program was built from, with `-dirty` where sources that decide every trial
+/// were changed. Policies have hashes of their own.
 pub const COMMIT: &str = env!("USAR_COMMIT");
 
 /// `manifest.json`. It holds nothing that differs between two runs of the same sweep: no time of day, no
@@ -31,7 +32,7 @@ pub struct Manifest {
     program: String,
     /// Version of the program.
     pub version: String,
-    /// Commit of the source, with `-dirty` where it was changed.
+    /// Commit of the source: see [`COMMIT`].
     pub commit: String,
     /// Hash of the sources that decide every trial: all but those of the policies.
     pub source: String,

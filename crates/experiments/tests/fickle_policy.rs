@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 use experiments::catch_panics_quietly;
 use experiments::experiment::{Experiment, Overrides};
-use experiments::run::{Limits, run_all};
+use experiments::run::{Limits, Sessions, run_all};
 use rne_core::{Decision, Policy, PolicyError, PolicyKind, Question};
 
 static ASKED: AtomicU64 = AtomicU64::new(0);
@@ -51,14 +51,14 @@ fn fickle_policies_and_panics_are_named() {
     let halt = AtomicBool::new(false);
     let otherwise = |policy: usize| {
         let key = experiment.key((0, policy, 1));
-        let record = experiment.run_alone(&key, &halt).unwrap().record;
+        let record = experiment.run_alone(&key, &mut Sessions::default(), &halt).unwrap().record;
         experiment.answers_otherwise(&key, &record)
     };
     assert_eq!([otherwise(0), otherwise(1)], [Some(1), None]);
 
     catch_panics_quietly();
     let shared = Arc::clone(&experiment);
-    let run = Arc::new(move |key: &_, halt: &AtomicBool| shared.run_alone(key, halt));
+    let run = Arc::new(move |key: &_, sessions: &mut _, halt: &_| shared.run_alone(key, sessions, halt));
     let mut reasons = Vec::new();
     let keys = vec![experiment.key((0, 2, 1))];
     run_all(keys, Limits { jobs: 1, trial: None }, run, &halt, |outcome| {

@@ -4,6 +4,7 @@ use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
 use experiments::experiment::{Experiment, Overrides};
+use experiments::run::Sessions;
 use rne_core::{Decision, Policy, PolicyError, PolicyKind, Question};
 
 /// Sends all robots to the easiest task.
@@ -35,7 +36,8 @@ fn a_policy_of_another_crate_is_swept_beside_the_built_in_ones() {
     experiment.check_start("paper.ron".as_ref()).unwrap();
     let halt = AtomicBool::new(false);
     let rescued = |policy: usize| {
-        let record = experiment.run(&experiment.key((0, policy, 1)), &halt).unwrap().record;
+        let record =
+            experiment.run(&experiment.key((0, policy, 1)), &mut Sessions::default(), &halt).unwrap().record;
         ["hard", "easy"].map(|task| record.task(task).unwrap().rescued)
     };
     let [lazy, dis] = [rescued(0), rescued(1)];

@@ -23,9 +23,15 @@ fn recorded(file: &str, duration_s: f64) -> Recording {
     let mut file = (*scenario).clone();
     file.duration_s = duration_s;
     let simulation = Simulation::new(&Scenario::try_from(file).unwrap(), 1).unwrap();
-    let policy = policies::standard().parse("RNE").unwrap().policy;
+    let mut policy = policies::standard().open("RNE").unwrap();
     let mut bytes = Vec::new();
-    record(simulation, &*policy, &Options::new("RNE"), &mut bytes).unwrap();
+    record(
+        simulation,
+        &mut *policy,
+        &Options::new("RNE", policies::standard().measure("RNE").ok()),
+        &mut bytes,
+    )
+    .unwrap();
     Recording::read(&bytes).unwrap()
 }
 

@@ -16,10 +16,16 @@ fn scenario(file: &str, duration_s: f64) -> Scenario {
 }
 
 fn recorded(scenario: &Scenario) -> Recording {
-    let policy = policies::standard().parse("RNE").unwrap().policy;
+    let mut policy = policies::standard().open("RNE").unwrap();
     let mut bytes = Vec::new();
     let simulation = Simulation::new(scenario, 1).unwrap();
-    record(simulation, &*policy, &Options::new("RNE"), &mut bytes).unwrap();
+    record(
+        simulation,
+        &mut *policy,
+        &Options::new("RNE", policies::standard().measure("RNE").ok()),
+        &mut bytes,
+    )
+    .unwrap();
     Recording::read(&bytes).unwrap()
 }
 

@@ -4,9 +4,9 @@ use crate::facts::{missing, squared_distance};
 use rne_core::decision::Decision;
 use rne_core::error::PolicyError;
 use rne_core::ids::TaskId;
-use rne_core::kind::PolicyKind;
 use rne_core::policy::Policy;
 use rne_core::question::{Member, Question};
+use rne_core::registry::PolicyKind;
 
 const NAME: &str = "DIS";
 
@@ -19,6 +19,7 @@ pub struct Distance;
 #[must_use]
 pub fn kind() -> PolicyKind {
     PolicyKind::plain(NAME, "the task nearest to a robot's home, until its group is full", Distance)
+        .from_sources(env!("SOURCES_DISTANCE"))
 }
 
 impl Policy for Distance {

@@ -4,9 +4,9 @@ use crate::facts::missing;
 use crate::ranking::deal_by_rank;
 use rne_core::decision::Decision;
 use rne_core::error::PolicyError;
-use rne_core::kind::PolicyKind;
 use rne_core::policy::Policy;
 use rne_core::question::Question;
+use rne_core::registry::PolicyKind;
 
 const NAME: &str = "ENG";
 
@@ -18,6 +18,7 @@ pub struct Energy;
 #[must_use]
 pub fn kind() -> PolicyKind {
     PolicyKind::plain(NAME, "robots with more energy take the harder tasks", Energy)
+        .from_sources(env!("SOURCES_ENERGY"))
 }
 
 impl Policy for Energy {

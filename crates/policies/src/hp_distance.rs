@@ -4,9 +4,9 @@ use crate::facts::{missing, squared_distance};
 use crate::ranking::deal_by_rank;
 use rne_core::decision::Decision;
 use rne_core::error::PolicyError;
-use rne_core::kind::PolicyKind;
 use rne_core::policy::Policy;
 use rne_core::question::Question;
+use rne_core::registry::PolicyKind;
 
 const NAME: &str = "HP_DIS";
 
@@ -20,6 +20,7 @@ pub struct HpDistance;
 #[must_use]
 pub fn kind() -> PolicyKind {
     PolicyKind::plain(NAME, "healthier robots take the harder tasks, ties by distance", HpDistance)
+        .from_sources(env!("SOURCES_HP_DISTANCE"))
 }
 
 impl Policy for HpDistance {

@@ -6,8 +6,8 @@
 //! # Ok::<(), rne_core::RegistryError>(())
 //! ```
 //!
-//! A policy is one file and one line in [`standard`]; a program adds its own with
-//! [`Registry::add`](rne_core::Registry::add).
+//! A policy is one file and one line in [`standard`], and so is a trust measure; a program adds its own with
+//! [`Registry::add`] and [`Registry::add_measure`].
 
 pub mod distance;
 pub mod energy;
@@ -21,13 +21,14 @@ use rne_core::Registry;
 
 pub use rne::RneOptions;
 
-/// The built-in policies.
+/// The built-in policies, and RNE as a trust measure.
 #[must_use]
 pub fn standard() -> Registry {
     let mut registry = Registry::default();
     for kind in [rne::kind(), distance::kind(), energy::kind(), hp_distance::kind(), random::kind()] {
         let _ = registry.add(kind); // their names differ
     }
+    let _ = registry.add_measure(rne::measure_kind());
     registry
 }
 
@@ -39,6 +40,7 @@ struct Readme;
 #[cfg(test)]
 mod tests {
     use rne_core::RegistryError;
+    use rne_core::error::Entry;
 
     use super::*;
 
@@ -76,6 +78,6 @@ mod tests {
     fn a_name_can_be_taken_only_once() {
         let mut registry = standard();
         let error = registry.add(random::kind()).unwrap_err();
-        assert_eq!(error, RegistryError::DuplicateName { name: "RANDOM".into() });
+        assert_eq!(error, RegistryError::DuplicateName { entry: Entry::Policy, name: "RANDOM".into() });
     }
 }

@@ -5,9 +5,9 @@ use rand::seq::SliceRandom;
 use crate::ranking::deal;
 use rne_core::decision::Decision;
 use rne_core::error::PolicyError;
-use rne_core::kind::PolicyKind;
 use rne_core::policy::Policy;
 use rne_core::question::Question;
+use rne_core::registry::PolicyKind;
 
 /// Per role, shuffles the robots and deals them out over the tasks by quota.
 #[derive(Debug, Clone, Copy)]
@@ -16,7 +16,7 @@ pub struct Random;
 /// The registry's line.
 #[must_use]
 pub fn kind() -> PolicyKind {
-    PolicyKind::plain("RANDOM", "a fair draw", Random)
+    PolicyKind::plain("RANDOM", "a fair draw", Random).from_sources(env!("SOURCES_RANDOM"))
 }
 
 impl Policy for Random {

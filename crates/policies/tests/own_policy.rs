@@ -77,7 +77,7 @@ const TEAM: &str = r#"{
 fn the_fastest_robots_take_the_hard_task() {
     let speed = registry().parse(r#"SPEED(need: "v")"#).unwrap();
     let question = Question::from_json(TEAM).unwrap();
-    let decision = speed.policy.decide(&question).unwrap();
+    let decision = speed.decide(&question).unwrap();
     decision.assignment.check(&question).unwrap();
     assert_eq!(decision.assignment.groups, [vec![3], vec![1, 2]]);
 }
@@ -102,6 +102,6 @@ fn options_have_defaults_and_wrong_ones_are_refused_with_those_that_there_are() 
 #[test]
 fn a_need_that_the_team_does_not_report_is_named() {
     let speed = registry().parse(r#"SPEED(need: "wings")"#).unwrap();
-    let error = speed.policy.decide(&Question::from_json(TEAM).unwrap()).unwrap_err();
+    let error = speed.decide(&Question::from_json(TEAM).unwrap()).unwrap_err();
     assert_eq!(error.to_string(), "policy SPEED: the team has no need \"wings\"");
 }

@@ -14,10 +14,11 @@
 //! use usar_sim::{scenario::Scenario, simulation::Simulation};
 //!
 //! let (scenario, _text) = Scenario::load("scenarios/paper.ron".as_ref())?;
-//! let policy = policies::standard().parse("RNE")?.policy;
+//! let registry = policies::standard();
+//! let (mut policy, measure) = (registry.open("RNE")?, registry.measure("RNE")?);
 //! let simulation = Simulation::new(&scenario, 1)?;
 //! let mut bytes = Vec::new();
-//! record(simulation, &*policy, &Options::new("RNE"), &mut bytes)?;
+//! record(simulation, &mut *policy, &Options::new("RNE", Some(measure)), &mut bytes)?;
 //! let recording = Recording::read(&bytes)?;
 //! let halfway = recording.frame(recording.frames() / 2)?;
 //! println!("robot 0 is at {:?} mm", halfway.robots[0].motion.position_mm);

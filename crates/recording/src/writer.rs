@@ -2,10 +2,11 @@
 
 use std::io::{self, Write};
 
+use rne_core::{MadeMeasure, Session};
 use serde::Serialize;
 use usar_sim::event::Event;
 use usar_sim::record::{DecisionRecord, TrialRecord};
-use usar_sim::simulation::{Decider, Simulation};
+use usar_sim::simulation::Simulation;
 
 use crate::chunk::{ChunkWriter, Kind};
 use crate::header::Header;
@@ -23,10 +24,12 @@ const SEGMENT_S: f64 = 30.0;
 const LEVEL: u32 = 1;
 
 /// Options of a recording.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 pub struct Options {
     /// Label of the policy.
     pub policy: String,
+    /// The trust measure whose matrices are recorded at each decision; without one there are none.
+    pub measure: Option<MadeMeasure>,
     /// Frames in a second of simulated time; at most one frame for each step.
     pub fps: f64,
 }
@@ -34,8 +37,8 @@ pub struct Options {
 impl Options {
     /// Options with [`DEFAULT_FPS`].
     #[must_use]
-    pub fn new(policy: &str) -> Self {
-        Self { policy: policy.to_owned(), fps: DEFAULT_FPS }
+    pub fn new(policy: &str, measure: Option<MadeMeasure>) -> Self {
+        Self { policy: policy.to_owned(), measure, fps: DEFAULT_FPS }
     }
 }
 
@@ -57,6 +60,7 @@ struct TimedDecision<'d> {
 /// Listens to a simulation and writes a recording.
 pub struct Recorder<W> {
     out: ChunkWriter<W>,
+    measure: Option<MadeMeasure>,
     steps_per_frame: u64,
     frames_per_segment: usize,
     next_frame: u64,
@@ -79,6 +83,7 @@ impl<W: Write> Recorder<W> {
         write_json(&mut out, Kind::Header, &header)?;
         let mut recorder = Self {
             out,
+            measure: options.measure.clone(),
             steps_per_frame,
             frames_per_segment,
             next_frame: simulation.steps(),
@@ -98,7 +103,8 @@ impl<W: Write> Recorder<W> {
         let step = simulation.steps();
         self.events.extend(simulation.events().iter().map(|event| (step, event.clone())));
         for decided in &simulation.decisions()[self.decisions..] {
-            let timed = TimedDecision { step: step - 1, decided, trust: Trust::of(decided) };
+            let trust = self.measure.as_ref().and_then(|measure| Trust::of(decided, measure));
+            let timed = TimedDecision { step: step - 1, decided, trust };
             write_json(&mut self.out, Kind::Decision, &timed)?;
             self.decisions += 1;
         }
@@ -152,12 +158,12 @@ fn write_json(out: &mut ChunkWriter<impl Write>, kind: Kind, value: &impl Serial
 /// The recording cannot be written.
 pub fn record(
     mut simulation: Simulation,
-    decider: &(impl Decider + ?Sized),
+    mut session: impl Session,
     options: &Options,
     out: impl Write,
 ) -> io::Result<TrialRecord> {
     let mut recorder = Recorder::begin(out, &simulation, options)?;
-    while simulation.step(decider).is_none() {
+    while simulation.step(&mut session).is_none() {
         recorder.listen(&simulation)?;
     }
     let mut record = simulation.finish();

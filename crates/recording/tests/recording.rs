@@ -5,7 +5,7 @@ use std::path::Path;
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 use recording::{Options, ReadError, Recorder, Recording, record};
-use rne_core::{Policy, TaskId};
+use rne_core::{Session, TaskId};
 use usar_sim::mission::Activity;
 use usar_sim::scenario::{Measure, Scenario};
 use usar_sim::simulation::Simulation;
@@ -19,14 +19,20 @@ fn scenario(file: &str, duration_s: f64) -> Scenario {
     Scenario::try_from(file).unwrap()
 }
 
-fn policy(name: &str) -> std::sync::Arc<dyn Policy> {
-    policies::standard().parse(name).unwrap().policy
+fn policy(name: &str) -> Box<dyn Session> {
+    policies::standard().open(name).unwrap()
 }
 
 fn recorded(file: &str, duration_s: f64) -> Vec<u8> {
     let simulation = Simulation::new(&scenario(file, duration_s), 3).unwrap();
     let mut bytes = Vec::new();
-    record(simulation, &*policy("RNE"), &Options::new("RNE"), &mut bytes).unwrap();
+    record(
+        simulation,
+        &mut *policy("RNE"),
+        &Options::new("RNE", policies::standard().measure("RNE").ok()),
+        &mut bytes,
+    )
+    .unwrap();
     bytes
 }
 
@@ -114,16 +120,28 @@ fn assert_is_now(recording: &Recording, number: usize, now: &Simulation) {
 fn a_recording_is_the_trial_at_a_hundred_random_times_and_changes_no_result() {
     for (file, duration_s) in [("paper.ron", 300.0), ("three-tasks.ron", 200.0)] {
         let scenario = scenario(file, duration_s);
-        let policy = policy("RNE");
-        let alone = Simulation::new(&scenario, 3).unwrap().run(&*policy, |_, _, _| {});
+        let mut policy = policy("RNE");
+        let alone = Simulation::new(&scenario, 3).unwrap().run(&mut *policy, |_, _, _| {});
         let mut bytes = Vec::new();
         let simulation = Simulation::new(&scenario, 3).unwrap();
-        let whole = record(simulation, &*policy, &Options::new("RNE"), &mut bytes).unwrap();
+        let whole = record(
+            simulation,
+            &mut *policy,
+            &Options::new("RNE", policies::standard().measure("RNE").ok()),
+            &mut bytes,
+        )
+        .unwrap();
         assert_eq!(alone, whole, "{file}: recording changed the trial");
 
         let mut again = Vec::new();
         let simulation = Simulation::new(&scenario, 3).unwrap();
-        record(simulation, &*policy, &Options::new("RNE"), &mut again).unwrap();
+        record(
+            simulation,
+            &mut *policy,
+            &Options::new("RNE", policies::standard().measure("RNE").ok()),
+            &mut again,
+        )
+        .unwrap();
         assert!(again == bytes, "{file}: one trial, one recording");
 
         let recording = Recording::read(&bytes).unwrap();
@@ -139,7 +157,7 @@ fn a_recording_is_the_trial_at_a_hundred_random_times_and_changes_no_result() {
                 assert_is_now(&recording, number, &now);
             }
             for _ in 0..recording.header.steps_per_frame {
-                if now.step(&*policy).is_none() {
+                if now.step(&mut *policy).is_none() {
                     events.extend(now.events().iter().map(|event| (now.steps(), event.clone())));
                 }
             }
@@ -161,13 +179,13 @@ fn a_recording_is_the_trial_at_a_hundred_random_times_and_changes_no_result() {
 #[test]
 fn a_recording_can_begin_in_the_middle_and_have_any_rate() {
     let scenario = scenario("minimal/head_on.ron", 20.0);
-    let policy = policy("RNE");
+    let mut policy = policy("RNE");
     for fps in [1000.0, 7.0, 0.5] {
         let mut simulation = Simulation::new(&scenario, 1).unwrap();
-        (0..37).for_each(|_| drop(simulation.step(&*policy)));
-        let options = Options { fps, ..Options::new("RNE") };
+        (0..37).for_each(|_| drop(simulation.step(&mut *policy)));
+        let options = Options { fps, ..Options::new("RNE", policies::standard().measure("RNE").ok()) };
         let mut recorder = Recorder::begin(Vec::new(), &simulation, &options).unwrap();
-        while simulation.step(&*policy).is_none() {
+        while simulation.step(&mut *policy).is_none() {
             recorder.listen(&simulation).unwrap();
         }
         let end = simulation.steps();
@@ -230,7 +248,13 @@ fn a_body_of_its_own_is_what_a_robot_is_described_with() {
     let simulation = Simulation::new(&scenario("gallery/chance.ron", 2.0), 3).unwrap();
     let specs: Vec<_> = simulation.world().robots.iter().map(|robot| (*robot.spec).clone()).collect();
     let mut bytes = Vec::new();
-    record(simulation, &*policy("RNE"), &Options::new("RNE"), &mut bytes).unwrap();
+    record(
+        simulation,
+        &mut *policy("RNE"),
+        &Options::new("RNE", policies::standard().measure("RNE").ok()),
+        &mut bytes,
+    )
+    .unwrap();
     let recording = Recording::read(&bytes).unwrap();
     let (world, frame) = (&recording.header.world, recording.frame(0).unwrap());
     let speed = world.needs.iter().position(|need| need.measures == Measure::Speed).unwrap();

@@ -1,6 +1,8 @@
 //! Errors of the trust maths, of questions and of policies: one sentence each, for the person who can fix the
 //! input.
 
+use std::fmt;
+
 use thiserror::Error;
 
 /// A needs table, weight vector or distribution for which the mathematics is not defined.
@@ -201,41 +203,91 @@ pub enum PolicyError {
     /// The policy's options do not fit the question.
     #[error("options of the policy: {0}")]
     Options(NeedsError),
+    /// The policy did not answer before its deadline.
+    #[error("the policy did not answer in time")]
+    Late,
+    /// The policy plays the running trial on, and is asked outside of one.
+    #[error("{policy} plays each assignment in the trial that asks; here is no trial")]
+    NoTrial {
+        /// Name of the policy.
+        policy: String,
+    },
     /// The policy gave up, in its own words.
     #[error("{0}")]
     Other(String),
 }
 
-/// A policy that cannot be made.
+/// A policy or trust measure that cannot be made.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum RegistryError {
-    /// No policy of that name.
-    #[error("unknown policy {found:?}; known policies: {}", known.join(", "))]
-    UnknownPolicy {
+    /// No entry of that name.
+    #[error("unknown {entry} {found:?}; known {}: {}", entry.many(), known.join(", "))]
+    Unknown {
+        /// What was asked for.
+        entry: Entry,
         /// The name that was asked for.
         found: String,
         /// All names of the registry.
         known: Vec<String>,
     },
     /// A name that is already in the registry.
-    #[error("policy {name:?} is in the registry already")]
+    #[error("{entry} {name:?} is in the registry already")]
     DuplicateName {
+        /// What was to be added.
+        entry: Entry,
         /// The name.
         name: String,
     },
-    /// Options that the policy does not have, or values that they cannot take.
-    #[error("policy {policy}: {reason}, found {found:?}{}", known_options(options))]
+    /// Options that there are not, or values that they cannot take.
+    #[error("{entry} {name}: {reason}, found {found:?}{}", known_options(options))]
     Options {
-        /// Name of the policy.
-        policy: String,
+        /// What was asked for.
+        entry: Entry,
+        /// Its name.
+        name: String,
         /// What is wrong.
         reason: String,
         /// The options as given.
         found: String,
-        /// The policy's options with their defaults.
+        /// The options with their defaults.
         options: String,
     },
+    /// A policy whose session cannot be opened.
+    #[error("policy {policy}: {source}")]
+    Open {
+        /// Name of the policy.
+        policy: String,
+        /// Why.
+        source: PolicyError,
+    },
+}
+
+/// What a registry has.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Entry {
+    /// A policy.
+    Policy,
+    /// A trust measure.
+    TrustMeasure,
+}
+
+impl Entry {
+    fn many(self) -> &'static str {
+        match self {
+            Self::Policy => "policies",
+            Self::TrustMeasure => "trust measures",
+        }
+    }
+}
+
+impl fmt::Display for Entry {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Policy => "policy",
+            Self::TrustMeasure => "trust measure",
+        })
+    }
 }
 
 /// An assignment that does not answer its question.

@@ -17,7 +17,8 @@
 //! # Ok::<(), rne_core::NeedsError>(())
 //! ```
 //!
-//! A [`Policy`] answers a [`Question`] with a [`Decision`]. Policies have names in a [`Registry`].
+//! A [`Policy`] answers a [`Question`] with a [`Decision`]. Policies and [trust measures](TrustMeasure) have names
+//! in a [`Registry`]. Whoever asks opens a [`Session`] of a [`Driver`]; a policy is the simplest one.
 
 pub mod assignments;
 pub mod decision;
@@ -26,12 +27,13 @@ pub mod error;
 pub mod hierarchy;
 pub mod history;
 pub mod ids;
-pub mod kind;
+pub mod measure;
 pub mod needs;
 pub mod policy;
 pub mod question;
 pub mod registry;
 pub mod schema;
+pub mod session;
 pub mod trust;
 
 pub use decision::{Account, Alternative, Assignment, Decision};
@@ -41,11 +43,12 @@ pub use divergence::{
 pub use error::{AssignmentError, NeedsError, PolicyError, QuestionError, RegistryError};
 pub use history::{GroupOutcome, MemberOutcome, RoundOutcome};
 pub use ids::{NeedId, RoleId, TaskId};
-pub use kind::PolicyKind;
+pub use measure::{NeedPart, TeamTrust, TrustMeasure};
 pub use needs::{NeedDistribution, NeedVector, NeedWeights};
 pub use policy::Policy;
 pub use question::{GroupSizes, Member, Need, Question, Quota, RandomSeed, SCHEMA_VERSION, Task};
-pub use registry::{MadePolicy, Registry};
+pub use registry::{Kind, MadeMeasure, MadePolicy, MeasureKind, PolicyKind, Registry};
+pub use session::{Asked, Basis, Deadline, Driver, Session, TrialStart};
 pub use trust::{LogBase, RelativeNeedsEntropy};
 
 /// The README's example is compiled and run.

@@ -1,36 +1,83 @@
-//! The registry: policies by name, each with its options. It is a value: whoever has one adds kinds with
-//! [`Registry::add`].
+//! The registry: policies and trust measures by name, each with its options. It is a value: whoever has one
+//! adds kinds to it, and kinds look into the registry that makes them.
 
 use std::fmt;
 use std::sync::Arc;
 
-use crate::error::RegistryError;
-use crate::kind::PolicyKind;
-use crate::policy::Policy;
+use ron::extensions::Extensions;
+use serde::Serialize;
+use serde::de::DeserializeOwned;
 
-/// Policies by name.
+use crate::decision::Decision;
+use crate::error::{Entry, PolicyError, RegistryError};
+use crate::measure::TrustMeasure;
+use crate::policy::Policy;
+use crate::question::Question;
+use crate::session::{Asked, Driver, Pure, Session};
+
+/// Policies and trust measures by name.
 #[derive(Debug, Clone, Default)]
 pub struct Registry {
-    kinds: Vec<PolicyKind>,
+    policies: Vec<PolicyKind>,
+    measures: Vec<MeasureKind>,
+    /// See [`Registry::choose_measure`].
+    chosen: Option<MadeMeasure>,
 }
 
 /// A policy as it was requested.
-#[derive(Clone)]
-pub struct MadePolicy {
+pub type MadePolicy = Made<dyn Driver>;
+
+/// A trust measure as it was requested.
+pub type MadeMeasure = Made<dyn TrustMeasure>;
+
+/// What a registry made.
+pub struct Made<T: ?Sized> {
     /// Its name.
     pub name: String,
     /// All its options in RON, including the defaults. Policies with the same name and options give the same
-    /// answers. Empty for a policy without options.
+    /// answers. Empty where there are none.
     pub options: String,
-    /// See [`PolicyKind::file`].
-    pub file: &'static str,
-    /// The policy.
-    pub policy: Arc<dyn Policy>,
+    /// What was made.
+    pub it: Arc<T>,
+    /// Hash of the sources of its kind, if the kind has one.
+    sources: Option<String>,
 }
 
-impl fmt::Debug for MadePolicy {
+impl<T: ?Sized> fmt::Debug for Made<T> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}{}", self.name, self.options)
+    }
+}
+
+impl<T: ?Sized> Clone for Made<T> {
+    fn clone(&self) -> Self {
+        let (name, options, sources) = (self.name.clone(), self.options.clone(), self.sources.clone());
+        Self { name, options, it: Arc::clone(&self.it), sources }
+    }
+}
+
+impl MadePolicy {
+    /// Opens a session.
+    ///
+    /// # Errors
+    /// The session cannot be opened.
+    pub fn open(&self) -> Result<Box<dyn Session>, PolicyError> {
+        self.it.open()
+    }
+
+    /// Answers one question, in a session of its own.
+    ///
+    /// # Errors
+    /// The session cannot be opened, or the question cannot be answered.
+    pub fn decide(&self, question: &Question) -> Result<Decision, PolicyError> {
+        self.open()?.decide(&Asked::of(question))
+    }
+
+    /// A text that changes whenever its answers may change: that of the [driver](Driver::fingerprint), or
+    /// else that of the [kind](Kind::from_sources).
+    #[must_use]
+    pub fn fingerprint(&self) -> Option<String> {
+        self.it.fingerprint().or_else(|| self.sources.clone())
     }
 }
 
@@ -40,23 +87,33 @@ impl Registry {
     /// # Errors
     /// The name is taken.
     pub fn add(&mut self, kind: PolicyKind) -> Result<(), RegistryError> {
-        if self.kinds.iter().any(|known| known.name == kind.name) {
-            return Err(RegistryError::DuplicateName { name: kind.name });
-        }
-        self.kinds.push(kind);
-        Ok(())
+        add(&mut self.policies, kind, Entry::Policy)
     }
 
-    /// All kinds, in the order in which they were added.
+    /// Adds a trust measure.
+    ///
+    /// # Errors
+    /// The name is taken.
+    pub fn add_measure(&mut self, kind: MeasureKind) -> Result<(), RegistryError> {
+        add(&mut self.measures, kind, Entry::TrustMeasure)
+    }
+
+    /// All kinds of policies, in the order in which they were added.
     #[must_use]
     pub fn kinds(&self) -> &[PolicyKind] {
-        &self.kinds
+        &self.policies
+    }
+
+    /// All kinds of trust measures, in the order in which they were added.
+    #[must_use]
+    pub fn measures(&self) -> &[MeasureKind] {
+        &self.measures
     }
 
     /// The names of all policies.
     #[must_use]
     pub fn names(&self) -> Vec<&str> {
-        self.kinds.iter().map(|kind| kind.name.as_str()).collect()
+        self.policies.iter().map(|kind| kind.name.as_str()).collect()
     }
 
     /// Makes a policy from its name and its options in RON, such as `(score: Sum)`; empty for the defaults.
@@ -65,17 +122,7 @@ impl Registry {
     /// An unknown name, with the known names; or options that the policy does not have or cannot use, with
     /// the options that it has.
     pub fn make(&self, name: &str, options: &str) -> Result<MadePolicy, RegistryError> {
-        let kind = self.kinds.iter().find(|kind| kind.name == name).ok_or_else(|| {
-            let known = self.names().into_iter().map(str::to_owned).collect();
-            RegistryError::UnknownPolicy { found: name.to_owned(), known }
-        })?;
-        let (policy, all) = (kind.make)(options).map_err(|reason| RegistryError::Options {
-            policy: name.to_owned(),
-            reason,
-            found: options.trim().to_owned(),
-            options: kind.defaults.clone(),
-        })?;
-        Ok(MadePolicy { name: name.to_owned(), options: all, file: kind.file, policy })
+        self.made(&self.policies, Entry::Policy, [name, options])
     }
 
     /// Makes a policy from one text: `DIS`, `RNE(score: Sum)`.
@@ -83,8 +130,208 @@ impl Registry {
     /// # Errors
     /// Those of [`Registry::make`].
     pub fn parse(&self, text: &str) -> Result<MadePolicy, RegistryError> {
-        let text = text.trim();
-        let (name, options) = text.split_at(text.find('(').unwrap_or(text.len()));
-        self.make(name.trim(), options)
+        self.made(&self.policies, Entry::Policy, parts(text))
     }
+
+    /// Opens a session of a policy that is named in one text.
+    ///
+    /// # Errors
+    /// Those of [`Registry::make`], or the session cannot be opened.
+    pub fn open(&self, text: &str) -> Result<Box<dyn Session>, RegistryError> {
+        let made = self.parse(text)?;
+        made.open().map_err(|source| RegistryError::Open { policy: made.name, source })
+    }
+
+    /// Makes a trust measure from one text: `RNE`, `RNE(sort: true)`.
+    ///
+    /// # Errors
+    /// Those of [`Registry::make`].
+    pub fn measure(&self, text: &str) -> Result<MadeMeasure, RegistryError> {
+        self.made(&self.measures, Entry::TrustMeasure, parts(text))
+    }
+
+    /// Chooses the trust measure by which decisions are looked at, whatever policy made them.
+    ///
+    /// # Errors
+    /// Those of [`Registry::make`].
+    pub fn choose_measure(&mut self, text: &str) -> Result<(), RegistryError> {
+        self.chosen = Some(self.measure(text)?);
+        Ok(())
+    }
+
+    /// The [chosen](Registry::choose_measure) trust measure.
+    #[must_use]
+    pub fn chosen_measure(&self) -> Option<&MadeMeasure> {
+        self.chosen.as_ref()
+    }
+
+    /// The chosen trust measure, or else the first with its defaults; `None` if there is none.
+    #[must_use]
+    pub fn a_measure(&self) -> Option<MadeMeasure> {
+        let first = || self.measures.first().and_then(|kind| self.measure(&kind.name).ok());
+        self.chosen.clone().or_else(first)
+    }
+
+    fn made<T: ?Sized>(
+        &self,
+        kinds: &[Kind<T>],
+        entry: Entry,
+        [name, options]: [&str; 2],
+    ) -> Result<Made<T>, RegistryError> {
+        let kind = kinds.iter().find(|kind| kind.name == name).ok_or_else(|| {
+            let known = kinds.iter().map(|kind| kind.name.clone()).collect();
+            RegistryError::Unknown { entry, found: name.to_owned(), known }
+        })?;
+        let (it, all) = (kind.make)(options, self).map_err(|reason| RegistryError::Options {
+            entry,
+            name: name.to_owned(),
+            reason,
+            found: options.trim().to_owned(),
+            options: kind.defaults.clone(),
+        })?;
+        Ok(Made { name: name.to_owned(), options: all, it, sources: kind.sources.clone() })
+    }
+}
+
+/// A kind of policy: its name, what it does, and its options.
+pub type PolicyKind = Kind<dyn Driver>;
+
+/// A kind of trust measure: its name, what it measures, and its options.
+pub type MeasureKind = Kind<dyn TrustMeasure>;
+
+/// An entry of a registry: `T` is what it makes.
+pub struct Kind<T: ?Sized> {
+    /// Name on the command line, in sweep files and in tables.
+    pub name: String,
+    /// What it does, in one line.
+    pub about: String,
+    /// Its options with their defaults in RON; empty where there are none.
+    pub defaults: String,
+    /// Hash of its sources, see [`Kind::from_sources`].
+    pub(crate) sources: Option<String>,
+    pub(crate) make: Arc<Make<T>>,
+}
+
+/// Makes a `T` from its options in RON, in a registry. Returns it and all its options in RON, including the
+/// defaults.
+pub(crate) type Make<T> = dyn Fn(&str, &Registry) -> Result<(Arc<T>, String), String> + Send + Sync;
+
+impl<T: ?Sized> fmt::Debug for Kind<T> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}{}", self.name, self.defaults)
+    }
+}
+
+impl<T: ?Sized> Clone for Kind<T> {
+    fn clone(&self) -> Self {
+        let Self { name, about, defaults, sources, make } = self;
+        let (name, about, defaults) = (name.clone(), about.clone(), defaults.clone());
+        Self { name, about, defaults, sources: sources.clone(), make: Arc::clone(make) }
+    }
+}
+
+impl PolicyKind {
+    /// A policy without options.
+    pub fn plain<P: Policy + Clone + 'static>(name: &str, about: &str, policy: P) -> Self {
+        let driver: Arc<dyn Driver> = Arc::new(Pure(Arc::new(policy)));
+        let make = move |options: &str, _: &Registry| match options.trim() {
+            "" | "()" => Ok((Arc::clone(&driver), String::new())),
+            _ => Err("it has no options".to_owned()),
+        };
+        Self::new([name, about], String::new(), Arc::new(make))
+    }
+
+    /// A policy that is made from options: a struct with defaults, read from RON such as `(score: Sum)`.
+    /// `make` checks the options.
+    pub fn with_options<O, P, E>(
+        name: &str,
+        about: &str,
+        make: impl Fn(O) -> Result<P, E> + Send + Sync + 'static,
+    ) -> Self
+    where
+        O: Default + Serialize + DeserializeOwned,
+        P: Policy + 'static,
+        E: fmt::Display,
+    {
+        Self::made(name, about, move |options: O, _| {
+            make(options).map(|policy| Arc::new(Pure(Arc::new(policy))) as Arc<dyn Driver>)
+        })
+    }
+}
+
+impl MeasureKind {
+    /// A trust measure that is made from options, see [`Kind::made`].
+    pub fn with_options<O, M, E>(
+        name: &str,
+        about: &str,
+        make: impl Fn(O) -> Result<M, E> + Send + Sync + 'static,
+    ) -> Self
+    where
+        O: Default + Serialize + DeserializeOwned,
+        M: TrustMeasure + 'static,
+        E: fmt::Display,
+    {
+        Self::made(name, about, move |options: O, _| {
+            make(options).map(|measure| Arc::new(measure) as Arc<dyn TrustMeasure>)
+        })
+    }
+}
+
+impl<T: ?Sized + 'static> Kind<T> {
+    /// An entry that is made from options, and that may look for others in the registry that makes it.
+    pub fn made<O, E>(
+        name: &str,
+        about: &str,
+        make: impl Fn(O, &Registry) -> Result<Arc<T>, E> + Send + Sync + 'static,
+    ) -> Self
+    where
+        O: Default + Serialize + DeserializeOwned,
+        E: fmt::Display,
+    {
+        let make = move |options: &str, registry: &Registry| {
+            let options: O = match options.trim() {
+                "" => O::default(),
+                text => {
+                    let ron = ron::Options::default().with_default_extension(Extensions::IMPLICIT_SOME);
+                    ron.from_str(text).map_err(|error| error.code.to_string())?
+                }
+            };
+            let all = written(&options);
+            let it = make(options, registry).map_err(|error| error.to_string())?;
+            Ok((it, all))
+        };
+        Self::new([name, about], written(&O::default()), Arc::new(make))
+    }
+
+    /// The same entry with a hash of the sources that decide its answers. Without one, results know it by
+    /// the file of the running program, and are run again whenever that changes.
+    #[must_use]
+    pub fn from_sources(self, hash: impl Into<String>) -> Self {
+        Self { sources: Some(hash.into()), ..self }
+    }
+
+    fn new([name, about]: [&str; 2], defaults: String, make: Arc<Make<T>>) -> Self {
+        Self { name: name.into(), about: about.into(), defaults, sources: None, make }
+    }
+}
+
+fn add<T: ?Sized>(kinds: &mut Vec<Kind<T>>, kind: Kind<T>, entry: Entry) -> Result<(), RegistryError> {
+    if kinds.iter().any(|known| known.name == kind.name) {
+        return Err(RegistryError::DuplicateName { entry, name: kind.name });
+    }
+    kinds.push(kind);
+    Ok(())
+}
+
+/// The name and the options in a text.
+fn parts(text: &str) -> [&str; 2] {
+    let (name, options) = text.trim().split_at(text.trim().find('(').unwrap_or(text.trim().len()));
+    [name.trim(), options]
+}
+
+/// A value in RON, its fields separated by a comma and a blank.
+fn written(options: &impl Serialize) -> String {
+    let ron = ron::Options::default().with_default_extension(Extensions::IMPLICIT_SOME);
+    let style = ron::ser::PrettyConfig::new().depth_limit(0).separator(" ");
+    ron.to_string_pretty(options, style).unwrap_or_default()
 }

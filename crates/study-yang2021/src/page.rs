@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use askama::Template;
 use comfy_table::Table;
 use experiments::Failure;
-use experiments::experiment::Build;
+use experiments::experiment::Digest;
 use experiments::sweep::names::REPORT;
 use experiments::sweep::ours::Report;
 use reports::STYLE;
@@ -153,17 +153,21 @@ impl Shown {
 ///
 /// # Errors
 /// The disk does not take it.
-pub fn write_page(out: &Path, judged: &[Judged], sections: &[Section]) -> Result<PathBuf, Failure> {
+pub fn write_page(
+    out: &Path,
+    judged: &[Judged],
+    sections: &[Section],
+    program: &Digest,
+) -> Result<PathBuf, Failure> {
     let mut sections: Vec<Shown> = sections.iter().map(Shown::of).collect();
     sections.rotate_right(1);
-    let Build { version, source } = Build::this();
     let trials = judged.first().map_or(0, |scenario| scenario.trials);
     let page = Page {
         style: STYLE.trim_end(),
         scenarios: judged.iter().map(|scenario| scenario.scenario.as_str()).collect(),
         sections,
         command: format!("usar reproduce --trials {trials}"),
-        program: format!("usar {version}, source {source}"),
+        program: format!("usar {}, source {}", program.version, program.source),
     };
     let page = page.render().map_err(Failure::run)?;
     let mut report = Report::of(out);

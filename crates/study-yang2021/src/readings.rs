@@ -1,7 +1,6 @@
 //! The readings of RNE in a sweep: which reading forms other groups, and how that changes the outcome.
 
 use std::collections::BTreeSet;
-use std::sync::Arc;
 
 use experiments::Failure;
 use experiments::comparison::CONFIDENCE;
@@ -166,8 +165,8 @@ fn options_in_words(policy: &PolicySpec) -> String {
 
 /// Shares of the rounds in which a reading forms other groups, and another split.
 fn regrouped(folder: &Folder, reading: usize, rounds: &[Round]) -> Result<[f64; 2], Failure> {
-    let policy = Arc::clone(&folder.experiment().policies[reading].made().policy);
-    let same = rounds.par_iter().map(|round| Ok(round.is_as(&round.grouped_by(&*policy)?)));
+    let policy = folder.experiment().policies[reading].made();
+    let same = rounds.par_iter().map(|round| Ok(round.is_as(&round.grouped_by(policy)?)));
     let same = same.collect::<Result<Vec<[bool; 2]>, Failure>>()?;
     let share =
         |which: usize| same.iter().filter(|same| !same[which]).count() as f64 / same.len().max(1) as f64;
@@ -285,8 +284,8 @@ fn ends(found: &[(String, Difference)]) -> Option<[(String, Difference); 2]> {
 /// A policy cannot group one of the rounds.
 pub fn groupings_in_words(folder: &Folder, readings: &[usize], rounds: &[Round]) -> Result<String, Failure> {
     let groups = |reading: &usize| {
-        let policy = Arc::clone(&folder.experiment().policies[*reading].made().policy);
-        let groups = rounds.iter().map(|round| Ok(round.grouped_by(&*policy)?.groups));
+        let policy = folder.experiment().policies[*reading].made();
+        let groups = rounds.iter().map(|round| Ok(round.grouped_by(policy)?.groups));
         groups.collect::<Result<Vec<Vec<Vec<u32>>>, Failure>>()
     };
     let all = readings.par_iter().map(groups).collect::<Result<Vec<_>, Failure>>()?;

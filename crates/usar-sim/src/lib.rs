@@ -8,8 +8,8 @@
 //! use usar_sim::{scenario::Scenario, simulation::Simulation};
 //!
 //! let (scenario, _text) = Scenario::load("scenarios/paper.ron".as_ref())?;
-//! let rne = policies::standard().parse("RNE")?;
-//! let record = Simulation::new(&scenario, 1)?.run(&*rne.policy, |_time, _events, _world| {});
+//! let mut rne = policies::standard().open("RNE")?;
+//! let record = Simulation::new(&scenario, 1)?.run(&mut *rne, |_time, _events, _world| {});
 //! println!("{} rescued", record.rescued());
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```

@@ -219,9 +219,9 @@ mod tests {
     }
 
     fn after(scenario: &Scenario, steps: u64) -> Simulation {
-        let rne = policies::standard().parse("RNE").unwrap();
+        let mut rne = policies::standard().open("RNE").unwrap();
         let mut trial = Simulation::new(scenario, 1).unwrap();
-        (0..steps).for_each(|_| assert_eq!(trial.step(&*rne.policy), None));
+        (0..steps).for_each(|_| assert_eq!(trial.step(&mut *rne), None));
         trial
     }
 

@@ -3,7 +3,7 @@
 
 use std::alloc::System;
 
-use rne_core::Policy;
+use rne_core::{Deadline, Session};
 use stats_alloc::{INSTRUMENTED_SYSTEM, Region, StatsAlloc};
 use usar_sim::conflict::DelayCause;
 use usar_sim::hash::PERIOD_STEPS;
@@ -17,10 +17,10 @@ static ALLOCATOR: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
 const STAGES: usize = Stage::ALL.len();
 
 /// Allocations of each stage in one step.
-fn count(trial: &mut Simulation, policy: &dyn Policy) -> [usize; STAGES] {
+fn count(trial: &mut Simulation, session: &mut dyn Session) -> [usize; STAGES] {
     let mut taken = [0; STAGES];
     let mut region = Region::new(ALLOCATOR);
-    let step = trial.step_watched(policy, |stage| {
+    let step = trial.step_watched(session, Deadline::NEVER, |stage| {
         let change = region.change_and_reset();
         taken[stage as usize] = change.allocations + change.reallocations;
     });
@@ -40,13 +40,13 @@ fn is_in_conflict(trial: &Simulation) -> bool {
 fn a_step_without_events_plans_and_conflicts_takes_no_memory() {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenarios/paper.ron");
     let (scenario, _) = Scenario::load(path.as_ref()).unwrap();
-    let policy = policies::standard().parse("RNE").unwrap().policy;
+    let mut policy = policies::standard().open("RNE").unwrap();
     let mut trial = Simulation::new(&scenario, 1).unwrap();
     let (mut steady, mut planned, mut longer) = (0, 0, 0);
     for _ in 0..10_000 {
         // Events are hashed at the beginning of the step after them.
         let was_busy = is_in_conflict(&trial) || !trial.events().is_empty();
-        let mut taken = count(&mut trial, &*policy);
+        let mut taken = count(&mut trial, &mut *policy);
         // Allocations of the engine itself: its step, and its list of driven bodies.
         taken[Stage::Integrate as usize] = 0;
         taken[Stage::Drive as usize] = 0;

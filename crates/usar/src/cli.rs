@@ -135,7 +135,7 @@ pub fn main() -> ExitCode {
 /// ```
 #[must_use]
 pub fn main_with(policies: Registry) -> ExitCode {
-    let registry = with_oracle(policies);
+    let mut registry = with_oracle(policies);
     // A panic is a defect of the program. It is caught and reported in one sentence, never as a backtrace.
     catch_panics_quietly();
     let cli = Cli::parse();
@@ -145,9 +145,12 @@ pub fn main_with(policies: Registry) -> ExitCode {
     let (format, has_json) = cli.command.shown();
     show_as(format);
     let mut out = sentences(format, has_json);
-    let result =
-        std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| cli.command.execute(&registry, &mut *out)))
-            .unwrap_or_else(|panic| Err(Failure::run(format!("internal error: {}", panic_message(&*panic)))));
+    let run = std::panic::AssertUnwindSafe(|| {
+        cli.command.choose_measure(&mut registry)?;
+        cli.command.execute(&registry, &mut *out)
+    });
+    let result = std::panic::catch_unwind(run)
+        .unwrap_or_else(|panic| Err(Failure::run(format!("internal error: {}", panic_message(&*panic)))));
     let result = result.and_then(|()| Ok(out.flush()?));
     match result {
         Ok(()) | Err(Failure::ClosedOutput) => ExitCode::SUCCESS,
@@ -169,6 +172,21 @@ fn exit_status(failure: &Failure) -> u8 {
 }
 
 impl Command {
+    /// Chooses the trust measure that the command line names.
+    fn choose_measure(&self, registry: &mut Registry) -> Result<(), Failure> {
+        let measure = match self {
+            Self::Run(arguments) => &arguments.measure,
+            Self::Sorting(arguments) => &arguments.measure,
+            Self::Sweep(arguments) => &arguments.measure,
+            Self::Report(arguments) => &arguments.measure,
+            Self::Figure(arguments) => &arguments.measure,
+            Self::Regret(arguments) => &arguments.measure,
+            Self::Why(arguments) => &arguments.measure,
+            _ => return Ok(()),
+        };
+        measure.choose(registry)
+    }
+
     /// The format of tables, and whether the command has its own JSON.
     fn shown(&self) -> (Format, bool) {
         let (shown, has_json) = match self {

@@ -9,15 +9,16 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use experiments::Failure;
 use experiments::experiment::Experiment;
 use experiments::limits::RECORDING_BYTES;
-use experiments::run::{Driver, TrialKey};
+use experiments::run::TrialKey;
 use experiments::sweep::folder::Folder;
 use experiments::sweep::names::RECORDINGS;
 use recording::{Options, Recorder, Recording};
+use rne_core::Session;
 use ron_fields::file::{ReadError, read};
 use usar_sim::record::{Status, TrialRecord};
-use usar_sim::simulation::{Decider, Simulation};
+use usar_sim::simulation::Simulation;
 
-use crate::running::Guard;
+use crate::running::{Guard, session_of};
 
 /// Number of bytes that are written to disk together.
 const BUFFER: usize = 1 << 16;
@@ -42,14 +43,14 @@ fn trouble(path: &Path, error: &io::Error) -> Failure {
 pub(crate) fn record_to(
     path: &Path,
     mut simulation: Simulation,
-    decider: &(impl Decider + ?Sized),
+    session: &mut dyn Session,
     options: &Options,
     watch: &mut dyn FnMut(&Simulation) -> Result<(), Failure>,
 ) -> Result<TrialRecord, Failure> {
     let trouble = |error: io::Error| trouble(path, &error);
     let file = BufWriter::with_capacity(BUFFER, File::create_new(path).map_err(trouble)?);
     let mut recorder = Recorder::begin(file, &simulation, options).map_err(trouble)?;
-    while simulation.step(decider).is_none() {
+    while simulation.step(&mut *session).is_none() {
         recorder.listen(&simulation).map_err(trouble)?;
         watch(&simulation)?;
     }
@@ -134,8 +135,8 @@ pub(crate) fn record_trials(folder: &mut Folder, which: &Recorded, stop: &Atomic
         let record = record_to(
             &underway,
             simulation(&experiment, &key)?,
-            driver(&experiment, &key),
-            &options(&key),
+            &mut *session(&experiment, &key)?,
+            &options(&experiment, &key),
             &mut |simulation| guard.look(simulation),
         )?;
         if record.state_hash != before {
@@ -176,15 +177,15 @@ pub(crate) fn recording_of(
     {
         return Ok(bytes);
     }
-    recorded(simulation(experiment, key)?, driver(experiment, key), &options(key))
+    recorded(simulation(experiment, key)?, &mut *session(experiment, key)?, &options(experiment, key))
 }
 
-fn options(key: &TrialKey) -> Options {
-    Options::new(&key.label)
+fn options(experiment: &Experiment, key: &TrialKey) -> Options {
+    Options::new(&key.label, experiment.policies[key.policy].measure(&experiment.registry))
 }
 
-fn driver<'e>(experiment: &'e Experiment, key: &TrialKey) -> &'e Driver {
-    &experiment.cases[key.case].drivers[key.policy]
+fn session(experiment: &Experiment, key: &TrialKey) -> Result<Box<dyn Session>, Failure> {
+    session_of(&experiment.policies[key.policy], &experiment.cases[key.case].scenario, key.seed)
 }
 
 fn simulation(experiment: &Experiment, key: &TrialKey) -> Result<Simulation, Failure> {
@@ -195,11 +196,11 @@ fn simulation(experiment: &Experiment, key: &TrialKey) -> Result<Simulation, Fai
 /// Simulates a trial and records it in memory.
 pub(crate) fn recorded(
     simulation: Simulation,
-    decider: &(impl Decider + ?Sized),
+    session: &mut dyn Session,
     options: &Options,
 ) -> Result<Vec<u8>, Failure> {
     let mut bytes = Vec::new();
-    let record = recording::record(simulation, decider, options, &mut bytes).map_err(Failure::run)?;
+    let record = recording::record(simulation, session, options, &mut bytes).map_err(Failure::run)?;
     match record.status {
         Status::Failed(reason) => {
             Err(Failure::run(format!("the trial of {} failed: {reason}", options.policy)))

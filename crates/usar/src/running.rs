@@ -7,13 +7,15 @@ use std::sync::{Arc, LazyLock};
 use std::time::{Duration, Instant};
 
 use experiments::Failure;
-use experiments::experiment::Shard;
+use experiments::experiment::{PolicySpec, Shard};
 use experiments::run::Limits;
 use experiments::sweep::folder::Folder;
 use experiments::sweep::host::{HostRun, Hosts};
 use experiments::sweep::{missing, run_trials};
 use indicatif::{HumanDuration, ProgressBar, ProgressStyle};
+use rne_core::{PolicyError, Session, TrialStart};
 use signal_hook::consts::{SIGINT, SIGTERM};
+use usar_sim::scenario::Scenario;
 use usar_sim::simulation::Simulation;
 
 use crate::printable::{counted, printable};
@@ -26,6 +28,18 @@ pub(crate) static STOP: LazyLock<Arc<AtomicBool>> = LazyLock::new(Arc::default);
 
 /// The number of the signal that set [`STOP`]; 0 for none.
 static SIGNAL: LazyLock<Arc<AtomicUsize>> = LazyLock::new(Arc::default);
+
+/// Opens a session of a policy for a trial.
+pub(crate) fn session_of(
+    spec: &PolicySpec,
+    scenario: &Scenario,
+    seed: u64,
+) -> Result<Box<dyn Session>, Failure> {
+    let failed = |error: PolicyError| Failure::run(format!("policy {}: {error}", spec.label));
+    let mut session = spec.made().open().map_err(failed)?;
+    session.reset(&TrialStart { scenario: &scenario.name, seed }).map_err(failed)?;
+    Ok(session)
+}
 
 /// From now on, Ctrl-C, SIGTERM and SIGHUP set [`STOP`], and running work ends in an orderly way.
 pub(crate) fn stop_on_signals() {

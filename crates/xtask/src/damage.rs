@@ -8,7 +8,7 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use experiments::provenance::Manifest;
-use experiments::run::{Limits, Outcome, TrialKey};
+use experiments::run::{Limits, Outcome, Sessions, TrialKey};
 use experiments::sweep::audit::{difference, strange_files};
 use experiments::sweep::folder::{Folder, Opening};
 use experiments::sweep::{missing, run_trials};
@@ -46,7 +46,10 @@ impl Sound {
         let experiment = folder.shared_experiment();
         let keys: Vec<TrialKey> = experiment.keys(None).collect();
         let halt = AtomicBool::new(false);
-        let run = |key: TrialKey| Outcome { result: experiment.run_alone(&key, &halt), key };
+        let run = |key: TrialKey| Outcome {
+            result: experiment.run_alone(&key, &mut Sessions::default(), &halt),
+            key,
+        };
         let again = keys.into_iter().map(run).collect();
         Self { folder: path.to_owned(), again, forged: Forged::of(path) }
     }

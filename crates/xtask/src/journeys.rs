@@ -26,11 +26,11 @@ impl Journeys {
     /// # Errors
     /// The reason why the trial failed, in words.
     pub fn run(scenario: &Scenario, seed: u64) -> Result<Self, String> {
-        let random = policies::standard().parse("RANDOM").expect("known");
+        let mut random = policies::standard().open("RANDOM").expect("known");
         let mut trial = Simulation::new(scenario, seed).map_err(|error| error.to_string())?.checked();
         let (mut still, mut longest) = (0_u64, 0_u64);
         while trial.ending().is_none() {
-            if let Some(Status::Failed(reason)) = trial.step(&*random.policy) {
+            if let Some(Status::Failed(reason)) = trial.step(&mut *random) {
                 return Err(reason);
             }
             let moves = trial.world().robots.iter().any(|robot| robot.velocity.length() > STANDING_MPS);

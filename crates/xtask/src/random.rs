@@ -48,10 +48,10 @@ pub struct Ran {
 pub fn run(seed: u64) -> Ran {
     let (text, scenario, mut trial, refused) = start(seed);
     let policies = policies::standard();
-    let named = policies.parse(POLICIES[(seed % 5) as usize]).or_else(|_| policies.parse("RNE"));
-    let policy = named.expect("a policy of the paper").policy;
+    let named = policies.open(POLICIES[(seed % 5) as usize]).or_else(|_| policies.open("RNE"));
+    let mut policy = named.expect("a policy of the paper");
     let status = loop {
-        if let Some(status) = trial.step(&*policy) {
+        if let Some(status) = trial.step(&mut *policy) {
             break status;
         }
     };

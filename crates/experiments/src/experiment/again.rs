@@ -1,5 +1,6 @@
 //! Reproducing results: a command for one trial, and a file for the whole sweep.
 
+use rne_core::{Asked, TrialStart};
 use usar_sim::record::{DecisionRecord, TrialRecord};
 
 use super::asks::Asks;
@@ -32,16 +33,25 @@ impl Experiment {
     }
 
     /// The first round in which the policy gives another answer than in the trial when it is asked the same
-    /// question a few times again. `None` if every answer is the same, or if the oracle decides.
+    /// questions a few times again. `None` if every answer is the same, or if the policy does not answer from
+    /// the question.
     #[must_use]
     pub fn answers_otherwise(&self, key: &TrialKey, record: &TrialRecord) -> Option<u32> {
-        let policy = self.cases[key.case].drivers[key.policy].policy()?;
-        let is_other = |asked: &&DecisionRecord| {
-            let question = record.question(asked);
-            let answers = |_| policy.decide(&question).ok().map(|decision| decision.assignment);
-            (0..TIMES_ASKED).map(answers).any(|answer| answer.as_ref() != Some(&asked.decision.assignment))
+        let spec = &self.policies[key.policy];
+        if !spec.is_of_question() {
+            return None;
+        }
+        let mut session = spec.made().open().ok()?;
+        let start = TrialStart { scenario: &self.cases[key.case].scenario.name, seed: key.seed };
+        let mut first_other = || {
+            session.reset(&start).ok()?;
+            let is_other = |asked: &&DecisionRecord| {
+                let answer = session.decide(&Asked::of(&record.question(asked)));
+                answer.ok().is_none_or(|answer| answer.assignment != asked.decision.assignment)
+            };
+            record.decisions.iter().find(is_other).map(|asked| asked.question.round)
         };
-        record.decisions.iter().find(is_other).map(|asked| asked.question.round)
+        (0..TIMES_ASKED).find_map(|_| first_other())
     }
 
     /// The same sweep as a sweep file for its resolved scenario, which is in the same folder.

@@ -1,4 +1,4 @@
-//! The grid that the axes of a sweep span, and the policies at each of its points.
+//! The grid that the axes of a sweep span, and the policies of a sweep.
 
 use std::collections::BTreeSet;
 
@@ -9,7 +9,6 @@ use super::policy::PolicySpec;
 use super::setting::checked;
 use crate::failure::Failure;
 use crate::limits::{CASE_BYTES, CASES, POLICIES};
-use crate::run::Driver;
 
 /// A field of the scenario and the values that it takes, in RON.
 #[derive(Debug, Clone, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
@@ -51,8 +50,6 @@ pub struct Case {
     pub values: Vec<String>,
     /// The scenario at this point.
     pub scenario: Scenario,
-    /// For each of the sweep's policies, the driver that answers at this point.
-    pub drivers: Vec<Driver>,
 }
 
 /// The policies of a sweep, each once.
@@ -86,13 +83,13 @@ pub(super) fn checked_policies(written: &[String], registry: &Registry) -> Resul
 ///
 /// # Errors
 /// The grid is too large, or a case cannot be used.
-pub(super) fn cases(base: &Scenario, axes: &[Axis], policies: &[PolicySpec]) -> Result<Vec<Case>, Failure> {
+pub(super) fn cases(base: &Scenario, axes: &[Axis]) -> Result<Vec<Case>, Failure> {
     let count = axes.iter().try_fold(1_usize, |count, axis| count.checked_mul(axis.values.len()));
     let Some(count) = count.filter(|count| CASES.allows(*count)) else {
         return Err(Failure::input(format!("axes: must span at most {} cases", CASES.most)));
     };
     check_bytes(base, count)?;
-    let mut grid = Grid { axes, policies, cases: Vec::with_capacity(count) };
+    let mut grid = Grid { axes, cases: Vec::with_capacity(count) };
     grid.add((**base).clone(), &mut Vec::new())?;
     Ok(grid.cases)
 }
@@ -114,7 +111,6 @@ pub(super) fn check_bytes(base: &Scenario, count: usize) -> Result<(), Failure> 
 /// earlier axes.
 struct Grid<'a> {
     axes: &'a [Axis],
-    policies: &'a [PolicySpec],
     cases: Vec<Case>,
 }
 
@@ -138,8 +134,7 @@ impl Grid<'_> {
         let places = self.axes.iter().zip(values).map(|(axis, value)| format!("{}={value}: ", axis.path));
         let place = places.collect::<Vec<_>>().concat();
         let scenario = checked(file, &place)?;
-        let drivers = self.policies.iter().map(PolicySpec::driver).collect();
-        self.cases.push(Case { values: values.to_vec(), scenario, drivers });
+        self.cases.push(Case { values: values.to_vec(), scenario });
         Ok(())
     }
 }

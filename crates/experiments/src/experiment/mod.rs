@@ -16,8 +16,8 @@ mod sweep_file;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
-use rne_core::Registry;
-use usar_sim::simulation::{Advance, Simulation};
+use rne_core::{Asked, Registry, TrialStart};
+use usar_sim::simulation::{Advance, Ask, Simulation};
 use xxhash_rust::xxh3::xxh3_128;
 
 use ron_fields::Fields;
@@ -29,14 +29,14 @@ pub use file::sweep_schema;
 pub use grid::{Axis, Case, VARIANT};
 pub use keep::Keep;
 pub use policy::{PolicySpec, split_list, with_oracle};
-pub use program::{Build, Program};
+pub use program::{Digest, Program};
 pub use read::{companion, defaults, with_settings};
 pub use shard::{Place, Shard};
 
 use crate::failure::Failure;
 use crate::limits::TRIALS;
 use crate::metric::{Catalogue, task_names};
-use crate::run::{Driver, Fault, SharedTrials, Trial, TrialKey, run_trial};
+use crate::run::{Fault, Player, Sessions, SharedTrials, Trial, TrialKey, TrialSetup, run_trial};
 use grid::{cases, checked_policies, deciding_text};
 use read::{from_scenario, with_readings};
 use setting::canonical;
@@ -200,7 +200,7 @@ impl Experiment {
             let most = TRIALS.most;
             return Err(Failure::input(format!("trials: must be a count from 1 to {most}, found {trials}")));
         }
-        let cases = cases(&base, &axes, &policies)?;
+        let cases = cases(&base, &axes)?;
         let program = program.map_or_else(|| Program::running(&policies), Ok)?;
         let id = |case: &Case, (i, policy): (usize, &PolicySpec)| {
             let (program, made) = (program.deciding(i), policy.made());
@@ -225,7 +225,7 @@ impl Experiment {
             keep,
             program,
             ids,
-            shared: SharedTrials::new(is_checked),
+            shared: SharedTrials::default(),
         })
     }
 
@@ -243,14 +243,24 @@ impl Experiment {
         TrialKey { case, policy, trial, seed: self.seed(trial), label: self.policies[policy].label.clone() }
     }
 
-    /// Runs one trial, or takes over the trial of a policy that formed the same groups in every round.
+    /// Runs one trial with the sessions of this thread, or takes over the trial of a policy that formed the
+    /// same groups in every round.
     ///
     /// # Errors
     /// The reason why the trial did not come to its end.
-    pub fn run(&self, key: &TrialKey, halt: &AtomicBool) -> Result<Trial, Fault> {
-        let case = &self.cases[key.case];
-        let driver = &case.drivers[key.policy];
-        self.shared.run((key.case, &case.scenario), driver, key.seed, halt)
+    pub fn run(&self, key: &TrialKey, sessions: &mut Sessions, halt: &AtomicBool) -> Result<Trial, Fault> {
+        let player = self.player(key, sessions)?;
+        self.shared.run(key.case, &self.setup(key), player, halt)
+    }
+
+    fn player<'s>(&self, key: &TrialKey, sessions: &'s mut Sessions) -> Result<Player<'s>, Fault> {
+        let driver = &*self.policies[key.policy].made().it;
+        sessions.of(key.policy, driver).map_err(|error| Fault::of_policy(&error))
+    }
+
+    fn setup(&self, key: &TrialKey) -> TrialSetup<'_> {
+        let scenario = &self.cases[key.case].scenario;
+        TrialSetup { scenario, seed: key.seed, is_checked: self.is_checked }
     }
 
     /// Number of trials that [`Experiment::run`] simulated instead of taking them over.
@@ -268,9 +278,13 @@ impl Experiment {
     ///
     /// # Errors
     /// The reason why the trial did not come to its end.
-    pub fn run_alone(&self, key: &TrialKey, halt: &AtomicBool) -> Result<Trial, Fault> {
-        let case = &self.cases[key.case];
-        run_trial(&case.scenario, &case.drivers[key.policy], key.seed, self.is_checked, halt)
+    pub fn run_alone(
+        &self,
+        key: &TrialKey,
+        sessions: &mut Sessions,
+        halt: &AtomicBool,
+    ) -> Result<Trial, Fault> {
+        run_trial(&self.setup(key), self.player(key, sessions)?.session, halt)
     }
 
     /// The same sweep with another number of trials.
@@ -332,11 +346,13 @@ impl Experiment {
         let place = self.describe(case);
         let mut trial =
             Simulation::new(&case.scenario, seed).map_err(|error| format!("{place}seed {seed}: {error}"))?;
-        let Advance::Asks(question) = trial.advance() else { return Ok(()) };
-        let policies = case.drivers.iter().map(Driver::policy).zip(&self.policies);
-        for (policy, spec) in policies.filter_map(|(policy, spec)| Some((policy?, spec))) {
+        let Advance::Asks(Ask::Grouping(question)) = trial.advance() else { return Ok(()) };
+        let start = TrialStart { scenario: &case.scenario.name, seed };
+        for spec in self.policies.iter().filter(|spec| spec.is_of_question()) {
             let refused = |error: &dyn std::fmt::Display| format!("{place}policy {}: {error}", spec.label);
-            let decision = policy.decide(question).map_err(|error| refused(&error))?;
+            let mut session = spec.made().open().map_err(|error| refused(&error))?;
+            session.reset(&start).map_err(|error| refused(&error))?;
+            let decision = session.decide(&Asked::of(question)).map_err(|error| refused(&error))?;
             decision.assignment.check(question).map_err(|error| refused(&error))?;
         }
         Ok(())

@@ -1,23 +1,19 @@
 //! Policies as a sweep names them: `RNE`, `RNE(score: Sum)`, or `label=RNE(score: Sum, sort: true)`.
 
 use std::fmt;
-use std::sync::Arc;
 
-use policies::RneOptions;
-use rne_core::{MadePolicy, Policy, Registry};
+use rne_core::{Basis, MadeMeasure, MadePolicy, Registry};
 use ron_fields::{Fields, nearest};
-use serde::de::DeserializeOwned;
 use usar_sim::scenario::Scenario;
 
 use crate::Failure;
-use crate::oracle::{NotSimulated, Oracle, OracleOptions};
-use crate::run::Driver;
+use crate::oracle;
 
 /// A registry with the oracle, unless it has one of its own.
 #[must_use]
 pub fn with_oracle(mut registry: Registry) -> Registry {
     // A caller's policy with the oracle's name stays.
-    let _ = registry.add(NotSimulated::kind());
+    let _ = registry.add(oracle::kind());
     registry
 }
 
@@ -33,8 +29,8 @@ pub struct PolicySpec {
     /// Text that reads to the same policy.
     written: String,
     made: MadePolicy,
-    /// The options of the oracle, and the policy that decides after its round; none for another policy.
-    oracle: Option<(OracleOptions, Option<Arc<dyn Policy>>)>,
+    /// The trust measure of the same name and options, by which the policy groups; none for another policy.
+    measure: Option<MadeMeasure>,
 }
 
 impl fmt::Debug for PolicySpec {
@@ -79,8 +75,8 @@ impl PolicySpec {
         }
         let written = label.map_or(plain.clone(), |label| format!("{label}={plain}"));
         let label = label.map_or(plain, str::to_owned);
-        let oracle = (name == NotSimulated::NAME).then(|| oracle_of(&made, registry)).transpose()?;
-        Ok(Self { label, name: name.to_owned(), options, written, made, oracle })
+        let measure = registry.measure(&self::plain(name, &options)).ok();
+        Ok(Self { label, name: name.to_owned(), options, written, made, measure })
     }
 
     /// The policy.
@@ -89,15 +85,24 @@ impl PolicySpec {
         &self.made
     }
 
-    /// The driver that answers for this policy in a trial.
+    /// Whether it answers from the question; a policy that plays in the trial that asks does not.
     #[must_use]
-    pub fn driver(&self) -> Driver {
-        match &self.oracle {
-            Some((options, onwards)) => {
-                Driver::Oracle(Box::new(Oracle::new(options.clone(), onwards.clone())))
-            }
-            None => Driver::Policy(Arc::clone(&self.made.policy)),
-        }
+    pub fn is_of_question(&self) -> bool {
+        self.made.it.basis() != Basis::Trial
+    }
+
+    /// The trust measure that explains this policy's decisions: the one that the registry has chosen, or
+    /// else the one with the policy's name and options, by which it groups. `None` if there is neither.
+    #[must_use]
+    pub fn own_measure<'m>(&'m self, registry: &'m Registry) -> Option<&'m MadeMeasure> {
+        registry.chosen_measure().or(self.measure.as_ref())
+    }
+
+    /// The trust measure for a look at this policy's decisions: [its own](Self::own_measure), or else the
+    /// first of the registry. `None` if the registry has none.
+    #[must_use]
+    pub fn measure(&self, registry: &Registry) -> Option<MadeMeasure> {
+        self.own_measure(registry).cloned().or_else(|| registry.a_measure())
     }
 
     /// Refuses a policy that may not run in a scenario.
@@ -122,12 +127,6 @@ impl PolicySpec {
         plain(&self.name, &self.options)
     }
 
-    /// All options of an RNE policy, with the defaults; `None` for another policy.
-    #[must_use]
-    pub fn rne_options(&self) -> Option<RneOptions> {
-        from_ron(&self.made.options).ok().filter(|_| self.name == "RNE")
-    }
-
     /// The written options, with their values in RON.
     #[must_use]
     pub fn options(&self) -> &[(String, String)] {
@@ -139,23 +138,6 @@ impl PolicySpec {
     pub fn written(&self) -> &str {
         &self.written
     }
-}
-
-/// The options of an oracle, and the policy of the registry that decides after its round.
-fn oracle_of(
-    made: &MadePolicy,
-    registry: &Registry,
-) -> Result<(OracleOptions, Option<Arc<dyn Policy>>), String> {
-    let options: OracleOptions = from_ron(&made.options)?;
-    let parse = |then: &str| PolicySpec::parse(then, registry).map(|spec| Arc::clone(&spec.made.policy));
-    let onwards = options.onwards(parse).map_err(|error| format!("policy ORACLE: then: {error}"))?;
-    Ok((options, onwards))
-}
-
-/// Reads options as a registry writes them.
-fn from_ron<T: DeserializeOwned>(options: &str) -> Result<T, String> {
-    let ron = ron::Options::default().with_default_extension(ron::extensions::Extensions::IMPLICIT_SOME);
-    ron.from_str(options).map_err(|error| error.code.to_string())
 }
 
 /// Adds to a message about an unknown option or value the known name that is nearest to it.

@@ -1,5 +1,6 @@
 //! The program that made results: its version and hashes of its sources, policy by policy.
 
+use std::fmt;
 use std::sync::OnceLock;
 
 use rne_core::MadePolicy;
@@ -7,24 +8,6 @@ use xxhash_rust::xxh3::xxh3_64;
 
 use super::policy::PolicySpec;
 use crate::failure::Failure;
-use crate::oracle::NotSimulated;
-
-/// The sources of this program that decide numbers, as a whole.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Build {
-    /// Version of the program.
-    pub version: String,
-    /// Hash of the sources of the simulator, the laboratory and all built-in policies.
-    pub source: String,
-}
-
-impl Build {
-    /// The build that runs now.
-    #[must_use]
-    pub fn this() -> Self {
-        Self { version: env!("CARGO_PKG_VERSION").to_owned(), source: env!("USAR_SOURCE").to_owned() }
-    }
-}
 
 /// The program as far as it decides the trials of a sweep. A policy's trials stay valid as long as the
 /// simulator and the policy's own sources stay the same.
@@ -39,6 +22,21 @@ pub struct Program {
     pub policies: Vec<String>,
 }
 
+/// A program in short: results of programs with the same digest are the same.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Digest {
+    /// Version of the program.
+    pub version: String,
+    /// Hash of the sources of the simulator, of the laboratory, and of policies.
+    pub source: String,
+}
+
+impl fmt::Display for Digest {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "usar {} with source {}", self.version, self.source)
+    }
+}
+
 impl Program {
     /// The program that runs now, with these policies.
     ///
@@ -50,6 +48,13 @@ impl Program {
         Ok(Self { version, source: env!("USAR_ENGINE").to_owned(), policies })
     }
 
+    /// The version, and one hash of the sources that decide the trials of these policies.
+    #[must_use]
+    pub fn digest(&self) -> Digest {
+        let text = format!("{} {}", self.source, self.policies.join(" "));
+        Digest { version: self.version.clone(), source: format!("{:016x}", xxh3_64(text.as_bytes())) }
+    }
+
     /// What decides the trials of the policy with this number, as text.
     pub(super) fn deciding(&self, policy: usize) -> String {
         let Self { version, source, policies } = self;
@@ -58,18 +63,10 @@ impl Program {
     }
 }
 
-/// Hash of the sources that decide a policy's answers besides the simulator. The oracle plays trials on with
-/// any policy, so that it has the hash of all. For a policy of another crate it is a hash of the running
+/// What decides a policy's answers besides the simulator: its own fingerprint, or else a hash of the running
 /// program.
 fn source_of(policy: &MadePolicy) -> Result<String, Failure> {
-    if policy.name == NotSimulated::NAME {
-        return Ok(env!("USAR_SOURCE").to_owned());
-    }
-    let file = policy.file.replace('\\', "/");
-    let own = file.split_once("crates/policies/src/").and_then(|(_, rest)| rest.split('/').next());
-    let built_in = env!("USAR_POLICIES").split(';').filter_map(|entry| entry.split_once('='));
-    let found = built_in.into_iter().find(|(name, _)| Some(*name) == own);
-    found.map_or_else(executable, |(_, hash)| Ok(hash.to_owned()))
+    policy.fingerprint().map_or_else(executable, Ok)
 }
 
 /// Hash of the running program's file.
@@ -89,6 +86,7 @@ fn executable() -> Result<String, Failure> {
 
 #[cfg(test)]
 mod tests {
+    use rne_core::{Decision, Policy, PolicyError, PolicyKind, Question};
 
     use super::*;
     use crate::experiment::with_oracle;
@@ -109,11 +107,27 @@ mod tests {
     }
 
     #[test]
-    fn a_policy_of_another_crate_has_the_hash_of_the_program_that_has_it() {
-        let mut policy = PolicySpec::parse("DIS", &policies::standard()).unwrap().made().clone();
-        policy.file = "src/main.rs";
+    fn an_oracle_is_known_by_the_policy_that_goes_on() {
+        assert_eq!(source("ORACLE(limit: 5)"), source("ORACLE"));
+        let onwards = |policy: &str| source(&format!("ORACLE(horizon: Trial, then: {policy:?})"));
+        assert_eq!(onwards("DIS"), format!("oracle {}", source("DIS")));
+        assert_ne!(onwards("DIS"), onwards("ENG"));
+    }
+
+    #[test]
+    fn a_policy_without_a_hash_of_its_sources_has_that_of_the_program() {
+        #[derive(Clone)]
+        struct Nobody;
+        impl Policy for Nobody {
+            fn decide(&self, _: &Question) -> Result<Decision, PolicyError> {
+                Err(PolicyError::Late)
+            }
+        }
+        let mut registry = policies::standard();
+        registry.add(PolicyKind::plain("NOBODY", "never answers", Nobody)).unwrap();
         let program = std::fs::read(std::env::current_exe().unwrap()).unwrap();
         assert!(program.len() > 1 << 20);
+        let policy = registry.parse("NOBODY").unwrap();
         assert_eq!(source_of(&policy).unwrap(), format!("{:016x}", xxh3_64(&program)));
     }
 }

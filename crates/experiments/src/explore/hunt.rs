@@ -7,7 +7,6 @@ use ron_fields::with_values;
 
 use super::space::{Point, Space};
 use super::{Descent, EvaluationLog, Free, Purpose, WORST};
-use crate::experiment::Build;
 use crate::failure::Failure;
 
 /// Name of the file with the found scenario.
@@ -84,10 +83,9 @@ impl Hunt {
 
     /// Everything that decides the evaluations.
     fn origin(&self) -> serde_json::Value {
-        let Build { version, source } = Build::this();
         let experiment = &self.space.experiment;
         serde_json::json!({
-            "program": format!("usar {version} with source {source}"),
+            "program": experiment.program.digest().to_string(),
             "over": self.space.free.iter().map(Free::to_string).collect::<Vec<_>>(),
             "outcome": self.space.outcomes[0].name(),
             "is_lowest": self.is_lowest,

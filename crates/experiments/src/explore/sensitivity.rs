@@ -13,7 +13,6 @@ use serde::Serialize;
 use super::design::{Block, MOVE, Method};
 use super::space::Point;
 use super::{EvaluationLog, Free, Outcome, Purpose, Space, Values};
-use crate::experiment::Build;
 use crate::failure::Failure;
 use crate::stats::bootstrap::interval;
 use crate::stats::sensitivity::{self as indices, Effects, Known, Shares};
@@ -250,11 +249,10 @@ impl Sensitivity {
 
     /// Everything that decides the evaluations.
     fn origin(&self) -> serde_json::Value {
-        let Build { version, source } = Build::this();
         let experiment = &self.space.experiment;
         let policies: Vec<&str> = experiment.policies.iter().map(|policy| policy.label.as_str()).collect();
         serde_json::json!({
-            "program": format!("usar {version} with source {source}"),
+            "program": experiment.program.digest().to_string(),
             "method": self.method,
             "over": self.space.free.iter().map(Free::to_string).collect::<Vec<_>>(),
             "policies": policies,

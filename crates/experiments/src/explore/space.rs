@@ -12,7 +12,7 @@ use super::Free;
 use crate::comparison::{Choice, policy_pairs};
 use crate::experiment::Experiment;
 use crate::failure::{Failure, panic_message};
-use crate::run::SharedTrials;
+use crate::run::{Fault, Sessions, SharedTrials, TrialSetup};
 use crate::stats::Moments;
 
 /// An outcome: a policy's mean of a metric, or the mean of the paired differences of two policies.
@@ -191,17 +191,21 @@ impl Space {
 
     /// The metrics of all policies in a trial. Policies that decide alike share the trial.
     fn run_seed(&self, scenario: &Scenario, seed: u64, stop: &AtomicBool) -> Result<OfSeed, String> {
-        let shared = SharedTrials::new(self.experiment.is_checked);
-        let drivers = self.experiment.cases[0].drivers.iter().zip(&self.experiment.policies);
-        let trial = |(driver, policy): (_, &crate::experiment::PolicySpec)| {
-            let run = AssertUnwindSafe(|| shared.run((0, scenario), driver, seed, stop));
+        let (shared, mut sessions) = (SharedTrials::default(), Sessions::default());
+        let setup = TrialSetup { scenario, seed, is_checked: self.experiment.is_checked };
+        let policies = self.experiment.policies.iter().enumerate();
+        let trial = |(number, policy): (usize, &crate::experiment::PolicySpec)| {
+            let run = AssertUnwindSafe(|| {
+                let player = sessions.of(number, &*policy.made().it);
+                shared.run(0, &setup, player.map_err(|error| Fault::of_policy(&error))?, stop)
+            });
             let failed = |reason: String| format!("{}, seed {seed}: {reason}", policy.label);
             let result = catch_unwind(run)
                 .map_err(|panic| failed(format!("internal error: {}", panic_message(&*panic))))?;
             let trial = result.map_err(|fault| failed(fault.reason))?;
             Ok(self.experiment.metrics.measure(&trial.record))
         };
-        drivers.map(trial).collect()
+        policies.map(trial).collect()
     }
 }
 

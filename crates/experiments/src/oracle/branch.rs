@@ -1,12 +1,10 @@
 //! One branch of a trial: a decision and its outcome.
 
-use std::sync::atomic::{AtomicBool, Ordering};
-
-use rne_core::{AssignmentError, Decision, Policy};
+use rne_core::{AssignmentError, Deadline, Decision, PolicyError, Session, TrialStart};
 use serde::{Deserialize, Serialize};
 use usar_sim::metrics::TaskTotals;
 use usar_sim::record::{Status, TrialRecord};
-use usar_sim::simulation::{Advance, AssignError, Checkpoint, Decider, Simulation};
+use usar_sim::simulation::{Advance, Ask, AssignError, Checkpoint, Simulation};
 
 /// A branch checks once in this many steps whether it is to stop.
 const HALT_CHECK_STEPS: u64 = 64;
@@ -86,6 +84,9 @@ pub enum BranchError {
     /// The decision does not answer the question.
     #[error(transparent)]
     Refused(#[from] AssignmentError),
+    /// A policy cannot begin the trial.
+    #[error("the policy failed: {0}")]
+    Policy(#[from] PolicyError),
     /// The trial failed.
     #[error("{0}")]
     Failed(String),
@@ -94,21 +95,22 @@ pub enum BranchError {
     Halted,
 }
 
-/// Lets a decider play a trial until the question of a round awaits its answer.
+/// Lets a session play a trial from its start until the question of a round awaits its answer.
 ///
 /// # Errors
 /// The trial ends before that round, fails, or is halted.
 pub fn advance_to(
     trial: &mut Simulation,
-    decider: &(impl Decider + ?Sized),
+    session: &mut dyn Session,
     round: u32,
-    halt: &AtomicBool,
+    halt: Deadline<'_>,
 ) -> Result<(), BranchError> {
+    reset(session, trial)?;
     loop {
-        // `advance` stops at a question, whereas `step` would let the decider answer it. The round is
+        // `advance` stops at a question, whereas `step` would let the session answer it. The round is
         // checked in between.
         match trial.advance() {
-            Advance::Asks(question) if question.round == round => return Ok(()),
+            Advance::Asks(Ask::Grouping(question)) if question.round == round => return Ok(()),
             Advance::Over(Status::Failed(reason)) => return Err(BranchError::Failed(reason)),
             Advance::Over(status) => {
                 let status = status.name().replace('_', " ");
@@ -116,14 +118,19 @@ pub fn advance_to(
             }
             Advance::Running => look(trial, halt)?,
             Advance::Asks(_) => {
-                trial.step(decider);
+                trial.step_within(&mut *session, halt);
             }
         }
     }
 }
 
-fn look(trial: &Simulation, halt: &AtomicBool) -> Result<(), BranchError> {
-    let is_halted = trial.steps().is_multiple_of(HALT_CHECK_STEPS) && halt.load(Ordering::Relaxed);
+/// Lets a session know whose questions it answers.
+fn reset(session: &mut dyn Session, trial: &Simulation) -> Result<(), BranchError> {
+    Ok(session.reset(&TrialStart { scenario: &trial.scenario().name, seed: trial.seed() })?)
+}
+
+fn look(trial: &Simulation, halt: Deadline<'_>) -> Result<(), BranchError> {
+    let is_halted = trial.steps().is_multiple_of(HALT_CHECK_STEPS) && halt.is_over();
     if is_halted { Err(BranchError::Halted) } else { Ok(()) }
 }
 
@@ -155,11 +162,11 @@ impl Branch {
     ///
     /// # Errors
     /// The trial fails or is halted.
-    pub fn to_round_end(&mut self, halt: &AtomicBool) -> Result<Outcome, BranchError> {
+    pub fn to_round_end(&mut self, halt: Deadline<'_>) -> Result<Outcome, BranchError> {
         let is_cut = loop {
             match self.trial.advance() {
                 Advance::Running => look(&self.trial, halt)?,
-                Advance::Asks(question) if question.round > self.round => break false,
+                Advance::Asks(Ask::Grouping(question)) if question.round > self.round => break false,
                 Advance::Asks(_) => return Err(BranchError::NotAsked),
                 Advance::Over(Status::Failed(reason)) => return Err(BranchError::Failed(reason)),
                 Advance::Over(_) => break true,
@@ -174,11 +181,12 @@ impl Branch {
     /// The trial fails or is halted.
     pub fn to_trial_end(
         &mut self,
-        onwards: &(impl Decider + ?Sized),
-        halt: &AtomicBool,
+        onwards: &mut dyn Session,
+        halt: Deadline<'_>,
     ) -> Result<Outcome, BranchError> {
+        reset(onwards, &self.trial)?;
         loop {
-            match self.trial.step(onwards) {
+            match self.trial.step_within(&mut *onwards, halt) {
                 None => look(&self.trial, halt)?,
                 Some(Status::Failed(reason)) => return Err(BranchError::Failed(reason)),
                 Some(_) => return Ok(Outcome::so_far(&self.trial).since(&self.before, false)),
@@ -200,12 +208,12 @@ impl Branch {
 pub fn play(
     start: &Checkpoint,
     decision: Decision,
-    onwards: Option<&dyn Policy>,
-    halt: &AtomicBool,
+    onwards: Option<&mut Box<dyn Session>>,
+    halt: Deadline<'_>,
 ) -> Result<Outcome, BranchError> {
     let mut branch = Branch::begin(start, decision)?;
     match onwards {
         None => branch.to_round_end(halt),
-        Some(policy) => branch.to_trial_end(policy, halt),
+        Some(session) => branch.to_trial_end(&mut **session, halt),
     }
 }

@@ -1,18 +1,23 @@
-//! `ORACLE`: chooses the assignment with the best outcome, known by playing every assignment. It is not a
-//! policy, because it sees the trial that asks.
+//! `ORACLE`: chooses the assignment with the best outcome, known by playing every assignment. It
+//! answers from more than the question, because it sees the trial that asks.
 
 use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
 
-use rne_core::{Account, Alternative, Assignment, Decision, Policy, PolicyError, PolicyKind, Question};
+use rne_core::{
+    Account, Alternative, Asked, Assignment, Basis, Decision, Driver, MadePolicy, PolicyError, PolicyKind,
+    Registry, Session,
+};
 use serde::{Deserialize, Serialize};
-use usar_sim::simulation::{Decider, Simulation};
+use usar_sim::simulation::Simulation;
 
 use super::DEFAULT_LIMIT;
 use super::branch::{BranchError, play};
 use super::objective::Objective;
 use super::survey::{Coverage, survey};
 use crate::metric::task_names;
+
+/// Name of the oracle among the policies.
+const NAME: &str = "ORACLE";
 
 /// How far the oracle looks ahead.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -48,76 +53,76 @@ impl Default for OracleOptions {
     }
 }
 
-impl OracleOptions {
-    /// The policy that decides the rest of the trial; `None` for a horizon of one round.
-    ///
-    /// # Errors
-    /// Those of `make`.
-    pub fn onwards<E>(
-        &self,
-        make: impl FnOnce(&str) -> Result<Arc<dyn Policy>, E>,
-    ) -> Result<Option<Arc<dyn Policy>>, E> {
-        (self.horizon == Horizon::Trial).then(|| make(&self.then)).transpose()
-    }
-}
-
-/// `ORACLE` without a trial to play in: it cannot answer.
-#[derive(Debug, Clone)]
-pub struct NotSimulated(
-    /// Its options.
-    pub OracleOptions,
-);
-
-impl NotSimulated {
-    /// Name of the oracle among the policies.
-    pub const NAME: &'static str = "ORACLE";
-
-    /// The oracle's entry in the registry.
-    #[must_use]
-    pub fn kind() -> PolicyKind {
-        let about = "the assignment of which most comes in the round, known by playing them all";
-        PolicyKind::with_options(Self::NAME, about, |options: OracleOptions| match options.limit {
-            2..=1_000_000 => Ok(Self(options)),
-            found => Err(format!("limit must be from 2 to 1000000, found {found}")),
-        })
-    }
-}
-
-impl Policy for NotSimulated {
-    fn decide(&self, _question: &Question) -> Result<Decision, PolicyError> {
-        let reason = "ORACLE plays each assignment in the trial that asks; here is no trial";
-        Err(PolicyError::Other(reason.to_owned()))
-    }
-}
-
-/// The oracle in a trial.
-#[derive(Clone)]
+/// The oracle: a driver whose sessions play in the trial that asks.
 pub struct Oracle {
     options: OracleOptions,
-    onwards: Option<Arc<dyn Policy>>,
+    /// Decides the rest of the trial, if the horizon is the trial.
+    onwards: Option<MadePolicy>,
+}
+
+/// The oracle's entry in a registry.
+#[must_use]
+pub fn kind() -> PolicyKind {
+    let about = "the assignment of which most comes in the round, known by playing them all";
+    PolicyKind::made(NAME, about, |options: OracleOptions, registry| {
+        Oracle::new(options, registry).map(|oracle| Arc::new(oracle) as Arc<dyn Driver>)
+    })
 }
 
 impl Oracle {
-    /// An oracle with these options; `onwards` decides the rest of the trial, if the horizon is the trial.
-    #[must_use]
-    pub fn new(options: OracleOptions, onwards: Option<Arc<dyn Policy>>) -> Self {
-        Self { options, onwards }
+    /// Takes the options; the policy that decides the rest of the trial comes from this registry.
+    fn new(options: OracleOptions, registry: &Registry) -> Result<Self, String> {
+        if !(2..=1_000_000).contains(&options.limit) {
+            return Err(format!("limit must be from 2 to 1000000, found {}", options.limit));
+        }
+        let onwards = (options.horizon == Horizon::Trial).then(|| registry.parse(&options.then));
+        let onwards = onwards.transpose().map_err(|error| format!("then: {error}"))?;
+        Ok(Self { options, onwards })
     }
 }
 
-impl Decider for Oracle {
-    fn decide(&self, trial: &Simulation, question: &Question) -> Result<Decision, PolicyError> {
-        let refused = |error: &dyn std::fmt::Display| PolicyError::Other(format!("ORACLE: {error}"));
+impl Driver for Oracle {
+    fn open(&self) -> Result<Box<dyn Session>, PolicyError> {
+        let onwards = self.onwards.as_ref().map(MadePolicy::open).transpose()?;
+        Ok(Box::new(OracleSession { options: self.options.clone(), onwards }))
+    }
+
+    fn basis(&self) -> Basis {
+        Basis::Trial
+    }
+
+    /// The oracle's own sources are those of the laboratory, which decide every trial.
+    fn fingerprint(&self) -> Option<String> {
+        self.onwards
+            .as_ref()
+            .map_or(Some("oracle".to_owned()), |then| Some(format!("oracle {}", then.fingerprint()?)))
+    }
+}
+
+/// The oracle at work.
+struct OracleSession {
+    options: OracleOptions,
+    onwards: Option<Box<dyn Session>>,
+}
+
+impl Session for OracleSession {
+    fn decide(&mut self, asked: &Asked<'_>) -> Result<Decision, PolicyError> {
+        let Asked { question, deadline, trial } = *asked;
+        let Some(trial) = trial.and_then(|trial| trial.downcast_ref::<Simulation>()) else {
+            return Err(PolicyError::NoTrial { policy: NAME.to_owned() });
+        };
+        let refused = |error: &dyn std::fmt::Display| PolicyError::Other(format!("{NAME}: {error}"));
         let tasks = task_names(trial.scenario());
         let objective = Objective::parse(&self.options.metric, &tasks).map_err(|error| refused(&error))?;
-        let (start, halt) = (trial.checkpoint(), AtomicBool::new(false));
-        let outcome = |assignment: &Assignment| {
-            let decision = Decision::of(assignment.clone());
-            play(&start, decision, self.onwards.as_deref(), &halt)
-        };
+        let (start, onwards) = (trial.checkpoint(), &mut self.onwards);
+        let horizon = if onwards.is_some() { "trial" } else { "round" };
         let survey = survey(question, (&objective, self.options.limit), &[], |batch| {
+            let outcome = |assignment: &Assignment| {
+                play(&start, Decision::of(assignment.clone()), onwards.as_mut(), deadline)
+            };
             batch.iter().map(outcome).collect::<Result<Vec<_>, BranchError>>()
         });
+        deadline.check()?;
         let survey = survey.map_err(|error| refused(&error))?;
         let ranked = survey.ranked(&objective);
         let best = ranked.first().or(survey.evaluations.first().as_ref()).copied();
@@ -127,7 +132,7 @@ impl Decider for Oracle {
         let account = format!(
             "played {} assignments to the end of the {}: {objective} {}",
             survey.evaluations.len(),
-            if self.onwards.is_some() { "trial" } else { "round" },
+            horizon,
             value(&best.outcome)
         );
         let next = ranked.get(1).map(|next| Alternative { assignment: next.assignment.clone(), score: None });

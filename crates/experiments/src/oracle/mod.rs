@@ -12,7 +12,7 @@ mod objective;
 mod survey;
 
 pub use branch::{Branch, BranchError, Outcome, advance_to, play};
-pub use decider::{Horizon, NotSimulated, Oracle, OracleOptions};
+pub use decider::{Horizon, Oracle, OracleOptions, kind};
 pub use objective::{Objective, UnknownObjective};
 pub use survey::{Coverage, Evaluation, Standing, Survey, survey};
 

@@ -1,6 +1,6 @@
 //! The analysis of a study of regret.
 
-use rne_core::{Assignment, Registry};
+use rne_core::{Assignment, MadeMeasure, Registry};
 use serde::Serialize;
 
 use super::features::{FEATURES, values};
@@ -88,7 +88,7 @@ pub struct PolicyRegret {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct FeatureRow {
     /// The feature.
-    pub feature: &'static str,
+    pub feature: String,
     /// Mean rank correlation with the value, with the sign chosen so that + is better, over the decisions
     /// in which both vary.
     pub correlation: Option<Estimate>,
@@ -138,39 +138,44 @@ struct Looked {
     correlations: Vec<Option<f64>>,
 }
 
+/// By what decisions are judged.
+pub struct Criteria<'a> {
+    /// The objective of which outcomes are worth more or less.
+    pub objective: &'a Objective,
+    /// The trust measure of the features.
+    pub measure: &'a MadeMeasure,
+}
+
 /// Analyses a study by one objective.
 ///
 /// # Errors
 /// A policy that this program does not know.
-pub fn analyse(
-    folder: &StudyFolder,
-    objective: &Objective,
-    registry: &Registry,
-) -> Result<Analysis, Failure> {
+pub fn analyse(folder: &StudyFolder, criteria: &Criteria, registry: &Registry) -> Result<Analysis, Failure> {
     let specs = folder.study.specs(registry)?;
     let labels: Vec<&str> = specs.iter().map(|spec| spec.label.as_str()).collect();
     let (mut looked, mut rows) = (Vec::new(), Vec::new());
     for trial in &folder.trials {
         for decision in &trial.decisions {
             let survey = decision.survey();
-            let choice = |spec: &PolicySpec| spec.made().policy.decide(&decision.question).ok();
+            let choice = |spec: &PolicySpec| spec.made().decide(&decision.question).ok();
             let choices: Vec<Option<Assignment>> =
                 specs.iter().map(|spec| Some(choice(spec)?.assignment)).collect();
-            let Some(found) = look(trial, &survey, objective, &choices, decision) else { continue };
+            let Some(found) = look(trial, &survey, criteria, &choices, decision) else { continue };
             rows.extend(rows_of(trial, decision.question.round, &labels, &found));
             looked.push(found);
         }
     }
-    Ok(summary(objective, &labels, &looked, rows))
+    Ok(summary(criteria, &labels, &looked, rows))
 }
 
 fn look(
     trial: &PlayedTrial,
     survey: &Survey,
-    objective: &Objective,
+    criteria: &Criteria,
     choices: &[Option<Assignment>],
     decision: &super::PlayedDecision,
 ) -> Option<Looked> {
+    let objective = criteria.objective;
     let range = survey.range(objective)?;
     let standing = |choice: &Option<Assignment>| survey.standing(objective, choice.as_ref()?);
     let defined: Vec<_> = survey
@@ -179,7 +184,7 @@ fn look(
         .filter_map(|evaluation| Some((&evaluation.assignment, objective.score(&evaluation.outcome)?)))
         .collect();
     let (assignments, scores): (Vec<&Assignment>, Vec<f64>) = defined.into_iter().unzip();
-    let features = values(&decision.true_question(), &assignments);
+    let features = values(&decision.true_question(), &assignments, criteria.measure);
     let correlation = |feature: &Vec<Option<f64>>| {
         let feature: Option<Vec<f64>> = feature.iter().copied().collect();
         rank_correlation(&feature?, &scores)
@@ -233,7 +238,7 @@ fn by_trial(looked: &[Looked], value: impl Fn(&Looked) -> Option<f64>) -> Vec<f6
     trials.filter_map(mean).collect()
 }
 
-fn summary(objective: &Objective, labels: &[&str], looked: &[Looked], rows: Vec<DecisionRow>) -> Analysis {
+fn summary(criteria: &Criteria, labels: &[&str], looked: &[Looked], rows: Vec<DecisionRow>) -> Analysis {
     let estimate = |value: &dyn Fn(&Looked) -> Option<f64>| Estimate::mean(&by_trial(looked, value));
     let flag = |is: bool| Some(f64::from(u8::from(is)));
     let spread = |decision: &Looked| (decision.range[0] - decision.range[1]).abs();
@@ -250,12 +255,12 @@ fn summary(objective: &Objective, labels: &[&str], looked: &[Looked], rows: Vec<
         }
     };
     let feature = |(place, feature): (usize, &super::features::Feature)| FeatureRow {
-        feature: feature.name,
+        feature: feature.name(criteria.measure),
         correlation: estimate(&|decision| decision.correlations.get(place).copied().flatten()),
         decisions: looked.iter().filter(|d| d.correlations.get(place).copied().flatten().is_some()).count(),
     };
     Analysis {
-        metric: objective.name().to_owned(),
+        metric: criteria.objective.name().to_owned(),
         trials: looked.chunk_by(|a, b| a.trial == b.trial).count(),
         decisions: looked.len(),
         exact: looked.iter().filter(|decision| decision.is_exact).count(),

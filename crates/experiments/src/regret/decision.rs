@@ -1,11 +1,8 @@
 //! One decision of a study: the question, and the outcome of every assignment.
 
-use std::sync::atomic::AtomicBool;
-
-use rne_core::{Assignment, Decision, Member, Policy, Question, assignments};
+use rne_core::{Asked, Assignment, Deadline, Decision, Member, Question, Session, TrialStart, assignments};
 use serde::{Deserialize, Serialize};
-use usar_sim::scenario::Scenario;
-use usar_sim::simulation::{Advance, Decider, Simulation};
+use usar_sim::simulation::{Advance, Ask, Simulation};
 
 use crate::oracle::{BranchError, Coverage, Evaluation, Objective, Outcome, Survey, play, survey};
 
@@ -67,37 +64,43 @@ pub struct Plan<'a> {
     pub objective: &'a Objective,
     /// Largest number of assignments played for one decision.
     pub limit: u64,
-    /// The policy that decides the rest of the trial; `None` to play to the end of the round only.
-    pub onwards: Option<&'a dyn Policy>,
-    /// Policies whose choices are always played.
-    pub named: &'a [&'a dyn Policy],
+    /// Decides the rest of the trial; `None` to play to the end of the round only.
+    pub onwards: Option<Box<dyn Session>>,
+    /// Sessions of the policies whose choices are always played.
+    pub named: Vec<Box<dyn Session>>,
     /// The rounds whose decisions are played; empty for all.
     pub rounds: &'a [u32],
+    /// When to stop.
+    pub halt: Deadline<'a>,
 }
 
-/// Plays a trial in which `driver` decides. At each decision, every other assignment is played as well.
+/// Plays a trial in which a session decides. At each decision, every other assignment is played as well.
 ///
 /// # Errors
-/// The layout cannot be drawn, the trial or a branch of it fails, or it was halted.
+/// The trial or a branch of it fails, or it was halted.
 pub fn play_decisions(
-    (scenario, seed): (&Scenario, u64),
-    driver: &(impl Decider + ?Sized),
-    plan: &Plan,
-    halt: &AtomicBool,
+    mut trial: Simulation,
+    session: &mut dyn Session,
+    plan: &mut Plan,
 ) -> Result<Vec<PlayedDecision>, BranchError> {
+    let seed = trial.seed();
     let failed = |error: &dyn std::fmt::Display| BranchError::Failed(format!("seed {seed}: {error}"));
-    let mut trial = Simulation::new(scenario, seed).map_err(|error| failed(&error))?;
+    let scenario = trial.scenario().name.clone();
+    let start = TrialStart { scenario: &scenario, seed };
+    session.reset(&start)?;
+    plan.named.iter_mut().try_for_each(|session| session.reset(&start))?;
     let mut played = Vec::new();
     loop {
         let question = match trial.advance() {
             Advance::Running => continue,
             Advance::Over(usar_sim::record::Status::Failed(reason)) => return Err(failed(&reason)),
             Advance::Over(_) => return Ok(played),
-            Advance::Asks(question) => question.clone(),
+            Advance::Asks(Ask::Grouping(question)) => question.clone(),
         };
-        let decision = driver.decide(&trial, &question).map_err(|error| failed(&error))?;
+        let asked = Asked { question: &question, deadline: plan.halt, trial: Some(&trial) };
+        let decision = session.decide(&asked).map_err(|error| failed(&error))?;
         if plan.rounds.is_empty() || plan.rounds.contains(&question.round) {
-            played.push(plan.play(&trial, question, &decision, halt)?);
+            played.push(plan.play(&trial, question, &decision)?);
         }
         trial.assign(decision).map_err(|error| failed(&error))?;
     }
@@ -105,22 +108,23 @@ pub fn play_decisions(
 
 impl Plan<'_> {
     fn play(
-        &self,
+        &mut self,
         trial: &Simulation,
         question: Question,
         decision: &Decision,
-        halt: &AtomicBool,
     ) -> Result<PlayedDecision, BranchError> {
         let start = trial.checkpoint();
         let mut named = vec![decision.assignment.clone()];
-        for policy in self.named {
+        for session in &mut self.named {
             // A policy that cannot group this team is skipped. The tables leave it out, too.
-            named.extend(policy.decide(&question).map(|decision| decision.assignment));
+            let asked = Asked { deadline: self.halt, ..Asked::of(&question) };
+            named.extend(session.decide(&asked).map(|decision| decision.assignment));
         }
-        let outcome =
-            |assignment: &Assignment| play(&start, Decision::of(assignment.clone()), self.onwards, halt);
+        let (halt, onwards) = (self.halt, &mut self.onwards);
+        let mut outcome =
+            |assignment: &Assignment| play(&start, Decision::of(assignment.clone()), onwards.as_mut(), halt);
         let survey = survey(&question, (self.objective, self.limit), &named, |batch| {
-            batch.iter().map(outcome).collect::<Result<Vec<Outcome>, BranchError>>()
+            batch.iter().map(&mut outcome).collect::<Result<Vec<Outcome>, BranchError>>()
         })?;
         let (assignments, outcomes): (Vec<_>, Vec<_>) = survey
             .evaluations

@@ -1,22 +1,20 @@
 //! Features of an assignment that may predict the outcome: of the team as it really is before the decision.
 
-use policies::RneOptions;
-use policies::rne::Rne;
-use rne_core::{Assignment, Member, NeedDistribution, NeedWeights, Question, relative_entropy};
+use rne_core::{Assignment, MadeMeasure, Member, Question, TeamTrust};
 
 use crate::rounds::{energy, hp};
 
 /// A feature: a number computed for each assignment.
 pub struct Feature {
-    /// Name in words.
-    pub name: &'static str,
+    /// Name in words; `{}` stands for the name of the trust measure.
+    name: &'static str,
     value: fn(&Seen, &Assignment) -> Option<f64>,
 }
 
 /// The data from which features are computed.
 struct Seen<'q> {
     question: &'q Question,
-    rne: Rne,
+    trust: Box<dyn TeamTrust + 'q>,
 }
 
 /// All features. The hardest group is the group of the hardest task.
@@ -27,16 +25,28 @@ pub const FEATURES: [Feature; 9] = [
     Feature { name: "mean HP of the hardest group", value: |seen, a| seen.mean(a, hp) },
     Feature { name: "spread of HP in the hardest group", value: |seen, a| seen.spread(a, hp) },
     Feature { name: "capability of the hardest group", value: |seen, a| seen.capability(a) },
-    Feature { name: "RNE between the groups", value: |seen, a| seen.between(a) },
-    Feature { name: "RNE within the groups", value: |seen, a| seen.within(a) },
+    Feature { name: "{} between the groups", value: |seen, a| seen.between(a) },
+    Feature { name: "{} within the groups", value: |seen, a| seen.within(a) },
     Feature { name: "way from the homes to the tasks", value: |seen, a| seen.way(a) },
 ];
 
+impl Feature {
+    /// Name in words, with this trust measure.
+    #[must_use]
+    pub fn name(&self, measure: &MadeMeasure) -> String {
+        self.name.replace("{}", &measure.name)
+    }
+}
+
 /// The value of each feature for each assignment; `None` where it is undefined.
 #[must_use]
-pub fn values(question: &Question, assignments: &[&Assignment]) -> Vec<Vec<Option<f64>>> {
-    let Ok(rne) = Rne::new(RneOptions::default()) else { return Vec::new() };
-    let seen = Seen { question, rne };
+pub fn values(
+    question: &Question,
+    assignments: &[&Assignment],
+    measure: &MadeMeasure,
+) -> Vec<Vec<Option<f64>>> {
+    let Ok(trust) = measure.it.of_team(question) else { return Vec::new() };
+    let seen = Seen { question, trust };
     FEATURES.iter().map(|feature| assignments.iter().map(|a| (feature.value)(&seen, a)).collect()).collect()
 }
 
@@ -63,30 +73,25 @@ impl Seen<'_> {
         Some((squares.iter().sum::<f64>() / squares.len() as f64).sqrt())
     }
 
-    /// The sum over the hardest group's members of their weighted needs, each need as a share of its
-    /// maximum over the team.
+    /// The sum over the hardest group's members of their weighted needs, weighted as the trust
+    /// measure does. Undefined for a measure without weights.
     fn capability(&self, assignment: &Assignment) -> Option<f64> {
-        let weights = self.rne.weights(self.question).ok()?;
-        let of =
-            |member: &Member| member.needs.values().iter().zip(&weights).map(|(n, w)| n * w).sum::<f64>();
-        Some(self.hardest(assignment).map(of).sum())
+        let weights = self.trust.weights();
+        let of = |member: &Member| member.needs.values().iter().zip(weights).map(|(n, w)| n * w).sum::<f64>();
+        (!weights.is_empty()).then(|| self.hardest(assignment).map(of).sum())
     }
 
     fn between(&self, assignment: &Assignment) -> Option<f64> {
-        self.rne.score(self.question, assignment).ok()??.nats()
+        self.trust.between(assignment).ok()?.filter(|value| value.is_finite())
     }
 
-    /// The mean over all robots of their RNE to their own group.
+    /// The mean over all robots of their distrust towards their own group.
     fn within(&self, assignment: &Assignment) -> Option<f64> {
-        let weights = NeedWeights::new(self.rne.weights(self.question).ok()?).ok()?;
         let mut values = Vec::new();
         for group in &assignment.groups {
-            let members = self.question.members.iter().filter(|member| group.contains(&member.id));
-            let needs: Vec<_> = members.map(|member| member.needs.clone()).collect();
-            let Ok(of_group) = NeedDistribution::of_group(&needs, &weights) else { continue };
-            for member in &needs {
-                let own = NeedDistribution::of_agent(member, &weights).ok()?;
-                values.push(relative_entropy(&own, &of_group).ok()?.nats()?);
+            for member in self.question.members.iter().filter(|member| group.contains(&member.id)) {
+                let towards = self.trust.towards(&[member.id], group).ok()?;
+                values.push(Some(towards).filter(|value| value.is_finite())?);
             }
         }
         (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)

@@ -9,7 +9,6 @@ use rne_core::Assignment;
 use serde::{Deserialize, Serialize};
 use xxhash_rust::xxh3::xxh3_64;
 
-use crate::experiment::Build;
 use crate::failure::Failure;
 use crate::files;
 use crate::oracle::Outcome;
@@ -17,6 +16,8 @@ use crate::oracle::Outcome;
 /// The decision to which outcomes belong.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct DecisionKey {
+    /// The program that played it, with the sources of the policy that decided the earlier rounds.
+    pub program: String,
     /// Name of the scenario.
     pub scenario: String,
     /// The resolved scenario as text.
@@ -34,9 +35,8 @@ impl DecisionKey {
     /// decides numbers.
     #[must_use]
     pub fn path(&self, folder: &Path) -> PathBuf {
-        let Build { version, source } = Build::this();
-        let Self { scenario, resolved, seed, base, round } = self;
-        let hash = xxh3_64(format!("{version} {source} {resolved} {seed} {base} {round}").as_bytes());
+        let Self { program, scenario, resolved, seed, base, round } = self;
+        let hash = xxh3_64(format!("{program} {resolved} {seed} {base} {round}").as_bytes());
         let plain = |text: &str| {
             let kept =
                 text.chars().map(|c| if c.is_ascii_alphanumeric() || "-_".contains(c) { c } else { '_' });
@@ -168,6 +168,7 @@ mod tests {
     fn outcomes_are_found_again_and_a_cut_line_is_dropped() {
         let folder = tempfile::tempdir().unwrap();
         let key = DecisionKey {
+            program: "usar".to_owned(),
             scenario: "a/b".to_owned(),
             resolved: String::new(),
             seed: 1,

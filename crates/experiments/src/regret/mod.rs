@@ -7,7 +7,7 @@ mod features;
 mod log;
 mod study;
 
-pub use analysis::{Analysis, DecisionRow, Estimate, FeatureRow, PolicyRegret, analyse};
+pub use analysis::{Analysis, Criteria, DecisionRow, Estimate, FeatureRow, PolicyRegret, analyse};
 pub use decision::{Plan, PlayedDecision, Sample, play_decisions};
 pub use log::{DecisionKey, OutcomeLog};
 pub use study::{Choices, PlayedTrial, Study, StudyFolder};

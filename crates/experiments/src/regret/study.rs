@@ -8,15 +8,16 @@ use std::sync::Mutex;
 use std::sync::atomic::AtomicBool;
 
 use rayon::prelude::*;
-use rne_core::Registry;
+use rne_core::{Deadline, Registry};
 use serde::{Deserialize, Serialize};
+use usar_sim::simulation::Simulation;
 
 use super::decision::{Plan, PlayedDecision, play_decisions};
-use crate::experiment::{Build, Experiment, PolicySpec};
+use crate::experiment::{Digest, Experiment, PolicySpec, Program};
 use crate::failure::Failure;
 use crate::files::{self, NewFile};
 use crate::metric::task_names;
-use crate::oracle::{BranchError, NotSimulated, Objective};
+use crate::oracle::{BranchError, Objective};
 
 const MANIFEST: &str = "study.json";
 const JOURNAL: &str = "decisions.jsonl";
@@ -82,13 +83,16 @@ impl Study {
                 experiment.cases.len()
             )));
         }
-        if let Some(oracle) = experiment.policies.iter().find(|spec| spec.name == NotSimulated::NAME) {
+        if let Some(oracle) = experiment.policies.iter().find(|spec| !spec.is_of_question()) {
             return Err(Failure::input(format!(
                 "policies: {} is what the others are measured against; leave it out",
                 oracle.label
             )));
         }
-        let Build { version, source } = Build::this();
+        let then = choices.then.as_deref().map(|then| PolicySpec::parse(then, &experiment.registry));
+        let then = then.transpose().map_err(Failure::input)?;
+        let specs: Vec<PolicySpec> = experiment.policies.iter().cloned().chain(then).collect();
+        let Digest { version, source } = Program::running(&specs)?.digest();
         Ok(Self {
             name: experiment.name.clone(),
             tasks: task_names(&experiment.base),
@@ -245,19 +249,24 @@ fn play_trial(
 ) -> Result<PlayedTrial, Failure> {
     let seed = study.seeds[number as usize - 1];
     let driver = &specs[(number as usize - 1) % specs.len()];
-    let named: Vec<_> = specs.iter().map(|spec| &*spec.made().policy).collect();
+    let opened = |spec: &PolicySpec| {
+        spec.made().open().map_err(|error| Failure::run(format!("policy {}: {error}", spec.label)))
+    };
+    let named = specs.iter().map(opened).collect::<Result<Vec<_>, _>>()?;
     let parse = |then| PolicySpec::parse(then, &experiment.registry);
     let then = study.then.as_deref().map(parse).transpose().map_err(Failure::input)?;
     let objective = Objective::parse("rescuees", &study.tasks).map_err(Failure::run)?;
-    let plan = Plan {
+    let mut plan = Plan {
         objective: &objective,
         limit: study.limit,
-        onwards: then.as_ref().map(|spec| &*spec.made().policy),
-        named: &named,
+        onwards: then.as_ref().map(opened).transpose()?,
+        named,
         rounds: &study.rounds,
+        halt: Deadline::when(halt),
     };
-    let scenario = &experiment.cases[0].scenario;
-    let decisions = play_decisions((scenario, seed), &*driver.made().policy, &plan, halt);
+    let trial = Simulation::new(&experiment.cases[0].scenario, seed)
+        .map_err(|error| Failure::run(format!("trial {number}: seed {seed}: {error}")))?;
+    let decisions = play_decisions(trial, &mut *opened(driver)?, &mut plan);
     let decisions = decisions.map_err(|error| match error {
         BranchError::Halted => Failure::Interrupted("stopped; the same command goes on".to_owned()),
         error => Failure::run(format!("trial {number}: {error}")),

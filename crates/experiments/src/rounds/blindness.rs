@@ -1,15 +1,14 @@
-//! The blindness of relative entropy to magnitude. Relative entropy compares proportions: two robots whose
+//! The blindness of a trust measure to magnitude. Relative entropy compares proportions: two robots whose
 //! levels differ greatly can have full trust in each other. This module looks for an example in real
 //! trials.
 
-use policies::rne::Rne;
-use rne_core::{Member, NeedDistribution, NeedWeights, relative_entropy};
+use rne_core::{Member, TrustMeasure};
 
 use super::{Round, energy, hp};
 use crate::failure::Failure;
 
-/// Smaller entropies, in nats, are rounding errors.
-const LEAST_NATS: f64 = 1e-9;
+/// Smaller values of a measure, such as RNE in nats, are rounding errors.
+const LEAST: f64 = 1e-9;
 
 /// Smaller distances between levels, in percent points, count as equal levels.
 const LEAST_POINTS: f64 = 2.0;
@@ -21,8 +20,8 @@ pub struct Pair {
     pub from: Member,
     /// The robot that is trusted.
     pub to: Member,
-    /// Relative needs entropy, in nats.
-    pub rne: f64,
+    /// Its distrust, in the unit of the measure.
+    pub distrust: f64,
 }
 
 impl Pair {
@@ -37,15 +36,15 @@ fn apart(a: &Member, b: &Member) -> f64 {
     (energy(a) - energy(b)).hypot(hp(a) - hp(b))
 }
 
-/// How blind relative entropy was to magnitude in some rounds.
+/// How blind a trust measure was to magnitude in some rounds.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Blindness {
     /// The clearest example: one pair is farther apart by some factor, and the other pair has the higher
-    /// entropy by the same factor or more.
+    /// distrust by the same factor or more.
     pub plainest: Option<Example>,
-    /// Number of comparisons between pairs of one role and round that differ in both distance and entropy.
+    /// Number of comparisons between pairs of one role and round that differ in both distance and distrust.
     compared: u64,
-    /// Number of these comparisons in which the pair with the nearer levels has the higher entropy.
+    /// Number of these comparisons in which the pair with the nearer levels has the higher distrust.
     misjudged: u64,
 }
 
@@ -62,7 +61,7 @@ pub struct Example {
     pub role: String,
     /// The pair whose levels are farther apart.
     pub unlike: Pair,
-    /// The pair whose levels are nearer, but which has the higher entropy.
+    /// The pair whose levels are nearer, but which has the higher distrust.
     pub alike: Pair,
     /// How clear the example is: the lesser of the two ratios.
     plain: f64,
@@ -70,34 +69,28 @@ pub struct Example {
 
 impl Blindness {
     /// The share of comparisons between pairs of one role and round in which the pair with the nearer
-    /// levels has the higher entropy.
+    /// levels has the higher distrust.
     #[must_use]
     pub fn misjudged(&self) -> Option<f64> {
         (self.compared > 0).then(|| self.misjudged as f64 / self.compared as f64)
     }
 
-    /// Adds a round. Pairs with infinite entropy are left out.
+    /// Adds a round. Pairs with infinite distrust are left out.
     ///
     /// # Errors
-    /// Needs or weights that cannot be used.
-    pub fn add(&mut self, round: &Round, rne: &Rne) -> Result<(), Failure> {
-        let weights = rne.weights(&round.true_question()).map_err(Failure::run)?;
-        let weights = NeedWeights::new(weights).map_err(Failure::run)?;
+    /// Needs that cannot be measured.
+    pub fn add(&mut self, round: &Round, measure: &dyn TrustMeasure) -> Result<(), Failure> {
+        let question = round.true_question();
+        let trust = measure.of_team(&question).map_err(Failure::run)?;
         for role in round.question.role_ids() {
             let members: Vec<&Member> = round.of_role(role).collect();
-            let distribution =
-                |member: &&Member| NeedDistribution::of_agent(&member.needs, &weights).map_err(Failure::run);
-            let shares = members.iter().map(distribution).collect::<Result<Vec<_>, _>>()?;
             let mut pairs: Vec<Candidate> = Vec::new();
             for i in 0..members.len() {
                 for j in (0..members.len()).filter(|j| *j != i) {
-                    let rne = relative_entropy(&shares[i], &shares[j]).map_err(Failure::run)?;
-                    pairs.extend(rne.nats().map(|rne| Candidate {
-                        i,
-                        j,
-                        apart: apart(members[i], members[j]),
-                        rne,
-                    }));
+                    let distrust = trust.towards(&[members[i].id], &[members[j].id]).map_err(Failure::run)?;
+                    if distrust.is_finite() {
+                        pairs.push(Candidate { i, j, apart: apart(members[i], members[j]), distrust });
+                    }
                 }
             }
             self.count(&pairs);
@@ -109,26 +102,26 @@ impl Blindness {
     fn count(&mut self, pairs: &[Candidate]) {
         for (at, a) in pairs.iter().enumerate() {
             for b in &pairs[at + 1..] {
-                let (apart, rne) = (a.apart.total_cmp(&b.apart), a.rne.total_cmp(&b.rne));
-                if apart.is_ne() && rne.is_ne() {
+                let (apart, distrust) = (a.apart.total_cmp(&b.apart), a.distrust.total_cmp(&b.distrust));
+                if apart.is_ne() && distrust.is_ne() {
                     self.compared += 1;
-                    self.misjudged += u64::from(apart != rne);
+                    self.misjudged += u64::from(apart != distrust);
                 }
             }
         }
     }
 
     fn look_for_example(&mut self, round: &Round, role: &str, members: &[&Member], pairs: &[Candidate]) {
-        for unlike in pairs.iter().filter(|pair| pair.rne > LEAST_NATS) {
+        for unlike in pairs.iter().filter(|pair| pair.distrust > LEAST) {
             for alike in pairs.iter().filter(|pair| pair.apart > LEAST_POINTS) {
-                let plain = (unlike.apart / alike.apart).min(alike.rne / unlike.rne);
+                let plain = (unlike.apart / alike.apart).min(alike.distrust / unlike.distrust);
                 if plain <= self.plainest.as_ref().map_or(1.0, |known| known.plain) {
                     continue;
                 }
                 let pair = |of: &Candidate| Pair {
                     from: members[of.i].clone(),
                     to: members[of.j].clone(),
-                    rne: of.rne,
+                    distrust: of.distrust,
                 };
                 self.plainest = Some(Example {
                     trial: round.trial,
@@ -149,13 +142,11 @@ struct Candidate {
     i: usize,
     j: usize,
     apart: f64,
-    rne: f64,
+    distrust: f64,
 }
 
 #[cfg(test)]
 mod tests {
-    use policies::RneOptions;
-
     use super::super::testing;
     use super::*;
 
@@ -163,14 +154,14 @@ mod tests {
     fn proportional_needs_are_full_trust_however_far_apart() {
         let round = testing::round(&[(90.0, 80.0, 0), (45.0, 40.02, 0), (90.0, 60.0, 0)]);
         let mut found = Blindness::default();
-        found.add(&round, &Rne::new(RneOptions::default()).unwrap()).unwrap();
+        found.add(&round, &*policies::standard().measure("RNE").unwrap().it).unwrap();
         let example = found.plainest.clone().unwrap();
         let mut ids = [example.unlike.from.id, example.unlike.to.id];
         ids.sort_unstable();
         assert_eq!(ids, [0, 1]);
-        assert!(example.unlike.rne < 1e-6 && example.alike.rne > 1e-3);
+        assert!(example.unlike.distrust < 1e-6 && example.alike.distrust > 1e-3);
         assert!(example.alike.apart() < example.unlike.apart());
-        // Of the three distances, 0-1 is the greatest and has the least entropy. The two directions of a
+        // Of the three distances, 0-1 is the greatest and has the least distrust. The two directions of a
         // pair are equally far apart and are not compared with each other. This leaves 12 comparisons, 4
         // for each two distances. All comparisons with 0-1 are misjudged.
         assert!(found.misjudged().unwrap() >= 8.0 / 12.0, "{:?}", found.misjudged());

@@ -5,7 +5,7 @@ mod blindness;
 mod levels;
 mod sorting;
 
-use rne_core::{Assignment, Decision, Member, Policy, Question, RoleId, TaskId};
+use rne_core::{Assignment, Decision, MadePolicy, Member, Question, RoleId, TaskId};
 
 pub use blindness::{Blindness, Example, Pair};
 pub use levels::{GroupLevels, levels, mean_levels};
@@ -60,7 +60,7 @@ impl Round {
     ///
     /// # Errors
     /// The policy cannot group this team.
-    pub fn grouped_by(&self, policy: &dyn Policy) -> Result<Assignment, Failure> {
+    pub fn grouped_by(&self, policy: &MadePolicy) -> Result<Assignment, Failure> {
         Ok(policy.decide(&self.question).map_err(Failure::run)?.assignment)
     }
 

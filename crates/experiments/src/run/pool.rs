@@ -8,14 +8,18 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
-use super::trial::{Fault, FaultKind, Outcome, Trial, TrialKey};
+use super::sessions::Sessions;
+use super::trial::{Fault, FaultKind, Outcome, Trial, TrialKey, UNANSWERED};
 use crate::failure::{Failure, panic_message};
 
 /// How often the time limit and `stop` are checked.
 const WATCH_PERIOD: Duration = Duration::from_millis(100);
 
-/// A function that runs a trial; it should end soon after the flag is set.
-pub type Run = dyn Fn(&TrialKey, &AtomicBool) -> Result<Trial, Fault> + Send + Sync;
+/// How long a trial that exceeded its time may take to give up, before its thread is abandoned.
+const GRACE: Duration = Duration::from_secs(1);
+
+/// A function that runs a trial with the sessions of its thread; it should end soon after the flag is set.
+pub type Run = dyn Fn(&TrialKey, &mut Sessions, &AtomicBool) -> Result<Trial, Fault> + Send + Sync;
 
 /// Bounds of a run.
 #[derive(Debug, Clone, Copy)]
@@ -27,7 +31,8 @@ pub struct Limits {
 }
 
 enum Message {
-    Started(usize, TrialKey, Arc<AtomicBool>),
+    /// A worker began a trial. The flags tell it to end the trial, and not to take another.
+    Started(usize, TrialKey, [Arc<AtomicBool>; 2]),
     Ended(usize, Box<Outcome>),
 }
 
@@ -35,6 +40,7 @@ struct Running {
     key: TrialKey,
     since: Instant,
     halt: Arc<AtomicBool>,
+    is_abandoned: Arc<AtomicBool>,
 }
 
 /// Trials that have not been started.
@@ -49,8 +55,9 @@ struct Pool {
 }
 
 /// Runs all trials and hands each outcome to `done` as it arrives, in any order. A trial that exceeds the
-/// time limit is abandoned: its thread is told to halt, and another thread takes its place. Returns false
-/// if `stop` interrupted the run.
+/// time limit is told to halt, and its thread goes on with the next trial. If a policy does not even look at
+/// its deadline, the thread is abandoned, and another one takes its place. Returns false if `stop`
+/// interrupted the run.
 ///
 /// # Errors
 /// The threads cannot be started; or the errors of `done`, after which no further trial is started.
@@ -105,20 +112,25 @@ impl Pool {
         self.workers += 1;
         let (queue, run, sender) = (Arc::clone(&self.queue), Arc::clone(&self.run), self.sender.clone());
         let work = move || {
+            let mut sessions = Sessions::default();
             loop {
                 let next = queue.lock().ok().and_then(|mut queue| queue.next());
                 let Some(key) = next else { return };
-                let halt = Arc::new(AtomicBool::new(false));
-                if sender.send(Message::Started(number, key.clone(), Arc::clone(&halt))).is_err() {
+                let [halt, is_abandoned] = [(); 2].map(|()| Arc::new(AtomicBool::new(false)));
+                let flags = [&halt, &is_abandoned].map(Arc::clone);
+                if sender.send(Message::Started(number, key.clone(), flags)).is_err() {
                     return;
                 }
-                let result = catch_unwind(AssertUnwindSafe(|| run(&key, &halt))).unwrap_or_else(|panic| {
+                let trial = AssertUnwindSafe(|| run(&key, &mut sessions, &halt));
+                let result = catch_unwind(trial).unwrap_or_else(|panic| {
                     let reason = format!("internal error: {}", panic_message(&*panic));
                     Err(Fault { kind: FaultKind::Panicked, reason })
                 });
-                let is_given_up = halt.load(Ordering::Relaxed);
-                let sent = sender.send(Message::Ended(number, Box::new(Outcome { key, result })));
-                if is_given_up || sent.is_err() {
+                if result.is_err() {
+                    sessions.close(key.policy); // whatever it was doing
+                }
+                let ended = Message::Ended(number, Box::new(Outcome { key, result }));
+                if sender.send(ended).is_err() || is_abandoned.load(Ordering::Relaxed) {
                     return;
                 }
             }
@@ -138,25 +150,28 @@ impl Pool {
         let first = receiver.recv_timeout(WATCH_PERIOD).ok();
         for message in first.into_iter().chain(receiver.try_iter()) {
             match message {
-                Message::Started(worker, key, halt) => {
-                    self.running.insert(worker, Running { key, since: Instant::now(), halt });
+                Message::Started(worker, key, [halt, is_abandoned]) => {
+                    let since = Instant::now();
+                    self.running.insert(worker, Running { key, since, halt, is_abandoned });
                 }
                 // The outcome of an abandoned worker is dropped.
                 Message::Ended(worker, outcome) => {
-                    outcomes.extend(self.running.remove(&worker).map(|_| *outcome));
+                    let ended = self.running.remove(&worker).map(|_| ended(*outcome, longest));
+                    outcomes.extend(ended);
                 }
             }
         }
         let Some(longest) = longest else { return Ok(outcomes) };
-        let late = |running: &Running| running.since.elapsed() > longest;
-        let workers: Vec<usize> =
-            self.running.iter().filter(|(_, running)| late(running)).map(|(worker, _)| *worker).collect();
-        for worker in workers {
-            let Some(Running { key, halt, .. }) = self.running.remove(&worker) else { continue };
-            halt.store(true, Ordering::Relaxed);
+        let late = self.running.values().filter(|running| running.since.elapsed() > longest);
+        late.for_each(|running| running.halt.store(true, Ordering::Relaxed));
+        let lost = |running: &Running| running.since.elapsed() > longest + GRACE;
+        let lost: Vec<usize> =
+            self.running.iter().filter(|(_, running)| lost(running)).map(|(worker, _)| *worker).collect();
+        for worker in lost {
+            let Some(Running { key, is_abandoned, .. }) = self.running.remove(&worker) else { continue };
+            is_abandoned.store(true, Ordering::Relaxed);
             self.start_worker()?;
-            let reason = format!("it took longer than {} s", longest.as_secs_f64());
-            outcomes.push(Outcome { key, result: Err(Fault { kind: FaultKind::TimedOut, reason }) });
+            outcomes.push(Outcome { key, result: Err(timed_out(longest, UNANSWERED)) });
         }
         Ok(outcomes)
     }
@@ -170,8 +185,31 @@ impl Pool {
     }
 }
 
+/// The outcome of a trial that may have been told to halt because it was late.
+fn ended(outcome: Outcome, longest: Option<Duration>) -> Outcome {
+    match (&outcome.result, longest) {
+        (Err(fault), Some(longest)) if fault.kind == FaultKind::TimedOut => {
+            let result = Err(timed_out(longest, &fault.reason));
+            Outcome { result, ..outcome }
+        }
+        _ => outcome,
+    }
+}
+
+fn timed_out(longest: Duration, reason: &str) -> Fault {
+    let and = if reason == UNANSWERED { format!(": {reason}") } else { String::new() };
+    let reason = format!("it took longer than {} s{and}", longest.as_secs_f64());
+    Fault { kind: FaultKind::TimedOut, reason }
+}
+
 #[cfg(test)]
 mod tests {
+    use std::path::Path;
+
+    use rne_core::{Asked, Decision, PolicyError, Session};
+    use usar_sim::scenario::Scenario;
+
+    use super::super::trial::{TrialSetup, run_trial};
     use super::*;
 
     fn keys_for(trials: u32) -> Vec<TrialKey> {
@@ -197,7 +235,7 @@ mod tests {
 
     #[test]
     fn a_trial_that_panics_fails_alone() {
-        let run = |key: &TrialKey, _: &AtomicBool| {
+        let run = |key: &TrialKey, _: &mut Sessions, _: &AtomicBool| {
             assert!(key.seed != 2, "seed two");
             failed(format!("fake {}", key.seed))
         };
@@ -209,7 +247,7 @@ mod tests {
 
     #[test]
     fn a_trial_that_never_ends_is_given_up_and_the_others_go_on() {
-        let run = |key: &TrialKey, _: &AtomicBool| {
+        let run = |key: &TrialKey, _: &mut Sessions, _: &AtomicBool| {
             if key.seed == 1 {
                 std::thread::sleep(Duration::from_hours(1)); // it does not even look at the flag
             }
@@ -218,13 +256,44 @@ mod tests {
         let limits = Limits { jobs: 1, trial: Some(Duration::from_millis(300)) };
         let reasons = reasons(Arc::new(run), limits);
         assert_eq!(reasons.len(), 5);
-        assert_eq!(reasons[1], "trial 2 of FAKE (seed 1) timed out: it took longer than 0.3 s");
+        assert_eq!(
+            reasons[1],
+            "trial 2 of FAKE (seed 1) timed out: it took longer than 0.3 s: its policy did not answer in time"
+        );
         assert_eq!(reasons[4], "trial 5 of FAKE (seed 4) failed: done");
     }
 
     #[test]
+    fn a_policy_that_looks_at_its_deadline_is_cut_off_and_its_thread_goes_on() {
+        struct Ponders;
+        impl Session for Ponders {
+            fn decide(&mut self, asked: &Asked<'_>) -> Result<Decision, PolicyError> {
+                while !asked.deadline.is_over() {
+                    std::thread::sleep(Duration::from_millis(5));
+                }
+                Err(PolicyError::Late)
+            }
+        }
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/paper.ron");
+        let scenario = Scenario::load(&path).unwrap().0;
+        let threads: Arc<Mutex<Vec<_>>> = Arc::default();
+        let seen = Arc::clone(&threads);
+        let run = move |key: &TrialKey, _: &mut Sessions, halt: &AtomicBool| {
+            seen.lock().unwrap().push(std::thread::current().id());
+            let setup = TrialSetup { scenario: &scenario, seed: key.seed, is_checked: false };
+            if key.seed == 1 { run_trial(&setup, &mut Ponders, halt) } else { failed("done".to_owned()) }
+        };
+        let limits = Limits { jobs: 1, trial: Some(Duration::from_millis(300)) };
+        let reasons = reasons(Arc::new(run), limits);
+        let late = "timed out: it took longer than 0.3 s: its policy did not answer in time";
+        assert_eq!(reasons[1], format!("trial 2 of FAKE (seed 1) {late}"));
+        let threads = threads.lock().unwrap();
+        assert!(threads.len() == 5 && threads.iter().all(|thread| *thread == threads[0]), "{threads:?}");
+    }
+
+    #[test]
     fn no_further_trial_starts_when_it_is_to_stop_or_an_outcome_cannot_be_kept() {
-        let run: Arc<Run> = Arc::new(|_: &TrialKey, _: &AtomicBool| {
+        let run: Arc<Run> = Arc::new(|_: &TrialKey, _: &mut Sessions, _: &AtomicBool| {
             std::thread::sleep(Duration::from_millis(2));
             failed("done".to_owned())
         });

@@ -5,12 +5,11 @@ use std::collections::VecDeque;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
-use rne_core::Policy;
+use rne_core::{Asked, Basis, Deadline, Session};
 use usar_sim::record::DecisionRecord;
-use usar_sim::scenario::Scenario;
 
-use super::driver::Driver;
-use super::trial::{Fault, Trial, run_trial};
+use super::sessions::Player;
+use super::trial::{Fault, Trial, TrialSetup, run_trial};
 
 /// Number of combinations of case and seed whose trials are kept. Few are needed, because trials are run
 /// seed by seed.
@@ -21,9 +20,10 @@ const KEPT_OF_SEED: usize = 256;
 
 /// The finished trial as another policy would have run it: only the policy's account of its decisions
 /// differs. `None` if the policy would form other groups.
-fn as_decided_by(trial: &Trial, policy: &dyn Policy) -> Option<Trial> {
+fn as_decided_by(trial: &Trial, session: &mut dyn Session, deadline: Deadline<'_>) -> Option<Trial> {
     let decide = |asked: &DecisionRecord| {
-        let decision = policy.decide(&trial.record.question(asked)).ok()?;
+        let question = &trial.record.question(asked);
+        let decision = session.decide(&Asked { deadline, ..Asked::of(question) }).ok()?;
         let is_same = decision.assignment == asked.decision.assignment;
         is_same.then(|| DecisionRecord { decision, ..asked.clone() })
     };
@@ -37,38 +37,41 @@ fn as_decided_by(trial: &Trial, policy: &dyn Policy) -> Option<Trial> {
 type OfSeed = Arc<Mutex<Vec<Arc<Trial>>>>;
 
 /// Finished trials of the latest cases and seeds.
+#[derive(Default)]
 pub struct SharedTrials {
-    is_checked: bool,
     simulated: AtomicUsize,
     latest: Mutex<VecDeque<((usize, u64), OfSeed)>>,
 }
 
 impl SharedTrials {
-    /// An empty store; `is_checked` says whether every invariant is checked at every step.
-    #[must_use]
-    pub fn new(is_checked: bool) -> Self {
-        Self { is_checked, simulated: AtomicUsize::new(0), latest: Mutex::default() }
-    }
-
     /// Runs a trial of a case, or reuses a trial of another policy.
     ///
     /// # Errors
     /// Those of [`run_trial`].
     pub fn run(
         &self,
-        (case, scenario): (usize, &Scenario),
-        driver: &Driver,
-        seed: u64,
+        case: usize,
+        setup: &TrialSetup,
+        player: Player<'_>,
         halt: &AtomicBool,
     ) -> Result<Trial, Fault> {
-        let of_seed = self.of_seed(case, seed);
+        let Player { session, basis } = player;
+        let of_seed = self.of_seed(case, setup.seed);
         let known = of_seed.lock().unwrap_or_else(PoisonError::into_inner).clone();
-        let shared = |policy| known.iter().find_map(|trial| as_decided_by(trial, policy));
-        if let Some(trial) = driver.policy().and_then(shared) {
-            return Ok(trial);
+        if basis == Basis::Question {
+            let deadline = Deadline::when(halt);
+            for trial in known {
+                session.reset(&setup.start()).map_err(|error| Fault::of_policy(&error))?;
+                if let Some(trial) = as_decided_by(&trial, &mut *session, deadline) {
+                    return Ok(trial);
+                }
+            }
         }
         self.simulated.fetch_add(1, Ordering::Relaxed);
-        let trial = run_trial(scenario, driver, seed, self.is_checked, halt)?;
+        let trial = run_trial(setup, session, halt)?;
+        if basis == Basis::Undetermined {
+            return Ok(trial);
+        }
         let finished = Arc::new(trial.clone());
         let mut known = of_seed.lock().unwrap_or_else(PoisonError::into_inner);
         if known.len() < KEPT_OF_SEED {
@@ -106,25 +109,31 @@ impl SharedTrials {
 mod tests {
     use std::path::Path;
 
+    use usar_sim::scenario::Scenario;
+
     use super::*;
     use crate::experiment::with_settings;
+
+    fn player(session: &mut dyn Session) -> Player<'_> {
+        Player { session, basis: Basis::Question }
+    }
 
     #[test]
     fn a_shared_trial_is_the_one_that_would_have_been_run() {
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/paper.ron");
         let (scenario, _) = Scenario::load(&path).unwrap();
         let scenario = with_settings(&scenario, &["duration_s=120".to_owned()]).unwrap();
-        let (shared, halt) = (SharedTrials::new(false), AtomicBool::new(false));
+        let (shared, halt) = (SharedTrials::default(), AtomicBool::new(false));
         let registry = policies::standard();
         let names = registry.names();
         let mut policies: Vec<_> = names.iter().map(|name| registry.parse(name).unwrap()).collect();
         policies.push(registry.parse("RNE(log_base: Two)").unwrap());
         for seed in 1..4 {
+            let setup = TrialSetup { scenario: &scenario, seed, is_checked: false };
             for policy in &policies {
-                let found = shared
-                    .run((0, &scenario), &Driver::Policy(Arc::clone(&policy.policy)), seed, &halt)
-                    .unwrap();
-                let alone = run_trial(&scenario, &*policy.policy, seed, false, &halt).unwrap();
+                let mut session = policy.open().unwrap();
+                let found = shared.run(0, &setup, player(&mut *session), &halt).unwrap();
+                let alone = run_trial(&setup, &mut *session, &halt).unwrap();
                 assert_eq!(found, alone, "{policy:?} seed {seed}");
             }
         }
@@ -140,10 +149,13 @@ mod tests {
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/paper.ron");
         let (scenario, _) = Scenario::load(&path).unwrap();
         let short = with_settings(&scenario, &["duration_s=60".to_owned()]).unwrap();
-        let dis = Driver::Policy(policies::standard().parse("DIS").unwrap().policy);
-        let (shared, halt) = (SharedTrials::new(false), AtomicBool::new(false));
-        let first = shared.run((0, &scenario), &dis, 1, &halt).unwrap();
-        let second = shared.run((1, &short), &dis, 1, &halt).unwrap();
+        let mut dis = policies::standard().open("DIS").unwrap();
+        let (shared, halt) = (SharedTrials::default(), AtomicBool::new(false));
+        let mut run = |case, scenario| {
+            let setup = TrialSetup { scenario, seed: 1, is_checked: false };
+            shared.run(case, &setup, player(&mut *dis), &halt).unwrap()
+        };
+        let (first, second) = (run(0, &scenario), run(1, &short));
         assert!(first.record.time_s > 599.0 && second.record.time_s < 61.0);
     }
 }

@@ -2,14 +2,18 @@
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use rne_core::{Deadline, PolicyError, Session, TrialStart};
 use serde::{Deserialize, Serialize};
 use usar_sim::event::Event;
 use usar_sim::record::{Status, TrialRecord};
 use usar_sim::scenario::Scenario;
-use usar_sim::simulation::{Decider, Simulation};
+use usar_sim::simulation::Simulation;
 
 /// A trial checks once in this many steps whether it is to stop.
 const HALT_CHECK_STEPS: u64 = 64;
+
+/// The reason of a trial that ended because its policy gave up at the deadline.
+pub(super) const UNANSWERED: &str = "its policy did not answer in time";
 
 /// Time between two points of a series, in seconds.
 const SERIES_PERIOD_S: f64 = 10.0;
@@ -87,6 +91,12 @@ impl FaultKind {
 }
 
 impl Fault {
+    /// The policy of the trial failed.
+    #[must_use]
+    pub fn of_policy(error: &PolicyError) -> Self {
+        Self { kind: FaultKind::Failed, reason: format!("the policy failed: {error}") }
+    }
+
     /// A sentence with the trial and its fault.
     #[must_use]
     pub fn sentence(&self, key: &TrialKey) -> String {
@@ -125,24 +135,40 @@ impl Outcome {
     }
 }
 
+/// A trial that is to be run.
+#[derive(Clone, Copy)]
+pub struct TrialSetup<'a> {
+    /// The scenario.
+    pub scenario: &'a Scenario,
+    /// The seed.
+    pub seed: u64,
+    /// Whether every invariant is checked at every step.
+    pub is_checked: bool,
+}
+
+impl TrialSetup<'_> {
+    /// The trial as a session gets to know it.
+    #[must_use]
+    pub fn start(&self) -> TrialStart<'_> {
+        TrialStart { scenario: &self.scenario.name, seed: self.seed }
+    }
+}
+
 /// Runs one trial; `halt` ends it early.
 ///
 /// # Errors
 /// The layout cannot be drawn, the trial failed, or it was halted.
-pub fn run_trial(
-    scenario: &Scenario,
-    decider: &(impl Decider + ?Sized),
-    seed: u64,
-    is_checked: bool,
-    halt: &AtomicBool,
-) -> Result<Trial, Fault> {
+pub fn run_trial(setup: &TrialSetup, session: &mut dyn Session, halt: &AtomicBool) -> Result<Trial, Fault> {
     let failed = |reason: String| Fault { kind: FaultKind::Failed, reason };
-    let simulation = Simulation::new(scenario, seed).map_err(|error| failed(error.to_string()))?;
-    let mut simulation = if is_checked { simulation.checked() } else { simulation };
-    let mut deliveries = vec![Vec::new(); scenario.tasks.len()];
-    while simulation.step(decider).is_none() {
+    let late = |reason: &str| Fault { kind: FaultKind::TimedOut, reason: reason.to_owned() };
+    let simulation =
+        Simulation::new(setup.scenario, setup.seed).map_err(|error| failed(error.to_string()))?;
+    session.reset(&setup.start()).map_err(|error| Fault::of_policy(&error))?;
+    let mut simulation = if setup.is_checked { simulation.checked() } else { simulation };
+    let mut deliveries = vec![Vec::new(); setup.scenario.tasks.len()];
+    while simulation.step_within(&mut *session, Deadline::when(halt)).is_none() {
         if simulation.steps().is_multiple_of(HALT_CHECK_STEPS) && halt.load(Ordering::Relaxed) {
-            return Err(failed("it was halted".to_owned()));
+            return Err(late("it was halted"));
         }
         for event in simulation.events() {
             if let Event::Delivered { rescuee, .. } = event {
@@ -153,6 +179,7 @@ pub fn run_trial(
     }
     let record = simulation.finish();
     match record.status {
+        Status::Failed(_) if halt.load(Ordering::Relaxed) => Err(late(UNANSWERED)),
         Status::Failed(reason) => Err(failed(reason)),
         _ => Ok(Trial { record, deliveries }),
     }

@@ -45,7 +45,7 @@ pub fn run_trials(
     mut done: impl FnMut(&Outcome),
 ) -> Result<(), Failure> {
     let (experiment, names) = (folder.shared_experiment(), folder.shared_experiment());
-    let run: Arc<Run> = Arc::new(move |key, halt| experiment.run(key, halt));
+    let run: Arc<Run> = Arc::new(move |key, sessions, halt| experiment.run(key, sessions, halt));
     let keys = trials.into_iter().map(move |place| names.key(place));
     let is_whole = run_batches(keys, limits, run, stop, |outcomes| {
         folder.add(&outcomes)?;

@@ -8,18 +8,18 @@
 
 mod group;
 mod local;
+mod measure;
 mod merge;
 mod options;
-mod pairs;
 mod partition;
 mod parts;
 mod quotas;
 mod scorer;
 mod suitability;
 
+pub use measure::measure_kind;
 pub use merge::EXACT_TASKS;
 pub use options::{HardRule, MergeReading, RneOptions, ScoreDirection};
-pub use pairs::DirectedRne;
 pub use partition::EXACT_PARTITIONS;
 
 use group::Group;
@@ -32,17 +32,20 @@ use rne_core::decision::{
 };
 use rne_core::error::{NeedsError, PolicyError};
 use rne_core::ids::RoleId;
-use rne_core::kind::PolicyKind;
 use rne_core::needs::{NeedWeights, check_length};
 use rne_core::policy::Policy;
 use rne_core::question::{Member, Question, SCHEMA_VERSION};
+use rne_core::registry::PolicyKind;
 use rne_core::trust::RelativeNeedsEntropy;
 use scorer::{Scorer, part_sums};
 
-/// The registry's line.
+const NAME: &str = "RNE";
+
+/// The registry's line for the policy.
 #[must_use]
 pub fn kind() -> PolicyKind {
-    PolicyKind::with_options("RNE", "the largest Relative Needs Entropy between the groups", Rne::new)
+    PolicyKind::with_options(NAME, "the largest Relative Needs Entropy between the groups", Rne::new)
+        .from_sources(env!("SOURCES_RNE"))
 }
 
 /// The RNE policy.

@@ -1,8 +1,8 @@
-//! The RNE between the groups of an assignment, need by need.
+//! RNE as a trust measure: between the groups of an assignment, and need by need.
 
 use policies::RneOptions;
 use policies::rne::Rne;
-use rne_core::Policy;
+use rne_core::{Policy, TrustMeasure};
 
 use crate::oracle::nats;
 use crate::support::{all_options, drawn_team, question};
@@ -25,23 +25,24 @@ fn the_needs_add_up_to_the_rne_between_groups_worked_out_by_hand() {
     let question = question(drawn_team(&[4], 1), &[1, 2]);
     let rne = Rne::new(RneOptions { scale: false, ..RneOptions::default() }).unwrap();
     let assignment = rne.decide(&question).unwrap().assignment;
-    let directed = rne.directed(&question, &assignment).unwrap();
-    assert_eq!(directed.len(), 2);
-    for pair in &directed {
+    let trust = rne.of_team(&question).unwrap();
+    for [from, to] in [[0, 1], [1, 0]].map(|pair| pair.map(|task: usize| &assignment.groups[task])) {
         // The members' needs (weights are 1 and not scaled), summed and divided by their sum.
-        let shares = [pair.from, pair.to].map(|task| {
-            let group = assignment.of(task);
+        let shares = [from, to].map(|group| {
             let members = || question.members.iter().filter(|member| group.contains(&member.id));
             let sum = |k: usize| members().map(|member| member.needs.values()[k]).sum::<f64>();
             let all: f64 = (0..5).map(sum).sum();
             (0..5).map(|k| sum(k) / all).collect::<Vec<f64>>()
         });
         let mut total = 0.0;
-        for (k, found) in pair.by_need.iter().enumerate() {
+        for (k, found) in trust.by_need(from, to).unwrap().unwrap().iter().enumerate() {
             let by_hand = shares[0][k] * libm::log(shares[0][k] / shares[1][k]);
-            assert!((found.unwrap() - by_hand).abs() < 1e-12, "need {k}: {found:?}, by hand {by_hand}");
+            assert!((found.adds - by_hand).abs() < 1e-12, "need {k}: {found:?}, by hand {by_hand}");
             total += by_hand;
         }
-        assert!((pair.rne.nats().unwrap() - total).abs() < 1e-12);
+        assert!((trust.towards(from, to).unwrap() - total).abs() < 1e-12);
     }
+    let larger = trust.towards(&assignment.groups[0], &assignment.groups[1]).unwrap();
+    let larger = larger.max(trust.towards(&assignment.groups[1], &assignment.groups[0]).unwrap());
+    assert!((trust.between(&assignment).unwrap().unwrap() - larger).abs() < 1e-12);
 }

@@ -140,7 +140,7 @@ fn missing_facts_are_named_with_their_robot() {
         (&no_needs, "RNE", "robot 0: weighted needs must have at least one entry above 0, found only zeros"),
         (&no_hp, "RNE(weights: [1, 2])", "options of the policy: weights must have 7 entries, found 2"),
     ] {
-        let error = registry.parse(policy).unwrap().policy.decide(question).unwrap_err();
+        let error = registry.parse(policy).unwrap().decide(question).unwrap_err();
         assert_eq!(error.to_string(), message, "{policy}");
     }
 }
@@ -151,7 +151,7 @@ fn every_policys_decision_is_read_as_it_was_written() {
     let registry = policies::standard();
     let with_options = ["RNE(score: JensenShannon)", "RNE(merge: Together, sort: true, hard_rule: MeanHp)"];
     for policy in registry.names().into_iter().chain(with_options) {
-        let decision = registry.parse(policy).unwrap().policy.decide(&question).unwrap();
+        let decision = registry.parse(policy).unwrap().decide(&question).unwrap();
         decision.assignment.check(&question).unwrap();
         let text = serde_json::to_string(&decision).unwrap();
         assert_eq!(rne_core::Decision::from_json(&text).unwrap(), decision, "{policy}");

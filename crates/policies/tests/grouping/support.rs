@@ -105,7 +105,7 @@ pub fn two_tasks(members: Vec<Member>) -> Question {
 /// The decision of a policy, given in RON. Panics if it does not answer the question.
 #[track_caller]
 pub fn decide(policy: &str, question: &Question) -> Decision {
-    let decision = policies::standard().parse(policy).unwrap().policy.decide(question).unwrap();
+    let decision = policies::standard().parse(policy).unwrap().decide(question).unwrap();
     let alternatives = decision.alternatives.iter().map(|other| &other.assignment);
     for assignment in std::iter::once(&decision.assignment).chain(alternatives) {
         assignment.check(question).unwrap_or_else(|error| panic!("{policy}: {error}"));

@@ -3,33 +3,26 @@
 use experiments::Failure;
 use experiments::experiment::Experiment;
 use experiments::rounds::{KEYS, Likeness, Share};
-use policies::rne::Rne;
-use rne_core::{Member, NeedDistribution, NeedWeights, PolicyError, RelativeNeedsEntropy, relative_entropy};
 
 use super::gather::Gathered;
 use crate::drawing::{Drawing, Panel, Sketch, from_top, heat_map, is_drawn, layout, names, table};
 
-/// RNE from each robot to every other robot of its role, in the first round of the first trial, with the
-/// weights of the question.
+/// The distrust of each robot towards every other of its role, in the first round of the first trial, by the
+/// measure of the policy that decided.
 pub(super) fn trust(experiment: &Experiment, gathered: &[Gathered]) -> Result<Option<Sketch>, Failure> {
     let mut with_rounds = experiment.policies.iter().zip(gathered);
     let first = with_rounds
         .find_map(|(policy, gathered)| Some((policy, gathered.first_question.as_ref()?, gathered)));
     let Some((policy, question, gathered)) = first else { return Ok(None) };
-    let options = policy.rne_options().unwrap_or_default();
-    let rne = Rne::new(options).map_err(Failure::run)?;
-    let weights =
-        rne.weights(question).and_then(|weights| NeedWeights::new(weights).map_err(PolicyError::Options));
-    let Ok(weights) = weights else { return Ok(None) };
-    let team = &question.members;
-    let distribution = |member: &Member| NeedDistribution::of_agent(&member.needs, &weights);
-    let distributions = team.iter().map(distribution).collect::<Result<Vec<_>, _>>().map_err(Failure::run)?;
-    let rne =
-        |i: usize, j: usize| relative_entropy(&distributions[i], &distributions[j]).map_err(Failure::run);
+    let Some(measure) = policy.measure(&experiment.registry) else { return Ok(None) };
+    let Ok(trust) = measure.it.of_team(question) else { return Ok(None) };
+    let (team, name, unit) = (&question.members, &measure.name, measure.it.unit());
+    let towards = |i: usize, j: usize| trust.towards(&[team[i].id], &[team[j].id]).map_err(Failure::run);
     let mut rows = Vec::new();
     for i in 0..team.len() {
         for j in 0..team.len() {
-            let value = rne(i, j)?.nats().map_or("infinite".to_owned(), |nats| nats.to_string());
+            let value = towards(i, j)?;
+            let value = if value.is_finite() { value.to_string() } else { "infinite".to_owned() };
             rows.push(vec![team[i].id.to_string(), team[j].id.to_string(), value]);
         }
     }
@@ -39,32 +32,34 @@ pub(super) fn trust(experiment: &Experiment, gathered: &[Gathered]) -> Result<Op
         if members.len() < 2 {
             continue;
         }
-        let row = |i: &usize| members.iter().map(|j| rne(*i, *j)).collect::<Result<Vec<_>, _>>();
-        let data = members.iter().map(row).collect::<Result<Vec<Vec<RelativeNeedsEntropy>>, _>>()?;
+        let row = |i: &usize| members.iter().map(|j| towards(*i, *j)).collect::<Result<Vec<_>, _>>();
+        let data = members.iter().map(row).collect::<Result<Vec<Vec<f64>>, _>>()?;
         panels.push(trust_panel(&data, &question.roles[role.index()], members.iter().map(|i| team[*i].id)));
     }
+    let column = format!("{}_{unit}", name.to_lowercase());
     Ok(Some(Sketch {
         name: "trust".into(),
-        title: "Relative Needs Entropy within each role".into(),
+        title: format!("{name} within each role"),
         caption: format!(
-            "RNE from each robot to each other of its role when the first round of trial {} under {} was \
-             grouped, in thousandths of a nat; lower is more trust. It is infinite wherever one robot lacks \
-             a need that the other has: such cells have the darkest colour, beyond the scale, and the table \
-             says so. The table has all pairs, those between roles too. n = 1 trial.",
+            "{name} from each robot to each other of its role when the first round of trial {} under {} was \
+             grouped, in thousandths of its unit ({unit}); lower is more trust. It is infinite wherever one \
+             robot does not trust the other at all, as where it lacks a need that the other has: such cells \
+             have the darkest colour, beyond the scale, and the table says so. The table has all pairs, those \
+             between roles too. n = 1 trial.",
             gathered.first_trial, policy.label
         ),
         drawing: Drawing::new(panels, 3, [400.0, 360.0]),
-        csv: table(&["from", "to", "rne_nats"], rows)?,
+        csv: table(&["from", "to", &column], rows)?,
     }))
 }
 
 /// A heat map of one role. An infinite value is drawn above every finite value: it means no trust at all.
-fn trust_panel(data: &[Vec<RelativeNeedsEntropy>], role: &str, ids: impl Iterator<Item = u32>) -> Panel {
-    let finite = data.iter().flatten().filter_map(|rne| rne.nats());
-    let most = 1000.0 * finite.fold(0.0, f64::max);
+fn trust_panel(data: &[Vec<f64>], role: &str, ids: impl Iterator<Item = u32>) -> Panel {
+    let finite = data.iter().flatten().filter(|value| value.is_finite());
+    let most = 1000.0 * finite.copied().fold(0.0, f64::max);
     let beyond = if most > 0.0 { 1.25 * most } else { 1.0 };
-    let is_infinite = data.iter().flatten().any(|rne| rne.is_infinite());
-    let shown = |rne: &RelativeNeedsEntropy| rne.nats().map_or(beyond, |nats| 1000.0 * nats);
+    let is_infinite = data.iter().flatten().any(|value| !value.is_finite());
+    let shown = |value: &f64| if value.is_finite() { 1000.0 * value } else { beyond };
     let cells = data.iter().map(|row| row.iter().map(shown).collect()).collect();
     let plots = vec![heat_map(cells, if is_infinite { beyond } else { most })];
     let names: Vec<String> = ids.map(|id| id.to_string()).collect();

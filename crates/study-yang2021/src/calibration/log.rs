@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use experiments::Failure;
-use experiments::experiment::Build;
+use experiments::experiment::{PolicySpec, Program};
 use experiments::explore::{EvaluationLog, Free, Purpose};
 
 use super::{Calibration, Evaluation, POLICY, Spread};
@@ -28,7 +28,7 @@ impl Log {
     /// The log belongs to something else, another process works in the folder, or the disk does not take
     /// the log.
     pub fn open(folder: &Path, calibration: &Calibration, is_fresh: bool) -> Result<Self, Failure> {
-        let (origin, header) = (origin_of(calibration), header(calibration));
+        let (origin, header) = (origin_of(calibration)?, header(calibration));
         let (log, rows) = EvaluationLog::open(folder, &PURPOSE, (&origin, &header), is_fresh)?;
         let read =
             |(i, row): (usize, &Vec<String>)| evaluation(row, calibration).ok_or_else(|| log.bad_row(i));
@@ -95,13 +95,13 @@ fn evaluation(row: &[String], calibration: &Calibration) -> Option<Evaluation> {
 }
 
 /// Everything that decides the evaluations.
-fn origin_of(calibration: &Calibration) -> serde_json::Value {
-    let Build { version, source } = Build::this();
+fn origin_of(calibration: &Calibration) -> Result<serde_json::Value, Failure> {
+    let policy = PolicySpec::parse(POLICY, &policies::standard()).map_err(Failure::run)?;
     let spreads = calibration.target.quantities.iter().zip(&calibration.target.spreads);
     let target: serde_json::Map<String, serde_json::Value> =
         spreads.map(|(q, s)| (q.name.clone(), serde_json::json!([s.mean, s.sd]))).collect();
-    serde_json::json!({
-        "program": format!("usar {version} with source {source}"),
+    Ok(serde_json::json!({
+        "program": Program::running(&[policy])?.digest().to_string(),
         "policy": POLICY,
         "free": calibration.free.iter().map(Free::to_string).collect::<Vec<_>>(),
         "target": target,
@@ -109,5 +109,5 @@ fn origin_of(calibration: &Calibration) -> serde_json::Value {
         "first_seed": calibration.first_seed,
         "first_step": calibration.first_step,
         "scenario": calibration.base.resolved(),
-    })
+    }))
 }

@@ -13,15 +13,14 @@ mod log;
 mod target;
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use experiments::comparison::short;
 use experiments::explore::{Free, WORST};
-use experiments::run::run_trial;
+use experiments::run::{Fault, TrialSetup, run_trial};
 use experiments::{Failure, panic_message};
 use rayon::prelude::*;
-use rne_core::Policy;
+use rne_core::MadePolicy;
 use ron_fields::{Fields, with_values};
 use usar_sim::scenario::{Scenario, ScenarioFile};
 
@@ -184,7 +183,11 @@ impl Calibration {
         let scenario = self.scenario(values)?;
         let policy = the_policy()?;
         let trial = |seed| {
-            let run = AssertUnwindSafe(|| run_trial(&scenario, &*policy, seed, false, stop));
+            let setup = TrialSetup { scenario: &scenario, seed, is_checked: false };
+            let run = AssertUnwindSafe(|| {
+                let mut session = policy.open().map_err(|error| Fault::of_policy(&error))?;
+                run_trial(&setup, &mut *session, stop)
+            });
             let result =
                 catch_unwind(run).map_err(|panic| format!("internal error: {}", panic_message(&*panic)))?;
             result.map_err(|fault| fault.reason)
@@ -282,6 +285,6 @@ fn candidate(text: &str) -> String {
     )
 }
 
-fn the_policy() -> Result<Arc<dyn Policy>, String> {
-    policies::standard().parse(POLICY).map(|made| made.policy).map_err(|error| error.to_string())
+fn the_policy() -> Result<MadePolicy, String> {
+    policies::standard().parse(POLICY).map_err(|error| error.to_string())
 }

@@ -1,12 +1,11 @@
 //! One trial: a scenario and a seed in, a record out, and one interface for decisions.
 //!
 //! [`Simulation::advance`] does a step, or returns the [question](Advance::Asks) how the team is to be
-//! grouped. [`Simulation::assign`] takes the answer. Policies, programs and people all answer through this
-//! interface.
+//! grouped. [`Simulation::assign`] takes the answer. Policies, programs and people all are [sessions](Session)
+//! at this door.
 
 mod charge;
 mod checkpoint;
-mod decider;
 mod moments;
 mod rescue;
 mod state;
@@ -14,7 +13,7 @@ mod timeline;
 
 use std::sync::Arc;
 
-use rne_core::{AssignmentError, Decision, Member, Question};
+use rne_core::{Asked, AssignmentError, Deadline, Decision, Member, Question, Session};
 use thiserror::Error;
 
 use crate::belief::Beliefs;
@@ -36,7 +35,6 @@ use crate::tally::Tally;
 use crate::world::World;
 
 pub use checkpoint::Checkpoint;
-pub use decider::Decider;
 use state::Listeners;
 pub(crate) use state::State;
 
@@ -59,10 +57,17 @@ pub struct Simulation {
 pub enum Advance<'s> {
     /// A step was done.
     Running,
-    /// A step was begun. It continues once this question is answered: see [`Simulation::assign`].
-    Asks(&'s Question),
+    /// A step was begun. It continues once this is answered.
+    Asks(Ask<'s>),
     /// The trial is over.
     Over(Status),
+}
+
+/// What a trial asks.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Ask<'s> {
+    /// How is the team to be grouped? Answered by [`Simulation::assign`].
+    Grouping(&'s Question),
 }
 
 /// An answer that is refused. The question still waits.
@@ -145,7 +150,8 @@ impl Simulation {
             self.begin_step(&mut done);
         }
         if self.question.is_some() {
-            return self.question.as_ref().map_or(Advance::Running, Advance::Asks);
+            let asks = |question| Advance::Asks(Ask::Grouping(question));
+            return self.question.as_ref().map_or(Advance::Running, asks);
         }
         match self.finish_step(&mut done) {
             Ok(()) => Advance::Running,
@@ -190,32 +196,41 @@ impl Simulation {
         (members != *asked).then_some(members)
     }
 
-    /// Does a whole step, in which a policy or another [`Decider`] answers questions. Returns the status once
-    /// the trial is over.
-    pub fn step(&mut self, decider: &(impl Decider + ?Sized)) -> Option<Status> {
-        self.step_watched(decider, |_| {})
+    /// Does a whole step, in which a session answers questions. Returns the status once the trial is over.
+    pub fn step(&mut self, session: impl Session) -> Option<Status> {
+        self.step_within(session, Deadline::NEVER)
+    }
+
+    /// A step whose answers are wanted before a deadline.
+    pub fn step_within(&mut self, session: impl Session, deadline: Deadline<'_>) -> Option<Status> {
+        self.step_watched(session, deadline, |_| {})
     }
 
     /// A step that reports the end of each of its stages, to measure them.
     pub fn step_watched(
         &mut self,
-        decider: &(impl Decider + ?Sized),
+        mut session: impl Session,
+        deadline: Deadline<'_>,
         mut done: impl FnMut(Stage),
     ) -> Option<Status> {
         loop {
             match self.advance_watched(&mut done) {
                 Advance::Running => return None,
                 Advance::Over(status) => return Some(status),
-                Advance::Asks(_) => {}
+                Advance::Asks(Ask::Grouping(_)) => self.answer(&mut session, deadline),
             }
-            let Some(question) = &self.question else { continue };
-            let taken = match decider.decide(self, question) {
-                Ok(decision) => self.assign(decision).map_err(|error| error.to_string()),
-                Err(error) => Err(error.to_string()),
-            };
-            if let Err(reason) = taken {
-                self.failure = Some(format!("the policy failed: {reason}"));
-            }
+        }
+    }
+
+    /// Lets a session answer the question that waits. Without a usable answer, the trial has failed.
+    fn answer(&mut self, session: &mut impl Session, deadline: Deadline<'_>) {
+        let Some(question) = &self.question else { return };
+        let taken = match session.decide(&Asked { question, deadline, trial: Some(self) }) {
+            Ok(decision) => self.assign(decision).map_err(|error| error.to_string()),
+            Err(error) => Err(error.to_string()),
+        };
+        if let Err(reason) = taken {
+            self.failure = Some(format!("the policy failed: {reason}"));
         }
     }
 
@@ -223,10 +238,10 @@ impl Simulation {
     /// world at that time.
     pub fn run(
         mut self,
-        decider: &(impl Decider + ?Sized),
+        mut session: impl Session,
         mut listen: impl FnMut(f64, &[Event], &World),
     ) -> TrialRecord {
-        while self.step(decider).is_none() {
+        while self.step(&mut session).is_none() {
             listen(self.time_s(), self.events(), self.world());
         }
         self.finish()

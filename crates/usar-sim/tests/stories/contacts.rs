@@ -43,9 +43,9 @@ fn the_engine_may_brake_robots_just_before_they_touch() {
     let mut fields = fields.map(|field| (field, "20.0")).to_vec();
     fields.push(("duration_s", "100.0"));
     let scenario = with("paper.ron", &fields);
-    let rne = policies::standard().parse("RNE").unwrap();
+    let mut rne = policies::standard().open("RNE").unwrap();
     for seed in [1, 2, 3] {
-        let record = Simulation::new(&scenario, seed).unwrap().checked().run(&*rne.policy, |_, _, _| {});
+        let record = Simulation::new(&scenario, seed).unwrap().checked().run(&mut *rne, |_, _, _| {});
         assert_eq!(record.status, Status::Completed, "seed {seed}");
     }
 }

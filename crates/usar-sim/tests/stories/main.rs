@@ -24,6 +24,6 @@ fn scenario(fields: &str) -> Scenario {
 
 /// The trial with seed 1, with every invariant checked at every step.
 fn trial(scenario: &Scenario, listen: impl FnMut(f64, &[Event], &World)) -> TrialRecord {
-    let rne = policies::standard().parse("RNE").unwrap();
-    Simulation::new(scenario, 1).unwrap().checked().run(&*rne.policy, listen)
+    let mut rne = policies::standard().open("RNE").unwrap();
+    Simulation::new(scenario, 1).unwrap().checked().run(&mut *rne, listen)
 }

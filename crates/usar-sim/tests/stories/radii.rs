@@ -41,11 +41,11 @@ fn a_small_robot_passes_the_small_gap_and_a_large_one_gives_up() {
 #[test]
 fn a_snapshot_goes_on_with_the_same_ways_for_each_radius() {
     let scenario = scenario(&doorway(true));
-    let policy = policies::standard().parse("RNE").unwrap().policy;
+    let mut policy = policies::standard().open("RNE").unwrap();
     let mut whole = Simulation::new(&scenario, 1).unwrap();
-    (0..150).for_each(|_| assert_eq!(whole.step(&*policy), None));
+    (0..150).for_each(|_| assert_eq!(whole.step(&mut *policy), None));
     let restored = Simulation::restore(&scenario, &whole.snapshot("RNE")).unwrap();
-    let rest = |trial: Simulation| trial.run(&*policy, |_, _, _| {}).state_hash;
+    let mut rest = |trial: Simulation| trial.run(&mut *policy, |_, _, _| {}).state_hash;
     assert_eq!(rest(restored), rest(whole));
 }
 

@@ -27,8 +27,8 @@ const ROOMS: &str = r#"duration_s: 60.0, arena_m: (53.449, 100.935),
 fn walls_that_meet_do_not_end_a_trial() {
     let scenario = scenario(ROOMS);
     let trial = Simulation::new(&scenario, 777).unwrap_or_else(|error| panic!("{error}"));
-    let policy = policies::standard().parse("RNE").unwrap().policy;
-    let record = trial.checked().run(&*policy, |_, _, _| {});
+    let mut policy = policies::standard().open("RNE").unwrap();
+    let record = trial.checked().run(&mut *policy, |_, _, _| {});
     assert_eq!(record.status.name(), "completed", "{:?}", record.status);
     assert!(record.secured() > 0);
 }

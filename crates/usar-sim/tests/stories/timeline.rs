@@ -22,12 +22,12 @@ const WORLD: &str = r#"
 /// A checked trial of the world with a timeline, at its end, and the events of its timeline.
 fn trial(timeline: &str) -> (Scenario, Vec<(f64, Event)>, Simulation) {
     let scenario = scenario(&format!("{WORLD} timeline: [{timeline}]"));
-    let policy = policies::standard().parse("RNE").unwrap().policy;
+    let mut policy = policies::standard().open("RNE").unwrap();
     let mut trial = Simulation::new(&scenario, 1).unwrap().checked();
     let mut heard = Vec::new();
     let mut status = None;
     while status.is_none() {
-        status = trial.step(&*policy);
+        status = trial.step(&mut *policy);
         heard.extend(trial.events().iter().map(|event| (trial.time_s(), event.clone())));
     }
     assert_eq!(status, Some(Status::Completed));
@@ -124,18 +124,18 @@ fn a_trial_goes_on_bit_for_bit_from_before_and_after_each_event() {
            (at_s: 50, event: Opens("slab")),
            (at_s: 52, event: Opens("west")), (at_s: 60, event: TaskEnds("far"))"#,
     );
-    let policy = policies::standard().parse("RNE").unwrap().policy;
+    let mut policy = policies::standard().open("RNE").unwrap();
     let mut trial = Simulation::new(&scenario, 1).unwrap();
     let moments: Vec<f64> =
         scenario.timeline.iter().flat_map(|moment| [-0.02, 0.0, 0.02].map(|by| moment.at_s + by)).collect();
     let digest = whole.finish().state_hash;
     for at_s in moments {
         while trial.time_s() < at_s - 1e-9 {
-            assert_eq!(trial.step(&*policy), None);
+            assert_eq!(trial.step(&mut *policy), None);
         }
         let bytes = trial.snapshot("RNE");
         let mut again = Simulation::restore(&scenario, &bytes).unwrap().checked();
-        while again.step(&*policy).is_none() {}
+        while again.step(&mut *policy).is_none() {}
         assert_eq!(again.finish().state_hash, digest, "from {at_s} s");
     }
 }

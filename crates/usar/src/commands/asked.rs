@@ -6,11 +6,12 @@ use clap::Args;
 use experiments::Failure;
 use experiments::experiment::{Experiment, PolicySpec, check_cost, defaults, with_settings};
 use experiments::sweep::disk::experiment_in;
-use rne_core::Registry;
+use rne_core::{Registry, Session};
 use usar_sim::scenario::Scenario;
 use usar_sim::simulation::Simulation;
 
 use super::load;
+use crate::running::session_of;
 
 /// Which trial.
 #[derive(Debug, Args)]
@@ -104,6 +105,11 @@ impl AskedTrial {
         let Self { scenario, seed, .. } = self;
         Simulation::new(scenario, *seed)
             .map_err(|error| Failure::input(format!("{}, seed {seed}: {error}", scenario.name)))
+    }
+
+    /// A session of the policy that decides, at the beginning of the trial.
+    pub(super) fn session(&self) -> Result<Box<dyn Session>, Failure> {
+        session_of(&self.spec, &self.scenario, self.seed)
     }
 
     /// Names of the tasks.

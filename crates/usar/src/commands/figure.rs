@@ -12,6 +12,7 @@ use pictures::Picture;
 use reports::{ColumnLook, Wanted, column_figure};
 use rne_core::Registry;
 
+use super::measured_by::MeasureArguments;
 use super::{output, read_sweep};
 
 /// Draw one figure of a sweep for the column of a paper, as PDF, SVG or PNG
@@ -62,6 +63,8 @@ pub(crate) struct Arguments {
     /// Replace the file
     #[arg(long)]
     force: bool,
+    #[command(flatten)]
+    pub(crate) measure: MeasureArguments,
 }
 
 #[derive(Debug, Clone, Copy, ValueEnum)]

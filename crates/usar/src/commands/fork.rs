@@ -6,16 +6,15 @@ use clap::{ArgGroup, Args};
 use experiments::Failure;
 use experiments::experiment::PolicySpec;
 use experiments::oracle::{Branch, BranchError, Outcome, advance_to};
-use experiments::run::Driver;
 use reports::table::{headed, right};
-use rne_core::{Assignment, Decision, Question, Registry};
+use rne_core::{Asked, Assignment, Deadline, Decision, Question, Registry, Session};
 use serde::Serialize;
 use usar_sim::record::TrialRecord;
-use usar_sim::simulation::{Checkpoint, Decider, Simulation};
+use usar_sim::simulation::Checkpoint;
 
 use super::asked::{AskedTrial, TrialArguments};
 use super::{SCHEMA_VERSION, ShownArguments, print_table};
-use crate::running::{STOP, stop_on_signals};
+use crate::running::{STOP, session_of, stop_on_signals};
 
 /// What if round N had been decided otherwise? Both trials, side by side
 #[derive(Debug, Args)]
@@ -85,19 +84,22 @@ impl Arguments {
     pub(crate) fn execute(&self, registry: &Registry, out: &mut dyn Write) -> Result<(), Failure> {
         stop_on_signals();
         let asked = self.trial.open("--base", self.base.as_deref(), registry)?;
-        let base = asked.spec.driver();
         let other = self.policy.as_deref().map(|text| PolicySpec::parse(text, registry)).transpose();
         let other = other.map_err(|error| Failure::input(format!("--policy: {error}")))?;
         let mut trial = asked.begin()?;
-        advance_to(&mut trial, &base, self.at_round, &STOP)
+        let (mut base, stop) = (asked.session()?, Deadline::when(&STOP));
+        advance_to(&mut trial, &mut *base, self.at_round, stop)
             .map_err(|error| failure(error, "--at-round: "))?;
         let question = trial.question().ok_or_else(|| Failure::run("the trial asks nothing"))?;
         let start = trial.checkpoint();
-        let was = base.decide(&trial, question).map_err(Failure::run)?;
-        let otherwise = self.decision(&trial, question, other.as_ref())?;
-        let driver = other.as_ref().filter(|_| self.onwards).map(PolicySpec::driver);
-        let onwards = driver.unwrap_or_else(|| base.clone());
-        let sides = [side(&start, was, &base)?, side(&start, otherwise, &onwards)?];
+        let question = Asked { question, deadline: stop, trial: Some(&trial) };
+        let was = base.decide(&question).map_err(Failure::run)?;
+        let session = |spec| session_of(spec, &asked.scenario, asked.seed);
+        let mut other_session = other.as_ref().map(session).transpose()?;
+        let otherwise = self.decision(&question, other_session.as_mut())?;
+        let as_it_was = side(&start, was, &mut *base)?;
+        let onwards = other_session.as_mut().filter(|_| self.onwards).unwrap_or(&mut base);
+        let sides = [as_it_was, side(&start, otherwise, &mut **onwards)?];
         let fork = self.in_words(other.as_ref(), &asked.spec.label);
         if self.json || self.shown.is_json() {
             let output = Output {
@@ -126,17 +128,10 @@ impl Arguments {
     }
 
     /// The changed decision.
-    fn decision(
-        &self,
-        trial: &Simulation,
-        question: &Question,
-        other: Option<&PolicySpec>,
-    ) -> Result<Decision, Failure> {
+    fn decision(&self, asked: &Asked, other: Option<&mut Box<dyn Session>>) -> Result<Decision, Failure> {
+        let question = asked.question;
         match (other, &self.assign) {
-            (Some(spec), _) => {
-                let driver = spec.driver();
-                driver.decide(trial, question).map_err(Failure::run)
-            }
+            (Some(session), _) => session.decide(asked).map_err(Failure::run),
             (None, written) => {
                 let assignment = parse_groups(written.as_deref().unwrap_or_default(), question);
                 let assignment = assignment.map_err(|error| Failure::input(format!("--assign: {error}")))?;
@@ -169,12 +164,12 @@ pub(super) fn failure(error: BranchError, place: &str) -> Failure {
     }
 }
 
-fn side(start: &Checkpoint, decision: Decision, onwards: &Driver) -> Result<Side, Failure> {
+fn side(start: &Checkpoint, decision: Decision, onwards: &mut dyn Session) -> Result<Side, Failure> {
     let refused = |error| failure(error, "");
     let assignment = decision.assignment.clone();
     let mut branch = Branch::begin(start, decision).map_err(refused)?;
-    let round = branch.to_round_end(&STOP).map_err(refused)?;
-    let rest = branch.to_trial_end(onwards, &STOP).map_err(refused)?;
+    let round = branch.to_round_end(Deadline::when(&STOP)).map_err(refused)?;
+    let rest = branch.to_trial_end(onwards, Deadline::when(&STOP)).map_err(refused)?;
     let record = branch.finish();
     Ok(Side {
         assignment,

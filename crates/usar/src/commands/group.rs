@@ -10,7 +10,8 @@ use experiments::experiment::PolicySpec;
 use experiments::input_table::InputTable;
 use rne_core::question::hardest_first;
 use rne_core::{
-    Decision, Member, Need, NeedVector, Question, Quota, RandomSeed, Registry, RoleId, SCHEMA_VERSION, Task,
+    Decision, LogBase, Member, Need, NeedVector, Question, Quota, RandomSeed, Registry, RoleId,
+    SCHEMA_VERSION, Task,
 };
 
 use super::numbers;
@@ -58,8 +59,7 @@ impl Arguments {
         let question = self.question()?;
         let named =
             |error: &dyn std::fmt::Display| Failure::input(format!("{}: {error}", self.file.display()));
-        let policy = &spec.made().policy;
-        let decision = policy.decide(&question).map_err(|error| named(&error))?;
+        let decision = spec.made().decide(&question).map_err(|error| named(&error))?;
         decision.assignment.check(&question).map_err(|error| named(&error))?;
         if self.json {
             return Ok(writeln!(out, "{}", serde_json::to_string(&decision).map_err(Failure::run)?)?);
@@ -150,7 +150,9 @@ fn print_text(
     }
     let made = spec.made();
     if let Some(score) = decision.score {
-        let base = spec.rne_options().unwrap_or_default().log_base;
+        let written = spec.options().iter().find(|(name, _)| name == "log_base");
+        let base = written.and_then(|(_, base)| serde_json::from_value(base.as_str().into()).ok());
+        let base: LogBase = base.unwrap_or_default();
         let value = score.in_base(base).map_or("infinite".to_owned(), |value| format!("{value:.9}"));
         writeln!(out, "score   {value} (log base {base:?})")?;
     }

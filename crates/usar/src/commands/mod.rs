@@ -20,6 +20,7 @@ pub(crate) mod fork;
 pub(crate) mod group;
 pub(crate) mod list;
 pub(crate) mod man;
+mod measured_by;
 pub(crate) mod merge;
 pub(crate) mod new;
 pub(crate) mod oracle;

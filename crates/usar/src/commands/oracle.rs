@@ -9,14 +9,14 @@ use std::sync::atomic::Ordering;
 
 use clap::{Args, ValueEnum};
 use experiments::Failure;
-use experiments::experiment::{PolicySpec, split_list};
+use experiments::experiment::{PolicySpec, Program, split_list};
 use experiments::oracle::{
-    BranchError, Coverage, DEFAULT_LIMIT, NotSimulated, Objective, Outcome, Survey, advance_to, play, survey,
+    BranchError, Coverage, DEFAULT_LIMIT, Objective, Outcome, Survey, advance_to, play, survey,
 };
 use experiments::regret::{DecisionKey, OutcomeLog};
 use indicatif::ProgressBar;
 use rayon::prelude::*;
-use rne_core::{Assignment, Decision, Policy, Question, Registry, assignments};
+use rne_core::{Assignment, Deadline, Decision, Question, Registry, Session, assignments};
 use usar_sim::simulation::Checkpoint;
 
 use super::ShownArguments;
@@ -122,14 +122,14 @@ impl Arguments {
         let objective = Objective::parse(&self.metric, &trial.tasks());
         let objective = objective.map_err(|error| Failure::input(format!("--metric: {error}")))?;
         let onwards = self.onwards(&trial)?;
-        let base = trial.spec.driver();
         let mut simulation = trial.begin()?;
-        advance_to(&mut simulation, &base, self.round, &STOP).map_err(|error| failure(error, "--round: "))?;
+        advance_to(&mut simulation, &mut *trial.session()?, self.round, Deadline::when(&STOP))
+            .map_err(|error| failure(error, "--round: "))?;
         let question =
             simulation.question().cloned().ok_or_else(|| Failure::run("the trial asks nothing"))?;
         let choices = self.choices(&trial, &question)?;
         let asked = Asked { trial: &trial, question, time_s: simulation.time_s(), objective, choices };
-        let key = decision_key(&trial, self.round);
+        let key = decision_key(&trial, self.round)?;
         let mut log = OutcomeLog::open(&self.cache, &key)?;
         let start = simulation.checkpoint();
         let pool =
@@ -161,9 +161,9 @@ impl Arguments {
             None if !trial.policies.is_empty() => trial.policies.clone(),
             None => trial.registry.names().into_iter().map(parse).collect::<Result<Vec<_>, _>>()?,
         };
-        let is_policy = |spec: &&PolicySpec| spec.name != NotSimulated::NAME;
+        let is_policy = |spec: &&PolicySpec| spec.is_of_question();
         let choice = |spec: &PolicySpec| {
-            let decision = spec.made().policy.decide(question);
+            let decision = spec.made().decide(question);
             let decision =
                 decision.map_err(|error| Failure::input(format!("policy {}: {error}", spec.label)))?;
             Ok((spec.label.clone(), decision.assignment))
@@ -201,12 +201,7 @@ impl Arguments {
         let of = then.map_or("assignments".to_owned(), |then| format!("assignments, {} goes on", then.label));
         let progress = progress_bar(count as usize, &of, self.jobs.unwrap_or_else(default_jobs), self.quiet);
         let named: Vec<Assignment> = asked.choices.iter().map(|(_, choice)| choice.clone()).collect();
-        let batch = Batch {
-            start,
-            policy: then.map(|spec| &*spec.made().policy),
-            then: name.as_deref(),
-            progress: &progress,
-        };
+        let batch = Batch { start, then_spec: then, then: name.as_deref(), progress: &progress };
         let survey = survey(&asked.question, (&asked.objective, self.limit), &named, |assignments| {
             batch.play(assignments, log).map_err(Trouble)
         });
@@ -227,7 +222,7 @@ impl From<BranchError> for Trouble {
 /// A batch of assignments that are being played.
 struct Batch<'a> {
     start: &'a Checkpoint,
-    policy: Option<&'a dyn Policy>,
+    then_spec: Option<&'a PolicySpec>,
     then: Option<&'a str>,
     progress: &'a ProgressBar,
 }
@@ -240,7 +235,9 @@ impl Batch<'_> {
         self.progress.inc((assignments.len() - missing.len()) as u64);
         let log = Mutex::new(log);
         missing.par_chunks(CHUNK).try_for_each(|chunk| {
-            let played = chunk.iter().map(|assignment| self.play_one(assignment));
+            let mut onwards =
+                self.then_spec.map(|spec| spec.made().open()).transpose().map_err(Failure::run)?;
+            let played = chunk.iter().map(|assignment| self.play_one(assignment, onwards.as_mut()));
             let played = played.collect::<Result<Vec<_>, Failure>>()?;
             let mut log = log.lock().map_err(|_| Failure::run("a thread panicked"))?;
             let mut pairs = chunk.iter().zip(&played);
@@ -252,26 +249,37 @@ impl Batch<'_> {
         outcomes.ok_or_else(|| Failure::run("an assignment was not played"))
     }
 
-    fn play_one(&self, assignment: &Assignment) -> Result<Outcome, Failure> {
+    fn play_one(
+        &self,
+        assignment: &Assignment,
+        onwards: Option<&mut Box<dyn Session>>,
+    ) -> Result<Outcome, Failure> {
         if STOP.load(Ordering::Relaxed) {
             return Err(Failure::Interrupted("stopped; the same command goes on".to_owned()));
         }
         let decision = Decision::of(assignment.clone());
-        let outcome = play(self.start, decision, self.policy, &STOP).map_err(|error| failure(error, ""));
+        let outcome =
+            play(self.start, decision, onwards, Deadline::when(&STOP)).map_err(|error| failure(error, ""));
         self.progress.inc(1);
         outcome
     }
 }
 
 /// The key under which the outcomes of a decision are stored.
-pub(super) fn decision_key(trial: &AskedTrial, round: u32) -> DecisionKey {
-    DecisionKey {
+pub(super) fn decision_key(trial: &AskedTrial, round: u32) -> Result<DecisionKey, Failure> {
+    // Any policy may go on after the decision, so that all that there are decide outcomes.
+    let names = trial.registry.names().into_iter();
+    let mut specs: Vec<PolicySpec> =
+        names.filter_map(|name| PolicySpec::parse(name, &trial.registry).ok()).collect();
+    specs.push(trial.spec.clone());
+    Ok(DecisionKey {
+        program: Program::running(&specs)?.digest().to_string(),
         scenario: trial.scenario.name.clone(),
         resolved: trial.scenario.resolved(),
         seed: trial.seed,
         base: trial.spec.plain(),
         round,
-    }
+    })
 }
 
 /// The number of played assignments, in words.

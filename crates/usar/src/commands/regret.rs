@@ -8,11 +8,12 @@ use experiments::Failure;
 use experiments::experiment::{Experiment, Overrides, PolicySpec};
 use experiments::files::NewFile;
 use experiments::oracle::{DEFAULT_LIMIT, Objective};
-use experiments::regret::{Analysis, Choices, Estimate, Study, StudyFolder, analyse};
+use experiments::regret::{Analysis, Choices, Criteria, Estimate, Study, StudyFolder, analyse};
 use reports::regret_figures;
 use reports::table::{headed, right};
 use rne_core::Registry;
 
+use super::measured_by::MeasureArguments;
 use super::{SCHEMA_VERSION, ShownArguments, print_table};
 use crate::running::{STOP, default_jobs, progress_bar, stop_on_signals, tell};
 
@@ -70,6 +71,8 @@ pub(crate) struct Arguments {
     json: bool,
     #[command(flatten)]
     pub(crate) shown: ShownArguments,
+    #[command(flatten)]
+    pub(crate) measure: MeasureArguments,
 }
 
 impl Arguments {
@@ -77,7 +80,11 @@ impl Arguments {
         stop_on_signals();
         let folder = if self.file.is_dir() { StudyFolder::read(&self.file)? } else { self.play(registry)? };
         let objectives = self.objectives(&folder.study.tasks)?;
-        let analyses = objectives.iter().map(|objective| analyse(&folder, objective, registry));
+        let measure = registry.a_measure();
+        let measure = measure.ok_or_else(|| Failure::input("there is no trust measure"))?;
+        let analyses = objectives
+            .iter()
+            .map(|objective| analyse(&folder, &Criteria { objective, measure: &measure }, registry));
         let analyses = analyses.collect::<Result<Vec<_>, Failure>>()?;
         write_tables(folder.path(), &analyses)?;
         for (name, content) in regret_figures(&analyses)? {
@@ -218,7 +225,7 @@ fn print_analysis(out: &mut dyn Write, analysis: &Analysis) -> Result<(), Failur
     let mut table = headed(["feature of an assignment", "rank correlation with the outcome", "decisions"]);
     for row in &analysis.features {
         table.add_row([
-            right(row.feature),
+            right(&row.feature),
             right(&with_interval(row.correlation.as_ref(), 1.0, "")),
             right(&row.decisions.to_string()),
         ]);

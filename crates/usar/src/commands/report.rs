@@ -11,6 +11,7 @@ use reports::{ShownTrial, Wanted, write_report};
 use rne_core::Registry;
 
 use super::family::FamilyArguments;
+use super::measured_by::MeasureArguments;
 use super::read_sweep;
 use super::trials::Shown;
 use super::view::page;
@@ -48,6 +49,8 @@ pub(crate) struct Arguments {
     /// Write replays of these trials as well, linked from the report [without --trial: of the first seed]
     #[arg(long)]
     with_replays: bool,
+    #[command(flatten)]
+    pub(crate) measure: MeasureArguments,
 }
 
 impl Arguments {

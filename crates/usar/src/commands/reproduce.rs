@@ -94,7 +94,9 @@ impl Arguments {
         let examples = examples()?;
         write_examples(&self.out, &examples)?;
         let sections = sections(&judged, &examples, &predicted);
-        let page = write_page(&self.out, &judged, &sections)?;
+        let Some((_, first)) = folders.first() else { return Err(Failure::run("there are no scenarios")) };
+        let program = first.experiment().program.digest();
+        let page = write_page(&self.out, &judged, &sections, &program)?;
         for Section { title, table, note } in &sections {
             writeln!(out, "{title}")?;
             table.iter().try_for_each(|table| print_table(out, table))?;

@@ -11,11 +11,11 @@ use clap::Args;
 use experiments::Failure;
 use experiments::experiment::{PolicySpec, check_cost, defaults, with_settings};
 use reports::table::rounds_table;
-use rne_core::Registry;
+use rne_core::{Registry, Session};
 use serde::Serialize;
 use usar_sim::metrics::CutOff;
 use usar_sim::record::{Status, TrialRecord};
-use usar_sim::simulation::{Decider, Simulation};
+use usar_sim::simulation::Simulation;
 
 use self::event_lines::EventLines;
 use self::live::Live;
@@ -23,9 +23,10 @@ use self::story::Story;
 use crate::printable::counted;
 use crate::recordings;
 
+use super::measured_by::MeasureArguments;
 use super::snapshot::{Snapshot, save};
 use super::{SCHEMA_VERSION, ShownArguments, load, print_table};
-use crate::running::{Guard, stop_on_signals};
+use crate::running::{Guard, session_of, stop_on_signals};
 
 /// Run one trial and tell what happened, round by round
 #[derive(Debug, Args)]
@@ -93,6 +94,8 @@ pub(crate) struct Arguments {
     json: bool,
     #[command(flatten)]
     pub(crate) shown: ShownArguments,
+    #[command(flatten)]
+    pub(crate) measure: MeasureArguments,
 }
 
 #[derive(Serialize)]
@@ -120,7 +123,6 @@ impl Arguments {
         let spec = PolicySpec::parse(asked, registry)
             .map_err(|error| Failure::input(format!("--policy: {error}")))?;
         spec.check_allowed(&scenario)?;
-        let driver = spec.driver();
         let simulation = match &snapshot {
             Some(snapshot) => snapshot.restore(&scenario)?,
             None => Simulation::new(&scenario, self.seed.unwrap_or(first_seed))
@@ -132,7 +134,7 @@ impl Arguments {
             save(&mut simulation, &spec, (path, seconds))?;
         }
         stop_on_signals();
-        let (record, story) = self.run(simulation, &spec.label, &driver)?;
+        let (record, story) = self.run(simulation, &spec, registry)?;
         if let Status::Failed(reason) = &record.status {
             return Err(Failure::run(format!("trial of {} with seed {seed} failed: {reason}", spec.label)));
         }
@@ -154,13 +156,14 @@ impl Arguments {
     fn run(
         &self,
         simulation: Simulation,
-        label: &str,
-        decider: &impl Decider,
+        spec: &PolicySpec,
+        registry: &Registry,
     ) -> Result<(TrialRecord, Vec<String>), Failure> {
+        let mut session = session_of(spec, simulation.scenario(), simulation.seed())?;
         let guard = Guard::new(self.max_trial_s);
         let mut lines = self.events.as_deref().map(EventLines::begin).transpose()?;
         let mut story = Story::of(&simulation);
-        let mut live = (!self.quiet).then(|| Live::begin(label));
+        let mut live = (!self.quiet).then(|| Live::begin(&spec.label));
         let mut watch = |simulation: &Simulation| {
             guard.look(simulation)?;
             story.iter_mut().for_each(|story| story.listen(simulation));
@@ -169,10 +172,11 @@ impl Arguments {
         };
         let record = match &self.record {
             Some(path) => {
-                let options = recording::Options { policy: label.to_owned(), fps: self.record_fps };
-                recordings::record_to(path, simulation, decider, &options, &mut watch)
+                let (policy, measure) = (spec.label.clone(), spec.measure(registry));
+                let options = recording::Options { policy, measure, fps: self.record_fps };
+                recordings::record_to(path, simulation, &mut *session, &options, &mut watch)
             }
-            None => run(simulation, decider, &mut watch),
+            None => run(simulation, &mut *session, &mut watch),
         };
         live.into_iter().for_each(Live::finish);
         lines.map_or(Ok(()), EventLines::finish)?;
@@ -183,10 +187,10 @@ impl Arguments {
 /// Runs a trial to its end. `watch` is called after each step and may interrupt the trial.
 fn run(
     mut simulation: Simulation,
-    decider: &impl Decider,
+    session: &mut dyn Session,
     watch: &mut dyn FnMut(&Simulation) -> Result<(), Failure>,
 ) -> Result<TrialRecord, Failure> {
-    while simulation.step(decider).is_none() {
+    while simulation.step(&mut *session).is_none() {
         watch(&simulation)?;
     }
     Ok(simulation.finish())

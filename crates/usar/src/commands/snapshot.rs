@@ -12,6 +12,8 @@ use usar_sim::scenario::Scenario;
 use usar_sim::simulation::Simulation;
 use usar_sim::snapshot::{Identity, START_BYTES, check_start};
 
+use crate::running::session_of;
+
 /// A snapshot that was read from a file.
 pub(super) struct Snapshot {
     path: PathBuf,
@@ -46,7 +48,7 @@ pub(super) fn save(
     spec: &PolicySpec,
     (path, seconds): (&Path, f64),
 ) -> Result<(), Failure> {
-    let driver = spec.driver();
+    let mut session = session_of(spec, simulation.scenario(), simulation.seed())?;
     let (now, end) = (simulation.time_s(), simulation.scenario().duration_s);
     if !(now..=end).contains(&seconds) {
         return Err(Failure::input(format!("--save-at: must be from {now} to {end} s, found {seconds}")));
@@ -59,7 +61,7 @@ pub(super) fn save(
         |error: std::io::Error| Failure::storage(format!("--save: cannot write {}: {error}", path.display()));
     let mut file = tempfile::NamedTempFile::new_in(folder).map_err(trouble)?;
     while simulation.time_s() < seconds {
-        if let Some(status) = simulation.step(&driver) {
+        if let Some(status) = simulation.step(&mut *session) {
             if let Status::Failed(reason) = status {
                 return Err(Failure::run(reason));
             }

@@ -8,11 +8,11 @@ use experiments::Failure;
 use experiments::metric::task_names;
 use experiments::rounds::{self, Blindness, Example, GroupLevels, Likeness, likeness, rounds_in};
 use experiments::sweep::folder::Folder;
-use policies::rne::Rne;
 use reports::table::{levels_table, likeness_table};
-use rne_core::{Member, Registry};
+use rne_core::{MadeMeasure, Member, Registry};
 use usar_sim::scenario::Scenario;
 
+use super::measured_by::MeasureArguments;
 use super::{ShownArguments, print_table, read_sweep};
 
 /// What do the policies' groups amount to: sorting by energy, by HP, or by what?
@@ -33,6 +33,8 @@ pub(crate) struct Arguments {
     case: usize,
     #[command(flatten)]
     pub(crate) shown: ShownArguments,
+    #[command(flatten)]
+    pub(crate) measure: MeasureArguments,
 }
 
 impl Arguments {
@@ -49,12 +51,15 @@ impl Arguments {
             let rounds = rounds_in(&mut folder, case, place)?;
             likenesses.push((policy.label.clone(), likeness(&rounds)));
             levels.extend(rounds::levels(&policy.label, &rounds));
-            if policy.name == "RNE" && blind.is_empty() {
-                let options = policy.rne_options().unwrap_or_default();
-                let rne = Rne::new(options).map_err(Failure::run)?;
+            if let Some(measure) = policy.own_measure(registry).filter(|_| blind.is_empty()) {
                 let mut blindness = Blindness::default();
-                rounds.iter().try_for_each(|round| blindness.add(round, &rne))?;
-                blind.push((policy.label.clone(), rounds.len(), blindness));
+                rounds.iter().try_for_each(|round| blindness.add(round, &*measure.it))?;
+                blind.push(Blind {
+                    label: policy.label.clone(),
+                    rounds: rounds.len(),
+                    measure: measure.clone(),
+                    blindness,
+                });
             }
         }
         if likenesses.iter().all(|(_, of)| of[0].rounds() == 0) {
@@ -69,6 +74,14 @@ impl Arguments {
         }
         Ok(())
     }
+}
+
+/// How blind a policy's trust measure was to magnitude.
+struct Blind {
+    label: String,
+    rounds: usize,
+    measure: MadeMeasure,
+    blindness: Blindness,
 }
 
 /// A sentence about failed and missing trials; `None` if there are none.
@@ -89,7 +102,7 @@ fn print(
     out: &mut dyn Write,
     likenesses: &[(String, [Likeness; 3])],
     (levels, scenario): (&[GroupLevels], &Scenario),
-    blind: &[(String, usize, Blindness)],
+    blind: &[Blind],
 ) -> Result<(), Failure> {
     let hardest = scenario.hardest_first().first().map_or("", |task| &scenario.tasks[task.index()].name);
     writeln!(
@@ -107,15 +120,12 @@ fn print(
     writeln!(out, "Mean levels of the groups when a round begins, in percent")?;
     print_table(out, &levels_table(levels, &task_names(scenario)))?;
     writeln!(out, "n: rounds with two groups\n")?;
-    blind.iter().try_for_each(|(label, rounds, blindness)| print_blindness(out, label, *rounds, blindness))
+    blind.iter().try_for_each(|blind| print_blindness(out, blind))
 }
 
-fn print_blindness(
-    out: &mut dyn Write,
-    label: &str,
-    rounds: usize,
-    blindness: &Blindness,
-) -> Result<(), Failure> {
+fn print_blindness(out: &mut dyn Write, blind: &Blind) -> Result<(), Failure> {
+    let Blind { label, rounds, measure, blindness } = blind;
+    let (name, unit) = (&measure.name, measure.it.unit());
     let robot = |robot: &Member| {
         let level = |level: Option<f64>| level.unwrap_or(0.0);
         let (energy, hp) = (level(robot.energy_level), level(robot.hp_level));
@@ -131,12 +141,12 @@ fn print_blindness(
         for (pair, what) in [(unlike, "farther apart, more trust"), (alike, "nearer, less trust")] {
             writeln!(
                 out,
-                "  {} to {}: {:.0} points apart, RNE {:.2e} nats, trust {:.6} ({what})",
+                "  {} to {}: {:.0} points apart, {name} {:.2e} {unit}, trust {:.6} ({what})",
                 robot(&pair.from),
                 robot(&pair.to),
                 pair.apart(),
-                pair.rne,
-                (-pair.rne).exp(),
+                pair.distrust,
+                measure.it.trust(pair.distrust),
             )?;
         }
     }
@@ -144,7 +154,7 @@ fn print_blindness(
         writeln!(
             out,
             "Of all two pairs of robots of one role and round, in {:.1} % the one whose levels are nearer to \
-             each other has the higher entropy (unrelated: 50 %).",
+             each other has the higher {name} (unrelated: 50 %).",
             100.0 * misjudged
         )?;
     }

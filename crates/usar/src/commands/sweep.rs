@@ -18,6 +18,7 @@ use reports::table::policy_table;
 use rne_core::Registry;
 
 use super::chosen::Chosen;
+use super::measured_by::MeasureArguments;
 use super::precision::Precision;
 use super::{ShownArguments, print_table};
 use crate::recordings::{Recorded, record_trials};
@@ -90,6 +91,8 @@ pub(crate) struct Arguments {
     quiet: bool,
     #[command(flatten)]
     pub(crate) shown: ShownArguments,
+    #[command(flatten)]
+    pub(crate) measure: MeasureArguments,
 }
 
 impl Arguments {

@@ -196,7 +196,7 @@ impl Suite {
         keys.sort_by_key(|key| (key.case, key.trial, key.policy));
         let progress = progress_bar(keys.len(), "trials", jobs, quiet || keys.is_empty());
         let shared = Arc::clone(&self.experiment);
-        let run = Arc::new(move |key: &TrialKey, halt: &std::sync::atomic::AtomicBool| shared.run(key, halt));
+        let run = Arc::new(move |key: &_, sessions: &mut _, halt: &_| shared.run(key, sessions, halt));
         let limits = Limits { jobs, trial: None };
         let is_whole = run_all(keys, limits, run, &STOP, |outcome: Outcome| {
             let value = match outcome.record() {

@@ -16,7 +16,7 @@ use usar_sim::simulation::Simulation;
 
 use super::load;
 use crate::recordings::{path_of, recorded, recording_of};
-use crate::running::tell;
+use crate::running::{session_of, tell};
 
 /// The first bytes of a recording.
 const MAGIC: &[u8] = b"USREC";
@@ -99,10 +99,13 @@ impl Asked {
             let spec = PolicySpec::parse(policy, registry)
                 .map_err(|error| Failure::input(format!("--policy: {error}")))?;
             spec.check_allowed(&scenario)?;
-            let driver = spec.driver();
             let simulation = Simulation::new(&scenario, seed)
                 .map_err(|error| Failure::input(format!("{}: {error}", file.display())))?;
-            let bytes = recorded(simulation, &driver, &Options::new(&spec.label))?;
+            let bytes = recorded(
+                simulation,
+                &mut *session_of(&spec, &scenario, seed)?,
+                &Options::new(&spec.label, spec.measure(registry)),
+            )?;
             shown.push(Shown { name: file.display().to_string(), bytes });
         }
         Ok(())

@@ -12,7 +12,7 @@ use experiments::provenance::{COMMIT, Manifest};
 use experiments::run::{Limits, Run, TrialKey, run_all};
 use experiments::sweep::audit::{difference, strange_files};
 use experiments::sweep::folder::Folder;
-use rne_core::Registry;
+use rne_core::{Basis, Registry};
 
 use crate::running::{STOP, default_jobs, progress_bar, stop_on_signals, tell};
 
@@ -58,7 +58,7 @@ impl Arguments {
             )));
         }
         damages.iter().for_each(tell);
-        let chosen = self.choose(&all);
+        let chosen = self.without_undetermined(&experiment, self.choose(&all));
         let count = chosen.len();
         self.mention_other_program(&experiment, &manifest)?;
         let mut differences = self.run_again(&mut folder, chosen)?;
@@ -91,7 +91,7 @@ impl Arguments {
         let jobs = self.jobs.map_or_else(default_jobs, |jobs| jobs as usize);
         let progress = progress_bar(chosen.len(), "trials", jobs, self.quiet);
         let experiment = folder.shared_experiment();
-        let run: Arc<Run> = Arc::new(move |key, halt| experiment.run_alone(key, halt));
+        let run: Arc<Run> = Arc::new(move |key, sessions, halt| experiment.run_alone(key, sessions, halt));
         let mut differences = Vec::new();
         stop_on_signals();
         let limits = Limits { jobs, trial: Some(LONGEST_TRIAL) };
@@ -106,6 +106,21 @@ impl Arguments {
         } else {
             Err(Failure::Interrupted("stopped; nothing was written".into()))
         }
+    }
+
+    /// Leaves out the trials of policies that may answer the same question in another way.
+    fn without_undetermined(&self, experiment: &Experiment, keys: Vec<TrialKey>) -> Vec<TrialKey> {
+        let of = |key: &TrialKey| &experiment.policies[key.policy];
+        let is_determined = |key: &TrialKey| of(key).made().it.basis() != Basis::Undetermined;
+        let (kept, left): (Vec<TrialKey>, Vec<TrialKey>) = keys.into_iter().partition(is_determined);
+        if let Some(key) = left.first().filter(|_| !self.quiet) {
+            tell(format_args!(
+                "note: {} trials are not run again, because policy {} says that its answers may differ",
+                left.len(),
+                of(key).label
+            ));
+        }
+        kept
     }
 
     fn choose(&self, all: &[TrialKey]) -> Vec<TrialKey> {

@@ -11,14 +11,14 @@ use experiments::Failure;
 use experiments::experiment::PolicySpec;
 use experiments::oracle::{Coverage, Evaluation, Objective, Survey};
 use experiments::regret::OutcomeLog;
-use experiments::why::{OtherChoice, directed, exchanges, other_choices, rne_of};
-use policies::rne::DirectedRne;
+use experiments::why::{Directed, OtherChoice, directed, exchanges, other_choices};
 use rne_core::{Assignment, Decision, Question, Registry, assignments};
 use serde::Serialize;
 use usar_sim::record::{DecisionRecord, Status};
 use usar_sim::simulation::Simulation;
 
 use super::asked::{AskedTrial, TrialArguments};
+use super::measured_by::MeasureArguments;
 use super::oracle::decision_key;
 use super::{SCHEMA_VERSION, ShownArguments};
 use crate::running::{Guard, stop_on_signals};
@@ -59,6 +59,8 @@ pub(crate) struct Arguments {
     json: bool,
     #[command(flatten)]
     pub(crate) shown: ShownArguments,
+    #[command(flatten)]
+    pub(crate) measure: MeasureArguments,
 }
 
 /// The oracle's judgement of a decision, in one metric, over one horizon.
@@ -86,8 +88,12 @@ struct Account<'a> {
     /// Complete, with the history of the rounds before.
     question: Question,
     decision: &'a Decision,
-    /// RNE between the groups, need by need; empty for other kinds of policies.
-    directed: Vec<DirectedRne>,
+    /// The trust measure of `directed` and of the robot's exchanges; absent if the policy has none.
+    measure: Option<String>,
+    /// Unit of the trust measure.
+    unit: Option<String>,
+    /// Distrust between the groups, need by need; empty without a measure that goes need by need.
+    directed: Vec<Directed>,
     others: Vec<OtherChoice>,
     /// Empty if the oracle was not run for this decision.
     oracle: Vec<OracleSays>,
@@ -126,14 +132,14 @@ impl Arguments {
             return Err(Failure::input(format!("--at: must be from 0 to {end} s, found {at}")));
         }
         let mut watched = self.robot.map(Watched::new);
-        let (driver, guard) = (asked.spec.driver(), Guard::new(f64::INFINITY));
+        let (mut session, guard) = (asked.session()?, Guard::new(f64::INFINITY));
         let last_round = self.round.unwrap_or(1);
         loop {
             let is_decided = simulation.decisions().len() >= last_round as usize;
             if is_decided && self.at.is_none_or(|at| simulation.time_s() >= at) {
                 return Ok(watched);
             }
-            if let Some(Status::Failed(reason)) = simulation.step(&driver) {
+            if let Some(Status::Failed(reason)) = simulation.step(&mut *session) {
                 return Err(Failure::run(reason));
             }
             if simulation.ending().is_some() {
@@ -152,13 +158,14 @@ impl Arguments {
         watched: Option<Watched>,
     ) -> Result<Account<'a>, Failure> {
         let DecisionRecord { question, decision, .. } = record;
-        let rne = rne_of(&asked.spec);
-        let compared = rne.as_ref().filter(|_| asked.spec.rne_options().is_some_and(|options| !options.sort));
-        let directed = compared.map(|rne| directed(rne, question, decision)).transpose()?;
+        let measure = asked.spec.own_measure(&asked.registry);
+        let trust = measure.map(|measure| measure.it.of_team(question)).transpose().map_err(Failure::run)?;
+        let directed = trust.as_ref().map(|trust| directed(&**trust, question, decision)).transpose()?;
         let begun = simulation.metrics().rounds.iter().find(|round| round.round == question.round);
         let story = watched.map(|watched| {
             let id = watched.robot();
-            let exchanges = rne.as_ref().map(|rne| exchanges(rne, question, &decision.assignment, id));
+            let exchanges =
+                trust.as_ref().map(|trust| exchanges(&**trust, question, &decision.assignment, id));
             Ok::<_, Failure>(watched.story(
                 simulation,
                 question,
@@ -177,9 +184,11 @@ impl Arguments {
             policy: &asked.spec.label,
             round: question.round,
             time_s: begun.map_or(0.0, |round| round.start_s),
+            measure: measure.map(|measure| measure.name.clone()),
+            unit: measure.map(|measure| measure.it.unit().to_owned()),
             directed: directed.unwrap_or_default(),
             others: other_choices(&full, &decision.assignment, &others(asked)?),
-            oracle: self.oracle(asked, question, &decision.assignment),
+            oracle: self.oracle(asked, question, &decision.assignment)?,
             robot: story.transpose()?,
             decision,
             question: full,
@@ -187,10 +196,14 @@ impl Arguments {
     }
 
     /// The oracle's judgements of a decision, as far as outcomes are known.
-    fn oracle(&self, asked: &AskedTrial, question: &Question, chosen: &Assignment) -> Vec<OracleSays> {
-        let Some(log) = OutcomeLog::find(&self.cache, &decision_key(asked, question.round)) else {
-            return Vec::new();
-        };
+    fn oracle(
+        &self,
+        asked: &AskedTrial,
+        question: &Question,
+        chosen: &Assignment,
+    ) -> Result<Vec<OracleSays>, Failure> {
+        let key = decision_key(asked, question.round)?;
+        let Some(log) = OutcomeLog::find(&self.cache, &key) else { return Ok(Vec::new()) };
         let tasks = asked.tasks();
         let mut said = Vec::new();
         for then in log.horizons() {
@@ -206,7 +219,7 @@ impl Arguments {
                 said.extend(of_horizon.map(|judged| OracleSays { then: then.clone(), ..judged }));
             }
         }
-        said
+        Ok(said)
     }
 }
 

@@ -143,7 +143,7 @@ fn why_is_what_the_recorded_needs_say() {
         assert!((pair["by_need"][k].as_f64().unwrap() - by_hand).abs() < 1e-12, "need {k}");
         total += by_hand;
     }
-    assert!((pair["rne"]["Finite"].as_f64().unwrap() - total).abs() < 1e-12);
+    assert!((pair["distrust"].as_f64().unwrap() - total).abs() < 1e-12);
     assert!(
         (told["decision"]["score"]["Finite"].as_f64().unwrap() - total).abs() < 1e-12,
         "MaxOfBoth: the larger one"

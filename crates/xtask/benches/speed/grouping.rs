@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use rne_core::Question;
+use rne_core::{Asked, Question};
 use xtask::team::question;
 
 /// Number of groupings of each team; the median is printed.
@@ -25,11 +25,11 @@ pub fn print_table() {
 }
 
 fn seconds(question: &Question) -> f64 {
-    let rne = policies::standard().parse("RNE").expect("known");
+    let mut rne = policies::standard().open("RNE").expect("known");
     let mut turns: Vec<f64> = (0..TURNS)
         .map(|_| {
             let start = Instant::now();
-            std::hint::black_box(rne.policy.decide(question).expect("a decision"));
+            std::hint::black_box(rne.decide(&Asked::of(question)).expect("a decision"));
             start.elapsed().as_secs_f64()
         })
         .collect();

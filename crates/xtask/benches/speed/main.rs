@@ -7,10 +7,9 @@
 mod grouping;
 mod raw;
 
-use std::sync::Arc;
 use std::time::Instant;
 
-use rne_core::Policy;
+use rne_core::{Deadline, Session};
 use usar_sim::scenario::Scenario;
 use usar_sim::simulation::Simulation;
 use usar_sim::stage::Stage;
@@ -72,25 +71,25 @@ fn raw_us(robots: u32, steps: u64) -> f64 {
     start.elapsed().as_secs_f64() * 1e6 / steps as f64
 }
 
-fn made(policy: &str) -> Arc<dyn Policy> {
-    policies::standard().parse(policy).expect("known").policy
+fn open(policy: &str) -> Box<dyn Session> {
+    policies::standard().open(policy).expect("known")
 }
 
 fn full_us(scenario: &Scenario, policy: &str, steps: u64) -> f64 {
-    let policy = made(policy);
+    let mut policy = open(policy);
     let start = Instant::now();
     let mut trial = Simulation::new(scenario, 1).expect("drawn");
-    (0..steps).for_each(|_| assert_eq!(trial.step(&*policy), None));
+    (0..steps).for_each(|_| assert_eq!(trial.step(&mut *policy), None));
     start.elapsed().as_secs_f64() * 1e6 / steps as f64
 }
 
 fn stages_us(scenario: &Scenario, policy: &str, steps: u64) -> [f64; Stage::ALL.len()] {
-    let policy = made(policy);
+    let mut policy = open(policy);
     let mut trial = Simulation::new(scenario, 1).expect("drawn");
     let mut spent = [0.0; Stage::ALL.len()];
     for _ in 0..steps {
         let mut last = Instant::now();
-        let step = trial.step_watched(&*policy, |stage| {
+        let step = trial.step_watched(&mut *policy, Deadline::NEVER, |stage| {
             let now = Instant::now();
             spent[stage as usize] += (now - last).as_secs_f64();
             last = now;

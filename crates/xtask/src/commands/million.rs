@@ -10,7 +10,7 @@ use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 
 use experiments::experiment::{Experiment, Keep, Overrides, Shard};
-use experiments::run::{Outcome, Trial, TrialKey};
+use experiments::run::{Outcome, Sessions, Trial, TrialKey};
 use experiments::sweep::folder::{Folder, Opening};
 
 use super::scale::peak_memory;
@@ -74,8 +74,11 @@ fn experiment(place: &Path, trials: u32, keep: Keep) -> Experiment {
 /// A real trial of each case and policy.
 fn fakes(experiment: &Experiment) -> Vec<Vec<Trial>> {
     let halt = AtomicBool::new(false);
-    let trial =
-        |case, policy| experiment.run_alone(&experiment.key((case, policy, 1)), &halt).expect("it runs");
+    let trial = |case, policy| {
+        experiment
+            .run_alone(&experiment.key((case, policy, 1)), &mut Sessions::default(), &halt)
+            .expect("it runs")
+    };
     let of_case = |case| (0..POLICIES.len()).map(|policy| trial(case, policy)).collect();
     (0..CASES).map(of_case).collect()
 }

@@ -21,7 +21,7 @@ pub fn run(arguments: &[String]) -> ExitCode {
         file.set("conflicts.resolver", resolver).expect("a resolver");
         scenario = Scenario::try_from(file).expect("a scenario that can be used");
     }
-    let eng = policies::standard().parse("ENG").expect("known");
+    let mut eng = policies::standard().open("ENG").expect("known");
     let start = Instant::now();
     let mut trial = Simulation::new(&scenario, 1).expect("drawn");
     println!(
@@ -30,7 +30,7 @@ pub fn run(arguments: &[String]) -> ExitCode {
         start.elapsed().as_secs_f64()
     );
     let start = Instant::now();
-    while trial.step(&*eng.policy).is_none() {}
+    while trial.step(&mut *eng).is_none() {}
     let steps = trial.steps();
     let us = start.elapsed().as_secs_f64() * 1e6 / steps as f64;
     let record = trial.finish();

@@ -36,7 +36,7 @@ pub fn run(arguments: &[String]) -> ExitCode {
     let ran = run_all(
         keys,
         Limits { jobs, trial: None },
-        Arc::new(move |key, halt| experiment.run(key, halt)),
+        Arc::new(move |key, sessions, halt| experiment.run(key, sessions, halt)),
         &AtomicBool::new(false),
         |outcome| {
             outcomes.push(outcome);

@@ -3,9 +3,8 @@
 //! `work trial|grouping`
 
 use std::process::ExitCode;
-use std::sync::Arc;
 
-use rne_core::Policy;
+use rne_core::{Asked, Session};
 use usar_sim::scenario::Scenario;
 use usar_sim::simulation::Simulation;
 use xtask::team;
@@ -24,22 +23,22 @@ pub fn run(arguments: &[String]) -> ExitCode {
 
 fn trial() {
     let (scenario, _) = Scenario::load("scenarios/paper.ron".as_ref()).expect("run from the project's root");
-    let rne = rne();
+    let mut rne = rne();
     let mut trial = Simulation::new(&scenario, 1).expect("drawn");
-    (0..STEPS).for_each(|_| assert_eq!(trial.step(&*rne), None));
+    (0..STEPS).for_each(|_| assert_eq!(trial.step(&mut *rne), None));
     println!("{}", trial.finish().state_hash);
 }
 
-fn rne() -> Arc<dyn Policy> {
-    policies::standard().parse("RNE").expect("known").policy
+fn rne() -> Box<dyn Session> {
+    policies::standard().open("RNE").expect("known")
 }
 
 /// Searches for the best split of a role: 20 robots, the largest number that is exact, and 60 robots by
 /// local search.
 fn grouping() {
-    let rne = rne();
+    let mut rne = rne();
     for carriers in [20, 60] {
-        let decision = rne.decide(&team::question([carriers, 0, 0]));
+        let decision = rne.decide(&Asked::of(&team::question([carriers, 0, 0])));
         println!("{:?}", decision.expect("a decision").assignment);
     }
 }

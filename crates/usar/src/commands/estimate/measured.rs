@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use experiments::Failure;
 use experiments::experiment::{Experiment, Keep, Shard};
-use experiments::run::{Outcome, TrialKey};
+use experiments::run::{Outcome, Sessions, TrialKey};
 use experiments::sweep::{Sizes, sizes};
 
 use crate::running::{STOP, progress_bar};
@@ -36,10 +36,10 @@ impl Measured {
     pub(crate) fn of(experiment: &Experiment) -> Result<Self, Failure> {
         let sample = sample(experiment);
         let bar = progress_bar(sample.len(), "trials to measure", 1, false);
-        let start = Instant::now();
+        let (start, mut sessions) = (Instant::now(), Sessions::default());
         let mut outcomes = Vec::new();
         for key in sample {
-            let result = experiment.run(&key, &STOP);
+            let result = experiment.run(&key, &mut sessions, &STOP);
             if STOP.load(Ordering::Relaxed) {
                 return Err(Failure::Interrupted("stopped; nothing was written".to_owned()));
             }

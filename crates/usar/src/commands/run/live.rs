@@ -138,8 +138,8 @@ mod tests {
     fn a_screen_has_the_time_the_tasks_and_the_robots_in_80_columns() {
         let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/paper.ron");
         let mut simulation = Simulation::new(&Scenario::load(&path).unwrap().0, 1).unwrap();
-        let policy = policies::standard().parse("RNE").unwrap().policy;
-        (0..500).for_each(|_| drop(simulation.step(&*policy)));
+        let mut policy = policies::standard().open("RNE").unwrap();
+        (0..500).for_each(|_| drop(simulation.step(&mut *policy)));
         let screen = screen(&simulation, "RNE", 12.0);
         let lines: Vec<&str> = screen.lines().collect();
         assert_eq!(lines.len(), 1 + 2 + 12);

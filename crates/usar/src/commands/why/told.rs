@@ -4,8 +4,7 @@ use std::io::Write;
 
 use experiments::Failure;
 use experiments::comparison::digits;
-use experiments::why::OtherChoice;
-use policies::rne::DirectedRne;
+use experiments::why::{Directed, OtherChoice};
 use reports::table::{headed, right};
 use rne_core::decision::{Ranking, RneAccount};
 use rne_core::{Account as PolicyAccount, Decision, Question, RelativeNeedsEntropy};
@@ -41,7 +40,9 @@ pub(super) fn text(out: &mut dyn Write, account: &Account, asked: &AskedTrial) -
         _ => writeln!(out, "{} gives no account of its decision.", account.policy)?,
     }
     if let Some(pair) = account.directed.first() {
-        needs(out, question, pair)?;
+        let [measure, unit] =
+            [&account.measure, &account.unit].map(|text| text.as_deref().unwrap_or_default());
+        needs(out, question, pair, &Printed { measure, unit })?;
     }
     others(out, question, &account.others)?;
     oracle(out, account, asked)?;
@@ -130,13 +131,25 @@ fn ranked(out: &mut dyn Write, question: &Question, ranking: &Ranking) -> Result
     Ok(())
 }
 
-/// Prints the contribution of each need to the RNE between two groups, the largest first.
-fn needs(out: &mut dyn Write, question: &Question, pair: &DirectedRne) -> Result<(), Failure> {
+/// A trust measure, for people.
+struct Printed<'a> {
+    measure: &'a str,
+    unit: &'a str,
+}
+
+/// Prints the contribution of each need to the distrust between two groups, the largest first.
+fn needs(
+    out: &mut dyn Write,
+    question: &Question,
+    pair: &Directed,
+    printed: &Printed,
+) -> Result<(), Failure> {
+    let Printed { measure, unit } = printed;
     let [from, to] = [pair.from, pair.to].map(|task| &question.tasks[task.index()].name);
     writeln!(
         out,
-        "\nWhat drove it: RNE from the {from} group to the {to} group, {}, need by need",
-        nats(Some(pair.rne))
+        "\nWhat drove it: {measure} from the {from} group to the {to} group, {}, need by need",
+        pair.distrust.map_or("infinite".to_owned(), |value| format!("{value:.3e} {unit}"))
     )?;
     let mut rows: Vec<usize> = (0..pair.by_need.len()).collect();
     let size = |k: usize| pair.by_need[k].map_or(f64::INFINITY, f64::abs);
@@ -145,7 +158,7 @@ fn needs(out: &mut dyn Write, question: &Question, pair: &DirectedRne) -> Result
         "need".to_owned(),
         format!("share in {from}"),
         format!("share in {to}"),
-        "adds (nats)".to_owned(),
+        format!("adds ({unit})"),
     ]);
     for k in rows {
         let [p, q] = pair.shares[k].map(|share| format!("{:.3} %", 100.0 * share));
@@ -219,8 +232,8 @@ fn robot(
     )?;
     let score = decision.score.and_then(RelativeNeedsEntropy::nats);
     if let (Some(best), Some(score)) = (story.exchanges.first(), score) {
-        let then = best.score_nats.map_or("infinite".to_owned(), |nats| format!("{nats:.3e}"));
-        let verdict = match best.score_nats {
+        let then = best.score.map_or("infinite".to_owned(), |nats| format!("{nats:.3e}"));
+        let verdict = match best.score {
             Some(nats) if nats <= score * (1.0 + ROUNDING) => {
                 "no exchange with a robot of its role would have raised the score"
             }

@@ -1,0 +1,44 @@
+//! Tells each policy the hash of its sources: of its file or folder, and of the files that policies share.
+//! `src/energy.rs` reads its own as `env!("SOURCES_ENERGY")`.
+
+use std::collections::hash_map::DefaultHasher;
+use std::hash::{Hash, Hasher};
+use std::path::{Path, PathBuf};
+
+/// Text by which the file of a policy is known; other files are shared.
+const ENTRY: &str = "pub fn kind() -> PolicyKind";
+
+/// The list of the policies, which a new policy changes and which decides no answer.
+const LIST: &str = "lib.rs";
+
+fn main() {
+    println!("cargo::rerun-if-changed=src");
+    let read = std::fs::read_dir("src").into_iter().flatten().flatten();
+    let mut places: Vec<PathBuf> = read.map(|entry| entry.path()).collect();
+    places.retain(|path| !path.ends_with(LIST));
+    places.sort();
+    let (policies, shared): (Vec<PathBuf>, Vec<PathBuf>) =
+        places.into_iter().partition(|path| is_policy(path));
+    for policy in policies {
+        let mut hasher = DefaultHasher::new();
+        shared.iter().chain([&policy]).for_each(|path| add(path, &mut hasher));
+        let name = policy.file_stem().unwrap_or_default().to_string_lossy().to_uppercase();
+        println!("cargo::rustc-env=SOURCES_{name}={:016x}", hasher.finish());
+    }
+}
+
+fn is_policy(path: &Path) -> bool {
+    let entry = if path.is_dir() { path.join("mod.rs") } else { path.to_owned() };
+    std::fs::read_to_string(entry).is_ok_and(|text| text.contains(ENTRY))
+}
+
+fn add(path: &Path, hasher: &mut DefaultHasher) {
+    if !path.is_dir() {
+        (path.to_string_lossy(), std::fs::read(path).unwrap_or_default()).hash(hasher);
+        return;
+    }
+    let mut files: Vec<PathBuf> =
+        std::fs::read_dir(path).into_iter().flatten().flatten().map(|entry| entry.path()).collect();
+    files.sort();
+    files.iter().for_each(|file| add(file, hasher));
+}
