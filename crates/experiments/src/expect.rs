@@ -140,7 +140,7 @@ pub fn judge(
             let values = value(policy, metric);
             // An undefined metric counts as a trial that does not fulfil the relation.
             let held = values.iter().filter(|value| value.is_some_and(|value| relation.holds(value, bound)));
-            judge_share([held.count(), values.len()], share, confidence, is_last)
+            judge_share(held.count(), values.len(), share, confidence, is_last)
         }
         Expectation::Above { metric, policies, by } => {
             let differences = differences(&value, metric, policies);
@@ -174,7 +174,7 @@ fn differences(
     pairs.filter_map(|(a, b)| Some(a? - b?)).collect()
 }
 
-fn judge_share([held, n]: [usize; 2], share: f64, confidence: f64, is_last: bool) -> Judgement {
+fn judge_share(held: usize, n: usize, share: f64, confidence: f64, is_last: bool) -> Judgement {
     let observed = (n > 0).then(|| held as f64 / n as f64);
     let interval = clopper_pearson(held, n, confidence);
     let verdict = if share >= 1.0 {

@@ -165,7 +165,7 @@ mod tests {
         let mut draws = ChaCha8Rng::seed_from_u64(3);
         let is_called = |draws: &mut ChaCha8Rng| {
             let values: Vec<f64> = (0..60).map(|_| truth.sample(draws)).collect();
-            let [low, high] = bca_interval(&values, TOST_CONFIDENCE, (1_000, 1), Width::Expanded).unwrap();
+            let [low, high] = bca_interval(&values, TOST_CONFIDENCE, 1_000, 1, Width::Expanded).unwrap();
             -1.0 < low && high < 1.0
         };
         let called = (0..1_000).filter(|_| is_called(&mut draws)).count();

@@ -253,21 +253,20 @@ fn comparison(
     experiment: &Experiment,
     case: usize,
     metric: &Metric,
-    [a, b]: [usize; 2],
+    pair: [usize; 2],
     pairs: &Pairs,
 ) -> Comparison {
     let differences = pairs.differences();
-    let labels = [a, b].map(|policy| experiment.policies[policy].label.clone());
+    let [a, b] = pair.map(|policy| experiment.policies[policy].label.clone());
     let values = experiment.axes.iter().zip(&experiment.cases[case].values);
     let test = SignedRank::of(&differences);
     let has_pairs = !differences.is_empty();
-    let [label_a, label_b] = labels;
     Comparison {
         case: case + 1,
         axes: values.map(|(axis, value)| (axis.path.clone(), value.clone())).collect(),
         metric: metric.name.clone(),
-        a: label_a,
-        b: label_b,
+        a,
+        b,
         n: differences.len(),
         failed: pairs.failed,
         missing: pairs.missing,

@@ -33,7 +33,8 @@ impl Descent {
     /// Those of `objective`.
     pub fn search(
         &self,
-        (free, start): (&[Free], &[f64]),
+        free: &[Free],
+        start: &[f64],
         stop: &AtomicBool,
         mut objective: impl FnMut(Vec<f64>) -> Result<Option<f64>, Failure>,
     ) -> Result<bool, Failure> {

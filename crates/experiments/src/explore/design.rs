@@ -32,7 +32,7 @@ pub(super) struct Block {
 
 impl Block {
     /// Draws the block with this number. It does not depend on the number of blocks.
-    pub fn draw(method: Method, parameters: usize, (seed, number): (u64, u32)) -> Self {
+    pub fn draw(method: Method, parameters: usize, seed: u64, number: u32) -> Self {
         let mut draws = ChaCha8Rng::seed_from_u64(seed);
         draws.set_stream(u64::from(number));
         match method {
@@ -75,7 +75,7 @@ mod tests {
     #[test]
     fn along_a_trajectory_each_parameter_moves_once_and_alone() {
         for number in 0..50 {
-            let block = Block::draw(Method::Morris, 4, (7, number));
+            let block = Block::draw(Method::Morris, 4, 7, number);
             assert_eq!(block.places.len(), 5);
             let mut moved = block.moved.clone();
             moved.sort_unstable();
@@ -88,13 +88,13 @@ mod tests {
                 }
             }
         }
-        assert_eq!(Block::draw(Method::Morris, 4, (7, 3)), Block::draw(Method::Morris, 4, (7, 3)));
-        assert_ne!(Block::draw(Method::Morris, 4, (7, 3)), Block::draw(Method::Morris, 4, (7, 4)));
+        assert_eq!(Block::draw(Method::Morris, 4, 7, 3), Block::draw(Method::Morris, 4, 7, 3));
+        assert_ne!(Block::draw(Method::Morris, 4, 7, 3), Block::draw(Method::Morris, 4, 7, 4));
     }
 
     #[test]
     fn mixed_points_take_one_parameter_from_the_second() {
-        let block = Block::draw(Method::Sobol, 3, (1, 0));
+        let block = Block::draw(Method::Sobol, 3, 1, 0);
         let [a, b] = [&block.places[0], &block.places[1]];
         for (i, mixed) in block.places[2..].iter().enumerate() {
             (0..3).for_each(|k| assert!((mixed[k] - if k == i { b[k] } else { a[k] }).abs() < 1e-15));

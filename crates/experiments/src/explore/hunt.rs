@@ -66,7 +66,7 @@ impl Hunt {
             .chain(free)
             .chain([outcome, "failure".to_owned()])
             .collect();
-        let (log, rows) = EvaluationLog::open(folder, &PURPOSE, (&self.origin(), &header), is_fresh)?;
+        let (log, rows) = EvaluationLog::open(folder, &PURPOSE, &self.origin(), &header, is_fresh)?;
         let read = |(i, row): (usize, &Vec<String>)| self.candidate(row).ok_or_else(|| log.bad_row(i));
         let candidates = rows.iter().enumerate().map(read).collect::<Result<Vec<_>, Failure>>()?;
         Ok(Trail { log, candidates })
@@ -127,7 +127,7 @@ impl Hunt {
         let start: Vec<f64> =
             present.into_iter().zip(ends).map(|(value, [low, high])| value.clamp(low, high)).collect();
         let mut asked = 0;
-        self.descent.search((&self.space.free, &start), stop, |values| {
+        self.descent.search(&self.space.free, &start, stop, |values| {
             let known = trail.candidates.iter().find(|candidate| candidate.values == values).cloned();
             let candidate = match known {
                 Some(candidate) => candidate,

@@ -49,7 +49,8 @@ impl EvaluationLog {
     pub fn open(
         folder: &Path,
         purpose: &Purpose,
-        (origin, header): (&serde_json::Value, &[String]),
+        origin: &serde_json::Value,
+        header: &[String],
         is_fresh: bool,
     ) -> Result<(Self, Vec<Vec<String>>), Failure> {
         let trouble = |error: std::io::Error| Failure::storage(format!("{}: {error}", folder.display()));

@@ -134,7 +134,7 @@ impl Sensitivity {
     /// The folder belongs to something else, or the disk does not take the log.
     pub fn open(&self, folder: &Path, is_fresh: bool) -> Result<Evaluations, Failure> {
         let header = self.header();
-        let (log, rows) = EvaluationLog::open(folder, &PURPOSE, (&self.origin(), &header), is_fresh)?;
+        let (log, rows) = EvaluationLog::open(folder, &PURPOSE, &self.origin(), &header, is_fresh)?;
         let mut known = BTreeMap::new();
         for (i, row) in rows.iter().enumerate() {
             let (place, values) = self.read(row).ok_or_else(|| log.bad_row(i))?;
@@ -150,7 +150,7 @@ impl Sensitivity {
     }
 
     fn block(&self, number: u32) -> Block {
-        Block::draw(self.method, self.space.free.len(), (self.seed, number))
+        Block::draw(self.method, self.space.free.len(), self.seed, number)
     }
 
     /// The points of a block. For elementary effects, the last point repeats the first with other seeds.

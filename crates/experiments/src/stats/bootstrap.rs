@@ -38,7 +38,7 @@ pub fn resamples(pairs: usize) -> usize {
 /// widened for small samples. `None` for fewer than two values.
 #[must_use]
 pub fn interval(values: &[f64], confidence: f64) -> Option<[f64; 2]> {
-    bca_interval(values, confidence, (resamples(values.len()), SEED), Width::Expanded)
+    bca_interval(values, confidence, resamples(values.len()), SEED, Width::Expanded)
 }
 
 /// Which quantiles bound the interval.
@@ -56,7 +56,8 @@ pub enum Width {
 pub fn bca_interval(
     values: &[f64],
     confidence: f64,
-    (resamples, seed): (usize, u64),
+    resamples: usize,
+    seed: u64,
     width: Width,
 ) -> Option<[f64; 2]> {
     let count = values.len();
@@ -84,7 +85,7 @@ pub fn bca_interval(
 /// of sums. `None` for fewer than two pairs, or if some resample has no ratio.
 #[must_use]
 pub fn ratio_interval(pairs: &[[f64; 2]], confidence: f64) -> Option<[f64; 2]> {
-    bca_ratio_interval(pairs, confidence, (resamples(pairs.len()), SEED))
+    bca_ratio_interval(pairs, confidence, resamples(pairs.len()), SEED)
 }
 
 /// The same as [`ratio_interval`], with this number of resamples and this seed.
@@ -92,7 +93,8 @@ pub fn ratio_interval(pairs: &[[f64; 2]], confidence: f64) -> Option<[f64; 2]> {
 pub fn bca_ratio_interval(
     pairs: &[[f64; 2]],
     confidence: f64,
-    (resamples, seed): (usize, u64),
+    resamples: usize,
+    seed: u64,
 ) -> Option<[f64; 2]> {
     let count = pairs.len();
     if count < 2 {

@@ -79,15 +79,15 @@ fn the_plain_interval_is_scipys() {
         (&MIXED, [0.25, 2.0625], 0.05),
         (&[0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0], [0.0, 0.5], 0.11), // many resamples tie with the mean
     ] {
-        let interval = bca_interval(differences, 0.95, (100_000, 1), Width::Plain).unwrap();
+        let interval = bca_interval(differences, 0.95, 100_000, 1, Width::Plain).unwrap();
         assert!(
             (interval[0] - low).abs() < tolerance && (interval[1] - high).abs() < tolerance,
             "{interval:?}"
         );
     }
-    assert_eq!(bca_interval(&[3.0; 4], 0.95, (100, 1), Width::Plain), Some([3.0; 2]));
-    assert_eq!(bca_interval(&[3.0], 0.95, (100, 1), Width::Plain), None);
-    let again = |seed| bca_interval(&MIXED, 0.95, (1000, seed), Width::Expanded);
+    assert_eq!(bca_interval(&[3.0; 4], 0.95, 100, 1, Width::Plain), Some([3.0; 2]));
+    assert_eq!(bca_interval(&[3.0], 0.95, 100, 1, Width::Plain), None);
+    let again = |seed| bca_interval(&MIXED, 0.95, 1000, seed, Width::Expanded);
     assert_eq!(again(5), again(5));
     assert_ne!(again(5), again(6));
 }
@@ -113,7 +113,7 @@ fn coverage(count: usize, confidence: f64, mean: f64, draw: impl Fn(&mut ChaCha8
     let mut draws = ChaCha8Rng::seed_from_u64(11);
     let holds = |seed: u64, draws: &mut ChaCha8Rng| {
         let values: Vec<f64> = (0..count).map(|_| draw(draws)).collect();
-        let [low, high] = bca_interval(&values, confidence, (resamples, seed), Width::Expanded).unwrap();
+        let [low, high] = bca_interval(&values, confidence, resamples, seed, Width::Expanded).unwrap();
         (low..=high).contains(&mean)
     };
     let held = (0..2_000).filter(|seed| holds(*seed, &mut draws)).count();
@@ -147,7 +147,7 @@ fn the_interval_of_a_ratio_covers_what_it_says() {
                 [2.0 * under + noise, under]
             })
             .collect();
-        let [low, high] = bca_ratio_interval(&pairs, 0.95, (1_000, 1)).unwrap();
+        let [low, high] = bca_ratio_interval(&pairs, 0.95, 1_000, 1).unwrap();
         held += u32::from((low..=high).contains(&2.0));
     }
     let share = f64::from(held) / 4.0;

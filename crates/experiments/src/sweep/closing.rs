@@ -52,7 +52,7 @@ impl Closing<'_> {
         mut line: impl FnMut(Place) -> Result<Vec<u8>, Failure>,
         mut found: impl FnMut(Place, Measured),
     ) -> Result<Option<Vec<FileHash>>, Failure> {
-        let mut tables = Tables::new(self.folder, (self.experiment, self.keep), self.shard)?;
+        let mut tables = Tables::new(self.folder, self.experiment, self.keep, self.shard)?;
         let mut archive = NewFile::new(self.folder, archive::FILE)?;
         let at_a_time = 2 * rayon::current_num_threads();
         let mut places = places.peekable();

@@ -212,7 +212,7 @@ impl Folder {
     ) -> Result<Self, Failure> {
         let mut damages = Damages::new(path, say);
         let mut note = |damage| damages.say(damage);
-        let (store, results) = Store::salvage(path, (&experiment, manifest.shard), &mut note)?;
+        let (store, results) = Store::salvage(path, &experiment, manifest.shard, &mut note)?;
         damages.finish();
         Ok(Self { path: path.to_owned(), experiment, manifest, store, results, lock: None })
     }
@@ -225,10 +225,9 @@ impl Folder {
         say: &mut dyn FnMut(String),
     ) -> Result<Self, Failure> {
         let mut results = Results::new();
-        let (journal, damages) =
-            Journal::open(path, (&experiment, manifest.shard), is_writable, |finished| {
-                results.insert(finished.place(), Measured::of_finished(&finished, &experiment));
-            })?;
+        let (journal, damages) = Journal::open(path, &experiment, manifest.shard, is_writable, |finished| {
+            results.insert(finished.place(), Measured::of_finished(&finished, &experiment));
+        })?;
         // A running sweep may be writing its last line.
         let may_write = !is_writable && !manifest.is_complete;
         let said = damages.into_iter().filter(|damage: &Damage| !(may_write && damage.is_cut_off));

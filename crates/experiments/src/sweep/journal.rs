@@ -82,7 +82,8 @@ impl Journal {
     /// The file cannot be read.
     pub(super) fn open(
         folder: &Path,
-        (experiment, shard): (&Experiment, Option<Shard>),
+        experiment: &Experiment,
+        shard: Option<Shard>,
         is_writable: bool,
         mut found: impl FnMut(Finished),
     ) -> Result<(Self, Vec<Damage>), Failure> {

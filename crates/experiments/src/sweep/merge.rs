@@ -53,7 +53,7 @@ impl Merge {
         let resolved = experiment.base.resolved();
         let part = |path: &PathBuf| {
             let there = manifest_in(path)?;
-            check_same([first, path], [&manifest, &there], &resolved)?;
+            check_same(first, path, &manifest, &there, &resolved)?;
             Part::open(path, there, &experiment)
         };
         let parts = folders.iter().map(part).collect::<Result<Vec<_>, _>>()?;
@@ -191,13 +191,18 @@ fn check_program(path: &Path, there: &Manifest, policies: &[PolicySpec]) -> Resu
 }
 
 /// Refuses shards of different sweeps.
-fn check_same(paths: [&Path; 2], manifests: [&Manifest; 2], resolved: &str) -> Result<(), Failure> {
-    let [first, other] = manifests;
+fn check_same(
+    first_path: &Path,
+    other_path: &Path,
+    first: &Manifest,
+    other: &Manifest,
+    resolved: &str,
+) -> Result<(), Failure> {
     let mut differences = first.differences(other);
     differences.extend(first.policies_lost(other).or_else(|| other.policies_lost(first)));
     let changed = first.policies_changed(other);
     differences.extend(changed.iter().map(|policy| format!("policy {policy}: its sources differ")));
-    let scenario = resolved_in(paths[1]);
+    let scenario = resolved_in(other_path);
     if scenario != resolved {
         differences.extend(scenario_differences(resolved, &scenario));
     }
@@ -207,7 +212,7 @@ fn check_same(paths: [&Path; 2], manifests: [&Manifest; 2], resolved: &str) -> R
     if differences.is_empty() {
         return Ok(());
     }
-    let [one, other] = paths.map(Path::display);
+    let (one, other) = (first_path.display(), other_path.display());
     let differences = differences.join("\n  ");
     Err(Failure::input(format!("{one} and {other} are not of one sweep:\n  {differences}")))
 }

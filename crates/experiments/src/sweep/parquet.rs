@@ -23,12 +23,12 @@ const ROBOTS: &str = "robots.csv";
 pub fn write_parquet(folder: &Folder) -> Result<(), Failure> {
     let path = folder.path();
     for (table, name) in TABLES.iter().zip(PARQUETS).filter(|(table, _)| path.join(table).exists()) {
-        write(&path.join(table), folder.experiment(), (path, name))?;
+        write(&path.join(table), folder.experiment(), path, name)?;
     }
     Ok(())
 }
 
-fn write(table: &Path, experiment: &Experiment, (folder, name): (&Path, &str)) -> Result<(), Failure> {
+fn write(table: &Path, experiment: &Experiment, folder: &Path, name: &str) -> Result<(), Failure> {
     let failed = |error: ExportError| Failure::storage(format!("{}: {error}", table.display()));
     let rows = files::open(table).map_err(|error| failed(error.into()))?;
     let file = from_csv(
@@ -66,7 +66,7 @@ pub(super) fn strange(path: &Path, experiment: &Experiment) -> Result<Vec<String
     for (table, name) in
         TABLES.iter().zip(PARQUETS).filter(|(_, name)| path.join(name).symlink_metadata().is_ok())
     {
-        let made = write(&path.join(table), experiment, (place.path(), name));
+        let made = write(&path.join(table), experiment, place.path(), name);
         let is_same =
             made.is_ok() && file_hash(&path.join(name)).ok() == file_hash(&place.path().join(name)).ok();
         if !is_same {

@@ -79,7 +79,8 @@ impl Store {
     /// The archive cannot be read at all.
     pub(super) fn salvage(
         folder: &Path,
-        (experiment, shard): (&Experiment, Option<Shard>),
+        experiment: &Experiment,
+        shard: Option<Shard>,
         say: &mut dyn FnMut(String),
     ) -> Result<(Self, Results), Failure> {
         let path = folder.join(archive::FILE);
@@ -163,7 +164,8 @@ impl Order {
     }
 
     /// The number of a trial's line, from 0.
-    pub(super) fn rank(&self, (case, policy, trial): Place) -> Option<usize> {
+    pub(super) fn rank(&self, place: Place) -> Option<usize> {
+        let (case, policy, trial) = place;
         let (before, trials) = self.cases.get(case).filter(|_| policy < self.policies)?;
         let place = trials.binary_search(&trial).ok()?;
         Some(before + policy * trials.len() + place)

@@ -50,7 +50,8 @@ pub(super) struct Tables(Vec<Table>);
 impl Tables {
     pub(super) fn new(
         path: &Path,
-        (experiment, keep): (&Experiment, Keep),
+        experiment: &Experiment,
+        keep: Keep,
         shard: Option<Shard>,
     ) -> Result<Self, Failure> {
         let all = all_columns(experiment)?;

@@ -29,7 +29,7 @@ impl Log {
     /// the log.
     pub fn open(folder: &Path, calibration: &Calibration, is_fresh: bool) -> Result<Self, Failure> {
         let (origin, header) = (origin_of(calibration)?, header(calibration));
-        let (log, rows) = EvaluationLog::open(folder, &PURPOSE, (&origin, &header), is_fresh)?;
+        let (log, rows) = EvaluationLog::open(folder, &PURPOSE, &origin, &header, is_fresh)?;
         let read =
             |(i, row): (usize, &Vec<String>)| evaluation(row, calibration).ok_or_else(|| log.bad_row(i));
         let evaluations = rows.iter().enumerate().map(read).collect::<Result<Vec<_>, Failure>>()?;

@@ -33,11 +33,11 @@ const ROWS: [(&str, Experiment); 9] = [
     }),
     ("equivalence at 90 %, 20 pairs, normal", |draws| {
         let values: Vec<f64> = (0..20).map(|_| normal(draws)).collect();
-        holds(bca_interval(&values, 0.90, (RESAMPLES, 1), Width::Expanded), 0.0)
+        holds(bca_interval(&values, 0.90, RESAMPLES, 1, Width::Expanded), 0.0)
     }),
     ("ratio of sums, 20 trials", |draws| {
         let pairs: Vec<[f64; 2]> = (0..20).map(|_| cost(draws, 8.0)).collect();
-        holds(bca_ratio_interval(&pairs, 0.95, (RESAMPLES, 1)), 8.0 + 4.0 / 2.0)
+        holds(bca_ratio_interval(&pairs, 0.95, RESAMPLES, 1), 8.0 + 4.0 / 2.0)
     }),
     ("difference of ratios of sums, 20 pairs", |draws| ratios(draws, 20)),
     ("difference of ratios of sums, 100 pairs", |draws| ratios(draws, 100)),
@@ -72,7 +72,7 @@ fn holds(interval: Interval, truth: f64) -> Option<bool> {
 
 fn mean(draws: &mut ChaCha8Rng, pairs: usize, draw: fn(&mut ChaCha8Rng) -> f64, truth: f64) -> Option<bool> {
     let values: Vec<f64> = (0..pairs).map(|_| draw(draws)).collect();
-    holds(bca_interval(&values, 0.95, (RESAMPLES, 1), Width::Expanded), truth)
+    holds(bca_interval(&values, 0.95, RESAMPLES, 1, Width::Expanded), truth)
 }
 
 /// Cost and rescuees of a trial: zero to four rescuees, each with this cost, and a fixed cost of 4.

@@ -27,7 +27,7 @@ impl Folder {
         if !matches!(self.store, Store::Journal(_)) {
             thaw(&self.path)?;
             let shard = self.manifest.shard;
-            let (journal, _) = Journal::open(&self.path, (&experiment, shard), true, |_| {})?;
+            let (journal, _) = Journal::open(&self.path, &experiment, shard, true, |_| {})?;
             self.store = Store::Journal(journal);
         }
         self.experiment = experiment;

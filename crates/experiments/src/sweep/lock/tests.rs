@@ -7,7 +7,7 @@ fn of(host: &str, job: Option<&str>, restarts: u32) -> Holder {
     Holder { host, job, restarts, process: u32::MAX, since: "2026-01-01T00:00:00Z".to_owned() }
 }
 
-fn is_stale(holder: Option<Holder>, this: &Holder, (is_free, silence_s): (Option<bool>, u64)) -> bool {
+fn is_stale(holder: Option<Holder>, this: &Holder, is_free: Option<bool>, silence_s: u64) -> bool {
     let found = Found { holder, is_free, silence: Duration::from_secs(silence_s) };
     found.stale(this).is_some()
 }
@@ -16,7 +16,7 @@ fn is_stale(holder: Option<Holder>, this: &Holder, (is_free, silence_s): (Option
 fn the_rule_for_stale_locks() {
     let this = of("a", Some("7_1"), 1);
     let there = |host, job, restarts| Some(of(host, job, restarts));
-    for (holder, seen, expected) in [
+    for (holder, (is_free, silence_s), expected) in [
         (there("a", None, 0), (Some(true), 0), true), // of this host, killed
         (there("a", None, 0), (Some(false), 9_999), false), // of this host, at work or stopped
         (there("a", None, 0), (None, 0), true),       // no flock: there is no such process
@@ -28,7 +28,11 @@ fn the_rule_for_stale_locks() {
         (None, (Some(true), 5), false),               // it is just being written
         (None, (Some(true), 11), true),               // left by a process that was killed
     ] {
-        assert_eq!(is_stale(holder.clone(), &this, seen), expected, "{holder:?} {seen:?}");
+        assert_eq!(
+            is_stale(holder.clone(), &this, is_free, silence_s),
+            expected,
+            "{holder:?} {is_free:?} {silence_s}"
+        );
     }
 }
 
