@@ -124,7 +124,7 @@ pub(crate) fn events(recording: &Recording) -> impl Iterator<Item = ToldEvent> +
     let tasks: Vec<&str> = header.world.tasks.iter().map(|task| task.name.as_str()).collect();
     recording.events.iter().map(move |(step, event)| {
         let names = Names { tasks: &tasks, debris: &header.world.debris, zones: &header.world.zones };
-        ToldEvent::new((*step, header.dt_s), event, names)
+        ToldEvent::new(*step, header.dt_s, event, names)
     })
 }
 

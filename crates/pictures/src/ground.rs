@@ -6,7 +6,7 @@ use usar_sim::scenario::{DebrisFile, DebrisShape, Point, ZoneFile};
 use crate::legend::{Entry, Sign};
 use crate::shapes::corners;
 use crate::sheet::Sheet;
-use crate::svg::{Anchor, Num, Path};
+use crate::svg::{Anchor, Lettering, Num, Path};
 use crate::theme::{
     DEBRIS, FAINT, GROUND, INK, MOVABLE, RADIATION, RADIATION_EDGE, RESCUEE, SOFT, WALL, colour,
 };
@@ -83,7 +83,7 @@ pub(crate) fn draw_names(sheet: &mut Sheet, world: &World) {
         let [x, y] = sheet.at([x, top]);
         // Without room above the place, the name is below the edge of the arena.
         let y = (y - 0.75 * size).max(sheet.map()[0][1] + 0.8 * size);
-        sheet.svg.text(text, [x, y], size, (Anchor::Middle, colour));
+        sheet.svg.text(text, [x, y], &Lettering { size, anchor: Anchor::Middle, colour });
     };
     for (number, task) in world.tasks.iter().enumerate() {
         let top = task.center[1] + task.size_m[1] / 2.0 + 1.5;
@@ -195,9 +195,15 @@ pub(crate) fn draw_rescuees(sheet: &mut Sheet, world: &World, state: impl Fn(usi
     sheet.svg.path(&delivered, &format!("fill=\"{SOFT}\" fill-opacity=\"0.5\""));
 }
 
-/// The legend's entries for the signs of the ground that occur in the world. `sampled` are the numbers of
-/// the first sampled piece of debris and of the first sampled zone.
-pub(crate) fn entries(world: &World, unit: f64, sampled: [usize; 2], has_waiting: bool) -> Vec<Entry> {
+/// The legend's entries for the signs of the ground that occur in the world. `debris` and
+/// `zones` are the numbers of the first sampled piece of debris and of the first sampled zone.
+pub(crate) fn entries(
+    world: &World,
+    unit: f64,
+    debris: usize,
+    zones: usize,
+    has_waiting: bool,
+) -> Vec<Entry> {
     let mut entries = Vec::new();
     let mut add = |is_there: bool, sign: Sign, means: &str| {
         if is_there {
@@ -205,7 +211,7 @@ pub(crate) fn entries(world: &World, unit: f64, sampled: [usize; 2], has_waiting
         }
     };
     let is_movable = |piece: &DebrisFile| piece.movable.is_some();
-    let (placed, drawn) = world.debris.split_at(sampled[0].min(world.debris.len()));
+    let (placed, drawn) = world.debris.split_at(debris.min(world.debris.len()));
     add(has_waiting, Sign::Square(format!("fill=\"{RESCUEE}\"")), "waiting to be rescued");
     add(!placed.iter().all(is_movable), Sign::Square(fixed_looks(unit)), "debris");
     add(
@@ -220,9 +226,9 @@ pub(crate) fn entries(world: &World, unit: f64, sampled: [usize; 2], has_waiting
     add(world.debris.iter().any(is_movable), Sign::Square(movable_looks(unit)), "movable debris");
     let zone = format!("fill=\"{RADIATION}\" fill-opacity=\"0.35\" stroke=\"{RADIATION_EDGE}\"");
     let dashed = format!("{zone} stroke-dasharray=\"{}\"", Num(2.5 * unit));
-    add(sampled[1] > 0 && !world.zones.is_empty(), Sign::Disc(zone), "radiation");
+    add(zones > 0 && !world.zones.is_empty(), Sign::Disc(zone), "radiation");
     add(
-        sampled[1] < world.zones.len(),
+        zones < world.zones.len(),
         Sign::Disc(dashed),
         if world.zones_later.is_empty() {
             "radiation of this seed"

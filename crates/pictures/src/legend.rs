@@ -1,7 +1,7 @@
 //! The scale and the legend below a map.
 
 use crate::shapes::Shape;
-use crate::svg::{Anchor, At, Num, Path, Svg};
+use crate::svg::{Anchor, At, Lettering, Num, Path, Svg};
 use crate::theme::{INK, SOFT};
 
 /// Approximate width of a letter as a share of the font size.
@@ -65,7 +65,7 @@ impl Legend {
                 (x, y) = (self.left, y + row);
             }
             sign.draw(svg, [x + 6.0 * unit, y], unit);
-            svg.text(&means, [x + 17.0 * unit, y], size, (Anchor::Start, INK));
+            svg.text(&means, [x + 17.0 * unit, y], &Lettering { size, anchor: Anchor::Start, colour: INK });
             x += width;
         }
         y + row / 2.0
@@ -82,7 +82,7 @@ impl Legend {
         svg.path(&bar, &format!("fill=\"none\" stroke=\"{SOFT}\" stroke-width=\"{}\"", Num(1.2 * unit)));
         let text = format!("{length} m");
         let text = if length < 0.1 { format!("{} mm", length * 1000.0) } else { text };
-        svg.text(&text, [end + 5.0 * unit, y], size, (Anchor::Start, SOFT));
+        svg.text(&text, [end + 5.0 * unit, y], &Lettering { size, anchor: Anchor::Start, colour: SOFT });
         end + 5.0 * unit + LETTER * size * text.chars().count() as f64 + 14.0 * unit
     }
 }

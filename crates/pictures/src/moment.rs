@@ -31,8 +31,8 @@ pub fn moment(recording: &Recording, number: usize, look: &Look) -> Result<Pictu
     sheet.svg.end_window();
     ground::draw_walls(&mut sheet);
     let mut entries = team::moment_entries(world, sheet.unit);
-    let sampled = [world.debris.len(), world.zones.len()];
-    entries.extend(ground::entries(world, sheet.unit, sampled, !world.rescuees.is_empty()));
+    let (debris, zones) = (world.debris.len(), world.zones.len());
+    entries.extend(ground::entries(world, sheet.unit, debris, zones, !world.rescuees.is_empty()));
     Ok(sheet.finish(entries))
 }
 

@@ -8,7 +8,7 @@ use crate::legend::{Entry, Sign};
 use crate::picture::{Look, Picture};
 use crate::shapes::shapes_of;
 use crate::sheet::Sheet;
-use crate::svg::{Anchor, Num, Path};
+use crate::svg::{Anchor, Lettering, Num, Path};
 use crate::team::{self, colour_of, sign_radius};
 use crate::theme::{INK, PAPER, SOFT};
 
@@ -57,7 +57,7 @@ pub fn plan(plan: &Plan, look: &Look) -> Picture {
     if !plan.errands.is_empty() {
         entries.push(Entry::new(Sign::Line(errand_looks(SOFT, sheet.unit)), "errands"));
     }
-    entries.extend(ground::entries(world, sheet.unit, [debris, zones], !world.rescuees.is_empty()));
+    entries.extend(ground::entries(world, sheet.unit, debris, zones, !world.rescuees.is_empty()));
     sheet.finish(entries)
 }
 
@@ -115,7 +115,11 @@ fn draw_team(sheet: &mut Sheet, world: &World) {
         sheet.svg.path(&sign, &looks);
         if has_numbers {
             let place = [at[0] + radius + 3.0 * sheet.unit, at[1]];
-            sheet.svg.text(&number.to_string(), place, 9.0 * sheet.unit, (Anchor::Start, INK));
+            sheet.svg.text(
+                &number.to_string(),
+                place,
+                &Lettering { size: 9.0 * sheet.unit, anchor: Anchor::Start, colour: INK },
+            );
         }
     }
 }

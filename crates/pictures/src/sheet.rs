@@ -4,7 +4,7 @@ use usar_sim::scenario::Point;
 
 use crate::legend::{Entry, Legend};
 use crate::picture::{FONTS, Look, Picture};
-use crate::svg::{Anchor, At, Num, Svg};
+use crate::svg::{Anchor, At, Lettering, Num, Svg};
 use crate::theme::{INK, PAPER};
 
 /// Width of a sheet on which signs have their normal size, in pixels.
@@ -41,7 +41,7 @@ impl<'l> Sheet<'l> {
         let mut sheet = Self { svg: Svg::default(), unit, scale, look, origin, arena, width };
         if look.has_title {
             let at = [margin, margin + 6.0 * unit];
-            sheet.svg.text(title, at, 12.0 * unit, (Anchor::Start, INK));
+            sheet.svg.text(title, at, &Lettering { size: 12.0 * unit, anchor: Anchor::Start, colour: INK });
         }
         sheet
     }

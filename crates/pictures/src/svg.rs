@@ -79,6 +79,13 @@ pub(crate) enum Anchor {
     Middle,
 }
 
+/// How a line of text looks.
+pub(crate) struct Lettering<'c> {
+    pub size: f64,
+    pub anchor: Anchor,
+    pub colour: &'c str,
+}
+
 /// The elements of an SVG file, in order.
 #[derive(Default)]
 pub(crate) struct Svg(pub String);
@@ -105,12 +112,13 @@ impl Svg {
 
     /// Draws a line of text, vertically centred on a position, with a halo around it, so that it is legible
     /// on any background.
-    pub(crate) fn text(&mut self, text: &str, [x, y]: At, size: f64, (anchor, colour): (Anchor, &str)) {
+    pub(crate) fn text(&mut self, text: &str, [x, y]: At, look: &Lettering) {
+        let Lettering { size, anchor, colour } = look;
         let anchor = match anchor {
             Anchor::Start => "start",
             Anchor::Middle => "middle",
         };
-        let [x, y, size, halo] = [x, y + 0.35 * size, size, 0.28 * size].map(Num);
+        let [x, y, size, halo] = [x, y + 0.35 * size, *size, 0.28 * size].map(Num);
         let place = format!("x=\"{x}\" y=\"{y}\" font-size=\"{size}\" text-anchor=\"{anchor}\"");
         let halo = format!(
             "paint-order=\"stroke\" stroke=\"#fff\" stroke-width=\"{halo}\" stroke-linejoin=\"round\""

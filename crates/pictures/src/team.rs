@@ -5,7 +5,7 @@ use recording::{Frame, RobotFrame, World};
 use crate::legend::{Entry, Sign};
 use crate::shapes::shapes_of;
 use crate::sheet::Sheet;
-use crate::svg::{Anchor, At, Num, Path};
+use crate::svg::{Anchor, At, Lettering, Num, Path};
 use crate::theme::{ENERGY, FAINT, HP, INK, PAPER, SOFT, UNGROUPED, WAIT, colour, group_colour};
 
 /// In a larger team, robots are drawn without levels and numbers.
@@ -82,7 +82,11 @@ pub(crate) fn draw_robots(sheet: &mut Sheet, world: &World, frame: &Frame) {
         }
         if has_numbers {
             let place = [at[0] + radius + 3.0 * sheet.unit, at[1]];
-            sheet.svg.text(&number.to_string(), place, 9.0 * sheet.unit, (Anchor::Start, INK));
+            sheet.svg.text(
+                &number.to_string(),
+                place,
+                &Lettering { size: 9.0 * sheet.unit, anchor: Anchor::Start, colour: INK },
+            );
         }
     }
     sheet.svg.path(&lost, &format!("stroke=\"{INK}\" stroke-width=\"{}\"", Num(1.8 * sheet.unit)));

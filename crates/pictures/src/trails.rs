@@ -63,8 +63,8 @@ pub fn trails(recording: &Recording, look: &Look) -> Result<Picture, PictureErro
     ground::draw_walls(&mut sheet);
     let mut entries = team::entries(world);
     entries.push(Entry::new(Sign::Disc(end_looks(INK, sheet.unit)), "the end of a way"));
-    let sampled = [world.debris.len(), world.zones.len()];
-    entries.extend(ground::entries(world, sheet.unit, sampled, !world.rescuees.is_empty()));
+    let (debris, zones) = (world.debris.len(), world.zones.len());
+    entries.extend(ground::entries(world, sheet.unit, debris, zones, !world.rescuees.is_empty()));
     Ok(sheet.finish(entries))
 }
 

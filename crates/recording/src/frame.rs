@@ -205,7 +205,8 @@ impl Motion {
         [x, y, vx, vy, self.energy_millipercent, self.hp_millipercent]
     }
 
-    pub(crate) fn from_numbers([x, y, vx, vy, energy, hp]: [i32; 6]) -> Self {
+    pub(crate) fn from_numbers(numbers: [i32; 6]) -> Self {
+        let [x, y, vx, vy, energy, hp] = numbers;
         Self {
             position_mm: [x, y],
             velocity_mm_s: [vx, vy],

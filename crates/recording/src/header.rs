@@ -185,7 +185,8 @@ impl Header {
     pub(crate) fn of(
         simulation: &Simulation,
         policy: &str,
-        (steps_per_frame, frames_per_segment): (u64, usize),
+        steps_per_frame: u64,
+        frames_per_segment: usize,
     ) -> Self {
         let scenario = simulation.scenario();
         let resolved = simulation.model().given().resolved();

@@ -52,7 +52,7 @@ impl Names<'_> {
 impl ToldEvent {
     /// An event that had happened at the end of a step.
     #[must_use]
-    pub fn new((step, dt_s): (u64, f64), event: &Event, names: Names) -> Self {
+    pub fn new(step: u64, dt_s: f64, event: &Event, names: Names) -> Self {
         let (name, fields) = match serde_json::to_value(event) {
             Ok(Value::Object(kinds)) => kinds.into_iter().next().unwrap_or_default(),
             Ok(Value::String(name)) => (name, Value::Null),
@@ -185,15 +185,15 @@ mod tests {
     #[test]
     fn an_event_is_told_with_its_fields() {
         let event = Event::MadeRoom { robot: RobotId(3), room_for: RobotId(1) };
-        let told = ToldEvent::new((125, 0.02), &event, Names::default());
+        let told = ToldEvent::new(125, 0.02, &event, Names::default());
         assert_eq!((told.time_s, told.event.as_str(), told.robots()), (2.5, "made_room", vec![3, 1]));
         let line = serde_json::to_string(&told).unwrap();
         let expected = r#"{"time_s":2.5,"step":125,"event":"made_room","says":"robot 3 makes room for robot 1","robot":3,"room_for":1}"#;
         assert_eq!(line, expected);
         let returned = Event::GroupReturned { task: TaskId(0), cause: ReturnCause::NothingLeft };
-        let told = ToldEvent::new((1, 1.0), &returned, Names { tasks: &["north"], ..Names::default() });
+        let told = ToldEvent::new(1, 1.0, &returned, Names { tasks: &["north"], ..Names::default() });
         assert_eq!(told.says, "the group of north goes home: nothing left");
-        assert_eq!(ToldEvent::new((1, 1.0), &Event::ErrandsOver, Names::default()).event, "errands_over");
+        assert_eq!(ToldEvent::new(1, 1.0, &Event::ErrandsOver, Names::default()).event, "errands_over");
         let slab = DebrisFile {
             shape: DebrisShape::Disc(1.0),
             at: [0.0; 2],
@@ -202,7 +202,7 @@ mod tests {
             name: Some("slab".to_owned()),
         };
         let names = Names { debris: &[slab], ..Names::default() };
-        let says = |debris| ToldEvent::new((1, 1.0), &Event::DebrisFell { debris }, names).says;
+        let says = |debris| ToldEvent::new(1, 1.0, &Event::DebrisFell { debris }, names).says;
         assert_eq!([says(0), says(1)], ["slab falls", "debris 1 falls"]);
         assert_eq!(robots_in_words(&[0, 2, 5]), "robots 0, 2 and 5");
     }

@@ -78,7 +78,7 @@ impl<W: Write> Recorder<W> {
         let dt_s = simulation.scenario().dt_s;
         let steps_per_frame = (1.0 / (options.fps * dt_s)).round().max(1.0) as u64;
         let frames_per_segment = (SEGMENT_S / (dt_s * steps_per_frame as f64)).round().max(1.0) as usize;
-        let header = Header::of(simulation, &options.policy, (steps_per_frame, frames_per_segment));
+        let header = Header::of(simulation, &options.policy, steps_per_frame, frames_per_segment);
         let mut out = ChunkWriter::new(out, LEVEL)?;
         write_json(&mut out, Kind::Header, &header)?;
         let mut recorder = Self {

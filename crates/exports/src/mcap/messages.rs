@@ -41,13 +41,9 @@ pub(super) fn cube(pose: Pose, size: [f64; 3], color: Color) -> CubePrimitive {
     CubePrimitive { pose: Some(pose), size: Some(vector(size)), color: Some(color) }
 }
 
-/// An upright cylinder from a height on.
-pub(super) fn disc(
-    [x, y]: [f64; 2],
-    radius: f64,
-    [low, height]: [f64; 2],
-    color: Color,
-) -> CylinderPrimitive {
+/// An upright cylinder that stands on a place.
+pub(super) fn disc(foot: [f64; 3], radius: f64, height: f64, color: Color) -> CylinderPrimitive {
+    let [x, y, low] = foot;
     CylinderPrimitive {
         pose: Some(pose([x, y, low + height / 2.0], 0.0)),
         size: Some(vector([2.0 * radius, 2.0 * radius, height])),

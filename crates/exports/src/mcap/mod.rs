@@ -48,7 +48,7 @@ pub fn write<W: Write>(recording: &Recording, every: usize, out: W) -> Result<W,
         while let Some(event) = told.next_if(|event| event.time_s <= time_s + 1e-9) {
             write_event(&mut channels, &event)?;
         }
-        write_frame(&mut channels, recording, (&frame, time_s), before.as_ref())?;
+        write_frame(&mut channels, recording, &frame, time_s, before.as_ref())?;
         before = Some(frame);
     }
     told.try_for_each(|event| write_event(&mut channels, &event))?;
@@ -74,7 +74,8 @@ fn write_event<W: Write>(
 fn write_frame<W: Write>(
     channels: &mut Channels<W>,
     recording: &Recording,
-    (frame, time_s): (&Frame, f64),
+    frame: &Frame,
+    time_s: f64,
     before: Option<&Frame>,
 ) -> Result<(), ExportError> {
     let (world, time) = (&recording.header.world, timestamp(time_s));

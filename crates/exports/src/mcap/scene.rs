@@ -79,7 +79,8 @@ pub(super) fn radiation_scene(
     let zone = |number: usize| {
         let mut entity = entity(time, WORLD, format!("radiation/{number}"));
         let zone = &world.zones[number];
-        entity.cylinders.extend(on[number].then(|| disc(zone.at, zone.radius_m, [0.0, 0.05], RADIATION)));
+        let foot = [zone.at[0], zone.at[1], 0.0];
+        entity.cylinders.extend(on[number].then(|| disc(foot, zone.radius_m, 0.05, RADIATION)));
         entity
     };
     update((0..on.len()).filter(changed).map(zone))
@@ -117,7 +118,7 @@ fn draw_debris(entity: &mut SceneEntity, shape: &DebrisShape, lies: &MovedDebris
     let at = |z: f64| pose([x, y, z], f64::from(lies.angle) / 10_000.0);
     match shape {
         DebrisShape::Disc(radius) => {
-            entity.cylinders.push(disc([x, y], *radius, [0.0, DEBRIS_HEIGHT_M], color));
+            entity.cylinders.push(disc([x, y, 0.0], *radius, DEBRIS_HEIGHT_M, color));
         }
         DebrisShape::Box(width, height) => {
             entity.cubes.push(cube(at(DEBRIS_HEIGHT_M / 2.0), [*width, *height, DEBRIS_HEIGHT_M], color));
@@ -144,7 +145,7 @@ pub(super) fn robots_scene(world: &World, frame: &Frame, time: Timestamp) -> Sce
         let name = format!("robot/{id}");
         let mut entity = entity(time, &name, &*name);
         let color = group_color(frame.robots[id].state.task);
-        entity.cylinders.push(disc([0.0; 2], body.radius_m, [low, ROBOT_HEIGHT_M], color));
+        entity.cylinders.push(disc([0.0, 0.0, low], body.radius_m, ROBOT_HEIGHT_M, color));
         let above = [0.0, 0.0, low + 2.0 * ROBOT_HEIGHT_M];
         entity.texts.push(text(above, &format!("{} {id}", body.name), 0.6, INK));
         entity

@@ -62,34 +62,31 @@ impl<W: Write> Channels<W> {
         let world = &recording.header.world;
         let robot = robot_schema(world.needs.iter().map(|need| need.name.as_str()));
         for id in 0..world.robots.len() {
-            channels.add_json(Channel::Robot(id), &format!("/robot/{id}"), ("usar.Robot", &robot))?;
+            channels.add_json(Channel::Robot(id), &format!("/robot/{id}"), "usar.Robot", &robot)?;
         }
         let counts = typed(&["round", "waiting", "claimed", "on_board", "delivered"], "integer");
-        channels.add_json(Channel::Team, "/team", ("usar.Team", &object("usar.Team", counts)))?;
+        channels.add_json(Channel::Team, "/team", "usar.Team", &object("usar.Team", counts))?;
         Ok(channels)
     }
 
     fn add_foxglove<M: Encode>(&mut self, channel: Channel, topic: &str) -> Result<(), ExportError> {
         let Some(Schema { name, encoding, data }) = M::get_schema() else { return Ok(()) };
         let schema = self.log.add_schema(&name, &encoding, &data)?;
-        self.add(channel, (schema, topic, &M::get_message_encoding()))
+        self.add(channel, schema, topic, &M::get_message_encoding())
     }
 
     fn add_json(
         &mut self,
         channel: Channel,
         topic: &str,
-        (name, schema): (&str, &Value),
+        name: &str,
+        schema: &Value,
     ) -> Result<(), ExportError> {
         let schema = self.log.add_schema(name, "jsonschema", &serde_json::to_vec(schema)?)?;
-        self.add(channel, (schema, topic, "json"))
+        self.add(channel, schema, topic, "json")
     }
 
-    fn add(
-        &mut self,
-        channel: Channel,
-        (schema, topic, encoding): (u16, &str, &str),
-    ) -> Result<(), ExportError> {
+    fn add(&mut self, channel: Channel, schema: u16, topic: &str, encoding: &str) -> Result<(), ExportError> {
         let id = self.log.add_channel(schema, topic, encoding, &BTreeMap::new())?;
         self.channels.insert(channel, (id, 0));
         Ok(())

@@ -49,10 +49,10 @@ impl EventLines {
 pub(super) fn told(simulation: &Simulation) -> impl Iterator<Item = ToldEvent> + '_ {
     let scenario = simulation.scenario();
     let tasks: Vec<&str> = scenario.tasks.iter().map(|task| task.name.as_str()).collect();
-    let at = (simulation.steps(), scenario.dt_s);
+    let (step, dt_s) = (simulation.steps(), scenario.dt_s);
     let layout = &simulation.model().layout;
     simulation.events().iter().map(move |event| {
         let names = Names { tasks: &tasks, debris: &layout.debris, zones: &layout.zones };
-        ToldEvent::new(at, event, names)
+        ToldEvent::new(step, dt_s, event, names)
     })
 }
