@@ -88,14 +88,15 @@ pub(crate) struct Compared {
     pub exploratory: Vec<Comparison>,
 }
 
-/// The place of a case's page, and the prefix of its figures' names.
-pub(crate) struct PagePlace {
+/// A case's page: its place, the prefix of its figures' names, and the trials that it shows.
+pub(crate) struct CasePage {
     pub case: usize,
     pub file: String,
     /// Relative to the page.
     pub links: String,
     /// Relative to the folder of figures.
     pub prefix: String,
+    pub shown: Vec<ShownTrial>,
 }
 
 /// Writes the page of a case, its figures and its maps.
@@ -103,33 +104,34 @@ pub(crate) fn write_case(
     folder: &mut Folder,
     wanted: &Wanted,
     all: &Compared,
-    (place, shown): (&PagePlace, Vec<ShownTrial>),
+    wanted_page: CasePage,
     files: &mut Report,
 ) -> Result<(), Failure> {
-    let PagePlace { case, file, links, prefix } = place;
+    let CasePage { case, file, links, prefix, shown } = wanted_page;
     let of_case = |all: &'_ [Comparison]| -> Vec<Comparison> {
         all.iter().filter(|comparison| comparison.case == case + 1).cloned().collect()
     };
     let (here, exploratory) = (of_case(&all.asked), of_case(&all.exploratory));
     let here: Vec<&Comparison> = here.iter().collect();
-    let figures = figures(folder, *case, &here)?;
-    let mut maps: Vec<Map> = world_map(folder.experiment(), *case).into_iter().collect();
+    let figures = figures(folder, case, &here)?;
+    let mut maps: Vec<Map> = world_map(folder.experiment(), case).into_iter().collect();
     for (number, trial) in shown.iter().enumerate() {
-        let beside = links.strip_suffix(prefix.as_str()).unwrap_or(links).trim_end_matches('/');
+        let beside = links.strip_suffix(prefix.as_str()).unwrap_or(&links).trim_end_matches('/');
         maps.push(trails_map(number, trial, beside)?);
     }
-    let decided = decisions(folder, *case, shown.first().map(|trial| trial.seed))?;
-    let mut page = page(folder, *case, (&here, &all.asked), (&figures, &maps));
+    let decided = decisions(folder, case, shown.first().map(|trial| trial.seed))?;
+    let mut page = page(folder, case, &here, &all.asked);
+    (page.figures, page.maps) = (&figures, &maps);
     page.decisions = decided;
-    page.answer = wanted.asked.metrics.first().and_then(|metric| answer(folder, *case, *metric, &here));
+    page.answer = wanted.asked.metrics.first().and_then(|metric| answer(folder, case, *metric, &here));
     page.is_declared = wanted.asked.is_declared;
     page.margins = wanted.asked.margins_in_words(folder.experiment());
     page.exploratory = exploratory.iter().map(row).collect();
-    page.links.clone_from(links);
+    page.links = links;
     if let Some(title) = &wanted.title {
         page.title = title;
     }
-    files.add(file.clone(), page.render().map_err(Failure::run)?.as_bytes())?;
+    files.add(file, page.render().map_err(Failure::run)?.as_bytes())?;
     for Figure { name, svg, csv, .. } in figures {
         files.add(format!("{PLOTS}/{prefix}{name}.svg"), svg.as_bytes())?;
         files.add(format!("{PLOTS}/{prefix}{name}.csv"), csv.as_bytes())?;
@@ -141,12 +143,7 @@ pub(crate) fn write_case(
     replays.try_for_each(|(name, content)| files.add(format!("{PLOTS}/{name}"), &content))
 }
 
-fn page<'a>(
-    folder: &'a Folder,
-    case: usize,
-    (comparisons, all): (&[&'a Comparison], &[Comparison]),
-    (figures, maps): (&'a [Figure], &'a [Map]),
-) -> Page<'a> {
+fn page<'a>(folder: &'a Folder, case: usize, comparisons: &[&'a Comparison], all: &[Comparison]) -> Page<'a> {
     let (experiment, manifest) = (folder.experiment(), folder.manifest());
     let here = || folder.results().iter().filter(|((of, ..), _)| *of == case);
     let failed = here().filter(|(_, measured)| measured.metrics.is_none()).count();
@@ -203,8 +200,8 @@ fn page<'a>(
         limit: limit_of_correction(all),
         test: test_in_words(all),
         family: all.iter().filter(|comparison| comparison.p.is_some()).count(),
-        maps,
-        figures,
+        maps: &[],
+        figures: &[],
         axes: &experiment.axes,
         facts,
         command: command(folder),

@@ -165,9 +165,9 @@ pub(crate) fn range(values: impl IntoIterator<Item = f64>) -> [f64; 2] {
 /// around it.
 pub(crate) type Line<'a> = (usize, &'a str, Vec<(f64, f64, f64)>);
 
-/// Lines through means, each with a band around it; `None` without any point. `words` are the title and the
+/// Lines through means, each with a band around it; `None` without any point. `x` and `y` are the
 /// labels of the axes.
-pub(crate) fn line_panel(lines: &[Line], metric: &str, words: [&str; 3]) -> Option<Panel> {
+pub(crate) fn line_panel(lines: &[Line], metric: &str, title: &str, x: &str, y: &str) -> Option<Panel> {
     let all = || lines.iter().flat_map(|(_, _, points)| points);
     all().next()?;
     let plot = |(policy, label, points): &Line| {
@@ -186,9 +186,9 @@ pub(crate) fn line_panel(lines: &[Line], metric: &str, words: [&str; 3]) -> Opti
     let [low, high] =
         range(all().flat_map(|(_, mean, half)| [(mean - half).max(0.0_f64.min(*mean)), mean + half]));
     let [left, right] = range(all().map(|(x, _, _)| *x));
-    let layout = layout(&plots, words[0])
-        .with_x_label(words[1])
-        .with_y_label(words[2])
+    let layout = layout(&plots, title)
+        .with_x_label(x)
+        .with_y_label(y)
         .with_x_axis_min(left)
         .with_x_axis_max(right)
         .with_y_axis_min(low)

@@ -111,7 +111,7 @@ mod tests {
     fn a_drawing_is_no_wider_than_its_column_so_that_its_text_is_large_enough() {
         for (panels, width) in [(1, 392.0), (3, 392.0), (3, 900.0), (4, 1300.0)] {
             let lines = [(0, "A", vec![(0.0, 1.0, 0.5), (1.0, 2.0, 0.5)])];
-            let panel = || crate::drawing::line_panel(&lines, "m", ["title", "x", "y"]).unwrap();
+            let panel = || crate::drawing::line_panel(&lines, "m", "title", "x", "y").unwrap();
             let drawing = Drawing::new((0..panels).map(|_| panel()).collect(), 3, [420.0, 320.0]);
             let svg = drawing.svg_for(width);
             let shown = svg.split_once("viewBox=\"0 0 ").unwrap().1.split_once(' ').unwrap().0;

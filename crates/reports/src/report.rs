@@ -8,7 +8,7 @@ use experiments::sweep::folder::Folder;
 use experiments::sweep::names::{PLOTS, REPORT};
 use experiments::sweep::ours::Report;
 
-use crate::case::{Compared, PagePlace, write_case};
+use crate::case::{CasePage, Compared, write_case};
 use crate::overview::write_overview;
 use crate::wanted::Wanted;
 
@@ -33,18 +33,18 @@ pub fn write_report(folder: &mut Folder, mut wanted: Wanted) -> Result<PathBuf, 
     let shown = std::mem::take(&mut wanted.shown);
     let mut files = Report::of(folder.path());
     if cases == 1 {
-        let place =
-            PagePlace { case: 0, file: REPORT.to_owned(), links: format!("{PLOTS}/"), prefix: String::new() };
-        write_case(folder, &wanted, &all, (&place, shown), &mut files)?;
+        let (file, links) = (REPORT.to_owned(), format!("{PLOTS}/"));
+        let page = CasePage { case: 0, file, links, prefix: String::new(), shown };
+        write_case(folder, &wanted, &all, page, &mut files)?;
     } else {
         let chosen: Vec<usize> = wanted.case.map_or((0..cases.min(MOST_PAGES)).collect(), |case| vec![case]);
         let mut shown = Some(shown);
         for case in &chosen {
             let prefix = format!("case-{}-", case + 1);
             let file = format!("{PLOTS}/case-{}.html", case + 1);
-            let place = PagePlace { case: *case, file, links: prefix.clone(), prefix };
             let shown = shown.take().unwrap_or_default();
-            write_case(folder, &wanted, &all, (&place, shown), &mut files)?;
+            let page = CasePage { case: *case, file, links: prefix.clone(), prefix, shown };
+            write_case(folder, &wanted, &all, page, &mut files)?;
         }
         write_overview(folder, &wanted, &all.asked, &chosen, &mut files)?;
     }

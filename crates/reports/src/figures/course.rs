@@ -50,7 +50,7 @@ pub(super) fn over_time(
             }
             lines.push((i, names[i].as_str(), points));
         }
-        panels.extend(line_panel(&lines, &title.replace(' ', "."), [title, "time (s)", "delivered"]));
+        panels.extend(line_panel(&lines, &title.replace(' ', "."), title, "time (s)", "delivered"));
     }
     let n = gathered.iter().map(|gathered| gathered.delivered.len()).min().unwrap_or(0);
     Ok(Sketch {
@@ -167,7 +167,7 @@ pub(super) fn levels(
                 lines.push((i, names[i].as_str(), points));
             }
             let title = format!("{}, group of the {task_name} task", capitalised(name));
-            panels.extend(line_panel(&lines, "", [&title, "round", "mean level (percent)"]));
+            panels.extend(line_panel(&lines, "", &title, "round", "mean level (percent)"));
         }
     }
     Ok(Sketch {

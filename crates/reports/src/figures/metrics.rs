@@ -30,11 +30,12 @@ const PANEL: [f64; 2] = [360.0, 320.0];
 /// Box plots with points, a figure for each group of metrics.
 pub(super) fn boxes(folder: &Folder, case: usize, only: Option<&[String]>) -> Result<Vec<Sketch>, Failure> {
     let figures = folder.experiment().metrics.figures().into_iter();
-    figures.map(|(name, metrics)| box_figure((folder, case), name, &metrics, only)).collect()
+    figures.map(|(name, metrics)| box_figure(folder, case, name, &metrics, only)).collect()
 }
 
 fn box_figure(
-    (folder, case): (&Folder, usize),
+    folder: &Folder,
+    case: usize,
     name: &str,
     places: &[usize],
     only: Option<&[String]>,
@@ -51,7 +52,7 @@ fn box_figure(
         points = points.with_marker_opacity(if step > 1 { 0.45 } else { 0.8 });
         let (mut colours, mut all) = (Vec::new(), Vec::new());
         for (i, policy) in policies.iter().enumerate().filter(|(_, policy)| is_drawn(only, &policy.label)) {
-            let found = trials(folder, (case, i), |metrics| metrics.get(*place));
+            let found = trials(folder, case, i, |metrics| metrics.get(*place));
             for (seed, value) in &found {
                 rows.push(&[&metric.name, &policy.label, &seed.to_string(), &value.to_string()])?;
             }
@@ -113,7 +114,8 @@ fn thinned(values: &[f64], step: usize) -> Vec<f64> {
 /// The values of a policy's trials, where defined, each with its seed.
 fn trials<T>(
     folder: &Folder,
-    (case, policy): (usize, usize),
+    case: usize,
+    policy: usize,
     value: impl Fn(&Values) -> Option<T>,
 ) -> Vec<(u64, T)> {
     let trials = folder.results().range((case, policy, 0)..=(case, policy, u32::MAX));
@@ -167,7 +169,7 @@ pub(super) fn costs(folder: &Folder, case: usize, only: Option<&[String]>) -> Re
         let part = metrics[energy].part();
         let (mut plots, mut all) = (Vec::new(), Vec::new());
         for (i, policy) in policies.iter().enumerate().filter(|(_, policy)| is_drawn(only, &policy.label)) {
-            let found = trials(folder, (case, i), |metrics| Some((metrics.get(energy)?, metrics.get(hp)?)));
+            let found = trials(folder, case, i, |metrics| Some((metrics.get(energy)?, metrics.get(hp)?)));
             for (seed, (energy, hp)) in &found {
                 let numbers = [seed.to_string(), energy.to_string(), hp.to_string()];
                 rows.push(&[part, &policy.label, &numbers[0], &numbers[1], &numbers[2]])?;
@@ -377,7 +379,9 @@ pub(super) fn axes(folder: &Folder, case: usize, only: Option<&[String]>) -> Res
             panels.extend(line_panel(
                 &lines,
                 &experiment.metrics[*metric].name,
-                [&experiment.metrics[*metric].title_with_unit(), &axis.path, ""],
+                &experiment.metrics[*metric].title_with_unit(),
+                &axis.path,
+                "",
             ));
         }
         let n = experiment.trials;

@@ -46,7 +46,7 @@ fn by_round(analyses: &[Analysis]) -> Result<Sketch, Failure> {
             };
             rows.extend(points.iter().map(row));
         }
-        panels.extend(line_panel(&lines, &analysis.metric, [&analysis.metric, "round", "regret"]));
+        panels.extend(line_panel(&lines, &analysis.metric, &analysis.metric, "round", "regret"));
     }
     Ok(Sketch {
         name: "regret-by-round".to_owned(),

@@ -47,7 +47,7 @@ fn means_before<'e>(effects: &'e [&Effect]) -> impl Iterator<Item = Entry> + 'e 
 #[must_use]
 pub fn interactions_table(interactions: &[&Interaction]) -> Table {
     let text = |one: &Interaction| match one.change.zip(one.interval) {
-        Some((change, [low, high])) => with_interval([change, low, high], one.is_found()),
+        Some((change, [low, high])) => with_interval(change, low, high, one.is_found()),
         None => "-".to_owned(),
     };
     let cells = interactions.iter().map(|one| Entry {
@@ -62,7 +62,7 @@ pub fn interactions_table(interactions: &[&Interaction]) -> Table {
 #[must_use]
 pub fn differences_table(comparisons: &[&Comparison]) -> Table {
     let text = |one: &Comparison| match one.difference.zip(one.interval) {
-        Some((difference, [low, high])) => with_interval([difference, low, high], one.is_found()),
+        Some((difference, [low, high])) => with_interval(difference, low, high, one.is_found()),
         None => "-".to_owned(),
     };
     let cells = comparisons.iter().map(|one| Entry {
@@ -104,7 +104,7 @@ fn pivoted(title: &str, entries: impl Iterator<Item = Entry>) -> Table {
 }
 
 /// `value (low to high)`, with a star if the difference is statistically shown.
-fn with_interval([value, low, high]: [f64; 3], is_found: bool) -> String {
+fn with_interval(value: f64, low: f64, high: f64, is_found: bool) -> String {
     let sign = if value > 0.0 { "+" } else { "" };
     format!("{sign}{} ({} to {}){}", short(value), short(low), short(high), star(is_found))
 }

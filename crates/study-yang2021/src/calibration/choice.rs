@@ -107,7 +107,7 @@ pub fn judge(target: &Target, candidates: &[(Candidate, Vec<Vec<f64>>)]) -> Vec<
         let data: Vec<Spread> =
             data.map(|(drawn, whole)| Spread { sd: drawn.sd.max(whole.sd / 2.0), ..drawn }).collect();
         let distance = |(candidate, quantities): &(Candidate, Vec<Vec<f64>>)| {
-            misfit(&data, &of(quantities, rows), [target.trials, trials]) + penalty(candidate)
+            misfit(&data, &of(quantities, rows), target.trials, trials) + penalty(candidate)
         };
         candidates.iter().map(distance).collect()
     };

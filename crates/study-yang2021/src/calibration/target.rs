@@ -55,7 +55,7 @@ impl Spread {
     /// a true model, the square of each is 1 on average. The model's standard deviation counts as at least
     /// a twentieth of this one.
     #[must_use]
-    pub fn residuals(&self, model: &Self, [trials, model_trials]: [usize; 2]) -> [f64; 2] {
+    pub fn residuals(&self, model: &Self, trials: usize, model_trials: usize) -> [f64; 2] {
         let [n, m] = [trials, model_trials].map(|trials| trials.max(2) as f64);
         let mean = (model.mean - self.mean) / self.sd;
         let spread = (model.sd.max(self.sd / 20.0) / self.sd).ln();
@@ -138,23 +138,28 @@ impl Target {
     /// quantities. Smaller is nearer. For a true model, it is twice the number of quantities on average.
     #[must_use]
     pub fn misfit(&self, model: &[Spread], model_trials: usize) -> f64 {
-        misfit(&self.spreads, model, [self.trials, model_trials])
+        misfit(&self.spreads, model, self.trials, model_trials)
     }
 
     /// The residuals of all quantities: for each, the distance of the means and of the spreads, in standard
     /// errors.
     pub(super) fn residuals(&self, model: &[Spread], model_trials: usize) -> Vec<f64> {
-        residuals(&self.spreads, model, [self.trials, model_trials]).collect()
+        residuals(&self.spreads, model, self.trials, model_trials).collect()
     }
 }
 
 /// Distance of a model's spreads from the data's, for these numbers of trials of the data and of the model.
-pub(super) fn misfit(data: &[Spread], model: &[Spread], trials: [usize; 2]) -> f64 {
-    residuals(data, model, trials).map(|residual| residual * residual).sum()
+pub(super) fn misfit(data: &[Spread], model: &[Spread], trials: usize, model_trials: usize) -> f64 {
+    residuals(data, model, trials, model_trials).map(|residual| residual * residual).sum()
 }
 
-fn residuals(data: &[Spread], model: &[Spread], trials: [usize; 2]) -> impl Iterator<Item = f64> {
-    data.iter().zip(model).flat_map(move |(data, model)| data.residuals(model, trials))
+fn residuals(
+    data: &[Spread],
+    model: &[Spread],
+    trials: usize,
+    model_trials: usize,
+) -> impl Iterator<Item = f64> {
+    data.iter().zip(model).flat_map(move |(data, model)| data.residuals(model, trials, model_trials))
 }
 
 /// The columns of a table.
@@ -243,14 +248,14 @@ mod tests {
     fn a_misfit_counts_standard_errors() {
         let data = Spread { mean: 100.0, sd: 5.0 };
         let misfit =
-            |mean, sd| data.residuals(&Spread { mean, sd }, [10, 10]).map(|residual| residual * residual);
+            |mean, sd| data.residuals(&Spread { mean, sd }, 10, 10).map(|residual| residual * residual);
         assert_eq!(misfit(100.0, 5.0), [0.0, 0.0]);
         assert!((misfit(110.0, 5.0)[0] - 4.0 / 0.2).abs() < 1e-12);
         let [_, wide] = misfit(100.0, 5.0 * std::f64::consts::E);
         assert!((wide - 9.0).abs() < 1e-12);
         let none = misfit(100.0, 0.0)[1];
         assert!((none - 9.0 * 20_f64.ln().powi(2)).abs() < 1e-9, "no spread at all is finite");
-        let [more, _] = data.residuals(&Spread { mean: 110.0, sd: 5.0 }, [10, 40]);
+        let [more, _] = data.residuals(&Spread { mean: 110.0, sd: 5.0 }, 10, 40);
         assert!(
             (more * more - 4.0 / 0.125).abs() < 1e-12,
             "more trials of the model: the same distance weighs more"
@@ -270,7 +275,7 @@ mod tests {
         let worlds = 4_000;
         let mut sums = [0.0; 2];
         for _ in 0..worlds {
-            let [mean, sd] = spread(10).residuals(&spread(20), [10, 20]).map(|residual| residual * residual);
+            let [mean, sd] = spread(10).residuals(&spread(20), 10, 20).map(|residual| residual * residual);
             sums = [sums[0] + mean, sums[1] + sd];
         }
         // By the t distribution of few trials, the first is (n - 1) / (n - 3) on average, and the variance

@@ -33,17 +33,18 @@ const G2: &[[f64; 3]] = &[[40.0, 56.0, 12.0], [56.0, 48.0, 15.0]];
 /// None: their needs are given.
 pub fn examples() -> Result<[Example; 3], Failure> {
     Ok([
-        example("Example 1", "robot 1 trusts robot 3 more than robot 2", [rne(R1, R3)?, rne(R1, R2)?]),
-        example("Example 2", "robot 1 trusts group 1 more than group 2", [rne(R1, G1)?, rne(R1, G2)?]),
+        example("Example 1", "robot 1 trusts robot 3 more than robot 2", rne(R1, R3)?, rne(R1, R2)?),
+        example("Example 2", "robot 1 trusts group 1 more than group 2", rne(R1, G1)?, rne(R1, G2)?),
         example(
             "Example 3",
             "group 1 trusts group 2 much more than group 2 trusts group 1",
-            [rne(G1, G2)?, rne(G2, G1)?],
+            rne(G1, G2)?,
+            rne(G2, G1)?,
         ),
     ])
 }
 
-fn example(name: &'static str, words: &'static str, [trusting, doubting]: [f64; 2]) -> Example {
+fn example(name: &'static str, words: &'static str, trusting: f64, doubting: f64) -> Example {
     let verdict = if trusting < doubting { Verdict::Holds } else { Verdict::DoesNotHold };
     Example { name, words, trusting, doubting, verdict }
 }
