@@ -9,7 +9,7 @@ use experiments::comparison::{
     CONFIDENCE, Comparison, Effect, Interaction, LEVEL, compare, effects, interactions, limit_of_changes,
     limit_of_correction, test_in_words,
 };
-use experiments::experiment::Experiment;
+use experiments::metric::Metric;
 use experiments::stats::bootstrap::resamples;
 use experiments::sweep::host::Hosts;
 use reports::table::{comparison_table, differences_table, effects_table, interactions_table};
@@ -98,7 +98,7 @@ impl Arguments {
         }
         if !effects.is_empty() {
             for metric in &asked.metrics {
-                print_changes(out, experiment, *metric, (&comparisons, &effects, &interactions))?;
+                print_changes(out, &experiment.metrics[*metric], &comparisons, &effects, &interactions)?;
             }
             writeln!(out, "{CHANGES_NOTE}")?;
             let counts = || effects.iter().map(|one| one.n);
@@ -134,12 +134,12 @@ differences), or over all comparisons";
 /// their changes.
 fn print_changes(
     out: &mut dyn Write,
-    experiment: &Experiment,
-    metric: usize,
-    (comparisons, effects, interactions): (&[Comparison], &[Effect], &[Interaction]),
+    metric: &Metric,
+    comparisons: &[Comparison],
+    effects: &[Effect],
+    interactions: &[Interaction],
 ) -> Result<(), Failure> {
-    let name = &experiment.metrics[metric].name;
-    let title = &experiment.metrics[metric].title;
+    let Metric { name, title, .. } = metric;
     let effects: Vec<&Effect> = effects.iter().filter(|one| one.metric == *name).collect();
     let interactions: Vec<&Interaction> = interactions.iter().filter(|one| one.metric == *name).collect();
     let comparisons: Vec<&Comparison> = comparisons.iter().filter(|one| one.metric == *name).collect();

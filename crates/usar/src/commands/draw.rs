@@ -43,7 +43,7 @@ pub(crate) struct Arguments {
 impl Arguments {
     pub(crate) fn execute(&self, registry: &Registry, out: &mut dyn Write) -> Result<(), Failure> {
         let kind = Kind::of(&self.out)?;
-        let place = output::place("--out", &self.out, self.looks.force)?;
+        let (folder, name) = output::place("--out", &self.out, self.looks.force)?;
         let (scenario, _) = load(&self.file)?;
         let scenario = with_settings(&scenario, &self.set)?;
         let seed = match self.seed {
@@ -62,7 +62,7 @@ impl Arguments {
         };
         let drawn = Plan { title: &title, world: &world, errands: &scenario.errands, first_sampled };
         let picture = plan(&drawn, &self.looks.look(Width::Pixels(800)));
-        output::write(&place, &kind.content(&picture)?)?;
+        output::write(&folder, name, &kind.content(&picture)?)?;
         Ok(writeln!(out, "{}", self.out.display())?)
     }
 }

@@ -95,7 +95,7 @@ impl Arguments {
         let jobs = self.jobs.map_or_else(default_jobs, |jobs| jobs as usize);
         let Sizes { finished, journal } = measured.sizes(experiment, experiment.keep, None, trials)?;
         let keep = |keep: Keep| Ok((keep.name(), measured.sizes(experiment, keep, None, trials)?.finished));
-        let shard = self.shards.map(|shards| one_shard(experiment, measured, (shards, jobs))).transpose()?;
+        let shard = self.shards.map(|shards| one_shard(experiment, measured, shards, jobs)).transpose()?;
         Ok(Output {
             schema_version: SCHEMA_VERSION,
             cases: experiment.cases.len(),
@@ -118,7 +118,8 @@ impl Arguments {
 fn one_shard(
     experiment: &Experiment,
     measured: &Measured,
-    (shards, jobs): (u32, usize),
+    shards: u32,
+    jobs: usize,
 ) -> Result<OneShard, Failure> {
     let trials = experiment.seeds_of_cases().div_ceil(shards as usize) * experiment.policies.len();
     let shard = Some(Shard { number: 1, of: shards });

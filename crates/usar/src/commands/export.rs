@@ -76,7 +76,7 @@ impl Arguments {
         for (flag, path) in folders {
             output::make_folder(path)?;
             for table in Table::ALL {
-                write_table(flag == "--parquet", path, table, (&recording, every))?;
+                write_table(flag == "--parquet", path, table, &recording, every)?;
             }
         }
         for path in [&self.mcap, &self.csv, &self.parquet].into_iter().flatten() {
@@ -96,7 +96,8 @@ fn write_table(
     is_parquet: bool,
     folder: &Path,
     table: Table,
-    (recording, every): (&Recording, usize),
+    recording: &Recording,
+    every: usize,
 ) -> Result<(), Failure> {
     let name = format!("{}.{}", table.name(), if is_parquet { "parquet" } else { "csv" });
     let file = NewFile::new(folder, &name)?;

@@ -96,11 +96,11 @@ impl Arguments {
         }
         let path =
             self.out.clone().unwrap_or_else(|| format!("{}.{}", self.name, self.format.ending()).into());
-        let place = output::place("--out", &path, self.force)?;
+        let (beside, name) = output::place("--out", &path, self.force)?;
         let wanted = self.wanted(&folder)?;
         let look = ColumnLook { width_mm: self.width, is_grey: self.grey, metric: self.panel(&folder)? };
         let svg = column_figure(&mut folder, &self.name, &wanted, &look)?;
-        output::write(&place, &self.content(svg)?)?;
+        output::write(&beside, name, &self.content(svg)?)?;
         Ok(writeln!(out, "{}", path.display())?)
     }
 

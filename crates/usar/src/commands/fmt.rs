@@ -43,7 +43,8 @@ impl Arguments {
             if self.check {
                 writeln!(out, "{}: is laid out otherwise", file.display())?;
             } else {
-                output::write(&output::place("FILE", file, true)?, text.as_bytes())?;
+                let (folder, name) = output::place("FILE", file, true)?;
+                output::write(&folder, name, text.as_bytes())?;
                 writeln!(out, "{}: written", file.display())?;
             }
         }

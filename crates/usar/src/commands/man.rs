@@ -46,7 +46,7 @@ impl Arguments {
         make_folder(folder)?;
         for command in pages {
             let name = format!("{}.1", command.get_display_name().unwrap_or("usar"));
-            write(&(folder.clone(), &name), &page(command)?)?;
+            write(folder, &name, &page(command)?)?;
             writeln!(out, "{}", folder.join(name).display())?;
         }
         Ok(())

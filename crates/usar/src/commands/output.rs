@@ -50,6 +50,6 @@ pub(crate) fn make_folder(path: &Path) -> Result<(), Failure> {
 }
 
 /// Writes a file at its [`place`].
-pub(crate) fn write((folder, name): &(PathBuf, &str), content: &[u8]) -> Result<(), Failure> {
+pub(crate) fn write(folder: &Path, name: &str, content: &[u8]) -> Result<(), Failure> {
     NewFile::write(folder, name, content).map(drop)
 }

@@ -78,9 +78,9 @@ impl Arguments {
         match &self.out {
             Some(path) => {
                 let kind = Kind::of(path)?;
-                let place = output::place("--out", path, self.looks.force)?;
+                let (folder, name) = output::place("--out", path, self.looks.force)?;
                 let recording = self.asked.open_one(&self.file, registry)?;
-                output::write(&place, &kind.content(&self.picture(&recording)?)?)?;
+                output::write(&folder, name, &kind.content(&self.picture(&recording)?)?)?;
                 Ok(writeln!(out, "{}", path.display())?)
             }
             None => self.film(registry, out),

@@ -131,7 +131,7 @@ impl Arguments {
         let seed = simulation.seed();
         let mut simulation = if self.check { simulation.checked() } else { simulation };
         if let (Some(path), Some(seconds)) = (&self.save, self.save_at) {
-            save(&mut simulation, &spec, (path, seconds))?;
+            save(&mut simulation, &spec, path, seconds)?;
         }
         stop_on_signals();
         let (record, story) = self.run(simulation, &spec, registry)?;
@@ -148,7 +148,7 @@ impl Arguments {
             };
             return Ok(writeln!(out, "{}", serde_json::to_string(&output).map_err(Failure::run)?)?);
         }
-        print(out, [&scenario.name, &spec.label], &record)?;
+        print(out, &scenario.name, &spec.label, &record)?;
         story.iter().try_for_each(|line| Ok(writeln!(out, "{line}")?))
     }
 
@@ -196,7 +196,7 @@ fn run(
     Ok(simulation.finish())
 }
 
-fn print(out: &mut dyn Write, [scenario, policy]: [&str; 2], record: &TrialRecord) -> Result<(), Failure> {
+fn print(out: &mut dyn Write, scenario: &str, policy: &str, record: &TrialRecord) -> Result<(), Failure> {
     writeln!(
         out,
         "{scenario}, policy {policy}, seed {}: {} s simulated, {}",

@@ -46,7 +46,8 @@ impl Snapshot {
 pub(super) fn save(
     simulation: &mut Simulation,
     spec: &PolicySpec,
-    (path, seconds): (&Path, f64),
+    path: &Path,
+    seconds: f64,
 ) -> Result<(), Failure> {
     let mut session = session_of(spec, simulation.scenario(), simulation.seed())?;
     let (now, end) = (simulation.time_s(), simulation.scenario().duration_s);

@@ -102,7 +102,7 @@ fn by_hand(folder: &Path, registry: &Registry) -> Result<Output, Failure> {
         if let Some(of) = manifest.shard.filter(|_| shard.state == State::Lost) {
             shard.why = format!(
                 "nothing is at work in its folder; to go on: {}",
-                shard.command((&shard.folder, manifest.is_checked), of)
+                shard.command(&shard.folder, manifest.is_checked, of)
             );
         }
         all = manifest.shard.map(|shard| (experiment, shard.of));
@@ -116,7 +116,7 @@ fn by_hand(folder: &Path, registry: &Registry) -> Result<Output, Failure> {
         shards.extend(absent.into_iter().map(|number| {
             let shard = Shard { number, of };
             let trials = experiment.count(Some(shard));
-            OneShard::absent(shard, folder.join(number.to_string()), trials, (&like, is_checked))
+            OneShard::absent(shard, folder.join(number.to_string()), trials, &like, is_checked)
         }));
         shards.sort_by_key(|shard| shard.number);
     }

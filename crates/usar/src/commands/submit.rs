@@ -116,7 +116,7 @@ impl Arguments {
             most_tasks: slurm::most_tasks(),
         };
         let plan = Plan::of(&experiment, measured.seconds_each, &wishes);
-        let scripts = self.scripts(&experiment.name, &plan, [&folder, &whole])?;
+        let scripts = self.scripts(&experiment.name, &plan, &folder, &whole)?;
         let (shards, trials) = (plan.shards(), plan.trials.iter().max().copied().unwrap_or(0));
         let (time, cpus) = (duration(plan.seconds()), plan.cpus);
         let (shards, cpus) = (counted(shards, "shard"), counted(cpus as usize, "thread"));
@@ -131,7 +131,7 @@ impl Arguments {
         submit(out, &folder, &scripts, Submission::new(&experiment.name, plan, whole))
     }
 
-    fn scripts(&self, name: &str, plan: &Plan, [folder, whole]: [&Path; 2]) -> Result<Scripts, Failure> {
+    fn scripts(&self, name: &str, plan: &Plan, folder: &Path, whole: &Path) -> Result<Scripts, Failure> {
         let shown = |path: &Path| quoted(&path.display().to_string());
         let directive = |flag: &str, value: &Option<String>| {
             value.as_ref().map(|value| format!("#SBATCH --{flag}={value}"))

@@ -155,9 +155,8 @@ impl Suite {
         let mut tested = BTreeMap::new();
         for look in &looks {
             self.run_up_to(*look, &open, jobs, quiet)?;
-            let is_last = look == looks.last().unwrap_or(look);
             open.retain(|(case, place)| {
-                let found = self.judge((*case, *place), *look, looks.len(), is_last);
+                let found = self.judge(*case, *place, *look, looks.len());
                 let is_open = found.judgement.verdict == Verdict::Undecided;
                 tested.insert((*case, *place), found);
                 is_open
@@ -211,7 +210,7 @@ impl Suite {
         if is_whole { Ok(()) } else { Err(Failure::Interrupted("stopped".to_owned())) }
     }
 
-    fn judge(&self, (case, place): (usize, usize), trials: u32, looks: usize, is_last: bool) -> Tested {
+    fn judge(&self, case: usize, place: usize, trials: u32, looks: usize) -> Tested {
         let expected = &self.expected[place];
         let of =
             |policy: usize| (1..=trials).filter_map(move |trial| self.values.get(&(case, policy, trial)));
@@ -220,7 +219,7 @@ impl Suite {
         let value = |policy: usize, metric: usize| {
             of(policy).map(|value| value.as_ref().ok().and_then(|values| values[metric])).collect()
         };
-        let mut judgement = judge(expected, value, looks, is_last);
+        let mut judgement = judge(expected, value, looks, trials == self.experiment.trials);
         if trouble.is_some() {
             judgement.verdict = Verdict::Fails;
         }

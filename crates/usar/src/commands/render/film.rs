@@ -71,10 +71,11 @@ impl Arguments {
             (Some(folder), _) => write_frames(folder, &row, out),
             (None, Some((folder, name))) => {
                 if self.gif.is_some() {
-                    self.write_gif((&folder, name), &row)?;
+                    self.write_gif(&folder, name, &row)?;
                 } else {
                     video::write(
-                        (&folder, name),
+                        &folder,
+                        name,
                         self.fps,
                         row.numbers.iter().map(|number| row.pixels(*number)),
                     )?;
@@ -105,7 +106,7 @@ impl Arguments {
         Ok((0..count).map(|i| recording.frame_at(from + i as f64 * every)).collect())
     }
 
-    fn write_gif(&self, (folder, name): (&Path, &str), row: &Row) -> Result<(), Failure> {
+    fn write_gif(&self, folder: &Path, name: &str, row: &Row) -> Result<(), Failure> {
         let numbers = &row.numbers;
         let samples = [0, numbers.len() / 2, numbers.len() - 1].map(|place| row.pixels(numbers[place]));
         let samples = samples.into_iter().collect::<Result<Vec<_>, Failure>>()?;

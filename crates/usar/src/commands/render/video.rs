@@ -26,7 +26,8 @@ pub(super) fn check_program() -> Result<(), Failure> {
 
 /// Writes pictures as a film with this name and this number of pictures in a second.
 pub(super) fn write(
-    (folder, name): (&Path, &str),
+    folder: &Path,
+    name: &str,
     fps: u16,
     mut pictures: impl Iterator<Item = Result<Pixels, Failure>>,
 ) -> Result<(), Failure> {

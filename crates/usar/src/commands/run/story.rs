@@ -65,8 +65,8 @@ struct Spell {
 struct Spells(BTreeMap<(u32, u32), Vec<Spell>>);
 
 impl Spells {
-    fn add(&mut self, pair: (u32, u32), time_s: f64, dt_s: f64) {
-        let spells = self.0.entry(pair).or_default();
+    fn add(&mut self, robot: u32, other: u32, time_s: f64, dt_s: f64) {
+        let spells = self.0.entry((robot, other)).or_default();
         match spells.last_mut().filter(|spell| time_s - spell.last_s < BREAK_S) {
             Some(spell) => (spell.last_s, spell.total_s) = (time_s, spell.total_s + dt_s),
             None => spells.push(Spell { begun_s: time_s - dt_s, last_s: time_s, total_s: dt_s }),
@@ -115,9 +115,9 @@ impl Story {
             let dt_s = simulation.scenario().dt_s;
             if delay.cause == DelayCause::MakingRoom {
                 let head = self.room_for.get(&robot);
-                head.into_iter().for_each(|head| self.making_room.add((robot, *head), time_s, dt_s));
+                head.into_iter().for_each(|head| self.making_room.add(robot, *head, time_s, dt_s));
             } else if let Some(other) = delay.waits_for {
-                self.waits.add((robot, other.0), time_s, dt_s);
+                self.waits.add(robot, other.0, time_s, dt_s);
             }
         }
         for event in told(simulation).filter(|event| TOLD.contains(&event.event.as_str())) {
@@ -137,12 +137,13 @@ impl Story {
                 }
                 let radii = (role(a).radius_m + role(b).radius_m) as f32;
                 let between = (robots[a].position - robots[b].position).length() - radii;
-                self.add_distance((a as u32, b as u32), between, time_s);
+                self.add_distance(a as u32, b as u32, between, time_s);
             }
         }
     }
 
-    fn add_distance(&mut self, pair: (u32, u32), between: f32, time_s: f64) {
+    fn add_distance(&mut self, a: u32, b: u32, between: f32, time_s: f64) {
+        let pair = (a, b);
         let underway =
             self.meetings.get_mut(&pair).and_then(|all| all.last_mut()).filter(|last| !last.is_over);
         if let Some(meeting) = underway {
@@ -216,14 +217,14 @@ mod tests {
         for step in 0..100 {
             let time_s = 3.0 + f64::from(step) * 0.02;
             if !(40..60).contains(&step) {
-                story.waits.add((1, 0), time_s, 0.02);
+                story.waits.add(1, 0, time_s, 0.02);
             }
         }
-        story.waits.add((2, 0), 9.0, 0.02);
-        story.making_room.add((2, 1), 5.0, 0.5);
-        story.making_room.add((2, 1), 5.5, 0.5);
+        story.waits.add(2, 0, 9.0, 0.02);
+        story.making_room.add(2, 1, 5.0, 0.5);
+        story.making_room.add(2, 1, 5.5, 0.5);
         for (between, time_s) in [(2.0, 0.0), (0.4, 1.0), (0.1, 2.0), (2.0, 3.0), (0.3, 8.0)] {
-            story.add_distance((0, 1), between, time_s);
+            story.add_distance(0, 1, between, time_s);
         }
         story.happenings.insert("robot 0 has arrived".into(), Happening { first_s: 4.0, times: 2 });
         assert_eq!(

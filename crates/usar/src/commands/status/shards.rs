@@ -79,15 +79,21 @@ impl OneShard {
 
     /// A shard that has no folder yet, with the number of its trials; the folder of another shard, and whether
     /// that one is checked.
-    pub(super) fn absent(shard: Shard, folder: PathBuf, trials: usize, like: (&Path, bool)) -> Self {
+    pub(super) fn absent(
+        shard: Shard,
+        folder: PathBuf,
+        trials: usize,
+        like: &Path,
+        is_checked: bool,
+    ) -> Self {
         let number = shard.number;
         let mut absent = Self { number, state: State::Lost, why: String::new(), finished: 0, trials, folder };
-        absent.why = format!("not started; to run it: {}", absent.command(like, shard));
+        absent.why = format!("not started; to run it: {}", absent.command(like, is_checked, shard));
         absent
     }
 
     /// The command that runs this shard, from the sweep file in the folder of this or another shard.
-    pub(super) fn command(&self, (like, is_checked): (&Path, bool), Shard { number, of }: Shard) -> String {
+    pub(super) fn command(&self, like: &Path, is_checked: bool, Shard { number, of }: Shard) -> String {
         let [file, out] =
             [&like.join("sweep.ron"), &self.folder].map(|path| quoted(&path.display().to_string()));
         let check = if is_checked { " --check" } else { "" };
