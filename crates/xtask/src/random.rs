@@ -87,13 +87,13 @@ pub fn text(seed: u64) -> String {
     let robots = team(&mut random, arena, &mut text);
     let tasks = if random.one_in(5) { 0 } else { random.count(1, 4) };
     if tasks == 0 {
-        errands(&mut random, (arena, robots), &mut text);
+        errands(&mut random, arena, robots, &mut text);
     } else {
-        self::tasks(&mut random, (arena, tasks), &mut text);
+        self::tasks(&mut random, arena, tasks, &mut text);
     }
-    let doors = walls(&mut random, arena, &mut text);
+    walls(&mut random, arena, &mut text);
     things(&mut random, arena, &mut text);
-    timeline(&mut random, (arena, robots, tasks, doors), &mut text);
+    timeline(&mut random, arena, robots, tasks, &mut text);
     if random.one_in(3) {
         text.push_str("    conflicts: (resolver: Rotation),\n");
     }
@@ -174,7 +174,7 @@ fn team(random: &mut Random, arena: [f64; 2], text: &mut String) -> u32 {
     least
 }
 
-fn errands(random: &mut Random, (arena, robots): ([f64; 2], u32), text: &mut String) {
+fn errands(random: &mut Random, arena: [f64; 2], robots: u32, text: &mut String) {
     text.push_str("    errands: [\n");
     for robot in 0..robots {
         let places: Vec<String> = (0..random.count(1, 3))
@@ -185,7 +185,7 @@ fn errands(random: &mut Random, (arena, robots): ([f64; 2], u32), text: &mut Str
     text.push_str("    ],\n");
 }
 
-fn tasks(random: &mut Random, (arena, tasks): ([f64; 2], u32), text: &mut String) {
+fn tasks(random: &mut Random, arena: [f64; 2], tasks: u32, text: &mut String) {
     text.push_str("    tasks: [\n");
     let part = arena[0] / f64::from(tasks);
     for task in 0..tasks {
@@ -206,10 +206,10 @@ fn tasks(random: &mut Random, (arena, tasks): ([f64; 2], u32), text: &mut String
     text.push_str("    ],\n");
 }
 
-/// Sometimes writes a wall across the arena; returns the number of its doors, which have names.
-fn walls(random: &mut Random, arena: [f64; 2], text: &mut String) -> u32 {
+/// Sometimes writes a wall across the arena, with doors that have names.
+fn walls(random: &mut Random, arena: [f64; 2], text: &mut String) {
     if random.one_in(2) {
-        return 0;
+        return;
     }
     let doors = random.count(2, 4);
     let part = arena[0] / f64::from(doors);
@@ -230,7 +230,6 @@ fn walls(random: &mut Random, arena: [f64; 2], text: &mut String) -> u32 {
         arena[0],
         all.join(", ")
     );
-    doors
 }
 
 fn things(random: &mut Random, arena: [f64; 2], text: &mut String) {
@@ -266,14 +265,10 @@ fn things(random: &mut Random, arena: [f64; 2], text: &mut String) {
     text.push_str("    ],\n");
 }
 
-fn timeline(
-    random: &mut Random,
-    (arena, robots, tasks, doors): ([f64; 2], u32, u32, u32),
-    text: &mut String,
-) {
+fn timeline(random: &mut Random, arena: [f64; 2], robots: u32, tasks: u32, text: &mut String) {
     text.push_str("    timeline: [\n");
-    let (zones, pieces) =
-        (text.matches("name: \"z").count() as u32, text.matches("name: \"p").count() as u32);
+    let [doors, zones, pieces] =
+        ["d", "z", "p"].map(|letter| text.matches(&format!("name: \"{letter}")).count() as u32);
     for i in 0..random.count(0, 8) {
         let at = random.point([4.0, 16.0], [arena[0] - 4.0, arena[1] * 0.75]);
         let any = random.count(0, 20);

@@ -45,7 +45,7 @@ fn draw(seed: u64, draws: &mut ChaCha8Rng) -> Option<Scenario> {
     let side = draws.random_range(12.0..18.0);
     let arena = [side * columns as f64, side * rows as f64 + 2.0];
     let radii = radii(draws);
-    let debris = debris(draws, arena, (columns, rows), 2.0 * (radii[0].max(radii[1]) + KEEP_OFF_M));
+    let debris = debris(draws, arena, columns, rows, 2.0 * (radii[0].max(radii[1]) + KEEP_OFF_M));
     let mut file = base(seed, arena, 120.0);
     file.name = format!("rooms-{seed}");
     file.dt_s = [0.01, 0.02, 0.05][draws.random_range(0..3_usize)];
@@ -116,23 +116,22 @@ fn mission(mut file: ScenarioFile, draws: &mut ChaCha8Rng, kinds: &[FreeSpace; 2
 }
 
 /// Walls with doors at least `door_m` wide, and pieces of debris that cover a share of the rooms.
-fn debris(
-    draws: &mut ChaCha8Rng,
-    arena: Point,
-    (columns, rows): (usize, usize),
-    door_m: f64,
-) -> Vec<DebrisFile> {
+fn debris(draws: &mut ChaCha8Rng, arena: Point, columns: usize, rows: usize, door_m: f64) -> Vec<DebrisFile> {
     let (mut debris, mut doors) = (Vec::new(), Vec::new());
     let [width, height] = [arena[0] / columns as f64, arena[1] / rows as f64];
     for column in 1..columns {
         let x = width * column as f64;
-        wall(draws, (&mut debris, &mut doors), [[x, 0.0], [x, arena[1]]], (rows, door_m));
+        let (pieces, middles) = wall(draws, [x, 0.0], [x, arena[1]], rows, door_m);
+        debris.extend(pieces);
+        doors.extend(middles);
     }
     for row in 1..rows {
         // A cross if the wall continues beyond the first wall that it meets, a T if it ends there.
         let to = if draws.random_range(0..2_u32) == 0 { columns } else { 1 };
         let y = height * row as f64;
-        wall(draws, (&mut debris, &mut doors), [[0.0, y], [width * to as f64, y]], (to, door_m));
+        let (pieces, middles) = wall(draws, [0.0, y], [width * to as f64, y], to, door_m);
+        debris.extend(pieces);
+        doors.extend(middles);
     }
     let mut left = draws.random_range(0.0..0.04) * arena[0] * arena[1];
     while left > 0.0 {
@@ -160,20 +159,23 @@ fn debris(
     debris
 }
 
-/// A straight wall along one axis, with a door in each of `parts` equal parts.
+/// The pieces of a straight wall along one axis, and the middles of its doors, one in each of `parts` equal
+/// parts.
 fn wall(
     draws: &mut ChaCha8Rng,
-    (debris, doors): (&mut Vec<DebrisFile>, &mut Vec<Point>),
-    [from, to]: [Point; 2],
-    (parts, door_m): (usize, f64),
-) {
+    from: Point,
+    to: Point,
+    parts: usize,
+    door_m: f64,
+) -> (Vec<DebrisFile>, Vec<Point>) {
+    let (mut pieces, mut doors) = (Vec::new(), Vec::new());
     let length = (to[0] - from[0]) + (to[1] - from[1]);
     let along = |at: f64| [0, 1].map(|k| from[k] + (to[k] - from[k]) * at / length);
     let mut begin = 0.0;
     let mut add = |begin: f64, end: f64| {
         let [low, high] = [along(begin), along(end)];
         let size = [0, 1].map(|k| (high[k] - low[k]).max(WALL_M));
-        debris.push(DebrisFile {
+        pieces.push(DebrisFile {
             shape: DebrisShape::Box(size[0], size[1]),
             at: [0, 1].map(|k| f64::midpoint(low[k], high[k])),
             rotation_deg: 0.0,
@@ -190,4 +192,5 @@ fn wall(
         begin = at + door;
     }
     add(begin, length);
+    (pieces, doors)
 }

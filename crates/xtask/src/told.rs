@@ -65,18 +65,22 @@ fn events() -> String {
             comment.push_str(text);
         } else if first.is_uppercase() {
             let name = snake(line.trim_end_matches([' ', '{', ',']));
-            let event = (name, std::mem::take(&mut comment));
-            if line.ends_with('{') { open = Some(event) } else { row(&mut page, &event, &[]) }
+            let comment = std::mem::take(&mut comment);
+            if line.ends_with('{') {
+                open = Some((name, comment));
+            } else {
+                row(&mut page, &name, &comment, &[]);
+            }
         } else if let Some((name, _)) = line.split_once(':') {
             fields.push(format!("`{name}`: {}", plain(&std::mem::take(&mut comment))));
-        } else if let Some(event) = open.take() {
-            row(&mut page, &event, &std::mem::take(&mut fields));
+        } else if let Some((name, comment)) = open.take() {
+            row(&mut page, &name, &comment, &std::mem::take(&mut fields));
         }
     }
     page
 }
 
-fn row(page: &mut String, (name, comment): &(String, String), fields: &[String]) {
+fn row(page: &mut String, name: &str, comment: &str, fields: &[String]) {
     let _ = writeln!(page, "| `{name}` | {} | {} |", comment.trim(), fields.join("; "));
 }
 

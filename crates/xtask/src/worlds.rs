@@ -46,7 +46,7 @@ fn errands(seed: u64, draws: &mut ChaCha8Rng) -> Option<ScenarioFile> {
     let robots = draws.random_range(2..=50_u32);
     let side = (f64::from(robots) * draws.random_range(15.0..40.0)).sqrt() + 8.0;
     let arena = [side * draws.random_range(1.0..1.6), side];
-    let debris = debris(draws, arena, (0.0, robots), [0.02, 0.15]);
+    let debris = debris(draws, arena, 0.0, robots, [0.02, 0.15]);
     let free = FreeSpace::new(arena, &debris);
     let mut taken: Vec<Point> = Vec::new();
     let mut team = Vec::new();
@@ -110,7 +110,7 @@ fn mission(seed: u64, draws: &mut ChaCha8Rng) -> Option<ScenarioFile> {
         ..TaskFile::default()
     };
     let tasks = vec![task("hard", 2, arena[0] * 0.2), task("easy", 1, arena[0] * 0.8)];
-    let debris = debris(draws, arena, (8.0, robots), [0.01, 0.08]);
+    let debris = debris(draws, arena, 8.0, robots, [0.01, 0.08]);
     let radiation = (0..draws.random_range(0..4_u32))
         .map(|_| ZoneFile {
             at: [draws.random_range(0.0..arena[0]), draws.random_range(8.0..arena[1])],
@@ -130,12 +130,7 @@ fn mission(seed: u64, draws: &mut ChaCha8Rng) -> Option<ScenarioFile> {
 }
 
 /// Debris that covers a share of the arena above a line; some worlds also have a wall with a door.
-fn debris(
-    draws: &mut ChaCha8Rng,
-    arena: Point,
-    (above, robots): (f64, u32),
-    cover: [f64; 2],
-) -> Vec<DebrisFile> {
+fn debris(draws: &mut ChaCha8Rng, arena: Point, above: f64, robots: u32, cover: [f64; 2]) -> Vec<DebrisFile> {
     let mut left = draws.random_range(cover[0]..cover[1]) * arena[0] * (arena[1] - above);
     let mut debris = Vec::new();
     while left > 0.0 {

@@ -14,9 +14,13 @@ use xtask::journeys::{Journeys, STANDSTILL_S};
 use xtask::{rooms, worlds};
 
 /// A family of worlds: its name, and the world of a seed.
-type Family = (&'static str, fn(u64) -> Scenario);
+struct Family {
+    name: &'static str,
+    world: fn(u64) -> Scenario,
+}
 
-const FAMILIES: [Family; 2] = [("open", worlds::world), ("rooms", rooms::rooms)];
+const FAMILIES: [Family; 2] =
+    [Family { name: "open", world: worlds::world }, Family { name: "rooms", world: rooms::rooms }];
 
 pub fn run(arguments: &[String]) -> ExitCode {
     let is_number = |text: &&String| text.parse::<u64>().is_ok();
@@ -25,7 +29,7 @@ pub fn run(arguments: &[String]) -> ExitCode {
     let (first, count) = (numbers.first().copied().unwrap_or(0), numbers.get(1).copied().unwrap_or(500));
     let duration_s = numbers.get(2).map_or(900.0, |seconds| *seconds as f64);
     let chosen = arguments.iter().find(|text| !is_number(text));
-    let is_chosen = |family: &&Family| chosen.is_none_or(|name| name == family.0);
+    let is_chosen = |family: &&Family| chosen.is_none_or(|name| name == family.name);
     let families: Vec<&Family> = FAMILIES.iter().filter(is_chosen).collect();
     if families.is_empty() || arguments.len() > 4 {
         eprintln!("usage: worlds [FIRST_SEED] [WORLDS] [SECONDS] [open|rooms]");
@@ -38,13 +42,14 @@ pub fn run(arguments: &[String]) -> ExitCode {
 }
 
 /// Runs a family's worlds; returns whether they are sound.
-fn run_family((name, world): &Family, seeds: std::ops::Range<u64>, duration_s: f64) -> bool {
-    let mut totals = Totals { family: name, ..Totals::default() };
+fn run_family(family: &Family, seeds: std::ops::Range<u64>, duration_s: f64) -> bool {
+    let mut totals = Totals { family: family.name, ..Totals::default() };
     for start in seeds.clone().step_by(CHUNK) {
         let chunk = start..(start + CHUNK as u64).min(seeds.end);
         let run = |seed: u64| {
-            let result =
-                catch_unwind(AssertUnwindSafe(|| Journeys::run(&lasting(&world(seed), duration_s), seed)));
+            let result = catch_unwind(AssertUnwindSafe(|| {
+                Journeys::run(&lasting(&(family.world)(seed), duration_s), seed)
+            }));
             (seed, result.unwrap_or_else(|_| Err(INTERNAL.to_owned())))
         };
         let results: Vec<(u64, Result<Journeys, String>)> = chunk.into_par_iter().map(run).collect();
