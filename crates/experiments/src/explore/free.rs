@@ -2,7 +2,8 @@
 
 use std::fmt;
 
-use ron_fields::Fields;
+use ron_fields::{Fields, SetError};
+use thiserror::Error;
 use usar_sim::scenario::ScenarioFile;
 
 /// Significant digits of a candidate value. With so few digits, the log and the calibrated scenario hold
@@ -23,21 +24,74 @@ pub struct Free {
     is_whole: bool,
 }
 
+/// Why a text is no free parameter of a scenario.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+pub enum FreeError {
+    /// The text has another form.
+    #[error(
+        "must be 'PATH=LOW..HIGH' or 'PATH + PATH*RATIO=LOW..HIGH log' with finite numbers, found {spec:?}"
+    )]
+    Form {
+        /// The text.
+        spec: String,
+    },
+    /// The range has no values.
+    #[error("the lower bound must be below the upper one, found {spec:?}")]
+    Bounds {
+        /// The text.
+        spec: String,
+    },
+    /// A logarithmic range begins at 0 or below.
+    #[error("a logarithmic range must be above 0, found {spec:?}")]
+    Logarithm {
+        /// The text.
+        spec: String,
+    },
+    /// A ratio is 0 or below.
+    #[error("a ratio must be above 0, found {spec:?}")]
+    Ratio {
+        /// The text.
+        spec: String,
+    },
+    /// The field has a default value in the scenario.
+    #[error(
+        "{path}: is not written in the scenario; write it there, so that what is found can take its place"
+    )]
+    NotWritten {
+        /// The field.
+        path: String,
+    },
+    /// The field has parts.
+    #[error("{path}: is not a number but has parts: {parts}")]
+    Parts {
+        /// The field.
+        path: String,
+        /// Names of its parts.
+        parts: String,
+    },
+    /// There is no such field.
+    #[error(transparent)]
+    Unknown(#[from] SetError),
+    /// The field's present value is not a number.
+    #[error("{path}: must be a number, found {written}")]
+    NotNumber {
+        /// The field.
+        path: String,
+        /// Its value.
+        written: String,
+    },
+}
+
 impl Free {
     /// Reads `PATH[*RATIO] [+ PATH[*RATIO] ...]=LOW..HIGH[ log]`; `[*]` in a path is every entry of a list.
     /// `fields` are the fields that the scenario writes; each path must be one of them. `known` are all
     /// fields that a scenario has.
     ///
     /// # Errors
-    /// The text has another form, the scenario lacks a path, or the range cannot be searched; in one
-    /// sentence.
-    pub fn parse(spec: &str, fields: &Fields, known: &Fields) -> Result<Self, String> {
-        let form = || {
-            format!(
-                "must be 'PATH=LOW..HIGH' or 'PATH + PATH*RATIO=LOW..HIGH log' with finite numbers, found \
-                 {spec:?}"
-            )
-        };
+    /// The text has another form, the scenario lacks a path, or the range cannot be searched.
+    pub fn parse(spec: &str, fields: &Fields, known: &Fields) -> Result<Self, FreeError> {
+        let found = || spec.to_owned();
+        let form = || FreeError::Form { spec: found() };
         let (paths, range) = spec.rsplit_once('=').ok_or_else(form)?;
         let (range, is_log) =
             range.trim().strip_suffix("log").map_or((range.trim(), false), |range| (range.trim(), true));
@@ -45,10 +99,10 @@ impl Free {
         let number = |text: &str| text.trim().parse::<f64>().ok().filter(|value| value.is_finite());
         let (low, high) = number(low).zip(number(high)).ok_or_else(form)?;
         if low >= high {
-            return Err(format!("the lower bound must be below the upper one, found {spec:?}"));
+            return Err(FreeError::Bounds { spec: found() });
         }
         if is_log && low <= 0.0 {
-            return Err(format!("a logarithmic range must be above 0, found {spec:?}"));
+            return Err(FreeError::Logarithm { spec: found() });
         }
         let mut named = Vec::new();
         let mut name = String::new();
@@ -58,7 +112,7 @@ impl Free {
                 None => (part.trim(), 1.0),
             };
             if ratio <= 0.0 {
-                return Err(format!("a ratio must be above 0, found {spec:?}"));
+                return Err(FreeError::Ratio { spec: found() });
             }
             if name.is_empty() {
                 path.clone_into(&mut name);
@@ -150,11 +204,11 @@ impl Free {
     ///
     /// # Errors
     /// The first field is not a number.
-    pub fn present(&self, text: &str, fields: &Fields) -> Result<f64, String> {
+    pub fn present(&self, text: &str, fields: &Fields) -> Result<f64, FreeError> {
         let (path, ratio) = &self.fields[0];
         let written = fields.value(path).map(|value| text[value].trim()).unwrap_or_default();
-        let value = written.parse::<f64>();
-        value.map(|value| value / ratio).map_err(|_| format!("{path}: must be a number, found {written}"))
+        let not_number = |_| FreeError::NotNumber { path: path.clone(), written: written.to_owned() };
+        written.parse::<f64>().map(|value| value / ratio).map_err(not_number)
     }
 
     /// A message if one of the parameter's fields takes whole numbers only.
@@ -170,9 +224,9 @@ impl Free {
     /// Sets the parameter's fields in a scenario.
     ///
     /// # Errors
-    /// A field does not take the value, in one sentence.
-    pub fn set(&self, file: &mut ScenarioFile, value: f64) -> Result<(), String> {
-        self.settings(value).try_for_each(|(path, value)| file.set(path, &value)).map_err(|e| e.to_string())
+    /// A field does not take the value.
+    pub fn set(&self, file: &mut ScenarioFile, value: f64) -> Result<(), SetError> {
+        self.settings(value).try_for_each(|(path, value)| file.set(path, &value))
     }
 }
 
@@ -186,16 +240,15 @@ impl fmt::Display for Free {
 }
 
 /// Why a path cannot be free.
-fn not_there(path: &str, known: &Fields) -> String {
+fn not_there(path: &str, known: &Fields) -> FreeError {
+    let path = path.to_owned();
     let first = path.replace("[*]", "[0]");
     if known.leaves().any(|(field, _)| field == first) {
-        format!(
-            "{path}: is not written in the scenario; write it there, so that what is found can take its place"
-        )
+        FreeError::NotWritten { path }
     } else if known.value(&first).is_some() {
-        format!("{path}: is not a number but has parts: {}", known.inside(&first).join(", "))
+        FreeError::Parts { path, parts: known.inside(&first).join(", ") }
     } else {
-        known.unknown(&first, "a scenario").to_string()
+        known.unknown(&first, "a scenario").into()
     }
 }
 
@@ -231,7 +284,7 @@ mod tests {
 
     const TEXT: &str = "(roles: (a: (v: 3.0), b: (v: 2.0)), zones: [(r: 4.5), (r: 4.5)], n: (k: 1))";
 
-    fn free(spec: &str) -> Result<Free, String> {
+    fn free(spec: &str) -> Result<Free, FreeError> {
         Free::parse(spec, &Fields::of(TEXT), &Fields::of("(roles: (a: (v: 3.0, w: 1.0), b: (v: 2.0)))"))
     }
 
@@ -277,7 +330,7 @@ mod tests {
             ("roles.a.w=0..1", "roles.a.w: is not written in the scenario"),
             ("roles.a=0..1", "roles.a: is not a number but has parts: v, w"),
         ] {
-            let error = free(spec).unwrap_err();
+            let error = free(spec).unwrap_err().to_string();
             assert!(error.contains(says), "{spec}: {error}");
         }
     }

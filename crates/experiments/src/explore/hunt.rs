@@ -5,7 +5,7 @@ use std::sync::atomic::AtomicBool;
 
 use ron_fields::with_values;
 
-use super::space::{Point, Space};
+use super::space::{Point, PointError, Space};
 use super::{Descent, EvaluationLog, Free, Purpose, WORST};
 use crate::failure::Failure;
 
@@ -37,7 +37,7 @@ pub struct Candidate {
     /// A value for each parameter.
     pub values: Vec<f64>,
     /// The outcome on the search's seeds, or why there is none.
-    pub outcome: Result<f64, String>,
+    pub outcome: Result<f64, PointError>,
 }
 
 /// The candidates of a search.
@@ -76,8 +76,11 @@ impl Hunt {
         let number = |text: &String| text.parse::<f64>().ok().filter(|value| value.is_finite());
         let count = self.space.free.len();
         let values = row[1..=count].iter().map(number).collect::<Option<Vec<f64>>>()?;
-        let failure = row[count + 2].clone();
-        let outcome = if failure.is_empty() { Ok(number(&row[count + 1])?) } else { Err(failure) };
+        let reason = row[count + 2].clone();
+        let outcome = match reason.as_str() {
+            "" => Ok(number(&row[count + 1])?),
+            _ => Err(PointError::Logged { reason }),
+        };
         Some(Candidate { values, outcome })
     }
 
@@ -145,8 +148,7 @@ impl Hunt {
     fn evaluate(&self, values: Vec<f64>, stop: &AtomicBool) -> Option<Candidate> {
         let point = Point { values, first_seed: self.first_seed };
         let outcome = self.space.evaluate(std::slice::from_ref(&point), stop)?.pop()?;
-        let undefined = || "the metric is defined in no trial".to_owned();
-        let outcome = outcome.and_then(|values| values[0].ok_or_else(undefined));
+        let outcome = outcome.and_then(|values| values[0].ok_or(PointError::Undefined));
         Some(Candidate { values: point.values, outcome })
     }
 
@@ -154,7 +156,7 @@ impl Hunt {
         let mut row = vec![(trail.candidates.len() + 1).to_string()];
         row.extend(candidate.values.iter().map(f64::to_string));
         row.push(candidate.outcome.as_ref().map_or(String::new(), f64::to_string));
-        row.push(candidate.outcome.as_ref().err().cloned().unwrap_or_default());
+        row.push(candidate.outcome.as_ref().err().map_or(String::new(), PointError::to_string));
         trail.log.add(row)?;
         trail.candidates.push(candidate.clone());
         Ok(candidate)

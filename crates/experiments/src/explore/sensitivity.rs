@@ -12,7 +12,7 @@ use serde::Serialize;
 
 use super::design::{Block, MOVE, Method};
 use super::space::Point;
-use super::{EvaluationLog, Free, Outcome, Purpose, Space, Values};
+use super::{EvaluationLog, Free, Outcome, PointError, Purpose, Space, Values};
 use crate::failure::Failure;
 use crate::stats::bootstrap::interval;
 use crate::stats::sensitivity::{self as indices, Effects, Known, Shares};
@@ -226,7 +226,7 @@ impl Sensitivity {
             }
             Err(reason) => {
                 row.extend(vec![String::new(); self.space.outcomes.len()]);
-                row.push(reason.clone());
+                row.push(reason.to_string());
             }
         }
         row
@@ -236,7 +236,7 @@ impl Sensitivity {
         let place =
             (row[0].parse::<u32>().ok()?.checked_sub(1)?, row[1].parse::<usize>().ok()?.checked_sub(1)?);
         if let Some(reason) = row.last().filter(|reason| !reason.is_empty()) {
-            return Some((place, Err(reason.clone())));
+            return Some((place, Err(PointError::Logged { reason: reason.clone() })));
         }
         let first = 3 + self.space.free.len();
         let cells = &row[first..first + self.space.outcomes.len()];
@@ -269,7 +269,7 @@ impl Sensitivity {
     #[must_use]
     pub fn failures(&self, blocks: u32, evaluations: &Evaluations) -> Option<(usize, String)> {
         let mut reasons = evaluations.known.range(..(blocks, 0)).filter_map(|(_, v)| v.as_ref().err());
-        let first = reasons.next()?.clone();
+        let first = reasons.next()?.to_string();
         Some((1 + reasons.count(), first))
     }
 

@@ -1,12 +1,14 @@
 //! A scenario with parameters that vary within ranges, and the outcomes at a point.
 
+use std::fmt::Display;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use rayon::prelude::*;
-use ron_fields::Fields;
+use ron_fields::{Fields, SetError};
 use serde::Serialize;
-use usar_sim::scenario::{Scenario, ScenarioFile};
+use thiserror::Error;
+use usar_sim::scenario::{Problem, Scenario, ScenarioFile};
 
 use super::Free;
 use crate::comparison::{Choice, policy_pairs};
@@ -52,7 +54,62 @@ pub struct Space {
 }
 
 /// The value of each outcome at a point, `None` where it is undefined; or the reason why the point failed.
-pub type Values = Result<Vec<Option<f64>>, String>;
+pub type Values = Result<Vec<Option<f64>>, PointError>;
+
+/// Why a point has no scenario or no outcome.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+pub enum PointError {
+    /// A field does not take its value.
+    #[error(transparent)]
+    Field(#[from] SetError),
+    /// The values together break a rule.
+    #[error("{field} {rule}, found {found}")]
+    Rule {
+        /// The field.
+        field: String,
+        /// The rule.
+        rule: String,
+        /// The field's value.
+        found: String,
+    },
+    /// A trial failed.
+    #[error("{policy}, seed {seed}: {reason}")]
+    Trial {
+        /// Label of the policy.
+        policy: String,
+        /// Seed of the trial.
+        seed: u64,
+        /// Why it failed.
+        reason: String,
+    },
+    /// The metric is defined in no trial.
+    #[error("the metric is defined in no trial")]
+    Undefined,
+    /// An earlier run of the command found the point to fail.
+    #[error("{reason}")]
+    Logged {
+        /// The reason in the log.
+        reason: String,
+    },
+}
+
+impl From<Vec<Problem>> for PointError {
+    /// The first problem.
+    fn from(mut problems: Vec<Problem>) -> Self {
+        let Problem { field, rule, found, .. } = problems.swap_remove(0);
+        Self::Rule { field, rule, found }
+    }
+}
+
+/// A scenario in which these parameters have other values.
+///
+/// # Errors
+/// A field does not take its value, or the values together break a rule.
+pub fn scenario_with(base: &Scenario, free: &[Free], values: &[f64]) -> Result<Scenario, PointError> {
+    let mut file: ScenarioFile = (**base).clone();
+    free.iter().zip(values).try_for_each(|(free, value)| free.set(&mut file, *value))?;
+    Ok(Scenario::try_from(file)?)
+}
 
 /// A point and the seeds of its trials.
 #[derive(Debug, Clone, PartialEq)]
@@ -73,7 +130,7 @@ impl Space {
     /// The experiment has axes, the scenario lacks a parameter, two parameters set one field, or an end of
     /// a range cannot be run.
     pub fn new(experiment: Experiment, specs: &[String], outcomes: Vec<Outcome>) -> Result<Self, Failure> {
-        let bad = |error: String| Failure::input(format!("--over: {error}"));
+        let bad = |error: &dyn Display| Failure::input(format!("--over: {error}"));
         if !experiment.axes.is_empty() {
             return Err(Failure::input(
                 "this sweep has axes; --over varies one scenario: name its file, or a sweep without axes",
@@ -82,25 +139,23 @@ impl Space {
         let text = experiment.base.resolved();
         let fields = Fields::of(&text);
         let parse = |spec: &String| Free::parse(spec, &fields, &fields);
-        let free = specs.iter().map(parse).collect::<Result<Vec<_>, _>>().map_err(bad)?;
+        let free = specs.iter().map(parse).collect::<Result<Vec<_>, _>>().map_err(|error| bad(&error))?;
         let free = free.into_iter().map(|free| free.in_scenario(&experiment.base)).collect::<Vec<_>>();
         let mut paths: Vec<&str> = free.iter().flat_map(|free| free.settings(1.0).map(|(p, _)| p)).collect();
         paths.sort_unstable();
         if let Some([twice, _]) = paths.array_windows().find(|[a, b]| a == b) {
-            return Err(bad(format!("{twice}: is set by two parameters")));
+            return Err(bad(&format!("{twice}: is set by two parameters")));
         }
         let space = Self { experiment, free, outcomes };
-        space.check_ends().map_err(bad)?;
+        space.check_ends().map_err(|error| bad(&error))?;
         Ok(space)
     }
 
     /// Checks that each end of each range alone makes a valid scenario.
-    fn check_ends(&self) -> Result<(), String> {
+    fn check_ends(&self) -> Result<(), PointError> {
         for free in &self.free {
             for end in free.ends() {
-                let mut file: ScenarioFile = (*self.experiment.base).clone();
-                free.set(&mut file, end)?;
-                checked(file)?;
+                scenario_with(&self.experiment.base, std::slice::from_ref(free), &[end])?;
             }
         }
         Ok(())
@@ -141,11 +196,9 @@ impl Space {
     /// The scenario at a point.
     ///
     /// # Errors
-    /// The values together break a rule, in one sentence.
-    pub fn scenario(&self, values: &[f64]) -> Result<Scenario, String> {
-        let mut file: ScenarioFile = (*self.experiment.base).clone();
-        self.free.iter().zip(values).try_for_each(|(free, value)| free.set(&mut file, *value))?;
-        checked(file)
+    /// Those of [`scenario_with`].
+    pub fn scenario(&self, values: &[f64]) -> Result<Scenario, PointError> {
+        scenario_with(&self.experiment.base, &self.free, values)
     }
 
     /// The parameters' present values in the scenario.
@@ -163,7 +216,7 @@ impl Space {
     /// calling pool. `None` if `stop` was set.
     #[must_use]
     pub fn evaluate(&self, points: &[Point], stop: &AtomicBool) -> Option<Vec<Values>> {
-        let scenarios: Vec<Result<Scenario, String>> =
+        let scenarios: Vec<Result<Scenario, PointError>> =
             points.iter().map(|point| self.scenario(&point.values)).collect();
         let trials = self.experiment.trials;
         let all: Vec<(usize, u64)> = (0..points.len())
@@ -175,22 +228,22 @@ impl Space {
             let scenario = scenarios[*point].as_ref().map_err(Clone::clone)?;
             self.run_seed(scenario, *seed, stop)
         };
-        let mut results: Vec<Result<OfSeed, String>> = all.par_iter().map(run).collect();
+        let mut results: Vec<Result<OfSeed, PointError>> = all.par_iter().map(run).collect();
         if stop.load(Ordering::Relaxed) {
             return None;
         }
         let mut rest = results.drain(..);
-        let of_point = |scenario: &Result<Scenario, String>| -> Values {
+        let of_point = |scenario: &Result<Scenario, PointError>| -> Values {
             scenario.as_ref().map_err(Clone::clone)?;
-            let seeds: Vec<Result<OfSeed, String>> = rest.by_ref().take(trials as usize).collect();
-            let seeds = seeds.into_iter().collect::<Result<Vec<OfSeed>, String>>()?;
+            let seeds: Vec<Result<OfSeed, PointError>> = rest.by_ref().take(trials as usize).collect();
+            let seeds = seeds.into_iter().collect::<Result<Vec<OfSeed>, PointError>>()?;
             Ok(self.outcomes.iter().map(|outcome| value(outcome, &seeds)).collect())
         };
         Some(scenarios.iter().map(of_point).collect())
     }
 
     /// The metrics of all policies in a trial. Policies that decide alike share the trial.
-    fn run_seed(&self, scenario: &Scenario, seed: u64, stop: &AtomicBool) -> Result<OfSeed, String> {
+    fn run_seed(&self, scenario: &Scenario, seed: u64, stop: &AtomicBool) -> Result<OfSeed, PointError> {
         let (shared, mut sessions) = (SharedTrials::default(), Sessions::default());
         let setup = TrialSetup { scenario, seed, is_checked: self.experiment.is_checked };
         let policies = self.experiment.policies.iter().enumerate();
@@ -199,7 +252,7 @@ impl Space {
                 let player = sessions.of(number, &*policy.made().it);
                 shared.run(0, &setup, player.map_err(|error| Fault::of_policy(&error))?, stop)
             });
-            let failed = |reason: String| format!("{}, seed {seed}: {reason}", policy.label);
+            let failed = |reason: String| PointError::Trial { policy: policy.label.clone(), seed, reason };
             let result = catch_unwind(run)
                 .map_err(|panic| failed(format!("internal error: {}", panic_message(&*panic))))?;
             let trial = result.map_err(|fault| failed(fault.reason))?;
@@ -217,10 +270,4 @@ fn value(outcome: &Outcome, seeds: &[OfSeed]) -> Option<f64> {
         Some(seed[outcome.policy][outcome.metric]? - less)
     };
     Moments::of(&seeds.iter().filter_map(of).collect::<Vec<f64>>()).mean
-}
-
-fn checked(file: ScenarioFile) -> Result<Scenario, String> {
-    Scenario::try_from(file).map_err(|problems| {
-        format!("{} {}, found {}", problems[0].field, problems[0].rule, problems[0].found)
-    })
 }

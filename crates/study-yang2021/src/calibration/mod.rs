@@ -7,24 +7,27 @@
 //! of new trials.
 
 mod choice;
+mod error;
 mod fit;
 mod least_squares;
 mod log;
 mod target;
 
+use std::fmt::Display;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use experiments::comparison::short;
-use experiments::explore::{Free, WORST};
+use experiments::explore::{Free, PointError, WORST, scenario_with};
 use experiments::run::{Fault, TrialSetup, run_trial};
 use experiments::{Failure, panic_message};
 use rayon::prelude::*;
-use rne_core::MadePolicy;
-use ron_fields::{Fields, with_values};
-use usar_sim::scenario::{Scenario, ScenarioFile};
+use rne_core::{MadePolicy, RegistryError};
+use ron_fields::{Fields, WriteError, with_values};
+use usar_sim::scenario::Scenario;
 
 pub use choice::{Candidate, Judged, NOT_TOLD_APART, judge};
+pub use error::CandidateError;
 pub use fit::{Fit, write_fit};
 use least_squares::LeastSquares;
 pub use log::{CALIBRATED, Log};
@@ -78,13 +81,9 @@ impl Calibration {
     /// The scenario with these values.
     ///
     /// # Errors
-    /// A value breaks a rule, in one sentence.
-    pub fn scenario(&self, values: &[f64]) -> Result<Scenario, String> {
-        let mut file: ScenarioFile = (*self.base).clone();
-        self.free.iter().zip(values).try_for_each(|(free, value)| free.set(&mut file, *value))?;
-        Scenario::try_from(file).map_err(|problems| {
-            format!("{} {}, found {}", problems[0].field, problems[0].rule, problems[0].found)
-        })
+    /// A value breaks a rule.
+    pub fn scenario(&self, values: &[f64]) -> Result<Scenario, PointError> {
+        scenario_with(&self.base, &self.free, values)
     }
 
     /// The text of the scenario with these values in their places, and a name with a suffix. Everything
@@ -92,20 +91,20 @@ impl Calibration {
     ///
     /// # Errors
     /// None: each free field is written in the text.
-    pub fn text_with(&self, values: &[f64]) -> Result<String, String> {
+    pub fn text_with(&self, values: &[f64]) -> Result<String, WriteError> {
         let pairs = self.free.iter().zip(values).flat_map(|(free, value)| free.settings(*value));
         let mut settings: Vec<_> = pairs.map(|(path, value)| (path.to_owned(), value)).collect();
         if !self.base.name.ends_with(SUFFIX) {
             settings.push(("name".to_owned(), format!("{:?}", format!("{}{SUFFIX}", self.base.name))));
         }
-        with_values(&self.text, &settings).map_err(|error| error.to_string())
+        with_values(&self.text, &settings)
     }
 
     /// The same text with a first line that describes the fit. No other policy can run in this scenario.
     ///
     /// # Errors
     /// Those of [`Calibration::text_with`].
-    pub fn fitted_text(&self, evaluation: &Evaluation) -> Result<String, String> {
+    pub fn fitted_text(&self, evaluation: &Evaluation) -> Result<String, WriteError> {
         let text = self.text_with(&evaluation.values)?;
         let text = match text.split_once('\n') {
             Some((first, rest)) if first.starts_with(ORIGIN_LINE) => rest,
@@ -148,22 +147,17 @@ impl Calibration {
     /// # Errors
     /// One of these conditions is violated.
     pub fn check(&self) -> Result<(), Failure> {
-        let bad = |error: String| Failure::input(format!("--free: {error}"));
-        self.text_with(&self.present()?).map_err(bad)?;
+        let bad = |error: &dyn Display| Failure::input(format!("--free: {error}"));
+        self.text_with(&self.present()?).map_err(|error| bad(&error))?;
         for free in &self.free {
             if free.is_of("duration_s") {
-                return Err(bad("duration_s: is that of the recorded trials".to_owned()));
+                return Err(bad(&"duration_s: is that of the recorded trials"));
             }
             for end in free.ends() {
-                let mut file: ScenarioFile = (*self.base).clone();
-                free.set(&mut file, end)
-                    .map_err(|error| bad(free.whole_numbers(&self.base).unwrap_or(error)))?;
-                Scenario::try_from(file).map_err(|problems| {
-                    let problem = &problems[0];
-                    Failure::input(format!(
-                        "--free: {} {}, found {}",
-                        problem.field, problem.rule, problem.found
-                    ))
+                scenario_with(&self.base, std::slice::from_ref(free), &[end]).map_err(|error| {
+                    let is_refused = matches!(error, PointError::Field(_));
+                    let whole = free.whole_numbers(&self.base).filter(|_| is_refused);
+                    whole.map_or_else(|| bad(&error), |whole| bad(&whole))
                 })?;
             }
         }
@@ -173,13 +167,13 @@ impl Calibration {
     /// The quantities of trials with these seeds, each a list over the trials. `None` if `stop` was set.
     ///
     /// # Errors
-    /// The candidate cannot be run, in one sentence.
+    /// The candidate cannot be run.
     pub fn measure(
         &self,
         values: &[f64],
         seeds: impl IntoParallelIterator<Item = u64>,
         stop: &AtomicBool,
-    ) -> Result<Option<Vec<Vec<f64>>>, String> {
+    ) -> Result<Option<Vec<Vec<f64>>>, CandidateError> {
         let scenario = self.scenario(values)?;
         let policy = the_policy()?;
         let trial = |seed| {
@@ -188,17 +182,17 @@ impl Calibration {
                 let mut session = policy.open().map_err(|error| Fault::of_policy(&error))?;
                 run_trial(&setup, &mut *session, stop)
             });
-            let result =
-                catch_unwind(run).map_err(|panic| format!("internal error: {}", panic_message(&*panic)))?;
-            result.map_err(|fault| fault.reason)
+            let result = catch_unwind(run)
+                .map_err(|panic| CandidateError::Internal { message: panic_message(&*panic) })?;
+            result.map_err(|fault| CandidateError::Trial { reason: fault.reason })
         };
-        let rows: Vec<Result<Vec<f64>, String>> =
+        let rows: Vec<Result<Vec<f64>, CandidateError>> =
             seeds.into_par_iter().map(|seed| self.target.measure(&trial(seed)?.record)).collect();
         if stop.load(Ordering::Relaxed) {
             return Ok(None);
         }
         // The first failure in the order of the seeds, independent of the number of threads.
-        let rows = rows.into_iter().collect::<Result<Vec<Vec<f64>>, String>>()?;
+        let rows = rows.into_iter().collect::<Result<Vec<Vec<f64>>, CandidateError>>()?;
         Ok(Some((0..self.target.spreads.len()).map(|q| rows.iter().map(|row| row[q]).collect()).collect()))
     }
 
@@ -218,8 +212,9 @@ impl Calibration {
                 let misfit = self.target.misfit(&spreads, self.trials as usize) + self.edge_penalty(&values);
                 Some(Evaluation { misfit, values, spreads, failure: None })
             }
-            Err(reason) => {
-                Some(Evaluation { values, misfit: WORST, spreads: Vec::new(), failure: Some(reason) })
+            Err(error) => {
+                let failure = Some(error.to_string());
+                Some(Evaluation { values, misfit: WORST, spreads: Vec::new(), failure })
             }
         }
     }
@@ -285,6 +280,6 @@ fn candidate(text: &str) -> String {
     )
 }
 
-fn the_policy() -> Result<MadePolicy, String> {
-    policies::standard().parse(POLICY).map_err(|error| error.to_string())
+fn the_policy() -> Result<MadePolicy, RegistryError> {
+    policies::standard().parse(POLICY)
 }

@@ -11,6 +11,7 @@ use usar_sim::record::TrialRecord;
 use usar_sim::scenario::Scenario;
 
 use super::POLICY;
+use super::error::CandidateError;
 
 /// A quantity of a trial that a target may have, under the authors' name.
 pub struct Quantity {
@@ -125,11 +126,11 @@ impl Target {
     /// The quantities of a trial.
     ///
     /// # Errors
-    /// The trial lacks a quantity, in one sentence.
-    pub fn measure(&self, record: &TrialRecord) -> Result<Vec<f64>, String> {
+    /// The trial lacks a quantity.
+    pub fn measure(&self, record: &TrialRecord) -> Result<Vec<f64>, CandidateError> {
         let value = |quantity: &Quantity| {
             let value = quantity.metric.value(record);
-            value.ok_or_else(|| format!("{} is not defined in a trial", quantity.name))
+            value.ok_or_else(|| CandidateError::Undefined { quantity: quantity.name.clone() })
         };
         self.quantities.iter().map(value).collect()
     }

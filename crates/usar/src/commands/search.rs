@@ -100,8 +100,9 @@ impl Arguments {
             return Err(stopped());
         }
         let (best, outcome) = hunt.best(&trail).ok_or_else(|| {
-            let reason = trail.candidates().first().and_then(|first| first.outcome.clone().err());
-            Failure::run(format!("no candidate could be run: {}", reason.unwrap_or_default()))
+            let reason = trail.candidates().first().and_then(|first| first.outcome.as_ref().err());
+            let reason = reason.map_or(String::new(), ToString::to_string);
+            Failure::run(format!("no candidate could be run: {reason}"))
         })?;
         let what =
             format!("{} is {} on the seeds of the search", hunt.space.outcomes[0].name(), short(outcome));
