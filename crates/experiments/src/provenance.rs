@@ -2,6 +2,7 @@
 
 use ron_fields::Fields;
 use serde::{Deserialize, Deserializer, Serialize};
+use thiserror::Error;
 use usar_sim::physics::ENGINE_FEATURES;
 use xxhash_rust::xxh3::xxh3_128;
 
@@ -66,6 +67,35 @@ pub struct Manifest {
     checksum: String,
 }
 
+/// Why a text is no manifest of a sweep.
+#[derive(Debug, Error)]
+pub enum ManifestError {
+    /// It has another form.
+    #[error(transparent)]
+    Malformed(#[from] serde_json::Error),
+    /// It cannot be written for comparison.
+    #[error(transparent)]
+    Unwritable(#[from] Failure),
+    /// It was changed.
+    #[error("its checksum does not match: it was changed")]
+    Changed,
+    /// There is no such shard.
+    #[error("it is of {part}, which no sweep has")]
+    NoSuchShard {
+        /// The shard, in words.
+        part: String,
+    },
+    /// The number of trials is out of range.
+    #[error("trials: must be from 1 to {MAX_TRIALS}, found {found}")]
+    Trials {
+        /// The number.
+        found: u32,
+    },
+    /// Its files are not those of a sweep.
+    #[error("it does not list the files of a sweep")]
+    OtherFiles,
+}
+
 impl Manifest {
     /// The manifest of an experiment that is not complete yet.
     #[must_use]
@@ -106,18 +136,18 @@ impl Manifest {
     /// Reads a manifest.
     ///
     /// # Errors
-    /// The text is not a manifest or was changed; in words.
-    pub fn parse(text: &[u8]) -> Result<Self, String> {
-        let mut manifest: Self = serde_json::from_slice(text).map_err(|error| error.to_string())?;
-        let again = manifest.text().map_err(|error| error.to_string())?;
+    /// The text is not a manifest or was changed.
+    pub fn parse(text: &[u8]) -> Result<Self, ManifestError> {
+        let mut manifest: Self = serde_json::from_slice(text)?;
+        let again = manifest.text()?;
         if manifest.schema_version == SCHEMA_VERSION && again.as_bytes() != text {
-            return Err("its checksum does not match: it was changed".to_owned());
+            return Err(ManifestError::Changed);
         }
         if manifest.shard.is_some_and(|shard| !(1..=shard.of).contains(&shard.number)) {
-            return Err(format!("it is of {}, which no sweep has", manifest.part()));
+            return Err(ManifestError::NoSuchShard { part: manifest.part() });
         }
         if !(1..=MAX_TRIALS).contains(&manifest.trials) {
-            return Err(format!("trials: must be from 1 to {MAX_TRIALS}, found {}", manifest.trials));
+            return Err(ManifestError::Trials { found: manifest.trials });
         }
         manifest.checksum.clear();
         Ok(manifest)

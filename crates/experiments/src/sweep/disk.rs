@@ -14,7 +14,7 @@ use super::{archive, journal, ours};
 use crate::experiment::{Experiment, Parts, Shard};
 use crate::failure::Failure;
 use crate::files::{self, FileHash, NewFile, file_hash, sync_folder};
-use crate::provenance::{Manifest, SCHEMA_VERSION, scenario_differences};
+use crate::provenance::{Manifest, ManifestError, SCHEMA_VERSION, scenario_differences};
 
 /// Writes the manifest and the inputs of a sweep.
 pub(super) fn write_start(
@@ -71,7 +71,7 @@ pub(super) fn read_manifest(path: &Path) -> Result<Option<Manifest>, Failure> {
     let sound = Manifest::parse(&text).and_then(|manifest| {
         let is_listed = manifest.files.iter().map(|file| file.name.as_str()).eq(listed(&manifest));
         let is_ours = is_listed || manifest.schema_version != SCHEMA_VERSION;
-        if is_ours { Ok(manifest) } else { Err("it does not list the files of a sweep".to_owned()) }
+        if is_ours { Ok(manifest) } else { Err(ManifestError::OtherFiles) }
     });
     sound.map(Some).map_err(|reason| {
         let name = name.display();

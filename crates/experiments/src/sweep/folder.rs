@@ -148,12 +148,12 @@ impl Folder {
         path: &Path,
         experiment: &Experiment,
         shard: Option<Shard>,
-    ) -> Result<(Store, Results), String> {
+    ) -> Result<(Store, Results), Failure> {
         let store = Store::archive(path, Order::of(experiment, shard))
-            .map_err(|reason| format!("{}: {reason}", path.join(archive::FILE).display()))?;
+            .map_err(|error| Failure::input(format!("{}: {error}", path.join(archive::FILE).display())))?;
         let table = path.join(TRIALS);
         let results = read_results(&table, experiment, shard)
-            .map_err(|reason| format!("{}: {reason}", table.display()))?;
+            .map_err(|error| Failure::input(format!("{}: {error}", table.display())))?;
         Ok((store, results))
     }
 
@@ -177,7 +177,7 @@ impl Folder {
         let mut damages = Vec::new();
         let is_archived = manifest.files.iter().any(|file| file.name == archive::FILE);
         if is_archived && broken.is_empty() {
-            let (store, results) = Self::closed(path, &experiment, manifest.shard).map_err(Failure::input)?;
+            let (store, results) = Self::closed(path, &experiment, manifest.shard)?;
             let path = path.to_owned();
             return Ok((Self { path, experiment, manifest, store, results, lock: None }, damages));
         }

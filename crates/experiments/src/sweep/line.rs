@@ -2,10 +2,11 @@
 
 use rne_core::Account;
 use serde::{Deserialize, Serialize};
+use thiserror::Error;
 use xxhash_rust::xxh3::xxh3_64;
 
 use super::links;
-use super::summary::Summary;
+use super::summary::{Summary, SummaryError};
 use crate::experiment::{Experiment, Keep, Place, Shard};
 use crate::failure::Failure;
 use crate::run::{Fault, Outcome, Trial, TrialKey};
@@ -46,6 +47,25 @@ pub(super) enum Kept {
     Record(Box<Trial>),
     /// Its summary.
     Summary(Summary),
+}
+
+/// What is wrong with a line.
+#[derive(Debug, Error)]
+pub(super) enum LineError {
+    #[error("the checksum does not match: the line was changed or cut")]
+    Changed,
+    #[error("is no trial: {0}")]
+    NoTrial(#[from] serde_json::Error),
+    #[error("{trial} is not of this sweep")]
+    OtherSweep { trial: String },
+    #[error("{trial} is of another scenario, option or program")]
+    OtherProgram { trial: String },
+    #[error("{trial} {error}")]
+    Summary { trial: String, error: SummaryError },
+    #[error("has no hash chain")]
+    NoChain,
+    #[error("is not its trials in order")]
+    OtherPlace,
 }
 
 impl Finished {
@@ -110,27 +130,26 @@ pub(super) fn finished_of(
     line: &[u8],
     experiment: &Experiment,
     shard: Option<Shard>,
-) -> Result<Finished, String> {
-    let entry = sound(line).ok_or("the checksum does not match: the line was changed or cut")?;
-    let entry: Entry = serde_json::from_slice(entry).map_err(|error| format!("is no trial: {error}"))?;
+) -> Result<Finished, LineError> {
+    let entry: Entry = serde_json::from_slice(sound(line).ok_or(LineError::Changed)?)?;
     let policy = experiment.policies.iter().position(|policy| policy.label == entry.policy);
-    let name = format!("trial {} of {} (seed {})", entry.trial, entry.policy, entry.seed);
+    let trial = format!("trial {} of {} (seed {})", entry.trial, entry.policy, entry.seed);
     let policy =
         policy.filter(|policy| experiment.has((entry.case, *policy, entry.trial), entry.seed, shard));
-    let policy = policy.ok_or_else(|| format!("{name} is not of this sweep"))?;
+    let Some(policy) = policy else { return Err(LineError::OtherSweep { trial }) };
     let key =
         TrialKey { case: entry.case, policy, trial: entry.trial, seed: entry.seed, label: entry.policy };
     if experiment.id(&key) != entry.id {
-        return Err(format!("{name} is of another scenario, option or program"));
+        return Err(LineError::OtherProgram { trial });
     }
     let result = match entry.outcome {
         Stored::Fault(fault) => Err(fault),
         Stored::Measured(summary) => {
-            summary.check(&experiment.metrics).map_err(|reason| format!("{name} {reason}"))?;
+            summary.check(&experiment.metrics).map_err(|error| LineError::Summary { trial, error })?;
             Ok(Kept::Summary(summary))
         }
         Stored::Ended { mut trial, links } => {
-            trial.record.chain = links::decode(&links).ok_or("has no hash chain")?;
+            trial.record.chain = links::decode(&links).ok_or(LineError::NoChain)?;
             Ok(Kept::Record(trial))
         }
     };

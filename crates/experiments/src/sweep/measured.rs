@@ -1,7 +1,10 @@
 //! The values of a trial that comparisons need, and reading them from `trials.csv`.
 
 use std::collections::BTreeMap;
+use std::io;
 use std::path::Path;
+
+use thiserror::Error;
 
 use super::line::Finished;
 use super::rows::{FIRST_METRIC, trial_columns};
@@ -53,26 +56,39 @@ impl Measured {
     }
 }
 
+/// What is wrong with a table of trials.
+#[derive(Debug, Error)]
+pub(super) enum TableError {
+    #[error(transparent)]
+    Unreadable(#[from] io::Error),
+    #[error(transparent)]
+    Malformed(#[from] csv::Error),
+    #[error("does not have the columns of this sweep's trials")]
+    OtherColumns,
+    #[error("has no row of trial {trial} of {policy}")]
+    NoRow { trial: u32, policy: String },
+}
+
 /// The results of a finished sweep or shard, from its `trials.csv`.
 pub(super) fn read_results(
     table: &Path,
     experiment: &Experiment,
     shard: Option<Shard>,
-) -> Result<Results, String> {
-    let file = files::open(table).map_err(|error| error.to_string())?;
-    let mut reader = csv::Reader::from_reader(std::io::BufReader::with_capacity(1 << 20, file));
+) -> Result<Results, TableError> {
+    let file = files::open(table)?;
+    let mut reader = csv::Reader::from_reader(io::BufReader::with_capacity(1 << 20, file));
     let columns = trial_columns(&experiment.metrics);
     let before = if experiment.axes.is_empty() { 0 } else { 1 + experiment.axes.len() };
-    let header = reader.headers().map_err(|error| error.to_string())?;
+    let header = reader.headers()?;
     if !header.iter().skip(before).eq(columns.iter()) {
-        return Err("does not have the columns of this sweep's trials".to_owned());
+        return Err(TableError::OtherColumns);
     }
     let mut row = csv::StringRecord::new();
     let mut next = |key: &TrialKey| {
-        let is_there = reader.read_record(&mut row).map_err(|error| error.to_string())?;
+        let is_there = reader.read_record(&mut row)?;
         let cells: Vec<&str> = row.iter().skip(before).collect();
         if is_there { measured_in(&cells, key, experiment.metrics.len()) } else { None }
-            .ok_or_else(|| format!("has no row of trial {} of {}", key.trial, key.label))
+            .ok_or_else(|| TableError::NoRow { trial: key.trial, policy: key.label.clone() })
     };
     let places = experiment.places(shard);
     places.map(|place| Ok((place, next(&experiment.key(place))?))).collect()

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 
 use super::archive::{self, Archive};
 use super::journal::{self, Journal};
-use super::line::{Finished, finished_of};
+use super::line::{Finished, LineError, finished_of};
 use super::measured::{Measured, Results};
 use crate::experiment::{Experiment, Place, Shard};
 use crate::failure::Failure;
@@ -48,7 +48,7 @@ impl Store {
         let line = self.line(place)?;
         let in_its_place = |finished: Finished| match finished.place() {
             found if found == place => Ok(finished),
-            _ => Err("is not its trials in order".to_owned()),
+            _ => Err(LineError::OtherPlace),
         };
         finished_of(&line, experiment, None)
             .and_then(in_its_place)
@@ -64,10 +64,11 @@ impl Store {
     ///
     /// # Errors
     /// The archive cannot be read, or has another number of lines.
-    pub(super) fn archive(folder: &Path, order: Order) -> Result<Self, String> {
-        let archive = Archive::open(folder).map_err(|error| error.to_string())?;
+    pub(super) fn archive(folder: &Path, order: Order) -> io::Result<Self> {
+        let archive = Archive::open(folder)?;
         if archive.count() != order.count() {
-            return Err(format!("has {} trials of {}", archive.count(), order.count()));
+            let reason = format!("has {} trials of {}", archive.count(), order.count());
+            return Err(io::Error::new(io::ErrorKind::InvalidData, reason));
         }
         Ok(Self::Archive(archive, order))
     }

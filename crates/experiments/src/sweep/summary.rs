@@ -1,6 +1,7 @@
 //! The summary of a trial: its status and the values of its metrics.
 
 use serde::{Deserialize, Serialize};
+use thiserror::Error;
 use usar_sim::record::{Status, TrialRecord};
 
 use crate::metric::Catalogue;
@@ -17,6 +18,15 @@ pub(super) struct Summary {
     pub state_hash: String,
 }
 
+/// Why this cannot be the summary of a trial.
+#[derive(Debug, Error)]
+pub(super) enum SummaryError {
+    #[error("must have {count} metrics, found {found}")]
+    Metrics { count: usize, found: usize },
+    #[error("has no status {status:?}")]
+    Status { status: String },
+}
+
 impl Summary {
     pub(super) fn of(record: &TrialRecord, metrics: &Catalogue) -> Self {
         let status = record.status.name().to_owned();
@@ -24,12 +34,13 @@ impl Summary {
     }
 
     /// Checks that this can be the summary of a trial with these metrics.
-    pub(super) fn check(&self, metrics: &Catalogue) -> Result<(), String> {
+    pub(super) fn check(&self, metrics: &Catalogue) -> Result<(), SummaryError> {
         let (count, found) = (metrics.len(), self.metrics.len());
         if count != found {
-            return Err(format!("must have {count} metrics, found {found}"));
+            return Err(SummaryError::Metrics { count, found });
         }
-        status_of(&self.status).map(drop).ok_or_else(|| format!("has no status {:?}", self.status))
+        let no_status = || SummaryError::Status { status: self.status.clone() };
+        status_of(&self.status).map(drop).ok_or_else(no_status)
     }
 }
 
