@@ -1,9 +1,10 @@
 //! The requirements on every trial of the random worlds, and how violations are counted.
 
+use thiserror::Error;
 use usar_sim::conflict::DelayCause;
 use usar_sim::record::{Status, TrialRecord};
 use usar_sim::robot::STANDING_MPS;
-use usar_sim::scenario::Scenario;
+use usar_sim::scenario::{LayoutError, Scenario};
 use usar_sim::simulation::Simulation;
 
 /// A robot with a goal is counted if it comes no nearer for longer than this, in seconds.
@@ -20,18 +21,35 @@ pub struct Journeys {
     pub standstill_s: f64,
 }
 
+/// Why a world's trial has no record.
+#[derive(Debug, Error)]
+pub enum JourneysError {
+    /// The world has no room for something that is sampled.
+    #[error(transparent)]
+    Layout(#[from] LayoutError),
+    /// The trial failed.
+    #[error("{reason}")]
+    Failed {
+        /// The reason in words.
+        reason: String,
+    },
+    /// The trial panicked.
+    #[error("internal error")]
+    Panicked,
+}
+
 impl Journeys {
     /// Runs a world with every check enabled.
     ///
     /// # Errors
-    /// The reason why the trial failed, in words.
-    pub fn run(scenario: &Scenario, seed: u64) -> Result<Self, String> {
+    /// The trial cannot begin, or fails.
+    pub fn run(scenario: &Scenario, seed: u64) -> Result<Self, JourneysError> {
         let mut random = policies::standard().open("RANDOM").expect("known");
-        let mut trial = Simulation::new(scenario, seed).map_err(|error| error.to_string())?.checked();
+        let mut trial = Simulation::new(scenario, seed)?.checked();
         let (mut still, mut longest) = (0_u64, 0_u64);
         while trial.ending().is_none() {
             if let Some(Status::Failed(reason)) = trial.step(&mut *random) {
-                return Err(reason);
+                return Err(JourneysError::Failed { reason });
             }
             let moves = trial.world().robots.iter().any(|robot| robot.velocity.length() > STANDING_MPS);
             let holds_up = |cause| !matches!(cause, DelayCause::NothingToDo | DelayCause::NoRoute);

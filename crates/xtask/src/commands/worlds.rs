@@ -10,7 +10,7 @@ use std::process::ExitCode;
 
 use rayon::prelude::*;
 use usar_sim::scenario::{Scenario, ScenarioFile};
-use xtask::journeys::{Journeys, STANDSTILL_S};
+use xtask::journeys::{Journeys, JourneysError, STANDSTILL_S};
 use xtask::{rooms, worlds};
 
 /// A family of worlds: its name, and the world of a seed.
@@ -50,9 +50,9 @@ fn run_family(family: &Family, seeds: std::ops::Range<u64>, duration_s: f64) -> 
             let result = catch_unwind(AssertUnwindSafe(|| {
                 Journeys::run(&lasting(&(family.world)(seed), duration_s), seed)
             }));
-            (seed, result.unwrap_or_else(|_| Err(INTERNAL.to_owned())))
+            (seed, result.unwrap_or(Err(JourneysError::Panicked)))
         };
-        let results: Vec<(u64, Result<Journeys, String>)> = chunk.into_par_iter().map(run).collect();
+        let results: Vec<(u64, Result<Journeys, JourneysError>)> = chunk.into_par_iter().map(run).collect();
         results.iter().for_each(|(seed, result)| totals.add(*seed, result));
     }
     totals.print(seeds.end - seeds.start)
@@ -63,9 +63,6 @@ fn lasting(scenario: &Scenario, duration_s: f64) -> Scenario {
     let file = ScenarioFile { duration_s, ..(**scenario).clone() };
     Scenario::try_from(file).unwrap_or_else(|problems| panic!("{problems:?}"))
 }
-
-/// The text that stands for the message of a panic.
-const INTERNAL: &str = "internal error";
 
 /// Number of worlds between two outputs.
 const CHUNK: usize = 10;
@@ -86,16 +83,18 @@ struct Totals {
 
 impl Totals {
     /// Adds a world, and prints its problems.
-    fn add(&mut self, seed: u64, result: &Result<Journeys, String>) {
+    fn add(&mut self, seed: u64, result: &Result<Journeys, JourneysError>) {
         let journeys = match result {
             Ok(journeys) => journeys,
-            Err(reason) => {
-                match reason {
-                    _ if reason == INTERNAL => self.internal += 1,
-                    _ if reason.starts_with("invariant violated") => self.violations += 1,
-                    _ => self.refused += 1,
+            Err(error) => {
+                match error {
+                    JourneysError::Panicked => self.internal += 1,
+                    JourneysError::Failed { reason } if reason.starts_with("invariant violated") => {
+                        self.violations += 1;
+                    }
+                    JourneysError::Failed { .. } | JourneysError::Layout(_) => self.refused += 1,
                 }
-                println!("{} {seed}: {reason}", self.family);
+                println!("{} {seed}: {error}", self.family);
                 return;
             }
         };

@@ -11,12 +11,13 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::Parser;
+use experiments::Failure;
 use rayon::prelude::*;
 use serde::Serialize;
 
 use problems::{PROBLEMS, Problem};
 use table::Table;
-use trial::Outcome;
+use trial::{Outcome, TrialError};
 
 /// The seed of the instances in `scenarios/navigation/`.
 pub const FILE_SEED: u64 = 1;
@@ -94,7 +95,7 @@ pub fn folder() -> PathBuf {
 }
 
 impl Options {
-    fn run(&self) -> Result<(), String> {
+    fn run(&self) -> Result<(), Failure> {
         let problems = self.problems()?;
         if self.list {
             problems.iter().for_each(|problem| println!("{:16} {}", problem.name, problem.what));
@@ -109,19 +110,19 @@ impl Options {
         }
         let mut changes = Vec::new();
         for change in &self.set {
-            let parts =
-                change.split_once('=').ok_or_else(|| format!("--set {change}: expected FIELD=VALUE"))?;
-            changes.push((parts.0.to_owned(), parts.1.to_owned()));
+            let bad = || Failure::input(format!("--set {change}: expected FIELD=VALUE"));
+            let (field, value) = change.split_once('=').ok_or_else(bad)?;
+            changes.push((field.to_owned(), value.to_owned()));
         }
         changes.extend(self.resolver.iter().map(|name| ("conflicts.resolver".to_owned(), name.clone())));
         let pool = rayon::ThreadPoolBuilder::new().num_threads(self.threads).build();
-        let pool = pool.map_err(|error| error.to_string())?;
+        let pool = pool.map_err(Failure::run)?;
         let mut table = Table::new(self.csv.as_deref())?;
         for problem in problems {
             let run = |seed| trial::run(problem, seed, &changes);
-            let outcomes = pool.install(|| {
-                seeds.clone().into_par_iter().map(run).collect::<Result<Vec<Outcome>, String>>()
-            })?;
+            let outcomes: Result<Vec<Outcome>, TrialError> =
+                pool.install(|| seeds.clone().into_par_iter().map(run).collect());
+            let outcomes = outcomes.map_err(Failure::run)?;
             table.add(problem, &outcomes)?;
             if self.verbose {
                 outcomes.iter().for_each(table::explain);
@@ -131,14 +132,14 @@ impl Options {
         Ok(())
     }
 
-    fn problems(&self) -> Result<Vec<&'static Problem>, String> {
+    fn problems(&self) -> Result<Vec<&'static Problem>, Failure> {
         let is_named = |problem: &Problem, name: &String| match name.strip_suffix('*') {
             Some(start) => problem.name.starts_with(start),
             None => problem.name == name,
         };
         let unknown = |name: &&String| !PROBLEMS.iter().any(|problem| is_named(problem, name));
         if let Some(name) = self.problem.iter().find(unknown) {
-            return Err(format!("no problem {name:?}; `--list` lists them"));
+            return Err(Failure::input(format!("no problem {name:?}; `--list` lists them")));
         }
         let is_wanted = |problem: &&Problem| {
             self.problem.is_empty() || self.problem.iter().any(|name| is_named(problem, name))
@@ -147,12 +148,12 @@ impl Options {
     }
 }
 
-fn write(problems: &[&Problem]) -> Result<(), String> {
-    std::fs::create_dir_all(folder()).map_err(|error| error.to_string())?;
+fn write(problems: &[&Problem]) -> Result<(), Failure> {
+    std::fs::create_dir_all(folder()).map_err(Failure::storage)?;
     for problem in problems {
         let path = folder().join(format!("{}.ron", problem.name));
         std::fs::write(&path, problem.text(FILE_SEED))
-            .map_err(|error| format!("{}: {error}", path.display()))?;
+            .map_err(|error| Failure::storage(format!("{}: {error}", path.display())))?;
     }
     Ok(())
 }
@@ -168,16 +169,16 @@ struct Instance {
     world: world::World,
 }
 
-fn write_worlds(file: &Path, problems: &[&Problem], seeds: &RangeInclusive<u64>) -> Result<(), String> {
+fn write_worlds(file: &Path, problems: &[&Problem], seeds: &RangeInclusive<u64>) -> Result<(), Failure> {
     let mut text = String::new();
     for problem in problems {
         for seed in seeds.clone() {
             let (radius_m, speed_mps) = (world::RADIUS_M, world::SPEED_MPS);
             let world = problem.world(seed);
             let instance = Instance { problem: problem.name, seed, radius_m, speed_mps, world };
-            text += &serde_json::to_string(&instance).map_err(|error| error.to_string())?;
+            text += &serde_json::to_string(&instance).map_err(Failure::run)?;
             text += "\n";
         }
     }
-    std::fs::write(file, text).map_err(|error| format!("{}: {error}", file.display()))
+    std::fs::write(file, text).map_err(|error| Failure::storage(format!("{}: {error}", file.display())))
 }

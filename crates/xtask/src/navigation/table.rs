@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::time::Instant;
 
+use experiments::Failure;
 use serde::{Deserialize, Serialize};
 
 use super::problems::Problem;
@@ -41,21 +42,22 @@ struct Line<'o> {
 
 impl Table {
     /// Prints the header, and opens the CSV file if there is one.
-    pub(super) fn new(csv: Option<&Path>) -> Result<Self, String> {
+    pub(super) fn new(csv: Option<&Path>) -> Result<Self, Failure> {
         let open = |path: &Path| {
-            csv::Writer::from_path(path).map_err(|error| format!("{}: {error}", path.display()))
+            csv::Writer::from_path(path)
+                .map_err(|error| Failure::storage(format!("{}: {error}", path.display())))
         };
         let csv = csv.map(open).transpose()?;
         println!(
             "{:16} {:>6} {:>7} {:>7} {:>7} {:>6} {:>8} {:>8} {:>8}",
             "problem", "robots", "flow", "worst", "peer", "ok %", "given up", "touches", "us/step"
         );
-        let peers = best_peers().map_err(|error| format!("peers.csv: {error}"))?;
+        let peers = best_peers().map_err(|error| Failure::input(format!("peers.csv: {error}")))?;
         Ok(Self { csv, peers, start: Instant::now(), flows: Vec::new(), trials: 0, ok: 0, given_up: 0 })
     }
 
     /// Prints the line of a problem, and writes its trials.
-    pub(super) fn add(&mut self, problem: &Problem, outcomes: &[Outcome]) -> Result<(), String> {
+    pub(super) fn add(&mut self, problem: &Problem, outcomes: &[Outcome]) -> Result<(), Failure> {
         let mean = |of: fn(&Outcome) -> f64| outcomes.iter().map(of).sum::<f64>() / outcomes.len() as f64;
         let flow = mean(|outcome| outcome.flow);
         let ok = outcomes.iter().filter(|outcome| outcome.is_ok()).count();
@@ -76,9 +78,9 @@ impl Table {
         self.given_up += given_up;
         let Some(csv) = &mut self.csv else { return Ok(()) };
         for outcome in outcomes {
-            csv.serialize(line(problem, outcome)).map_err(|error| error.to_string())?;
+            csv.serialize(line(problem, outcome)).map_err(Failure::storage)?;
         }
-        csv.flush().map_err(|error| error.to_string())
+        csv.flush().map_err(Failure::storage)
     }
 
     /// Prints the summary line.

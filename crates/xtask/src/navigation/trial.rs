@@ -3,12 +3,14 @@
 use std::path::Path;
 use std::time::{Duration, Instant};
 
+use ron_fields::SetError;
+use thiserror::Error;
 use usar_sim::conflict::Delay;
 use usar_sim::event::Event;
 use usar_sim::ids::RobotId;
 use usar_sim::invariant::RARE_OVERLAP_M;
 use usar_sim::record::Status;
-use usar_sim::scenario::{Point, Row, Scenario, ScenarioFile};
+use usar_sim::scenario::{LayoutError, Point, Problem as Broken, Row, Scenario, ScenarioError, ScenarioFile};
 use usar_sim::simulation::{Advance, Simulation};
 use usar_sim::stage::Stage;
 use usar_sim::world::World;
@@ -74,6 +76,45 @@ pub struct Late {
     pub stalled_s: f64,
 }
 
+/// Why a problem has no trial.
+#[derive(Debug, Error)]
+pub enum TrialError {
+    /// The text of the instance is no scenario.
+    #[error(transparent)]
+    Text(#[from] ScenarioError),
+    /// A change cannot be set.
+    #[error(transparent)]
+    Change(#[from] SetError),
+    /// The changes break rules of scenarios.
+    #[error("{broken:?}")]
+    Rules {
+        /// The broken rules.
+        broken: Vec<Broken>,
+    },
+    /// The world has no room for something that is sampled.
+    #[error(transparent)]
+    Layout(#[from] LayoutError),
+    /// A robot does not arrive even alone.
+    #[error("robot {robot} does not arrive although it is alone")]
+    Lost {
+        /// Number of the robot.
+        robot: u32,
+    },
+    /// A robot cannot be run alone.
+    #[error("{problem}, seed {seed}: {error}")]
+    Alone {
+        /// Name of the problem.
+        problem: &'static str,
+        /// The seed.
+        seed: u64,
+        /// Why.
+        error: Box<Self>,
+    },
+    /// A world of errands has a question about groups.
+    #[error("a world of errands asks nothing")]
+    Asks,
+}
+
 /// Fields of the scenario to set, with their values.
 pub type Changes = [(String, String)];
 
@@ -81,30 +122,31 @@ pub type Changes = [(String, String)];
 ///
 /// # Errors
 /// A change that cannot be set, or a world in which a robot does not arrive even alone.
-pub fn run(problem: &Problem, seed: u64, changes: &Changes) -> Result<Outcome, String> {
+pub fn run(problem: &Problem, seed: u64, changes: &Changes) -> Result<Outcome, TrialError> {
     let path = format!("{}.ron", problem.name);
     let text = problem.text(seed);
-    let scenario = Scenario::parse(&text, Path::new(&path)).map_err(|error| error.to_string())?;
+    let scenario = Scenario::parse(&text, Path::new(&path))?;
     let mut file = (*scenario).clone();
     for (field, value) in changes {
-        file.set(field, value).map_err(|error| error.to_string())?;
+        file.set(field, value)?;
     }
     let alone = |errand: usize| {
-        alone(&file, errand, seed).map_err(|reason| format!("{}, seed {seed}: {reason}", problem.name))
+        let failed = |error| TrialError::Alone { problem: problem.name, seed, error: Box::new(error) };
+        alone(&file, errand, seed).map_err(failed)
     };
-    let free: Vec<f64> = (0..file.errands.len()).map(alone).collect::<Result<_, String>>()?;
+    let free: Vec<f64> = (0..file.errands.len()).map(alone).collect::<Result<_, TrialError>>()?;
     let limit_s = 5.0 * free.iter().copied().fold(0.0, f64::max) + 30.0;
     file.duration_s = limit_s;
     together(file, seed, free.iter().sum())
 }
 
-fn simulation(file: ScenarioFile, seed: u64) -> Result<Simulation, String> {
-    let scenario = Scenario::try_from(file).map_err(|problems| format!("{problems:?}"))?;
-    Simulation::new(&scenario, seed).map_err(|error| error.to_string())
+fn simulation(file: ScenarioFile, seed: u64) -> Result<Simulation, TrialError> {
+    let scenario = Scenario::try_from(file).map_err(|broken| TrialError::Rules { broken })?;
+    Ok(Simulation::new(&scenario, seed)?)
 }
 
 /// Time that a robot needs for its errand alone, in seconds.
-fn alone(file: &ScenarioFile, errand: usize, seed: u64) -> Result<f64, String> {
+fn alone(file: &ScenarioFile, errand: usize, seed: u64) -> Result<f64, TrialError> {
     let mut file = file.clone();
     let mut errand = file.errands.swap_remove(errand);
     let robot: Row = file.team.swap_remove(errand.robot as usize);
@@ -116,11 +158,11 @@ fn alone(file: &ScenarioFile, errand: usize, seed: u64) -> Result<f64, String> {
             return Ok(simulation.time_s());
         }
     }
-    Err(format!("robot {id} does not arrive although it is alone"))
+    Err(TrialError::Lost { robot: id })
 }
 
 /// Runs all robots together, until the last one has arrived or given up.
-fn together(file: ScenarioFile, seed: u64, free_s: f64) -> Result<Outcome, String> {
+fn together(file: ScenarioFile, seed: u64, free_s: f64) -> Result<Outcome, TrialError> {
     let limit_s = file.duration_s;
     let goals: Vec<(u32, Point)> = file.errands.iter().map(|errand| (errand.robot, errand.to[0])).collect();
     let mut simulation = simulation(file, seed)?.checked();
@@ -143,7 +185,7 @@ fn together(file: ScenarioFile, seed: u64, free_s: f64) -> Result<Outcome, Strin
                 break;
             }
             Advance::Over(_) => break,
-            Advance::Asks(_) => return Err("a world of errands asks nothing".to_owned()),
+            Advance::Asks(_) => return Err(TrialError::Asks),
         }
         for event in simulation.events() {
             match event {
