@@ -1,5 +1,6 @@
 //! The command `usar` as a library. A program that adds its own policies calls [`main_with`] as its `main`.
 
+mod bad_value;
 mod cli;
 mod commands;
 mod printable;

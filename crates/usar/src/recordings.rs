@@ -18,15 +18,16 @@ use ron_fields::file::{ReadError, read};
 use usar_sim::record::{Status, TrialRecord};
 use usar_sim::simulation::Simulation;
 
+use crate::bad_value::BadValue;
 use crate::running::{Guard, session_of};
 
 /// Number of bytes that are written to disk together.
 const BUFFER: usize = 1 << 16;
 
 /// Parses a number of frames in a second of simulated time.
-pub(crate) fn fps(text: &str) -> Result<f64, String> {
+pub(crate) fn fps(text: &str) -> Result<f64, BadValue> {
     let fps = text.parse::<f64>().ok().filter(|fps| (0.01..=1000.0).contains(fps));
-    fps.ok_or_else(|| format!("must be a number from 0.01 to 1000, found {text:?}"))
+    fps.ok_or_else(|| BadValue::new("a number from 0.01 to 1000", text))
 }
 
 fn trouble(path: &Path, error: &io::Error) -> Failure {
@@ -71,10 +72,10 @@ pub(crate) enum Recorded {
 }
 
 impl FromStr for Recorded {
-    type Err = String;
+    type Err = BadValue;
 
-    fn from_str(text: &str) -> Result<Self, String> {
-        let wrong = || format!("must be `all`, a number of trials, or `seeds=` and a list, found {text:?}");
+    fn from_str(text: &str) -> Result<Self, BadValue> {
+        let wrong = || BadValue::new("`all`, a number of trials, or `seeds=` and a list", text);
         if text == "all" {
             return Ok(Self::All);
         }
@@ -219,7 +220,7 @@ mod tests {
         assert_eq!("3".parse(), Ok(Recorded::First(3)));
         assert_eq!("seeds=3, 7".parse(), Ok(Recorded::Seeds(vec![3, 7])));
         for text in ["", "0", "seeds=", "3,7", "-1"] {
-            assert!(text.parse::<Recorded>().unwrap_err().contains("must be `all`"), "{text}");
+            assert!(text.parse::<Recorded>().unwrap_err().to_string().contains("must be `all`"), "{text}");
         }
         assert!(fps("0").is_err() && fps("x").is_err() && fps("nan").is_err() && fps("25") == Ok(25.0));
     }

@@ -6,6 +6,8 @@ use clap::Args;
 use experiments::Failure;
 use pictures::{Look, Picture, Width};
 
+use crate::bad_value::BadValue;
+
 /// How pictures look.
 #[derive(Debug, Args)]
 pub(crate) struct Looks {
@@ -27,8 +29,8 @@ pub(crate) struct Looks {
 }
 
 /// A width from the command line.
-fn width(text: &str) -> Result<Width, String> {
-    let wrong = || format!("must be 100 to 8000 pixels, as in `800`, or 20mm to 1000mm, found {text:?}");
+fn width(text: &str) -> Result<Width, BadValue> {
+    let wrong = || BadValue::new("100 to 8000 pixels, as in `800`, or 20mm to 1000mm", text);
     let width = if let Some(length) = text.strip_suffix("mm") {
         let length = length.trim().parse().ok().filter(|length| (20.0..=1000.0).contains(length));
         length.map(Width::Millimetres)
@@ -86,7 +88,7 @@ mod tests {
         assert_eq!(width("88mm"), Ok(Width::Millimetres(88.0)));
         assert_eq!((width("800"), width("640px")), (Ok(Width::Pixels(800)), Ok(Width::Pixels(640))));
         for text in ["", "0", "99", "8001", "88 cm", "nanmm", "1e9mm", "-5"] {
-            assert!(width(text).unwrap_err().contains("must be 100 to 8000 pixels"), "{text}");
+            assert!(width(text).unwrap_err().to_string().contains("must be 100 to 8000 pixels"), "{text}");
         }
     }
 }

@@ -14,6 +14,7 @@ use rne_core::Registry;
 
 use super::measured_by::MeasureArguments;
 use super::{output, read_sweep};
+use crate::bad_value::BadValue;
 
 /// Draw one figure of a sweep for the column of a paper, as PDF, SVG or PNG
 #[derive(Debug, Args)]
@@ -149,8 +150,8 @@ impl Arguments {
 }
 
 /// A width on paper.
-fn millimetres(text: &str) -> Result<f64, String> {
+fn millimetres(text: &str) -> Result<f64, BadValue> {
     let number = text.strip_suffix("mm").and_then(|number| number.trim().parse::<f64>().ok());
-    let wrong = || format!("must be 20mm to 1000mm, as in `88mm`, found {text:?}");
+    let wrong = || BadValue::new("20mm to 1000mm, as in `88mm`", text);
     number.filter(|width| (20.0..=1000.0).contains(width)).ok_or_else(wrong)
 }

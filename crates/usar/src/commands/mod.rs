@@ -58,6 +58,7 @@ use experiments::sweep::folder::Folder;
 use rne_core::Registry;
 use usar_sim::scenario::Scenario;
 
+use crate::bad_value::BadValue;
 use crate::running::tell;
 
 use shown::print_table;
@@ -88,9 +89,9 @@ pub(crate) fn read_sweep(path: &Path, registry: &Registry) -> Result<Folder, Fai
 }
 
 /// Parses a time interval from the command line.
-pub(crate) fn seconds(text: &str) -> Result<f64, String> {
+pub(crate) fn seconds(text: &str) -> Result<f64, BadValue> {
     let seconds = text.parse().ok().filter(|seconds| (0.001..=100_000.0).contains(seconds));
-    seconds.ok_or_else(|| format!("must be a number from 0.001 to 100000, found {text:?}"))
+    seconds.ok_or_else(|| BadValue::new("a number from 0.001 to 100000", text))
 }
 
 /// Parses numbers separated by commas.

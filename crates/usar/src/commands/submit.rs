@@ -19,6 +19,7 @@ pub(crate) use submission::{ARRAY, LOGS, MERGE, Submission};
 use super::chosen::Chosen;
 use super::estimate::{Measured, duration};
 use super::slurm;
+use crate::bad_value::BadValue;
 use crate::printable::counted;
 use crate::running::stop_on_signals;
 use plan::Wishes;
@@ -79,14 +80,10 @@ pub(crate) struct Arguments {
 }
 
 /// Parses a text that is allowed in a directive of a job script.
-fn word(text: &str) -> Result<String, String> {
+fn word(text: &str) -> Result<String, BadValue> {
     let is_plain = |c: char| c.is_ascii_alphanumeric() || "-_.:,".contains(c);
     let is_word = !text.is_empty() && text.chars().all(is_plain);
-    if is_word {
-        Ok(text.to_owned())
-    } else {
-        Err(format!("must be letters, digits and -_.:, found {text:?}"))
-    }
+    is_word.then(|| text.to_owned()).ok_or_else(|| BadValue::new("letters, digits and -_.:", text))
 }
 
 /// The scripts of a submission.
