@@ -1,6 +1,6 @@
 //! The laws of the architecture, checked on the sources: crates use only those below them, modules and files
 //! form no circle, decisions see no world, the engine has one seam, the general crates have no words of one
-//! paper, and the laboratory draws and prints nothing.
+//! paper, the laboratory draws and prints nothing, no parameter is a tuple, and no public error is a text.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -52,6 +52,35 @@ const SCREEN: [(&str, &[&str]); 12] = [
     ("clap_mangen", &["usar"]),
     ("ctrlc", &["usar"]),
     ("indicatif", &["usar"]),
+];
+
+/// Files that may still have parameters that are tuples.
+const MAY_HAVE_TUPLES: [&str; 17] = [
+    "ron-fields/told.rs",
+    "policies/ranking.rs",
+    "policies/rne/local.rs",
+    "usar-sim/model/layout.rs",
+    "usar-sim/model/scatter.rs",
+    "usar-sim/navigation/mod.rs",
+    "usar-sim/scenario/checker.rs",
+    "usar-sim/scenario/homes.rs",
+    "usar-sim/scenario/timeline.rs",
+    "usar-sim/simulation/state.rs",
+    "usar-sim/world/mod.rs",
+    "experiments/experiment/mod.rs",
+    "experiments/experiment/shard.rs",
+    "experiments/oracle/survey.rs",
+    "experiments/regret/decision.rs",
+    "experiments/run/shared.rs",
+    "usar/commands/sorting.rs",
+];
+
+/// Files that may still have public errors that are texts.
+const MAY_HAVE_TEXTS_FOR_ERRORS: [&str; 4] = [
+    "rne-core/question.rs",
+    "experiments/experiment/keep.rs",
+    "experiments/experiment/policy.rs",
+    "experiments/experiment/shard.rs",
 ];
 
 /// A file of the project, by its path from the root.
@@ -332,4 +361,117 @@ fn the_general_crates_have_no_words_of_one_paper() {
             }
         }
     }
+}
+
+/// Splits a list at its commas, up to the bracket that closes it; returns the place of that bracket as well.
+fn entries(list: &str) -> (Vec<&str>, usize) {
+    let (mut found, mut start, mut depth) = (Vec::new(), 0, 0);
+    for (at, c) in list.char_indices() {
+        match c {
+            '>' if list[..at].ends_with(['-', '=']) => {}
+            '(' | '[' | '{' | '<' => depth += 1,
+            ')' | ']' | '}' | '>' if depth > 0 => depth -= 1,
+            ')' | ']' | '}' | '>' | ',' if depth == 0 => {
+                found.push(list[start..at].trim());
+                start = at + 1;
+                if c != ',' {
+                    return (found, at);
+                }
+            }
+            _ => {}
+        }
+    }
+    (found, list.len())
+}
+
+/// Whether a pattern or a type is a tuple (`(`) or an array (`[`), behind references too.
+fn is_in(bracket: char, text: &str) -> bool {
+    let text = text.trim_start_matches('&');
+    let text = text.strip_prefix('\'').and_then(|text| text.split_once(' ')).map_or(text, |(_, rest)| rest);
+    let text = text.trim_start_matches("mut ");
+    text.starts_with(bracket) && !["()", "(dyn ", "(impl "].iter().any(|other| text.starts_with(other))
+}
+
+/// The functions of a source with a parameter that is a tuple, or with more than five parameters if those in
+/// an array that is taken apart are counted one by one.
+fn functions_with_tuples(text: &str) -> Vec<&str> {
+    let is_tuple = |(pattern, kind): &(&str, &str)| is_in('(', pattern) || is_in('(', kind);
+    let count = |(pattern, kind): &(&str, &str)| {
+        if is_in('[', pattern) && is_in('[', kind) { entries(&pattern[1..]).0.len() } else { 1 }
+    };
+    let end_of_name = |rest: &str| rest.find(['(', '<']).unwrap_or(rest.len());
+    let is_offender = |rest: &&str| {
+        let after_name = &rest[end_of_name(rest)..];
+        let generics = after_name.strip_prefix('<').map_or(0, |generics| entries(generics).1 + 2);
+        let Some((_, list)) = after_name[generics..].split_once('(') else { return false };
+        let parameters = entries(list).0.into_iter().filter(|parameter| !parameter.is_empty());
+        let parameters: Vec<_> =
+            parameters.map(|parameter| parameter.split_once(": ").unwrap_or((parameter, ""))).collect();
+        parameters.iter().any(is_tuple) || parameters.iter().map(count).sum::<usize>() > 5
+    };
+    let functions = text.match_indices("fn ").filter(|(at, _)| !text[..*at].ends_with(char::is_alphanumeric));
+    let named = functions.map(|(at, word)| &text[at + word.len()..]).filter(is_offender);
+    named.map(|rest| &rest[..end_of_name(rest)]).collect()
+}
+
+/// The sources, but for those that may, in which something is found, with what is found.
+fn offenders(find: fn(&str) -> Vec<&str>, may: &[&str]) -> Vec<String> {
+    let all = CRATES.iter().flat_map(|name| {
+        sources(name).into_iter().map(move |(path, text)| (format!("{name}/{}", path.display()), text))
+    });
+    let others = all.filter(|(file, _)| !may.contains(&file.as_str()));
+    let found = others.map(|(file, text)| (file, find(&text).join(", ")));
+    found.filter(|(_, found)| !found.is_empty()).map(|(file, found)| format!("{file}: {found}")).collect()
+}
+
+#[test]
+fn no_parameter_is_a_tuple() {
+    let found = offenders(functions_with_tuples, &MAY_HAVE_TUPLES);
+    assert!(found.is_empty(), "these functions bundle parameters: {found:#?}");
+}
+
+/// The public functions, types and fields of a source, and its implementations of traits, whose error is a
+/// text.
+fn texts_for_errors(text: &str) -> Vec<&str> {
+    let has_text = |item: &&str| {
+        let mut results = item.match_indices("Result<").map(|(at, word)| &item[at + word.len()..]);
+        let is_associated = ["type Err = String;", "type Error = String;"].contains(item);
+        is_associated
+            || item.starts_with("pub ") && results.any(|rest| entries(rest).0.get(1) == Some(&"String"))
+    };
+    let starts = text.match_indices('\n').map(|(at, _)| text[at..].trim_start());
+    let items = starts.map(|rest| {
+        let line = rest.lines().next().unwrap_or_default();
+        let end = if line.contains("fn ") { rest.find(['{', ';']) } else { None };
+        end.map_or(line, |end| &rest[..end])
+    });
+    items.filter(has_text).collect()
+}
+
+#[test]
+fn no_public_result_has_a_text_for_an_error() {
+    let found = offenders(texts_for_errors, &MAY_HAVE_TEXTS_FOR_ERRORS);
+    assert!(found.is_empty(), "these errors are texts: {found:#?}");
+}
+
+#[test]
+fn a_tuple_and_a_text_for_an_error_would_be_found() {
+    let tuples = "
+        fn a((x, y): (f64, f64)) {}
+        fn b<F: Fn(u8) -> u8>(&self, of: F, pair: &mut (u8, Vec<u8>)) {}
+        fn c([a, b]: [u8; 2], [c, d]: [u8; 2], e: u8, f: u8) {}
+        fn d<'a>(pair: &'a (u8, u8)) {}
+        fn right([x, y]: [f64; 2], it: &(dyn Any + Send), each: impl Fn((u8, u8)), _: &[(u8, u8)]) {}
+        fn unit(done: ()) -> (u8, u8) { f((1, 2)) }";
+    assert_eq!(functions_with_tuples(tuples), ["a", "b", "c", "d"]);
+    let texts = "
+        pub fn a(
+            text: &str,
+        ) -> Result<Vec<(u8, u8)>, String> {}
+        pub type B = Result<(), String>;
+        pub c: Result<u8, String>,
+        type Err = String;
+        pub fn right(text: &str) -> Result<String, Failure> { let _: Result<u8, String>; }
+        fn private() -> Result<(), String> {}";
+    assert_eq!(texts_for_errors(texts).len(), 4, "{:#?}", texts_for_errors(texts));
 }
