@@ -34,10 +34,10 @@ const FAULTS: [Fault; 25] = [
         robot.velocity = -robot.velocity - Vector::new(0.5, 0.0);
     }),
     ("overlaps", |s| {
-        let movable = s.world.debris.iter().position(|piece| !piece.is_fixed).unwrap();
-        s.world.debris[movable].outline.pose.translation = s.world.robots[s.robot].position;
+        let movable = s.world.debris.iter().position(|piece| !piece.is_fixed()).unwrap();
+        s.world.debris[movable].pose.translation = s.world.robots[s.robot].position;
     }),
-    ("debris 0 is fixed", |s| s.world.debris[0].outline.pose.translation.x += 0.1),
+    ("debris 0 is fixed", |s| s.world.debris[0].pose.translation.x += 0.1),
     ("energy NaN", |s| s.world.robots[s.robot].energy = f64::NAN),
     ("energy 101", |s| s.world.robots[s.robot].energy = 101.0),
     ("energy -1", |s| s.world.robots[s.robot].energy = -1.0),
@@ -78,7 +78,7 @@ fn each_of_25_faults_is_caught_within_one_step() {
     let mut policy = policy("RNE");
     for (said, fault) in FAULTS {
         let mut trial = Simulation::new(&scenario, 1).unwrap();
-        let mut check = Invariants::new(&scenario, trial.world());
+        let mut check = Invariants::new(trial.model(), trial.world());
         let robot = loop {
             assert_eq!(trial.step(&mut *policy), None);
             check.listen(trial.time_s(), trial.events(), trial.world()).unwrap();

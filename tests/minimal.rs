@@ -3,8 +3,8 @@
 use std::fmt::Write;
 
 use parry2d::math::Vector;
-use usar_sim::belief::{Belief, Inflation};
-use usar_sim::planning::{Planner, Query};
+use usar_sim::belief::Belief;
+use usar_sim::planning::{Meshes, Query};
 use usar_sim::record::{Status, TrialRecord};
 use usar_sim::scenario::{PriorityRule, Scenario, ScenarioFile};
 use usar_sim::simulation::Simulation;
@@ -48,11 +48,11 @@ fn run(file: ScenarioFile) -> (TrialRecord, f64) {
 /// speed.
 fn free_path_s(scenario: &Scenario, trial: &Simulation) -> f64 {
     let world = trial.world();
-    let mut known = Belief::nothing(Inflation::of(scenario));
-    (0..world.debris.len()).filter(|i| world.debris[*i].is_fixed).for_each(|i| {
-        known.hear(&lies(i, &world.debris[i].outline, 0));
+    let mut known = Belief::nothing(&trial.model().inflation);
+    (0..world.debris.len()).filter(|i| world.debris[*i].is_fixed()).for_each(|i| {
+        known.hear(&lies(i, &world.debris[i].outline(), 0));
     });
-    let mut planner = Planner::new(scenario);
+    let mut meshes = Meshes::default();
     let mut time = |errand: &usar_sim::scenario::Errand| {
         let robot = &world.robots[errand.robot as usize];
         let mut from = robot.home;
@@ -70,7 +70,8 @@ fn free_path_s(scenario: &Scenario, trial: &Simulation) -> f64 {
                 in_the_way: &[],
                 zones: &[],
             };
-            length += planner.route(&query).map_or(0.0, |route| route.length(from));
+            length +=
+                trial.model().planner.route(&query, &mut meshes).map_or(0.0, |route| route.length(from));
             from = to;
         }
         f64::from(length) / robot.speed()

@@ -6,11 +6,12 @@
 use parry2d::math::Vector;
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
-use usar_sim::belief::{Belief, Inflation};
+use usar_sim::belief::Belief;
 use usar_sim::geometry::{Outline, RadiationZone};
-use usar_sim::model::Model;
-use usar_sim::navigation::{Goal, Navigator};
-use usar_sim::planning::{KnownObstacle, ObstacleKey, ObstacleMap, Planner, Query, Route};
+use usar_sim::model::{Layout, Model};
+use usar_sim::navigation::{Goal, Navigator, Outlook};
+use usar_sim::planning::{Inflation, KnownObstacle, Meshes, ObstacleKey, ObstacleMap, Planner, Query, Route};
+use usar_sim::robot::Robot;
 use usar_sim::scenario::{DebrisFile, DebrisShape, Scenario};
 use usar_sim::world::World;
 
@@ -128,7 +129,8 @@ fn query<'a>(obstacles: &'a ObstacleMap, from: P, to: P, so_far: &'a [Vector]) -
 fn routes_are_connected_clear_of_known_debris_and_as_short_as_the_oracle_s() {
     // One planner for all maps: it keeps meshes, and must tell the pieces of one map from those of another by
     // their outlines.
-    let mut planner = Planner::new(&paper());
+    let planner = Planner::new(&paper());
+    let mut meshes = Meshes::default();
     let mut compared = 0;
     for seed in 0..150 {
         let mut draws = ChaCha8Rng::seed_from_u64(seed);
@@ -146,10 +148,10 @@ fn routes_are_connected_clear_of_known_debris_and_as_short_as_the_oracle_s() {
         // As a robot finds out: first without one half of the pieces, then from the route that the other half
         // cuts.
         let few = known(&outlines[..outlines.len() / 2]);
-        let so_far = planner.route(&query(&few, from, to, &[]));
+        let so_far = planner.route(&query(&few, from, to, &[]), &mut meshes);
         let so_far = so_far.as_ref().map_or(&[][..], Route::ahead);
-        let route = planner.route(&query(&obstacles, from, to, so_far));
-        let fresh = planner.route(&query(&obstacles, from, to, &[]));
+        let route = planner.route(&query(&obstacles, from, to, so_far), &mut meshes);
+        let fresh = planner.route(&query(&obstacles, from, to, &[]), &mut meshes);
         assert_eq!(route.is_some(), fresh.is_some(), "seed {seed}");
         let oracle = shortest(&polygons, from, to);
         assert_eq!(route.is_some(), oracle.is_some(), "seed {seed}");
@@ -180,7 +182,7 @@ fn a_detour_round_radiation_is_made_where_it_is_cheaper_and_no_further() {
         let scenario = paper_with(&[("exposure_price_m: 2.0", &format!("exposure_price_m: {price}"))]);
         let zone = RadiationZone { center: Vector::new(40.0, 30.0), radius: 4.0 };
         let from = Vector::new(30.0, 30.0);
-        let route = Planner::new(&scenario).route(&Query {
+        let query = Query {
             from,
             to: Vector::new(50.0, 30.0),
             aerial: false,
@@ -190,8 +192,8 @@ fn a_detour_round_radiation_is_made_where_it_is_cheaper_and_no_further() {
             so_far: &[],
             in_the_way: &[],
             zones: &[(0, zone)],
-        });
-        let route = route.unwrap();
+        };
+        let route = Planner::new(&scenario).route(&query, &mut Meshes::default()).unwrap();
         (route.length(from), route.length_inside(from, &zone))
     };
     let (straight, inside) = cost("0.0");
@@ -231,7 +233,7 @@ fn observers_fly_over_debris() {
             in_the_way: &[],
             zones: &[],
         };
-        Planner::new(&scenario).route(&query).unwrap().length(query.from)
+        Planner::new(&scenario).route(&query, &mut Meshes::default()).unwrap().length(query.from)
     };
     assert!((length(true) - 30.0).abs() < 1e-3 && length(false) > 55.0);
 }
@@ -252,20 +254,25 @@ const CLOSED_GAP: &str = r#"(
 fn a_way_that_a_pushed_piece_leaves_free_is_taken_once_it_is_noticed_and_others_do_not_count() {
     let scenario = Scenario::parse(CLOSED_GAP, "closed_gap.ron".as_ref()).unwrap();
     let length_after_move = |by: [f32; 2]| {
-        let world = World::build(&Model::compile(&scenario, 1).unwrap());
-        let mut known = Belief::nothing(Inflation { radii: vec![0.4], clearance: 0.15 });
+        let model = Model::compile(&scenario, &Layout::sample(&scenario, 1).unwrap(), 1);
+        let world = World::build(&model);
+        let mut known = Belief::nothing(&Inflation { radii: vec![0.4], clearance: 0.15 });
         (0..3).for_each(|piece| {
-            known.hear(&lies(piece, &world.debris[piece].outline, 0));
+            known.hear(&lies(piece, &world.debris[piece].outline(), 0));
         });
-        let mut navigator = Navigator::new(&scenario, 1);
+        let mut meshes = Meshes::default();
+        let mut navigator = Navigator::new(1);
         let robot = world.robots[0].id;
         navigator.set_goal(robot, Some(Goal { point: Vector::new(20.0, 5.0), within: 0.15 }));
         let mut length = |known: &Belief| {
-            navigator.plan(&world.robots, |_| known, |_| 2.0, 1);
+            let (team, step) = (&world.robots[..], 1);
+            let outlook =
+                Outlook { model: &model, team, step, belief_of: |_| known, speed_of: |_: &Robot| 2.0 };
+            navigator.plan(&outlook, &mut meshes);
             navigator.traveller(robot).route().unwrap().length(world.robots[0].position)
         };
         let before = length(&known);
-        let mut moved = world.debris[2].outline.clone();
+        let mut moved = world.debris[2].outline();
         moved.pose.translation += Vector::from(by);
         assert!((length(&known) - before).abs() < 1e-6, "nobody has noticed yet");
         known.hear(&lies(2, &moved, 1));

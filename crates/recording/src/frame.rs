@@ -330,7 +330,7 @@ impl RescueeFrame {
 impl MovedDebris {
     pub(crate) fn of(simulation: &Simulation, number: usize) -> Self {
         let piece = &simulation.world().debris[number];
-        let (at, turn) = (piece.outline.pose.translation, piece.outline.pose.rotation);
+        let (at, turn) = (piece.pose.translation, piece.pose.rotation);
         Self {
             position_mm: [milli(at.x), milli(at.y)],
             angle: nearest(f64::from(libm::atan2f(turn.sin(), turn.cos())) * 10_000.0),

@@ -189,7 +189,7 @@ impl Header {
         frames_per_segment: usize,
     ) -> Self {
         let scenario = simulation.scenario();
-        let resolved = simulation.model().given().resolved();
+        let resolved = simulation.given().resolved();
         let world = World::of(simulation);
         let rows = world.rows();
         Self {
@@ -242,7 +242,7 @@ impl World {
     /// The world of a trial.
     #[must_use]
     pub fn of(simulation: &Simulation) -> Self {
-        let (model, scenario) = (simulation.model(), simulation.scenario());
+        let (model, scenario, layout) = (simulation.model(), simulation.scenario(), simulation.layout());
         let task = |(task, model): (&usar_sim::scenario::TaskFile, &usar_sim::model::TaskModel)| TaskPlace {
             name: task.name.clone(),
             difficulty: task.difficulty,
@@ -253,13 +253,15 @@ impl World {
             rescuees: model.rescuees.len(),
         };
         let metres = |x: f32, y: f32| [x, y].map(|value| (f64::from(value) * 1000.0).round() / 1000.0);
-        let robots = model.robots.iter().map(|robot| RobotPlace {
+        let bodies = scenario.bodies().flat_map(|(body, count)| std::iter::repeat_n(body, count as usize));
+        let robots = model.robots.iter().zip(bodies).map(|(robot, body)| RobotPlace {
             role: robot.role.index(),
             home: metres(robot.home.x, robot.home.y),
             rest: robot.rest.iter().map(|at| metres(at.x, at.y)).collect(),
-            body: (*robot.spec != scenario.roles[robot.role.index()]).then(|| (*robot.spec).clone()),
+            body: (body != scenario.roles[robot.role.index()]).then_some(body),
         });
-        let absent = model.layout.gates.iter().filter(|(_, is_there)| !**is_there);
+        let absent = layout.gates.iter().filter(|(_, is_there)| !**is_there);
+        let later = model.rescuees.iter().filter(|rescuee| rescuee.is_later);
         Self {
             arena_m: scenario.arena_m,
             roles: scenario.roles.clone(),
@@ -267,12 +269,16 @@ impl World {
             health_floor: scenario.mission.health_floor,
             tasks: scenario.tasks.iter().zip(&model.tasks).map(task).collect(),
             robots: robots.collect(),
-            rescuees: model.rescuees.iter().map(|(_, at)| metres(at.x, at.y)).collect(),
-            debris: model.layout.debris.clone(),
-            zones: model.layout.zones.clone(),
+            rescuees: model
+                .rescuees
+                .iter()
+                .map(|rescuee| metres(rescuee.position.x, rescuee.position.y))
+                .collect(),
+            debris: layout.debris.clone(),
+            zones: layout.zones.clone(),
             debris_later: absent.map(|(number, _)| *number).collect(),
-            zones_later: model.layout.zones_later.iter().copied().collect(),
-            rescuees_later: model.rescuees_later.iter().flat_map(Clone::clone).collect(),
+            zones_later: layout.zones_later.iter().copied().collect(),
+            rescuees_later: later.map(|rescuee| rescuee.id.index()).collect(),
         }
     }
 

@@ -22,7 +22,7 @@ pub(crate) const RESCUEES: usize = 2;
 /// Whether a row of a stream never changes.
 pub(crate) fn is_fixed(simulation: &Simulation, stream: usize, row: usize) -> bool {
     let piece = |row: usize| &simulation.world().debris[row];
-    stream == 3 && piece(row).is_fixed && !piece(row).is_gate
+    stream == 3 && piece(row).is_fixed() && !piece(row).is_gate()
 }
 
 /// Appends the current numbers of one row of a stream.

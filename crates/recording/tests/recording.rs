@@ -94,8 +94,8 @@ fn assert_is_now(recording: &Recording, number: usize, now: &Simulation) {
         assert_eq!(kept.robot, robot.map(|robot| robot.0));
     }
     for (kept, piece) in frame.debris.iter().zip(&now.world().debris) {
-        near(kept.position_mm[0], piece.outline.pose.translation.x.into(), "debris x");
-        near(kept.position_mm[1], piece.outline.pose.translation.y.into(), "debris y");
+        near(kept.position_mm[0], piece.pose.translation.x.into(), "debris x");
+        near(kept.position_mm[1], piece.pose.translation.y.into(), "debris y");
         assert_eq!(kept.sightings as usize, piece.sightings.len());
     }
     let tasks = (0..now.mission().groups.len() as u16).map(TaskId);
@@ -107,7 +107,7 @@ fn assert_is_now(recording: &Recording, number: usize, now: &Simulation) {
         );
         for (number, sighting) in &kept.debris {
             let seen = &now.world().debris[*number as usize].sightings[*sighting as usize - 1];
-            assert_eq!(seen.pose, known.debris.get(*number as usize).unwrap().pose);
+            assert_eq!(*seen, known.debris.get(*number as usize).unwrap().pose);
         }
         assert!(kept.zones.iter().eq(known.zones_on().iter().map(|(number, _)| number)));
     }
@@ -246,7 +246,8 @@ fn a_whole_trial_of_the_paper_is_small() {
 #[test]
 fn a_body_of_its_own_is_what_a_robot_is_described_with() {
     let simulation = Simulation::new(&scenario("gallery/chance.ron", 2.0), 3).unwrap();
-    let specs: Vec<_> = simulation.world().robots.iter().map(|robot| (*robot.spec).clone()).collect();
+    let bodies = simulation.scenario().bodies();
+    let bodies: Vec<_> = bodies.flat_map(|(body, count)| std::iter::repeat_n(body, count as usize)).collect();
     let mut bytes = Vec::new();
     record(
         simulation,
@@ -259,15 +260,15 @@ fn a_body_of_its_own_is_what_a_robot_is_described_with() {
     let (world, frame) = (&recording.header.world, recording.frame(0).unwrap());
     let speed = world.needs.iter().position(|need| need.measures == Measure::Speed).unwrap();
     let mut with_their_own = 0;
-    for (robot, spec) in specs.iter().enumerate() {
-        assert_eq!(world.body_of(robot), spec);
-        with_their_own += u32::from(world.roles[world.robots[robot].role] != *spec);
+    for (robot, body) in bodies.iter().enumerate() {
+        assert_eq!(world.body_of(robot), body);
+        with_their_own += u32::from(world.roles[world.robots[robot].role] != *body);
         let reported = world.needs_of(robot, &frame.robots[robot])[speed];
-        let factor = reported / spec.speed_mps;
+        let factor = reported / body.speed_mps;
         assert!(
             (world.health_floor..=1.0).contains(&factor),
             "robot {robot}: {reported} of {}",
-            spec.speed_mps
+            body.speed_mps
         );
     }
     assert!(with_their_own > 0, "the scenario has suppliers with speeds of their own");

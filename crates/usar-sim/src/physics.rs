@@ -66,16 +66,15 @@ pub(crate) struct RobotBody {
 }
 
 /// The properties of a piece of debris that the engine needs.
-#[derive(Clone, Copy)]
-pub(crate) struct DebrisBody<'d> {
+#[derive(Clone)]
+pub(crate) struct DebrisBody {
     /// Its shape and place.
-    pub outline: &'d Outline,
+    pub outline: Outline,
     /// Whether events put this fixed piece to other places.
     pub is_gate: bool,
-    /// Mass, in kilograms; `None` for a fixed piece.
-    pub mass: Option<f32>,
-    /// Mass times the coefficient of friction with the ground, in kilograms.
-    pub friction_mass: f32,
+    /// Mass, and mass times the coefficient of friction with the ground, in kilograms; `None` for a fixed
+    /// piece.
+    pub masses: Option<[f32; 2]>,
 }
 
 /// The rigid bodies of one trial.
@@ -92,7 +91,7 @@ pub struct Physics {
 
 impl Physics {
     /// Builds all bodies in an arena of this width and height, in metres, for steps of `dt` seconds.
-    pub(crate) fn new(dt: f32, arena: [f32; 2], robots: &[RobotBody], debris: &[DebrisBody]) -> Self {
+    pub(crate) fn new(dt: f32, arena: Vector, robots: &[RobotBody], debris: &[DebrisBody]) -> Self {
         let mut world = PhysicsWorld::new();
         world.gravity = Vector::ZERO;
         world.integration_parameters = parameters(dt);
@@ -216,7 +215,8 @@ fn groups(membership: Group, touches: Group) -> InteractionGroups {
     InteractionGroups::new(membership, touches, InteractionTestMode::And)
 }
 
-fn insert_walls(world: &mut PhysicsWorld, [width, height]: [f32; 2]) {
+fn insert_walls(world: &mut PhysicsWorld, arena: Vector) {
+    let [width, height] = [arena.x, arena.y];
     let (w, h, t) = (width / 2.0, height / 2.0, HALF_WALL_M);
     let walls = [
         (Vector::new(w, -t), w + 2.0 * t, t),
@@ -257,8 +257,9 @@ fn insert_debris(
     piece: &DebrisBody,
     longest_step: f32,
 ) -> (RigidBodyHandle, bool) {
-    let outline = piece.outline;
-    let builder = if piece.mass.is_some() { RigidBodyBuilder::dynamic() } else { RigidBodyBuilder::fixed() };
+    let outline = &piece.outline;
+    let builder =
+        if piece.masses.is_some() { RigidBodyBuilder::dynamic() } else { RigidBodyBuilder::fixed() };
     // Without prediction, a thin piece that a fast robot pushes would be deep in the next body before the
     // engine notices the contact.
     let bounds = outline.shape.compute_local_aabb();
@@ -269,17 +270,15 @@ fn insert_debris(
         .friction(BODY_FRICTION)
         .restitution(0.0)
         .collision_groups(groups(DEBRIS, GROUND | DEBRIS | WALL));
-    if let Some(mass) = piece.mass {
+    if let Some([mass, _]) = piece.masses {
         collider = collider.mass(mass);
     }
     let (handle, _) = world.insert(builder.pose(outline.pose), collider);
-    if piece.mass.is_none() {
-        return (handle, false);
-    }
+    let Some([_, friction_mass]) = piece.masses else { return (handle, false) };
     // Friction with the ground: motors that hold the piece still in x, y and rotation, up to the force mu m
     // g. The solver treats x and y separately, so the limit is exact along the axes and up to 1.41 times
     // larger on the diagonal.
-    let limit = piece.friction_mass * GRAVITY;
+    let limit = friction_mass * GRAVITY;
     let arm = 2.0 / 3.0 * outline.shape.compute_local_bounding_sphere().radius;
     let mut joint = GenericJointBuilder::new(JointAxesMask::empty()).local_anchor1(outline.pose.translation);
     for (axis, limit) in [(JointAxis::LinX, limit), (JointAxis::LinY, limit), (JointAxis::AngX, limit * arm)]
@@ -314,14 +313,9 @@ mod tests {
             mass: 50.0,
             top_speed,
         };
-        let mass = movable.map(|[mass, _]| mass);
-        let friction_mass = movable.map_or(0.0, |[mass, friction]| mass * friction);
-        Physics::new(
-            DT,
-            [40.0, 10.0],
-            &[robot],
-            &[DebrisBody { outline, is_gate: false, mass, friction_mass }],
-        )
+        let masses = movable.map(|[mass, friction]| [mass, mass * friction]);
+        let piece = DebrisBody { outline: outline.clone(), is_gate: false, masses };
+        Physics::new(DT, Vector::new(40.0, 10.0), &[robot], &[piece])
     }
 
     #[test]

@@ -7,6 +7,7 @@ use crate::conflict::Delay;
 use crate::hash::HashChain;
 use crate::invariant::Overlaps;
 use crate::metrics::{Counts, CutOff, RoundRecord, TaskTotals};
+use crate::model::Model;
 use crate::robot::{Condition, Robot};
 use crate::tally::Tally;
 
@@ -71,11 +72,11 @@ pub struct RobotRecord {
 
 impl RobotRecord {
     /// The record of a robot with these totals.
-    pub(crate) fn of(robot: &Robot, tally: &Tally, dt_s: f64) -> Self {
-        let seconds = |steps: u64| steps as f64 * dt_s;
+    pub(crate) fn of(robot: &Robot, tally: &Tally, model: &Model) -> Self {
+        let seconds = |steps: u64| steps as f64 * model.dt_s();
         Self {
             robot: robot.id.0,
-            role: robot.spec.name.clone(),
+            role: model.roles[robot.role.index()].clone(),
             initial_energy: tally.initial[0],
             initial_hp: tally.initial[1],
             final_energy: robot.energy,

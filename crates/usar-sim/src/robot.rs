@@ -10,8 +10,8 @@ use serde::{Deserialize, Serialize};
 use smallvec::SmallVec;
 
 use crate::ids::RescueeId;
-use crate::model::{RobotModel, RobotStart};
-use crate::scenario::{Measure, NeedFile};
+use crate::model::{NeedModel, RobotModel};
+use crate::scenario::Measure;
 use crate::vitals::health_factor;
 
 /// A robot slower than this stands, in metres per second.
@@ -67,13 +67,14 @@ impl Deref for Robot {
 
 impl Robot {
     /// A robot at home, without motion, with its initial levels.
-    pub(crate) fn new(model: &Arc<RobotModel>, start: &RobotStart) -> Self {
+    pub(crate) fn new(model: &Arc<RobotModel>) -> Self {
+        let [energy, hp] = model.initial_levels;
         Self {
             model: Arc::clone(model),
-            position: start.home,
+            position: model.home,
             velocity: Vector::ZERO,
-            energy: start.energy,
-            hp: start.hp,
+            energy,
+            hp,
             resources: 0,
             load: SmallVec::new(),
             condition: Condition::Able,
@@ -145,14 +146,15 @@ impl Robot {
     ///
     /// # Errors
     /// None in a validated scenario: every value is finite and >= 0.
-    pub fn needs(&self, table: &[NeedFile]) -> Result<NeedVector, NeedsError> {
-        NeedVector::new(table.iter().map(|need| self.need(need)).collect())
+    pub fn needs(&self, table: &[NeedModel]) -> Result<NeedVector, NeedsError> {
+        let needs = table.iter().zip(&self.spec.constants);
+        NeedVector::new(needs.map(|(need, constant)| self.need(need.measures, *constant)).collect())
     }
 
     /// The robot as a member of a team that is to be grouped; none if its needs are no numbers, which is never
     /// so in a validated scenario.
     #[must_use]
-    pub fn member(&self, table: &[NeedFile]) -> Option<Member> {
+    pub fn member(&self, table: &[NeedModel]) -> Option<Member> {
         Some(Member {
             id: self.id.0,
             role: self.role,
@@ -163,8 +165,8 @@ impl Robot {
         })
     }
 
-    fn need(&self, need: &NeedFile) -> f64 {
-        match need.measures {
+    fn need(&self, measures: Measure, constant: f64) -> f64 {
+        match measures {
             Measure::Health => self.spec.hp * self.hp / 100.0,
             Measure::Speed => self.speed(),
             Measure::Sensing => self.sensing_range(),
@@ -172,7 +174,7 @@ impl Robot {
             Measure::Resources => f64::from(self.resources),
             Measure::Capacity => f64::from(self.free_capacity()),
             Measure::Observing => self.observing_range(),
-            Measure::Constant => self.spec.constants.get(&need.name).copied().unwrap_or(0.0),
+            Measure::Constant => constant,
         }
     }
 }

@@ -8,7 +8,6 @@
 use serde::{Deserialize, Serialize};
 use xxhash_rust::xxh3::xxh3_128;
 
-use crate::model::Model;
 use crate::scenario::Scenario;
 use crate::simulation::{Simulation, State};
 
@@ -16,7 +15,7 @@ use crate::simulation::{Simulation, State};
 const MAGIC: &[u8; 8] = b"USARSNAP";
 
 /// Version of the format. It increases whenever the layout of the state changes.
-pub const VERSION: u32 = 8;
+pub const VERSION: u32 = 9;
 
 const HEADER_BYTES: usize = 8 + 4 + 8 + 16;
 
@@ -145,7 +144,7 @@ impl Simulation {
     /// Never: the state is of types that postcard can write to memory.
     #[must_use]
     pub fn snapshot(&self, policy: &str) -> Vec<u8> {
-        let identity = Identity::new(self.model().given(), policy, self.seed());
+        let identity = Identity::new(self.given(), policy, self.seed());
         let payload =
             postcard::to_stdvec(&(identity, self.state())).expect("the state can be written to memory");
         let mut bytes = Vec::with_capacity(HEADER_BYTES + payload.len());
@@ -167,8 +166,7 @@ impl Simulation {
         found.check(&Identity::new(scenario, &found.policy, found.seed))?;
         let (identity, state): (Identity, State) =
             postcard::from_bytes(payload(bytes)?).map_err(|_| SnapshotError::Damaged)?;
-        let model = Model::compile(scenario, identity.seed).map_err(|_| SnapshotError::Damaged)?;
-        Ok(Self::from_state(model, state))
+        Self::resume(scenario, identity.seed, state).map_err(|_| SnapshotError::Damaged)
     }
 }
 

@@ -29,8 +29,8 @@ struct Stall {
 
 impl Tally {
     /// The tally of a robot with these initial levels, in percent.
-    pub(crate) fn new(energy: f64, hp: f64) -> Self {
-        Self { initial: [energy, hp], ..Self::default() }
+    pub(crate) fn new(initial: [f64; 2]) -> Self {
+        Self { initial, ..Self::default() }
     }
 
     /// Why the robot does not move on, as far as it does not.

@@ -5,11 +5,11 @@ use std::ops::Range;
 use rne_core::TaskId;
 use serde::{Deserialize, Serialize};
 
-use super::known::{Inflation, KnownDebris, KnownRescuee, KnownTask, KnownWreck, KnownZone};
+use super::known::{KnownDebris, KnownRescuee, KnownTask, KnownWreck, KnownZone};
 use super::news::{News, Opening, Seen};
 use super::table::Table;
 use crate::geometry::{Outline, RadiationZone};
-use crate::planning::{KnownObstacle, ObstacleKey, ObstacleMap};
+use crate::planning::{Inflation, KnownObstacle, ObstacleKey, ObstacleMap};
 use crate::report::{Report, Statement};
 
 /// A belief about the things of the world, by their numbers.
@@ -30,21 +30,24 @@ pub struct Belief {
     pool: u32,
     /// The news that concern routes, in the order in which they were heard.
     news: Vec<News>,
-    /// One map for each class of radii. Follows from `debris` and `wrecks`.
+    /// Follows from the other fields.
     #[serde(skip)]
+    maps: Maps,
+}
+
+/// What a belief holds true, as planning needs it.
+#[derive(Clone, Default)]
+struct Maps {
+    /// The known obstacles, for each class of radii.
     obstacles: Vec<ObstacleMap>,
-    /// Follows from `zones`.
-    #[serde(skip)]
+    /// The radiation zones that are held to be on.
     zones_on: Vec<(u32, RadiationZone)>,
-    /// How much obstacles are inflated.
-    #[serde(skip)]
-    inflation: Inflation,
 }
 
 impl Belief {
     /// A belief about nothing.
     #[must_use]
-    pub fn nothing(inflation: Inflation) -> Self {
+    pub fn nothing(inflation: &Inflation) -> Self {
         Self {
             debris: Table::default(),
             zones: Table::default(),
@@ -53,9 +56,7 @@ impl Belief {
             tasks: Table::default(),
             pool: 0,
             news: Vec::new(),
-            obstacles: vec![ObstacleMap::default(); inflation.radii.len()],
-            zones_on: Vec::new(),
-            inflation,
+            maps: Maps { obstacles: inflation.maps(), zones_on: Vec::new() },
         }
     }
 
@@ -63,14 +64,15 @@ impl Belief {
     /// radius is at least as large.
     #[must_use]
     pub fn obstacles(&self, radius: f32) -> &ObstacleMap {
-        let class = self.inflation.radii.partition_point(|other| *other < radius);
-        &self.obstacles[class.min(self.obstacles.len() - 1)]
+        let maps = &self.maps.obstacles;
+        let class = maps.partition_point(|map| map.radius < radius);
+        &maps[class.min(maps.len() - 1)]
     }
 
     /// The radiation zones that are held to be on, with their numbers.
     #[must_use]
     pub fn zones_on(&self) -> &[(u32, RadiationZone)] {
-        &self.zones_on
+        &self.maps.zones_on
     }
 
     /// Number of rescuees that are believed to wait in a task with these rescuees: as many as were said to,
@@ -122,7 +124,7 @@ impl Belief {
         let outline = heard.outline();
         self.debris.set(number as usize, heard);
         if is_moved {
-            self.insert(|inflation, radius| debris_obstacle(number, &outline, radius, inflation.clearance));
+            self.insert(|map| debris_obstacle(number, &outline, map));
         }
         true
     }
@@ -134,12 +136,12 @@ impl Belief {
         }
         let was_on = known.is_some_and(|known| known.on);
         self.zones.set(number as usize, heard);
-        let at = self.zones_on.partition_point(|(other, _)| *other < number);
+        let at = self.maps.zones_on.partition_point(|(other, _)| *other < number);
         if heard.on && !was_on {
-            self.zones_on.insert(at, (number, heard.disc));
+            self.maps.zones_on.insert(at, (number, heard.disc));
             self.news.push(News::Zone(number));
         } else if was_on && !heard.on {
-            self.zones_on.remove(at);
+            self.maps.zones_on.remove(at);
             self.news.push(News::Opening(Opening { center: heard.disc.center, reach: heard.disc.radius }));
         }
         true
@@ -169,7 +171,7 @@ impl Belief {
         }
         self.wrecks.set(number as usize, heard);
         if !heard.is_aerial {
-            self.insert(|inflation, radius| wreck_obstacle(number, &heard, radius, inflation.clearance));
+            self.insert(|map| wreck_obstacle(number, &heard, map));
         }
         true
     }
@@ -207,29 +209,26 @@ impl Belief {
         &self.news[from..]
     }
 
-    /// Makes again what follows from the other fields, after a snapshot was read.
-    pub(super) fn restore(&mut self, inflation: &Inflation) {
-        self.obstacles =
-            inflation.radii.iter().map(|radius| self.map(*radius, inflation.clearance)).collect();
-        self.inflation = inflation.clone();
+    /// Draws the maps again, after the other fields were read.
+    pub(super) fn draw_maps(&mut self, inflation: &Inflation) {
+        let mut obstacles = inflation.maps();
+        for map in &mut obstacles {
+            for (number, known) in self.debris.iter() {
+                map.insert(debris_obstacle(number, &known.outline(), map));
+            }
+            for (number, known) in self.wrecks.iter().filter(|(_, known)| !known.is_aerial) {
+                map.insert(wreck_obstacle(number, known, map));
+            }
+        }
         let on = self.zones.iter().filter(|(_, known)| known.on);
-        self.zones_on = on.map(|(number, known)| (number, known.disc)).collect();
-    }
-
-    /// The map of all known obstacles for robots of this radius.
-    fn map(&self, radius: f32, clearance: f32) -> ObstacleMap {
-        let debris = self.debris.iter();
-        let debris =
-            debris.map(|(number, known)| debris_obstacle(number, &known.outline(), radius, clearance));
-        let wrecks = self.wrecks.iter().filter(|(_, known)| !known.is_aerial);
-        debris.chain(wrecks.map(|(number, known)| wreck_obstacle(number, known, radius, clearance))).collect()
+        self.maps = Maps { obstacles, zones_on: on.map(|(number, known)| (number, known.disc)).collect() };
     }
 
     /// Adds an obstacle to the maps of all classes. The news use its outline for the largest robots.
-    fn insert(&mut self, obstacle: impl Fn(&Inflation, f32) -> KnownObstacle) {
+    fn insert(&mut self, obstacle: impl Fn(&ObstacleMap) -> KnownObstacle) {
         let mut news = None;
-        for (map, radius) in self.obstacles.iter_mut().zip(&self.inflation.radii) {
-            let obstacle = obstacle(&self.inflation, *radius);
+        for map in &mut self.maps.obstacles {
+            let obstacle = obstacle(map);
             let key = obstacle.key;
             let before = map.insert(obstacle);
             news = Some((key, before.map(|before| before.middle_and_reach())));
@@ -240,10 +239,10 @@ impl Belief {
     }
 }
 
-fn debris_obstacle(number: u32, outline: &Outline, radius: f32, clearance: f32) -> KnownObstacle {
-    KnownObstacle::new(ObstacleKey::Debris(number), outline, radius, clearance)
+fn debris_obstacle(number: u32, outline: &Outline, on: &ObstacleMap) -> KnownObstacle {
+    KnownObstacle::new(ObstacleKey::Debris(number), outline, on.radius, on.clearance)
 }
 
-fn wreck_obstacle(number: u32, wreck: &KnownWreck, radius: f32, clearance: f32) -> KnownObstacle {
-    KnownObstacle::wreck(number, wreck.at, wreck.radius, radius, clearance)
+fn wreck_obstacle(number: u32, wreck: &KnownWreck, on: &ObstacleMap) -> KnownObstacle {
+    KnownObstacle::wreck(number, wreck.at, wreck.radius, on.radius, on.clearance)
 }

@@ -5,7 +5,6 @@ use parry2d::shape::SharedShape;
 use serde::{Deserialize, Serialize};
 
 use crate::geometry::{Outline, RadiationZone};
-use crate::scenario::Scenario;
 
 /// A piece of debris, as reported.
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -74,24 +73,4 @@ pub struct KnownTask {
     pub waiting: u32,
     /// The step of the last report.
     pub at_step: u64,
-}
-
-/// How much obstacles are inflated: by the radius of each class of ground robots, and by their clearance.
-#[derive(Debug, Clone, Default)]
-pub struct Inflation {
-    /// Radii of the classes in ascending order, in metres.
-    pub radii: Vec<f32>,
-    /// Distance that robots keep from obstacles beyond their radius, in metres.
-    pub clearance: f32,
-}
-
-impl Inflation {
-    /// The inflation for the robots of a scenario.
-    #[must_use]
-    pub fn of(scenario: &Scenario) -> Self {
-        Self {
-            radii: scenario.ground_radii_m().iter().map(|radius| *radius as f32).collect(),
-            clearance: scenario.planning.clearance_m as f32,
-        }
-    }
 }

@@ -12,7 +12,7 @@ mod table;
 mod tests;
 
 pub use fold::Belief;
-pub use known::{Inflation, KnownDebris, KnownRescuee, KnownTask, KnownWreck, KnownZone};
+pub use known::{KnownDebris, KnownRescuee, KnownTask, KnownWreck, KnownZone};
 pub use ledger::Ledger;
 pub(crate) use news::{News, Seen};
 pub use shared::Beliefs;

@@ -2,16 +2,13 @@
 //! Robots without a group share the belief of the team at home. What a robot says of itself, the whole team
 //! knows.
 
-use std::sync::Arc;
-
 use rne_core::TaskId;
 use serde::{Deserialize, Serialize};
 
 use super::fold::Belief;
-use super::known::Inflation;
 use super::ledger::Ledger;
 use crate::ids::RobotId;
-use crate::model::RobotModel;
+use crate::planning::Inflation;
 use crate::report::{Report, Speaker};
 use crate::robot::Robot;
 
@@ -31,7 +28,7 @@ pub struct Beliefs {
 impl Beliefs {
     /// Beliefs about nothing but the team.
     #[must_use]
-    pub fn nothing(tasks: usize, inflation: Inflation, team: Vec<Robot>) -> Self {
+    pub fn nothing(tasks: usize, inflation: &Inflation, team: Vec<Robot>) -> Self {
         let home = Belief::nothing(inflation);
         let (said_at, ledger) = (vec![0; team.len()], Ledger::empty(team.len()));
         Self { groups: vec![home.clone(); tasks], home, team, said_at, ledger }
@@ -83,9 +80,8 @@ impl Beliefs {
         self.groups[task.index()] = self.home.clone();
     }
 
-    /// Makes again what a snapshot leaves out.
-    pub(crate) fn restore(&mut self, inflation: &Inflation, robots: &[Arc<RobotModel>]) {
-        self.groups.iter_mut().chain([&mut self.home]).for_each(|belief| belief.restore(inflation));
-        self.team.iter_mut().zip(robots).for_each(|(robot, model)| robot.model = Arc::clone(model));
+    /// Draws the maps of all beliefs again, after a snapshot was read.
+    pub(crate) fn draw_maps(&mut self, inflation: &Inflation) {
+        self.groups.iter_mut().chain([&mut self.home]).for_each(|belief| belief.draw_maps(inflation));
     }
 }

@@ -3,10 +3,11 @@ use parry2d::shape::SharedShape;
 
 use super::*;
 use crate::ids::{RescueeId, RobotId};
+use crate::planning::Inflation;
 use crate::report::{Report, Speaker, Statement};
 
 fn belief() -> Belief {
-    Belief::nothing(Inflation { radii: vec![0.4], clearance: 0.15 })
+    Belief::nothing(&Inflation { radii: vec![0.4], clearance: 0.15 })
 }
 
 fn says(says: Statement, at_step: u64) -> Report {
@@ -67,7 +68,8 @@ fn a_rescuee_waits_until_a_later_report_says_that_it_is_gone() {
 
 #[test]
 fn pooled_beliefs_hold_the_newest_of_each_and_survive_a_snapshot() {
-    let mut beliefs = Beliefs::nothing(2, Inflation { radii: vec![0.4, 0.8], clearance: 0.15 }, Vec::new());
+    let inflation = Inflation { radii: vec![0.4, 0.8], clearance: 0.15 };
+    let mut beliefs = Beliefs::nothing(2, &inflation, Vec::new());
     let group = |robot: RobotId| (robot.0 < 2).then_some(rne_core::TaskId(robot.0 as u16));
     let by = |robot: u32, report: Report| Report { from: Speaker::Robot(RobotId(robot)), ..report };
     beliefs.hear(&by(0, ball(0, 10.0, 1)), group);
@@ -77,7 +79,7 @@ fn pooled_beliefs_hold_the_newest_of_each_and_survive_a_snapshot() {
     beliefs.pool();
     let written = postcard::to_stdvec(&beliefs).unwrap();
     let mut again: Beliefs = postcard::from_bytes(&written).unwrap();
-    again.restore(&Inflation { radii: vec![0.4, 0.8], clearance: 0.15 }, &[]);
+    again.draw_maps(&inflation);
     for beliefs in [&beliefs, &again] {
         let home = beliefs.of(None);
         let places: Vec<f32> = home.debris.iter().map(|(_, known)| known.pose.translation.x).collect();

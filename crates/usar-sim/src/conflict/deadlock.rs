@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use std::cmp::Reverse;
 
 use super::PriorityKey;
-use crate::scenario::ResolverRule;
+use crate::model::{Patience, SetsModel};
 
 /// Slower than this is no motion, in metres per second.
 const STILL_MPS: f32 = 0.02;
@@ -22,17 +22,6 @@ pub(super) struct Observation {
     pub(super) fastest: f32,
     /// Distance that the head has left to go, in metres.
     pub(super) head_way_left: f32,
-}
-
-/// How long a set may make no progress, in steps.
-#[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Patience {
-    /// Without motion of any member.
-    pub(super) deadlock: u32,
-    /// Without the head coming nearer.
-    pub(super) livelock: u32,
-    /// How long a set backs off.
-    pub(super) back_off: u32,
 }
 
 /// A conflict set that persists from step to step.
@@ -135,19 +124,20 @@ impl ConflictSet {
     }
 
     /// Makes another member the head. Once every member has been the head, the set backs off.
-    pub(super) fn give_turn(&mut self, rule: ResolverRule, patience: Patience) -> NextTurn {
+    pub(super) fn give_turn(&mut self, rules: &SetsModel) -> NextTurn {
         self.turns += 1;
         let cycle_is_over = self.turns >= self.order.len();
-        match rule {
-            ResolverRule::Swap(_) if !cycle_is_over => self.order.swap(0, self.turns),
-            _ => self.order.rotate_left(1),
+        if rules.swaps && !cycle_is_over {
+            self.order.swap(0, self.turns);
+        } else {
+            self.order.rotate_left(1);
         }
         self.next_head();
         if !cycle_is_over {
             return NextTurn::OfNextHead;
         }
         self.turns = 0;
-        self.backing_off = patience.back_off;
+        self.backing_off = rules.patience.back_off;
         NextTurn::OfNobody
     }
 
@@ -167,12 +157,8 @@ impl ConflictSet {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::conflict::testing::rules_of_right_of_way;
     use crate::ids::RobotId;
-    use crate::scenario::RightOfWay;
-
-    const RULE: RightOfWay = RightOfWay { margin_m: 0.15, horizon_s: 0.8, deadlock_steps: 10 };
-    const ROTATION: ResolverRule = ResolverRule::Rotation(RULE);
-    const SWAP: ResolverRule = ResolverRule::Swap(RULE);
 
     const PATIENCE: Patience = Patience { deadlock: 4, livelock: 20, back_off: 2 };
 
@@ -185,9 +171,13 @@ mod tests {
         ConflictSet::new(&[0, 1, 2], priority)
     }
 
-    fn stand_still(set: &mut ConflictSet, rule: ResolverRule) -> Option<NextTurn> {
-        match set.observe(Observation { fastest: 0.0, head_way_left: 5.0 }, PATIENCE) {
-            Progress::Stuck => Some(set.give_turn(rule, PATIENCE)),
+    fn rules(swaps: bool) -> SetsModel {
+        SetsModel { patience: PATIENCE, swaps, ..rules_of_right_of_way().sets }
+    }
+
+    fn stand_still(set: &mut ConflictSet, rules: &SetsModel) -> Option<NextTurn> {
+        match set.observe(Observation { fastest: 0.0, head_way_left: 5.0 }, rules.patience) {
+            Progress::Stuck => Some(set.give_turn(rules)),
             _ => None,
         }
     }
@@ -202,9 +192,9 @@ mod tests {
 
     #[test]
     fn a_still_set_gives_everybody_a_turn_and_then_backs_off() {
-        for rule in [ROTATION, SWAP] {
+        for rules in [rules(false), rules(true)] {
             let mut set = set();
-            let turns: Vec<_> = (0..12).map(|_| (stand_still(&mut set, rule), set.order[0])).collect();
+            let turns: Vec<_> = (0..12).map(|_| (stand_still(&mut set, &rules), set.order[0])).collect();
             let solved: Vec<_> = turns.iter().enumerate().filter(|(_, (turn, _))| turn.is_some()).collect();
             let found: Vec<_> =
                 solved.iter().map(|(step, (turn, head))| (*step, turn.unwrap(), *head)).collect();
@@ -219,10 +209,10 @@ mod tests {
     #[test]
     fn rotation_sends_the_head_to_the_tail_and_the_swap_exchanges_it() {
         let (mut rotated, mut swapped) = (set(), set());
-        rotated.give_turn(ROTATION, PATIENCE);
-        swapped.give_turn(SWAP, PATIENCE);
+        rotated.give_turn(&rules(false));
+        swapped.give_turn(&rules(true));
         assert_eq!((rotated.order, swapped.order.clone()), (vec![0, 2, 1], vec![0, 1, 2]));
-        swapped.give_turn(SWAP, PATIENCE);
+        swapped.give_turn(&rules(true));
         assert_eq!(swapped.order, [2, 1, 0]);
     }
 

@@ -109,16 +109,21 @@ pub(super) fn passing_direction(me: &Mover, surroundings: &Surroundings) -> Opti
         .max_by(|a, b| surroundings.merit(*a, wish).total_cmp(&surroundings.merit(*b, wish)))
 }
 
-/// The number of the nearest disc in the way of a preferred velocity.
-pub(super) fn nearest_in_the_way(wish: Vector, surroundings: &Surroundings) -> Option<usize> {
+/// The number of the nearest disc (a centre relative to the robot, and the distance at which it touches) in
+/// the way of a preferred velocity.
+pub(super) fn nearest_in_the_way(
+    wish: Vector,
+    margin: f32,
+    discs: impl Iterator<Item = (Vector, f32)>,
+) -> Option<usize> {
     let wish = wish.normalize_or_zero();
-    let gap = |(center, touch): &(Vector, f32)| {
+    let gap = |(center, touch): (Vector, f32)| {
         let ahead = center.dot(wish);
-        let aside = (*center - wish * ahead).length();
+        let aside = (center - wish * ahead).length();
         let gap = center.length() - touch;
-        (ahead > 0.0 && aside < touch + surroundings.margin && gap < PASSING_RANGE_M).then_some(gap)
+        (ahead > 0.0 && aside < touch + margin && gap < PASSING_RANGE_M).then_some(gap)
     };
-    let gaps = surroundings.discs.iter().enumerate().filter_map(|(at, disc)| Some((at, gap(disc)?)));
+    let gaps = discs.enumerate().filter_map(|(at, disc)| Some((at, gap(disc)?)));
     gaps.min_by(|(_, a), (_, b)| a.total_cmp(b)).map(|(at, _)| at)
 }
 

@@ -4,7 +4,7 @@
 //! Défago & Tamura, 2022) and retreats to the nearest place that leaves room. A robot in the way of this
 //! retreat makes room in turn. The robots form a chain, and each knows its depth in the chain.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 use parry2d::math::Vector;
 use serde::{Deserialize, Serialize};
@@ -12,6 +12,8 @@ use serde::{Deserialize, Serialize};
 use super::Mover;
 use super::predict::Neighbours;
 use super::room::{Ask, distance_to_way, ways};
+use crate::event::{Event, EventLog};
+use crate::model::RetreatModel;
 use crate::robot::STANDING_MPS;
 
 /// Longest chain of robots that make room for one another.
@@ -35,29 +37,11 @@ const PLATOON_M: f32 = 5.0;
 /// Robots go in the same direction if the cosine between their preferred velocities is larger than this.
 const PLATOON_COS: f32 = 0.5;
 
-/// How robots retreat under a rule.
-#[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Manner {
-    /// How long a retreat may last.
-    pub(super) limits: Limits,
-    /// Distance that a retreating robot keeps from the other robot's route, in metres.
-    pub(super) margin: f32,
-    /// Share of its top speed at which a robot retreats.
-    pub(super) speed: f32,
-    /// A robot goes on as soon as its own route ahead is clear of the other robot's for this distance, in
-    /// metres; `None` if the other robot has to pass the whole line of the retreat.
-    pub(super) goes_on_within: Option<f32>,
-}
-
-/// How long a retreat may last without progress, in steps.
-#[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Limits {
-    /// On the way to the place, without the robot coming nearer to it.
-    pub(super) underway: u32,
-    /// At the place, while the other robot stands.
-    pub(super) at_place: u32,
-    /// After a retreat that failed, before the robot is asked again.
-    pub(super) respite: u32,
+/// The robots of a step, and the rules by which they make room.
+pub(super) struct Crowd<'c, 'm> {
+    pub(super) rules: &'c RetreatModel,
+    pub(super) movers: &'c [Mover<'m>],
+    pub(super) neighbours: &'c Neighbours,
 }
 
 /// One robot that makes room.
@@ -82,15 +66,8 @@ pub(super) struct Retreat {
 #[derive(Default, Serialize, Deserialize)]
 pub(super) struct Retreats {
     of: BTreeMap<usize, Retreat>,
-    /// Pairs of a head and a robot that makes room for it. Follows from `of`.
-    #[serde(skip)]
-    served: BTreeSet<(usize, usize)>,
     /// For each robot, steps during which it is not asked again.
     respite: Vec<u32>,
-    #[serde(skip)]
-    manner: Manner,
-    #[serde(skip)]
-    arena: Vector,
 }
 
 impl Retreats {
@@ -113,8 +90,8 @@ impl Retreats {
     /// count, so that the patience of a chain ends.
     pub(super) fn is_served(&self, i: usize) -> bool {
         let depth = self.depth(i);
-        let serves = |retreat: &Retreat| retreat.depth > depth && !retreat.path.is_empty();
-        self.served.range((i, 0)..=(i, usize::MAX)).any(|(_, maker)| serves(&self.of[maker]))
+        let serves = |other: &Retreat| other.head == i && other.depth > depth && !other.path.is_empty();
+        self.of.values().any(serves)
     }
 
     /// Whether a robot makes room for another one, or for a robot that makes room for that one, and so on.
@@ -127,46 +104,29 @@ impl Retreats {
         self.of.get(&i).is_some_and(|retreat| retreat.path.is_empty())
     }
 
-    /// Restores the fields that a snapshot leaves out: they are fixed or follow from the other fields.
-    pub(super) fn restore(&mut self, manner: Manner, arena: Vector) {
-        (self.manner, self.arena) = (manner, arena);
-        self.served = self.of.iter().map(|(i, retreat)| (retreat.head, *i)).collect();
-    }
-
-    fn begin(&mut self, i: usize, retreat: Retreat) {
-        self.end(i);
-        self.served.insert((retreat.head, i));
-        self.of.insert(i, retreat);
-    }
-
-    fn end(&mut self, i: usize) -> Option<Retreat> {
-        let retreat = self.of.remove(&i)?;
-        self.served.remove(&(retreat.head, i));
-        Some(retreat)
-    }
-
     /// Ends the retreats that are over. Sets the wishes of the other retreating robots to go to their places.
-    pub(super) fn follow(&mut self, movers: &mut [Mover], neighbours: &Neighbours) {
+    pub(super) fn follow(&mut self, rules: &RetreatModel, movers: &mut [Mover], neighbours: &Neighbours) {
         self.respite.resize(movers.len(), 0);
         self.respite.iter_mut().for_each(|steps| *steps = steps.saturating_sub(1));
+        let crowd = Crowd { rules, movers, neighbours };
         let makers: Vec<usize> = self.of.keys().copied().collect();
         for i in makers {
             let is_served = self.is_served(i);
-            let Some(mut retreat) = self.end(i) else { continue };
-            retreat.advance(&movers[i], &movers[retreat.head], is_served);
-            if !self.is_over(i, &retreat, movers) {
-                self.begin(i, retreat);
-            } else if let Some(retreat) = self.for_the_next(i, retreat, movers, neighbours) {
-                self.begin(i, retreat);
+            let Some(mut retreat) = self.of.remove(&i) else { continue };
+            retreat.advance(&crowd.movers[i], &crowd.movers[retreat.head], is_served);
+            if !self.is_over(i, &retreat, &crowd) {
+                self.of.insert(i, retreat);
+            } else if let Some(retreat) = self.for_the_next(i, retreat, &crowd) {
+                self.of.insert(i, retreat);
             }
         }
         for (i, retreat) in &self.of {
-            retreat.guide(&mut movers[*i], self.manner.speed);
+            retreat.guide(&mut movers[*i], rules.speed);
         }
     }
 
-    fn is_over(&self, i: usize, retreat: &Retreat, movers: &[Mover]) -> bool {
-        let (me, head) = (&movers[i], &movers[retreat.head]);
+    fn is_over(&self, i: usize, retreat: &Retreat, crowd: &Crowd) -> bool {
+        let (me, head, rules) = (&crowd.movers[i], &crowd.movers[retreat.head], crowd.rules);
         let head_way: Vec<Vector> = match self.of.get(&retreat.head) {
             Some(other) => other.way(head),
             None if head.wishes_to_move() => {
@@ -174,29 +134,18 @@ impl Retreats {
             }
             None => return true,
         };
-        let apart = me.radius + head.radius + self.manner.margin;
+        let apart = me.radius + head.radius + rules.margin;
         !me.can_make_room
-            || self.is_out_of_patience(retreat)
+            || retreat.is_out_of_patience(rules)
             || retreat.is_passed(&head_way, apart)
-            || self.manner.goes_on_within.is_some_and(|within| is_clear_ahead(me, within, &head_way, apart))
-    }
-
-    fn is_out_of_patience(&self, retreat: &Retreat) -> bool {
-        let limit =
-            if retreat.path.is_empty() { self.manner.limits.at_place } else { self.manner.limits.underway };
-        retreat.idle_steps > limit
+            || rules.goes_on_within.is_some_and(|within| is_clear_ahead(me, within, &head_way, apart))
     }
 
     /// Passes a retreat on to the nearest robot that follows the robot that passed. So robots go through a
     /// narrow passage in platoons, not one at a time from either side. `None` if no robot follows, or if the
     /// retreat has lasted too long.
-    fn for_the_next(
-        &self,
-        i: usize,
-        mut retreat: Retreat,
-        movers: &[Mover],
-        neighbours: &Neighbours,
-    ) -> Option<Retreat> {
+    fn for_the_next(&self, i: usize, mut retreat: Retreat, crowd: &Crowd) -> Option<Retreat> {
+        let Crowd { rules, movers, neighbours } = crowd;
         let (me, passed) = (&movers[i], &movers[retreat.head]);
         let direction = passed.wish.normalize_or_zero();
         let follows = |k: &usize| {
@@ -206,12 +155,9 @@ impl Retreats {
                 && other.aerial == me.aerial
                 && self.depth(*k) == 0
                 && other.wish.normalize_or_zero().dot(direction) > PLATOON_COS
-                && !retreat.is_passed(&ways(other)[0], me.radius + other.radius + self.manner.margin)
+                && !retreat.is_passed(&ways(other)[0], me.radius + other.radius + rules.margin)
         };
-        if !me.can_make_room
-            || self.is_out_of_patience(&retreat)
-            || retreat.held_steps > self.manner.limits.at_place
-        {
+        if !me.can_make_room || retreat.is_out_of_patience(rules) || retreat.held_steps > rules.at_place {
             return None;
         }
         let near = |k: &usize| (movers[*k].position - me.position).length();
@@ -225,56 +171,50 @@ impl Retreats {
         Some(retreat)
     }
 
-    /// Ends the retreat of a robot as failed, if it retreats.
-    pub(super) fn give_up(&mut self, i: usize) {
-        if self.end(i).is_some() {
-            self.respite[i] = self.manner.limits.respite;
+    /// Ends the retreat of a robot as failed, if it retreats. It is not asked again for `respite` steps.
+    pub(super) fn give_up(&mut self, i: usize, respite: u32) {
+        if self.of.remove(&i).is_some() {
+            self.respite[i] = respite;
         }
+    }
+
+    /// Has `blocker` make room for `i`. Returns whether it does: it must be in the way, and there must be a
+    /// place to go.
+    pub(super) fn make_room(&mut self, i: usize, blocker: usize, crowd: &Crowd, log: &mut EventLog) -> bool {
+        if !self.may_ask(i, blocker, crowd.movers) {
+            return false;
+        }
+        let Some(path) = self.find_room(i, blocker, crowd) else { return false };
+        let retreat = Retreat {
+            head: i,
+            depth: self.depth(i) + 1,
+            line: sampled(crowd.movers[blocker].position, &path),
+            path: path.into_iter().rev().collect(),
+            least_left: f32::INFINITY,
+            idle_steps: 0,
+            held_steps: 0,
+        };
+        let is_in_the_way = !self.is_over(blocker, &retreat, crowd);
+        if is_in_the_way {
+            self.of.insert(blocker, retreat);
+            let [robot, room_for] = [blocker, i].map(|i| crowd.movers[i].robot);
+            log.push(Event::MadeRoom { robot, room_for });
+        }
+        is_in_the_way
     }
 
     /// Whether `i` may ask `blocker` to make room. The blocker must be able to make room and not be in its
     /// respite. The chain must not be too long. A blocker that is deeper in a chain than `i` is asked only
     /// once it is at its place.
-    pub(super) fn may_ask(&self, i: usize, blocker: usize, movers: &[Mover]) -> bool {
+    fn may_ask(&self, i: usize, blocker: usize, movers: &[Mover]) -> bool {
         movers[blocker].can_make_room
             && self.respite[blocker] == 0
             && self.depth(i) < MAX_DEPTH
             && (self.depth(blocker) <= self.depth(i) || self.is_at_place(blocker))
     }
 
-    /// Has `blocker` make room for `i`. Returns whether it does: it must be in the way, and there must be a
-    /// place to go.
-    pub(super) fn ask(
-        &mut self,
-        i: usize,
-        blocker: usize,
-        movers: &[Mover],
-        neighbours: &Neighbours,
-    ) -> bool {
-        let Some(path) = self.find_room(i, blocker, movers, neighbours) else { return false };
-        let retreat = Retreat {
-            head: i,
-            depth: self.depth(i) + 1,
-            line: sampled(movers[blocker].position, &path),
-            path: path.into_iter().rev().collect(),
-            least_left: f32::INFINITY,
-            idle_steps: 0,
-            held_steps: 0,
-        };
-        let is_in_the_way = !self.is_over(blocker, &retreat, movers);
-        if is_in_the_way {
-            self.begin(blocker, retreat);
-        }
-        is_in_the_way
-    }
-
-    fn find_room(
-        &self,
-        i: usize,
-        blocker: usize,
-        movers: &[Mover],
-        neighbours: &Neighbours,
-    ) -> Option<Vec<Vector>> {
+    fn find_room(&self, i: usize, blocker: usize, crowd: &Crowd) -> Option<Vec<Vector>> {
+        let Crowd { rules, movers, neighbours } = crowd;
         let (me, head) = (&movers[blocker], &movers[i]);
         let others = || {
             let near = neighbours.within(movers, me.position, CROWD_RANGE_M).map(|k| (k, &movers[k]));
@@ -293,8 +233,8 @@ impl Retreats {
             through_head: false,
             crowd: others().map(|(_, other)| disc(other.position, other)).collect(),
             reserved: reserved.collect(),
-            margin: self.manner.margin,
-            arena: self.arena,
+            margin: rules.margin,
+            arena: rules.arena,
         };
         ask.find().or_else(|| {
             ask.way.extend(behind); // both would have to get out of here: off the whole way of `head`
@@ -330,6 +270,10 @@ fn sampled(from: Vector, path: &[Vector]) -> Vec<Vector> {
 }
 
 impl Retreat {
+    fn is_out_of_patience(&self, rules: &RetreatModel) -> bool {
+        self.idle_steps > if self.path.is_empty() { rules.at_place } else { rules.underway }
+    }
+
     /// Whether the robot is underway and has come no nearer to its place for more than so many steps.
     pub(super) fn is_held_up(&self, steps: u32) -> bool {
         !self.path.is_empty() && self.idle_steps > steps
@@ -382,7 +326,7 @@ impl Retreats {
         let (path, line) = (vec![to], vec![to]);
         let retreat =
             Retreat { head, depth: 1, path, line, least_left: 0.0, idle_steps: steps, held_steps: steps };
-        self.begin(i, retreat);
+        self.of.insert(i, retreat);
     }
 }
 
@@ -417,8 +361,8 @@ mod tests {
             held_steps: 0,
         };
         let mut retreats = Retreats::default();
-        retreats.begin(2, retreat(1));
-        retreats.begin(1, retreat(0));
+        retreats.of.insert(2, retreat(1));
+        retreats.of.insert(1, retreat(0));
         let serves = |i: usize| (0..3).filter(|other| retreats.serves(i, *other)).collect::<Vec<_>>();
         assert_eq!([serves(0), serves(1), serves(2)], [vec![], vec![0], vec![0, 1]]);
     }

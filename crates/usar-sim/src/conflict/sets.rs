@@ -11,12 +11,15 @@
 use std::collections::BTreeMap;
 
 use parry2d::math::Vector;
+use serde::{Deserialize, Serialize};
 
 use super::deadlock::{ConflictSet, NextTurn, Observation, Progress};
-use super::passing::{nearest_in_the_way, passing_direction};
-use super::{Directive, Mover, Resolver, wait_cycles};
-use crate::event::{Event, EventLog};
+use super::passing::{Surroundings, nearest_in_the_way, passing_direction};
+use super::retreat::{Crowd, Retreats};
+use super::{Directive, Mover, Scratch, Step, wait_cycles};
+use crate::event::Event;
 use crate::ids::RobotId;
+use crate::model::SetsModel;
 
 /// Margin at which robots squeeze past if nothing is free at the full margin, in metres.
 const SQUEEZE_MARGIN_M: f32 = 0.03;
@@ -24,81 +27,110 @@ const SQUEEZE_MARGIN_M: f32 = 0.03;
 /// Share of the wished speed at which robots squeeze past.
 const SQUEEZE_SPEED: f32 = 0.4;
 
-impl Resolver {
-    /// One directive for each mover, by the paper's rule.
-    pub(super) fn settle_by_sets(&mut self, movers: &[Mover], log: &mut EventLog) {
-        let (margin, horizon) = (self.right_of_way.margin_m as f32, self.right_of_way.horizon_s as f32);
-        self.neighbours.pair(movers, margin, horizon);
-        self.conflicts.find(movers, &self.neighbours, margin, horizon);
-        self.carry_over(movers, log);
-        let progress: Vec<Progress> = (0..self.sets.len()).map(|set| self.judge(set, movers, log)).collect();
-        self.direct(movers, &progress);
-        for (heading, directive) in self.headings.iter_mut().zip(&self.directives) {
+/// The state of the paper's rule from step to step.
+#[derive(Default, Serialize, Deserialize)]
+pub(super) struct Sets {
+    sets: Vec<ConflictSet>,
+    retreats: Retreats,
+    /// For each robot, the direction of its last directive; zero if it stood.
+    headings: Vec<Vector>,
+    /// For each robot, the number of successive steps in which it was blocked.
+    blocked_steps: Vec<u32>,
+}
+
+impl Sets {
+    /// The sets of the last step.
+    pub(super) fn sets(&self) -> &[ConflictSet] {
+        &self.sets
+    }
+}
+
+impl Step<'_, '_, SetsModel, Sets> {
+    /// One directive for each mover.
+    pub(super) fn resolve(&mut self) {
+        let Self { rules, state, scratch, movers, .. } = self;
+        let (margin, horizon) = (rules.retreats.margin, rules.horizon);
+        state.blocked_steps.resize(movers.len(), 0);
+        state.headings.resize(movers.len(), Vector::ZERO);
+        scratch.neighbours.sort(movers);
+        state.retreats.follow(&rules.retreats, movers, &scratch.neighbours);
+        scratch.neighbours.pair(movers, margin, horizon);
+        scratch.conflicts.find(movers, &scratch.neighbours, margin, horizon);
+        self.carry_over();
+        let progress: Vec<Progress> = (0..self.state.sets.len()).map(|set| self.judge(set)).collect();
+        self.direct(&progress);
+        for (heading, directive) in self.state.headings.iter_mut().zip(self.directives.iter()) {
             *heading = directive.velocity().normalize_or_zero();
         }
-        self.ask_for_room(movers, log);
+        self.ask_for_room();
+    }
+
+    fn make_room(&mut self, i: usize, blocker: usize) -> bool {
+        let (rules, neighbours) = (&self.rules.retreats, &self.scratch.neighbours);
+        self.state.retreats.make_room(i, blocker, &Crowd { rules, movers: self.movers, neighbours }, self.log)
     }
 
     /// Carries the sets of the last step over to this step. A set continues the earlier set with which it
     /// shares the most members and keeps its order: the head stays the head until it leaves the set or a
     /// member makes room. A set that shares no member with an earlier one is new.
-    fn carry_over(&mut self, movers: &[Mover], log: &mut EventLog) {
-        let mut before: Vec<Option<ConflictSet>> =
-            std::mem::take(&mut self.sets).into_iter().map(Some).collect();
-        note_sets(&mut self.set_of, movers.len(), before.iter().flatten());
+    fn carry_over(&mut self) {
+        let Self { state: Sets { sets, retreats, .. }, scratch, movers, log, .. } = self;
+        let mut before: Vec<Option<ConflictSet>> = std::mem::take(sets).into_iter().map(Some).collect();
+        note_sets(&mut scratch.set_of, movers.len(), before.iter().flatten());
         let priority = |i: usize| movers[i].priority;
-        for members in self.conflicts.components() {
-            let mut set = if let Some(at) = most_shared(&members, &self.set_of, &before)
+        for members in scratch.conflicts.components() {
+            let mut set = if let Some(at) = most_shared(&members, &scratch.set_of, &before)
                 && let Some(mut set) = before[at].take()
             {
-                set.regroup(&members, |i| self.set_of[i] == Some(at), priority);
+                set.regroup(&members, |i| scratch.set_of[i] == Some(at), priority);
                 set
             } else {
                 log.push(Event::ConflictStarted { robots: robots(&members, movers) });
                 ConflictSet::new(&members, priority)
             };
-            set.promote(|i| self.retreats.depth(i));
-            self.sets.push(set);
+            set.promote(|i| retreats.depth(i));
+            sets.push(set);
         }
-        note_sets(&mut self.set_of, movers.len(), self.sets.iter());
+        note_sets(&mut scratch.set_of, movers.len(), sets.iter());
     }
 
     /// Judges the progress of a set. A stuck set gets room, another head or a pause: first the robot in the
     /// way of the head is asked to make room. If it makes none, the turn passes to another head, or the whole
     /// set backs off.
-    fn judge(&mut self, at: usize, movers: &[Mover], log: &mut EventLog) -> Progress {
-        let set = &mut self.sets[at];
+    fn judge(&mut self, at: usize) -> Progress {
+        let Self { rules, state: Sets { sets, retreats, .. }, movers, log, .. } = self;
+        let set = &mut sets[at];
         let speeds = set.order.iter().map(|i| movers[*i].velocity.length());
         let seen = Observation {
             fastest: speeds.fold(0.0, f32::max),
             head_way_left: movers[set.order[0]].way_left(),
         };
-        if self.retreats.is_served(set.order[0]) {
+        if retreats.is_served(set.order[0]) {
             set.wait_for_room();
         }
-        let progress = set.observe(seen, self.patience);
+        let progress = set.observe(seen, rules.patience);
         if progress != Progress::Stuck {
             return progress;
         }
         let (head, order) = (set.order[0], robots(&set.order, movers));
         log.push(Event::Deadlocked { robots: order });
-        if let Some(blocker) = self.who_stops(head, movers)
-            && self.make_room(head, blocker, movers, log)
+        if let Some(blocker) = self.who_stops(head)
+            && self.make_room(head, blocker)
         {
-            self.sets[at].wait_for_room();
+            self.state.sets[at].wait_for_room();
             return Progress::Flowing;
         }
-        self.retreats.give_up(head);
-        let set = &mut self.sets[at];
-        let turn = set.give_turn(self.rules.resolver, self.patience);
-        let robots = robots(&set.order, movers);
+        self.state.retreats.give_up(head, self.rules.retreats.respite);
+        let set = &mut self.state.sets[at];
+        let turn = set.give_turn(self.rules);
+        let robots = robots(&set.order, self.movers);
         match turn {
             NextTurn::OfNextHead => {
-                log.push(Event::TurnPassed { robots });
+                self.log.push(Event::TurnPassed { robots });
                 Progress::Flowing
             }
             NextTurn::OfNobody => {
-                log.push(Event::BackedOff { robots });
+                self.log.push(Event::BackedOff { robots });
                 Progress::BackingOff
             }
         }
@@ -106,53 +138,54 @@ impl Resolver {
 
     /// Notes which robots stop. A robot stops if it has nowhere to go, or if it is in conflict with a robot
     /// ahead of it in the set's order that is moving.
-    fn note_who_stands(&mut self, movers: &[Mover]) {
-        self.stands.clear();
-        let is_alone = |i: usize| self.set_of[i].is_none();
-        self.stands.extend((0..movers.len()).map(|i| !is_alone(i) || !movers[i].wishes_to_move()));
-        for i in self.sets.iter().flat_map(|set| &set.order) {
-            let set = self.set_of[*i];
-            let goes_before = |j: &usize| self.set_of[*j] == set && !self.stands[*j];
-            self.stands[*i] = self.conflicts.of(*i).iter().any(goes_before);
+    fn note_who_stands(&mut self) {
+        let (Scratch { conflicts, set_of, stands, .. }, movers) = (&mut *self.scratch, &*self.movers);
+        stands.clear();
+        let is_alone = |i: usize| set_of[i].is_none();
+        stands.extend((0..movers.len()).map(|i| !is_alone(i) || !movers[i].wishes_to_move()));
+        for i in self.state.sets.iter().flat_map(|set| &set.order) {
+            let goes_before = |j: &usize| set_of[*j] == set_of[*i] && !stands[*j];
+            stands[*i] = conflicts.of(*i).iter().any(goes_before);
         }
     }
 
     /// The robot in the way of a robot that makes no progress: the robot that blocked it in the last step, or
     /// else the nearest slow robot in its way.
-    fn who_stops(&self, i: usize, movers: &[Mover]) -> Option<usize> {
+    fn who_stops(&self, i: usize) -> Option<usize> {
+        let movers = &*self.movers;
         if let Directive::Blocked { by } = self.directives[i] {
             return by.map(RobotId::index);
         }
         let me = &movers[i];
         let slow = |j: &&usize| movers[**j].velocity.length() < 0.5 * me.wish.length();
-        let near: Vec<usize> = self.neighbours.of(i).iter().filter(slow).copied().collect();
+        let near: Vec<usize> = self.scratch.neighbours.of(i).iter().filter(slow).copied().collect();
         let discs = near.iter().map(|j| (movers[*j].position - me.position, me.radius + movers[*j].radius));
-        let surroundings = self.surroundings(i, me, discs);
-        nearest_in_the_way(me.wish, &surroundings).map(|at| near[at])
+        nearest_in_the_way(me.wish, self.rules.retreats.margin, discs).map(|at| near[at])
     }
 
     /// Directs all robots. Heads, robots without conflicts and members that need not stop pass the robots
     /// that stand. The others yield, or back off.
-    fn direct(&mut self, movers: &[Mover], progress: &[Progress]) {
-        self.note_who_stands(movers);
-        for i in 0..movers.len() {
-            let goes = movers[i].wishes_to_move() && !self.stands[i];
-            self.directives[i] = if goes { self.pass(i, movers, movers[i].wish) } else { Directive::Stand };
+    fn direct(&mut self, progress: &[Progress]) {
+        self.note_who_stands();
+        for i in 0..self.movers.len() {
+            let goes = self.movers[i].wishes_to_move() && !self.scratch.stands[i];
+            self.directives[i] = if goes { self.pass(i, self.movers[i].wish) } else { Directive::Stand };
         }
-        for (set, progress) in self.sets.iter().zip(progress) {
+        let movers = &*self.movers;
+        for (set, progress) in self.state.sets.iter().zip(progress) {
             let backs_off = *progress == Progress::BackingOff;
             let middle =
                 set.order.iter().map(|i| movers[*i].position).sum::<Vector>() / set.order.len() as f32;
-            for i in set.order.iter().filter(|i| backs_off || self.stands[**i]) {
+            for i in set.order.iter().filter(|i| backs_off || self.scratch.stands[**i]) {
                 self.directives[*i] = if backs_off {
                     let wish = back_off_wish(&movers[*i], middle);
-                    Directive::BackOff(self.pass(*i, movers, wish).velocity())
+                    Directive::BackOff(self.pass(*i, wish).velocity())
                 } else {
                     Directive::Yield { to: movers[set.order[0]].robot }
                 };
             }
         }
-        for (i, retreat) in self.retreats.iter() {
+        for (i, retreat) in self.state.retreats.iter() {
             let room_for = movers[retreat.head].robot;
             let velocity = match self.directives[i] {
                 Directive::Proceed(velocity) => velocity,
@@ -167,24 +200,25 @@ impl Resolver {
     /// it moves outside any set and has come no nearer to its goal for a while. A blocker that has nowhere to
     /// go is always asked. A blocker with a goal of its own is asked only by the head of its set, by a robot
     /// that makes room itself, or by the robot with the best claim on a cycle of waiting.
-    fn ask_for_room(&mut self, movers: &[Mover], log: &mut EventLog) {
+    fn ask_for_room(&mut self) {
+        let (rules, set_of) = (self.rules, &self.scratch.set_of);
         let mut due = Vec::new();
         for (i, directive) in self.directives.iter().enumerate() {
             match directive {
                 Directive::Blocked { by } => {
-                    self.blocked_steps[i] += 1;
-                    let steps = self.blocked_steps[i];
-                    let asks = steps == self.patience.deadlock || steps.is_multiple_of(self.ask_again);
+                    self.state.blocked_steps[i] += 1;
+                    let steps = self.state.blocked_steps[i];
+                    let asks = steps == rules.patience.deadlock || steps.is_multiple_of(rules.ask_again);
                     due.extend(by.filter(|_| asks).map(|by| (i, by.index())));
                 }
-                Directive::Proceed(_) if self.set_of[i].is_none() => {
-                    self.blocked_steps[i] = 0;
-                    let steps = movers[i].stalled_steps;
-                    if steps >= self.patience.livelock && steps.is_multiple_of(self.ask_again) {
-                        due.extend(self.who_stops(i, movers).map(|by| (i, by)));
+                Directive::Proceed(_) if set_of[i].is_none() => {
+                    self.state.blocked_steps[i] = 0;
+                    let steps = self.movers[i].stalled_steps;
+                    if steps >= rules.patience.livelock && steps.is_multiple_of(rules.ask_again) {
+                        due.extend(self.who_stops(i).map(|by| (i, by)));
                     }
                 }
-                _ => self.blocked_steps[i] = 0,
+                _ => self.state.blocked_steps[i] = 0,
             }
         }
         if due.is_empty() {
@@ -194,21 +228,23 @@ impl Resolver {
             self.directives.iter().map(|directive| directive.waits_for().map(RobotId::index)).collect();
         let cycles = wait_cycles(&waits_for);
         for (i, blocker) in due {
-            let is_parked = !movers[blocker].wishes_to_move();
-            let set = self.set_of[i].filter(|set| self.set_of[blocker] == Some(*set));
-            let is_head = set.is_some_and(|set| self.sets[set].order[0] == i);
-            if is_parked || is_head || self.retreats.depth(i) > 0 || self.leads_cycle(i, &cycles, movers) {
-                self.make_room(i, blocker, movers, log);
+            let is_parked = !self.movers[blocker].wishes_to_move();
+            let set_of = &self.scratch.set_of;
+            let set = set_of[i].filter(|set| set_of[blocker] == Some(*set));
+            let is_head = set.is_some_and(|set| self.state.sets[set].order[0] == i);
+            if is_parked || is_head || self.state.retreats.depth(i) > 0 || self.leads_cycle(i, &cycles) {
+                self.make_room(i, blocker);
             }
         }
     }
 
     /// Whether a robot has the best claim among the blocked robots of a wait cycle.
-    fn leads_cycle(&self, i: usize, cycles: &[Vec<usize>], movers: &[Mover]) -> bool {
+    fn leads_cycle(&self, i: usize, cycles: &[Vec<usize>]) -> bool {
+        let movers = &*self.movers;
         let blocked = |k: &&usize| matches!(self.directives[**k], Directive::Blocked { .. });
         cycles.iter().filter(|cycle| cycle.contains(&i)).any(|cycle| {
             let best = cycle.iter().filter(blocked).min_by(|a, b| {
-                let depth = |k: usize| std::cmp::Reverse(self.retreats.depth(k));
+                let depth = |k: usize| std::cmp::Reverse(self.state.retreats.depth(k));
                 depth(**a).cmp(&depth(**b)).then(movers[**a].priority.precedence(&movers[**b].priority))
             });
             best == Some(&i)
@@ -217,12 +253,17 @@ impl Resolver {
 
     /// The directive of a robot that has the right of way: to pass the robots that stand, at the full margin
     /// or squeezing through, or `Blocked`.
-    fn pass(&self, i: usize, movers: &[Mover], wish: Vector) -> Directive {
-        let me = Mover { wish, ..movers[i] };
-        let near = self.neighbours.of(i);
-        let blockers = || near.iter().filter(|j| self.stands[**j]).map(|j| &movers[*j]);
+    fn pass(&self, i: usize, wish: Vector) -> Directive {
+        let me = Mover { wish, ..self.movers[i] };
+        let (near, stands) = (self.scratch.neighbours.of(i), &self.scratch.stands);
+        let blockers = || near.iter().filter(|j| stands[**j]).map(|j| &self.movers[*j]);
         let discs = blockers().map(|other| (other.position - me.position, me.radius + other.radius));
-        let mut surroundings = self.surroundings(i, &me, discs);
+        let mut surroundings = Surroundings {
+            discs: discs.collect(),
+            margin: self.rules.retreats.margin,
+            known: me.known,
+            heading: self.state.headings[i],
+        };
         if let Some(direction) = passing_direction(&me, &surroundings) {
             return Directive::Proceed(direction * wish.length());
         }
@@ -230,7 +271,8 @@ impl Resolver {
         if let Some(direction) = passing_direction(&me, &surroundings) {
             return Directive::Proceed(direction * wish.length() * SQUEEZE_SPEED);
         }
-        let blocker = nearest_in_the_way(wish, &surroundings).and_then(|at| blockers().nth(at));
+        let Surroundings { margin, discs, .. } = surroundings;
+        let blocker = nearest_in_the_way(wish, margin, discs.into_iter()).and_then(|at| blockers().nth(at));
         Directive::Blocked { by: blocker.map(|other| other.robot) }
     }
 }

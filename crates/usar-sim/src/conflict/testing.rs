@@ -2,8 +2,11 @@
 
 use parry2d::math::Vector;
 
-use super::{Mover, PriorityKey, Resolver};
+use super::reciprocal::Reciprocal;
+use super::{Directive, Mover, PriorityKey, Scratch, Step};
+use crate::event::EventLog;
 use crate::ids::RobotId;
+use crate::model::{ReciprocalModel, RightOfWayModel};
 use crate::scenario::Scenario;
 
 /// A ground robot of 0.4 m radius with this preferred velocity, whose route leads 10 m in that direction.
@@ -34,10 +37,48 @@ pub(super) fn mover(id: u32, at: [f32; 2], wish: [f32; 2]) -> Mover<'static> {
     }
 }
 
-/// A resolver with the default rule, for steps of 0.02 s in an arena of 20 m.
-pub(super) fn resolver() -> Resolver {
+/// The rules for steps of 0.02 s in an arena of 20 m.
+pub(super) fn rules_of_right_of_way() -> RightOfWayModel {
     let text = "(name: \"t\", duration_s: 10, dt_s: 0.02, arena_m: (20, 20), team: [(role: \"robot\", \
                 count: 1, center: (5, 5), width_m: 0)], roles: [(name: \"robot\")], errands: [(robot: 0, \
                 to: [(9, 9)])])";
-    Resolver::new(&Scenario::parse(text, "t.ron".as_ref()).unwrap())
+    RightOfWayModel::compile(&Scenario::parse(text, "t.ron".as_ref()).unwrap())
+}
+
+/// The default rule, with all that its steps need.
+pub(super) struct Bench {
+    pub(super) rules: ReciprocalModel,
+    pub(super) state: Reciprocal,
+    scratch: Scratch,
+    directives: Vec<Directive>,
+    log: EventLog,
+}
+
+impl Bench {
+    pub(super) fn new() -> Self {
+        Self {
+            rules: rules_of_right_of_way().reciprocal,
+            state: Reciprocal::default(),
+            scratch: Scratch::default(),
+            directives: Vec::new(),
+            log: EventLog::default(),
+        }
+    }
+
+    /// One step of these robots.
+    pub(super) fn step<'s, 'm>(
+        &'s mut self,
+        movers: &'s mut [Mover<'m>],
+    ) -> Step<'s, 'm, ReciprocalModel, Reciprocal> {
+        let Self { rules, state, scratch, directives, log } = self;
+        directives.resize(movers.len(), Directive::Stand);
+        scratch.neighbours.sort(movers);
+        Step { rules, state, scratch, movers, directives, log }
+    }
+
+    /// The directives of these robots.
+    pub(super) fn resolve(&mut self, movers: &mut [Mover]) -> Vec<Directive> {
+        self.step(movers).resolve();
+        self.directives.clone()
+    }
 }

@@ -3,21 +3,14 @@
 use parry2d::math::{Pose, Vector};
 use parry2d::shape::SharedShape;
 use parry2d::transformation::convex_hull;
-use serde::{Deserialize, Serialize};
 
 /// A convex shape in its place.
-#[derive(Clone, Serialize, Deserialize)]
+#[derive(Clone)]
 pub struct Outline {
-    /// The shape. It never changes, so no snapshot holds it.
-    #[serde(skip, default = "no_shape")]
+    /// The shape.
     pub shape: SharedShape,
     /// Its place.
     pub pose: Pose,
-}
-
-/// The placeholder shape of an outline that was read from a snapshot, until the world restores its own shape.
-fn no_shape() -> SharedShape {
-    SharedShape::ball(0.0)
 }
 
 impl Outline {

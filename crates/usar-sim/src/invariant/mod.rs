@@ -13,8 +13,8 @@ use parry2d::math::Vector;
 
 use crate::event::Event;
 use crate::ids::RobotId;
+use crate::model::Model;
 use crate::robot::Robot;
-use crate::scenario::Scenario;
 use crate::world::{RescueeState, World};
 use overlaps::Gauge;
 pub use overlaps::{Overlaps, RARE_OVERLAP_M};
@@ -108,17 +108,17 @@ pub struct Invariants {
 impl Invariants {
     /// The account before the next step, from the world as it is now.
     #[must_use]
-    pub fn new(scenario: &Scenario, world: &World) -> Self {
+    pub fn new(model: &Model, world: &World) -> Self {
         let fastest = |aerial: bool| {
             let layer = world.robots.iter().filter(|robot| robot.is_aerial() == aerial);
             layer.map(|robot| robot.spec.speed_mps as f32).fold(0.0, f32::max)
         };
-        let mut overlaps = Gauge::new(scenario, world);
+        let mut overlaps = Gauge::new(model, world);
         overlaps.measure(world);
         overlaps.forget();
         let before = |robot: &Robot| Before::new(robot, &overlaps);
         Self {
-            dt: scenario.dt_s as f32,
+            dt: model.dt,
             fastest: [fastest(false), fastest(true)],
             time_s: 0.0,
             before: world.robots.iter().map(before).collect(),
@@ -309,7 +309,7 @@ impl Invariants {
             return Err(format!("speed {speed:.4} m/s, more than {fastest:.4} m/s"));
         }
         let change = (robot.velocity - before.velocity) / self.dt;
-        let greatest = robot.spec.acceleration_mps2 as f32;
+        let greatest = robot.spec.acceleration;
         let limit = greatest * 1.01 + 1e-3;
         if change.length_squared() > limit * limit && !touches {
             let change = change.length();

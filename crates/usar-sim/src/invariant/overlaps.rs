@@ -6,8 +6,8 @@ use parry2d::math::{Pose, Vector};
 use serde::{Deserialize, Serialize};
 
 use crate::ids::RobotId;
+use crate::model::Model;
 use crate::robot::Robot;
-use crate::scenario::Scenario;
 use crate::world::{Debris, World};
 
 /// Overlap that one contact in a thousand may exceed, in metres.
@@ -94,25 +94,25 @@ pub(super) struct Gauge {
 
 /// The pieces that no event places or removes.
 fn still(world: &World) -> impl Iterator<Item = (usize, &Debris)> {
-    world.debris.iter().enumerate().filter(|(_, piece)| !piece.is_gate)
+    world.debris.iter().enumerate().filter(|(_, piece)| !piece.is_gate())
 }
 
 impl Gauge {
     /// A gauge without any measurement.
-    pub(super) fn new(scenario: &Scenario, world: &World) -> Self {
+    pub(super) fn new(model: &Model, world: &World) -> Self {
         let x = |robot: &usize| world.robots[*robot].position.x;
         let mut by_x: Vec<usize> = (0..world.robots.len()).collect();
         by_x.sort_by(|a, b| x(a).total_cmp(&x(b)));
         Self {
-            arena: Vector::new(scenario.arena_m[0] as f32, scenario.arena_m[1] as f32),
-            dt: scenario.dt_s as f32,
+            arena: model.arena,
+            dt: model.dt,
             largest: world.robots.iter().map(|robot| robot.radius()).fold(0.0, f32::max),
             reach: vec![0.0; world.robots.len()],
             longest_reach: 0.0,
             may_touch: vec![false; world.robots.len()],
-            still: still(world).map(|(number, piece)| (number, piece.outline.pose)).collect(),
-            pushed: world.gates.clone(),
-            put: world.gates.iter().map(|number| (*number, world.debris[*number].outline.pose)).collect(),
+            still: still(world).map(|(number, piece)| (number, piece.pose)).collect(),
+            pushed: model.gates.clone(),
+            put: model.gates.iter().map(|number| (*number, world.debris[*number].pose)).collect(),
             looks: vec![Look::never(); world.robots.len()],
             by_x,
             overlap: vec![f32::NEG_INFINITY; world.robots.len()],
@@ -150,7 +150,7 @@ impl Gauge {
     /// drives.
     fn note_reach(&mut self, robots: &[Robot]) {
         for (reach, robot) in self.reach.iter_mut().zip(robots) {
-            let gain = robot.spec.acceleration_mps2 as f32 * self.dt;
+            let gain = robot.spec.acceleration * self.dt;
             *reach = CONTACT_M + (robot.velocity.length() + gain) * self.dt;
         }
         self.longest_reach = self.reach.iter().copied().fold(0.0, f32::max);
@@ -174,7 +174,7 @@ impl Gauge {
             self.still.iter().position(|(number, at)| world.debris[*number].outline.pose != *at)
         {
             let (number, _) = self.still[at];
-            if world.debris[number].is_fixed {
+            if world.debris[number].is_fixed() {
                 return Some(number);
             }
             self.still.swap_remove(at);

@@ -1,20 +1,17 @@
 //! Errands: robots go from place to place. In a scenario with errands, they replace the mission.
 
-use parry2d::math::Vector;
-
 use super::{Activity, Ending, Mission, Scene};
 use crate::event::Event;
 use crate::ids::RobotId;
+use crate::model::Model;
 use crate::robot::Robot;
-use crate::scenario::Scenario;
 
 impl Mission {
-    /// Hands out the errands of a scenario.
-    pub(super) fn hand_out_errands(&mut self, scenario: &Scenario) {
-        for errand in &scenario.errands {
-            let agent = &mut self.agents[errand.robot as usize];
-            let place = |[x, y]: &[f64; 2]| Vector::new(*x as f32, *y as f32);
-            agent.sweep = errand.to.iter().rev().map(place).collect();
+    /// Hands out the errands.
+    pub(super) fn hand_out_errands(&mut self, model: &Model) {
+        for errand in &model.errands {
+            let agent = self.agent(errand.robot);
+            agent.sweep = errand.to.iter().rev().copied().collect();
             agent.activity = Activity::OnErrand;
         }
     }

@@ -25,10 +25,9 @@ pub use watch::Watch;
 use crate::belief::Beliefs;
 use crate::event::{Event, TurnBackCause};
 use crate::ids::{RescueeId, RobotId};
-use crate::model::Model;
+use crate::model::{MissionModel, Model};
 use crate::navigation::Goal;
 use crate::robot::Robot;
-use crate::scenario::MissionRules;
 
 /// How near a robot comes to its place at home or at a rest place, in metres.
 const SLOT_M: f32 = 0.15;
@@ -72,7 +71,6 @@ pub struct Mission {
     pub ending: Option<Ending>,
     pending: Option<Pending>,
     /// For each task, whether its group has a guide that can act. Found anew in every step.
-    #[serde(skip)]
     is_guided: Vec<bool>,
 }
 
@@ -100,7 +98,7 @@ impl Mission {
             pending: None,
             is_guided: vec![false; tasks],
         };
-        mission.hand_out_errands(&model.scenario);
+        mission.hand_out_errands(model);
         mission
     }
 
@@ -134,12 +132,6 @@ impl Mission {
         (agents, groups, unreachable, round, ending, pending)
     }
 
-    /// Restores the fields that a snapshot leaves out: they follow from the other fields.
-    pub(crate) fn restore(&mut self, model: &Model, team: &[Robot]) {
-        self.is_guided = vec![false; self.groups.len()];
-        self.look_for_guides(&model.scenario.mission, team);
-    }
-
     fn agent(&mut self, robot: RobotId) -> &mut Agent {
         &mut self.agents[robot.index()]
     }
@@ -148,14 +140,14 @@ impl Mission {
     /// without a guide that can act.
     #[must_use]
     pub fn speed_of(&self, model: &Model, robot: &Robot) -> f64 {
-        let rules = &model.scenario.mission;
+        let rules = &model.mission;
         let task = self.agents[robot.id.index()].task;
         let is_blind = task.is_some_and(|task| !self.is_guided[task.index()]);
-        let unladen = robot.speed() * if is_blind { 1.0 - rules.blind_speed_loss } else { 1.0 };
+        let unladen = robot.speed() * if is_blind { rules.blind_speed } else { 1.0 };
         unladen * (1.0 - rules.load_speed_loss * robot.load_share())
     }
 
-    fn look_for_guides(&mut self, rules: &MissionRules, team: &[Robot]) {
+    fn look_for_guides(&mut self, rules: &MissionModel, team: &[Robot]) {
         let guides = |id: &RobotId| {
             let robot = &team[id.index()];
             let is_there = rules.resting_guides || !self.agents[id.index()].activity.is_rest();
@@ -169,8 +161,8 @@ impl Mission {
     /// Begins the decisions of a step: notes which robots are cut off, and ends and begins rounds. A new
     /// round waits for its assignment: see [`Mission::question`]. Returns the robots that the base restocks.
     pub fn prepare(&mut self, scene: &mut Scene) -> Vec<RobotId> {
-        self.look_for_guides(&scene.model.scenario.mission, &scene.beliefs.team);
-        if !scene.model.scenario.errands.is_empty() {
+        self.look_for_guides(&scene.model.mission, &scene.beliefs.team);
+        if !scene.model.errands.is_empty() {
             self.follow_errands(scene);
         } else if scene.beliefs.team.iter().any(|robot| robot.is_able() && robot.can_carry()) {
             self.watch(scene);
@@ -187,7 +179,7 @@ impl Mission {
 
     /// Decides what every robot does next, and sets its goal.
     pub fn act(&mut self, scene: &mut Scene) {
-        if self.ending.is_none() && scene.model.scenario.errands.is_empty() {
+        if self.ending.is_none() && scene.model.errands.is_empty() {
             self.turn_back(scene);
             for task in scene.model.task_ids() {
                 self.call_back(task, scene);
@@ -215,7 +207,7 @@ impl Mission {
             }
             let way = f64::from((robot.rest_slot(agent.rest_at) - robot.position).length());
             let way_cost = scene.way_cost(robot, way, self.speed_of(scene.model, robot));
-            let rules = &scene.model.scenario.mission;
+            let rules = &scene.model.mission;
             if let Some(cause) = turn_back_cause(rules, robot.energy, robot.hp, way_cost) {
                 self.release_claim(RobotId(id as u32));
                 self.agents[id].go_to_rest();
@@ -280,7 +272,7 @@ impl Mission {
             Activity::Standby => Some(Goal { point: agent.muster, within: SWEEP_M }),
             Activity::Approaching(rescuee) => Some(Goal {
                 point: beliefs.of(agent.task).rescuees.get(rescuee.index())?.waits_at?,
-                within: 0.95 * model.scenario.mission.reach_m as f32,
+                within: 0.95 * model.mission.reach,
             }),
             Activity::Home | Activity::Returning => Some(Goal { point: robot.home, within: SLOT_M }),
             Activity::ToRest | Activity::Resting(_) => {

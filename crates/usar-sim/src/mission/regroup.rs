@@ -1,23 +1,23 @@
 //! Between rounds: which robots are home and fit, the question to the policy, and the departure of the
 //! groups.
 
-use rne_core::{Assignment, GroupSizes, Need, Question, Quota, RandomSeed, SCHEMA_VERSION, Task, TaskId};
+use rne_core::{Assignment, GroupSizes, Question, Quota, RandomSeed, SCHEMA_VERSION, Task, TaskId};
 
 use super::round::{Fitness, unfit_cause};
 use super::{Activity, Agent, Group, Mission, Pending, Scene};
 use crate::belief::{Belief, Beliefs};
 use crate::event::{Event, TurnBackCause};
 use crate::ids::RobotId;
-use crate::model::Model;
+use crate::model::{MissionModel, Model, NeedModel, TaskModel};
 use crate::robot::Robot;
-use crate::scenario::{EmptyTasks, MissionRules, NeedFile, RestAtHome, RoundEnd, Scenario, TaskFile};
+use crate::scenario::{EmptyTasks, RestAtHome, RoundEnd};
 use crate::seed::{Purpose, stream};
 
 impl Mission {
     /// Whether every robot for which the team waits is at home.
     pub(super) fn everybody_is_home(&self, scene: &Scene) -> bool {
         let agent = |robot: &Robot| &self.agents[robot.id.index()];
-        let waits_for_resting = scene.model.scenario.mission.round_end == RoundEnd::EverybodyHome;
+        let waits_for_resting = scene.model.mission.round_end == RoundEnd::EverybodyHome;
         let waited_for = |robot: &&Robot| {
             let agent = agent(robot);
             robot.is_able() && !agent.is_cut_off && (waits_for_resting || !agent.is_off_to_rest())
@@ -34,7 +34,7 @@ impl Mission {
         scene.log.push(Event::RoundEnded { round: self.round });
         scene.beliefs.pool();
         let went_to_rest = |id: RobotId| self.agents[id.index()].levels_at_start.is_none();
-        let unit = scene.model.scenario.costs.unit;
+        let unit = scene.model.costs.unit;
         let Beliefs { team, ledger, .. } = &mut *scene.beliefs;
         ledger.end(team, unit, scene.step as f64 * scene.model.dt_s(), went_to_rest);
         for (agent, robot) in self.agents.iter_mut().zip(&scene.beliefs.team) {
@@ -66,7 +66,7 @@ impl Mission {
         let tasks = self.groups.len() as u16;
         for robot in scene.beliefs.team.iter().filter(|robot| takes_part(robot)) {
             let agent = &self.agents[robot.id.index()];
-            match self.unfit_cause(&scene.model.scenario.mission, robot) {
+            match self.unfit_cause(&scene.model.mission, robot) {
                 None => fit.push(robot),
                 Some(_) if agent.has_given_up_all_rests(tasks) => {} // it stays home this time
                 Some(cause) => unfit.push((robot.id, cause)),
@@ -82,7 +82,7 @@ impl Mission {
         restocked
     }
 
-    pub(super) fn unfit_cause(&self, rules: &MissionRules, robot: &Robot) -> Option<TurnBackCause> {
+    pub(super) fn unfit_cause(&self, rules: &MissionModel, robot: &Robot) -> Option<TurnBackCause> {
         let Agent { costliest_round, has_rested, .. } = self.agents[robot.id.index()];
         let fitness = Fitness { energy: robot.energy, hp: robot.hp, costliest_round, has_rested };
         unfit_cause(rules, &fitness)
@@ -91,7 +91,7 @@ impl Mission {
     /// Sends the unfit robots at home to rest, if the rules let the next round wait for their rest. Returns
     /// whether there are any.
     pub(super) fn rest_first(&mut self, scene: &mut Scene) -> bool {
-        let rules = &scene.model.scenario.mission;
+        let rules = &scene.model.mission;
         if rules.rest_at_home == RestAtHome::DuringRound {
             return false;
         }
@@ -137,7 +137,7 @@ impl Mission {
             self.send_out(task, members, scene.model, &scene.beliefs.team);
         }
         unfit.iter().for_each(|(id, cause)| self.send_to_rest(*id, *cause, scene));
-        self.look_for_guides(&scene.model.scenario.mission, &scene.beliefs.team);
+        self.look_for_guides(&scene.model.mission, &scene.beliefs.team);
     }
 
     /// Sends a group to its task. A group in which no robot can carry stays at home.
@@ -166,16 +166,14 @@ impl Mission {
 
 /// The question how these robots, as they said they are, are to be grouped.
 fn question(model: &Model, round: u32, belief: &Belief, fit: &[&Robot]) -> Question {
-    let scenario = &model.scenario;
-    let need = |need: &NeedFile| Need { name: need.name.clone(), weight: need.weight };
+    let need = |need: &NeedModel| need.asked.clone();
     let tasks = tasks(model, belief);
     let count = |role: usize| fit.iter().filter(|robot| robot.role.index() == role).count();
-    let is_open = open_tasks(belief, &tasks, scenario.mission.empty_tasks);
+    let is_open = open_tasks(belief, &tasks, model.mission.empty_tasks);
     let quota = |role: usize| {
-        let (asked, sizes) = (asked(scenario, role, &is_open), scenario.mission.group_sizes);
+        let (asked, sizes) = (asked(model, role, &is_open), model.mission.group_sizes);
         let mut quota = Quota::share(count(role), &asked, &model.hardest_first, sizes);
-        let name = &scenario.roles[role].name;
-        if sizes == GroupSizes::Free && !scenario.tasks.iter().any(|task| task.quota.contains_key(name)) {
+        if sizes == GroupSizes::Free && model.tasks.iter().all(|task| task.quota[role].is_none()) {
             quota.sizes = sizes; // that a task is closed binds parts; free sizes stay a suggestion
         }
         quota
@@ -183,32 +181,24 @@ fn question(model: &Model, round: u32, belief: &Belief, fit: &[&Robot]) -> Quest
     Question {
         schema_version: SCHEMA_VERSION,
         round,
-        roles: scenario.roles.iter().map(|role| role.name.clone()).collect(),
-        needs: scenario.needs.iter().map(need).collect(),
-        quotas: (0..scenario.roles.len()).map(quota).collect(),
+        roles: model.roles.clone(),
+        needs: model.needs.iter().map(need).collect(),
+        quotas: (0..model.roles.len()).map(quota).collect(),
         tasks,
-        members: fit.iter().filter_map(|robot| robot.member(&scenario.needs)).collect(),
-        may_idle: scenario.mission.may_idle,
+        members: fit.iter().filter_map(|robot| robot.member(&model.needs)).collect(),
+        may_idle: model.mission.may_idle,
         history: Vec::new(),
         random_seed: RandomSeed(stream(model.seed, Purpose::Grouping, u64::from(round)).get_seed()),
     }
 }
 
-/// The tasks: what the scenario says of them, and how many rescuees wait there by this belief.
+/// The tasks, and how many rescuees wait there by this belief.
 fn tasks(model: &Model, belief: &Belief) -> Vec<Task> {
-    let files = &model.scenario.tasks;
-    let number = |name: &String| files.iter().position(|task| task.name == *name);
-    let task = |(file, id): (&TaskFile, TaskId)| Task {
-        name: file.name.clone(),
-        difficulty: file.difficulty,
-        place: Some(file.center),
-        rescuees: belief.waiting(id, model.tasks[id.index()].rescuees.clone()),
-        value: file.value,
-        requires: file.requires.clone(),
-        duration_s: file.duration_s,
-        after: file.after.iter().filter_map(number).map(|number| TaskId(number as u16)).collect(),
+    let task = |(task, id): (&TaskModel, TaskId)| Task {
+        rescuees: belief.waiting(id, task.rescuees.clone()),
+        ..task.asked.clone()
     };
-    files.iter().zip(model.task_ids()).map(task).collect()
+    model.tasks.iter().zip(model.task_ids()).map(task).collect()
 }
 
 /// For each task, whether it gets robots: whether it has begun and not ended and, if the rules ask for it and
@@ -223,10 +213,8 @@ fn open_tasks(belief: &Belief, tasks: &[Task], rule: EmptyTasks) -> Vec<bool> {
 }
 
 /// The number of robots of a role for which each task asks.
-fn asked(scenario: &Scenario, role: usize, is_open: &[bool]) -> Vec<Option<usize>> {
-    let name = &scenario.roles[role].name;
-    let quota = |task: &TaskFile| task.quota.get(name).map(|quota| *quota as usize);
-    let mut asked: Vec<Option<usize>> = scenario.tasks.iter().map(quota).collect();
+fn asked(model: &Model, role: usize, is_open: &[bool]) -> Vec<Option<usize>> {
+    let mut asked: Vec<Option<usize>> = model.tasks.iter().map(|task| task.quota[role]).collect();
     // A task that is not open asks for no robot; an open one takes the robots that are left.
     if is_open.contains(&false) {
         let takes_the_rest = (0..asked.len()).any(|number| is_open[number] && asked[number].is_none());

@@ -2,7 +2,8 @@
 //! goes home.
 
 use crate::event::{ReturnCause, TurnBackCause};
-use crate::scenario::{MissionRules, RestFills, TurnBack};
+use crate::model::{LowLevel, MissionModel};
+use crate::scenario::{RestFills, TurnBack};
 
 /// A robot's levels before a round and the cost of its costliest round, in percent (points).
 #[derive(Debug, Clone, Copy)]
@@ -19,14 +20,14 @@ pub struct Fitness {
 
 /// Why a robot must rest before it can take part in a round; `None` if it is fit.
 #[must_use]
-pub fn unfit_cause(rules: &MissionRules, robot: &Fitness) -> Option<TurnBackCause> {
-    let low = |level: f64, threshold: f64, rule: TurnBack, cost: f64| {
-        let expected = if rule == TurnBack::BeforeRound { level - cost } else { level };
-        expected < threshold && !robot.has_rested
+pub fn unfit_cause(rules: &MissionModel, robot: &Fitness) -> Option<TurnBackCause> {
+    let is_low = |level: f64, low: LowLevel, cost: f64| {
+        let expected = if low.turn_back == TurnBack::BeforeRound { level - cost } else { level };
+        expected < low.threshold && !robot.has_rested
     };
-    if low(robot.energy, rules.energy_threshold, rules.energy_turn_back, robot.costliest_round[0]) {
+    if is_low(robot.energy, rules.low_energy, robot.costliest_round[0]) {
         Some(TurnBackCause::Energy)
-    } else if low(robot.hp, rules.hp_threshold, rules.hp_turn_back, robot.costliest_round[1]) {
+    } else if is_low(robot.hp, rules.low_hp, robot.costliest_round[1]) {
         Some(TurnBackCause::Hp)
     } else {
         None
@@ -36,37 +37,32 @@ pub fn unfit_cause(rules: &MissionRules, robot: &Fitness) -> Option<TurnBackCaus
 /// Why a robot must leave for its rest place now; `None` if it may stay. `way_cost` is the energy that the
 /// straight line to the rest place costs, in percent points.
 #[must_use]
-pub fn turn_back_cause(rules: &MissionRules, energy: f64, hp: f64, way_cost: f64) -> Option<TurnBackCause> {
-    let at_once = |rule: TurnBack, level: f64, threshold: f64| rule == TurnBack::AtOnce && level < threshold;
-    if at_once(rules.energy_turn_back, energy, rules.energy_threshold)
-        || energy < rules.rest_reserve * way_cost
-    {
+pub fn turn_back_cause(rules: &MissionModel, energy: f64, hp: f64, way_cost: f64) -> Option<TurnBackCause> {
+    let at_once = |low: LowLevel, level: f64| low.turn_back == TurnBack::AtOnce && level < low.threshold;
+    if at_once(rules.low_energy, energy) || energy < rules.rest_reserve * way_cost {
         Some(TurnBackCause::Energy)
-    } else if at_once(rules.hp_turn_back, hp, rules.hp_threshold) {
+    } else if at_once(rules.low_hp, hp) {
         Some(TurnBackCause::Hp)
     } else {
         None
     }
 }
 
-/// How long a robot with these levels (energy and HP, in percent) rests, in seconds.
+/// How many steps a robot with these levels (energy and HP, in percent) rests.
 #[must_use]
-pub fn rest_time_s(rules: &MissionRules, levels: [f64; 2]) -> f64 {
-    match rules.rest_fills {
-        RestFills::Both | RestFills::Low => rules.rest_s,
-        RestFills::InTurn => {
-            rules.rest_s * levels.iter().filter(|level| **level < 100.0).count().max(1) as f64
-        }
-    }
+pub fn rest_steps(rules: &MissionModel, levels: [f64; 2]) -> u64 {
+    let [once, twice] = rules.rest_steps;
+    let fills_both = rules.rest_fills == RestFills::InTurn && levels.iter().all(|level| *level < 100.0);
+    if fills_both { twice } else { once }
 }
 
 /// Energy and HP after a rest, in percent.
 #[must_use]
-pub fn levels_after_rest(rules: &MissionRules, [energy, hp]: [f64; 2]) -> [f64; 2] {
+pub fn levels_after_rest(rules: &MissionModel, [energy, hp]: [f64; 2]) -> [f64; 2] {
     if rules.rest_fills != RestFills::Low {
         return [100.0; 2];
     }
-    let (needs_energy, needs_hp) = (energy < rules.energy_threshold, hp < rules.hp_threshold);
+    let (needs_energy, needs_hp) = (energy < rules.low_energy.threshold, hp < rules.low_hp.threshold);
     let neither = !needs_energy && !needs_hp;
     [
         if needs_energy || neither && energy <= hp { 100.0 } else { energy },
@@ -108,28 +104,33 @@ pub fn return_cause(field: &FieldState) -> Option<ReturnCause> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scenario::MissionRules;
 
-    fn rules(turn_back: TurnBack) -> MissionRules {
-        MissionRules { energy_turn_back: turn_back, hp_turn_back: turn_back, ..MissionRules::default() }
+    fn compiled(rules: MissionRules) -> MissionModel {
+        MissionModel::compile(&rules, 1.0)
+    }
+
+    fn rules(turn_back: TurnBack) -> MissionModel {
+        compiled(MissionRules {
+            energy_turn_back: turn_back,
+            hp_turn_back: turn_back,
+            ..MissionRules::default()
+        })
     }
 
     #[test]
     fn a_rest_restores_what_its_rule_says_and_takes_as_long() {
-        let rules = |rest_fills| MissionRules { rest_fills, ..MissionRules::default() };
+        let rules = |rest_fills| compiled(MissionRules { rest_fills, ..MissionRules::default() });
         let after =
-            |fills, levels| (levels_after_rest(&rules(fills), levels), rest_time_s(&rules(fills), levels));
-        assert_eq!(after(RestFills::Both, [20.0, 60.0]), ([100.0, 100.0], 30.0));
-        assert_eq!(after(RestFills::InTurn, [20.0, 60.0]), ([100.0, 100.0], 60.0));
-        assert_eq!(after(RestFills::InTurn, [20.0, 100.0]), ([100.0, 100.0], 30.0));
-        assert_eq!(after(RestFills::Low, [20.0, 60.0]), ([100.0, 60.0], 30.0));
-        assert_eq!(after(RestFills::Low, [60.0, 29.0]), ([60.0, 100.0], 30.0));
-        assert_eq!(after(RestFills::Low, [20.0, 29.0]), ([100.0, 100.0], 30.0));
-        assert_eq!(
-            after(RestFills::Low, [35.0, 40.0]),
-            ([100.0, 40.0], 30.0),
-            "none is below: the lower one"
-        );
-        assert_eq!(after(RestFills::Low, [41.0, 40.0]), ([41.0, 100.0], 30.0));
+            |fills, levels| (levels_after_rest(&rules(fills), levels), rest_steps(&rules(fills), levels));
+        assert_eq!(after(RestFills::Both, [20.0, 60.0]), ([100.0, 100.0], 30));
+        assert_eq!(after(RestFills::InTurn, [20.0, 60.0]), ([100.0, 100.0], 60));
+        assert_eq!(after(RestFills::InTurn, [20.0, 100.0]), ([100.0, 100.0], 30));
+        assert_eq!(after(RestFills::Low, [20.0, 60.0]), ([100.0, 60.0], 30));
+        assert_eq!(after(RestFills::Low, [60.0, 29.0]), ([60.0, 100.0], 30));
+        assert_eq!(after(RestFills::Low, [20.0, 29.0]), ([100.0, 100.0], 30));
+        assert_eq!(after(RestFills::Low, [35.0, 40.0]), ([100.0, 40.0], 30), "none is below: the lower one");
+        assert_eq!(after(RestFills::Low, [41.0, 40.0]), ([41.0, 100.0], 30));
     }
 
     #[test]

@@ -11,7 +11,6 @@ use crate::model::Model;
 use crate::navigation::{Goal, Navigator};
 use crate::report::Report;
 use crate::robot::Robot;
-use crate::scenario::Costs;
 
 /// The parts of a trial that decisions look at and change.
 pub struct Scene<'s> {
@@ -37,7 +36,7 @@ impl Scene<'_> {
 
     /// Whether a robot has known no route to its goal for so long that it gives up on the goal.
     pub(super) fn gives_up(&self, robot: RobotId) -> bool {
-        self.navigator.traveller(robot).lost_steps() >= self.model.steps(GIVE_UP_S)
+        self.navigator.traveller(robot).lost_steps() >= self.model.steps_in(GIVE_UP_S)
     }
 
     /// Whether a robot has arrived and is really at its goal. The route may end beside a place that debris
@@ -50,10 +49,7 @@ impl Scene<'_> {
 
     /// Energy that a path of this length costs a robot, in percent points.
     pub(super) fn way_cost(&self, robot: &Robot, metres: f64, speed: f64) -> f64 {
-        let Costs { unit, energy: rates, .. } = &self.model.scenario.costs;
-        let seconds = metres / speed.max(1e-3);
-        let cost =
-            seconds * (rates.per_step / self.model.dt_s() + rates.per_second) + metres * rates.per_metre;
-        unit.to_percent(cost, robot.spec.energy)
+        let costs = &self.model.costs;
+        costs.unit.to_percent(costs.of_way(metres, speed), robot.spec.energy)
     }
 }

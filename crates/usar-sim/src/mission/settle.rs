@@ -6,7 +6,7 @@ use std::ops::Range;
 use rne_core::TaskId;
 use rne_core::question::MAX_TASKS;
 
-use super::round::{levels_after_rest, rest_time_s};
+use super::round::{levels_after_rest, rest_steps};
 use super::{Activity, Mission, Scene};
 use crate::event::{Event, Place};
 use crate::ids::{RescueeId, RobotId};
@@ -49,7 +49,7 @@ impl Mission {
             }
             Activity::Returning if has_arrived(robot, scene) => Some(Intent::Deliver { place: Place::Home }),
             Activity::ToRest if is_at_slot(robot, scene) => {
-                if scene.model.scenario.mission.load_at_rest == LoadAtRest::Delivered {
+                if scene.model.mission.load_at_rest == LoadAtRest::Delivered {
                     return Some(Intent::Deliver { place: Place::Rest });
                 }
                 self.begin_rest(robot, scene);
@@ -64,7 +64,7 @@ impl Mission {
     pub fn note(&mut self, robot: RobotId, outcome: Outcome, scene: &mut Scene, sharing: &mut Sharing) {
         match outcome {
             Outcome::LoadingBegan(rescuee) => {
-                let done = scene.step + scene.model.steps(scene.model.scenario.mission.loading_s);
+                let done = scene.step + scene.model.mission.loading_steps;
                 self.agent(robot).activity = Activity::Loading(rescuee, done);
             }
             Outcome::NoResource(rescuee) => self.agent(robot).activity = Activity::Approaching(rescuee),
@@ -76,7 +76,7 @@ impl Mission {
             }
             Outcome::Delivered { place, rescuees } => {
                 for rescuee in rescuees {
-                    let task = scene.model.rescuees[rescuee.index()].0;
+                    let task = scene.model.rescuees[rescuee.index()].task;
                     scene.beliefs.ledger.note_delivery(robot, task);
                     scene.log.push(Event::Delivered { robot, rescuee, place });
                 }
@@ -103,8 +103,8 @@ impl Mission {
 
     fn begin_rest(&mut self, robot: RobotId, scene: &mut Scene) {
         let state = &scene.beliefs.team[robot.index()];
-        let rest_s = rest_time_s(&scene.model.scenario.mission, [state.energy, state.hp]);
-        self.agent(robot).activity = Activity::Resting(scene.step + scene.model.steps(rest_s));
+        let steps = rest_steps(&scene.model.mission, [state.energy, state.hp]);
+        self.agent(robot).activity = Activity::Resting(scene.step + steps);
         scene.log.push(Event::RestStarted { robot });
     }
 
@@ -115,7 +115,7 @@ impl Mission {
             return None;
         }
         let state = &scene.beliefs.team[robot.index()];
-        let levels = || levels_after_rest(&scene.model.scenario.mission, [state.energy, state.hp]);
+        let levels = || levels_after_rest(&scene.model.mission, [state.energy, state.hp]);
         (scene.step >= done).then(|| Intent::Refill { levels: levels() })
     }
 
@@ -130,7 +130,7 @@ impl Mission {
     ) -> Option<RobotId> {
         let task = self.agents[robot.index()].task?;
         let (place, state) = (scene.place_of(task, rescuee)?, &scene.beliefs.team[robot.index()]);
-        if (place - state.position).length() > scene.model.scenario.mission.reach_m as f32 {
+        if (place - state.position).length() > scene.model.mission.reach {
             return None;
         }
         if state.resources > 0 {

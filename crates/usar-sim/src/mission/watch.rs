@@ -92,12 +92,12 @@ impl Mission {
     /// detour takes.
     pub(super) fn is_held_up(&self, robot: &Robot, scene: &Scene) -> bool {
         let watch = &self.agents[robot.id.index()].watch;
-        let limit_s = scene.model.scenario.mission.cut_off_s;
-        if watch.held_up_steps <= scene.model.steps(limit_s) {
+        let limit_s = scene.model.mission.cut_off_s;
+        if watch.held_up_steps <= scene.model.steps_in(limit_s) {
             return false;
         }
         let detour_s = f64::from(watch.allowed_way_m()) / self.speed_of(scene.model, robot).max(1e-6);
-        watch.held_up_steps > scene.model.steps(limit_s + detour_s)
+        watch.held_up_steps > scene.model.steps_in(limit_s + detour_s)
     }
 
     /// Why a robot cannot get to its goal; `None` if it has arrived or still makes progress.
@@ -147,7 +147,7 @@ impl Mission {
 
     /// Whether a round has a purpose: a robot at home can go out and carry, or can go to rest.
     pub(super) fn can_begin_round(&self, scene: &Scene) -> bool {
-        let rules = &scene.model.scenario.mission;
+        let rules = &scene.model.mission;
         let tasks = scene.model.tasks.len() as u16;
         scene.beliefs.team.iter().any(|robot| {
             let agent = &self.agents[robot.id.index()];

@@ -59,7 +59,7 @@ impl Mission {
 fn is_out_of_reach(id: RobotId, rescuee_at: Option<Vector>, scene: &Scene) -> bool {
     let traveller = scene.navigator.traveller(id);
     let robot = &scene.beliefs.team[id.index()];
-    let reach = scene.model.scenario.mission.reach_m as f32;
+    let reach = scene.model.mission.reach;
     let is_far = || rescuee_at.is_none_or(|at| (at - robot.position).length() > reach);
     traveller.has_arrived(robot.position) && is_far() || traveller.leads_nowhere()
 }

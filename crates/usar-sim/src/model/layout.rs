@@ -9,7 +9,7 @@ use rand::rngs::ChaCha8Rng;
 use rne_core::{RoleId, TaskId};
 
 use super::places::{rescuee_places, rest_slot};
-use crate::geometry::{Outline, Places};
+use crate::geometry::Places;
 use crate::ids::RobotId;
 use crate::planning::Planner;
 use crate::scenario::{
@@ -40,6 +40,16 @@ pub struct RobotStart {
     pub energy: f64,
     /// Initial health level, in percent.
     pub hp: f64,
+}
+
+/// One attempt to draw a layout.
+pub(super) struct Attempt<'s> {
+    pub(super) scenario: &'s Scenario,
+    pub(super) keep_clear: &'s KeepClear,
+    /// Seed of the trial.
+    pub(super) seed: u64,
+    /// Number of the attempt, from 0.
+    pub(super) attempt: u32,
 }
 
 /// Everything that is drawn or fixed before a trial begins. It is the same for every policy.
@@ -76,10 +86,11 @@ impl Layout {
                 gates: BTreeMap::new(),
                 zones_later: BTreeSet::new(),
             };
+            let trial = Attempt { scenario, keep_clear: &keep_clear, seed: trial_seed, attempt };
             for (number, task) in scenario.tasks.iter().enumerate() {
-                layout.sample_near(scenario, (number, task), &keep_clear, (trial_seed, attempt))?;
+                layout.sample_near(&trial, number, task)?;
             }
-            layout.scatter(scenario, &keep_clear, (trial_seed, attempt))?;
+            layout.scatter(&trial)?;
             layout.add_later(scenario);
             if !scenario.errands.is_empty() {
                 return Ok(layout); // an errand that leads nowhere is found out by the robot
@@ -93,13 +104,8 @@ impl Layout {
         Err(blocked.unwrap_or_else(|| LayoutError::NoPassage { to: "anywhere".to_owned(), radius_m }))
     }
 
-    fn sample_near(
-        &mut self,
-        scenario: &Scenario,
-        (number, task): (usize, &TaskFile),
-        keep_clear: &KeepClear,
-        (seed, attempt): (u64, u32),
-    ) -> Result<(), LayoutError> {
+    fn sample_near(&mut self, trial: &Attempt, number: usize, task: &TaskFile) -> Result<(), LayoutError> {
+        let &Attempt { scenario, keep_clear, seed, attempt } = trial;
         let SampledCounts { debris, radiation } = task.sampled;
         let strip = Strip::new(scenario, task);
         let no_room = |what, number: u32, count| LayoutError::NoRoom {
@@ -185,28 +191,30 @@ impl Layout {
         let stays = |(number, _): &(usize, &DebrisFile)| !self.gates.contains_key(number);
         let outlines: Vec<_> =
             self.debris.iter().enumerate().filter(stays).map(|(_, file)| file.outline()).collect();
-        let mut planner = Planner::new(scenario);
+        let planner = Planner::new(scenario);
         for radius_m in scenario.ground_radii_m().into_iter().rev() {
-            self.check_passages_of(scenario, radius_m, (&mut planner, &outlines))?;
+            let (places, Some(first)) = self.places_needed(scenario, radius_m) else { continue };
+            if let Some((to, _)) = planner.first_unreachable(radius_m as f32, &outlines, first, &places) {
+                return Err(LayoutError::NoPassage { to: to.clone(), radius_m });
+            }
         }
         Ok(())
     }
 
-    fn check_passages_of(
-        &self,
-        scenario: &Scenario,
-        radius_m: f64,
-        (planner, outlines): (&mut Planner, &[Outline]),
-    ) -> Result<(), LayoutError> {
+    /// The places that ground robots of this class need, with their names, and the home of the first of them.
+    fn places_needed(&self, scenario: &Scenario, radius_m: f64) -> (Vec<(String, Vector)>, Option<Vector>) {
         let radii = scenario.ground_radii_m();
-        let bodies = super::bodies(scenario);
-        let is_of_class = |robot: &&RobotStart| {
-            let role = &bodies[robot.id.index()];
-            let class = radii.iter().find(|radius| **radius >= role.radius_m);
-            role.kind == RoleKind::Ground && class == Some(&radius_m)
-        };
-        let ground: Vec<&RobotStart> = self.robots.iter().filter(is_of_class).collect();
-        let Some(first) = ground.first() else { return Ok(()) };
+        let bodies = scenario.bodies().flat_map(|(body, count)| {
+            let class = radii.iter().copied().find(|radius| *radius >= body.radius_m);
+            (0..count).map(move |_| body.kind == RoleKind::Ground && class == Some(radius_m))
+        });
+        let ground: Vec<&RobotStart> = self
+            .robots
+            .iter()
+            .zip(bodies)
+            .filter(|(_, is_of_class)| *is_of_class)
+            .map(|(robot, _)| robot)
+            .collect();
         let place = |task: &TaskFile| (format!("task {:?}", task.name), vector(task.center));
         let mut places: Vec<(String, Vector)> = scenario.tasks.iter().map(place).collect();
         // Neighbouring places follow one another, because each search starts from the place before.
@@ -216,10 +224,7 @@ impl Layout {
             let slot = |robot: &&RobotStart| rest_slot(scenario, TaskId(number), robot.id);
             places.extend(ground.iter().map(|robot| (name.clone(), slot(robot))));
         }
-        match planner.first_unreachable(radius_m as f32, outlines, first.home, &places) {
-            Some((to, _)) => Err(LayoutError::NoPassage { to: to.clone(), radius_m }),
-            None => Ok(()),
-        }
+        (places, ground.first().map(|robot| robot.home))
     }
 }
 

@@ -3,21 +3,15 @@
 use parry2d::math::Vector;
 use rand::RngExt;
 
-use super::layout::{KeepClear, Layout, SAMPLING_TRIES};
+use super::layout::{Attempt, KeepClear, Layout, SAMPLING_TRIES};
 use crate::geometry::{Outline, Places};
-use crate::scenario::{
-    DebrisFile, DebrisShape, LayoutError, Placement, Point, Scatter, Scattered, Scenario, ZoneFile,
-};
+use crate::scenario::{DebrisFile, DebrisShape, LayoutError, Placement, Point, Scatter, Scattered, ZoneFile};
 use crate::seed::{Purpose, stream};
 
 impl Layout {
     /// Places the things of all entries of `scatter`, entry by entry.
-    pub(super) fn scatter(
-        &mut self,
-        scenario: &Scenario,
-        keep_clear: &KeepClear,
-        (seed, attempt): (u64, u32),
-    ) -> Result<(), LayoutError> {
+    pub(super) fn scatter(&mut self, trial: &Attempt) -> Result<(), LayoutError> {
+        let &Attempt { scenario, keep_clear, seed, attempt } = trial;
         if scenario.scatter.is_empty() {
             return Ok(());
         }

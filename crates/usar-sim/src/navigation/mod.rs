@@ -8,9 +8,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::belief::{Belief, News};
 use crate::ids::RobotId;
-use crate::planning::{KnownObstacle, Planner, Query, Route, Walls, polygon_contains};
+use crate::model::{Model, RuleKind};
+use crate::planning::{KnownObstacle, Meshes, Planner, Query, Route, Walls, polygon_contains};
 use crate::robot::{Robot, STANDING_MPS};
-use crate::scenario::{ResolverRule, Scenario};
 use trail::Trail;
 use traveller::{Attempt, PROGRESS_M};
 pub use traveller::{Goal, Traveller};
@@ -25,9 +25,6 @@ const DETOUR_AFTER_S: f64 = 4.0;
 
 /// A detour leads round standing robots within this distance, in metres.
 const DETOUR_RANGE_M: f32 = 8.0;
-
-/// Share of the drive's acceleration that robots plan to brake with; the rest is in reserve.
-pub const PLANNED_BRAKING: f32 = 0.8;
 
 /// The effect of news on a route.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -45,41 +42,27 @@ enum Effect {
 pub struct Navigator {
     travellers: Vec<Traveller>,
     trails: Vec<Trail>,
-    #[serde(skip)]
-    planner: Planner,
-    #[serde(skip)]
-    detour_steps: u64,
-    #[serde(skip)]
-    clearance: f32,
-    /// Width and height of the arena, in metres, if the resolver needs the narrow passages of routes;
-    /// otherwise none.
-    #[serde(skip)]
-    narrow_in: Option<Vector>,
+}
+
+/// What robots plan their routes by in one step.
+pub struct Outlook<'o, B, S> {
+    /// The fixed part of the trial.
+    pub model: &'o Model,
+    /// The robots as they said they are.
+    pub team: &'o [Robot],
+    /// Steps done.
+    pub step: u64,
+    /// The belief that a robot shares.
+    pub belief_of: B,
+    /// A robot's present top speed, in metres per second.
+    pub speed_of: S,
 }
 
 impl Navigator {
     /// A navigator of robots without goals.
     #[must_use]
-    pub fn new(scenario: &Scenario, robots: usize) -> Self {
-        let mut navigator = Self {
-            travellers: vec![Traveller::to(None); robots],
-            trails: vec![Trail::default(); robots],
-            planner: Planner::default(),
-            detour_steps: 0,
-            clearance: 0.0,
-            narrow_in: None,
-        };
-        navigator.restore(scenario);
-        navigator
-    }
-
-    /// Restores the fields that a snapshot leaves out: they follow from the scenario.
-    pub(crate) fn restore(&mut self, scenario: &Scenario) {
-        self.planner = Planner::new(scenario);
-        self.detour_steps = (DETOUR_AFTER_S / scenario.dt_s).round() as u64;
-        self.clearance = scenario.planning.clearance_m as f32;
-        let arena = Vector::new(scenario.arena_m[0] as f32, scenario.arena_m[1] as f32);
-        self.narrow_in = (scenario.conflicts.resolver == ResolverRule::Reciprocal).then_some(arena);
+    pub fn new(robots: usize) -> Self {
+        Self { travellers: vec![Traveller::to(None); robots], trails: vec![Trail::default(); robots] }
     }
 
     /// The journey of one robot.
@@ -103,76 +86,26 @@ impl Navigator {
     }
 
     /// Plans routes. A robot plans if it has no route yet, if new knowledge cuts its route or may make it
-    /// dearer or cheaper, or if it makes no progress. `team` are the robots as they said they are. `speed_of`
-    /// is a robot's present top speed, in metres per second.
-    pub fn plan<'k>(
-        &mut self,
-        team: &[Robot],
-        belief_of: impl Fn(RobotId) -> &'k Belief,
-        speed_of: impl Fn(&Robot) -> f64,
-        step: u64,
-    ) {
-        for robot in team {
+    /// dearer or cheaper, or if it makes no progress.
+    pub fn plan<'o, B, S>(&mut self, outlook: &Outlook<'o, B, S>, meshes: &mut Meshes)
+    where
+        B: Fn(RobotId) -> &'o Belief,
+        S: Fn(&Robot) -> f64,
+    {
+        let detour_steps = outlook.model.steps_in(DETOUR_AFTER_S);
+        for robot in outlook.team {
             self.trails[robot.id.index()].note(robot.position);
             let traveller = &mut self.travellers[robot.id.index()];
             let Some(goal) = traveller.goal else { continue };
             if !robot.is_able() || traveller.has_arrived(robot.position) {
                 continue;
             }
-            let belief = belief_of(robot.id);
             if let Some(route) = &mut traveller.route {
                 route.advance(robot.position);
             }
             traveller.note_progress(robot.position);
-
-            let query = || Query {
-                from: robot.position,
-                to: goal.point,
-                aerial: robot.is_aerial(),
-                speed: speed_of(robot) as f32,
-                radius: robot.radius(),
-                obstacles: belief.obstacles(robot.radius()),
-                so_far: &[],
-                in_the_way: &[],
-                zones: belief.zones_on(),
-            };
-            let check_due = (step + robot.id.0 as u64).is_multiple_of(ROUTE_CHECK_STEPS);
-            let attempt = traveller.attempt(self.detour_steps);
-            let news = belief.news_since(traveller.seen);
-            traveller.seen = belief.seen();
-            let (replan, effect) = match &traveller.route {
-                None => (
-                    !news.is_empty() || check_due,
-                    if news.is_empty() { Effect::None } else { Effect::Cheaper },
-                ),
-                Some(route) => {
-                    let effect = effect(&self.planner, query, route, (news, belief), robot);
-                    let cut_ahead = || check_due && first_leg_cut(belief, route, robot);
-                    (attempt.is_some() || effect != Effect::None || cut_ahead(), effect)
-                }
-            };
-            if replan || !traveller.is_planned {
-                let fresh = effect != Effect::None || !traveller.is_planned;
-                let in_the_way = match attempt {
-                    Some(Attempt::Detour) => standing_near(team, robot, goal, self.clearance),
-                    _ => Vec::new(),
-                };
-                let cut = traveller.route.as_ref().filter(|_| effect == Effect::Cut);
-                let so_far = cut.map_or(&[][..], Route::ahead);
-                let query = Query { so_far, in_the_way: &in_the_way, ..query() };
-                let route = find_route(&mut self.planner, &query);
-                if attempt == Some(Attempt::Detour) && !traveller.is_as_near(route.as_ref(), goal) {
-                    continue;
-                }
-                traveller.set_route(route, robot.position, fresh);
-                if let (Some(arena), Some(route), false) =
-                    (self.narrow_in, &traveller.route, robot.is_aerial())
-                {
-                    let walls =
-                        Walls { known: belief.obstacles(robot.radius()), arena, radius: robot.radius() };
-                    traveller.passages = walls.passages(robot.position, route);
-                }
-            }
+            let wayfinder = Wayfinder { outlook, robot, goal, belief: (outlook.belief_of)(robot.id) };
+            wayfinder.keep_on_route(traveller, detour_steps, meshes);
         }
     }
 
@@ -184,7 +117,7 @@ impl Navigator {
         let Some(route) = traveller.route.as_ref().filter(|_| !traveller.has_arrived(robot.position)) else {
             return Vector::ZERO;
         };
-        let braking = PLANNED_BRAKING * robot.spec.acceleration_mps2 as f32;
+        let braking = robot.spec.braking;
         let reachable = |target: f32, distance: f32| (target * target + 2.0 * braking * distance).sqrt();
         let ahead = route.ahead();
         let to_next = ahead[0] - robot.position;
@@ -203,78 +136,139 @@ impl Navigator {
     }
 }
 
-/// Robots of the same layer that stand nearby, as obstacles. Robots at the goal are left out, so that the
-/// goal stays where it is.
-fn standing_near(team: &[Robot], robot: &Robot, goal: Goal, clearance: f32) -> Vec<KnownObstacle> {
-    let stands = |other: &&Robot| {
-        other.id != robot.id
-            && other.is_aerial() == robot.is_aerial()
-            && other.velocity.length() < STANDING_MPS
-            && (other.position - robot.position).length() < DETOUR_RANGE_M
-    };
-    let obstacle = |other: &Robot| {
-        KnownObstacle::wreck(other.id.0, other.position, other.radius(), robot.radius(), clearance)
-    };
-    let is_off_goal = |other: &KnownObstacle| !polygon_contains(&other.planned, goal.point);
-    team.iter().filter(stands).map(obstacle).filter(is_off_goal).collect()
+/// One robot on its way to a goal, and what it knows.
+struct Wayfinder<'w, 'o, B, S> {
+    outlook: &'w Outlook<'o, B, S>,
+    robot: &'o Robot,
+    goal: Goal,
+    belief: &'o Belief,
+}
+
+impl<B, S: Fn(&Robot) -> f64> Wayfinder<'_, '_, B, S> {
+    /// Plans a route if one is due.
+    fn keep_on_route(&self, traveller: &mut Traveller, detour_steps: u64, meshes: &mut Meshes) {
+        let Self { outlook, robot, belief, .. } = self;
+        let check_due = (outlook.step + robot.id.0 as u64).is_multiple_of(ROUTE_CHECK_STEPS);
+        let attempt = traveller.attempt(detour_steps);
+        let news = belief.news_since(traveller.seen);
+        traveller.seen = belief.seen();
+        let (replan, effect) = match &traveller.route {
+            None if news.is_empty() => (check_due, Effect::None),
+            None => (true, Effect::Cheaper),
+            Some(route) => {
+                let effect = self.effect(news, route);
+                let cut_ahead = || check_due && self.is_first_leg_cut(route);
+                (attempt.is_some() || effect != Effect::None || cut_ahead(), effect)
+            }
+        };
+        if !replan && traveller.is_planned {
+            return;
+        }
+        let is_detour = attempt == Some(Attempt::Detour);
+        let in_the_way = if is_detour { self.standing_near() } else { Vec::new() };
+        let cut = traveller.route.as_ref().filter(|_| effect == Effect::Cut);
+        let so_far = cut.map_or(&[][..], Route::ahead);
+        let query = Query { so_far, in_the_way: &in_the_way, ..self.query() };
+        let route = find_route(&outlook.model.planner, &query, meshes);
+        if is_detour && !traveller.is_as_near(route.as_ref(), self.goal) {
+            return;
+        }
+        traveller.set_route(route, robot.position, effect != Effect::None || !traveller.is_planned);
+        if let Some(route) = &traveller.route
+            && outlook.model.right_of_way.rule == RuleKind::Reciprocal
+            && !robot.is_aerial()
+        {
+            let (known, arena) = (belief.obstacles(robot.radius()), outlook.model.arena);
+            let walls = Walls { known, arena, radius: robot.radius() };
+            traveller.passages = walls.passages(robot.position, route);
+        }
+    }
+
+    fn query(&self) -> Query<'_> {
+        let robot = self.robot;
+        Query {
+            from: robot.position,
+            to: self.goal.point,
+            aerial: robot.is_aerial(),
+            speed: (self.outlook.speed_of)(robot) as f32,
+            radius: robot.radius(),
+            obstacles: self.belief.obstacles(robot.radius()),
+            so_far: &[],
+            in_the_way: &[],
+            zones: self.belief.zones_on(),
+        }
+    }
+
+    /// The effect of news on a route.
+    fn effect(&self, news: &[News], route: &Route) -> Effect {
+        if news.iter().any(|news| self.concerns(*news, route)) {
+            Effect::Cut
+        } else if !self.robot.is_aerial() && self.may_cheapen(news, route) {
+            Effect::Cheaper
+        } else {
+            Effect::None
+        }
+    }
+
+    /// Whether a piece of news cuts the route ahead, or shows that it leads through radiation.
+    fn concerns(&self, news: News, route: &Route) -> bool {
+        let (robot, at) = (self.robot, self.robot.position);
+        match news {
+            News::Obstacle(key) => {
+                let obstacle = self.belief.obstacles(robot.radius()).get(key).filter(|_| !robot.is_aerial());
+                obstacle.is_some_and(|obstacle| route.legs(at).any(|(a, b)| obstacle.cuts(a, b)))
+            }
+            News::Zone(number) => {
+                let zone = self.belief.zones_on().iter().find(|(other, _)| *other == number);
+                zone.is_some_and(|(_, zone)| route.length_inside(at, zone) > 0.0)
+            }
+            News::Opening(_) => false,
+        }
+    }
+
+    /// Whether debris was pushed away from a place through which a cheaper route of a ground robot may lead
+    /// now. Never `false` if there is a route that is cheaper by [`PROGRESS_M`] or more.
+    fn may_cheapen(&self, news: &[News], route: &Route) -> bool {
+        news.iter().any(|news| match news {
+            News::Opening(opening) => {
+                let query = self.query();
+                let cost = self.outlook.model.planner.cost(&query, route);
+                opening.least_way(query.from, query.to) < cost - PROGRESS_M
+            }
+            News::Obstacle(_) | News::Zone(_) => false,
+        })
+    }
+
+    /// Whether the path to the next waypoint is cut, for a robot that was pushed or had to step aside.
+    fn is_first_leg_cut(&self, route: &Route) -> bool {
+        let (robot, next) = (self.robot, route.ahead()[0]);
+        !robot.is_aerial() && self.belief.obstacles(robot.radius()).cuts(robot.position, next)
+    }
+
+    /// Robots of the same layer that stand nearby, as obstacles. Robots at the goal are left out, so that the
+    /// goal stays where it is.
+    fn standing_near(&self) -> Vec<KnownObstacle> {
+        let (robot, clearance) = (self.robot, self.outlook.model.inflation.clearance);
+        let stands = |other: &&Robot| {
+            other.id != robot.id
+                && other.is_aerial() == robot.is_aerial()
+                && other.velocity.length() < STANDING_MPS
+                && (other.position - robot.position).length() < DETOUR_RANGE_M
+        };
+        let obstacle = |other: &Robot| {
+            KnownObstacle::wreck(other.id.0, other.position, other.radius(), robot.radius(), clearance)
+        };
+        let is_off_goal = |other: &KnownObstacle| !polygon_contains(&other.planned, self.goal.point);
+        self.outlook.team.iter().filter(stands).map(obstacle).filter(is_off_goal).collect()
+    }
 }
 
 /// The cheapest route round the standing robots. If there is none, the cheapest route through them, because
 /// they may move.
-fn find_route(planner: &mut Planner, query: &Query) -> Option<Route> {
-    let route = planner.route(query);
+fn find_route(planner: &Planner, query: &Query, meshes: &mut Meshes) -> Option<Route> {
+    let route = planner.route(query, meshes);
     if route.is_some() || query.in_the_way.is_empty() {
         return route;
     }
-    planner.route(&Query { in_the_way: &[], ..*query })
-}
-
-/// The effect of news on a route.
-fn effect<'q>(
-    planner: &Planner,
-    query: impl Fn() -> Query<'q>,
-    route: &Route,
-    (news, belief): (&[News], &Belief),
-    robot: &Robot,
-) -> Effect {
-    if news.iter().any(|news| concerns(*news, belief, route, robot)) {
-        Effect::Cut
-    } else if !robot.is_aerial() && may_cheapen(planner, query, route, news) {
-        Effect::Cheaper
-    } else {
-        Effect::None
-    }
-}
-
-/// Whether a piece of news cuts the route ahead, or shows that it leads through radiation.
-fn concerns(news: News, belief: &Belief, route: &Route, robot: &Robot) -> bool {
-    match news {
-        News::Obstacle(key) => {
-            let obstacle = belief.obstacles(robot.radius()).get(key).filter(|_| !robot.is_aerial());
-            obstacle.is_some_and(|obstacle| route.legs(robot.position).any(|(a, b)| obstacle.cuts(a, b)))
-        }
-        News::Zone(number) => {
-            let zone = belief.zones_on().iter().find(|(other, _)| *other == number);
-            zone.is_some_and(|(_, zone)| route.length_inside(robot.position, zone) > 0.0)
-        }
-        News::Opening(_) => false,
-    }
-}
-
-/// Whether debris was pushed away from a place through which a cheaper route of a ground robot may lead now.
-/// Never `false` if there is a route that is cheaper by [`PROGRESS_M`] or more.
-fn may_cheapen<'q>(planner: &Planner, query: impl Fn() -> Query<'q>, route: &Route, news: &[News]) -> bool {
-    news.iter().any(|news| match news {
-        News::Opening(opening) => {
-            let query = query();
-            opening.least_way(query.from, query.to) < planner.cost(&query, route) - PROGRESS_M
-        }
-        News::Obstacle(_) | News::Zone(_) => false,
-    })
-}
-
-/// Whether the path to the next waypoint is cut, for a robot that was pushed or had to step aside.
-fn first_leg_cut(belief: &Belief, route: &Route, robot: &Robot) -> bool {
-    let next = route.ahead()[0];
-    !robot.is_aerial() && belief.obstacles(robot.radius()).cuts(robot.position, next)
+    planner.route(&Query { in_the_way: &[], ..*query }, meshes)
 }

@@ -1,4 +1,4 @@
-//! The obstacles that a group knows, found by place.
+//! The obstacles that a group knows, inflated for robots of one radius, found by place.
 
 use std::collections::BTreeMap;
 
@@ -6,11 +6,47 @@ use parry2d::math::Vector;
 
 use super::obstacles::{KnownObstacle, ObstacleKey, contains};
 use crate::geometry::Places;
+use crate::scenario::Scenario;
+
+/// How much obstacles are inflated: by the radius of each class of ground robots, and by their clearance.
+#[derive(Debug, Clone)]
+pub struct Inflation {
+    /// Radii of the classes in ascending order, in metres.
+    pub radii: Vec<f32>,
+    /// Distance that robots keep from obstacles beyond their radius, in metres.
+    pub clearance: f32,
+}
+
+impl Inflation {
+    /// The inflation for the robots of a scenario.
+    #[must_use]
+    pub fn of(scenario: &Scenario) -> Self {
+        Self {
+            radii: scenario.ground_radii_m().iter().map(|radius| *radius as f32).collect(),
+            clearance: scenario.planning.clearance_m as f32,
+        }
+    }
+
+    /// Empty maps, one for each class of radii.
+    #[must_use]
+    pub fn maps(&self) -> Vec<ObstacleMap> {
+        let map = |radius: &f32| ObstacleMap {
+            radius: *radius,
+            clearance: self.clearance,
+            ..ObstacleMap::default()
+        };
+        self.radii.iter().map(map).collect()
+    }
+}
 
 /// Obstacles, one for each key. Searches by place return obstacles in no particular order; callers that
 /// depend on an order sort by key.
 #[derive(Debug, Clone, Default)]
 pub struct ObstacleMap {
+    /// Radius of the robots for which obstacles are inflated, in metres.
+    pub radius: f32,
+    /// Distance that they keep from obstacles beyond their radius, in metres.
+    pub clearance: f32,
     obstacles: Vec<KnownObstacle>,
     slots: BTreeMap<ObstacleKey, usize>,
     places: Places,

@@ -18,23 +18,24 @@ mod passage;
 mod route;
 mod search;
 
-pub use map::ObstacleMap;
+pub use map::{Inflation, ObstacleMap};
 pub use obstacles::{
     KnownObstacle, ObstacleKey, contains as polygon_contains, crosses as polygon_crossed,
     nearest_border_point, outward_normal,
 };
 pub use passage::{Passage, Walls};
 pub use route::Route;
+pub use search::Meshes;
 
 use parry2d::math::Vector;
 
 use crate::geometry::{Outline, RadiationZone};
 use crate::scenario::{RoleKind, Scenario};
 use obstacles::ZONE_MARGIN_M;
-use search::{Meshes, Search};
+use search::Search;
 
-/// The planner of one trial. It has settings and a cache, but no state.
-#[derive(Default)]
+/// The planner of one trial: its settings. What it remembers between two routes is in [`Meshes`].
+#[derive(Debug)]
 pub struct Planner {
     arena: Vector,
     /// For each class of ground robots, in ascending order: its radius, and the distance of its routes from
@@ -43,7 +44,6 @@ pub struct Planner {
     /// Distance of aerial routes from the arena's walls, in metres.
     aerial_offset: f32,
     exposure_price_m: f32,
-    meshes: Meshes,
 }
 
 /// A question to the planner.
@@ -83,7 +83,6 @@ impl Planner {
                 .collect(),
             aerial_offset: (scenario.largest_radius_m(RoleKind::Aerial) + clearance) as f32,
             exposure_price_m: scenario.planning.exposure_price_m as f32,
-            meshes: Meshes::default(),
         }
     }
 
@@ -97,9 +96,9 @@ impl Planner {
     /// The cheapest route, or `None` if there is none. Its last waypoint is the goal, or the free point
     /// nearest to the goal if the goal lies within the clearance of an obstacle.
     #[must_use]
-    pub fn route(&mut self, query: &Query) -> Option<Route> {
+    pub fn route(&self, query: &Query, meshes: &mut Meshes) -> Option<Route> {
         let mut closed = Vec::new();
-        let mut best = self.route_around(query, &closed)?;
+        let mut best = self.route_around(query, &closed, meshes)?;
         let mut best_cost = self.cost(query, &best);
         for _ in 0..query.zones.len() {
             let mut improved = None;
@@ -111,7 +110,7 @@ impl Planner {
                 let mut trial = closed.clone();
                 trial.push(*number);
                 trial.sort_unstable();
-                let Some(route) = self.route_around(query, &trial) else { continue };
+                let Some(route) = self.route_around(query, &trial, meshes) else { continue };
                 let cost = self.cost(query, &route);
                 if cost < best_cost {
                     (best, best_cost) = (route, cost);
@@ -130,7 +129,7 @@ impl Planner {
     /// neither from `from` nor from a place before it.
     #[must_use]
     pub fn first_unreachable<'p, T>(
-        &mut self,
+        &self,
         radius: f32,
         outlines: &[Outline],
         from: Vector,
@@ -142,10 +141,11 @@ impl Planner {
         let known: ObstacleMap = outlines.iter().zip(0..).map(obstacle).collect();
         let search =
             Search { arena: self.arena, offset, known: Some(&known), always: Vec::new(), numbers: None };
+        let mut meshes = Meshes::default();
         let mut reached = search.free_point(from);
         places.iter().find(|(_, place)| {
             let place = search.free_point(*place);
-            let is_reached = search.way([reached, place], &[], &mut self.meshes).is_some();
+            let is_reached = search.way([reached, place], &[], &mut meshes).is_some();
             reached = if is_reached { place } else { reached };
             !is_reached
         })
@@ -159,7 +159,7 @@ impl Planner {
     }
 
     /// The shortest route round the closed zones and all obstacles.
-    fn route_around(&mut self, query: &Query, closed: &[u32]) -> Option<Route> {
+    fn route_around(&self, query: &Query, closed: &[u32], meshes: &mut Meshes) -> Option<Route> {
         let zones = query.zones.iter().filter(|(number, _)| closed.contains(number));
         let zones: Vec<Vec<Vector>> =
             zones.map(|(_, zone)| Outline::disc(zone.center, zone.radius).inflated(ZONE_MARGIN_M)).collect();
@@ -172,7 +172,7 @@ impl Planner {
             numbers: query.in_the_way.is_empty().then_some(closed),
         };
         let from = search.free_point(query.from);
-        let way = search.way([from, search.free_point(query.to)], query.so_far, &mut self.meshes)?;
+        let way = search.way([from, search.free_point(query.to)], query.so_far, meshes)?;
         let start = (from != query.from).then_some(from);
         Some(Route::new(start.into_iter().chain(way).collect()))
     }

@@ -33,7 +33,7 @@ const NUDGE_M: f32 = 5.0e-4;
 /// Meshes among few obstacles, kept to save time: robots on the same route ask for the same meshes again and
 /// again. `None` if every attempt failed.
 #[derive(Default)]
-pub(super) struct Meshes(BTreeMap<MeshKey, Option<Mesh>>);
+pub struct Meshes(BTreeMap<MeshKey, Option<Mesh>>);
 
 /// The key of a mesh: the distance from the border as its bits, the obstacles with the hashes of
 /// their outlines, and the numbers of the closed zones.

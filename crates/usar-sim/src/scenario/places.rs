@@ -73,6 +73,11 @@ impl ScenarioFile {
         all
     }
 
+    /// Properties and abilities of the robots of each row, and their number.
+    pub fn bodies(&self) -> impl Iterator<Item = (RoleFile, u32)> + '_ {
+        self.team.iter().map(|row| (self.body_of(row).unwrap_or_default(), row.count))
+    }
+
     /// Properties and abilities of the robots of a row: their role's, with the changes of the row. `None` if
     /// the scenario has no such role.
     #[must_use]

@@ -18,14 +18,14 @@ pub(super) fn sense(view: &View, belief: &Belief, sent: &mut Vec<Report>) {
     let mut near: SmallVec<[usize; 64]> = near.filter(|number| has_changed(*number)).collect();
     near.sort_unstable();
     for number in near {
-        if debris[number].outline.distance_to(at) <= view.sensing {
+        if debris[number].distance_to(at) <= view.sensing {
             sent.extend(report(view, number, &debris[number]));
         }
     }
-    for number in view.world.gates.iter().copied().filter(|number| has_changed(*number)) {
+    for number in view.model.gates.iter().copied().filter(|number| has_changed(*number)) {
         // A robot notices that a piece was taken away where the piece was seen last. A piece that is in range
         // where it lies now was reported above.
-        let is_seen = debris[number].outline.distance_to(at) <= view.sensing;
+        let is_seen = debris[number].distance_to(at) <= view.sensing;
         let was_seen = |known: &KnownDebris| known.outline().distance_to(at) <= view.sensing;
         if !is_seen && belief.debris.get(number).is_some_and(was_seen) {
             sent.extend(report(view, number, &debris[number]));
@@ -35,7 +35,6 @@ pub(super) fn sense(view: &View, belief: &Belief, sent: &mut Vec<Report>) {
 
 /// The report of a piece: the place at which it was noticeable last.
 fn report(view: &View, number: usize, piece: &Debris) -> Option<Report> {
-    let seen = piece.sightings.last()?;
-    let (shape, pose) = (seen.shape.clone(), seen.pose);
+    let (shape, pose) = (piece.outline.shape.clone(), *piece.sightings.last()?);
     Some(view.report(Statement::DebrisLies { debris: number as u32, shape, pose }))
 }

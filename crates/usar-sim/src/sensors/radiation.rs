@@ -6,7 +6,7 @@ use crate::report::{Report, Statement};
 
 /// Reports zones that were switched since the belief heard of them last.
 pub(super) fn sense(view: &View, belief: &Belief, sent: &mut Vec<Report>) {
-    for (number, zone) in view.world.zones.iter().enumerate() {
+    for (number, zone) in view.model.zones.iter().map(|zone| &zone.disc).enumerate() {
         let heard = belief.zones.get(number).map(|known| known.at_step);
         let since = view.world.zone_since(number);
         if since.is_some_and(|since| heard.is_none_or(|heard| heard < since))

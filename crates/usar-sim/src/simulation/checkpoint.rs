@@ -2,16 +2,16 @@
 
 use std::sync::Arc;
 
+use super::setup::Setup;
 use super::{Simulation, State};
-use crate::model::Model;
 
-/// The state of a trial at one moment. Trials that resume from it share the model and all random streams, so
+/// The state of a trial at one moment. Trials that resume from it share the setup and all random streams, so
 /// differences between them follow from their decisions alone.
 ///
 /// A checkpoint stays in this process; [`Simulation::snapshot`] writes the state for others.
 #[derive(Clone)]
 pub struct Checkpoint {
-    model: Arc<Model>,
+    setup: Arc<Setup>,
     state: Vec<u8>,
 }
 
@@ -23,7 +23,7 @@ impl Simulation {
     #[must_use]
     pub fn checkpoint(&self) -> Checkpoint {
         let state = postcard::to_stdvec(&self.state).expect("the state can be written to memory");
-        Checkpoint { model: Arc::clone(&self.model), state }
+        Checkpoint { setup: Arc::clone(&self.setup), state }
     }
 }
 
@@ -36,7 +36,7 @@ impl Checkpoint {
     #[must_use]
     pub fn resume(&self) -> Simulation {
         let state: State = postcard::from_bytes(&self.state).expect("the state was written by this program");
-        Simulation::from_state(Arc::clone(&self.model), state)
+        Simulation::from_state(Arc::clone(&self.setup), state)
     }
 
     /// Bytes of the state.

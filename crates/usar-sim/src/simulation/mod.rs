@@ -8,6 +8,7 @@ mod charge;
 mod checkpoint;
 mod moments;
 mod rescue;
+mod setup;
 mod state;
 mod timeline;
 
@@ -17,7 +18,7 @@ use rne_core::{Asked, AssignmentError, Deadline, Decision, Member, Question, Ses
 use thiserror::Error;
 
 use crate::belief::Beliefs;
-use crate::conflict::{Delay, Mover};
+use crate::conflict::Delay;
 use crate::event::Event;
 use crate::hash::PERIOD_STEPS;
 use crate::ids::RobotId;
@@ -25,31 +26,28 @@ use crate::invariant::{Invariants, Overlaps};
 use crate::medium::Perfect;
 use crate::metrics::Metrics;
 use crate::mission::{Ending, Mission};
-use crate::model::Model;
+use crate::model::{Layout, Model};
 use crate::navigation::Navigator;
 use crate::record::{DecisionRecord, RobotRecord, Status, TaskRecord, TrialRecord};
-use crate::report::Report;
 use crate::scenario::{LayoutError, Scenario};
 use crate::stage::Stage;
 use crate::tally::Tally;
 use crate::world::World;
 
 pub use checkpoint::Checkpoint;
-use state::Listeners;
+use setup::Setup;
 pub(crate) use state::State;
+use state::{Listeners, Scratch};
 
 /// A running trial.
 pub struct Simulation {
-    model: Arc<Model>,
+    setup: Arc<Setup>,
     state: State,
+    scratch: Scratch,
     /// The question that waits for an answer, with its history.
     question: Option<Question>,
     failure: Option<String>,
     invariants: Option<Invariants>,
-    /// Empty between steps, like `movers`; kept so that the next step reuses its memory.
-    heard: Vec<Report>,
-    /// See `heard`.
-    movers: Vec<Mover<'static>>,
 }
 
 /// The result of an advance.
@@ -91,28 +89,26 @@ impl Simulation {
     /// # Errors
     /// The layout cannot be drawn.
     pub fn new(scenario: &Scenario, seed: u64) -> Result<Self, LayoutError> {
-        let model = Model::compile(scenario, seed)?;
-        let state = State::new(&model);
-        Ok(Self::at(model, state))
+        let setup = Setup::new(scenario, seed)?;
+        let state = State::new(&setup.model);
+        Ok(Self::at(setup, state))
     }
 
     /// A trial in this state, with nothing asked, failed or checked yet.
-    fn at(model: Arc<Model>, state: State) -> Self {
-        Self {
-            model,
-            state,
-            question: None,
-            failure: None,
-            invariants: None,
-            heard: Vec::new(),
-            movers: Vec::new(),
-        }
+    fn at(setup: Arc<Setup>, state: State) -> Self {
+        let scratch = Scratch::default();
+        Self { setup, state, scratch, question: None, failure: None, invariants: None }
+    }
+
+    /// The trial of this scenario and seed that resumes from this state.
+    pub(crate) fn resume(scenario: &Scenario, seed: u64, state: State) -> Result<Self, LayoutError> {
+        Ok(Self::from_state(Setup::new(scenario, seed)?, state))
     }
 
     /// A trial that resumes from this state.
-    pub(crate) fn from_state(model: Arc<Model>, mut state: State) -> Self {
-        state.restore(&model);
-        let mut simulation = Self::at(model, state);
+    fn from_state(setup: Arc<Setup>, mut state: State) -> Self {
+        state.restore(&setup.model);
+        let mut simulation = Self::at(setup, state);
         simulation.take_question();
         simulation
     }
@@ -120,7 +116,7 @@ impl Simulation {
     /// The same trial with every invariant checked at every step. A violation ends the trial as failed.
     #[must_use]
     pub fn checked(mut self) -> Self {
-        self.invariants = Some(Invariants::new(&self.model.scenario, &self.state.world));
+        self.invariants = Some(Invariants::new(self.model(), &self.state.world));
         self
     }
 
@@ -171,13 +167,13 @@ impl Simulation {
         // A hand-made decision may name the members of a group in any order.
         decision.assignment = decision.assignment.sorted();
         decision.assignment.check(question)?;
-        let can_carry = |id: &u32| self.model.robots[*id as usize].can_carry();
+        let can_carry = |id: &u32| self.model().robots[*id as usize].can_carry();
         let idle_carrier = decision.assignment.idle.iter().any(can_carry);
         if idle_carrier && !decision.assignment.groups.iter().flatten().any(can_carry) {
             return Err(AssignError::NobodyCarries);
         }
         let truth = self.truth();
-        let (mission, mut scene) = self.state.scene(&self.model);
+        let (mission, mut scene) = self.state.scene(&self.setup.model);
         mission.assign(&decision.assignment, &mut scene);
         if let Some(question) = self.question.take() {
             let question = Question { history: Vec::new(), ..question };
@@ -190,7 +186,7 @@ impl Simulation {
     #[must_use]
     pub fn truth(&self) -> Option<Vec<Member>> {
         let (asked, robots) = (&self.question.as_ref()?.members, &self.state.world.robots);
-        let needs = &self.model.scenario.needs;
+        let needs = &self.model().needs;
         let members: Vec<Member> =
             asked.iter().filter_map(|member| robots[member.id as usize].member(needs)).collect();
         (members != *asked).then_some(members)
@@ -259,7 +255,7 @@ impl Simulation {
         match self.state.mission.ending {
             Some(Ending::NobodyCanCarry) => Some(Status::NobodyCanCarry),
             Some(Ending::ErrandsOver) => Some(Status::ErrandsOver),
-            None => (self.state.step >= self.model.scenario.steps()).then_some(Status::Completed),
+            None => (self.state.step >= self.model().steps).then_some(Status::Completed),
         }
     }
 
@@ -269,24 +265,24 @@ impl Simulation {
         let status = self.ending();
         let status = status.unwrap_or_else(|| Status::Failed("it was not run to its end".to_owned()));
         self.state.add_link();
-        let (time_s, overlaps, dt_s) = (self.time_s(), self.overlaps(), self.model.dt_s());
+        let (time_s, overlaps, model) = (self.time_s(), self.overlaps(), &self.setup.model);
         let State { world, listeners, chain, beliefs, .. } = self.state;
         let Listeners { metrics, decisions } = listeners;
         let robots = world.robots.iter().zip(&metrics.robots);
-        let tasks = self.model.scenario.tasks.iter().zip(&metrics.tasks);
+        let tasks = model.tasks.iter().zip(&metrics.tasks);
         TrialRecord {
-            seed: self.model.seed,
+            seed: model.seed,
             status,
             time_s,
             tasks: tasks
-                .map(|(task, totals)| TaskRecord { task: task.name.clone(), totals: *totals })
+                .map(|(task, totals)| TaskRecord { task: task.asked.name.clone(), totals: *totals })
                 .collect(),
             ungrouped_energy: metrics.ungrouped[0],
             ungrouped_hp: metrics.ungrouped[1],
             completed_rounds: metrics.completed_rounds,
             ledger: beliefs.ledger.rounds().to_vec(),
             decisions,
-            robots: robots.map(|(robot, tally)| RobotRecord::of(robot, tally, dt_s)).collect(),
+            robots: robots.map(|(robot, tally)| RobotRecord::of(robot, tally, model)).collect(),
             counts: metrics.counts,
             cut_off: metrics.cut_off,
             overlaps,
@@ -299,19 +295,31 @@ impl Simulation {
     /// The fixed part of this trial.
     #[must_use]
     pub fn model(&self) -> &Model {
-        &self.model
+        &self.setup.model
     }
 
-    /// The scenario.
+    /// The scenario, with the values drawn from its distributions for this trial.
     #[must_use]
     pub fn scenario(&self) -> &Scenario {
-        &self.model.scenario
+        &self.setup.scenario
+    }
+
+    /// The scenario as it was given, with its distributions.
+    #[must_use]
+    pub fn given(&self) -> &Scenario {
+        self.setup.given()
+    }
+
+    /// What was drawn from the seed.
+    #[must_use]
+    pub fn layout(&self) -> &Layout {
+        &self.setup.layout
     }
 
     /// Seed of the trial.
     #[must_use]
     pub fn seed(&self) -> u64 {
-        self.model.seed
+        self.model().seed
     }
 
     /// Steps done.
@@ -323,7 +331,7 @@ impl Simulation {
     /// Simulated time, in seconds.
     #[must_use]
     pub fn time_s(&self) -> f64 {
-        self.state.step as f64 * self.model.dt_s()
+        self.state.step as f64 * self.model().dt_s()
     }
 
     /// The world as it is now.
@@ -402,12 +410,12 @@ impl Simulation {
 
     /// The first part of a step: robots sense, and a question may arise.
     fn begin_step(&mut self, done: &mut impl FnMut(Stage)) {
-        let state = &mut self.state;
+        let (state, model) = (&mut self.state, &self.setup.model);
         state.log.clear();
-        state.happen(&self.model);
-        state.sense(&self.model, &Perfect, &mut self.heard);
+        state.happen(model);
+        state.sense(model, &Perfect, &mut self.scratch.heard);
         done(Stage::Sense);
-        state.prepare(&self.model);
+        state.prepare(model);
         state.is_midway = true;
         self.take_question();
     }
@@ -415,16 +423,16 @@ impl Simulation {
     /// The rest of a step. All robots decide from the same snapshot, claims on rescuees included; then all
     /// act.
     fn finish_step(&mut self, done: &mut impl FnMut(Stage)) -> Result<(), String> {
-        let (state, model) = (&mut self.state, &*self.model);
+        let (state, model, scratch) = (&mut self.state, &self.setup.model, &mut self.scratch);
         let (mission, mut scene) = state.scene(model);
         mission.act(&mut scene);
         done(Stage::Mission);
         let decided = state.listen(0, model.dt_s());
-        state.plan(model);
+        state.plan(model, scratch);
         done(Stage::Plan);
-        state.resolve(model, &mut self.movers);
+        state.resolve(model, scratch);
         done(Stage::Resolve);
-        state.drive(model);
+        state.drive();
         done(Stage::Drive);
         state.step += 1;
         state.world.integrate(state.step);
@@ -432,7 +440,7 @@ impl Simulation {
         done(Stage::Integrate);
         state.expose(model);
         done(Stage::Exposure);
-        state.rescue(model, &Perfect, &mut self.heard);
+        state.rescue(model, &Perfect, &mut scratch.heard);
         done(Stage::Rescue);
         state.listen(decided, model.dt_s());
         if state.step.is_multiple_of(PERIOD_STEPS) {

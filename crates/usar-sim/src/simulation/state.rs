@@ -1,26 +1,27 @@
 //! Everything that changes in a trial, and the stages of a step that change it.
 
+use std::sync::Arc;
+
 use parry2d::math::Vector;
 use serde::{Deserialize, Serialize};
 
 use super::charge::{last_event, spend};
 use super::moments::Moments;
-use crate::belief::{Beliefs, Inflation};
-use crate::conflict::{Delay, Mover, PriorityKey, Resolver};
+use crate::belief::Beliefs;
+use crate::conflict::{self, Delay, Mover, PriorityKey, Resolver};
 use crate::event::{Event, EventLog};
 use crate::hash::{HashChain, PARTS, part};
 use crate::medium::Medium;
 use crate::metrics::Metrics;
 use crate::mission::{Activity, Agent, Mission, Scene};
-use crate::model::{Model, RobotStart};
-use crate::navigation::{Navigator, PLANNED_BRAKING};
+use crate::model::Model;
+use crate::navigation::{Navigator, Outlook};
+use crate::planning::Meshes;
 use crate::record::DecisionRecord;
 use crate::report::{Report, Speaker, Statement};
 use crate::robot::{Robot, STANDING_MPS};
-use crate::scenario::Costs;
 use crate::sensors::{base, look_around, oneself};
 use crate::tally::{Tally, delay_cause};
-use crate::vitals::{energy_cost, hp_cost};
 use crate::world::World;
 
 /// Difference between two sums of the same costs that counts as rounding, as a share.
@@ -43,6 +44,15 @@ pub(crate) struct State {
     pub(super) timeline: Moments,
     pub(super) chain: HashChain,
     pub(super) listeners: Listeners,
+}
+
+/// What steps work with. It is empty between steps, apart from what only saves time.
+#[derive(Default)]
+pub(super) struct Scratch {
+    pub(super) heard: Vec<Report>,
+    movers: Vec<Mover<'static>>,
+    meshes: Meshes,
+    conflict: conflict::Scratch,
 }
 
 /// What listens to a trial and acts on nothing: the hash chain leaves it out, so that a new counter changes no
@@ -73,19 +83,14 @@ impl State {
     /// The state before the first step: all robots at home.
     pub(super) fn new(model: &Model) -> Self {
         let world = World::build(model);
-        let tally = |start: &RobotStart| Tally::new(start.energy, start.hp);
-        let tallies = model.layout.robots.iter().map(tally).collect();
+        let tallies = model.robots.iter().map(|robot| Tally::new(robot.initial_levels)).collect();
         Self {
             step: 0,
             sent: model.task_ids().map(|task| base::report(&world, model, task, 0)).collect(),
-            beliefs: Beliefs::nothing(
-                model.tasks.len(),
-                Inflation::of(&model.scenario),
-                world.robots.clone(),
-            ),
+            beliefs: Beliefs::nothing(model.tasks.len(), &model.inflation, world.robots.clone()),
             mission: Mission::new(model),
-            navigator: Navigator::new(&model.scenario, world.robots.len()),
-            resolver: Resolver::new(&model.scenario),
+            navigator: Navigator::new(world.robots.len()),
+            resolver: Resolver::new(&model.right_of_way),
             is_midway: false,
             log: EventLog::default(),
             timeline: Moments::of(model),
@@ -98,11 +103,14 @@ impl State {
     /// Restores everything that a snapshot leaves out because it is fixed or follows from the rest. This is
     /// the only place that does so.
     pub(super) fn restore(&mut self, model: &Model) {
-        self.world.restore(model);
-        self.navigator.restore(&model.scenario);
-        self.resolver.restore(&model.scenario);
-        self.beliefs.restore(&Inflation::of(&model.scenario), &model.robots);
-        self.mission.restore(model, &self.beliefs.team);
+        let World { robots, debris, rescuees, .. } = &mut self.world;
+        for robots in [robots, &mut self.beliefs.team] {
+            robots.iter_mut().zip(&model.robots).for_each(|(robot, model)| robot.model = Arc::clone(model));
+        }
+        debris.iter_mut().zip(&model.debris).for_each(|(piece, model)| piece.model = Arc::clone(model));
+        rescuees.iter_mut().zip(&model.rescuees).for_each(|(rescuee, model)| rescuee.model = *model);
+        self.world.place_debris();
+        self.beliefs.draw_maps(&model.inflation);
     }
 
     /// The mission, and the scene in which it decides.
@@ -156,36 +164,42 @@ impl State {
         }
     }
 
-    pub(super) fn plan(&mut self, model: &Model) {
+    pub(super) fn plan(&mut self, model: &Model, scratch: &mut Scratch) {
         let (mission, beliefs) = (&self.mission, &self.beliefs);
-        let speed_of = |robot: &Robot| mission.speed_of(model, robot);
-        let belief_of = |robot| beliefs.of(mission.group_of(robot));
-        self.navigator.plan(&beliefs.team, belief_of, speed_of, self.step);
+        let outlook = Outlook {
+            model,
+            team: &beliefs.team,
+            step: self.step,
+            belief_of: |robot| beliefs.of(mission.group_of(robot)),
+            speed_of: |robot: &Robot| mission.speed_of(model, robot),
+        };
+        self.navigator.plan(&outlook, &mut scratch.meshes);
     }
 
     /// Decides which robots go and which wait, and notes why robots stop.
-    pub(super) fn resolve(&mut self, model: &Model, spare: &mut Vec<Mover<'static>>) {
-        let seen_by = (&self.mission, &self.beliefs, &self.navigator);
-        let mut movers: Vec<Mover> = std::mem::take(spare);
-        movers.extend(self.beliefs.team.iter().map(|robot| mover(robot, model, seen_by)));
-        let directives = self.resolver.resolve(&mut movers, &mut self.log);
+    pub(super) fn resolve(&mut self, model: &Model, scratch: &mut Scratch) {
+        let (mission, beliefs, navigator) = (&self.mission, &self.beliefs, &self.navigator);
+        let mut movers: Vec<Mover> = std::mem::take(&mut scratch.movers);
+        movers.extend(beliefs.team.iter().map(|robot| mover(robot, model, mission, beliefs, navigator)));
+        let rules = &model.right_of_way;
+        let directives = self.resolver.resolve(rules, &mut movers, &mut scratch.conflict, &mut self.log);
         for ((robot, directive), tally) in
             self.world.robots.iter().zip(directives).zip(&mut self.listeners.metrics.robots)
         {
-            let traveller = self.navigator.traveller(robot.id);
-            let activity = self.mission.agents[robot.id.index()].activity;
+            let traveller = navigator.traveller(robot.id);
+            let activity = mission.agents[robot.id.index()].activity;
             let cause = delay_cause(robot, activity, traveller, *directive);
             tally.note_delay(Delay { cause, waits_for: directive.waits_for() }, traveller.stalled_steps());
         }
         movers.clear();
-        *spare = movers.into_iter().map(|_| unreachable!("it is empty")).collect(); // the same memory
+        scratch.movers = movers.into_iter().map(|_| unreachable!("it is empty")).collect(); // the same memory
     }
 
     /// Changes each robot's velocity towards that of its directive, as far as its acceleration allows.
-    pub(super) fn drive(&mut self, model: &Model) {
+    pub(super) fn drive(&mut self) {
         for (robot, directive) in self.world.robots.iter().zip(self.resolver.directives()) {
-            let greatest_change = (robot.spec.acceleration_mps2 * model.dt_s()) as f32;
-            let change = (directive.velocity() - robot.velocity).clamp_length_max(greatest_change);
+            let change = directive.velocity() - robot.velocity;
+            let change = change.clamp_length_max(robot.spec.greatest_change);
             self.world.physics.drive(robot.id, change);
         }
     }
@@ -193,8 +207,8 @@ impl State {
     /// Charges energy for moving and loading and HP for radiation and work. Robots whose energy or HP is 0
     /// can no longer act.
     pub(super) fn expose(&mut self, model: &Model) {
-        let unit = model.scenario.costs.unit;
-        let (robots, zones_at) = self.world.robots_in_zones();
+        let unit = model.costs.unit;
+        let (robots, zones_at) = self.world.robots_in_zones(model);
         let metrics = &mut self.listeners.metrics;
         for robot in robots {
             let speed = robot.velocity.length();
@@ -263,16 +277,14 @@ impl State {
 /// Energy and HP that a step at this speed costs a robot in `zones` overlapping radiation zones, in the unit
 /// of the scenario's costs.
 fn step_costs(model: &Model, agent: &Agent, robot: &Robot, speed: f32, zones: usize) -> [f64; 2] {
-    let (Costs { energy, hp, work, .. }, dt) = (&model.scenario.costs, model.dt_s());
-    let metres = f64::from(speed) * dt;
-    let mut costs = [energy_cost(energy, speed > STANDING_MPS, metres, dt), hp_cost(hp, zones, metres, dt)];
+    let mut costs = model.costs.of_step(speed, speed > STANDING_MPS, zones);
     if matches!(agent.activity, Activity::Loading(..)) {
-        costs[0] += work.energy_per_second * dt;
+        costs[0] += model.costs.loading_energy;
     }
     let is_at_work =
         || agent.task.is_some_and(|task| model.tasks[task.index()].area.contains(robot.position));
-    if work.hp_per_second > 0.0 && is_at_work() {
-        costs[1] += work.hp_per_second * dt;
+    if model.costs.work_hp > 0.0 && is_at_work() {
+        costs[1] += model.costs.work_hp;
     }
     costs
 }
@@ -281,7 +293,9 @@ fn step_costs(model: &Model, agent: &Agent, robot: &Robot, speed: f32, zones: us
 fn mover<'s>(
     robot: &Robot,
     model: &Model,
-    (mission, beliefs, navigator): (&'s Mission, &'s Beliefs, &'s Navigator),
+    mission: &'s Mission,
+    beliefs: &'s Beliefs,
+    navigator: &'s Navigator,
 ) -> Mover<'s> {
     let speed = mission.speed_of(model, robot) as f32;
     let wish = if robot.is_able() { navigator.preferred_velocity(robot, speed) } else { Vector::ZERO };
@@ -289,7 +303,7 @@ fn mover<'s>(
     let agent = &mission.agents[robot.id.index()];
     let no_task = model.tasks.len() as u8;
     let class = agent.task.map_or(no_task, |task| model.tasks[task.index()].rank);
-    let rule = model.scenario.conflicts.priority;
+    let rule = model.right_of_way.priority;
     let is_busy = matches!(agent.activity, Activity::Loading(..) | Activity::Resting(_));
     Mover {
         robot: robot.id,
@@ -305,7 +319,7 @@ fn mover<'s>(
         trail: navigator.trail(robot.id),
         radius: robot.radius(),
         speed,
-        braking: PLANNED_BRAKING * robot.spec.acceleration_mps2 as f32,
+        braking: robot.spec.braking,
         priority: PriorityKey::new(rule, robot.id, class, [robot.energy, robot.hp]),
         known: (!robot.is_aerial()).then(|| beliefs.of(agent.task).obstacles(robot.radius())),
         can_make_room: robot.is_able() && !is_busy,

@@ -43,7 +43,7 @@ impl State {
                 if !is_free(&self.world, *debris, model) {
                     return false;
                 }
-                self.world.put_debris(*debris, Some(model.layout.debris[*debris].outline().pose), self.step);
+                self.world.put_debris(*debris, Some(model.debris[*debris].outline.pose), self.step);
                 let debris = *debris as u32;
                 let falls = matches!(action, Action::Fall(_));
                 self.log.push(if falls { Event::DebrisFell { debris } } else { Event::WayClosed { debris } });
@@ -116,10 +116,8 @@ impl State {
         let begins = |action: &Action| *action == Action::Begin(task) || *action == Action::End(task);
         let mut done = model.timeline.iter().zip(&self.timeline.done);
         let is_first = !done.any(|(due, is_done)| *is_done && begins(&due.action));
-        let first = model.tasks[task.index()].rescuees.start;
-        let own = model.rescuees_later.iter().find(|ids| ids.start == first && !ids.is_empty());
-        let has_own = !model.scenario.tasks[task.index()].grid.contains(&0);
-        if let Some(ids) = own.filter(|_| is_first && has_own) {
+        let own = model.tasks[task.index()].appear_at_begin.as_ref();
+        if let Some(ids) = own.filter(|_| is_first) {
             self.act_out(&Action::Rescuees(task, ids.clone()), model);
         }
     }
@@ -133,7 +131,7 @@ impl State {
         }
         let (energy, hp) = (energy.min(robot.energy), hp.min(robot.hp));
         self.log.push(Event::Damaged { robot: id, energy, hp });
-        spend(robot, [energy, hp], model.scenario.costs.unit, &mut self.listeners.metrics);
+        spend(robot, [energy, hp], model.costs.unit, &mut self.listeners.metrics);
         self.log.extend(last_event(robot));
         self.sent.push(oneself::report(robot, self.step));
     }
@@ -142,8 +140,8 @@ impl State {
 /// Whether the place of a piece is free of ground robots and movable debris, and stays free of robots for a
 /// few steps.
 fn is_free(world: &World, debris: usize, model: &Model) -> bool {
-    let outline = model.layout.debris[debris].outline();
-    let dt = model.dt_s() as f32;
+    let outline = &model.debris[debris].outline;
+    let dt = model.dt;
     let is_clear = |robot: &Robot| {
         let way = robot.velocity.length() * FREE_STEPS * dt;
         robot.is_aerial() || outline.signed_distance(robot.position) > robot.radius() + FREE_M + way
@@ -153,5 +151,5 @@ fn is_free(world: &World, debris: usize, model: &Model) -> bool {
         apart.is_ok_and(|apart| apart.distance <= FREE_M)
     };
     world.robots.iter().all(is_clear)
-        && !world.debris.iter().filter(|piece| !piece.is_fixed).any(|piece| touches(&piece.outline))
+        && !world.debris.iter().filter(|piece| !piece.is_fixed()).any(|piece| touches(&piece.outline()))
 }

@@ -1,11 +1,14 @@
 //! Debris: convex pieces, fixed or movable.
 
+use std::ops::Deref;
+use std::sync::Arc;
+
 use parry2d::bounding_volume::Aabb;
 use parry2d::math::{Pose, Vector};
 use serde::{Deserialize, Serialize};
 
 use crate::geometry::Outline;
-use crate::scenario::DebrisFile;
+use crate::model::DebrisModel;
 
 /// A pushed piece is noticed once it lies this far, in metres, from where it was last seen.
 const NOTICED_MOVE_M: f32 = 0.2;
@@ -13,81 +16,76 @@ const NOTICED_MOVE_M: f32 = 0.2;
 /// Position of absent pieces, in metres: far from every arena.
 const AWAY: Vector = Vector::new(-20_000.0, -20_000.0);
 
-/// A piece of debris in the world.
+/// A piece of debris in the world. It dereferences to its fixed properties, the [`DebrisModel`].
 #[derive(Clone, Serialize, Deserialize)]
 pub struct Debris {
+    #[serde(skip)]
+    pub(crate) model: Arc<DebrisModel>,
     /// Where it is.
-    pub outline: Outline,
-    /// Whether nothing can push it.
-    #[serde(skip)]
-    pub is_fixed: bool,
-    /// Whether events place or remove it.
-    #[serde(skip)]
-    pub is_gate: bool,
-    /// Distance from its centre within which the whole piece lies, in metres.
-    #[serde(skip)]
-    pub reach: f32,
-    /// The outlines that robots may have seen: the initial one if the piece was there, and one more each time
-    /// that it was pushed noticeably or that an event moved it.
-    pub sightings: Vec<Outline>,
-    /// For each of these outlines, the step from which on it could be seen.
+    pub pose: Pose,
+    /// The places where robots may have seen it: the initial one if the piece was there, and one more each
+    /// time that it was pushed noticeably or that an event moved it.
+    pub sightings: Vec<Pose>,
+    /// For each of these places, the step from which on it could be seen.
     pub since: Vec<u64>,
 }
 
+impl Deref for Debris {
+    type Target = DebrisModel;
+
+    fn deref(&self) -> &DebrisModel {
+        &self.model
+    }
+}
+
 impl Debris {
-    /// A piece at its initial place.
-    #[must_use]
-    pub fn new(file: &DebrisFile) -> Self {
-        let outline = file.outline();
-        let bounds = outline.shape.compute_local_bounding_sphere();
-        let reach = bounds.center.length() + bounds.radius;
-        let (is_fixed, sightings) = (file.movable.is_none(), vec![outline.clone()]);
-        Self { is_fixed, is_gate: false, sightings, since: vec![0], reach, outline }
+    /// A piece at its initial place; a piece that an event places later is away.
+    pub(super) fn new(model: &Arc<DebrisModel>) -> Self {
+        let mut pose = model.outline.pose;
+        let (mut sightings, mut since) = (vec![pose], vec![0]);
+        if model.gate == Some(false) {
+            sightings.clear();
+            since.clear();
+            pose.translation = AWAY;
+        }
+        Self { model: Arc::clone(model), pose, sightings, since }
     }
 
-    /// A piece that events place or remove; `is_there` tells whether it is there at the start.
+    /// The outline of the piece where it is.
     #[must_use]
-    pub fn gate(file: &DebrisFile, is_there: bool) -> Self {
-        let mut piece = Self { is_gate: true, ..Self::new(file) };
-        if !is_there {
-            piece.sightings.clear();
-            piece.since.clear();
-            piece.outline.pose.translation = AWAY;
-        }
-        piece
+    pub fn outline(&self) -> Outline {
+        Outline { shape: self.model.outline.shape.clone(), pose: self.pose }
+    }
+
+    /// Distance from a point to the piece, in metres; 0 inside.
+    #[must_use]
+    pub fn distance_to(&self, point: Vector) -> f32 {
+        self.model.outline.shape.distance_to_point(&self.pose, point, true)
     }
 
     /// Whether the piece is in the arena.
     #[must_use]
     pub fn is_there(&self) -> bool {
-        self.outline.pose.translation != AWAY
+        self.pose.translation != AWAY
     }
 
     /// Puts the piece to a place, or away. Adds a sighting, so that passing robots notice the change.
     pub(super) fn put(&mut self, pose: Option<Pose>, step: u64) {
         match pose {
-            Some(pose) => self.outline.pose = pose,
-            None => self.outline.pose.translation = AWAY,
+            Some(pose) => self.pose = pose,
+            None => self.pose.translation = AWAY,
         }
         self.note_sighting(step);
-    }
-
-    /// Restores the fields that a snapshot leaves out: they are fixed.
-    pub(super) fn restore(&mut self, file: &DebrisFile) {
-        let Self { outline, is_fixed, reach, .. } = Self::new(file);
-        (self.is_fixed, self.reach) = (is_fixed, reach);
-        let places = self.sightings.iter_mut().chain([&mut self.outline]);
-        places.for_each(|place| place.shape = outline.shape.clone());
     }
 
     /// The bounding box of the piece.
     #[must_use]
     pub fn bounds(&self) -> Aabb {
-        self.outline.shape.compute_aabb(&self.outline.pose)
+        self.model.outline.shape.compute_aabb(&self.pose)
     }
 
     fn note_sighting(&mut self, step: u64) {
-        self.sightings.push(self.outline.clone());
+        self.sightings.push(self.pose);
         self.since.push(step);
     }
 
@@ -99,9 +97,9 @@ impl Debris {
 
     /// Takes a new pose from the physics.
     pub(super) fn moved_to(&mut self, pose: Pose, step: u64) {
-        self.outline.pose = pose;
-        let seen = &self.sightings[self.sightings.len() - 1].pose;
-        let arm = self.outline.shape.compute_local_bounding_sphere().radius;
+        self.pose = pose;
+        let seen = self.sightings[self.sightings.len() - 1];
+        let arm = self.model.outline.shape.compute_local_bounding_sphere().radius;
         let turned =
             Vector::new(pose.rotation.cos() - seen.rotation.cos(), pose.rotation.sin() - seen.rotation.sin());
         let moved = (seen.translation - pose.translation).length() + arm * turned.length();

@@ -51,6 +51,6 @@ impl World {
     fn is_in_reach(&self, robot: RobotId, rescuee: RescueeId, model: &Model) -> bool {
         let rescuee = &self.rescuees[rescuee.index()];
         let apart = rescuee.position - self.robots[robot.index()].position;
-        rescuee.state == RescueeState::Waiting && apart.length() <= model.scenario.mission.reach_m as f32
+        rescuee.state == RescueeState::Waiting && apart.length() <= model.mission.reach
     }
 }

@@ -4,19 +4,16 @@ mod debris;
 mod effects;
 mod rescuee;
 
-use std::sync::Arc;
-
 use parry2d::math::{Pose, Vector};
 use serde::{Deserialize, Serialize};
 
 pub use debris::Debris;
 pub use rescuee::{Rescuee, RescueeState, Rescuees};
 
-use crate::geometry::{Places, RadiationZone};
-use crate::model::{Layout, Model};
+use crate::geometry::Places;
+use crate::model::Model;
 use crate::physics::{DebrisBody, Physics, RobotBody};
 use crate::robot::{Robot, STANDING_MPS};
-use crate::scenario::{DebrisFile, ZoneFile};
 
 /// The state of everything that is in the arena.
 #[derive(Serialize, Deserialize)]
@@ -27,15 +24,9 @@ pub struct World {
     pub robots: Vec<Robot>,
     /// Debris.
     pub debris: Vec<Debris>,
-    /// The debris by place.
+    /// The debris by place. Follows from `debris`.
     #[serde(skip)]
-    pub debris_places: Places,
-    /// Numbers of the debris that events place or remove.
-    #[serde(skip)]
-    pub gates: Vec<usize>,
-    /// Radiation zones, including zones that are off.
-    #[serde(skip)]
-    pub zones: Vec<RadiationZone>,
+    pub(crate) debris_places: Places,
     /// How often each zone was switched on or off. A zone that is there from the start begins with 1. With an
     /// odd number, the zone is on. Empty in a scenario without a timeline: all zones are on.
     zone_switches: Vec<u8>,
@@ -51,33 +42,29 @@ impl World {
     /// A world with everything at its initial place.
     #[must_use]
     pub fn build(model: &Model) -> Self {
-        let layout = &model.layout;
-        let starts = model.robots.iter().zip(&layout.robots);
-        let robots: Vec<Robot> = starts.map(|(model, start)| Robot::new(model, start)).collect();
-        let debris: Vec<Debris> =
-            layout.debris.iter().enumerate().map(|(i, file)| piece(layout, i, file)).collect();
-        let scenario = &model.scenario;
+        let robots: Vec<Robot> = model.robots.iter().map(Robot::new).collect();
+        let debris: Vec<Debris> = model.debris.iter().map(Debris::new).collect();
         let many = if model.timeline.is_empty() { 0 } else { usize::MAX };
         Self {
             physics: Physics::new(
-                scenario.dt_s as f32,
-                scenario.arena_m.map(|size| size as f32),
+                model.dt,
+                model.arena,
                 &robots.iter().map(robot_body).collect::<Vec<_>>(),
-                &layout.debris.iter().zip(&debris).map(debris_body).collect::<Vec<_>>(),
+                &debris.iter().map(debris_body).collect::<Vec<_>>(),
             ),
             robots,
-            debris_places: debris.iter().map(Debris::bounds).collect(),
+            debris_places: by_place(&debris),
             debris,
-            zones: zones(layout),
-            gates: layout.gates.keys().copied().collect(),
-            zone_switches: (0..layout.zones.len())
-                .take(many)
-                .map(|i| u8::from(!layout.zones_later.contains(&i)))
-                .collect(),
-            zone_since: layout.zones.iter().take(many).map(|_| 0).collect(),
-            closed_tasks: scenario.tasks.iter().take(many).map(|task| scenario.begins_later(task)).collect(),
-            rescuees: Rescuees::new(&model.rescuees, &model.rescuees_later),
+            zone_switches: model.zones.iter().take(many).map(|zone| u8::from(!zone.is_later)).collect(),
+            zone_since: model.zones.iter().take(many).map(|_| 0).collect(),
+            closed_tasks: model.tasks.iter().take(many).map(|task| task.begins_later).collect(),
+            rescuees: Rescuees::new(&model.rescuees),
         }
+    }
+
+    /// Draws the debris by place again, after the other fields were read.
+    pub(crate) fn place_debris(&mut self) {
+        self.debris_places = by_place(&self.debris);
     }
 
     /// Advances time by one step and reads back all positions. `step` is the number of steps done then.
@@ -91,16 +78,11 @@ impl World {
         }
         for (number, pose) in self.physics.debris_poses() {
             let piece = &mut self.debris[number];
-            if piece.outline.pose != pose {
+            if piece.pose != pose {
                 piece.moved_to(pose, step);
                 self.debris_places.put(number, piece.bounds());
             }
         }
-    }
-
-    /// The radiation zones that are on, with their numbers.
-    pub fn zones_on(&self) -> impl Iterator<Item = (usize, &RadiationZone)> {
-        self.zones.iter().enumerate().filter(|(number, _)| self.is_on(*number))
     }
 
     /// Whether a radiation zone is on.
@@ -110,12 +92,15 @@ impl World {
     }
 
     /// The robots, and a function that counts the zones that are on at a point.
-    pub(crate) fn robots_in_zones(&mut self) -> (&mut [Robot], impl Fn(Vector) -> usize) {
-        let Self { robots, zones, zone_switches, .. } = self;
+    pub(crate) fn robots_in_zones<'w>(
+        &'w mut self,
+        model: &'w Model,
+    ) -> (&'w mut [Robot], impl Fn(Vector) -> usize + 'w) {
+        let Self { robots, zone_switches, .. } = self;
         let is_on = |number: usize| zone_switches.get(number).is_none_or(|switches| switches % 2 == 1);
-        let zones = &*zones;
         let count = move |at: Vector| {
-            zones.iter().enumerate().filter(|(number, zone)| is_on(*number) && zone.contains(at)).count()
+            let zones = model.zones.iter().enumerate();
+            zones.filter(|(number, zone)| is_on(*number) && zone.disc.contains(at)).count()
         };
         (robots, count)
     }
@@ -132,9 +117,9 @@ impl World {
         (self.switches_of(zone) > 0).then(|| self.zone_since.get(zone).copied().unwrap_or(0))
     }
 
-    /// The outlines of the debris, now and as they could be seen: a part of the hash chain.
+    /// The places of the debris, now and as they could be seen: a part of the hash chain.
     pub(crate) fn lying_debris(&self) -> impl Serialize + '_ {
-        self.debris.iter().map(|piece| (&piece.outline, &piece.sightings)).collect::<Vec<_>>()
+        self.debris.iter().map(|piece| (&piece.pose, &piece.sightings)).collect::<Vec<_>>()
     }
 
     /// The steps since which debris and zones are as they are: a part of the hash chain.
@@ -161,28 +146,13 @@ impl World {
     pub(crate) fn put_debris(&mut self, number: usize, pose: Option<Pose>, step: u64) {
         let piece = &mut self.debris[number];
         piece.put(pose, step);
-        self.physics.put_debris(number, piece.outline.pose);
+        self.physics.put_debris(number, piece.pose);
         self.debris_places.put(number, piece.bounds());
     }
-
-    /// Restores everything that a snapshot leaves out because it is fixed or follows from the rest.
-    pub(crate) fn restore(&mut self, model: &Model) {
-        self.robots.iter_mut().zip(&model.robots).for_each(|(robot, model)| robot.model = Arc::clone(model));
-        self.debris.iter_mut().zip(&model.layout.debris).for_each(|(piece, file)| piece.restore(file));
-        model.layout.gates.keys().for_each(|number| self.debris[*number].is_gate = true);
-        self.zones = zones(&model.layout);
-        self.gates = model.layout.gates.keys().copied().collect();
-        self.rescuees.restore(&model.rescuees);
-        self.debris_places = self.debris.iter().map(Debris::bounds).collect();
-    }
 }
 
-fn piece(layout: &Layout, number: usize, file: &DebrisFile) -> Debris {
-    layout.gates.get(&number).map_or_else(|| Debris::new(file), |is_there| Debris::gate(file, *is_there))
-}
-
-fn zones(layout: &Layout) -> Vec<RadiationZone> {
-    layout.zones.iter().map(ZoneFile::zone).collect()
+fn by_place(debris: &[Debris]) -> Places {
+    debris.iter().map(Debris::bounds).collect()
 }
 
 fn robot_body(robot: &Robot) -> RobotBody {
@@ -190,18 +160,11 @@ fn robot_body(robot: &Robot) -> RobotBody {
         position: robot.position,
         is_aerial: robot.is_aerial(),
         radius: robot.radius(),
-        mass: robot.spec.mass_kg as f32,
+        mass: robot.spec.mass,
         top_speed: robot.spec.speed_mps as f32,
     }
 }
 
-fn debris_body<'d>((file, piece): (&DebrisFile, &'d Debris)) -> DebrisBody<'d> {
-    let movable =
-        file.movable.map(|movable| (movable.mass_kg as f32, (movable.friction * movable.mass_kg) as f32));
-    DebrisBody {
-        outline: &piece.outline,
-        is_gate: piece.is_gate,
-        mass: movable.map(|m| m.0),
-        friction_mass: movable.map_or(0.0, |m| m.1),
-    }
+fn debris_body(piece: &Debris) -> DebrisBody {
+    DebrisBody { outline: piece.outline(), is_gate: piece.is_gate(), masses: piece.masses }
 }

@@ -1,12 +1,11 @@
 //! Rescuees: persons and valuables, in a grid in each task's area.
 
-use std::ops::{Deref, DerefMut, Range};
+use std::ops::{Deref, DerefMut};
 
-use parry2d::math::Vector;
-use rne_core::TaskId;
 use serde::{Deserialize, Serialize};
 
-use crate::ids::{RescueeId, RobotId};
+use crate::ids::RobotId;
+use crate::model::RescueeModel;
 
 /// The state of a rescuee in its rescue.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -21,20 +20,21 @@ pub enum RescueeState {
     Absent,
 }
 
-/// A person or valuable to rescue.
+/// A person or valuable to rescue. It dereferences to its fixed properties, the [`RescueeModel`].
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Rescuee {
-    /// Identity.
     #[serde(skip)]
-    pub id: RescueeId,
-    /// Its task.
-    #[serde(skip)]
-    pub task: TaskId,
-    /// Where it waits.
-    #[serde(skip)]
-    pub position: Vector,
+    pub(crate) model: RescueeModel,
     /// The state of its rescue.
     pub state: RescueeState,
+}
+
+impl Deref for Rescuee {
+    type Target = RescueeModel;
+
+    fn deref(&self) -> &RescueeModel {
+        &self.model
+    }
 }
 
 /// All rescuees of a world, by id. Counts mutable accesses, so that checks run only after possible changes.
@@ -46,26 +46,12 @@ pub struct Rescuees {
 }
 
 impl Rescuees {
-    /// All rescuees at these places. Rescuees in `later` are absent, the others wait.
-    pub(super) fn new(places: &[(TaskId, Vector)], later: &[Range<usize>]) -> Self {
-        let waiting = |(id, (task, position)): (u32, &(TaskId, Vector))| Rescuee {
-            id: RescueeId(id),
-            task: *task,
-            position: *position,
-            state: RescueeState::Waiting,
-        };
-        let mut list: Vec<Rescuee> = (0..).zip(places).map(waiting).collect();
-        for ids in later {
-            list[ids.clone()].iter_mut().for_each(|rescuee| rescuee.state = RescueeState::Absent);
-        }
-        Self { list, changes: 0 }
-    }
-
-    /// Restores the fields that a snapshot leaves out: they are fixed.
-    pub(super) fn restore(&mut self, places: &[(TaskId, Vector)]) {
-        for ((rescuee, id), (task, position)) in self.list.iter_mut().zip(0..).zip(places) {
-            (rescuee.id, rescuee.task, rescuee.position) = (RescueeId(id), *task, *position);
-        }
+    /// All rescuees: those that are there at the start wait.
+    pub(super) fn new(models: &[RescueeModel]) -> Self {
+        let state =
+            |model: &RescueeModel| if model.is_later { RescueeState::Absent } else { RescueeState::Waiting };
+        let rescuee = |model: &RescueeModel| Rescuee { model: *model, state: state(model) };
+        Self { list: models.iter().map(rescuee).collect(), changes: 0 }
     }
 
     /// Number of mutable accesses to the list.

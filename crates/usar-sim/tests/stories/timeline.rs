@@ -74,7 +74,7 @@ fn a_closed_door_is_seen_and_gone_round_and_its_opening_is_noticed() {
     let with_it = rescued(&heard);
     let (_, heard, trial) = trial(&format!(r#"{closed}, (at_s: 40, event: Opens("west"))"#));
     assert!(rescued(&heard) >= with_it && with_it > 0, "{} and {with_it}", rescued(&heard));
-    let door = trial.world().gates[0];
+    let door = trial.model().gates[0];
     let noticed = when(
         &heard,
         |event| matches!(event, Event::DebrisDiscovered { debris, .. } if *debris as usize == door),

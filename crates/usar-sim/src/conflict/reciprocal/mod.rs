@@ -15,20 +15,17 @@ mod stuck;
 mod velocity;
 
 use parry2d::math::Vector;
+use serde::{Deserialize, Serialize};
 
 use super::passing::nearest_in_the_way;
-use super::{Directive, Mover, Resolver};
-use crate::event::{Event, EventLog};
+use super::retreat::{Crowd, Retreats};
+use super::{Directive, Mover, Step};
+use crate::event::Event;
+use crate::model::ReciprocalModel;
 use encounter::{Encounter, LONGEST_HORIZON_S};
-pub(super) use passage::Entry;
-use passage::{Entrant, Follows, decide};
+pub(super) use passage::Turn;
+use passage::{Entrant, Entry, Follows, decide};
 use velocity::{MARGIN_M, Neighbour, avoiding_velocity};
-
-/// A robot that has come no nearer for this long, in seconds, is stuck.
-pub(super) const STUCK_S: f64 = 4.0;
-
-/// A robot that has waited this long before a passage, in seconds, ends the turn of the other direction.
-pub(super) const TURN_S: f64 = 10.0;
 
 /// Robots wait at this distance from a passage, beyond their radius, in metres.
 const WAIT_AT_M: f32 = 0.6;
@@ -44,14 +41,6 @@ const CLOSE_UP_S: f32 = 0.3;
 
 /// A robot in a queue wishes to go at least this fast, in metres per second: it has not arrived.
 const LEAST_WISH_MPS: f32 = 0.02;
-
-/// A robot that has come no nearer for this long, in seconds, holds up no robot behind it. At the least wish
-/// a robot may count as such for a moment; then the robot behind closes up.
-pub(super) const HOLDS_QUEUE_S: f64 = 2.0;
-
-/// A robot that makes room and gets no nearer to its place for this long, in seconds, is let out by the robot
-/// for which it does so.
-pub(super) const LET_OUT_S: f64 = 2.0;
 
 /// A robot lets another out as long as there is less than this between them, in metres.
 const LET_OUT_GAP_M: f32 = 0.15;
@@ -73,113 +62,140 @@ const STILL_MPS: f32 = 0.005;
 /// A robot in a queue waits for the robot ahead if it is slower than this, in metres per second.
 const QUEUES_MPS: f32 = 0.05;
 
-impl Resolver {
-    /// One directive for each mover, by the default rule. Limits the wishes of robots that wait before a
-    /// passage or queue there, and replaces those of robots that let others out.
-    pub(super) fn reciprocate(&mut self, movers: &mut [Mover], log: &mut EventLog) {
-        self.neighbours.pair(movers, MARGIN_M, LONGEST_HORIZON_S);
-        self.hold_before_passages(movers, log);
-        self.queue_before_passages(movers);
-        self.let_out(movers);
-        for i in 0..movers.len() {
-            self.directives[i] = self.steer(i, movers);
+/// The state of the default rule from step to step.
+#[derive(Default, Serialize, Deserialize)]
+pub(super) struct Reciprocal {
+    pub(super) retreats: Retreats,
+    /// For each robot, the number of successive steps in which a parked robot slowed it down.
+    blocked_steps: Vec<u32>,
+    /// For each robot, its state at a narrow passage.
+    entries: Vec<Entry>,
+}
+
+impl<'m> Step<'_, 'm, ReciprocalModel, Reciprocal> {
+    /// One directive for each mover. Limits the wishes of robots that wait before a passage or queue there,
+    /// and replaces those of robots that let others out.
+    pub(super) fn resolve(&mut self) {
+        let Self { rules, state, scratch, movers, .. } = self;
+        state.blocked_steps.resize(movers.len(), 0);
+        scratch.neighbours.sort(movers);
+        state.retreats.follow(&rules.retreats, movers, &scratch.neighbours);
+        scratch.neighbours.pair(movers, MARGIN_M, LONGEST_HORIZON_S);
+        self.hold_before_passages();
+        self.queue_before_passages();
+        self.let_out();
+        for i in 0..self.movers.len() {
+            self.directives[i] = self.steer(i);
         }
-        let leaders = self.leaders_of_jams(movers);
-        for i in 0..movers.len() {
-            self.push(i, movers, &leaders, log);
+        let leaders = self.leaders_of_jams();
+        for i in 0..self.movers.len() {
+            self.push(i, &leaders);
         }
     }
 
+    fn make_room(&mut self, i: usize, blocker: usize) -> bool {
+        let (rules, neighbours) = (&self.rules.retreats, &self.scratch.neighbours);
+        self.state.retreats.make_room(i, blocker, &Crowd { rules, movers: self.movers, neighbours }, self.log)
+    }
+
+    fn turn(&self, i: usize) -> &Turn {
+        &self.scratch.turns[i]
+    }
+
     /// Lets robots wait before narrow passages in which others have the right of way, and make room there.
-    fn hold_before_passages(&mut self, movers: &mut [Mover], log: &mut EventLog) {
-        self.entries.resize(movers.len(), Entry::default());
-        for entry in &mut self.entries {
-            (entry.rank, entry.waits_for, entry.follows) = (None, None, None);
+    fn hold_before_passages(&mut self) {
+        let (turns, entries) = (&mut self.scratch.turns, &mut self.state.entries);
+        entries.resize(self.movers.len(), Entry::default());
+        turns.clear();
+        turns.resize(self.movers.len(), Turn::default());
+        let at_passages = |(i, me): (usize, &Mover<'m>)| Entrant::new(i, me);
+        let entrants: Vec<Entrant> = self.movers.iter().enumerate().filter_map(at_passages).collect();
+        decide(&entrants, self.movers, entries, turns, self.rules.turn);
+        for (entry, turn) in entries.iter_mut().zip(turns.iter()) {
+            entry.is_granted = turn.rank.is_some() && turn.waits_for.is_none();
+            entry.waited_steps = if turn.waits_for.is_some() { entry.waited_steps + 1 } else { 0 };
         }
-        let entrants: Vec<Entrant> =
-            movers.iter().enumerate().filter_map(|(i, me)| Entrant::new(i, me)).collect();
-        decide(&entrants, movers, &mut self.entries, self.turn_steps);
-        for entry in &mut self.entries {
-            entry.is_granted = entry.rank.is_some() && entry.waits_for.is_none();
-            entry.waited_steps = if entry.waits_for.is_some() { entry.waited_steps + 1 } else { 0 };
-        }
-        let waiting =
-            |entrant: &Entrant| Some((entrant.i, self.entries[entrant.i].waits_for?, entrant.ahead));
+        let waiting = |entrant: &Entrant| Some((entrant.i, turns[entrant.i].waits_for?, entrant.ahead));
         let waiting: Vec<(usize, usize, f32)> = entrants.iter().filter_map(waiting).collect();
         for (i, first, ahead) in &waiting {
-            if self.entries[*i].waited_steps == 1 {
-                log.push(Event::ConflictStarted { robots: vec![movers[*first].robot, movers[*i].robot] });
+            if self.state.entries[*i].waited_steps == 1 {
+                let robots = vec![self.movers[*first].robot, self.movers[*i].robot];
+                self.log.push(Event::ConflictStarted { robots });
             }
-            let is_near = *ahead < movers[*i].radius + WAIT_AT_M + MAKE_ROOM_M;
-            if is_near && self.retreats.depth(*i) == 0 {
-                self.make_room(*first, *i, movers, log);
+            let is_near = *ahead < self.movers[*i].radius + WAIT_AT_M + MAKE_ROOM_M;
+            if is_near && self.state.retreats.depth(*i) == 0 {
+                self.make_room(*first, *i);
             }
         }
-        self.make_room_in_bays(&entrants, movers, log);
+        self.make_room_in_bays(&entrants);
         for (i, _, ahead) in waiting {
-            let me = &mut movers[i];
+            let me = &mut self.movers[i];
             let stops_in: f32 = (ahead - me.radius - WAIT_AT_M).max(0.0);
             me.wish = me.wish.clamp_length_max((2.0 * me.braking * stops_in).sqrt());
         }
     }
 
     /// Lets the first of two robots that come to a bay from both sides make room in it for the second.
-    fn make_room_in_bays(&mut self, entrants: &[Entrant], movers: &[Mover], log: &mut EventLog) {
+    fn make_room_in_bays(&mut self, entrants: &[Entrant]) {
         for me in entrants {
-            let Some(other) = entrants.iter().find(|other| me.makes_room_in_bay(other, movers)) else {
+            let Some(other) = entrants.iter().find(|other| me.makes_room_in_bay(other, self.movers)) else {
                 continue;
             };
-            if self.retreats.depth(me.i) == 0 && self.retreats.depth(other.i) == 0 {
-                self.make_room(other.i, me.i, movers, log);
+            let depth = |i: usize| self.state.retreats.depth(i);
+            if depth(me.i) == 0 && depth(other.i) == 0 {
+                self.make_room(other.i, me.i);
             }
         }
     }
 
     /// Lets robots that may enter a passage in the same direction do so one after another, at a small
     /// distance. All at once, they would press against one another at its mouth.
-    fn queue_before_passages(&self, movers: &mut [Mover]) {
-        for (i, entry) in self.entries.iter().enumerate() {
-            let Some(Follows { robot, gap }) = entry.follows else { continue };
-            let first = &movers[robot];
-            if first.stalled_steps > self.holds_queue_steps {
+    fn queue_before_passages(&mut self) {
+        for (i, turn) in self.scratch.turns.iter().enumerate() {
+            let Some(Follows { robot, gap }) = turn.follows else { continue };
+            let first = &self.movers[robot];
+            if first.stalled_steps > self.rules.holds_queue {
                 continue;
             }
             let allowed = first.velocity.length() + (gap - FOLLOWING_GAP_M) / CLOSE_UP_S;
-            movers[i].wish = movers[i].wish.clamp_length_max(allowed.max(LEAST_WISH_MPS));
+            let me = &mut self.movers[i];
+            me.wish = me.wish.clamp_length_max(allowed.max(LEAST_WISH_MPS));
         }
     }
 
     /// Lets robots step back from robots beside them that try to make room for them and get nowhere, as in a
     /// corner.
-    fn let_out(&self, movers: &mut [Mover]) {
-        for (i, retreat) in self.retreats.iter() {
-            let (me, head) = (&movers[i], &movers[retreat.head]);
+    fn let_out(&mut self) {
+        for (i, retreat) in self.state.retreats.iter() {
+            let (me, head) = (&self.movers[i], &self.movers[retreat.head]);
             let away = head.position - me.position;
             let is_near = away.length() < me.radius + head.radius + LET_OUT_GAP_M;
-            if is_near && head.can_make_room && retreat.is_held_up(self.let_out_steps) {
-                movers[retreat.head].wish = away.normalize_or_zero() * LET_OUT_SPEED * head.speed;
+            if is_near && head.can_make_room && retreat.is_held_up(self.rules.let_out) {
+                self.movers[retreat.head].wish = away.normalize_or_zero() * LET_OUT_SPEED * head.speed;
             }
         }
     }
 
     /// The directive of a robot: the velocity that it takes among the others, or why it stands still.
-    fn steer(&self, i: usize, movers: &[Mover]) -> Directive {
+    fn steer(&self, i: usize) -> Directive {
+        let (movers, turn, retreats) = (&*self.movers, self.turn(i), &self.state.retreats);
         let me = &movers[i];
         if !me.can_make_room && !me.wishes_to_move() {
             return Directive::Stand;
         }
-        let neighbours = self.neighbours.of(i).iter().map(|j| self.neighbour(i, *j, movers)).collect();
-        let velocity = avoiding_velocity(me, neighbours, self.arena, self.entries[i].rank.is_none());
+        let neighbours = self.scratch.neighbours.of(i).iter().map(|j| self.neighbour(i, *j)).collect();
+        let arena = self.rules.retreats.arena;
+        let velocity = avoiding_velocity(me, neighbours, arena, turn.rank.is_none());
         let is_still = velocity.length() < STILL_MPS;
-        if let Some(head) = self.retreats.head_of(i) {
+        if let Some(head) = retreats.head_of(i) {
             return Directive::Retreat { velocity, room_for: movers[head].robot };
         }
-        match self.entries[i].waits_for {
+        match turn.waits_for {
             Some(first) if is_still => Directive::Yield { to: movers[first].robot },
             _ if me.wishes_to_move() && is_still => {
-                Directive::Blocked { by: self.robot_in_the_way(i, movers).map(|j| movers[j].robot) }
+                Directive::Blocked { by: self.robot_in_the_way(i).map(|j| movers[j].robot) }
             }
-            _ if me.wishes_to_move() => match self.robot_ahead(i, velocity, movers) {
+            _ if me.wishes_to_move() => match self.robot_ahead(i, velocity) {
                 Some(ahead) => Directive::Follow { velocity, behind: movers[ahead].robot },
                 None => Directive::Proceed(velocity),
             },
@@ -189,20 +205,20 @@ impl Resolver {
     }
 
     /// The robot behind which a robot with this velocity queues, or comes no nearer to its goal.
-    fn robot_ahead(&self, i: usize, velocity: Vector, movers: &[Mover]) -> Option<usize> {
+    fn robot_ahead(&self, i: usize, velocity: Vector) -> Option<usize> {
         let queues = velocity.length() < QUEUES_MPS;
-        let first = self.entries[i].follows.filter(|_| queues).map(|first| first.robot);
-        let is_stuck = movers[i].stalled_steps >= self.stuck_steps;
-        first.or_else(|| is_stuck.then(|| self.robot_in_the_way(i, movers)).flatten())
+        let first = self.turn(i).follows.filter(|_| queues).map(|first| first.robot);
+        let is_stuck = self.movers[i].stalled_steps >= self.rules.stuck;
+        first.or_else(|| is_stuck.then(|| self.robot_in_the_way(i)).flatten())
     }
 
-    fn neighbour(&self, i: usize, j: usize, movers: &[Mover]) -> Neighbour {
-        let (me, other) = (&movers[i], &movers[j]);
-        let encounter = self.encounter(i, j, movers);
-        let share = match (self.entries[i].rank, self.entries[j].rank) {
+    fn neighbour(&self, i: usize, j: usize) -> Neighbour {
+        let (me, other, retreats) = (&self.movers[i], &self.movers[j], &self.state.retreats);
+        let encounter = self.encounter(i, j);
+        let share = match (self.turn(i).rank, self.turn(j).rank) {
             _ if !other.can_make_room => 1.0,
-            _ if self.retreats.head_of(j) == Some(i) => SHARE_OF_PRIORITY,
-            _ if self.retreats.head_of(i) == Some(j) => 1.0 - SHARE_OF_PRIORITY,
+            _ if retreats.head_of(j) == Some(i) => SHARE_OF_PRIORITY,
+            _ if retreats.head_of(i) == Some(j) => 1.0 - SHARE_OF_PRIORITY,
             (Some(mine), Some(its)) if mine < its => SHARE_OF_THE_FIRST,
             (Some(_), Some(_)) => 1.0 - SHARE_OF_THE_FIRST,
             _ if matches!(encounter, Encounter::Crossing | Encounter::Parallel) => 0.5,
@@ -218,25 +234,27 @@ impl Resolver {
         }
     }
 
-    fn encounter(&self, i: usize, j: usize, movers: &[Mover]) -> Encounter {
-        if self.retreats.head_of(i) == Some(j) || self.retreats.head_of(j) == Some(i) {
+    fn encounter(&self, i: usize, j: usize) -> Encounter {
+        let retreats = &self.state.retreats;
+        if retreats.head_of(i) == Some(j) || retreats.head_of(j) == Some(i) {
             return Encounter::MakesRoom;
         }
-        Encounter::of(movers[i].wish, movers[j].wish)
+        Encounter::of(self.movers[i].wish, self.movers[j].wish)
     }
 
     /// The nearest robot in the way of a robot's wish.
-    fn robot_in_the_way(&self, i: usize, movers: &[Mover]) -> Option<usize> {
-        let (me, near) = (&movers[i], self.neighbours.of(i));
+    fn robot_in_the_way(&self, i: usize) -> Option<usize> {
+        let (movers, near) = (&*self.movers, self.scratch.neighbours.of(i));
+        let me = &movers[i];
         let discs = near.iter().map(|j| (movers[*j].position - me.position, me.radius + movers[*j].radius));
-        nearest_in_the_way(me.wish, &self.surroundings(i, me, discs)).map(|at| near[at])
+        nearest_in_the_way(me.wish, self.rules.retreats.margin, discs).map(|at| near[at])
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::conflict::testing::{mover, resolver};
+    use crate::conflict::testing::{Bench, mover};
     use crate::ids::RobotId;
     use crate::planning::Passage;
 
@@ -253,14 +271,14 @@ mod tests {
         let directives = |stalled_steps: u32| {
             let mut movers = [entering(0, [9.0, 8.0]), entering(1, [8.8, 9.0])];
             movers[0].stalled_steps = stalled_steps;
-            resolver().resolve(&mut movers, &mut EventLog::default()).to_vec()
+            Bench::new().resolve(&mut movers)
         };
         let queue = directives(0);
         assert!(matches!(queue[0], Directive::Proceed(velocity) if velocity.length() > 1.0), "{queue:?}");
         assert!(matches!(queue[1], Directive::Follow { behind: RobotId(0), .. }), "{queue:?}");
         assert_eq!(queue[1].waits_for(), Some(RobotId(0)));
         assert!(queue[1].velocity().length() <= LEAST_WISH_MPS, "{queue:?}");
-        let released = directives(resolver().holds_queue_steps + 1);
+        let released = directives(Bench::new().rules.holds_queue + 1);
         assert!(
             matches!(released[1], Directive::Proceed(velocity) if velocity.length() > 0.5),
             "{released:?}"
@@ -269,10 +287,10 @@ mod tests {
 
     #[test]
     fn a_robot_that_comes_no_nearer_waits_for_the_robot_in_its_way() {
-        let mut resolver = resolver();
+        let mut bench = Bench::new();
         let mut movers = [mover(0, [5.0, 5.0], [1.0, 0.0]), mover(1, [5.9, 5.05], [0.0, 0.0])];
-        movers[0].stalled_steps = resolver.stuck_steps;
-        let directives = resolver.resolve(&mut movers, &mut EventLog::default());
+        movers[0].stalled_steps = bench.rules.stuck;
+        let directives = bench.resolve(&mut movers);
         assert_eq!(directives[0].waits_for(), Some(RobotId(1)), "{directives:?}");
     }
 
@@ -281,7 +299,7 @@ mod tests {
         let directive = |wish: [f32; 2]| {
             let mut movers = [mover(0, [5.0, 5.0], wish)];
             movers[0].can_make_room = false;
-            resolver().resolve(&mut movers, &mut EventLog::default())[0]
+            Bench::new().resolve(&mut movers)[0]
         };
         assert_eq!(directive([1.0, 0.0]), Directive::Proceed(Vector::X));
         assert_eq!(directive([0.0, 0.0]), Directive::Stand);
@@ -290,15 +308,15 @@ mod tests {
     #[test]
     fn a_robot_steps_back_from_one_that_cannot_make_room_for_it() {
         let wish = |gap: f32, steps: u32, can_move: bool| {
-            let mut resolver = resolver();
+            let mut bench = Bench::new();
             let mut movers =
                 [mover(0, [5.0, 5.0], [1.0, 0.0]), mover(1, [5.0 + 0.8 + gap, 5.0], [-1.0, 0.0])];
             movers[0].can_make_room = can_move;
-            resolver.retreats.begin_held_up(1, 0, Vector::new(5.0, 7.0), steps);
-            resolver.let_out(&mut movers);
+            bench.state.retreats.begin_held_up(1, 0, Vector::new(5.0, 7.0), steps);
+            bench.step(&mut movers).let_out();
             movers[0].wish
         };
-        let held = resolver().let_out_steps + 1;
+        let held = Bench::new().rules.let_out + 1;
         assert_eq!(wish(0.05, held, true), Vector::new(-LET_OUT_SPEED * 2.0, 0.0));
         assert_eq!(wish(0.05, held - 1, true), Vector::X, "not held up for long enough");
         assert_eq!(wish(0.3, held, true), Vector::X, "not beside it");

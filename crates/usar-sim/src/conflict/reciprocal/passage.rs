@@ -2,10 +2,8 @@
 //!
 //! The order is: robots inside; robots that may enter and are about to; robots that have waited too long;
 //! robots that follow a robot inside in the same direction; and all others, the nearest first. So robots go
-//! through in platoons, and the turn of a direction ends when a robot of another direction has waited for
-//! [`super::TURN_S`]. Robots of one direction queue before the mouth, in this order.
-
-use std::cmp::Ordering;
+//! through in platoons, and the turn of a direction ends when a robot of another direction has waited too
+//! long. Robots of one direction queue before the mouth, in this order.
 
 use parry2d::math::Vector;
 
@@ -58,21 +56,23 @@ pub(super) struct Entrant<'a> {
     high: Vector,
 }
 
-/// The state of a robot at a passage.
+/// The state of a robot at a passage, from step to step.
 #[derive(Debug, Clone, Copy, Default, serde::Serialize, serde::Deserialize)]
-pub(in crate::conflict) struct Entry {
+pub(super) struct Entry {
     /// Steps that the robot has waited.
     pub(super) waited_steps: u32,
     /// Whether it may enter, or is inside.
     pub(super) is_granted: bool,
-    /// Its place in this step's order of all robots at passages; none for a robot that is not at a passage.
-    #[serde(skip)]
+}
+
+/// The turn of a robot at a passage in one step.
+#[derive(Debug, Clone, Copy, Default)]
+pub(in crate::conflict) struct Turn {
+    /// Its place in the order of all robots at passages; none for a robot that is not at a passage.
     pub(super) rank: Option<usize>,
-    /// The robot for which it waits in this step.
-    #[serde(skip)]
+    /// The robot for which it waits.
     pub(super) waits_for: Option<usize>,
-    /// The robot behind which it queues in this step.
-    #[serde(skip)]
+    /// The robot behind which it queues.
     pub(super) follows: Option<Follows>,
 }
 
@@ -236,45 +236,45 @@ impl Meetings {
     }
 }
 
-/// Decides which robots may enter their passages, and notes it in their entries. A robot has waited too long
+/// Decides which robots may enter their passages, and notes it in their turns. A robot has waited too long
 /// after `turn_steps` steps.
-pub(super) fn decide(entrants: &[Entrant], movers: &[Mover], entries: &mut [Entry], turn_steps: u32) {
+pub(super) fn decide(
+    entrants: &[Entrant],
+    movers: &[Mover],
+    entries: &[Entry],
+    turns: &mut [Turn],
+    turn_steps: u32,
+) {
     let meetings = Meetings::new(entrants);
-    let claims: Vec<(Class, f32)> =
-        (0..entrants.len()).map(|a| claim(a, entrants, &meetings, entries, turn_steps)).collect();
+    let claim = |a: usize| claim(a, entrants, &meetings, entries[entrants[a].i], turn_steps);
+    let claims: Vec<(Class, f32)> = (0..entrants.len()).map(claim).collect();
+    let precedence = |a: &usize, b: &usize| {
+        let (x, y) = (claims[*a], claims[*b]);
+        let priority = |a: usize| movers[entrants[a].i].priority;
+        let by_priority = || priority(*a).precedence(&priority(*b));
+        x.0.cmp(&y.0).then(x.1.total_cmp(&y.1)).then_with(by_priority)
+    };
     let mut order: Vec<usize> = (0..entrants.len()).collect();
-    order.sort_by(|a, b| precedence(*a, *b, &claims, entrants, movers));
+    order.sort_by(precedence);
     let waited_too_long = |claim: &(Class, f32)| claim.0 == Class::WaitedTooLong;
     for (rank, a) in order.iter().enumerate() {
+        let enters = |b: usize| turns[entrants[b].i].waits_for.is_none();
         // A robot that has waited too long stops the robots behind it, even while it waits for robots inside.
         let stops = |b: &&usize| {
             meetings.between(*a, **b) == Some(Meeting::Opposed)
-                && (entries[entrants[**b].i].waits_for.is_none() || waited_too_long(&claims[**b]))
+                && (enters(**b) || waited_too_long(&claims[**b]))
         };
         let waits_for = order[..rank].iter().find(stops).map(|b| entrants[*b].i);
-        let goes_first = |b: &&usize| {
-            meetings.between(*a, **b) == Some(Meeting::SameWay)
-                && entries[entrants[**b].i].waits_for.is_none()
-        };
+        let goes_first = |b: &&usize| meetings.between(*a, **b) == Some(Meeting::SameWay) && enters(**b);
         let farthest = |b: &&usize, c: &&usize| entrants[**b].ahead.total_cmp(&entrants[**c].ahead);
         let first = order[..rank].iter().filter(goes_first).max_by(farthest).filter(|_| waits_for.is_none());
         let follows = first.and_then(|b| entrants[*a].follows(&entrants[*b]));
-        let entry = &mut entries[entrants[*a].i];
-        entry.follows = follows;
-        entry.rank = Some(rank);
-        entry.waits_for = waits_for;
+        turns[entrants[*a].i] = Turn { rank: Some(rank), waits_for, follows };
     }
 }
 
-fn claim(
-    a: usize,
-    entrants: &[Entrant],
-    meetings: &Meetings,
-    entries: &[Entry],
-    turn_steps: u32,
-) -> (Class, f32) {
+fn claim(a: usize, entrants: &[Entrant], meetings: &Meetings, entry: Entry, turn_steps: u32) -> (Class, f32) {
     let entrant = &entrants[a];
-    let entry = &entries[entrant.i];
     let follows =
         |b: usize| b != a && entrants[b].is_inside() && meetings.between(a, b) == Some(Meeting::SameWay);
     if entrant.is_inside() {
@@ -288,18 +288,6 @@ fn claim(
     } else {
         (Class::Comes, if entry.is_granted { entrant.ahead - KEPT_PLACE_M } else { entrant.ahead })
     }
-}
-
-fn precedence(
-    a: usize,
-    b: usize,
-    claims: &[(Class, f32)],
-    entrants: &[Entrant],
-    movers: &[Mover],
-) -> Ordering {
-    let (x, y) = (claims[a], claims[b]);
-    let by_priority = || movers[entrants[a].i].priority.precedence(&movers[entrants[b].i].priority);
-    x.0.cmp(&y.0).then(x.1.total_cmp(&y.1)).then_with(by_priority)
 }
 
 #[cfg(test)]
@@ -317,7 +305,7 @@ mod tests {
 
     /// The entries of robots at these places with these wishes, whose routes lead 10 m on through a passage
     /// between x = 10 and x = 12.
-    fn decided(robots: &[(f32, f32)], before: &[Entry]) -> Vec<Entry> {
+    fn decided(robots: &[(f32, f32)], before: &[Entry]) -> Vec<Turn> {
         let passages: Vec<[Passage; 1]> = robots
             .iter()
             .map(|(x, wish)| {
@@ -335,11 +323,12 @@ mod tests {
             movers.iter().enumerate().filter_map(|(i, me)| Entrant::new(i, me)).collect();
         let mut entries = before.to_vec();
         entries.resize(robots.len(), Entry::default());
-        decide(&entrants, &movers, &mut entries, 100);
-        entries
+        let mut turns = vec![Turn::default(); robots.len()];
+        decide(&entrants, &movers, &entries, &mut turns, 100);
+        turns
     }
 
-    fn waits(entries: &[Entry]) -> Vec<Option<usize>> {
+    fn waits(entries: &[Turn]) -> Vec<Option<usize>> {
         entries.iter().map(|entry| entry.waits_for).collect()
     }
 
@@ -378,7 +367,7 @@ mod tests {
     }
 
     /// Entries of a robot on the x axis and of one that is about to cross its way at x = 11, upwards.
-    fn crossed(x: f32) -> Vec<Entry> {
+    fn crossed(x: f32) -> Vec<Turn> {
         let points = (0..=10_u8).map(|i| Vector::new(11.0, f32::from(i) / 5.0 - 1.0)).collect();
         let across = [Passage { points, enters_at: 9.5, leaves_at: 7.5 }];
         let along = [passage(10.0, 14.0, x)];
@@ -388,9 +377,9 @@ mod tests {
         ];
         let entrants: Vec<Entrant> =
             movers.iter().enumerate().filter_map(|(i, me)| Entrant::new(i, me)).collect();
-        let mut entries = vec![Entry::default(); 2];
-        decide(&entrants, &movers, &mut entries, 100);
-        entries
+        let mut turns = vec![Turn::default(); 2];
+        decide(&entrants, &movers, &[Entry::default(); 2], &mut turns, 100);
+        turns
     }
 
     #[test]

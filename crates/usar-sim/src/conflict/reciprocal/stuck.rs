@@ -1,7 +1,9 @@
 //! What stuck robots do: they ask the robots in their way to make room.
 
-use super::super::{Mover, Resolver, wait_cycles};
-use crate::event::{Event, EventLog};
+use super::super::{Step, wait_cycles};
+use super::Reciprocal;
+use crate::event::Event;
+use crate::model::ReciprocalModel;
 
 /// A robot asks a moving robot to make room only if the cosine between their directions is smaller than this.
 /// Robots in similar directions get on by themselves.
@@ -11,17 +13,18 @@ const ALONG: f32 = 0.3;
 /// of its preferred speed.
 const SLOWED: f32 = 0.9;
 
-impl Resolver {
+impl Step<'_, '_, ReciprocalModel, Reciprocal> {
     /// The robot with the best claim on each ring of stuck robots. On a ring, every robot is in the way of
     /// another, and none can get on by itself. So the leader may push the next robot whatever their
     /// directions.
-    pub(super) fn leaders_of_jams(&self, movers: &[Mover]) -> Vec<usize> {
+    pub(super) fn leaders_of_jams(&self) -> Vec<usize> {
+        let movers = &*self.movers;
         let is_stuck =
-            |i: &usize| movers[*i].stalled_steps >= self.stuck_steps && movers[*i].wishes_to_move();
+            |i: &usize| movers[*i].stalled_steps >= self.rules.stuck && movers[*i].wishes_to_move();
         if !(0..movers.len()).any(|i| is_stuck(&i)) {
             return Vec::new();
         }
-        let in_the_way = |i: usize| Some(i).filter(is_stuck).and_then(|i| self.robot_in_the_way(i, movers));
+        let in_the_way = |i: usize| Some(i).filter(is_stuck).and_then(|i| self.robot_in_the_way(i));
         let waits_for: Vec<Option<usize>> = (0..movers.len()).map(in_the_way).collect();
         let claim = |a: &usize, b: &usize| {
             let longest_first = movers[*b].stalled_steps.cmp(&movers[*a].stalled_steps);
@@ -32,54 +35,56 @@ impl Resolver {
     }
 
     /// Lets a robot ask a parked robot that slows it down to make room. Returns whether the parked robot does.
-    fn ask_parked(&mut self, i: usize, movers: &[Mover], log: &mut EventLog) -> bool {
-        let blocker = self.parked_robot_that_slows(i, movers);
-        let steps = &mut self.blocked_steps[i];
+    fn ask_parked(&mut self, i: usize) -> bool {
+        let blocker = self.parked_robot_that_slows(i);
+        let steps = &mut self.state.blocked_steps[i];
         *steps = if blocker.is_some() { *steps + 1 } else { 0 };
-        let is_due = *steps == 1 || steps.is_multiple_of(self.ask_again);
-        let asked = blocker.filter(|blocker| is_due && !self.retreats.serves(i, *blocker));
-        asked.is_some_and(|blocker| self.make_room(i, blocker, movers, log))
+        let is_due = *steps == 1 || steps.is_multiple_of(self.rules.ask_again);
+        let asked = blocker.filter(|blocker| is_due && !self.state.retreats.serves(i, *blocker));
+        asked.is_some_and(|blocker| self.make_room(i, blocker))
     }
 
-    fn parked_robot_that_slows(&self, i: usize, movers: &[Mover]) -> Option<usize> {
+    fn parked_robot_that_slows(&self, i: usize) -> Option<usize> {
+        let movers = &*self.movers;
         let me = &movers[i];
         let is_parked = |j: &usize| !movers[*j].wishes_to_move();
         let is_slowed = self.directives[i].velocity().dot(me.wish) < SLOWED * me.wish.length_squared();
-        let may_ask = is_slowed && self.entries[i].waits_for.is_none();
-        if !may_ask || !self.neighbours.of(i).iter().any(is_parked) {
+        let may_ask = is_slowed && self.turn(i).waits_for.is_none();
+        if !may_ask || !self.scratch.neighbours.of(i).iter().any(is_parked) {
             return None;
         }
-        self.robot_in_the_way(i, movers).filter(is_parked)
+        self.robot_in_the_way(i).filter(is_parked)
     }
 
     /// Lets a robot ask the robot in its way to make room: a parked one as soon as it slows the robot down,
     /// any other once the robot comes no nearer to its goal.
-    pub(super) fn push(&mut self, i: usize, movers: &[Mover], leaders: &[usize], log: &mut EventLog) {
-        if self.ask_parked(i, movers, log) {
+    pub(super) fn push(&mut self, i: usize, leaders: &[usize]) {
+        if self.ask_parked(i) {
             return;
         }
-        let me = &movers[i];
+        let me = &self.movers[i];
         let is_due = me.stalled_steps > 0
-            && (me.stalled_steps.is_multiple_of(self.ask_again) || me.stalled_steps == self.stuck_steps);
-        if !is_due || !me.wishes_to_move() || self.entries[i].waits_for.is_some() {
+            && (me.stalled_steps.is_multiple_of(self.rules.ask_again)
+                || me.stalled_steps == self.rules.stuck);
+        if !is_due || !me.wishes_to_move() || self.turn(i).waits_for.is_some() {
             return;
         }
-        let Some(blocker) = self.robot_in_the_way(i, movers) else { return };
-        if self.retreats.serves(i, blocker) {
+        let Some(blocker) = self.robot_in_the_way(i) else { return };
+        if self.state.retreats.serves(i, blocker) {
             return;
         }
-        if me.stalled_steps == self.stuck_steps {
-            log.push(Event::Deadlocked { robots: vec![me.robot, movers[blocker].robot] });
+        if me.stalled_steps == self.rules.stuck {
+            self.log.push(Event::Deadlocked { robots: vec![me.robot, self.movers[blocker].robot] });
         }
-        if !movers[blocker].wishes_to_move() || leaders.contains(&i) || self.may_push(i, blocker, movers) {
-            self.make_room(i, blocker, movers, log);
+        if !self.movers[blocker].wishes_to_move() || leaders.contains(&i) || self.may_push(i, blocker) {
+            self.make_room(i, blocker);
         }
     }
 
     /// Whether a robot may ask another robot with a goal of its own to make room.
-    fn may_push(&self, i: usize, blocker: usize, movers: &[Mover]) -> bool {
-        let (me, other) = (&movers[i], &movers[blocker]);
-        let goes_after = match (self.entries[i].rank, self.entries[blocker].rank) {
+    fn may_push(&self, i: usize, blocker: usize) -> bool {
+        let (me, other) = (&self.movers[i], &self.movers[blocker]);
+        let goes_after = match (self.turn(i).rank, self.turn(blocker).rank) {
             (Some(mine), Some(its)) => its < mine,
             _ => false,
         };
@@ -87,7 +92,7 @@ impl Resolver {
             let longest_first = other.stalled_steps.cmp(&me.stalled_steps);
             longest_first.then(me.priority.precedence(&other.priority)).is_lt()
         };
-        me.stalled_steps >= self.stuck_steps
+        me.stalled_steps >= self.rules.stuck
             && !goes_after
             && me.wish.normalize_or_zero().dot(other.wish.normalize_or_zero()) < ALONG
             && has_better_claim()
@@ -96,9 +101,8 @@ impl Resolver {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
     use crate::conflict::Directive;
-    use crate::conflict::testing::{mover, resolver};
+    use crate::conflict::testing::{Bench, mover};
     use crate::ids::RobotId;
 
     /// Robots that make room when a robot drives east towards robots that stand on a line across its way.
@@ -107,12 +111,12 @@ mod tests {
         movers[0].velocity = movers[0].wish;
         let at = |y: &f32| [5.8 + gap, *y];
         movers.extend((1..).zip(standing).map(|(id, y)| mover(id, at(y), [0.0, 0.0])));
-        let mut resolver = resolver();
-        resolver.resolve(&mut movers, &mut EventLog::default());
-        let directives = resolver.resolve(&mut movers, &mut EventLog::default()).iter();
+        let mut bench = Bench::new();
+        bench.resolve(&mut movers);
+        let directives = bench.resolve(&mut movers);
         let makes_room = |directive: &Directive| matches!(directive, Directive::Retreat { .. });
         (0..)
-            .zip(directives)
+            .zip(&directives)
             .filter(|(_, directive)| makes_room(directive))
             .map(|(i, _)| RobotId(i))
             .collect()

@@ -50,7 +50,7 @@ pub(super) fn told(simulation: &Simulation) -> impl Iterator<Item = ToldEvent> +
     let scenario = simulation.scenario();
     let tasks: Vec<&str> = scenario.tasks.iter().map(|task| task.name.as_str()).collect();
     let (step, dt_s) = (simulation.steps(), scenario.dt_s);
-    let layout = &simulation.model().layout;
+    let layout = simulation.layout();
     simulation.events().iter().map(move |event| {
         let names = Names { tasks: &tasks, debris: &layout.debris, zones: &layout.zones };
         ToldEvent::new(step, dt_s, event, names)

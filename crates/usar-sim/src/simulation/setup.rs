@@ -1,0 +1,33 @@
+//! What a trial is set up from.
+
+use std::sync::Arc;
+
+use crate::model::{Layout, Model};
+use crate::scenario::{LayoutError, Scenario};
+
+/// What a trial is set up from: its scenario, what was drawn from its seed, and the model compiled from both.
+/// Nothing in it changes.
+pub(super) struct Setup {
+    /// The scenario with its distributions, if it has any.
+    given: Option<Scenario>,
+    /// The scenario, with the values drawn from its distributions for this trial.
+    pub(super) scenario: Scenario,
+    pub(super) layout: Layout,
+    pub(super) model: Model,
+}
+
+impl Setup {
+    /// Draws what the seed decides.
+    pub(super) fn new(scenario: &Scenario, seed: u64) -> Result<Arc<Self>, LayoutError> {
+        let given = (!scenario.draws.is_empty()).then(|| scenario.clone());
+        let scenario = scenario.of_trial(seed)?;
+        let layout = Layout::sample(&scenario, seed)?;
+        let model = Model::compile(&scenario, &layout, seed);
+        Ok(Arc::new(Self { given, scenario, layout, model }))
+    }
+
+    /// The scenario as it was given, with its distributions.
+    pub(super) fn given(&self) -> &Scenario {
+        self.given.as_ref().unwrap_or(&self.scenario)
+    }
+}
