@@ -111,7 +111,7 @@ impl Invariants {
     pub fn new(model: &Model, world: &World) -> Self {
         let fastest = |aerial: bool| {
             let layer = world.robots.iter().filter(|robot| robot.is_aerial() == aerial);
-            layer.map(|robot| robot.spec.speed_mps as f32).fold(0.0, f32::max)
+            layer.map(|robot| robot.spec.top_speed).fold(0.0, f32::max)
         };
         let mut overlaps = Gauge::new(model, world);
         overlaps.measure(world);

@@ -92,12 +92,12 @@ impl Mission {
     /// detour takes.
     pub(super) fn is_held_up(&self, robot: &Robot, scene: &Scene) -> bool {
         let watch = &self.agents[robot.id.index()].watch;
-        let limit_s = scene.model.mission.cut_off_s;
-        if watch.held_up_steps <= scene.model.steps_in(limit_s) {
+        let rules = &scene.model.mission;
+        if watch.held_up_steps <= rules.cut_off_steps {
             return false;
         }
         let detour_s = f64::from(watch.allowed_way_m()) / self.speed_of(scene.model, robot).max(1e-6);
-        watch.held_up_steps > scene.model.steps_in(limit_s + detour_s)
+        watch.held_up_steps > scene.model.steps_in(rules.cut_off_s + detour_s)
     }
 
     /// Why a robot cannot get to its goal; `None` if it has arrived or still makes progress.

@@ -3,6 +3,7 @@
 
 use parry2d::math::Vector;
 
+use crate::geometry::vector;
 use crate::scenario::{RoleKind, Scenario, TaskFile};
 
 /// Least distance between the lanes of a sweep, in metres: a robot that sees only a few millimetres cannot
@@ -34,7 +35,6 @@ impl TaskArea {
     /// places of all `robots`, so that waiting robots share its resources.
     #[must_use]
     pub fn new(scenario: &Scenario, file: &TaskFile, home: Vector, robots: usize) -> Self {
-        let vector = |[x, y]: [f64; 2]| Vector::new(x as f32, y as f32);
         let (center, half) = (vector(file.center), vector(file.size_m) / 2.0);
         let spacing = |kind| 2.0 * scenario.largest_radius_m(kind) as f32 + MUSTER_GAP_M;
         let mut area = Self {

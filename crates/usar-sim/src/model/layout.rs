@@ -9,7 +9,7 @@ use rand::rngs::ChaCha8Rng;
 use rne_core::{RoleId, TaskId};
 
 use super::places::{rescuee_places, rest_slot};
-use crate::geometry::Places;
+use crate::geometry::{Places, vector};
 use crate::ids::RobotId;
 use crate::planning::Planner;
 use crate::scenario::{
@@ -341,8 +341,4 @@ impl KeepClear {
             .map(|number| &self.list[number])
             .all(|(place, own)| libm::hypot(at[0] - place[0], at[1] - place[1]) >= radius + own)
     }
-}
-
-fn vector(at: Point) -> Vector {
-    Vector::new(at[0] as f32, at[1] as f32)
 }

@@ -3,6 +3,7 @@
 use parry2d::math::Vector;
 use rne_core::GroupSizes;
 
+use crate::geometry::vector;
 use crate::ids::RobotId;
 use crate::scenario::{
     EmptyTasks, Errand, LoadAtRest, MissionRules, RestAtHome, RestFills, RoundEnd, TurnBack,
@@ -55,6 +56,8 @@ pub struct MissionModel {
     /// A robot that comes no nearer to its goal for this long, in seconds, gives up on it. A detour adds the
     /// time that it takes.
     pub cut_off_s: f64,
+    /// The same in steps.
+    pub cut_off_steps: u64,
 }
 
 impl MissionModel {
@@ -80,6 +83,7 @@ impl MissionModel {
             blind_speed: 1.0 - rules.blind_speed_loss,
             load_speed_loss: rules.load_speed_loss,
             cut_off_s: rules.cut_off_s,
+            cut_off_steps: steps(rules.cut_off_s),
         }
     }
 }
@@ -95,7 +99,6 @@ pub struct ErrandModel {
 
 impl ErrandModel {
     pub(super) fn compile(errand: &Errand) -> Self {
-        let place = |[x, y]: &[f64; 2]| Vector::new(*x as f32, *y as f32);
-        Self { robot: RobotId(errand.robot), to: errand.to.iter().map(place).collect() }
+        Self { robot: RobotId(errand.robot), to: errand.to.iter().copied().map(vector).collect() }
     }
 }

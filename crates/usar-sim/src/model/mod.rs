@@ -32,7 +32,7 @@ pub use robot::{RobotModel, RobotSpec};
 pub use task::TaskModel;
 pub use timeline::{Action, Due};
 
-use crate::geometry::RadiationZone;
+use crate::geometry::{RadiationZone, vector};
 use crate::planning::{Inflation, Planner};
 use crate::scenario::{Measure, NeedFile, Scenario, ZoneFile};
 
@@ -109,7 +109,6 @@ impl Model {
     #[must_use]
     pub fn compile(scenario: &Scenario, layout: &Layout, seed: u64) -> Self {
         let dt_s = scenario.dt_s;
-        let [width, height] = scenario.arena_m;
         let robots = RobotModel::compile_all(scenario, &layout.robots);
         let home = robots.iter().map(|robot| robot.home).sum::<Vector>() / robots.len() as f32;
         let rescuees = RescueeModel::compile_all(scenario);
@@ -126,7 +125,7 @@ impl Model {
             dt_s,
             dt: dt_s as f32,
             steps: scenario.steps(),
-            arena: Vector::new(width as f32, height as f32),
+            arena: vector(scenario.arena_m),
             roles: scenario.roles.iter().map(|role| role.name.clone()).collect(),
             needs: scenario.needs.iter().map(need).collect(),
             tasks: TaskModel::compile_all(scenario, &rescuees, home),

@@ -5,6 +5,7 @@ use std::ops::Range;
 use parry2d::math::Vector;
 use rne_core::TaskId;
 
+use crate::geometry::vector;
 use crate::ids::RobotId;
 use crate::scenario::{Happening, RoleKind, Scenario, TaskFile};
 
@@ -25,7 +26,7 @@ pub fn rest_slot(scenario: &Scenario, task: TaskId, robot: RobotId) -> Vector {
     let center = scenario.tasks[task.index()].rest;
     let x = center[0] + offset(robot.0 % columns, columns);
     let y = center[1] + offset(robot.0 / columns, rows);
-    Vector::new(x as f32, y as f32)
+    vector([x, y])
 }
 
 /// The task and the place of each rescuee, by id. Rescuees are ordered by task. Those of the task's own
@@ -75,7 +76,7 @@ fn grid(task: &TaskFile) -> impl Iterator<Item = Vector> + '_ {
     let place = move |column: u32, row: u32| {
         let x = along(column, task.grid[0], task.center[0], task.size_m[0]);
         let y = along(row, task.grid[1], task.center[1], task.size_m[1]);
-        Vector::new(x as f32, y as f32)
+        vector([x, y])
     };
     (0..task.grid[1]).flat_map(move |row| (0..task.grid[0]).map(move |column| place(column, row)))
 }
@@ -85,6 +86,6 @@ fn cells_of(task: &TaskFile, [columns, rows]: [u32; 2]) -> impl Iterator<Item = 
     let along = |k: usize, i: u32, count: u32| {
         task.center[k] + task.size_m[k] * ((f64::from(i) + 0.5) / f64::from(count) - 0.5)
     };
-    let place = move |column, row| Vector::new(along(0, column, columns) as f32, along(1, row, rows) as f32);
+    let place = move |column, row| vector([along(0, column, columns), along(1, row, rows)]);
     (0..rows).flat_map(move |row| (0..columns).map(move |column| place(column, row)))
 }

@@ -2,6 +2,7 @@
 
 use parry2d::math::Vector;
 
+use crate::geometry::vector;
 use crate::scenario::{PriorityRule, ResolverRule, Scenario};
 
 /// How long a deadlocked set backs off, in seconds.
@@ -136,7 +137,6 @@ impl RightOfWayModel {
     pub fn compile(scenario: &Scenario) -> Self {
         let steps = |seconds: f64| (seconds / scenario.dt_s).round() as u32;
         let values = scenario.conflicts.right_of_way();
-        let [width, height] = scenario.arena_m;
         let ask_again = steps(ASK_AGAIN_S).max(1);
         let retreats = RetreatModel {
             underway: steps(RETREAT_PATIENCE_S),
@@ -145,7 +145,7 @@ impl RightOfWayModel {
             margin: values.margin_m as f32,
             speed: 1.0,
             goes_on_within: Some(GOES_ON_WITHIN_M),
-            arena: Vector::new(width as f32, height as f32),
+            arena: vector(scenario.arena_m),
         };
         Self {
             priority: scenario.conflicts.priority,

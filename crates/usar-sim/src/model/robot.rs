@@ -47,6 +47,8 @@ pub struct RobotSpec {
     pub energy: f64,
     /// Top speed, in metres per second.
     pub speed_mps: f64,
+    /// The same in the precision of the physics.
+    pub top_speed: f32,
     /// Greatest acceleration and braking of the drive, in metres per second squared.
     pub acceleration: f32,
     /// Deceleration that it plans with, in metres per second squared.
@@ -78,6 +80,7 @@ impl RobotSpec {
             hp: body.hp,
             energy: body.energy,
             speed_mps: body.speed_mps,
+            top_speed: body.speed_mps as f32,
             acceleration,
             braking: PLANNED_BRAKING * acceleration,
             greatest_change: (body.acceleration_mps2 * scenario.dt_s) as f32,

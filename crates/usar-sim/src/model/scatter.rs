@@ -1,10 +1,9 @@
 //! Places of scattered things, drawn anew in every trial.
 
-use parry2d::math::Vector;
 use rand::RngExt;
 
 use super::layout::{Attempt, KeepClear, Layout, SAMPLING_TRIES};
-use crate::geometry::{Outline, Places};
+use crate::geometry::{Outline, Places, vector};
 use crate::scenario::{DebrisFile, DebrisShape, LayoutError, Placement, Point, Scatter, Scattered, ZoneFile};
 use crate::seed::{Purpose, stream};
 
@@ -105,7 +104,7 @@ impl Placed<'_> {
         is_clear
             && match self.entry.what {
                 Scattered::Debris => {
-                    let point = Vector::new(at[0] as f32, at[1] as f32);
+                    let point = vector(at);
                     let free = radius + gap.unwrap_or_default();
                     // The gap holds between things of this entry; other debris is only not overlapped.
                     self.ground.places.near(point, free as f32).into_iter().all(|number| {

@@ -29,7 +29,7 @@ pub use search::Meshes;
 
 use parry2d::math::Vector;
 
-use crate::geometry::{Outline, RadiationZone};
+use crate::geometry::{Outline, RadiationZone, vector};
 use crate::scenario::{RoleKind, Scenario};
 use obstacles::ZONE_MARGIN_M;
 use search::Search;
@@ -75,7 +75,7 @@ impl Planner {
     pub fn new(scenario: &Scenario) -> Self {
         let clearance = scenario.planning.clearance_m;
         Self {
-            arena: Vector::new(scenario.arena_m[0] as f32, scenario.arena_m[1] as f32),
+            arena: vector(scenario.arena_m),
             ground: scenario
                 .ground_radii_m()
                 .into_iter()

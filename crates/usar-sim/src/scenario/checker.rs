@@ -20,20 +20,21 @@ pub(super) struct Checker {
 impl Checker {
     /// Notes a broken rule, unless there are [`MAX_PROBLEMS`] already.
     pub(super) fn fail(&mut self, field: impl Into<String>, rule: impl Into<String>, found: impl Display) {
-        self.fail_with(field, (rule.into(), String::new()), found);
+        self.fail_with(field, rule, String::new(), found);
     }
 
     /// Notes a broken rule with a hint.
     pub(super) fn fail_with(
         &mut self,
         field: impl Into<String>,
-        (rule, hint): (String, String),
+        rule: impl Into<String>,
+        hint: String,
         found: impl Display,
     ) {
         if self.problems.len() >= MAX_PROBLEMS {
             return;
         }
-        let (field, found) = (field.into(), found.to_string());
+        let (field, rule, found) = (field.into(), rule.into(), found.to_string());
         self.problems.push(Problem { field, rule, found, hint, ..Problem::default() });
     }
 
@@ -52,7 +53,7 @@ impl Checker {
             let hint = other_unit
                 .map_or(String::new(), |other| format!("is the unit right? {other} would be in range"));
             let found = if value.abs() < 1e15 { value.to_string() } else { format!("{value:e}") };
-            self.fail_with(field, (rule, hint), found);
+            self.fail_with(field, rule, hint, found);
         }
     }
 

@@ -1,11 +1,67 @@
-//! The rules of debris and radiation zones.
+//! Debris and radiation zones, and their rules.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 use super::checker::Checker;
-use super::file::{DebrisFile, DebrisShape, Door, Point, ScenarioFile, WallFile};
+use super::file::{Door, Point, ScenarioFile, WallFile};
 use crate::limits;
 
 /// Least width of a polygon in every direction, in metres: less is flat in single precision.
 pub const LEAST_POLYGON_WIDTH_M: f64 = 0.01;
+
+/// A piece of debris.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct DebrisFile {
+    /// Its outline.
+    pub shape: DebrisShape,
+    /// Its centre (for a polygon: the origin of its points).
+    pub at: Point,
+    /// Rotation, in degrees anticlockwise.
+    #[serde(default)]
+    pub rotation_deg: f64,
+    /// Mass and friction of debris that a robot can push; absent for fixed debris.
+    #[serde(default)]
+    pub movable: Option<Movable>,
+    /// A name, by which an event of the timeline can clear it away.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub name: Option<String>,
+}
+
+/// Outline of a piece of debris.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub enum DebrisShape {
+    /// A disc of this radius in metres.
+    Disc(f64),
+    /// A rectangle of this width and height in metres.
+    Box(f64, f64),
+    /// A convex polygon: its corners in metres, anticlockwise.
+    Polygon(Vec<Point>),
+}
+
+/// Debris that can be pushed; `movable: ()` has the defaults: 40 kg, friction 0.5.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct Movable {
+    /// Mass, in kilograms.
+    pub mass_kg: f64,
+    /// Coefficient of friction with the ground.
+    pub friction: f64,
+}
+
+/// A radiation zone: a source and the radius of its effect.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ZoneFile {
+    /// The source.
+    pub at: Point,
+    /// Radius, in metres.
+    pub radius_m: f64,
+    /// A name, by which an event of the timeline can end it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub name: Option<String>,
+}
 
 pub(super) fn debris(check: &mut Checker, file: &ScenarioFile) {
     for (i, file) in file.debris.iter().enumerate() {

@@ -10,6 +10,7 @@ use rne_core::hierarchy::NeedLevel;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+pub use super::debris::{DebrisFile, DebrisShape, Movable, ZoneFile};
 pub use super::distribution::{Amount, Distribution};
 pub use super::draws::Draws;
 pub use super::rules::*;
@@ -301,59 +302,6 @@ pub struct TaskFile {
     /// Names of the tasks after which it should be done. For policies.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub after: Vec<String>,
-}
-
-/// A piece of debris.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct DebrisFile {
-    /// Its outline.
-    pub shape: DebrisShape,
-    /// Its centre (for a polygon: the origin of its points).
-    pub at: Point,
-    /// Rotation, in degrees anticlockwise.
-    #[serde(default)]
-    pub rotation_deg: f64,
-    /// Mass and friction of debris that a robot can push; absent for fixed debris.
-    #[serde(default)]
-    pub movable: Option<Movable>,
-    /// A name, by which an event of the timeline can clear it away.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub name: Option<String>,
-}
-
-/// Outline of a piece of debris.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub enum DebrisShape {
-    /// A disc of this radius in metres.
-    Disc(f64),
-    /// A rectangle of this width and height in metres.
-    Box(f64, f64),
-    /// A convex polygon: its corners in metres, anticlockwise.
-    Polygon(Vec<Point>),
-}
-
-/// Debris that can be pushed; `movable: ()` has the defaults: 40 kg, friction 0.5.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, default)]
-pub struct Movable {
-    /// Mass, in kilograms.
-    pub mass_kg: f64,
-    /// Coefficient of friction with the ground.
-    pub friction: f64,
-}
-
-/// A radiation zone: a source and the radius of its effect.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct ZoneFile {
-    /// The source.
-    pub at: Point,
-    /// Radius, in metres.
-    pub radius_m: f64,
-    /// A name, by which an event of the timeline can end it.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub name: Option<String>,
 }
 
 /// What is drawn where a task asks for sampled debris or radiation.

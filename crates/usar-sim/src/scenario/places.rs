@@ -7,7 +7,7 @@ use super::file::{
     ConflictRules, DebrisFile, DebrisShape, ResolverRule, RightOfWay, RoleFile, Row, ScenarioFile, WallFile,
     ZoneFile,
 };
-use crate::geometry::{Outline, RadiationZone};
+use crate::geometry::{Outline, RadiationZone, vector};
 
 impl DebrisFile {
     /// The outline of a piece of debris as the scenario places it. The shape must have been validated.
@@ -19,15 +19,13 @@ impl DebrisFile {
                 SharedShape::cuboid((*width / 2.0) as f32, (*height / 2.0) as f32)
             }
             DebrisShape::Polygon(corners) => {
-                let corners: Vec<Vector> =
-                    corners.iter().map(|[x, y]| Vector::new(*x as f32, *y as f32)).collect();
+                let corners: Vec<Vector> = corners.iter().copied().map(vector).collect();
                 SharedShape::convex_hull(&corners).unwrap_or_else(|| SharedShape::ball(0.1))
             }
         };
         let angle = self.rotation_deg.to_radians() as f32;
         let rotation = Rotation::from_cos_sin_unchecked(libm::cosf(angle), libm::sinf(angle));
-        let at = Vector::new(self.at[0] as f32, self.at[1] as f32);
-        Outline { shape, pose: Pose::from_parts(at, rotation) }
+        Outline { shape, pose: Pose::from_parts(vector(self.at), rotation) }
     }
 }
 
@@ -115,10 +113,7 @@ impl ZoneFile {
     /// The radiation zone at its place.
     #[must_use]
     pub fn zone(&self) -> RadiationZone {
-        RadiationZone {
-            center: Vector::new(self.at[0] as f32, self.at[1] as f32),
-            radius: self.radius_m as f32,
-        }
+        RadiationZone { center: vector(self.at), radius: self.radius_m as f32 }
     }
 }
 

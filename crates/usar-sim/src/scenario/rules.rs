@@ -1,9 +1,13 @@
 //! The rules of a scenario as they are written: costs, the mission, planning and right of way.
 
 use rne_core::GroupSizes;
+use ron_fields::limits::Limit;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::checker::Checker;
+use super::file::ScenarioFile;
+use crate::limits;
 use crate::vitals::{Rates, WorkRates};
 
 /// What moving, radiation and work cost.
@@ -229,4 +233,52 @@ pub struct RightOfWay {
     pub horizon_s: f64,
     /// Steps without motion after which a conflict set counts as deadlocked.
     pub deadlock_steps: u32,
+}
+
+/// Checks the values of all rules.
+pub(super) fn rules(check: &mut Checker, file: &ScenarioFile) {
+    let mut rates = |field: &str, rates: &Rates| {
+        check.number(format!("{field}.per_step"), rates.per_step, limits::RATE);
+        check.number(format!("{field}.per_metre"), rates.per_metre, limits::RATE);
+        check.number(format!("{field}.per_second"), rates.per_second, limits::RATE);
+    };
+    rates("costs.energy", &file.costs.energy);
+    rates("costs.hp", &file.costs.hp);
+    let work = &file.costs.work;
+    check.number("costs.work.energy_per_second", work.energy_per_second, limits::WORK_RATE);
+    check.number("costs.work.hp_per_second", work.hp_per_second, limits::WORK_RATE);
+    let mission = &file.mission;
+    check.number("mission.energy_threshold", mission.energy_threshold, limits::THRESHOLD);
+    check.number("mission.hp_threshold", mission.hp_threshold, limits::THRESHOLD);
+    check.number("mission.rest_reserve", mission.rest_reserve, limits::REST_RESERVE);
+    check.number("mission.rest_s", mission.rest_s, limits::REST_S);
+    check.number("mission.loading_s", mission.loading_s, limits::LOADING_S);
+    let least_reach = file.least_reach_m();
+    check.number("mission.reach_m", mission.reach_m, Limit { least: least_reach, ..limits::REACH_M });
+    check.number(
+        "mission.area_margin_m",
+        mission.area_margin_m,
+        Limit { least: least_reach, ..limits::AREA_MARGIN_M },
+    );
+    check.number("mission.blind_speed_loss", mission.blind_speed_loss, limits::BLIND_SPEED_LOSS);
+    check.number("mission.load_speed_loss", mission.load_speed_loss, limits::LOAD_SPEED_LOSS);
+    check.number("mission.health_floor", mission.health_floor, limits::HEALTH_FLOOR);
+    check.number("mission.cut_off_s", mission.cut_off_s, limits::CUT_OFF_S);
+    check.number("planning.clearance_m", file.planning.clearance_m, limits::CLEARANCE_M);
+    check.number("planning.exposure_price_m", file.planning.exposure_price_m, limits::EXPOSURE_PRICE_M);
+    if let ResolverRule::Rotation(rule) | ResolverRule::Swap(rule) = file.conflicts.resolver {
+        check.number("conflicts.resolver.margin_m", rule.margin_m, limits::MARGIN_M);
+        check.number("conflicts.resolver.horizon_s", rule.horizon_s, limits::HORIZON_S);
+        check.count("conflicts.resolver.deadlock_steps", rule.deadlock_steps, limits::DEADLOCK_STEPS);
+    }
+}
+
+impl ScenarioFile {
+    /// Least reach that lets a robot load a rescuee next to another robot: its own radius.
+    fn least_reach_m(&self) -> f64 {
+        let bodies = self.team.iter().filter_map(|row| self.body_of(row));
+        let roles = self.roles.iter().cloned().chain(bodies);
+        let carrying = roles.filter(|role| role.capacity > 0);
+        carrying.map(|role| role.radius_m).fold(0.0, f64::max)
+    }
 }

@@ -202,7 +202,8 @@ pub(super) fn timeline(check: &mut Checker, file: &ScenarioFile) {
         match &moment.event {
             Happening::DebrisFalls { .. } => {}
             Happening::Opens(name) | Happening::Closes(name) => {
-                named(check, &field, name, (&names, "must name a door or a piece of debris that has a name"));
+                let rule = "must name a door or a piece of debris that has a name";
+                named(check, &field, name, &names, rule);
                 if ways.iter().any(|way| way.name == name && !way.is_fixed) {
                     check.fail(&field, "must name fixed debris", format!("{name:?}, which can be pushed"));
                 }
@@ -212,7 +213,8 @@ pub(super) fn timeline(check: &mut Checker, file: &ScenarioFile) {
                 check.number(format!("{field}.radius_m"), *radius_m, limits::ZONE_RADIUS_M);
             }
             Happening::SourceDies(name) => {
-                named(check, &field, name, (&source_names, "must name a radiation source that has a name"));
+                let rule = "must name a radiation source that has a name";
+                named(check, &field, name, &source_names, rule);
             }
             Happening::RobotFails(robot) => self::robot(check, &field, *robot, file),
             Happening::RobotLoses { robot, energy, hp } => {
@@ -253,12 +255,12 @@ fn unique(check: &mut Checker, all: &[Named]) {
     }
 }
 
-fn named(check: &mut Checker, field: &str, name: &str, (known, rule): (&[&str], &str)) {
+fn named(check: &mut Checker, field: &str, name: &str, known: &[&str], rule: &str) {
     if !known.contains(&name) {
         let there =
             if known.is_empty() { "; there is none".to_owned() } else { format!(" ({})", known.join(", ")) };
-        let rule = (format!("{rule}{there}"), meant(name, known.iter().copied()));
-        check.fail_with(field, rule, shown(name));
+        let hint = meant(name, known.iter().copied());
+        check.fail_with(field, format!("{rule}{there}"), hint, shown(name));
     }
 }
 
@@ -272,7 +274,7 @@ fn robot(check: &mut Checker, field: &str, robot: u32, file: &ScenarioFile) {
 fn task(check: &mut Checker, field: &str, name: &str, file: &ScenarioFile) {
     let known: Vec<&str> = file.tasks.iter().map(|task| task.name.as_str()).collect();
     if file.errands.is_empty() {
-        named(check, field, name, (&known, "must name a task"));
+        named(check, field, name, &known, "must name a task");
     } else {
         check.fail(field, "must be absent where there are errands: there are no tasks to do", shown(name));
     }

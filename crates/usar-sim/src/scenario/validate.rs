@@ -6,15 +6,14 @@ use super::checker::{Checker, entry, is_device, meant, names, shown};
 use super::debris::debris;
 use super::error::Problem;
 use super::file::{
-    Amount, Happening, Measure, NeedFile, Normal, ResolverRule, RoleFile, SampledCounts, ScenarioFile,
-    TaskFile,
+    Amount, Happening, Measure, NeedFile, Normal, RoleFile, SampledCounts, ScenarioFile, TaskFile,
 };
 use super::homes::homes_are_free;
+use super::rules::rules;
 use super::scatter::scatter;
 use super::sense::sense;
 use super::timeline::timeline;
 use crate::limits;
-use crate::vitals::Rates;
 
 /// All broken rules, in the order of the fields.
 pub(super) fn problems(file: &ScenarioFile) -> Vec<Problem> {
@@ -115,8 +114,8 @@ fn general(check: &mut Checker, file: &ScenarioFile) {
         } else {
             "it is of a newer program"
         };
-        let rule = (format!("must be {}", super::FORMAT), hint.to_owned());
-        check.fail_with("format", rule, file.format);
+        let rule = format!("must be {}", super::FORMAT);
+        check.fail_with("format", rule, hint.to_owned(), file.format);
     }
     let plain = |c: char| c.is_ascii_alphanumeric() || "-_.".contains(c);
     let is_name = limits::NAME_BYTES.allows(file.name.len()) && file.name.chars().all(plain);
@@ -139,7 +138,7 @@ fn team(check: &mut Checker, file: &ScenarioFile) {
         let Some(role) = file.body_of(row) else {
             let known: Vec<&str> = file.roles.iter().map(|role| role.name.as_str()).collect();
             let rule = format!("must be one of the roles ({})", known.join(", "));
-            check.fail_with(format!("{field}.role"), (rule, meant(&row.role, known)), shown(&row.role));
+            check.fail_with(format!("{field}.role"), rule, meant(&row.role, known), shown(&row.role));
             continue;
         };
         let radius = role.radius_m;
@@ -170,11 +169,7 @@ fn roles(check: &mut Checker, file: &ScenarioFile) {
                 let field = format!("{}.constants", entry("roles", &spec.name));
                 let constants = file.needs.iter().filter(|need| need.measures == Measure::Constant);
                 let hint = meant(name, constants.map(|need| need.name.as_str()));
-                check.fail_with(
-                    field,
-                    ("must name needs that measure Constant".to_owned(), hint),
-                    shown(name),
-                );
+                check.fail_with(field, "must name needs that measure Constant", hint, shown(name));
             }
         }
     }
@@ -267,8 +262,8 @@ fn tasks(check: &mut Checker, file: &ScenarioFile) {
             check.count(format!("{field}.quota.{role:?}"), *quota, limits::QUOTA);
             if !file.roles.iter().any(|known| known.name == *role) {
                 let known = file.roles.iter().map(|role| role.name.as_str());
-                let rule = ("must name roles of the scenario".to_owned(), meant(role, known));
-                check.fail_with(format!("{field}.quota"), rule, shown(role));
+                let (rule, hint) = ("must name roles of the scenario", meant(role, known));
+                check.fail_with(format!("{field}.quota"), rule, hint, shown(role));
             }
         }
     }
@@ -286,15 +281,15 @@ fn told_facts(check: &mut Checker, field: &str, file: &ScenarioFile, task: &Task
         check.number(format!("{field}.requires.{need:?}"), *least, limits::REQUIRED);
         if !file.needs.iter().any(|known| known.name == *need) {
             let known = file.needs.iter().map(|need| need.name.as_str());
-            let rule = ("must name needs of the scenario".to_owned(), meant(need, known));
-            check.fail_with(format!("{field}.requires"), rule, shown(need));
+            let (rule, hint) = ("must name needs of the scenario", meant(need, known));
+            check.fail_with(format!("{field}.requires"), rule, hint, shown(need));
         }
     }
     for other in &task.after {
         if *other == task.name || !file.tasks.iter().any(|known| known.name == *other) {
             let known = file.tasks.iter().map(|task| task.name.as_str());
-            let rule = ("must name other tasks of the scenario".to_owned(), meant(other, known));
-            check.fail_with(format!("{field}.after"), rule, shown(other));
+            let (rule, hint) = ("must name other tasks of the scenario", meant(other, known));
+            check.fail_with(format!("{field}.after"), rule, hint, shown(other));
         }
     }
 }
@@ -355,51 +350,4 @@ fn sampled(check: &mut Checker, file: &ScenarioFile) {
     }
     check.number("sampled.gap_m", sampled.gap_m, limits::GAP_M);
     check.number("sampled.strip_m", sampled.strip_m, limits::STRIP_M);
-}
-
-fn rules(check: &mut Checker, file: &ScenarioFile) {
-    let mut rates = |field: &str, rates: &Rates| {
-        check.number(format!("{field}.per_step"), rates.per_step, limits::RATE);
-        check.number(format!("{field}.per_metre"), rates.per_metre, limits::RATE);
-        check.number(format!("{field}.per_second"), rates.per_second, limits::RATE);
-    };
-    rates("costs.energy", &file.costs.energy);
-    rates("costs.hp", &file.costs.hp);
-    let work = &file.costs.work;
-    check.number("costs.work.energy_per_second", work.energy_per_second, limits::WORK_RATE);
-    check.number("costs.work.hp_per_second", work.hp_per_second, limits::WORK_RATE);
-    let mission = &file.mission;
-    check.number("mission.energy_threshold", mission.energy_threshold, limits::THRESHOLD);
-    check.number("mission.hp_threshold", mission.hp_threshold, limits::THRESHOLD);
-    check.number("mission.rest_reserve", mission.rest_reserve, limits::REST_RESERVE);
-    check.number("mission.rest_s", mission.rest_s, limits::REST_S);
-    check.number("mission.loading_s", mission.loading_s, limits::LOADING_S);
-    let least_reach = file.least_reach_m();
-    check.number("mission.reach_m", mission.reach_m, Limit { least: least_reach, ..limits::REACH_M });
-    check.number(
-        "mission.area_margin_m",
-        mission.area_margin_m,
-        Limit { least: least_reach, ..limits::AREA_MARGIN_M },
-    );
-    check.number("mission.blind_speed_loss", mission.blind_speed_loss, limits::BLIND_SPEED_LOSS);
-    check.number("mission.load_speed_loss", mission.load_speed_loss, limits::LOAD_SPEED_LOSS);
-    check.number("mission.health_floor", mission.health_floor, limits::HEALTH_FLOOR);
-    check.number("mission.cut_off_s", mission.cut_off_s, limits::CUT_OFF_S);
-    check.number("planning.clearance_m", file.planning.clearance_m, limits::CLEARANCE_M);
-    check.number("planning.exposure_price_m", file.planning.exposure_price_m, limits::EXPOSURE_PRICE_M);
-    if let ResolverRule::Rotation(rule) | ResolverRule::Swap(rule) = file.conflicts.resolver {
-        check.number("conflicts.resolver.margin_m", rule.margin_m, limits::MARGIN_M);
-        check.number("conflicts.resolver.horizon_s", rule.horizon_s, limits::HORIZON_S);
-        check.count("conflicts.resolver.deadlock_steps", rule.deadlock_steps, limits::DEADLOCK_STEPS);
-    }
-}
-
-impl ScenarioFile {
-    /// Least reach that lets a robot load a rescuee next to another robot: its own radius.
-    fn least_reach_m(&self) -> f64 {
-        let bodies = self.team.iter().filter_map(|row| self.body_of(row));
-        let roles = self.roles.iter().cloned().chain(bodies);
-        let carrying = roles.filter(|role| role.capacity > 0);
-        carrying.map(|role| role.radius_m).fold(0.0, f64::max)
-    }
 }

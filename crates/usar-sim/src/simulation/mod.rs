@@ -11,27 +11,21 @@ mod rescue;
 mod setup;
 mod state;
 mod timeline;
+mod view;
 
 use std::sync::Arc;
 
 use rne_core::{Asked, AssignmentError, Deadline, Decision, Member, Question, Session};
 use thiserror::Error;
 
-use crate::belief::Beliefs;
-use crate::conflict::Delay;
 use crate::event::Event;
 use crate::hash::PERIOD_STEPS;
-use crate::ids::RobotId;
 use crate::invariant::{Invariants, Overlaps};
 use crate::medium::Perfect;
-use crate::metrics::Metrics;
-use crate::mission::{Ending, Mission};
-use crate::model::{Layout, Model};
-use crate::navigation::Navigator;
+use crate::mission::Ending;
 use crate::record::{DecisionRecord, RobotRecord, Status, TaskRecord, TrialRecord};
 use crate::scenario::{LayoutError, Scenario};
 use crate::stage::Stage;
-use crate::tally::Tally;
 use crate::world::World;
 
 pub use checkpoint::Checkpoint;
@@ -290,113 +284,6 @@ impl Simulation {
             chain,
             rounds: metrics.rounds,
         }
-    }
-
-    /// The fixed part of this trial.
-    #[must_use]
-    pub fn model(&self) -> &Model {
-        &self.setup.model
-    }
-
-    /// The scenario, with the values drawn from its distributions for this trial.
-    #[must_use]
-    pub fn scenario(&self) -> &Scenario {
-        &self.setup.scenario
-    }
-
-    /// The scenario as it was given, with its distributions.
-    #[must_use]
-    pub fn given(&self) -> &Scenario {
-        self.setup.given()
-    }
-
-    /// What was drawn from the seed.
-    #[must_use]
-    pub fn layout(&self) -> &Layout {
-        &self.setup.layout
-    }
-
-    /// Seed of the trial.
-    #[must_use]
-    pub fn seed(&self) -> u64 {
-        self.model().seed
-    }
-
-    /// Steps done.
-    #[must_use]
-    pub fn steps(&self) -> u64 {
-        self.state.step
-    }
-
-    /// Simulated time, in seconds.
-    #[must_use]
-    pub fn time_s(&self) -> f64 {
-        self.state.step as f64 * self.model().dt_s()
-    }
-
-    /// The world as it is now.
-    #[must_use]
-    pub fn world(&self) -> &World {
-        &self.state.world
-    }
-
-    /// Mutable access to the world, for tests that inject faults. The next step starts from the changed
-    /// world; robots notice at its end what was changed of themselves.
-    pub fn world_mut(&mut self) -> &mut World {
-        &mut self.state.world
-    }
-
-    /// The mission as it is now.
-    #[must_use]
-    pub fn mission(&self) -> &Mission {
-        &self.state.mission
-    }
-
-    /// The beliefs of the groups and of the team at home as they are now.
-    #[must_use]
-    pub fn beliefs(&self) -> &Beliefs {
-        &self.state.beliefs
-    }
-
-    /// The journeys of the robots as they are now.
-    #[must_use]
-    pub fn navigator(&self) -> &Navigator {
-        &self.state.navigator
-    }
-
-    /// The metrics so far.
-    #[must_use]
-    pub fn metrics(&self) -> &Metrics {
-        &self.state.listeners.metrics
-    }
-
-    /// The groupings so far.
-    #[must_use]
-    pub fn decisions(&self) -> &[DecisionRecord] {
-        &self.state.listeners.decisions
-    }
-
-    /// The delay of each robot, by id.
-    pub fn delays(&self) -> impl Iterator<Item = Delay> + '_ {
-        self.state.listeners.metrics.robots.iter().map(Tally::delay)
-    }
-
-    /// The delay of a robot.
-    #[must_use]
-    pub fn delay(&self, robot: RobotId) -> Delay {
-        self.state.listeners.metrics.robots[robot.index()].delay()
-    }
-
-    /// The conflict sets of the last step: ids of their members, in order of precedence. The reciprocal rule
-    /// forms no sets.
-    pub fn conflict_sets(&self) -> impl Iterator<Item = &[usize]> {
-        self.state.resolver.sets()
-    }
-
-    /// The events of the last step.
-    #[must_use]
-    pub fn events(&self) -> &[Event] {
-        self.state.log.events()
     }
 
     pub(crate) fn state(&self) -> &State {

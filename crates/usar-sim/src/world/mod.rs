@@ -161,7 +161,7 @@ fn robot_body(robot: &Robot) -> RobotBody {
         is_aerial: robot.is_aerial(),
         radius: robot.radius(),
         mass: robot.spec.mass,
-        top_speed: robot.spec.speed_mps as f32,
+        top_speed: robot.spec.top_speed,
     }
 }
 
