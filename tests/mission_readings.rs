@@ -119,8 +119,8 @@ fn a_group_whose_observer_rests_is_without_one_if_the_reading_says_so() {
         let (mut slowed, mut rested) = (0_u32, 0_u32);
         watch(scenario, |simulation| {
             let (mission, world) = (simulation.mission(), simulation.world());
-            for group in &mission.groups {
-                let activity = |id: &RobotId| mission.agents[id.index()].activity;
+            for group in &mission.crew.groups {
+                let activity = |id: &RobotId| mission.crew.agents[id.index()].activity;
                 let observer = group.members.iter().find(|id| world.robots[id.index()].spec.guides);
                 let Some(observer) = observer.filter(|id| matches!(activity(id), Activity::Resting(_)))
                 else {
@@ -128,7 +128,7 @@ fn a_group_whose_observer_rests_is_without_one_if_the_reading_says_so() {
                 };
                 for id in group.members.iter().filter(|id| *id != observer && activity(id).is_in_field()) {
                     let robot = &world.robots[id.index()];
-                    let full = mission.speed_of(simulation.model(), robot) / robot.speed();
+                    let full = mission.crew.speed_of(simulation.model(), robot) / robot.speed();
                     rested += 1;
                     slowed += u32::from((full - 0.7).abs() < 1e-9);
                 }
@@ -210,13 +210,13 @@ fn work_costs_energy_hp_and_speed_if_the_reading_says_so() {
     watch(&costly, |simulation| {
         let now: Vec<[f64; 2]> = (0..12).map(|id| levels(simulation, RobotId(id))).collect();
         for robot in &simulation.world().robots {
-            let (id, agent) = (robot.id.index(), &simulation.mission().agents[robot.id.index()]);
+            let (id, agent) = (robot.id.index(), &simulation.mission().crew.agents[robot.id.index()]);
             let lost = |level: usize| before[id][level] - now[id][level];
             if matches!(agent.activity, Activity::Loading(..)) && simulation.time_s() > 1.0 {
                 loading += usize::from(lost(0) >= 0.02 - 1e-9 && lost(1) >= 0.004 - 1e-9);
             }
             if robot.load.len() == 3 && robot.spec.capacity == 6 {
-                let speed = simulation.mission().speed_of(simulation.model(), robot);
+                let speed = simulation.mission().crew.speed_of(simulation.model(), robot);
                 laden += usize::from((speed / robot.speed() - 0.75).abs() < 1e-9);
             }
         }
@@ -302,7 +302,7 @@ fn idle_robots_stay_at_home() {
         (robot.position - robot.home).length()
     });
     assert!(home < 0.5 && away > 5.0, "{home} {away}");
-    assert_eq!(trial.mission().agents[0].activity, Activity::Home);
+    assert_eq!(trial.mission().crew.agents[0].activity, Activity::Home);
 }
 
 #[test]

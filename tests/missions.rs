@@ -283,8 +283,8 @@ fn a_team_that_only_flies_waits_apart_and_shares_its_resources() {
     assert_eq!(simulation.step(&mut *policy("RNE")), None);
     let areas: Vec<_> = simulation.model().tasks.iter().map(|task| task.area).collect();
     let mission = simulation.mission();
-    for (area, group) in areas.iter().zip(&mission.groups) {
-        let muster = |robot: &RobotId| mission.agents[robot.index()].muster;
+    for (area, group) in areas.iter().zip(&mission.crew.groups) {
+        let muster = |robot: &RobotId| mission.crew.agents[robot.index()].muster;
         let places: Vec<_> = group.members.iter().map(muster).collect();
         for (i, place) in places.iter().enumerate() {
             assert!(area.contains(*place));

@@ -17,12 +17,12 @@ fn believed(trial: &Simulation) -> Vec<RescueeId> {
         own.filter(|id| known.get(*id).is_some_and(|known| known.waits_at.is_some()))
     };
     let ids = trial.model().task_ids().flat_map(of_task).map(|id| RescueeId(id as u32));
-    ids.filter(|id| trial.mission().claimed().by(*id).is_none()).collect()
+    ids.filter(|id| trial.mission().claims.by(*id).is_none()).collect()
 }
 
 /// The claim and the goal of each robot, until a robot is where it can touch what it claimed.
 fn decisions(trial: &Simulation) -> Vec<(Option<RescueeId>, Option<Goal>)> {
-    let agents = (0..).map(RobotId).zip(&trial.mission().agents);
+    let agents = (0..).map(RobotId).zip(&trial.mission().crew.agents);
     agents.map(|(id, agent)| (agent.activity.claim(), trial.navigator().traveller(id).goal())).collect()
 }
 
@@ -43,6 +43,7 @@ fn robots_go_for_rescuees_that_are_gone_until_somebody_says_so() {
         assert_eq!((trial.step(&mut *rne), changed.step(&mut *rne)), (None, None));
         if trial
             .mission()
+            .crew
             .agents
             .iter()
             .any(|agent| matches!(agent.activity, Activity::Loading(id, _) if gone.contains(&id)))
@@ -50,7 +51,7 @@ fn robots_go_for_rescuees_that_are_gone_until_somebody_says_so() {
             break; // a robot touches what it claimed: from here on, the truth may tell
         }
         assert_eq!(decisions(&trial), decisions(&changed), "at {} s", trial.time_s());
-        chased = gone.iter().filter(|id| changed.mission().claimed().by(**id).is_some()).count();
+        chased = gone.iter().filter(|id| changed.mission().claims.by(**id).is_some()).count();
     }
     assert!(chased > 0, "nobody went for a rescuee that is gone: the test shows nothing");
     (0..1_000).for_each(|_| assert_eq!(changed.step(&mut *rne), None));

@@ -218,7 +218,7 @@ impl Motion {
 
 impl RobotState {
     pub(crate) fn of(simulation: &Simulation, id: usize) -> Self {
-        let (robot, agent) = (&simulation.world().robots[id], &simulation.mission().agents[id]);
+        let (robot, agent) = (&simulation.world().robots[id], &simulation.mission().crew.agents[id]);
         let delay = simulation.delay(robot.id);
         let (activity, until) = match agent.activity {
             Activity::Home => (0, None),
@@ -308,7 +308,7 @@ impl Route {
 impl RescueeFrame {
     pub(crate) fn of(simulation: &Simulation, id: usize) -> Self {
         let rescuee = &simulation.world().rescuees[id];
-        let (state, robot) = match (rescuee.state, simulation.mission().claimed().by(rescuee.id)) {
+        let (state, robot) = match (rescuee.state, simulation.mission().claims.by(rescuee.id)) {
             (RescueeState::Waiting, None) => (0, None),
             (RescueeState::Waiting, by) => (1, by),
             (RescueeState::OnBoard(robot), _) => (2, Some(robot)),
@@ -353,7 +353,7 @@ impl MovedDebris {
 impl GroupFrame {
     /// Appends the numbers of a group's current belief.
     pub(crate) fn write_now(simulation: &Simulation, number: usize, out: &mut Vec<i32>) {
-        let group = simulation.mission().groups.get(number);
+        let group = simulation.mission().crew.groups.get(number);
         let belief = simulation.beliefs().of(group.map(|_| TaskId(number as u16)));
         let pieces = &simulation.world().debris;
         out.extend_from_slice(&[i32::from(group.is_some_and(|group| group.at_work)), 0]);

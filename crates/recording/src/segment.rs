@@ -90,7 +90,7 @@ impl Draft {
                 column.push(value, self.frames, field < POSITIONS);
             }
         }
-        let changes = Some([simulation.world().rescuees.changes(), simulation.mission().claimed().changes()]);
+        let changes = Some([simulation.world().rescuees.changes(), simulation.mission().claims.changes()]);
         for (stream, rows) in self.rows.iter_mut().enumerate() {
             if stream == RESCUEES && self.rescuee_changes == changes {
                 continue;

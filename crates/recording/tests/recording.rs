@@ -55,7 +55,7 @@ fn assert_is_now(recording: &Recording, number: usize, now: &Simulation) {
         near(kept.motion.velocity_mm_s[1], robot.velocity.y.into(), "vy");
         near(kept.motion.energy_millipercent, robot.energy, "energy");
         near(kept.motion.hp_millipercent, robot.hp, "hp");
-        let (agent, delay) = (&now.mission().agents[robot.id.index()], now.delay(robot.id));
+        let (agent, delay) = (&now.mission().crew.agents[robot.id.index()], now.delay(robot.id));
         let activity = format!("{:?}", agent.activity).to_lowercase();
         let name = codes.activities[usize::from(kept.state.activity)].replace('_', "");
         assert!(activity.starts_with(&name), "{activity} {name}");
@@ -82,7 +82,7 @@ fn assert_is_now(recording: &Recording, number: usize, now: &Simulation) {
     }
     for (kept, rescuee) in frame.rescuees.iter().zip(now.world().rescuees.iter()) {
         let (state, robot) = match rescuee.state {
-            RescueeState::Waiting => match now.mission().claimed().by(rescuee.id) {
+            RescueeState::Waiting => match now.mission().claims.by(rescuee.id) {
                 None => ("waiting", None),
                 by => ("claimed", by),
             },
@@ -98,9 +98,9 @@ fn assert_is_now(recording: &Recording, number: usize, now: &Simulation) {
         near(kept.position_mm[1], piece.pose.translation.y.into(), "debris y");
         assert_eq!(kept.sightings as usize, piece.sightings.len());
     }
-    let tasks = (0..now.mission().groups.len() as u16).map(TaskId);
+    let tasks = (0..now.mission().crew.groups.len() as u16).map(TaskId);
     let known = tasks.map(Some).chain([None]).map(|group| now.beliefs().of(group));
-    assert_eq!(frame.groups.len(), now.mission().groups.len() + 1);
+    assert_eq!(frame.groups.len(), now.mission().crew.groups.len() + 1);
     for (kept, known) in frame.groups.iter().zip(known) {
         assert!(
             kept.debris.iter().map(|(number, _)| *number).eq(known.debris.iter().map(|(number, _)| number))

@@ -6,25 +6,36 @@ use rne_core::TaskId;
 use serde::{Deserialize, Serialize};
 use smallvec::SmallVec;
 
-use super::{Activity, Mission, Scene};
+use super::{Crew, Scene};
 use crate::ids::{RescueeId, RobotId};
-use crate::model::SENSING_PERIOD_STEPS;
-use crate::robot::Robot;
 
-/// Which robot claims which rescuee. The list lives on the stack in teams and tasks of usual size, like all
+/// New claims: which robot claims which rescuee. The list lives on the stack in teams and tasks of usual size, like all
 /// that claims need.
-pub(super) type Claims = SmallVec<[(RobotId, RescueeId); 16]>;
+type NewClaims = SmallVec<[(RobotId, RescueeId); 16]>;
 
 /// The claims that hold: for each rescuee, the robot that is on its way to it or is loading it.
 #[derive(Serialize, Deserialize)]
-pub struct Claimed {
+pub struct Claims {
     by: Vec<Option<RobotId>>,
     changes: u64,
+    /// For each rescuee, whether its group gave up on it in this round.
+    pub(super) given_up: Vec<bool>,
 }
 
-impl Claimed {
+impl Claims {
     pub(super) fn nothing(rescuees: usize) -> Self {
-        Self { by: vec![None; rescuees], changes: 0 }
+        Self { by: vec![None; rescuees], changes: 0, given_up: vec![false; rescuees] }
+    }
+
+    /// The claims without what is given up: a part of the hash chain.
+    pub(crate) fn held(&self) -> impl Serialize + '_ {
+        (&self.by, self.changes)
+    }
+
+    /// Whether a rescuee's group gave up on it in this round, because it knows no way there or came no nearer.
+    #[must_use]
+    pub fn has_given_up(&self, rescuee: RescueeId) -> bool {
+        self.given_up[rescuee.index()]
     }
 
     /// The robot that claims a rescuee.
@@ -69,25 +80,25 @@ impl Seeker {
     }
 }
 
-impl Mission {
-    /// The claims of this step, by robot. Each group makes at most as many claims as there are rescuees and
+impl Claims {
+    /// The claims that are made in this step, by robot. Each group makes at most as many claims as there are rescuees and
     /// spare resources.
-    pub(super) fn claims(&self, scene: &Scene) -> Claims {
-        let mut claims = Claims::new();
-        for task in scene.model.task_ids().filter(|task| self.groups[task.index()].at_work) {
-            self.settle_claims(task, scene, &mut claims);
+    pub(super) fn new_claims(&self, crew: &Crew, scene: &Scene) -> NewClaims {
+        let mut claims = NewClaims::new();
+        for task in scene.model.task_ids().filter(|task| crew.groups[task.index()].at_work) {
+            self.settle(task, crew, scene, &mut claims);
         }
         claims.sort_unstable();
         claims
     }
 
-    fn settle_claims(&self, task: TaskId, scene: &Scene, claims: &mut Claims) {
-        let members = self.groups[task.index()].members.iter().copied();
-        let mut seeking = members.filter(|id| self.looks_for_work(*id, scene)).peekable();
+    fn settle(&self, task: TaskId, crew: &Crew, scene: &Scene, claims: &mut NewClaims) {
+        let members = crew.groups[task.index()].members.iter().copied();
+        let mut seeking = members.filter(|id| crew.looks_for_work(*id, scene)).peekable();
         if seeking.peek().is_none() {
             return;
         }
-        let spare = self.spare_resources(task, &scene.beliefs.team);
+        let spare = crew.spare_resources(task, &scene.beliefs.team);
         if spare <= 0 {
             return;
         }
@@ -110,15 +121,6 @@ impl Mission {
         }
     }
 
-    /// Whether a robot may claim a rescuee in this step. Robots take turns, so that not all of them search in
-    /// the same step.
-    fn looks_for_work(&self, id: RobotId, scene: &Scene) -> bool {
-        let robot = &scene.beliefs.team[id.index()];
-        let is_free = matches!(self.agents[id.index()].activity, Activity::Searching | Activity::Standby);
-        let is_due = (scene.step + u64::from(id.0)).is_multiple_of(SENSING_PERIOD_STEPS);
-        is_due && is_free && robot.is_able() && robot.free_capacity() > 0
-    }
-
     /// Rescuees that a group believes to wait, with their places: those that no robot has claimed and that are
     /// not given up as unreachable.
     pub(super) fn available<'s>(
@@ -127,16 +129,8 @@ impl Mission {
         scene: &'s Scene,
     ) -> impl Iterator<Item = (RescueeId, Vector)> + use<'s> {
         let believed = &scene.beliefs.of(Some(task)).rescuees;
-        let is_free = |i: &usize| self.claimed.by[*i].is_none() && !self.unreachable[*i];
+        let is_free = |i: &usize| self.by[*i].is_none() && !self.given_up[*i];
         let waiting = move |i: usize| Some((RescueeId(i as u32), believed.get(i)?.waits_at?));
         scene.model.tasks[task.index()].rescuees.clone().filter(is_free).filter_map(waiting)
-    }
-
-    /// Resources of a group in the field that no claim needs; negative if there are more claims than
-    /// resources.
-    fn spare_resources(&self, task: TaskId, team: &[Robot]) -> i64 {
-        let resources = |id: RobotId| i64::from(team[id.index()].resources);
-        let claims = |id: RobotId| i64::from(self.agents[id.index()].activity.claim().is_some());
-        self.in_field(task, team).map(|id| resources(id) - claims(id)).sum()
     }
 }

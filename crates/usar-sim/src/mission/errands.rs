@@ -1,12 +1,12 @@
 //! Errands: robots go from place to place. In a scenario with errands, they replace the mission.
 
-use super::{Activity, Ending, Mission, Scene};
+use super::{Activity, Crew, Scene};
 use crate::event::Event;
 use crate::ids::RobotId;
 use crate::model::Model;
 use crate::robot::Robot;
 
-impl Mission {
+impl Crew {
     /// Hands out the errands.
     pub(super) fn hand_out_errands(&mut self, model: &Model) {
         for errand in &model.errands {
@@ -16,18 +16,15 @@ impl Mission {
         }
     }
 
-    /// Ticks off the places where robots have arrived, gives up on places without a route, and ends the trial
-    /// when no able robot is on an errand.
-    pub(super) fn follow_errands(&mut self, scene: &mut Scene) {
+    /// Ticks off the places where robots have arrived, and gives up on places without a route. Returns whether
+    /// no able robot is on an errand any more.
+    pub(super) fn follow_errands(&mut self, scene: &mut Scene) -> bool {
         for robot in 0..scene.beliefs.team.len() {
             if self.is_on_errand(&scene.beliefs.team[robot]) {
                 self.follow_errand(RobotId(robot as u32), scene);
             }
         }
-        if !scene.beliefs.team.iter().any(|robot| self.is_on_errand(robot)) {
-            self.ending = Some(Ending::ErrandsOver);
-            scene.log.push(Event::ErrandsOver);
-        }
+        !scene.beliefs.team.iter().any(|robot| self.is_on_errand(robot))
     }
 
     fn is_on_errand(&self, robot: &Robot) -> bool {

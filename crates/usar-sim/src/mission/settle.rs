@@ -3,7 +3,6 @@
 
 use std::ops::Range;
 
-use rne_core::TaskId;
 use rne_core::question::MAX_TASKS;
 
 use super::round::{levels_after_rest, rest_steps};
@@ -35,7 +34,7 @@ impl Mission {
             self.lose(robot);
             return None;
         }
-        match self.agents[robot.index()].activity {
+        match self.crew.agents[robot.index()].activity {
             Activity::Approaching(rescuee) => {
                 let resource_of = self.resource_for(robot, rescuee, scene, sharing)?;
                 Some(Intent::BeginLoading { rescuee, resource_of })
@@ -43,7 +42,7 @@ impl Mission {
             Activity::Loading(rescuee, done) if scene.step >= done => {
                 let holder = self.resource_for(robot, rescuee, scene, sharing);
                 if holder.is_none() {
-                    self.agent(robot).activity = Activity::Approaching(rescuee);
+                    self.crew.agent(robot).activity = Activity::Approaching(rescuee);
                 }
                 holder.map(|resource_of| Intent::Load { rescuee, resource_of })
             }
@@ -65,9 +64,9 @@ impl Mission {
         match outcome {
             Outcome::LoadingBegan(rescuee) => {
                 let done = scene.step + scene.model.mission.loading_steps;
-                self.agent(robot).activity = Activity::Loading(rescuee, done);
+                self.crew.agent(robot).activity = Activity::Loading(rescuee, done);
             }
-            Outcome::NoResource(rescuee) => self.agent(robot).activity = Activity::Approaching(rescuee),
+            Outcome::NoResource(rescuee) => self.crew.agent(robot).activity = Activity::Approaching(rescuee),
             Outcome::NotThere(rescuee) => self.go_on_without(rescuee, robot, scene),
             Outcome::Loaded { rescuee, resource_of } => {
                 *sharing = [None; MAX_TASKS];
@@ -81,12 +80,12 @@ impl Mission {
                     scene.log.push(Event::Delivered { robot, rescuee, place });
                 }
                 match place {
-                    Place::Home => self.agent(robot).activity = Activity::Home,
+                    Place::Home => self.crew.agent(robot).activity = Activity::Home,
                     Place::Rest => self.begin_rest(robot, scene),
                 }
             }
             Outcome::Refilled => {
-                let agent = self.agent(robot);
+                let agent = self.crew.agent(robot);
                 (agent.activity, agent.has_rested) = (Activity::Returning, true);
                 scene.log.push(Event::RestEnded { robot });
             }
@@ -95,23 +94,23 @@ impl Mission {
 
     /// A rescuee no longer waits: its robot says so, and goes on searching.
     fn go_on_without(&mut self, rescuee: RescueeId, robot: RobotId, scene: &mut Scene) {
-        self.claimed.set(rescuee, None);
+        self.claims.set(rescuee, None);
         let says = Statement::RescueeIsGone { rescuee };
         scene.sent.push(Report { from: Speaker::Robot(robot), says, at_step: scene.step, sd_m: 0.0 });
-        self.agent(robot).activity = Activity::Searching;
+        self.crew.agent(robot).activity = Activity::Searching;
     }
 
     fn begin_rest(&mut self, robot: RobotId, scene: &mut Scene) {
         let state = &scene.beliefs.team[robot.index()];
         let steps = rest_steps(&scene.model.mission, [state.energy, state.hp]);
-        self.agent(robot).activity = Activity::Resting(scene.step + steps);
+        self.crew.agent(robot).activity = Activity::Resting(scene.step + steps);
         scene.log.push(Event::RestStarted { robot });
     }
 
     /// Goes on with a rest until its end. Time off the rest place does not count.
     fn rest(&mut self, robot: RobotId, done: u64, scene: &Scene) -> Option<Intent> {
         if !is_at_slot(robot, scene) {
-            self.agent(robot).activity = Activity::Resting(done + 1);
+            self.crew.agent(robot).activity = Activity::Resting(done + 1);
             return None;
         }
         let state = &scene.beliefs.team[robot.index()];
@@ -128,7 +127,7 @@ impl Mission {
         scene: &Scene,
         sharing: &mut Sharing,
     ) -> Option<RobotId> {
-        let task = self.agents[robot.index()].task?;
+        let task = self.crew.agents[robot.index()].task?;
         let (place, state) = (scene.place_of(task, rescuee)?, &scene.beliefs.team[robot.index()]);
         if (place - state.position).length() > scene.model.mission.reach {
             return None;
@@ -136,24 +135,13 @@ impl Mission {
         if state.resources > 0 {
             return Some(robot);
         }
-        *sharing[task.index()].get_or_insert_with(|| self.sharing_member(task, scene))
-    }
-
-    /// The member in the task area with the most resources left (the lowest id among equals).
-    fn sharing_member(&self, task: TaskId, scene: &Scene) -> Option<RobotId> {
-        let (area, team) = (&scene.model.tasks[task.index()].area, &scene.beliefs.team);
-        let shares = |id: &RobotId| {
-            let member = &team[id.index()];
-            member.resources > 0 && area.contains(member.position)
-        };
-        let resources = |id: &RobotId| team[id.index()].resources;
-        self.in_field(task, team).filter(shares).max_by_key(|id| (resources(id), u32::MAX - id.0))
+        *sharing[task.index()].get_or_insert_with(|| self.crew.sharing_member(task, scene))
     }
 
     /// Frees the rescuee that a robot had claimed before it could no longer act.
     fn lose(&mut self, robot: RobotId) {
         self.release_claim(robot);
-        let agent = &mut self.agents[robot.index()];
+        let agent = &mut self.crew.agents[robot.index()];
         if agent.activity.claim().is_some() {
             agent.activity = Activity::Standby;
         }

@@ -4,7 +4,7 @@ use parry2d::math::Vector;
 use rne_core::TaskId;
 use serde::{Deserialize, Serialize};
 
-use super::{Activity, Mission, Scene};
+use super::{Activity, Crew, Scene};
 use crate::event::{CutOffCause, Event};
 use crate::ids::RobotId;
 use crate::robot::Robot;
@@ -47,7 +47,7 @@ impl Watch {
     }
 }
 
-impl Mission {
+impl Crew {
     /// Watches the progress of each robot. A robot that cannot get to its rest place tries the next one. The
     /// team does not wait for a robot that cannot get home.
     pub(super) fn watch(&mut self, scene: &mut Scene) {
@@ -143,21 +143,6 @@ impl Mission {
         if !std::mem::replace(&mut self.agents[id.index()].is_cut_off, true) {
             scene.log.push(Event::CutOff { robot: id, place: place.into(), cause });
         }
-    }
-
-    /// Whether a round has a purpose: a robot at home can go out and carry, or can go to rest.
-    pub(super) fn can_begin_round(&self, scene: &Scene) -> bool {
-        let rules = &scene.model.mission;
-        let tasks = scene.model.tasks.len() as u16;
-        scene.beliefs.team.iter().any(|robot| {
-            let agent = &self.agents[robot.id.index()];
-            robot.is_able()
-                && agent.activity == Activity::Home
-                && match self.unfit_cause(rules, robot) {
-                    None => robot.can_carry(),
-                    Some(_) => !agent.has_given_up_all_rests(tasks),
-                }
-        })
     }
 }
 

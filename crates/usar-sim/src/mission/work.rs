@@ -1,6 +1,7 @@
-//! Work in the field: approaching rescuees, and the search for more.
+//! Work in the field: approaching rescuees, the search for more, and the end of a task.
 
 use parry2d::math::Vector;
+use rne_core::TaskId;
 
 use super::{Activity, Mission, Scene};
 use crate::event::Event;
@@ -11,24 +12,25 @@ impl Mission {
     /// if there is one.
     pub(super) fn choose_activity(&mut self, id: RobotId, claim: Option<RescueeId>, scene: &mut Scene) {
         let robot = &scene.beliefs.team[id.index()];
-        let activity = self.agents[id.index()].activity;
-        let Some(task) = self.agents[id.index()].task.filter(|_| robot.is_able()) else { return };
-        let is_held_up = activity.is_in_field() && self.is_held_up(robot, scene);
+        let agent = &self.crew.agents[id.index()];
+        let activity = agent.activity;
+        let Some(task) = agent.task.filter(|_| robot.is_able()) else { return };
+        let is_held_up = activity.is_in_field() && self.crew.is_held_up(robot, scene);
         match activity {
             Activity::Approaching(rescuee)
                 if is_held_up || is_out_of_reach(id, scene.place_of(task, rescuee), scene) =>
             {
-                self.unreachable[rescuee.index()] = true;
+                self.claims.given_up[rescuee.index()] = true;
                 if let Some(place) = scene.place_of(task, rescuee) {
                     scene.log.push(Event::Unreachable { robot: id, place: place.into() });
                 }
                 self.release_claim(id);
-                self.agent(id).activity = Activity::Searching;
+                self.crew.agent(id).activity = Activity::Searching;
             }
-            Activity::Searching | Activity::Standby if self.groups[task.index()].at_work => {
+            Activity::Searching | Activity::Standby if self.crew.groups[task.index()].at_work => {
                 if let Some(rescuee) = claim {
-                    self.claimed.set(rescuee, Some(id));
-                    self.agent(id).activity = Activity::Approaching(rescuee);
+                    self.claims.set(rescuee, Some(id));
+                    self.crew.agent(id).activity = Activity::Approaching(rescuee);
                     return;
                 }
                 self.go_on_searching(id, scene, is_held_up);
@@ -40,7 +42,7 @@ impl Mission {
     /// Goes on to the next place of the sweep if the present one was reached or cannot be reached. A robot
     /// with a full load ends its sweep.
     fn go_on_searching(&mut self, id: RobotId, scene: &Scene, is_held_up: bool) {
-        let agent = &mut self.agents[id.index()];
+        let agent = self.crew.agent(id);
         let (robot, traveller) = (&scene.beliefs.team[id.index()], scene.navigator.traveller(id));
         if robot.can_carry() && robot.free_capacity() == 0 {
             agent.sweep.clear();
@@ -51,6 +53,18 @@ impl Mission {
             agent.sweep.pop();
         }
         agent.activity = if agent.sweep.is_empty() { Activity::Standby } else { Activity::Searching };
+    }
+
+    /// Takes away the work of a group. The group then goes home, because nothing is left to do.
+    pub(crate) fn withdraw(&mut self, task: TaskId) {
+        for id in self.crew.groups[task.index()].members.clone() {
+            self.release_claim(id);
+            let agent = self.crew.agent(id);
+            if agent.activity.is_in_field() {
+                agent.sweep.clear();
+                agent.activity = Activity::Standby;
+            }
+        }
     }
 }
 

@@ -129,7 +129,7 @@ impl State {
     /// Robots look around and report; the medium carries; the groups and the team at home hear.
     pub(super) fn sense(&mut self, model: &Model, medium: &impl Medium, heard: &mut Vec<Report>) {
         let Self { world, mission, beliefs, sent, step, .. } = self;
-        look_around(world, model, |robot| beliefs.of(mission.group_of(robot.id)), *step, sent);
+        look_around(world, model, |robot| beliefs.of(mission.crew.group_of(robot.id)), *step, sent);
         self.hear(medium, heard);
     }
 
@@ -148,7 +148,7 @@ impl State {
                 Report { from: Speaker::Robot(id), says: Statement::IAm(robot), at_step, .. } => {
                     beliefs.hear_of_self(id, robot, at_step);
                 }
-                report if beliefs.hear(&report, |robot| mission.group_of(robot)) => {
+                report if beliefs.hear(&report, |robot| mission.crew.group_of(robot)) => {
                     log.extend(Event::of_report(&report));
                 }
                 _ => {}
@@ -170,8 +170,8 @@ impl State {
             model,
             team: &beliefs.team,
             step: self.step,
-            belief_of: |robot| beliefs.of(mission.group_of(robot)),
-            speed_of: |robot: &Robot| mission.speed_of(model, robot),
+            belief_of: |robot| beliefs.of(mission.crew.group_of(robot)),
+            speed_of: |robot: &Robot| mission.crew.speed_of(model, robot),
         };
         self.navigator.plan(&outlook, &mut scratch.meshes);
     }
@@ -187,7 +187,7 @@ impl State {
             self.world.robots.iter().zip(directives).zip(&mut self.listeners.metrics.robots)
         {
             let traveller = navigator.traveller(robot.id);
-            let activity = mission.agents[robot.id.index()].activity;
+            let activity = mission.crew.agents[robot.id.index()].activity;
             let cause = delay_cause(robot, activity, traveller, *directive);
             tally.note_delay(Delay { cause, waits_for: directive.waits_for() }, traveller.stalled_steps());
         }
@@ -213,7 +213,7 @@ impl State {
         for robot in robots {
             let speed = robot.velocity.length();
             metrics.robots[robot.id.index()].note_way(f64::from(speed) * model.dt_s());
-            let agent = &self.mission.agents[robot.id.index()];
+            let agent = &self.mission.crew.agents[robot.id.index()];
             if !robot.is_able() || matches!(agent.activity, Activity::Resting(_)) {
                 continue;
             }
@@ -264,7 +264,7 @@ impl State {
             part(&self.world.physics.motions()),
             part(&self.world.robots),
             part(&self.world.lying_debris()),
-            part(&(&self.world.rescuees, self.mission.claimed())),
+            part(&(&self.world.rescuees, self.mission.claims.held())),
             part(&(&self.beliefs, &self.sent, self.world.changes())),
             part(&(self.mission.course(), self.is_midway)),
             part(&self.navigator),
@@ -297,10 +297,10 @@ fn mover<'s>(
     beliefs: &'s Beliefs,
     navigator: &'s Navigator,
 ) -> Mover<'s> {
-    let speed = mission.speed_of(model, robot) as f32;
+    let speed = mission.crew.speed_of(model, robot) as f32;
     let wish = if robot.is_able() { navigator.preferred_velocity(robot, speed) } else { Vector::ZERO };
     let route = navigator.traveller(robot.id).route();
-    let agent = &mission.agents[robot.id.index()];
+    let agent = &mission.crew.agents[robot.id.index()];
     let no_task = model.tasks.len() as u8;
     let class = agent.task.map_or(no_task, |task| model.tasks[task.index()].rank);
     let rule = model.right_of_way.priority;

@@ -81,7 +81,7 @@ fn screen(simulation: &Simulation, policy: &str, speed: f64) -> String {
             own.len()
         ));
     }
-    for (robot, agent) in simulation.world().robots.iter().zip(&mission.agents).take(MOST_ROBOTS) {
+    for (robot, agent) in simulation.world().robots.iter().zip(&mission.crew.agents).take(MOST_ROBOTS) {
         let role = &scenario.roles[simulation.model().robots[robot.id.index()].role.index()];
         let task = agent.task.map_or("", |task| scenario.tasks[task.index()].name.as_str());
         let [energy, hp] = [robot.energy, robot.hp].map(|level| bar(level / 100.0, 10));

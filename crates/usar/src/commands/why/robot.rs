@@ -102,7 +102,7 @@ impl Watched {
             energy: body.energy,
             hp: body.hp,
             speed_mps: f64::from(body.velocity.length()),
-            activity: simulation.mission().agents[self.robot.index()].activity.name(),
+            activity: simulation.mission().crew.agents[self.robot.index()].activity.name(),
             delay: self.delay.cause.name(),
             waits_for: self.delay.waits_for.map(|other| other.0),
             given_up: task.map_or(0, |task| given_up(simulation, task)),
@@ -118,7 +118,7 @@ fn given_up(simulation: &Simulation, task: TaskId) -> usize {
     let of_task = simulation.model().tasks[task.index()].rescuees.clone();
     let is_waiting = |i: &usize| simulation.world().rescuees[*i].state == RescueeState::Waiting;
     let waiting = of_task.filter(is_waiting).map(|i| RescueeId(i as u32));
-    waiting.filter(|rescuee| simulation.mission().has_given_up(*rescuee)).count()
+    waiting.filter(|rescuee| simulation.mission().claims.has_given_up(*rescuee)).count()
 }
 
 /// The explanation of a delay, as the continuation of "robot 3 ...".
