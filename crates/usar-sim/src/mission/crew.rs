@@ -32,17 +32,17 @@ pub struct Crew {
     /// The group of each task.
     pub groups: Vec<Group>,
     /// For each task, whether its group has a guide that can act. Found anew in every step.
+    #[serde(skip)]
     is_guided: Vec<bool>,
 }
 
 impl Crew {
     /// A crew of which all robots are at home, or on their errands.
     pub(super) fn new(model: &Model) -> Self {
-        let tasks = model.tasks.len();
         let mut crew = Self {
             agents: vec![Agent::new(); model.robots.len()],
-            groups: vec![Group::default(); tasks],
-            is_guided: vec![false; tasks],
+            groups: vec![Group::default(); model.tasks.len()],
+            is_guided: vec![false; model.tasks.len()],
         };
         crew.hand_out_errands(model);
         crew
@@ -70,15 +70,14 @@ impl Crew {
     }
 
     /// Notes which groups have a guide that can act.
-    pub(super) fn look_for_guides(&mut self, rules: &MissionModel, team: &[Robot]) {
+    pub(crate) fn look_for_guides(&mut self, rules: &MissionModel, team: &[Robot]) {
         let guides = |id: &RobotId| {
             let robot = &team[id.index()];
             let is_there = rules.resting_guides || !self.agents[id.index()].activity.is_rest();
             robot.spec.guides && robot.is_able() && is_there
         };
-        for (is_guided, group) in self.is_guided.iter_mut().zip(&self.groups) {
-            *is_guided = group.members.iter().any(guides);
-        }
+        self.is_guided.clear();
+        self.is_guided.extend(self.groups.iter().map(|group| group.members.iter().any(guides)));
     }
 
     /// The members of a group that can act and work in the field, by id.

@@ -111,6 +111,7 @@ impl State {
         rescuees.iter_mut().zip(&model.rescuees).for_each(|(rescuee, model)| rescuee.model = *model);
         self.world.place_debris();
         self.beliefs.draw_maps(&model.inflation);
+        self.mission.crew.look_for_guides(&model.mission, &self.beliefs.team);
     }
 
     /// The mission, and the scene in which it decides.
