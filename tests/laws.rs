@@ -439,7 +439,7 @@ fn texts_for_errors(text: &str) -> Vec<&str> {
         is_associated
             || item.starts_with("pub ") && results.any(|rest| entries(rest).0.get(1) == Some(&"String"))
     };
-    let starts = text.match_indices('\n').map(|(at, _)| text[at..].trim_start());
+    let starts = text.match_indices('\n').map(|(at, _)| text[at + 1..].trim_start_matches(' '));
     let items = starts.map(|rest| {
         let line = rest.lines().next().unwrap_or_default();
         let end = if line.contains("fn ") { rest.find(['{', ';']) } else { None };
@@ -465,6 +465,7 @@ fn a_tuple_and_a_text_for_an_error_would_be_found() {
         fn unit(done: ()) -> (u8, u8) { f((1, 2)) }";
     assert_eq!(functions_with_tuples(tuples), ["a", "b", "c", "d"]);
     let texts = "
+
         pub fn a(
             text: &str,
         ) -> Result<Vec<(u8, u8)>, String> {}

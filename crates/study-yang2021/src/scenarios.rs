@@ -4,6 +4,7 @@ use std::path::Path;
 
 use experiments::Failure;
 use experiments::experiment::{Experiment, Overrides};
+use rne_core::Registry;
 use ron_fields::Fields;
 
 /// Policies of the paper.
@@ -46,8 +47,12 @@ pub struct World {
 /// world that the data cannot tell apart from the calibrated one, with a quarter of the trials.
 ///
 /// # Errors
-/// None: the scenarios and the policies are part of the program.
-pub fn worlds(trials: u32) -> Result<Vec<World>, Failure> {
+/// A policy of the paper is not in the registry.
+pub fn worlds(trials: u32, registry: &Registry) -> Result<Vec<World>, Failure> {
+    let world = |standing, path: &str, text: &str, overrides: &Overrides| {
+        let experiment = Experiment::parse(text.to_owned(), Path::new(path), overrides, registry)?;
+        Ok::<World, Failure>(World { standing, experiment })
+    };
     let printed = world(Standing::Printed, "scenarios/paper.ron", PRINTED, &overrides(trials, Vec::new()))?;
     let calibrated = |standing, overrides: &Overrides| {
         world(standing, "scenarios/paper-calibrated.ron", CALIBRATED, overrides)
@@ -60,11 +65,6 @@ pub fn worlds(trials: u32) -> Result<Vec<World>, Failure> {
         worlds.push(world);
     }
     Ok(worlds)
-}
-
-fn world(standing: Standing, path: &str, text: &str, overrides: &Overrides) -> Result<World, Failure> {
-    let experiment = Experiment::parse(text.to_owned(), Path::new(path), overrides, &policies::standard())?;
-    Ok(World { standing, experiment })
 }
 
 fn overrides(trials: u32, set: Vec<String>) -> Overrides {
@@ -124,7 +124,7 @@ mod tests {
 
     #[test]
     fn alternatives_have_names_of_their_own_and_fewer_trials() {
-        let worlds = worlds(200).unwrap();
+        let worlds = worlds(200, &policies::standard()).unwrap();
         assert_eq!(worlds[0].standing, Standing::Printed);
         assert_eq!(worlds[1].standing, Standing::Calibrated);
         assert!(worlds[2..].iter().all(|world| world.standing == Standing::Alternative));

@@ -5,7 +5,7 @@ use std::sync::atomic::AtomicBool;
 
 use experiments::explore::Free;
 use ron_fields::Fields;
-use study_yang2021::calibration::{Calibration, Log, Spread, Target};
+use study_yang2021::calibration::{Calibration, Log, Spread, Target, the_policy};
 use usar_sim::scenario::Scenario;
 
 fn root() -> PathBuf {
@@ -35,6 +35,7 @@ fn the_calibrated_scenario_is_the_best_of_its_log() {
     let calibration = Calibration {
         text,
         base: scenario,
+        policy: the_policy(&policies::standard()).unwrap(),
         free: Vec::new(),
         target,
         trials: 10,
@@ -62,7 +63,8 @@ fn a_log_is_held_by_one_process() {
     let table = place.path().join("target.csv");
     std::fs::write(&table, "method,rescuees_hard,energy_hard\nDIS,10,150\nDIS,14,160\nDIS,12,170\n").unwrap();
     let target = Target::load(&table, &base).unwrap();
-    let calibration = Calibration { text, base, free, target, trials: 2, first_seed: 1, first_step: 0.25 };
+    let (policy, trials, first_seed) = (the_policy(&policies::standard()).unwrap(), 2, 1);
+    let calibration = Calibration { text, base, policy, free, target, trials, first_seed, first_step: 0.25 };
     let out = place.path().join("out");
     let held = Log::open(&out, &calibration, false).unwrap();
     let error = Log::open(&out, &calibration, false).err().unwrap();

@@ -8,13 +8,14 @@ use experiments::Failure;
 use experiments::explore::Free;
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
+use rne_core::Registry;
 use ron_fields::Fields;
 use serde::Serialize;
 use usar_sim::scenario::Scenario;
 
 use super::log::{CALIBRATED, ORIGIN};
 use super::target::misfit;
-use super::{Calibration, Spread, Target};
+use super::{Calibration, Spread, Target, the_policy};
 
 /// Resamples of the data and of the seeds.
 const RESAMPLES: usize = 4_000;
@@ -52,7 +53,7 @@ impl Candidate {
     ///
     /// # Errors
     /// The folder does not hold a finished calibration, or the target does not fit its scenario.
-    pub fn read(folder: &Path, target: &Path) -> Result<Self, Failure> {
+    pub fn read(folder: &Path, target: &Path, registry: &Registry) -> Result<Self, Failure> {
         let unreadable = |name: &str, error: &dyn std::fmt::Display| {
             Failure::input(format!(
                 "{}: is not the folder of a finished calibration: {name}: {error}",
@@ -70,7 +71,9 @@ impl Candidate {
         let free = specs.map(|spec| Free::parse(spec, &fields, &fields)).collect::<Result<Vec<_>, _>>();
         let free = free.map_err(|error| unreadable(ORIGIN, &error))?;
         let target = Target::load(target, &base)?;
-        let calibration = Calibration { text, base, free, target, trials: 0, first_seed: 0, first_step: 0.0 };
+        let policy = the_policy(registry)?;
+        let (trials, first_seed, first_step) = (0, 0, 0.0);
+        let calibration = Calibration { text, base, policy, free, target, trials, first_seed, first_step };
         let values = calibration.present()?;
         let name = folder.file_name().unwrap_or(folder.as_os_str()).to_string_lossy().into_owned();
         Ok(Self { name, calibration, values })
@@ -146,8 +149,9 @@ mod tests {
         let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios");
         let (base, text) = Scenario::load(&root.join("paper.ron")).unwrap();
         let target = Target::load(&root.join("reference/dis_trials.csv"), &base).unwrap();
-        let calibration =
-            Calibration { text, base, free: Vec::new(), target, trials: 0, first_seed: 0, first_step: 0.0 };
+        let (policy, free) = (the_policy(&policies::standard()).unwrap(), Vec::new());
+        let (trials, first_seed, first_step) = (0, 0, 0.0);
+        let calibration = Calibration { text, base, policy, free, target, trials, first_seed, first_step };
         Candidate { name: name.to_owned(), calibration, values: Vec::new() }
     }
 

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use experiments::Failure;
-use experiments::experiment::{PolicySpec, Program};
+use experiments::experiment::Program;
 use experiments::explore::{EvaluationLog, Free, Purpose};
 
 use super::{Calibration, Evaluation, POLICY, Spread};
@@ -96,12 +96,11 @@ fn evaluation(row: &[String], calibration: &Calibration) -> Option<Evaluation> {
 
 /// Everything that decides the evaluations.
 fn origin_of(calibration: &Calibration) -> Result<serde_json::Value, Failure> {
-    let policy = PolicySpec::parse(POLICY, &policies::standard()).map_err(Failure::run)?;
     let spreads = calibration.target.quantities.iter().zip(&calibration.target.spreads);
     let target: serde_json::Map<String, serde_json::Value> =
         spreads.map(|(q, s)| (q.name.clone(), serde_json::json!([s.mean, s.sd]))).collect();
     Ok(serde_json::json!({
-        "program": Program::running(&[policy])?.digest().to_string(),
+        "program": Program::running(std::slice::from_ref(&calibration.policy))?.digest().to_string(),
         "policy": POLICY,
         "free": calibration.free.iter().map(Free::to_string).collect::<Vec<_>>(),
         "target": target,

@@ -18,11 +18,12 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use experiments::comparison::short;
+use experiments::experiment::PolicySpec;
 use experiments::explore::{Free, PointError, WORST, scenario_with};
 use experiments::run::{Fault, TrialSetup, run_trial};
 use experiments::{Failure, panic_message};
 use rayon::prelude::*;
-use rne_core::{MadePolicy, RegistryError};
+use rne_core::Registry;
 use ron_fields::{Fields, WriteError, with_values};
 use usar_sim::scenario::Scenario;
 
@@ -52,6 +53,8 @@ pub struct Calibration {
     pub text: String,
     /// The scenario, checked.
     pub base: Scenario,
+    /// The policy that decides in it: see [`the_policy`].
+    pub policy: PolicySpec,
     /// The free parameters.
     pub free: Vec<Free>,
     /// The target of the fit.
@@ -175,11 +178,10 @@ impl Calibration {
         stop: &AtomicBool,
     ) -> Result<Option<Vec<Vec<f64>>>, CandidateError> {
         let scenario = self.scenario(values)?;
-        let policy = the_policy()?;
         let trial = |seed| {
             let setup = TrialSetup { scenario: &scenario, seed, is_checked: false };
             let run = AssertUnwindSafe(|| {
-                let mut session = policy.open().map_err(|error| Fault::of_policy(&error))?;
+                let mut session = self.policy.made().open().map_err(|error| Fault::of_policy(&error))?;
                 run_trial(&setup, &mut *session, stop)
             });
             let result = catch_unwind(run)
@@ -280,6 +282,10 @@ fn candidate(text: &str) -> String {
     )
 }
 
-fn the_policy() -> Result<MadePolicy, RegistryError> {
-    policies::standard().parse(POLICY)
+/// The only policy that is calibrated, from a registry.
+///
+/// # Errors
+/// The registry lacks it.
+pub fn the_policy(registry: &Registry) -> Result<PolicySpec, Failure> {
+    PolicySpec::parse(POLICY, registry).map_err(Failure::input)
 }

@@ -9,8 +9,9 @@ use experiments::comparison::short;
 use experiments::explore::Free;
 use experiments::files::NewFile;
 use rayon::prelude::*;
+use rne_core::Registry;
 use ron_fields::{Fields, with_values};
-use study_yang2021::calibration::{Calibration, Fit, Log, POLICY, Spread, Target, write_fit};
+use study_yang2021::calibration::{Calibration, Fit, Log, POLICY, Spread, Target, the_policy, write_fit};
 use study_yang2021::table::fit_table;
 use usar_sim::scenario::Scenario;
 
@@ -88,8 +89,8 @@ pub(crate) struct Arguments {
 }
 
 impl Arguments {
-    pub(crate) fn execute(&self, out: &mut dyn Write) -> Result<(), Failure> {
-        let calibration = self.calibration()?;
+    pub(crate) fn execute(&self, registry: &Registry, out: &mut dyn Write) -> Result<(), Failure> {
+        let calibration = self.calibration(registry)?;
         let name = format!("{}-calibration", calibration.base.name);
         let folder = self.out.clone().unwrap_or_else(|| Path::new("results").join(name));
         let mut log = Log::open(&folder, &calibration, self.fresh)?;
@@ -127,7 +128,7 @@ impl Arguments {
         Ok(())
     }
 
-    fn calibration(&self) -> Result<Calibration, Failure> {
+    fn calibration(&self, registry: &Registry) -> Result<Calibration, Failure> {
         if !(self.first_step > 0.0 && self.first_step <= 1.0) {
             return Err(Failure::input(format!(
                 "--first-step: must be above 0 and at most 1, found {}",
@@ -166,7 +167,8 @@ impl Arguments {
         }
         let target = Target::load(&self.target, &base)?;
         let (trials, first_seed, first_step) = (self.trials, self.first_seed, self.first_step);
-        let calibration = Calibration { text, base, free, target, trials, first_seed, first_step };
+        let policy = the_policy(registry)?;
+        let calibration = Calibration { text, base, policy, free, target, trials, first_seed, first_step };
         calibration.check()?;
         Ok(calibration)
     }

@@ -7,6 +7,7 @@ use clap::Args;
 use experiments::Failure;
 use experiments::comparison::digits;
 use experiments::files::NewFile;
+use rne_core::Registry;
 use serde_json::json;
 use study_yang2021::calibration::{CALIBRATED, Candidate, Judged, NOT_TOLD_APART, POLICY, Target, judge};
 use study_yang2021::table::choice_table;
@@ -56,8 +57,8 @@ pub(crate) struct Arguments {
 }
 
 impl Arguments {
-    pub(crate) fn execute(&self, out: &mut dyn Write) -> Result<(), Failure> {
-        let read = |folder: &PathBuf| Candidate::read(folder, &self.target);
+    pub(crate) fn execute(&self, registry: &Registry, out: &mut dyn Write) -> Result<(), Failure> {
+        let read = |folder: &PathBuf| Candidate::read(folder, &self.target, registry);
         let candidates = self.folders.iter().map(read).collect::<Result<Vec<_>, _>>()?;
         let (base, _) = Scenario::load(&self.folders[0].join(CALIBRATED)).map_err(Failure::input)?;
         let target = Target::load(&self.target, &base)?;

@@ -11,6 +11,7 @@ use experiments::run::Limits;
 use experiments::sweep::folder::{Folder, Opening};
 use experiments::sweep::names::is_sweeps;
 use reports::{Wanted, write_report};
+use rne_core::Registry;
 use study_yang2021::claims::{
     Judged, examples, write_authors_columns, write_claims, write_examples, write_power,
 };
@@ -67,7 +68,7 @@ pub(crate) struct Arguments {
 }
 
 impl Arguments {
-    pub(crate) fn execute(&self, out: &mut dyn Write) -> Result<(), Failure> {
+    pub(crate) fn execute(&self, registry: &Registry, out: &mut dyn Write) -> Result<(), Failure> {
         stop_on_signals();
         if is_sweeps(&self.out) {
             return Err(Failure::input(format!(
@@ -76,7 +77,7 @@ impl Arguments {
             )));
         }
         // All folders are opened first, so that an unusable folder is found before the first trial.
-        let opened = worlds(self.trials)?.into_iter().map(|world| self.open(world));
+        let opened = worlds(self.trials, registry)?.into_iter().map(|world| self.open(world));
         let mut folders = opened.collect::<Result<Vec<_>, Failure>>()?;
         let (mut judged, mut predicted) = (Vec::new(), Vec::new());
         for (standing, folder) in &mut folders {
