@@ -25,7 +25,8 @@ impl Policy for Energy {
     fn decide(&self, question: &Question) -> Result<Decision, PolicyError> {
         deal_by_rank(
             question,
-            ("energy level", |level: &f64| *level),
+            "energy level",
+            |level: &f64| *level,
             |member| member.energy_level.ok_or_else(|| missing(NAME, "the energy level", Some(member.id))),
             |a, b| b.total_cmp(a),
         )

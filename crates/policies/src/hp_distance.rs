@@ -28,7 +28,8 @@ impl Policy for HpDistance {
         let hardest = question.hardest_first().first().and_then(|task| question.tasks[task.index()].place);
         deal_by_rank(
             question,
-            ("HP level", |key: &(f64, f64)| key.0),
+            "HP level",
+            |key: &(f64, f64)| key.0,
             |member| {
                 let level = member.hp_level.ok_or_else(|| missing(NAME, "the HP level", Some(member.id)))?;
                 Ok((level, hardest.map_or(0.0, |place| squared_distance(member.home, place))))

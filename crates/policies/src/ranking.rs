@@ -10,7 +10,8 @@ use rne_core::question::{Member, Question};
 /// `key_name` says what the members are sorted by. `value` is the part of a key that the account shows.
 pub(super) fn deal_by_rank<K>(
     question: &Question,
-    (key_name, value): (&str, impl Fn(&K) -> f64),
+    key_name: &str,
+    value: impl Fn(&K) -> f64,
     key: impl Fn(&Member) -> Result<K, PolicyError>,
     better_first: impl Fn(&K, &K) -> Ordering,
 ) -> Result<Decision, PolicyError> {

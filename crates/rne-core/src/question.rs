@@ -157,17 +157,22 @@ impl From<RandomSeed> for String {
 }
 
 impl TryFrom<String> for RandomSeed {
-    type Error = String;
+    type Error = BadSeed;
 
-    fn try_from(text: String) -> Result<Self, String> {
+    fn try_from(text: String) -> Result<Self, BadSeed> {
         let mut seed = [0; 32];
         let is_hex = text.len() == 64 && text.bytes().all(|digit| digit.is_ascii_hexdigit());
         for (i, byte) in seed.iter_mut().enumerate().filter(|_| is_hex) {
             *byte = u8::from_str_radix(&text[2 * i..2 * i + 2], 16).unwrap_or_default();
         }
-        if is_hex { Ok(Self(seed)) } else { Err("random_seed must be 64 hexadecimal digits".to_owned()) }
+        if is_hex { Ok(Self(seed)) } else { Err(BadSeed) }
     }
 }
+
+/// A text that is no [`RandomSeed`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[error("random_seed must be 64 hexadecimal digits")]
+pub struct BadSeed;
 
 impl From<u64> for RandomSeed {
     fn from(seed: u64) -> Self {

@@ -60,10 +60,18 @@ impl Keep {
 }
 
 impl FromStr for Keep {
-    type Err = String;
+    type Err = UnknownKeep;
 
-    fn from_str(text: &str) -> Result<Self, String> {
+    fn from_str(text: &str) -> Result<Self, UnknownKeep> {
         let found = Self::ALL.into_iter().find(|keep| keep.name() == text);
-        found.ok_or_else(|| format!("must be trials, rounds, robots or groups, found {text:?}"))
+        found.ok_or_else(|| UnknownKeep { found: text.to_owned() })
     }
+}
+
+/// A word that is no [`Keep`].
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("must be trials, rounds, robots or groups, found {found:?}")]
+pub struct UnknownKeep {
+    /// The word.
+    pub found: String,
 }

@@ -27,11 +27,11 @@ pub use asks::Asks;
 pub use cost::{Cost, check_cost};
 pub use file::sweep_schema;
 pub use grid::{Axis, Case, VARIANT};
-pub use keep::Keep;
-pub use policy::{PolicySpec, split_list, with_oracle};
+pub use keep::{Keep, UnknownKeep};
+pub use policy::{PolicySpec, PolicyTextError, split_list, with_oracle};
 pub use program::{Digest, Program};
 pub use read::{companion, defaults, with_settings};
-pub use shard::{Place, Shard};
+pub use shard::{NoShard, Place, Shard};
 
 use crate::failure::Failure;
 use crate::limits::TRIALS;
@@ -239,7 +239,8 @@ impl Experiment {
 
     /// The key of a trial: its place, its seed, and its policy's label.
     #[must_use]
-    pub fn key(&self, (case, policy, trial): Place) -> TrialKey {
+    pub fn key(&self, place: Place) -> TrialKey {
+        let (case, policy, trial) = place;
         TrialKey { case, policy, trial, seed: self.seed(trial), label: self.policies[policy].label.clone() }
     }
 

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use rne_core::{Basis, MadeMeasure, MadePolicy, Registry};
+use rne_core::{Basis, MadeMeasure, MadePolicy, Registry, RegistryError};
 use ron_fields::{Fields, nearest};
 use usar_sim::scenario::Scenario;
 
@@ -44,7 +44,7 @@ impl PolicySpec {
     ///
     /// # Errors
     /// An unknown name, options that the policy does not have, or unclosed brackets; in one sentence.
-    pub fn parse(text: &str, registry: &Registry) -> Result<Self, String> {
+    pub fn parse(text: &str, registry: &Registry) -> Result<Self, PolicyTextError> {
         let text = text.trim();
         let open = text.find('(').unwrap_or(text.len());
         let (label, rest) = match text[..open].find('=') {
@@ -53,25 +53,16 @@ impl PolicySpec {
         };
         let (name, options) = rest.split_at(rest.find('(').unwrap_or(rest.len()));
         let name = name.trim();
-        registry.make(name, "").map_err(|error| {
-            let meant = nearest(name, registry.names());
-            meant.map_or(error.to_string(), |meant| format!("{error}; did you mean {meant}?"))
+        registry.make(name, "").map_err(|source| {
+            let meant = nearest(name, registry.names()).map(str::to_owned);
+            PolicyTextError::Refused { source: Box::new(source), meant }
         })?;
         let options = parse_options(options)?;
         let plain = plain(name, &options);
-        let made = registry.parse(&plain).map_err(|error| with_hint(error.to_string()))?;
-        if label.is_some_and(|label| label.is_empty() || label.chars().any(char::is_control)) {
-            return Err(format!("the label before `=` must be visible characters, found {text:?}"));
-        }
-        if label.is_some_and(|label| label.starts_with(['=', '+', '-', '@'])) {
-            return Err(format!(
-                "the label before `=` must not begin like a formula, with =, +, - or @, found {text:?}"
-            ));
-        }
-        if label.is_some_and(|label| label != name && registry.names().contains(&label)) {
-            return Err(format!(
-                "the label before `=` must not be the name of another policy, found {text:?}"
-            ));
+        let made = registry.parse(&plain).map_err(with_hint)?;
+        if let Some(label) = label {
+            check_label(label, name, registry)
+                .map_err(|rule| PolicyTextError::Label { rule, found: text.to_owned() })?;
         }
         let written = label.map_or(plain.clone(), |label| format!("{label}={plain}"));
         let label = label.map_or(plain, str::to_owned);
@@ -140,16 +131,55 @@ impl PolicySpec {
     }
 }
 
-/// Adds to a message about an unknown option or value the known name that is nearest to it.
-fn with_hint(message: String) -> String {
-    let quoted: Vec<&str> = message.split('`').skip(1).step_by(2).collect();
-    let Some((found, rest)) = quoted.split_first().filter(|_| message.contains("expected one of")) else {
-        return message;
-    };
-    match nearest(found, rest.iter().copied()) {
-        Some(meant) => format!("{message}; did you mean {meant}?"),
-        None => message,
+/// A text that names no policy.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum PolicyTextError {
+    /// The registry refuses it.
+    #[error("{source}{}", meant.as_ref().map(|meant| format!("; did you mean {meant}?")).unwrap_or_default())]
+    Refused {
+        /// Why.
+        source: Box<RegistryError>,
+        /// The known name that is nearest to an unknown one.
+        meant: Option<String>,
+    },
+    /// A label that breaks a rule.
+    #[error("the label before `=` must {rule}, found {found:?}")]
+    Label {
+        /// The rule.
+        rule: &'static str,
+        /// The text.
+        found: String,
+    },
+    /// Options in brackets that are not closed, not named, or written twice.
+    #[error("options must be written as (name: value, name: value), each once, found {found:?}")]
+    Options {
+        /// The options as written.
+        found: String,
+    },
+}
+
+/// The rule that a label breaks, if any.
+fn check_label(label: &str, name: &str, registry: &Registry) -> Result<(), &'static str> {
+    if label.is_empty() || label.chars().any(char::is_control) {
+        return Err("be visible characters");
     }
+    if label.starts_with(['=', '+', '-', '@']) {
+        return Err("not begin like a formula, with =, +, - or @");
+    }
+    if label != name && registry.names().contains(&label) {
+        return Err("not be the name of another policy");
+    }
+    Ok(())
+}
+
+/// Adds the known name that is nearest to an unknown option or value.
+fn with_hint(source: RegistryError) -> PolicyTextError {
+    let message = source.to_string();
+    let quoted: Vec<&str> = message.split('`').skip(1).step_by(2).collect();
+    let unknown = quoted.split_first().filter(|_| message.contains("expected one of"));
+    let meant = unknown.and_then(|(found, rest)| nearest(found, rest.iter().copied()));
+    PolicyTextError::Refused { meant: meant.map(str::to_owned), source: Box::new(source) }
 }
 
 fn plain(name: &str, options: &[(String, String)]) -> String {
@@ -157,7 +187,7 @@ fn plain(name: &str, options: &[(String, String)]) -> String {
     if named.is_empty() { name.to_owned() } else { format!("{name}({})", named.join(", ")) }
 }
 
-fn parse_options(text: &str) -> Result<Vec<(String, String)>, String> {
+fn parse_options(text: &str) -> Result<Vec<(String, String)>, PolicyTextError> {
     if text.is_empty() {
         return Ok(Vec::new());
     }
@@ -171,9 +201,7 @@ fn parse_options(text: &str) -> Result<Vec<(String, String)>, String> {
     let without_blanks = |text: &str| text.split_whitespace().collect::<String>();
     let rebuilt = without_blanks(&format!("({})", written.join(",")));
     if is_listed_twice || without_blanks(text).replace(",)", ")") != rebuilt {
-        return Err(format!(
-            "options must be written as (name: value, name: value), each once, found {text:?}"
-        ));
+        return Err(PolicyTextError::Options { found: text.to_owned() });
     }
     Ok(options)
 }
@@ -206,7 +234,7 @@ mod tests {
 
     #[test]
     fn bad_policies_are_refused() {
-        let refused = |text| PolicySpec::parse(text, &policies::standard()).unwrap_err();
+        let refused = |text| PolicySpec::parse(text, &policies::standard()).unwrap_err().to_string();
         assert!(refused("NEAREST").contains("unknown policy"));
         assert!(refused("DIS(score: Sum)").contains("policy DIS: it has no options"));
         assert!(refused("RNE(luck: 3)").contains("policy RNE: "));

@@ -16,22 +16,30 @@ pub struct Shard {
 }
 
 impl std::str::FromStr for Shard {
-    type Err = String;
+    type Err = NoShard;
 
-    fn from_str(text: &str) -> Result<Self, String> {
+    fn from_str(text: &str) -> Result<Self, NoShard> {
         let parts = text.split_once('/').map(|(number, of)| (number.trim().parse(), of.trim().parse()));
         match parts {
             Some((Ok(number), Ok(of))) if (1..=of).contains(&number) => Ok(Self { number, of }),
-            _ => Err(format!("must be i/n with i from 1 to n, found {text:?}")),
+            _ => Err(NoShard { found: text.to_owned() }),
         }
     }
+}
+
+/// A text that is no [`Shard`].
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("must be i/n with i from 1 to n, found {found:?}")]
+pub struct NoShard {
+    /// The text.
+    pub found: String,
 }
 
 impl Shard {
     /// Whether a seed of a case is in this part. The seeds are dealt in turn, trial by trial and case by
     /// case. After each lap of lcm(parts, cases) seeds the dealing shifts by one part, so that no part gets
     /// the same cases again and again.
-    fn has(self, (case, cases): (usize, usize), trial: u32) -> bool {
+    fn has(self, case: usize, cases: usize, trial: u32) -> bool {
         let (of, cases) = (u64::from(self.of), cases as u64);
         let index = (u64::from(trial) - 1) * cases + case as u64;
         let lap = of / gcd(of, cases) * cases;
@@ -58,7 +66,7 @@ impl Experiment {
     /// policy.
     pub fn trials_of(&self, case: usize, shard: Option<Shard>) -> impl Iterator<Item = u32> + use<> {
         let cases = self.cases.len();
-        let is_ours = move |trial: &u32| shard.is_none_or(|shard| shard.has((case, cases), *trial));
+        let is_ours = move |trial: &u32| shard.is_none_or(|shard| shard.has(case, cases, *trial));
         (1..=self.trials).filter(is_ours)
     }
 
@@ -92,7 +100,7 @@ impl Experiment {
             && policy < self.policies.len()
             && (1..=self.trials).contains(&trial)
             && self.seed(trial) == seed
-            && shard.is_none_or(|shard| shard.has((case, cases), trial))
+            && shard.is_none_or(|shard| shard.has(case, cases, trial))
     }
 }
 
@@ -100,8 +108,8 @@ impl Experiment {
 mod tests {
     use super::*;
 
-    fn shard_of(of: u32, place: (usize, usize), trial: u32) -> u32 {
-        let has = |number: &u32| Shard { number: *number, of }.has(place, trial);
+    fn shard_of(of: u32, case: usize, cases: usize, trial: u32) -> u32 {
+        let has = |number: &u32| Shard { number: *number, of }.has(case, cases, trial);
         let shards: Vec<u32> = (1..=of).filter(has).collect();
         assert_eq!(shards.len(), 1, "each seed of a case is in one shard");
         shards[0]
@@ -114,7 +122,7 @@ mod tests {
             let mut seen = vec![std::collections::BTreeSet::new(); of as usize + 1];
             for trial in 1..=100 {
                 for case in 0..cases {
-                    let shard = shard_of(of, (case, cases), trial) as usize;
+                    let shard = shard_of(of, case, cases, trial) as usize;
                     seeds[shard] += 1;
                     seen[shard].insert(case);
                 }
@@ -128,7 +136,7 @@ mod tests {
     #[test]
     fn more_shards_than_trials_share_out_the_cases() {
         let used: std::collections::BTreeSet<u32> =
-            (1..=2).flat_map(|trial| (0..50).map(move |case| shard_of(100, (case, 50), trial))).collect();
+            (1..=2).flat_map(|trial| (0..50).map(move |case| shard_of(100, case, 50, trial))).collect();
         assert_eq!(used.len(), 100);
     }
 }

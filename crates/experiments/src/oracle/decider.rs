@@ -116,7 +116,7 @@ impl Session for OracleSession {
         let objective = Objective::parse(&self.options.metric, &tasks).map_err(|error| refused(&error))?;
         let (start, onwards) = (trial.checkpoint(), &mut self.onwards);
         let horizon = if onwards.is_some() { "trial" } else { "round" };
-        let survey = survey(question, (&objective, self.options.limit), &[], |batch| {
+        let survey = survey(question, &objective, self.options.limit, &[], |batch| {
             let outcome = |assignment: &Assignment| {
                 play(&start, Decision::of(assignment.clone()), onwards.as_mut(), deadline)
             };

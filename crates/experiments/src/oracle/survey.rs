@@ -116,7 +116,8 @@ impl Survey {
 /// Those of `play`.
 pub fn survey<E: From<BranchError>>(
     question: &Question,
-    (objective, limit): (&Objective, u64),
+    objective: &Objective,
+    limit: u64,
     named: &[Assignment],
     mut play: impl FnMut(&[Assignment]) -> Result<Vec<Outcome>, E>,
 ) -> Result<Survey, E> {
@@ -217,7 +218,7 @@ mod tests {
 
     #[test]
     fn few_assignments_are_all_played_and_ranked() {
-        let survey = survey(&question(6), (&objective(), 100), &[], outcomes).unwrap();
+        let survey = survey(&question(6), &objective(), 100, &[], outcomes).unwrap();
         assert_eq!((survey.coverage, survey.evaluations.len()), (Coverage::All, 20));
         let best = Assignment::new(vec![vec![3, 4, 5], vec![0, 1, 2]]);
         assert_eq!(survey.ranked(&objective())[0].assignment, best);
@@ -235,7 +236,7 @@ mod tests {
     fn of_many_assignments_a_sample_is_played_and_the_best_of_it_is_improved() {
         let question = question(16);
         let named = Assignment::new(vec![(0..8).collect(), (8..16).collect()]);
-        let survey = survey(&question, (&objective(), 600), std::slice::from_ref(&named), outcomes).unwrap();
+        let survey = survey(&question, &objective(), 600, std::slice::from_ref(&named), outcomes).unwrap();
         let Coverage::Sample { of, drawn, searched } = survey.coverage else { panic!("a sample") };
         assert_eq!((of, drawn), (12_870, 300));
         assert!(searched > 0 && drawn + searched <= 600, "{searched}");

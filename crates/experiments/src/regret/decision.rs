@@ -123,7 +123,7 @@ impl Plan<'_> {
         let (halt, onwards) = (self.halt, &mut self.onwards);
         let mut outcome =
             |assignment: &Assignment| play(&start, Decision::of(assignment.clone()), onwards.as_mut(), halt);
-        let survey = survey(&question, (self.objective, self.limit), &named, |batch| {
+        let survey = survey(&question, self.objective, self.limit, &named, |batch| {
             batch.iter().map(&mut outcome).collect::<Result<Vec<Outcome>, BranchError>>()
         })?;
         let (assignments, outcomes): (Vec<_>, Vec<_>) = survey

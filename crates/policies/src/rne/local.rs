@@ -38,13 +38,9 @@ impl Scored {
         Self { part_of, sums, pairs, total }
     }
 
-    /// The total if the sums of two parts, `low < high`, are replaced.
-    fn total_with(
-        &self,
-        [low, high]: [usize; 2],
-        [new_low, new_high]: [&[f64]; 2],
-        scorer: &mut Scorer,
-    ) -> f64 {
+    /// The total after a swap.
+    fn total_with(&self, swap: &Swap<'_>, scorer: &mut Scorer) -> f64 {
+        let Swap { parts: [low, high], sums: [new_low, new_high] } = *swap;
         let parts = self.sums.len();
         let sums = |part: usize| match part {
             part if part == low => new_low,
@@ -61,6 +57,12 @@ impl Scored {
         }
         total
     }
+}
+
+/// A swap of members between two parts, the lower first, with the sums of both after it.
+struct Swap<'s> {
+    parts: [usize; 2],
+    sums: [&'s [f64]; 2],
 }
 
 /// A good partition into parts of these sizes, which must be above 0 and in ascending order.
@@ -99,7 +101,8 @@ fn improve(best: &mut Scored, rows: &[Vec<f64>], scorer: &mut Scorer, searched: 
                 swapped[0][k] = (best.sums[low][k] - rows[out][k] + rows[into][k]).max(0.0);
                 swapped[1][k] = (best.sums[high][k] - rows[into][k] + rows[out][k]).max(0.0);
             }
-            let total = best.total_with([low, high], [&swapped[0], &swapped[1]], scorer);
+            let total =
+                best.total_with(&Swap { parts: [low, high], sums: [&swapped[0], &swapped[1]] }, scorer);
             if total > best.total + TIE_TOLERANCE {
                 let mut part_of = std::mem::take(&mut best.part_of);
                 part_of.swap(i, j);

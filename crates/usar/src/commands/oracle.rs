@@ -202,7 +202,7 @@ impl Arguments {
         let progress = progress_bar(count as usize, &of, self.jobs.unwrap_or_else(default_jobs), self.quiet);
         let named: Vec<Assignment> = asked.choices.iter().map(|(_, choice)| choice.clone()).collect();
         let batch = Batch { start, then_spec: then, then: name.as_deref(), progress: &progress };
-        let survey = survey(&asked.question, (&asked.objective, self.limit), &named, |assignments| {
+        let survey = survey(&asked.question, &asked.objective, self.limit, &named, |assignments| {
             batch.play(assignments, log).map_err(Trouble)
         });
         progress.finish_and_clear();

@@ -68,7 +68,7 @@ impl Arguments {
                 self.folder.display()
             )));
         }
-        print(out, &likenesses, (&levels, &folder.experiment().cases[case].scenario), &blind)?;
+        print(out, &likenesses, &levels, &folder.experiment().cases[case].scenario, &blind)?;
         if let Some(gaps) = gaps(&folder, case) {
             writeln!(out, "{gaps}")?;
         }
@@ -101,7 +101,8 @@ pub(super) fn gaps(folder: &Folder, case: usize) -> Option<String> {
 fn print(
     out: &mut dyn Write,
     likenesses: &[(String, [Likeness; 3])],
-    (levels, scenario): (&[GroupLevels], &Scenario),
+    levels: &[GroupLevels],
+    scenario: &Scenario,
     blind: &[Blind],
 ) -> Result<(), Failure> {
     let hardest = scenario.hardest_first().first().map_or("", |task| &scenario.tasks[task.index()].name);

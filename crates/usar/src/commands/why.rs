@@ -246,7 +246,7 @@ fn others(asked: &AskedTrial) -> Result<Vec<PolicySpec>, Failure> {
     let all = if asked.policies.is_empty() {
         let parse = |name| PolicySpec::parse(name, &asked.registry);
         let names = asked.registry.names().into_iter().map(parse);
-        names.collect::<Result<Vec<_>, String>>().map_err(Failure::run)?
+        names.collect::<Result<Vec<_>, _>>().map_err(Failure::run)?
     } else {
         asked.policies.clone()
     };
