@@ -1,18 +1,22 @@
 //! Decisions see reports: the truth is changed and the reports are not, and no decision changes.
 
+use std::collections::BTreeSet;
+
 use rne_core::Asked;
+use usar_sim::event::Event;
 use usar_sim::ids::{RescueeId, RobotId};
 use usar_sim::mission::Activity;
 use usar_sim::navigation::Goal;
+use usar_sim::scenario::Scenario;
 use usar_sim::simulation::{Advance, Simulation};
 use usar_sim::world::RescueeState;
 
-use crate::support::{paper, policy};
+use crate::support::{paper, paper_with, policy};
 
 /// Rescuees that their group believes to wait and that no robot claims.
 fn believed(trial: &Simulation) -> Vec<RescueeId> {
     let of_task = |task: rne_core::TaskId| {
-        let known = &trial.beliefs().of(Some(task)).rescuees;
+        let known = &trial.beliefs_of(Some(task)).next().unwrap().rescuees;
         let own = trial.model().tasks[task.index()].rescuees.clone();
         own.filter(|id| known.get(*id).is_some_and(|known| known.waits_at.is_some()))
     };
@@ -57,7 +61,7 @@ fn robots_go_for_rescuees_that_are_gone_until_somebody_says_so() {
     (0..1_000).for_each(|_| assert_eq!(changed.step(&mut *rne), None));
     let known_gone = |id: &RescueeId| {
         let task = changed.world().rescuees[id.index()].task;
-        let known = changed.beliefs().of(Some(task)).rescuees.get(id.index());
+        let known = changed.beliefs_of(Some(task)).next().unwrap().rescuees.get(id.index());
         known.is_some_and(|known| known.waits_at.is_none())
     };
     assert!(gone.iter().any(known_gone), "who finds nobody there says so");
@@ -93,4 +97,29 @@ fn robots_learn_of_a_team_mate_what_it_says() {
     assert!(trial.beliefs().team[2].energy > 31.0, "nobody can know yet");
     assert_eq!(trial.step(&mut *rne), None);
     assert!(trial.beliefs().team[2].is_as(&trial.world().robots[2]));
+}
+
+/// Claims of a minute on rescuees that the robot that claims them has not seen itself.
+fn claims_by_hearsay(scenario: &Scenario) -> usize {
+    let (mut trial, mut rne) = (Simulation::new(scenario, 1).unwrap().checked(), policy("RNE"));
+    let (mut seen, mut hearsay) = (BTreeSet::new(), BTreeSet::new());
+    while trial.time_s() < 60.0 {
+        assert_eq!(trial.step(&mut *rne), None);
+        seen.extend(trial.events().iter().filter_map(|event| match event {
+            Event::Sighted { robot, rescuee } => Some((*robot, *rescuee)),
+            _ => None,
+        }));
+        let agents = (0..).map(RobotId).zip(&trial.mission().crew.agents);
+        let claims = agents.filter_map(|(id, agent)| Some((id, agent.activity.claim()?)));
+        hearsay.extend(claims.filter(|claim| !seen.contains(claim)));
+    }
+    assert!(!seen.is_empty() && trial.mission().claims.changes() > 0);
+    hearsay.len()
+}
+
+#[test]
+fn where_nobody_shares_beliefs_robots_go_only_for_what_they_have_seen_themselves() {
+    let alone = paper_with(&[("    mission: (", "    mission: (belief_sharing: WithNobody,")]);
+    assert_eq!(claims_by_hearsay(&alone), 0);
+    assert!(claims_by_hearsay(&paper()) > 0, "in a group, what one has seen all know");
 }

@@ -1,7 +1,10 @@
 //! The state at one moment, as a recording stores it: whole numbers and ids.
 
+use std::collections::{BTreeMap, BTreeSet};
+
 use rne_core::TaskId;
 use serde::Serialize;
+use usar_sim::belief::Belief;
 use usar_sim::conflict::DelayCause;
 use usar_sim::mission::Activity;
 use usar_sim::robot::{Condition, Robot};
@@ -354,17 +357,25 @@ impl GroupFrame {
     /// Appends the numbers of a group's current belief.
     pub(crate) fn write_now(simulation: &Simulation, number: usize, out: &mut Vec<i32>) {
         let group = simulation.mission().crew.groups.get(number);
-        let belief = simulation.beliefs().of(group.map(|_| TaskId(number as u16)));
+        let beliefs: Vec<&Belief> = simulation.beliefs_of(group.map(|_| TaskId(number as u16))).collect();
         let pieces = &simulation.world().debris;
         out.extend_from_slice(&[i32::from(group.is_some_and(|group| group.at_work)), 0]);
         let before = out.len();
-        for (number, known) in belief.debris.iter() {
+        // A piece that several robots know is where the last of them saw it.
+        let mut known = BTreeMap::new();
+        for (number, piece) in beliefs.iter().flat_map(|belief| belief.debris.iter()) {
+            let at_step = known.entry(number).or_insert(piece.at_step);
+            *at_step = piece.at_step.max(*at_step);
+        }
+        for (number, at_step) in known {
             // Recordings keep places as sightings; a piece that does not exist has none.
             let Some(piece) = pieces.get(number as usize) else { continue };
-            out.extend_from_slice(&[number.cast_signed(), count(piece.sightings_until(known.at_step))]);
+            out.extend_from_slice(&[number.cast_signed(), count(piece.sightings_until(at_step))]);
         }
         out[before - 1] = count((out.len() - before) / 2);
-        out.extend(belief.zones_on().iter().map(|(number, _)| number.cast_signed()));
+        let zones_on =
+            beliefs.iter().flat_map(|belief| belief.zones_on()).map(|(number, _)| number.cast_signed());
+        out.extend(zones_on.collect::<BTreeSet<i32>>());
     }
 
     pub(crate) fn read(numbers: &[i32]) -> Result<Self, NotNumbers> {

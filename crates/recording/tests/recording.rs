@@ -99,7 +99,7 @@ fn assert_is_now(recording: &Recording, number: usize, now: &Simulation) {
         assert_eq!(kept.sightings as usize, piece.sightings.len());
     }
     let tasks = (0..now.mission().crew.groups.len() as u16).map(TaskId);
-    let known = tasks.map(Some).chain([None]).map(|group| now.beliefs().of(group));
+    let known = tasks.map(Some).chain([None]).map(|group| now.beliefs_of(group).next().unwrap());
     assert_eq!(frame.groups.len(), now.mission().crew.groups.len() + 1);
     for (kept, known) in frame.groups.iter().zip(known) {
         assert!(

@@ -15,5 +15,5 @@ pub use fold::Belief;
 pub use known::{KnownDebris, KnownRescuee, KnownTask, KnownWreck, KnownZone};
 pub use ledger::Ledger;
 pub(crate) use news::{News, Seen};
-pub use shared::Beliefs;
+pub use shared::{Beliefs, Holder};
 pub use table::Table;

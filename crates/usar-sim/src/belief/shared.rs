@@ -1,6 +1,6 @@
-//! The beliefs of a team, and which robots share which. What a member of a group hears, all members know.
-//! Robots without a group share the belief of the team at home. What a robot says of itself, the whole team
-//! knows.
+//! The beliefs of a team, and which robots share which: by the scenario's rule, those of a group, or each robot
+//! in the field has its own. Robots without a group share the belief of the team at home. What a robot says of
+//! itself, the whole team knows.
 
 use rne_core::TaskId;
 use serde::{Deserialize, Serialize};
@@ -11,11 +11,43 @@ use crate::ids::RobotId;
 use crate::planning::Inflation;
 use crate::report::{Report, Speaker};
 use crate::robot::Robot;
+use crate::scenario::BeliefSharing;
 
-/// The beliefs of all groups, and of the team at home.
+/// The place of a belief in the field: of a group, or of a robot.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Holder(usize);
+
+impl BeliefSharing {
+    /// Number of beliefs in the field.
+    #[must_use]
+    pub fn holders(self, tasks: usize, robots: usize) -> usize {
+        match self {
+            Self::WithGroup => tasks,
+            Self::WithNobody => robots,
+        }
+    }
+
+    /// The belief of a robot in the group of a task.
+    #[must_use]
+    pub fn holder(self, robot: RobotId, task: TaskId) -> Holder {
+        match self {
+            Self::WithGroup => Holder(task.index()),
+            Self::WithNobody => Holder(robot.index()),
+        }
+    }
+
+    /// The beliefs of these members of the group of a task, each once. A group has one without members, too.
+    pub fn holders_in(self, task: TaskId, members: &[RobotId]) -> impl Iterator<Item = Holder> {
+        let of_group = (self == Self::WithGroup).then_some(Holder(task.index()));
+        let own = members.iter().filter(move |_| self == Self::WithNobody);
+        of_group.into_iter().chain(own.map(|robot| Holder(robot.index())))
+    }
+}
+
+/// The beliefs in the field, and of the team at home.
 #[derive(Serialize, Deserialize)]
 pub struct Beliefs {
-    groups: Vec<Belief>,
+    field: Vec<Belief>,
     home: Belief,
     /// The robots as they last said they are, by id.
     pub team: Vec<Robot>,
@@ -28,17 +60,17 @@ pub struct Beliefs {
 impl Beliefs {
     /// Beliefs about nothing but the team.
     #[must_use]
-    pub fn nothing(tasks: usize, inflation: &Inflation, team: Vec<Robot>) -> Self {
+    pub fn nothing(holders: usize, inflation: &Inflation, team: Vec<Robot>) -> Self {
         let home = Belief::nothing(inflation);
         let (said_at, ledger) = (vec![0; team.len()], Ledger::empty(team.len()));
-        Self { groups: vec![home.clone(); tasks], home, team, said_at, ledger }
+        Self { field: vec![home.clone(); holders], home, team, said_at, ledger }
     }
 
-    /// The belief of the group of a task, or of the team at home. The latter is what all groups had heard when
-    /// the last round ended, and what robots without a group have reported since.
+    /// A belief in the field, or that of the team at home. The latter is what all had heard when the last round
+    /// ended, and what robots without a group have reported since.
     #[must_use]
-    pub fn of(&self, group: Option<TaskId>) -> &Belief {
-        group.map_or(&self.home, |task| &self.groups[task.index()])
+    pub fn of(&self, holder: Option<Holder>) -> &Belief {
+        holder.map_or(&self.home, |Holder(place)| &self.field[place])
     }
 
     /// Lets a robot's report of itself be heard by the whole team. An older one than the last changes nothing.
@@ -53,35 +85,35 @@ impl Beliefs {
     }
 
     /// Lets a report be heard by all who share the sender's belief, or by the whole team if the base speaks.
-    /// `group_of` is a function from a robot to its group. Returns whether the report was newer than what the
+    /// `holder_of` is a function from a robot to its belief. Returns whether the report was newer than what the
     /// sender's belief had heard before.
-    pub(crate) fn hear(&mut self, report: &Report, group_of: impl Fn(RobotId) -> Option<TaskId>) -> bool {
+    pub(crate) fn hear(&mut self, report: &Report, holder_of: impl Fn(RobotId) -> Option<Holder>) -> bool {
         match report.from {
             Speaker::Robot(robot) => {
-                let group = group_of(robot).map(|task| &mut self.groups[task.index()]);
-                group.unwrap_or(&mut self.home).hear(report)
+                let own = holder_of(robot).map(|Holder(place)| &mut self.field[place]);
+                own.unwrap_or(&mut self.home).hear(report)
             }
             Speaker::Base => {
-                self.groups.iter_mut().for_each(|group| {
-                    group.hear(report);
+                self.field.iter_mut().for_each(|belief| {
+                    belief.hear(report);
                 });
                 self.home.hear(report)
             }
         }
     }
 
-    /// The team at home hears all that the groups have heard.
+    /// The team at home hears all that was heard in the field.
     pub(crate) fn pool(&mut self) {
-        self.home.pool(&self.groups);
+        self.home.pool(&self.field);
     }
 
-    /// A group leaves home with the belief of the team.
-    pub(crate) fn depart(&mut self, task: TaskId) {
-        self.groups[task.index()] = self.home.clone();
+    /// A group or a robot leaves home with the belief of the team.
+    pub(crate) fn depart(&mut self, holder: Holder) {
+        self.field[holder.0] = self.home.clone();
     }
 
     /// Draws the maps of all beliefs again, after a snapshot was read.
     pub(crate) fn draw_maps(&mut self, inflation: &Inflation) {
-        self.groups.iter_mut().chain([&mut self.home]).for_each(|belief| belief.draw_maps(inflation));
+        self.field.iter_mut().chain([&mut self.home]).for_each(|belief| belief.draw_maps(inflation));
     }
 }

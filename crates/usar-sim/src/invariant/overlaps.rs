@@ -159,20 +159,16 @@ impl Gauge {
     /// Notes a piece that an event has put to a place, or away.
     pub(super) fn note_put(&mut self, debris: usize, world: &World) {
         let own = self.put.iter_mut().filter(|(number, _)| *number == debris);
-        own.for_each(|(number, pose)| *pose = world.debris[*number].outline.pose);
+        own.for_each(|(number, pose)| *pose = world.debris[*number].pose);
     }
 
     /// Notes the pieces that were pushed for the first time. Returns the number of a fixed piece that has
     /// moved, if there is one.
     pub(super) fn note_pushed(&mut self, world: &World) -> Option<usize> {
-        if let Some((number, _)) =
-            self.put.iter().find(|(number, at)| world.debris[*number].outline.pose != *at)
-        {
+        if let Some((number, _)) = self.put.iter().find(|(number, at)| world.debris[*number].pose != *at) {
             return Some(*number);
         }
-        while let Some(at) =
-            self.still.iter().position(|(number, at)| world.debris[*number].outline.pose != *at)
-        {
+        while let Some(at) = self.still.iter().position(|(number, at)| world.debris[*number].pose != *at) {
             let (number, _) = self.still[at];
             if world.debris[number].is_fixed() {
                 return Some(number);
@@ -240,9 +236,9 @@ impl Gauge {
         }
         let gap = |number: &usize| {
             let piece = &world.debris[*number];
-            let apart = (piece.outline.pose.translation - robot.position).length();
+            let apart = (piece.pose.translation - robot.position).length();
             let far = apart - piece.reach - robot.radius();
-            if far < LOOK_M { piece.outline.signed_distance(robot.position) - robot.radius() } else { far }
+            if far < LOOK_M { piece.signed_distance(robot.position) - robot.radius() } else { far }
         };
         let look = &mut self.looks[robot.id.index()];
         look.gap -= (robot.position - look.last).length() + ROUNDING_M;
@@ -264,8 +260,8 @@ impl Gauge {
         let mut least = look.gap;
         for piece in self.pushed.iter().map(|number| &world.debris[*number]) {
             let far = piece.reach + robot.radius() + reach + self.longest_reach;
-            if (piece.outline.pose.translation - robot.position).length_squared() < far * far {
-                let gap = piece.outline.signed_distance(robot.position) - robot.radius();
+            if (piece.pose.translation - robot.position).length_squared() < far * far {
+                let gap = piece.signed_distance(robot.position) - robot.radius();
                 self.may_touch[robot.id.index()] |= gap < reach + self.longest_reach;
                 least = least.min(gap);
             }

@@ -7,7 +7,7 @@ use super::agent::{Activity, Agent};
 use super::round::{Fitness, unfit_cause};
 use super::scene::Scene;
 use super::{SLOT_M, SWEEP_M};
-use crate::belief::Beliefs;
+use crate::belief::{Beliefs, Holder};
 use crate::event::{Event, TurnBackCause};
 use crate::ids::RobotId;
 use crate::model::{MissionModel, Model, SENSING_PERIOD_STEPS};
@@ -52,6 +52,12 @@ impl Crew {
     #[must_use]
     pub fn group_of(&self, robot: RobotId) -> Option<TaskId> {
         self.agents[robot.index()].task
+    }
+
+    /// The belief on which a robot acts; none for the belief of the team at home.
+    #[must_use]
+    pub fn holder_of(&self, robot: RobotId, model: &Model) -> Option<Holder> {
+        Some(model.mission.belief_sharing.holder(robot, self.group_of(robot)?))
     }
 
     pub(super) fn agent(&mut self, robot: RobotId) -> &mut Agent {
@@ -224,7 +230,7 @@ impl Crew {
             Activity::Searching => agent.sweep.last().map(|place| Goal { point: *place, within: SWEEP_M }),
             Activity::Standby => Some(Goal { point: agent.muster, within: SWEEP_M }),
             Activity::Approaching(rescuee) => Some(Goal {
-                point: beliefs.of(agent.task).rescuees.get(rescuee.index())?.waits_at?,
+                point: beliefs.of(self.holder_of(robot.id, model)).rescuees.get(rescuee.index())?.waits_at?,
                 within: 0.95 * model.mission.reach,
             }),
             Activity::Home | Activity::Returning => Some(Goal { point: robot.home, within: SLOT_M }),

@@ -75,7 +75,8 @@ impl Mission {
         scene.beliefs.ledger.begin(self.round, &groups, scene.step as f64 * scene.model.dt_s());
         scene.log.push(Event::RoundStarted { round: self.round, groups: groups.clone() });
         for (task, members) in scene.model.task_ids().zip(groups) {
-            scene.beliefs.depart(task);
+            let holders = scene.model.mission.belief_sharing.holders_in(task, &members);
+            holders.for_each(|holder| scene.beliefs.depart(holder));
             self.crew.send_out(task, members, scene.model, &scene.beliefs.team);
         }
         unfit.iter().for_each(|(id, cause)| self.crew.send_to_rest(*id, *cause, scene));

@@ -29,9 +29,10 @@ pub struct Scene<'s> {
 }
 
 impl Scene<'_> {
-    /// Where a rescuee waits, as the group of a task believes.
-    pub(super) fn place_of(&self, task: TaskId, rescuee: RescueeId) -> Option<Vector> {
-        self.beliefs.of(Some(task)).rescuees.get(rescuee.index())?.waits_at
+    /// Where a rescuee waits, as a robot in the group of a task believes.
+    pub(super) fn place_of(&self, robot: RobotId, task: TaskId, rescuee: RescueeId) -> Option<Vector> {
+        let holder = self.model.mission.belief_sharing.holder(robot, task);
+        self.beliefs.of(Some(holder)).rescuees.get(rescuee.index())?.waits_at
     }
 
     /// Whether a robot has known no route to its goal for so long that it gives up on the goal.

@@ -128,7 +128,7 @@ impl Mission {
         sharing: &mut Sharing,
     ) -> Option<RobotId> {
         let task = self.crew.agents[robot.index()].task?;
-        let (place, state) = (scene.place_of(task, rescuee)?, &scene.beliefs.team[robot.index()]);
+        let (place, state) = (scene.place_of(robot, task, rescuee)?, &scene.beliefs.team[robot.index()]);
         if (place - state.position).length() > scene.model.mission.reach {
             return None;
         }

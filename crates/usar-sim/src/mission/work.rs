@@ -18,10 +18,10 @@ impl Mission {
         let is_held_up = activity.is_in_field() && self.crew.is_held_up(robot, scene);
         match activity {
             Activity::Approaching(rescuee)
-                if is_held_up || is_out_of_reach(id, scene.place_of(task, rescuee), scene) =>
+                if is_held_up || is_out_of_reach(id, scene.place_of(id, task, rescuee), scene) =>
             {
                 self.claims.given_up[rescuee.index()] = true;
-                if let Some(place) = scene.place_of(task, rescuee) {
+                if let Some(place) = scene.place_of(id, task, rescuee) {
                     scene.log.push(Event::Unreachable { robot: id, place: place.into() });
                 }
                 self.release_claim(id);

@@ -2,7 +2,8 @@
 
 use std::sync::Arc;
 
-use parry2d::math::Vector;
+use parry2d::math::{Pose, Vector};
+use parry2d::shape::SharedShape;
 
 use super::Layout;
 use crate::geometry::Outline;
@@ -11,8 +12,10 @@ use crate::scenario::{DebrisFile, Movable};
 /// The fixed properties of one piece of debris.
 #[derive(Clone)]
 pub struct DebrisModel {
-    /// Its shape at its initial place, or at the place where an event puts it.
-    pub outline: Outline,
+    /// Its shape.
+    pub shape: SharedShape,
+    /// Its initial place, or the place where an event puts it.
+    pub first_pose: Pose,
     /// Mass, and mass times the coefficient of friction with the ground, in kilograms; none for fixed debris.
     pub masses: Option<[f32; 2]>,
     /// Whether it is there at the start, if events place or remove it; none if no event does.
@@ -23,13 +26,14 @@ pub struct DebrisModel {
 
 impl Default for DebrisModel {
     fn default() -> Self {
-        Self { outline: Outline::disc(Vector::ZERO, 0.0), masses: None, gate: None, reach: 0.0 }
+        let Outline { shape, pose } = Outline::disc(Vector::ZERO, 0.0);
+        Self { shape, first_pose: pose, masses: None, gate: None, reach: 0.0 }
     }
 }
 
 impl std::fmt::Debug for DebrisModel {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("DebrisModel").field("pose", &self.outline.pose).finish_non_exhaustive()
+        f.debug_struct("DebrisModel").field("first_pose", &self.first_pose).finish_non_exhaustive()
     }
 }
 
@@ -42,14 +46,15 @@ impl DebrisModel {
     }
 
     fn compile(file: &DebrisFile, gate: Option<bool>) -> Self {
-        let outline = file.outline();
-        let bounds = outline.shape.compute_local_bounding_sphere();
+        let Outline { shape, pose } = file.outline();
+        let bounds = shape.compute_local_bounding_sphere();
         let masses = |Movable { mass_kg, friction }| [mass_kg as f32, (friction * mass_kg) as f32];
         Self {
             masses: file.movable.map(masses),
             gate,
             reach: bounds.center.length() + bounds.radius,
-            outline,
+            shape,
+            first_pose: pose,
         }
     }
 

@@ -6,7 +6,7 @@ use rne_core::GroupSizes;
 use crate::geometry::vector;
 use crate::ids::RobotId;
 use crate::scenario::{
-    EmptyTasks, Errand, LoadAtRest, MissionRules, RestAtHome, RestFills, RoundEnd, TurnBack,
+    BeliefSharing, EmptyTasks, Errand, LoadAtRest, MissionRules, RestAtHome, RestFills, RoundEnd, TurnBack,
 };
 
 /// When a robot with a low level needs rest.
@@ -43,6 +43,8 @@ pub struct MissionModel {
     pub may_idle: bool,
     /// Who goes to a task of which the team knows that no rescuee waits there.
     pub empty_tasks: EmptyTasks,
+    /// Who shares what a robot in the field has seen.
+    pub belief_sharing: BeliefSharing,
     /// Whether a robot that rests, or is on its way to rest, still guides its group.
     pub resting_guides: bool,
     /// Steps of loading one rescuee.
@@ -77,6 +79,7 @@ impl MissionModel {
             group_sizes: rules.group_sizes,
             may_idle: rules.may_idle,
             empty_tasks: rules.empty_tasks,
+            belief_sharing: rules.belief_sharing,
             resting_guides: rules.resting_guides,
             loading_steps: steps(rules.loading_s),
             reach: rules.reach_m as f32,

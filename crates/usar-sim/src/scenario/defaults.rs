@@ -6,8 +6,9 @@ use rne_core::GroupSizes;
 use rne_core::hierarchy::NeedLevel;
 
 use super::file::{
-    CostUnit, Costs, EmptyTasks, InitialLevels, LoadAtRest, Measure, MissionRules, Movable, NeedFile, Normal,
-    PlanningRules, RestAtHome, RestFills, RightOfWay, RoleFile, RoleKind, RoundEnd, TurnBack,
+    BeliefSharing, CostUnit, Costs, EmptyTasks, InitialLevels, LoadAtRest, Measure, MissionRules, Movable,
+    NeedFile, Normal, PlanningRules, RestAtHome, RestFills, RightOfWay, RoleFile, RoleKind, RoundEnd,
+    TurnBack,
 };
 use crate::vitals::{Rates, WorkRates};
 
@@ -96,6 +97,7 @@ impl Default for MissionRules {
             group_sizes: GroupSizes::Parts,
             may_idle: false,
             empty_tasks: EmptyTasks::GetNobody,
+            belief_sharing: BeliefSharing::WithGroup,
             resting_guides: true,
             loading_s: 2.0,
             reach_m: 1.0,

@@ -120,6 +120,16 @@ pub enum EmptyTasks {
     GetGroups,
 }
 
+/// Who shares what a robot in the field has seen, before its group is home.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+pub enum BeliefSharing {
+    /// Its whole group, at once. The default.
+    #[default]
+    WithGroup,
+    /// Nobody: each robot acts on what it has seen itself.
+    WithNobody,
+}
+
 /// Rules of the mission.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
@@ -151,6 +161,8 @@ pub struct MissionRules {
     pub may_idle: bool,
     /// Who goes to a task of which the team knows that no rescuee waits there.
     pub empty_tasks: EmptyTasks,
+    /// Who shares what a robot in the field has seen. At home, all hear everything.
+    pub belief_sharing: BeliefSharing,
     /// Whether a robot that rests, or is on its way to rest, still guides its group.
     pub resting_guides: bool,
     /// Time to load one rescuee, in seconds.

@@ -35,6 +35,6 @@ pub(super) fn sense(view: &View, belief: &Belief, sent: &mut Vec<Report>) {
 
 /// The report of a piece: the place at which it was noticeable last.
 fn report(view: &View, number: usize, piece: &Debris) -> Option<Report> {
-    let (shape, pose) = (piece.outline.shape.clone(), *piece.sightings.last()?);
+    let (shape, pose) = (piece.shape.clone(), *piece.sightings.last()?);
     Some(view.report(Statement::DebrisLies { debris: number as u32, shape, pose }))
 }

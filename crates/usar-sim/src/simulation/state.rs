@@ -83,11 +83,12 @@ impl State {
     /// The state before the first step: all robots at home.
     pub(super) fn new(model: &Model) -> Self {
         let world = World::build(model);
+        let holders = model.mission.belief_sharing.holders(model.tasks.len(), model.robots.len());
         let tallies = model.robots.iter().map(|robot| Tally::new(robot.initial_levels)).collect();
         Self {
             step: 0,
             sent: model.task_ids().map(|task| base::report(&world, model, task, 0)).collect(),
-            beliefs: Beliefs::nothing(model.tasks.len(), &model.inflation, world.robots.clone()),
+            beliefs: Beliefs::nothing(holders, &model.inflation, world.robots.clone()),
             mission: Mission::new(model),
             navigator: Navigator::new(world.robots.len()),
             resolver: Resolver::new(&model.right_of_way),
@@ -130,18 +131,18 @@ impl State {
     /// Robots look around and report; the medium carries; the groups and the team at home hear.
     pub(super) fn sense(&mut self, model: &Model, medium: &impl Medium, heard: &mut Vec<Report>) {
         let Self { world, mission, beliefs, sent, step, .. } = self;
-        look_around(world, model, |robot| beliefs.of(mission.crew.group_of(robot.id)), *step, sent);
-        self.hear(medium, heard);
+        look_around(world, model, |robot| beliefs.of(mission.crew.holder_of(robot.id, model)), *step, sent);
+        self.hear(model, medium, heard);
     }
 
     /// Robots notice their own state, and say so.
-    pub(super) fn feel(&mut self, medium: &impl Medium, heard: &mut Vec<Report>) {
+    pub(super) fn feel(&mut self, model: &Model, medium: &impl Medium, heard: &mut Vec<Report>) {
         oneself::sense(&self.world.robots, &self.beliefs.team, self.step, &mut self.sent);
-        self.hear(medium, heard);
+        self.hear(model, medium, heard);
     }
 
     /// The medium carries the reports that are under way; the groups and the team hear them.
-    pub(super) fn hear(&mut self, medium: &impl Medium, heard: &mut Vec<Report>) {
+    pub(super) fn hear(&mut self, model: &Model, medium: &impl Medium, heard: &mut Vec<Report>) {
         let Self { mission, beliefs, sent, log, step, .. } = self;
         medium.carry(*step, sent, heard);
         for report in heard.drain(..) {
@@ -149,7 +150,7 @@ impl State {
                 Report { from: Speaker::Robot(id), says: Statement::IAm(robot), at_step, .. } => {
                     beliefs.hear_of_self(id, robot, at_step);
                 }
-                report if beliefs.hear(&report, |robot| mission.crew.group_of(robot)) => {
+                report if beliefs.hear(&report, |robot| mission.crew.holder_of(robot, model)) => {
                     log.extend(Event::of_report(&report));
                 }
                 _ => {}
@@ -171,7 +172,7 @@ impl State {
             model,
             team: &beliefs.team,
             step: self.step,
-            belief_of: |robot| beliefs.of(mission.crew.group_of(robot)),
+            belief_of: |robot| beliefs.of(mission.crew.holder_of(robot, model)),
             speed_of: |robot: &Robot| mission.crew.speed_of(model, robot),
         };
         self.navigator.plan(&outlook, &mut scratch.meshes);
@@ -322,7 +323,8 @@ fn mover<'s>(
         speed,
         braking: robot.spec.braking,
         priority: PriorityKey::new(rule, robot.id, class, [robot.energy, robot.hp]),
-        known: (!robot.is_aerial()).then(|| beliefs.of(agent.task).obstacles(robot.radius())),
+        known: (!robot.is_aerial())
+            .then(|| beliefs.of(mission.crew.holder_of(robot.id, model)).obstacles(robot.radius())),
         can_make_room: robot.is_able() && !is_busy,
     }
 }

@@ -8,7 +8,7 @@ use super::charge::{last_event, spend};
 use crate::event::Event;
 use crate::geometry::Outline;
 use crate::ids::RobotId;
-use crate::model::{Action, Model};
+use crate::model::{Action, DebrisModel, Model};
 use crate::report::{Report, Speaker, Statement};
 use crate::robot::Robot;
 use crate::sensors::{base, oneself};
@@ -43,7 +43,7 @@ impl State {
                 if !is_free(&self.world, *debris, model) {
                     return false;
                 }
-                self.world.put_debris(*debris, Some(model.debris[*debris].outline.pose), self.step);
+                self.world.put_debris(*debris, Some(model.debris[*debris].first_pose), self.step);
                 let debris = *debris as u32;
                 let falls = matches!(action, Action::Fall(_));
                 self.log.push(if falls { Event::DebrisFell { debris } } else { Event::WayClosed { debris } });
@@ -140,7 +140,8 @@ impl State {
 /// Whether the place of a piece is free of ground robots and movable debris, and stays free of robots for a
 /// few steps.
 fn is_free(world: &World, debris: usize, model: &Model) -> bool {
-    let outline = &model.debris[debris].outline;
+    let DebrisModel { shape, first_pose, .. } = &*model.debris[debris];
+    let outline = Outline { shape: shape.clone(), pose: *first_pose };
     let dt = model.dt;
     let is_clear = |robot: &Robot| {
         let way = robot.velocity.length() * FREE_STEPS * dt;

@@ -1,7 +1,9 @@
 //! What can be seen of a trial from outside.
 
+use rne_core::TaskId;
+
 use super::Simulation;
-use crate::belief::Beliefs;
+use crate::belief::{Belief, Beliefs};
 use crate::conflict::Delay;
 use crate::event::Event;
 use crate::ids::RobotId;
@@ -79,6 +81,15 @@ impl Simulation {
     #[must_use]
     pub fn beliefs(&self) -> &Beliefs {
         &self.state.beliefs
+    }
+
+    /// The beliefs of the members of a task's group, each once, or that of the team at home.
+    pub fn beliefs_of(&self, group: Option<TaskId>) -> impl Iterator<Item = &Belief> {
+        let sharing = self.model().mission.belief_sharing;
+        let members = group.map_or(&[][..], |task| &self.mission().crew.groups[task.index()].members);
+        let in_field = group.into_iter().flat_map(move |task| sharing.holders_in(task, members).map(Some));
+        let at_home = group.is_none().then_some(None);
+        at_home.into_iter().chain(in_field).map(|holder| self.beliefs().of(holder))
     }
 
     /// The journeys of the robots as they are now.

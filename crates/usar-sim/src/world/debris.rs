@@ -41,7 +41,7 @@ impl Deref for Debris {
 impl Debris {
     /// A piece at its initial place; a piece that an event places later is away.
     pub(super) fn new(model: &Arc<DebrisModel>) -> Self {
-        let mut pose = model.outline.pose;
+        let mut pose = model.first_pose;
         let (mut sightings, mut since) = (vec![pose], vec![0]);
         if model.gate == Some(false) {
             sightings.clear();
@@ -54,13 +54,19 @@ impl Debris {
     /// The outline of the piece where it is.
     #[must_use]
     pub fn outline(&self) -> Outline {
-        Outline { shape: self.model.outline.shape.clone(), pose: self.pose }
+        Outline { shape: self.model.shape.clone(), pose: self.pose }
+    }
+
+    /// Distance from a point to the piece, in metres; negative inside.
+    #[must_use]
+    pub fn signed_distance(&self, point: Vector) -> f32 {
+        self.model.shape.distance_to_point(&self.pose, point, false)
     }
 
     /// Distance from a point to the piece, in metres; 0 inside.
     #[must_use]
     pub fn distance_to(&self, point: Vector) -> f32 {
-        self.model.outline.shape.distance_to_point(&self.pose, point, true)
+        self.model.shape.distance_to_point(&self.pose, point, true)
     }
 
     /// Whether the piece is in the arena.
@@ -81,7 +87,7 @@ impl Debris {
     /// The bounding box of the piece.
     #[must_use]
     pub fn bounds(&self) -> Aabb {
-        self.model.outline.shape.compute_aabb(&self.pose)
+        self.model.shape.compute_aabb(&self.pose)
     }
 
     fn note_sighting(&mut self, step: u64) {
@@ -99,7 +105,7 @@ impl Debris {
     pub(super) fn moved_to(&mut self, pose: Pose, step: u64) {
         self.pose = pose;
         let seen = self.sightings[self.sightings.len() - 1];
-        let arm = self.model.outline.shape.compute_local_bounding_sphere().radius;
+        let arm = self.model.shape.compute_local_bounding_sphere().radius;
         let turned =
             Vector::new(pose.rotation.cos() - seen.rotation.cos(), pose.rotation.sin() - seen.rotation.sin());
         let moved = (seen.translation - pose.translation).length() + arm * turned.length();
