@@ -15,7 +15,7 @@ use crate::scenario::BeliefSharing;
 
 /// The place of a belief in the field: of a group, or of a robot.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub struct Holder(usize);
+pub struct Holder(u32);
 
 impl BeliefSharing {
     /// Number of beliefs in the field.
@@ -31,16 +31,16 @@ impl BeliefSharing {
     #[must_use]
     pub fn holder(self, robot: RobotId, task: TaskId) -> Holder {
         match self {
-            Self::WithGroup => Holder(task.index()),
-            Self::WithNobody => Holder(robot.index()),
+            Self::WithGroup => Holder(u32::from(task.0)),
+            Self::WithNobody => Holder(robot.0),
         }
     }
 
     /// The beliefs of these members of the group of a task, each once. A group has one without members, too.
     pub fn holders_in(self, task: TaskId, members: &[RobotId]) -> impl Iterator<Item = Holder> {
-        let of_group = (self == Self::WithGroup).then_some(Holder(task.index()));
+        let of_group = (self == Self::WithGroup).then_some(Holder(u32::from(task.0)));
         let own = members.iter().filter(move |_| self == Self::WithNobody);
-        of_group.into_iter().chain(own.map(|robot| Holder(robot.index())))
+        of_group.into_iter().chain(own.map(|robot| Holder(robot.0)))
     }
 }
 
@@ -70,7 +70,7 @@ impl Beliefs {
     /// ended, and what robots without a group have reported since.
     #[must_use]
     pub fn of(&self, holder: Option<Holder>) -> &Belief {
-        holder.map_or(&self.home, |Holder(place)| &self.field[place])
+        holder.map_or(&self.home, |holder| &self.field[holder.0 as usize])
     }
 
     /// Lets a robot's report of itself be heard by the whole team. An older one than the last changes nothing.
@@ -90,7 +90,7 @@ impl Beliefs {
     pub(crate) fn hear(&mut self, report: &Report, holder_of: impl Fn(RobotId) -> Option<Holder>) -> bool {
         match report.from {
             Speaker::Robot(robot) => {
-                let own = holder_of(robot).map(|Holder(place)| &mut self.field[place]);
+                let own = holder_of(robot).map(|holder| &mut self.field[holder.0 as usize]);
                 own.unwrap_or(&mut self.home).hear(report)
             }
             Speaker::Base => {
@@ -109,7 +109,7 @@ impl Beliefs {
 
     /// A group or a robot leaves home with the belief of the team.
     pub(crate) fn depart(&mut self, holder: Holder) {
-        self.field[holder.0] = self.home.clone();
+        self.field[holder.0 as usize] = self.home.clone();
     }
 
     /// Draws the maps of all beliefs again, after a snapshot was read.

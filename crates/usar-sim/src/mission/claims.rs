@@ -57,31 +57,32 @@ impl Claims {
     }
 }
 
-/// A rescuee on offer, and where it is believed to wait.
-type Offer = (RescueeId, Vector);
-
-/// What is on offer in each of the beliefs of a group: one, unless each robot has its own.
-type OffersOf = SmallVec<[(Holder, SmallVec<[Offer; 256]>); 1]>;
+/// A rescuee on offer, in whose belief, and where it is believed to wait.
+pub(super) struct Offer {
+    holder: Holder,
+    rescuee: RescueeId,
+    at: Vector,
+}
 
 /// A robot that looks for work, and the nearest rescuee still on offer.
 struct Seeker {
     robot: RobotId,
     at: Vector,
-    /// Which of the lists of offers is of its belief.
-    list: usize,
+    holder: Holder,
     nearest: Option<(f32, RescueeId)>,
 }
 
 impl Seeker {
-    fn new(robot: RobotId, at: Vector, list: usize, offers: &OffersOf) -> Self {
-        let mut seeker = Self { robot, at, list, nearest: None };
+    fn new(robot: RobotId, at: Vector, holder: Holder, offers: &[Offer]) -> Self {
+        let mut seeker = Self { robot, at, holder, nearest: None };
         seeker.look(offers);
         seeker
     }
 
     /// Finds the nearest of the rescuees on offer; among equally near rescuees, the one with the lowest id.
-    fn look(&mut self, offers: &OffersOf) {
-        let offers = offers[self.list].1.iter().map(|(id, place)| ((*place - self.at).length_squared(), *id));
+    fn look(&mut self, offers: &[Offer]) {
+        let own = offers.iter().filter(|offer| offer.holder == self.holder);
+        let offers = own.map(|offer| ((offer.at - self.at).length_squared(), offer.rescuee));
         self.nearest = offers.min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
     }
 }
@@ -108,23 +109,24 @@ impl Claims {
         if spare <= 0 {
             return;
         }
-        let mut offers = OffersOf::new();
-        let mut seekers: SmallVec<[Seeker; 16]> = seeking
-            .map(|id| {
-                let holder = scene.model.mission.belief_sharing.holder(id, task);
-                let list = offers.iter().position(|(known, _)| *known == holder).unwrap_or_else(|| {
-                    offers.push((holder, self.on_offer(task, holder, scene).collect()));
-                    offers.len() - 1
-                });
-                Seeker::new(id, scene.beliefs.team[id.index()].position, list, &offers)
-            })
-            .collect();
+        let holder = |id: RobotId| scene.model.mission.belief_sharing.holder(id, task);
+        let seeking: SmallVec<[RobotId; 16]> = seeking.collect();
+        let mut holders: SmallVec<[Holder; 16]> = seeking.iter().copied().map(holder).collect();
+        holders.dedup();
+        let mut offers: SmallVec<[Offer; 256]> = SmallVec::new();
+        holders.into_iter().for_each(|holder| offers.extend(self.on_offer(task, holder, scene)));
+        if offers.is_empty() {
+            return;
+        }
+        let place = |id: RobotId| scene.beliefs.team[id.index()].position;
+        let mut seekers: SmallVec<[Seeker; 16]> =
+            seeking.into_iter().map(|id| Seeker::new(id, place(id), holder(id), &offers)).collect();
         for _ in 0..spare {
             let pairs = seekers.iter().enumerate().filter_map(|(at, seeker)| Some((seeker.nearest?, at)));
             // Seekers are in order of their ids: among equally near ones, the first is taken.
             let Some(((_, rescuee), at)) = pairs.min_by(|a, b| a.0.0.total_cmp(&b.0.0)) else { return };
             claims.push((seekers.remove(at).robot, rescuee));
-            offers.iter_mut().for_each(|(_, list)| list.retain(|(offer, _)| *offer != rescuee));
+            offers.retain(|offer| offer.rescuee != rescuee);
             let losers =
                 seekers.iter_mut().filter(|seeker| seeker.nearest.is_some_and(|(_, id)| id == rescuee));
             losers.for_each(|seeker| seeker.look(&offers));
@@ -138,10 +140,12 @@ impl Claims {
         task: TaskId,
         holder: Holder,
         scene: &'s Scene,
-    ) -> impl Iterator<Item = (RescueeId, Vector)> + use<'s> {
+    ) -> impl Iterator<Item = Offer> + use<'s> {
         let believed = &scene.beliefs.of(Some(holder)).rescuees;
         let is_free = |i: &usize| self.by[*i].is_none() && !self.given_up[*i];
-        let waiting = move |i: usize| Some((RescueeId(i as u32), believed.get(i)?.waits_at?));
+        let waiting = move |i: usize| {
+            Some(Offer { holder, rescuee: RescueeId(i as u32), at: believed.get(i)?.waits_at? })
+        };
         scene.model.tasks[task.index()].rescuees.clone().filter(is_free).filter_map(waiting)
     }
 }

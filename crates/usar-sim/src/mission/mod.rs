@@ -15,7 +15,6 @@ mod work;
 
 use rne_core::{Question, TaskId};
 use serde::{Deserialize, Serialize};
-use smallvec::SmallVec;
 
 pub use agent::{Activity, Agent};
 pub use claims::Claims;
@@ -183,12 +182,13 @@ impl Mission {
             field.still_searching += u32::from(!agent.sweep.is_empty());
         }
         if field.still_searching == 0 && field.known_rescuees == 0 {
-            let carriers = |id: &RobotId| scene.beliefs.team[id.index()].can_carry();
-            let carriers: SmallVec<[RobotId; 16]> =
-                self.crew.in_field(task, &scene.beliefs.team).filter(carriers).collect();
-            let holders = scene.model.mission.belief_sharing.holders_in(task, &carriers);
-            let known = holders.map(|holder| self.claims.on_offer(task, holder, scene).count() as u32);
-            field.known_rescuees = known.max().unwrap_or(0);
+            let sharing = scene.model.mission.belief_sharing;
+            let knows = |id: RobotId| {
+                let holder = sharing.holder(id, task);
+                let can_carry = scene.beliefs.team[id.index()].can_carry();
+                can_carry && self.claims.on_offer(task, holder, scene).next().is_some()
+            };
+            field.known_rescuees = u32::from(self.crew.in_field(task, &scene.beliefs.team).any(knows));
         }
         field
     }

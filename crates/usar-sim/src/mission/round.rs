@@ -79,7 +79,7 @@ pub struct FieldState {
     pub free_capacity: u32,
     /// Resources that the members in the field have left.
     pub resources: u32,
-    /// Rescuees that are known, waiting and reachable, or claimed.
+    /// Rescuees that are claimed; without a claim, 1 if a member that can carry knows of one to go for.
     pub known_rescuees: u32,
     /// Members that have not yet swept the whole area.
     pub still_searching: u32,
