@@ -313,12 +313,27 @@ fn decisions_know_reports_and_no_world() {
 }
 
 #[test]
-fn a_registry_is_a_value_that_no_crate_keeps_for_the_process() {
+fn libraries_keep_no_registry_for_the_process_and_set_no_panic_hook() {
     for name in CRATES {
         for (path, text) in sources(name) {
-            let kept = text.lines().find(|line| line.contains("static ") && line.contains("Registry"));
+            let kept = text.lines().find(|line| {
+                let is_static = line.trim_start().trim_start_matches("pub ").starts_with("static ");
+                is_static && line.contains("Registry")
+            });
             assert_eq!(kept, None, "{name}/{}", path.display());
+            let is_program = ["usar", "xtask"].contains(&name);
+            assert!(is_program || !text.contains("set_hook("), "{name}/{}: sets a hook", path.display());
         }
+    }
+}
+
+/// A new activity or statement must be looked at wherever something is decided.
+#[test]
+fn no_decision_ignores_what_it_does_not_name() {
+    for (path, text) in sources("usar-sim") {
+        let decides = ["belief", "mission", "navigation", "planning", "conflict", "simulation"];
+        let is_decision = path.iter().next().is_some_and(|room| decides.iter().any(|name| room == *name));
+        assert!(!is_decision || !text.contains("_ => {}"), "usar-sim/{}: `_ => {{}}`", path.display());
     }
 }
 

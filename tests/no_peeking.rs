@@ -99,12 +99,15 @@ fn robots_learn_of_a_team_mate_what_it_says() {
     assert!(trial.beliefs().team[2].is_as(&trial.world().robots[2]));
 }
 
-/// Claims of a minute on rescuees that the robot that claims them has not seen itself.
+/// Claims of the first round on rescuees that the robot that claims them has not seen itself.
 fn claims_by_hearsay(scenario: &Scenario) -> usize {
     let (mut trial, mut rne) = (Simulation::new(scenario, 1).unwrap().checked(), policy("RNE"));
     let (mut seen, mut hearsay) = (BTreeSet::new(), BTreeSet::new());
-    while trial.time_s() < 60.0 {
+    loop {
         assert_eq!(trial.step(&mut *rne), None);
+        if trial.decisions().len() > 1 {
+            break; // at home, all have heard everything
+        }
         seen.extend(trial.events().iter().filter_map(|event| match event {
             Event::Sighted { robot, rescuee } => Some((*robot, *rescuee)),
             _ => None,

@@ -1,6 +1,7 @@
 //! Why a command ended without its result.
 
 use std::cell::RefCell;
+use std::panic::PanicHookInfo;
 
 use thiserror::Error;
 
@@ -56,12 +57,11 @@ thread_local! {
     static PLACE: RefCell<Option<String>> = const { RefCell::new(None) };
 }
 
-/// From now on, a panic prints nothing, and [`panic_message`] says where it was.
-pub fn catch_panics_quietly() {
-    std::panic::set_hook(Box::new(|panic| {
-        let place = panic.location().map(|place| format!("{}:{}", from_sources(place.file()), place.line()));
-        PLACE.set(place);
-    }));
+/// Notes where a panic was, for [`panic_message`]. A program makes it its panic hook, so that a panic prints
+/// nothing.
+pub fn note_panic(panic: &PanicHookInfo<'_>) {
+    let place = panic.location().map(|place| format!("{}:{}", from_sources(place.file()), place.line()));
+    PLACE.set(place);
 }
 
 /// The path of a source file, shortened for a library to begin with the library's name.
@@ -70,8 +70,8 @@ fn from_sources(path: &str) -> &str {
     rest.split_once('/').map_or(rest, |(_, rest)| rest)
 }
 
-/// The message of a panic that this thread caught, with file and line if [`catch_panics_quietly`] was
-/// called.
+/// The message of a panic that this thread caught, with file and line if [`note_panic`] is the
+/// panic hook.
 #[must_use]
 pub fn panic_message(panic: &(dyn std::any::Any + Send)) -> String {
     let text = panic.downcast_ref::<String>().map(String::as_str);

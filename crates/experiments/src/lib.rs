@@ -36,7 +36,7 @@ pub mod stats;
 pub mod sweep;
 pub mod why;
 
-pub use failure::{Failure, catch_panics_quietly, panic_message};
+pub use failure::{Failure, note_panic, panic_message};
 
 /// The programs in the README compile and run.
 #[cfg(doctest)]

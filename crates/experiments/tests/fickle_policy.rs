@@ -4,8 +4,8 @@ use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
-use experiments::catch_panics_quietly;
 use experiments::experiment::{Experiment, Overrides};
+use experiments::note_panic;
 use experiments::run::{Limits, Sessions, run_all};
 use rne_core::{Decision, Policy, PolicyError, PolicyKind, Question};
 
@@ -56,7 +56,7 @@ fn fickle_policies_and_panics_are_named() {
     };
     assert_eq!([otherwise(0), otherwise(1)], [Some(1), None]);
 
-    catch_panics_quietly();
+    std::panic::set_hook(Box::new(note_panic));
     let shared = Arc::clone(&experiment);
     let run = Arc::new(move |key: &_, sessions: &mut _, halt: &_| shared.run_alone(key, sessions, halt));
     let mut reasons = Vec::new();

@@ -7,7 +7,7 @@ use std::sync::LazyLock;
 use clap::{CommandFactory, Parser, Subcommand};
 use experiments::experiment::with_oracle;
 use experiments::provenance::COMMIT;
-use experiments::{Failure, catch_panics_quietly, panic_message};
+use experiments::{Failure, note_panic, panic_message};
 use reports::table::{Format, fold_at, show_as};
 use rne_core::Registry;
 use terminal_size::{Width, terminal_size_of};
@@ -137,7 +137,7 @@ pub fn main() -> ExitCode {
 pub fn main_with(policies: Registry) -> ExitCode {
     let mut registry = with_oracle(policies);
     // A panic is a defect of the program. It is caught and reported in one sentence, never as a backtrace.
-    catch_panics_quietly();
+    std::panic::set_hook(Box::new(note_panic));
     let cli = Cli::parse();
     if let Some((Width(columns), _)) = terminal_size_of(std::io::stdout()) {
         fold_at(columns);

@@ -69,7 +69,11 @@ impl Crew {
                         self.cut_off(id, home, cause, scene);
                     }
                 }
-                _ => {}
+                Activity::Searching
+                | Activity::Approaching(_)
+                | Activity::Loading(..)
+                | Activity::Standby
+                | Activity::OnErrand => {}
             }
         }
     }

@@ -17,26 +17,36 @@ impl Mission {
         let Some(task) = agent.task.filter(|_| robot.is_able()) else { return };
         let is_held_up = activity.is_in_field() && self.crew.is_held_up(robot, scene);
         match activity {
-            Activity::Approaching(rescuee)
-                if is_held_up || is_out_of_reach(id, scene.place_of(id, task, rescuee), scene) =>
-            {
-                self.claims.given_up[rescuee.index()] = true;
-                if let Some(place) = scene.place_of(id, task, rescuee) {
-                    scene.log.push(Event::Unreachable { robot: id, place: place.into() });
+            Activity::Approaching(rescuee) => {
+                if is_held_up || is_out_of_reach(id, scene.place_of(id, task, rescuee), scene) {
+                    self.give_up(id, task, rescuee, scene);
                 }
-                self.release_claim(id);
-                self.crew.agent(id).activity = Activity::Searching;
             }
-            Activity::Searching | Activity::Standby if self.crew.groups[task.index()].at_work => {
-                if let Some(rescuee) = claim {
+            Activity::Searching | Activity::Standby => match claim {
+                _ if !self.crew.groups[task.index()].at_work => {}
+                Some(rescuee) => {
                     self.claims.set(rescuee, Some(id));
                     self.crew.agent(id).activity = Activity::Approaching(rescuee);
-                    return;
                 }
-                self.go_on_searching(id, scene, is_held_up);
-            }
-            _ => {}
+                None => self.go_on_searching(id, scene, is_held_up),
+            },
+            Activity::Home
+            | Activity::Loading(..)
+            | Activity::OnErrand
+            | Activity::Returning
+            | Activity::ToRest
+            | Activity::Resting(_) => {}
         }
+    }
+
+    /// Gives up on a rescuee that cannot be reached.
+    fn give_up(&mut self, id: RobotId, task: TaskId, rescuee: RescueeId, scene: &mut Scene) {
+        self.claims.given_up[rescuee.index()] = true;
+        if let Some(place) = scene.place_of(id, task, rescuee) {
+            scene.log.push(Event::Unreachable { robot: id, place: place.into() });
+        }
+        self.release_claim(id);
+        self.crew.agent(id).activity = Activity::Searching;
     }
 
     /// Goes on to the next place of the sweep if the present one was reached or cannot be reached. A robot

@@ -150,10 +150,10 @@ impl State {
                 Report { from: Speaker::Robot(id), says: Statement::IAm(robot), at_step, .. } => {
                     beliefs.hear_of_self(id, robot, at_step);
                 }
-                report if beliefs.hear(&report, |robot| mission.crew.holder_of(robot, model)) => {
-                    log.extend(Event::of_report(&report));
+                report => {
+                    let is_news = beliefs.hear(&report, |robot| mission.crew.holder_of(robot, model));
+                    log.extend(Event::of_report(&report).filter(|_| is_news));
                 }
-                _ => {}
             }
         }
     }
