@@ -1,6 +1,13 @@
 //! The medium: which of the reports that were sent are heard, and when.
 
+use crate::model::Model;
 use crate::report::Report;
+
+/// Moves the reports that are heard in this step from `sent` to `heard`, by the medium of the trial. This is
+/// the one place that chooses a medium.
+pub(crate) fn carry(_model: &Model, step: u64, sent: &mut Vec<Report>, heard: &mut Vec<Report>) {
+    Perfect.carry(step, sent, heard);
+}
 
 /// Carries reports from senders to beliefs.
 pub trait Medium {

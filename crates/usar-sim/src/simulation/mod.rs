@@ -21,7 +21,6 @@ use thiserror::Error;
 use crate::event::Event;
 use crate::hash::PERIOD_STEPS;
 use crate::invariant::{Invariants, Overlaps};
-use crate::medium::Perfect;
 use crate::mission::Ending;
 use crate::record::{DecisionRecord, RobotRecord, Status, TaskRecord, TrialRecord};
 use crate::scenario::{LayoutError, Scenario};
@@ -300,7 +299,7 @@ impl Simulation {
         let (state, model) = (&mut self.state, &self.setup.model);
         state.log.clear();
         state.happen(model);
-        state.sense(model, &Perfect, &mut self.scratch.heard);
+        state.sense(model, &mut self.scratch.heard);
         done(Stage::Sense);
         state.prepare(model);
         state.is_midway = true;
@@ -327,7 +326,7 @@ impl Simulation {
         done(Stage::Integrate);
         state.expose(model);
         done(Stage::Exposure);
-        state.rescue(model, &Perfect, &mut scratch.heard);
+        state.rescue(model, &mut scratch.heard);
         done(Stage::Rescue);
         state.listen(decided, model.dt_s());
         if state.step.is_multiple_of(PERIOD_STEPS) {

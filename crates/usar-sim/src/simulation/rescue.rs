@@ -3,25 +3,24 @@
 use rne_core::question::MAX_TASKS;
 
 use super::State;
-use crate::medium::Medium;
 use crate::model::Model;
 use crate::report::Report;
 
 impl State {
     /// One robot after the other wants something; the world lets it happen or not; the robot notices. Robots
     /// notice their own state before, and again when something has happened.
-    pub(super) fn rescue(&mut self, model: &Model, medium: &impl Medium, heard: &mut Vec<Report>) {
-        self.feel(model, medium, heard);
+    pub(super) fn rescue(&mut self, model: &Model, heard: &mut Vec<Report>) {
+        self.feel(model, heard);
         let mut sharing = [None; MAX_TASKS];
         let mut robots = 0..self.world.robots.len() as u32;
         loop {
             let (mission, mut scene) = self.scene(model);
             let Some((robot, intent)) = mission.settle(&mut robots, &mut scene, &mut sharing) else { break };
             let outcome = self.world.carry_out(robot, intent, model);
-            self.feel(model, medium, heard);
+            self.feel(model, heard);
             let (mission, mut scene) = self.scene(model);
             mission.note(robot, outcome, &mut scene, &mut sharing);
         }
-        self.hear(model, medium, heard);
+        self.hear(model, heard);
     }
 }

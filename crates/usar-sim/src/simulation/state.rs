@@ -11,7 +11,7 @@ use crate::belief::Beliefs;
 use crate::conflict::{self, Delay, Mover, PriorityKey, Resolver};
 use crate::event::{Event, EventLog};
 use crate::hash::{HashChain, PARTS, part};
-use crate::medium::Medium;
+use crate::medium;
 use crate::metrics::Metrics;
 use crate::mission::{Activity, Agent, Mission, Scene};
 use crate::model::Model;
@@ -129,22 +129,22 @@ impl State {
     }
 
     /// Robots look around and report; the medium carries; the groups and the team at home hear.
-    pub(super) fn sense(&mut self, model: &Model, medium: &impl Medium, heard: &mut Vec<Report>) {
+    pub(super) fn sense(&mut self, model: &Model, heard: &mut Vec<Report>) {
         let Self { world, mission, beliefs, sent, step, .. } = self;
         look_around(world, model, |robot| beliefs.of(mission.crew.holder_of(robot.id, model)), *step, sent);
-        self.hear(model, medium, heard);
+        self.hear(model, heard);
     }
 
     /// Robots notice their own state, and say so.
-    pub(super) fn feel(&mut self, model: &Model, medium: &impl Medium, heard: &mut Vec<Report>) {
+    pub(super) fn feel(&mut self, model: &Model, heard: &mut Vec<Report>) {
         oneself::sense(&self.world.robots, &self.beliefs.team, self.step, &mut self.sent);
-        self.hear(model, medium, heard);
+        self.hear(model, heard);
     }
 
     /// The medium carries the reports that are under way; the groups and the team hear them.
-    pub(super) fn hear(&mut self, model: &Model, medium: &impl Medium, heard: &mut Vec<Report>) {
+    pub(super) fn hear(&mut self, model: &Model, heard: &mut Vec<Report>) {
         let Self { mission, beliefs, sent, log, step, .. } = self;
-        medium.carry(*step, sent, heard);
+        medium::carry(model, *step, sent, heard);
         for report in heard.drain(..) {
             match report {
                 Report { from: Speaker::Robot(id), says: Statement::IAm(robot), at_step, .. } => {
