@@ -50,6 +50,8 @@ pub enum Outcome {
     NotThere(RescueeId),
     /// There is no resource for the rescuee.
     NoResource(RescueeId),
+    /// The robot has no room left.
+    NoRoom(RescueeId),
     /// The rescuees are delivered.
     Delivered {
         /// Where.

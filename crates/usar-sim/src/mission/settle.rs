@@ -67,6 +67,10 @@ impl Mission {
                 self.crew.agent(robot).activity = Activity::Loading(rescuee, done);
             }
             Outcome::NoResource(rescuee) => self.crew.agent(robot).activity = Activity::Approaching(rescuee),
+            Outcome::NoRoom(rescuee) => {
+                self.claims.set(rescuee, None);
+                self.crew.agent(robot).activity = Activity::Searching;
+            }
             Outcome::NotThere(rescuee) => self.go_on_without(rescuee, robot, scene),
             Outcome::Loaded { rescuee, resource_of } => {
                 *sharing = [None; MAX_TASKS];

@@ -20,6 +20,11 @@ impl World {
             {
                 Outcome::NoResource(rescuee)
             }
+            Intent::BeginLoading { rescuee, .. } | Intent::Load { rescuee, .. }
+                if self.robots[id].free_capacity() == 0 =>
+            {
+                Outcome::NoRoom(rescuee)
+            }
             Intent::BeginLoading { rescuee, .. } => Outcome::LoadingBegan(rescuee),
             Intent::Load { rescuee, resource_of } => {
                 self.robots[resource_of.index()].resources -= 1;
