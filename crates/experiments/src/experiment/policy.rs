@@ -53,10 +53,12 @@ impl PolicySpec {
         };
         let (name, options) = rest.split_at(rest.find('(').unwrap_or(rest.len()));
         let name = name.trim();
-        registry.make(name, "").map_err(|source| {
+        if !registry.names().contains(&name)
+            && let Err(source) = registry.make(name, "")
+        {
             let meant = nearest(name, registry.names()).map(str::to_owned);
-            PolicyTextError::Refused { source: Box::new(source), meant }
-        })?;
+            return Err(PolicyTextError::Refused { source: Box::new(source), meant });
+        }
         let options = parse_options(options)?;
         let plain = plain(name, &options);
         let made = registry.parse(&plain).map_err(with_hint)?;

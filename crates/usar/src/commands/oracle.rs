@@ -159,7 +159,8 @@ impl Arguments {
         let specs = match &self.policies {
             Some(list) => split_list(list).into_iter().map(parse).collect::<Result<Vec<_>, _>>()?,
             None if !trial.policies.is_empty() => trial.policies.clone(),
-            None => trial.registry.names().into_iter().map(parse).collect::<Result<Vec<_>, _>>()?,
+            // A policy that cannot do without options is judged where they are given.
+            None => trial.registry.names().into_iter().filter_map(|name| parse(name).ok()).collect(),
         };
         let is_policy = |spec: &&PolicySpec| spec.is_of_question();
         let choice = |spec: &PolicySpec| {

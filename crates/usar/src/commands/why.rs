@@ -92,6 +92,8 @@ struct Account<'a> {
     measure: Option<String>,
     /// Unit of the trust measure.
     unit: Option<String>,
+    /// Distrust between the groups by this measure, all pairs together; absent if it is infinite.
+    between: Option<f64>,
     /// Distrust between the groups, need by need; empty without a measure that goes need by need.
     directed: Vec<Directed>,
     others: Vec<OtherChoice>,
@@ -161,6 +163,8 @@ impl Arguments {
         let measure = asked.spec.own_measure(&asked.registry);
         let trust = measure.map(|measure| measure.it.of_team(question)).transpose().map_err(Failure::run)?;
         let directed = trust.as_ref().map(|trust| directed(&**trust, question, decision)).transpose()?;
+        let between = trust.as_ref().map(|trust| trust.between(&decision.assignment)).transpose();
+        let between = between.map_err(Failure::run)?.flatten().filter(|value| value.is_finite());
         let begun = simulation.metrics().rounds.iter().find(|round| round.round == question.round);
         let story = watched.map(|watched| {
             let id = watched.robot();
@@ -186,6 +190,7 @@ impl Arguments {
             time_s: begun.map_or(0.0, |round| round.start_s),
             measure: measure.map(|measure| measure.name.clone()),
             unit: measure.map(|measure| measure.it.unit().to_owned()),
+            between,
             directed: directed.unwrap_or_default(),
             others: other_choices(&full, &decision.assignment, &others(asked)?),
             oracle: self.oracle(asked, question, &decision.assignment)?,

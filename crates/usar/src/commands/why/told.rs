@@ -4,10 +4,10 @@ use std::io::Write;
 
 use experiments::Failure;
 use experiments::comparison::digits;
-use experiments::why::{Directed, OtherChoice};
+use experiments::why::{Directed, Exchange, OtherChoice};
 use reports::table::{headed, right};
 use rne_core::decision::{Ranking, RneAccount};
-use rne_core::{Account as PolicyAccount, Decision, Question, RelativeNeedsEntropy};
+use rne_core::{Account as PolicyAccount, Question, RelativeNeedsEntropy};
 
 use super::robot::{RobotStory, in_words};
 use super::{Account, OracleSays};
@@ -47,7 +47,7 @@ pub(super) fn text(out: &mut dyn Write, account: &Account, asked: &AskedTrial) -
     others(out, question, &account.others)?;
     oracle(out, account, asked)?;
     if let Some(story) = &account.robot {
-        robot(out, story, decision, asked)?;
+        robot(out, story, account, asked)?;
     }
     Ok(())
 }
@@ -137,6 +137,37 @@ struct Printed<'a> {
     unit: &'a str,
 }
 
+/// Prints what the best exchange of places would have changed.
+fn exchange(
+    out: &mut dyn Write,
+    best: &Exchange,
+    score: f64,
+    account: &Account,
+    asked: &AskedTrial,
+) -> Result<(), Failure> {
+    let [measure, unit] = [&account.measure, &account.unit].map(|text| text.as_deref().unwrap_or_default());
+    let then = best.score.map_or("infinite".to_owned(), |value| format!("{value:.3e}"));
+    let with = best.with;
+    if asked.registry.chosen_measure().is_some() {
+        return Ok(writeln!(
+            out,
+            "  In the place of robot {with}, {measure} between the groups would be {then} instead of {score:.3e} \
+             {unit}"
+        )?);
+    }
+    let verdict = match best.score {
+        Some(value) if value <= score * (1.0 + ROUNDING) => {
+            "no exchange with a robot of its role would have raised the score"
+        }
+        _ => "an exchange would have raised the score: the roles are split one by one, and not all together",
+    };
+    Ok(writeln!(
+        out,
+        "  In its group because {verdict}:\n  in the place of robot {with} the score is {then} instead of \
+         {score:.3e} {unit}"
+    )?)
+}
+
 /// Prints the contribution of each need to the distrust between two groups, the largest first.
 fn needs(
     out: &mut dyn Write,
@@ -220,7 +251,7 @@ fn judged(said: &OracleSays) -> String {
 fn robot(
     out: &mut dyn Write,
     story: &RobotStory,
-    decision: &Decision,
+    account: &Account,
     asked: &AskedTrial,
 ) -> Result<(), Failure> {
     let RobotStory { robot, role, task, at_s, energy, hp, .. } = story;
@@ -230,24 +261,8 @@ fn robot(
         "\nRobot {robot}, {role}, in the {task} group; at {at_s:.1} s it has energy {energy:.1} % and HP \
          {hp:.1} %"
     )?;
-    let score = decision.score.and_then(RelativeNeedsEntropy::nats);
-    if let (Some(best), Some(score)) = (story.exchanges.first(), score) {
-        let then = best.score.map_or("infinite".to_owned(), |nats| format!("{nats:.3e}"));
-        let verdict = match best.score {
-            Some(nats) if nats <= score * (1.0 + ROUNDING) => {
-                "no exchange with a robot of its role would have raised the score"
-            }
-            _ => {
-                "an exchange would have raised the score: the roles are split one by one, and not all \
-                 together"
-            }
-        };
-        writeln!(
-            out,
-            "  In its group because {verdict}:\n  in the place of robot {} the score is {then} instead of \
-             {score:.3e} nats",
-            best.with
-        )?;
+    if let (Some(best), Some(score)) = (story.exchanges.first(), account.between) {
+        exchange(out, best, score, account, asked)?;
     }
     let delay = in_words(story.delay, story.waits_for);
     writeln!(
