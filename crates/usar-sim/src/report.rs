@@ -25,6 +25,15 @@ pub struct Report {
     pub sd_m: f32,
 }
 
+/// Where a team-mate is seen to be, and how it moves. Robots that see each other need not say so.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Track {
+    /// Its position, in metres.
+    pub position: Vector,
+    /// Its velocity, in metres per second.
+    pub velocity: Vector,
+}
+
 /// The sender of a report.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Speaker {

@@ -8,7 +8,7 @@ mod debris;
 pub(crate) mod oneself;
 mod radiation;
 mod rescuees;
-mod wrecks;
+pub(crate) mod team_mates;
 
 use parry2d::math::Vector;
 use smallvec::SmallVec;
@@ -61,7 +61,7 @@ pub(crate) fn look_around<'b>(
         let belief = belief_of(robot);
         debris::sense(&view, belief, sent);
         radiation::sense(&view, belief, sent);
-        wrecks::sense(&view, belief, sent);
+        team_mates::sense(&view, belief, sent);
         rescuees::sense(&view, belief, sent);
     }
 }

@@ -20,7 +20,7 @@ use crate::planning::Meshes;
 use crate::record::DecisionRecord;
 use crate::report::{Report, Speaker, Statement};
 use crate::robot::{Robot, STANDING_MPS};
-use crate::sensors::{base, look_around, oneself};
+use crate::sensors::{base, look_around, oneself, team_mates};
 use crate::tally::{Tally, delay_cause};
 use crate::world::World;
 
@@ -183,6 +183,9 @@ impl State {
         let (mission, beliefs, navigator) = (&self.mission, &self.beliefs, &self.navigator);
         let mut movers: Vec<Mover> = std::mem::take(&mut scratch.movers);
         movers.extend(beliefs.team.iter().map(|robot| mover(robot, model, mission, beliefs, navigator)));
+        for (mover, track) in movers.iter_mut().zip(team_mates::tracks(&self.world)) {
+            (mover.position, mover.velocity) = (track.position, track.velocity);
+        }
         let rules = &model.right_of_way;
         let directives = self.resolver.resolve(rules, &mut movers, &mut scratch.conflict, &mut self.log);
         for ((robot, directive), tally) in

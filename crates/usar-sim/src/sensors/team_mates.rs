@@ -1,8 +1,15 @@
-//! The sensor of team-mates: robots within the sensing range that have stopped for good.
+//! The sensor of team-mates: where they are and how they move, and which have stopped for good.
 
 use super::View;
 use crate::belief::Belief;
-use crate::report::{Report, Statement};
+use crate::report::{Report, Statement, Track};
+use crate::world::World;
+
+/// The track of each robot, by id: exact, and of all robots. By them robots keep clear of each other, whatever
+/// they say of themselves.
+pub(crate) fn tracks(world: &World) -> impl Iterator<Item = Track> + '_ {
+    world.robots.iter().map(|robot| Track { position: robot.position, velocity: robot.velocity })
+}
 
 /// Reports wrecks that the belief has not heard of.
 pub(super) fn sense(view: &View, belief: &Belief, sent: &mut Vec<Report>) {
