@@ -112,6 +112,27 @@ fn the_program_is_known_by_the_sources_that_decide_its_numbers() {
     }
 }
 
+/// A policy's hash covers its own file or folder and what is shared, so that no policy leans on another's file.
+#[test]
+fn no_policy_names_another_one() {
+    let sources = sources("policies");
+    let entry =
+        |text: &str| text.contains("pub fn kind() -> PolicyKind") || text.contains("-> MeasureKind {");
+    let room = |path: &Path| path.components().next().map(|first| first.as_os_str().to_owned());
+    let entries: Vec<String> = sources
+        .iter()
+        .filter(|(_, text)| entry(text))
+        .filter_map(|(path, _)| Some(Path::new(&room(path)?).file_stem()?.to_string_lossy().into_owned()))
+        .collect();
+    assert!(entries.len() >= 5, "{entries:?}");
+    for (path, text) in sources.iter().filter(|(path, _)| path != Path::new("lib.rs")) {
+        let own = room(path).map(|room| Path::new(&room).file_stem().unwrap_or_default().to_owned());
+        for other in entries.iter().filter(|name| own.as_deref() != Some(name.as_ref())) {
+            assert!(!text.contains(&format!("crate::{other}")), "policies/{}: {other}", path.display());
+        }
+    }
+}
+
 /// An edited policy builds its crate and the command, and nothing between them.
 #[test]
 fn only_the_command_is_built_on_policies() {

@@ -13,6 +13,7 @@ const LIST: &str = "lib.rs";
 
 fn main() {
     println!("cargo::rerun-if-changed=src");
+    println!("cargo::rerun-if-changed=Cargo.toml");
     let read = std::fs::read_dir("src").into_iter().flatten().flatten();
     let mut places: Vec<PathBuf> = read.map(|entry| entry.path()).collect();
     places.retain(|path| !path.ends_with(LIST));
@@ -20,7 +21,7 @@ fn main() {
     let (entries, shared): (Vec<PathBuf>, Vec<PathBuf>) = places.into_iter().partition(|path| is_entry(path));
     for entry in entries {
         let mut hasher = DefaultHasher::new();
-        shared.iter().chain([&entry]).for_each(|path| add(path, &mut hasher));
+        shared.iter().chain([&PathBuf::from("Cargo.toml"), &entry]).for_each(|path| add(path, &mut hasher));
         let name = entry.file_stem().unwrap_or_default().to_string_lossy().to_uppercase();
         println!("cargo::rustc-env=SOURCES_{name}={:016x}", hasher.finish());
     }

@@ -13,7 +13,7 @@ type Matrix = Vec<Vec<Option<f64>>>;
 /// The trust between robots and between groups when a decision was made.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Trust {
-    /// Name of the trust measure; empty in recordings from before there were others than RNE.
+    /// Label of the trust measure; empty in recordings from before there were others than RNE.
     #[serde(default)]
     pub measure: String,
     /// Unit of its values.
@@ -39,7 +39,7 @@ impl Trust {
             question.members.iter().filter(|_| is_small).map(|member| member.id).collect();
         let alone: Vec<Vec<u32>> = members.iter().map(|id| vec![*id]).collect();
         Some(Self {
-            measure: measure.name.clone(),
+            measure: measure.label.clone(),
             unit: measure.it.unit().to_owned(),
             members,
             robots: matrix(&*trust, &alone),

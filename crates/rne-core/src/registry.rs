@@ -34,6 +34,8 @@ pub type MadeMeasure = Made<dyn TrustMeasure>;
 pub struct Made<T: ?Sized> {
     /// Its name.
     pub name: String,
+    /// Its name, with the options as they were written if not all are the defaults.
+    pub label: String,
     /// All its options in RON, including the defaults. Policies with the same name and options give the same
     /// answers. Empty where there are none.
     pub options: String,
@@ -51,8 +53,16 @@ impl<T: ?Sized> fmt::Debug for Made<T> {
 
 impl<T: ?Sized> Clone for Made<T> {
     fn clone(&self) -> Self {
-        let (name, options, sources) = (self.name.clone(), self.options.clone(), self.sources.clone());
-        Self { name, options, it: Arc::clone(&self.it), sources }
+        let (name, label, options) = (self.name.clone(), self.label.clone(), self.options.clone());
+        Self { name, label, options, it: Arc::clone(&self.it), sources: self.sources.clone() }
+    }
+}
+
+impl MadeMeasure {
+    /// A text that changes whenever its values may change: that of its [kind](Kind::from_sources).
+    #[must_use]
+    pub fn fingerprint(&self) -> Option<&str> {
+        self.sources.as_deref()
     }
 }
 
@@ -182,14 +192,18 @@ impl Registry {
             let known = kinds.iter().map(|kind| kind.name.clone()).collect();
             RegistryError::Unknown { entry, found: name.to_owned(), known }
         })?;
-        let (it, all) = (kind.make)(options, self).map_err(|reason| RegistryError::Options {
+        // What is chosen for a look at decisions decides none.
+        let unchosen = Self { chosen: None, ..self.clone() };
+        let (it, all) = (kind.make)(options, &unchosen).map_err(|reason| RegistryError::Options {
             entry,
             name: name.to_owned(),
             reason,
             found: options.trim().to_owned(),
             options: kind.defaults.clone(),
         })?;
-        Ok(Made { name: name.to_owned(), options: all, it, sources: kind.sources.clone() })
+        let is_default = all == kind.defaults;
+        let label = if is_default { name.to_owned() } else { format!("{name}{}", options.trim()) };
+        Ok(Made { name: name.to_owned(), label, options: all, it, sources: kind.sources.clone() })
     }
 }
 
@@ -278,7 +292,8 @@ impl MeasureKind {
 }
 
 impl<T: ?Sized + 'static> Kind<T> {
-    /// An entry that is made from options, and that may look for others in the registry that makes it.
+    /// An entry that is made from options, and that may look for others in the registry that makes it. A
+    /// driver that leans on others says so in its [fingerprint](Driver::fingerprint), with theirs.
     pub fn made<O, E>(
         name: &str,
         about: &str,

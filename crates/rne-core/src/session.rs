@@ -24,6 +24,11 @@ pub trait Driver: Send + Sync {
         Basis::Question
     }
 
+    /// Whether it answers only in the running trial that asks.
+    fn needs_trial(&self) -> bool {
+        false
+    }
+
     /// A text that changes whenever its answers may change. Results are kept as long as it stays. `None` is
     /// for a driver that is known by the program that has it, see `from_sources` of its kind.
     fn fingerprint(&self) -> Option<String> {
@@ -45,7 +50,8 @@ pub enum Basis {
 
 /// A driver at work.
 pub trait Session: Send {
-    /// Begins a trial. All questions up to the next call are of this trial.
+    /// Begins a trial, or goes on with one from any of its rounds: what went before is in the history of each
+    /// question. All questions up to the next call are of this trial.
     ///
     /// # Errors
     /// The session cannot go on.

@@ -13,13 +13,13 @@ use experiments::run::TrialKey;
 use experiments::sweep::folder::Folder;
 use experiments::sweep::names::RECORDINGS;
 use recording::{Options, Recorder, Recording};
-use rne_core::Session;
+use rne_core::{Deadline, Session};
 use ron_fields::file::{ReadError, read};
 use usar_sim::record::{Status, TrialRecord};
 use usar_sim::simulation::Simulation;
 
 use crate::bad_value::BadValue;
-use crate::running::{Guard, session_of};
+use crate::running::{Guard, STOP, session_of};
 
 /// Number of bytes that are written to disk together.
 const BUFFER: usize = 1 << 16;
@@ -51,7 +51,7 @@ pub(crate) fn record_to(
     let trouble = |error: io::Error| trouble(path, &error);
     let file = BufWriter::with_capacity(BUFFER, File::create_new(path).map_err(trouble)?);
     let mut recorder = Recorder::begin(file, &simulation, options).map_err(trouble)?;
-    while simulation.step(&mut *session).is_none() {
+    while simulation.step_within(&mut *session, Deadline::when(&STOP)).is_none() {
         recorder.listen(&simulation).map_err(trouble)?;
         watch(&simulation)?;
     }

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use rne_core::{Basis, MadeMeasure, MadePolicy, Registry, RegistryError};
+use rne_core::{MadeMeasure, MadePolicy, Registry, RegistryError};
 use ron_fields::{Fields, nearest};
 use usar_sim::scenario::Scenario;
 
@@ -81,7 +81,7 @@ impl PolicySpec {
     /// Whether it answers from the question; a policy that plays in the trial that asks does not.
     #[must_use]
     pub fn is_of_question(&self) -> bool {
-        self.made.it.basis() != Basis::Trial
+        !self.made.it.needs_trial()
     }
 
     /// The trust measure that explains this policy's decisions: the one that the registry has chosen, or

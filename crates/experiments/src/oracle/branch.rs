@@ -111,7 +111,7 @@ pub fn advance_to(
         // checked in between.
         match trial.advance() {
             Advance::Asks(Ask::Grouping(question)) if question.round == round => return Ok(()),
-            Advance::Over(Status::Failed(reason)) => return Err(BranchError::Failed(reason)),
+            Advance::Over(Status::Failed(reason)) => return Err(failed(reason, halt)),
             Advance::Over(status) => {
                 let status = status.name().replace('_', " ");
                 return Err(BranchError::NoSuchRound { round, time_s: trial.time_s(), status });
@@ -122,6 +122,11 @@ pub fn advance_to(
             }
         }
     }
+}
+
+/// A trial that failed, unless that is because a session gave up when it was told to stop.
+fn failed(reason: String, halt: Deadline<'_>) -> BranchError {
+    if halt.is_over() { BranchError::Halted } else { BranchError::Failed(reason) }
 }
 
 /// Lets a session know whose questions it answers.
@@ -168,7 +173,7 @@ impl Branch {
                 Advance::Running => look(&self.trial, halt)?,
                 Advance::Asks(Ask::Grouping(question)) if question.round > self.round => break false,
                 Advance::Asks(_) => return Err(BranchError::NotAsked),
-                Advance::Over(Status::Failed(reason)) => return Err(BranchError::Failed(reason)),
+                Advance::Over(Status::Failed(reason)) => return Err(failed(reason, halt)),
                 Advance::Over(_) => break true,
             }
         };
@@ -188,7 +193,7 @@ impl Branch {
         loop {
             match self.trial.step_within(&mut *onwards, halt) {
                 None => look(&self.trial, halt)?,
-                Some(Status::Failed(reason)) => return Err(BranchError::Failed(reason)),
+                Some(Status::Failed(reason)) => return Err(failed(reason, halt)),
                 Some(_) => return Ok(Outcome::so_far(&self.trial).since(&self.before, false)),
             }
         }

@@ -88,7 +88,12 @@ impl Driver for Oracle {
     }
 
     fn basis(&self) -> Basis {
-        Basis::Trial
+        let onwards = self.onwards.as_ref().map(|then| then.it.basis());
+        onwards.filter(|basis| *basis == Basis::Undetermined).unwrap_or(Basis::Trial)
+    }
+
+    fn needs_trial(&self) -> bool {
+        true
     }
 
     /// The oracle's own sources are those of the laboratory, which decide every trial.

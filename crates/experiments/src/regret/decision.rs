@@ -1,6 +1,8 @@
 //! One decision of a study: the question, and the outcome of every assignment.
 
-use rne_core::{Asked, Assignment, Deadline, Decision, Member, Question, Session, TrialStart, assignments};
+use rne_core::{
+    Asked, Assignment, Deadline, Decision, Member, PolicyError, Question, Session, TrialStart, assignments,
+};
 use serde::{Deserialize, Serialize};
 use usar_sim::simulation::{Advance, Ask, Simulation};
 
@@ -98,7 +100,10 @@ pub fn play_decisions(
             Advance::Asks(Ask::Grouping(question)) => question.clone(),
         };
         let asked = Asked { question: &question, deadline: plan.halt, trial: Some(&trial) };
-        let decision = session.decide(&asked).map_err(|error| failed(&error))?;
+        let decision = session.decide(&asked).map_err(|error| match error {
+            PolicyError::Late if plan.halt.is_over() => BranchError::Halted,
+            error => failed(&error),
+        })?;
         if plan.rounds.is_empty() || plan.rounds.contains(&question.round) {
             played.push(plan.play(&trial, question, &decision)?);
         }

@@ -34,7 +34,7 @@ impl Feature {
     /// Name in words, with this trust measure.
     #[must_use]
     pub fn name(&self, measure: &MadeMeasure) -> String {
-        self.name.replace("{}", &measure.name)
+        self.name.replace("{}", &measure.label)
     }
 }
 

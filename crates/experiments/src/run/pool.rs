@@ -6,6 +6,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Mutex};
+use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 use super::sessions::Sessions;
@@ -17,6 +18,9 @@ const WATCH_PERIOD: Duration = Duration::from_millis(100);
 
 /// How long a trial that exceeded its time may take to give up, before its thread is abandoned.
 const GRACE: Duration = Duration::from_secs(1);
+
+/// The reason of a trial whose thread is abandoned.
+const UNSTOPPED: &str = "it did not stop when it was told to";
 
 /// A function that runs a trial with the sessions of its thread; it should end soon after the flag is set.
 pub type Run = dyn Fn(&TrialKey, &mut Sessions, &AtomicBool) -> Result<Trial, Fault> + Send + Sync;
@@ -39,6 +43,8 @@ enum Message {
 struct Running {
     key: TrialKey,
     since: Instant,
+    /// When it was told to halt.
+    halted: Option<Instant>,
     halt: Arc<AtomicBool>,
     is_abandoned: Arc<AtomicBool>,
 }
@@ -51,6 +57,7 @@ struct Pool {
     run: Arc<Run>,
     sender: Sender<Message>,
     workers: usize,
+    threads: Vec<JoinHandle<()>>,
     running: BTreeMap<usize, Running>,
 }
 
@@ -85,7 +92,7 @@ pub fn run_batches(
     let mut left = keys.len();
     let (sender, receiver) = channel();
     let queue = Arc::new(Mutex::new(Box::new(keys) as Queue));
-    let mut pool = Pool { queue, run, sender, workers: 0, running: BTreeMap::new() };
+    let mut pool = Pool { queue, run, sender, workers: 0, threads: Vec::new(), running: BTreeMap::new() };
     for _ in 0..limits.jobs.min(left) {
         pool.start_worker()?;
     }
@@ -96,13 +103,16 @@ pub fn run_batches(
             && let Err(failure) = done(outcomes)
         {
             pool.halt();
+            pool.join();
             return Err(failure);
         }
         if stop.load(Ordering::Relaxed) && left > 0 {
             pool.halt();
+            pool.join();
             return Ok(false);
         }
     }
+    pool.join();
     Ok(true)
 }
 
@@ -126,17 +136,35 @@ impl Pool {
                     let reason = format!("internal error: {}", panic_message(&*panic));
                     Err(Fault { kind: FaultKind::Panicked, reason })
                 });
-                if result.is_err() {
-                    sessions.close(key.policy); // whatever it was doing
-                }
+                let failed = result.is_err().then_some(key.policy);
                 let ended = Message::Ended(number, Box::new(Outcome { key, result }));
                 if sender.send(ended).is_err() || is_abandoned.load(Ordering::Relaxed) {
                     return;
                 }
+                // Whatever a failed session was doing, another one begins.
+                let close = AssertUnwindSafe(|| failed.into_iter().for_each(|policy| sessions.close(policy)));
+                if catch_unwind(close).is_err() {
+                    sessions = Sessions::default();
+                }
             }
         };
         let started = std::thread::Builder::new().name(format!("trials-{number}")).spawn(work);
-        started.map(drop).map_err(|error| Failure::run(format!("cannot start a thread: {error}")))
+        self.threads.push(started.map_err(|error| Failure::run(format!("cannot start a thread: {error}")))?);
+        Ok(())
+    }
+
+    /// Waits for the threads to end, with all their sessions; not for long, because a thread that does not
+    /// look at its flag may never end.
+    fn join(&mut self) {
+        let end = Instant::now() + GRACE;
+        for thread in self.threads.drain(..) {
+            while !thread.is_finished() && Instant::now() < end {
+                std::thread::sleep(Duration::from_millis(1));
+            }
+            if thread.is_finished() {
+                let _ = thread.join(); // a panic was reported as the outcome of its trial
+            }
+        }
     }
 
     /// The outcomes that arrived since the last call, including trials that exceeded the time limit.
@@ -152,7 +180,7 @@ impl Pool {
             match message {
                 Message::Started(worker, key, [halt, is_abandoned]) => {
                     let since = Instant::now();
-                    self.running.insert(worker, Running { key, since, halt, is_abandoned });
+                    self.running.insert(worker, Running { key, since, halted: None, halt, is_abandoned });
                 }
                 // The outcome of an abandoned worker is dropped.
                 Message::Ended(worker, outcome) => {
@@ -162,16 +190,18 @@ impl Pool {
             }
         }
         let Some(longest) = longest else { return Ok(outcomes) };
-        let late = self.running.values().filter(|running| running.since.elapsed() > longest);
-        late.for_each(|running| running.halt.store(true, Ordering::Relaxed));
-        let lost = |running: &Running| running.since.elapsed() > longest + GRACE;
+        for running in self.running.values_mut().filter(|running| running.since.elapsed() > longest) {
+            running.halt.store(true, Ordering::Relaxed);
+            running.halted.get_or_insert_with(Instant::now);
+        }
+        let lost = |running: &Running| running.halted.is_some_and(|halted| halted.elapsed() > GRACE);
         let lost: Vec<usize> =
             self.running.iter().filter(|(_, running)| lost(running)).map(|(worker, _)| *worker).collect();
         for worker in lost {
             let Some(Running { key, is_abandoned, .. }) = self.running.remove(&worker) else { continue };
             is_abandoned.store(true, Ordering::Relaxed);
             self.start_worker()?;
-            outcomes.push(Outcome { key, result: Err(timed_out(longest, UNANSWERED)) });
+            outcomes.push(Outcome { key, result: Err(timed_out(longest, UNSTOPPED)) });
         }
         Ok(outcomes)
     }
@@ -197,7 +227,8 @@ fn ended(outcome: Outcome, longest: Option<Duration>) -> Outcome {
 }
 
 fn timed_out(longest: Duration, reason: &str) -> Fault {
-    let and = if reason == UNANSWERED { format!(": {reason}") } else { String::new() };
+    let is_told = [UNANSWERED, UNSTOPPED].contains(&reason);
+    let and = if is_told { format!(": {reason}") } else { String::new() };
     let reason = format!("it took longer than {} s{and}", longest.as_secs_f64());
     Fault { kind: FaultKind::TimedOut, reason }
 }
@@ -258,7 +289,7 @@ mod tests {
         assert_eq!(reasons.len(), 5);
         assert_eq!(
             reasons[1],
-            "trial 2 of FAKE (seed 1) timed out: it took longer than 0.3 s: its policy did not answer in time"
+            "trial 2 of FAKE (seed 1) timed out: it took longer than 0.3 s: it did not stop when it was told to"
         );
         assert_eq!(reasons[4], "trial 5 of FAKE (seed 4) failed: done");
     }

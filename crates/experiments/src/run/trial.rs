@@ -9,9 +9,6 @@ use usar_sim::record::{Status, TrialRecord};
 use usar_sim::scenario::Scenario;
 use usar_sim::simulation::Simulation;
 
-/// A trial checks once in this many steps whether it is to stop.
-const HALT_CHECK_STEPS: u64 = 64;
-
 /// The reason of a trial that ended because its policy gave up at the deadline.
 pub(super) const UNANSWERED: &str = "its policy did not answer in time";
 
@@ -167,7 +164,7 @@ pub fn run_trial(setup: &TrialSetup, session: &mut dyn Session, halt: &AtomicBoo
     let mut simulation = if setup.is_checked { simulation.checked() } else { simulation };
     let mut deliveries = vec![Vec::new(); setup.scenario.tasks.len()];
     while simulation.step_within(&mut *session, Deadline::when(halt)).is_none() {
-        if simulation.steps().is_multiple_of(HALT_CHECK_STEPS) && halt.load(Ordering::Relaxed) {
+        if halt.load(Ordering::Relaxed) {
             return Err(late("it was halted"));
         }
         for event in simulation.events() {
@@ -179,7 +176,7 @@ pub fn run_trial(setup: &TrialSetup, session: &mut dyn Session, halt: &AtomicBoo
     }
     let record = simulation.finish();
     match record.status {
-        Status::Failed(_) if halt.load(Ordering::Relaxed) => Err(late(UNANSWERED)),
+        Status::Failed(reason) if reason.ends_with(&PolicyError::Late.to_string()) => Err(late(UNANSWERED)),
         Status::Failed(reason) => Err(failed(reason)),
         _ => Ok(Trial { record, deliveries }),
     }

@@ -17,7 +17,7 @@ use rne_core::trust::RelativeNeedsEntropy;
 #[must_use]
 pub fn measure_kind() -> MeasureKind {
     let about = "Relative Needs Entropy, in nats: how unlike two sides share out their needs";
-    MeasureKind::with_options(NAME, about, Rne::new)
+    MeasureKind::with_options(NAME, about, Rne::new).from_sources(env!("SOURCES_RNE"))
 }
 
 impl TrustMeasure for Rne {

@@ -16,7 +16,7 @@ pub(super) fn trust(experiment: &Experiment, gathered: &[Gathered]) -> Result<Op
     let Some((policy, question, gathered)) = first else { return Ok(None) };
     let Some(measure) = policy.measure(&experiment.registry) else { return Ok(None) };
     let Ok(trust) = measure.it.of_team(question) else { return Ok(None) };
-    let (team, name, unit) = (&question.members, &measure.name, measure.it.unit());
+    let (team, name, unit) = (&question.members, &measure.label, measure.it.unit());
     let towards = |i: usize, j: usize| trust.towards(&[team[i].id], &[team[j].id]).map_err(Failure::run);
     let mut rows = Vec::new();
     for i in 0..team.len() {
@@ -36,7 +36,7 @@ pub(super) fn trust(experiment: &Experiment, gathered: &[Gathered]) -> Result<Op
         let data = members.iter().map(row).collect::<Result<Vec<Vec<f64>>, _>>()?;
         panels.push(trust_panel(&data, &question.roles[role.index()], members.iter().map(|i| team[*i].id)));
     }
-    let column = format!("{}_{unit}", name.to_lowercase());
+    let column = format!("{}_{unit}", measure.name.to_lowercase());
     Ok(Some(Sketch {
         name: "trust".into(),
         title: format!("{name} within each role"),

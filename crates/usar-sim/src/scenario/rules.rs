@@ -161,7 +161,7 @@ pub struct MissionRules {
     pub may_idle: bool,
     /// Who goes to a task of which the team knows that no rescuee waits there.
     pub empty_tasks: EmptyTasks,
-    /// Who shares what a robot in the field has seen. At home, all hear everything.
+    /// Who shares what a robot in the field has seen. When a round ends, all hear everything.
     pub belief_sharing: BeliefSharing,
     /// Whether a robot that rests, or is on its way to rest, still guides its group.
     pub resting_guides: bool,

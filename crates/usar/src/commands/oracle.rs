@@ -2,6 +2,7 @@
 
 mod print;
 
+use std::collections::BTreeSet;
 use std::io::Write;
 use std::path::PathBuf;
 use std::sync::Mutex;
@@ -129,7 +130,7 @@ impl Arguments {
             simulation.question().cloned().ok_or_else(|| Failure::run("the trial asks nothing"))?;
         let choices = self.choices(&trial, &question)?;
         let asked = Asked { trial: &trial, question, time_s: simulation.time_s(), objective, choices };
-        let key = decision_key(&trial, self.round)?;
+        let key = decision_key(&trial, self.round, &onwards)?;
         let mut log = OutcomeLog::open(&self.cache, &key)?;
         let start = simulation.checkpoint();
         let pool =
@@ -267,12 +268,19 @@ impl Batch<'_> {
 }
 
 /// The key under which the outcomes of a decision are stored.
-pub(super) fn decision_key(trial: &AskedTrial, round: u32) -> Result<DecisionKey, Failure> {
+pub(super) fn decision_key(
+    trial: &AskedTrial,
+    round: u32,
+    thens: &[Option<PolicySpec>],
+) -> Result<DecisionKey, Failure> {
     // Any policy may go on after the decision, so that all that there are decide outcomes.
     let names = trial.registry.names().into_iter();
     let mut specs: Vec<PolicySpec> =
         names.filter_map(|name| PolicySpec::parse(name, &trial.registry).ok()).collect();
     specs.push(trial.spec.clone());
+    // Those that go on and are known by more than their kinds, such as a program that is named in the options.
+    let known: BTreeSet<Option<String>> = specs.iter().map(|spec| spec.made().fingerprint()).collect();
+    specs.extend(thens.iter().flatten().filter(|then| !known.contains(&then.made().fingerprint())).cloned());
     Ok(DecisionKey {
         program: Program::running(&specs)?.digest().to_string(),
         scenario: trial.scenario.name.clone(),

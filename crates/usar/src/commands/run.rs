@@ -6,12 +6,13 @@ mod story;
 
 use std::io::Write;
 use std::path::PathBuf;
+use std::sync::atomic::Ordering;
 
 use clap::Args;
 use experiments::Failure;
 use experiments::experiment::{PolicySpec, check_cost, defaults, with_settings};
 use reports::table::rounds_table;
-use rne_core::{Registry, Session};
+use rne_core::{Deadline, Registry, Session};
 use serde::Serialize;
 use usar_sim::metrics::CutOff;
 use usar_sim::record::{Status, TrialRecord};
@@ -26,7 +27,7 @@ use crate::recordings;
 use super::measured_by::MeasureArguments;
 use super::snapshot::{Snapshot, save};
 use super::{SCHEMA_VERSION, ShownArguments, load, print_table};
-use crate::running::{Guard, session_of, stop_on_signals};
+use crate::running::{Guard, STOP, session_of, stop_on_signals};
 
 /// Run one trial and tell what happened, round by round
 #[derive(Debug, Args)]
@@ -136,6 +137,12 @@ impl Arguments {
         stop_on_signals();
         let (record, story) = self.run(simulation, &spec, registry)?;
         if let Status::Failed(reason) = &record.status {
+            if STOP.load(Ordering::Relaxed) {
+                return Err(Failure::Interrupted(format!(
+                    "stopped at {:.0} s of simulated time",
+                    record.time_s
+                )));
+            }
             return Err(Failure::run(format!("trial of {} with seed {seed} failed: {reason}", spec.label)));
         }
         if self.json || self.shown.is_json() {
@@ -190,7 +197,7 @@ fn run(
     session: &mut dyn Session,
     watch: &mut dyn FnMut(&Simulation) -> Result<(), Failure>,
 ) -> Result<TrialRecord, Failure> {
-    while simulation.step(&mut *session).is_none() {
+    while simulation.step_within(&mut *session, Deadline::when(&STOP)).is_none() {
         watch(&simulation)?;
     }
     Ok(simulation.finish())

@@ -58,7 +58,12 @@ impl Arguments {
             )));
         }
         damages.iter().for_each(tell);
-        let chosen = self.without_undetermined(&experiment, self.choose(&all));
+        let chosen = self.choose(&self.without_undetermined(&experiment, all.clone()));
+        if chosen.is_empty() && !all.is_empty() {
+            return Err(Failure::run(
+                "no trial can be verified: every policy says that its answers may differ",
+            ));
+        }
         let count = chosen.len();
         self.mention_other_program(&experiment, &manifest)?;
         let mut differences = self.run_again(&mut folder, chosen)?;

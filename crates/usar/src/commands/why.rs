@@ -188,7 +188,7 @@ impl Arguments {
             policy: &asked.spec.label,
             round: question.round,
             time_s: begun.map_or(0.0, |round| round.start_s),
-            measure: measure.map(|measure| measure.name.clone()),
+            measure: measure.map(|measure| measure.label.clone()),
             unit: measure.map(|measure| measure.it.unit().to_owned()),
             between,
             directed: directed.unwrap_or_default(),
@@ -207,7 +207,7 @@ impl Arguments {
         question: &Question,
         chosen: &Assignment,
     ) -> Result<Vec<OracleSays>, Failure> {
-        let key = decision_key(asked, question.round)?;
+        let key = decision_key(asked, question.round, &[])?;
         let Some(log) = OutcomeLog::find(&self.cache, &key) else { return Ok(Vec::new()) };
         let tasks = asked.tasks();
         let mut said = Vec::new();
