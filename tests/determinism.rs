@@ -73,7 +73,7 @@ fn checking_and_listening_change_nothing() {
 #[test]
 fn a_trial_whose_robots_share_nothing_is_restored_as_any_other() {
     let alone = ("    mission: (", "    mission: (belief_sharing: WithNobody,");
-    let scenario = paper_with(&[alone, ("duration_s: 600.0", "duration_s: 120.0")]);
+    let scenario = paper_with(&[alone, ("duration_s: 600.0", "duration_s: 200.0")]);
     let mut policy = policy("RNE");
     let whole = restored(&scenario, &mut *policy, |_| false);
     let pieces = restored(&scenario, &mut *policy, |step| step % 613 == 0);
