@@ -112,7 +112,8 @@ fn the_program_is_known_by_the_sources_that_decide_its_numbers() {
     }
 }
 
-/// A policy's hash covers its own file or folder and what is shared, so that no policy leans on another's file.
+/// A policy's hash covers its own file or folder and what is shared, so that no policy leans on another's
+/// file.
 #[test]
 fn no_policy_names_another_one() {
     let sources = sources("policies");

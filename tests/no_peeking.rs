@@ -99,8 +99,8 @@ fn robots_learn_of_a_team_mate_what_it_says() {
     assert!(trial.beliefs().team[2].is_as(&trial.world().robots[2]));
 }
 
-/// Claims of 150 s on rescuees that the robot that claims them has not seen itself, nor heard of at the end of a
-/// round; and the number of all claims.
+/// Claims of 150 s on rescuees that the robot that claims them has not seen itself, nor heard of at the end
+/// of a round; and the number of all claims.
 fn claims_by_hearsay(scenario: &Scenario) -> [usize; 2] {
     let (mut trial, mut rne) = (Simulation::new(scenario, 1).unwrap().checked(), policy("RNE"));
     let (mut seen, mut pooled) = (BTreeSet::new(), BTreeSet::new());

@@ -1,7 +1,7 @@
-//! Tells the laboratory what it was built from: the commit, and a hash of the sources that decide every trial.
-//! Results name them. The hash also covers uncommitted sources, because they decide numbers too. Policies bring
-//! hashes of their own, so that an edited policy neither builds the laboratory anew nor spoils the results of
-//! the others.
+//! Tells the laboratory what it was built from: the commit, and a hash of the sources that decide every
+//! trial. Results name them. The hash also covers uncommitted sources, because they decide numbers too.
+//! Policies bring hashes of their own, so that an edited policy neither builds the laboratory anew nor spoils
+//! the results of the others.
 
 use std::collections::hash_map::DefaultHasher;
 use std::hash::{Hash, Hasher};

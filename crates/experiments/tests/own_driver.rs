@@ -1,5 +1,5 @@
-//! A driver of one's own: its sessions are opened once for a thread and hear of each trial, its kind looks into
-//! the registry that makes it, and what it says of its answers decides whether trials are shared.
+//! A driver of one's own: its sessions are opened once for a thread and hear of each trial, its kind looks
+//! into the registry that makes it, and what it says of its answers decides whether trials are shared.
 
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};

@@ -17,8 +17,8 @@
 //! # Ok::<(), rne_core::NeedsError>(())
 //! ```
 //!
-//! A [`Policy`] answers a [`Question`] with a [`Decision`]. Policies and [trust measures](TrustMeasure) have names
-//! in a [`Registry`]. Whoever asks opens a [`Session`] of a [`Driver`]; a policy is the simplest one.
+//! A [`Policy`] answers a [`Question`] with a [`Decision`]. Policies and [trust measures](TrustMeasure) have
+//! names in a [`Registry`]. Whoever asks opens a [`Session`] of a [`Driver`]; a policy is the simplest one.
 
 pub mod assignments;
 pub mod decision;

@@ -1,6 +1,6 @@
 //! The one door for decisions. A [`Driver`] opens a [`Session`] for each worker that runs trials, and the
-//! session answers what the trials ask. Every [`Policy`] is a driver. Others start a program, ask a person, or
-//! play the trial on.
+//! session answers what the trials ask. Every [`Policy`] is a driver. Others start a program, ask a person,
+//! or play the trial on.
 
 use std::any::Any;
 use std::sync::Arc;

@@ -143,8 +143,8 @@ pub struct TrialRecord {
     pub completed_rounds: u32,
     /// Rounds, each with one record per task.
     pub rounds: Vec<RoundRecord>,
-    /// The rounds that ended before the trial did as the base knew them: what it witnessed, and the costs that
-    /// robots reported. Questions have them as their history.
+    /// The rounds that ended before the trial did as the base knew them: what it witnessed, and the costs
+    /// that robots reported. Questions have them as their history.
     #[serde(default)]
     pub ledger: Vec<RoundOutcome>,
     /// How the team was grouped, round by round.

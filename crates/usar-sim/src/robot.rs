@@ -151,8 +151,8 @@ impl Robot {
         NeedVector::new(needs.map(|(need, constant)| self.need(need.measures, *constant)).collect())
     }
 
-    /// The robot as a member of a team that is to be grouped; none if its needs are no numbers, which is never
-    /// so in a validated scenario.
+    /// The robot as a member of a team that is to be grouped; none if its needs are no numbers, which is
+    /// never so in a validated scenario.
     #[must_use]
     pub fn member(&self, table: &[NeedModel]) -> Option<Member> {
         Some(Member {

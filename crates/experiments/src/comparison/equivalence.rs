@@ -2,9 +2,9 @@
 //!
 //! Two policies are *equivalent within a margin* if the 90 % interval of their mean difference lies inside
 //! the margin on both sides. That is the two one-sided tests (TOST, Schuirmann 1987) at 5 %. Otherwise one
-//! policy is *better* if a difference shows after correction and the 95 % interval excludes zero. It is better
-//! *by over the margin* if that whole interval lies beyond the margin. All other comparisons are *undecided*:
-//! more trials would decide them.
+//! policy is *better* if a difference shows after correction and the 95 % interval excludes zero. It is
+//! better *by over the margin* if that whole interval lies beyond the margin. All other comparisons are
+//! *undecided*: more trials would decide them.
 
 use serde::Serialize;
 

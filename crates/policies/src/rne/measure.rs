@@ -13,7 +13,8 @@ use rne_core::question::Question;
 use rne_core::registry::MeasureKind;
 use rne_core::trust::RelativeNeedsEntropy;
 
-/// The registry's line for the trust measure. It has the name and the options of the policy that groups by it.
+/// The registry's line for the trust measure. It has the name and the options of the policy that groups by
+/// it.
 #[must_use]
 pub fn measure_kind() -> MeasureKind {
     let about = "Relative Needs Entropy, in nats: how unlike two sides share out their needs";

@@ -1,6 +1,6 @@
 //! Beliefs: what a group, or the team at home, holds true. A belief is a fold over the reports that were
-//! heard. It has numbers, places and shapes of its own, so that it can be late, wrong, or about things that do
-//! not exist.
+//! heard. It has numbers, places and shapes of its own, so that it can be late, wrong, or about things that
+//! do not exist.
 
 mod fold;
 mod known;

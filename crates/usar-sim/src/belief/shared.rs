@@ -1,6 +1,6 @@
-//! The beliefs of a team, and which robots share which: by the scenario's rule, those of a group, or each robot
-//! in the field has its own. Robots without a group share the belief of the team at home. What a robot says of
-//! itself, the whole team knows.
+//! The beliefs of a team, and which robots share which: by the scenario's rule, those of a group, or each
+//! robot in the field has its own. Robots without a group share the belief of the team at home. What a robot
+//! says of itself, the whole team knows.
 
 use rne_core::TaskId;
 use serde::{Deserialize, Serialize};
@@ -66,14 +66,15 @@ impl Beliefs {
         Self { field: vec![home.clone(); holders], home, team, said_at, ledger }
     }
 
-    /// A belief in the field, or that of the team at home. The latter is what all had heard when the last round
-    /// ended, and what robots without a group have reported since.
+    /// A belief in the field, or that of the team at home. The latter is what all had heard when the last
+    /// round ended, and what robots without a group have reported since.
     #[must_use]
     pub fn of(&self, holder: Option<Holder>) -> &Belief {
         holder.map_or(&self.home, |holder| &self.field[holder.0 as usize])
     }
 
-    /// Lets a robot's report of itself be heard by the whole team. An older one than the last changes nothing.
+    /// Lets a robot's report of itself be heard by the whole team. An older one than the last changes
+    /// nothing.
     pub(crate) fn hear_of_self(&mut self, id: RobotId, robot: Robot, at_step: u64) {
         let last = &mut self.said_at[id.index()];
         if *last <= at_step {
@@ -85,8 +86,8 @@ impl Beliefs {
     }
 
     /// Lets a report be heard by all who share the sender's belief, or by the whole team if the base speaks.
-    /// `holder_of` is a function from a robot to its belief. Returns whether the report was newer than what the
-    /// sender's belief had heard before.
+    /// `holder_of` is a function from a robot to its belief. Returns whether the report was newer than what
+    /// the sender's belief had heard before.
     pub(crate) fn hear(&mut self, report: &Report, holder_of: impl Fn(RobotId) -> Option<Holder>) -> bool {
         match report.from {
             Speaker::Robot(robot) => {

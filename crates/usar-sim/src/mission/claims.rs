@@ -10,8 +10,8 @@ use super::{Crew, Scene};
 use crate::belief::Holder;
 use crate::ids::{RescueeId, RobotId};
 
-/// New claims: which robot claims which rescuee. The list lives on the stack in teams and tasks of usual size, like all
-/// that claims need.
+/// New claims: which robot claims which rescuee. The list lives on the stack in teams and tasks of usual
+/// size, like all that claims need.
 type NewClaims = SmallVec<[(RobotId, RescueeId); 16]>;
 
 /// The claims that hold: for each rescuee, the robot that is on its way to it or is loading it.
@@ -33,7 +33,8 @@ impl Claims {
         (&self.by, self.changes)
     }
 
-    /// Whether a rescuee's group gave up on it in this round, because it knows no way there or came no nearer.
+    /// Whether a rescuee's group gave up on it in this round, because it knows no way there or came no
+    /// nearer.
     #[must_use]
     pub fn has_given_up(&self, rescuee: RescueeId) -> bool {
         self.given_up[rescuee.index()]
@@ -88,8 +89,8 @@ impl Seeker {
 }
 
 impl Claims {
-    /// The claims that are made in this step, by robot. Each group makes at most as many claims as there are rescuees and
-    /// spare resources.
+    /// The claims that are made in this step, by robot. Each group makes at most as many claims as there are
+    /// rescuees and spare resources.
     pub(super) fn new_claims(&self, crew: &Crew, scene: &Scene) -> NewClaims {
         let mut claims = NewClaims::new();
         for task in scene.model.task_ids().filter(|task| crew.groups[task.index()].at_work) {

@@ -16,8 +16,8 @@ impl Crew {
         }
     }
 
-    /// Ticks off the places where robots have arrived, and gives up on places without a route. Returns whether
-    /// no able robot is on an errand any more.
+    /// Ticks off the places where robots have arrived, and gives up on places without a route. Returns
+    /// whether no able robot is on an errand any more.
     pub(super) fn follow_errands(&mut self, scene: &mut Scene) -> bool {
         for robot in 0..scene.beliefs.team.len() {
             if self.is_on_errand(&scene.beliefs.team[robot]) {

@@ -31,7 +31,8 @@ impl Mission {
     }
 
     /// Restocks the robots at home, and asks how the fit ones are to be grouped. If no robot is fit, assigns
-    /// empty groups without a question. Returns the robots that the base restocks; it knows what it hands out.
+    /// empty groups without a question. Returns the robots that the base restocks; it knows what it hands
+    /// out.
     pub(super) fn open_round(&mut self, scene: &mut Scene) -> Vec<RobotId> {
         self.round += 1;
         self.claims.given_up.fill(false);

@@ -5,8 +5,8 @@ use crate::belief::Belief;
 use crate::report::{Report, Statement, Track};
 use crate::world::World;
 
-/// The track of each robot, by id: exact, and of all robots. By them robots keep clear of each other, whatever
-/// they say of themselves.
+/// The track of each robot, by id: exact, and of all robots. By them robots keep clear of each other,
+/// whatever they say of themselves.
 pub(crate) fn tracks(world: &World) -> impl Iterator<Item = Track> + '_ {
     world.robots.iter().map(|robot| Track { position: robot.position, velocity: robot.velocity })
 }

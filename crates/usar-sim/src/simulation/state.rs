@@ -55,8 +55,8 @@ pub(super) struct Scratch {
     conflict: conflict::Scratch,
 }
 
-/// What listens to a trial and acts on nothing: the hash chain leaves it out, so that a new counter changes no
-/// hash.
+/// What listens to a trial and acts on nothing: the hash chain leaves it out, so that a new counter changes
+/// no hash.
 #[derive(Serialize, Deserialize)]
 pub(crate) struct Listeners {
     pub(super) metrics: Metrics,

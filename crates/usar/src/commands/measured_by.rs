@@ -7,7 +7,8 @@ use rne_core::Registry;
 /// Which trust measure.
 #[derive(Debug, Clone, Args)]
 pub(crate) struct MeasureArguments {
-    /// Trust measure for a look at decisions, with its options [default: the policy's own; RNE where it has none and a measure is needed]
+    /// Trust measure for a look at decisions, with its options [default: the policy's own; RNE where it has
+    /// none and a measure is needed]
     #[arg(long, value_name = "MEASURE")]
     measure: Option<String>,
 }

@@ -397,8 +397,8 @@ mod tests {
         assert_eq!(waits(&crossed(12.6)), [None, None], "clear of it");
     }
 
-    /// Whether each of two robots in a corridor from x = 0 to 10, with a bay from 4.5 to 5.5, has to make room
-    /// in the bay. The first drives east, the second west if `meets`, otherwise east.
+    /// Whether each of two robots in a corridor from x = 0 to 10, with a bay from 4.5 to 5.5, has to make
+    /// room in the bay. The first drives east, the second west if `meets`, otherwise east.
     fn makes_room_in_bay(first: f32, second: f32, meets: bool) -> [bool; 2] {
         let east = [passage(0.0, 4.5, 10.0), passage(5.5, 10.0, 4.5)];
         let west = [passage(10.0, 5.5, 10.0), passage(4.5, 0.0, 4.5)];

@@ -34,7 +34,8 @@ impl Step<'_, '_, ReciprocalModel, Reciprocal> {
         rings.iter().filter_map(|ring| ring.iter().copied().min_by(claim)).collect()
     }
 
-    /// Lets a robot ask a parked robot that slows it down to make room. Returns whether the parked robot does.
+    /// Lets a robot ask a parked robot that slows it down to make room. Returns whether the parked robot
+    /// does.
     fn ask_parked(&mut self, i: usize) -> bool {
         let blocker = self.parked_robot_that_slows(i);
         let steps = &mut self.state.blocked_steps[i];

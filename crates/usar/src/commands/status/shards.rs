@@ -77,8 +77,8 @@ impl OneShard {
         Ok(Self { number, state, why, finished, trials, folder })
     }
 
-    /// A shard that has no folder yet, with the number of its trials; the folder of another shard, and whether
-    /// that one is checked.
+    /// A shard that has no folder yet, with the number of its trials; the folder of another shard, and
+    /// whether that one is checked.
     pub(super) fn absent(
         shard: Shard,
         folder: PathBuf,
