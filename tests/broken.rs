@@ -133,8 +133,7 @@ fn typos(word: &str) -> Vec<String> {
 
 /// Names of each section of a scenario in full, of policies and of variants.
 fn vocabularies() -> Vec<Vec<String>> {
-    let text = crate::support::paper().resolved();
-    let fields = ron_fields::Fields::of(&text);
+    let tree = crate::support::paper().tree();
     let sections = [
         "",
         "mission",
@@ -148,7 +147,8 @@ fn vocabularies() -> Vec<Vec<String>> {
         "debris[4]",
     ];
     let owned = |names: Vec<&str>| names.into_iter().map(str::to_owned).collect::<Vec<_>>();
-    let mut all: Vec<Vec<String>> = sections.iter().map(|section| owned(fields.inside(section))).collect();
+    let mut all: Vec<Vec<String>> =
+        sections.iter().map(|section| tree.get(section).unwrap().names()).collect();
     all.push(owned(policies::standard().names()));
     all.push(owned(vec!["Reciprocal", "Rotation", "Swap", "None"]));
     all.push(owned(vec!["AtOnce", "WhenHome", "BeforeRound"]));
@@ -163,7 +163,7 @@ fn nineteen_of_twenty_mistyped_words_are_known_again() {
         for word in &words {
             for typo in typos(word).iter().filter(|typo| !words.contains(typo)) {
                 all += 1;
-                known += u32::from(ron_fields::nearest(typo, words.iter().map(String::as_str)) == Some(word));
+                known += u32::from(ron_tree::nearest(typo, words.iter().map(String::as_str)) == Some(word));
             }
         }
     }

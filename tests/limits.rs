@@ -7,7 +7,7 @@ use usar_sim::scenario::{Problem, Scenario, ScenarioFile};
 use crate::support::{paper, paper_text};
 
 /// Fields at which single values are checked: a path in paper.ron for each limit of one.
-const PLACES: &[(&str, &ron_fields::limits::Limit)] = &[
+const PLACES: &[(&str, &ron_tree::limits::Limit)] = &[
     ("duration_s", &limits::DURATION_S),
     ("dt_s", &limits::DT_S),
     ("arena_m[0]", &limits::ARENA_M),

@@ -94,13 +94,8 @@ fn a_scenario_needs_tasks_or_errands_and_errands_need_robots_and_places() {
 #[test]
 fn a_resolved_scenario_reads_back_as_itself() {
     let scenario = paper();
-    let text = ron::to_string(&scenario);
-    assert_eq!(Scenario::parse(&text, Path::new("resolved.ron")).unwrap(), scenario);
-}
-
-mod ron {
-    pub fn to_string(scenario: &usar_sim::scenario::Scenario) -> String {
-        ::ron::ser::to_string_pretty(&**scenario, ::ron::ser::PrettyConfig::new()).unwrap()
+    for text in [scenario.resolved(), scenario.tree().to_string()] {
+        assert_eq!(Scenario::parse(&text, Path::new("resolved.ron")).unwrap(), scenario);
     }
 }
 
@@ -236,75 +231,6 @@ fn tables_of_tasks_roles_and_needs_are_checked_and_named_by_their_entries() {
         "needs.obs measures Constant, so that each role must have `constants: {\"obs\": ...}`, found \
          role \"carrier\" without it",
     );
-}
-
-/// A file in the former format, part by part: where its words stand, and what is said of it.
-#[test]
-fn a_file_in_the_former_format_is_refused_with_the_change_that_it_needs() {
-    let text = paper_text();
-    let former = |from: &str, to: &str| {
-        assert!(text.contains(from), "{from:?} is not in paper.ron");
-        let text = text.replacen(from, to, 1);
-        Scenario::parse(&text, Path::new("s.ron")).unwrap_err().to_string()
-    };
-    let sweep = "sweep: (policies: [\"RNE\", \"DIS\", \"ENG\", \"HP_DIS\"], trials: 10, first_seed: 1),\n";
-    assert_eq!(
-        former("duration_s: 600.0", &format!("{sweep}duration_s: 600.0")),
-        format!(
-            "s.ron:{}: sweep: belongs in a sweep file now: move it to NAME.sweep.ron beside NAME.ron, as \
-             `(scenario: \"NAME.ron\", policies: [...], trials: ...)`",
-            line_of("duration_s: 600.0")
-        )
-    );
-    let rne = "rne: (\nlog_base: E, sort: false, score: MaxOfBoth,\n),\n";
-    assert_eq!(
-        former("duration_s: 600.0", &format!("{rne}duration_s: 600.0")),
-        format!(
-            "s.ron:{}: rne: belongs to the policy now: write `policies: [\"RNE(score: Sum)\"]` in a sweep \
-             file, or `--policy 'RNE(score: Sum)'`",
-            line_of("duration_s: 600.0")
-        )
-    );
-    let roles = "roles: (carrier: (radius_m: 0.4, mass_kg: 50.0), observer: (radius_m: 0.4)),\n";
-    let tasks = "tasks: (\nhard: (center: (15.6, 64.2), size_m: (11.0, 5.7), grid: (20, 10), rest: (27.0, \
-        14.5)),\n),\n";
-    let (start, end) = (text.find("    roles: [").unwrap(), text.find("    // What robots report").unwrap());
-    let with_roles = format!("{}{roles}{}", &text[..start], &text[end..]);
-    let error = Scenario::parse(&with_roles, Path::new("s.ron")).unwrap_err().to_string();
-    assert_eq!(
-        error,
-        format!(
-            "s.ron:{}: roles: is a list now: write `roles: [(name: \"...\", kind: Ground, ...), ...]`; \
-             `kind: Aerial` for robots that fly, `guides: true` for those whose loss slows their group",
-            line_of("    roles: [")
-        )
-    );
-    let (start, end) =
-        (text.find("    tasks: [").unwrap(), text.find("    // Places [view]; pieces").unwrap());
-    let with_tasks = format!("{}{tasks}{}", &text[..start], &text[end..]);
-    let error = Scenario::parse(&with_tasks, Path::new("s.ron")).unwrap_err().to_string();
-    assert_eq!(
-        error,
-        format!(
-            "s.ron:{}: tasks: is a list now: write `tasks: [(name: \"...\", difficulty: 2, center: ...), \
-             ...]`; the harder a task, the higher its difficulty",
-            line_of("    tasks: [")
-        )
-    );
-    assert_eq!(
-        former("(role: \"carrier\"", "(role: Carrier"),
-        format!(
-            "s.ron:{}: team[0].role: is the name of a role now: write it in quotes, as in `roles`",
-            line_of("(role: \"carrier\"")
-        )
-    );
-    let scenario = paper_with(&SAMPLED);
-    let (one, again) = (Layout::sample(&scenario, 3).unwrap(), Layout::sample(&scenario, 3).unwrap());
-    let other = Layout::sample(&scenario, 4).unwrap();
-    assert_eq!(one, again);
-    assert_ne!(one.debris, other.debris);
-    assert_eq!(one.debris.len(), scenario.debris.len() + 14);
-    assert_eq!(one.zones.len(), scenario.radiation.len() + 5);
 }
 
 #[test]

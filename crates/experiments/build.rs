@@ -10,7 +10,7 @@ use std::process::Command;
 
 /// The crates that decide the numbers of every trial, or of a study.
 const DECIDING: [&str; 6] =
-    ["ron-fields", "rne-core", "frozen-physics", "usar-sim", "experiments", "study-yang2021"];
+    ["ron-tree", "rne-core", "frozen-physics", "usar-sim", "experiments", "study-yang2021"];
 
 fn main() {
     let root = Path::new("../..");

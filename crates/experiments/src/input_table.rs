@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use csv::StringRecord;
-use ron_fields::file::read_text;
+use ron_tree::file::read_text;
 
 use crate::failure::Failure;
 use crate::limits::{COLUMNS, TABLE_ROWS};

@@ -1,6 +1,6 @@
 //! Limits of sweeps and of tables that users write. `docs/limits.md` is made from this file.
 
-ron_fields::limits! {
+ron_tree::limits! {
     /// Policies of a sweep, readings included.
     POLICIES: "policies" = 1, 10_000;
     /// Combinations of readings.

@@ -328,7 +328,7 @@ impl Catalogue {
         self.iter().position(is_named).ok_or_else(|| {
             let known: Vec<&str> = self.iter().map(|metric| metric.name.as_str()).collect();
             let names = known.iter().copied().chain(self.iter().map(|metric| metric.declared));
-            let meant = ron_fields::nearest(name, names)
+            let meant = ron_tree::nearest(name, names)
                 .map_or(String::new(), |meant| format!("; did you mean {meant}?"));
             Failure::input(format!("unknown metric {name:?}; known metrics: {}{meant}", known.join(", ")))
         })

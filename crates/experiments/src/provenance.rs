@@ -1,6 +1,6 @@
 //! Where results come from: enough to reproduce them, and to refuse to mix them with other results.
 
-use ron_fields::Fields;
+use ron_tree::Node;
 use serde::{Deserialize, Deserializer, Serialize};
 use thiserror::Error;
 use usar_sim::physics::ENGINE_FEATURES;
@@ -268,25 +268,22 @@ fn keep_of<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Keep, D::Error>
 /// The fields in which two resolved scenarios differ, one sentence each.
 #[must_use]
 pub fn scenario_differences(there: &str, now: &str) -> Vec<String> {
-    let (there_fields, now_fields) = (Fields::of(there), Fields::of(now));
-    let decides = |path: &str| path != "name" && path != "description";
-    let value = |text: &str, fields: &Fields, path: &str| {
-        fields.value(path).map(|value| text[value].trim().to_owned())
+    let tree = |text| Node::parse(text).unwrap_or_else(|_| Node::word(""));
+    let (there, now) = (tree(there), tree(now));
+    let leaves = |tree: &Node| -> Vec<(String, String)> {
+        let leaves = tree.leaves().into_iter().map(|(path, leaf)| (path, leaf.to_string()));
+        leaves.filter(|(path, _)| path != "name" && path != "description").collect()
     };
     let mut differences = Vec::new();
-    for (path, place) in now_fields.leaves().filter(|(path, _)| decides(path)) {
-        let new = now[place].trim();
-        match value(there, &there_fields, path) {
+    for (path, new) in leaves(&now) {
+        match there.get(&path).map(ToString::to_string) {
             Some(old) if old == new => {}
             Some(old) => differences.push(format!("{path}: {old} there, {new} now")),
             None => differences.push(format!("{path}: nothing there, {new} now")),
         }
     }
-    for (path, place) in there_fields.leaves().filter(|(path, _)| decides(path)) {
-        if value(now, &now_fields, path).is_none() {
-            differences.push(format!("{path}: {} there, nothing now", there[place].trim()));
-        }
-    }
+    let gone = leaves(&there).into_iter().filter(|(path, _)| now.get(path).is_none());
+    differences.extend(gone.map(|(path, old)| format!("{path}: {old} there, nothing now")));
     differences
 }
 

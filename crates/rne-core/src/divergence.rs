@@ -4,8 +4,6 @@
 //! Checked against `SciPy` 1.17 (`scipy.stats.entropy`, `scipy.spatial.distance.jensenshannon` squared). All
 //! in nats.
 
-use nalgebra::DMatrix;
-
 use crate::error::NeedsError;
 use crate::needs::{NeedDistribution, check_entries, check_length};
 use crate::trust::RelativeNeedsEntropy;
@@ -67,29 +65,29 @@ pub fn jensen_shannon(p: &NeedDistribution, q: &NeedDistribution) -> Result<f64,
     Ok(jensen_shannon_nats(p.shares(), q.shares()))
 }
 
-/// Mutual information `I(X;Y)` of a joint distribution (rows x, columns y), in nats: the relative entropy
-/// between the joint and the product of its margins (Eq. 2).
+/// Mutual information `I(X;Y)` of a joint distribution, in nats: the relative entropy between the joint and
+/// the product of its margins (Eq. 2). Each row holds the probabilities of one `x` with every `y`.
 ///
 /// # Errors
-/// An empty matrix, an entry that is NaN, infinite or negative, or entries that do not add up to 1 (to within
-/// 1e-9).
-pub fn mutual_information(joint: &DMatrix<f64>) -> Result<f64, NeedsError> {
-    check_entries("joint distribution", joint.as_slice())?;
-    let sum: f64 = joint.iter().sum();
+/// No entries; an entry that is NaN, infinite or negative; rows of different lengths; or entries that do not
+/// add up to 1 (to within 1e-9).
+pub fn mutual_information(joint: &[Vec<f64>]) -> Result<f64, NeedsError> {
+    let what = "joint distribution";
+    let length = joint.first().map_or(0, Vec::len);
+    joint.iter().try_for_each(|row| check_length("row of the joint distribution", length, row.len()))?;
+    check_entries(what, &joint.concat())?;
+    let rows: Vec<f64> = joint.iter().map(|row| row.iter().sum()).collect();
+    let columns: Vec<f64> = (0..length).map(|y| joint.iter().map(|row| row[y]).sum()).collect();
+    let sum: f64 = rows.iter().sum();
     if (sum - 1.0).abs() > 1e-9 {
-        return Err(NeedsError::NotNormalised { what: "joint distribution", found: sum });
+        return Err(NeedsError::NotNormalised { what, found: sum });
     }
-    let rows: Vec<f64> = joint.row_iter().map(|row| row.iter().sum()).collect();
-    let columns: Vec<f64> = joint.column_iter().map(|column| column.iter().sum()).collect();
     let mut information = 0.0;
-    for (x, row) in rows.iter().enumerate() {
-        for (y, column) in columns.iter().enumerate() {
-            let p = joint[(x, y)];
-            if p > 0.0 {
-                // As a difference of logarithms: the product of two small margins could vanish, their
-                // logarithms cannot.
-                information += p * (libm::log(p) - libm::log(*row) - libm::log(*column));
-            }
+    for (row, x) in joint.iter().zip(&rows) {
+        for (p, y) in row.iter().zip(&columns).filter(|(p, _)| **p > 0.0) {
+            // As a difference of logarithms: the product of two small margins could vanish, their
+            // logarithms cannot.
+            information += p * (libm::log(*p) - libm::log(*x) - libm::log(*y));
         }
     }
     Ok(information.max(0.0))
@@ -160,11 +158,14 @@ mod tests {
 
     #[test]
     fn mutual_information_is_zero_for_independent_and_ln_2_for_equal_coins() {
-        let independent = DMatrix::from_row_slice(2, 2, &[0.25, 0.25, 0.25, 0.25]);
-        let equal = DMatrix::from_row_slice(2, 2, &[0.5, 0.0, 0.0, 0.5]);
-        assert!(mutual_information(&independent).unwrap().abs() < 1e-15);
-        assert!((mutual_information(&equal).unwrap() - std::f64::consts::LN_2).abs() < 1e-15);
-        assert!(mutual_information(&DMatrix::from_row_slice(1, 2, &[0.5, 0.6])).is_err());
+        let of =
+            |rows: &[&[f64]]| mutual_information(&rows.iter().map(|row| row.to_vec()).collect::<Vec<_>>());
+        assert!(of(&[&[0.25, 0.25], &[0.25, 0.25]]).unwrap().abs() < 1e-15);
+        let coins = of(&[&[0.5, 0.0], &[0.0, 0.5]]).unwrap();
+        assert!((coins - std::f64::consts::LN_2).abs() < 1e-15);
+        for wrong in [&[][..], &[&[0.5, 0.6]], &[&[0.5], &[0.25, 0.25]], &[&[1.5, -0.5]]] {
+            assert!(of(wrong).is_err(), "{wrong:?}");
+        }
     }
 
     #[test]

@@ -4,7 +4,7 @@
 use std::fmt;
 use std::sync::Arc;
 
-use ron::extensions::Extensions;
+use ron_tree::{Node, Problem};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
@@ -306,10 +306,10 @@ impl<T: ?Sized + 'static> Kind<T> {
         let make = move |options: &str, registry: &Registry| {
             let options: O = match options.trim() {
                 "" => O::default(),
-                text => {
-                    let ron = ron::Options::default().with_default_extension(Extensions::IMPLICIT_SOME);
-                    ron.from_str(text).map_err(|error| error.code.to_string())?
-                }
+                text => read(text).map_err(|problem| {
+                    // The options as a whole are quoted after it.
+                    Problem { found: String::new(), ..*problem }.to_string()
+                })?,
             };
             let all = written(&options);
             let it = make(options, registry).map_err(|error| error.to_string())?;
@@ -344,9 +344,17 @@ fn parts(text: &str) -> [&str; 2] {
     [name.trim(), options]
 }
 
-/// A value in RON, its fields separated by a comma and a blank.
+/// Reads options in RON.
+fn read<O: DeserializeOwned>(text: &str) -> Result<O, Box<Problem>> {
+    let whole = |problem: Problem| match problem.field.as_str() {
+        "" => Problem { field: "the text of the options".to_owned(), ..problem },
+        _ => problem,
+    };
+    let node = Node::parse(text).map_err(|error| Box::new(whole(Problem::new("", error.message, ""))))?;
+    node.read_as().map_err(|problem| Box::new(whole(*problem)))
+}
+
+/// A value in RON.
 fn written(options: &impl Serialize) -> String {
-    let ron = ron::Options::default().with_default_extension(Extensions::IMPLICIT_SOME);
-    let style = ron::ser::PrettyConfig::new().depth_limit(0).separator(" ");
-    ron.to_string_pretty(options, style).unwrap_or_default()
+    Node::of(options).map(|node| node.to_string()).unwrap_or_default()
 }

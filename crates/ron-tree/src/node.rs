@@ -57,14 +57,6 @@ impl Node {
         Value::Word(word.into()).into()
     }
 
-    /// The tree of a text.
-    ///
-    /// # Errors
-    /// The first place that is not well-formed, or that exceeds a [limit](crate::limits).
-    pub fn parse(text: &str) -> Result<Self, crate::Malformed> {
-        crate::parse::parse(text).map(|(root, _)| root)
-    }
-
     /// The word, if the node is one.
     #[must_use]
     pub fn as_word(&self) -> Option<&str> {
@@ -127,7 +119,7 @@ impl Node {
     }
 
     /// The node inside `Some(...)`, to be changed.
-    pub(crate) fn peeled_mut(&mut self) -> &mut Self {
+    pub fn peeled_mut(&mut self) -> &mut Self {
         if std::ptr::eq(self.peeled(), self) {
             return self;
         }
@@ -138,7 +130,7 @@ impl Node {
     }
 
     /// The nodes directly in the node, keys of maps aside.
-    pub(crate) fn children(&self) -> impl Iterator<Item = &Self> {
+    pub fn children(&self) -> impl Iterator<Item = &Self> {
         self.fields().iter().map(|(_, value)| value).chain(self.entries())
     }
 
@@ -153,6 +145,13 @@ impl Node {
             }
             Value::Word(_) | Value::Text(_) => Vec::new(),
         }
+    }
+
+    /// Takes a field out of a struct or a map, and returns its value.
+    pub fn remove(&mut self, name: &str) -> Option<Self> {
+        let (Value::Struct(_, fields) | Value::Map(fields)) = &mut self.value else { return None };
+        let at = fields.iter().position(|(field, _)| field.as_word() == Some(name))?;
+        Some(fields.remove(at).1)
     }
 
     /// Moves the node and all within to one place.

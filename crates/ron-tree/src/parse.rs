@@ -31,6 +31,16 @@ pub(crate) struct Token {
     pub(crate) end: usize,
 }
 
+impl Node {
+    /// The tree of a text.
+    ///
+    /// # Errors
+    /// The first place that is not well-formed, or that exceeds a [limit](crate::limits).
+    pub fn parse(text: &str) -> Result<Self, Malformed> {
+        parse(text).map(|(root, _)| root)
+    }
+}
+
 /// The tree of a text, and the parts of which the text consists.
 pub(crate) fn parse(text: &str) -> Result<(Node, Vec<Token>), Malformed> {
     let mut reader = Reader::new(text);
@@ -115,8 +125,8 @@ impl<'t> Reader<'t> {
 
     /// The line of this place; places only move on.
     fn line(&mut self) -> u32 {
-        let passed = &self.text.as_bytes()[self.counted..self.at];
-        self.line += passed.iter().filter(|byte| **byte == b'\n').count() as u32;
+        let passed = self.text.get(self.counted..self.at).unwrap_or_default();
+        self.line += passed.matches('\n').count() as u32;
         self.counted = self.at;
         self.line
     }

@@ -33,13 +33,15 @@ impl Node {
         positions.into_iter().try_fold(self, |node, position| node.child_mut(position))
     }
 
-    /// The path with indices instead of names, `tasks[0].grid[1]` for `tasks.hard.grid[1]`, if it exists.
+    /// The path with indices instead of names, `tasks[0].grid[1]` for `tasks.hard.grid[1]`. The part that does
+    /// not exist stays as it is.
     #[must_use]
-    pub fn canonical(&self, path: &str) -> Option<String> {
+    pub fn canonical(&self, path: &str) -> String {
         let trail = self.trail(path);
         let steps = trail.nodes.iter().zip(&trail.positions);
-        let path: String = steps.map(|((node, _), position)| node.peeled().segment(*position)).collect();
-        trail.is_whole.then(|| path.trim_start_matches('.').to_owned())
+        let known: String = steps.map(|((node, _), position)| node.peeled().segment(*position)).collect();
+        let end = trail.nodes.last().map_or(0, |(_, end)| *end);
+        format!("{}{}", known.trim_start_matches('.'), &path[end..])
     }
 
     /// Line of a field; if it does not exist, that of the nearest enclosing field. `None` if that is the

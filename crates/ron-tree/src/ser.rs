@@ -95,7 +95,7 @@ impl Serializer for Writer {
     }
 
     fn serialize_some<T: ?Sized + Serialize>(self, value: &T) -> Result<Node, Unwritten> {
-        self.serialize_newtype_variant("", 0, "Some", value)
+        value.serialize(self)
     }
 
     fn serialize_unit(self) -> Result<Node, Unwritten> {

@@ -5,7 +5,7 @@ use std::path::Path;
 use experiments::Failure;
 use experiments::experiment::{Experiment, Overrides};
 use rne_core::Registry;
-use ron_fields::Fields;
+use ron_tree::Node;
 
 /// Policies of the paper.
 pub const POLICIES: [&str; 4] = ["RNE", "DIS", "ENG", "HP_DIS"];
@@ -75,27 +75,23 @@ fn overrides(trials: u32, set: Vec<String>) -> Overrides {
 /// The largest differences that do not matter, by metric, as the paper's sweep file declares them.
 #[must_use]
 pub fn margins() -> Vec<(String, f64)> {
-    let fields = Fields::of(SWEEP);
-    let margin = |key: &str| {
-        let value = fields.value(&format!("margins.{key}")).and_then(|place| SWEEP[place].parse().ok());
-        value.map(|value| (key.trim_matches('"').to_owned(), value))
-    };
-    fields.inside("margins").into_iter().filter_map(margin).collect()
+    let margin =
+        |(key, value): &(Node, Node)| Some((key.as_text()?.to_owned(), value.as_word()?.parse().ok()?));
+    entries(SWEEP, "margins").iter().filter_map(margin).collect()
+}
+
+/// The keys and the values of a map in the text of a sweep file.
+fn entries(sweep: &str, field: &str) -> Vec<(Node, Node)> {
+    let tree = Node::parse(sweep).ok();
+    tree.and_then(|tree| Some(tree.get(field)?.fields().to_vec())).unwrap_or_default()
 }
 
 /// Names of variants of a sweep file, and their settings as `path=value`.
 fn alternatives(sweep: &str) -> Vec<(String, Vec<String>)> {
-    let fields = Fields::of(sweep);
-    let plain = |key: &str| key.trim_matches('"').to_owned();
-    let variant = |key: &str| {
-        let place = format!("variants.{key}");
-        let setting = |path: &str| {
-            let value = &sweep[fields.value(&format!("{place}.{path}")).unwrap_or_default()];
-            format!("{}={value}", plain(path))
-        };
-        (plain(key), fields.inside(&place).into_iter().map(setting).collect())
-    };
-    fields.inside("variants").into_iter().map(variant).collect()
+    let plain = |key: &Node| key.as_text().unwrap_or_default().to_owned();
+    let setting = |(path, value): &(Node, Node)| format!("{}={value}", plain(path));
+    let variants = entries(sweep, "variants").into_iter();
+    variants.map(|(name, set)| (plain(&name), set.fields().iter().map(setting).collect())).collect()
 }
 
 #[cfg(test)]

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 
 use experiments::explore::Free;
-use ron_fields::Fields;
+use ron_tree::Node;
 use study_yang2021::calibration::{Calibration, Log, Spread, Target, the_policy};
 use usar_sim::scenario::Scenario;
 
@@ -17,7 +17,7 @@ fn root() -> PathBuf {
 #[test]
 fn the_calibrated_scenario_is_the_best_of_its_log() {
     let (scenario, text) = Scenario::load(&root().join("scenarios/paper-calibrated.ron")).unwrap();
-    let fields = Fields::of(&text);
+    let fields = Node::parse(&text).unwrap();
     let log = std::fs::read_to_string(root().join("docs/calibration/chosen.csv")).unwrap();
     let mut rows = csv::Reader::from_reader(log.as_bytes());
     let header = rows.headers().unwrap().clone();
@@ -28,7 +28,7 @@ fn the_calibrated_scenario_is_the_best_of_its_log() {
     assert!(names().count() >= 5, "{header:?}");
     for (name, value) in names() {
         let path = name.replace("[*]", "[0]");
-        let written = text[fields.value(&path).unwrap()].trim().parse::<f64>().unwrap();
+        let written = fields.get(&path).unwrap().as_word().unwrap().parse::<f64>().unwrap();
         assert_eq!(written.to_bits(), value.parse::<f64>().unwrap().to_bits(), "{path}");
     }
     let target = Target::load(&root().join("scenarios/reference/dis_trials.csv"), &scenario).unwrap();
@@ -59,7 +59,10 @@ fn the_calibrated_scenario_is_the_best_of_its_log() {
 fn a_log_is_held_by_one_process() {
     let place = tempfile::tempdir().unwrap();
     let (base, text) = Scenario::load(&root().join("scenarios/paper.ron")).unwrap();
-    let free = vec![Free::parse("mission.loading_s=1..3", &Fields::of(&text), &Fields::of(&text)).unwrap()];
+    let free = vec![
+        Free::parse("mission.loading_s=1..3", &Node::parse(&text).unwrap(), &Node::parse(&text).unwrap())
+            .unwrap(),
+    ];
     let table = place.path().join("target.csv");
     std::fs::write(&table, "method,rescuees_hard,energy_hard\nDIS,10,150\nDIS,14,160\nDIS,12,170\n").unwrap();
     let target = Target::load(&table, &base).unwrap();

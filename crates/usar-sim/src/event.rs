@@ -1,6 +1,7 @@
 //! Events: what happened, in order. Mechanics publish them; metrics and recorders only listen.
 
 use rne_core::TaskId;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::hash::part;
@@ -8,7 +9,7 @@ use crate::ids::{RescueeId, RobotId};
 use crate::report::{Report, Speaker, Statement};
 
 /// Why a robot turned back to its rest place.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub enum TurnBackCause {
     /// Its energy is below the threshold, or would not last for the way.
     Energy,
@@ -17,7 +18,7 @@ pub enum TurnBackCause {
 }
 
 /// Why a group went home.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub enum ReturnCause {
     /// No member in the field has room left.
     CapacityUsed,
@@ -43,7 +44,7 @@ impl ReturnCause {
 }
 
 /// Why the team no longer waits for a robot.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub enum CutOffCause {
     /// It knows no way to the place.
     NoWay,
@@ -63,7 +64,7 @@ impl CutOffCause {
 }
 
 /// Where a rescuee was delivered.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub enum Place {
     /// Home.
     Home,
@@ -72,7 +73,7 @@ pub enum Place {
 }
 
 /// Something that happened.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub enum Event {
     /// The team was grouped and a round began. The trial's record has the whole decision.
     RoundStarted {
@@ -290,6 +291,12 @@ impl Event {
             | Statement::WreckLies { .. } => None,
         }
     }
+}
+
+/// The JSON Schema of an event.
+#[must_use]
+pub fn event_schema() -> serde_json::Value {
+    schemars::schema_for!(Event).into()
 }
 
 /// The events of the current step, in order, and a hash over all before.

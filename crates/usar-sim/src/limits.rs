@@ -2,7 +2,7 @@
 
 use rne_core::question::MAX_TASKS;
 
-ron_fields::limits! {
+ron_tree::limits! {
     /// Bytes of a name: a scenario's, a role's, a task's, a need's. Letters, digits, `-` and `_`, which all
     /// systems take as names of files.
     NAME_BYTES: "*.name" = 1, 64;

@@ -14,7 +14,7 @@ use experiments::sweep::folder::Folder;
 use experiments::sweep::names::RECORDINGS;
 use recording::{Options, Recorder, Recording};
 use rne_core::{Deadline, Session};
-use ron_fields::file::{ReadError, read};
+use ron_tree::file::{ReadError, read};
 use usar_sim::record::{Status, TrialRecord};
 use usar_sim::simulation::Simulation;
 

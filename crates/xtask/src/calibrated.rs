@@ -4,7 +4,7 @@
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
-use ron_fields::{Fields, with_values};
+use ron_tree::{Node, edited};
 
 /// Finalists that are nearest in at least this share of the draws cannot be told apart from the choice.
 const NOT_TOLD_APART: f64 = 0.05;
@@ -60,23 +60,16 @@ fn named(text: &str) -> String {
     let legend = text.find("// [paper]").expect("a legend");
     let text = text[legend..].replace(", only_policy: \"DIS\"", "");
     let name = [("name".to_owned(), "\"paper-calibrated\"".to_owned())];
-    let text = with_values(&text, &name).expect("it has a name");
+    let text = edited(&text, &name).expect("it has a name");
     HEADER.to_owned() + &text.replacen("(\n", "(\n    format: 2,\n", 1)
 }
 
 /// The values in which the second scenario differs from the first, as entries of a variant, one a line.
 fn changes(from: &str, to: &str) -> String {
-    let (from_fields, to_fields) = (Fields::of(from), Fields::of(to));
-    let differs = |path: &&str| {
-        let there = to_fields.value(path).map(|place| &to[place]);
-        *path != "name" && from_fields.value(path).map(|place| &from[place]) != there
-    };
-    let paths = to_fields.leaves().map(|(path, _)| path).filter(differs);
-    let entry = |path: &str| {
-        let value = &to[to_fields.value(path).unwrap_or_default()];
-        format!("\n            {path:?}: {value},")
-    };
-    paths.map(entry).collect()
+    let [from, to] = [from, to].map(|text| Node::parse(text).expect("a scenario that was run"));
+    let is_new = |(path, leaf): &(String, &Node)| path != "name" && from.get(path) != Some(*leaf);
+    let entry = |(path, leaf): (String, &Node)| format!("\n            {path:?}: {leaf},");
+    to.leaves().into_iter().filter(is_new).map(entry).collect()
 }
 
 #[cfg(test)]

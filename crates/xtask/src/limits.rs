@@ -3,7 +3,7 @@
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
-use ron_fields::limits::Limit;
+use ron_tree::limits::Limit;
 
 const HEAD: &str = "\
 # Limits
@@ -25,7 +25,7 @@ pub fn path() -> PathBuf {
 pub fn page() -> String {
     let mut page = HEAD.to_owned();
     for (title, file, limits) in [
-        ("Texts", "crates/ron-fields/src/limits.rs", ron_fields::limits::ALL),
+        ("Texts", "crates/ron-tree/src/limits.rs", ron_tree::limits::ALL),
         ("Scenarios", "crates/usar-sim/src/limits.rs", usar_sim::limits::ALL),
         ("Sweeps, tables and results", "crates/experiments/src/limits.rs", experiments::limits::ALL),
     ] {

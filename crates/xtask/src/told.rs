@@ -6,6 +6,8 @@ use std::path::{Path, PathBuf};
 
 use experiments::experiment::{Experiment, Overrides};
 use experiments::sweep::columns_page;
+use serde_json::Value;
+use usar_sim::event::event_schema;
 
 const EVENTS: &str = "\
 # Events: what can happen in a trial
@@ -46,47 +48,35 @@ fn columns() -> String {
     let file = place("scenarios/paper.ron");
     let experiment = Experiment::load(&file, &Overrides::default(), &policies::standard())
         .expect("the paper's sweep is sound");
-    let page = columns_page(&experiment).expect("its tables have columns");
+    let page = columns_page(&experiment);
     let (_, tables) = page.split_once("\n\n").expect("a title");
     format!("{COLUMNS}\n{tables}")
 }
 
-/// The variants of the type of events, with their comments.
+/// The kinds of events, with their comments.
 fn events() -> String {
-    let source = std::fs::read_to_string(place("crates/usar-sim/src/event.rs")).expect("the type of events");
-    let (_, variants) = source.split_once("pub enum Event {\n").expect("the type of events");
-    let (variants, _) = variants.split_once("\n}\n").expect("its end");
+    let schema = event_schema();
     let mut page = EVENTS.to_owned();
-    let (mut comment, mut fields): (String, Vec<String>) = Default::default();
-    let mut open: Option<(String, String)> = None;
-    for line in variants.lines().map(str::trim) {
-        let first = line.chars().next().unwrap_or(' ');
-        if let Some(text) = line.strip_prefix("///") {
-            comment.push_str(text);
-        } else if first.is_uppercase() {
-            let name = snake(line.trim_end_matches([' ', '{', ',']));
-            let comment = std::mem::take(&mut comment);
-            if line.ends_with('{') {
-                open = Some((name, comment));
-            } else {
-                row(&mut page, &name, &comment, &[]);
-            }
-        } else if let Some((name, _)) = line.split_once(':') {
-            fields.push(format!("`{name}`: {}", plain(&std::mem::take(&mut comment))));
-        } else if let Some((name, comment)) = open.take() {
-            row(&mut page, &name, &comment, &std::mem::take(&mut fields));
-        }
+    for variant in schema["oneOf"].as_array().into_iter().flatten() {
+        // A kind with fields is an object with one property: its name.
+        let name = variant["const"].as_str().or(variant["required"][0].as_str()).unwrap_or_default();
+        let inside = &variant["properties"][name];
+        let fields = inside["required"].as_array().into_iter().flatten().filter_map(Value::as_str);
+        let field = |field| format!("`{field}`: {}", plain(&comment(&inside["properties"][field])));
+        let fields: Vec<String> = fields.map(|name| field(name)).collect();
+        let _ = writeln!(page, "| `{}` | {} | {} |", snake(name), comment(variant), fields.join("; "));
     }
     page
 }
 
-fn row(page: &mut String, name: &str, comment: &str, fields: &[String]) {
-    let _ = writeln!(page, "| `{name}` | {} | {} |", comment.trim(), fields.join("; "));
+fn comment(schema: &Value) -> String {
+    let text = schema["description"].as_str().unwrap_or_default();
+    text.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
 /// A comment as part of a sentence.
 fn plain(comment: &str) -> String {
-    let text = comment.trim().trim_end_matches('.');
+    let text = comment.trim_end_matches('.');
     let mut letters = text.chars();
     let first = letters.next();
     if letters.clone().next().is_none_or(char::is_uppercase) {

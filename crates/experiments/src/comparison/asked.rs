@@ -44,13 +44,13 @@ impl Asked {
     /// # Errors
     /// An unknown metric, a margin that is not a number above 0, or a margin with only one policy.
     pub fn of(experiment: &Experiment, wishes: &Wishes) -> Result<Self, Failure> {
-        let asks = experiment.asks()?;
+        let plan = &experiment.plan;
         let catalogue = &experiment.metrics;
-        let is_declared = !(wishes.metrics.is_empty() && asks.primary.is_empty());
+        let is_declared = !(wishes.metrics.is_empty() && plan.primary.is_empty());
         let metrics = if !wishes.metrics.is_empty() {
             catalogue.chosen(&wishes.metrics)?
         } else if is_declared {
-            catalogue.chosen(&asks.primary)?
+            catalogue.chosen(&plan.primary)?
         } else {
             first_question(experiment)?
         };
@@ -69,7 +69,7 @@ impl Asked {
             margins.push((place, value));
         }
         let of_command = margins.len();
-        for (name, margin) in &asks.margins {
+        for (name, margin) in &plan.margins {
             let place = catalogue.named(name)?;
             if margins.iter().all(|(known, _)| *known != place) {
                 margins.push((place, *margin));
@@ -90,7 +90,7 @@ impl Asked {
         Ok(Self {
             metrics,
             exploratory,
-            baseline: wishes.baseline.clone().or(asks.baseline).or(first),
+            baseline: wishes.baseline.clone().or_else(|| plan.baseline.clone()).or(first),
             margins,
             margins_of_command: of_command,
             policies: wishes.policies.clone(),

@@ -1,10 +1,11 @@
 //! Reproducing results: a command for one trial, and a file for the whole sweep.
 
 use rne_core::{Asked, TrialStart};
+use ron_tree::Node;
 use usar_sim::record::{DecisionRecord, TrialRecord};
 
-use super::asks::Asks;
-use super::{Axis, Experiment, Seeds};
+use super::file::{Map, SweepFile};
+use super::{AnalysisPlan, Axis, Experiment, Seeds};
 use crate::failure::Failure;
 use crate::run::TrialKey;
 
@@ -57,60 +58,43 @@ impl Experiment {
     /// The same sweep as a sweep file for its resolved scenario, which is in the same folder.
     ///
     /// # Errors
-    /// None: it can be written to memory.
+    /// A value of an axis is no value in RON.
     pub fn as_sweep_file(&self, scenario: &str) -> Result<String, Failure> {
-        let quoted = |text: &str| ron::to_string(text).map_err(Failure::run);
-        let policies =
-            self.policies.iter().map(|policy| quoted(policy.written())).collect::<Result<Vec<_>, _>>()?;
-        let seeds = match &self.seeds {
-            Seeds::From(first) => format!("first_seed: {first}"),
-            Seeds::Listed(list) => format!("seeds: {list:?}"),
+        let node = |text: &String| Node::parse(text).map_err(Failure::run);
+        let nodes = |texts: &[String]| texts.iter().map(node).collect::<Result<Vec<_>, _>>();
+        let settings = |settings: &Vec<(String, String)>| {
+            let settings = settings.iter().map(|(path, value)| Ok((path.clone(), node(value)?)));
+            settings.collect::<Result<Vec<_>, Failure>>().map(Map)
         };
-        let line =
-            |axis: &Axis| Ok(format!("        {}: [{}],\n", quoted(&axis.path)?, axis.values.join(", ")));
         let (of_variants, of_fields): (Vec<&Axis>, Vec<&Axis>) =
             self.axes.iter().partition(|axis| !axis.variants.is_empty());
-        let axes = of_fields.into_iter().map(line).collect::<Result<Vec<_>, Failure>>()?.concat();
-        let variant = |(name, settings): (&String, &Vec<(String, String)>)| {
-            let settings = settings.iter().map(|(path, value)| Ok(format!("{}: {value}", quoted(path)?)));
-            let settings = settings.collect::<Result<Vec<_>, Failure>>()?.join(", ");
-            Ok(format!("        {}: {{{settings}}},\n", quoted(name)?))
-        };
         let named = of_variants.into_iter().flat_map(|axis| axis.values.iter().zip(&axis.variants));
-        let variants = named.map(variant).collect::<Result<Vec<_>, Failure>>()?.concat();
-        let questions = self.questions_in_ron()?;
-        Ok(format!(
-            "(\n    name: {},\n    scenario: {},\n    policies: [{}],\n    trials: {},\n    {seeds},\n    \
-             keep: {},\n{questions}    variants: {{\n{variants}    }},\n    axes: {{\n{axes}    }},\n)\n",
-            quoted(&self.name)?,
-            quoted(scenario)?,
-            policies.join(", "),
-            self.trials,
-            self.keep.in_files(),
-        ))
-    }
-
-    /// The fields of a sweep file with what is asked of the results; empty if nothing is.
-    fn questions_in_ron(&self) -> Result<String, Failure> {
-        let quoted = |text: &String| ron::to_string(text).map_err(Failure::run);
-        let list = |texts: &[String]| -> Result<String, Failure> {
-            Ok(texts.iter().map(quoted).collect::<Result<Vec<_>, _>>()?.join(", "))
+        let variants = named.map(|(name, set)| Ok((name.clone(), settings(set)?)));
+        let axes = of_fields.into_iter().map(|axis| Ok((axis.path.clone(), nodes(&axis.values)?)));
+        let (first_seed, seeds) = match &self.seeds {
+            Seeds::From(first) => (Some(*first), None),
+            Seeds::Listed(list) => (None, Some(list.clone())),
         };
-        let Asks { primary, baseline, margins, expect } = self.asks()?;
-        let mut lines = Vec::new();
-        if !primary.is_empty() {
-            lines.push(format!("primary: [{}]", list(&primary)?));
-        }
-        if let Some(baseline) = &baseline {
-            lines.push(format!("baseline: {}", quoted(baseline)?));
-        }
-        if !margins.is_empty() {
-            let margins = margins.iter().map(|(name, margin)| Ok(format!("{}: {margin:?}", quoted(name)?)));
-            lines.push(format!("margins: {{{}}}", margins.collect::<Result<Vec<_>, Failure>>()?.join(", ")));
-        }
-        if !expect.is_empty() {
-            lines.push(format!("expect: [{}]", list(&expect)?));
-        }
-        Ok(lines.into_iter().map(|line| format!("    {line},\n")).collect::<Vec<_>>().concat())
+        let AnalysisPlan { primary, baseline, margins, expect } = self.plan.clone();
+        let file = SweepFile {
+            format: None,
+            name: self.name.clone(),
+            description: String::new(),
+            scenario: scenario.to_owned(),
+            set: Map::default(),
+            policies: Some(self.policies.iter().map(|policy| policy.written().to_owned()).collect()),
+            readings: Map::default(),
+            trials: Some(self.trials),
+            first_seed,
+            seeds,
+            keep: self.keep,
+            primary,
+            baseline,
+            margins: Map(margins),
+            expect,
+            variants: Map(variants.collect::<Result<_, Failure>>()?),
+            axes: Map(axes.collect::<Result<_, Failure>>()?),
+        };
+        Ok(Node::of(&file).map_err(Failure::run)?.pretty() + "\n")
     }
 }

@@ -1,6 +1,6 @@
 //! The cost of trials: bodies times steps.
 
-use ron_fields::limits::Limit;
+use ron_tree::limits::Limit;
 use usar_sim::scenario::Scenario;
 
 use super::Experiment;

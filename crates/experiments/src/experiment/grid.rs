@@ -144,5 +144,5 @@ pub(super) fn deciding_text(scenario: &Scenario) -> String {
     let mut file: ScenarioFile = (**scenario).clone();
     file.name = String::new();
     file.description = String::new();
-    ron::to_string(&file).unwrap_or_default()
+    file.tree().to_string()
 }

@@ -35,17 +35,6 @@ impl Keep {
         }
     }
 
-    /// Its name in a sweep file.
-    #[must_use]
-    pub fn in_files(self) -> &'static str {
-        match self {
-            Self::Trials => "Trials",
-            Self::Rounds => "Rounds",
-            Self::Robots => "Robots",
-            Self::Groups => "Groups",
-        }
-    }
-
     /// Whether the records of trials are kept, with rounds and decisions.
     #[must_use]
     pub fn has_records(self) -> bool {

@@ -1,11 +1,11 @@
 //! Experiments: a scenario or a sweep file, resolved into cases, policies and trials.
 
 mod again;
-mod asks;
 mod cost;
 mod file;
 mod grid;
 mod keep;
+mod plan;
 mod policy;
 mod program;
 mod read;
@@ -20,14 +20,13 @@ use rne_core::{Asked, Registry, TrialStart};
 use usar_sim::simulation::{Advance, Ask, Simulation};
 use xxhash_rust::xxh3::xxh3_128;
 
-use ron_fields::Fields;
-use usar_sim::scenario::{Scenario, check_text, read_text};
+use usar_sim::scenario::{Scenario, parse_tree, read_text};
 
-pub use asks::Asks;
 pub use cost::{Cost, check_cost};
 pub use file::sweep_schema;
 pub use grid::{Axis, Case, VARIANT};
 pub use keep::{Keep, UnknownKeep};
+pub use plan::AnalysisPlan;
 pub use policy::{PolicySpec, PolicyTextError, split_list, with_oracle};
 pub use program::{Digest, Program};
 pub use read::{companion, defaults, with_settings};
@@ -39,7 +38,7 @@ use crate::metric::{Catalogue, task_names};
 use crate::run::{Fault, Player, Sessions, SharedTrials, Trial, TrialKey, TrialSetup, run_trial};
 use grid::{cases, checked_policies, deciding_text};
 use read::{from_scenario, with_readings};
-use setting::canonical;
+use setting::overlapping;
 use sweep_file::from_sweep_file;
 
 /// The seeds of the trials.
@@ -94,6 +93,8 @@ pub struct Experiment {
     pub is_checked: bool,
     /// What is kept of each trial.
     pub keep: Keep,
+    /// What is asked of the results.
+    pub plan: AnalysisPlan,
     /// The program that runs the sweep, or ran it.
     pub program: Program,
     /// For each case and policy, a hash of everything that decides its numbers, except the seed.
@@ -113,6 +114,7 @@ pub(crate) struct Parts {
     pub seeds: Seeds,
     pub is_checked: bool,
     pub keep: Keep,
+    pub plan: AnalysisPlan,
     /// The program that made the results; `None` for this one.
     pub program: Option<Program>,
 }
@@ -137,20 +139,17 @@ impl Experiment {
         overrides: &Overrides,
         registry: &Registry,
     ) -> Result<Self, Failure> {
-        check_text(&text, path).map_err(Failure::input)?;
-        let is_sweep = Fields::outer(&text).inside("").contains(&"scenario");
+        let is_sweep = parse_tree(&text, path).map_err(Failure::input)?.get("scenario").is_some();
         let (mut parts, readings) = if is_sweep {
             from_sweep_file(text, path, registry)?
         } else {
             from_scenario(text, path, registry)?
         };
         parts.base = with_settings(&parts.base, &overrides.set)?;
-        let is_set = |path: &str| {
-            let set = overrides.set.iter().map(|entry| entry.split('=').next().unwrap_or_default().trim());
-            let here = canonical(&parts.base, path);
-            set.into_iter().any(|path| canonical(&parts.base, path) == here)
-        };
-        if let Some(path) = parts.axes.iter().flat_map(Axis::paths).find(|path| is_set(path)) {
+        let tree = parts.base.tree();
+        let set = overrides.set.iter().map(|entry| entry.split('=').next().unwrap_or_default().trim());
+        let on_axis = |path| overlapping(&tree, parts.axes.iter().flat_map(Axis::paths), path);
+        if let Some(path) = set.into_iter().find_map(on_axis) {
             return Err(Failure::input(format!("--set: {path} is on an axis of this sweep")));
         }
         if let Some(policies) = &overrides.policies {
@@ -168,9 +167,7 @@ impl Experiment {
         parts.trials = overrides.trials.unwrap_or(parts.trials);
         parts.is_checked = overrides.is_checked;
         parts.keep = overrides.keep.unwrap_or(parts.keep);
-        let experiment = Self::assemble(parts)?;
-        experiment.asks().map_err(|error| Failure::input(format!("{}: {error}", path.display())))?;
-        Ok(experiment)
+        Self::assemble(parts)
     }
 
     /// Puts the parts together and checks them.
@@ -178,8 +175,8 @@ impl Experiment {
     /// # Errors
     /// A policy, an axis or a case cannot be used.
     pub(crate) fn assemble(parts: Parts) -> Result<Self, Failure> {
-        let Parts { name, given, base, axes, policies, registry, trials, seeds, is_checked, keep, program } =
-            parts;
+        let Parts { name, given, base, axes, policies, registry, trials, seeds, .. } = parts;
+        let Parts { is_checked, keep, plan, program, .. } = parts;
         let policies = checked_policies(&policies, &registry)?;
         if let Seeds::Listed(list) = &seeds
             && list.len() < trials as usize
@@ -210,10 +207,14 @@ impl Experiment {
         };
         let ids = |case| policies.iter().enumerate().map(|policy| id(case, policy)).collect();
         let ids = cases.iter().map(ids).collect();
+        let metrics = Catalogue::of(&task_names(&base));
+        let plan = plan.checked(&metrics)?;
+        let has = |label: &String| policies.iter().any(|policy| policy.label == *label);
+        let plan = AnalysisPlan { baseline: plan.baseline.filter(has), ..plan };
         Ok(Self {
             name,
             given,
-            metrics: Catalogue::of(&task_names(&base)),
+            metrics,
             base,
             axes,
             cases,
@@ -223,6 +224,7 @@ impl Experiment {
             seeds,
             is_checked,
             keep,
+            plan,
             program,
             ids,
             shared: SharedTrials::default(),
@@ -304,6 +306,7 @@ impl Experiment {
             seeds: self.seeds.clone(),
             is_checked: self.is_checked,
             keep: self.keep,
+            plan: self.plan.clone(),
             program: Some(self.program.clone()),
         })
     }

@@ -3,7 +3,7 @@
 use std::fmt;
 
 use rne_core::{MadeMeasure, MadePolicy, Registry, RegistryError};
-use ron_fields::{Fields, nearest};
+use ron_tree::{Node, Value, nearest};
 use usar_sim::scenario::Scenario;
 
 use crate::Failure;
@@ -61,7 +61,9 @@ impl PolicySpec {
         }
         let options = parse_options(options)?;
         let plain = plain(name, &options);
-        let made = registry.parse(&plain).map_err(with_hint)?;
+        let made = registry
+            .parse(&plain)
+            .map_err(|source| PolicyTextError::Refused { source: Box::new(source), meant: None })?;
         if let Some(label) = label {
             check_label(label, name, registry)
                 .map_err(|rule| PolicyTextError::Label { rule, found: text.to_owned() })?;
@@ -175,15 +177,6 @@ fn check_label(label: &str, name: &str, registry: &Registry) -> Result<(), &'sta
     Ok(())
 }
 
-/// Adds the known name that is nearest to an unknown option or value.
-fn with_hint(source: RegistryError) -> PolicyTextError {
-    let message = source.to_string();
-    let quoted: Vec<&str> = message.split('`').skip(1).step_by(2).collect();
-    let unknown = quoted.split_first().filter(|_| message.contains("expected one of"));
-    let meant = unknown.and_then(|(found, rest)| nearest(found, rest.iter().copied()));
-    PolicyTextError::Refused { meant: meant.map(str::to_owned), source: Box::new(source) }
-}
-
 fn plain(name: &str, options: &[(String, String)]) -> String {
     let named: Vec<String> = options.iter().map(|(option, value)| format!("{option}: {value}")).collect();
     if named.is_empty() { name.to_owned() } else { format!("{name}({})", named.join(", ")) }
@@ -193,19 +186,16 @@ fn parse_options(text: &str) -> Result<Vec<(String, String)>, PolicyTextError> {
     if text.is_empty() {
         return Ok(Vec::new());
     }
-    let fields = Fields::of(text);
-    let value = |option: &str| fields.value(option).map(|value| text[value].trim().to_owned());
-    let names = fields.inside("");
-    let options: Vec<(String, String)> =
-        names.iter().filter_map(|option| Some(((*option).to_owned(), value(option)?))).collect();
-    let is_listed_twice = (1..names.len()).any(|i| names[..i].contains(&names[i]));
-    let written: Vec<String> = options.iter().map(|(option, value)| format!("{option}:{value}")).collect();
-    let without_blanks = |text: &str| text.split_whitespace().collect::<String>();
-    let rebuilt = without_blanks(&format!("({})", written.join(",")));
-    if is_listed_twice || without_blanks(text).replace(",)", ")") != rebuilt {
-        return Err(PolicyTextError::Options { found: text.to_owned() });
+    let wrong = || PolicyTextError::Options { found: text.to_owned() };
+    let written = Node::parse(text).map_err(|_| wrong())?;
+    match &written.value {
+        Value::Struct(name, fields) if name.is_empty() => {
+            let option = |(name, value): &(Node, Node)| (name.to_string(), text[value.bytes()].to_owned());
+            Ok(fields.iter().map(option).collect())
+        }
+        Value::Tuple(name, entries) if name.is_empty() && entries.is_empty() => Ok(Vec::new()),
+        _ => Err(wrong()),
     }
-    Ok(options)
 }
 
 /// The entries of a comma-separated list. Commas inside brackets do not separate.

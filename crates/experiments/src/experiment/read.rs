@@ -6,10 +6,16 @@ use rne_core::Registry;
 use usar_sim::scenario::{Scenario, ScenarioFile, parse_ron, read_text};
 
 use super::file::SweepFile;
-use super::setting::{checked, decides};
+use super::setting::{checked, decides, overlapping};
 use super::sweep_file::{Reading, from_sweep_file};
-use super::{Keep, Parts, Seeds};
+use super::{AnalysisPlan, Keep, Parts, Seeds};
 use crate::failure::Failure;
+
+/// The policy where none is named.
+const RNE: &str = "RNE";
+
+/// The first seed where none is given.
+const FIRST_SEED: u64 = 1;
 
 /// A scenario with fields set by `path=value`.
 ///
@@ -17,6 +23,7 @@ use crate::failure::Failure;
 /// An unknown field, or a value that does not fit the field or breaks a rule.
 pub fn with_settings(scenario: &Scenario, settings: &[String]) -> Result<Scenario, Failure> {
     let mut file: ScenarioFile = (**scenario).clone();
+    let (tree, mut earlier) = (scenario.tree(), Vec::new());
     for entry in settings {
         let (path, value) = entry
             .split_once('=')
@@ -28,6 +35,10 @@ pub fn with_settings(scenario: &Scenario, settings: &[String]) -> Result<Scenari
             )));
         }
         file.set(path, value).map_err(|error| Failure::input(format!("--set: {error}")))?;
+        if let Some(other) = overlapping(&tree, earlier.iter().copied(), path) {
+            return Err(Failure::input(format!("--set: {path} and {other} set the same field")));
+        }
+        earlier.push(path);
     }
     checked(file, "--set: ")
 }
@@ -41,14 +52,18 @@ pub fn companion(scenario: &Path) -> PathBuf {
 /// The first policy and the first seed of a scenario's sweep.
 ///
 /// # Errors
-/// A scenario or a companion that cannot be used.
-pub fn defaults(scenario: &Path, registry: &Registry) -> Result<(String, u64), Failure> {
-    let (parts, _) = from_scenario(read_text(scenario).map_err(Failure::input)?, scenario, registry)?;
-    let seed = match &parts.seeds {
-        Seeds::From(first) => *first,
-        Seeds::Listed(list) => list.first().copied().unwrap_or(1),
-    };
-    Ok((parts.policies.into_iter().next().unwrap_or_default(), seed))
+/// A companion that cannot be read.
+pub fn defaults(scenario: &Path) -> Result<(String, u64), Failure> {
+    let companion = companion(scenario);
+    if !companion.is_file() {
+        return Ok((RNE.to_owned(), FIRST_SEED));
+    }
+    let text = read_text(&companion).map_err(Failure::input)?;
+    let SweepFile { policies, first_seed, seeds, .. } =
+        parse_ron(&text, &companion).map_err(Failure::input)?;
+    let policy = policies.and_then(|policies| policies.into_iter().next());
+    let listed = seeds.and_then(|seeds| seeds.first().copied());
+    Ok((policy.unwrap_or_else(|| RNE.to_owned()), listed.or(first_seed).unwrap_or(FIRST_SEED)))
 }
 
 /// The sweep of a scenario: its companion's sweep, or one trial of RNE.
@@ -59,7 +74,6 @@ pub(super) fn from_scenario(
 ) -> Result<(Parts, Vec<Reading>), Failure> {
     let companion = companion(path);
     if companion.is_file() {
-        Scenario::parse(&text, path).map_err(Failure::input)?;
         let sweep = read_text(&companion).map_err(Failure::input)?;
         let file: SweepFile = parse_ron(&sweep, &companion).map_err(Failure::input)?;
         if Path::new(&file.scenario).file_name() != path.file_name() {
@@ -77,12 +91,13 @@ pub(super) fn from_scenario(
         name: base.name.clone(),
         given: text,
         axes: Vec::new(),
-        policies: vec!["RNE".to_owned()],
+        policies: vec![RNE.to_owned()],
         registry: registry.clone(),
         trials: 1,
-        seeds: Seeds::From(1),
+        seeds: Seeds::From(FIRST_SEED),
         is_checked: false,
         keep: Keep::default(),
+        plan: AnalysisPlan::default(),
         program: None,
         base,
     };

@@ -1,21 +1,9 @@
 //! Fields of scenarios that a sweep or the command line sets.
 
-use ron_fields::Fields;
-use usar_sim::scenario::{Problem, Scenario, ScenarioFile};
+use ron_tree::{Node, Problem};
+use usar_sim::scenario::{Scenario, ScenarioFile};
 
 use crate::failure::Failure;
-
-/// The path of a field with indices instead of the names of list entries: `roles[0].speed_mps` for
-/// `roles.carrier.speed_mps`. Of a field that the scenario's text leaves out, the part that is there has
-/// indices.
-pub(super) fn canonical(scenario: &Scenario, path: &str) -> String {
-    let text = scenario.resolved();
-    let fields = Fields::of(&text);
-    let mut ends: Vec<usize> = path.match_indices(['.', '[']).map(|(end, _)| end).collect();
-    ends.push(path.len());
-    let known = ends.into_iter().rev().find_map(|end| Some((end, fields.canonical(&path[..end])?)));
-    known.map_or_else(|| path.to_owned(), |(end, part)| part + &path[end..])
-}
 
 /// A scenario of this file; `prefix` stands before each problem.
 ///
@@ -32,4 +20,19 @@ pub(super) fn checked(file: ScenarioFile, prefix: &str) -> Result<Scenario, Fail
 pub(super) fn decides(path: &str) -> bool {
     let first = path.split(['.', '[']).next().unwrap_or_default();
     !["name", "description", "only_policy"].contains(&first)
+}
+
+/// Whether a field is this one, or a part of it, by whatever names.
+pub(super) fn is_part(tree: &Node, field: &str, whole: &str) -> bool {
+    let [field, whole] = [field, whole].map(|path| tree.canonical(path));
+    field.strip_prefix(&*whole).is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']))
+}
+
+/// Of earlier paths, the one that is this field, a part of it, or has it as a part.
+pub(super) fn overlapping<'p>(
+    tree: &Node,
+    mut earlier: impl Iterator<Item = &'p str>,
+    path: &str,
+) -> Option<&'p str> {
+    earlier.find(|other| is_part(tree, path, other) || is_part(tree, other, path))
 }

@@ -5,17 +5,16 @@ use std::fmt::Display;
 use std::path::Path;
 
 use rne_core::Registry;
-use ron::value::RawValue;
-use ron_fields::limits::Limit;
-use ron_fields::{Fields, nearest};
-use usar_sim::scenario::{FORMAT, Scenario, ScenarioFile, parse_ron};
+use ron_tree::limits::Limit;
+use ron_tree::{Node, nearest};
+use usar_sim::scenario::{FORMAT, Scenario, ScenarioFile, parse_ron, parse_tree};
 use xxhash_rust::xxh3::xxh3_128;
 
 use super::file::{Map, SweepFile};
 use super::grid::{VARIANT, check_bytes};
 use super::policy::PolicySpec;
-use super::setting::{canonical, decides};
-use super::{Axis, Parts, Seeds};
+use super::setting::{decides, is_part, overlapping};
+use super::{AnalysisPlan, Axis, Parts, Seeds};
 use crate::failure::Failure;
 use crate::limits;
 use crate::metric::{Catalogue, task_names};
@@ -33,7 +32,8 @@ pub(super) fn from_sweep_file(
     registry: &Registry,
 ) -> Result<(Parts, Vec<Reading>), Failure> {
     let file: SweepFile = parse_ron(&text, path).map_err(Failure::input)?;
-    let mut check = Check { path, fields: Fields::of(&text), registry, problems: Vec::new() };
+    let tree = parse_tree(&text, path).map_err(Failure::input)?;
+    let mut check = Check { path, tree, registry, problems: Vec::new() };
     check.sizes(&file);
     check.must_be_sound()?; // the rules below take time with each entry
     let base = check.base(&file);
@@ -51,7 +51,7 @@ pub(super) fn from_sweep_file(
     let base = base.ok_or_else(|| Failure::input(path.display()))?; // without one there is a problem
     let listed = if let Seeds::Listed(list) = &seeds { Some(list.len() as u32) } else { None };
     let parts = Parts {
-        name: file.name,
+        name: file.name.clone(),
         given: text,
         axes,
         policies,
@@ -59,6 +59,7 @@ pub(super) fn from_sweep_file(
         trials: file.trials.or(listed).unwrap_or(1),
         seeds,
         is_checked: false,
+        plan: AnalysisPlan::of(&file),
         keep: file.keep,
         program: None,
         base,
@@ -69,7 +70,7 @@ pub(super) fn from_sweep_file(
 /// The rules of a sweep file, and the problems found so far.
 struct Check<'a> {
     path: &'a Path,
-    fields: Fields,
+    tree: Node,
     registry: &'a Registry,
     /// Each problem with its line, 0 where it has none.
     problems: Vec<(usize, String)>,
@@ -77,7 +78,7 @@ struct Check<'a> {
 
 impl Check<'_> {
     fn fail(&mut self, field: &str, reason: &dyn Display) {
-        let line = self.fields.line(field);
+        let line = self.tree.line(field);
         let place = line.map_or(String::new(), |line| format!(":{line}"));
         let problem = format!("{}{place}: {field}: {reason}", self.path.display());
         self.problems.push((line.unwrap_or_default(), problem));
@@ -143,10 +144,12 @@ impl Check<'_> {
         if !file.description.is_empty() {
             set.description.clone_from(&file.description);
         }
-        let known = self.problems.len();
-        for (field, value) in &file.set.0 {
-            let result = set.set(field, value.trim().get_ron());
-            self.take(&format!("set.{field:?}"), result);
+        let (known, tree) = (self.problems.len(), base.tree());
+        for (i, (field, value)) in file.set.0.iter().enumerate() {
+            let entry = format!("set.{field:?}");
+            let result = set.set(field, &value.to_string());
+            self.take(&entry, result);
+            self.once(&entry, &tree, &file.set.0[..i], field);
         }
         if self.problems.len() > known {
             return None; // what else is wrong may come from that
@@ -157,7 +160,7 @@ impl Check<'_> {
         };
         for problem in broken {
             let entry =
-                file.set.0.iter().map(|(path, _)| path).find(|path| is_part(&base, &problem.field, path));
+                file.set.0.iter().map(|(path, _)| path).find(|path| is_part(&tree, &problem.field, path));
             match entry {
                 Some(path) => self.fail(&format!("set.{path:?}"), &problem),
                 None => self.fail("set", &problem),
@@ -166,8 +169,16 @@ impl Check<'_> {
         None
     }
 
+    /// Notes a problem if one of the earlier settings sets the same field, by whatever name.
+    fn once(&mut self, entry: &str, tree: &Node, earlier: &[(String, Node)], path: &str) {
+        if let Some(other) = overlapping(tree, earlier.iter().map(|(path, _)| path.as_str()), path) {
+            self.fail(entry, &format!("must not set a field that another entry sets, found {other}"));
+        }
+    }
+
     /// Checks each value of each axis alone, so that a problem names the wrong value and its line.
-    fn axes(&mut self, map: &Map<Vec<Box<RawValue>>>, base: &Scenario, axes: &mut Vec<Axis>) {
+    fn axes(&mut self, map: &Map<Vec<Node>>, base: &Scenario, axes: &mut Vec<Axis>) {
+        let tree = base.tree();
         for (path, values) in &map.0 {
             let field = format!("axes.{path:?}");
             let values = ron_of(values);
@@ -178,7 +189,7 @@ impl Check<'_> {
                 self.fail(&field, &"decides no number of a trial, so that it can be no axis");
                 continue;
             }
-            if let Some(other) = overlapping(axes, base, path) {
+            if let Some(other) = overlapping(&tree, axes.iter().flat_map(Axis::paths), path) {
                 self.fail(&field, &format!("must not be a part of another axis, found {other}"));
                 continue;
             }
@@ -210,12 +221,12 @@ impl Check<'_> {
     }
 
     /// The axis of the variants. Each is checked alone.
-    fn variants(&mut self, map: &Map<Map<Box<RawValue>>>, base: &Scenario) -> Option<Axis> {
+    fn variants(&mut self, map: &Map<Map<Node>>, base: &Scenario) -> Option<Axis> {
         if map.0.is_empty() || self.take("variants", check_bytes(base, map.0.len())).is_none() {
             return None;
         }
         let mut axis = Axis { path: VARIANT.to_owned(), values: Vec::new(), variants: Vec::new() };
-        let mut files = BTreeSet::new();
+        let (tree, mut files) = (base.tree(), BTreeSet::new());
         for (name, settings) in &map.0 {
             let field = format!("variants.{name:?}");
             let is_hidden = name.trim().is_empty() || name.chars().any(char::is_control);
@@ -225,12 +236,13 @@ impl Check<'_> {
             }
             let mut file: ScenarioFile = (**base).clone();
             let mut set = Vec::new();
-            for (path, value) in &settings.0 {
-                let (entry, value) = (format!("{field}.{path:?}"), value.trim().get_ron());
+            for (i, (path, value)) in settings.0.iter().enumerate() {
+                let (entry, value) = (format!("{field}.{path:?}"), value.to_string());
+                self.once(&entry, &tree, &settings.0[..i], path);
                 if !decides(path) {
                     self.fail(&entry, &"decides no number of a trial, so that no variant can set it");
-                } else if self.take(&entry, file.set(path, value)).is_some() {
-                    set.push((path.clone(), value.to_owned()));
+                } else if self.take(&entry, file.set(path, &value)).is_some() {
+                    set.push((path.clone(), value));
                 }
             }
             if set.len() == settings.0.len() && !files.insert(hash(&file)) {
@@ -258,7 +270,7 @@ impl Check<'_> {
     }
 
     /// Checks each value of each option of RNE alone.
-    fn readings(&mut self, map: &Map<Vec<Box<RawValue>>>) -> Vec<Reading> {
+    fn readings(&mut self, map: &Map<Vec<Node>>) -> Vec<Reading> {
         let mut readings: Vec<Reading> = Vec::new();
         for (option, values) in &map.0 {
             let field = format!("readings.{option:?}");
@@ -327,24 +339,11 @@ fn too_many(count: usize, limit: Limit) -> String {
     format!("must have at most {} entries, found {count}", limit.most)
 }
 
-fn ron_of(values: &[Box<RawValue>]) -> Vec<String> {
-    values.iter().map(|value| value.trim().get_ron().to_owned()).collect()
+fn ron_of(values: &[Node]) -> Vec<String> {
+    values.iter().map(ToString::to_string).collect()
 }
 
 /// A hash of a whole scenario file.
 fn hash(file: &ScenarioFile) -> u128 {
-    xxh3_128(ron::to_string(file).unwrap_or_default().as_bytes())
-}
-
-/// Whether a field is this one, or a part of it.
-fn is_part(base: &Scenario, field: &str, whole: &str) -> bool {
-    let [field, whole] = [field, whole].map(|path| canonical(base, path));
-    field.strip_prefix(&*whole).is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']))
-}
-
-/// The path of the axis of which this path is a part, or the other way round.
-fn overlapping<'a>(axes: &'a [Axis], base: &Scenario, path: &str) -> Option<&'a str> {
-    let overlaps =
-        |axis: &&Axis| axis.paths().any(|other| is_part(base, path, other) || is_part(base, other, path));
-    axes.iter().find(overlaps).map(|axis| axis.path.as_str())
+    xxh3_128(file.tree().to_string().as_bytes())
 }

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use ron_fields::{Fields, SetError};
+use ron_tree::{Node, Problem};
 use thiserror::Error;
 use usar_sim::scenario::ScenarioFile;
 
@@ -71,7 +71,7 @@ pub enum FreeError {
     },
     /// There is no such field.
     #[error(transparent)]
-    Unknown(#[from] SetError),
+    Unknown(#[from] Box<Problem>),
     /// The field's present value is not a number.
     #[error("{path}: must be a number, found {written}")]
     NotNumber {
@@ -89,7 +89,7 @@ impl Free {
     ///
     /// # Errors
     /// The text has another form, the scenario lacks a path, or the range cannot be searched.
-    pub fn parse(spec: &str, fields: &Fields, known: &Fields) -> Result<Self, FreeError> {
+    pub fn parse(spec: &str, fields: &Node, known: &Node) -> Result<Self, FreeError> {
         let found = || spec.to_owned();
         let form = || FreeError::Form { spec: found() };
         let (paths, range) = spec.rsplit_once('=').ok_or_else(form)?;
@@ -117,11 +117,10 @@ impl Free {
             if name.is_empty() {
                 path.clone_into(&mut name);
             }
-            let place = fields.canonical(path).unwrap_or_else(|| path.to_owned());
-            let matching: Vec<(String, f64)> = fields
-                .leaves()
-                .filter(|(known, _)| matches(&place, known))
-                .map(|(known, _)| (if *known == place { path.to_owned() } else { known.to_owned() }, ratio))
+            let place = fields.canonical(path);
+            let leaves = fields.leaves().into_iter().filter(|(known, _)| matches(&place, known));
+            let matching: Vec<(String, f64)> = leaves
+                .map(|(known, _)| (if known == place { path.to_owned() } else { known }, ratio))
                 .collect();
             if matching.is_empty() {
                 return Err(not_there(path, known));
@@ -204,10 +203,10 @@ impl Free {
     ///
     /// # Errors
     /// The first field is not a number.
-    pub fn present(&self, text: &str, fields: &Fields) -> Result<f64, FreeError> {
+    pub fn present(&self, tree: &Node) -> Result<f64, FreeError> {
         let (path, ratio) = &self.fields[0];
-        let written = fields.value(path).map(|value| text[value].trim()).unwrap_or_default();
-        let not_number = |_| FreeError::NotNumber { path: path.clone(), written: written.to_owned() };
+        let written = tree.get(path).map(ToString::to_string).unwrap_or_default();
+        let not_number = |_| FreeError::NotNumber { path: path.clone(), written: written.clone() };
         written.parse::<f64>().map(|value| value / ratio).map_err(not_number)
     }
 
@@ -225,7 +224,7 @@ impl Free {
     ///
     /// # Errors
     /// A field does not take the value.
-    pub fn set(&self, file: &mut ScenarioFile, value: f64) -> Result<(), SetError> {
+    pub fn set(&self, file: &mut ScenarioFile, value: f64) -> Result<(), Box<Problem>> {
         self.settings(value).try_for_each(|(path, value)| file.set(path, &value))
     }
 }
@@ -240,13 +239,13 @@ impl fmt::Display for Free {
 }
 
 /// Why a path cannot be free.
-fn not_there(path: &str, known: &Fields) -> FreeError {
+fn not_there(path: &str, known: &Node) -> FreeError {
     let path = path.to_owned();
     let first = path.replace("[*]", "[0]");
-    if known.leaves().any(|(field, _)| field == first) {
+    if known.leaves().iter().any(|(field, _)| *field == first) {
         FreeError::NotWritten { path }
-    } else if known.value(&first).is_some() {
-        FreeError::Parts { path, parts: known.inside(&first).join(", ") }
+    } else if let Some(node) = known.get(&first) {
+        FreeError::Parts { path, parts: node.names().join(", ") }
     } else {
         known.unknown(&first, "a scenario").into()
     }
@@ -285,7 +284,8 @@ mod tests {
     const TEXT: &str = "(roles: (a: (v: 3.0), b: (v: 2.0)), zones: [(r: 4.5), (r: 4.5)], n: (k: 1))";
 
     fn free(spec: &str) -> Result<Free, FreeError> {
-        Free::parse(spec, &Fields::of(TEXT), &Fields::of("(roles: (a: (v: 3.0, w: 1.0), b: (v: 2.0)))"))
+        let tree = |text| Node::parse(text).unwrap();
+        Free::parse(spec, &tree(TEXT), &tree("(roles: (a: (v: 3.0, w: 1.0), b: (v: 2.0)))"))
     }
 
     #[test]
@@ -326,7 +326,7 @@ mod tests {
             ("roles.a.v=0..1 log", "must be above 0"),
             ("roles.a.v=1..x", "with finite numbers"),
             ("roles.a.v*0=1..2", "a ratio must be above 0"),
-            ("roles.c.v=0..1", "roles.c.v: no such field; roles has a, b"),
+            ("roles.c.v=0..1", "roles.c.v is no field; did you mean a? roles has a, b"),
             ("roles.a.w=0..1", "roles.a.w: is not written in the scenario"),
             ("roles.a=0..1", "roles.a: is not a number but has parts: v, w"),
         ] {

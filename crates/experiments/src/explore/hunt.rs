@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
-use ron_fields::with_values;
+use ron_tree::edited;
 
 use super::space::{Point, PointError, Space};
 use super::{Descent, EvaluationLog, Free, Purpose, WORST};
@@ -175,7 +175,7 @@ impl Hunt {
             .collect();
         let name = base.name.strip_suffix(SUFFIX).unwrap_or(&base.name);
         settings.push(("name".to_owned(), format!("{:?}", format!("{name}{SUFFIX}"))));
-        let text = with_values(&base.resolved(), &settings).map_err(Failure::run)?;
+        let text = edited(&base.resolved(), &settings).map_err(Failure::run)?;
         Ok(format!("{ORIGIN_LINE}: {what}\n{text}"))
     }
 }

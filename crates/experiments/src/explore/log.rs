@@ -123,7 +123,7 @@ fn check_folder(
     if is_fresh || !origin.exists() {
         return Ok(());
     }
-    let there = ron_fields::file::read_text(&origin)
+    let there = ron_tree::file::read_text(&origin)
         .map_err(|error| Failure::input(format!("{}: {error}", origin.display())))?;
     check_continues(folder, purpose, &there, now)
 }

@@ -5,10 +5,10 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use rayon::prelude::*;
-use ron_fields::{Fields, SetError};
+use ron_tree::Problem;
 use serde::Serialize;
 use thiserror::Error;
-use usar_sim::scenario::{Problem, Scenario, ScenarioFile};
+use usar_sim::scenario::{Scenario, ScenarioFile};
 
 use super::Free;
 use crate::comparison::{Choice, policy_pairs};
@@ -59,19 +59,9 @@ pub type Values = Result<Vec<Option<f64>>, PointError>;
 /// Why a point has no scenario or no outcome.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum PointError {
-    /// A field does not take its value.
+    /// A field does not take its value, or the values together break a rule.
     #[error(transparent)]
-    Field(#[from] SetError),
-    /// The values together break a rule.
-    #[error("{field} {rule}, found {found}")]
-    Rule {
-        /// The field.
-        field: String,
-        /// The rule.
-        rule: String,
-        /// The field's value.
-        found: String,
-    },
+    Rule(#[from] Box<Problem>),
     /// A trial failed.
     #[error("{policy}, seed {seed}: {reason}")]
     Trial {
@@ -96,8 +86,7 @@ pub enum PointError {
 impl From<Vec<Problem>> for PointError {
     /// The first problem.
     fn from(mut problems: Vec<Problem>) -> Self {
-        let Problem { field, rule, found, .. } = problems.swap_remove(0);
-        Self::Rule { field, rule, found }
+        Self::Rule(Box::new(problems.swap_remove(0)))
     }
 }
 
@@ -136,9 +125,8 @@ impl Space {
                 "this sweep has axes; --over varies one scenario: name its file, or a sweep without axes",
             ));
         }
-        let text = experiment.base.resolved();
-        let fields = Fields::of(&text);
-        let parse = |spec: &String| Free::parse(spec, &fields, &fields);
+        let tree = experiment.base.tree();
+        let parse = |spec: &String| Free::parse(spec, &tree, &tree);
         let free = specs.iter().map(parse).collect::<Result<Vec<_>, _>>().map_err(|error| bad(&error))?;
         let free = free.into_iter().map(|free| free.in_scenario(&experiment.base)).collect::<Vec<_>>();
         let mut paths: Vec<&str> = free.iter().flat_map(|free| free.settings(1.0).map(|(p, _)| p)).collect();
@@ -206,9 +194,8 @@ impl Space {
     /// # Errors
     /// A field is not a number.
     pub fn present(&self) -> Result<Vec<f64>, Failure> {
-        let text = self.experiment.base.resolved();
-        let fields = Fields::of(&text);
-        let present = self.free.iter().map(|free| free.present(&text, &fields)).collect::<Result<_, _>>();
+        let tree = self.experiment.base.tree();
+        let present = self.free.iter().map(|free| free.present(&tree)).collect::<Result<_, _>>();
         present.map_err(|error| Failure::input(format!("--over: {error}")))
     }
 

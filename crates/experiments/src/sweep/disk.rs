@@ -11,7 +11,7 @@ use super::dictionary::dictionary;
 use super::names::{AGAIN, GIVEN, INPUTS, MANIFEST, RESOLVED, sweeps_in};
 use super::tables::tables_of;
 use super::{archive, journal, ours};
-use crate::experiment::{Experiment, Parts, Shard};
+use crate::experiment::{AnalysisPlan, Experiment, Parts, Shard};
 use crate::failure::Failure;
 use crate::files::{self, FileHash, NewFile, file_hash, sync_folder};
 use crate::provenance::{Manifest, ManifestError, SCHEMA_VERSION, scenario_differences};
@@ -39,7 +39,7 @@ pub(super) fn write_start(
 /// The inputs of a sweep, as the files of its folder.
 pub(super) fn inputs(experiment: &Experiment) -> Result<[(&'static str, String); 5], Failure> {
     let again = experiment.as_sweep_file(RESOLVED)?;
-    let [columns, package] = dictionary(experiment)?;
+    let [columns, package] = dictionary(experiment);
     let [given, resolved] = [experiment.given.clone(), experiment.base.resolved()];
     Ok([(GIVEN, given), (RESOLVED, resolved), (AGAIN, again), columns, package])
 }
@@ -157,6 +157,7 @@ pub fn experiment_of(path: &Path, manifest: &Manifest, registry: &Registry) -> R
     let given = String::from_utf8(given).unwrap_or_default();
     Experiment::assemble(Parts {
         name: manifest.name.clone(),
+        plan: AnalysisPlan::in_text(&given),
         given,
         base,
         axes: manifest.axes.clone(),

@@ -1,37 +1,9 @@
 //! `hashes.csv`: the hash chains of all trials. A sweep writes them, and its verification compares them.
 
-use serde::{Deserialize, Serialize};
 use usar_sim::hash::{HashChain, Link, PARTS};
-use usar_sim::record::TrialRecord;
-
-use crate::run::TrialKey;
 
 /// Name of the table.
 pub const FILE: &str = "hashes.csv";
-
-/// A row: one link of a trial's hash chain.
-#[derive(Debug, Default, Serialize, Deserialize)]
-pub(super) struct LinkRow {
-    policy: String,
-    trial: u32,
-    step: u64,
-    /// 32 hexadecimal digits.
-    digest: String,
-    /// Four hexadecimal digits for each part of the state, in the order of [`PARTS`].
-    parts: String,
-}
-
-impl LinkRow {
-    pub(super) fn of(key: &TrialKey, record: &TrialRecord) -> impl Iterator<Item = Self> {
-        record.chain.links().iter().map(|link| Self {
-            policy: key.label.clone(),
-            trial: key.trial,
-            step: link.step,
-            digest: format!("{:032x}", link.digest),
-            parts: link.parts.map(|part| format!("{part:04x}")).concat(),
-        })
-    }
-}
 
 fn link_of(step: u64, digest: &str, digits: &str) -> Option<Link> {
     let digest = u128::from_str_radix(digest, 16).ok()?;

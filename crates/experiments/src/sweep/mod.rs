@@ -3,6 +3,7 @@
 mod archive;
 pub mod audit;
 mod closing;
+mod column;
 mod damages;
 mod dictionary;
 pub mod disk;

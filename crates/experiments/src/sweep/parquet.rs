@@ -6,15 +6,14 @@ use std::path::Path;
 use exports::ExportError;
 use exports::parquet::{Kind, from_csv};
 
+use super::column::About;
 use super::folder::Folder;
 use super::names::PARQUETS;
-use super::tables::TABLES;
+use super::rows;
+use super::tables::{TABLES, all_columns};
 use crate::experiment::Experiment;
 use crate::failure::Failure;
 use crate::files::{self, NewFile, file_hash};
-
-/// The table in which the columns `stranded` and `disabled` are no counts.
-const ROBOTS: &str = "robots.csv";
 
 /// Writes the tables of a finished sweep as Parquet.
 ///
@@ -30,30 +29,13 @@ pub fn write_parquet(folder: &Folder) -> Result<(), Failure> {
 
 fn write(table: &Path, experiment: &Experiment, folder: &Path, name: &str) -> Result<(), Failure> {
     let failed = |error: ExportError| Failure::storage(format!("{}: {error}", table.display()));
-    let rows = files::open(table).map_err(|error| failed(error.into()))?;
-    let file = from_csv(
-        std::io::BufReader::new(rows),
-        |column| kind(table, column, experiment),
-        NewFile::new(folder, name)?,
-    );
+    let cells = files::open(table).map_err(|error| failed(error.into()))?;
+    let place = TABLES.iter().position(|known| table.ends_with(known)).unwrap_or_default();
+    let own = std::mem::take(&mut all_columns(experiment)[place]);
+    let columns: Vec<About> = rows::before(&experiment.axes).into_iter().chain(own).collect();
+    let kind = |name: &str| columns.iter().find(|about| about.name == name).map_or(Kind::Text, |it| it.kind);
+    let file = from_csv(std::io::BufReader::new(cells), kind, NewFile::new(folder, name)?);
     file.map_err(failed)?.finish().map(drop)
-}
-
-/// The type of a table's column.
-fn kind(table: &Path, column: &str, experiment: &Experiment) -> Kind {
-    if let Some(axis) = experiment.axes.iter().find(|axis| axis.path == column) {
-        let are_numbers = axis.values.iter().all(|value| value.parse::<f64>().is_ok());
-        return if are_numbers { Kind::Number } else { Kind::Text };
-    }
-    match column {
-        "case" | "trial" | "seed" | "round" | "robot" | "step" | "turned_back" | "stall_waits_for" => {
-            Kind::Natural
-        }
-        "stranded" | "disabled" if table.ends_with(ROBOTS) => Kind::Truth,
-        "method" | "policy" | "status" | "state_hash" | "failure" | "replay" | "task" | "members"
-        | "return_cause" | "role" | "stall_cause" | "digest" | "parts" => Kind::Text,
-        _ => Kind::Number,
-    }
 }
 
 /// The Parquet files in the folder that differ from their tables, one sentence each.

@@ -1,197 +1,349 @@
-//! Rows of the tables that a sweep writes. Undefined values are empty cells.
+//! The columns of the tables that a sweep writes, and what a row of each is.
 
+use exports::parquet::Kind::{self, Natural, Number, Text, Truth};
 use rne_core::TaskId;
-use serde::Serialize;
-use usar_sim::record::{DecisionRecord, TrialRecord};
+use rne_core::question::{Member, Question};
+use usar_sim::event::ReturnCause;
+use usar_sim::hash::Link;
+use usar_sim::metrics::RoundRecord;
+use usar_sim::record::{RobotRecord, TrialRecord};
 use usar_sim::scenario::NeedFile;
 
+use super::column::{About, Cell, Column, Columns};
 use super::line::Finished;
 use super::summary::Summary;
-use crate::experiment::Experiment;
+use crate::experiment::{Axis, Experiment};
 use crate::metric::{Catalogue, Metric};
-use crate::run::{Trial, TrialKey, series_times};
+use crate::run::{Fault, Trial, TrialKey, series_times};
+
+/// A row about a part of a trial.
+pub(super) struct Of<'a, T> {
+    key: &'a TrialKey,
+    it: T,
+}
+
+/// A row of `trials.csv`.
+pub(super) struct TrialRow<'a> {
+    key: &'a TrialKey,
+    result: Result<Summary, Fault>,
+    /// Empty for a trial with numbers.
+    replay: Option<String>,
+}
+
+/// A row of `rounds.csv`.
+pub(super) type RoundRow<'a> = Of<'a, (&'a TrialRecord, &'a RoundRecord)>;
+
+/// A row of `robots.csv`.
+pub(super) type RobotRow<'a> = Of<'a, &'a RobotRecord>;
+
+/// A robot that was grouped, with its needs as they really were.
+pub(super) struct Grouped<'a> {
+    question: &'a Question,
+    task: TaskId,
+    member: &'a Member,
+}
+
+/// A row of `groups.csv`.
+pub(super) type GroupRow<'a> = Of<'a, Grouped<'a>>;
+
+/// Rescuees delivered up to a time, from each task.
+pub(super) struct Delivered {
+    time_s: f64,
+    of_tasks: Vec<usize>,
+}
+
+/// A row of `series.csv`.
+pub(super) type MomentRow<'a> = Of<'a, Delivered>;
+
+/// A row of `hashes.csv`.
+pub(super) type LinkRow<'a> = Of<'a, &'a Link>;
+
+fn column<R, C: Into<Cell>>(
+    name: &str,
+    kind: Kind,
+    unit: &'static str,
+    meaning: &str,
+    read: impl Fn(&R) -> C + 'static,
+) -> Column<R> {
+    Column::new(About::new(name, kind, unit, meaning), read)
+}
+
+const POLICY: &str = "Label of the policy in the sweep.";
+const TRIAL: &str = "Number of the trial, from 1. Trials of the same number have the same seed, whatever the \
+    policy.";
+const SEED: &str = "Seed of the trial: it decides everything that is drawn.";
+
+/// The columns before all others in a table of a sweep with axes: the case, and the value of each axis.
+pub(super) fn before(axes: &[Axis]) -> Vec<About> {
+    let meaning = "Number of the case, from 1: a combination of the values of the axes.";
+    let case = (!axes.is_empty()).then(|| About::new("case", Natural, "", meaning));
+    let axis = |axis: &Axis| {
+        let are_numbers = axis.values.iter().all(|value| value.parse::<f64>().is_ok());
+        let is_field = axis.variants.is_empty();
+        let meaning = if is_field { "Value of this field of the scenario." } else { "Name of the variant." };
+        About::new(&axis.path, if are_numbers { Number } else { Text }, "", meaning)
+    };
+    case.into_iter().chain(axes.iter().map(axis)).collect()
+}
 
 /// The columns of `trials.csv`: the trial, every metric, and the other results. `method` and `policy` have
 /// the same content. `method` allows the authors' files to be stacked with ours, and `policy` is this
 /// project's term.
+pub(super) fn trials<'a>(metrics: &Catalogue) -> Columns<TrialRow<'a>> {
+    let method = "The same as policy, under the name that the paper's authors use.";
+    let status = "How the trial ended: completed, nobody_can_carry, errands_over, failed, panicked or \
+        timed_out.";
+    let hash = "Hash of the whole course of the trial: equal hashes, equal trials, bit for bit.";
+    let mut columns = vec![
+        column("method", Text, "", method, |row: &TrialRow| row.key.label.clone()),
+        column("trial", Natural, "", TRIAL, |row: &TrialRow| row.key.trial),
+        column("policy", Text, "", POLICY, |row: &TrialRow| row.key.label.clone()),
+        column("seed", Natural, "", SEED, |row: &TrialRow| row.key.seed),
+        column("status", Text, "", status, |row: &TrialRow| match &row.result {
+            Ok(summary) => summary.status.clone(),
+            Err(fault) => fault.kind.name().to_owned(),
+        }),
+    ];
+    let of_metric = |(place, metric): (usize, &Metric)| {
+        Column::new(about(metric, ""), move |row: &TrialRow| {
+            Cell::short(row.result.as_ref().ok().and_then(|summary| summary.metrics[place]))
+        })
+    };
+    columns.extend(metrics.iter().enumerate().map(of_metric));
+    let ok = |row: &TrialRow| row.result.as_ref().ok().map(|summary| summary.state_hash.clone());
+    let failure = "Why the trial gave no numbers; empty where it did.";
+    let replay = "The command that runs a failed trial alone; empty for others.";
+    columns.extend([
+        column("state_hash", Text, "", hash, ok),
+        column("failure", Text, "", failure, |row: &TrialRow| {
+            row.result.as_ref().err().map(|fault| fault.reason.clone())
+        }),
+        column("replay", Text, "", replay, |row: &TrialRow| row.replay.clone()),
+    ]);
+    columns
+}
+
+/// What a table says of the column of a metric; `until` ends its meaning.
+fn about(metric: &Metric, until: &str) -> About {
+    let is_whole = metric.part().is_empty() || metric.is_total();
+    let of = if is_whole { String::new() } else { format!(" Of the task {:?} alone.", metric.part()) };
+    About::new(metric.column(), Number, metric.unit, format!("{}{of}{until}", metric.meaning))
+}
+
+/// Names of the columns of `trials.csv`, without the axes.
 #[must_use]
 pub fn trial_columns(metrics: &Catalogue) -> Vec<String> {
-    let names = |names: &[&str]| names.iter().map(|name| (*name).to_owned()).collect::<Vec<_>>();
-    let mut columns = names(&["method", "trial", "policy", "seed", "status"]);
-    columns.extend(metrics.iter().map(Metric::column));
-    columns.extend(names(&["state_hash", "failure", "replay"]));
-    columns
+    trials(metrics).into_iter().map(|column| column.about.name).collect()
 }
 
 /// Number of columns of `trials.csv` before the metrics, without the axes.
 pub(super) const FIRST_METRIC: usize = 5;
 
-/// A row of `trials.csv`. Numbers are printed so that they read back exactly.
-pub(super) fn trial_row(finished: &Finished, experiment: &Experiment) -> Vec<String> {
-    let TrialKey { label, trial, seed, .. } = &finished.key;
-    let before = |status: &str| {
-        vec![label.clone(), trial.to_string(), label.clone(), seed.to_string(), status.to_owned()]
-    };
-    match finished.summary(experiment) {
-        Ok(Summary { status, metrics, state_hash }) => {
-            let number = |value: Option<f64>| value.map_or(String::new(), |value| value.to_string());
-            let after = [state_hash, String::new(), String::new()];
-            before(&status).into_iter().chain(metrics.into_iter().map(number)).chain(after).collect()
-        }
-        Err(fault) => {
-            let mut row = before(fault.kind.name());
-            row.resize(FIRST_METRIC + experiment.metrics.len() + 1, String::new());
-            row.extend([fault.reason, experiment.replay_command(&finished.key)]);
-            row
-        }
+impl<'a> TrialRow<'a> {
+    pub(super) fn of(finished: &'a Finished, experiment: &Experiment) -> Self {
+        let (key, result) = (&finished.key, finished.summary(experiment));
+        let replay = result.is_err().then(|| experiment.replay_command(key));
+        Self { key, result, replay }
     }
 }
 
-/// A row of `rounds.csv`: one group in one round.
-#[derive(Serialize, Default)]
-pub(super) struct RoundRow<'a> {
-    policy: &'a str,
-    trial: u32,
-    seed: u64,
-    round: u32,
-    task: &'a str,
-    start_s: f64,
-    end_s: Option<f64>,
-    members: String,
-    secured: u32,
-    rescued: u32,
-    energy: f64,
-    hp: f64,
-    turned_back: u32,
-    return_cause: Option<&'a str>,
+/// The columns with the trial of a row.
+fn of_trial<'a, T: 'a>() -> Columns<Of<'a, T>> {
+    vec![
+        column("policy", Text, "", POLICY, |row: &Of<T>| row.key.label.clone()),
+        column("trial", Natural, "", TRIAL, |row: &Of<T>| row.key.trial),
+        column("seed", Natural, "", SEED, |row: &Of<T>| row.key.seed),
+    ]
 }
 
-impl<'a> RoundRow<'a> {
-    pub(super) fn of(key: &'a TrialKey, record: &'a TrialRecord) -> impl Iterator<Item = Self> {
-        record.rounds.iter().map(|round| Self {
-            policy: &key.label,
-            trial: key.trial,
-            seed: key.seed,
-            round: round.round,
-            task: &record.tasks[round.task.index()].task,
-            start_s: round.start_s,
-            end_s: round.end_s,
-            members: round.members.iter().map(|member| member.id.to_string()).collect::<Vec<_>>().join(" "),
-            secured: round.secured,
-            rescued: round.rescued,
-            energy: round.energy,
-            hp: round.hp,
-            turned_back: round.turned_back,
-            return_cause: round.return_cause.map(usar_sim::event::ReturnCause::name),
+fn with_trial<'a, T: 'a>(own: impl IntoIterator<Item = Column<Of<'a, T>>>) -> Columns<Of<'a, T>> {
+    of_trial().into_iter().chain(own).collect()
+}
+
+const ROUND: &str = "Number of the round, from 1.";
+const TASK: &str = "Name of the task.";
+const ROBOT: &str = "Number of the robot, from 0, in the order of the scenario's team.";
+const ROLE: &str = "Role of the robot.";
+
+/// The columns of `rounds.csv`.
+pub(super) fn rounds<'a>() -> Columns<RoundRow<'a>> {
+    let end = "Simulated time when the group was home again; empty where the trial ended before.";
+    let members =
+        "Numbers of the robots in the group, with blanks between them; groups.csv has them one a row.";
+    let secured = "Rescuees that the group took on board in the round.";
+    let rescued = "Rescuees of the task that were delivered in the round.";
+    let turned_back = "Members that left for a rest place in the round.";
+    with_trial([
+        column("round", Natural, "", ROUND, |row: &RoundRow| row.it.1.round),
+        column("task", Text, "", TASK, |row: &RoundRow| {
+            let (record, round) = row.it;
+            record.tasks[round.task.index()].task.clone()
+        }),
+        column("start_s", Number, "s", "Simulated time when the round began.", |row: &RoundRow| {
+            row.it.1.start_s
+        }),
+        column("end_s", Number, "s", end, |row: &RoundRow| row.it.1.end_s),
+        column("members", Text, "", members, |row: &RoundRow| {
+            row.it.1.members.iter().map(|member| member.id.to_string()).collect::<Vec<_>>().join(" ")
+        }),
+        column("secured", Natural, "rescuees", secured, |row: &RoundRow| row.it.1.secured),
+        column("rescued", Natural, "rescuees", rescued, |row: &RoundRow| row.it.1.rescued),
+        column("energy", Number, "points", "Energy that the group spent in the round.", |row: &RoundRow| {
+            row.it.1.energy
+        }),
+        column("hp", Number, "points", "HP that the group lost in the round.", |row: &RoundRow| row.it.1.hp),
+        column("turned_back", Natural, "robots", turned_back, |row: &RoundRow| row.it.1.turned_back),
+        column(
+            "return_cause",
+            Text,
+            "",
+            "Why the group went home; empty where it did not.",
+            |row: &RoundRow| row.it.1.return_cause.map(ReturnCause::name),
+        ),
+    ])
+}
+
+/// The rows of `rounds.csv` of a trial.
+pub(super) fn round_rows<'a>(
+    key: &'a TrialKey,
+    record: &'a TrialRecord,
+) -> impl Iterator<Item = RoundRow<'a>> {
+    record.rounds.iter().map(move |round| Of { key, it: (record, round) })
+}
+
+/// The columns of `robots.csv`.
+pub(super) fn robots<'a>() -> Columns<RobotRow<'a>> {
+    let waiting = "Time in which the robot stood because of others.";
+    let stall = "The longest time in which the robot had a goal and came no nearer to it.";
+    let waits_for = "The robot that it waited for then; empty for none.";
+    with_trial([
+        column("robot", Natural, "", ROBOT, |row: &RobotRow| row.it.robot),
+        column("role", Text, "", ROLE, |row: &RobotRow| row.it.role.clone()),
+        column("initial_energy", Number, "%", "Battery level when the trial began.", |row: &RobotRow| {
+            row.it.initial_energy
+        }),
+        column("initial_hp", Number, "%", "Health level when the trial began.", |row: &RobotRow| {
+            row.it.initial_hp
+        }),
+        column("final_energy", Number, "%", "Battery level when the trial was over.", |row: &RobotRow| {
+            row.it.final_energy
+        }),
+        column("final_hp", Number, "%", "Health level when the trial was over.", |row: &RobotRow| {
+            row.it.final_hp
+        }),
+        column("energy_spent", Number, "points", "Energy that the robot spent.", |row: &RobotRow| {
+            row.it.energy_spent
+        }),
+        column("hp_lost", Number, "points", "HP that the robot lost.", |row: &RobotRow| row.it.hp_lost),
+        column("distance_m", Number, "m", "Way that the robot travelled.", |row: &RobotRow| {
+            row.it.distance_m
+        }),
+        column("waiting_s", Number, "s", waiting, |row: &RobotRow| row.it.waiting_s),
+        column("longest_stall_s", Number, "s", stall, |row: &RobotRow| row.it.longest_stall_s),
+        column("stall_cause", Text, "", "What took the most of that time.", |row: &RobotRow| {
+            row.it.stall.cause.name()
+        }),
+        column("stall_waits_for", Natural, "", waits_for, |row: &RobotRow| {
+            row.it.stall.waits_for.map(|robot| robot.0)
+        }),
+        column("stranded", Truth, "", "Whether the robot ended with no energy.", |row: &RobotRow| {
+            row.it.stranded
+        }),
+        column("disabled", Truth, "", "Whether the robot ended with no HP.", |row: &RobotRow| {
+            row.it.disabled
+        }),
+    ])
+}
+
+/// The rows of `robots.csv` of a trial.
+pub(super) fn robot_rows<'a>(
+    key: &'a TrialKey,
+    record: &'a TrialRecord,
+) -> impl Iterator<Item = RobotRow<'a>> {
+    record.robots.iter().map(move |it| Of { key, it })
+}
+
+/// The columns of `groups.csv`.
+pub(super) fn groups<'a>(needs: &[NeedFile]) -> Columns<GroupRow<'a>> {
+    let energy = "Battery level when the robot was grouped.";
+    let hp = "Health level when the robot was grouped.";
+    let mut columns = with_trial([
+        column("round", Natural, "", ROUND, |row: &GroupRow| row.it.question.round),
+        column("robot", Natural, "", ROBOT, |row: &GroupRow| row.it.member.id),
+        column("role", Text, "", ROLE, |row: &GroupRow| {
+            row.it.question.roles[row.it.member.role.index()].clone()
+        }),
+        column("task", Text, "", TASK, |row: &GroupRow| {
+            row.it.question.tasks[row.it.task.index()].name.clone()
+        }),
+        column("energy", Number, "%", energy, |row: &GroupRow| Cell::short(row.it.member.energy_level)),
+        column("hp", Number, "%", hp, |row: &GroupRow| Cell::short(row.it.member.hp_level)),
+    ]);
+    columns.extend(needs.iter().enumerate().map(|(place, need)| {
+        let meaning = format!("The need {:?} as it really was, in the units of the scenario.", need.name);
+        let about = About::new(format!("need_{}", need.name), Number, "", meaning);
+        Column::new(about, move |row: &GroupRow| {
+            Cell::short(row.it.member.needs.values().get(place).copied())
         })
-    }
+    }));
+    columns
 }
 
-/// A row of `robots.csv`: one robot in one trial, with its initial levels.
-#[derive(Serialize, Default)]
-pub(super) struct RobotRow<'a> {
-    policy: &'a str,
-    trial: u32,
-    seed: u64,
-    robot: u32,
-    role: &'a str,
-    initial_energy: f64,
-    initial_hp: f64,
-    final_energy: f64,
-    final_hp: f64,
-    energy_spent: f64,
-    hp_lost: f64,
-    distance_m: f64,
-    waiting_s: f64,
-    longest_stall_s: f64,
-    stall_cause: &'a str,
-    stall_waits_for: Option<u32>,
-    stranded: bool,
-    disabled: bool,
-}
-
-impl<'a> RobotRow<'a> {
-    pub(super) fn of(key: &'a TrialKey, record: &'a TrialRecord) -> impl Iterator<Item = Self> {
-        record.robots.iter().map(|robot| Self {
-            policy: &key.label,
-            trial: key.trial,
-            seed: key.seed,
-            robot: robot.robot,
-            role: &robot.role,
-            initial_energy: robot.initial_energy,
-            initial_hp: robot.initial_hp,
-            final_energy: robot.final_energy,
-            final_hp: robot.final_hp,
-            energy_spent: robot.energy_spent,
-            hp_lost: robot.hp_lost,
-            distance_m: robot.distance_m,
-            waiting_s: robot.waiting_s,
-            longest_stall_s: robot.longest_stall_s,
-            stall_cause: robot.stall.cause.name(),
-            stall_waits_for: robot.stall.waits_for.map(|robot| robot.0),
-            stranded: robot.stranded,
-            disabled: robot.disabled,
-        })
-    }
-}
-
-/// The columns of `groups.csv`: a robot at the time of grouping, with its needs as they really were.
-pub(super) fn group_columns(needs: &[NeedFile]) -> Vec<String> {
-    let first = ["policy", "trial", "seed", "round", "robot", "role", "task", "energy", "hp"];
-    let needs = needs.iter().map(|need| format!("need_{}", need.name));
-    first.into_iter().map(str::to_owned).chain(needs).collect()
-}
-
-/// The rows of `groups.csv` of one trial.
+/// The rows of `groups.csv` of a trial.
 pub(super) fn group_rows<'a>(
     key: &'a TrialKey,
     record: &'a TrialRecord,
-) -> impl Iterator<Item = Vec<String>> + 'a {
-    let of_task = |asked, task| group_of(key, asked, task);
-    record
-        .decisions
-        .iter()
-        .flat_map(move |asked| asked.question.task_ids().flat_map(move |task| of_task(asked, task)))
-}
-
-fn group_of<'a>(
-    key: &'a TrialKey,
-    asked: &'a DecisionRecord,
-    task: TaskId,
-) -> impl Iterator<Item = Vec<String>> + 'a {
-    let TrialKey { label, trial, seed, .. } = key;
-    let (question, group) = (&asked.question, asked.decision.assignment.of(task));
-    let level = |level: Option<f64>| level.map_or(String::new(), |level| level.to_string());
-    asked.team().iter().filter(|member| group.contains(&member.id)).map(move |member| {
-        let mut row = vec![label.clone(), trial.to_string(), seed.to_string(), question.round.to_string()];
-        row.push(member.id.to_string());
-        row.push(question.roles[member.role.index()].clone());
-        row.push(question.tasks[task.index()].name.clone());
-        row.extend([level(member.energy_level), level(member.hp_level)]);
-        row.extend(member.needs.values().iter().map(f64::to_string));
-        row
+) -> impl Iterator<Item = GroupRow<'a>> + 'a {
+    record.decisions.iter().flat_map(move |decided| {
+        let question = &decided.question;
+        question.task_ids().flat_map(move |task| {
+            let group = decided.decision.assignment.of(task);
+            let members = decided.team().iter().filter(move |member| group.contains(&member.id));
+            members.map(move |member| Of { key, it: Grouped { question, task, member } })
+        })
     })
 }
 
 /// The columns of `series.csv`: the deliveries up to a time, from all tasks and from each task.
-pub(super) fn series_columns(metrics: &Catalogue) -> Vec<String> {
-    let rescuees = metrics.declared("rescuees").into_iter().map(|place| metrics[place].column());
-    ["policy", "trial", "seed", "time_s"].into_iter().map(str::to_owned).chain(rescuees).collect()
+pub(super) fn series<'a>(metrics: &Catalogue) -> Columns<MomentRow<'a>> {
+    let rescuees = metrics.declared("rescuees").into_iter().enumerate().map(|(place, metric)| {
+        Column::new(about(&metrics[metric], " Up to this time."), move |row: &MomentRow| {
+            let tasks = &row.it.of_tasks;
+            if place == 0 { tasks.iter().sum::<usize>() as u64 } else { tasks[place - 1] as u64 }
+        })
+    });
+    let time =
+        column("time_s", Number, "s", "Simulated time.", |row: &MomentRow| Cell::short(Some(row.it.time_s)));
+    with_trial(std::iter::once(time).chain(rescuees))
 }
 
 /// The rows of `series.csv` of a trial.
-pub(super) fn series_rows(
-    key: &TrialKey,
-    found: &Trial,
+pub(super) fn series_rows<'a>(
+    key: &'a TrialKey,
+    found: &'a Trial,
     duration_s: f64,
-) -> impl Iterator<Item = Vec<String>> {
-    let TrialKey { label, trial, seed, .. } = key;
-    let row = move |time_s: f64| {
-        let delivered = found.delivered(time_s);
-        let mut row = vec![label.clone(), trial.to_string(), seed.to_string(), time_s.to_string()];
-        row.push(delivered.iter().sum::<usize>().to_string());
-        row.extend(delivered.iter().map(usize::to_string));
-        row
-    };
-    series_times(duration_s).map(row)
+) -> impl Iterator<Item = MomentRow<'a>> {
+    let delivered = |time_s| Delivered { time_s, of_tasks: found.delivered(time_s) };
+    series_times(duration_s).map(move |time_s| Of { key, it: delivered(time_s) })
+}
+
+/// The columns of `hashes.csv`: a link of a trial's hash chain.
+pub(super) fn links<'a>() -> Columns<LinkRow<'a>> {
+    let digest = "Hash of everything up to this step, 32 hexadecimal digits.";
+    let parts = "Hashes of the parts of the state, four hexadecimal digits each; docs/determinism.md lists the \
+        parts.";
+    let mut columns = with_trial([
+        column("step", Natural, "steps", "Number of the simulation step.", |row: &LinkRow| row.it.step),
+        column("digest", Text, "", digest, |row: &LinkRow| format!("{:032x}", row.it.digest)),
+        column("parts", Text, "", parts, |row: &LinkRow| {
+            row.it.parts.map(|part| format!("{part:04x}")).concat()
+        }),
+    ]);
+    columns.retain(|column| column.about.name != "seed");
+    columns
+}
+
+/// The rows of `hashes.csv` of a trial.
+pub(super) fn link_rows<'a>(key: &'a TrialKey, record: &'a TrialRecord) -> impl Iterator<Item = LinkRow<'a>> {
+    record.chain.links().iter().map(move |it| Of { key, it })
 }

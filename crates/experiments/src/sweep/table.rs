@@ -4,8 +4,8 @@
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use serde::Serialize;
-
+use super::column::{About, Cell, Column};
+use super::rows;
 use crate::experiment::Experiment;
 use crate::failure::Failure;
 use crate::files::{FileHash, NewFile, trouble};
@@ -17,8 +17,7 @@ pub(super) struct Table {
 }
 
 impl Table {
-    /// Begins a table with these columns. With axes, they follow the number of the case and the values of
-    /// the axes.
+    /// Begins a table with these columns after those of the axes.
     ///
     /// # Errors
     /// The folder cannot be written to.
@@ -26,12 +25,11 @@ impl Table {
         folder: &Path,
         name: &str,
         experiment: &Experiment,
-        columns: &[String],
+        columns: Vec<About>,
     ) -> Result<Self, Failure> {
-        let axes = experiment.axes.iter().map(|axis| axis.path.clone());
-        let case = (!experiment.axes.is_empty()).then(|| "case".to_owned());
         let mut header = Rows::new();
-        header.write(case.into_iter().chain(axes).chain(columns.iter().cloned()))?;
+        let columns = rows::before(&experiment.axes).into_iter().chain(columns);
+        header.write(columns.map(|about| about.name))?;
         let mut table = Self { file: NewFile::new(folder, name)?, path: folder.join(name) };
         table.append(header)?;
         Ok(table)
@@ -72,35 +70,34 @@ impl Rows {
         Self(csv::WriterBuilder::new().has_headers(false).flexible(true).from_writer(Vec::new()))
     }
 
-    /// Adds a row whose cells are the fields of a struct.
+    /// Adds rows.
     ///
     /// # Errors
-    /// None: rows can be written to memory.
-    pub(super) fn add(&mut self, before: &[String], row: &impl Serialize) -> Result<(), Failure> {
-        self.0.serialize((before, row)).map_err(Failure::run)
+    /// None: they can be written to memory.
+    pub(super) fn add_all<R>(
+        &mut self,
+        before: &[String],
+        columns: &[Column<R>],
+        mut rows: impl Iterator<Item = R>,
+    ) -> Result<(), Failure> {
+        rows.try_for_each(|row| self.add(before, columns, &row))
     }
 
-    /// Adds a row of texts.
+    /// Adds a row.
     ///
     /// # Errors
     /// None: it can be written to memory.
-    pub(super) fn add_texts(&mut self, before: &[String], row: Vec<String>) -> Result<(), Failure> {
-        self.write(before.iter().cloned().chain(row))
+    pub(super) fn add<R>(
+        &mut self,
+        before: &[String],
+        columns: &[Column<R>],
+        row: &R,
+    ) -> Result<(), Failure> {
+        let cells: Vec<Cell> = columns.iter().map(|column| column.read(row)).collect();
+        self.0.serialize((before, cells)).map_err(Failure::run)
     }
 
     fn write(&mut self, cells: impl IntoIterator<Item = String>) -> Result<(), Failure> {
         self.0.write_record(cells.into_iter().map(String::into_bytes)).map_err(Failure::run)
     }
-}
-
-/// The names of the columns of a row.
-///
-/// # Errors
-/// None: rows can be written to memory.
-pub(super) fn columns<R: Serialize + Default>() -> Result<Vec<String>, Failure> {
-    let mut rows = csv::Writer::from_writer(Vec::new());
-    rows.serialize(R::default()).map_err(Failure::run)?;
-    let bytes = rows.into_inner().map_err(Failure::run)?;
-    let mut rows = csv::Reader::from_reader(&*bytes);
-    Ok(rows.headers().map_err(Failure::run)?.iter().map(str::to_owned).collect())
 }

@@ -2,12 +2,11 @@
 
 use std::path::Path;
 
+use super::column::{About, abouts};
 use super::line::Finished;
-use super::links::{self, LinkRow};
-use super::rows::{
-    RobotRow, RoundRow, group_columns, group_rows, series_columns, series_rows, trial_columns, trial_row,
-};
-use super::table::{Rows, Table, before, columns};
+use super::links;
+use super::rows::{self, TrialRow};
+use super::table::{Rows, Table, before};
 use crate::experiment::{Experiment, Keep, Shard};
 use crate::failure::Failure;
 use crate::files::FileHash;
@@ -32,16 +31,26 @@ pub(super) fn tables_of(keep: Keep, shard: Option<Shard>) -> &'static [&'static 
     &TABLES[..count]
 }
 
+/// What a row is in each table, in the order of [`TABLES`].
+pub(super) const A_ROW_IS: [&str; TABLES.len()] = [
+    "a trial",
+    "a task's group in a round of a trial",
+    "a robot in a trial",
+    "a robot when it was grouped, in a round of a trial, with its needs as they really were",
+    "a moment of a trial, every ten seconds",
+    "a link of a trial's hash chain",
+];
+
 /// The columns of each table, in the order of [`TABLES`], without the case and the axes.
-pub(super) fn all_columns(experiment: &Experiment) -> Result<[Vec<String>; TABLES.len()], Failure> {
-    Ok([
-        trial_columns(&experiment.metrics),
-        columns::<RoundRow>()?,
-        columns::<RobotRow>()?,
-        group_columns(&experiment.base.needs),
-        series_columns(&experiment.metrics),
-        columns::<LinkRow>()?,
-    ])
+pub(super) fn all_columns(experiment: &Experiment) -> [Vec<About>; TABLES.len()] {
+    [
+        abouts(rows::trials(&experiment.metrics)),
+        abouts(rows::rounds()),
+        abouts(rows::robots()),
+        abouts(rows::groups(&experiment.base.needs)),
+        abouts(rows::series(&experiment.metrics)),
+        abouts(rows::links()),
+    ]
 }
 
 /// The tables while they are written.
@@ -54,9 +63,10 @@ impl Tables {
         keep: Keep,
         shard: Option<Shard>,
     ) -> Result<Self, Failure> {
-        let all = all_columns(experiment)?;
         let names = tables_of(keep, shard).iter();
-        let tables = names.zip(&all).map(|(name, columns)| Table::new(path, name, experiment, columns));
+        let tables = names
+            .zip(all_columns(experiment))
+            .map(|(name, columns)| Table::new(path, name, experiment, columns));
         Ok(Self(tables.collect::<Result<_, _>>()?))
     }
 
@@ -96,18 +106,20 @@ impl TableRows {
         let before = before(experiment, key.case);
         let mut tables = self.0.iter_mut();
         let Some(trials) = tables.next() else { return Ok(()) };
-        trials.add_texts(&before, trial_row(finished, experiment))?;
+        trials.add(&before, &rows::trials(&experiment.metrics), &TrialRow::of(finished, experiment))?;
         let Some(trial) = finished.trial() else { return Ok(()) };
         let Some(rounds) = tables.next() else { return Ok(()) };
-        RoundRow::of(key, &trial.record).try_for_each(|row| rounds.add(&before, &row))?;
+        rounds.add_all(&before, &rows::rounds(), rows::round_rows(key, &trial.record))?;
         let Some(robots) = tables.next() else { return Ok(()) };
-        RobotRow::of(key, &trial.record).try_for_each(|row| robots.add(&before, &row))?;
+        robots.add_all(&before, &rows::robots(), rows::robot_rows(key, &trial.record))?;
         let Some(groups) = tables.next() else { return Ok(()) };
-        group_rows(key, &trial.record).try_for_each(|row| groups.add_texts(&before, row))?;
+        let needs = &experiment.base.needs;
+        groups.add_all(&before, &rows::groups(needs), rows::group_rows(key, &trial.record))?;
         let duration_s = experiment.cases[key.case].scenario.duration_s;
         let Some(series) = tables.next() else { return Ok(()) };
-        series_rows(key, trial, duration_s).try_for_each(|row| series.add_texts(&before, row))?;
+        let columns = rows::series(&experiment.metrics);
+        series.add_all(&before, &columns, rows::series_rows(key, trial, duration_s))?;
         let Some(hashes) = tables.next() else { return Ok(()) };
-        LinkRow::of(key, &trial.record).try_for_each(|row| hashes.add(&before, &row))
+        hashes.add_all(&before, &rows::links(), rows::link_rows(key, &trial.record))
     }
 }

@@ -2,24 +2,12 @@
 //! task and metric of its value, so that tools for data frames can filter, pivot and plot without the other
 //! tables.
 
-use usar_sim::metrics::RoundRecord;
-
 use super::folder::Folder;
+use super::rows;
 use crate::experiment::Place;
 use crate::failure::Failure;
 use crate::metric::Values;
-
-/// A quantity of a group in a round, named as in `rounds.csv`.
-type OfRound = (&'static str, fn(&RoundRecord) -> Option<f64>);
-
-const OF_ROUNDS: [OfRound; 6] = [
-    ("duration_s", |round| round.end_s.map(|end| end - round.start_s)),
-    ("secured", |round| Some(f64::from(round.secured))),
-    ("rescued", |round| Some(f64::from(round.rescued))),
-    ("energy", |round| Some(round.energy)),
-    ("hp", |round| Some(round.hp)),
-    ("turned_back", |round| Some(f64::from(round.turned_back))),
-];
+use crate::run::Outcome;
 
 /// The columns; the axes of the sweep follow the case.
 #[must_use]
@@ -56,25 +44,30 @@ pub fn tidy_rows(
 
 /// Round, task, metric and value of everything that was measured in a trial.
 fn trial_rows(folder: &mut Folder, place: Place) -> Result<Vec<[String; 4]>, Failure> {
-    let mut rows = Vec::new();
+    let mut found = Vec::new();
     let experiment = folder.experiment();
     let measured = folder.results().get(&place).and_then(|measured| measured.metrics.as_ref());
     for (metric, value) in experiment.metrics.iter().zip(measured.into_iter().flat_map(Values::iter)) {
         let task = if metric.is_total() { "" } else { metric.part() };
-        rows.extend(
+        found.extend(
             value.map(|value| [String::new(), task.to_owned(), metric.declared_column(), value.to_string()]),
         );
     }
-    if rows.is_empty() || !experiment.keep.has_records() {
-        return Ok(rows);
+    if found.is_empty() || !experiment.keep.has_records() {
+        return Ok(found);
     }
-    let Ok(trial) = folder.outcome(place)?.result else { return Ok(rows) };
-    for round in &trial.record.rounds {
+    let Outcome { key, result: Ok(trial) } = folder.outcome(place)? else { return Ok(found) };
+    // Of the columns of a group, those of which a measure makes sense: not the times of its round's ends.
+    let columns = rows::rounds().into_iter().filter(|column| !["", "s"].contains(&column.about.unit));
+    let columns: Vec<_> = columns.collect();
+    for (round, row) in trial.record.rounds.iter().zip(rows::round_rows(&key, &trial.record)) {
         let task = &trial.record.tasks[round.task.index()].task;
-        for (name, value) in OF_ROUNDS {
-            let value = value(round).map(|value| value.to_string());
-            rows.extend(value.map(|value| [round.round.to_string(), task.clone(), name.to_owned(), value]));
+        let duration = round.end_s.map(|end| ("duration_s", end - round.start_s));
+        let measured =
+            columns.iter().filter_map(|column| Some((&*column.about.name, column.read(&row).number()?)));
+        for (name, value) in duration.into_iter().chain(measured) {
+            found.push([round.round.to_string(), task.clone(), name.to_owned(), value.to_string()]);
         }
     }
-    Ok(rows)
+    Ok(found)
 }

@@ -9,7 +9,7 @@ use experiments::explore::Free;
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 use rne_core::Registry;
-use ron_fields::Fields;
+use ron_tree::Node;
 use serde::Serialize;
 use usar_sim::scenario::Scenario;
 
@@ -63,12 +63,12 @@ impl Candidate {
         let (base, text) =
             Scenario::load(&folder.join(CALIBRATED)).map_err(|error| unreadable(CALIBRATED, &error))?;
         let origin =
-            ron_fields::file::read_text(&folder.join(ORIGIN)).map_err(|error| unreadable(ORIGIN, &error))?;
+            ron_tree::file::read_text(&folder.join(ORIGIN)).map_err(|error| unreadable(ORIGIN, &error))?;
         let origin: serde_json::Value =
             serde_json::from_str(&origin).map_err(|error| unreadable(ORIGIN, &error))?;
-        let fields = Fields::of(&text);
+        let tree = Node::parse(&text).map_err(|error| unreadable(CALIBRATED, &error))?;
         let specs = origin["free"].as_array().into_iter().flatten().filter_map(|free| free.as_str());
-        let free = specs.map(|spec| Free::parse(spec, &fields, &fields)).collect::<Result<Vec<_>, _>>();
+        let free = specs.map(|spec| Free::parse(spec, &tree, &tree)).collect::<Result<Vec<_>, _>>();
         let free = free.map_err(|error| unreadable(ORIGIN, &error))?;
         let target = Target::load(target, &base)?;
         let policy = the_policy(registry)?;

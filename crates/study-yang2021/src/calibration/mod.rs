@@ -24,7 +24,7 @@ use experiments::run::{Fault, TrialSetup, run_trial};
 use experiments::{Failure, panic_message};
 use rayon::prelude::*;
 use rne_core::Registry;
-use ron_fields::{Fields, WriteError, with_values};
+use ron_tree::{Node, Problem, edited};
 use usar_sim::scenario::Scenario;
 
 pub use choice::{Candidate, Judged, NOT_TOLD_APART, judge};
@@ -94,20 +94,20 @@ impl Calibration {
     ///
     /// # Errors
     /// None: each free field is written in the text.
-    pub fn text_with(&self, values: &[f64]) -> Result<String, WriteError> {
+    pub fn text_with(&self, values: &[f64]) -> Result<String, Box<Problem>> {
         let pairs = self.free.iter().zip(values).flat_map(|(free, value)| free.settings(*value));
         let mut settings: Vec<_> = pairs.map(|(path, value)| (path.to_owned(), value)).collect();
         if !self.base.name.ends_with(SUFFIX) {
             settings.push(("name".to_owned(), format!("{:?}", format!("{}{SUFFIX}", self.base.name))));
         }
-        with_values(&self.text, &settings)
+        edited(&self.text, &settings)
     }
 
     /// The same text with a first line that describes the fit. No other policy can run in this scenario.
     ///
     /// # Errors
     /// Those of [`Calibration::text_with`].
-    pub fn fitted_text(&self, evaluation: &Evaluation) -> Result<String, WriteError> {
+    pub fn fitted_text(&self, evaluation: &Evaluation) -> Result<String, Box<Problem>> {
         let text = self.text_with(&evaluation.values)?;
         let text = match text.split_once('\n') {
             Some((first, rest)) if first.starts_with(ORIGIN_LINE) => rest,
@@ -138,8 +138,8 @@ impl Calibration {
     /// # Errors
     /// A field is not a number.
     pub fn present(&self) -> Result<Vec<f64>, Failure> {
-        let fields = Fields::of(&self.text);
-        let present = |free: &Free| free.present(&self.text, &fields);
+        let tree = Node::parse(&self.text).map_err(Failure::run)?;
+        let present = |free: &Free| free.present(&tree);
         let present = self.free.iter().map(present).collect::<Result<Vec<f64>, _>>();
         present.map_err(|error| Failure::input(format!("--free: {error}")))
     }
@@ -158,7 +158,8 @@ impl Calibration {
             }
             for end in free.ends() {
                 scenario_with(&self.base, std::slice::from_ref(free), &[end]).map_err(|error| {
-                    let is_refused = matches!(error, PointError::Field(_));
+                    let is_refused =
+                        matches!(&error, PointError::Rule(problem) if problem.rule.contains("whole number"));
                     let whole = free.whole_numbers(&self.base).filter(|_| is_refused);
                     whole.map_or_else(|| bad(&error), |whole| bad(&whole))
                 })?;
@@ -274,11 +275,11 @@ fn edge_penalty(free: &Free, value: f64) -> f64 {
 
 /// The text of a scenario that allows only the calibrated policy.
 fn candidate(text: &str) -> String {
-    let fields = Fields::of(text);
-    let name = fields.value("name").filter(|_| fields.value("only_policy").is_none());
-    name.map_or_else(
+    let tree = Node::parse(text).ok().filter(|tree| tree.get("only_policy").is_none());
+    let end = tree.and_then(|tree| Some(tree.get("name")?.bytes().end));
+    end.map_or_else(
         || text.to_owned(),
-        |name| format!("{}, only_policy: \"{POLICY}\"{}", &text[..name.end], &text[name.end..]),
+        |end| format!("{}, only_policy: \"{POLICY}\"{}", &text[..end], &text[end..]),
     )
 }
 

@@ -5,151 +5,104 @@
 //! a table are named, as in `roles: (carrier: (speed_mps: 3.0))`. Any other value, such as a list in square
 //! brackets, replaces the value of the base. The base must not have a base itself.
 
-use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
-use ron_fields::{Fields, SetError};
+use ron_tree::{Node, Problem, Value};
 
-use super::error::{Problem, Problems, ScenarioError};
-use super::file::ScenarioFile;
+use super::error::{Problems, ScenarioError};
 use super::named::{self, Names};
+use super::reading::parse_tree;
 use super::{Scenario, read_text};
 
 /// The field that names the base.
 const FIELD: &str = "base";
 
-/// The text of a scenario that names a base.
-pub(super) struct Overlay<'t> {
-    text: Cow<'t, str>,
-    path: &'t Path,
-    fields: Fields,
-    base: PathBuf,
-    base_fields: Fields,
+/// Whether a tree names a base.
+pub(super) fn is_named_in(root: &Node) -> bool {
+    root.get(FIELD).is_some()
 }
 
-/// Whether a text names a base.
-pub(super) fn is_named_in(text: &str) -> bool {
-    Fields::outer(text).value(FIELD).is_some()
+/// The scenario of a tree that names a base.
+pub(super) fn parse(mut over: Node, path: &Path) -> Result<Scenario, ScenarioError> {
+    let invalid = |list| ScenarioError::Invalid(Problems { path: path.to_owned(), list });
+    let (names, wrong) = named::take_out(&mut over);
+    if !wrong.is_empty() {
+        return Err(invalid(wrong));
+    }
+    let base = Base::read(&over, path, names)?;
+    over.remove(FIELD);
+    named::expand(&mut over, &base.names).map_err(|problem| invalid(vec![*problem]))?;
+    let (mut tree, mut problems) = (base.scenario.tree(), Vec::new());
+    for (name, value) in over.fields() {
+        change(&mut tree, &name.to_string(), value, &mut problems);
+    }
+    let checked = if problems.is_empty() { Scenario::read(tree, &base.names) } else { Err(problems) };
+    checked.map_err(|list| invalid(list.into_iter().map(|problem| base.placed(problem, &over)).collect()))
 }
 
-impl<'t> Overlay<'t> {
-    /// The scenario of a text that names a base.
-    pub(super) fn parse(text: &'t str, path: &'t Path) -> Result<Scenario, ScenarioError> {
-        let fields = Fields::of(text);
-        let (base, base_fields) = (PathBuf::new(), Fields::of("()"));
-        let mut overlay = Overlay { text: text.into(), path, fields, base, base_fields };
-        let (names, wrong) = named::names(text);
-        if !wrong.is_empty() {
-            return Err(overlay.invalid(wrong));
-        }
-        let (mut file, names) = overlay.read_base(names)?;
-        if !names.is_empty() {
-            overlay.expand(&names)?;
-        }
-        let mut problems = Vec::new();
-        for name in overlay.fields.inside("") {
-            if name != FIELD {
-                overlay.change(&mut file, name, &mut problems);
-            }
-        }
-        if !problems.is_empty() {
-            problems.iter_mut().for_each(|problem| named::hint(problem, &names));
-            return Err(overlay.invalid(problems));
-        }
-        Scenario::try_from(file).map_err(|problems| overlay.invalid(problems))
-    }
+/// A base that was read.
+struct Base {
+    scenario: Scenario,
+    path: PathBuf,
+    /// As it is written.
+    tree: Node,
+    /// The values of all names.
+    names: Names,
+}
 
-    /// Replaces names by their values.
-    fn expand(&mut self, names: &Names) -> Result<(), ScenarioError> {
-        let text = named::expanded(&self.text, names).map_err(|problem| self.invalid(vec![*problem]))?;
-        self.fields = Fields::of(&text);
-        self.text = text.into();
-        Ok(())
-    }
-
-    /// Reads the base, whose path is relative to the folder of the text. The names in `over` replace those of
-    /// the base. Returns the values of all names too.
-    fn read_base(&mut self, over: Names) -> Result<(ScenarioFile, Names), ScenarioError> {
-        let place = self.fields.value(FIELD).unwrap_or_default();
-        let written: Result<String, _> = ron::from_str(&self.text[place.clone()]);
-        let Ok(name) = written else {
-            let found = self.text[place].to_owned();
-            return Err(self.wrong_base("must be the path of a scenario in quotes", found));
+impl Base {
+    /// Reads the base of a tree, whose path is relative to the folder of the text. The names in `names`
+    /// replace those of the base.
+    fn read(over: &Node, path: &Path, mut names: Names) -> Result<Self, ScenarioError> {
+        let node = over.get(FIELD).unwrap_or(over);
+        let wrong = |rule: &str| {
+            let problem = Problem { line: over.line(FIELD), ..Problem::new(FIELD, rule, node) };
+            ScenarioError::Invalid(Problems { path: path.to_owned(), list: vec![problem] })
         };
-        if name.is_empty() || Path::new(&name).is_absolute() {
-            return Err(self.wrong_base("must be a path from this file's folder", format!("{name:?}")));
+        let name = node.as_text().ok_or_else(|| wrong("must be the path of a scenario in quotes"))?;
+        if name.is_empty() || Path::new(name).is_absolute() {
+            return Err(wrong("must be a path from this file's folder"));
         }
-        self.base = self.path.parent().unwrap_or(Path::new("")).join(&name);
-        let text = read_text(&self.base)?;
-        if is_named_in(&text) {
-            return Err(self.wrong_base("must be a scenario without a base of its own", format!("{name:?}")));
+        let path = path.parent().unwrap_or(Path::new("")).join(name);
+        let tree = parse_tree(&read_text(&path)?, &path)?;
+        if is_named_in(&tree) {
+            return Err(wrong("must be a scenario without a base of its own"));
         }
-        let scenario = Scenario::parse_with(&text, &self.base, &over)?;
-        self.base_fields = Fields::of(&text);
-        let (mut names, _) = named::names(&text);
-        names.extend(over);
-        Ok(((*scenario).clone(), names))
+        let scenario = Scenario::parse_with(tree.clone(), &path, &mut names)?;
+        Ok(Self { scenario, path, tree, names })
     }
 
-    fn wrong_base(&self, rule: &str, found: String) -> ScenarioError {
-        self.invalid(vec![Problem {
-            field: FIELD.to_owned(),
-            rule: rule.to_owned(),
-            found,
-            ..Problem::default()
-        }])
-    }
-
-    /// Applies the changes of a field, and notes a problem for each change that is not possible.
-    fn change(&self, file: &mut ScenarioFile, path: &str, problems: &mut Vec<Problem>) {
-        let Some(place) = self.fields.value(path) else { return };
-        let (value, names) = (&self.text[place], self.fields.inside(path));
-        let is_section = value.starts_with('(') && !names.is_empty();
-        if is_section && file.has_fields(path) {
-            for name in names {
-                self.change(file, &format!("{path}.{name}"), problems);
-            }
-            return;
+    /// A problem with its line. The line of a field that only the base has is that in the base.
+    fn placed(&self, problem: Problem, over: &Node) -> Problem {
+        let field = &problem.field;
+        if problem.line.is_some() {
+            return problem;
         }
-        if let Err(error) = file.set(path, value) {
-            let problem = match error {
-                SetError::Unknown { within, known, meant, .. } => {
-                    let meant = meant.map_or(String::new(), |meant| format!("did you mean {meant}? "));
-                    let hint = format!("{meant}{within} has {known}");
-                    Problem { rule: "is no field".to_owned(), hint, ..Problem::default() }
-                }
-                SetError::Malformed { reason, found, .. } => {
-                    Problem { rule: reason, found, ..Problem::default() }
-                }
-            };
-            problems.push(Problem { field: path.to_owned(), ..problem });
+        if over.get(field).is_none() && self.tree.get(field).is_some() {
+            return Problem { file: Some(self.path.clone()), line: self.tree.line(field), ..problem };
         }
-    }
-
-    /// Adds files and lines to problems. The line of a field that only the base has is that in the base.
-    fn invalid(&self, mut list: Vec<Problem>) -> ScenarioError {
-        for problem in &mut list {
-            let field = &problem.field;
-            let is_of_base = self.fields.value(field).is_none() && self.base_fields.value(field).is_some();
-            if is_of_base {
-                problem.file = Some(self.base.clone());
-                problem.line = self.base_fields.line(field);
-            } else {
-                problem.line = self.fields.line(field);
-            }
-        }
-        ScenarioError::Invalid(Problems { path: self.path.to_owned(), list })
+        Problem { line: over.line(field), ..problem }
     }
 }
 
-impl ScenarioFile {
-    /// Whether a field has fields or named entries of its own, which can be changed one by one.
-    fn has_fields(&self, path: &str) -> bool {
-        let text = ron::to_string(self).unwrap_or_default();
-        let fields = Fields::of(&text);
-        let is_named = fields.value(path).is_some_and(|value| !text[value].starts_with("Some("));
-        is_named
-            && (!fields.inside(path).is_empty() || fields.canonical(&format!("{path}[0].name")).is_some())
+/// Makes the change of a field of a tree, and notes a problem if there is no such field.
+fn change(tree: &mut Node, path: &str, value: &Node, problems: &mut Vec<Problem>) {
+    let is_section = matches!(&value.value, Value::Struct(name, _) if name.is_empty());
+    if is_section && tree.get(path).is_some_and(has_fields) {
+        for (name, value) in value.fields() {
+            change(tree, &format!("{path}.{name}"), value, problems);
+        }
+    } else if let Err(problem) = tree.set(path, value.clone(), "a scenario") {
+        problems.push(Problem { line: Some(value.place.line as usize), ..*problem });
+    }
+}
+
+/// Whether a node has fields or named entries, which can be changed one by one.
+fn has_fields(node: &Node) -> bool {
+    match &node.value {
+        Value::Struct(..) => true,
+        Value::List(_) => node.get("[0].name").is_some(),
+        Value::Word(_) | Value::Text(_) | Value::Tuple(..) | Value::Map(_) => false,
     }
 }
 
@@ -243,7 +196,7 @@ mod tests {
             ),
             (
                 "(base: \"paper.ron\",\n mission: (rest: 1))",
-                "over.ron:2: mission.rest is no field; did you mean rest_s? mission has energy_threshold",
+                "over.ron:2: mission.rest is no field; did you mean rest_s? There are energy_threshold",
             ),
             (
                 "(base: \"paper.ron\",\n mission: (rest_s: \"x\"))",

@@ -2,8 +2,8 @@
 
 use std::fmt::Display;
 
-use ron_fields::limits::Limit;
-use ron_fields::nearest;
+use ron_tree::limits::Limit;
+use ron_tree::nearest;
 
 use super::error::Problem;
 use super::file::Point;

@@ -2,14 +2,12 @@
 
 use rand::RngExt;
 use rand::rngs::ChaCha8Rng;
-use ron_fields::{Fields, Misfit, nearest};
+use ron_tree::{Node, Problem, Value, nearest};
 use schemars::JsonSchema;
-use serde::de::Error;
+use serde::de::value::EnumAccessDeserializer;
+use serde::de::{EnumAccess, Error, Visitor};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-use super::error::Problem;
-use super::partial::text_of;
-use super::ron_options;
 use crate::seed::normal;
 
 /// The names with which a distribution begins.
@@ -157,10 +155,9 @@ impl Amount {
     }
 }
 
-/// Whether a text begins like a distribution.
-pub(super) fn is_distribution(text: &str) -> bool {
-    let name = text.split(|c: char| !c.is_alphanumeric()).next().unwrap_or_default();
-    WORDS.contains(&name) && text[name.len()..].trim_start().starts_with('(')
+/// Whether a value is written like a distribution.
+pub(super) fn is_distribution(node: &Node) -> bool {
+    matches!(&node.value, Value::Tuple(name, _) if WORDS.contains(&&**name))
 }
 
 /// Adds a hint with the most similar distribution to a problem with a number.
@@ -175,22 +172,30 @@ pub(super) fn hint(problem: &mut Problem) {
 
 impl<'de> Deserialize<'de> for Amount {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let text = text_of(deserializer)?;
-        let misfit = |rule: &str| {
-            let (rule, found) = (rule.to_owned(), text.clone());
-            D::Error::custom(Misfit { rule, found, ..Misfit::default() }.packed())
-        };
-        if !is_distribution(&text) {
-            let value = ron_options().from_str(&text);
-            return value.map(Self::Fixed).map_err(|_| misfit("must be a number or a distribution"));
-        }
-        let distribution: Distribution = ron_options().from_str(&text).map_err(|error| {
-            D::Error::custom(Misfit::new(&error.code, "", (&text, 0), &Fields::of(&text)).packed())
-        })?;
-        match distribution.fault() {
-            Some(rule) => Err(misfit(rule)),
-            None => Ok(Self::Drawn(distribution)),
-        }
+        deserializer.deserialize_any(AmountVisitor)
+    }
+}
+
+struct AmountVisitor;
+
+impl<'de> Visitor<'de> for AmountVisitor {
+    type Value = Amount;
+
+    fn expecting(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        f.write_str("a number or a distribution")
+    }
+
+    fn visit_i64<E: Error>(self, value: i64) -> Result<Amount, E> {
+        Ok(Amount::Fixed(value as f64))
+    }
+
+    fn visit_f64<E: Error>(self, value: f64) -> Result<Amount, E> {
+        Ok(Amount::Fixed(value))
+    }
+
+    fn visit_enum<A: EnumAccess<'de>>(self, written: A) -> Result<Amount, A::Error> {
+        let distribution = Distribution::deserialize(EnumAccessDeserializer::new(written))?;
+        distribution.fault().map_or(Ok(Amount::Drawn(distribution)), |fault| Err(A::Error::custom(fault)))
     }
 }
 
@@ -209,7 +214,7 @@ mod tests {
     use crate::seed::{Purpose, stream};
 
     fn read(text: &str) -> Distribution {
-        ron_options().from_str(text).unwrap()
+        Node::parse(text).unwrap().read_as().unwrap()
     }
 
     #[test]

@@ -1,17 +1,18 @@
 //! Values that are drawn anew in every trial: a distribution may stand in place of any value of a scenario.
 //!
-//! When a text is read, each distribution is replaced by one of its values and kept with the file, by the
+//! Before a tree is read, each distribution is replaced by one of its values and kept with the file, by the
 //! path of its field. Each trial has its own scenario, with values drawn from the streams of these paths.
 
 use std::collections::BTreeMap;
 
-use ron_fields::{Fields, Misfit, with_values};
+use rand::rngs::ChaCha8Rng;
+use ron_tree::{Node, Problem, Value};
 use xxhash_rust::xxh3::xxh3_64;
 
-use super::distribution::{Distribution, WORDS, index, is_distribution};
-use super::error::{LayoutError, Problem};
+use super::distribution::{Distribution, index, is_distribution};
+use super::error::LayoutError;
 use super::file::ScenarioFile;
-use super::{Scenario, reading, ron_options, validate};
+use super::{Scenario, validate};
 use crate::limits;
 use crate::seed::{Purpose, stream};
 
@@ -28,66 +29,77 @@ const TRIES_OF_A_LONG_ONE: u32 = 5;
 /// then checked before a trial.
 const LONG_BYTES: usize = 1 << 18;
 
-/// The distributions of a scenario: the path of each field, with numbers instead of names, and the text of
-/// its distribution.
-pub type Draws = BTreeMap<String, String>;
+/// The distributions of a scenario as they are written, each by the path of its field, with numbers instead
+/// of names.
+pub type Draws = BTreeMap<String, Node>;
 
 /// The replacement of one value.
 enum Draw {
     Number(Distribution),
-    /// One of these, in RON.
-    Choice(Vec<String>),
+    /// One of these.
+    Choice(Vec<Node>),
 }
 
 impl Draw {
-    /// Reads a distribution. The error is the rest of a sentence.
-    fn read(text: &str) -> Result<Self, String> {
-        if text.starts_with("Choice") {
-            let fields = Fields::of(text);
-            let count = fields.entries("[0]").filter(|_| fields.entries("") == Some(1)).unwrap_or_default();
-            let entries = (0..count).filter_map(|i| fields.value(&format!("[0][{i}]")));
-            let entries: Vec<String> = entries.map(|place| text[place].to_owned()).collect();
-            return match entries.len() {
-                0 => Err("must be Choice([...]) with at least one value".to_owned()),
+    /// Reads a distribution.
+    fn read(written: &Node) -> Result<Self, Box<Problem>> {
+        let wrong = |rule: String| Err(Box::new(Problem::new("", rule, written)));
+        if let Value::Tuple(name, entries) = &written.value
+            && &**name == "Choice"
+        {
+            let values = if let [list] = &entries[..] { list.entries() } else { &[] };
+            return match values.len() {
+                0 => wrong("must be Choice([...]) with at least one value".to_owned()),
                 many if !limits::CHOICES.allows(many) => {
-                    Err(format!("must have at most {} values to choose from", limits::CHOICES.most))
+                    wrong(format!("must have at most {} values to choose from", limits::CHOICES.most))
                 }
-                _ => Ok(Self::Choice(entries)),
+                _ => Ok(Self::Choice(values.to_vec())),
             };
         }
-        let distribution: Distribution = ron_options().from_str(text).map_err(|error| {
-            let at = error.span.start.col.saturating_sub(1);
-            Misfit::new(&error.code, "", (text, at), &Fields::of(text)).rule
-        })?;
+        let distribution: Distribution = written.read_as()?;
         match distribution.fault() {
-            Some(rule) => Err(rule.to_owned()),
+            Some(rule) => wrong(rule.to_owned()),
             None => Ok(Self::Number(distribution)),
         }
     }
 
     /// Values to be checked: the ends of a distribution, or all choices.
-    fn examples(&self, is_whole: bool) -> Vec<String> {
+    fn examples(&self, is_whole: bool) -> Vec<Node> {
         match self {
-            Self::Number(distribution) => distribution.support().map(|end| written(end, is_whole)).to_vec(),
-            Self::Choice(texts) => texts.clone(),
+            Self::Number(distribution) => distribution.support().map(|end| number(end, is_whole)).to_vec(),
+            Self::Choice(values) => values.clone(),
         }
     }
 
     /// The value that is read in place of the distribution: its greatest value, or the first choice.
-    fn stand_in(&self, text: &str) -> String {
+    fn stand_in(&self, written: &Node) -> Node {
         match self {
             Self::Number(distribution) => {
-                let is_whole = !text.contains('.');
-                written(distribution.support()[1], is_whole)
+                let is_whole = !written.to_string().contains('.');
+                number(distribution.support()[1], is_whole)
             }
-            Self::Choice(texts) => texts[0].clone(),
+            Self::Choice(values) => values[0].clone(),
+        }
+    }
+
+    /// A value from a stream.
+    fn value(&self, draws: &mut ChaCha8Rng, is_whole: bool) -> Node {
+        match self {
+            Self::Number(distribution) => number(distribution.draw(draws, is_whole), is_whole),
+            Self::Choice(values) => values[index(draws, values.len())].clone(),
         }
     }
 }
 
-/// A number in RON.
-fn written(value: f64, is_whole: bool) -> String {
-    if is_whole && value.fract() == 0.0 { format!("{value:.0}") } else { format!("{value:?}") }
+/// A number as it is written.
+fn number(value: f64, is_whole: bool) -> Node {
+    Node::word(if is_whole && value.fract() == 0.0 { format!("{value:.0}") } else { format!("{value:?}") })
+}
+
+/// Whether a value is written as a whole number.
+fn is_whole(node: &Node) -> bool {
+    let word = node.peeled().as_word().unwrap_or_default();
+    word.starts_with(|c: char| c.is_ascii_digit() || c == '-') && !word.contains(['.', 'e', 'E'])
 }
 
 /// Whether the field at this path draws a number for each thing instead of one for all.
@@ -99,99 +111,110 @@ fn is_drawn_for_each(path: &str) -> bool {
     field("team[", ".levels.") || field("scatter[", ".radius_m")
 }
 
-/// Replaces each distribution in a text by a value at the same bytes. Returns the text, the distributions and
-/// the problems. `of_file` is the path of the text's value in the scenario, empty for a whole file.
-pub(super) fn take_out(text: &str, fields: &Fields, of_file: &str) -> (String, Draws, Vec<Problem>) {
-    let (mut plain, mut draws, mut problems) = (text.to_owned(), Draws::new(), Vec::new());
-    if !WORDS.iter().any(|word| text.contains(word)) {
-        return (plain, draws, problems);
+/// Replaces each distribution in a tree by one of its values. Returns the distributions and the problems with
+/// them.
+pub(super) fn take_out(root: &mut Node) -> (Draws, Vec<Problem>) {
+    let mut taken = (Draws::new(), Vec::new());
+    if has_distribution(root) {
+        take_out_within(root, "", &mut taken);
     }
-    let mut end = 0;
-    for (path, place) in fields.all() {
-        let found = &text[place.clone()];
-        if place.start < end || !is_distribution(found) {
-            continue;
+    taken
+}
+
+fn has_distribution(node: &Node) -> bool {
+    is_distribution(node) || node.children().any(has_distribution)
+}
+
+fn take_out_within(node: &mut Node, path: &str, taken: &mut (Draws, Vec<Problem>)) {
+    let node = node.peeled_mut();
+    if !is_distribution(node) || is_drawn_for_each(path) {
+        for (segment, child) in node.children_mut() {
+            let segment = if path.is_empty() { segment.trim_start_matches('.') } else { &segment };
+            take_out_within(child, &format!("{path}{segment}"), taken);
         }
-        let inner = path.strip_prefix("[0]").unwrap_or(path);
-        let full = if of_file.is_empty() { path.to_owned() } else { format!("{of_file}{inner}") };
-        let is_named = fields.inside(path).iter().any(|name| !name.starts_with('['));
-        if is_named || is_drawn_for_each(&full) {
-            continue;
-        }
-        if !limits::DRAWS.allows(draws.len() + 1) {
-            let rule = format!("is one distribution too many: at most {}", limits::DRAWS.most);
-            problems.push(Problem { field: full, rule, ..Problem::default() });
-            return (plain, draws, problems);
-        }
-        end = place.end;
-        let draw = Draw::read(found);
-        let mut stand_in = match &draw {
-            Ok(draw) => draw.stand_in(found),
-            Err(_) => "0".to_owned(),
-        };
-        if let Err(rule) = draw {
-            let (field, found) = (full.clone(), found.to_owned());
-            problems.push(Problem { field, rule, found, ..Problem::default() });
-        }
-        // At the same bytes, so that lines and columns stay the same.
-        stand_in.truncate(place.len());
-        let mut rest: Vec<u8> = found.bytes().map(|byte| if byte == b'\n' { byte } else { b' ' }).collect();
-        rest[..stand_in.len()].copy_from_slice(stand_in.as_bytes());
-        let rest = String::from_utf8(rest).unwrap_or_else(|_| " ".repeat(place.len()));
-        plain.replace_range(place, &rest);
-        draws.insert(full, found.to_owned());
+        return;
     }
-    (plain, draws, problems)
+    let (draws, problems) = taken;
+    let line = Some(node.place.line as usize).filter(|line| *line > 0);
+    if !limits::DRAWS.allows(draws.len() + 1) {
+        let rule = format!("is one distribution too many: at most {}", limits::DRAWS.most);
+        if problems.last().is_none_or(|problem| problem.rule != rule) {
+            problems.push(Problem { line, ..Problem::new(path, rule, "") });
+        }
+        return;
+    }
+    let mut stand_in = match Draw::read(node) {
+        Ok(draw) => draw.stand_in(node),
+        Err(problem) => {
+            problems.push(Problem { field: path.to_owned(), line, ..*problem });
+            Node::word("0")
+        }
+    };
+    stand_in.put_at(node.place);
+    let written = std::mem::replace(node, stand_in);
+    draws.insert(path.to_owned(), written);
 }
 
 impl ScenarioFile {
-    /// The file without its distributions: each is replaced by one of its values.
-    pub(super) fn without_draws(&self) -> Self {
-        Self { draws: Draws::new(), ..self.clone() }
+    /// The tree of the file without its distributions: each is replaced by one of its values.
+    fn plain_tree(&self) -> Node {
+        // Types of a scenario refuse nothing when they are written.
+        Node::of(self).unwrap_or_else(|_| Node::word("()"))
     }
 
-    /// The file with a value in place of each distribution.
-    fn with_drawn(&self, value: impl Fn(&str, &Draw, bool) -> Option<String>) -> Result<Self, Box<Problem>> {
-        let problem = |field: &str, rule: String| {
-            let found = self.draws.get(field).cloned().unwrap_or_default();
-            Box::new(Problem { field: field.to_owned(), rule, found, ..Problem::default() })
-        };
-        let plain = self.without_draws();
-        let text = ron::to_string(&plain).map_err(|error| problem("", error.to_string()))?;
-        let fields = Fields::of(&text);
-        let mut values = Vec::new();
+    /// The whole file as a tree.
+    #[must_use]
+    pub fn tree(&self) -> Node {
+        let mut tree = self.plain_tree();
         for (path, written) in &self.draws {
-            let draw = Draw::read(written).map_err(|rule| problem(path, rule))?;
-            let Some(place) = fields.value(path) else {
-                let rule = "must stand in a field with a name: write the names of the fields".to_owned();
-                return Err(problem(path, rule));
+            // A distribution whose field has no name stays out; the rules refuse it.
+            let _ = tree.set(path, written.clone(), "a scenario");
+        }
+        tree
+    }
+
+    /// Reads a file from a tree, and notes all values of wrong types; no file is returned if a distribution
+    /// is wrong. The distributions in the tree are replaced by values.
+    pub(super) fn read(tree: &mut Node) -> (Option<Self>, Vec<Problem>) {
+        let (draws, wrong) = take_out(tree);
+        let (file, mut problems) = tree.read_all();
+        let file = file.filter(|_| wrong.is_empty()).map(|file: Self| Self { draws, ..file });
+        problems.extend(wrong);
+        (file, problems)
+    }
+
+    /// The file with a value in place of each distribution in its plain tree.
+    fn with_drawn(
+        &self,
+        plain: &Node,
+        value: impl Fn(&str, &Draw, bool) -> Option<Node>,
+    ) -> Result<Self, Box<Problem>> {
+        let mut tree = plain.clone();
+        for (path, written) in &self.draws {
+            let problem = |problem: Box<Problem>| Box::new(Problem { field: path.clone(), ..*problem });
+            let draw = Draw::read(written).map_err(problem)?;
+            let Some(place) = tree.get_mut(path) else {
+                let rule = "must stand in a field with a name: write the names of the fields";
+                return Err(Box::new(Problem::new(path, rule, written)));
             };
-            let found = text[place].trim_start_matches("Some(");
-            let is_whole = found.bytes().next().is_some_and(|byte| byte.is_ascii_digit() || byte == b'-')
-                && !found.contains(['.', 'e', 'E']);
-            if let Some(value) = value(path, &draw, is_whole) {
-                values.push((path.clone(), value));
+            if let Some(value) = value(path, &draw, is_whole(place)) {
+                *place = value;
             }
         }
-        let text = with_values(&text, &values).map_err(|error| problem("", error.to_string()))?;
-        reading::read(&text).map_err(|error| {
-            let (error, path) = *error;
-            let at = reading::offset(&text, error.span.start.line, error.span.start.col);
-            let Misfit { field, rule, found, hint } =
-                Misfit::new(&error.code, &path, (&text, at), &Fields::of(&text));
-            Box::new(Problem { field, rule, found, hint, ..Problem::default() })
-        })
+        tree.read_as()
     }
 
+    /// Whether reading it takes long.
     fn is_long(&self) -> bool {
-        ron::to_string(self).is_ok_and(|text| text.len() > LONG_BYTES)
+        self.plain_tree().to_string().len() > LONG_BYTES
     }
 
     /// The broken rules of a file with distributions. Each value is checked at the ends of its distribution.
     /// Each trial checks whether its values fit together. The file is refused only if every draw for one seed
     /// breaks the same rule in the same field: most often, values that are not drawn contradict each other.
     pub(super) fn problems_of_draws(&self) -> Vec<Problem> {
-        let most = self.draws.values().filter_map(|text| Draw::read(text).ok());
+        let plain = self.plain_tree();
+        let most = self.draws.values().filter_map(|written| Draw::read(written).ok());
         let most = most.map(|draw| draw.examples(false).len()).max().unwrap_or_default();
         let most = if self.is_long() { most.min(2) } else { most };
         for example in 0..most {
@@ -199,7 +222,7 @@ impl ScenarioFile {
                 let examples = draw.examples(is_whole);
                 examples.get(example.min(examples.len() - 1)).cloned()
             };
-            let problems = match self.with_drawn(nth) {
+            let problems = match self.with_drawn(&plain, nth) {
                 Ok(file) => validate::problems_of_values(&file),
                 Err(problem) => vec![*problem],
             };
@@ -225,14 +248,12 @@ impl ScenarioFile {
     fn of_trial(&self, seed: u64) -> Result<Scenario, Vec<Problem>> {
         let mut problems = Vec::new();
         let tries = if self.is_long() { TRIES_OF_A_LONG_ONE } else { TRIES };
+        let plain = self.plain_tree();
         for attempt in 0..tries {
-            let drawn = self.with_drawn(|path, draw, is_whole| {
+            let drawn = self.with_drawn(&plain, |path, draw, is_whole| {
                 let entity = if attempt == 0 { path.to_owned() } else { format!("{path} {attempt}") };
                 let mut draws = stream(seed, Purpose::Slot, xxh3_64(entity.as_bytes()));
-                Some(match draw {
-                    Draw::Number(distribution) => written(distribution.draw(&mut draws, is_whole), is_whole),
-                    Draw::Choice(texts) => texts[index(&mut draws, texts.len())].clone(),
-                })
+                Some(draw.value(&mut draws, is_whole))
             });
             match drawn {
                 Err(problem) => problems.push(*problem),

@@ -3,33 +3,9 @@
 use std::fmt;
 use std::path::PathBuf;
 
+use ron_tree::Malformed;
+pub use ron_tree::Problem;
 use thiserror::Error;
-
-/// One value that breaks a rule.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Problem {
-    /// Path of the field, e.g. `tasks.village.grid[0]`.
-    pub field: String,
-    /// The file that the field stands in, where it is another than the one that was read: its base.
-    pub file: Option<PathBuf>,
-    /// Line of the field in its file, where it is known.
-    pub line: Option<usize>,
-    /// What holds for the field, e.g. `must be a number from 0 to 100`.
-    pub rule: String,
-    /// What stands there; empty where nothing does.
-    pub found: String,
-    /// What may have been meant, or what to do; empty without an idea.
-    pub hint: String,
-}
-
-impl fmt::Display for Problem {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { field, rule, found, hint, .. } = self;
-        let found = if found.is_empty() { String::new() } else { format!(", found {found}") };
-        let hint = if hint.is_empty() { String::new() } else { format!("; {hint}") };
-        write!(f, "{field} {rule}{found}{hint}")
-    }
-}
 
 /// All problems of one file, in the order of its fields.
 #[derive(Debug, Clone, PartialEq)]
@@ -64,28 +40,12 @@ pub enum ScenarioError {
         reason: String,
     },
     /// The text is not well-formed, or has too much in it.
-    #[error("{}:{line}:{column}: {message}{}{excerpt}", path.display(), if excerpt.is_empty() { "" } else { "\n" })]
+    #[error("{}:{}:{}: {}\n{}", path.display(), source.line, source.column, source.message, source.excerpt)]
     Malformed {
         /// The file.
         path: PathBuf,
-        /// Line, from 1.
-        line: usize,
-        /// Column, from 1.
-        column: usize,
-        /// What is wrong.
-        message: String,
-        /// The line with a caret below the column; may be empty.
-        excerpt: String,
-    },
-    /// A file in the former format.
-    #[error("{}:{line}: {change}", path.display())]
-    Former {
-        /// The file.
-        path: PathBuf,
-        /// Line of the field, from 1.
-        line: usize,
-        /// The field, and what to write instead.
-        change: String,
+        /// Where, and what is wrong.
+        source: Malformed,
     },
     /// Values break rules.
     #[error("{0}")]

@@ -91,8 +91,7 @@ pub struct ScenarioFile {
     #[serde(default)]
     pub conflicts: ConflictRules,
     /// Distributions that stand in the place of values; written there, and not as a field.
-    #[serde(default, skip_serializing_if = "Draws::is_empty")]
-    #[schemars(skip)]
+    #[serde(skip)]
     pub draws: Draws,
 }
 

@@ -8,7 +8,6 @@ mod distribution;
 mod draws;
 mod error;
 mod file;
-mod former;
 mod homes;
 mod named;
 mod odd;
@@ -21,7 +20,6 @@ mod schema;
 mod sense;
 mod set;
 mod timeline;
-mod upgrade;
 mod validate;
 
 use std::ops::Deref;
@@ -29,19 +27,16 @@ use std::path::Path;
 
 use rne_core::question::hardest_first;
 use rne_core::{RoleId, TaskId};
-use ron_fields::file::MAX_TEXT_BYTES;
-use ron_fields::{Fields, check_size};
+use ron_tree::Node;
+use ron_tree::file::MAX_TEXT_BYTES;
 
 pub use debris::LEAST_POLYGON_WIDTH_M;
 pub use error::{LayoutError, Problem, Problems, ScenarioError};
 pub use file::*;
-pub(crate) use reading::ron_options;
-pub use reading::{check_text, parse_ron, read_text};
+pub use reading::{formatted, parse_ron, parse_tree, read_text};
 pub use schema::scenario_schema;
-pub use upgrade::upgraded;
 
-/// The format of scenario files that this program reads. Format 1 had tables in round brackets. The command
-/// `usar fmt --upgrade` rewrites it.
+/// The format of scenario files that this program reads.
 pub const FORMAT: u32 = 2;
 
 /// Most radii for which ground routes are planned separately. Each radius costs a map of the known obstacles.
@@ -100,8 +95,8 @@ impl Scenario {
                 MAX_TEXT_BYTES >> 20
             )
         } else {
-            let Err(found) = check_size(&in_full) else { return Ok(()) };
-            format!("{found} when every default is spelled out, as results hold it")
+            let Err(found) = Node::parse(&in_full) else { return Ok(()) };
+            format!("{} when every default is spelled out, as results hold it", found.message)
         };
         Err(ScenarioError::Unreadable { path: path.to_owned(), reason })
     }
@@ -111,81 +106,51 @@ impl Scenario {
     /// # Errors
     /// The text is not a scenario, or values break rules.
     pub fn parse(text: &str, path: &Path) -> Result<Self, ScenarioError> {
-        check_text(text, path)?;
-        if base::is_named_in(text) {
-            return base::Overlay::parse(text, path);
+        let root = parse_tree(text, path)?;
+        if base::is_named_in(&root) {
+            return base::parse(root, path);
         }
-        Self::parse_with(text, path, &named::Names::new())
+        Self::parse_with(root, path, &mut named::Names::new())
     }
 
-    /// Checks the text of a scenario without a base. The values of the names in `over` replace those in the
-    /// text.
-    fn parse_with(text: &str, path: &Path, over: &named::Names) -> Result<Self, ScenarioError> {
-        if !named::are_in(text) {
-            return Self::parse_plain(text, path, over);
-        }
-        let (mut names, wrong) = named::names(text);
-        names.extend(over.clone());
+    /// Checks the tree of a scenario without a base. The values of the names in `over` replace those in the
+    /// tree; the others of the tree are added to them.
+    fn parse_with(mut root: Node, path: &Path, over: &mut named::Names) -> Result<Self, ScenarioError> {
         let invalid = |list| ScenarioError::Invalid(Problems { path: path.to_owned(), list });
+        let (mut names, wrong) = named::take_out(&mut root);
         if !wrong.is_empty() {
             return Err(invalid(wrong));
         }
-        let text = named::expanded(text, &names).map_err(|problem| invalid(vec![*problem]))?;
-        Self::parse_plain(&text, path, &names)
+        names.append(over);
+        *over = names;
+        named::expand(&mut root, over).map_err(|problem| invalid(vec![*problem]))?;
+        Self::read(root, over).map_err(invalid)
     }
 
-    /// Checks the text of a scenario in which names are replaced by their values. The names are used in
+    /// Checks the tree of a scenario in which names are replaced by their values. The names are used in
     /// messages only.
-    fn parse_plain(text: &str, path: &Path, names: &named::Names) -> Result<Self, ScenarioError> {
-        let fields = Fields::of(text);
-        let (plain, draws, wrong) = draws::take_out(text, &fields, "");
-        let fields = if draws.is_empty() { fields } else { Fields::of(&plain) };
-        let (file, mut list) = reading::read_all::<ScenarioFile>(&plain, &fields);
-        let are_sound = wrong.is_empty();
-        list.extend(wrong);
-        list.iter_mut().for_each(|problem| {
+    fn read(mut root: Node, names: &named::Names) -> Result<Self, Vec<Problem>> {
+        let (file, mut list) = ScenarioFile::read(&mut root);
+        for problem in &mut list {
             named::hint(problem, names);
             distribution::hint(problem);
-            // Where distributions are kept: no file has this field.
-            problem.hint = problem.hint.strip_suffix(", draws").unwrap_or(&problem.hint).to_owned();
-        });
-        if fields.value("draws").is_some() {
-            let rule = "is no field".to_owned();
-            let hint = "a distribution stands in the place of its value".to_owned();
-            list.push(Problem { field: "draws".to_owned(), rule, hint, ..Problem::default() });
-        }
-        if !list.is_empty()
-            && let Some((line, change)) = former::change_needed(text)
-        {
-            return Err(ScenarioError::Former { path: path.to_owned(), line, change });
         }
         let checked = match file {
-            Some(file) if list.is_empty() => Self::try_from(ScenarioFile { draws, ..file }),
-            Some(file) if are_sound => Self::try_from(file),
-            Some(_) | None => Err(Vec::new()),
+            Some(file) if list.is_empty() => Self::try_from(file),
+            Some(file) => Self::try_from(ScenarioFile { draws: Draws::new(), ..file }),
+            None => Err(Vec::new()),
         };
         list.extend(checked.as_ref().err().into_iter().flatten().cloned());
         for problem in list.iter_mut().filter(|problem| problem.line.is_none()) {
-            problem.line = fields.line(&problem.field);
+            problem.line = root.line(&problem.field);
         }
-        checked
-            .ok()
-            .filter(|_| list.is_empty())
-            .ok_or_else(|| ScenarioError::Invalid(Problems { path: path.to_owned(), list }))
+        checked.ok().filter(|_| list.is_empty()).ok_or(list)
     }
 
     /// The whole scenario with every value, as text, with one line for each entry of a list.
-    ///
-    /// # Panics
-    /// Never: a checked scenario can be written.
     #[must_use]
     pub fn resolved(&self) -> String {
-        let layout = ron::ser::PrettyConfig::new().new_line("\n").depth_limit(2);
-        let plain = ScenarioFile { draws: Draws::new(), ..self.0.clone() };
-        let pretty = ron::ser::to_string_pretty(&plain, layout).expect("a checked scenario can be written");
-        let draws: Vec<(String, String)> = self.draws.clone().into_iter().collect();
-        let pretty = if draws.is_empty() { Ok(pretty) } else { ron_fields::with_values(&pretty, &draws) };
-        pretty.expect("a checked scenario has a place for each distribution") + "\n"
+        self.tree().pretty() + "\n"
     }
 
     /// Number of simulation steps in a trial.

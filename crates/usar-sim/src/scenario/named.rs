@@ -1,15 +1,14 @@
 //! Values with names: `values: (leak_m: 4.5)`, and then `radius_m: leak_m` wherever that value is meant.
 //!
-//! Before a text is read, each name that stands alone in place of a value is replaced by its value, on the
-//! same line. A scenario over a base uses the names of its base. It may give a name another value, which then
-//! counts in the base too.
+//! Before a tree is read, each name that stands alone in place of a value is replaced by its value. A
+//! scenario over a base uses the names of its base. It may give a name another value, which then counts in
+//! the base too.
 
 use std::collections::BTreeMap;
 
-use ron_fields::file::MAX_TEXT_BYTES;
-use ron_fields::{Fields, nearest};
+use ron_tree::file::MAX_TEXT_BYTES;
+use ron_tree::{Node, Problem, Value, nearest};
 
-use super::error::Problem;
 use crate::limits;
 
 /// The field that holds the names and their values.
@@ -18,54 +17,47 @@ const FIELD: &str = "values";
 /// Words of RON that are not names.
 const WORDS: [&str; 4] = ["true", "false", "inf", "r"];
 
-/// Names and the texts of their values, each on one line.
-pub(super) type Names = BTreeMap<String, String>;
+/// Names and their values.
+pub(super) type Names = BTreeMap<String, Node>;
 
-/// Whether a text has the field `values`.
-pub(super) fn are_in(text: &str) -> bool {
-    text.contains(FIELD) && Fields::outer(text).value(FIELD).is_some()
-}
-
-/// The names that a text defines, and the problems with them.
-pub(super) fn names(text: &str) -> (Names, Vec<Problem>) {
+/// Takes the names that a tree defines out of it. Returns them and the problems with them.
+pub(super) fn take_out(root: &mut Node) -> (Names, Vec<Problem>) {
     let (mut names, mut problems) = (Names::new(), Vec::new());
-    if !are_in(text) {
-        return (names, problems);
-    }
-    let fields = Fields::of(text);
-    let mut wrong = |field: String, rule: &str, found: &str| {
-        let (line, rule, found) = (fields.line(&field), rule.to_owned(), found.to_owned());
-        problems.push(Problem { field, line, rule, found, ..Problem::default() });
+    let Some(section) = root.remove(FIELD) else { return (names, problems) };
+    let mut wrong = |field: String, rule: &str, found: String, node: &Node| {
+        let line = Some(node.place.line as usize);
+        problems.push(Problem { line, ..Problem::new(field, rule, found) });
     };
-    let place = fields.value(FIELD).unwrap_or_default();
-    if !text[place.clone()].starts_with('(') {
-        wrong(FIELD.to_owned(), "must be names with their values, as in (leak_m: 4.5)", &text[place]);
-        return (names, problems);
+    let is_section = match &section.value {
+        Value::Struct(name, _) => name.is_empty(),
+        Value::Tuple(name, entries) => name.is_empty() && entries.is_empty(),
+        _ => false,
+    };
+    if !is_section {
+        let rule = "must be names with their values, as in (leak_m: 4.5)";
+        wrong(FIELD.to_owned(), rule, section.to_string(), &section);
     }
-    for name in fields.inside(FIELD) {
+    for (name, value) in section.fields() {
+        let (name, bytes) = (name.to_string(), value.bytes().len());
         let field = format!("{FIELD}.{name}");
-        let value = &text[fields.value(&field).unwrap_or_default()];
-        if !is_name(name) {
-            wrong(field, "must have a name of small letters, digits and _, from a letter on", name);
-        } else if !limits::VALUE_BYTES.allows(value.len()) {
-            let most = limits::VALUE_BYTES.most;
-            wrong(field, &format!("must be at most {most} bytes long"), &format!("{} bytes", value.len()));
-        } else if value.contains('\n') {
-            wrong(field, "must stand on one line", value.lines().next().unwrap_or_default());
-        } else if names.contains_key(name) {
-            wrong(field, "must not be given twice", value);
+        if !is_name(&name) {
+            wrong(field, "must have a name of small letters, digits and _, from a letter on", name, value);
+        } else if !limits::VALUE_BYTES.allows(bytes) {
+            let rule = format!("must be at most {} bytes long", limits::VALUE_BYTES.most);
+            wrong(field, &rule, format!("{bytes} bytes"), value);
         } else {
-            names.insert(name.to_owned(), value.to_owned());
+            names.insert(name, value.clone());
         }
     }
-    for (field, inside) in fields.leaves().filter(|(_, inside)| place.contains(&inside.start)) {
-        if names.contains_key(&text[inside.clone()]) {
-            wrong(field.to_owned(), "must be a value, not the name of another", &text[inside]);
+    for (path, leaf) in section.leaves() {
+        if leaf.as_word().is_some_and(|word| names.contains_key(word)) {
+            let rule = "must be a value, not the name of another";
+            wrong(format!("{FIELD}.{path}"), rule, leaf.to_string(), leaf);
         }
     }
     if !limits::VALUES.allows(names.len()) {
-        let found = names.len().to_string();
-        wrong(FIELD.to_owned(), &format!("must be at most {}", limits::VALUES.most), &found);
+        let rule = format!("must be at most {}", limits::VALUES.most);
+        wrong(FIELD.to_owned(), &rule, names.len().to_string(), &section);
     }
     (names, problems)
 }
@@ -77,39 +69,34 @@ fn is_name(word: &str) -> bool {
         && !WORDS.contains(&word)
 }
 
-/// A text without its field `values`, in which each name is replaced by its value. Lines keep their numbers.
+/// Replaces each name in a tree by its value, at the place of the name.
 ///
 /// # Errors
 /// The text would exceed the size that is read.
-pub(super) fn expanded(text: &str, names: &Names) -> Result<String, Box<Problem>> {
-    let fields = Fields::of(text);
-    let own = fields.value(FIELD).unwrap_or_default();
-    let mut out = String::with_capacity(text.len());
-    let mut from = 0;
-    for (_, place) in fields.leaves() {
-        let Some(value) = names.get(&text[place.clone()]).filter(|_| !own.contains(&place.start)) else {
-            continue;
-        };
-        out.push_str(&text[from..place.start]);
-        out.push_str(value);
-        from = place.end;
-        if out.len() as u64 > MAX_TEXT_BYTES {
-            let rule = format!("must not make the file longer than {} MiB", MAX_TEXT_BYTES >> 20);
-            return Err(Box::new(Problem { field: FIELD.to_owned(), rule, ..Problem::default() }));
-        }
+pub(super) fn expand(root: &mut Node, names: &Names) -> Result<(), Box<Problem>> {
+    let mut budget = (MAX_TEXT_BYTES as usize).saturating_sub(root.bytes().len());
+    let is_small = names.is_empty() || expand_within(root, names, &mut budget);
+    if is_small {
+        return Ok(());
     }
-    out.push_str(&text[from..]);
-    Ok(without_names(&out))
+    let rule = format!("must not make the file longer than {} MiB", MAX_TEXT_BYTES >> 20);
+    Err(Box::new(Problem::new(FIELD, rule, "")))
 }
 
-/// Blanks the field `values` with the comma after it.
-fn without_names(text: &str) -> String {
-    let Some(place) = Fields::outer(text).value(FIELD) else { return text.to_owned() };
-    let start = text[..place.start].rfind(FIELD).unwrap_or(place.start);
-    let rest = text[place.end..].trim_start();
-    let end = if rest.starts_with(',') { text.len() - rest.len() + 1 } else { place.end };
-    let blank: String = text[start..end].chars().map(|c| if c == '\n' { '\n' } else { ' ' }).collect();
-    [&text[..start], &blank, &text[end..]].concat()
+/// Replaces names as long as the budget of bytes allows it; returns whether it did.
+fn expand_within(node: &mut Node, names: &Names, budget: &mut usize) -> bool {
+    let Some(value) = node.as_word().and_then(|word| names.get(word)) else {
+        return node.children_mut().into_iter().all(|(_, child)| expand_within(child, names, budget));
+    };
+    let bytes = value.bytes().len();
+    if bytes > *budget {
+        return false;
+    }
+    *budget -= bytes;
+    let place = node.place;
+    *node = value.clone();
+    node.put_at(place);
+    true
 }
 
 /// Adds a hint with the most similar name to a problem with an unknown word.
@@ -128,16 +115,21 @@ pub(super) fn hint(problem: &mut Problem, names: &Names) {
 mod tests {
     use super::*;
 
+    fn tree(text: &str) -> Node {
+        Node::parse(text).unwrap()
+    }
+
     #[test]
     fn a_name_gives_way_to_its_value_and_nothing_else_changes() {
-        let text = "(values: (far: (1, 2), low: 0.5), // names\n name: \"far\", at: far, x: [low, low_ , \
-            far],\n far: Disc(low))";
-        let (names, problems) = names(text);
+        let mut root = tree(
+            "(values: (far: (1, 2), low: 0.5), // names\n name: \"far\", at: far, x: [low, low_ , far],\n far: \
+             Disc(low))",
+        );
+        let (names, problems) = take_out(&mut root);
         assert_eq!(problems, []);
-        let text = expanded(text, &names).unwrap();
-        let expected = " // names\n name: \"far\", at: (1, 2), x: [0.5, low_ , (1, 2)],\n far: Disc(0.5))";
-        assert_eq!(text.trim_start_matches(['(', ' ']), expected.trim_start());
-        assert_eq!(text.lines().count(), 3);
+        expand(&mut root, &names).unwrap();
+        assert_eq!(root, tree("(name: \"far\", at: (1, 2), x: [0.5, low_ , (1, 2)], far: Disc(0.5))"));
+        assert_eq!(root.line("far[0]"), Some(3));
     }
 
     #[test]
@@ -145,13 +137,12 @@ mod tests {
         for (text, says) in [
             ("(values: 3)", "must be names with their values"),
             ("(values: [1])", "must be names with their values"),
+            ("(values: (1, 2))", "must be names with their values"),
             ("(values: (Far: 3))", "must have a name of small letters"),
             ("(values: (true: 3))", "must have a name of small letters"),
-            ("(values: (a: 3, a: 4))", "must not be given twice"),
-            ("(values: (a: [1,\n2]))", "must stand on one line"),
             ("(values: (a: 1, b: [a]))", "must be a value, not the name of another"),
         ] {
-            let (_, problems) = names(text);
+            let (_, problems) = take_out(&mut tree(text));
             assert!(problems.len() == 1 && problems[0].rule.contains(says), "{text}: {problems:?}");
         }
     }
@@ -159,8 +150,9 @@ mod tests {
     #[test]
     fn many_uses_of_a_long_value_are_refused_early() {
         let value = format!("\"{}\"", "x".repeat(1000));
-        let text = format!("(values: (a: {value}), list: [{}])", "a,".repeat(1 << 20));
-        let problem = expanded(&text, &names(&text).0).unwrap_err();
+        let mut root = tree(&format!("(values: (a: {value}), list: [{}])", "a,".repeat(1 << 15)));
+        let (names, _) = take_out(&mut root);
+        let problem = expand(&mut root, &names).unwrap_err();
         assert_eq!(problem.rule, "must not make the file longer than 4 MiB");
     }
 }

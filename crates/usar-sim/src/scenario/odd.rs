@@ -1,7 +1,7 @@
 //! Values that are allowed but unusual: far from the defaults, perhaps given in another unit; a team with
 //! fewer robots than tasks; or a row that changes nothing.
 
-use ron_fields::Fields;
+use ron_tree::Node;
 
 use super::Scenario;
 use super::error::Problem;
@@ -16,7 +16,7 @@ impl Scenario {
     /// smaller than the number of tasks; and rows that change nothing. The lines are those in `text`.
     #[must_use]
     pub fn oddities(&self, text: &str) -> Vec<Problem> {
-        let fields = Fields::of(text);
+        let tree = Node::parse(text).ok();
         let mut odd = Vec::new();
         if (self.robots() as usize) < self.tasks.len() {
             odd.push(Problem {
@@ -41,7 +41,7 @@ impl Scenario {
         compare(&mut odd, "planning", numbers(&self.planning).into_iter(), &planning);
         self.without_effect(&mut odd);
         for problem in &mut odd {
-            problem.line = fields.line(&problem.field);
+            problem.line = tree.as_ref().and_then(|tree| tree.line(&problem.field));
         }
         odd
     }
@@ -75,9 +75,9 @@ impl Scenario {
 
 /// The numbers of a section, by the names of their fields.
 fn numbers(section: &impl serde::Serialize) -> Vec<(String, f64)> {
-    let text = ron::to_string(section).unwrap_or_default();
-    let fields = Fields::of(&text);
-    fields.leaves().filter_map(|(path, place)| Some((path.to_owned(), text[place].parse().ok()?))).collect()
+    let Ok(tree) = Node::of(section) else { return Vec::new() };
+    let leaves = tree.leaves().into_iter();
+    leaves.filter_map(|(path, leaf)| Some((path, leaf.as_word()?.parse().ok()?))).collect()
 }
 
 fn compare(

@@ -1,12 +1,11 @@
 //! Sections of which a part may be left out. A missing part gets a default that depends on its place.
 
-use ron_fields::{Fields, Misfit};
-use serde::de::Error;
+use serde::de::value::MapAccessDeserializer;
+use serde::de::{Error, MapAccess, SeqAccess, Visitor};
 use serde::ser::SerializeStructVariant;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-use super::file::{self, Door, Normal, Point, ResolverRule, RightOfWay, WallFile};
-use super::{reading, ron_options};
+use super::file::{self, Door, Normal, Point, ResolverRule, WallFile};
 use crate::vitals;
 
 /// Initial levels as they are written.
@@ -67,52 +66,6 @@ impl From<Costs> for file::Costs {
     }
 }
 
-/// The text of a value without surrounding blanks, to be read in one of two ways.
-pub(super) fn text_of<'de, D: Deserializer<'de>>(deserializer: D) -> Result<String, D::Error> {
-    let raw: Box<ron::value::RawValue> = Deserialize::deserialize(deserializer)?;
-    Ok(raw.trim().get_ron().to_owned())
-}
-
-fn read<T: for<'de> Deserialize<'de>, E: Error>(text: &str) -> Result<T, E> {
-    ron_options().from_str(text).map_err(|error| {
-        let path = reading::read::<T>(text).err().map_or(String::new(), |found| found.1);
-        let at = reading::offset(text, error.span.start.line, error.span.start.col);
-        E::custom(Misfit::new(&error.code, &path, (text, at), &Fields::of(text)).packed())
-    })
-}
-
-/// The forms of a resolver with all their brackets.
-#[derive(Deserialize)]
-#[serde(rename = "ResolverRule")]
-enum InBrackets {
-    Reciprocal,
-    Rotation(PartOfRule),
-    Swap(PartOfRule),
-    None,
-}
-
-/// The values of the paper's rule, between the brackets of a variant.
-type PartOfRule = RightOfWay;
-
-impl<'de> Deserialize<'de> for ResolverRule {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let text = text_of(deserializer)?;
-        let name_end = text.find('(').unwrap_or(text.len());
-        let name = text[..name_end].trim_end();
-        let text = match (name, &text[name_end..]) {
-            ("Rotation" | "Swap", "") => format!("{name}(())"),
-            ("Rotation" | "Swap", inside) => format!("{name}({inside})"),
-            _ => text,
-        };
-        Ok(match read(&text)? {
-            InBrackets::Reciprocal => Self::Reciprocal,
-            InBrackets::Rotation(rule) => Self::Rotation(rule),
-            InBrackets::Swap(rule) => Self::Swap(rule),
-            InBrackets::None => Self::None,
-        })
-    }
-}
-
 impl Serialize for ResolverRule {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let (index, name, rule) = match self {
@@ -148,13 +101,29 @@ fn thickness_m() -> f64 {
 
 impl<'de> Deserialize<'de> for WallFile {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let text = text_of(deserializer)?;
-        if text.strip_prefix('(').is_some_and(|inside| inside.trim_start().starts_with('(')) {
-            let (from, to) = read(&text)?;
-            return Ok(Self { from, to, thickness_m: thickness_m(), doors: Vec::new() });
-        }
-        let Wall { from, to, thickness_m, doors } = read(&text)?;
-        Ok(Self { from, to, thickness_m, doors })
+        deserializer.deserialize_any(WallVisitor)
+    }
+}
+
+struct WallVisitor;
+
+impl<'de> Visitor<'de> for WallVisitor {
+    type Value = WallFile;
+
+    fn expecting(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        f.write_str("(from: (x, y), to: (x, y)), or short ((x, y), (x, y))")
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, mut ends: A) -> Result<WallFile, A::Error> {
+        let missing = |count| A::Error::invalid_length(count, &self);
+        let from = ends.next_element()?.ok_or_else(|| missing(0))?;
+        let to = ends.next_element()?.ok_or_else(|| missing(1))?;
+        Ok(WallFile { from, to, thickness_m: thickness_m(), doors: Vec::new() })
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, fields: A) -> Result<WallFile, A::Error> {
+        let Wall { from, to, thickness_m, doors } = Wall::deserialize(MapAccessDeserializer::new(fields))?;
+        Ok(WallFile { from, to, thickness_m, doors })
     }
 }
 
@@ -167,10 +136,13 @@ impl Serialize for WallFile {
 
 #[cfg(test)]
 mod tests {
+    use ron_tree::Node;
+
     use super::*;
+    use crate::scenario::RightOfWay;
 
     fn value<T: for<'de> Deserialize<'de>>(text: &str) -> Result<T, String> {
-        ron_options().from_str(text).map_err(|error| error.code.to_string())
+        Node::parse(text).unwrap().read_as().map_err(|problem| problem.to_string())
     }
 
     #[test]
@@ -200,7 +172,7 @@ mod tests {
         ] {
             let read: ResolverRule = value(text).unwrap();
             assert_eq!(read, rule, "{text}");
-            let written = ron::to_string(&rule).unwrap();
+            let written = Node::of(&rule).unwrap().to_string();
             assert_eq!(value::<ResolverRule>(&written).unwrap(), rule, "{written}");
         }
         assert!(value::<ResolverRule>("Rotation(margin: 0.3)").unwrap_err().contains("margin_m"));

@@ -1,7 +1,7 @@
 //! The rules of a scenario as they are written: costs, the mission, planning and right of way.
 
 use rne_core::GroupSizes;
-use ron_fields::limits::Limit;
+use ron_tree::limits::Limit;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -218,7 +218,7 @@ pub enum PriorityRule {
 }
 
 /// What resolves conflicts and deadlocks.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Deserialize)]
 pub enum ResolverRule {
     /// Reciprocal avoidance in the open, right of way in narrow passages, and pushing where a robot is stuck.
     /// The default. It keeps margins and horizons of its own.

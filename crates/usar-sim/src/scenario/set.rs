@@ -1,8 +1,8 @@
 //! Setting one field of a scenario by its path.
 
-use ron_fields::{Fields, SetError};
+use ron_tree::{Problem, value_of};
 
-use super::{Problem, ScenarioFile, draws};
+use super::ScenarioFile;
 
 impl ScenarioFile {
     /// Sets the field at a path such as `costs.energy.per_step` or `tasks.village.grid[0]` to a value in RON.
@@ -10,37 +10,30 @@ impl ScenarioFile {
     ///
     /// # Errors
     /// There is no such field, or the value is not of its type.
-    pub fn set(&mut self, path: &str, value: &str) -> Result<(), SetError> {
-        let wrapped = format!("[{value}]");
-        let is_plain = !super::distribution::WORDS.iter().any(|word| value.contains(word));
-        if self.draws.is_empty() && is_plain {
-            *self = ron_fields::set(self, path, value, "a scenario")?;
-            return Ok(());
-        }
-        let text = ron::to_string(&self.without_draws()).unwrap_or_default();
-        let canonical = Fields::of(&text).canonical(path).unwrap_or_else(|| path.to_owned());
-        let (plain, draws, wrong) = draws::take_out(&wrapped, &Fields::of(&wrapped), &canonical);
-        if let Some(Problem { rule: reason, found, .. }) = wrong.into_iter().next() {
-            return Err(SetError::Malformed { path: path.to_owned(), reason, found });
-        }
-        let inner = if draws.is_empty() { value } else { plain[1..plain.len() - 1].trim_end() };
-        let mut set = ron_fields::set(&self.without_draws(), path, inner, "a scenario")?;
-        set.draws.clone_from(&self.draws);
-        let is_inside = |key: &str| {
-            key.strip_prefix(canonical.as_str())
-                .is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']))
+    pub fn set(&mut self, path: &str, value: &str) -> Result<(), Box<Problem>> {
+        let (mut tree, value) = (self.tree(), value_of(path, value)?);
+        tree.set(path, value, "a scenario")?;
+        let canonical = tree.canonical(path);
+        *self = match Self::read(&mut tree) {
+            (Some(file), problems) if problems.is_empty() => file,
+            (_, problems) => {
+                let problem = problems.into_iter().next().unwrap_or_default();
+                // In the words of the caller: `roles.carrier.hp`, not `roles[0].hp`.
+                let inner = problem.field.strip_prefix(&canonical);
+                let field = inner.map_or_else(|| problem.field.clone(), |inner| format!("{path}{inner}"));
+                return Err(Box::new(Problem { field, ..problem }));
+            }
         };
-        set.draws.retain(|key, _| !is_inside(key));
-        set.draws.extend(draws);
-        *self = set;
         Ok(())
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use ron_tree::Node;
+
     use super::*;
-    use crate::scenario::{Amount, DebrisShape, ron_options};
+    use crate::scenario::{Amount, DebrisShape};
 
     fn file() -> ScenarioFile {
         let row = "(role: \"robot\", count: 2, center: (5, 5), width_m: 2)";
@@ -48,7 +41,7 @@ mod tests {
         let text = format!(
             "(name: \"t\", duration_s: 60, dt_s: 0.02, arena_m: (20, 20), team: [{row}], debris: [{debris}])"
         );
-        ron_options().from_str(&text).unwrap()
+        Node::parse(&text).unwrap().read_as().unwrap()
     }
 
     #[test]
@@ -72,12 +65,11 @@ mod tests {
     #[test]
     fn doors_and_sources_are_found_by_their_names() {
         let door = "(at_m: 3, width_m: 2), (at_m: 9, width_m: 2, name: \"gate\")";
-        let mut set: ScenarioFile = ron_options()
-            .from_str(&format!(
-                "(name: \"t\", duration_s: 60, dt_s: 0.02, arena_m: (20, 20), team: [], radiation: [(at: (1, 1), \
-                 radius_m: 2, name: \"leak\")], walls: [(from: (0, 9), to: (20, 9), doors: [{door}])])"
-            ))
-            .unwrap();
+        let text = format!(
+            "(name: \"t\", duration_s: 60, dt_s: 0.02, arena_m: (20, 20), team: [], radiation: [(at: (1, 1), \
+             radius_m: 2, name: \"leak\")], walls: [(from: (0, 9), to: (20, 9), doors: [{door}])])"
+        );
+        let mut set: ScenarioFile = Node::parse(&text).unwrap().read_as().unwrap();
         set.set("walls[0].doors.gate.width_m", "3").unwrap();
         set.set("walls[0].doors.gate.closed", "true").unwrap();
         set.set("walls[0].doors[0].name", "\"left\"").unwrap();
@@ -87,12 +79,15 @@ mod tests {
         assert_eq!((gate.width_m, gate.is_closed), (3.0, true));
         assert!((set.radiation[0].radius_m - 4.0).abs() < 1e-9);
         let error = set.set("walls[0].doors.gate.open", "true").unwrap_err().to_string();
-        assert!(error.contains("walls[0].doors.gate has at_m, width_m, name, closed"), "{error}");
+        assert!(
+            error.ends_with("doors.gate.open is no field; there are at_m, width_m, name, closed"),
+            "{error}"
+        );
         let error = set.set("walls[0].doors[0].closd", "true").unwrap_err().to_string();
-        assert!(error.ends_with("did you mean closed?"), "{error}");
+        assert!(error.contains("did you mean closed?"), "{error}");
         for value in ["{\"dt_s\": \"Uniform(0.01, 0.02)\"}", "1"] {
             let error = set.set("draws", value).unwrap_err().to_string();
-            assert!(error.starts_with("draws: no such field; a scenario has format, name"), "{error}");
+            assert!(error.starts_with("draws is no field; there are format, name"), "{error}");
             assert!(error.ends_with("planning, conflicts"), "{error}");
         }
     }
@@ -107,18 +102,18 @@ mod tests {
         };
         assert_eq!(
             refused("costs.energy.per_stop", "1"),
-            "costs.energy.per_stop: no such field; costs.energy has per_step, per_metre, per_second; did you \
-             mean per_step?"
+            "costs.energy.per_stop is no field; did you mean per_step? There are per_step, per_metre, per_second"
         );
-        assert!(refused("cots.energy", "1").contains("a scenario has format, name, description, duration_s"));
+        let error = refused("cots.energy", "1");
+        assert!(error.contains("did you mean costs? a scenario has format, name, description"), "{error}");
         assert_eq!(
             refused("debris[7].at", "(1, 1)"),
-            "debris[7].at: no such field; debris has 2 entries, from [0] on"
+            "debris[7].at is no field; debris has 2 entries, from [0] on"
         );
         assert!(refused("duration_s", "\"long\"").contains("found \"long\""));
         assert!(refused("conflicts.resolver", "Luck").contains("Rotation"));
         for value in ["1, dt_s: 1", "1) //", "1 /* ", "", "(1"] {
-            assert!(refused("duration_s", value).starts_with("duration_s: "), "{value}");
+            assert!(refused("duration_s", value).starts_with("duration_s must be one value"), "{value}");
         }
     }
 }

@@ -1,6 +1,6 @@
 //! The rules of a scenario: every value is in its range, and the values are consistent.
 
-use ron_fields::limits::Limit;
+use ron_tree::limits::Limit;
 
 use super::checker::{Checker, entry, is_device, meant, names, shown};
 use super::debris::debris;
@@ -109,13 +109,8 @@ fn sizes(check: &mut Checker, file: &ScenarioFile) {
 
 fn general(check: &mut Checker, file: &ScenarioFile) {
     if file.format != super::FORMAT {
-        let hint = if file.format < super::FORMAT {
-            "`usar fmt --upgrade` rewrites it"
-        } else {
-            "it is of a newer program"
-        };
         let rule = format!("must be {}", super::FORMAT);
-        check.fail_with("format", rule, hint.to_owned(), file.format);
+        check.fail("format", rule, file.format);
     }
     let plain = |c: char| c.is_ascii_alphanumeric() || "-_.".contains(c);
     let is_name = limits::NAME_BYTES.allows(file.name.len()) && file.name.chars().all(plain);

@@ -62,7 +62,7 @@ impl TrialArguments {
             let (scenario, _) = load(&self.file)?;
             let scenario = with_settings(&scenario, &self.set)?;
             check_cost(&scenario, self.allow_expensive)?;
-            let (first_policy, first_seed) = defaults(&self.file, registry)?;
+            let (first_policy, first_seed) = defaults(&self.file)?;
             check_open(&scenario)?;
             let spec = parse(policy.unwrap_or(&first_policy))?;
             let seed = self.seed.unwrap_or(first_seed);

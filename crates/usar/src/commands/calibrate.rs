@@ -10,7 +10,7 @@ use experiments::explore::Free;
 use experiments::files::NewFile;
 use rayon::prelude::*;
 use rne_core::Registry;
-use ron_fields::{Fields, with_values};
+use ron_tree::{Node, edited};
 use study_yang2021::calibration::{Calibration, Fit, Log, POLICY, Spread, Target, the_policy, write_fit};
 use study_yang2021::table::fit_table;
 use usar_sim::scenario::Scenario;
@@ -142,23 +142,21 @@ impl Arguments {
             )));
         }
         let (given, text) = load(&self.file)?;
-        let known = given.resolved();
-        let known = Fields::of(&known);
+        let known = given.tree();
         let mut settings = Vec::new();
         for entry in &self.set {
             let pair = entry.split_once('=');
             let (path, value) =
                 pair.ok_or_else(|| Failure::input(format!("--set: must be path=value, found {entry:?}")))?;
             let path = path.trim();
-            if known.value(path).is_none() {
+            if known.get(path).is_none() {
                 return Err(Failure::input(format!("--set: {}", known.unknown(path, "a scenario"))));
             }
             settings.push((path.to_owned(), value.to_owned()));
         }
-        let text =
-            with_values(&text, &settings).map_err(|error| Failure::input(format!("--set: {error}")))?;
+        let text = edited(&text, &settings).map_err(|error| Failure::input(format!("--set: {error}")))?;
         let base = Scenario::parse(&text, &self.file).map_err(Failure::input)?;
-        let fields = Fields::of(&text);
+        let fields = Node::parse(&text).map_err(Failure::run)?;
         let parse = |spec: &String| Free::parse(spec, &fields, &known);
         let free = self.free.iter().map(parse).collect::<Result<Vec<_>, _>>();
         let free = free.map_err(|error| Failure::input(format!("--free: {error}")))?;

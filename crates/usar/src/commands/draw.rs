@@ -48,7 +48,7 @@ impl Arguments {
         let scenario = with_settings(&scenario, &self.set)?;
         let seed = match self.seed {
             Some(seed) => seed,
-            None => defaults(&self.file, registry)?.1,
+            None => defaults(&self.file)?.1,
         };
         let simulation = Simulation::new(&scenario, seed)
             .map_err(|error| Failure::input(format!("{}: {error}", self.file.display())))?;

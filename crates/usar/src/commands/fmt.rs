@@ -1,16 +1,15 @@
-//! `usar fmt`: sets the layout of scenario and sweep files, and upgrades their format.
+//! `usar fmt`: sets the layout of scenario and sweep files.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
 use experiments::Failure;
-use ron_fields::formatted;
-use usar_sim::scenario::{read_text, upgraded};
+use usar_sim::scenario::{formatted, read_text};
 
 use super::output;
 
-/// Format scenario and sweep files, and upgrade those of an older format
+/// Format scenario and sweep files
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Indents, blanks and commas are set; line breaks and comments stay where they are, and no value changes. The \
@@ -18,8 +17,7 @@ files are written over.
 
 Examples:
   usar fmt mine.ron
-  usar fmt --check scenarios/*.ron     exit status 1 if a file is laid out otherwise; nothing is written
-  usar fmt --upgrade old.ron           in the present format too")]
+  usar fmt --check scenarios/*.ron     exit status 1 if a file is laid out otherwise; nothing is written")]
 pub(crate) struct Arguments {
     /// Scenario or sweep files (RON)
     #[arg(required = true)]
@@ -27,15 +25,12 @@ pub(crate) struct Arguments {
     /// Write nothing; name the files that are laid out otherwise
     #[arg(long)]
     check: bool,
-    /// Rewrite files of a former format in the present one
-    #[arg(long)]
-    upgrade: bool,
 }
 
 impl Arguments {
     pub(crate) fn execute(&self, out: &mut dyn Write) -> Result<(), Failure> {
         // All files are read before the first one is written.
-        let texts = self.files.iter().map(|file| self.laid_out(file)).collect::<Result<Vec<_>, _>>()?;
+        let texts = self.files.iter().map(|file| laid_out(file)).collect::<Result<Vec<_>, _>>()?;
         let mut others = 0;
         for (file, text) in self.files.iter().zip(texts) {
             let Some(text) = text else { continue };
@@ -56,16 +51,11 @@ impl Arguments {
         }
         Ok(())
     }
+}
 
-    /// The text of a file in the right layout; `None` if the file already has it.
-    fn laid_out(&self, file: &Path) -> Result<Option<String>, Failure> {
-        let text = read_text(file).map_err(Failure::input)?;
-        let new = if self.upgrade {
-            upgraded(&text)
-                .map_err(|(line, change)| Failure::input(format!("{}:{line}: {change}", file.display())))?
-        } else {
-            formatted(&text)
-        };
-        Ok((new != text).then_some(new))
-    }
+/// The text of a file in the right layout; `None` if the file already has it.
+fn laid_out(file: &Path) -> Result<Option<String>, Failure> {
+    let text = read_text(file).map_err(Failure::input)?;
+    let new = formatted(&text, file).map_err(Failure::input)?;
+    Ok((new != text).then_some(new))
 }

@@ -73,7 +73,7 @@ impl Arguments {
                 return Err(Failure::input("--task and --weights are for tables: a question has its own"));
             }
             let shown = self.file.display();
-            let text = ron_fields::file::read_text(&self.file)
+            let text = ron_tree::file::read_text(&self.file)
                 .map_err(|error| Failure::input(format!("{shown}: {error}")))?;
             return Question::from_json(&text).map_err(|error| Failure::input(format!("{shown}: {error}")));
         }

@@ -56,7 +56,7 @@ impl Arguments {
     pub(crate) fn execute(&self, out: &mut dyn Write) -> Result<(), Failure> {
         let path = self.folder.join(format!("{}.ron", self.name));
         let name = [("name".to_owned(), format!("{:?}", self.name))];
-        let text = ron_fields::with_values(self.from.text(), &name).map_err(Failure::input)?;
+        let text = ron_tree::edited(self.from.text(), &name).map_err(Failure::input)?;
         Scenario::parse(&text, Path::new("NAME")).map_err(Failure::input)?;
         let taken = || Failure::input(format!("{} exists; nothing was overwritten", path.display()));
         let trouble = |error: std::io::Error| match error.kind() {

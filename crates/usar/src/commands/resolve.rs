@@ -6,8 +6,8 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use experiments::Failure;
 use experiments::experiment::with_settings;
-use ron_fields::Fields;
-use usar_sim::scenario::read_text;
+use ron_tree::{Node, Value};
+use usar_sim::scenario::{parse_tree, read_text};
 
 use super::load;
 
@@ -31,35 +31,34 @@ pub(crate) struct Arguments {
 /// A text that contains values.
 struct Source {
     path: PathBuf,
-    text: String,
-    fields: Fields,
+    tree: Node,
 }
 
 impl Source {
     fn read(path: &Path) -> Result<Self, Failure> {
         let text = read_text(path).map_err(Failure::input)?;
-        Ok(Self { path: path.to_owned(), fields: Fields::of(&text), text })
+        Ok(Self { path: path.to_owned(), tree: parse_tree(&text, path).map_err(Failure::input)? })
     }
 
     /// The path of the base that the text names.
     fn base(&self) -> Option<PathBuf> {
-        let name = self.text[self.fields.value("base")?].trim_matches('"');
+        let name = self.tree.get("base")?.as_text()?;
         Some(self.path.parent().unwrap_or(Path::new("")).join(name))
     }
 
     /// Whether a list in this text replaces the base's list that contains this path.
     fn has_list_around(&self, path: &str) -> bool {
         let first = path.split(['.', '[']).next().unwrap_or_default();
-        self.fields.value(first).is_some_and(|place| self.text[place].starts_with('['))
+        self.tree.get(first).is_some_and(|node| matches!(node.value, Value::List(_)))
     }
 
     /// The place of a value in this text, if it is written here, with the name that stands for it there.
     fn origin(&self, path: &str, named: &str) -> Option<String> {
         let place = format!("{}:{}", self.path.display(), self.line(path, named)?);
-        let value = [path, named].into_iter().find_map(|path| self.fields.value(path));
-        let word = &self.text[value.unwrap_or_default()];
+        let value = [path, named].into_iter().find_map(|path| self.tree.get(path));
+        let word = value.and_then(Node::as_word).unwrap_or_default();
         let name = format!("values.{word}");
-        Some(match self.fields.value(&name).and_then(|_| self.fields.line(&name)) {
+        Some(match self.tree.get(&name).and_then(|_| self.tree.line(&name)) {
             Some(line) => format!("{place}, {word} of line {line}"),
             None => place,
         })
@@ -67,15 +66,14 @@ impl Source {
 
     /// The line of a value, if it is written here; `named` is its path with names instead of indices.
     fn line(&self, path: &str, named: &str) -> Option<usize> {
-        let written = [path, named].into_iter().find(|path| self.fields.value(path).is_some());
+        let written = [path, named].into_iter().find(|path| self.tree.get(path).is_some());
         if let Some(path) = written {
-            return self.fields.line(path);
+            return self.tree.line(path);
         }
         // `((0, 0), (10, 0))` is a wall without field names.
         let entry = &path[..=path.find(']')?];
-        let place = self.fields.value(entry)?;
-        let is_short = self.text[place].starts_with("((");
-        (is_short && !path.ends_with("thickness_m")).then(|| self.fields.line(entry)).flatten()
+        let is_short = matches!(self.tree.get(entry)?.value, Value::Tuple(..));
+        (is_short && !path.ends_with("thickness_m")).then(|| self.tree.line(entry)).flatten()
     }
 }
 
@@ -83,14 +81,14 @@ impl Arguments {
     pub(crate) fn execute(&self, out: &mut dyn Write) -> Result<(), Failure> {
         let (scenario, _) = load(&self.file)?;
         let scenario = with_settings(&scenario, &self.set)?;
-        let resolved = scenario.resolved();
-        let fields = Fields::of(&resolved);
+        let tree = scenario.tree();
         let own = Source::read(&self.file)?;
         let base = own.base().map(|path| Source::read(&path)).transpose()?;
-        let set: Vec<String> = self.set.iter().filter_map(|set| canonical(&fields, set)).collect();
-        let width = fields.leaves().map(|(path, _)| path.len()).max().unwrap_or_default();
+        let set: Vec<String> = self.set.iter().filter_map(|set| canonical(&tree, set)).collect();
+        let leaves = tree.leaves();
+        let width = leaves.iter().map(|(path, _)| path.len()).max().unwrap_or_default();
         let mut drawn = None;
-        for (path, place) in fields.leaves() {
+        for (path, value) in &leaves {
             // A distribution is one value, even if it contains several numbers.
             let around =
                 scenario.draws.keys().find(|key| path.strip_prefix(key.as_str()).is_some_and(ends_a_segment));
@@ -98,9 +96,9 @@ impl Arguments {
                 continue;
             }
             drawn = around;
-            let whole = around.and_then(|key| Some((key.as_str(), fields.value(key)?)));
-            let (path, place) = whole.unwrap_or((path, place));
-            let named = named(&fields, &resolved, path);
+            let whole = around.and_then(|key| Some((key, tree.get(key)?)));
+            let (path, value) = whole.unwrap_or((path, value));
+            let named = named(&tree, path);
             let from = |source: &Source| source.origin(path, &named);
             let is_set = set.iter().any(|set| path.strip_prefix(set.as_str()).is_some_and(ends_a_segment));
             let origin = if is_set {
@@ -110,7 +108,7 @@ impl Arguments {
                 from(&own).or_else(|| from(of_base?))
             };
             let origin = origin.unwrap_or_else(|| "default".to_owned());
-            writeln!(out, "{path:width$} = {}  # {origin}", &resolved[place])?;
+            writeln!(out, "{path:width$} = {value}  # {origin}")?;
         }
         Ok(())
     }
@@ -121,15 +119,15 @@ fn ends_a_segment(rest: &str) -> bool {
 }
 
 /// The path of a setting, with indices instead of names.
-fn canonical(fields: &Fields, setting: &str) -> Option<String> {
-    fields.canonical(setting.split('=').next()?.trim())
+fn canonical(tree: &Node, setting: &str) -> Option<String> {
+    Some(tree.canonical(setting.split('=').next()?.trim()))
 }
 
 /// A path with the name of the table's entry instead of its index: `roles.carrier.hp` for `roles[0].hp`.
-fn named(fields: &Fields, text: &str, path: &str) -> String {
+fn named(tree: &Node, path: &str) -> String {
     let name = || {
         let end = path.find(']')? + 1;
-        let name = text[fields.value(&format!("{}.name", &path[..end]))?].trim_matches('"');
+        let name = tree.get(&format!("{}.name", &path[..end]))?.as_text()?;
         let table = &path[..path.find('[')?];
         Some(format!("{table}.{name}{}", &path[end..]))
     };

@@ -115,7 +115,7 @@ impl Arguments {
         let scenario = with_settings(&scenario, &self.set)?;
         check_cost(&scenario, self.allow_expensive)?;
         let snapshot = self.from.as_deref().map(Snapshot::read).transpose()?;
-        let (first_policy, first_seed) = defaults(&self.file, registry)?;
+        let (first_policy, first_seed) = defaults(&self.file)?;
         let asked = match (&self.policy, &snapshot) {
             (Some(policy), _) => policy,
             (None, Some(snapshot)) => &snapshot.identity.policy,

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use experiments::Failure;
 use experiments::experiment::PolicySpec;
 use experiments::limits::SNAPSHOT_BYTES;
-use ron_fields::file;
+use ron_tree::file;
 use usar_sim::record::Status;
 use usar_sim::scenario::Scenario;
 use usar_sim::simulation::Simulation;

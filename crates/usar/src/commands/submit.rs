@@ -156,7 +156,7 @@ impl Arguments {
         ];
         let template = match &self.template {
             None => scripts::ARRAY.to_owned(),
-            Some(path) => ron_fields::file::read_text(path)
+            Some(path) => ron_tree::file::read_text(path)
                 .map_err(|error| Failure::input(format!("--template: {}: {error}", path.display())))?,
         };
         let array = scripts::fill(&template, &words)?;

@@ -124,7 +124,7 @@ struct Suite {
 impl Suite {
     fn load(file: &Path, most: u32, registry: &Registry) -> Result<Self, Failure> {
         let experiment = Experiment::load(file, &Overrides::default(), registry)?;
-        let expected = experiment.asks()?.expect;
+        let expected = experiment.plan.expect.clone();
         if expected.is_empty() {
             return Err(Failure::input(format!(
                 "{}: expects nothing: its sweep file has no `expect`",

@@ -11,7 +11,7 @@ use experiments::run::TrialKey;
 use experiments::sweep::disk::experiment_in;
 use recording::{Options, Recording};
 use rne_core::Registry;
-use ron_fields::file::read_start;
+use ron_tree::file::read_start;
 use usar_sim::simulation::Simulation;
 
 use super::load;
@@ -86,14 +86,14 @@ impl Asked {
         let most = RECORDING_BYTES.most as u64;
         let (start, _) = read_start(file, MAGIC.len() as u64, most).map_err(unreadable)?;
         if start == MAGIC {
-            let bytes = ron_fields::file::read(file, most).map_err(unreadable)?;
+            let bytes = ron_tree::file::read(file, most).map_err(unreadable)?;
             shown.push(Shown { name: file.display().to_string(), bytes });
             return Ok(());
         }
         let (scenario, _) = load(file)?;
         let scenario = with_settings(&scenario, &self.set)?;
         check_cost(&scenario, self.allow_expensive)?;
-        let (first_policy, first_seed) = defaults(file, registry)?;
+        let (first_policy, first_seed) = defaults(file)?;
         let seed = self.seed.unwrap_or(first_seed);
         for policy in split_list(self.policy.as_deref().unwrap_or(&first_policy)) {
             let spec = PolicySpec::parse(policy, registry)

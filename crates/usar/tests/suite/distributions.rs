@@ -60,8 +60,8 @@ fn fmt_keeps_values_and_comments_and_writes_only_what_differs() {
     assert_eq!(succeeds(&usar(here, &["fmt", "w.ron", "wild.ron"])), "wild.ron: written\n");
     assert_eq!(read(&here.join("wild.ron")), WORLD);
     assert_eq!(succeeds(&usar(here, &["fmt", "wild.ron"])), "");
-    std::fs::write(here.join("old.ron"), "(name: \"o\", conflicts: (margin_m: 0.3))").unwrap();
-    succeeds(&usar(here, &["fmt", "--upgrade", "old.ron"]));
-    let expected = "(format: 2, name: \"o\", conflicts: (resolver: Rotation(margin_m: 0.3)))\n";
-    assert_eq!(read(&here.join("old.ron")), expected);
+    std::fs::write(here.join("wild.ron"), &wild).unwrap();
+    std::fs::write(here.join("bad.ron"), "(name: \"o\" conflicts: ())").unwrap();
+    assert_eq!(usar(here, &["fmt", "wild.ron", "bad.ron"]).status.code(), Some(2));
+    assert_eq!(read(&here.join("wild.ron")), wild, "nothing is written if a file cannot be read");
 }

@@ -80,7 +80,7 @@ fn what_cannot_vary_is_refused() {
     let place = place();
     let folder = place.path();
     for (over, says) in [
-        ("mission.rest=0..60", "--over: mission.rest: no such field"),
+        ("mission.rest=0..60", "--over: mission.rest is no field"),
         ("radiation[0].radius_m=3..9", "radiation[0].radius_m: is set by two parameters"),
         ("duration_s=-5..60", "--over: duration_s"),
         ("team=1..2", "is not a number but has parts"),

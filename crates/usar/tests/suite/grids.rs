@@ -47,7 +47,7 @@ fn bad_sweep_files_are_refused_with_their_lines() {
     refuse(
         "carrier.speed_mps",
         "carrier.speed",
-        "bad.ron:9: axes.\"roles.carrier.speed\"[0]: roles.carrier.speed: no such field; roles.carrier has ",
+        "bad.ron:9: axes.\"roles.carrier.speed\"[0]: roles.carrier.speed is no field; ",
     );
     refuse("[1.5, 3.0]", "[1.5, \"fast\"]", "bad.ron:9: axes.\"roles.carrier.speed_mps\"[1]: ");
     refuse(

@@ -3,14 +3,14 @@
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use ron_fields::SetError;
+use ron_tree::Problem as Broken;
 use thiserror::Error;
 use usar_sim::conflict::Delay;
 use usar_sim::event::Event;
 use usar_sim::ids::RobotId;
 use usar_sim::invariant::RARE_OVERLAP_M;
 use usar_sim::record::Status;
-use usar_sim::scenario::{LayoutError, Point, Problem as Broken, Row, Scenario, ScenarioError, ScenarioFile};
+use usar_sim::scenario::{LayoutError, Point, Row, Scenario, ScenarioError, ScenarioFile};
 use usar_sim::simulation::{Advance, Simulation};
 use usar_sim::stage::Stage;
 use usar_sim::world::World;
@@ -84,7 +84,7 @@ pub enum TrialError {
     Text(#[from] ScenarioError),
     /// A change cannot be set.
     #[error(transparent)]
-    Change(#[from] SetError),
+    Change(#[from] Box<Broken>),
     /// The changes break rules of scenarios.
     #[error("{broken:?}")]
     Rules {

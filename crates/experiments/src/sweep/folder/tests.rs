@@ -35,6 +35,7 @@ fn before_an_edit(experiment: Experiment, policy: usize) -> Experiment {
         seeds: experiment.seeds,
         is_checked: experiment.is_checked,
         keep: experiment.keep,
+        plan: experiment.plan,
         program: Some(program),
     })
     .unwrap()
