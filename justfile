@@ -53,7 +53,7 @@ scenarios *arguments:
 # The pages made from the code: docs/scenarios-reference.md, docs/columns.md, docs/events.md, the schemas of files, and docs/commands.md
 reference:
     cargo run --package xtask -- reference
-    cargo run -- man --markdown > target/commands.md && mv target/commands.md docs/commands.md
+    cargo run -- self man --markdown > target/commands.md && mv target/commands.md docs/commands.md
 
 # The pages of docs/ as a book in target/book; index.html opens from disk, with search
 book:
@@ -101,7 +101,7 @@ pages *pages:
 results:
     cargo build --release --package usar
     target/release/usar sweep scenarios/paper.ron
-    target/release/usar reproduce
+    target/release/usar study yang2021 claims
     target/release/usar sweep scenarios/sweeps/turning-back.ron
     target/release/usar sweep scenarios/sweeps/turning-back-calibrated.ron
     target/release/usar sweep scenarios/sweeps/best-reading.ron

@@ -127,11 +127,14 @@ fn helps() -> BTreeMap<String, String> {
 /// The options in a command that its help does not know; the verb, where there is none such.
 fn unknown<'c>(command: &'c str, helps: &BTreeMap<String, String>) -> Vec<&'c str> {
     let command = command.split([';', '|', '>', '#']).next().unwrap();
-    let mut words = command.split_whitespace().skip(1);
-    let verb = words.next().unwrap_or_default();
-    let is_verb = verb.starts_with(|c: char| c.is_ascii_lowercase());
-    let Some(help) = helps.get(verb) else { return if is_verb { vec![verb] } else { Vec::new() } };
-    let options = words.filter(|word| word.starts_with("--"));
+    let words: Vec<&str> = command.split_whitespace().skip(1).collect();
+    let first = words.first().copied().unwrap_or_default();
+    let is_verb = first.starts_with(|c: char| c.is_ascii_lowercase());
+    // The verb is as many of the words as name one: `cluster submit`, `study yang2021 claims`.
+    let verbs = (1..=words.len().min(3)).rev().map(|count| words[..count].join(" "));
+    let help = verbs.into_iter().find_map(|verb| helps.get(&verb));
+    let Some(help) = help else { return if is_verb { vec![first] } else { Vec::new() } };
+    let options = words.into_iter().filter(|word| word.starts_with("--"));
     let names = options.map(|word| word.split(['=', '`', ',', '.', ')']).next().unwrap());
     names.filter(|name| *name != "--help" && !help.contains(&format!("{name} "))).collect()
 }
@@ -161,4 +164,5 @@ fn commands_on_the_pages_have_the_options_of_the_program() {
     assert!(count > 100, "{count} commands");
     assert_eq!(unknown("usar sweep x.ron --trails 3 --quiet", &helps), ["--trails"]);
     assert_eq!(unknown("usar swep x.ron", &helps), ["swep"]);
+    assert_eq!(unknown("usar cluster submit x.ron --trails 3", &helps), ["--trails"]);
 }

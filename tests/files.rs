@@ -39,7 +39,7 @@ fn every_step_of_the_tutorial_and_every_file_of_the_gallery_runs() {
     assert_eq!(steps.len(), 10);
     for path in steps.iter().chain(&gallery) {
         let (scenario, text) = Scenario::load(path).unwrap_or_else(|error| panic!("{error}"));
-        assert_eq!(ron_tree::formatted(&text).unwrap(), text, "usar fmt {}", path.display());
+        assert_eq!(ron_tree::formatted(&text).unwrap(), text, "usar scenario fmt {}", path.display());
         let again = Scenario::parse(&scenario.resolved(), "resolved.ron".as_ref());
         assert_eq!(again.as_ref(), Ok(&scenario), "{}", path.display());
         let mut trial = Simulation::new(&scenario, 1).unwrap().checked();

@@ -5,6 +5,7 @@ use serde_json::{Map, Value};
 use usar_sim::event::{CutOffCause, Event, Place, ReturnCause, TurnBackCause};
 use usar_sim::ids::RobotId;
 use usar_sim::scenario::{DebrisFile, ZoneFile};
+use usar_sim::simulation::Simulation;
 
 /// An event with its time, its name and a sentence.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -173,6 +174,18 @@ fn sentence(event: &Event, names: Names) -> String {
         Event::TaskBegan { task: number } => format!("task {} begins", task(number.index())),
         Event::TaskEnded { task: number } => format!("task {} ends", task(number.index())),
     }
+}
+
+/// The events of the last step of a simulation, in words.
+pub fn told(simulation: &Simulation) -> impl Iterator<Item = ToldEvent> + '_ {
+    let scenario = simulation.scenario();
+    let tasks: Vec<&str> = scenario.tasks.iter().map(|task| task.name.as_str()).collect();
+    let (step, dt_s) = (simulation.steps(), scenario.dt_s);
+    let layout = simulation.layout();
+    simulation.events().iter().map(move |event| {
+        let names = Names { tasks: &tasks, debris: &layout.debris, zones: &layout.zones };
+        ToldEvent::new(step, dt_s, event, names)
+    })
 }
 
 #[cfg(test)]

@@ -163,7 +163,8 @@ mod tests {
         assert!(of(&[&[0.25, 0.25], &[0.25, 0.25]]).unwrap().abs() < 1e-15);
         let coins = of(&[&[0.5, 0.0], &[0.0, 0.5]]).unwrap();
         assert!((coins - std::f64::consts::LN_2).abs() < 1e-15);
-        for wrong in [&[][..], &[&[0.5, 0.6]], &[&[0.5], &[0.25, 0.25]], &[&[1.5, -0.5]]] {
+        let wrong: [&[&[f64]]; 4] = [&[], &[&[0.5, 0.6]], &[&[0.5], &[0.25, 0.25]], &[&[1.5, -0.5]]];
+        for wrong in wrong {
             assert!(of(wrong).is_err(), "{wrong:?}");
         }
     }

@@ -166,7 +166,7 @@ pub fn write_page(
         style: STYLE.trim_end(),
         scenarios: judged.iter().map(|scenario| scenario.scenario.as_str()).collect(),
         sections,
-        command: format!("usar reproduce --trials {trials}"),
+        command: format!("usar study yang2021 claims --trials {trials}"),
         program: format!("usar {}, source {}", program.version, program.source),
     };
     let page = page.render().map_err(Failure::run)?;

@@ -1,8 +1,11 @@
 //! The command `usar` as a library. A program that adds its own policies calls [`main_with`] as its `main`.
 
+mod arguments;
 mod bad_value;
 mod cli;
 mod commands;
+mod input;
+mod output;
 mod printable;
 mod recordings;
 mod running;

@@ -1,6 +1,5 @@
 //! Recordings as files: of single trials, and of the trials of a sweep's folder.
 
-use std::fs::File;
 use std::io::{self, BufWriter};
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
@@ -19,7 +18,8 @@ use usar_sim::record::{Status, TrialRecord};
 use usar_sim::simulation::Simulation;
 
 use crate::bad_value::BadValue;
-use crate::running::{Guard, STOP, session_of};
+use crate::output::{create_new, trouble};
+use crate::running::{Guard, STOP, session_of, tell};
 
 /// Number of bytes that are written to disk together.
 const BUFFER: usize = 1 << 16;
@@ -28,15 +28,6 @@ const BUFFER: usize = 1 << 16;
 pub(crate) fn fps(text: &str) -> Result<f64, BadValue> {
     let fps = text.parse::<f64>().ok().filter(|fps| (0.01..=1000.0).contains(fps));
     fps.ok_or_else(|| BadValue::new("a number from 0.01 to 1000", text))
-}
-
-fn trouble(path: &Path, error: &io::Error) -> Failure {
-    match error.kind() {
-        io::ErrorKind::AlreadyExists => {
-            Failure::input(format!("--record: {} exists; nothing was overwritten", path.display()))
-        }
-        _ => Failure::storage(format!("cannot write {}: {error}", path.display())),
-    }
 }
 
 /// Runs a trial to its end and records it in a new file. `watch` is called after each step and may
@@ -48,8 +39,8 @@ pub(crate) fn record_to(
     options: &Options,
     watch: &mut dyn FnMut(&Simulation) -> Result<(), Failure>,
 ) -> Result<TrialRecord, Failure> {
-    let trouble = |error: io::Error| trouble(path, &error);
-    let file = BufWriter::with_capacity(BUFFER, File::create_new(path).map_err(trouble)?);
+    let trouble = |error: io::Error| trouble("--record", path, &error);
+    let file = BufWriter::with_capacity(BUFFER, create_new("--record", path)?);
     let mut recorder = Recorder::begin(file, &simulation, options).map_err(trouble)?;
     while simulation.step_within(&mut *session, Deadline::when(&STOP)).is_none() {
         recorder.listen(&simulation).map_err(trouble)?;
@@ -129,7 +120,7 @@ pub(crate) fn record_trials(folder: &mut Folder, which: &Recorded, stop: &Atomic
             continue; // it is there already
         }
         let parent = path.parent().unwrap_or(Path::new("."));
-        std::fs::create_dir_all(parent).map_err(|error| trouble(parent, &error))?;
+        std::fs::create_dir_all(parent).map_err(|error| trouble("--recordings", parent, &error))?;
         let underway = path.with_extension("usrec.new");
         let _ = std::fs::remove_file(&underway); // of a run that was broken off
         let guard = Guard::new(f64::INFINITY);
@@ -148,7 +139,7 @@ pub(crate) fn record_trials(folder: &mut Folder, which: &Recorded, stop: &Atomic
                  verify` says where"
             )));
         }
-        std::fs::rename(&underway, &path).map_err(|error| trouble(&path, &error))?;
+        std::fs::rename(&underway, &path).map_err(|error| trouble("--recordings", &path, &error))?;
     }
     Ok(())
 }
@@ -164,21 +155,39 @@ fn summary_hash(path: &Path) -> Option<String> {
     recording.summary.map(|summary| summary.state_hash)
 }
 
+/// A recording, and its name in messages.
+pub(crate) struct Shown {
+    pub(crate) name: String,
+    pub(crate) bytes: Vec<u8>,
+}
+
+impl Shown {
+    /// Reads the recording; notes if it is truncated.
+    pub(crate) fn read(&self) -> Result<Recording, Failure> {
+        let recording = Recording::read(&self.bytes)
+            .map_err(|error| Failure::input(format!("{}: {error}", self.name)))?;
+        if let Some(rest) = recording.cut {
+            tell(format_args!("note: {}: was cut short; {rest} bytes at its end were left out", self.name));
+        }
+        Ok(recording)
+    }
+}
+
 /// The recording of a trial of a sweep: from its file, if that is a recording of this very trial, or by
 /// simulating the trial again.
-pub(crate) fn recording_of(
-    folder: &Path,
-    experiment: &Experiment,
-    key: &TrialKey,
-) -> Result<Vec<u8>, Failure> {
-    if let Ok(bytes) = bytes_of(&path_of(folder, experiment, key))
+pub(crate) fn recording_of(folder: &Path, experiment: &Experiment, key: &TrialKey) -> Result<Shown, Failure> {
+    let path = path_of(folder, experiment, key);
+    let name = path.display().to_string();
+    if let Ok(bytes) = bytes_of(&path)
         && let Ok(Recording { header, cut: None, .. }) = Recording::read(&bytes)
         && header.scenario.resolved == experiment.cases[key.case].scenario.resolved()
         && (header.seed, &header.policy) == (key.seed, &key.label)
     {
-        return Ok(bytes);
+        return Ok(Shown { name, bytes });
     }
-    recorded(simulation(experiment, key)?, &mut *session(experiment, key)?, &options(experiment, key))
+    let (simulation, mut session) = (simulation(experiment, key)?, session(experiment, key)?);
+    let bytes = recorded(simulation, &mut *session, &options(experiment, key))?;
+    Ok(Shown { name, bytes })
 }
 
 fn options(experiment: &Experiment, key: &TrialKey) -> Options {

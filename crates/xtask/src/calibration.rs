@@ -56,7 +56,7 @@ const FREE_WORK: [(&str, &str); 3] = [
 pub struct Combination([usize; FACTORS.len()]);
 
 impl Combination {
-    /// The free parameters, as arguments of `usar calibrate`.
+    /// The free parameters, as arguments of `usar study yang2021 calibrate`.
     pub fn free(&self) -> Vec<String> {
         let mut free: Vec<String> = FREE.iter().map(|free| (*free).to_owned()).collect();
         if self.work_costs() {
@@ -65,7 +65,7 @@ impl Combination {
         free
     }
 
-    /// The fixed settings, as arguments of `usar calibrate`.
+    /// The fixed settings, as arguments of `usar study yang2021 calibrate`.
     pub fn settings(&self) -> Vec<String> {
         let fields = FACTORS.iter().zip(self.0).filter(|(factor, _)| factor.field != WORK);
         let mut settings: Vec<String> =

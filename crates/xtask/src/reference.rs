@@ -65,7 +65,7 @@ fn section(page: &mut String, title: &str, schema: &Value) {
             let default = match field.get("default") {
                 _ if required.contains(&name.as_str()) => "must be given".to_owned(),
                 Some(value @ Value::Array(_)) if value.to_string().len() > 40 => {
-                    "see `usar resolve`".to_owned()
+                    "see `usar scenario resolve`".to_owned()
                 }
                 Some(value @ Value::Object(fields)) if !fields.is_empty() => {
                     let short = value.to_string();

@@ -63,7 +63,7 @@ fn events() -> String {
         let inside = &variant["properties"][name];
         let fields = inside["required"].as_array().into_iter().flatten().filter_map(Value::as_str);
         let field = |field| format!("`{field}`: {}", plain(&comment(&inside["properties"][field])));
-        let fields: Vec<String> = fields.map(|name| field(name)).collect();
+        let fields: Vec<String> = fields.map(field).collect();
         let _ = writeln!(page, "| `{}` | {} | {} |", snake(name), comment(variant), fields.join("; "));
     }
     page

@@ -31,7 +31,7 @@ pub fn with_settings(scenario: &Scenario, settings: &[String]) -> Result<Scenari
         let path = path.trim();
         if !decides(path) {
             return Err(Failure::input(format!(
-                "--set: {path}: decides no number of a trial; --policies, --trials and --seed say what is run"
+                "--set: {path}: decides no number of a trial; --policies, --trials and --first-seed say what is run"
             )));
         }
         file.set(path, value).map_err(|error| Failure::input(format!("--set: {error}")))?;

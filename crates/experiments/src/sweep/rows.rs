@@ -77,13 +77,13 @@ const SEED: &str = "Seed of the trial: it decides everything that is drawn.";
 pub(super) fn before(axes: &[Axis]) -> Vec<About> {
     let meaning = "Number of the case, from 1: a combination of the values of the axes.";
     let case = (!axes.is_empty()).then(|| About::new("case", Natural, "", meaning));
-    let axis = |axis: &Axis| {
+    let of_field = |axis: &Axis| {
         let are_numbers = axis.values.iter().all(|value| value.parse::<f64>().is_ok());
         let is_field = axis.variants.is_empty();
         let meaning = if is_field { "Value of this field of the scenario." } else { "Name of the variant." };
         About::new(&axis.path, if are_numbers { Number } else { Text }, "", meaning)
     };
-    case.into_iter().chain(axes.iter().map(axis)).collect()
+    case.into_iter().chain(axes.iter().map(of_field)).collect()
 }
 
 /// The columns of `trials.csv`: the trial, every metric, and the other results. `method` and `policy` have

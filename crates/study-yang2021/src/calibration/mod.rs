@@ -41,7 +41,7 @@ pub const POLICY: &str = "DIS";
 const SUFFIX: &str = "-fitted";
 
 /// Start of a calibrated scenario's first line.
-const ORIGIN_LINE: &str = "// Fitted by usar calibrate";
+const ORIGIN_LINE: &str = "// Fitted by usar study yang2021 calibrate";
 
 /// Edge penalty of a value at the very end of its range: the same as for a mean that is off by two standard
 /// errors.
@@ -141,7 +141,7 @@ impl Calibration {
         let tree = Node::parse(&self.text).map_err(Failure::run)?;
         let present = |free: &Free| free.present(&tree);
         let present = self.free.iter().map(present).collect::<Result<Vec<f64>, _>>();
-        present.map_err(|error| Failure::input(format!("--free: {error}")))
+        present.map_err(|error| Failure::input(format!("--over: {error}")))
     }
 
     /// Checks that no field is set twice, that no parameter decides the duration of a trial, and that both
@@ -150,7 +150,7 @@ impl Calibration {
     /// # Errors
     /// One of these conditions is violated.
     pub fn check(&self) -> Result<(), Failure> {
-        let bad = |error: &dyn Display| Failure::input(format!("--free: {error}"));
+        let bad = |error: &dyn Display| Failure::input(format!("--over: {error}"));
         self.text_with(&self.present()?).map_err(|error| bad(&error))?;
         for free in &self.free {
             if free.is_of("duration_s") {

@@ -9,7 +9,7 @@ use experiments::experiment::{Experiment, Overrides};
 use experiments::{Failure, panic_message};
 use rne_core::Registry;
 
-use crate::running::tell;
+use crate::input::tell_oddities;
 
 /// Validate scenarios and sweep files without running them
 #[derive(Debug, Args)]
@@ -24,10 +24,7 @@ pub(crate) struct Arguments {
 fn check(file: &Path, registry: &Registry) -> Result<String, Failure> {
     let experiment = Experiment::load(file, &Overrides::default(), registry)?;
     experiment.with_trials(1)?.check_start(file)?;
-    for odd in experiment.base.oddities(&experiment.given) {
-        let line = odd.line.map_or(String::new(), |line| format!(":{line}"));
-        tell(format_args!("note: {}{line}: {odd}", file.display()));
-    }
+    tell_oddities(&experiment.base, &experiment.given, file);
     let cost = experiment.check_cost(false).err();
     Ok(cost.map_or_else(|| "ok".to_owned(), |cost| format!("ok, but expensive: {cost}")))
 }

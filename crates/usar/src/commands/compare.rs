@@ -14,22 +14,24 @@ use experiments::stats::bootstrap::resamples;
 use experiments::sweep::host::Hosts;
 use reports::table::{comparison_table, differences_table, effects_table, interactions_table};
 use rne_core::Registry;
-use serde::Serialize;
+use serde_json::json;
 
-use super::family::FamilyArguments;
-use super::{SCHEMA_VERSION, ShownArguments, print_table, read_sweep};
+use crate::arguments::{FamilyArguments, ShownArguments};
+use crate::input::read_sweep;
+use crate::output::{print_json, print_table};
 use crate::printable::counted;
 
-/// Is A better than B, by how much, and how sure is that? Paired by seed
+/// Is A better than B, by how much, and how sure is that?
 #[derive(Debug, Args)]
 #[command(after_help = "\
-For each metric and pair of policies: mean of each, mean difference with its 95 % bootstrap interval, \
-Hodges-Lehmann shift, Wilcoxon's signed-rank test, its p after Holm's correction over all comparisons shown, \
-effect size (matched-pairs rank-biserial), the least difference that this many pairs detect with 80 % power, \
-with a margin how many pairs have this power for it, and one sentence. \
-For a sweep with axes, also how each policy's mean, and each difference, changes along an axis, paired by \
-seed. With a margin, two policies are equivalent if the 90 % interval of their difference lies within it \
-(two one-sided tests at 5 %). Choose metrics before looking: the correction knows only what is shown together.
+Trials are paired by seed. For each metric (`all` takes every one) and pair of policies: mean of each, mean \
+difference with its 95 % bootstrap interval, Hodges-Lehmann shift, Wilcoxon's signed-rank test, its p after \
+Holm's correction over all comparisons shown, effect size (matched-pairs rank-biserial), the least \
+difference that this many pairs detect with 80 % power, with a margin how many pairs have this power for \
+it, and one sentence. For a sweep with axes, also how each policy's mean, and each difference, changes \
+along an axis, paired by seed. With a margin, two policies are equivalent if the 90 % interval of their \
+difference lies within it (two one-sided tests at 5 %). Choose metrics before looking: the correction knows \
+only what is shown together.
 
 Examples:
   usar compare results/paper
@@ -42,24 +44,8 @@ pub(crate) struct Arguments {
     folder: PathBuf,
     #[command(flatten)]
     family: FamilyArguments,
-    /// Print one JSON object
-    #[arg(long)]
-    json: bool,
     #[command(flatten)]
-    pub(crate) shown: ShownArguments,
-}
-
-#[derive(Serialize)]
-struct Output<'a> {
-    schema_version: u32,
-    sweep: &'a str,
-    trials: u32,
-    is_complete: bool,
-    confidence: f64,
-    level: f64,
-    comparisons: &'a [Comparison],
-    effects: &'a [Effect],
-    interactions: &'a [Interaction],
+    shown: ShownArguments,
 }
 
 impl Arguments {
@@ -70,19 +56,18 @@ impl Arguments {
         let comparisons = compare(&folder, &asked.metrics, asked.choice())?;
         let effects = effects(&folder, &asked.metrics, asked.choice())?;
         let interactions = interactions(&folder, &asked.metrics, asked.choice())?;
-        if self.json || self.shown.is_json() {
-            let output = Output {
-                schema_version: SCHEMA_VERSION,
-                sweep: &experiment.name,
-                trials: experiment.trials,
-                is_complete: folder.manifest().is_complete,
-                confidence: CONFIDENCE,
-                level: LEVEL,
-                comparisons: &comparisons,
-                effects: &effects,
-                interactions: &interactions,
-            };
-            return Ok(writeln!(out, "{}", serde_json::to_string(&output).map_err(Failure::run)?)?);
+        if self.shown.is_json() {
+            let output = json!({
+                "sweep": experiment.name,
+                "trials": experiment.trials,
+                "is_complete": folder.manifest().is_complete,
+                "confidence": CONFIDENCE,
+                "level": LEVEL,
+                "comparisons": comparisons,
+                "effects": effects,
+                "interactions": interactions,
+            });
+            return print_json(&output);
         }
         let cases = experiment.cases.iter().enumerate().filter(|_| !comparisons.is_empty());
         for (i, case) in cases {

@@ -1,6 +1,7 @@
 //! `usar fork`: plays a trial in which one decision is changed.
 
 use std::io::Write;
+use std::path::PathBuf;
 
 use clap::{ArgGroup, Args};
 use experiments::Failure;
@@ -12,46 +13,42 @@ use serde::Serialize;
 use usar_sim::record::TrialRecord;
 use usar_sim::simulation::Checkpoint;
 
-use super::asked::{AskedTrial, TrialArguments};
-use super::{SCHEMA_VERSION, ShownArguments, print_table};
+use crate::arguments::{ShownArguments, Trial, TrialArguments, parse_policy};
+use crate::output::{print_json, print_table};
 use crate::running::{STOP, session_of, stop_on_signals};
 
-/// What if round N had been decided otherwise? Both trials, side by side
+/// What if round N had been decided otherwise?
 #[derive(Debug, Args)]
-#[command(group(ArgGroup::new("otherwise").required(true).args(["policy", "assign"])), after_help = "\
+#[command(group(ArgGroup::new("otherwise").required(true).args(["instead", "assign"])), after_help = "\
 Plays a trial to the decision of a round, decides otherwise, and goes on with the same random streams. What \
-differs between the two trials follows from that decision.
+differs between the two trials, shown side by side, follows from that decision.
 
 Examples:
-  usar fork scenarios/paper.ron --seed 3 --at-round 3 --policy DIS              DIS decides round 3, RNE \
-  goes on
-  usar fork scenarios/paper.ron --seed 3 --at-round 3 --policy DIS --onwards    DIS decides round 3 and all \
+  usar fork scenarios/paper.ron --seed 3 --round 3 --instead DIS              DIS decides round 3, RNE goes on
+  usar fork scenarios/paper.ron --seed 3 --round 3 --instead DIS --onwards    DIS decides round 3 and all \
   later ones
-  usar fork scenarios/paper.ron --at-round 1 --assign 'hard=0,2,5,6,8,11; easy=1,3,4,7,9,10'
-  usar fork results/paper --base ENG --seed 7 --at-round 2 --policy RNE --json")]
+  usar fork scenarios/paper.ron --round 1 --assign 'hard=0,2,5,6,8,11; easy=1,3,4,7,9,10'
+  usar fork results/paper --policy ENG --seed 7 --round 2 --instead RNE --json")]
 pub(crate) struct Arguments {
+    /// Scenario file (RON), or the folder of a sweep
+    #[arg(value_name = "FILE|DIR")]
+    file: PathBuf,
     #[command(flatten)]
     trial: TrialArguments,
-    /// The round that is decided otherwise
+    /// The round
     #[arg(long, value_name = "N")]
-    at_round: u32,
-    /// The policy that decides all else [default: the first of the sweep]
+    round: u32,
+    /// The policy that decides that round instead
     #[arg(long, value_name = "POLICY")]
-    base: Option<String>,
-    /// The policy that decides that round
-    #[arg(long)]
-    policy: Option<String>,
+    instead: Option<String>,
     /// The robots of each task in that round, as `task=ids; task=ids`
     #[arg(long, value_name = "GROUPS")]
     assign: Option<String>,
-    /// Let --policy decide the later rounds, too
-    #[arg(long, requires = "policy")]
+    /// Let --instead decide the later rounds, too
+    #[arg(long, requires = "instead")]
     onwards: bool,
-    /// Print one JSON object
-    #[arg(long)]
-    json: bool,
     #[command(flatten)]
-    pub(crate) shown: ShownArguments,
+    shown: ShownArguments,
 }
 
 /// One of the two trials.
@@ -69,7 +66,6 @@ struct Side {
 
 #[derive(Serialize)]
 struct Output<'a> {
-    schema_version: u32,
     scenario: &'a str,
     seed: u64,
     round: u32,
@@ -83,13 +79,12 @@ struct Output<'a> {
 impl Arguments {
     pub(crate) fn execute(&self, registry: &Registry, out: &mut dyn Write) -> Result<(), Failure> {
         stop_on_signals();
-        let asked = self.trial.open("--base", self.base.as_deref(), registry)?;
-        let other = self.policy.as_deref().map(|text| PolicySpec::parse(text, registry)).transpose();
-        let other = other.map_err(|error| Failure::input(format!("--policy: {error}")))?;
+        let asked = self.trial.open_to_all(&self.file, registry)?;
+        let other =
+            self.instead.as_deref().map(|text| parse_policy("--instead", text, registry)).transpose()?;
         let mut trial = asked.begin()?;
         let (mut base, stop) = (asked.session()?, Deadline::when(&STOP));
-        advance_to(&mut trial, &mut *base, self.at_round, stop)
-            .map_err(|error| failure(error, "--at-round: "))?;
+        advance_to(&mut trial, &mut *base, self.round, stop).map_err(|error| failure(error, "--round: "))?;
         let question = trial.question().ok_or_else(|| Failure::run("the trial asks nothing"))?;
         let start = trial.checkpoint();
         let question = Asked { question, deadline: stop, trial: Some(&trial) };
@@ -101,26 +96,25 @@ impl Arguments {
         let onwards = other_session.as_mut().filter(|_| self.onwards).unwrap_or(&mut base);
         let sides = [as_it_was, side(&start, otherwise, &mut **onwards)?];
         let fork = self.in_words(other.as_ref(), &asked.spec.label);
-        if self.json || self.shown.is_json() {
+        if self.shown.is_json() {
             let output = Output {
-                schema_version: SCHEMA_VERSION,
                 scenario: &asked.scenario.name,
                 seed: asked.seed,
-                round: self.at_round,
+                round: self.round,
                 time_s: trial.time_s(),
                 base: &asked.spec.label,
                 fork,
                 as_it_was: &sides[0],
                 otherwise: &sides[1],
             };
-            return Ok(writeln!(out, "{}", serde_json::to_string(&output).map_err(Failure::run)?)?);
+            return print_json(&output);
         }
         writeln!(
             out,
             "{}, seed {}, round {} at {:.1} s\nas it was  {} decides every round\nthe fork   {fork}",
             asked.scenario.name,
             asked.seed,
-            self.at_round,
+            self.round,
             trial.time_s(),
             asked.spec.label
         )?;
@@ -142,7 +136,7 @@ impl Arguments {
     }
 
     fn in_words(&self, other: Option<&PolicySpec>, base: &str) -> String {
-        let round = self.at_round;
+        let round = self.round;
         match other {
             Some(other) if self.onwards => {
                 format!("{} decides round {round} and all later ones", other.label)
@@ -219,7 +213,7 @@ fn changes(before: &[u32], after: &[u32]) -> String {
     }
 }
 
-fn print(out: &mut dyn Write, asked: &AskedTrial, sides: &[Side; 2]) -> Result<(), Failure> {
+fn print(out: &mut dyn Write, asked: &Trial, sides: &[Side; 2]) -> Result<(), Failure> {
     let mut table = headed(["", "as it was", "the fork", "difference"]);
     let tasks = asked.tasks();
     for (place, task) in tasks.iter().enumerate() {

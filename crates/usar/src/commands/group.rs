@@ -14,9 +14,10 @@ use rne_core::{
     SCHEMA_VERSION, Task,
 };
 
-use super::numbers;
+use crate::arguments::{JsonArgument, numbers, parse_policy};
+use crate::output::print_plain_json;
 
-/// Group a team from a table, or answer a question in JSON, by any policy
+/// Group a team from a table, or answer a question in JSON
 #[derive(Debug, Args)]
 #[command(after_help = "\
 The table (CSV with a header) has the columns id, role, x, y (metres), and optionally energy_level and \
@@ -34,35 +35,33 @@ Examples:
 pub(crate) struct Arguments {
     /// The team (CSV), or a question (JSON)
     file: PathBuf,
-    /// Grouping policy, with its options in brackets
+    /// Policy that decides, with its options in brackets
     #[arg(long, default_value = "RNE")]
     policy: String,
     /// A task: name, difficulty and, for policies that need it, its place `x,y` in metres [default: first,2
     /// and second,1]
     #[arg(long = "task", value_name = "NAME,DIFFICULTY[,X,Y]", allow_hyphen_values = true)]
     tasks: Vec<String>,
-    /// Weight of each need, separated by commas [default: all 1]
+    /// Weight of each need, separated by commas; only their ratios matter [default: all 1]
     #[arg(long, allow_hyphen_values = true)]
     weights: Option<String>,
-    /// Seed of the policy's draws
-    #[arg(long, default_value_t = 1)]
-    seed: u64,
-    /// Print the decision as one JSON object
-    #[arg(long)]
-    json: bool,
+    /// Seed of all that the command itself draws
+    #[arg(long, default_value_t = 1, hide_short_help = true)]
+    draw_seed: u64,
+    #[command(flatten)]
+    json: JsonArgument,
 }
 
 impl Arguments {
     pub(crate) fn execute(&self, registry: &Registry, out: &mut dyn Write) -> Result<(), Failure> {
-        let spec = PolicySpec::parse(&self.policy, registry);
-        let spec = spec.map_err(|error| Failure::input(format!("--policy: {error}")))?;
+        let spec = parse_policy("--policy", &self.policy, registry)?;
         let question = self.question()?;
         let named =
             |error: &dyn std::fmt::Display| Failure::input(format!("{}: {error}", self.file.display()));
         let decision = spec.made().decide(&question).map_err(|error| named(&error))?;
         decision.assignment.check(&question).map_err(|error| named(&error))?;
-        if self.json {
-            return Ok(writeln!(out, "{}", serde_json::to_string(&decision).map_err(Failure::run)?)?);
+        if self.json.json {
+            return print_plain_json(&decision);
         }
         print_text(out, &question, &decision, &spec)
     }
@@ -102,7 +101,7 @@ impl Arguments {
             members,
             may_idle: false,
             history: Vec::new(),
-            random_seed: RandomSeed::from(self.seed),
+            random_seed: RandomSeed::from(self.draw_seed),
         };
         question.checked().map_err(|error| Failure::input(format!("{}: {error}", self.file.display())))
     }

@@ -1,105 +1,145 @@
-//! One file for each command.
+//! The commands: a file for each verb, in a folder for each noun. The first verbs are of no noun.
 
-mod asked;
-pub(crate) mod calibrate;
-pub(crate) mod check;
-pub(crate) mod choose;
-mod chosen;
-pub(crate) mod compare;
-pub(crate) mod completions;
-pub(crate) mod doctor;
-pub(crate) mod draw;
-mod drawn;
-pub(crate) mod estimate;
-mod explored;
-pub(crate) mod export;
-mod family;
-pub(crate) mod figure;
-pub(crate) mod fmt;
-pub(crate) mod fork;
-pub(crate) mod group;
-pub(crate) mod list;
-pub(crate) mod man;
-mod measured_by;
-pub(crate) mod merge;
-pub(crate) mod new;
-pub(crate) mod oracle;
-mod output;
-mod precision;
-pub(crate) mod readings;
-pub(crate) mod regret;
-pub(crate) mod render;
-pub(crate) mod report;
-pub(crate) mod reproduce;
-pub(crate) mod resolve;
-pub(crate) mod run;
-pub(crate) mod schema;
-pub(crate) mod search;
-pub(crate) mod sensitivity;
-mod shown;
-mod slurm;
-mod snapshot;
-pub(crate) mod sorting;
-pub(crate) mod status;
-pub(crate) mod submit;
-pub(crate) mod sweep;
-pub(crate) mod test;
-pub(crate) mod tidy;
-mod trials;
-pub(crate) mod trust;
-pub(crate) mod verify;
-pub(crate) mod view;
-pub(crate) mod why;
+mod check;
+mod cluster;
+mod compare;
+mod export;
+mod fork;
+mod group;
+mod new;
+mod oracle;
+mod overview;
+mod report;
+mod run;
+mod scenario;
+mod search;
+mod self_;
+mod study;
+mod sweep;
+mod test;
+mod trust;
+mod verify;
+mod view;
+mod why;
 
-use std::path::Path;
+use std::io::Write;
+use std::sync::LazyLock;
 
+use clap::{CommandFactory, Parser};
 use experiments::Failure;
-use experiments::sweep::folder::Folder;
+use experiments::provenance::COMMIT;
 use rne_core::Registry;
-use usar_sim::scenario::Scenario;
 
-use crate::bad_value::BadValue;
-use crate::running::tell;
+/// The version, with the commit from which the program was built, if known.
+static VERSION: LazyLock<String> = LazyLock::new(|| match COMMIT {
+    "unknown" => env!("CARGO_PKG_VERSION").to_owned(),
+    commit => format!("{} (commit {commit})", env!("CARGO_PKG_VERSION")),
+});
 
-use shown::print_table;
-pub(crate) use shown::{ShownArguments, sentences};
+/// Which robots should team up? A laboratory for trust and grouping policies
+#[derive(Debug, Parser)]
+#[command(
+    name = "usar",
+    version = VERSION.as_str(),
+    max_term_width = 110,
+    disable_help_subcommand = true,
+    after_long_help = "\
+Exit status:
+  0    a result
+  1    a failure while running: a trial without numbers, a failed check, an internal error
+  2    input that cannot be used; nothing was written
+  3    a disk error; what was finished is kept
+  130  stopped by Ctrl-C (129 by SIGHUP, 143 by SIGTERM)
 
-/// Version of the JSON that the commands print.
-pub(crate) const SCHEMA_VERSION: u32 = 1;
+Data goes to stdout, progress and messages to stderr."
+)]
+pub(crate) struct Cli {
+    #[command(subcommand)]
+    verb: Verb,
+}
 
-/// Loads a scenario and its text. The error has all problems; oddities of a valid scenario go to stderr.
-pub(crate) fn load(path: &Path) -> Result<(Scenario, String), Failure> {
-    let (scenario, text) = Scenario::load(path).map_err(Failure::input)?;
-    for odd in scenario.oddities(&text) {
-        let line = odd.line.map_or(String::new(), |line| format!(":{line}"));
-        tell(format_args!("note: {}{line}: {odd}", path.display()));
+impl Cli {
+    pub(crate) fn execute(&self, registry: &Registry, out: &mut dyn Write) -> Result<(), Failure> {
+        self.verb.execute(registry, out)
     }
-    Ok((scenario, text))
 }
 
-/// Reads the folder of a sweep. A note on stderr tells if trials are missing.
-pub(crate) fn read_sweep(path: &Path, registry: &Registry) -> Result<Folder, Failure> {
-    let folder = Folder::read(path, registry)?;
-    if !folder.manifest().is_complete {
-        let (there, of) = (folder.results().len(), folder.experiment().keys(None).count());
-        let path = path.display();
-        tell(format_args!("note: {path}: the sweep is not complete: {there} of {of} trials are there"));
-    }
-    Ok(folder)
+/// The command line. `usar --help` is an overview; of each command, `-h` shows the options that most people
+/// need and its examples, `--help` all.
+pub(crate) fn command() -> clap::Command {
+    let command = Cli::command();
+    let text = overview::text(&command);
+    examples_first(command).override_help(text)
 }
 
-/// Parses a time interval from the command line.
-pub(crate) fn seconds(text: &str) -> Result<f64, BadValue> {
-    let seconds = text.parse().ok().filter(|seconds| (0.001..=100_000.0).contains(seconds));
-    seconds.ok_or_else(|| BadValue::new("a number from 0.001 to 100000", text))
-}
-
-/// Parses numbers separated by commas.
-pub(crate) fn numbers(flag: &str, text: &str) -> Result<Vec<f64>, Failure> {
-    let number = |(i, part): (usize, &str)| {
-        part.trim().parse::<f64>().map_err(|_| {
-            Failure::input(format!("{flag}: entry {} must be a number, found {:?}", i + 1, part.trim()))
-        })
+/// Leaves the explanation of each command to `--help`, and the examples to both.
+fn examples_first(command: clap::Command) -> clap::Command {
+    let all = command.get_after_help().map(ToString::to_string);
+    let command = match all {
+        None => command,
+        Some(all) => {
+            let examples = all.find("Example").map_or(String::new(), |at| all[at..].to_owned());
+            command.after_help(examples).after_long_help(all)
+        }
     };
-    text.split(',').enumerate().map(number).collect()
+    command.mut_subcommands(examples_first)
 }
+
+/// The verbs of a noun: an enum of their arguments, and a way to execute each.
+macro_rules! verbs {
+    ($name:ident { $($(#[$attribute:meta])* $verb:ident: $arguments:ty),+ $(,)? }) => {
+        #[derive(Debug, clap::Subcommand)]
+        pub(crate) enum $name {
+            $($(#[$attribute])* $verb($arguments),)+
+        }
+
+        impl $name {
+            pub(crate) fn execute(
+                &self,
+                registry: &rne_core::Registry,
+                out: &mut dyn std::io::Write,
+            ) -> Result<(), experiments::Failure> {
+                match self {
+                    $(Self::$verb(arguments) => arguments.execute(registry, out),)+
+                }
+            }
+        }
+    };
+}
+pub(crate) use verbs;
+
+verbs!(Verb {
+    New: new::Arguments,
+    Check: check::Arguments,
+    Run: run::Arguments,
+    View: view::Arguments,
+    Sweep: sweep::Arguments,
+    Compare: compare::Arguments,
+    Report: report::Arguments,
+    Test: test::Arguments,
+    Verify: verify::Arguments,
+    Why: why::Arguments,
+    Fork: fork::Arguments,
+    Oracle: oracle::Arguments,
+    Search: search::Arguments,
+    Trust: trust::Arguments,
+    Group: group::Arguments,
+    /// Scenario files: list, draw, lay out, explain
+    #[command(subcommand, disable_help_subcommand = true)]
+    Scenario: scenario::Verb,
+    /// Figures, tables, pictures and films, and trials for other programs
+    #[command(subcommand, disable_help_subcommand = true)]
+    Export: export::Verb,
+    /// Sweeps on a cluster
+    #[command(subcommand, disable_help_subcommand = true)]
+    Cluster: cluster::Verb,
+    /// Studies: what matters, how good decisions are, and a paper's claims
+    #[command(subcommand, disable_help_subcommand = true)]
+    Study: study::Verb,
+    /// This program: its state, completions for shells, manual pages
+    #[command(name = "self", subcommand, disable_help_subcommand = true)]
+    Own: self_::Verb,
+});
+
+#[cfg(test)]
+mod tests;

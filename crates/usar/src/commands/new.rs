@@ -5,7 +5,10 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 use experiments::Failure;
+use rne_core::Registry;
 use usar_sim::scenario::Scenario;
+
+use crate::output::{create_new, trouble};
 
 /// Write a commented scenario to begin with
 #[derive(Debug, Args)]
@@ -15,25 +18,25 @@ then `usar check NAME.ron`.
 
 Examples:
   usar new mine                            a small mission: four robots, one task
-  usar new mine --from paper               the paper's scenario with all its values
-  usar new mine --from three-tasks
+  usar new mine --like paper               the paper's scenario with all its values
+  usar new mine --like three-tasks
   usar new mine && usar run mine.ron")]
 pub(crate) struct Arguments {
     /// Name of the scenario: letters, digits, `-`, `_` and `.`
     name: String,
     /// What to begin with
-    #[arg(long, default_value = "minimal")]
-    from: From,
-    /// Folder to write to
-    #[arg(long, default_value = ".")]
-    folder: PathBuf,
+    #[arg(long, value_enum, default_value = "minimal")]
+    like: Like,
+    /// File or folder to write [default: this folder]
+    #[arg(long)]
+    out: Option<PathBuf>,
 }
 
 /// The paper's scenario.
-pub(super) const PAPER: &str = include_str!("../../../../scenarios/paper.ron");
+pub(crate) const PAPER: &str = include_str!("../../../../scenarios/paper.ron");
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
-enum From {
+enum Like {
     /// As little as a mission needs
     Minimal,
     /// The paper's experiment
@@ -42,7 +45,7 @@ enum From {
     ThreeTasks,
 }
 
-impl From {
+impl Like {
     fn text(self) -> &'static str {
         match self {
             Self::Minimal => include_str!("../../assets/minimal.ron"),
@@ -53,18 +56,14 @@ impl From {
 }
 
 impl Arguments {
-    pub(crate) fn execute(&self, out: &mut dyn Write) -> Result<(), Failure> {
-        let path = self.folder.join(format!("{}.ron", self.name));
+    pub(crate) fn execute(&self, _: &Registry, out: &mut dyn Write) -> Result<(), Failure> {
+        let folder = self.out.as_deref().unwrap_or(Path::new(""));
+        let path = folder.join(format!("{}.ron", self.name));
         let name = [("name".to_owned(), format!("{:?}", self.name))];
-        let text = ron_tree::edited(self.from.text(), &name).map_err(Failure::input)?;
+        let text = ron_tree::edited(self.like.text(), &name).map_err(Failure::input)?;
         Scenario::parse(&text, Path::new("NAME")).map_err(Failure::input)?;
-        let taken = || Failure::input(format!("{} exists; nothing was overwritten", path.display()));
-        let trouble = |error: std::io::Error| match error.kind() {
-            std::io::ErrorKind::AlreadyExists => taken(),
-            _ => Failure::storage(format!("cannot write {}: {error}", path.display())),
-        };
-        let mut file = std::fs::File::create_new(&path).map_err(trouble)?;
-        file.write_all(text.as_bytes()).map_err(trouble)?;
+        let written = create_new("NAME", &path)?.write_all(text.as_bytes());
+        written.map_err(|error| trouble("NAME", &path, &error))?;
         Ok(writeln!(out, "{}", path.display())?)
     }
 }

@@ -8,7 +8,7 @@ use std::path::PathBuf;
 use std::sync::Mutex;
 use std::sync::atomic::Ordering;
 
-use clap::{Args, ValueEnum};
+use clap::Args;
 use experiments::Failure;
 use experiments::experiment::{PolicySpec, Program, split_list};
 use experiments::oracle::{
@@ -20,10 +20,11 @@ use rayon::prelude::*;
 use rne_core::{Assignment, Deadline, Decision, Question, Registry, Session, assignments};
 use usar_sim::simulation::Checkpoint;
 
-use super::ShownArguments;
-use super::asked::{AskedTrial, TrialArguments};
 use super::fork::failure;
-use crate::running::{STOP, default_jobs, progress_bar, stop_on_signals};
+use crate::arguments::{
+    PoliciesArgument, ProgressArguments, ShownArguments, Trial, TrialArguments, limit, parse_policy,
+};
+use crate::running::{STOP, stop_on_signals};
 
 /// Number of assignments that are played before their outcomes are written to disk.
 const CHUNK: usize = 16;
@@ -32,7 +33,8 @@ const CHUNK: usize = 16;
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Plays each assignment that the quotas allow from the moment of the decision, with the same random streams: \
-to the end of the round, or to the end of the trial. Prints the best and the worst, and where each policy's \
+to the end of the round, or, with --then, to the end of the trial, \
+once for each of these policies. Prints the best and the worst, and where each policy's \
 choice stands. Regret is the best value minus that of the choice.
 
 With more assignments than --limit, it plays a random sample and goes on from the best of it by exchanging \
@@ -42,61 +44,41 @@ Outcomes are kept in --cache: an interrupted run resumes, and `usar why` finds t
 Examples:
   usar oracle scenarios/paper.ron --seed 1 --round 1
   usar oracle scenarios/paper.ron --seed 1 --round 3 --metric rescue_rate --top 10
-  usar oracle scenarios/paper.ron --round 2 --horizon trial --then RNE,DIS --csv outcomes.csv
-  usar oracle results/paper --base DIS --seed 4 --round 2 --policies 'RNE,RNE(sort: true),ENG' --json")]
+  usar oracle scenarios/paper.ron --round 2 --then RNE,DIS --csv outcomes.csv
+  usar oracle results/paper --policy DIS --seed 4 --round 2 --policies 'RNE,RNE(sort: true),ENG' --json")]
 pub(crate) struct Arguments {
+    /// Scenario file (RON), or the folder of a sweep
+    #[arg(value_name = "FILE|DIR")]
+    file: PathBuf,
     #[command(flatten)]
     trial: TrialArguments,
     /// The round
     #[arg(long, value_name = "N", default_value_t = 1)]
     round: u32,
-    /// The policy that decides the rounds before [default: the first of the sweep]
-    #[arg(long, value_name = "POLICY")]
-    base: Option<String>,
-    /// Policies whose choices are judged, separated by commas [default: those of the sweep, or all]
-    #[arg(long)]
-    policies: Option<String>,
-    /// What decisions are judged by, such as `rescuees.total`, `rescue_rate`, `energy_per_rescuee.hard`
+    #[command(flatten)]
+    policies: PoliciesArgument,
+    /// Metric, e.g. `rescuees.total`
     #[arg(long, default_value = "rescuees.total")]
     metric: String,
-    /// How far to play
-    #[arg(long, value_enum, default_value_t = HorizonName::Round)]
-    horizon: HorizonName,
-    /// The policies that decide the rest of the trial, separated by commas; each in turn [default: --base]
-    #[arg(long, value_name = "POLICIES")]
+    /// Play to the end of the trial, in which this policy decides the rest [default: to the end of the round]
+    #[arg(long, value_name = "POLICY")]
     then: Option<String>,
-    /// Most assignments to play
-    #[arg(long, default_value_t = DEFAULT_LIMIT, value_parser = clap::value_parser!(u64).range(2..=1_000_000))]
+    /// Most assignments of a decision to play
+    #[arg(long, hide_short_help = true, default_value_t = DEFAULT_LIMIT, value_parser = limit())]
     limit: u64,
     /// Assignments to show, from the best on
     #[arg(long, value_name = "N", default_value_t = 5)]
     top: usize,
-    /// Write all outcomes to this file as CSV
+    /// Write all numbers to this file as CSV
     #[arg(long, value_name = "FILE")]
     csv: Option<PathBuf>,
-    /// Folder in which outcomes are kept
-    #[arg(long, value_name = "DIR", default_value = "results/oracle")]
+    /// Folder in which `usar oracle` keeps outcomes
+    #[arg(long, value_name = "DIR", default_value = "results/oracle", hide_short_help = true)]
     cache: PathBuf,
-    /// Number of threads [default: one per core]
-    #[arg(long)]
-    jobs: Option<usize>,
-    /// Show no progress
-    #[arg(long)]
-    quiet: bool,
-    /// Print one JSON object
-    #[arg(long)]
-    json: bool,
     #[command(flatten)]
-    pub(crate) shown: ShownArguments,
-}
-
-/// How far assignments are played.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum HorizonName {
-    /// To the end of the round.
-    Round,
-    /// To the end of the trial.
-    Trial,
+    progress: ProgressArguments,
+    #[command(flatten)]
+    shown: ShownArguments,
 }
 
 /// The outcomes of all assignments, with one policy for the rest of the trial.
@@ -108,7 +90,7 @@ struct Answer {
 
 /// The decision that is judged.
 struct Asked<'a> {
-    trial: &'a AskedTrial,
+    trial: &'a Trial,
     question: Question,
     time_s: f64,
     objective: Objective,
@@ -119,7 +101,7 @@ struct Asked<'a> {
 impl Arguments {
     pub(crate) fn execute(&self, registry: &Registry, out: &mut dyn Write) -> Result<(), Failure> {
         stop_on_signals();
-        let trial = self.trial.open("--base", self.base.as_deref(), registry)?;
+        let trial = self.trial.open_to_all(&self.file, registry)?;
         let objective = Objective::parse(&self.metric, &trial.tasks());
         let objective = objective.map_err(|error| Failure::input(format!("--metric: {error}")))?;
         let onwards = self.onwards(&trial)?;
@@ -133,32 +115,26 @@ impl Arguments {
         let key = decision_key(&trial, self.round, &onwards)?;
         let mut log = OutcomeLog::open(&self.cache, &key)?;
         let start = simulation.checkpoint();
-        let pool =
-            rayon::ThreadPoolBuilder::new().num_threads(self.jobs.unwrap_or_else(default_jobs)).build();
-        let pool = pool.map_err(Failure::run)?;
         let mut answers = Vec::new();
         for then in onwards {
-            let survey = pool.install(|| self.play_all(&asked, &start, then.as_ref(), &mut log))?;
+            let survey = self.play_all(&asked, &start, then.as_ref(), &mut log)?;
             answers.push(Answer { then, survey });
         }
         if let Some(path) = &self.csv {
             print::write_csv(path, &asked, &answers)?;
         }
-        if self.json || self.shown.is_json() {
-            print::json(out, &asked, &answers)
+        if self.shown.is_json() {
+            print::json(&asked, &answers)
         } else {
             print::text(out, &asked, &answers, self.top)
         }
     }
 
     /// The choices of the policies that are judged.
-    fn choices(&self, trial: &AskedTrial, question: &Question) -> Result<Vec<(String, Assignment)>, Failure> {
-        let parse = |text: &str| {
-            PolicySpec::parse(text, &trial.registry)
-                .map_err(|error| Failure::input(format!("--policies: {error}")))
-        };
-        let specs = match &self.policies {
-            Some(list) => split_list(list).into_iter().map(parse).collect::<Result<Vec<_>, _>>()?,
+    fn choices(&self, trial: &Trial, question: &Question) -> Result<Vec<(String, Assignment)>, Failure> {
+        let parse = |text: &str| parse_policy("--policies", text, &trial.registry);
+        let specs = match self.policies.list() {
+            Some(list) => list.iter().map(|text| parse(text)).collect::<Result<Vec<_>, _>>()?,
             None if !trial.policies.is_empty() => trial.policies.clone(),
             // A policy that cannot do without options is judged where they are given.
             None => trial.registry.names().into_iter().filter_map(|name| parse(name).ok()).collect(),
@@ -174,21 +150,10 @@ impl Arguments {
     }
 
     /// The policies that decide the rest of the trial; the assignments are played once for each.
-    fn onwards(&self, trial: &AskedTrial) -> Result<Vec<Option<PolicySpec>>, Failure> {
-        match (self.horizon, &self.then) {
-            (HorizonName::Round, None) => Ok(vec![None]),
-            (HorizonName::Round, Some(_)) => {
-                Err(Failure::input("--then: decides the rest of the trial, which needs --horizon trial"))
-            }
-            (HorizonName::Trial, None) => Ok(vec![Some(trial.spec.clone())]),
-            (HorizonName::Trial, Some(list)) => {
-                let parse = |text: &str| {
-                    let spec = PolicySpec::parse(text, &trial.registry);
-                    spec.map(Some).map_err(|error| Failure::input(format!("--then: {error}")))
-                };
-                split_list(list).into_iter().map(parse).collect()
-            }
-        }
+    fn onwards(&self, trial: &Trial) -> Result<Vec<Option<PolicySpec>>, Failure> {
+        let Some(list) = &self.then else { return Ok(vec![None]) };
+        let parse = |text| parse_policy("--then", text, &trial.registry).map(Some);
+        split_list(list).into_iter().map(parse).collect()
     }
 
     fn play_all(
@@ -201,13 +166,13 @@ impl Arguments {
         let name = then.map(PolicySpec::plain);
         let count = assignments::count(&asked.question).min(self.limit);
         let of = then.map_or("assignments".to_owned(), |then| format!("assignments, {} goes on", then.label));
-        let progress = progress_bar(count as usize, &of, self.jobs.unwrap_or_else(default_jobs), self.quiet);
         let named: Vec<Assignment> = asked.choices.iter().map(|(_, choice)| choice.clone()).collect();
-        let batch = Batch { start, then_spec: then, then: name.as_deref(), progress: &progress };
-        let survey = survey(&asked.question, &asked.objective, self.limit, &named, |assignments| {
-            batch.play(assignments, log).map_err(Trouble)
-        });
-        progress.finish_and_clear();
+        let survey = self.progress.work(count as usize, &of, |bar| {
+            let batch = Batch { start, then_spec: then, then: name.as_deref(), progress: bar };
+            survey(&asked.question, &asked.objective, self.limit, &named, |assignments| {
+                batch.play(assignments, log).map_err(Trouble)
+            })
+        })?;
         survey.map_err(|Trouble(failure)| failure)
     }
 }
@@ -269,7 +234,7 @@ impl Batch<'_> {
 
 /// The key under which the outcomes of a decision are stored.
 pub(super) fn decision_key(
-    trial: &AskedTrial,
+    trial: &Trial,
     round: u32,
     thens: &[Option<PolicySpec>],
 ) -> Result<DecisionKey, Failure> {

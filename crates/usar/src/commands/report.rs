@@ -10,22 +10,20 @@ use experiments::sweep::folder::Folder;
 use reports::{ShownTrial, Wanted, write_report};
 use rne_core::Registry;
 
-use super::family::FamilyArguments;
-use super::measured_by::MeasureArguments;
-use super::read_sweep;
-use super::trials::Shown;
 use super::view::page;
-use crate::recordings::{path_of, recording_of};
+use crate::arguments::{CaseArgument, FamilyArguments, MeasureArgument};
+use crate::input::read_sweep;
+use crate::recordings::{Shown, path_of, recording_of};
 
-/// Write a report: means, comparisons, figures, and where it all comes from
+/// Write a page: means, comparisons, figures, and their origin
 #[derive(Debug, Args)]
 #[command(after_help = "\
-Writes report.html into the folder, which opens from disk and prints, and plots/: each figure as SVG and its \
-numbers as CSV. It answers first what `usar compare` with the same flags says. Where the sweep has axes, \
-report.html says how differences change along them, and links to a page for each case. With --trial, \
-the trajectories of all robots in the trials with this seed are drawn; with --with-replays, these trials can \
-be watched from the report: each is a page of its own in plots/, as `usar view` writes it. Both take the \
-recordings of the sweep, or simulate again.
+Writes report.html into the folder, which opens from disk and prints, and plots/: each figure as SVG and \
+its numbers as CSV. It answers first what `usar compare` with the same flags says. Where the sweep has \
+axes, report.html says how differences change along them, and links to a page for each case, up to 24. With \
+--trial, the trajectories of all robots in the trials with this seed are drawn; with --with-replays, these \
+trials can be watched from the report: each is a page of its own in plots/, as `usar view` writes it. Both \
+take the recordings of the sweep, or simulate again.
 
 Examples:
   usar report results/paper
@@ -40,9 +38,8 @@ pub(crate) struct Arguments {
     /// Title of the report [default: the sweep's name]
     #[arg(long)]
     title: Option<String>,
-    /// Case number that gets a page, if the sweep has axes [default: all, up to 24]
-    #[arg(long)]
-    case: Option<usize>,
+    #[command(flatten)]
+    case: CaseArgument,
     /// Draw the trajectories of all robots in the trials with this seed, one for each policy
     #[arg(long, value_name = "SEED")]
     trial: Option<u64>,
@@ -50,36 +47,33 @@ pub(crate) struct Arguments {
     #[arg(long)]
     with_replays: bool,
     #[command(flatten)]
-    pub(crate) measure: MeasureArguments,
+    measure: MeasureArgument,
 }
 
 impl Arguments {
     pub(crate) fn execute(&self, registry: &Registry, out: &mut dyn Write) -> Result<(), Failure> {
+        let registry = &self.measure.chosen_in(registry)?;
         let mut folder = read_sweep(&self.folder, registry)?;
-        let cases = folder.experiment().cases.len();
-        if let Some(case) = self.case.filter(|case| !(1..=cases).contains(case)) {
-            return Err(Failure::input(format!("--case: must be from 1 to {cases}, found {case}")));
-        }
+        let case = self.case.named(folder.experiment())?;
         if folder.results().values().all(|measured| measured.metrics.is_none()) {
             return Err(Failure::input(format!("{}: no trial has given numbers yet", self.folder.display())));
         }
         let wanted = Wanted {
             asked: self.family.asked(folder.experiment())?,
             title: self.title.clone(),
-            case: self.case.map(|case| case - 1),
-            shown: self.shown(&folder)?,
+            case,
+            shown: self.shown(&folder, case.unwrap_or(0))?,
         };
         let path = write_report(&mut folder, wanted)?;
         Ok(writeln!(out, "{}", path.display())?)
     }
 
     /// The trials to draw, with their replays if requested.
-    fn shown(&self, folder: &Folder) -> Result<Vec<ShownTrial>, Failure> {
+    fn shown(&self, folder: &Folder, case: usize) -> Result<Vec<ShownTrial>, Failure> {
         let experiment = folder.experiment();
         let first = experiment.seed(1);
         let Some(seed) = self.trial.or(self.with_replays.then_some(first)) else { return Ok(Vec::new()) };
-        let is_shown =
-            |key: &TrialKey| key.case + 1 == self.case.unwrap_or(1) && key.seed == seed && folder.has(key);
+        let is_shown = |key: &TrialKey| key.case == case && key.seed == seed && folder.has(key);
         let keys: Vec<TrialKey> = experiment.keys(None).filter(is_shown).collect();
         if keys.is_empty() {
             let last = experiment.seed(experiment.trials);
@@ -92,8 +86,8 @@ impl Arguments {
 
     fn show(&self, folder: &Folder, key: &TrialKey) -> Result<ShownTrial, Failure> {
         let path = path_of(folder.path(), folder.experiment(), key);
-        let bytes = recording_of(folder.path(), folder.experiment(), key)?;
-        let shown = Shown { name: format!("{}, seed {}", key.label, key.seed), bytes };
+        let shown = recording_of(folder.path(), folder.experiment(), key)?;
+        let shown = Shown { name: format!("{}, seed {}", key.label, key.seed), ..shown };
         let recording = shown.read()?;
         let stem = path.file_stem().unwrap_or_default().to_string_lossy();
         let page = || (format!("replay-{stem}.html"), page::page(&[shown]).into_bytes());

@@ -2,7 +2,7 @@
 
 mod event_lines;
 mod live;
-mod story;
+mod snapshot;
 
 use std::io::Write;
 use std::path::PathBuf;
@@ -10,7 +10,8 @@ use std::sync::atomic::Ordering;
 
 use clap::Args;
 use experiments::Failure;
-use experiments::experiment::{PolicySpec, check_cost, defaults, with_settings};
+use experiments::experiment::PolicySpec;
+use recording::Story;
 use reports::table::rounds_table;
 use rne_core::{Deadline, Registry, Session};
 use serde::Serialize;
@@ -20,13 +21,11 @@ use usar_sim::simulation::Simulation;
 
 use self::event_lines::EventLines;
 use self::live::Live;
-use self::story::Story;
+use self::snapshot::{Snapshot, save};
+use crate::arguments::{MeasureArgument, ShownArguments, Trial, TrialArguments};
+use crate::output::{print_json, print_table};
 use crate::printable::counted;
 use crate::recordings;
-
-use super::measured_by::MeasureArguments;
-use super::snapshot::{Snapshot, save};
-use super::{SCHEMA_VERSION, ShownArguments, load, print_table};
 use crate::running::{Guard, STOP, session_of, stop_on_signals};
 
 /// Run one trial and tell what happened, round by round
@@ -39,69 +38,54 @@ Examples:
   usar run scenarios/paper.ron --policy 'RNE(hard_rule: MeanEnergy)' --set duration_s=300
   usar run scenarios/paper.ron --seed 3 --save half.snapshot --save-at 300    the trial, and a snapshot of \
   it on the way
-  usar run scenarios/paper.ron --from half.snapshot                           the rest of that trial, with \
+  usar run scenarios/paper.ron --resume half.snapshot                         the rest of that trial, with \
   the same result
-  usar run scenarios/paper.ron --from half.snapshot --policy DIS              another policy goes on from \
+  usar run scenarios/paper.ron --resume half.snapshot --policy DIS            another policy goes on from \
   there
   usar run scenarios/paper.ron --events events.jsonl                          every event with its time
   usar run scenarios/paper.ron --record paper.usrec                           then: usar view paper.usrec")]
-#[expect(clippy::struct_excessive_bools, reason = "each is a switch of the command line")]
 pub(crate) struct Arguments {
-    /// Scenario file (RON)
+    /// Scenario file (RON), or the folder of a sweep
+    #[arg(value_name = "FILE|DIR")]
     file: PathBuf,
-    /// Grouping policy, with its options in brackets [default: the first of FILE's sweep file, or of the
-    /// snapshot]
-    #[arg(long)]
-    policy: Option<String>,
-    /// Seed of the trial [default: the first of FILE's sweep file]
-    #[arg(long)]
-    seed: Option<u64>,
+    #[command(flatten)]
+    trial: TrialArguments,
     /// Write a snapshot of the whole trial to this file, at --save-at; the file must not exist yet
-    #[arg(long, value_name = "FILE", requires = "save_at")]
+    #[arg(long, value_name = "FILE", requires = "save_at", hide_short_help = true)]
     save: Option<PathBuf>,
     /// When to write the snapshot, in seconds of simulated time
-    #[arg(long, value_name = "SECONDS", requires = "save")]
+    #[arg(long, value_name = "SECONDS", requires = "save", hide_short_help = true)]
     save_at: Option<f64>,
     /// Go on from a snapshot of a trial of this scenario
-    #[arg(long, value_name = "FILE", conflicts_with = "seed")]
-    from: Option<PathBuf>,
+    #[arg(long, value_name = "FILE", conflicts_with = "seed", hide_short_help = true)]
+    resume: Option<PathBuf>,
     /// Check every invariant at every step; a violation ends the trial as failed
-    #[arg(long)]
+    #[arg(long, hide_short_help = true)]
     check: bool,
-    /// Run it even if it takes very long: more bodies x steps than docs/limits.md has
-    #[arg(long)]
-    allow_expensive: bool,
-    /// Longest time that the trial may take, in seconds of this machine
-    #[arg(long, default_value_t = 600.0, value_name = "SECONDS")]
+    /// Longest time of a trial, in seconds of this machine
+    #[arg(long, default_value_t = 600.0, value_name = "SECONDS", hide_short_help = true)]
     max_trial_s: f64,
-    /// Set a field of the scenario, by its path, to a value in RON, e.g. `costs.energy.per_step=0.009`; can
-    /// be given several times
-    #[arg(long, value_name = "PATH=VALUE")]
-    set: Vec<String>,
     /// Write a recording of the trial to this file, for `usar view`; the file must not exist yet
     #[arg(long, value_name = "FILE")]
     record: Option<PathBuf>,
-    /// Frames of the recording per second of simulated time
-    #[arg(long, value_name = "FPS", default_value_t = recording::DEFAULT_FPS, requires = "record", value_parser = recordings::fps)]
-    record_fps: f64,
+    /// Frames of the recording per second of simulated time [default: 10]
+    #[arg(long, value_name = "FPS", requires = "record", hide_short_help = true)]
+    #[arg(value_parser = recordings::fps)]
+    record_fps: Option<f64>,
     /// Write every event with its time to this file, a JSON object in a line; the file must not exist yet
     #[arg(long, value_name = "FILE.jsonl")]
     events: Option<PathBuf>,
-    /// Do not show the trial on the terminal while it runs
+    /// No progress on stderr
     #[arg(long)]
     quiet: bool,
-    /// Print one JSON object
-    #[arg(long)]
-    json: bool,
     #[command(flatten)]
-    pub(crate) shown: ShownArguments,
+    shown: ShownArguments,
     #[command(flatten)]
-    pub(crate) measure: MeasureArguments,
+    measure: MeasureArgument,
 }
 
 #[derive(Serialize)]
 struct Output<'a> {
-    schema_version: u32,
     scenario: &'a str,
     policy: &'a str,
     rescuees: u32,
@@ -111,31 +95,20 @@ struct Output<'a> {
 
 impl Arguments {
     pub(crate) fn execute(&self, registry: &Registry, out: &mut dyn Write) -> Result<(), Failure> {
-        let (scenario, _) = load(&self.file)?;
-        let scenario = with_settings(&scenario, &self.set)?;
-        check_cost(&scenario, self.allow_expensive)?;
-        let snapshot = self.from.as_deref().map(Snapshot::read).transpose()?;
-        let (first_policy, first_seed) = defaults(&self.file)?;
-        let asked = match (&self.policy, &snapshot) {
-            (Some(policy), _) => policy,
-            (None, Some(snapshot)) => &snapshot.identity.policy,
-            (None, None) => &first_policy,
-        };
-        let spec = PolicySpec::parse(asked, registry)
-            .map_err(|error| Failure::input(format!("--policy: {error}")))?;
-        spec.check_allowed(&scenario)?;
-        let simulation = match &snapshot {
-            Some(snapshot) => snapshot.restore(&scenario)?,
-            None => Simulation::new(&scenario, self.seed.unwrap_or(first_seed))
-                .map_err(|error| Failure::input(format!("{}: {error}", self.file.display())))?,
-        };
+        let registry = &self.measure.chosen_in(registry)?;
+        let snapshot = self.resume.as_deref().map(Snapshot::read).transpose()?;
+        let otherwise = snapshot.as_ref().map(|snapshot| snapshot.identity.policy.as_str());
+        let trial = self.trial.open(&self.file, otherwise, registry)?;
+        let Trial { scenario, spec, .. } = &trial;
+        let simulation =
+            snapshot.as_ref().map_or_else(|| trial.begin(), |snapshot| snapshot.restore(scenario))?;
         let seed = simulation.seed();
         let mut simulation = if self.check { simulation.checked() } else { simulation };
         if let (Some(path), Some(seconds)) = (&self.save, self.save_at) {
-            save(&mut simulation, &spec, path, seconds)?;
+            save(&mut simulation, spec, path, seconds)?;
         }
         stop_on_signals();
-        let (record, story) = self.run(simulation, &spec, registry)?;
+        let (record, story) = self.run(simulation, spec, registry)?;
         if let Status::Failed(reason) = &record.status {
             if STOP.load(Ordering::Relaxed) {
                 return Err(Failure::Interrupted(format!(
@@ -145,15 +118,14 @@ impl Arguments {
             }
             return Err(Failure::run(format!("trial of {} with seed {seed} failed: {reason}", spec.label)));
         }
-        if self.json || self.shown.is_json() {
+        if self.shown.is_json() {
             let output = Output {
-                schema_version: SCHEMA_VERSION,
                 scenario: &scenario.name,
                 policy: &spec.label,
                 rescuees: record.rescued(),
                 record: &record,
             };
-            return Ok(writeln!(out, "{}", serde_json::to_string(&output).map_err(Failure::run)?)?);
+            return print_json(&output);
         }
         print(out, &scenario.name, &spec.label, &record)?;
         story.iter().try_for_each(|line| Ok(writeln!(out, "{line}")?))
@@ -180,7 +152,11 @@ impl Arguments {
         let record = match &self.record {
             Some(path) => {
                 let (policy, measure) = (spec.label.clone(), spec.measure(registry));
-                let options = recording::Options { policy, measure, fps: self.record_fps };
+                let options = recording::Options {
+                    policy,
+                    measure,
+                    fps: self.record_fps.unwrap_or(recording::DEFAULT_FPS),
+                };
                 recordings::record_to(path, simulation, &mut *session, &options, &mut watch)
             }
             None => run(simulation, &mut *session, &mut watch),

@@ -1,7 +1,7 @@
 //! `usar search`: searches for the scenario in which a policy performs worst.
 
 use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
 
 use clap::Args;
@@ -11,26 +11,26 @@ use experiments::experiment::{Experiment, Overrides};
 use experiments::explore::{Candidate, Descent, FOUND, Hunt, Outcome, Space, Trail};
 use experiments::files::NewFile;
 use experiments::metric::Direction;
-use experiments::run::Limits;
 use experiments::stats::Moments;
 use experiments::stats::bootstrap::interval;
 use experiments::sweep::folder::{Folder, Opening};
 use rne_core::Registry;
 
-use super::SCHEMA_VERSION;
-use super::explored::ExploredArguments;
-use crate::running::{STOP, progress_bar, run_missing, stop_on_signals, tell};
+use crate::arguments::{JsonArgument, ParameterArguments, count, seed, share};
+use crate::output::print_json;
+use crate::running::STOP;
 
 /// Folder of the trials that confirm the found scenario.
 const CONFIRMATION: &str = "confirmation";
 
-/// Where does a policy fail the most? Searches the parameters of a scenario, and confirms on fresh seeds
+/// Where does a policy fail the most?
 #[derive(Debug, Args)]
 #[command(after_help = "\
-Searches for the scenario in which --policy is worst in --metric; with --against, in which it is the \
-farthest behind that policy over paired seeds. The search is CMA-ES, seeded. All candidates are judged by \
-the same seeds, and the best of many is flattered by chance: so what was found is run again with seeds that \
-no candidate was judged by, and only that is a result.
+Searches the parameters of a scenario for values with which --policy is worst in --metric; with --against, \
+with which it is the farthest behind that policy over paired seeds. The search is CMA-ES, seeded, and \
+finishes its last generation. All candidates are judged by the same seeds, and the best of many is \
+flattered by chance: so what was found is run again with seeds that no candidate was judged by, and only \
+that is a result.
 
 Each candidate is on disk as soon as it is done; the same command resumes where it stopped, and more \
 --evaluations go on from there. The folder gets evaluations.csv (the log), search.json, found.ron, and the \
@@ -43,14 +43,14 @@ Examples:
   usar search scenarios/paper.ron --policy RNE --metric distance --highest --over mission.rest_s=0..60")]
 pub(crate) struct Arguments {
     #[command(flatten)]
-    explored: ExploredArguments,
-    /// The policy that is to fail
+    parameters: ParameterArguments,
+    /// Policy that decides, with its options in brackets
     #[arg(long)]
     policy: String,
     /// The policy that it is to be behind
     #[arg(long)]
     against: Option<String>,
-    /// The metric
+    /// Metric, e.g. `rescuees.total`
     #[arg(long, default_value = "rescuees.total")]
     metric: String,
     /// Search for the lowest value or difference [default: where the metric is better high]
@@ -59,39 +59,36 @@ pub(crate) struct Arguments {
     /// Search for the highest value or difference [default: where the metric is better low]
     #[arg(long)]
     highest: bool,
-    /// Candidates to ask for, the start among them; the last generation is finished
-    #[arg(long, default_value_t = 60, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    /// Candidates to ask for, the start among them
+    #[arg(long, default_value_t = 60, value_parser = count(1..=1_000_000))]
     evaluations: u32,
-    /// Trials of each policy for a candidate
-    #[arg(long, default_value_t = 10, value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    /// Trials of each policy, in each case or candidate
+    #[arg(long, default_value_t = 10, value_parser = count(1..=100_000))]
     trials: u32,
-    /// Seed of their first trial
-    #[arg(long, default_value_t = 400_001, value_parser = clap::value_parser!(u64).range(..u64::MAX / 2))]
+    /// Seed of the first trial
+    #[arg(long, hide_short_help = true, default_value_t = 400_001, value_parser = seed())]
     first_seed: u64,
     /// Trials of each policy that confirm what was found
-    #[arg(long, default_value_t = 50, value_parser = clap::value_parser!(u32).range(2..=100_000))]
+    #[arg(long, default_value_t = 50, hide_short_help = true, value_parser = count(2..=100_000))]
     confirm_trials: u32,
     /// Seed of the first of these
-    #[arg(long, default_value_t = 500_001, value_parser = clap::value_parser!(u64).range(..u64::MAX / 2))]
+    #[arg(long, default_value_t = 500_001, hide_short_help = true, value_parser = seed())]
     confirm_seed: u64,
-    /// Seed of the search
-    #[arg(long, default_value_t = 1)]
-    seed: u64,
+    /// Seed of all that the command itself draws
+    #[arg(long, default_value_t = 1, hide_short_help = true)]
+    draw_seed: u64,
     /// How far the first candidates are from the scenario as it is, as a share of each range
-    #[arg(long, default_value_t = 0.3, value_name = "SHARE")]
+    #[arg(long, default_value_t = 0.3, value_name = "SHARE", value_parser = share, hide_short_help = true)]
     first_step: f64,
-    /// Folder for the log and the results [default: results/NAME-search]
-    #[arg(long)]
-    out: Option<PathBuf>,
+    #[command(flatten)]
+    json: JsonArgument,
 }
 
 impl Arguments {
     pub(crate) fn execute(&self, registry: &Registry, out: &mut dyn Write) -> Result<(), Failure> {
         let hunt = self.hunt(registry)?;
-        let name = format!("{}-search", hunt.space.experiment.name);
-        let folder = self.out.clone().unwrap_or_else(|| Path::new("results").join(name));
-        let mut trail = hunt.open(&folder, self.explored.fresh)?;
-        stop_on_signals();
+        let folder = self.parameters.folder(&hunt.space.experiment, "search");
+        let mut trail = hunt.open(&folder, self.parameters.fresh)?;
         let stopped = || {
             let place = folder.display();
             Failure::Interrupted(format!("stopped; what is done is in {place}, and the same command goes on"))
@@ -110,9 +107,7 @@ impl Arguments {
         let confirmed = self.confirm(&folder, registry)?;
         let found = Found { hunt: &hunt, trail: &trail, best, outcome };
         self.print(out, &found, &confirmed)?;
-        if !self.explored.quiet {
-            tell(format_args!("results in {}", folder.display()));
-        }
+        self.parameters.progress.tell(format_args!("results in {}", folder.display()));
         Ok(())
     }
 
@@ -121,10 +116,6 @@ impl Arguments {
     }
 
     fn hunt(&self, registry: &Registry) -> Result<Hunt, Failure> {
-        if !(self.first_step > 0.0 && self.first_step <= 1.0) {
-            let step = self.first_step;
-            return Err(Failure::input(format!("--first-step: must be above 0 and at most 1, found {step}")));
-        }
         let ends = |first: u64, count: u32| (first, first + u64::from(count));
         let (a, b) = (ends(self.first_seed, self.trials), ends(self.confirm_seed, self.confirm_trials));
         if a.0 < b.1 && b.0 < a.1 {
@@ -132,7 +123,7 @@ impl Arguments {
                 "--confirm-seed: the seeds that confirm must be others than those of the search",
             ));
         }
-        let experiment = self.explored.experiment(Some(self.policies()), self.trials, registry)?;
+        let experiment = self.parameters.experiment(Some(self.policies()), self.trials, registry)?;
         let metric = experiment.metrics.named(&self.metric);
         let metric = metric.map_err(|error| Failure::input(format!("--metric: {error}")))?;
         let is_lowest = match experiment.metrics[metric].direction {
@@ -147,26 +138,24 @@ impl Arguments {
             }
         };
         let outcome = outcome(&experiment, metric);
-        let space = Space::new(experiment, &self.explored.over, vec![outcome])?;
-        let descent =
-            Descent { evaluations: self.evaluations as usize, seed: self.seed, first_step: self.first_step };
+        let space = Space::new(experiment, &self.parameters.over, vec![outcome])?;
+        let descent = Descent {
+            evaluations: self.evaluations as usize,
+            seed: self.draw_seed,
+            first_step: self.first_step,
+        };
         Ok(Hunt { space, is_lowest, first_seed: self.first_seed, descent })
     }
 
     fn search(&self, hunt: &Hunt, trail: &mut Trail) -> Result<bool, Failure> {
-        let (there, quiet, jobs) = (trail.candidates().len(), self.explored.quiet, self.explored.jobs());
-        if there > 0 && !quiet {
-            tell(format_args!("{there} evaluations are there already"));
-        }
-        let progress = progress_bar(self.evaluations as usize, "evaluations", jobs, quiet);
-        let is_whole = self.explored.pool()?.install(|| {
+        let progress = &self.parameters.progress;
+        progress.tell_resumed(trail.candidates().len(), "evaluations");
+        progress.work(self.evaluations as usize, "evaluations", |bar| {
             hunt.search(trail, &STOP, |asked, best| {
-                progress.set_position(asked as u64);
-                progress.set_message(format!("(worst so far {})", short(best)));
+                bar.set_position(asked as u64);
+                bar.set_message(format!("(worst so far {})", short(best)));
             })
-        });
-        progress.finish_and_clear();
-        is_whole
+        })?
     }
 
     /// Runs the found scenario with fresh seeds.
@@ -185,10 +174,9 @@ impl Arguments {
                 there.experiment().base.resolved() != experiment.base.resolved()
                     || there.experiment().trials > experiment.trials
             });
-        let opening = Opening { shard: None, is_fresh: is_other || self.explored.fresh };
+        let opening = Opening { shard: None, is_fresh: is_other || self.parameters.fresh };
         let mut confirmed = Folder::open(&path, experiment, opening, &mut |_| {})?;
-        let limits = Limits { jobs: self.explored.jobs(), trial: None };
-        run_missing(&mut confirmed, None, limits, self.explored.quiet)?;
+        self.parameters.progress.run_missing(&mut confirmed, None, None)?;
         confirmed.finish(&STOP)?;
         Ok(confirmed)
     }
@@ -203,9 +191,8 @@ impl Arguments {
             }
         };
         let alone = confirmed.values(0, 0, metric);
-        if self.explored.json {
-            let output = found.as_json(comparison.as_ref(), &alone);
-            return Ok(writeln!(out, "{output}")?);
+        if self.json.json {
+            return print_json(&found.as_json(comparison.as_ref(), &alone));
         }
         found.print(out, self.trials)?;
         let last = self.confirm_seed + u64::from(self.confirm_trials) - 1;
@@ -279,7 +266,6 @@ impl Found<'_> {
         let values: serde_json::Map<String, serde_json::Value> =
             free.map(|(free, value)| (free.name.clone(), (*value).into())).collect();
         serde_json::json!({
-            "schema_version": SCHEMA_VERSION,
             "outcome": self.hunt.space.outcomes[0],
             "values": values,
             "on_search_seeds": self.outcome,

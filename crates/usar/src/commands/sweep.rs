@@ -1,6 +1,8 @@
 //! `usar sweep`: paired trials of several policies, a table, and a folder of results that survives
 //! interruptions.
 
+mod precision;
+
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -9,7 +11,6 @@ use std::time::Duration;
 use clap::Args;
 use experiments::Failure;
 use experiments::experiment::{Experiment, Shard};
-use experiments::run::Limits;
 use experiments::sweep::disk::trials_in;
 use experiments::sweep::folder::{Folder, Opening};
 use experiments::sweep::host::Hosts;
@@ -17,19 +18,20 @@ use experiments::sweep::write_parquet;
 use reports::table::policy_table;
 use rne_core::Registry;
 
-use super::chosen::Chosen;
-use super::measured_by::MeasureArguments;
-use super::precision::Precision;
-use super::{ShownArguments, print_table};
+use self::precision::Precision;
+use crate::arguments::{MeasureArgument, ProgressArguments, Selection, ShownArguments, count};
+use crate::input::check_trials;
+use crate::output::print_table;
 use crate::recordings::{Recorded, record_trials};
-use crate::running::{STOP, default_jobs, run_missing, stop_on_signals, tell};
+use crate::running::{STOP, stop_on_signals, tell};
 
 /// With more cases, tables are left to `usar compare` and `usar report`.
 const MAX_TABLES: usize = 8;
 
-/// Compare policies over paired trials: the same initial levels for every policy
+/// Run paired trials of several policies, and keep the results
 #[derive(Debug, Args)]
 #[command(after_help = "\
+Each trial of a policy has the initial levels of that of every other policy with the same seed. \
 FILE is a scenario, or a sweep file: a scenario with policies, trials and axes (scenarios/sweeps/).
 
 Each trial is on disk as soon as it is done. The same command again resumes where the last one stopped, and \
@@ -45,54 +47,54 @@ Examples:
   usar sweep scenarios/paper.ron
   usar sweep scenarios/paper.ron --policies RNE,RANDOM --trials 100 --out results/many
   usar sweep scenarios/paper.ron --policies 'RNE,sum=RNE(score: Sum)' --out results/sum
-  usar sweep scenarios/paper.ron --record 1              (then: usar view results/paper --policy RNE,DIS)
+  usar sweep scenarios/paper.ron --recordings 1          (then: usar view results/paper --policy RNE,DIS)
   usar sweep scenarios/paper.ron --tables parquet        (the tables as Parquet files as well)
-  usar sweep scenarios/sweeps/energy.ron --shard 2/8     (then `usar merge`)
+  usar sweep scenarios/sweeps/energy.ron --shard 2/8     (then `usar cluster merge`)
   usar sweep scenarios/paper.ron --precision 'rescuees.hard: RNE-DIS: 2.0' --max-trials 500")]
 pub(crate) struct Arguments {
     /// Scenario or sweep file (RON)
     file: PathBuf,
     #[command(flatten)]
-    chosen: Chosen,
-    /// Threads [default: one per core]
-    #[arg(long, value_parser = clap::value_parser!(u32).range(1..=1024))]
-    jobs: Option<u32>,
-    /// Folder for the results [default: results/NAME]
+    selection: Selection,
+    #[command(flatten)]
+    progress: ProgressArguments,
+    /// File or folder to write [default: results/NAME]
     #[arg(long)]
     out: Option<PathBuf>,
-    /// Start over: delete what a sweep has left in the folder
-    #[arg(long)]
+    /// Start over: delete what an earlier run has left in the folder
+    #[arg(long, hide_short_help = true)]
     fresh: bool,
     /// Run part i of n only
-    #[arg(long, value_name = "i/n")]
+    #[arg(long, value_name = "i/n", hide_short_help = true)]
     shard: Option<Shard>,
     /// Add trials until the 95 % interval of a difference is at most this far from its mean, e.g.
     /// 'rescuees.hard: RNE-DIS: 2.0'
-    #[arg(long, value_name = "METRIC: A-B: BOUND", conflicts_with = "shard")]
+    #[arg(long, value_name = "METRIC: A-B: BOUND", hide_short_help = true, conflicts_with = "shard")]
     precision: Option<String>,
-    /// Trials at which --precision gives up
-    #[arg(long, default_value_t = 1000, requires = "precision", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    /// Most trials of each policy and case
+    #[arg(long, default_value_t = 1000, requires = "precision", hide_short_help = true)]
+    #[arg(value_parser = count(1..=1_000_000))]
     max_trials: u32,
-    /// Longest time of one trial, in seconds; one that takes longer is given up
-    #[arg(long, default_value_t = 600.0, value_name = "SECONDS")]
+    /// Longest time of a trial, in seconds of this machine
+    #[arg(long, default_value_t = 600.0, value_name = "SECONDS", hide_short_help = true)]
     max_trial_s: f64,
-    /// Run it even if it takes very long: more bodies x steps than docs/limits.md has
-    #[arg(long)]
+    /// Simulate even if it takes very long: more bodies x steps than docs/limits.md has
+    #[arg(long, hide_short_help = true)]
     allow_expensive: bool,
     /// Record trials for `usar view`: `all`, the first N of each policy, or `seeds=3,7`; files go to the
     /// folder `recordings/` of the results
-    #[arg(long, value_name = "all|N|seeds=LIST")]
-    record: Option<Recorded>,
+    #[arg(long, value_name = "all|N|seeds=LIST", hide_short_help = true)]
+    recordings: Option<Recorded>,
     /// Form of the tables: with `parquet`, Parquet files stand beside the CSV
-    #[arg(long, value_name = "csv|parquet", default_value = "csv", value_parser = ["csv", "parquet"])]
+    #[arg(
+        long, value_name = "csv|parquet", hide_short_help = true, default_value = "csv",
+        value_parser = ["csv", "parquet"]
+    )]
     tables: String,
-    /// No progress on stderr
-    #[arg(long)]
-    quiet: bool,
     #[command(flatten)]
-    pub(crate) shown: ShownArguments,
+    shown: ShownArguments,
     #[command(flatten)]
-    pub(crate) measure: MeasureArguments,
+    measure: MeasureArgument,
 }
 
 impl Arguments {
@@ -103,9 +105,10 @@ impl Arguments {
                 self.max_trial_s
             )));
         }
-        let mut experiment = Experiment::load(&self.file, &self.chosen.overrides(), registry)?;
+        let registry = &self.measure.chosen_in(registry)?;
+        let mut experiment = Experiment::load(&self.file, &self.selection.overrides(), registry)?;
         let path = self.out.clone().unwrap_or_else(|| default_path(&experiment.name, self.shard));
-        if (self.chosen.trials.is_none() || self.precision.is_some())
+        if (self.selection.trials.is_none() || self.precision.is_some())
             && !self.fresh
             && let Some(trials) = trials_in(&path)
             && trials > experiment.trials
@@ -136,7 +139,7 @@ impl Arguments {
         if self.tables == "parquet" {
             write_parquet(&folder)?;
         }
-        if let Some(which) = &self.record {
+        if let Some(which) = &self.recordings {
             record_trials(&mut folder, which, &STOP)?;
         }
         print(out, &folder)?;
@@ -145,12 +148,8 @@ impl Arguments {
             writeln!(out, "{verdict}")?;
             Hosts::note_rule(folder.path(), verdict)?;
         }
-        if !self.quiet {
-            tell(format_args!("results in {}", path.display()));
-        }
-        let failed: Vec<&str> =
-            folder.results().values().filter_map(|measured| measured.failure.as_deref()).collect();
-        if failed.is_empty() { Ok(()) } else { Err(Failure::run(failed.join("\n"))) }
+        self.progress.tell(format_args!("results in {}", path.display()));
+        check_trials([&folder])
     }
 
     /// Largest number of trials with --precision.
@@ -160,9 +159,8 @@ impl Arguments {
 
     /// Runs the missing trials.
     fn run(&self, folder: &mut Folder) -> Result<(), Failure> {
-        let jobs = self.jobs.map_or_else(default_jobs, |jobs| jobs as usize);
-        let limits = Limits { jobs, trial: Some(Duration::from_secs_f64(self.max_trial_s)) };
-        run_missing(folder, self.shard, limits, self.quiet)
+        let longest = Duration::from_secs_f64(self.max_trial_s);
+        self.progress.run_missing(folder, self.shard, Some(longest))
     }
 }
 
@@ -172,7 +170,7 @@ fn default_path(name: &str, shard: Option<Shard>) -> PathBuf {
 }
 
 /// Prints the table of each case, and the number of trials behind it.
-pub(super) fn print(out: &mut dyn Write, folder: &Folder) -> Result<(), Failure> {
+pub(crate) fn print(out: &mut dyn Write, folder: &Folder) -> Result<(), Failure> {
     let experiment = folder.experiment();
     for (i, case) in experiment.cases.iter().enumerate().take(MAX_TABLES) {
         let place = experiment.describe(case);

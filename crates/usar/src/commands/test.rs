@@ -10,16 +10,16 @@ use experiments::Failure;
 use experiments::comparison::short;
 use experiments::expect::{Expectation, Expected, Judgement, Verdict, judge, looks, parse};
 use experiments::experiment::{Experiment, Overrides};
-use experiments::files::NewFile;
-use experiments::run::{Limits, Outcome, TrialKey, run_all};
+use experiments::run::{Outcome, TrialKey, run_all};
 use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
 use rne_core::Registry;
 use serde::Serialize;
 
-use super::SCHEMA_VERSION;
-use crate::running::{STOP, default_jobs, progress_bar, stop_on_signals};
+use crate::arguments::{JsonArgument, ProgressArguments, count};
+use crate::output::{Destination, print_json};
+use crate::running::STOP;
 
-/// Does the outcome meet what is expected of it? Tests of your own scenarios
+/// Does the outcome meet what the sweep file expects of it?
 #[derive(Debug, Args)]
 #[command(after_help = "\
 A sweep file says what is expected of its outcome:
@@ -43,23 +43,18 @@ pub(crate) struct Arguments {
     #[arg(required = true, value_name = "FILE")]
     files: Vec<PathBuf>,
     /// Most trials of each policy and case
-    #[arg(long, default_value_t = 200, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    #[arg(long, default_value_t = 200, value_parser = count(1..=1_000_000))]
     max_trials: u32,
-    /// Number of threads [default: one per core]
-    #[arg(long)]
-    jobs: Option<usize>,
+    #[command(flatten)]
+    progress: ProgressArguments,
     /// Write the results to this file in the XML of `JUnit`
     #[arg(long, value_name = "FILE")]
     junit: Option<PathBuf>,
     /// Simulate even if it takes very long: more bodies x steps than docs/limits.md has
-    #[arg(long)]
+    #[arg(long, hide_short_help = true)]
     allow_expensive: bool,
-    /// Show no progress
-    #[arg(long)]
-    quiet: bool,
-    /// Print one JSON object
-    #[arg(long)]
-    json: bool,
+    #[command(flatten)]
+    json: JsonArgument,
 }
 
 /// An expectation of a case, with its judgement.
@@ -79,7 +74,6 @@ struct Tested {
 
 impl Arguments {
     pub(crate) fn execute(&self, registry: &Registry, out: &mut dyn Write) -> Result<(), Failure> {
-        stop_on_signals();
         let mut suites = Vec::new();
         for file in &self.files {
             let suite = Suite::load(file, self.max_trials, registry)?;
@@ -88,8 +82,8 @@ impl Arguments {
         }
         let mut tested = Vec::new();
         for suite in suites {
-            let found = suite.test(self.jobs.unwrap_or_else(default_jobs), self.quiet)?;
-            if !self.json {
+            let found = suite.test(&self.progress)?;
+            if !self.json.json {
                 found.iter().try_for_each(|tested| writeln!(out, "{}", in_words(tested)))?;
             }
             tested.extend(found);
@@ -98,9 +92,8 @@ impl Arguments {
             write_junit(path, &tested)?;
         }
         let wanting = tested.iter().filter(|tested| tested.judgement.verdict != Verdict::Holds).count();
-        if self.json {
-            let output = serde_json::json!({"schema_version": SCHEMA_VERSION, "expectations": tested});
-            writeln!(out, "{output}")?;
+        if self.json.json {
+            print_json(&serde_json::json!({"expectations": tested}))?;
         }
         if wanting > 0 {
             return Err(Failure::run(format!("{wanting} of {} expectations do not hold", tested.len())));
@@ -147,14 +140,14 @@ impl Suite {
     }
 
     /// Runs trials until every expectation is decided in every case, or no trials are left.
-    fn test(mut self, jobs: usize, quiet: bool) -> Result<Vec<Tested>, Failure> {
+    fn test(mut self, progress: &ProgressArguments) -> Result<Vec<Tested>, Failure> {
         let looks = looks(self.experiment.trials);
         let mut open: Vec<(usize, usize)> = (0..self.experiment.cases.len())
             .flat_map(|case| (0..self.expected.len()).map(move |place| (case, place)))
             .collect();
         let mut tested = BTreeMap::new();
         for look in &looks {
-            self.run_up_to(*look, &open, jobs, quiet)?;
+            self.run_up_to(*look, &open, progress)?;
             open.retain(|(case, place)| {
                 let found = self.judge(*case, *place, *look, looks.len());
                 let is_open = found.judgement.verdict == Verdict::Undecided;
@@ -180,8 +173,7 @@ impl Suite {
         &mut self,
         trials: u32,
         open: &[(usize, usize)],
-        jobs: usize,
-        quiet: bool,
+        progress: &ProgressArguments,
     ) -> Result<(), Failure> {
         let needed = |case, policy| {
             open.iter().any(|(c, place)| *c == case && self.policies(*place).contains(&policy))
@@ -193,20 +185,22 @@ impl Suite {
         let mut keys: Vec<TrialKey> = self.experiment.keys(None).filter(is_missing).collect();
         // Sorted by seed, so that policies that decide alike share their trials.
         keys.sort_by_key(|key| (key.case, key.trial, key.policy));
-        let progress = progress_bar(keys.len(), "trials", jobs, quiet || keys.is_empty());
+        if keys.is_empty() {
+            return Ok(());
+        }
+        let bar = progress.bar(keys.len(), "trials");
         let shared = Arc::clone(&self.experiment);
         let run = Arc::new(move |key: &_, sessions: &mut _, halt: &_| shared.run(key, sessions, halt));
-        let limits = Limits { jobs, trial: None };
-        let is_whole = run_all(keys, limits, run, &STOP, |outcome: Outcome| {
+        let is_whole = run_all(keys, progress.limits(None), run, &STOP, |outcome: Outcome| {
             let value = match outcome.record() {
                 Some(record) => Ok(self.experiment.metrics.measure(record)),
                 None => Err(outcome.failure().unwrap_or_default()),
             };
             self.values.insert((outcome.key.case, outcome.key.policy, outcome.key.trial), value);
-            progress.inc(1);
+            bar.inc(1);
             Ok(())
         })?;
-        progress.finish_and_clear();
+        bar.finish_and_clear();
         if is_whole { Ok(()) } else { Err(Failure::Interrupted("stopped".to_owned())) }
     }
 
@@ -283,9 +277,5 @@ fn write_junit(path: &Path, tested: &[Tested]) -> Result<(), Failure> {
         report.add_test_suite(suite);
     }
     let text = report.to_string().map_err(Failure::run)?;
-    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let name = path.file_name().and_then(|name| name.to_str());
-    let name =
-        name.ok_or_else(|| Failure::input(format!("--junit: {} is no name of a file", path.display())))?;
-    NewFile::write(folder, name, text.as_bytes()).map(drop)
+    Destination::new("--junit", path, true)?.write(text.as_bytes())
 }

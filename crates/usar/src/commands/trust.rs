@@ -4,12 +4,13 @@ use std::io::Write;
 
 use clap::{Args, ValueEnum};
 use experiments::Failure;
-use rne_core::{LogBase, NeedDistribution, NeedVector, NeedWeights, relative_entropy};
-use serde::Serialize;
+use rne_core::{LogBase, NeedDistribution, NeedVector, NeedWeights, Registry, relative_entropy};
+use serde_json::json;
 
-use super::{SCHEMA_VERSION, numbers};
+use crate::arguments::{JsonArgument, numbers};
+use crate::output::print_json;
 
-/// Relative Needs Entropy (RNE) and trust between two robots or groups
+/// Relative Needs Entropy (RNE) and trust of robots or groups
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Lower RNE means more trust. It is not symmetric: try both directions.
@@ -30,10 +31,9 @@ pub(crate) struct Arguments {
     to: Vec<String>,
     /// Base of the logarithm in which the RNE is given
     #[arg(long, default_value = "e")]
-    base: Base,
-    /// Print one JSON object
-    #[arg(long)]
-    json: bool,
+    log_base: Base,
+    #[command(flatten)]
+    json: JsonArgument,
 }
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
@@ -45,55 +45,36 @@ enum Base {
     Ten,
 }
 
-#[derive(Serialize)]
-struct Output {
-    schema_version: u32,
-    /// RNE in nats; null if it is infinite.
-    rne: Option<f64>,
-    infinite: bool,
-    trust: f64,
-    base: &'static str,
-    /// RNE in units of the base; null if it is infinite.
-    rne_in_base: Option<f64>,
-    from: NeedDistribution,
-    to: NeedDistribution,
-}
-
 impl Arguments {
-    pub(crate) fn execute(&self, out: &mut dyn Write) -> Result<(), Failure> {
+    pub(crate) fn execute(&self, _: &Registry, out: &mut dyn Write) -> Result<(), Failure> {
         let weights = NeedWeights::new(numbers("--weights", &self.weights)?)
             .map_err(|error| Failure::input(format!("--weights: {error}")))?;
         let from = distribution("--from", &self.from, &weights)?;
         let to = distribution("--to", &self.to, &weights)?;
         let rne = relative_entropy(&from, &to).map_err(Failure::input)?;
-        let (base, name, unit) = match self.base {
+        let (base, name, unit) = match self.log_base {
             Base::E => (LogBase::E, "e", "nats"),
             Base::Two => (LogBase::Two, "2", "bits"),
             Base::Ten => (LogBase::Ten, "10", "bans"),
         };
-        let output = Output {
-            schema_version: SCHEMA_VERSION,
-            rne: rne.nats(),
-            infinite: rne.is_infinite(),
-            trust: rne.trust(),
-            base: name,
-            rne_in_base: rne.in_base(base),
-            from,
-            to,
-        };
-        if self.json {
-            return writeln!(out, "{}", serde_json::to_string(&output).map_err(Failure::run)?)
-                .map_err(Failure::from);
+        let in_base = rne.in_base(base);
+        if self.json.json {
+            return print_json(&json!({
+                "rne": rne.nats(),
+                "infinite": rne.is_infinite(),
+                "trust": rne.trust(),
+                "base": name,
+                "rne_in_base": in_base,
+                "from": from,
+                "to": to,
+            }));
         }
-        let value = output.rne_in_base.map_or("infinite".to_owned(), |value| format!("{value:.6} {unit}"));
+        let value = in_base.map_or("infinite".to_owned(), |value| format!("{value:.6} {unit}"));
         writeln!(out, "RNE    {value}")?;
-        writeln!(
-            out,
-            "trust  {:.6}   (exp of minus the RNE in nats: 1 is full trust, 0 none)",
-            output.trust
-        )?;
-        writeln!(out, "from   {}", shares(&output.from))?;
-        writeln!(out, "to     {}", shares(&output.to))?;
+        let trust = rne.trust();
+        writeln!(out, "trust  {trust:.6}   (exp of minus the RNE in nats: 1 is full trust, 0 none)")?;
+        writeln!(out, "from   {}", shares(&from))?;
+        writeln!(out, "to     {}", shares(&to))?;
         Ok(())
     }
 }

@@ -9,20 +9,21 @@ use clap::Args;
 use experiments::Failure;
 use experiments::experiment::{Experiment, Program};
 use experiments::provenance::{COMMIT, Manifest};
-use experiments::run::{Limits, Run, TrialKey, run_all};
+use experiments::run::{Run, TrialKey, run_all};
 use experiments::sweep::audit::{difference, strange_files};
 use experiments::sweep::folder::Folder;
 use rne_core::{Basis, Registry};
 
-use crate::running::{STOP, default_jobs, progress_bar, stop_on_signals, tell};
+use crate::arguments::{ProgressArguments, count};
+use crate::running::{STOP, tell};
 
-/// Run a finished sweep again and compare every state, every number and every table
+/// Run a finished sweep again: do the numbers come out again?
 #[derive(Debug, Args)]
 #[command(after_help = "\
-Exit status 0 only when every trial that was run again has the same hash chain and the same line in the \
-journal, byte for byte, and every table is what the journal gives. Otherwise the first trial, step and part \
-of the state that differ are named (bodies, robots, debris, rescuees, beliefs, mission, routes, resolver \
-or events), or the number, or the file.
+Compares every state, every number and every table. Exit status 0 only when every trial that was run again \
+has the same hash chain and the same line in the journal, byte for byte, and every table is what the \
+journal gives. Otherwise the first trial, step and part of the state that differ are named (bodies, robots, \
+debris, rescuees, beliefs, mission, routes, resolver or events), or the number, or the file.
 
 Examples:
   usar verify results/paper
@@ -31,14 +32,10 @@ pub(crate) struct Arguments {
     /// Folder of a finished sweep
     folder: PathBuf,
     /// Run only this many trials, spread evenly over the sweep
-    #[arg(long, value_parser = clap::value_parser!(u32).range(1..))]
+    #[arg(long, value_parser = count(1..))]
     sample: Option<u32>,
-    /// Threads [default: one per core]
-    #[arg(long, value_parser = clap::value_parser!(u32).range(1..=1024))]
-    jobs: Option<u32>,
-    /// No progress on stderr
-    #[arg(long)]
-    quiet: bool,
+    #[command(flatten)]
+    progress: ProgressArguments,
 }
 
 /// Time limit of a trial.
@@ -93,19 +90,17 @@ impl Arguments {
         folder: &mut Folder,
         chosen: Vec<TrialKey>,
     ) -> Result<Vec<(TrialKey, String)>, Failure> {
-        let jobs = self.jobs.map_or_else(default_jobs, |jobs| jobs as usize);
-        let progress = progress_bar(chosen.len(), "trials", jobs, self.quiet);
+        let bar = self.progress.bar(chosen.len(), "trials");
         let experiment = folder.shared_experiment();
         let run: Arc<Run> = Arc::new(move |key, sessions, halt| experiment.run_alone(key, sessions, halt));
         let mut differences = Vec::new();
-        stop_on_signals();
-        let limits = Limits { jobs, trial: Some(LONGEST_TRIAL) };
+        let limits = self.progress.limits(Some(LONGEST_TRIAL));
         let is_whole = run_all(chosen, limits, run, &STOP, |outcome| {
-            progress.inc(1);
+            bar.inc(1);
             differences.extend(difference(folder, &outcome)?.map(|what| (outcome.key, what)));
             Ok(())
         })?;
-        progress.finish_and_clear();
+        bar.finish_and_clear();
         if is_whole {
             Ok(differences)
         } else {
@@ -118,8 +113,8 @@ impl Arguments {
         let of = |key: &TrialKey| &experiment.policies[key.policy];
         let is_determined = |key: &TrialKey| of(key).made().it.basis() != Basis::Undetermined;
         let (kept, left): (Vec<TrialKey>, Vec<TrialKey>) = keys.into_iter().partition(is_determined);
-        if let Some(key) = left.first().filter(|_| !self.quiet) {
-            tell(format_args!(
+        if let Some(key) = left.first() {
+            self.progress.tell(format_args!(
                 "note: {} trials are not run again, because policy {} says that its answers may differ",
                 left.len(),
                 of(key).label
@@ -137,8 +132,8 @@ impl Arguments {
     /// program.
     fn mention_other_program(&self, experiment: &Experiment, manifest: &Manifest) -> Result<(), Failure> {
         let this = Program::running(&experiment.policies)?;
-        if !self.quiet && manifest.program() != this {
-            tell(format_args!(
+        if manifest.program() != this {
+            self.progress.tell(format_args!(
                 "note: the sweep is of usar {} ({}), this is usar {} ({COMMIT})",
                 manifest.version, manifest.commit, this.version
             ));

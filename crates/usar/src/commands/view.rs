@@ -1,7 +1,7 @@
 //! `usar view`: shows a trial as one page that needs only a browser.
 
 mod at;
-pub(crate) mod page;
+pub(super) mod page;
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -11,7 +11,8 @@ use clap::Args;
 use experiments::Failure;
 use rne_core::Registry;
 
-use super::trials::{Asked, Shown};
+use crate::arguments::TrialArguments;
+use crate::recordings::Shown;
 use crate::running::tell;
 
 /// Watch a trial, or several side by side, in a browser
@@ -20,6 +21,8 @@ use crate::running::tell;
 FILE is a recording (`usar run --record`), a scenario, which is simulated first, or the folder of a sweep, \
 whose trial is taken from its recordings or simulated again. The page has everything in it: it needs no \
 server and no network, and can be sent to others. An earlier page of this command is replaced, no other file.
+
+With --at, no page is written: the state at that moment is printed as JSON. --policy can be a list.
 
 In the page: space plays and pauses, the arrows step, + and - change the speed, a click on a robot shows its \
 levels, needs and delays, f follows it, ? lists all keys.
@@ -35,24 +38,24 @@ pub(crate) struct Arguments {
     #[arg(required = true, value_name = "FILE")]
     files: Vec<PathBuf>,
     #[command(flatten)]
-    asked: Asked,
-    /// The page to write [default: FILE.html, in this folder]
+    trial: TrialArguments,
+    /// File or folder to write [default: FILE.html]
     #[arg(long, value_name = "FILE.html")]
     out: Option<PathBuf>,
     /// Do not open the page
     #[arg(long)]
     no_open: bool,
-    /// Print the state at this simulated time in seconds as JSON, instead of a page
+    /// A moment, in seconds of simulated time
     #[arg(long, value_name = "SECONDS", conflicts_with_all = ["out", "no_open"])]
     at: Option<f64>,
 }
 
 impl Arguments {
     pub(crate) fn execute(&self, registry: &Registry, out: &mut dyn Write) -> Result<(), Failure> {
-        let shown = self.asked.open(&self.files, registry)?;
+        let shown = self.trial.recordings(&self.files, registry)?;
         let recordings = shown.iter().map(Shown::read).collect::<Result<Vec<_>, Failure>>()?;
         if let Some(time_s) = self.at {
-            return at::print(out, &recordings, time_s);
+            return at::print(&recordings, time_s);
         }
         let path = self.out.clone().unwrap_or_else(|| default_path(&self.files[0]));
         page::write(&path, &shown)?;

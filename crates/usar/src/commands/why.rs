@@ -17,10 +17,9 @@ use serde::Serialize;
 use usar_sim::record::{DecisionRecord, Status};
 use usar_sim::simulation::Simulation;
 
-use super::asked::{AskedTrial, TrialArguments};
-use super::measured_by::MeasureArguments;
 use super::oracle::decision_key;
-use super::{SCHEMA_VERSION, ShownArguments};
+use crate::arguments::{MeasureArgument, ShownArguments, Trial, TrialArguments};
+use crate::output::print_json;
 use crate::running::{Guard, stop_on_signals};
 use robot::{RobotStory, Watched};
 
@@ -37,11 +36,11 @@ Examples:
   usar why scenarios/paper.ron --seed 3 --robot 4 --at 128.4
   usar why results/paper --policy ENG --seed 7 --round 2 --json")]
 pub(crate) struct Arguments {
+    /// Scenario file (RON), or the folder of a sweep
+    #[arg(value_name = "FILE|DIR")]
+    file: PathBuf,
     #[command(flatten)]
     trial: TrialArguments,
-    /// The policy that decides [default: the first of the sweep]
-    #[arg(long)]
-    policy: Option<String>,
     /// The round [default: the one at --at, or the first]
     #[arg(long, value_name = "N")]
     round: Option<u32>,
@@ -52,15 +51,12 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "SECONDS", requires = "robot")]
     at: Option<f64>,
     /// Folder in which `usar oracle` keeps outcomes
-    #[arg(long, value_name = "DIR", default_value = "results/oracle")]
+    #[arg(long, value_name = "DIR", default_value = "results/oracle", hide_short_help = true)]
     cache: PathBuf,
-    /// Print one JSON object
-    #[arg(long)]
-    json: bool,
     #[command(flatten)]
-    pub(crate) shown: ShownArguments,
+    shown: ShownArguments,
     #[command(flatten)]
-    pub(crate) measure: MeasureArguments,
+    measure: MeasureArgument,
 }
 
 /// The oracle's judgement of a decision, in one metric, over one horizon.
@@ -79,7 +75,6 @@ struct OracleSays {
 /// The full account.
 #[derive(Serialize)]
 struct Account<'a> {
-    schema_version: u32,
     scenario: &'a str,
     seed: u64,
     policy: &'a str,
@@ -105,7 +100,8 @@ struct Account<'a> {
 impl Arguments {
     pub(crate) fn execute(&self, registry: &Registry, out: &mut dyn Write) -> Result<(), Failure> {
         stop_on_signals();
-        let asked = self.trial.open("--policy", self.policy.as_deref(), registry)?;
+        let registry = &self.measure.chosen_in(registry)?;
+        let asked = self.trial.open_to_all(&self.file, registry)?;
         let mut simulation = asked.begin()?;
         let watched = self.play(&asked, &mut simulation)?;
         let round = self.round.unwrap_or_else(|| simulation.decisions().len().max(1) as u32);
@@ -117,14 +113,14 @@ impl Arguments {
             )));
         };
         let account = self.account(&asked, &simulation, record, watched)?;
-        if self.json || self.shown.is_json() {
-            return Ok(writeln!(out, "{}", serde_json::to_string(&account).map_err(Failure::run)?)?);
+        if self.shown.is_json() {
+            return print_json(&account);
         }
         told::text(out, &account, &asked)
     }
 
     /// Plays the trial up to the requested moment.
-    fn play(&self, asked: &AskedTrial, simulation: &mut Simulation) -> Result<Option<Watched>, Failure> {
+    fn play(&self, asked: &Trial, simulation: &mut Simulation) -> Result<Option<Watched>, Failure> {
         let robots = simulation.world().robots.len();
         if let Some(robot) = self.robot.filter(|robot| *robot as usize >= robots) {
             return Err(Failure::input(format!("--robot: must be below {robots}, found {robot}")));
@@ -154,7 +150,7 @@ impl Arguments {
 
     fn account<'a>(
         &self,
-        asked: &'a AskedTrial,
+        asked: &'a Trial,
         simulation: &'a Simulation,
         record: &'a DecisionRecord,
         watched: Option<Watched>,
@@ -182,7 +178,6 @@ impl Arguments {
         let history = before.filter(|round| round.round < question.round).cloned().collect();
         let full = Question { history, ..question.clone() };
         Ok(Account {
-            schema_version: SCHEMA_VERSION,
             scenario: &asked.scenario.name,
             seed: asked.seed,
             policy: &asked.spec.label,
@@ -203,7 +198,7 @@ impl Arguments {
     /// The oracle's judgements of a decision, as far as outcomes are known.
     fn oracle(
         &self,
-        asked: &AskedTrial,
+        asked: &Trial,
         question: &Question,
         chosen: &Assignment,
     ) -> Result<Vec<OracleSays>, Failure> {
@@ -247,7 +242,7 @@ fn judgement(survey: &Survey, metric: &str, tasks: &[String], chosen: &Assignmen
 }
 
 /// The policies other than the one that decided.
-fn others(asked: &AskedTrial) -> Result<Vec<PolicySpec>, Failure> {
+fn others(asked: &Trial) -> Result<Vec<PolicySpec>, Failure> {
     let all = if asked.policies.is_empty() {
         let parse = |name| PolicySpec::parse(name, &asked.registry);
         let names = asked.registry.names().into_iter().map(parse);

@@ -26,13 +26,14 @@ pub fn refused(output: &Output, messages: &[&str]) {
 }
 
 fn calibrate<'a>(out: &'a str, more: &[&'a str]) -> Vec<&'a str> {
-    let mut arguments = vec!["calibrate", "short.ron", "--target", "target.csv", "--trials", "2"];
+    let mut arguments =
+        vec!["study", "yang2021", "calibrate", "short.ron", "--target", "target.csv", "--trials", "2"];
     arguments.extend(["--fresh-trials", "2", "--quiet", "--out", out]);
-    arguments.extend(["--free", "roles.carrier.speed_mps + roles.supplier.speed_mps=1..4"]);
+    arguments.extend(["--over", "roles.carrier.speed_mps + roles.supplier.speed_mps=1..4"]);
     arguments.extend([
-        "--free",
+        "--over",
         "radiation[*].radius_m = 2..6",
-        "--free",
+        "--over",
         "costs.energy.per_step=0.001..0.02 log",
     ]);
     arguments.extend(more);
@@ -64,7 +65,7 @@ fn a_calibration_that_was_broken_off_ends_as_one_that_was_not() {
     }
     let (scenario, text) = Scenario::load(&folder.join("whole/calibrated.ron")).unwrap();
     assert_eq!(scenario.name, "paper-fitted");
-    assert!(text.starts_with("// Fitted by usar calibrate (misfit "), "{text}");
+    assert!(text.starts_with("// Fitted by usar study yang2021 calibrate (misfit "), "{text}");
     assert!(text.contains("// Places [view]"), "comments stay");
     no_other_policy_runs_in(folder, "whole/calibrated.ron");
     assert_eq!(scenario.roles[0].speed_mps.to_bits(), scenario.roles[1].speed_mps.to_bits());
@@ -84,9 +85,9 @@ fn no_other_policy_runs_in(folder: &std::path::Path, file: &str) {
     for arguments in [
         vec!["run", file, "--policy", "RNE"],
         vec!["sweep", file, "--policies", "DIS,RNE"],
-        vec!["estimate", file, "--policies", "RNE"],
+        vec!["cluster", "estimate", file, "--policies", "RNE"],
         vec!["view", file, "--policy", "RNE", "--no-open"],
-        vec!["fork", file, "--at-round", "1", "--policy", "RNE"],
+        vec!["fork", file, "--round", "1", "--instead", "RNE"],
         vec!["oracle", file],
     ] {
         refused(&usar(folder, &arguments), &message);
@@ -102,20 +103,20 @@ fn what_cannot_be_calibrated_is_refused() {
     let folder = place.path();
     let run = |more: &[&str]| usar(folder, &calibrate("out", more));
     refused(
-        &run(&["--free", "roles.carrier.wings=1..2"]),
-        &["--free: roles.carrier.wings is no field; roles.carrier has name, kind, radius_m"],
+        &run(&["--over", "roles.carrier.wings=1..2"]),
+        &["--over: roles.carrier.wings is no field; roles.carrier has name, kind, radius_m"],
     );
     refused(
-        &run(&["--free", "roles.carrier.capacity=2..8"]),
-        &["--free: roles.carrier.capacity: takes whole numbers only"],
+        &run(&["--over", "roles.carrier.capacity=2..8"]),
+        &["--over: roles.carrier.capacity: takes whole numbers only"],
     );
-    refused(&run(&["--free", "duration_s=60..90"]), &["--free: duration_s: is that of the recorded trials"]);
+    refused(&run(&["--over", "duration_s=60..90"]), &["--over: duration_s: is that of the recorded trials"]);
     refused(&run(&["--set", "radiation[0].radius_m=3.0"]), &["--set: radiation[0].radius_m is free"]);
     refused(
-        &run(&["--free", "mission.health_floor=0..1"]),
-        &["--free: mission.health_floor must be a number from", "found 0"],
+        &run(&["--over", "mission.health_floor=0..1"]),
+        &["--over: mission.health_floor must be a number from", "found 0"],
     );
-    refused(&run(&["--free", "radiation[0].radius_m=2..3"]), &["radiation[0].radius_m is set twice"]);
+    refused(&run(&["--over", "radiation[0].radius_m=2..3"]), &["radiation[0].radius_m is set twice"]);
     refused(
         &run(&["--set", "mission.loading_s=1.0", "--set", "mission.loading_s=2.0"]),
         &["--set: mission.loading_s is set twice"],
@@ -176,7 +177,7 @@ fn a_search_begins_within_its_ranges() {
     let place = place();
     let folder = place.path();
     let mut arguments =
-        calibrate("out", &["--free", "costs.energy.per_metre=0.1..0.2 log", "--evaluations", "1"]);
+        calibrate("out", &["--over", "costs.energy.per_metre=0.1..0.2 log", "--evaluations", "1"]);
     arguments.retain(|argument| *argument != "--quiet");
     let output = usar(folder, &arguments);
     let told = String::from_utf8_lossy(&output.stderr).into_owned();

@@ -26,11 +26,11 @@ fn with_slurm(here: &Path, command: &mut Command, more: &[(&str, &str)]) -> Outp
 }
 
 fn submit<'a>(more: &[&'a str]) -> Vec<&'a str> {
-    [&["submit"], &SWEEP[..], &["--slurm", "--cpus", "2"], more].concat()
+    [&["cluster", "submit"], &SWEEP[..], &["--cpus", "2"], more].concat()
 }
 
 fn status(here: &Path) -> Value {
-    serde_json::from_str(&succeeds(&usar(here, &["status", "results/paper-shards", "--json"]))).unwrap()
+    serde_json::from_str(&succeeds(&usar(here, "cluster status results/paper-shards --json"))).unwrap()
 }
 
 #[test]
@@ -51,7 +51,7 @@ fn a_sweep_on_a_cluster_goes_on_after_kills_and_has_the_bytes_of_a_single_run() 
     let finished = before["finished"].as_u64().unwrap();
     assert!((21..30).contains(&finished), "two shards and a part of the second: {finished}");
     // The printed command submits the missing tasks, and the merge.
-    let shown = succeeds(&usar(here, &["status", "results/paper-shards"]));
+    let shown = succeeds(&usar(here, "cluster status results/paper-shards"));
     let line = shown.lines().last().unwrap();
     assert!(line.contains("--array=2,4%4 "), "{line}");
     let output = with_slurm(here, Command::new("bash").args(["-c", line]), &[]);
@@ -126,21 +126,21 @@ fn shards_that_were_run_by_hand_have_a_status_too() {
     let folder = place();
     let here = folder.path();
     succeeds(&usar(here, &[&["sweep"], &SWEEP[..], &["--shard", "1/2"]].concat()));
-    let said = succeeds(&usar(here, &["status", "results"]));
+    let said = succeeds(&usar(here, "cluster status results"));
     assert!(said.starts_with("shards  2: 1 done, 1 lost\ntrials  20 of 40\n"), "{said}");
     let own = std::fs::read_dir(here.join("results")).unwrap().next().unwrap().unwrap().path();
     let own = own.strip_prefix(here).unwrap();
     let command = format!("usar sweep {}/sweep.ron --shard 2/2 --out results/2", own.display());
     assert!(said.contains(&format!("not started; to run it: {command}")), "{said}");
-    let said = succeeds(&usar(here, &["status", own.to_str().unwrap()]));
+    let said = succeeds(&usar(here, &["cluster", "status", own.to_str().unwrap()]));
     assert!(said.starts_with("shards  1: 1 done\ntrials  20 of 20\n"), "{said}");
     // The command runs the shard, and then the command that merges is told.
     succeeds(&usar(here, &command.split(' ').skip(1).collect::<Vec<_>>()));
-    let said = succeeds(&usar(here, &["status", "results"]));
-    assert!(said.ends_with("this merges them:\nusar merge results --out results-merged\n"), "{said}");
-    succeeds(&usar(here, &["merge", "results", "--out", "results-merged"]));
-    let said = succeeds(&usar(here, &["status", "results"]));
+    let said = succeeds(&usar(here, "cluster status results"));
+    assert!(said.ends_with("this merges them:\nusar cluster merge results --out results-merged\n"), "{said}");
+    succeeds(&usar(here, "cluster merge results --out results-merged"));
+    let said = succeeds(&usar(here, "cluster status results"));
     assert!(said.ends_with("trials  40 of 40\n"), "{said}");
     std::fs::create_dir(here.join("empty")).unwrap();
-    refused(here, 2, &["status", "empty"], &["has neither shards nor a sweep in it"]);
+    refused(here, 2, "cluster status empty", &["has neither shards nor a sweep in it"]);
 }

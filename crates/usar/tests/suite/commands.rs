@@ -2,20 +2,20 @@
 
 use serde_json::Value;
 
-use crate::support::{root, succeeds, usar};
+use crate::support::{Words, root, succeeds, usar};
 
 pub fn paper_text() -> String {
     std::fs::read_to_string(root().join("scenarios/paper.ron")).unwrap()
 }
 
-pub fn json(arguments: &[&str]) -> Value {
+pub fn json(arguments: &(impl Words + ?Sized)) -> Value {
     let output = usar(&root(), arguments);
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     serde_json::from_slice(&output.stdout).unwrap()
 }
 
 #[track_caller]
-pub fn refused(arguments: &[&str], message: &str) {
+pub fn refused(arguments: &(impl Words + ?Sized), message: &str) {
     let folder = tempfile::tempdir().unwrap();
     let output = usar(folder.path(), arguments);
     let stderr = String::from_utf8_lossy(&output.stderr);
@@ -28,7 +28,7 @@ pub fn refused(arguments: &[&str], message: &str) {
 
 #[test]
 fn trust_prints_the_papers_first_example() {
-    let value = json(&["trust", "--weights", "6,4,2", "--from", "86,120,30", "--to", "20,30,10", "--json"]);
+    let value = json("trust --weights 6,4,2 --from 86,120,30 --to 20,30,10 --json");
     assert_eq!(value["schema_version"], 1);
     assert_eq!(value["infinite"], false);
     let rne = value["rne"].as_f64().unwrap();
@@ -53,7 +53,7 @@ fn trust_between_groups_and_in_other_bases() {
         "--to",
         "56,48,15",
         "--json",
-        "--base",
+        "--log-base",
         "10",
     ];
     let value = json(&groups);
@@ -64,7 +64,7 @@ fn trust_between_groups_and_in_other_bases() {
 
 #[test]
 fn infinite_rne_is_said_and_not_printed_as_a_number() {
-    let value = json(&["trust", "--weights", "1,1", "--from", "1,1", "--to", "1,0", "--json"]);
+    let value = json("trust --weights 1,1 --from 1,1 --to 1,0 --json");
     assert_eq!(
         (&value["rne"], &value["infinite"], value["trust"].as_f64()),
         (&Value::Null, &Value::Bool(true), Some(0.0))
@@ -192,7 +192,9 @@ fn bad_files_are_refused() {
     let here = folder.path().to_str().unwrap();
     for verb in ["check", "run", "sweep"] {
         refused(&[verb, "missing.ron"], "missing.ron: cannot be read");
-        refused(&[verb, here], "is a folder, not a file");
+        let words =
+            if verb == "run" { "is not the folder of a finished sweep" } else { "is a folder, not a file" };
+        refused(&[verb, here], words);
         refused(&[verb, &empty], "empty.ron: is empty");
         refused(&[verb, &blank], "blank.ron: is empty");
         refused(&[verb, &broken], "broken.ron:1:");
@@ -215,7 +217,11 @@ fn the_schemas_in_the_documents_are_those_of_the_types() {
     let docs = root().join("docs/schemas");
     for of in ["question", "decision", "scenario", "sweep"] {
         let expected = std::fs::read_to_string(docs.join(format!("{of}.schema.json"))).unwrap();
-        assert_eq!(succeeds(&usar(&docs, &["schema", of])), expected, "usar schema {of} makes it anew");
+        assert_eq!(
+            succeeds(&usar(&docs, &["scenario", "schema", of])),
+            expected,
+            "usar scenario schema {of} makes it anew"
+        );
     }
 }
 

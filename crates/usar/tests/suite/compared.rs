@@ -9,23 +9,10 @@ use crate::support::{succeeds, usar};
 fn comparisons_are_paired_and_say_what_they_stand_on() {
     let folder = place();
     let here = folder.path();
-    succeeds(&usar(
-        here,
-        &["sweep", "short.ron", "--policies", "RNE,DIS,ENG", "--trials", "6", "--set", "duration_s=120"],
-    ));
+    succeeds(&usar(here, "sweep short.ron --policies RNE,DIS,ENG --trials 6 --set duration_s=120"));
     let json: Value = serde_json::from_str(&succeeds(&usar(
         here,
-        &[
-            "compare",
-            "results/paper",
-            "--metric",
-            "distance",
-            "--metric",
-            "rescuees.hard",
-            "--baseline",
-            "DIS",
-            "--json",
-        ],
+        "compare results/paper --metric distance --metric rescuees.hard --baseline DIS --json",
     )))
     .unwrap();
     let comparisons = json["comparisons"].as_array().unwrap();
@@ -51,37 +38,37 @@ fn comparisons_are_paired_and_say_what_they_stand_on() {
     assert!((comparisons[0]["pairing"].as_f64().unwrap() / pairing - 1.0).abs() < 1e-9);
     let [low, high] = [0, 1].map(|i: usize| comparisons[0]["interval"][i].as_f64().unwrap());
     assert!(low <= mean && mean <= high);
-    let text = succeeds(&usar(here, &["compare", "results/paper"]));
+    let text = succeeds(&usar(here, "compare results/paper"));
     assert!(text.contains("Holm's correction over the 6 comparisons above"), "{text}");
-    let all = succeeds(&usar(here, &["compare", "results/paper", "--metric", "all", "--json"]));
+    let all = succeeds(&usar(here, "compare results/paper --metric all --json"));
     let all: Value = serde_json::from_str(&all).unwrap();
     assert!(all["comparisons"].as_array().unwrap().len() > 100, "every metric, every pair of policies");
     assert!(text.contains("in which the metric is not defined"), "{text}");
     assert!(!text.contains("NaN") && !text.contains("inf"), "{text}");
-    assert_eq!(text, succeeds(&usar(here, &["compare", "results/paper"])), "the bootstrap is seeded");
+    assert_eq!(text, succeeds(&usar(here, "compare results/paper")), "the bootstrap is seeded");
     refused(
         here,
         2,
-        &["compare", "results/paper", "--metric", "luck"],
+        "compare results/paper --metric luck",
         &["unknown metric \"luck\"; known metrics: rescuees.total"],
     );
     refused(
         here,
         2,
-        &["compare", "results/paper", "--baseline", "RANDOM"],
+        "compare results/paper --baseline RANDOM",
         &["must be a policy of the sweep (RNE, DIS, ENG)"],
     );
     refused(
         here,
         2,
-        &["compare", "results/paper", "--policies", "RNE,RANDOM"],
+        "compare results/paper --policies RNE,RANDOM",
         &["--policies: must be a policy of the sweep (RNE, DIS, ENG), found \"RANDOM\""],
     );
-    refused(here, 2, &["compare", "results/paper", "--policies", "RNE"], &["nothing to compare: RNE only"]);
+    refused(here, 2, "compare results/paper --policies RNE", &["nothing to compare: RNE only"]);
     let two = ["compare", "results/paper", "--policies", "ENG, RNE", "--metric", "rescuees.hard"];
     let two = succeeds(&usar(here, &two));
     assert!(two.contains("┆ RNE - ENG ┆") && !two.contains("DIS"), "{two}");
-    refused(here, 2, &["compare", "results"], &["results: is not the folder of a sweep"]);
+    refused(here, 2, "compare results", &["results: is not the folder of a sweep"]);
 }
 
 #[test]
@@ -136,7 +123,7 @@ fn an_estimate_says_trials_time_and_disk() {
     let folder = place();
     let json: Value = serde_json::from_str(&succeeds(&usar(
         folder.path(),
-        &["estimate", "grid.ron", "--trials", "100", "--json"],
+        "cluster estimate grid.ron --trials 100 --json",
     )))
     .unwrap();
     assert_eq!((&json["trials"], &json["cases"], &json["policies"]), (&1200.into(), &4.into(), &3.into()));
@@ -144,6 +131,7 @@ fn an_estimate_says_trials_time_and_disk() {
     assert!(json["seconds"].as_f64().unwrap() > 0.0 && json["bytes"].as_u64().unwrap() > 1200 * 1000);
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 3, "nothing is left behind");
     let alike = [
+        "cluster",
         "estimate",
         "short.ron",
         "--policies",
@@ -168,7 +156,7 @@ fn a_sweep_file_names_its_metrics_its_baseline_and_which_differences_matter() {
         std::fs::write(here.join("asked.ron"), text).unwrap();
     };
     sweep("primary: [\"distance\"], baseline: \"DIS\", margins: {\"distance\": 1e6}");
-    succeeds(&usar(here, &["sweep", "asked.ron", "--quiet"]));
+    succeeds(&usar(here, "sweep asked.ron --quiet"));
     let json = |rest: &[&str]| -> Value {
         let arguments = [&["compare", "results/asked", "--json"], rest].concat();
         serde_json::from_str(&succeeds(&usar(here, &arguments))).unwrap()
@@ -189,9 +177,9 @@ fn a_sweep_file_names_its_metrics_its_baseline_and_which_differences_matter() {
         assert!(lower <= low && high <= higher, "the 90 % interval lies in the 95 % interval");
         assert!(comparison["in_words"].as_str().unwrap().contains("are equivalent within 1000000"));
     }
-    let told = succeeds(&usar(here, &["compare", "results/asked"]));
+    let told = succeeds(&usar(here, "compare results/asked"));
     assert!(told.contains("Margins: distance 1000000 (sweep file)."), "{told}");
-    let told = succeeds(&usar(here, &["compare", "results/asked", "--margin", "distance=2e6"]));
+    let told = succeeds(&usar(here, "compare results/asked --margin distance=2e6"));
     assert!(told.contains("Margins: distance 2000000 (--margin)."), "{told}");
     // The sweep file in the folder asks the same.
     succeeds(&usar(&here.join("results/asked"), &["sweep", "sweep.ron", "--out", "again", "--quiet"]));
@@ -201,13 +189,13 @@ fn a_sweep_file_names_its_metrics_its_baseline_and_which_differences_matter() {
     refused(
         here,
         2,
-        &["compare", "results/asked", "--margin", "waiting=1"],
+        "compare results/asked --margin waiting=1",
         &["--margin: waiting is not compared here; --metric waiting compares it"],
     );
     refused(
         here,
         2,
-        &["compare", "results/asked", "--margin", "distance=1", "--margin", "distance=2"],
+        "compare results/asked --margin distance=1 --margin distance=2",
         &["--margin: distance has two margins"],
     );
     let tight = json(&["--metric", "distance", "--baseline", "ENG", "--margin", "distance=1e-9"]);
@@ -221,28 +209,23 @@ fn a_sweep_file_names_its_metrics_its_baseline_and_which_differences_matter() {
     refused(
         here,
         2,
-        &["compare", "results/asked", "--margin", "distance=0"],
+        "compare results/asked --margin distance=0",
         &["must be METRIC=VALUE with a value above 0"],
     );
+    refused(here, 2, "compare results/asked --margin luck=1", &["--margin: unknown metric \"luck\""]);
     refused(
         here,
         2,
-        &["compare", "results/asked", "--margin", "luck=1"],
-        &["--margin: unknown metric \"luck\""],
-    );
-    refused(
-        here,
-        2,
-        &["compare", "results/asked", "--policies", "ENG", "--margin", "distance=1"],
+        "compare results/asked --policies ENG --margin distance=1",
         &["--margin: a margin is for the difference of two policies, and ENG is the only one here"],
     );
     sweep("primary: [\"luck\"]");
-    refused(here, 2, &["sweep", "asked.ron"], &["asked.ron:1: primary[0]: unknown metric \"luck\""]);
+    refused(here, 2, "sweep asked.ron", &["asked.ron:1: primary[0]: unknown metric \"luck\""]);
     sweep("margins: {\"distance\": -1}");
     refused(
         here,
         2,
-        &["sweep", "asked.ron"],
+        "sweep asked.ron",
         &["asked.ron:1: margins.\"distance\": must be a number above 0, found -1"],
     );
 }
@@ -251,14 +234,10 @@ fn a_sweep_file_names_its_metrics_its_baseline_and_which_differences_matter() {
 fn a_sweep_with_axes_says_how_differences_change_along_them() {
     let folder = place();
     let here = folder.path();
-    succeeds(&usar(here, &["sweep", "grid.ron", "--set", "duration_s=120", "--trials", "4", "--quiet"]));
-    let told = succeeds(&usar(
-        here,
-        &["compare", "results/grid", "--metric", "distance", "--baseline", "DIS", "--json"],
-    ));
+    succeeds(&usar(here, "sweep grid.ron --set duration_s=120 --trials 4 --quiet"));
+    let told = succeeds(&usar(here, "compare results/grid --metric distance --baseline DIS --json"));
     let told: Value = serde_json::from_str(&told).unwrap();
-    let words =
-        succeeds(&usar(here, &["compare", "results/grid", "--metric", "distance", "--baseline", "DIS"]));
+    let words = succeeds(&usar(here, "compare results/grid --metric distance --baseline DIS"));
     assert!(words.contains("changes of means: none can be shown, however large"), "{words}");
     let interactions = told["interactions"].as_array().unwrap();
     // Two axes of two values: each value but the first, at both values of the other axis, for each policy
@@ -296,8 +275,7 @@ fn a_sweep_with_axes_says_how_differences_change_along_them() {
         assert!((one["change"].as_f64().unwrap() - change).abs() < 1e-6, "{one}");
         assert!(one["in_words"].as_str().unwrap().contains(&format!("{a} less {b} goes from")), "{one}");
     }
-    let printed =
-        succeeds(&usar(here, &["compare", "results/grid", "--metric", "distance", "--baseline", "DIS"]));
+    let printed = succeeds(&usar(here, "compare results/grid --metric distance --baseline DIS"));
     let table = |title: &str| -> usize {
         let rest = printed.split_once(title).unwrap_or_else(|| panic!("{title}\n{printed}")).1;
         let rows = rest.lines().skip(2).take_while(|line| !line.starts_with('└'));
@@ -315,13 +293,13 @@ fn one_policy_is_compared_with_itself_along_an_axis() {
     let sweep = "(name: \"one\", scenario: \"short.ron\", policies: [\"ENG\"], trials: 3, \
                  axes: {\"mission.rest_s\": [30.0, 5.0]})";
     std::fs::write(here.join("one.ron"), sweep).unwrap();
-    succeeds(&usar(here, &["sweep", "one.ron", "--set", "duration_s=120"]));
-    let told = succeeds(&usar(here, &["compare", "results/one", "--metric", "distance"]));
+    succeeds(&usar(here, "sweep one.ron --set duration_s=120"));
+    let told = succeeds(&usar(here, "compare results/one --metric distance"));
     let line = |text: &str| told.lines().find(|line| line.contains(text)).unwrap_or_else(|| panic!("{told}"));
     let (means, change) = (line("mean, mission.rest_s = 30"), line("mission.rest_s from 30"));
     assert!(!means.contains('%') && change.contains(" % ("), "{told}");
     assert!(!told.contains("Differences between policies"), "{told}");
-    let program = succeeds(&usar(here, &["compare", "results/one", "--metric", "distance", "--json"]));
+    let program = succeeds(&usar(here, "compare results/one --metric distance --json"));
     let program: Value = serde_json::from_str(&program).unwrap();
     let mean = program["effects"][0]["means"][0].as_f64().unwrap();
     let shown: f64 = means.split('┆').nth(1).unwrap().trim().trim_end_matches('│').trim().parse().unwrap();

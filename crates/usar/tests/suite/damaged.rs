@@ -31,13 +31,13 @@ fn changed_bytes_are_named_and_made_again() {
         bytes[middle] ^= 1;
     };
     damage("journal.jsonl.gz", flip);
-    refused(here, 2, &["compare", "results/paper"], &["journal.jsonl.gz: after line "]);
+    refused(here, 2, "compare results/paper", &["journal.jsonl.gz: after line "]);
     mended("journal.jsonl.gz: does not have the checksum");
     damage("journal.jsonl.gz", |bytes| bytes.truncate(bytes.len() - 100));
-    refused(here, 2, &["compare", "results/paper"], &["journal.jsonl.gz: after line 0: it is cut off"]);
+    refused(here, 2, "compare results/paper", &["journal.jsonl.gz: after line 0: it is cut off"]);
     mended("journal.jsonl.gz: does not have the checksum");
     damage("trials.csv", flip);
-    refused(here, 2, &["compare", "results/paper"], &["trials.csv"]);
+    refused(here, 2, "compare results/paper", &["trials.csv"]);
     mended("trials.csv: does not have the checksum");
     damage("hashes.csv", |bytes| bytes.truncate(1000));
     mended("hashes.csv: does not have the checksum");
@@ -53,7 +53,7 @@ fn changed_bytes_are_named_and_made_again() {
 fn trouble_with_the_disk_breaks_nothing() {
     let folder = place();
     let here = folder.path();
-    succeeds(&usar(here, &["sweep", "short.ron", "--policies", "RNE", "--trials", "4", "--out", "whole"]));
+    succeeds(&usar(here, "sweep short.ron --policies RNE --trials 4 --out whole"));
     // A limit on the size of files acts like a full disk.
     for blocks in ["1", "12", "20"] {
         let limited = format!(
@@ -65,14 +65,14 @@ fn trouble_with_the_disk_breaks_nothing() {
         assert_eq!(output.status.code(), Some(3), "{blocks}: {stderr}");
         assert!(stderr.contains("File too large"), "{stderr}");
     }
-    succeeds(&usar(here, &["sweep", "short.ron", "--policies", "RNE", "--trials", "4"]));
+    succeeds(&usar(here, "sweep short.ron --policies RNE --trials 4"));
     assert!(
         files(&here.join("results/paper")) == files(&here.join("whole")),
         "it goes on when the cause is gone"
     );
 
     std::fs::write(here.join("file"), "").unwrap();
-    refused(here, 3, &["sweep", "short.ron", "--out", "file/results"], &["cannot write to file/results"]);
+    refused(here, 3, "sweep short.ron --out file/results", &["cannot write to file/results"]);
 
     std::fs::write(
         here.join("results/paper/.lock"),
@@ -82,7 +82,7 @@ fn trouble_with_the_disk_breaks_nothing() {
     refused(
         here,
         3,
-        &["sweep", "short.ron", "--policies", "RNE", "--trials", "4"],
+        "sweep short.ron --policies RNE --trials 4",
         &[
             "results/paper: another process is at work in this folder",
             "process 99 on n17, job 42_3, since 2026-01-01T00:00:00Z",
@@ -100,8 +100,8 @@ fn other_peoples_files_are_left_alone() {
         let results = here.join("results");
         std::fs::create_dir_all(&results).unwrap();
         std::fs::write(results.join(name), content).unwrap();
-        refused(here, 2, &["sweep", "short.ron", "--out", "results"], message);
-        refused(here, 2, &["sweep", "short.ron", "--out", "results", "--fresh"], message);
+        refused(here, 2, "sweep short.ron --out results", message);
+        refused(here, 2, "sweep short.ron --out results --fresh", message);
         std::fs::remove_dir_all(&results).unwrap();
     }
 }
@@ -120,13 +120,13 @@ fn a_changed_manifest_or_a_journal_that_lacks_lines_is_noticed() {
         text("manifest.json").replace("\"trials\": 2", "\"trials\": 3"),
     )
     .unwrap();
-    refused(here, 2, &["compare", "results/paper"], &["manifest.json", "its checksum does not match"]);
+    refused(here, 2, "compare results/paper", &["manifest.json", "its checksum does not match"]);
     std::fs::write(results.join("manifest.json"), text("manifest.json")).unwrap();
     std::fs::write(results.join("journal.jsonl.gz"), []).unwrap();
     refused(
         here,
         2,
-        &["compare", "results/paper"],
+        "compare results/paper",
         &["do not have the checksums of the manifest: journal.jsonl.gz"],
     );
     succeeds(&usar(here, &sweep));

@@ -42,7 +42,7 @@ fn the_oracles_best_and_worst_assignments_come_out_of_a_fork() {
         assert_eq!((ranking.len(), answer["is_exact"].as_bool()), (8, Some(true)));
         for ranked in [&ranking[0], &ranking[7]] {
             let assign = groups(&ranked["groups"]);
-            let fork = json(here, "fork", &["--at-round", round, "--assign", &assign]);
+            let fork = json(here, "fork", &["--round", round, "--assign", &assign]);
             assert_eq!(fork["otherwise"]["round"], ranked["outcome"], "round {round}, {assign}");
         }
         let values: Vec<f64> = ranking.iter().map(|ranked| ranked["value"].as_f64().unwrap()).collect();
@@ -60,12 +60,12 @@ fn the_oracles_best_and_worst_assignments_come_out_of_a_fork() {
 fn an_oracle_that_was_broken_off_goes_on_and_says_the_same() {
     let folder = place();
     let here = folder.path();
-    let first = json(here, "oracle", &["--horizon", "trial", "--then", "RNE,DIS", "--quiet"]);
+    let first = json(here, "oracle", &["--then", "RNE,DIS", "--quiet"]);
     let cache = std::fs::read_dir(here.join("results/oracle")).unwrap().next().unwrap().unwrap().path();
     let lines = std::fs::read_to_string(&cache).unwrap();
     assert_eq!(lines.lines().count(), 16);
     std::fs::write(&cache, &lines[..lines.len() / 3]).unwrap();
-    assert_eq!(json(here, "oracle", &["--horizon", "trial", "--then", "RNE,DIS", "--quiet"]), first);
+    assert_eq!(json(here, "oracle", &["--then", "RNE,DIS", "--quiet"]), first);
     let sorted = |text: &str| {
         let mut lines: Vec<String> = text.lines().map(str::to_owned).collect();
         lines.sort();
@@ -78,11 +78,11 @@ fn an_oracle_that_was_broken_off_goes_on_and_says_the_same() {
 fn a_fork_without_a_change_is_the_same_trial_and_one_with_a_change_is_not() {
     let folder = place();
     let here = folder.path();
-    let fork = json(here, "fork", &["--at-round", "2", "--policy", "RNE", "--onwards"]);
+    let fork = json(here, "fork", &["--round", "2", "--instead", "RNE", "--onwards"]);
     let run = json(here, "run", &["--policy", "RNE"]);
     assert_eq!(fork["as_it_was"]["state_hash"], run["state_hash"]);
     assert_eq!(fork["otherwise"], fork["as_it_was"]);
-    let fork = json(here, "fork", &["--at-round", "1", "--policy", "HP_DIS"]);
+    let fork = json(here, "fork", &["--round", "1", "--instead", "HP_DIS"]);
     assert_ne!(fork["otherwise"]["state_hash"], run["state_hash"]);
     assert_ne!(fork["otherwise"]["assignment"], fork["as_it_was"]["assignment"]);
 }
@@ -95,7 +95,7 @@ fn the_oracle_as_a_policy_decides_as_the_oracle_says() {
     let run = json(here, "run", &["--policy", policy]);
     for (place, decision) in run["decisions"].as_array().unwrap().iter().take(2).enumerate() {
         let round = (place + 1).to_string();
-        let rest = ["--base", policy, "--round", &round, "--metric", "energy_per_rescuee", "--quiet"];
+        let rest = ["--policy", policy, "--round", &round, "--metric", "energy_per_rescuee", "--quiet"];
         let best = &json(here, "oracle", &rest)["answers"][0]["ranking"][0]["groups"];
         assert_eq!(&decision["decision"]["assignment"]["groups"], best, "round {round}");
     }
@@ -107,7 +107,7 @@ fn the_oracle_as_a_policy_decides_as_the_oracle_says() {
     );
     let text = "id,role,x,y,energy_level\n0,walker,0,0,5\n1,walker,1,0,6\n";
     std::fs::write(here.join("team.csv"), text.replace("energy_level", "eng")).unwrap();
-    refused(here, 2, &["group", "team.csv", "--policy", "ORACLE"], &["here is no trial"]);
+    refused(here, 2, "group team.csv --policy ORACLE", &["here is no trial"]);
 }
 
 /// The RNE between the groups of the first round, computed from the recorded needs.
@@ -156,7 +156,7 @@ fn why_is_what_the_recorded_needs_say() {
 fn why_tells_in_sentences_and_names_what_it_cannot_find() {
     let folder = place();
     let here = folder.path();
-    let text = succeeds(&usar(here, &["why", "short.ron", "--seed", "2", "--robot", "3", "--at", "30"]));
+    let text = succeeds(&usar(here, "why short.ron --seed 2 --robot 3 --at 30"));
     for part in [
         "round 1 began at 0.0 s, and RNE decided",
         "next best",
@@ -167,17 +167,12 @@ fn why_tells_in_sentences_and_names_what_it_cannot_find() {
     ] {
         assert!(text.contains(part), "{part:?} is not in:\n{text}");
     }
-    refused(here, 2, &["why", "short.ron", "--round", "99"], &["--round: no round 99 began up to"]);
-    refused(here, 2, &["why", "short.ron", "--robot", "99"], &["--robot: must be below 12, found 99"]);
-    refused(here, 2, &["why", "short.ron", "--robot", "1", "--at", "1e9"], &["--at: must be from 0 to"]);
-    refused(
-        here,
-        2,
-        &["fork", "short.ron", "--at-round", "99", "--policy", "DIS"],
-        &["the trial is over before round 99"],
-    );
-    refused(here, 2, &["oracle", "short.ron", "--metric", "luck"], &["--metric: unknown metric \"luck\""]);
-    refused(here, 2, &["oracle", "short.ron", "--then", "DIS"], &["needs --horizon trial"]);
+    refused(here, 2, "why short.ron --round 99", &["--round: no round 99 began up to"]);
+    refused(here, 2, "why short.ron --robot 99", &["--robot: must be below 12, found 99"]);
+    refused(here, 2, "why short.ron --robot 1 --at 1e9", &["--at: must be from 0 to"]);
+    refused(here, 2, "fork short.ron --round 99 --instead DIS", &["the trial is over before round 99"]);
+    refused(here, 2, "oracle short.ron --metric luck", &["--metric: unknown metric \"luck\""]);
+    refused(here, 2, "oracle short.ron --then LUCK", &["--then: unknown policy \"LUCK\""]);
 }
 
 #[test]
@@ -187,12 +182,12 @@ fn a_study_of_regret_goes_on_and_its_tables_agree_with_each_other() {
     let sweep = r#"(name: "small", scenario: "short.ron", policies: ["RNE", "DIS", "RANDOM"], trials: 3,
         set: {"team[0].count": 2, "team[1].count": 2, "duration_s": 200.0})"#;
     std::fs::write(here.join("small.ron"), sweep).unwrap();
-    let whole = succeeds(&usar(here, &["regret", "small.ron", "--quiet", "--out", "whole", "--json"]));
-    succeeds(&usar(here, &["regret", "small.ron", "--quiet", "--out", "parts", "--trials", "1"]));
+    let whole = succeeds(&usar(here, "study regret small.ron --quiet --out whole --json"));
+    succeeds(&usar(here, "study regret small.ron --quiet --out parts --trials 1"));
     let journal = here.join("parts/decisions.jsonl");
     let text = std::fs::read_to_string(&journal).unwrap();
     std::fs::write(&journal, &text[..text.len() - 9]).unwrap(); // as after a kill
-    let parts = succeeds(&usar(here, &["regret", "small.ron", "--quiet", "--out", "parts", "--json"]));
+    let parts = succeeds(&usar(here, "study regret small.ron --quiet --out parts --json"));
     assert_eq!(whole, parts);
     assert_eq!(
         std::fs::read(here.join("whole/regret.csv")).unwrap(),
@@ -213,6 +208,6 @@ fn a_study_of_regret_goes_on_and_its_tables_agree_with_each_other() {
     let dis = &told["analyses"][0]["policies"][1];
     assert_eq!(dis["policy"], "DIS");
     assert!((dis["regret"]["value"].as_f64().unwrap() - mean).abs() < 1e-9);
-    refused(here, 2, &["regret", "small.ron", "--out", "parts", "--limit", "7"], &["has another study"]);
-    refused(here, 2, &["regret", "short.ron", "--metric", "luck"], &["--metric: unknown metric \"luck\""]);
+    refused(here, 2, "study regret small.ron --out parts --limit 7", &["has another study"]);
+    refused(here, 2, "study regret short.ron --metric luck", &["--metric: unknown metric \"luck\""]);
 }

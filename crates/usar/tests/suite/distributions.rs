@@ -30,11 +30,11 @@ fn what_a_timeline_asks_for_is_told_and_goes_on_from_a_snapshot() {
     }
     let hash = |text: &str| serde_json::from_str::<serde_json::Value>(text).unwrap()["state_hash"].clone();
     let whole = run(&["run", "w.ron", "--quiet", "--json"]);
-    let rest = run(&["run", "w.ron", "--quiet", "--json", "--from", "w.snapshot"]);
+    let rest = run(&["run", "w.ron", "--quiet", "--json", "--resume", "w.snapshot"]);
     assert_eq!(hash(&whole), hash(&rest));
     assert_ne!(hash(&whole), serde_json::Value::Null);
-    run(&["render", "w.usrec", "--at", "10", "--out", "frame.svg"]);
-    run(&["draw", "w.ron", "--seed", "4", "--out", "map.svg"]);
+    run(&["export", "frames", "w.usrec", "--at", "10", "--out", "frame.svg"]);
+    run(&["scenario", "draw", "w.ron", "--seed", "4", "--out", "map.svg"]);
     let map = std::fs::read_to_string(folder.path().join("map.svg")).unwrap();
     assert!(map.contains("w, seed 4"));
 }
@@ -42,8 +42,10 @@ fn what_a_timeline_asks_for_is_told_and_goes_on_from_a_snapshot() {
 #[test]
 fn resolve_prints_a_distribution_as_one_value_with_its_line() {
     let folder = folder();
-    let told =
-        succeeds(&usar(folder.path(), &["resolve", "w.ron", "--set", "radiation[0].radius_m=Uniform(1, 2)"]));
+    let told = succeeds(&usar(
+        folder.path(),
+        &["scenario", "resolve", "w.ron", "--set", "radiation[0].radius_m=Uniform(1, 2)"],
+    ));
     for says in ["= Uniform(2, 3)  # w.ron:2", "= Uniform(1, 2)  # --set", "= Uniform(8, 22)  # w.ron:4"] {
         assert!(told.contains(says), "{says} is not in\n{told}");
     }
@@ -55,13 +57,13 @@ fn fmt_keeps_values_and_comments_and_writes_only_what_differs() {
     let here = folder.path();
     let wild = WORLD.replace(": ", ":").replace("\n    timeline", "\ntimeline");
     std::fs::write(here.join("wild.ron"), &wild).unwrap();
-    assert_eq!(usar(here, &["fmt", "--check", "wild.ron"]).status.code(), Some(1));
+    assert_eq!(usar(here, "scenario fmt --dry-run wild.ron").status.code(), Some(1));
     assert_eq!(read(&here.join("wild.ron")), wild);
-    assert_eq!(succeeds(&usar(here, &["fmt", "w.ron", "wild.ron"])), "wild.ron: written\n");
+    assert_eq!(succeeds(&usar(here, "scenario fmt w.ron wild.ron")), "wild.ron: written\n");
     assert_eq!(read(&here.join("wild.ron")), WORLD);
-    assert_eq!(succeeds(&usar(here, &["fmt", "wild.ron"])), "");
+    assert_eq!(succeeds(&usar(here, "scenario fmt wild.ron")), "");
     std::fs::write(here.join("wild.ron"), &wild).unwrap();
     std::fs::write(here.join("bad.ron"), "(name: \"o\" conflicts: ())").unwrap();
-    assert_eq!(usar(here, &["fmt", "wild.ron", "bad.ron"]).status.code(), Some(2));
+    assert_eq!(usar(here, "scenario fmt wild.ron bad.ron").status.code(), Some(2));
     assert_eq!(read(&here.join("wild.ron")), wild, "nothing is written if a file cannot be read");
 }

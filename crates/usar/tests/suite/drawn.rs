@@ -15,20 +15,20 @@ fn a_moment_and_the_trails_are_written_and_nothing_is_overwritten() {
     let folder = tempfile::tempdir().unwrap();
     let run = |arguments: &[&str]| usar(folder.path(), arguments);
     succeeds(&run(&["run", &scenario(), "--record", "a.usrec"]));
-    assert_eq!(succeeds(&run(&["render", "a.usrec", "--at", "4", "--out", "a.svg"])), "a.svg\n");
+    assert_eq!(succeeds(&run(&["export", "frames", "a.usrec", "--at", "4", "--out", "a.svg"])), "a.svg\n");
     // The same from the scenario, which is simulated first.
-    succeeds(&run(&["render", &scenario(), "--at", "4", "--out", "b.svg"]));
+    succeeds(&run(&["export", "frames", &scenario(), "--at", "4", "--out", "b.svg"]));
     let svg = read(&folder.path().join("a.svg"));
     assert_eq!(svg, read(&folder.path().join("b.svg")));
     assert!(svg.contains("head_on, seed 1, 0:04.0"), "{svg}");
-    succeeds(&run(&["render", "a.usrec", "--trails", "--width", "88mm", "--out", "a.png"]));
-    let again = run(&["render", "a.usrec", "--at", "5", "--out", "a.svg"]);
+    succeeds(&run(&["export", "frames", "a.usrec", "--trails", "--width", "88mm", "--out", "a.png"]));
+    let again = run(&["export", "frames", "a.usrec", "--at", "5", "--out", "a.svg"]);
     assert_eq!(again.status.code(), Some(2));
     assert!(String::from_utf8_lossy(&again.stderr).contains("--out: a.svg exists; nothing was overwritten"));
     assert_eq!(svg, read(&folder.path().join("a.svg")));
-    succeeds(&run(&["render", "a.usrec", "--at", "5", "--out", "a.svg", "--force"]));
+    succeeds(&run(&["export", "frames", "a.usrec", "--at", "5", "--out", "a.svg", "--force"]));
     assert_ne!(svg, read(&folder.path().join("a.svg")));
-    let late = run(&["render", "a.usrec", "--at", "5000", "--out", "late.svg"]);
+    let late = run(&["export", "frames", "a.usrec", "--at", "5000", "--out", "late.svg"]);
     assert_eq!(late.status.code(), Some(2));
     assert!(String::from_utf8_lossy(&late.stderr).contains("--at: must be from 0 to"));
     assert!(!folder.path().join("late.svg").exists());
@@ -37,17 +37,17 @@ fn a_moment_and_the_trails_are_written_and_nothing_is_overwritten() {
 #[test]
 fn pictures_in_a_row_are_files_or_a_gif() {
     let folder = tempfile::tempdir().unwrap();
-    let run = |arguments: &[&str]| {
-        let first = ["render", &scenario(), "--every", "2", "--from", "1", "--to", "7", "--width", "200"];
-        usar(folder.path(), &[&first[..], arguments].concat())
+    let run = |verb: &str, out: &str| {
+        let more = ["--every", "2", "--begin", "1", "--end", "7", "--width", "200", "--out"];
+        usar(folder.path(), &[&["export", verb, &scenario()], &more[..], &[out]].concat())
     };
-    assert_eq!(succeeds(&run(&["--frames", "row"])), "4 pictures in row\n");
+    assert_eq!(succeeds(&run("frames", "row")), "4 pictures in row\n");
     let names = std::fs::read_dir(folder.path().join("row")).unwrap().map(|entry| entry.unwrap().file_name());
     let mut names: Vec<_> = names.collect();
     names.sort();
     assert_eq!(names, ["00000.png", "00001.png", "00002.png", "00003.png"]);
-    assert_eq!(run(&["--frames", "row"]).status.code(), Some(2), "the folder is not empty");
-    succeeds(&run(&["--gif", "row.gif"]));
+    assert_eq!(run("frames", "row").status.code(), Some(2), "the folder is not empty");
+    succeeds(&run("video", "row.gif"));
     assert!(std::fs::read(folder.path().join("row.gif")).unwrap().starts_with(b"GIF89a"));
 }
 
@@ -57,7 +57,7 @@ fn the_world_of_a_seed_is_drawn_before_anything_runs() {
     let paper = root().join("scenarios/paper.ron").display().to_string();
     let draw = |seed: &str, out: &str| {
         let set = "tasks.hard.sampled.debris=5";
-        let arguments = ["draw", &paper, "--set", set, "--seed", seed, "--out", out];
+        let arguments = ["scenario", "draw", &paper, "--set", set, "--seed", seed, "--out", out];
         assert_eq!(succeeds(&usar(folder.path(), &arguments)), format!("{out}\n"));
         read(&folder.path().join(out))
     };
@@ -71,21 +71,25 @@ fn the_world_of_a_seed_is_drawn_before_anything_runs() {
 #[test]
 fn what_cannot_be_drawn_is_refused_in_one_sentence() {
     let file = scenario();
-    refused(&["draw", &file, "--out", "map.gif"], "--out: must end with .svg or .png, found map.gif");
-    refused(&["draw", &file, "--out", "nowhere/map.svg"], "--out: there is no folder nowhere");
-    refused(&["draw", &file, "--out", "m.svg", "--width", "9cm"], "must be 100 to 8000 pixels");
-    refused(&["render", &file, "--out", "a.svg"], "required arguments were not provided");
-    refused(&["render", &file, "--every", "1"], "required arguments were not provided");
-    refused(&["render", &file, "--every", "0", "--gif", "a.gif"], "must be a number from 0.001");
     refused(
-        &["render", &file, "--at", "1", "--policy", "RNE,DIS", "--out", "a.svg"],
+        &["scenario", "draw", &file, "--out", "map.gif"],
+        "--out: must end with .svg or .png, found map.gif",
+    );
+    refused(&["scenario", "draw", &file, "--out", "nowhere/map.svg"], "--out: there is no folder nowhere");
+    refused(&["scenario", "draw", &file, "--out", "m.svg", "--width", "9cm"], "must be 100 to 8000 pixels");
+    refused(&["export", "frames", &file, "--out", "a.svg"], "required arguments were not provided");
+    refused(&["export", "frames", &file, "--every", "1"], "required arguments were not provided");
+    refused(&["export", "video", &file, "--every", "0", "--out", "a.gif"], "must be a number from 0.001");
+    refused(
+        &["export", "frames", &file, "--at", "1", "--policy", "RNE,DIS", "--out", "a.svg"],
         "--policy: must be one policy",
     );
 }
 
-/// Runs `usar render --mp4` with only the programs of one folder on the path.
+/// Runs `usar export video` with only the programs of one folder on the path.
 fn film(folder: &Path, programs: &Path) -> Output {
-    let arguments = ["render", &scenario(), "--every", "2", "--to", "6", "--width", "201", "--mp4", "a.mp4"];
+    let arguments =
+        ["export", "video", &scenario(), "--every", "2", "--end", "6", "--width", "201", "--out", "a.mp4"];
     Command::new(program()).args(arguments).current_dir(folder).env("PATH", programs).output().unwrap()
 }
 
@@ -95,7 +99,7 @@ fn a_film_without_ffmpeg_is_refused() {
     let output = film(folder.path(), folder.path());
     assert_eq!(output.status.code(), Some(2));
     let said = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert!(said.contains("--mp4: needs the program ffmpeg, which is not installed"), "{said}");
+    assert!(said.contains("--out: needs the program ffmpeg, which is not installed"), "{said}");
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
 }
 

@@ -33,10 +33,7 @@ fn expectations_hold_fail_or_stay_undecided() {
         "\"time > 30 in 50 % of seeds\", \"distance: RNE > DIS by 1e6\", \"rescuees < 1 in 90 % of seeds \
          (99.9 %)\"",
     );
-    let output = usar(
-        here,
-        &["test", "expected.ron", "--max-trials", "10", "--quiet", "--json", "--junit", "all.xml"],
-    );
+    let output = usar(here, "test expected.ron --max-trials 10 --quiet --json --junit all.xml");
     assert_eq!(output.status.code(), Some(1));
     assert!(String::from_utf8_lossy(&output.stderr).contains("3 of 3 expectations do not hold"));
     let told: Value = serde_json::from_slice(&output.stdout).unwrap();
@@ -52,7 +49,7 @@ fn few_trials_are_run_where_few_decide() {
     let folder = place();
     let here = folder.path();
     write(here, "\"time > 30 in 90 % of seeds\"");
-    let output = usar(here, &["test", "expected.ron", "--max-trials", "100000", "--quiet", "--json"]);
+    let output = usar(here, "test expected.ron --max-trials 100000 --quiet --json");
     let told: Value = serde_json::from_slice(&output.stdout).unwrap();
     assert_eq!(told["expectations"][0]["n"], 10, "the first look decides");
 }
@@ -61,14 +58,14 @@ fn few_trials_are_run_where_few_decide() {
 fn what_is_no_expectation_is_told_before_anything_runs() {
     let folder = place();
     let here = folder.path();
-    refused(here, 2, &["test", "short.ron"], &["short.ron: expects nothing"]);
+    refused(here, 2, "test short.ron", &["short.ron: expects nothing"]);
     write(here, "\"rescuees\"");
     refused(
         here,
         2,
-        &["test", "expected.ron"],
+        "test expected.ron",
         &["expected.ron: expect: must be like \"rescuees.total >= 60 in 90 % of seeds\""],
     );
     write(here, "\"rescuees: RNE > ENG\"");
-    refused(here, 2, &["test", "expected.ron"], &["\"ENG\" must be a policy of the sweep (RNE, DIS)"]);
+    refused(here, 2, "test expected.ron", &["\"ENG\" must be a policy of the sweep (RNE, DIS)"]);
 }

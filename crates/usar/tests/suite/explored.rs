@@ -6,7 +6,8 @@ use crate::support::{read, succeeds, usar};
 const RADIUS: &str = "radiation[*].radius_m=3..9";
 
 fn sensitivity<'a>(out: &'a str, more: &[&'a str]) -> Vec<&'a str> {
-    let mut arguments = vec!["sensitivity", "short.ron", "--policies", "RNE,DIS", "--trials", "1", "--quiet"];
+    let mut arguments =
+        vec!["study", "sensitivity", "short.ron", "--policies", "RNE,DIS", "--trials", "1", "--quiet"];
     arguments.extend(["--metric", "distance", "--baseline", "DIS", "--out", out]);
     arguments.extend(["--set", "duration_s=40", "--over", "mission.loading_s=1..20", "--over", RADIUS]);
     arguments.extend(more);
@@ -46,7 +47,7 @@ fn a_study_that_was_broken_off_ends_as_one_that_was_not() {
         let table = run(&whole, more, "1 --format csv");
         assert!(table.starts_with("parameter,"), "{table}");
     }
-    let other = usar(folder, &sensitivity("whole-sobol", &["--method", "sobol", "--seed", "2"]));
+    let other = usar(folder, &sensitivity("whole-sobol", &["--method", "sobol", "--draw-seed", "2"]));
     refused(&other, &["has the sensitivity study of something else", "seed: 1 there, 2 now"]);
 }
 
@@ -69,8 +70,8 @@ fn a_search_says_what_fresh_seeds_say() {
     let log = read(&folder.join("found/evaluations.csv"));
     assert_eq!(succeeds(&search(&[])), told, "what is there is not run again");
     assert_eq!(read(&folder.join("found/evaluations.csv")), log);
-    succeeds(&usar(folder, &["check", "found/found.ron"]));
-    succeeds(&usar(folder, &["compare", "found/confirmation"]));
+    succeeds(&usar(folder, "check found/found.ron"));
+    succeeds(&usar(folder, "compare found/confirmation"));
     refused(&search(&["--confirm-seed", "400001"]), &["the seeds that confirm must be others"]);
     refused(&search(&["--metric", "distance"]), &["distance is neither good nor bad; --lowest or --highest"]);
 }

@@ -13,22 +13,24 @@ fn scenario() -> String {
 fn a_trial_is_exported_in_every_format() {
     let folder = tempfile::tempdir().unwrap();
     let run = |arguments: &[&str]| usar(folder.path(), arguments);
-    let export = ["export", &scenario(), "--every", "1", "--mcap", "a.mcap", "--csv", "t", "--parquet", "t"];
-    assert_eq!(succeeds(&run(&export)), "a.mcap\nt\nt\n");
+    for (form, out) in [("mcap", "a.mcap"), ("csv", "t"), ("parquet", "p")] {
+        let export = ["export", form, &scenario(), "--every", "1", "--out", out];
+        assert_eq!(succeeds(&run(&export)), format!("{out}\n"));
+    }
     assert!(std::fs::read(folder.path().join("a.mcap")).unwrap().starts_with(b"\x89MCAP0\r\n"));
     for name in ["robots", "groups", "events", "decisions"] {
-        let parquet = std::fs::read(folder.path().join(format!("t/{name}.parquet"))).unwrap();
+        let parquet = std::fs::read(folder.path().join(format!("p/{name}.parquet"))).unwrap();
         assert!(parquet.starts_with(b"PAR1") && parquet.ends_with(b"PAR1"));
     }
     let robots = read(&folder.path().join("t/robots.csv"));
     assert!(robots.starts_with("time_s,robot,role,"));
     assert_eq!(robots.lines().nth(3).map(|line| line.split(',').next()), Some(Some("1")));
-    let again = run(&["export", &scenario(), "--csv", "t"]);
+    let again = run(&["export", "csv", &scenario(), "--out", "t"]);
     assert_eq!(again.status.code(), Some(2));
-    assert!(String::from_utf8_lossy(&again.stderr).contains("--csv: t is not empty; nothing was written"));
-    succeeds(&run(&["export", &scenario(), "--csv", "t", "--force"]));
-    refused(&["export", &scenario()], "required arguments were not provided");
-    refused(&["export", &scenario(), "--mcap", "no/a.mcap"], "--mcap: there is no folder no");
+    assert!(String::from_utf8_lossy(&again.stderr).contains("--out: t is not empty; nothing was written"));
+    succeeds(&run(&["export", "csv", &scenario(), "--out", "t", "--force"]));
+    refused(&["export", "csv", &scenario()], "required arguments were not provided");
+    refused(&["export", "mcap", &scenario(), "--out", "no/a.mcap"], "--out: there is no folder no");
 }
 
 #[test]
@@ -74,12 +76,12 @@ fn parquet_files_of_a_sweep_belong_to_it_and_are_verified() {
     for name in ["trials", "rounds", "groups", "robots", "series", "hashes"] {
         assert!(path(&format!("{name}.parquet")).exists(), "{name}");
     }
-    succeeds(&usar(folder.path(), &["verify", "r", "--quiet"]));
+    succeeds(&usar(folder.path(), "verify r --quiet"));
     let whole = std::fs::read(path("robots.parquet")).unwrap();
     let mut flipped = whole.clone();
     flipped[whole.len() / 2] ^= 1;
     std::fs::write(path("robots.parquet"), &flipped).unwrap();
-    let verified = usar(folder.path(), &["verify", "r", "--quiet"]);
+    let verified = usar(folder.path(), "verify r --quiet");
     assert_eq!(verified.status.code(), Some(1));
     assert!(
         String::from_utf8_lossy(&verified.stderr).contains("robots.parquet: is not what robots.csv gives")

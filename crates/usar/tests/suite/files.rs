@@ -9,21 +9,21 @@ fn a_new_scenario_runs_and_nothing_is_overwritten() {
     let here = folder.path();
     for from in ["minimal", "paper", "three-tasks"] {
         let name = format!("mine-{from}");
-        assert_eq!(succeeds(&usar(here, &["new", &name, "--from", from])), format!("./{name}.ron\n"));
+        assert_eq!(succeeds(&usar(here, &["new", &name, "--like", from])), format!("{name}.ron\n"));
         let file = format!("{name}.ron");
         assert_eq!(succeeds(&usar(here, &["check", &file])), format!("{file}: ok\n"));
         assert!(read(&here.join(&file)).contains("// SI units. Points are (x, y) in metres"));
     }
-    assert!(succeeds(&usar(here, &["run", "mine-minimal.ron", "--check"])).contains("rescued      9"));
-    refused(here, 2, &["new", "mine-paper"], &["mine-paper.ron exists; nothing was overwritten"]);
-    refused(here, 2, &["new", "../mine"], &["name must be a name of at most 64 letters"]);
-    refused(here, 2, &["new", "a", "--from", "papre"], &["paper"]);
+    assert!(succeeds(&usar(here, "run mine-minimal.ron --check")).contains("rescued      9"));
+    refused(here, 2, "new mine-paper", &["mine-paper.ron exists; nothing was overwritten"]);
+    refused(here, 2, "new ../mine", &["name must be a name of at most 64 letters"]);
+    refused(here, 2, "new a --like papre", &["paper"]);
 }
 
 #[test]
 fn scenarios_policies_roles_and_metrics_are_listed() {
     let root = root();
-    let listed = |arguments: &[&str]| succeeds(&usar(&root, &[&["list"], arguments].concat()));
+    let listed = |arguments: &[&str]| succeeds(&usar(&root, &[&["scenario", "list"], arguments].concat()));
     let scenarios = listed(&["scenarios"]);
     assert!(scenarios.contains("scenarios/three-tasks.ron\tNine carriers"), "{scenarios}");
     assert!(!scenarios.contains("sweep"), "{scenarios}");
@@ -37,7 +37,7 @@ fn scenarios_policies_roles_and_metrics_are_listed() {
     refused(
         tempfile::tempdir().unwrap().path(),
         2,
-        &["list", "scenarios", "nowhere"],
+        "scenario list scenarios nowhere",
         &["nowhere: cannot be read"],
     );
 }
@@ -46,11 +46,11 @@ fn scenarios_policies_roles_and_metrics_are_listed() {
 fn each_value_is_told_with_its_origin() {
     let folder = tempfile::tempdir().unwrap();
     let here = folder.path();
-    succeeds(&usar(here, &["new", "first"]));
+    succeeds(&usar(here, "new first"));
     let over = "(\n    base: \"first.ron\", name: \"over\",\n    roles: (carrier: (speed_mps: 3.0)),\n    \
         mission: (loading_s: 1.0),\n    walls: [((5, 14), (15, 14))],\n)";
     std::fs::write(here.join("over.ron"), over).unwrap();
-    let told = succeeds(&usar(here, &["resolve", "over.ron", "--set", "mission.reach_m=2"]));
+    let told = succeeds(&usar(here, "scenario resolve over.ron --set mission.reach_m=2"));
     let line = |path: &str| {
         let found = told.lines().find(|line| line.split_whitespace().next() == Some(path));
         found.unwrap_or_else(|| panic!("{path}: {told}")).split_whitespace().collect::<Vec<_>>().join(" ")

@@ -13,7 +13,7 @@ use crate::support::{read, succeeds, usar};
 fn a_sweep_file_spans_its_grid_and_any_field_can_be_an_axis() {
     let folder = place();
     let here = folder.path();
-    let said = succeeds(&usar(here, &["sweep", "grid.ron"]));
+    let said = succeeds(&usar(here, "sweep grid.ron"));
     assert!(said.contains("roles.carrier.speed_mps=1.5, conflicts.priority=HighestEnergyFirst"), "{said}");
     let results = here.join("results/grid");
     let trials = rows(&results, "trials.csv");
@@ -22,9 +22,7 @@ fn a_sweep_file_spans_its_grid_and_any_field_can_be_an_axis() {
     let column = |name: &str| column(&results, name);
     let distance = |row: &csv::StringRecord| row[column("distance_m")].parse::<f64>().unwrap();
     assert!(distance(&trials[18]) > 1.2 * distance(&trials[0]), "faster carriers go farther");
-    assert!(
-        succeeds(&usar(here, &["verify", "results/grid"])).starts_with("24 of 24 trials match, step by step")
-    );
+    assert!(succeeds(&usar(here, "verify results/grid")).starts_with("24 of 24 trials match, step by step"));
     // A single row can be run again.
     let policy = "RNE(score: Sum)";
     let arguments = ["run", "results/grid/resolved.ron", "--policy", policy, "--seed", "2", "--json"];
@@ -42,7 +40,7 @@ fn bad_sweep_files_are_refused_with_their_lines() {
     let refuse = |from: &str, to: &str, message: &str| {
         assert!(grid.contains(from));
         std::fs::write(here.join("bad.ron"), grid.replace(from, to)).unwrap();
-        refused(here, 2, &["sweep", "bad.ron"], &[message]);
+        refused(here, 2, "sweep bad.ron", &[message]);
     };
     refuse(
         "carrier.speed_mps",
@@ -83,20 +81,20 @@ fn bad_sweep_files_are_refused_with_their_lines() {
         "bad.ron:7: margins.\"rescuees\": must be a number above 0, found 0",
     ];
     // Without a scenario that can be used, metrics and axes cannot be judged.
-    refused(here, 2, &["sweep", "bad.ron"], &told[..2]);
+    refused(here, 2, "sweep bad.ron", &told[..2]);
     let bad = grid
         .replace("score: Sum", "score: Most")
         .replace("trials: 2", "trials: 2, primary: [\"rescued\"], margins: {\"rescuees\": 0}")
         .replace("[1.5, 3.0]", "[1.5, \"fast\"]");
     std::fs::write(here.join("bad.ron"), bad).unwrap();
-    refused(here, 2, &["sweep", "bad.ron"], &[told[1], told[2], told[3], axis]);
+    refused(here, 2, "sweep bad.ron", &[told[1], told[2], told[3], axis]);
     // A rule that a value of `set` breaks has its line; what else is wrong may come from it.
     std::fs::write(
         here.join("bad.ron"),
         grid.replace("\"mission.loading_s\"", "\"mission.rest_s\": -1, \"mission.loading_s\""),
     )
     .unwrap();
-    refused(here, 2, &["sweep", "bad.ron"], &["bad.ron:5: set.\"mission.rest_s\": mission.rest_s must be"]);
+    refused(here, 2, "sweep bad.ron", &["bad.ron:5: set.\"mission.rest_s\": mission.rest_s must be"]);
 }
 
 #[test]
@@ -117,13 +115,13 @@ fn a_door_is_one_axis_only_by_whatever_name() {
         std::fs::write(here.join("doors.ron"), text).unwrap();
     };
     sweep("\"walls[0].doors.gate.closed\": [true, false]");
-    succeeds(&usar(here, &["check", "doors.ron"]));
+    succeeds(&usar(here, "check doors.ron"));
     for both in ["closed\": [true, false]", "width_m\": [2, 3]"] {
         sweep(&format!("\"walls[0].doors.gate.{both}, \"walls[0].doors[0].{both}"));
         refused(
             here,
             2,
-            &["sweep", "doors.ron"],
+            "sweep doors.ron",
             &["must not be a part of another axis, found walls[0].doors.gate"],
         );
     }
@@ -142,9 +140,9 @@ fn strange_texts_are_refused_in_words() {
     let folder = place();
     let here = folder.path();
     std::fs::write(here.join("deep.ron"), "(".repeat(200_000)).unwrap();
-    refused(here, 2, &["check", "deep.ron"], &["deep.ron:"]);
+    refused(here, 2, "check deep.ron", &["deep.ron:"]);
     refused(here, 2, &["sweep", "short.ron", "--policies", "RNE(score: '日')"], &["policies: policy RNE: "]);
-    refused(here, 2, &["sweep", "short.ron", "--set", "duration_s='日'"], &["--set: duration_s: "]);
+    refused(here, 2, "sweep short.ron --set duration_s='日'", &["--set: duration_s: "]);
     refused(
         here,
         2,
@@ -160,13 +158,13 @@ fn strange_texts_are_refused_in_words() {
     refused(
         here,
         2,
-        &["sweep", "grid.ron", "--set", "roles[0].speed_mps=2.0"],
+        "sweep grid.ron --set roles[0].speed_mps=2.0",
         &["--set: roles.carrier.speed_mps is on an axis"],
     );
     let grid = std::fs::read_to_string(here.join("grid.ron")).unwrap();
     let commented = grid.replace("[1.5, 3.0]", "[1.5, // as printed\n 3.0 /* twice */]");
     std::fs::write(here.join("commented.ron"), commented).unwrap();
-    succeeds(&usar(here, &["check", "commented.ron"]));
+    succeeds(&usar(here, "check commented.ron"));
     for (from, to, message) in [
         (
             "[1.5, 3.0]",
@@ -184,7 +182,7 @@ fn strange_texts_are_refused_in_words() {
         ("trials: 2", "seeds: [4, 4]", "seeds: must differ"),
     ] {
         std::fs::write(here.join("bad.ron"), grid.replace(from, to)).unwrap();
-        refused(here, 2, &["sweep", "bad.ron"], &[message]);
+        refused(here, 2, "sweep bad.ron", &[message]);
     }
 }
 
@@ -192,9 +190,9 @@ fn strange_texts_are_refused_in_words() {
 fn the_sweep_file_in_the_folder_makes_it_again() {
     let folder = place();
     let here = folder.path();
-    succeeds(&usar(here, &["sweep", "grid.ron", "--set", "duration_s=20", "--trials", "1"]));
+    succeeds(&usar(here, "sweep grid.ron --set duration_s=20 --trials 1"));
     let results = here.join("results/grid");
-    succeeds(&usar(&results, &["sweep", "sweep.ron", "--out", "again"]));
+    succeeds(&usar(&results, "sweep sweep.ron --out again"));
     let (before, again) = (files_but(&results), files_but(&results.join("again")));
     assert_eq!(before, again);
 }
@@ -209,25 +207,25 @@ fn files_but(folder: &Path) -> Vec<(String, Vec<u8>)> {
 fn shards_are_joined_to_the_bytes_of_a_single_run() {
     let folder = place();
     let here = folder.path();
-    succeeds(&usar(here, &["sweep", "grid.ron", "--out", "whole"]));
+    succeeds(&usar(here, "sweep grid.ron --out whole"));
     for shard in ["1/3", "2/3", "3/3"] {
         succeeds(&usar(here, &["sweep", "grid.ron", "--shard", shard]));
     }
     let parts = ["results/grid-1-of-3", "results/grid-2-of-3", "results/grid-3-of-3"];
-    let merge = |parts: &[&'static str]| [&["merge"], parts, &["--out", "joined"]].concat();
+    let merge = |parts: &[&'static str]| [&["cluster", "merge"], parts, &["--out", "joined"]].concat();
     refused(here, 2, &merge(&parts[..2]), &["shard 3/3 is not there: missing trials, 6: "]);
-    succeeds(&usar(here, &["sweep", "grid.ron", "--shard", "3/3", "--trials", "3", "--out", "results/more"]));
+    succeeds(&usar(here, "sweep grid.ron --shard 3/3 --trials 3 --out results/more"));
     refused(
         here,
         2,
         &merge(&[parts[0], "results/more"]),
         &["are not of one sweep", "trials: 2 there, 3 now"],
     );
-    succeeds(&usar(here, &["sweep", "short.ron", "--trials", "1", "--out", "results/other"]));
+    succeeds(&usar(here, "sweep short.ron --trials 1 --out results/other"));
     refused(here, 2, &merge(&[parts[0], "results/other"]), &["are not of one sweep", "axes: "]);
     succeeds(&usar(here, &merge(&parts)));
     assert!(files(&here.join("joined")) == files(&here.join("whole")));
-    refused(here, 2, &["sweep", "grid.ron", "--shard", "4/3"], &["must be i/n with i from 1 to n"]);
+    refused(here, 2, "sweep grid.ron --shard 4/3", &["must be i/n with i from 1 to n"]);
 }
 
 #[test]
@@ -240,13 +238,13 @@ fn trials_that_took_too_long_are_counted_and_joined() {
         assert_eq!(late.status.code(), Some(1));
     }
     let parts = ["results/paper-1-of-2", "results/paper-2-of-2"];
-    let merged = usar(here, &["merge", parts[0], parts[1], "--out", "results/whole"]);
+    let merged = usar(here, &["cluster", "merge", parts[0], parts[1], "--out", "results/whole"]);
     assert_eq!(merged.status.code(), Some(1), "{}", String::from_utf8_lossy(&merged.stderr));
-    let said = succeeds(&usar(here, &["compare", "results/whole", "--metric", "rescuees.hard"]));
+    let said = succeeds(&usar(here, "compare results/whole --metric rescuees.hard"));
     assert!(said.contains("2 with a failed trial, 0 with"), "{said}");
     // Merging again changes nothing.
     let before = files(&here.join("results/whole"));
-    usar(here, &["merge", parts[0], parts[1], "--out", "results/whole"]);
+    usar(here, &["cluster", "merge", parts[0], parts[1], "--out", "results/whole"]);
     assert!(files(&here.join("results/whole")) == before);
 }
 
@@ -254,10 +252,7 @@ fn trials_that_took_too_long_are_counted_and_joined() {
 fn a_shard_has_whole_pairs_and_calls_itself_complete() {
     let folder = place();
     let here = folder.path();
-    succeeds(&usar(
-        here,
-        &["sweep", "short.ron", "--policies", "RNE,DIS", "--trials", "5", "--shard", "2/2"],
-    ));
+    succeeds(&usar(here, "sweep short.ron --policies RNE,DIS --trials 5 --shard 2/2"));
     let shard = here.join("results/paper-2-of-2");
     let manifest: Value = serde_json::from_str(&read(&shard.join("manifest.json"))).unwrap();
     assert_eq!(manifest["is_complete"], true);
@@ -273,14 +268,24 @@ fn a_shard_has_whole_pairs_and_calls_itself_complete() {
         "trials.csv",
     ];
     assert_eq!(names, expected, "the other tables are made when shards are merged");
-    let said = succeeds(&usar(here, &["compare", "results/paper-2-of-2", "--metric", "distance", "--json"]));
+    let said = succeeds(&usar(here, "compare results/paper-2-of-2 --metric distance --json"));
     let compared: Value = serde_json::from_str(&said).unwrap();
     let first = &compared["comparisons"][0];
     assert_eq!((&first["n"], &first["missing"]), (&2.into(), &0.into()), "seeds 2 and 4, whole");
-    succeeds(&usar(here, &["report", "results/paper-2-of-2"]));
-    succeeds(&usar(here, &["verify", "results/paper-2-of-2"]));
-    let estimate =
-        ["estimate", "short.ron", "--policies", "RNE,DIS", "--trials", "5", "--shards", "2", "--json"];
+    succeeds(&usar(here, "report results/paper-2-of-2"));
+    succeeds(&usar(here, "verify results/paper-2-of-2"));
+    let estimate = [
+        "cluster",
+        "estimate",
+        "short.ron",
+        "--policies",
+        "RNE,DIS",
+        "--trials",
+        "5",
+        "--shards",
+        "2",
+        "--json",
+    ];
     let said: Value = serde_json::from_str(&succeeds(&usar(here, &estimate))).unwrap();
     assert_eq!(said["shard"]["trials"], 6, "the larger of the two");
     assert!(said["shard"]["bytes"].as_u64() < said["bytes"].as_u64());
@@ -293,7 +298,7 @@ fn a_sweep_that_keeps_its_trials_only_is_compared_reported_verified_and_joined()
     let here = folder.path();
     let keep = ["sweep", "short.ron", "--policies", "RNE,DIS", "--trials", "3", "--keep", "trials"];
     succeeds(&usar(here, &[&keep[..], &["--out", "little"]].concat()));
-    succeeds(&usar(here, &["sweep", "short.ron", "--policies", "RNE,DIS", "--trials", "3", "--out", "much"]));
+    succeeds(&usar(here, "sweep short.ron --policies RNE,DIS --trials 3 --out much"));
     let [little, much] = ["little", "much"].map(|name| files(&here.join(name)));
     assert!(little["trials.csv"] == much["trials.csv"] && !little.contains_key("rounds.csv"));
     let journal = |files: &BTreeMap<String, Vec<u8>>| files["journal.jsonl.gz"].len();
@@ -301,11 +306,16 @@ fn a_sweep_that_keeps_its_trials_only_is_compared_reported_verified_and_joined()
     for command in ["compare", "report", "verify"] {
         succeeds(&usar(here, &[command, "little"]));
     }
-    refused(here, 2, &["sorting", "little"], &["keeps the metrics of its trials only", "--keep rounds"]);
+    refused(
+        here,
+        2,
+        "study yang2021 sorting little",
+        &["keeps the metrics of its trials only", "--keep rounds"],
+    );
     for shard in ["1/2", "2/2"] {
         succeeds(&usar(here, &[&keep[..], &["--shard", shard]].concat()));
     }
-    succeeds(&usar(here, &["merge", "results", "--out", "joined"]));
+    succeeds(&usar(here, "cluster merge results --out joined"));
     assert!(files(&here.join("joined")) == little);
     refused(here, 2, &[&keep[..6], &["--out", "little"]].concat(), &["--keep: trials there, groups now"]);
 }

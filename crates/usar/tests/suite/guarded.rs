@@ -22,12 +22,12 @@ fn starting_over_and_reporting_leave_the_files_of_others_alone() {
 
     std::fs::write(results.join("report.html"), "mine").unwrap();
     let message = "report.html: is not of a report of this program; nothing was overwritten";
-    refused(here, 2, &["report", "results/paper"], &[message]);
+    refused(here, 2, "report results/paper", &[message]);
     refused(here, 2, &fresh, &["has files that are not the sweep's: report.html; nothing was deleted"]);
     std::fs::remove_file(results.join("report.html")).unwrap();
 
-    succeeds(&usar(here, &["report", "results/paper"]));
-    succeeds(&usar(here, &["report", "results/paper"]));
+    succeeds(&usar(here, "report results/paper"));
+    succeeds(&usar(here, "report results/paper"));
     std::fs::write(results.join("plots/mine.svg"), "mine").unwrap();
     refused(here, 2, &fresh, &["has files that are not the sweep's: plots/mine.svg"]);
     std::fs::write(results.join("notes.txt"), "mine").unwrap();
@@ -60,7 +60,7 @@ fn no_link_is_followed_out_of_a_folder_of_results() {
     std::fs::write(outside.join("table"), "mine").unwrap();
 
     symlink(&outside, results.join("plots")).unwrap();
-    refused(here, 2, &["report", "results/paper"], &["plots: is not a folder"]);
+    refused(here, 2, "report results/paper", &["plots: is not a folder"]);
     refused(here, 2, &[&SWEEP[..], &["--fresh"]].concat(), &["not the sweep's: plots"]);
     std::fs::remove_file(results.join("plots")).unwrap();
 
@@ -91,12 +91,12 @@ fn a_pipe_among_the_results_is_not_waited_for() {
         path
     };
     let path = pipe("robots.csv");
-    let said = usar(here, &["compare", "results/paper"]);
+    let said = usar(here, "compare results/paper");
     assert!(String::from_utf8_lossy(&said.stderr).contains("checksums of the manifest: robots.csv"));
     succeeds(&usar(here, &SWEEP));
     assert!(path.is_file(), "it is made again");
     pipe("journal.jsonl.gz");
-    let said = usar(here, &["compare", "results/paper"]);
+    let said = usar(here, "compare results/paper");
     assert!(String::from_utf8_lossy(&said.stderr).contains("journal.jsonl.gz: is not a regular file"));
 }
 
@@ -111,7 +111,7 @@ fn a_byte_after_the_last_line_of_a_journal_is_taken_away() {
     std::fs::write(results.join(journal), [&sound[journal][..], b"x"].concat()).unwrap();
     succeeds(&usar(here, &SWEEP));
     assert!(files(&results) == sound, "the sweep's command mends it");
-    succeeds(&usar(here, &["verify", "results/paper"]));
+    succeeds(&usar(here, "verify results/paper"));
 }
 
 /// Starts a long sweep, and waits until it has trials.
@@ -161,9 +161,9 @@ fn one_trial_takes_no_longer_than_it_may_and_a_disk_that_refuses_is_told_as_such
     let folder = place();
     let here = folder.path();
     let message = "the trial took longer than 0 s and had come to 1 s of simulated time; --max-trial-s";
-    refused(here, 1, &["run", "short.ron", "--max-trial-s", "0"], &[message]);
+    refused(here, 1, "run short.ron --max-trial-s 0", &[message]);
     let arguments = ["run", "short.ron", "--save", "/proc/x.snapshot", "--save-at", "1"];
-    refused(here, 3, &arguments, &["--save: cannot write /proc/x.snapshot"]);
+    refused(here, 3, &arguments, &["cannot write /proc/x.snapshot"]);
 }
 
 #[test]

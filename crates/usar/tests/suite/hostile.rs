@@ -36,7 +36,7 @@ fn sweep(more: &str) -> String {
 fn at_once(here: &Path, text: &str, words: &str) {
     std::fs::write(here.join("hostile.ron"), text).unwrap();
     let start = Instant::now();
-    refused(here, 2, &["check", "hostile.ron"], &[words]);
+    refused(here, 2, "check hostile.ron", &[words]);
     let taken = start.elapsed();
     assert!(taken < Duration::from_secs(20), "{words}: refused after {taken:?}");
 }
@@ -142,15 +142,15 @@ fn what_is_no_regular_file_is_not_waited_for() {
     ] {
         for arguments in [
             vec!["check", file],
-            vec!["run", file],
             vec!["sweep", file],
             vec!["group", file],
-            vec!["run", "ok.ron", "--from", file],
-            vec!["calibrate", "ok.ron", "--free", "duration_s=5..20", "--target", file],
+            vec!["run", "ok.ron", "--resume", file],
+            vec!["study", "yang2021", "calibrate", "ok.ron", "--over", "duration_s=5..20", "--target", file],
         ] {
             refused(here, 2, &arguments, &[file, words]);
         }
         if file != "." {
+            refused(here, 2, &["run", file], &[file, words]);
             refused(here, 2, &["view", file], &[file, words]);
         }
     }
@@ -166,10 +166,10 @@ fn work_that_takes_long_needs_a_word_and_says_what_it_takes() {
         .unwrap();
     let words = "41 robots and pieces of debris x 86400000 steps is 3.5e9, more than 1e9: about 39 minutes \
         on one thread. --allow-expensive";
-    refused(here, 2, &["run", "long.ron"], &[words]);
-    refused(here, 2, &["sweep", "long.ron"], &[words]);
-    refused(here, 2, &["view", "long.ron"], &[words]);
-    assert!(succeeds(&usar(here, &["check", "long.ron"])).contains("ok, but expensive: 41 robots"));
+    refused(here, 2, "run long.ron", &[words]);
+    refused(here, 2, "sweep long.ron", &[words]);
+    refused(here, 2, "view long.ron", &[words]);
+    assert!(succeeds(&usar(here, "check long.ron")).contains("ok, but expensive: 41 robots"));
     let allowed = ["run", "long.ron", "--allow-expensive", "--max-trial-s", "0.01"];
     refused(here, 1, &allowed, &["the trial took longer than 0.01 s"]);
     std::fs::write(here.join("ok.ron"), scenario("")).unwrap();
@@ -181,5 +181,5 @@ fn work_that_takes_long_needs_a_word_and_says_what_it_takes() {
         ),
     )
     .unwrap();
-    refused(here, 2, &["sweep", "many.ron"], &["x 12000000 trials is 1.2e12, more than 1e12"]);
+    refused(here, 2, "sweep many.ron", &["x 12000000 trials is 1.2e12, more than 1e12"]);
 }

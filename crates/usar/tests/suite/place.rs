@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::support::{read, root, usar};
+use crate::support::{Words, read, root, usar};
 
 /// A folder with `short.ron`, the paper's scenario for half a minute, and `grid.ron`, a sweep file for it.
 pub fn place() -> tempfile::TempDir {
@@ -42,7 +42,7 @@ pub fn rows(folder: &Path, table: &str) -> Vec<csv::StringRecord> {
 /// Checks that the command ends with this status and a message that contains all of these, and leaves the
 /// folder of results unchanged.
 #[track_caller]
-pub fn refused(folder: &Path, status: i32, arguments: &[&str], messages: &[&str]) {
+pub fn refused(folder: &Path, status: i32, arguments: &(impl Words + ?Sized), messages: &[&str]) {
     let results = folder.join("results");
     let content = |path: &Path| if path.is_dir() { format!("{:?}", tree(path)) } else { String::new() };
     let before = content(&results);

@@ -13,9 +13,9 @@ use crate::support::{read, root, succeeds, usar};
 fn a_report_is_one_file_with_figures_and_the_numbers_behind_them() {
     let folder = place();
     let here = folder.path();
-    refused(here, 2, &["report", "results"], &["results: is not the folder of a sweep"]);
-    succeeds(&usar(here, &["sweep", "grid.ron", "--set", "duration_s=120", "--trials", "3"]));
-    assert_eq!(succeeds(&usar(here, &["report", "results/grid"])), "results/grid/report.html\n");
+    refused(here, 2, "report results", &["results: is not the folder of a sweep"]);
+    succeeds(&usar(here, "sweep grid.ron --set duration_s=120 --trials 3"));
+    assert_eq!(succeeds(&usar(here, "report results/grid")), "results/grid/report.html\n");
     let results = here.join("results/grid");
     let read = |name: &str| std::fs::read_to_string(results.join(name)).unwrap();
     let (overview, page) = (read("report.html"), read("plots/case-1.html"));
@@ -67,7 +67,7 @@ fn a_report_is_one_file_with_figures_and_the_numbers_behind_them() {
     assert!(overview.contains("Does it depend on the scenario?") && overview.contains("faster carriers"));
     assert!(page.contains("<figure id=\"map\"") && plots["case-1-map.svg"].starts_with(b"<svg xmlns"));
     assert!(!page.contains("Ways of all robots"));
-    succeeds(&usar(here, &["report", "results/grid"]));
+    succeeds(&usar(here, "report results/grid"));
     assert_eq!(overview, read("report.html"), "the same bytes again");
     assert_eq!(page, read("plots/case-1.html"), "the same bytes again");
     let more = ["--case", "3", "--title", "Of <speed>", "--metric", "distance", "--baseline", "DIS"];
@@ -78,27 +78,19 @@ fn a_report_is_one_file_with_figures_and_the_numbers_behind_them() {
     let said = succeeds(&usar(here, &[&["compare", "results/grid"], &more[4..]].concat()));
     let sentence = said.lines().find(|line| line.contains("distance travelled: ")).unwrap();
     assert!(read("report.html").contains("distance travelled") && !sentence.is_empty());
-    refused(here, 2, &["report", "results/grid", "--case", "5"], &["--case: must be from 1 to 4, found 5"]);
-    refused(here, 2, &["report", "results/grid", "--metric", "luck"], &["unknown metric \"luck\""]);
+    refused(here, 2, "report results/grid --case 5", &["--case: must be from 1 to 4, found 5"]);
+    refused(here, 2, "report results/grid --metric luck", &["unknown metric \"luck\""]);
     // The sweep can still be continued in a folder with a report.
-    succeeds(&usar(here, &["sweep", "grid.ron", "--set", "duration_s=120", "--trials", "3"]));
+    succeeds(&usar(here, "sweep grid.ron --set duration_s=120 --trials 3"));
 }
 
 #[test]
 fn a_report_shows_chosen_trials_and_links_their_replays() {
     let folder = place();
     let here = folder.path();
-    succeeds(&usar(
-        here,
-        &["sweep", "short.ron", "--policies", "RNE,DIS", "--trials", "2", "--set", "duration_s=30"],
-    ));
-    refused(
-        here,
-        2,
-        &["report", "results/paper", "--trial", "9"],
-        &["--trial: must be the seed of a finished"],
-    );
-    succeeds(&usar(here, &["report", "results/paper", "--trial", "2", "--with-replays"]));
+    succeeds(&usar(here, "sweep short.ron --policies RNE,DIS --trials 2 --set duration_s=30"));
+    refused(here, 2, "report results/paper --trial 9", &["--trial: must be the seed of a finished"]);
+    succeeds(&usar(here, "report results/paper --trial 2 --with-replays"));
     let results = here.join("results/paper");
     let page = std::fs::read_to_string(results.join("report.html")).unwrap();
     for (label, number) in [("RNE", 1), ("DIS", 2)] {
@@ -109,13 +101,10 @@ fn a_report_shows_chosen_trials_and_links_their_replays() {
         assert_eq!(replay.matches("<script type=\"application/x-usrec\"").count(), 1);
     }
     // The next report removes the files of this one, and the folder can start over.
-    succeeds(&usar(here, &["report", "results/paper"]));
+    succeeds(&usar(here, "report results/paper"));
     assert!(!results.join("plots/replay-RNE-2.html").exists() && !results.join("plots/ways-1.svg").exists());
-    succeeds(&usar(here, &["report", "results/paper", "--with-replays"]));
-    succeeds(&usar(
-        here,
-        &["sweep", "short.ron", "--policies", "RNE", "--trials", "1", "--set", "duration_s=30", "--fresh"],
-    ));
+    succeeds(&usar(here, "report results/paper --with-replays"));
+    succeeds(&usar(here, "sweep short.ron --policies RNE --trials 1 --set duration_s=30 --fresh"));
     assert!(!results.join("plots").exists());
 }
 
@@ -137,11 +126,8 @@ fn every_metric_is_a_column(results: &Path, trials: &[csv::StringRecord]) {
 fn the_reports_numbers_are_those_of_the_trials() {
     let folder = place();
     let here = folder.path();
-    succeeds(&usar(
-        here,
-        &["sweep", "short.ron", "--policies", "RNE,DIS", "--trials", "3", "--set", "duration_s=120"],
-    ));
-    succeeds(&usar(here, &["report", "results/paper"]));
+    succeeds(&usar(here, "sweep short.ron --policies RNE,DIS --trials 3 --set duration_s=120"));
+    succeeds(&usar(here, "report results/paper"));
     let results = here.join("results/paper");
     let trials = rows(&results, "trials.csv");
     every_metric_is_a_column(&results, &trials);
@@ -186,39 +172,36 @@ fn a_figure_fits_the_column_of_a_paper() {
     sweep.extend(["--policies", "RNE,DIS", "--out", "short"]);
     succeeds(&usar(folder, &sweep));
     let figure = |more: &[&str]| {
-        let mut arguments = vec!["figure", "short", "rescuees-over-time"];
+        let mut arguments = vec!["export", "figure", "short", "rescuees-over-time"];
         arguments.extend(more);
         usar(folder, &arguments)
     };
-    let told = succeeds(&figure(&["--format", "svg", "--metric", "rescuees", "--policies", "DIS", "--grey"]));
-    assert_eq!(told, "rescuees-over-time.svg\n");
-    let svg = read(&folder.join("rescuees-over-time.svg"));
+    let told = succeeds(&figure(&["--out", "a.svg", "--metric", "rescuees", "--policies", "DIS", "--grey"]));
+    assert_eq!(told, "a.svg\n");
+    let svg = read(&folder.join("a.svg"));
     assert!(svg.contains("width=\"88mm\"") && svg.contains("DIS") && !svg.contains("RNE"), "{svg}");
     assert!(!svg.contains("#D55E00"), "no colour is left");
     for name in ["groups", "levels", "sorting"] {
         let file = format!("{name}.svg");
-        succeeds(&usar(
-            folder,
-            &["figure", "short", name, "--policies", "DIS", "--format", "svg", "--out", &file],
-        ));
+        succeeds(&usar(folder, &["export", "figure", "short", name, "--policies", "DIS", "--out", &file]));
         let svg = read(&folder.join(&file));
         assert!(svg.contains("DIS") && !svg.contains("RNE"), "{name}: {svg}");
     }
     succeeds(&figure(&["--out", "a.pdf"]));
-    succeeds(&figure(&["--format", "png", "--out", "a.png", "--dpi", "60"]));
+    succeeds(&figure(&["--out", "a.png", "--dpi", "60"]));
     let begins = |name: &str, with: &[u8]| std::fs::read(folder.join(name)).unwrap().starts_with(with);
     assert!(begins("a.pdf", b"%PDF-") && begins("a.png", b"\x89PNG"));
     for (more, says) in [
         (&["--out", "a.pdf"][..], "exists; nothing was overwritten"),
         (&["--metric", "rounds"], "the figure rescuees-over-time has no panel of rounds"),
         (&["--policies", "LUCK"], "--policies: must be policies of the sweep (RNE, DIS)"),
-        (&["--width", "88"], "must be 20mm to 1000mm"),
+        (&["--width", "800", "--out", "b.pdf"], "must be 20mm to 1000mm"),
     ] {
         let output = figure(more);
         let stderr = String::from_utf8_lossy(&output.stderr);
         assert!(output.status.code() == Some(2) && stderr.contains(says), "{stderr}");
     }
-    succeeds(&usar(folder, &["report", "short"]));
+    succeeds(&usar(folder, "report short"));
     let table = read(&folder.join("short/plots/rescuees-over-time.csv"));
     assert!(table.starts_with("metric,policy,time_s,n,"), "{table}");
 }

@@ -38,7 +38,7 @@ fn the_same_command_goes_on_and_more_trials_only_add() {
     // The file asks for 10 trials and the folder has 3. No number was given on the command line, so that
     // nothing is refused.
     std::fs::write(folder.path().join("one.ron"), small_default(folder.path())).unwrap();
-    let plain = usar(folder.path(), &["sweep", "one.ron", "--policies", "RNE,DIS"]);
+    let plain = usar(folder.path(), "sweep one.ron --policies RNE,DIS");
     assert!(String::from_utf8_lossy(&plain.stderr).contains("6 of 6 trials are there already"));
 }
 
@@ -60,23 +60,18 @@ fn another_sweep_in_the_folder_is_refused_and_each_difference_named() {
         &with(&["--set", "costs.energy.per_step=0.009"]),
         &["results/paper has results of something else", "costs.energy.per_step: 0.0045 there, 0.009 now"],
     );
-    refused(here, 2, &with(&["--seed", "7"]), &["seeds: from 1 on there, from 7 on now"]);
+    refused(here, 2, &with(&["--first-seed", "7"]), &["seeds: from 1 on there, from 7 on now"]);
     refused(here, 2, &with(&["--check"]), &["--check: false there, true now"]);
     refused(
         here,
         2,
-        &["sweep", "short.ron", "--policies", "RNE,DIS", "--trials", "1"],
+        "sweep short.ron --policies RNE,DIS --trials 1",
         &["trials: 2 there, more than the 1 asked for; none are taken away"],
     );
-    refused(
-        here,
-        2,
-        &["sweep", "short.ron", "--policies", "ENG", "--trials", "2"],
-        &["policies: RNE, DIS there, ENG now"],
-    );
-    refused(here, 2, &["sweep", "short.ron", "--set", "costs.energy=1"], &["--set: costs.energy: "]);
-    refused(here, 2, &["sweep", "short.ron", "--set", "dt_s=-1"], &["--set: dt_s must"]);
-    succeeds(&usar(here, &["sweep", "short.ron", "--policies", "ENG", "--trials", "1", "--fresh"]));
+    refused(here, 2, "sweep short.ron --policies ENG --trials 2", &["policies: RNE, DIS there, ENG now"]);
+    refused(here, 2, "sweep short.ron --set costs.energy=1", &["--set: costs.energy: "]);
+    refused(here, 2, "sweep short.ron --set dt_s=-1", &["--set: dt_s must"]);
+    succeeds(&usar(here, "sweep short.ron --policies ENG --trials 1 --fresh"));
     assert_eq!(rows(&here.join("results/paper"), "trials.csv").len(), 1);
 }
 
@@ -96,12 +91,12 @@ fn an_interrupted_sweep_stops_at_once_and_goes_on() {
     assert!(since.elapsed() < Duration::from_secs(2));
     assert_eq!(output.status.code(), Some(130));
     assert!(String::from_utf8_lossy(&output.stderr).contains("and the same command goes on"));
-    let tidy = usar(here, &["tidy", "results/paper"]);
+    let tidy = usar(here, "export table results/paper");
     succeeds(&tidy);
     assert!(String::from_utf8_lossy(&tidy.stderr).contains("the sweep is not complete: "));
     let again = usar(here, &sweep);
     succeeds(&again);
-    assert!(usar(here, &["tidy", "results/paper"]).stderr.is_empty());
+    assert!(usar(here, "export table results/paper").stderr.is_empty());
     assert!(String::from_utf8_lossy(&again.stderr).contains("of 60 trials are there already"));
     assert_eq!(rows(&here.join("results/paper"), "trials.csv").len(), 60);
 }

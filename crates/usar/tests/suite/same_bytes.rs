@@ -72,10 +72,7 @@ fn processor_features_locale_time_zone_and_folder_change_nothing() {
 #[test]
 fn a_sweep_is_verified_and_the_first_difference_is_named() {
     let folder = short();
-    succeeds(&usar(
-        folder.path(),
-        &["sweep", "short.ron", "--trials", "2", "--policies", "RNE,DIS", "--out", "done"],
-    ));
+    succeeds(&usar(folder.path(), "sweep short.ron --trials 2 --policies RNE,DIS --out done"));
     let verify = |more: &[&str]| usar(folder.path(), &[&["verify", "done"], more].concat());
     let all = "match, step by step and number by number; every table is what they give\n";
     assert_eq!(succeeds(&verify(&[])), format!("4 of 4 trials {all}"));
@@ -158,7 +155,7 @@ fn a_trial_goes_on_from_a_snapshot_in_a_new_process() {
         let file = format!("{seconds}.snapshot");
         let saved = run(&["--policy", "DIS", "--seed", "5", "--json", "--save", &file, "--save-at", seconds]);
         assert_eq!(succeeds(&saved), whole);
-        assert_eq!(succeeds(&run(&["--from", &file, "--json"])), whole);
+        assert_eq!(succeeds(&run(&["--resume", &file, "--json"])), whole);
     }
     let refused = |arguments: &[&str], message: &str| {
         let output = run(arguments);
@@ -168,11 +165,11 @@ fn a_trial_goes_on_from_a_snapshot_in_a_new_process() {
     };
     refused(&["--save", "0.snapshot", "--save-at", "1"], "0.snapshot exists; nothing was overwritten");
     refused(&["--save", "x", "--save-at", "61"], "--save-at: must be from 0 to 60 s, found 61");
-    refused(&["--from", "short.ron"], "short.ron: is not a snapshot of a trial");
+    refused(&["--resume", "short.ron"], "short.ron: is not a snapshot of a trial");
     let mut bytes = std::fs::read(folder.path().join("17.3.snapshot")).unwrap();
     std::fs::write(folder.path().join("cut"), &bytes[..bytes.len() - 1]).unwrap();
-    refused(&["--from", "cut"], "cut: should have ");
+    refused(&["--resume", "cut"], "cut: should have ");
     bytes[8] += 1;
     std::fs::write(folder.path().join("later"), &bytes).unwrap();
-    refused(&["--from", "later"], "later: is a snapshot of format 10; this program reads format 9");
+    refused(&["--resume", "later"], "later: is a snapshot of format 10; this program reads format 9");
 }

@@ -1,28 +1,24 @@
-//! The program in a shell: its version, its help, its manual pages, completions, and `usar doctor`.
+//! The program in a shell: its version, its help, its manual pages, completions, and `usar self doctor`.
 
 use crate::commands::json;
 use crate::place::refused;
 use crate::support::{read, root, succeeds, usar};
 
-/// The verbs that `usar --help` lists.
-fn verbs(help: &str) -> Vec<&str> {
-    let commands = help.split("\nCommands:\n").nth(1).unwrap().split("\n\n").next().unwrap();
-    let verbs = commands.lines().filter(|line| line.starts_with("  ") && !line.starts_with("   "));
-    let verbs: Vec<&str> = verbs.filter_map(|line| line.split_whitespace().next()).collect();
-    assert!(verbs.len() > 30 && verbs.contains(&"sweep"), "{help}");
-    verbs.into_iter().filter(|verb| *verb != "help").collect()
-}
+/// Some commands, of each depth.
+const COMMANDS: [&str; 4] = ["sweep", "cluster submit", "study regret", "study yang2021 claims"];
 
 #[test]
-fn every_verb_has_examples_of_itself() {
+fn the_short_help_has_less_than_the_long_one_and_both_have_examples() {
     let root = root();
-    let help = succeeds(&usar(&root, &["--help"]));
-    assert!(help.contains("Exit status:\n  0 ") && help.contains("\n  3 "), "{help}");
-    for verb in verbs(&help) {
-        let help = succeeds(&usar(&root, &[verb, "--help"]));
-        let examples = help.split("\nExample:\n").nth(1).or(help.split("\nExamples:\n").nth(1));
-        let examples = examples.unwrap_or_else(|| panic!("usar {verb} --help has no examples"));
-        assert!(examples.contains(&format!("usar {verb}")), "usar {verb} --help: {examples}");
+    assert!(succeeds(&usar(&root, &["-h"])).contains("\nstart "));
+    for command in COMMANDS {
+        let help = |flag| succeeds(&usar(&root, &command.split(' ').chain([flag]).collect::<Vec<_>>()));
+        let (short, long) = (help("-h"), help("--help"));
+        assert!(
+            short.len() < long.len() && !short.contains("--fresh") || command == "cluster submit",
+            "{short}"
+        );
+        assert!(short.contains("\nExamples:\n") && long.contains("\nExamples:\n"), "{long}");
     }
 }
 
@@ -31,7 +27,7 @@ fn the_version_tells_the_commit() {
     let version = succeeds(&usar(&root(), &["--version"]));
     let expected = concat!("usar ", env!("CARGO_PKG_VERSION"));
     let rest = version.trim_end().strip_prefix(expected).unwrap_or_else(|| panic!("{version}"));
-    let commit = json(&["doctor", "--json"])["commit"].as_str().unwrap().to_owned();
+    let commit = json("self doctor --json")["commit"].as_str().unwrap().to_owned();
     let told = if commit == "unknown" { String::new() } else { format!(" (commit {commit})") };
     assert_eq!(rest, told);
 }
@@ -39,10 +35,9 @@ fn the_version_tells_the_commit() {
 #[test]
 fn each_shell_has_completions_of_every_verb() {
     let root = root();
-    let help = succeeds(&usar(&root, &["--help"]));
     for shell in ["bash", "zsh", "fish", "powershell", "elvish"] {
-        let script = succeeds(&usar(&root, &["completions", shell]));
-        for verb in verbs(&help) {
+        let script = succeeds(&usar(&root, &["self", "completions", shell]));
+        for verb in COMMANDS.iter().flat_map(|command| command.split(' ')) {
             assert!(script.contains(verb), "{shell}: {verb} is missing");
         }
         assert!(script.contains("--max-trial-s") || script.contains("max-trial-s"), "{shell}: no options");
@@ -50,7 +45,7 @@ fn each_shell_has_completions_of_every_verb() {
     refused(
         tempfile::tempdir().unwrap().path(),
         2,
-        &["completions", "csh"],
+        "self completions csh",
         &["possible values: bash, elvish, fish, powershell, zsh"],
     );
 }
@@ -59,21 +54,21 @@ fn each_shell_has_completions_of_every_verb() {
 fn there_is_a_manual_page_of_every_command() {
     let folder = tempfile::tempdir().unwrap();
     let here = folder.path();
-    assert!(succeeds(&usar(here, &["man"])).contains(".TH usar 1"));
-    let told = succeeds(&usar(here, &["man", "--out", "man1"]));
-    let help = succeeds(&usar(here, &["--help"]));
-    assert_eq!(told.lines().count(), verbs(&help).len() + 1, "{told}");
-    for verb in verbs(&help) {
-        let page = read(&here.join("man1").join(format!("usar-{verb}.1")));
-        assert!(page.contains(&format!(".TH usar-{verb} 1")) && page.contains("\n.nf\nExample"), "{page}");
+    let page = succeeds(&usar(here, "self man"));
+    assert!(page.contains(".TH usar 1") && page.contains("Exit status:"), "{page}");
+    let told = succeeds(&usar(here, "self man --out man1"));
+    assert!(told.lines().count() > 40, "{told}");
+    for name in COMMANDS.map(|command| format!("usar-{}", command.replace(' ', "-"))) {
+        let page = read(&here.join("man1").join(format!("{name}.1")));
+        assert!(page.contains(&format!(".TH {name} 1")) && page.contains("\n.nf\nExample"), "{page}");
     }
-    refused(here, 2, &["man", "--out", "man1"], &["is not empty", "--force"]);
+    refused(here, 2, "self man --out man1", &["is not empty", "--force"]);
 }
 
 #[test]
 fn the_page_of_commands_is_what_help_prints() {
     let root = root();
-    let page = succeeds(&usar(&root, &["man", "--markdown"]));
+    let page = succeeds(&usar(&root, "self man --markdown"));
     assert!(read(&root.join("docs/commands.md")) == page, "`just reference` makes docs/commands.md anew");
 }
 
@@ -81,15 +76,15 @@ fn the_page_of_commands_is_what_help_prints() {
 fn the_doctor_tells_whether_results_can_be_written() {
     let folder = tempfile::tempdir().unwrap();
     let here = folder.path();
-    let told = succeeds(&usar(here, &["doctor", "--out", "deep/results"]));
+    let told = succeeds(&usar(here, "self doctor --out deep/results"));
     assert!(told.contains("writable   yes\n") && told.contains("is made by the first sweep"), "{told}");
     assert_eq!(std::fs::read_dir(here).unwrap().count(), 0, "nothing is left behind");
-    let findings = json(&["doctor", "--json"]);
+    let findings = json("self doctor --json");
     assert_eq!(findings["schema_version"], 1);
     assert!(findings["threads"].as_u64().unwrap() > 0);
     assert!(findings["results"]["free_bytes"].as_u64().is_some_and(|bytes| bytes > 0), "{findings}");
     std::fs::write(here.join("file"), "").unwrap();
-    let output = usar(here, &["doctor", "--out", "file", "--json"]);
+    let output = usar(here, "self doctor --out file --json");
     assert_eq!(output.status.code(), Some(3));
     let told: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
     assert_eq!(told["results"]["is_writable"], false);

@@ -8,7 +8,7 @@ use xtask::pages;
 use crate::calibrated::{place, refused};
 use crate::support::{program, read, root, succeeds, usar};
 
-/// Checks the files that `usar reproduce` writes.
+/// Checks the files that `usar study yang2021 claims` writes.
 fn has_the_files(results: &Path) {
     let authors = read(&root().join("scenarios/reference/dis_trials.csv"));
     for scenario in ["paper", "paper-calibrated"] {
@@ -50,7 +50,7 @@ fn has_the_files(results: &Path) {
     }
 }
 
-/// Checks that the results of `usar reproduce` for ten trials agree with its page and with the table beside
+/// Checks that the results of `usar study yang2021 claims` for ten trials agree with its page and with the table beside
 /// the page.
 fn agrees_with_its_page(first: &str, results: &Path) {
     let of_ten = |path: &Path| -> Vec<csv::StringRecord> {
@@ -105,7 +105,8 @@ fn agrees_with_the_readme(printed: &str) {
 #[test]
 fn the_papers_experiment_and_the_pages_that_tell_of_it() {
     let folder = tempfile::tempdir().unwrap();
-    let arguments = ["reproduce", "--trials", "10", "--out", "results/reproduction", "--quiet"];
+    let arguments =
+        ["study", "yang2021", "claims", "--trials", "10", "--out", "results/reproduction", "--quiet"];
     let first = succeeds(&usar(folder.path(), &arguments));
     assert_eq!(succeeds(&usar(folder.path(), &arguments)), first, "it is all there already");
     let results = folder.path().join("results/reproduction");
@@ -114,11 +115,11 @@ fn the_papers_experiment_and_the_pages_that_tell_of_it() {
     assert_eq!(report.matches("<tr class=\"claim\">").count(), 2 * 10, "the claims on both scenarios");
     assert!(report.contains("Not said: it takes 50 trials, there are 10."));
     refused(
-        &usar(folder.path(), &["compare", "results/reproduction"]),
+        &usar(folder.path(), "compare results/reproduction"),
         &["these in it are: results/reproduction/paper, results/reproduction/paper-calibrated"],
     );
     refused(
-        &usar(folder.path(), &["reproduce", "--out", "results/reproduction/paper"]),
+        &usar(folder.path(), "study yang2021 claims --out results/reproduction/paper"),
         &["--out: results/reproduction/paper is the folder of one sweep"],
     );
     let example = |n: &str, verdict: &str| {
@@ -139,18 +140,18 @@ fn the_papers_experiment_and_the_pages_that_tell_of_it() {
     let page = read(&root().join("docs/why.md"));
     let mut found = 0;
     let renewed = pages::renewed(&page, |command| {
-        let options = command.strip_prefix("sorting results/paper ")?;
+        let options = command.strip_prefix("study yang2021 sorting results/paper ")?;
         found += 1;
         Some(pages::answer(
             program(),
             folder.path(),
-            &format!("sorting results/reproduction/paper {options}"),
+            &format!("study yang2021 sorting results/reproduction/paper {options}"),
         ))
     });
     assert!(found > 1, "docs/why.md has that command");
     assert_eq!(
         renewed.page, page,
-        "docs/why.md is not what `usar sorting results/paper` prints: `just pages`"
+        "docs/why.md is not what `usar study yang2021 sorting results/paper` prints: `just pages`"
     );
     for (name, text) in &renewed.files {
         assert_eq!(&read(&root().join("docs").join(name)), text, "docs/{name}: `just pages` makes it anew");
@@ -167,7 +168,7 @@ fn readings_stand_for_every_combination_and_are_named_by_what_differs() {
              readings: {readings}, trials: 2, keep: Rounds)"
         );
         std::fs::write(folder.join("r.ron"), text).unwrap();
-        usar(folder, &["sweep", "r.ron", "--quiet", "--out", "out", "--fresh"])
+        usar(folder, "sweep r.ron --quiet --out out --fresh")
     };
     succeeds(&sweep(
         "{\"hard_rule\": [IntraGroupTrust, MeanHp], \"log_base\": [E, Two]}",
@@ -187,8 +188,8 @@ fn readings_stand_for_every_combination_and_are_named_by_what_differs() {
     ];
     assert_eq!(labels, names.map(|name| [name, name]).concat());
     assert!(!folder.join("out/hashes.csv").exists() && !folder.join("out/groups.csv").exists(), "it is lean");
-    assert!(succeeds(&usar(folder, &["verify", "out"])).starts_with("10 of 10 trials match"));
-    let table = succeeds(&usar(folder, &["readings", "out"]));
+    assert!(succeeds(&usar(folder, "verify out")).starts_with("10 of 10 trials match"));
+    let table = succeeds(&usar(folder, "study yang2021 readings out"));
     let base = table.lines().find(|line| line.contains("log_base: Two")).unwrap();
     assert!(base.matches(" 0.0 %").count() == 3, "the base of the logarithm decides nothing: {base}");
     assert!(table.contains("The 2 of 4 readings whose trials differ, against each other policy"), "{table}");

@@ -18,7 +18,7 @@ fn variants_set_several_fields_at_once_and_are_an_axis() {
         "{\"as it is\": {}, \"calm\": {\"radiation\": [], \"debris\": []}, \"faster\": \
          {\"roles.carrier.speed_mps\": 3.0}}",
     );
-    succeeds(&usar(here, &["sweep", "varied.ron", "--quiet"]));
+    succeeds(&usar(here, "sweep varied.ron --quiet"));
     let results = here.join("results/varied");
     let trials = rows(&results, "trials.csv");
     let of = |variant: &str| -> Vec<csv::StringRecord> {
@@ -43,10 +43,10 @@ fn variants_set_several_fields_at_once_and_are_an_axis() {
     ];
     let alone: serde_json::Value = serde_json::from_str(&succeeds(&usar(here, &alone))).unwrap();
     assert_eq!(alone["state_hash"], hash(&of("calm")[0]));
-    succeeds(&usar(&results, &["sweep", "sweep.ron", "--quiet", "--out", "again"]));
+    succeeds(&usar(&results, "sweep sweep.ron --quiet --out again"));
     assert_eq!(rows(&results.join("again"), "trials.csv"), trials);
-    succeeds(&usar(here, &["sweep", "varied.ron", "--quiet"]));
-    let told = succeeds(&usar(here, &["compare", "results/varied"]));
+    succeeds(&usar(here, "sweep varied.ron --quiet"));
+    let told = succeeds(&usar(here, "compare results/varied"));
     assert!(
         told.contains("By how much these differences change: rescuees total") && told.contains("│ calm "),
         "{told}"
@@ -54,25 +54,25 @@ fn variants_set_several_fields_at_once_and_are_an_axis() {
     refused(
         here,
         2,
-        &["sweep", "varied.ron", "--set", "radiation=[]"],
+        "sweep varied.ron --set radiation=[]",
         &["--set: radiation is on an axis of this sweep"],
     );
     write("{\"as it is\": {}, \"the same\": {}}");
     refused(
         here,
         2,
-        &["sweep", "varied.ron"],
+        "sweep varied.ron",
         &["varied.ron:2: variants.\"the same\": is the same scenario as a variant before it"],
     );
     write("{\"wrong\": {\"rolls\": 1}}");
-    refused(here, 2, &["sweep", "varied.ron"], &["varied.ron:2: variants.\"wrong\".\"rolls\": "]);
+    refused(here, 2, "sweep varied.ron", &["varied.ron:2: variants.\"wrong\".\"rolls\": "]);
 }
 
 #[test]
 fn every_column_of_every_table_is_in_the_dictionary() {
     let folder = place();
     let here = folder.path();
-    succeeds(&usar(here, &["sweep", "grid.ron", "--quiet", "--trials", "1"]));
+    succeeds(&usar(here, "sweep grid.ron --quiet --trials 1"));
     let results = here.join("results/grid");
     let package: serde_json::Value =
         serde_json::from_str(&std::fs::read_to_string(results.join("datapackage.json")).unwrap()).unwrap();
@@ -111,8 +111,8 @@ fn every_column_of_every_table_is_in_the_dictionary() {
 fn the_long_table_has_every_value_once() {
     let folder = place();
     let here = folder.path();
-    succeeds(&usar(here, &["sweep", "grid.ron", "--quiet", "--trials", "1", "--set", "duration_s=120"]));
-    let text = succeeds(&usar(here, &["tidy", "results/grid"]));
+    succeeds(&usar(here, "sweep grid.ron --quiet --trials 1 --set duration_s=120"));
+    let text = succeeds(&usar(here, "export table results/grid"));
     let mut table = csv::Reader::from_reader(text.as_bytes());
     let header: Vec<String> = table.headers().unwrap().iter().map(str::to_owned).collect();
     let expected = [
@@ -155,12 +155,12 @@ fn the_long_table_has_every_value_once() {
         let cell = |name: &str| row[header.iter().position(|column| column == name).unwrap()].to_owned();
         assert_eq!(find(&row[0], "DIS", [&cell("round"), &cell("task"), "energy"]), [cell("energy")]);
     }
-    succeeds(&usar(here, &["tidy", "results/grid", "--out", "tidy.csv"]));
+    succeeds(&usar(here, "export table results/grid --out tidy.csv"));
     assert_eq!(std::fs::read_to_string(here.join("tidy.csv")).unwrap(), text);
     refused(
         here,
         2,
-        &["tidy", "results/grid", "--out", "tidy.csv"],
+        "export table results/grid --out tidy.csv",
         &["tidy.csv exists; nothing was overwritten"],
     );
 }

@@ -46,13 +46,13 @@ pub fn run(arguments: &[String]) -> ExitCode {
     }
     let csv = out.join("choice.csv");
     let status = Command::new(super::usar())
-        .arg("choose")
+        .args(["study", "yang2021", "calibrate", "--choose"])
         .args(&folders)
-        .args(["--target", TARGET, "--quiet", "--csv"])
+        .args(["--target", TARGET, "--quiet", "--out"])
         .arg(&csv)
         .status()
         .expect("usar can be started");
-    assert!(status.success(), "usar choose: {status}");
+    assert!(status.success(), "--choose: {status}");
     xtask::calibrated::write_worlds(&csv, &folders);
     ExitCode::SUCCESS
 }
@@ -60,16 +60,20 @@ pub fn run(arguments: &[String]) -> ExitCode {
 /// Fits one combination of readings.
 fn calibrate(start: &Path, folder: &Path, combination: &Combination, more: &str) {
     let mut command = Command::new(super::usar());
-    command.arg("calibrate").arg(start).args(["--target", TARGET, "--quiet", "--out"]).arg(folder);
+    command
+        .args(["study", "yang2021", "calibrate"])
+        .arg(start)
+        .args(["--target", TARGET, "--quiet", "--out"])
+        .arg(folder);
     for free in &combination.free() {
-        command.args(["--free", free]);
+        command.args(["--over", free]);
     }
     for setting in combination.settings() {
         command.args(["--set", &setting]);
     }
     let output = command.args(more.split(' ')).output().expect("usar can be started");
     let said = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "usar calibrate, {} of {} readings: {said}", combination, FACTORS.len());
+    assert!(output.status.success(), "{} of {} readings: {said}", combination, FACTORS.len());
 }
 
 /// The least misfit in the log of a calibration.

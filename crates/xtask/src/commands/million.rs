@@ -44,7 +44,7 @@ pub fn run(arguments: &[String]) -> ExitCode {
     println!("{count} trials in {shards} shards: written in {seconds:.0} s, peak memory {memory}");
     println!("on disk: shards {:.0} MB", megabytes(&place.path().join("shards")));
     let commands: [&[&str]; 4] = [
-        &["merge", "shards", "--out", "whole"],
+        &["cluster", "merge", "shards", "--out", "whole"],
         &["compare", "whole", "--baseline", "DIS"],
         &["report", "whole"],
         &["status", "shards"],

@@ -4,112 +4,59 @@ use std::io::Write;
 use std::path::Path;
 
 use experiments::Failure;
-use experiments::files;
 use experiments::oracle::{Coverage, Evaluation, Objective, Outcome, Standing, Survey};
 use reports::table::{Table, headed, right};
 use rne_core::Assignment;
-use serde::Serialize;
+use serde_json::{Value, json};
 
 use super::{Answer, Asked, coverage_in_words};
-use crate::commands::SCHEMA_VERSION;
 use crate::commands::fork::ids;
-use crate::commands::print_table;
+use crate::output::{Destination, csv_of, print_json, print_table};
 
-#[derive(Serialize)]
-struct Output<'a> {
-    schema_version: u32,
-    scenario: &'a str,
-    seed: u64,
-    base: &'a str,
-    round: u32,
-    time_s: f64,
-    metric: &'a str,
-    less_is_better: bool,
-    answers: Vec<AnswerOutput<'a>>,
+pub(super) fn json(asked: &Asked, answers: &[Answer]) -> Result<(), Failure> {
+    print_json(&json!({
+        "scenario": asked.trial.scenario.name,
+        "seed": asked.trial.seed,
+        "base": asked.trial.spec.label,
+        "round": asked.question.round,
+        "time_s": asked.time_s,
+        "metric": asked.objective.name(),
+        "less_is_better": asked.objective.is_cost(),
+        "answers": answers.iter().map(|answer| answer_json(asked, answer)).collect::<Vec<Value>>(),
+    }))
 }
 
-#[derive(Serialize)]
-struct AnswerOutput<'a> {
-    /// The policy that decides the rest of the trial; null for the end of the round.
-    then: Option<&'a str>,
-    /// Whether all assignments were played. If so, the best of them is the best that exists.
-    is_exact: bool,
-    played: usize,
-    best: Option<f64>,
-    mean: Option<f64>,
-    worst: Option<f64>,
-    policies: Vec<Choice<'a>>,
-    /// The played assignments, the best first.
-    ranking: Vec<Ranked<'a>>,
-}
-
-#[derive(Serialize)]
-struct Choice<'a> {
-    policy: &'a str,
-    groups: &'a [Vec<u32>],
-    rank: Option<usize>,
-    value: Option<f64>,
-    regret: Option<f64>,
-}
-
-#[derive(Serialize)]
-struct Ranked<'a> {
-    rank: Option<usize>,
-    value: Option<f64>,
-    groups: &'a [Vec<u32>],
-    outcome: &'a Outcome,
-}
-
-pub(super) fn json(out: &mut dyn Write, asked: &Asked, answers: &[Answer]) -> Result<(), Failure> {
-    let output = Output {
-        schema_version: SCHEMA_VERSION,
-        scenario: &asked.trial.scenario.name,
-        seed: asked.trial.seed,
-        base: &asked.trial.spec.label,
-        round: asked.question.round,
-        time_s: asked.time_s,
-        metric: asked.objective.name(),
-        less_is_better: asked.objective.is_cost(),
-        answers: answers.iter().map(|answer| answer_output(asked, answer)).collect(),
-    };
-    Ok(writeln!(out, "{}", serde_json::to_string(&output).map_err(Failure::run)?)?)
-}
-
-fn answer_output<'a>(asked: &'a Asked, Answer { then, survey }: &'a Answer) -> AnswerOutput<'a> {
+/// The choices of the policies, and the played assignments, the best first.
+fn answer_json(asked: &Asked, Answer { then, survey }: &Answer) -> Value {
     let objective = &asked.objective;
     let range = survey.range(objective);
-    let choices = asked.choices.iter();
-    let ranking = survey.ranked(objective).into_iter();
-    AnswerOutput {
-        then: then.as_ref().map(|then| then.label.as_str()),
-        is_exact: survey.coverage == Coverage::All,
-        played: survey.evaluations.len(),
-        best: range.map(|[best, _]| best),
-        mean: survey.mean(objective),
-        worst: range.map(|[_, worst]| worst),
-        policies: choices.map(|(policy, choice)| chosen(policy, choice, survey, objective)).collect(),
-        ranking: ranking.map(|found| ranked(found, survey, objective)).collect(),
-    }
-}
-
-fn chosen<'a>(policy: &'a str, choice: &'a Assignment, survey: &Survey, objective: &Objective) -> Choice<'a> {
-    let standing = survey.standing(objective, choice);
-    Choice {
-        policy,
-        groups: &choice.groups,
-        rank: standing.map(|standing| standing.rank),
-        value: standing.map(|standing| standing.value),
-        regret: standing.map(|standing| standing.regret),
-    }
-}
-
-fn ranked<'a>(found: &'a Evaluation, survey: &Survey, objective: &Objective) -> Ranked<'a> {
-    Ranked {
-        rank: survey.standing(objective, &found.assignment).map(|standing| standing.rank),
-        value: objective.value(&found.outcome),
-        groups: &found.assignment.groups,
-        outcome: &found.outcome,
-    }
+    let choice = |(policy, choice): &(String, Assignment)| {
+        let standing = survey.standing(objective, choice);
+        json!({
+            "policy": policy,
+            "groups": choice.groups,
+            "rank": standing.map(|standing| standing.rank),
+            "value": standing.map(|standing| standing.value),
+            "regret": standing.map(|standing| standing.regret),
+        })
+    };
+    let ranked = |Evaluation { assignment, outcome }: &Evaluation| {
+        let rank = survey.standing(objective, assignment).map(|standing| standing.rank);
+        let value = objective.value(outcome);
+        json!({"rank": rank, "value": value, "groups": assignment.groups, "outcome": outcome})
+    };
+    json!({
+        // The policy that decides the rest of the trial; null for the end of the round.
+        "then": then.as_ref().map(|then| &then.label),
+        // Whether all assignments were played. If so, the best of them is the best that exists.
+        "is_exact": survey.coverage == Coverage::All,
+        "played": survey.evaluations.len(),
+        "best": range.map(|[best, _]| best),
+        "mean": survey.mean(objective),
+        "worst": range.map(|[_, worst]| worst),
+        "policies": asked.choices.iter().map(choice).collect::<Vec<Value>>(),
+        "ranking": survey.ranked(objective).into_iter().map(ranked).collect::<Vec<Value>>(),
+    })
 }
 
 pub(super) fn text(
@@ -153,7 +100,7 @@ fn print_answer(out: &mut dyn Write, asked: &Asked, answer: &Answer, top: usize)
         writeln!(
             out,
             "All of them come to the same, so that this metric tells nothing of the decision; --metric \
-             rescue_rate or --horizon trial may."
+             rescue_rate or --then POLICY may."
         )?;
     }
     print_table(out, &ranking(asked, survey, top))?;
@@ -218,9 +165,6 @@ fn choices(asked: &Asked, survey: &Survey) -> Table {
 
 /// Writes all outcomes as CSV, one on each line, the best first.
 pub(super) fn write_csv(path: &Path, asked: &Asked, answers: &[Answer]) -> Result<(), Failure> {
-    let trouble =
-        |error: &dyn std::fmt::Display| Failure::storage(format!("--csv: {}: {error}", path.display()));
-    let mut writer = csv::Writer::from_writer(Vec::new());
     let tasks: Vec<&str> = asked.question.tasks.iter().map(|task| task.name.as_str()).collect();
     let of_tasks = |what: &str| tasks.iter().map(|task| format!("{what}_{task}")).collect::<Vec<_>>();
     let mut header =
@@ -229,20 +173,14 @@ pub(super) fn write_csv(path: &Path, asked: &Asked, answers: &[Answer]) -> Resul
         header.extend(of_tasks(what));
     }
     header.extend(["energy_ungrouped", "hp_ungrouped"].map(str::to_owned));
-    writer.write_record(&header).map_err(|error| trouble(&error))?;
+    let mut rows = vec![header];
     for Answer { then, survey } in answers {
         for found in survey.ranked(&asked.objective) {
-            let row = csv_row(found, survey, &asked.objective);
             let then = then.as_ref().map_or(String::new(), |then| then.label.clone());
-            writer.write_record(std::iter::once(then).chain(row)).map_err(|error| trouble(&error))?;
+            rows.push([vec![then], csv_row(found, survey, &asked.objective)].concat());
         }
     }
-    let bytes = writer.into_inner().map_err(|error| trouble(&error))?;
-    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let name = path.file_name().and_then(|name| name.to_str());
-    let name =
-        name.ok_or_else(|| Failure::input(format!("--csv: {} is no name of a file", path.display())))?;
-    files::NewFile::write(folder, name, &bytes).map(drop)
+    Destination::new("--csv", path, true)?.write(&csv_of(rows)?)
 }
 
 fn csv_row(found: &Evaluation, survey: &Survey, objective: &Objective) -> Vec<String> {

@@ -5,8 +5,10 @@ use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 use experiments::Failure;
-use recording::{Names, ToldEvent};
+use recording::told;
 use usar_sim::simulation::Simulation;
+
+use crate::output::{create_new, trouble};
 
 /// The file that is being written.
 pub(super) struct EventLines {
@@ -17,12 +19,7 @@ pub(super) struct EventLines {
 impl EventLines {
     /// Begins a new file.
     pub(super) fn begin(path: &Path) -> Result<Self, Failure> {
-        let file = File::create_new(path).map_err(|error| match error.kind() {
-            io::ErrorKind::AlreadyExists => {
-                Failure::input(format!("--events: {} exists; nothing was overwritten", path.display()))
-            }
-            _ => Failure::storage(format!("cannot write {}: {error}", path.display())),
-        })?;
+        let file = create_new("--events", path)?;
         Ok(Self { path: path.to_owned(), file: BufWriter::new(file) })
     }
 
@@ -41,18 +38,6 @@ impl EventLines {
     }
 
     fn trouble(&self, error: &io::Error) -> Failure {
-        Failure::storage(format!("cannot write {}: {error}", self.path.display()))
+        trouble("--events", &self.path, error)
     }
-}
-
-/// The events of the last step in words.
-pub(super) fn told(simulation: &Simulation) -> impl Iterator<Item = ToldEvent> + '_ {
-    let scenario = simulation.scenario();
-    let tasks: Vec<&str> = scenario.tasks.iter().map(|task| task.name.as_str()).collect();
-    let (step, dt_s) = (simulation.steps(), scenario.dt_s);
-    let layout = simulation.layout();
-    simulation.events().iter().map(move |event| {
-        let names = Names { tasks: &tasks, debris: &layout.debris, zones: &layout.zones };
-        ToldEvent::new(step, dt_s, event, names)
-    })
 }

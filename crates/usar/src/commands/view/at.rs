@@ -1,16 +1,13 @@
 //! The state at one time of a recording, as JSON.
 
-use std::io::Write;
-
 use experiments::Failure;
 use recording::{Frame, Recording};
 use serde::Serialize;
 
-use crate::commands::SCHEMA_VERSION;
+use crate::output::print_json;
 
 #[derive(Serialize)]
 struct Output<'a> {
-    schema_version: u32,
     scenario: &'a str,
     policy: &'a str,
     seed: u64,
@@ -35,11 +32,11 @@ struct Robot<'a> {
 }
 
 /// Prints the state of each recording as a JSON object on its own line.
-pub(super) fn print(out: &mut dyn Write, recordings: &[Recording], time_s: f64) -> Result<(), Failure> {
+pub(super) fn print(recordings: &[Recording], time_s: f64) -> Result<(), Failure> {
     for recording in recordings {
         let number = recording.frame_at(time_s);
         let frame = recording.frame(number).map_err(Failure::input)?;
-        writeln!(out, "{}", serde_json::to_string(&output(recording, number, frame)).map_err(Failure::run)?)?;
+        print_json(&output(recording, number, frame))?;
     }
     Ok(())
 }
@@ -68,7 +65,6 @@ fn output(recording: &Recording, number: usize, frame: Frame) -> Output<'_> {
     };
     let states = header.codes.rescuees.iter().enumerate();
     Output {
-        schema_version: SCHEMA_VERSION,
         scenario: &header.scenario.name,
         policy: &header.policy,
         seed: header.seed,

@@ -4,9 +4,9 @@ use std::io::Read;
 use std::path::Path;
 
 use experiments::Failure;
-use experiments::files::NewFile;
 
-use crate::commands::trials::Shown;
+use crate::output::Destination;
+use crate::recordings::Shown;
 
 /// The viewer, built from the folder `viewer`.
 const VIEWER: &str = include_str!("../../../assets/viewer.html");
@@ -29,11 +29,7 @@ pub(super) fn write(path: &Path, shown: &[Shown]) -> Result<(), Failure> {
             )));
         }
     }
-    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let name = path.file_name().and_then(|name| name.to_str());
-    let name =
-        name.ok_or_else(|| Failure::input(format!("--out: {} is not the name of a file", path.display())))?;
-    NewFile::write(folder, name, page(shown).as_bytes()).map(drop)
+    Destination::new("--out", path, true)?.write(page(shown).as_bytes())
 }
 
 /// The page with these recordings embedded.

@@ -11,9 +11,9 @@ use rne_core::{Account as PolicyAccount, Question, RelativeNeedsEntropy};
 
 use super::robot::{RobotStory, in_words};
 use super::{Account, OracleSays};
-use crate::commands::asked::AskedTrial;
+use crate::arguments::Trial;
 use crate::commands::fork::ids;
-use crate::commands::print_table;
+use crate::output::print_table;
 use crate::printable::counted;
 
 /// A score that exceeds the next best by a smaller share than this is called close.
@@ -21,7 +21,7 @@ const CLOSE: f64 = 0.05;
 /// Scores whose ratio differs from 1 by less than this are equal: they were summed in another order.
 const ROUNDING: f64 = 1e-9;
 
-pub(super) fn text(out: &mut dyn Write, account: &Account, asked: &AskedTrial) -> Result<(), Failure> {
+pub(super) fn text(out: &mut dyn Write, account: &Account, asked: &Trial) -> Result<(), Failure> {
     let Account { question, decision, .. } = account;
     writeln!(
         out,
@@ -143,7 +143,7 @@ fn exchange(
     best: &Exchange,
     score: f64,
     account: &Account,
-    asked: &AskedTrial,
+    asked: &Trial,
 ) -> Result<(), Failure> {
     let [measure, unit] = [&account.measure, &account.unit].map(|text| text.as_deref().unwrap_or_default());
     let then = best.score.map_or("infinite".to_owned(), |value| format!("{value:.3e}"));
@@ -219,11 +219,11 @@ fn others(out: &mut dyn Write, question: &Question, others: &[OtherChoice]) -> R
     Ok(())
 }
 
-fn oracle(out: &mut dyn Write, account: &Account, asked: &AskedTrial) -> Result<(), Failure> {
+fn oracle(out: &mut dyn Write, account: &Account, asked: &Trial) -> Result<(), Failure> {
     if account.oracle.is_empty() {
         return Ok(writeln!(
             out,
-            "\nHow good it was: not known; `usar oracle {} --seed {} --round {} --base '{}'` plays all \
+            "\nHow good it was: not known; `usar oracle {} --seed {} --round {} --policy '{}'` plays all \
              assignments",
             asked.file.display(),
             asked.seed,
@@ -248,12 +248,7 @@ fn judged(said: &OracleSays) -> String {
     format!("{metric} {over}: rank {rank} of {played}, with {value}; the best has {best}, the worst {worst}")
 }
 
-fn robot(
-    out: &mut dyn Write,
-    story: &RobotStory,
-    account: &Account,
-    asked: &AskedTrial,
-) -> Result<(), Failure> {
+fn robot(out: &mut dyn Write, story: &RobotStory, account: &Account, asked: &Trial) -> Result<(), Failure> {
     let RobotStory { robot, role, task, at_s, energy, hp, .. } = story;
     let task = task.as_deref().unwrap_or("no");
     writeln!(

@@ -1,0 +1,20 @@
+//! Arguments that several commands have: one group for each thing, with one text for each option.
+
+mod common;
+mod family;
+mod parameters;
+mod picture;
+mod progress;
+mod selection;
+mod trial;
+
+pub(crate) use common::{
+    CaseArgument, JsonArgument, MeasureArgument, PoliciesArgument, ReplaceArgument, SetArguments,
+    ShownArguments, count, format_of, limit, numbers, parse_policy, seconds, seed, share,
+};
+pub(crate) use family::{ComparisonArguments, FamilyArguments};
+pub(crate) use parameters::ParameterArguments;
+pub(crate) use picture::{LookArguments, PictureArguments, PictureFile};
+pub(crate) use progress::{ProgressArguments, default_jobs, progress_bar};
+pub(crate) use selection::Selection;
+pub(crate) use trial::{Trial, TrialArguments};

@@ -1,0 +1,110 @@
+//! `usar scenario list`: lists the available scenarios, policies, roles or metrics.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use clap::{Args, ValueEnum};
+use experiments::Failure;
+use experiments::metric::{Catalogue, task_names};
+use rne_core::Registry;
+use usar_sim::scenario::{RoleKind, Scenario};
+
+use crate::commands::new::PAPER;
+use crate::input::load;
+
+/// List scenarios, policies, roles or metrics, a line each
+#[derive(Debug, Args)]
+#[command(after_help = "\
+A line begins with the name, then a tab and what it is. Roles and metrics are those of a scenario.
+
+Examples:
+  usar scenario list scenarios                      the scenarios of the folder scenarios/
+  usar scenario list scenarios my-scenarios
+  usar scenario list policies                       with their options and defaults
+  usar scenario list roles scenarios/paper.ron
+  usar scenario list metrics scenarios/three-tasks.ron")]
+pub(crate) struct Arguments {
+    /// What to list
+    of: Of,
+    /// A folder of scenarios, or the scenario whose roles and metrics are listed [default: the folder
+    /// scenarios, the paper's scenario]
+    path: Option<PathBuf>,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum Of {
+    /// Scenario files of a folder
+    Scenarios,
+    /// Grouping policies
+    Policies,
+    /// Roles of a scenario
+    Roles,
+    /// What is measured of a trial
+    Metrics,
+}
+
+impl Arguments {
+    pub(crate) fn execute(&self, registry: &Registry, out: &mut dyn Write) -> Result<(), Failure> {
+        let path = |default: &'static str| self.path.as_deref().unwrap_or(Path::new(default));
+        match self.of {
+            Of::Scenarios => scenarios(out, path("scenarios")),
+            Of::Policies => policies(out, registry),
+            Of::Roles => roles(out, &self.scenario()?),
+            Of::Metrics => metrics(out, &self.scenario()?),
+        }
+    }
+
+    /// The scenario that was named, or the paper's, which the program has with it.
+    fn scenario(&self) -> Result<Scenario, Failure> {
+        match &self.path {
+            Some(path) => Ok(load(path)?.0),
+            None => Scenario::parse(PAPER, Path::new("paper.ron")).map_err(Failure::input),
+        }
+    }
+}
+
+/// Lists the scenarios of a folder by name; files that are not scenarios are left out.
+fn scenarios(out: &mut dyn Write, folder: &Path) -> Result<(), Failure> {
+    let entries = std::fs::read_dir(folder)
+        .map_err(|error| Failure::input(format!("{}: cannot be read: {error}", folder.display())))?;
+    let mut files: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).collect();
+    files.retain(|path| path.extension().is_some_and(|kind| kind == "ron"));
+    files.sort();
+    for path in files {
+        if let Ok((scenario, _)) = Scenario::load(&path) {
+            writeln!(out, "{}\t{}", path.display(), scenario.description)?;
+        }
+    }
+    Ok(())
+}
+
+fn policies(out: &mut dyn Write, registry: &Registry) -> Result<(), Failure> {
+    for kind in registry.kinds() {
+        writeln!(out, "{}\t{} {}", kind.name, kind.about, kind.defaults)?;
+    }
+    Ok(())
+}
+
+fn roles(out: &mut dyn Write, scenario: &Scenario) -> Result<(), Failure> {
+    for role in &scenario.roles {
+        let rows = scenario.team.iter().filter(|row| row.role == role.name);
+        let count: u32 = rows.map(|row| row.count).sum();
+        let moves = match role.kind {
+            RoleKind::Ground => "drives",
+            RoleKind::Aerial => "flies",
+        };
+        writeln!(
+            out,
+            "{}\t{count} robots; {moves} at {} m/s, senses {} m, carries {}, has {} resources",
+            role.name, role.speed_mps, role.sensing_m, role.capacity, role.resources
+        )?;
+    }
+    Ok(())
+}
+
+fn metrics(out: &mut dyn Write, scenario: &Scenario) -> Result<(), Failure> {
+    for metric in Catalogue::of(&task_names(scenario)).iter() {
+        writeln!(out, "{}\t{}", metric.name, metric.title_with_unit())?;
+    }
+    Ok(())
+}

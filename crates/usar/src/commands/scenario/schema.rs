@@ -1,0 +1,53 @@
+//! `usar scenario schema`: the JSON Schema of files, and of questions and decisions.
+
+use std::io::Write;
+
+use clap::{Args, ValueEnum};
+use experiments::Failure;
+use experiments::experiment::sweep_schema;
+use rne_core::{Decision, Question, Registry};
+use usar_sim::scenario::scenario_schema;
+
+/// Print the JSON Schema of scenario and sweep files, of a question or of a decision
+#[derive(Debug, Args)]
+#[command(after_help = "\
+docs/scenarios-reference.md and docs/decisions.md tell what the fields mean. RON has no schemas of its own: \
+that of a file describes it as JSON, with structs as objects, lists and tuples as arrays, and `Disc(0.5)` as \
+{\"Disc\": 0.5}.
+
+Examples:
+  usar scenario schema scenario > scenario.schema.json
+  usar scenario schema question
+  usar scenario schema decision > decision.schema.json")]
+pub(crate) struct Arguments {
+    /// What the schema is of
+    of: Of,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum Of {
+    /// A scenario file
+    Scenario,
+    /// A sweep file
+    Sweep,
+    /// What a policy is asked
+    Question,
+    /// What it answers
+    Decision,
+}
+
+impl Arguments {
+    pub(crate) fn execute(&self, _: &Registry, out: &mut dyn Write) -> Result<(), Failure> {
+        let schema = match self.of {
+            Of::Scenario => scenario_schema(),
+            Of::Sweep => sweep_schema(),
+            Of::Question => return print(out, &schemars::schema_for!(Question)),
+            Of::Decision => return print(out, &schemars::schema_for!(Decision)),
+        };
+        print(out, &schema)
+    }
+}
+
+fn print(out: &mut dyn Write, schema: &impl serde::Serialize) -> Result<(), Failure> {
+    Ok(writeln!(out, "{}", serde_json::to_string_pretty(schema).map_err(Failure::run)?)?)
+}

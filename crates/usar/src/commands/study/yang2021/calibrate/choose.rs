@@ -1,0 +1,98 @@
+//! `--choose`: finds which of several calibrated candidates is nearest to the recorded trials.
+
+use std::io::Write;
+use std::path::PathBuf;
+
+use experiments::Failure;
+use experiments::comparison::digits;
+use rne_core::Registry;
+use serde_json::json;
+use study_yang2021::calibration::{CALIBRATED, Candidate, Judged, NOT_TOLD_APART, POLICY, Target, judge};
+use study_yang2021::table::choice_table;
+use usar_sim::scenario::Scenario;
+
+use super::Arguments;
+use crate::output::{Destination, csv_of, print_json, print_table};
+use crate::running::STOP;
+
+/// Seeds that no calibration uses.
+const FIRST_SEED: u64 = 200_001;
+
+/// Runs the candidates, and prints how near each is to the recorded trials.
+pub(super) fn execute(asked: &Arguments, registry: &Registry, out: &mut dyn Write) -> Result<(), Failure> {
+    let read = |folder: &PathBuf| Candidate::read(folder, &asked.target, registry);
+    let candidates = asked.choose.iter().map(read).collect::<Result<Vec<_>, _>>()?;
+    let (base, _) = Scenario::load(&asked.choose[0].join(CALIBRATED)).map_err(Failure::input)?;
+    let target = Target::load(&asked.target, &base)?;
+    let (first, trials) = (asked.first_seed.unwrap_or(FIRST_SEED), asked.trials.unwrap_or(40));
+    let seeds: Vec<u64> = (first..first + u64::from(trials)).collect();
+    let measure = |candidate: Candidate| {
+        let quantities = candidate.measure(&seeds, &STOP)?;
+        let quantities = quantities.ok_or_else(|| Failure::Interrupted("stopped".to_owned()))?;
+        Ok((candidate, quantities))
+    };
+    let measured = asked.progress.work(candidates.len(), "candidates", |bar| {
+        candidates.into_iter().map(measure).inspect(|_| bar.inc(1)).collect::<Result<Vec<_>, Failure>>()
+    })??;
+    let judged = judge(&target, &measured);
+    if let Some(path) = &asked.out {
+        write_csv(path, &target, &judged)?;
+    }
+    if asked.shown.is_json() {
+        return print_json(&as_json(&target, &judged));
+    }
+    print(out, &target, &judged, &seeds)
+}
+
+fn print(out: &mut dyn Write, target: &Target, judged: &[Judged], seeds: &[u64]) -> Result<(), Failure> {
+    print_table(out, &choice_table(target, judged))?;
+    writeln!(
+        out,
+        "mean ± sample standard deviation of {POLICY} over {} trials (seeds {} to {}); data: {} trials",
+        seeds.len(),
+        seeds[0],
+        seeds[seeds.len() - 1],
+        target.trials
+    )?;
+    let alike: Vec<&str> = judged
+        .iter()
+        .skip(1)
+        .filter(|judged| judged.share_nearest >= NOT_TOLD_APART)
+        .map(|judged| judged.candidate.as_str())
+        .collect();
+    writeln!(out, "the choice: {}, misfit {}", judged[0].candidate, digits(judged[0].misfit, 3))?;
+    match alike.as_slice() {
+        [] => writeln!(out, "no other is the nearest in 5 % of the draws")?,
+        alike => writeln!(out, "not to be told from it by these data: {}", alike.join(", "))?,
+    }
+    Ok(())
+}
+
+fn as_json(target: &Target, judged: &[Judged]) -> serde_json::Value {
+    let candidate = |judged: &Judged| {
+        let spreads = target.quantities.iter().zip(&judged.spreads);
+        let quantities = spreads.map(|(q, s)| (q.name.clone(), json!({"mean": s.mean, "sd": s.sd})));
+        json!({
+            "candidate": judged.candidate,
+            "misfit": judged.misfit,
+            "edge_penalty": judged.edge_penalty,
+            "share_nearest": judged.share_nearest,
+            "quantities": quantities.collect::<serde_json::Map<_, _>>(),
+        })
+    };
+    let candidates: Vec<_> = judged.iter().map(candidate).collect();
+    json!({"choice": judged[0].candidate, "candidates": candidates})
+}
+
+fn write_csv(path: &std::path::Path, target: &Target, judged: &[Judged]) -> Result<(), Failure> {
+    let names = target.quantities.iter().flat_map(|q| [format!("{}_mean", q.name), format!("{}_sd", q.name)]);
+    let first = ["candidate", "misfit", "edge_penalty", "share_nearest"].map(str::to_owned);
+    let mut rows = vec![first.into_iter().chain(names).collect()];
+    for row in judged {
+        let numbers = [row.misfit, row.edge_penalty, row.share_nearest].into_iter();
+        let spreads = row.spreads.iter().flat_map(|spread| [spread.mean, spread.sd]);
+        let cells = numbers.chain(spreads).map(|number| number.to_string());
+        rows.push(std::iter::once(row.candidate.clone()).chain(cells).collect());
+    }
+    Destination::new("--out", path, true)?.write(&csv_of(rows)?)
+}

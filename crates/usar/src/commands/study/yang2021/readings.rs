@@ -1,0 +1,110 @@
+//! `usar study yang2021 readings`: shows what each reading of the paper's ambiguous places changes.
+
+use std::io::Write;
+use std::path::PathBuf;
+
+use clap::Args;
+use experiments::Failure;
+use experiments::rounds::rounds_in;
+use rne_core::Registry;
+use study_yang2021::readings::{Trials, averaged, groupings_in_words, rivals, single};
+use study_yang2021::table::{averaged_table, readings_table, rivals_table};
+
+use super::sorting::gaps;
+use crate::arguments::ShownArguments;
+use crate::input::read_sweep;
+use crate::output::print_table;
+
+/// Which reading of the paper's ambiguous places decides what?
+#[derive(Debug, Args)]
+#[command(after_help = "\
+For a sweep with `readings` (scenarios/sweeps/readings.ron): how often each reading of RNE groups the teams \
+that the default reading met otherwise than the default does, and what that does to the outcome, paired by \
+seed; first each reading by itself, then averaged over all others.
+
+Examples:
+  usar sweep scenarios/sweeps/readings.ron
+  usar study yang2021 readings results/readings")]
+pub(crate) struct Arguments {
+    /// Folder of a sweep with readings of RNE, the default among them
+    folder: PathBuf,
+    #[command(flatten)]
+    shown: ShownArguments,
+}
+
+impl Arguments {
+    pub(crate) fn execute(&self, registry: &Registry, out: &mut dyn Write) -> Result<(), Failure> {
+        let mut folder = read_sweep(&self.folder, registry)?;
+        if folder.experiment().cases.len() > 1 {
+            return Err(Failure::input(format!(
+                "{}: has axes; readings are compared in a sweep of one case",
+                self.folder.display()
+            )));
+        }
+        let policies = folder.experiment().policies.clone();
+        let default = policies
+            .iter()
+            .position(|policy| policy.name == "RNE" && policy.options().is_empty())
+            .ok_or_else(|| {
+                Failure::input(format!(
+                    "{}: has no policy RNE without options to compare readings with",
+                    self.folder.display()
+                ))
+            })?;
+        let readings: Vec<usize> = (0..policies.len()).filter(|i| policies[*i].name == "RNE").collect();
+        if readings.len() < 2 {
+            return Err(Failure::input(format!("{}: has no readings to compare", self.folder.display())));
+        }
+        let rounds = rounds_in(&mut folder, 0, default)?;
+        let trials = Trials::of(&folder);
+        if trials.numbers.is_empty() || rounds.is_empty() {
+            return Err(Failure::input(format!(
+                "{}: has no trial yet that all policies have finished",
+                self.folder.display()
+            )));
+        }
+        let rows = single(&trials, default, &readings, &rounds)?;
+        writeln!(out, "Each reading by itself against the default, over {} pairs", trials.numbers.len())?;
+        print_table(out, &readings_table(&rows, &folder.experiment().metrics))?;
+        writeln!(
+            out,
+            "regrouped: share of the {} rounds of the default's trials that the reading would group \
+             otherwise, and of those that it would split otherwise\n\
+             whichever half takes which task; trials: share that go otherwise; differences: reading less \
+             default, with 95 % paired t intervals\n",
+            rounds.len()
+        )?;
+        let averaged = averaged(&trials, &readings);
+        if !averaged.is_empty() {
+            writeln!(
+                out,
+                "Each reading averaged over all combinations of the others, against the default of its option"
+            )?;
+            print_table(out, &averaged_table(&averaged, &folder.experiment().metrics))?;
+            writeln!(out)?;
+        }
+        let distinct = trials.distinct(&readings);
+        let rivals = rivals(&trials, &distinct);
+        if !rivals.is_empty() {
+            writeln!(
+                out,
+                "The {} of {} readings whose trials differ, against each other policy: how many are above, \
+                 below, neither",
+                distinct.len(),
+                readings.len()
+            )?;
+            print_table(out, &rivals_table(&rivals))?;
+            writeln!(
+                out,
+                "95 % paired t intervals; corrected: at 95 % shared by these readings (Bonferroni); all: \
+                 above, or below, each of the others; least and\n\
+                 greatest are the extremes of so many\n"
+            )?;
+        }
+        writeln!(out, "{}", groupings_in_words(&folder, &readings, &rounds)?)?;
+        if let Some(gaps) = gaps(&folder, 0) {
+            writeln!(out, "{gaps}, each with its trials of the other policies")?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,160 @@
+//! `usar study yang2021 sorting`: compares the groups of a sweep's policies with sorting.
+
+use std::io::Write;
+use std::path::PathBuf;
+
+use clap::Args;
+use experiments::Failure;
+use experiments::metric::task_names;
+use experiments::rounds::{self, Blindness, Example, GroupLevels, Likeness, likeness, rounds_in};
+use experiments::sweep::folder::Folder;
+use reports::table::{levels_table, likeness_table};
+use rne_core::{MadeMeasure, Member, Registry};
+use usar_sim::scenario::Scenario;
+
+use crate::arguments::{CaseArgument, MeasureArgument, ShownArguments};
+use crate::input::read_sweep;
+use crate::output::print_table;
+
+/// What do the policies' groups amount to: sorting by energy, by HP, or by what?
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Prints, for each policy of a finished sweep, how often its split of the team is the one that sorting each \
+role by energy, by HP or by their ratio would give; the mean levels of the groups round by round; and an \
+example of how blind relative entropy is to magnitude.
+
+Examples:
+  usar study yang2021 sorting results/paper
+  usar study yang2021 sorting results/energy --case 3")]
+pub(crate) struct Arguments {
+    /// Folder of a sweep
+    folder: PathBuf,
+    #[command(flatten)]
+    case: CaseArgument,
+    #[command(flatten)]
+    shown: ShownArguments,
+    #[command(flatten)]
+    measure: MeasureArgument,
+}
+
+impl Arguments {
+    pub(crate) fn execute(&self, registry: &Registry, out: &mut dyn Write) -> Result<(), Failure> {
+        let registry = &self.measure.chosen_in(registry)?;
+        let mut folder = read_sweep(&self.folder, registry)?;
+        let case = self.case.index(folder.experiment())?;
+        let policies = folder.experiment().policies.clone();
+        let (mut likenesses, mut levels, mut blind) = (Vec::new(), Vec::new(), Vec::new());
+        for (place, policy) in policies.iter().enumerate() {
+            let rounds = rounds_in(&mut folder, case, place)?;
+            likenesses.push((policy.label.clone(), likeness(&rounds)));
+            levels.extend(rounds::levels(&policy.label, &rounds));
+            if let Some(measure) = policy.own_measure(registry).filter(|_| blind.is_empty()) {
+                let mut blindness = Blindness::default();
+                rounds.iter().try_for_each(|round| blindness.add(round, &*measure.it))?;
+                blind.push(Blind {
+                    label: policy.label.clone(),
+                    rounds: rounds.len(),
+                    measure: measure.clone(),
+                    blindness,
+                });
+            }
+        }
+        if likenesses.iter().all(|(_, of)| of[0].rounds() == 0) {
+            return Err(Failure::input(format!(
+                "{}: no round of this case was split into two groups",
+                self.folder.display()
+            )));
+        }
+        print(out, &likenesses, &levels, &folder.experiment().cases[case].scenario, &blind)?;
+        if let Some(gaps) = gaps(&folder, case) {
+            writeln!(out, "{gaps}")?;
+        }
+        Ok(())
+    }
+}
+
+/// How blind a policy's trust measure was to magnitude.
+struct Blind {
+    label: String,
+    rounds: usize,
+    measure: MadeMeasure,
+    blindness: Blindness,
+}
+
+/// A sentence about failed and missing trials; `None` if there are none.
+pub(super) fn gaps(folder: &Folder, case: usize) -> Option<String> {
+    let keys = folder.experiment().keys(None).filter(|key| key.case == case);
+    let (mut failed, mut missing) = (0, 0);
+    for key in keys {
+        match folder.results().get(&(key.case, key.policy, key.trial)) {
+            None => missing += 1,
+            Some(measured) => failed += u32::from(measured.metrics.is_none()),
+        }
+    }
+    (failed + missing > 0)
+        .then(|| format!("{failed} trials failed, {missing} are missing: these are left out"))
+}
+
+fn print(
+    out: &mut dyn Write,
+    likenesses: &[(String, [Likeness; 3])],
+    levels: &[GroupLevels],
+    scenario: &Scenario,
+    blind: &[Blind],
+) -> Result<(), Failure> {
+    let hardest = scenario.hardest_first().first().map_or("", |task| &scenario.tasks[task.index()].name);
+    writeln!(
+        out,
+        "In which share of the rounds a policy's split is the one that sorting each role gives (in brackets: \
+         by chance)"
+    )?;
+    print_table(out, &likeness_table(likenesses))?;
+    writeln!(
+        out,
+        "split: in all roles, whichever half takes which task; higher: the group of the {hardest} task has \
+         the higher mean of that level. Ties count as sorted,\n\
+         by chance too\n"
+    )?;
+    writeln!(out, "Mean levels of the groups when a round begins, in percent")?;
+    print_table(out, &levels_table(levels, &task_names(scenario)))?;
+    writeln!(out, "n: rounds with two groups\n")?;
+    blind.iter().try_for_each(|blind| print_blindness(out, blind))
+}
+
+fn print_blindness(out: &mut dyn Write, blind: &Blind) -> Result<(), Failure> {
+    let Blind { label, rounds, measure, blindness } = blind;
+    let (name, unit) = (&measure.name, measure.it.unit());
+    let robot = |robot: &Member| {
+        let level = |level: Option<f64>| level.unwrap_or(0.0);
+        let (energy, hp) = (level(robot.energy_level), level(robot.hp_level));
+        format!("robot {} (energy {energy:.0} %, HP {hp:.0} %)", robot.id)
+    };
+    if let Some(Example { trial, seed, round, role, unlike, alike, .. }) = &blindness.plainest {
+        writeln!(
+            out,
+            "Blind to magnitude: the plainest of the {rounds} rounds of {label}: trial {trial} (seed \
+             {seed}), round {round}, {}s",
+            role.to_lowercase()
+        )?;
+        for (pair, what) in [(unlike, "farther apart, more trust"), (alike, "nearer, less trust")] {
+            writeln!(
+                out,
+                "  {} to {}: {:.0} points apart, {name} {:.2e} {unit}, trust {:.6} ({what})",
+                robot(&pair.from),
+                robot(&pair.to),
+                pair.apart(),
+                pair.distrust,
+                measure.it.trust(pair.distrust),
+            )?;
+        }
+    }
+    if let Some(misjudged) = blindness.misjudged() {
+        writeln!(
+            out,
+            "Of all two pairs of robots of one role and round, in {:.1} % the one whose levels are nearer to \
+             each other has the higher {name} (unrelated: 50 %).",
+            100.0 * misjudged
+        )?;
+    }
+    Ok(())
+}

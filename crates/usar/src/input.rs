@@ -1,0 +1,43 @@
+//! What commands read: scenarios and folders of sweeps.
+
+use std::path::Path;
+
+use experiments::Failure;
+use experiments::sweep::folder::Folder;
+use rne_core::Registry;
+use usar_sim::scenario::Scenario;
+
+use crate::running::tell;
+
+/// Loads a scenario and its text. The error has all problems; oddities of a valid scenario go to stderr.
+pub(crate) fn load(path: &Path) -> Result<(Scenario, String), Failure> {
+    let (scenario, text) = Scenario::load(path).map_err(Failure::input)?;
+    tell_oddities(&scenario, &text, path);
+    Ok((scenario, text))
+}
+
+/// Tells the oddities of a valid scenario on stderr.
+pub(crate) fn tell_oddities(scenario: &Scenario, text: &str, path: &Path) {
+    for odd in scenario.oddities(text) {
+        let line = odd.line.map_or(String::new(), |line| format!(":{line}"));
+        tell(format_args!("note: {}{line}: {odd}", path.display()));
+    }
+}
+
+/// Reads the folder of a sweep. A note on stderr tells if trials are missing.
+pub(crate) fn read_sweep(path: &Path, registry: &Registry) -> Result<Folder, Failure> {
+    let folder = Folder::read(path, registry)?;
+    if !folder.manifest().is_complete {
+        let (there, of) = (folder.results().len(), folder.experiment().keys(None).count());
+        let path = path.display();
+        tell(format_args!("note: {path}: the sweep is not complete: {there} of {of} trials are there"));
+    }
+    Ok(folder)
+}
+
+/// Fails if a trial of a sweep gave no numbers.
+pub(crate) fn check_trials<'f>(folders: impl IntoIterator<Item = &'f Folder>) -> Result<(), Failure> {
+    let results = folders.into_iter().flat_map(|folder| folder.results().values());
+    let failures: Vec<&str> = results.filter_map(|measured| measured.failure.as_deref()).collect();
+    if failures.is_empty() { Ok(()) } else { Err(Failure::run(failures.join("\n"))) }
+}
