@@ -234,6 +234,17 @@ fn tables_of_tasks_roles_and_needs_are_checked_and_named_by_their_entries() {
 }
 
 #[test]
+fn what_is_sampled_depends_on_the_seed_alone() {
+    let scenario = paper_with(&SAMPLED);
+    let (one, again) = (Layout::sample(&scenario, 3).unwrap(), Layout::sample(&scenario, 3).unwrap());
+    let other = Layout::sample(&scenario, 4).unwrap();
+    assert_eq!(one, again);
+    assert_ne!(one.debris, other.debris);
+    assert_eq!(one.debris.len(), scenario.debris.len() + 14);
+    assert_eq!(one.zones.len(), scenario.radiation.len() + 5);
+}
+
+#[test]
 fn a_layout_without_room_says_so() {
     let crowded = "rest: (27.0, 14.5), sampled: (debris: 5000)";
     let scenario = paper_with(&[("rest: (27.0, 14.5)", crowded)]);

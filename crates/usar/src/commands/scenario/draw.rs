@@ -39,7 +39,7 @@ pub(crate) struct Arguments {
 }
 
 impl Arguments {
-    pub(crate) fn execute(&self, registry: &Registry, out: &mut dyn Write) -> Result<(), Failure> {
+    pub(crate) fn execute(&self, _: &Registry, out: &mut dyn Write) -> Result<(), Failure> {
         let file = PictureFile::of(&self.out, &["svg", "png"], self.look.picture.replace)?;
         let scenario = self.set.load(&self.file)?;
         let seed = match self.seed {
