@@ -7,36 +7,17 @@ use std::path::{Path, PathBuf};
 
 use crate::support::root;
 
-/// The crates from the bottom up. Each may use those before it, for its tests as well.
-const CRATES: [&str; 13] = [
-    "ron-tree",
-    "rne-core",
-    "policies",
-    "frozen-physics",
-    "usar-sim",
-    "recording",
-    "pictures",
-    "exports",
-    "experiments",
-    "reports",
-    "study-yang2021",
-    "xtask",
-    "usar",
-];
+/// The crates from the bottom up, in the order of the workspace. Each may use those before it, for its tests
+/// as well.
+fn crates() -> Vec<String> {
+    let workspace = text("Cargo.toml");
+    let (_, members) = workspace.split_once("members = [").unwrap();
+    let (members, _) = members.split_once(']').unwrap();
+    members.split('"').filter_map(|member| member.strip_prefix("crates/")).map(str::to_owned).collect()
+}
 
-/// The crates that know no single paper.
-const GENERAL: [&str; 10] = [
-    "ron-tree",
-    "rne-core",
-    "policies",
-    "frozen-physics",
-    "usar-sim",
-    "recording",
-    "pictures",
-    "exports",
-    "experiments",
-    "reports",
-];
+/// The crates that know a paper, or run as programs.
+const APART: [&str; 3] = ["study-yang2021", "xtask", "usar"];
 
 /// What is needed to show something to people, and the crates that may need it.
 const SCREEN: [(&str, &[&str]); 12] = [
@@ -72,10 +53,12 @@ fn dependencies(manifest: &str) -> BTreeSet<&str> {
 
 #[test]
 fn crates_use_only_those_below_them() {
-    for (floor, name) in CRATES.iter().enumerate() {
+    let crates = crates();
+    for (floor, name) in crates.iter().enumerate() {
         let manifest = text(&format!("crates/{name}/Cargo.toml"));
         let used = dependencies(&manifest);
-        let above: Vec<&&str> = CRATES[floor..].iter().filter(|other| used.contains(**other)).collect();
+        let above: Vec<&String> =
+            crates[floor..].iter().filter(|other| used.contains(other.as_str())).collect();
         assert!(above.is_empty(), "crate {name} uses {above:?}, which are not below it");
     }
 }
@@ -85,11 +68,12 @@ fn every_crate_has_its_floor_and_is_tested_without_a_name() {
     let folders = std::fs::read_dir(root().join("crates")).unwrap();
     let found: BTreeSet<String> =
         folders.map(|folder| folder.unwrap().file_name().into_string().unwrap()).collect();
-    assert_eq!(found, CRATES.map(str::to_owned).into());
+    let crates = crates();
+    assert_eq!(found, crates.iter().cloned().collect());
     let workspace = text("Cargo.toml");
     assert!(!workspace.contains("default-members"), "`cargo test` would leave out crates");
-    let runs = |name: &&&str| text(&format!("crates/{name}/Cargo.toml")).contains("\ndefault-run = ");
-    assert_eq!(CRATES.iter().filter(runs).collect::<Vec<_>>(), [&"usar"], "`cargo run` runs one program");
+    let runs = |name: &&String| text(&format!("crates/{name}/Cargo.toml")).contains("\ndefault-run = ");
+    assert_eq!(crates.iter().filter(runs).collect::<Vec<_>>(), ["usar"], "`cargo run` runs one program");
 }
 
 /// Results are refused to a program of other sources: it is known by the sources of all crates that decide
@@ -98,7 +82,7 @@ fn every_crate_has_its_floor_and_is_tested_without_a_name() {
 fn the_program_is_known_by_the_sources_that_decide_its_numbers() {
     let build = text("crates/experiments/build.rs");
     let listeners = ["recording", "pictures", "exports", "reports", "xtask", "usar"];
-    for name in CRATES.iter().filter(|name| **name != "policies" && !listeners.contains(name)) {
+    for name in crates().iter().filter(|name| *name != "policies" && !listeners.contains(&name.as_str())) {
         assert!(build.contains(&format!("\"{name}\"")), "crates/experiments/build.rs leaves out {name}");
     }
     for kind in policies::standard().kinds() {
@@ -132,7 +116,7 @@ fn no_policy_names_another_one() {
 /// An edited policy builds its crate and the command, and nothing between them.
 #[test]
 fn only_the_command_is_built_on_policies() {
-    for name in CRATES.iter().filter(|name| !["policies", "usar", "xtask"].contains(name)) {
+    for name in crates().iter().filter(|name| !["policies", "usar", "xtask"].contains(&name.as_str())) {
         let manifest = text(&format!("crates/{name}/Cargo.toml"));
         let dependencies = manifest.split("[dev-dependencies]").next().unwrap_or_default();
         assert!(!dependencies.contains("\npolicies"), "{name} is built on policies");
@@ -141,11 +125,11 @@ fn only_the_command_is_built_on_policies() {
 
 #[test]
 fn figures_tables_and_the_command_line_are_left_to_their_crates() {
-    for name in CRATES {
+    for name in &crates() {
         let manifest = text(&format!("crates/{name}/Cargo.toml"));
         let used = dependencies(&manifest);
         for (library, may) in SCREEN {
-            assert!(may.contains(&name) || !used.contains(library), "crate {name} uses {library}");
+            assert!(may.contains(&name.as_str()) || !used.contains(library), "crate {name} uses {library}");
         }
     }
 }
@@ -224,7 +208,7 @@ fn circle(mut uses: BTreeMap<String, BTreeSet<String>>) -> BTreeMap<String, BTre
 
 #[test]
 fn modules_form_no_circle() {
-    for name in CRATES {
+    for name in &crates() {
         let left = circle(uses(&sources(name)));
         assert!(left.is_empty(), "crate {name}: these modules use each other in a circle: {left:#?}");
     }
@@ -281,7 +265,7 @@ fn files_used(sources: &[(PathBuf, String)]) -> BTreeMap<String, BTreeSet<String
 
 #[test]
 fn files_form_no_circle() {
-    for name in CRATES {
+    for name in &crates() {
         let left = circle(files_used(&sources(name)));
         assert!(left.is_empty(), "crate {name}: these files use each other in a circle: {left:#?}");
     }
@@ -309,7 +293,7 @@ fn a_circle_would_be_found() {
 
 #[test]
 fn the_engine_is_named_in_its_seam_only() {
-    for name in CRATES {
+    for name in &crates() {
         for (path, text) in sources(name) {
             let is_seam = name == "frozen-physics" || (name == "usar-sim" && path == Path::new("physics.rs"));
             assert!(is_seam || !text.contains("rapier2d"), "{name}/{}: names the engine", path.display());
@@ -331,14 +315,14 @@ fn decisions_know_reports_and_no_world() {
 
 #[test]
 fn libraries_keep_no_registry_for_the_process_and_set_no_panic_hook() {
-    for name in CRATES {
+    for name in &crates() {
         for (path, text) in sources(name) {
             let kept = text.lines().find(|line| {
                 let is_static = line.trim_start().trim_start_matches("pub ").starts_with("static ");
                 is_static && line.contains("Registry")
             });
             assert_eq!(kept, None, "{name}/{}", path.display());
-            let is_program = ["usar", "xtask"].contains(&name);
+            let is_program = ["usar", "xtask"].contains(&name.as_str());
             assert!(is_program || !text.contains("set_hook("), "{name}/{}: sets a hook", path.display());
         }
     }
@@ -357,7 +341,7 @@ fn no_decision_ignores_what_it_does_not_name() {
 #[test]
 fn the_general_crates_have_no_words_of_one_paper() {
     let words = ["carrier", "supplier", "observer", "hard", "easy"];
-    for name in GENERAL {
+    for name in crates().iter().filter(|name| !APART.contains(&name.as_str())) {
         for (path, text) in sources(name) {
             for (number, line) in text.lines().enumerate() {
                 let is_word = |word: &&str| words.contains(&word.to_lowercase().trim_end_matches('s'));
@@ -424,8 +408,9 @@ fn functions_with_tuples(text: &str) -> Vec<&str> {
 
 /// The sources, but for those that may, in which something is found, with what is found.
 fn offenders(find: fn(&str) -> Vec<&str>, may: &[&str]) -> Vec<String> {
-    let all = CRATES.iter().flat_map(|name| {
-        sources(name).into_iter().map(move |(path, text)| (format!("{name}/{}", path.display()), text))
+    let all = crates().into_iter().flat_map(|name| {
+        let sources = sources(&name).into_iter();
+        sources.map(move |(path, text)| (format!("{name}/{}", path.display()), text))
     });
     let others = all.filter(|(file, _)| !may.contains(&file.as_str()));
     let found = others.map(|(file, text)| (file, find(&text).join(", ")));
