@@ -1,10 +1,9 @@
 //! Tells the laboratory what it was built from: the commit, and a hash of the sources that decide every
-//! trial. Results name them. The hash also covers uncommitted sources, because they decide numbers too.
+//! trial. Results name them. The hash also covers uncommitted sources, because they decide numbers too; it
+//! ignores comments and tests, which decide none.
 //! Policies bring hashes of their own, so that an edited policy neither builds the laboratory anew nor spoils
 //! the results of the others.
 
-use std::collections::hash_map::DefaultHasher;
-use std::hash::{Hash, Hasher};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -20,7 +19,7 @@ fn main() {
         places.extend([folder.join("Cargo.toml"), folder.join("src")]);
     }
     places.iter().for_each(|place| println!("cargo::rerun-if-changed={}", place.display()));
-    println!("cargo::rustc-env=USAR_ENGINE={:016x}", hash(root, &places));
+    println!("cargo::rustc-env=USAR_ENGINE={:016x}", source_hash::hash(root, &places));
     println!("cargo::rustc-env=USAR_COMMIT={}", commit(&places).as_deref().unwrap_or("unknown"));
     let rustc = std::env::var("RUSTC").ok();
     let compiler = rustc.and_then(|rustc| Command::new(rustc).arg("--version").output().ok());
@@ -42,26 +41,4 @@ fn commit(places: &[PathBuf]) -> Option<String> {
 fn git(arguments: &[&str]) -> Option<String> {
     let output = Command::new("git").args(arguments).output().ok()?;
     output.status.success().then(|| String::from_utf8_lossy(&output.stdout).trim().to_owned())
-}
-
-/// A hash of the paths below the project's folder, and of the contents.
-fn hash(root: &Path, places: &[PathBuf]) -> u64 {
-    let mut files = Vec::new();
-    places.iter().for_each(|place| collect(place, &mut files));
-    files.sort();
-    let mut hasher = DefaultHasher::new();
-    for file in files {
-        let path = file.strip_prefix(root).unwrap_or(&file).to_string_lossy().replace('\\', "/");
-        (path, std::fs::read(&file).unwrap_or_default()).hash(&mut hasher);
-    }
-    hasher.finish()
-}
-
-fn collect(place: &Path, files: &mut Vec<PathBuf>) {
-    if !place.is_dir() {
-        return files.push(place.to_owned());
-    }
-    for entry in std::fs::read_dir(place).into_iter().flatten().flatten() {
-        collect(&entry.path(), files);
-    }
 }

@@ -4,8 +4,8 @@ use std::path::Path;
 
 use csv::StringRecord;
 use ron_tree::file::read_text;
+use store::Failure;
 
-use crate::failure::Failure;
 use crate::limits::{COLUMNS, TABLE_ROWS};
 
 /// A table with its rows, each with its line in the file.

@@ -22,12 +22,12 @@ pub mod comparison;
 pub mod expect;
 pub mod experiment;
 pub mod explore;
-mod failure;
-pub mod files;
 pub mod input_table;
+pub mod job;
 pub mod limits;
 pub mod metric;
 pub mod oracle;
+mod panics;
 pub mod provenance;
 pub mod regret;
 pub mod rounds;
@@ -36,7 +36,8 @@ pub mod stats;
 pub mod sweep;
 pub mod why;
 
-pub use failure::{Failure, note_panic, panic_message};
+pub use panics::{note_panic, panic_message};
+pub use store::{Failure, files};
 
 /// The programs in the README compile and run.
 #[cfg(doctest)]

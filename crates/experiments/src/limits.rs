@@ -33,7 +33,7 @@ ron_tree::limits! {
     /// Bytes of a recording.
     RECORDING_BYTES: "a recording" = 0, 256 << 20;
     /// Bytes of a manifest, or of another file of a folder of results that is read whole.
-    STORED_BYTES: "a folder of results" = 0, 16 << 20;
+    STORED_BYTES: "a folder of results" = 0, store::files::FILE_BYTES;
     /// Bytes of one line of a journal: a trial.
-    JOURNAL_LINE_BYTES: "journal.jsonl" = 0, 256 << 20;
+    JOURNAL_LINE_BYTES: "journal.jsonl" = 0, store::LINE_BYTES;
 }

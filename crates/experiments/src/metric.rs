@@ -6,11 +6,10 @@ mod values;
 
 use std::ops::Deref;
 
+use store::Failure;
 use usar_sim::metrics::TaskTotals;
 use usar_sim::record::TrialRecord;
 use usar_sim::scenario::Scenario;
-
-use crate::failure::Failure;
 
 pub use values::Values;
 

@@ -1,21 +1,17 @@
 //! Where results come from: enough to reproduce them, and to refuse to mix them with other results.
 
 use ron_tree::Node;
-use serde::{Deserialize, Deserializer, Serialize};
+use serde::{Deserialize, Serialize};
+use store::Failure;
+use store::files::FileHash;
 use thiserror::Error;
 use usar_sim::physics::ENGINE_FEATURES;
 use xxhash_rust::xxh3::xxh3_128;
 
 use crate::experiment::{Axis, Experiment, Keep, Program, Seeds, Shard};
-use crate::failure::Failure;
-use crate::files::FileHash;
 
 /// Version of the folder's layout.
-pub const SCHEMA_VERSION: u32 = 6;
-
-/// Older versions that can be read. Their folders cannot be continued. The shards of version 4 cannot be
-/// read, because they were dealt in another way.
-const READABLE_VERSIONS: [u32; 2] = [4, 5];
+pub const SCHEMA_VERSION: u32 = 7;
 
 /// Largest number of trials that a sweep may have for each case and policy.
 const MAX_TRIALS: u32 = 1_000_000;
@@ -43,8 +39,7 @@ pub struct Manifest {
     pub name: String,
     /// The policies as they were written.
     pub policies: Vec<String>,
-    /// Hash of the sources of each policy. Version 5 has none: its `source` covers the policies.
-    #[serde(default)]
+    /// Hash of the sources of each policy.
     pub policy_sources: Vec<String>,
     /// The axes.
     pub axes: Vec<Axis>,
@@ -55,7 +50,6 @@ pub struct Manifest {
     /// Whether every invariant was checked at every step.
     pub is_checked: bool,
     /// What is kept of each trial.
-    #[serde(alias = "is_lean", deserialize_with = "keep_of")]
     pub keep: Keep,
     /// Which part of the sweep this is; `None` for the whole sweep.
     pub shard: Option<Shard>,
@@ -76,6 +70,12 @@ pub enum ManifestError {
     /// It cannot be written for comparison.
     #[error(transparent)]
     Unwritable(#[from] Failure),
+    /// Another version of the program made the folder.
+    #[error("its layout has version {found}; this program reads version {SCHEMA_VERSION}")]
+    OtherLayout {
+        /// The version.
+        found: u32,
+    },
     /// It was changed.
     #[error("its checksum does not match: it was changed")]
     Changed,
@@ -138,9 +138,16 @@ impl Manifest {
     /// # Errors
     /// The text is not a manifest or was changed.
     pub fn parse(text: &[u8]) -> Result<Self, ManifestError> {
+        #[derive(Deserialize)]
+        struct Layout {
+            schema_version: u32,
+        }
+        let Layout { schema_version: found } = serde_json::from_slice(text)?;
+        if found != SCHEMA_VERSION {
+            return Err(ManifestError::OtherLayout { found });
+        }
         let mut manifest: Self = serde_json::from_slice(text)?;
-        let again = manifest.text()?;
-        if manifest.schema_version == SCHEMA_VERSION && again.as_bytes() != text {
+        if manifest.text()?.as_bytes() != text {
             return Err(ManifestError::Changed);
         }
         if manifest.shard.is_some_and(|shard| !(1..=shard.of).contains(&shard.number)) {
@@ -151,14 +158,6 @@ impl Manifest {
         }
         manifest.checksum.clear();
         Ok(manifest)
-    }
-
-    /// Whether this program can read the folder.
-    #[must_use]
-    pub fn is_readable(&self) -> bool {
-        let is_former = READABLE_VERSIONS.contains(&self.schema_version);
-        let is_dealt_otherwise = self.schema_version == 4 && self.shard.is_some();
-        self.schema_version == SCHEMA_VERSION || is_former && !is_dealt_otherwise
     }
 
     /// The manifest as it was before the first trial.
@@ -248,21 +247,6 @@ impl Manifest {
         compare("--keep", self.keep.name().to_owned(), other.keep.name().to_owned());
         differences
     }
-}
-
-/// Reads `keep`. Version 4 has a flag instead: whether only rounds are kept.
-fn keep_of<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Keep, D::Error> {
-    #[derive(Deserialize)]
-    #[serde(untagged)]
-    enum Either {
-        Now(Keep),
-        Former(bool),
-    }
-    Ok(match Either::deserialize(deserializer)? {
-        Either::Now(keep) => keep,
-        Either::Former(true) => Keep::Rounds,
-        Either::Former(false) => Keep::Groups,
-    })
 }
 
 /// The fields in which two resolved scenarios differ, one sentence each.

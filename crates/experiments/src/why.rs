@@ -2,9 +2,9 @@
 
 use rne_core::{Assignment, Decision, Question, TaskId, TeamTrust};
 use serde::Serialize;
+use store::Failure;
 
 use crate::experiment::PolicySpec;
-use crate::failure::Failure;
 
 /// The choice of another policy.
 #[derive(Debug, Clone, PartialEq, Serialize)]

@@ -209,11 +209,11 @@ impl Forged {
     pub fn line(&self, with: &str, change: impl FnOnce(&mut String)) {
         self.journal(|text| {
             let line = text.lines().find(|line| line.contains(with)).unwrap();
-            let (_, entry) = line.split_once(",\"trial\":").unwrap();
+            let (_, entry) = line.split_once(",\"entry\":").unwrap();
             let mut entry = entry.strip_suffix('}').unwrap().to_owned();
             change(&mut entry);
             let sum = xxh3_64(entry.as_bytes());
-            text.replace(line, &format!("{{\"xxh3_64\":\"{sum:016x}\",\"trial\":{entry}}}"))
+            text.replace(line, &format!("{{\"xxh3_64\":\"{sum:016x}\",\"entry\":{entry}}}"))
         });
     }
 

@@ -2,9 +2,10 @@
 //! family is compared: the rescuees, in total and of each task, of every policy against the first.
 //! `compare` and `report` both ask here and therefore agree.
 
+use store::Failure;
+
 use super::{Choice, short};
 use crate::experiment::Experiment;
-use crate::failure::Failure;
 
 /// The command line's choice of comparisons.
 #[derive(Debug, Clone, Default, PartialEq)]

@@ -4,10 +4,10 @@
 
 use rayon::prelude::*;
 use serde::Serialize;
+use store::Failure;
 
 use super::{CONFIDENCE, Choice, LEVEL, Pairs, policies_of};
 use crate::experiment::{Case, Experiment};
-use crate::failure::Failure;
 use crate::stats::Moments;
 use crate::stats::paired::holm;
 use crate::stats::wilcoxon::SignedRank;

@@ -3,11 +3,11 @@
 //! case in which one axis has its first value instead.
 
 use serde::Serialize;
+use store::Failure;
 
 use super::effect::{Contrast, contrasts, corrected, is_shown};
 use super::words::p_in_words;
 use super::{CONFIDENCE, Choice, Pairs, policy_pairs, short};
-use crate::failure::Failure;
 use crate::stats::Moments;
 use crate::stats::bootstrap::interval;
 use crate::stats::wilcoxon::SignedRank;

@@ -12,9 +12,9 @@ mod words;
 
 use rayon::prelude::*;
 use serde::Serialize;
+use store::Failure;
 
 use crate::experiment::Experiment;
-use crate::failure::Failure;
 use crate::metric::Metric;
 use crate::stats::Moments;
 use crate::stats::paired::{detectable, hodges_lehmann, holm, pairs_for_margin};

@@ -6,7 +6,7 @@ use usar_sim::record::{DecisionRecord, TrialRecord};
 
 use super::file::{Map, SweepFile};
 use super::{AnalysisPlan, Axis, Experiment, Seeds};
-use crate::failure::Failure;
+use store::Failure;
 use crate::run::TrialKey;
 
 /// How often a policy is asked the same question again.

@@ -1,10 +1,10 @@
 //! The cost of trials: bodies times steps.
 
 use ron_tree::limits::Limit;
+use store::Failure;
 use usar_sim::scenario::Scenario;
 
 use super::Experiment;
-use crate::failure::Failure;
 use crate::limits::{SWEEP_WORK, TRIAL_WORK};
 
 /// Bodies times steps that a thread simulates per second, roughly. Used to estimate times in messages.

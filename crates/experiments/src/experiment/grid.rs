@@ -3,11 +3,11 @@
 use std::collections::BTreeSet;
 
 use rne_core::Registry;
+use store::Failure;
 use usar_sim::scenario::{Scenario, ScenarioFile};
 
 use super::policy::PolicySpec;
 use super::setting::checked;
-use crate::failure::Failure;
 use crate::limits::{CASE_BYTES, CASES, POLICIES};
 
 /// A field of the scenario and the values that it takes, in RON.
@@ -140,7 +140,7 @@ impl Grid<'_> {
 }
 
 /// The part of a scenario that decides numbers, as text: everything except its name and its description.
-pub(super) fn deciding_text(scenario: &Scenario) -> String {
+pub(crate) fn deciding_text(scenario: &Scenario) -> String {
     let mut file: ScenarioFile = (**scenario).clone();
     file.name = String::new();
     file.description = String::new();

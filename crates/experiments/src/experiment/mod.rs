@@ -17,6 +17,7 @@ use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
 use rne_core::{Asked, Registry, TrialStart};
+use store::Failure;
 use usar_sim::simulation::{Advance, Ask, Simulation};
 use xxhash_rust::xxh3::xxh3_128;
 
@@ -32,11 +33,12 @@ pub use program::{Digest, Program};
 pub use read::{companion, defaults, with_settings};
 pub use shard::{NoShard, Place, Shard};
 
-use crate::failure::Failure;
 use crate::limits::TRIALS;
 use crate::metric::{Catalogue, task_names};
 use crate::run::{Fault, Player, Sessions, SharedTrials, Trial, TrialKey, TrialSetup, run_trial};
-use grid::{cases, checked_policies, deciding_text};
+pub(crate) use grid::deciding_text;
+use grid::{cases, checked_policies};
+pub(crate) use read::check_form;
 use read::{from_scenario, with_readings};
 use setting::overlapping;
 use sweep_file::from_sweep_file;

@@ -4,7 +4,7 @@
 use ron_tree::Node;
 
 use super::file::SweepFile;
-use crate::failure::Failure;
+use store::Failure;
 use crate::metric::Catalogue;
 
 /// The analysis plan of a sweep. Empty for a scenario without a sweep file.

@@ -4,10 +4,10 @@ use std::fmt;
 use std::sync::OnceLock;
 
 use rne_core::MadePolicy;
+use store::Failure;
 use xxhash_rust::xxh3::xxh3_64;
 
 use super::policy::PolicySpec;
-use crate::failure::Failure;
 
 /// The program as far as it decides the trials of a sweep. A policy's trials stay valid as long as the
 /// simulator and the policy's own sources stay the same.
@@ -17,8 +17,7 @@ pub struct Program {
     pub version: String,
     /// Hash of the sources that decide every trial: all but those of the policies.
     pub source: String,
-    /// Hash of the sources of each policy of the sweep. Empty for results of layouts before 6, whose
-    /// `source` covers the policies.
+    /// Hash of the sources of each policy of the sweep.
     pub policies: Vec<String>,
 }
 

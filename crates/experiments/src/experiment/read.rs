@@ -3,13 +3,13 @@
 use std::path::{Path, PathBuf};
 
 use rne_core::Registry;
-use usar_sim::scenario::{Scenario, ScenarioFile, parse_ron, read_text};
+use store::Failure;
+use usar_sim::scenario::{Scenario, ScenarioFile, parse_ron, parse_tree, read_text};
 
 use super::file::SweepFile;
 use super::setting::{checked, decides, overlapping};
 use super::sweep_file::{Reading, from_sweep_file};
 use super::{AnalysisPlan, Keep, Parts, Seeds};
-use crate::failure::Failure;
 
 /// The policy where none is named.
 const RNE: &str = "RNE";
@@ -41,6 +41,21 @@ pub fn with_settings(scenario: &Scenario, settings: &[String]) -> Result<Scenari
         earlier.push(path);
     }
     checked(file, "--set: ")
+}
+
+/// Refuses a text that is neither a scenario nor a sweep file. The files that it names are not looked at.
+///
+/// # Errors
+/// What is wrong with the text.
+pub(crate) fn check_form(text: &str, path: &Path) -> Result<(), Failure> {
+    let tree = parse_tree(text, path).map_err(Failure::input)?;
+    if tree.get("scenario").is_some() {
+        return parse_ron::<SweepFile>(text, path).map(drop).map_err(Failure::input);
+    }
+    if tree.get("base").is_some() {
+        return Ok(());
+    }
+    Scenario::parse(text, path).map(drop).map_err(Failure::input)
 }
 
 /// The sweep file that belongs to a scenario: `paper.sweep.ron` beside `paper.ron`.

@@ -3,7 +3,7 @@
 use ron_tree::{Node, Problem};
 use usar_sim::scenario::{Scenario, ScenarioFile};
 
-use crate::failure::Failure;
+use store::Failure;
 
 /// A scenario of this file; `prefix` stands before each problem.
 ///

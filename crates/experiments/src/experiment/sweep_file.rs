@@ -15,7 +15,7 @@ use super::grid::{VARIANT, check_bytes};
 use super::policy::PolicySpec;
 use super::setting::{decides, is_part, overlapping};
 use super::{AnalysisPlan, Axis, Parts, Seeds};
-use crate::failure::Failure;
+use store::Failure;
 use crate::limits;
 use crate::metric::{Catalogue, task_names};
 

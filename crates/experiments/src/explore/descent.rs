@@ -6,9 +6,9 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use cmaes::{CMAESOptions, DVector};
+use store::Failure;
 
 use super::Free;
-use crate::failure::Failure;
 
 /// The value of a point that cannot be evaluated.
 pub const WORST: f64 = 1e9;

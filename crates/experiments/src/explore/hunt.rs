@@ -4,14 +4,16 @@ use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
 use ron_tree::edited;
+use serde::{Deserialize, Serialize};
+use store::{Failure, Log};
 
 use super::space::{Point, PointError, Space};
-use super::{Descent, EvaluationLog, Free, Purpose, WORST};
-use crate::failure::Failure;
+use super::{Descent, Free, WORST};
+use crate::job::Job;
 
 /// Name of the file with the found scenario.
 pub const FOUND: &str = "found.ron";
-const PURPOSE: Purpose = Purpose { noun: "search", origin: "search.json", results: &[FOUND] };
+const JOB: Job = Job { noun: "search", origin: "search.json", log: "evaluations.jsonl", results: &[FOUND] };
 
 /// Start of a found scenario's first line.
 const ORIGIN_LINE: &str = "// Found by usar search";
@@ -32,7 +34,7 @@ pub struct Hunt {
 }
 
 /// A candidate and its outcome.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Candidate {
     /// A value for each parameter.
     pub values: Vec<f64>,
@@ -42,7 +44,7 @@ pub struct Candidate {
 
 /// The candidates of a search.
 pub struct Trail {
-    log: EvaluationLog,
+    log: Log,
     candidates: Vec<Candidate>,
 }
 
@@ -60,28 +62,8 @@ impl Hunt {
     /// # Errors
     /// The folder belongs to something else, or the disk does not take the log.
     pub fn open(&self, folder: &Path, is_fresh: bool) -> Result<Trail, Failure> {
-        let free = self.space.free.iter().map(|free| free.name.clone());
-        let outcome = self.space.outcomes[0].name();
-        let header: Vec<String> = std::iter::once("evaluation".to_owned())
-            .chain(free)
-            .chain([outcome, "failure".to_owned()])
-            .collect();
-        let (log, rows) = EvaluationLog::open(folder, &PURPOSE, &self.origin(), &header, is_fresh)?;
-        let read = |(i, row): (usize, &Vec<String>)| self.candidate(row).ok_or_else(|| log.bad_row(i));
-        let candidates = rows.iter().enumerate().map(read).collect::<Result<Vec<_>, Failure>>()?;
+        let (log, candidates, _) = JOB.open(folder, self.origin(), is_fresh)?;
         Ok(Trail { log, candidates })
-    }
-
-    fn candidate(&self, row: &[String]) -> Option<Candidate> {
-        let number = |text: &String| text.parse::<f64>().ok().filter(|value| value.is_finite());
-        let count = self.space.free.len();
-        let values = row[1..=count].iter().map(number).collect::<Option<Vec<f64>>>()?;
-        let reason = row[count + 2].clone();
-        let outcome = match reason.as_str() {
-            "" => Ok(number(&row[count + 1])?),
-            _ => Err(PointError::Logged { reason }),
-        };
-        Some(Candidate { values, outcome })
     }
 
     /// Everything that decides the evaluations.
@@ -153,11 +135,7 @@ impl Hunt {
     }
 
     fn add(trail: &mut Trail, candidate: Candidate) -> Result<Candidate, Failure> {
-        let mut row = vec![(trail.candidates.len() + 1).to_string()];
-        row.extend(candidate.values.iter().map(f64::to_string));
-        row.push(candidate.outcome.as_ref().map_or(String::new(), f64::to_string));
-        row.push(candidate.outcome.as_ref().err().map_or(String::new(), PointError::to_string));
-        trail.log.add(row)?;
+        trail.log.add(&[&candidate])?;
         trail.candidates.push(candidate.clone());
         Ok(candidate)
     }

@@ -5,7 +5,6 @@ mod descent;
 mod design;
 mod free;
 mod hunt;
-mod log;
 mod sensitivity;
 mod space;
 
@@ -13,6 +12,5 @@ pub use descent::{Descent, WORST};
 pub use design::Method;
 pub use free::{Free, FreeError};
 pub use hunt::{Candidate, FOUND, Hunt, Trail};
-pub use log::{EvaluationLog, Purpose};
 pub use sensitivity::{CHANCE, Evaluations, FIGURE, INDICES, Index, Row, Sensitivity};
 pub use space::{Outcome, Point, PointError, Space, Values, scenario_with};

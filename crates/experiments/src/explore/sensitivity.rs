@@ -8,12 +8,13 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
+use store::{Failure, Log};
 
 use super::design::{Block, MOVE, Method};
 use super::space::Point;
-use super::{EvaluationLog, Free, Outcome, PointError, Purpose, Space, Values};
-use crate::failure::Failure;
+use super::{Free, Outcome, Space, Values};
+use crate::job::Job;
 use crate::stats::bootstrap::interval;
 use crate::stats::sensitivity::{self as indices, Effects, Known, Shares};
 
@@ -21,8 +22,12 @@ use crate::stats::sensitivity::{self as indices, Effects, Known, Shares};
 pub const INDICES: &str = "indices.csv";
 /// Name of the figure.
 pub const FIGURE: &str = "indices.svg";
-const PURPOSE: Purpose =
-    Purpose { noun: "sensitivity study", origin: "sensitivity.json", results: &[INDICES, FIGURE] };
+const JOB: Job = Job {
+    noun: "sensitivity study",
+    origin: "sensitivity.json",
+    log: "evaluations.jsonl",
+    results: &[INDICES, FIGURE],
+};
 
 /// A study of sensitivity.
 pub struct Sensitivity {
@@ -39,9 +44,19 @@ pub struct Sensitivity {
 /// Block and point of an evaluation, from 0.
 type Place = (u32, usize);
 
+/// An evaluation in the log.
+#[derive(Serialize, Deserialize)]
+struct Entry {
+    block: u32,
+    point: usize,
+    first_seed: u64,
+    values: Vec<f64>,
+    outcomes: Values,
+}
+
 /// The evaluations of a study, by block and point.
 pub struct Evaluations {
-    log: EvaluationLog,
+    log: Log,
     known: BTreeMap<Place, Values>,
 }
 
@@ -133,13 +148,8 @@ impl Sensitivity {
     /// # Errors
     /// The folder belongs to something else, or the disk does not take the log.
     pub fn open(&self, folder: &Path, is_fresh: bool) -> Result<Evaluations, Failure> {
-        let header = self.header();
-        let (log, rows) = EvaluationLog::open(folder, &PURPOSE, &self.origin(), &header, is_fresh)?;
-        let mut known = BTreeMap::new();
-        for (i, row) in rows.iter().enumerate() {
-            let (place, values) = self.read(row).ok_or_else(|| log.bad_row(i))?;
-            known.insert(place, values);
-        }
+        let (log, entries, _) = JOB.open::<Entry>(folder, self.origin(), is_fresh)?;
+        let known = entries.into_iter().map(|entry| ((entry.block, entry.point), entry.outcomes)).collect();
         Ok(Evaluations { log, known })
     }
 
@@ -193,58 +203,22 @@ impl Sensitivity {
         for batch in missing.chunks(batch) {
             let (places, points): (Vec<_>, Vec<_>) = batch.iter().cloned().unzip();
             let Some(values) = self.space.evaluate(&points, stop) else { return Ok(false) };
-            for ((place, point), values) in places.into_iter().zip(&points).zip(values) {
-                evaluations.log.add(self.row(place, point, &values))?;
-                evaluations.known.insert(place, values);
-                there += 1;
-            }
+            let points = places.into_iter().zip(points).zip(values);
+            let entry = |(((block, point), Point { values, first_seed }), outcomes)| Entry {
+                block,
+                point,
+                first_seed,
+                values,
+                outcomes,
+            };
+            let entries: Vec<Entry> = points.map(entry).collect();
+            evaluations.log.add(&entries)?;
+            there += entries.len();
+            let known = entries.into_iter().map(|entry| ((entry.block, entry.point), entry.outcomes));
+            evaluations.known.extend(known);
             done(there);
         }
         Ok(true)
-    }
-
-    fn header(&self) -> Vec<String> {
-        let first = ["block", "point"].map(str::to_owned).into_iter();
-        let free = self.space.free.iter().map(|free| free.name.clone());
-        let outcomes = self.space.outcomes.iter().map(Outcome::name);
-        first
-            .chain(["first_seed".to_owned()])
-            .chain(free)
-            .chain(outcomes)
-            .chain(["failure".to_owned()])
-            .collect()
-    }
-
-    fn row(&self, place: Place, point: &Point, values: &Values) -> Vec<String> {
-        let mut row =
-            vec![(place.0 + 1).to_string(), (place.1 + 1).to_string(), point.first_seed.to_string()];
-        row.extend(point.values.iter().map(f64::to_string));
-        match values {
-            Ok(values) => {
-                row.extend(values.iter().map(|value| value.map_or(String::new(), |value| value.to_string())));
-                row.push(String::new());
-            }
-            Err(reason) => {
-                row.extend(vec![String::new(); self.space.outcomes.len()]);
-                row.push(reason.to_string());
-            }
-        }
-        row
-    }
-
-    fn read(&self, row: &[String]) -> Option<(Place, Values)> {
-        let place =
-            (row[0].parse::<u32>().ok()?.checked_sub(1)?, row[1].parse::<usize>().ok()?.checked_sub(1)?);
-        if let Some(reason) = row.last().filter(|reason| !reason.is_empty()) {
-            return Some((place, Err(PointError::Logged { reason: reason.clone() })));
-        }
-        let first = 3 + self.space.free.len();
-        let cells = &row[first..first + self.space.outcomes.len()];
-        let value = |cell: &String| match cell.as_str() {
-            "" => Some(None),
-            cell => cell.parse::<f64>().ok().filter(|value| value.is_finite()).map(Some),
-        };
-        Some((place, Ok(cells.iter().map(value).collect::<Option<Vec<_>>>()?)))
     }
 
     /// Everything that decides the evaluations.

@@ -6,14 +6,15 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use rayon::prelude::*;
 use ron_tree::Problem;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
+use store::Failure;
 use thiserror::Error;
 use usar_sim::scenario::{Scenario, ScenarioFile};
 
 use super::Free;
 use crate::comparison::{Choice, policy_pairs};
 use crate::experiment::Experiment;
-use crate::failure::{Failure, panic_message};
+use crate::panics::panic_message;
 use crate::run::{Fault, Sessions, SharedTrials, TrialSetup};
 use crate::stats::Moments;
 
@@ -57,7 +58,8 @@ pub struct Space {
 pub type Values = Result<Vec<Option<f64>>, PointError>;
 
 /// Why a point has no scenario or no outcome.
-#[derive(Debug, Clone, PartialEq, Eq, Error)]
+#[derive(Debug, Clone, PartialEq, Eq, Error, Serialize, Deserialize)]
+#[serde(from = "String", into = "String")]
 pub enum PointError {
     /// A field does not take its value, or the values together break a rule.
     #[error(transparent)]
@@ -81,6 +83,18 @@ pub enum PointError {
         /// The reason in the log.
         reason: String,
     },
+}
+
+impl From<String> for PointError {
+    fn from(reason: String) -> Self {
+        Self::Logged { reason }
+    }
+}
+
+impl From<PointError> for String {
+    fn from(error: PointError) -> Self {
+        error.to_string()
+    }
 }
 
 impl From<Vec<Problem>> for PointError {

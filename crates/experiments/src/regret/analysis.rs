@@ -2,11 +2,11 @@
 
 use rne_core::{Assignment, MadeMeasure, Registry};
 use serde::Serialize;
+use store::Failure;
 
 use super::features::{FEATURES, values};
 use super::study::{PlayedTrial, StudyFolder};
 use crate::experiment::PolicySpec;
-use crate::failure::Failure;
 use crate::oracle::{Objective, Standing, Survey};
 use crate::stats::bootstrap::{interval, ratio_interval};
 use crate::stats::rank_correlation;

@@ -1,16 +1,15 @@
 //! Outcomes on disk. An interrupted survey resumes from them, and results can be looked up in them.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::fs::{self, File};
-use std::io::{BufRead, BufReader, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use rne_core::Assignment;
 use serde::{Deserialize, Serialize};
+use store::lock::Lock;
+use store::{Failure, Header, Log, at};
 use xxhash_rust::xxh3::xxh3_64;
 
-use crate::failure::Failure;
-use crate::files;
 use crate::oracle::Outcome;
 
 /// The decision to which outcomes belong.
@@ -35,8 +34,8 @@ impl DecisionKey {
     /// decides numbers.
     #[must_use]
     pub fn path(&self, folder: &Path) -> PathBuf {
-        let Self { program, scenario, resolved, seed, base, round } = self;
-        let hash = xxh3_64(format!("{program} {resolved} {seed} {base} {round}").as_bytes());
+        let Self { scenario, seed, base, round, .. } = self;
+        let hash = xxh3_64(self.decides().as_bytes());
         let plain = |text: &str| {
             let kept =
                 text.chars().map(|c| if c.is_ascii_alphanumeric() || "-_".contains(c) { c } else { '_' });
@@ -45,11 +44,20 @@ impl DecisionKey {
         let name = format!("{}-{}-seed-{seed}-round-{round}-{hash:016x}.jsonl", plain(scenario), plain(base));
         folder.join(name)
     }
+
+    fn decides(&self) -> String {
+        let Self { program, scenario: _, resolved, seed, base, round } = self;
+        format!("{program} {resolved} {seed} {base} {round}")
+    }
+
+    fn header(&self) -> Header {
+        Header::new("decision's outcomes", &self.decides())
+    }
 }
 
-/// One line of the file.
+/// An entry of the file.
 #[derive(Serialize, Deserialize)]
-struct Line {
+struct Entry {
     /// The policy that decided the rest of the trial; `None` for the outcome of the round.
     then: Option<String>,
     groups: Vec<Vec<u32>>,
@@ -60,37 +68,38 @@ struct Line {
 
 /// Outcomes of the assignments of one decision, in a file.
 pub struct OutcomeLog {
-    path: PathBuf,
-    file: File,
+    /// Absent if the outcomes were only looked up.
+    log: Option<Log>,
     known: Known,
 }
 
+type Known = BTreeMap<(Option<String>, Assignment), Outcome>;
+
+/// Entries by the policy that decided the rest of the trial, and by assignment.
+fn known(entries: Vec<Entry>) -> Known {
+    let pair = |Entry { then, groups, idle, outcome }| ((then, Assignment { groups, idle }), outcome);
+    entries.into_iter().map(pair).collect()
+}
+
 impl OutcomeLog {
-    /// Opens the file of a decision, or begins it. Incomplete lines are dropped.
+    /// Opens the file of a decision, or begins it.
     ///
     /// # Errors
-    /// The file cannot be read or written.
+    /// The file was changed, cannot be read or written, or another process works on it.
     pub fn open(folder: &Path, key: &DecisionKey) -> Result<Self, Failure> {
         let path = key.path(folder);
-        let trouble = |error| Failure::storage(format!("{}: {error}", path.display()));
-        fs::create_dir_all(folder).map_err(trouble)?;
-        files::check_is_file(&path).map_err(trouble)?;
-        let mut file = File::options()
-            .create(true)
-            .truncate(false)
-            .read(true)
-            .write(true)
-            .open(&path)
-            .map_err(trouble)?;
-        let (known, sound) = read(&mut file).map_err(trouble)?;
-        file.set_len(sound).and_then(|()| file.seek(SeekFrom::Start(sound))).map_err(trouble)?;
-        Ok(Self { path, file, known })
+        std::fs::create_dir_all(folder).map_err(at(folder))?;
+        let lock = Arc::new(Lock::of_file(&path, &mut |_| {})?);
+        let (log, entries) = Log::resume(&path, &key.header(), lock)?;
+        Ok(Self { log: Some(log), known: known(entries) })
     }
 
-    /// The log of a decision, if its file exists.
-    #[must_use]
-    pub fn find(folder: &Path, key: &DecisionKey) -> Option<Self> {
-        key.path(folder).is_file().then(|| Self::open(folder, key).ok()).flatten()
+    /// Looks up the outcomes of a decision; there are none without a file.
+    ///
+    /// # Errors
+    /// The file was changed, or cannot be read.
+    pub fn find(folder: &Path, key: &DecisionKey) -> Result<Self, Failure> {
+        Ok(Self { log: None, known: known(store::read(&key.path(folder), &key.header())?) })
     }
 
     /// The outcome of an assignment, if it was played.
@@ -113,49 +122,28 @@ impl OutcomeLog {
         asked.map(|((_, assignment), outcome)| (assignment.clone(), outcome))
     }
 
-    /// Adds the outcome of an assignment.
+    /// Adds the outcomes of assignments.
     ///
     /// # Errors
     /// The file cannot be written.
     pub fn add(
         &mut self,
         then: Option<&str>,
-        assignment: &Assignment,
-        outcome: &Outcome,
+        assignments: &[&Assignment],
+        outcomes: &[Outcome],
     ) -> Result<(), Failure> {
-        let line = Line {
+        let entry = |(assignment, outcome): (&&Assignment, &Outcome)| Entry {
             then: then.map(str::to_owned),
             groups: assignment.groups.clone(),
             idle: assignment.idle.clone(),
             outcome: outcome.clone(),
         };
-        let mut text = serde_json::to_string(&line).map_err(Failure::run)?;
-        text.push('\n');
-        let written = self.file.write_all(text.as_bytes());
-        written.map_err(|error| Failure::storage(format!("{}: {error}", self.path.display())))?;
-        self.known.insert((line.then, assignment.clone()), line.outcome);
+        let entries: Vec<Entry> = assignments.iter().zip(outcomes).map(entry).collect();
+        let log = self.log.as_mut().ok_or_else(|| Failure::run("outcomes were only looked up"))?;
+        log.add(&entries)?;
+        self.known.extend(known(entries));
         Ok(())
     }
-}
-
-type Known = BTreeMap<(Option<String>, Assignment), Outcome>;
-
-/// The outcomes in a file, and the number of bytes up to its first damaged line.
-fn read(file: &mut File) -> std::io::Result<(Known, u64)> {
-    let (mut known, mut sound) = (BTreeMap::new(), 0);
-    let mut reader = BufReader::new(file);
-    let mut text = String::new();
-    while reader.read_line(&mut text)? > 0 {
-        let Some(Ok(Line { then, groups, idle, outcome })) =
-            text.strip_suffix('\n').map(serde_json::from_str)
-        else {
-            break;
-        };
-        known.insert((then, Assignment { groups, idle }), outcome);
-        sound += text.len() as u64;
-        text.clear();
-    }
-    Ok((known, sound))
 }
 
 #[cfg(test)]
@@ -175,7 +163,8 @@ mod tests {
             base: "RNE".to_owned(),
             round: 2,
         };
-        assert!(OutcomeLog::find(folder.path(), &key).is_none());
+        let find = |key: &DecisionKey| OutcomeLog::find(folder.path(), key);
+        assert_eq!(find(&key).unwrap().horizons().len(), 0);
         let outcome = |rescued| Outcome {
             tasks: vec![TaskTotals { rescued, ..TaskTotals::default() }],
             ungrouped: [0.1, 0.2],
@@ -184,22 +173,25 @@ mod tests {
         };
         let assignments = [0, 1].map(|id| Assignment::new(vec![vec![id]]));
         let mut log = OutcomeLog::open(folder.path(), &key).unwrap();
-        log.add(None, &assignments[0], &outcome(3)).unwrap();
-        log.add(Some("DIS"), &assignments[0], &outcome(4)).unwrap();
-        log.add(None, &assignments[1], &outcome(5)).unwrap();
+        log.add(None, &[&assignments[0]], &[outcome(3)]).unwrap();
+        log.add(Some("DIS"), &[&assignments[0]], &[outcome(4)]).unwrap();
+        log.add(None, &[&assignments[1]], &[outcome(5)]).unwrap();
         drop(log);
         let path = key.path(folder.path());
         assert!(path.parent() == Some(folder.path()), "{}", path.display());
-        let bytes = fs::read(&path).unwrap();
-        fs::write(&path, &bytes[..bytes.len() - 3]).unwrap();
-        let mut log = OutcomeLog::find(folder.path(), &key).unwrap();
+        let bytes = std::fs::read(&path).unwrap();
+        std::fs::write(&path, &bytes[..bytes.len() - 3]).unwrap();
+        let found = find(&key).unwrap();
+        assert_eq!(found.outcomes(None).count(), 1);
+        assert_eq!(std::fs::read(&path).unwrap().len(), bytes.len() - 3, "a reader cuts nothing off");
+        let mut log = OutcomeLog::open(folder.path(), &key).unwrap();
         assert_eq!(log.get(None, &assignments[0]), Some(&outcome(3)));
         assert_eq!(log.get(Some("DIS"), &assignments[0]), Some(&outcome(4)));
         assert_eq!(log.outcomes(None).count(), 1);
-        log.add(None, &assignments[1], &outcome(5)).unwrap();
+        log.add(None, &[&assignments[1]], &[outcome(5)]).unwrap();
         drop(log);
-        assert_eq!(fs::read(&path).unwrap(), bytes);
+        assert_eq!(std::fs::read(&path).unwrap(), bytes);
         let other = DecisionKey { round: 3, ..key };
-        assert!(OutcomeLog::find(folder.path(), &other).is_none());
+        assert_eq!(find(&other).unwrap().horizons().len(), 0);
     }
 }

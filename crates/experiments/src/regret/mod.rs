@@ -10,4 +10,4 @@ mod study;
 pub use analysis::{Analysis, Criteria, DecisionRow, Estimate, FeatureRow, PolicyRegret, analyse};
 pub use decision::{Plan, PlayedDecision, Sample, play_decisions};
 pub use log::{DecisionKey, OutcomeLog};
-pub use study::{Choices, PlayedTrial, Study, StudyFolder};
+pub use study::{Choices, PlayedTrial, SUMMARY, Study, StudyFolder, TABLE};

@@ -1,8 +1,6 @@
 //! The study of regret: trials in which every assignment is played at every decision, in a folder that
 //! survives interruptions.
 
-use std::fs::{self, File};
-use std::io::{BufRead, BufReader, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use std::sync::atomic::AtomicBool;
@@ -10,17 +8,22 @@ use std::sync::atomic::AtomicBool;
 use rayon::prelude::*;
 use rne_core::{Deadline, Registry};
 use serde::{Deserialize, Serialize};
+use serde_json::Value;
+use store::{Failure, Log};
 use usar_sim::simulation::Simulation;
 
 use super::decision::{Plan, PlayedDecision, play_decisions};
-use crate::experiment::{Digest, Experiment, PolicySpec, Program};
-use crate::failure::Failure;
-use crate::files::{self, NewFile};
+use crate::experiment::{Experiment, PolicySpec, Program};
+use crate::job::Job;
 use crate::metric::task_names;
 use crate::oracle::{BranchError, Objective};
 
-const MANIFEST: &str = "study.json";
-const JOURNAL: &str = "decisions.jsonl";
+/// Name of the table of decisions.
+pub const TABLE: &str = "regret.csv";
+/// Name of the file with the analyses.
+pub const SUMMARY: &str = "summary.json";
+const JOB: Job =
+    Job { noun: "study of regret", origin: "study.json", log: "decisions.jsonl", results: &[TABLE, SUMMARY] };
 
 /// The definition of a study: everything that decides its numbers.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -43,7 +46,7 @@ pub struct Study {
     /// Largest number of assignments played for one decision.
     pub limit: u64,
     /// Version and source of the program.
-    pub program: [String; 2],
+    pub program: String,
 }
 
 /// Settings from the command line.
@@ -92,7 +95,6 @@ impl Study {
         let then = choices.then.as_deref().map(|then| PolicySpec::parse(then, &experiment.registry));
         let then = then.transpose().map_err(Failure::input)?;
         let specs: Vec<PolicySpec> = experiment.policies.iter().cloned().chain(then).collect();
-        let Digest { version, source } = Program::running(&specs)?.digest();
         Ok(Self {
             name: experiment.name.clone(),
             tasks: task_names(&experiment.base),
@@ -102,7 +104,7 @@ impl Study {
             then: choices.then.clone(),
             rounds: choices.rounds.clone(),
             limit: choices.limit,
-            program: [version, source],
+            program: Program::running(&specs)?.digest().to_string(),
         })
     }
 
@@ -114,13 +116,6 @@ impl Study {
         let parse = |text: &String| PolicySpec::parse(text, registry).map_err(Failure::input);
         self.policies.iter().map(parse).collect()
     }
-
-    /// Whether another study gives the same numbers for the trials that both have.
-    fn is_as(&self, other: &Self) -> bool {
-        let without_seeds = |study: &Self| Self { seeds: Vec::new(), name: String::new(), ..study.clone() };
-        let shared = self.seeds.len().min(other.seeds.len());
-        without_seeds(self) == without_seeds(other) && self.seeds[..shared] == other.seeds[..shared]
-    }
 }
 
 /// The folder of a study.
@@ -130,58 +125,38 @@ pub struct StudyFolder {
     pub study: Study,
     /// The finished trials, by number.
     pub trials: Vec<PlayedTrial>,
+    /// Absent if the folder was opened for reading.
+    log: Option<Log>,
 }
 
 impl StudyFolder {
     /// Opens the folder of a study to resume it, or begins it.
     ///
     /// # Errors
-    /// The folder holds another study, or a study of another program.
-    pub fn open(path: &Path, study: Study) -> Result<Self, Failure> {
-        let trouble = |error| Failure::storage(format!("{}: {error}", path.display()));
-        fs::create_dir_all(path).map_err(trouble)?;
-        if path.join(MANIFEST).exists() {
-            let found = Self::read(path)?;
-            if !found.study.is_as(&study) {
-                return Err(Failure::input(format!(
-                    "{}: has another study (scenario, policies, rounds, seeds, limit or program differ); \
-                     --out names another folder",
-                    path.display()
-                )));
-            }
-            let more = if study.seeds.len() > found.study.seeds.len() { study } else { found.study };
-            write_manifest(path, &more)?;
-            return Ok(Self { study: more, ..found });
-        }
-        write_manifest(path, &study)?;
-        Ok(Self { path: path.to_owned(), study, trials: Vec::new() })
+    /// The folder holds something else, another study, or a study of another program.
+    pub fn open(path: &Path, study: &Study) -> Result<Self, Failure> {
+        let origin = serde_json::to_value(study).map_err(Failure::run)?;
+        let (log, trials, origin) = JOB.open(path, origin, false)?;
+        Ok(Self { log: Some(log), ..Self::of(path, origin, trials)? })
     }
 
     /// Reads the folder of a study. The program that made it may be another one.
     ///
     /// # Errors
-    /// It is not the folder of a study.
+    /// It is not the folder of a study, or its log was changed.
     pub fn read(path: &Path) -> Result<Self, Failure> {
-        let bad = |error: &dyn std::fmt::Display| {
-            Failure::input(format!("{}: is not the folder of a study of regret: {error}", path.display()))
+        let (origin, trials) = JOB.read(path)?;
+        Self::of(path, origin, trials)
+    }
+
+    fn of(path: &Path, origin: Value, mut trials: Vec<PlayedTrial>) -> Result<Self, Failure> {
+        let bad = |error| {
+            let (path, noun) = (path.display(), JOB.noun);
+            Failure::input(format!("{path}: is not the folder of a {noun}: {}: {error}", JOB.origin))
         };
-        let manifest = files::read(&path.join(MANIFEST)).map_err(|error| bad(&error))?;
-        let study: Study = serde_json::from_slice(&manifest).map_err(|error| bad(&error))?;
-        let mut trials: Vec<PlayedTrial> = Vec::new();
-        if let Ok(journal) = files::open(&path.join(JOURNAL)) {
-            for line in BufReader::new(journal).lines() {
-                let line = line.map_err(|error| bad(&error))?;
-                // An incomplete line counts as a missing trial.
-                let Ok(trial) = serde_json::from_str::<PlayedTrial>(&line) else { continue };
-                let place = trial.trial.checked_sub(1).map(|place| place as usize);
-                let is_ours = place.and_then(|place| study.seeds.get(place)) == Some(&trial.seed);
-                if is_ours && !trials.iter().any(|known| known.trial == trial.trial) {
-                    trials.push(trial);
-                }
-            }
-        }
+        let study: Study = serde_json::from_value(origin).map_err(bad)?;
         trials.sort_by_key(|trial| trial.trial);
-        Ok(Self { path: path.to_owned(), study, trials })
+        Ok(Self { path: path.to_owned(), study, trials, log: None })
     }
 
     /// Numbers of the missing trials.
@@ -201,23 +176,14 @@ impl StudyFolder {
         halt: &AtomicBool,
         done: impl Fn() + Sync,
     ) -> Result<(), Failure> {
-        let path = self.path.join(JOURNAL);
-        let trouble = |error| Failure::storage(format!("{}: {error}", path.display()));
-        files::check_is_file(&path).map_err(trouble)?;
-        let mut journal = File::options().create(true).append(true).open(&path).map_err(trouble)?;
-        // Ends an incomplete last line.
-        if journal.metadata().map_err(trouble)?.len() > 0 {
-            journal.write_all(b"\n").map_err(trouble)?;
-        }
         let specs = self.study.specs(&experiment.registry)?;
         let (missing, study) = (self.missing(), &self.study);
-        let shared = Mutex::new((journal, Vec::new()));
+        let log = self.log.as_mut().ok_or_else(|| Failure::run("the study was opened for reading"))?;
+        let shared = Mutex::new((log, Vec::new()));
         missing.into_par_iter().try_for_each(|number| {
             let trial = play_trial(study, experiment, &specs, number, halt)?;
-            let mut line = serde_json::to_vec(&trial).map_err(Failure::run)?;
-            line.push(b'\n');
             let mut shared = shared.lock().map_err(|_| Failure::run("a thread panicked"))?;
-            shared.0.write_all(&line).map_err(trouble)?;
+            shared.0.add(&[&trial])?;
             shared.1.push(trial);
             done();
             Ok::<(), Failure>(())
@@ -233,11 +199,6 @@ impl StudyFolder {
     pub fn path(&self) -> &Path {
         &self.path
     }
-}
-
-fn write_manifest(path: &Path, study: &Study) -> Result<(), Failure> {
-    let text = serde_json::to_vec_pretty(study).map_err(Failure::run)?;
-    NewFile::write(path, MANIFEST, &text).map(drop)
 }
 
 fn play_trial(

@@ -3,9 +3,9 @@
 //! trials.
 
 use rne_core::{Member, TrustMeasure};
+use store::Failure;
 
 use super::{Round, energy, hp};
-use crate::failure::Failure;
 
 /// Smaller values of a measure, such as RNE in nats, are rounding errors.
 const LEAST: f64 = 1e-9;

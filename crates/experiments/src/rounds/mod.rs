@@ -6,12 +6,12 @@ mod levels;
 mod sorting;
 
 use rne_core::{Assignment, Decision, MadePolicy, Member, Question, RoleId, TaskId};
+use store::Failure;
 
 pub use blindness::{Blindness, Example, Pair};
 pub use levels::{GroupLevels, levels, mean_levels};
 pub use sorting::{KEYS, Key, Likeness, Share, likeness};
 
-use crate::failure::Failure;
 use crate::run::Trial;
 use crate::sweep::folder::Folder;
 

@@ -9,9 +9,11 @@ use std::sync::{Arc, Mutex};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
+use store::Failure;
+
 use super::sessions::Sessions;
 use super::trial::{Fault, FaultKind, Outcome, Trial, TrialKey, UNANSWERED};
-use crate::failure::{Failure, panic_message};
+use crate::panics::panic_message;
 
 /// How often the time limit and `stop` are checked.
 const WATCH_PERIOD: Duration = Duration::from_millis(100);

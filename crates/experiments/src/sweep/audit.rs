@@ -4,15 +4,16 @@
 use std::sync::atomic::AtomicBool;
 
 use serde_json::Value;
+use store::Failure;
+use store::files::FileHash;
 use usar_sim::hash::Link;
 
 use super::disk::{broken_files, inputs};
 use super::folder::Folder;
 use super::line::line_of;
+use super::names::GIVEN;
 use super::parquet;
-use crate::experiment::Experiment;
-use crate::failure::Failure;
-use crate::files::FileHash;
+use crate::experiment::{Experiment, check_form};
 use crate::run::{FaultKind, Outcome, TrialKey};
 
 /// How the journal's line of a trial differs from the line of the same trial run again; `None` if both are
@@ -64,7 +65,7 @@ fn first_difference(folder: &mut Folder, again: &Outcome) -> Result<Option<Strin
         step
     } else {
         let value = |line: &[u8]| serde_json::from_slice(line).unwrap_or(Value::Null);
-        let [there, now] = [value(&there)["trial"].take(), value(&now)["trial"].take()];
+        let [there, now] = [value(&there)["entry"].take(), value(&now)["entry"].take()];
         let what = first_field("", &there, &now).unwrap_or_else(|| "is written otherwise".to_owned());
         format!("has the same states, but not the same numbers: {what}")
     };
@@ -124,6 +125,8 @@ pub fn strange_files(folder: &mut Folder) -> Result<Vec<String>, Failure> {
         .iter()
         .map(|file| format!("{}: does not have the checksum of the manifest", name(file)))
         .collect();
+    let given = path.join(GIVEN);
+    strange.extend(check_form(&folder.experiment().given, &given).err().map(|failure| failure.to_string()));
     let place = tempfile::tempdir()?;
     let made = folder.tables_in(place.path(), &AtomicBool::new(false));
     let mut again: Vec<FileHash> = match made {

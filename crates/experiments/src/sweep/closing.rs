@@ -1,19 +1,19 @@
 //! Closing a sweep: makes its tables and the archive of its journal from its trials, in one pass, on all
 //! threads.
 
-use std::io::Write;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use rayon::prelude::*;
+use store::Failure;
+use store::archive::{MEMBER_BYTES, member};
+use store::files::{FileHash, NewFile};
 
-use super::archive::{self, MEMBER_BYTES, member};
-use super::line::{Finished, finished_of};
+use super::journal::ARCHIVE;
+use super::line::{Finished, finished_in};
 use super::measured::Measured;
 use super::tables::{TableRows, Tables};
 use crate::experiment::{Experiment, Keep, Place, Shard};
-use crate::failure::Failure;
-use crate::files::{FileHash, NewFile, trouble};
 
 /// Settings of the closing of a sweep.
 pub(super) struct Closing<'a> {
@@ -53,7 +53,7 @@ impl Closing<'_> {
         mut found: impl FnMut(Place, Measured),
     ) -> Result<Option<Vec<FileHash>>, Failure> {
         let mut tables = Tables::new(self.folder, self.experiment, self.keep, self.shard)?;
-        let mut archive = NewFile::new(self.folder, archive::FILE)?;
+        let mut archive = NewFile::new(self.folder, ARCHIVE)?;
         let at_a_time = 2 * rayon::current_num_threads();
         let mut places = places.peekable();
         while places.peek().is_some() {
@@ -67,9 +67,7 @@ impl Closing<'_> {
             for made in made {
                 let Made { rows, member, results } = made?;
                 tables.append(rows)?;
-                archive
-                    .write_all(&member)
-                    .map_err(|error| trouble(&self.folder.join(archive::FILE), &error))?;
+                archive.append(&member)?;
                 results.into_iter().for_each(|(place, measured)| found(place, measured));
             }
         }
@@ -110,7 +108,7 @@ impl Batch {
         let mut start = 0;
         let one = |(place, end): &(Place, usize)| {
             let line = &self.lines[std::mem::replace(&mut start, *end)..*end];
-            let finished = finished_of(line, experiment, None);
+            let finished = finished_in(line, experiment);
             let finished = finished.map_err(|reason| Failure::storage(format!("the journal: {reason}")))?;
             if finished.place() == *place {
                 Ok(finished)

@@ -5,16 +5,16 @@ use std::io::ErrorKind;
 use std::path::Path;
 
 use rne_core::Registry;
+use store::Failure;
+use store::files::{self, FileHash, NewFile, file_hash, sync_folder};
 use usar_sim::scenario::Scenario;
 
 use super::dictionary::dictionary;
 use super::names::{AGAIN, GIVEN, INPUTS, MANIFEST, RESOLVED, sweeps_in};
 use super::tables::tables_of;
-use super::{archive, journal, ours};
+use super::{journal, ours};
 use crate::experiment::{AnalysisPlan, Experiment, Parts, Shard};
-use crate::failure::Failure;
-use crate::files::{self, FileHash, NewFile, file_hash, sync_folder};
-use crate::provenance::{Manifest, ManifestError, SCHEMA_VERSION, scenario_differences};
+use crate::provenance::{Manifest, ManifestError, scenario_differences};
 
 /// Writes the manifest and the inputs of a sweep.
 pub(super) fn write_start(
@@ -47,7 +47,7 @@ pub(super) fn inputs(experiment: &Experiment) -> Result<[(&'static str, String);
 /// The names of the files that a manifest lists.
 fn listed(manifest: &Manifest) -> Vec<&'static str> {
     let tables = tables_of(manifest.keep, manifest.shard).iter().copied();
-    let made = tables.chain([archive::FILE]).filter(|_| manifest.is_complete);
+    let made = tables.chain([journal::ARCHIVE]).filter(|_| manifest.is_complete);
     INPUTS.into_iter().chain(made).collect()
 }
 
@@ -58,7 +58,7 @@ pub(super) fn write_manifest(path: &Path, manifest: &Manifest) -> Result<(), Fai
 
 /// Whether a sweep has begun in a folder: it has inputs or trials.
 pub(super) fn has_begun(path: &Path) -> bool {
-    [RESOLVED, journal::FILE, archive::FILE].iter().any(|name| path.join(name).exists())
+    [RESOLVED, journal::FILE, journal::ARCHIVE].iter().any(|name| path.join(name).exists())
 }
 
 pub(super) fn read_manifest(path: &Path) -> Result<Option<Manifest>, Failure> {
@@ -70,8 +70,7 @@ pub(super) fn read_manifest(path: &Path) -> Result<Option<Manifest>, Failure> {
     };
     let sound = Manifest::parse(&text).and_then(|manifest| {
         let is_listed = manifest.files.iter().map(|file| file.name.as_str()).eq(listed(&manifest));
-        let is_ours = is_listed || manifest.schema_version != SCHEMA_VERSION;
-        if is_ours { Ok(manifest) } else { Err(ManifestError::OtherFiles) }
+        if is_listed { Ok(manifest) } else { Err(ManifestError::OtherFiles) }
     });
     sound.map(Some).map_err(|reason| {
         let name = name.display();
@@ -82,7 +81,7 @@ pub(super) fn read_manifest(path: &Path) -> Result<Option<Manifest>, Failure> {
 /// The manifest of a folder that this program can read.
 ///
 /// # Errors
-/// The folder does not hold a sweep, or another version made it.
+/// The folder does not hold a sweep, or another version of the program made it.
 pub fn manifest_in(path: &Path) -> Result<Manifest, Failure> {
     let not_one = |reason: &dyn std::fmt::Display| {
         Failure::input(format!("{}: is not the folder of a sweep: {reason}", path.display()))
@@ -97,12 +96,7 @@ pub fn manifest_in(path: &Path) -> Result<Manifest, Failure> {
             not_one(&format!("these in it are: {}", names.join(", ")))
         }
     };
-    let manifest = read_manifest(path)?.ok_or_else(missing)?;
-    if manifest.is_readable() {
-        return Ok(manifest);
-    }
-    let (found, now) = (manifest.schema_version, SCHEMA_VERSION);
-    Err(not_one(&format!("its layout has version {found}; this program reads version {now}")))
+    read_manifest(path)?.ok_or_else(missing)
 }
 
 /// The resolved scenario of a folder, as text.

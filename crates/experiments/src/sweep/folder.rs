@@ -8,28 +8,30 @@
 mod tests;
 mod writing;
 
+use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use rne_core::Registry;
 
-use super::archive;
-use super::damages::Damages;
+use store::{Failure, at};
+
+use store::files::{self, check_is_file};
+use store::lock::Lock;
+use store::owned::check_is_owned;
+
 use super::disk::{
     broken_files, check_continues, experiment_of, has_begun, manifest_in, read_manifest, write_start,
 };
-use super::journal::{self, Damage, Journal};
+use super::journal::{self, ARCHIVE, Journal};
 use super::line::{Finished, Kept};
-use super::lock::Lock;
 use super::measured::{Results, read_results};
-use super::names::MANIFEST;
-use super::ours::{check_is_ours, check_may_be_cleared, clear, remove_unfinished};
+use super::names::is_sweeps;
+use super::ours::{check_may_be_cleared, clear, remove_unfinished};
 use super::store::{Order, Store, thaw};
 use super::tables::TRIALS;
 use crate::experiment::{Experiment, Place, Shard};
-use crate::failure::Failure;
-use crate::files::{self, check_is_file};
 use crate::provenance::Manifest;
 use crate::run::{Outcome, TrialKey};
 
@@ -43,7 +45,7 @@ pub struct Folder {
     store: Store,
     results: Results,
     /// Held until the folder is dropped.
-    lock: Option<Lock>,
+    lock: Option<Arc<Lock>>,
 }
 
 /// How to open a folder for writing.
@@ -66,20 +68,20 @@ impl Folder {
         opening: Opening,
         say: &mut dyn FnMut(String),
     ) -> Result<Self, Failure> {
-        check_is_ours(path)?;
+        check_is_owned(path, "sweep", is_sweeps(path))?;
         let trouble = |error| Failure::storage(format!("cannot write to {}: {error}", path.display()));
         fs::create_dir_all(path).map_err(trouble)?;
         path.parent().map_or(Ok(()), files::sync_folder)?;
-        let lock = Lock::take(path, say)?;
+        let lock = Some(Arc::new(Lock::of_folder(path, say)?));
         if opening.is_fresh {
             check_may_be_cleared(path)?;
             clear(path).map_err(trouble)?;
         }
         remove_unfinished(path).map_err(trouble)?;
         let manifest = Manifest::new(&experiment, opening.shard, Vec::new());
-        for name in [journal::FILE, archive::FILE] {
+        for name in [journal::FILE, ARCHIVE] {
             let file = path.join(name);
-            check_is_file(&file).map_err(|error| Failure::storage(format!("{}: {error}", file.display())))?;
+            check_is_file(&file).map_err(at(&file))?;
         }
         if let Some(done) = Self::is_done(path, &manifest, &experiment, say)?
             && let Ok((store, results)) = Self::closed(path, &experiment, opening.shard)
@@ -87,21 +89,17 @@ impl Folder {
         {
             files::remove(&path.join(journal::FILE)).map_err(trouble)?;
             let path = path.to_owned();
-            return Ok(Self { path, experiment, manifest: done, store, results, lock: Some(lock) });
+            return Ok(Self { path, experiment, manifest: done, store, results, lock });
         }
-        let changed = Self::policies_changed(path, &manifest, &experiment)?;
         // The manifest and the inputs are on disk before the journal.
         let manifest = write_start(path, &experiment, opening.shard)?;
-        thaw(path)?;
-        for (policy, trials) in journal::without(path, &changed)? {
-            say(format!(
-                "{}: policy {policy} has changed since; its trials are run again: {trials}",
-                path.display()
-            ));
+        thaw(path, &experiment)?;
+        let (folder, outdated) = Self::with_journal(path, experiment, manifest, lock)?;
+        for (policy, trials) in outdated {
+            let (path, policy) = (path.display(), &folder.experiment.policies[policy].label);
+            say(format!("{path}: policy {policy} has changed since; its trials are run again: {trials}"));
         }
-        let mut say = |damage: String| say(damage + "; what it held is run again");
-        let folder = Self::with_journal(path, experiment, manifest, true, &mut say)?;
-        Ok(Self { lock: Some(lock), ..folder })
+        Ok(folder)
     }
 
     /// The manifest of a folder that holds this very sweep, finished and sound.
@@ -114,13 +112,7 @@ impl Folder {
         if !has_begun(path) {
             return Ok(None);
         }
-        let unknown = || {
-            Failure::storage(format!(
-                "{}: has a journal but no {MANIFEST}, so what it is of is not known; --fresh starts over",
-                path.display()
-            ))
-        };
-        let there = read_manifest(path)?.ok_or_else(unknown)?;
+        let Some(there) = read_manifest(path)? else { return Ok(None) };
         check_continues(path, &there, manifest, &experiment.base.resolved())?;
         let broken = broken_files(path, &there);
         for name in &broken {
@@ -131,18 +123,6 @@ impl Folder {
         Ok((is_same && broken.is_empty()).then_some(there))
     }
 
-    /// The labels of the policies whose sources have changed since the folder was written.
-    fn policies_changed(
-        path: &Path,
-        manifest: &Manifest,
-        experiment: &Experiment,
-    ) -> Result<Vec<String>, Failure> {
-        let Some(there) = read_manifest(path)? else { return Ok(Vec::new()) };
-        let changed = there.policies_changed(manifest);
-        let specs = experiment.policies.iter().filter(|spec| changed.contains(&spec.written()));
-        Ok(specs.map(|spec| spec.label.clone()).collect())
-    }
-
     /// The trials and results of a sweep or shard that is finished and sound.
     fn closed(
         path: &Path,
@@ -150,7 +130,7 @@ impl Folder {
         shard: Option<Shard>,
     ) -> Result<(Store, Results), Failure> {
         let store = Store::archive(path, Order::of(experiment, shard))
-            .map_err(|error| Failure::input(format!("{}: {error}", path.join(archive::FILE).display())))?;
+            .map_err(|error| Failure::input(format!("{}: {error}", path.join(ARCHIVE).display())))?;
         let table = path.join(TRIALS);
         let results = read_results(&table, experiment, shard)
             .map_err(|error| Failure::input(format!("{}: {error}", table.display())))?;
@@ -175,17 +155,17 @@ impl Folder {
         let experiment = Arc::new(experiment_of(path, &manifest, registry)?);
         let broken = broken_files(path, &manifest);
         let mut damages = Vec::new();
-        let is_archived = manifest.files.iter().any(|file| file.name == archive::FILE);
+        let is_archived = manifest.files.iter().any(|file| file.name == ARCHIVE);
         if is_archived && broken.is_empty() {
             let (store, results) = Self::closed(path, &experiment, manifest.shard)?;
             let path = path.to_owned();
             return Ok((Self { path, experiment, manifest, store, results, lock: None }, damages));
         }
-        let mut say = |damage| damages.push(damage);
         let folder = if is_archived || !path.join(journal::FILE).exists() {
-            Self::salvaged(path, experiment, manifest, &mut say)?
+            let (store, results) = Store::salvage(path, &experiment, &mut |damage| damages.push(damage))?;
+            Self { path: path.to_owned(), experiment, manifest, store, results, lock: None }
         } else {
-            Self::with_journal(path, experiment, manifest, false, &mut say)?
+            Self::with_journal(path, experiment, manifest, None)?.0
         };
         if !broken.is_empty() {
             damages.push(format!(
@@ -203,39 +183,21 @@ impl Folder {
         (self.store, self.results.into_keys().collect())
     }
 
-    /// Reads what is readable of a finished sweep whose files were changed.
-    fn salvaged(
-        path: &Path,
-        experiment: Arc<Experiment>,
-        manifest: Manifest,
-        say: &mut dyn FnMut(String),
-    ) -> Result<Self, Failure> {
-        let mut damages = Damages::new(path, say);
-        let mut note = |damage| damages.say(damage);
-        let (store, results) = Store::salvage(path, &experiment, manifest.shard, &mut note)?;
-        damages.finish();
-        Ok(Self { path: path.to_owned(), experiment, manifest, store, results, lock: None })
-    }
-
+    /// A folder with its journal; with a lock, trials can be added. Returns also the numbers of trials that
+    /// are outdated, by policy.
     fn with_journal(
         path: &Path,
         experiment: Arc<Experiment>,
         manifest: Manifest,
-        is_writable: bool,
-        say: &mut dyn FnMut(String),
-    ) -> Result<Self, Failure> {
+        lock: Option<Arc<Lock>>,
+    ) -> Result<(Self, BTreeMap<usize, usize>), Failure> {
         let mut results = Results::new();
-        let (journal, damages) = Journal::open(path, &experiment, manifest.shard, is_writable, |finished| {
+        let journal = Journal::open(path, &experiment, manifest.shard, lock.clone(), |finished| {
             results.insert(finished.place(), Measured::of_finished(&finished, &experiment));
         })?;
-        // A running sweep may be writing its last line.
-        let may_write = !is_writable && !manifest.is_complete;
-        let said = damages.into_iter().filter(|damage: &Damage| !(may_write && damage.is_cut_off));
-        let mut damages = Damages::new(path, say);
-        said.for_each(|damage| damages.say(damage.what));
-        damages.finish();
+        let outdated = journal.outdated();
         let (path, store) = (path.to_owned(), Store::Journal(journal));
-        Ok(Self { path, experiment, manifest, store, results, lock: None })
+        Ok((Self { path, experiment, manifest, store, results, lock }, outdated))
     }
 
     /// Path of the folder.

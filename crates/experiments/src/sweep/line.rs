@@ -1,20 +1,14 @@
-//! A finished trial as a line of JSON with its checksum.
+//! A finished trial as a line of the journal.
 
 use rne_core::Account;
 use serde::{Deserialize, Serialize};
+use store::Failure;
 use thiserror::Error;
-use xxhash_rust::xxh3::xxh3_64;
 
 use super::links;
 use super::summary::{Summary, SummaryError};
 use crate::experiment::{Experiment, Keep, Place, Shard};
-use crate::failure::Failure;
 use crate::run::{Fault, Outcome, Trial, TrialKey};
-
-/// Start of a line, before 16 hexadecimal digits.
-pub(super) const HEAD: &str = "{\"xxh3_64\":\"";
-/// Text between the digits and the trial.
-const MIDDLE: &str = "\",\"trial\":";
 
 #[derive(Serialize, Deserialize)]
 struct Entry {
@@ -52,14 +46,14 @@ pub(super) enum Kept {
 /// What is wrong with a line.
 #[derive(Debug, Error)]
 pub(super) enum LineError {
-    #[error("the checksum does not match: the line was changed or cut")]
+    #[error("the checksum does not match: the line was changed")]
     Changed,
     #[error("is no trial: {0}")]
     NoTrial(#[from] serde_json::Error),
     #[error("{trial} is not of this sweep")]
     OtherSweep { trial: String },
-    #[error("{trial} is of another scenario, option or program")]
-    OtherProgram { trial: String },
+    #[error("is a trial of other sources of its policy")]
+    OtherProgram { place: Place },
     #[error("{trial} {error}")]
     Summary { trial: String, error: SummaryError },
     #[error("has no hash chain")]
@@ -120,18 +114,21 @@ pub(super) fn line_of(experiment: &Experiment, keep: Keep, outcome: &Outcome) ->
         seed: key.seed,
         outcome,
     };
-    let entry = serde_json::to_string(&entry).map_err(Failure::run)?;
-    Ok(format!("{HEAD}{:016x}{MIDDLE}{entry}}}\n", xxh3_64(entry.as_bytes())).into_bytes())
+    store::checked(&entry)
 }
 
-/// The trial of a line, if it belongs to the sweep or to a shard of it; otherwise what is wrong with the
-/// line.
+/// The trial of a line; otherwise what is wrong with the line.
+pub(super) fn finished_in(line: &[u8], experiment: &Experiment) -> Result<Finished, LineError> {
+    finished_of(store::entry_of(line).ok_or(LineError::Changed)?, experiment, None)
+}
+
+/// The trial of an entry, if it belongs to the sweep or to a shard of it; otherwise what is wrong with it.
 pub(super) fn finished_of(
-    line: &[u8],
+    entry: &[u8],
     experiment: &Experiment,
     shard: Option<Shard>,
 ) -> Result<Finished, LineError> {
-    let entry: Entry = serde_json::from_slice(sound(line).ok_or(LineError::Changed)?)?;
+    let entry: Entry = serde_json::from_slice(entry)?;
     let policy = experiment.policies.iter().position(|policy| policy.label == entry.policy);
     let trial = format!("trial {} of {} (seed {})", entry.trial, entry.policy, entry.seed);
     let policy =
@@ -140,7 +137,7 @@ pub(super) fn finished_of(
     let key =
         TrialKey { case: entry.case, policy, trial: entry.trial, seed: entry.seed, label: entry.policy };
     if experiment.id(&key) != entry.id {
-        return Err(LineError::OtherProgram { trial });
+        return Err(LineError::OtherProgram { place: (key.case, key.policy, key.trial) });
     }
     let result = match entry.outcome {
         Stored::Fault(fault) => Err(fault),
@@ -154,22 +151,4 @@ pub(super) fn finished_of(
         }
     };
     Ok(Finished { key, result })
-}
-
-/// The label of a line's policy, if the line's checksum matches.
-pub(super) fn policy_of(line: &[u8]) -> Option<String> {
-    #[derive(Deserialize)]
-    struct Head {
-        policy: String,
-    }
-    serde_json::from_slice(sound(line)?).ok().map(|Head { policy }| policy)
-}
-
-/// The trial in a line whose checksum matches.
-fn sound(line: &[u8]) -> Option<&[u8]> {
-    let rest = line.strip_prefix(HEAD.as_bytes())?;
-    let (digits, rest) = rest.split_at_checked(16)?;
-    let entry = rest.strip_prefix(MIDDLE.as_bytes())?.strip_suffix(b"}\n")?;
-    let digits = std::str::from_utf8(digits).ok()?;
-    (u64::from_str_radix(digits, 16).ok()? == xxh3_64(entry)).then_some(entry)
 }

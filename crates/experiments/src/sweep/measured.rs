@@ -4,13 +4,13 @@ use std::collections::BTreeMap;
 use std::io;
 use std::path::Path;
 
+use store::files;
 use thiserror::Error;
 
 use super::line::Finished;
 use super::rows::{FIRST_METRIC, trial_columns};
 use super::summary::{Summary, status_of};
 use crate::experiment::{Experiment, Place, Shard};
-use crate::files;
 use crate::metric::{Catalogue, Values};
 use crate::run::{Fault, FaultKind, Outcome, TrialKey};
 

@@ -5,14 +5,14 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use rne_core::Registry;
+use store::Failure;
 
-use super::archive;
 use super::disk::{broken_files, experiment_of, manifest_in, resolved_in};
 use super::folder::{Folder, Opening};
 use super::host::Hosts;
+use super::journal::ARCHIVE;
 use super::store::{Order, Store};
 use crate::experiment::{Experiment, Place, PolicySpec, Program, Shard};
-use crate::failure::Failure;
 use crate::provenance::{Manifest, scenario_differences};
 use crate::run::TrialKey;
 
@@ -157,9 +157,8 @@ impl Part {
         let is_finished = manifest.is_complete && broken_files(path, &manifest).is_empty();
         if is_finished {
             let order = Order::of(experiment, manifest.shard);
-            let store = Store::archive(path, order).map_err(|reason| {
-                Failure::input(format!("{}: {reason}", path.join(archive::FILE).display()))
-            })?;
+            let store = Store::archive(path, order)
+                .map_err(|reason| Failure::input(format!("{}: {reason}", path.join(ARCHIVE).display())))?;
             return Ok(Self { path: path.to_owned(), manifest, store, places: None });
         }
         let (store, places) = Folder::read(path, &experiment.registry)?.into_store();

@@ -3,9 +3,10 @@
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
+use store::Failure;
+
 use super::folder::Folder;
 use crate::experiment::{Place, Shard};
-use crate::failure::Failure;
 use crate::run::{Limits, Outcome, Run, run_batches};
 
 /// Number of seeds whose trials are run together.

@@ -1,10 +1,8 @@
 //! Storage of a sweep's results: its folder, its journal, and the tables made from it.
 
-mod archive;
 pub mod audit;
 mod closing;
 mod column;
-mod damages;
 mod dictionary;
 pub mod disk;
 pub mod folder;
@@ -12,7 +10,6 @@ pub mod host;
 mod journal;
 mod line;
 pub mod links;
-pub mod lock;
 mod measured;
 pub mod merge;
 mod missing;

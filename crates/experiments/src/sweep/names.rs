@@ -3,9 +3,10 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use store::files;
+
 use super::dictionary::DICTIONARY;
 use super::tables::TABLES;
-use crate::files;
 
 /// What the folder holds, with the hashes of its files.
 pub(super) const MANIFEST: &str = "manifest.json";
@@ -23,8 +24,6 @@ pub const REPORT: &str = "report.html";
 pub const PLOTS: &str = "plots";
 /// The folder of recordings of trials.
 pub const RECORDINGS: &str = "recordings";
-/// Held by the process that writes to the folder.
-pub const LOCK: &str = ".lock";
 
 /// The tables as Parquet files, in the order of the tables.
 pub(super) const PARQUETS: [&str; TABLES.len()] = [
@@ -36,12 +35,11 @@ pub(super) const PARQUETS: [&str; TABLES.len()] = [
     "hashes.parquet",
 ];
 
-/// Whether a folder holds a sweep. The program that made it may be another one.
+/// Whether a folder holds a sweep. The program that made it may be another one, and the manifest damaged.
 #[must_use]
 pub fn is_sweeps(path: &Path) -> bool {
     let manifest = files::read(&path.join(MANIFEST)).unwrap_or_default();
-    let manifest: serde_json::Value = serde_json::from_slice(&manifest).unwrap_or_default();
-    manifest["program"] == "usar"
+    String::from_utf8_lossy(&manifest).contains("\"program\": \"usar\"")
 }
 
 /// The folders inside a folder that hold sweeps, by name.

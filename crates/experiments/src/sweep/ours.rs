@@ -5,13 +5,15 @@ use std::fs;
 use std::io::{Seek, Write};
 use std::path::{Path, PathBuf};
 
+use store::files::{self, NewFile};
+use store::lock::is_lock;
+use store::owned::names_in;
+use store::{Failure, at};
 use tempfile::{SpooledTempFile, spooled_tempfile_in};
 
-use super::names::{INPUTS, LOCK, MANIFEST, PARQUETS, PLOTS, RECORDINGS, REPORT, is_sweeps};
+use super::names::{INPUTS, MANIFEST, PARQUETS, PLOTS, RECORDINGS, REPORT};
 use super::tables::TABLES;
-use super::{archive, host, journal};
-use crate::failure::Failure;
-use crate::files::{self, NewFile};
+use super::{host, journal};
 
 /// The file that lists the names of the files that a report wrote, one on each line, relative to the
 /// folder.
@@ -22,49 +24,13 @@ const RECORDING: &str = ".usrec";
 
 /// The names of all files that a sweep writes.
 fn known_names() -> impl Iterator<Item = &'static str> {
-    let logs = [MANIFEST, LOCK, journal::FILE, archive::FILE, host::FILE];
+    let logs = [MANIFEST, journal::FILE, journal::ARCHIVE, host::FILE];
     logs.into_iter().chain(INPUTS).chain(TABLES).chain(PARQUETS)
 }
 
 /// Deletes the Parquet files, because they would belong to other tables.
 pub(super) fn remove_parquets(path: &Path) -> std::io::Result<()> {
     PARQUETS.iter().try_for_each(|name| files::remove(&path.join(name)))
-}
-
-/// Refuses a folder that is not a sweep's. A sweep's folder has a manifest or a journal of this program, or
-/// is empty.
-pub(super) fn check_is_ours(path: &Path) -> Result<(), Failure> {
-    if !path.exists() {
-        return Ok(());
-    }
-    if !path.is_dir() {
-        return Err(Failure::input(format!("--out: {} is a file, not a folder", path.display())));
-    }
-    if is_sweeps(path) || journal::is_one(path) || archive::is_one(path) {
-        return Ok(());
-    }
-    let is_first = |name: &String| is_lock(name) || name == &format!("{MANIFEST}.new");
-    if names_in(path)?.iter().all(is_first) {
-        return Ok(());
-    }
-    Err(Failure::input(format!(
-        "--out: {} is not empty and not the folder of a sweep; nothing was overwritten",
-        path.display()
-    )))
-}
-
-/// Whether a file is a lock, or a temporary file of a process that examined a lock.
-fn is_lock(name: &str) -> bool {
-    name.strip_prefix(LOCK).is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
-}
-
-fn names_in(path: &Path) -> Result<Vec<String>, Failure> {
-    let unreadable = |error| Failure::storage(format!("--out: {} cannot be read: {error}", path.display()));
-    let entries = fs::read_dir(path).map_err(unreadable)?;
-    let mut names: Vec<String> =
-        entries.flatten().map(|entry| entry.file_name().to_string_lossy().into_owned()).collect();
-    names.sort();
-    Ok(names)
 }
 
 /// Refuses to start over in a folder with files that neither a sweep nor a report has written.
@@ -169,8 +135,7 @@ impl Report {
         NewFile::write(path, REPORTED, (names.join("\n") + "\n").as_bytes())?;
         for (name, content) in &mut self.files {
             let mut file = NewFile::new(&self.folder, name)?;
-            std::io::copy(content, &mut file)
-                .map_err(|error| files::trouble(&self.folder.join(&*name), &error))?;
+            std::io::copy(content, &mut file).map_err(at(&self.folder.join(&*name)))?;
             file.finish()?;
         }
         Ok(())
@@ -224,17 +189,12 @@ fn files_in(folder: &Path) -> Vec<String> {
 
 /// Deletes the incomplete files of a killed process.
 pub(super) fn remove_unfinished(path: &Path) -> std::io::Result<()> {
-    known_names()
-        .filter(|name| *name != LOCK)
-        .try_for_each(|name| files::remove(&path.join(format!("{name}.new"))))
+    known_names().try_for_each(|name| files::remove(&path.join(format!("{name}.new"))))
 }
 
 /// Deletes the files that a sweep wrote.
 pub(super) fn clear(path: &Path) -> std::io::Result<()> {
     remove_report(path)?;
     remove_recordings(path)?;
-    for name in known_names().filter(|name| *name != LOCK) {
-        files::remove(&path.join(name))?;
-    }
-    Ok(())
+    known_names().try_for_each(|name| files::remove(&path.join(name)))
 }

@@ -5,6 +5,8 @@ use std::path::Path;
 
 use exports::ExportError;
 use exports::parquet::{Kind, from_csv};
+use store::Failure;
+use store::files::{self, NewFile, file_hash};
 
 use super::column::About;
 use super::folder::Folder;
@@ -12,8 +14,6 @@ use super::names::PARQUETS;
 use super::rows;
 use super::tables::{TABLES, all_columns};
 use crate::experiment::Experiment;
-use crate::failure::Failure;
-use crate::files::{self, NewFile, file_hash};
 
 /// Writes the tables of a finished sweep as Parquet.
 ///

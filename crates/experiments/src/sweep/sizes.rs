@@ -3,10 +3,11 @@
 use std::collections::BTreeMap;
 use std::sync::atomic::AtomicBool;
 
+use store::Failure;
+
 use super::closing::Closing;
 use super::line::line_of;
 use crate::experiment::{Experiment, Keep, Place, Shard};
-use crate::failure::Failure;
 use crate::run::Outcome;
 
 /// Bytes on disk.

@@ -2,17 +2,17 @@
 //! finished.
 
 use std::collections::BTreeMap;
-use std::fs::File;
-use std::io::{self, BufWriter, Write};
-use std::path::{Path, PathBuf};
+use std::io;
+use std::path::Path;
 
-use super::archive::{self, Archive};
-use super::journal::{self, Journal};
-use super::line::{Finished, LineError, finished_of};
+use store::archive::Archive;
+use store::files::{self, NewFile};
+use store::{Failure, at};
+
+use super::journal::{self, ARCHIVE, Journal};
+use super::line::{Finished, LineError, finished_in};
 use super::measured::{Measured, Results};
 use crate::experiment::{Experiment, Place, Shard};
-use crate::failure::Failure;
-use crate::files;
 
 /// The trials of a folder.
 pub(super) enum Store {
@@ -37,7 +37,7 @@ impl Store {
         };
         let no_such = || io::Error::new(io::ErrorKind::NotFound, "it has no such trial");
         let line = number.ok_or_else(no_such).and_then(|number| archive.line(number).map(<[u8]>::to_vec));
-        line.map_err(|error| Failure::storage(format!("{}: {error}", archive::FILE)))
+        line.map_err(|error| Failure::storage(format!("{ARCHIVE}: {error}")))
     }
 
     /// A finished trial.
@@ -50,14 +50,14 @@ impl Store {
             found if found == place => Ok(finished),
             _ => Err(LineError::OtherPlace),
         };
-        finished_of(&line, experiment, None)
+        finished_in(&line, experiment)
             .and_then(in_its_place)
             .map_err(|reason| Failure::storage(format!("{}: {reason}", self.name())))
     }
 
     /// Name of the file with the trials.
     pub(super) fn name(&self) -> &'static str {
-        if let Self::Journal(_) = self { journal::FILE } else { archive::FILE }
+        if let Self::Journal(_) = self { journal::FILE } else { ARCHIVE }
     }
 
     /// The archive of a folder that has all trials.
@@ -65,7 +65,7 @@ impl Store {
     /// # Errors
     /// The archive cannot be read, or has another number of lines.
     pub(super) fn archive(folder: &Path, order: Order) -> io::Result<Self> {
-        let archive = Archive::open(folder)?;
+        let archive = Archive::open(&folder.join(ARCHIVE))?;
         if archive.count() != order.count() {
             let reason = format!("has {} trials of {}", archive.count(), order.count());
             return Err(io::Error::new(io::ErrorKind::InvalidData, reason));
@@ -81,17 +81,15 @@ impl Store {
     pub(super) fn salvage(
         folder: &Path,
         experiment: &Experiment,
-        shard: Option<Shard>,
         say: &mut dyn FnMut(String),
     ) -> Result<(Self, Results), Failure> {
-        let path = folder.join(archive::FILE);
-        let trouble = |error: io::Error| Failure::storage(format!("{}: {error}", path.display()));
-        let (archive, is_whole) = Archive::open_damaged(folder).map_err(trouble)?;
+        let path = folder.join(ARCHIVE);
+        let (archive, is_whole) = Archive::open_damaged(&path).map_err(at(&path))?;
         let (mut numbers, mut results) = (BTreeMap::new(), Results::new());
         for member in archive.salvage() {
-            let (first, lines, whole) = member.map_err(trouble)?;
+            let (first, lines, whole) = member.map_err(at(&path))?;
             for (number, line) in (first..).zip(lines.split_inclusive(|byte| *byte == b'\n')) {
-                match finished_of(line, experiment, shard) {
+                match finished_in(line, experiment) {
                     Ok(finished) => {
                         results.insert(finished.place(), Measured::of_finished(&finished, experiment));
                         numbers.insert(finished.place(), number);
@@ -111,30 +109,26 @@ impl Store {
 }
 
 /// Restores the journal of a folder from its archive if there is no journal, so that trials can be added.
-/// Unreadable parts of the archive are not in the journal.
+/// Unreadable and changed lines of the archive are not in the journal.
 ///
 /// # Errors
 /// The disk does not take it.
-pub(super) fn thaw(folder: &Path) -> Result<(), Failure> {
-    let [journal, pressed] = [journal::FILE, archive::FILE].map(|name| folder.join(name));
-    let trouble = |path: &PathBuf| {
-        let path = path.display().to_string();
-        move |error: io::Error| Failure::storage(format!("{path}: {error}"))
-    };
-    files::check_is_file(&pressed).map_err(trouble(&pressed))?;
+pub(super) fn thaw(folder: &Path, experiment: &Experiment) -> Result<(), Failure> {
+    let [journal, pressed] = [journal::FILE, ARCHIVE].map(|name| folder.join(name));
+    files::check_is_file(&pressed).map_err(at(&pressed))?;
     if journal.symlink_metadata().is_err() && pressed.exists() {
-        let new = folder.join(format!("{}.new", journal::FILE));
-        let mut file = BufWriter::new(files::create(&new).map_err(trouble(&new))?);
-        let (archive, _) = Archive::open_damaged(folder).map_err(trouble(&pressed))?;
+        let mut file = NewFile::new(folder, journal::FILE)?;
+        file.append(&journal::header(experiment).line())?;
+        let (archive, _) = Archive::open_damaged(&pressed).map_err(at(&pressed))?;
         for member in archive.salvage() {
-            let (_, lines, _) = member.map_err(trouble(&pressed))?;
-            file.write_all(&lines).map_err(trouble(&new))?;
+            let (_, lines, _) = member.map_err(at(&pressed))?;
+            let lines = lines.split_inclusive(|byte| *byte == b'\n');
+            lines.filter(|line| store::entry_of(line).is_some()).try_for_each(|line| file.append(line))?;
         }
-        let file: File = file.into_inner().map_err(|error| trouble(&new)(error.into_error()))?;
-        file.sync_all().and_then(|()| std::fs::rename(&new, &journal)).map_err(trouble(&new))?;
+        file.finish()?;
         files::sync_folder(folder)?;
     }
-    files::remove(&pressed).map_err(trouble(&pressed))
+    files::remove(&pressed).map_err(at(&pressed))
 }
 
 /// The order of a folder's trials, computed without a list of them.

@@ -1,20 +1,17 @@
 //! A table of a sweep's folder. Each row begins with the values of the sweep's axes. Rows are made in
 //! memory, so that threads can make them, and written to the file in order.
 
-use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::Path;
+
+use store::Failure;
+use store::files::{FileHash, NewFile};
 
 use super::column::{About, Cell, Column};
 use super::rows;
 use crate::experiment::Experiment;
-use crate::failure::Failure;
-use crate::files::{FileHash, NewFile, trouble};
 
 /// A table that is being written.
-pub(super) struct Table {
-    file: NewFile,
-    path: PathBuf,
-}
+pub(super) struct Table(NewFile);
 
 impl Table {
     /// Begins a table with these columns after those of the axes.
@@ -30,7 +27,7 @@ impl Table {
         let mut header = Rows::new();
         let columns = rows::before(&experiment.axes).into_iter().chain(columns);
         header.write(columns.map(|about| about.name))?;
-        let mut table = Self { file: NewFile::new(folder, name)?, path: folder.join(name) };
+        let mut table = Self(NewFile::new(folder, name)?);
         table.append(header)?;
         Ok(table)
     }
@@ -40,8 +37,7 @@ impl Table {
     /// # Errors
     /// The disk does not take them.
     pub(super) fn append(&mut self, rows: Rows) -> Result<(), Failure> {
-        let bytes = rows.0.into_inner().map_err(Failure::run)?;
-        self.file.write_all(&bytes).map_err(|error| trouble(&self.path, &error))
+        self.0.append(&rows.0.into_inner().map_err(Failure::run)?)
     }
 
     /// Completes the table and gives its file its name.
@@ -49,7 +45,7 @@ impl Table {
     /// # Errors
     /// The disk does not take it.
     pub(super) fn finish(self) -> Result<FileHash, Failure> {
-        self.file.finish()
+        self.0.finish()
     }
 }
 

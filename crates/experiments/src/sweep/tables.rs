@@ -2,14 +2,15 @@
 
 use std::path::Path;
 
+use store::Failure;
+use store::files::FileHash;
+
 use super::column::{About, abouts};
 use super::line::Finished;
 use super::links;
 use super::rows::{self, TrialRow};
 use super::table::{Rows, Table, before};
 use crate::experiment::{Experiment, Keep, Shard};
-use crate::failure::Failure;
-use crate::files::FileHash;
 
 /// The table that every folder has.
 pub(super) const TRIALS: &str = "trials.csv";

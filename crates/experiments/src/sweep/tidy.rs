@@ -2,10 +2,11 @@
 //! task and metric of its value, so that tools for data frames can filter, pivot and plot without the other
 //! tables.
 
+use store::Failure;
+
 use super::folder::Folder;
 use super::rows;
 use crate::experiment::Place;
-use crate::failure::Failure;
 use crate::metric::Values;
 use crate::run::Outcome;
 

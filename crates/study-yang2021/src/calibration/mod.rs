@@ -25,6 +25,7 @@ use experiments::{Failure, panic_message};
 use rayon::prelude::*;
 use rne_core::Registry;
 use ron_tree::{Node, Problem, edited};
+use serde::{Deserialize, Serialize};
 use usar_sim::scenario::Scenario;
 
 pub use choice::{Candidate, Judged, NOT_TOLD_APART, judge};
@@ -68,7 +69,7 @@ pub struct Calibration {
 }
 
 /// One candidate and its evaluation.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Evaluation {
     /// A value for each free parameter.
     pub values: Vec<f64>,

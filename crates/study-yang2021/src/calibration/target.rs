@@ -7,6 +7,7 @@ use experiments::input_table::InputTable;
 use experiments::metric::{Catalogue, Metric, task_names};
 use experiments::stats::Moments;
 use experiments::sweep::trial_columns;
+use serde::{Deserialize, Serialize};
 use usar_sim::record::TrialRecord;
 use usar_sim::scenario::Scenario;
 
@@ -34,7 +35,7 @@ impl Quantity {
 }
 
 /// Mean and sample standard deviation of one quantity.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Spread {
     /// Mean.
     pub mean: f64,

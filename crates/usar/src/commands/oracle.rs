@@ -207,8 +207,7 @@ impl Batch<'_> {
             let played = chunk.iter().map(|assignment| self.play_one(assignment, onwards.as_mut()));
             let played = played.collect::<Result<Vec<_>, Failure>>()?;
             let mut log = log.lock().map_err(|_| Failure::run("a thread panicked"))?;
-            let mut pairs = chunk.iter().zip(&played);
-            pairs.try_for_each(|(assignment, outcome)| log.add(self.then, assignment, outcome))
+            log.add(self.then, chunk, &played)
         })?;
         let log = log.into_inner().map_err(|_| Failure::run("a thread panicked"))?;
         let outcome = |assignment| log.get(self.then, assignment).cloned();

@@ -33,7 +33,7 @@ flattered by chance: so what was found is run again with seeds that no candidate
 that is a result.
 
 Each candidate is on disk as soon as it is done; the same command resumes where it stopped, and more \
---evaluations go on from there. The folder gets evaluations.csv (the log), search.json, found.ron, and the \
+--evaluations go on from there. The folder gets evaluations.jsonl (the log), search.json, found.ron, and the \
 sweep that confirms it, confirmation/, which `usar report` shows.
 
 Examples:

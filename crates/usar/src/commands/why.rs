@@ -203,7 +203,7 @@ impl Arguments {
         chosen: &Assignment,
     ) -> Result<Vec<OracleSays>, Failure> {
         let key = decision_key(asked, question.round, &[])?;
-        let Some(log) = OutcomeLog::find(&self.cache, &key) else { return Ok(Vec::new()) };
+        let log = OutcomeLog::find(&self.cache, &key)?;
         let tasks = asked.tasks();
         let mut said = Vec::new();
         for then in log.horizons() {

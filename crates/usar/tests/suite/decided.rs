@@ -63,7 +63,7 @@ fn an_oracle_that_was_broken_off_goes_on_and_says_the_same() {
     let first = json(here, "oracle", &["--then", "RNE,DIS", "--quiet"]);
     let cache = std::fs::read_dir(here.join("results/oracle")).unwrap().next().unwrap().unwrap().path();
     let lines = std::fs::read_to_string(&cache).unwrap();
-    assert_eq!(lines.lines().count(), 16);
+    assert_eq!(lines.lines().count(), 1 + 16);
     std::fs::write(&cache, &lines[..lines.len() / 3]).unwrap();
     assert_eq!(json(here, "oracle", &["--then", "RNE,DIS", "--quiet"]), first);
     let sorted = |text: &str| {
@@ -72,6 +72,42 @@ fn an_oracle_that_was_broken_off_goes_on_and_says_the_same() {
         lines
     };
     assert_eq!(sorted(&std::fs::read_to_string(&cache).unwrap()), sorted(&lines));
+}
+
+#[test]
+fn a_forged_digit_in_the_oracles_log_is_refused_and_nobody_else_cuts_it() {
+    let folder = place();
+    let here = folder.path();
+    json(here, "oracle", &["--quiet"]);
+    let cache = std::fs::read_dir(here.join("results/oracle")).unwrap().next().unwrap().unwrap().path();
+    let text = std::fs::read_to_string(&cache).unwrap();
+    let number = text.lines().count();
+    let at = text.rfind("\"rescued\":").unwrap() + "\"rescued\":".len();
+    let digit = if &text[at..=at] == "9" { "8" } else { "9" };
+    std::fs::write(&cache, format!("{}{digit}{}", &text[..at], &text[at + 1..])).unwrap();
+    let line = format!(".jsonl:{number}: the checksum does not match: the line was changed.");
+    refused(here, 2, &[&["oracle"], &SMALL[..], &["--quiet"]].concat(), &[&line]);
+    refused(here, 2, &[&["why"], &SMALL[..]].concat(), &[&line]);
+    // The end of a killed process is cut off by the next writer, and left alone by a reader.
+    std::fs::write(&cache, &text[..text.len() - 9]).unwrap();
+    assert_eq!(json(here, "why", &[])["oracle"], serde_json::json!([]), "an assignment is missing");
+    assert_eq!(std::fs::read_to_string(&cache).unwrap(), text[..text.len() - 9]);
+    json(here, "oracle", &["--quiet"]);
+    assert_eq!(std::fs::read_to_string(&cache).unwrap(), text);
+    assert_eq!(json(here, "why", &[])["oracle"].as_array().unwrap().len(), 2);
+}
+
+#[test]
+fn a_study_of_regret_overwrites_no_files_of_others() {
+    let folder = place();
+    let here = folder.path();
+    let results = here.join("results");
+    std::fs::create_dir_all(&results).unwrap();
+    for name in ["summary.json", "regret.csv"] {
+        std::fs::write(results.join(name), "MINE\n").unwrap();
+        let study = ["regret", "short.ron", "--trials", "1", "--rounds", "1", "--quiet", "--out", "results"];
+        refused(here, 2, &study, &["results is not empty and not the folder of a study of regret"]);
+    }
 }
 
 #[test]
@@ -208,6 +244,9 @@ fn a_study_of_regret_goes_on_and_its_tables_agree_with_each_other() {
     let dis = &told["analyses"][0]["policies"][1];
     assert_eq!(dis["policy"], "DIS");
     assert!((dis["regret"]["value"].as_f64().unwrap() - mean).abs() < 1e-9);
-    refused(here, 2, "study regret small.ron --out parts --limit 7", &["has another study"]);
+    refused(here, 2, "study regret small.ron --out parts --limit 7", &[
+        "has the study of regret of something else",
+        "limit: 1000 there, 7 now",
+    ]);
     refused(here, 2, "study regret short.ron --metric luck", &["--metric: unknown metric \"luck\""]);
 }

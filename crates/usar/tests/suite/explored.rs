@@ -29,11 +29,11 @@ fn a_study_that_was_broken_off_ends_as_one_that_was_not() {
         };
         let told = run(&whole, more, "1");
         run(&parts, less, "2");
-        let log = folder.join(&parts).join("evaluations.csv");
+        let log = folder.join(&parts).join("evaluations.jsonl");
         let text = read(&log);
         std::fs::write(&log, &text[..text.len() - 5]).unwrap(); // killed while it wrote a line
         assert_eq!(run(&parts, more, "2"), told);
-        for file in ["evaluations.csv", "indices.csv", "indices.svg", "sensitivity.json"] {
+        for file in ["evaluations.jsonl", "indices.csv", "indices.svg", "sensitivity.json"] {
             assert_eq!(
                 read(&folder.join(&parts).join(file)),
                 read(&folder.join(&whole).join(file)),
@@ -67,9 +67,9 @@ fn a_search_says_what_fresh_seeds_say() {
     let told = succeeds(&search(&[]));
     assert!(told.contains("on the 1 seeds of the search (400001 to 400001)"), "{told}");
     assert!(told.contains("Run again on 3 fresh seeds (500001 to 500003)"), "{told}");
-    let log = read(&folder.join("found/evaluations.csv"));
+    let log = read(&folder.join("found/evaluations.jsonl"));
     assert_eq!(succeeds(&search(&[])), told, "what is there is not run again");
-    assert_eq!(read(&folder.join("found/evaluations.csv")), log);
+    assert_eq!(read(&folder.join("found/evaluations.jsonl")), log);
     succeeds(&usar(folder, "check found/found.ron"));
     succeeds(&usar(folder, "compare found/confirmation"));
     refused(&search(&["--confirm-seed", "400001"]), &["the seeds that confirm must be others"]);

@@ -110,6 +110,9 @@ fn a_sweep_is_verified_and_the_first_difference_is_named() {
     forged.file("trials.csv", |text| text.replacen("RNE,1,RNE,1,completed,", "RNE,1,RNE,1,completed,9", 1));
     refused(&["4 of 4 trials match", "trials.csv: is not what the trials in the journal give"]);
 
+    forged.file("experiment.ron", |_| "garbage".to_owned());
+    refused(&["4 of 4 trials match", "experiment.ron:1"]);
+
     forged.journal(|text| {
         let (first, rest) = text.split_once('\n').unwrap();
         format!("{rest}{first}\n")

@@ -78,9 +78,9 @@ fn calibrate(start: &Path, folder: &Path, combination: &Combination, more: &str)
 
 /// The least misfit in the log of a calibration.
 fn least_misfit(folder: &Path) -> f64 {
-    let log =
-        csv::Reader::from_path(folder.join("evaluations.csv")).expect("a finished calibration has a log");
-    let misfits =
-        log.into_records().map(|record| record.expect("a log is a table")[1].parse().expect("a number"));
+    let log = std::fs::read_to_string(folder.join("evaluations.jsonl"));
+    let log = log.expect("a finished calibration has a log");
+    let entry = |line| serde_json::from_str::<serde_json::Value>(line).expect("JSON")["entry"].take();
+    let misfits = log.lines().filter_map(|line| entry(line)["misfit"].as_f64());
     misfits.fold(f64::INFINITY, f64::min)
 }

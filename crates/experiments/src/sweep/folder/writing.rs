@@ -4,16 +4,16 @@ use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
+use store::files::{self, FileHash};
+use store::{Failure, at};
+
 use super::Folder;
 use crate::experiment::{Experiment, Place};
-use crate::failure::Failure;
-use crate::files::{self, FileHash};
 use crate::run::Outcome;
 use crate::sweep::closing::Closing;
 use crate::sweep::disk::{write_manifest, write_start};
 use crate::sweep::journal::{self, Journal};
 use crate::sweep::line::line_of;
-use crate::sweep::lock::Lock;
 use crate::sweep::measured::Measured;
 use crate::sweep::store::{Order, Store, thaw};
 
@@ -25,9 +25,9 @@ impl Folder {
     pub fn extend(&mut self, experiment: Arc<Experiment>) -> Result<(), Failure> {
         self.manifest = write_start(&self.path, &experiment, self.manifest.shard)?;
         if !matches!(self.store, Store::Journal(_)) {
-            thaw(&self.path)?;
+            thaw(&self.path, &experiment)?;
             let shard = self.manifest.shard;
-            let (journal, _) = Journal::open(&self.path, &experiment, shard, true, |_| {})?;
+            let journal = Journal::open(&self.path, &experiment, shard, self.lock.clone(), |_| {})?;
             self.store = Store::Journal(journal);
         }
         self.experiment = experiment;
@@ -39,7 +39,6 @@ impl Folder {
     /// # Errors
     /// The disk does not take them, or another process has taken over the folder.
     pub fn add(&mut self, outcomes: &[Outcome]) -> Result<(), Failure> {
-        self.lock.as_ref().map_or(Ok(()), Lock::check)?;
         let Store::Journal(journal) = &mut self.store else {
             return Err(Failure::run("a finished sweep takes no trials"));
         };
@@ -102,6 +101,6 @@ impl Folder {
         let order = Order::of(&self.experiment, self.manifest.shard);
         self.store = Store::archive(&self.path, order).map_err(Failure::storage)?;
         let journal = self.path.join(journal::FILE);
-        files::remove(&journal).map_err(|error| Failure::storage(format!("{}: {error}", journal.display())))
+        files::remove(&journal).map_err(at(&journal))
     }
 }

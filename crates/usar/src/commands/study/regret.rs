@@ -8,7 +8,9 @@ use experiments::Failure;
 use experiments::experiment::{Experiment, Overrides};
 use experiments::files::NewFile;
 use experiments::oracle::{DEFAULT_LIMIT, Objective};
-use experiments::regret::{Analysis, Choices, Criteria, Estimate, Study, StudyFolder, analyse};
+use experiments::regret::{
+    Analysis, Choices, Criteria, Estimate, SUMMARY, Study, StudyFolder, TABLE, analyse,
+};
 use reports::regret_figures;
 use reports::table::{headed, right};
 use rne_core::Registry;
@@ -112,7 +114,7 @@ impl Arguments {
         let study = Study::of(&experiment, &choices)?;
         self.objectives(&study.tasks)?; // a wrong name is told before the work, not after it
         let path = self.out.clone().unwrap_or_else(|| Path::new("results").join(&experiment.name));
-        let mut folder = StudyFolder::open(&path, study)?;
+        let mut folder = StudyFolder::open(&path, &study)?;
         let missing = folder.missing().len();
         if missing == 0 {
             return Ok(folder);
@@ -151,9 +153,9 @@ fn write_tables(path: &Path, analyses: &[Analysis]) -> Result<(), Failure> {
             ]);
         }
     }
-    NewFile::write(path, "regret.csv", &csv_of(rows)?)?;
+    NewFile::write(path, TABLE, &csv_of(rows)?)?;
     let summary = serde_json::to_vec_pretty(analyses).map_err(Failure::run)?;
-    NewFile::write(path, "summary.json", &summary).map(drop)
+    NewFile::write(path, SUMMARY, &summary).map(drop)
 }
 
 /// A number with three significant digits, and its interval.

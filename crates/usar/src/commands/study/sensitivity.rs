@@ -26,7 +26,7 @@ tells shares of the variance: of each parameter alone (first order) and with all
 is what other seeds alone do. Intervals are bootstraps over trajectories or samples.
 
 Each point is on disk as soon as its batch is done; the same command resumes where it stopped, and more \
---trajectories or --samples go on from there. The folder gets evaluations.csv (the log), indices.csv, \
+--trajectories or --samples go on from there. The folder gets evaluations.jsonl (the log), indices.csv, \
 indices.svg and sensitivity.json.
 
 Examples:

@@ -42,7 +42,7 @@ it is about twice the number of columns. A value near an end of its range adds u
 least squares: each distance is modelled as linear in the parameters, by a regression on the candidates near \
 the present one, and the model's minimum is tried next. Each evaluation is on disk as soon as it is done; \
 the same command resumes where it stopped, and more --evaluations go on from there. The folder gets \
-evaluations.csv (the log), calibrated.ron, fit.csv and calibration.json.
+evaluations.jsonl (the log), calibrated.ron, fit.csv and calibration.json.
 
 With --choose, the results of several calibrations run the same seeds, which none was fitted to. The one \
 with the least misfit is the choice. Then the recorded trials and the seeds are drawn anew 4,000 times: a \

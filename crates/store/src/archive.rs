@@ -1,5 +1,5 @@
-//! `journal.jsonl.gz`: the journal of a finished sweep, its lines in order. It is a gzip file of several
-//! members, so that `zcat` prints the journal. The header of each member states its length and its number
+//! The log of a finished job, its lines in order, compressed. It is a gzip file of several members, so that
+//! `zcat` prints the lines. The header of each member states its length and its number
 //! of lines. A line is therefore found without reading the lines before it.
 
 use std::fs::File;
@@ -11,13 +11,10 @@ use flate2::{Compression, GzBuilder};
 
 use crate::failure::Failure;
 use crate::files;
-use crate::limits::JOURNAL_LINE_BYTES;
-
-/// Name of the file.
-pub const FILE: &str = "journal.jsonl.gz";
+use crate::log::LINE_BYTES;
 
 /// A member is full when its lines have this many bytes.
-pub(super) const MEMBER_BYTES: usize = 256 << 10;
+pub const MEMBER_BYTES: usize = 256 << 10;
 
 /// Start of each member: a gzip header of ten bytes with an extra field, the field's length, and our
 /// subfield of eight bytes (RFC 1952).
@@ -27,26 +24,17 @@ const HEAD_BYTES: usize = HEAD.len() + 8;
 /// Compression level: level 3 takes half the time of level 6 for a tenth more bytes.
 const LEVEL: Compression = Compression::new(3);
 
-/// Whether a folder has an archive of this program.
-pub(super) fn is_one(folder: &Path) -> bool {
-    let mut head = [0; HEAD.len()];
-    let read = files::open(&folder.join(FILE)).and_then(|mut file| file.read_exact(&mut head));
-    read.is_ok() && head == HEAD
-}
-
 /// Compresses whole lines into a member of the file.
 ///
 /// # Errors
 /// The lines take more than 4 GiB.
-pub(super) fn member(lines: &[u8], count: usize) -> Result<Vec<u8>, Failure> {
-    let trouble = |error: io::Error| Failure::storage(format!("{FILE}: {error}"));
+pub fn member(lines: &[u8], count: usize) -> Result<Vec<u8>, Failure> {
     let extra = [&HEAD[12..], &[0; 8]].concat();
     let mut encoder = GzBuilder::new().extra(extra).operating_system(0xff).write(Vec::new(), LEVEL);
-    encoder.write_all(lines).map_err(trouble)?;
-    let mut bytes = encoder.finish().map_err(trouble)?;
+    encoder.write_all(lines)?;
+    let mut bytes = encoder.finish()?;
     bytes[..HEAD.len()].copy_from_slice(&HEAD);
-    let number =
-        |count: usize| u32::try_from(count).map_err(|_| Failure::storage("a trial takes over 4 GiB"));
+    let number = |count: usize| u32::try_from(count).map_err(|_| Failure::storage("a line takes over 4 GiB"));
     let numbers = [number(bytes.len())?.to_le_bytes(), number(count)?.to_le_bytes()].concat();
     bytes[HEAD.len()..HEAD_BYTES].copy_from_slice(&numbers);
     Ok(bytes)
@@ -61,8 +49,8 @@ struct Member {
     first: usize,
 }
 
-/// Reads the journal of a finished sweep.
-pub(super) struct Archive {
+/// Reads the lines.
+pub struct Archive {
     path: PathBuf,
     members: Vec<Member>,
     lines: usize,
@@ -75,8 +63,8 @@ impl Archive {
     ///
     /// # Errors
     /// The file cannot be read, or is not an archive.
-    pub(super) fn open(folder: &Path) -> io::Result<Self> {
-        let (archive, whole) = Self::open_damaged(folder)?;
+    pub fn open(path: &Path) -> io::Result<Self> {
+        let (archive, whole) = Self::open_damaged(path)?;
         if whole { Ok(archive) } else { Err(invalid("it is cut off, or was changed")) }
     }
 
@@ -85,9 +73,8 @@ impl Archive {
     ///
     /// # Errors
     /// The file cannot be read.
-    pub(super) fn open_damaged(folder: &Path) -> io::Result<(Self, bool)> {
-        let path = folder.join(FILE);
-        let mut file = files::open(&path)?;
+    pub fn open_damaged(path: &Path) -> io::Result<(Self, bool)> {
+        let mut file = files::open(path)?;
         let end = file.metadata()?.len();
         let (mut members, mut start, mut lines) = (Vec::new(), 0, 0);
         while start < end {
@@ -96,11 +83,12 @@ impl Archive {
             start += u64::from(size);
             lines += count as usize;
         }
-        Ok((Self { path, members, lines, latest: None }, start == end))
+        Ok((Self { path: path.to_owned(), members, lines, latest: None }, start == end))
     }
 
     /// Number of lines.
-    pub(super) fn count(&self) -> usize {
+    #[must_use]
+    pub fn count(&self) -> usize {
         self.lines
     }
 
@@ -108,7 +96,7 @@ impl Archive {
     ///
     /// # Errors
     /// The line cannot be read, or does not exist.
-    pub(super) fn line(&mut self, number: usize) -> io::Result<&[u8]> {
+    pub fn line(&mut self, number: usize) -> io::Result<&[u8]> {
         let place = self.members.partition_point(|member| member.first <= number).wrapping_sub(1);
         let member = *self.members.get(place).ok_or_else(|| invalid("it has no such line"))?;
         if self.latest.as_ref().is_none_or(|(latest, ..)| *latest != place) {
@@ -125,7 +113,7 @@ impl Archive {
     }
 
     /// For each member: the number of its first line, its readable lines, and the error that ended them.
-    pub(super) fn salvage(&self) -> impl Iterator<Item = io::Result<(usize, Vec<u8>, io::Result<()>)>> + '_ {
+    pub fn salvage(&self) -> impl Iterator<Item = io::Result<(usize, Vec<u8>, io::Result<()>)>> + '_ {
         let read = |member: &Member| self.read(*member).map(|(bytes, whole)| (member.first, bytes, whole));
         self.members.iter().map(read)
     }
@@ -136,7 +124,7 @@ impl Archive {
         file.seek(SeekFrom::Start(member.start))?;
         let mut pressed = vec![0; member.size as usize];
         file.read_exact(&mut pressed)?;
-        let most = MEMBER_BYTES as u64 + JOURNAL_LINE_BYTES.most as u64;
+        let most = MEMBER_BYTES as u64 + LINE_BYTES;
         let mut bytes = Vec::new();
         let read = GzDecoder::new(&*pressed).take(most).read_to_end(&mut bytes);
         bytes.truncate(bytes.iter().rposition(|byte| *byte == b'\n').map_or(0, |at| at + 1));
@@ -169,9 +157,10 @@ mod tests {
     #[test]
     fn lines_are_found_and_the_file_is_plain_gzip() {
         let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("lines.gz");
         let members = [member(b"one\ntwo\n", 2).unwrap(), member(b"three\n", 1).unwrap()];
-        std::fs::write(folder.path().join(FILE), members.concat()).unwrap();
-        let mut archive = Archive::open(folder.path()).unwrap();
+        std::fs::write(&path, members.concat()).unwrap();
+        let mut archive = Archive::open(&path).unwrap();
         let lines: Vec<Vec<u8>> = [2, 0, 1].map(|number| archive.line(number).unwrap().to_vec()).to_vec();
         assert_eq!(lines, [b"three\n".to_vec(), b"one\n".to_vec(), b"two\n".to_vec()]);
         assert!(archive.line(3).is_err());
@@ -183,16 +172,17 @@ mod tests {
     #[test]
     fn what_of_a_damaged_file_can_be_read_is_read() {
         let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("lines.gz");
         let mut bytes = [member(b"one\n", 1).unwrap(), member(b"two\n", 1).unwrap()].concat();
         let last = bytes.len() - 1;
         bytes[last] ^= 1; // the length of the second member's lines
-        std::fs::write(folder.path().join(FILE), &bytes).unwrap();
-        let (archive, is_whole) = Archive::open_damaged(folder.path()).unwrap();
+        std::fs::write(&path, &bytes).unwrap();
+        let (archive, is_whole) = Archive::open_damaged(&path).unwrap();
         let read: Vec<_> = archive.salvage().map(Result::unwrap).collect();
         assert!(is_whole && read[0].2.is_ok() && read[1].2.is_err());
         assert_eq!([&read[0].1, &read[1].1], [b"one\n", b"two\n"]);
         bytes.truncate(last - 3);
-        std::fs::write(folder.path().join(FILE), &bytes).unwrap();
-        assert!(Archive::open(folder.path()).is_err());
+        std::fs::write(&path, &bytes).unwrap();
+        assert!(Archive::open(&path).is_err());
     }
 }

@@ -40,10 +40,10 @@ fn the_rule_for_stale_locks() {
 fn one_process_at_a_time_has_a_folder_and_leaves_no_lock() {
     let folder = tempfile::tempdir().unwrap();
     let mut said = Vec::new();
-    let lock = Lock::take(folder.path(), &mut |note| said.push(note)).unwrap();
+    let lock = Lock::of_folder(folder.path(), &mut |note| said.push(note)).unwrap();
     lock.check().unwrap();
-    let other = Lock::take(folder.path(), &mut |note| said.push(note)).unwrap_err().to_string();
-    let expected = format!("process {} on {}", std::process::id(), host::name());
+    let other = Lock::of_folder(folder.path(), &mut |note| said.push(note)).unwrap_err().to_string();
+    let expected = format!("process {} on {}", std::process::id(), machine::name());
     assert!(other.contains(&expected), "{other}");
     assert_eq!(holder(folder.path()).unwrap().unwrap().process, std::process::id());
     drop(lock);
@@ -54,7 +54,7 @@ fn one_process_at_a_time_has_a_folder_and_leaves_no_lock() {
 #[test]
 fn a_process_whose_lock_was_taken_over_does_not_go_on() {
     let folder = tempfile::tempdir().unwrap();
-    let lock = Lock::take(folder.path(), &mut |_| {}).unwrap();
+    let lock = Lock::of_folder(folder.path(), &mut |_| {}).unwrap();
     let path = folder.path().join(LOCK);
     let thief = serde_json::to_string(&of("elsewhere", None, 0)).unwrap();
     std::fs::remove_file(&path).unwrap();
@@ -71,12 +71,12 @@ fn the_lock_of_another_host_holds_until_it_is_silent() {
     let path = folder.path().join(LOCK);
     let text = serde_json::to_string(&of("elsewhere", Some("42_3"), 0)).unwrap();
     std::fs::write(&path, text).unwrap();
-    let refused = Lock::take(folder.path(), &mut |_| {}).unwrap_err().to_string();
+    let refused = Lock::of_folder(folder.path(), &mut |_| {}).unwrap_err().to_string();
     assert!(refused.contains("on elsewhere, job 42_3, since 2026-01-01T00:00:00Z"), "{refused}");
     let old = SystemTime::now() - STALE - Duration::from_mins(1);
     File::options().write(true).open(&path).unwrap().set_modified(old).unwrap();
     let mut said = Vec::new();
-    let lock = Lock::take(folder.path(), &mut |note| said.push(note)).unwrap();
+    let lock = Lock::of_folder(folder.path(), &mut |note| said.push(note)).unwrap();
     assert!(said[0].contains("is taken over: it was silent for five minutes"), "{said:?}");
     lock.check().unwrap();
 }

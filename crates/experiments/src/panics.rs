@@ -1,56 +1,7 @@
-//! Why a command ended without its result.
+//! The messages of panics that threads catch.
 
 use std::cell::RefCell;
 use std::panic::PanicHookInfo;
-
-use thiserror::Error;
-
-/// A failure, with the message for the user.
-#[derive(Debug, Error)]
-pub enum Failure {
-    /// The input cannot be used. Nothing was written.
-    #[error("{0}")]
-    Input(String),
-    /// The run failed.
-    #[error("{0}")]
-    Run(String),
-    /// The disk or folder refused an operation. Finished results are kept.
-    #[error("{0}")]
-    Storage(String),
-    /// The user interrupted it.
-    #[error("{0}")]
-    Interrupted(String),
-    /// The reader of our output closed it (`usar ... | head`). No message is printed.
-    #[error("output closed")]
-    ClosedOutput,
-}
-
-impl Failure {
-    /// A failure because of bad input.
-    pub fn input(message: impl std::fmt::Display) -> Self {
-        Self::Input(message.to_string())
-    }
-
-    /// A failure of a disk or folder.
-    pub fn storage(message: impl std::fmt::Display) -> Self {
-        Self::Storage(message.to_string())
-    }
-
-    /// A failure of the run.
-    pub fn run(message: impl std::fmt::Display) -> Self {
-        Self::Run(message.to_string())
-    }
-}
-
-impl From<std::io::Error> for Failure {
-    fn from(error: std::io::Error) -> Self {
-        if error.kind() == std::io::ErrorKind::BrokenPipe {
-            Self::ClosedOutput
-        } else {
-            Self::Storage(format!("cannot write: {error}"))
-        }
-    }
-}
 
 thread_local! {
     /// Where this thread panicked last.

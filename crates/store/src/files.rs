@@ -7,8 +7,10 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 use xxhash_rust::xxh3::{Xxh3, xxh3_128};
 
-use crate::failure::Failure;
-use crate::limits::STORED_BYTES;
+use crate::failure::{Failure, at};
+
+/// Largest number of bytes of a file that is read whole.
+pub const FILE_BYTES: u64 = 16 << 20;
 
 /// A file that is being written; it gets its name when it is complete.
 pub struct NewFile {
@@ -46,6 +48,14 @@ impl NewFile {
         Ok(Self { name: name.to_owned(), path, file: BufWriter::new(file), hash: Xxh3::new() })
     }
 
+    /// Adds bytes.
+    ///
+    /// # Errors
+    /// The disk does not take them.
+    pub fn append(&mut self, bytes: &[u8]) -> Result<(), Failure> {
+        self.write_all(bytes).map_err(|error| trouble(&self.path, &error))
+    }
+
     /// Completes the file and gives it its name.
     ///
     /// # Errors
@@ -65,7 +75,7 @@ impl NewFile {
     /// Those of the other functions.
     pub fn write(folder: &Path, name: &str, content: &[u8]) -> Result<FileHash, Failure> {
         let mut file = Self::new(folder, name)?;
-        file.write_all(content).map_err(|error| trouble(&folder.join(name), &error))?;
+        file.append(content)?;
         file.finish()
     }
 }
@@ -88,7 +98,7 @@ fn new_path(path: &Path) -> PathBuf {
     path.with_file_name(format!("{name}.new"))
 }
 
-pub(crate) fn trouble(path: &Path, error: &io::Error) -> Failure {
+fn trouble(path: &Path, error: &io::Error) -> Failure {
     Failure::storage(format!("cannot write {}: {error}", path.display()))
 }
 
@@ -101,24 +111,23 @@ pub fn open(path: &Path) -> io::Result<File> {
     if fs::metadata(path)?.is_file() { File::open(path) } else { Err(no_file()) }
 }
 
-/// The bytes of a file that [`open`] opens, at most [`STORED_BYTES`].
+/// The bytes of a file that [`open`] opens, at most [`FILE_BYTES`].
 ///
 /// # Errors
 /// Those of [`open`], or the file is larger.
 pub fn read(path: &Path) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
-    open(path)?.take(STORED_BYTES.most as u64 + 1).read_to_end(&mut bytes)?;
-    if STORED_BYTES.allows(bytes.len()) {
+    open(path)?.take(FILE_BYTES + 1).read_to_end(&mut bytes)?;
+    if bytes.len() as u64 <= FILE_BYTES {
         return Ok(bytes);
     }
-    let most = STORED_BYTES.count() >> 20;
-    let reason = format!("is larger than the {most} MiB that such a file may have");
+    let reason = format!("is larger than the {} MiB that such a file may have", FILE_BYTES >> 20);
     Err(io::Error::new(ErrorKind::FileTooLarge, reason))
 }
 
 /// Creates a file for reading and writing, and replaces an existing file with this name. No link is
 /// followed.
-pub(crate) fn create(path: &Path) -> io::Result<File> {
+fn create(path: &Path) -> io::Result<File> {
     remove(path)?;
     File::options().read(true).write(true).create_new(true).open(path)
 }
@@ -168,15 +177,17 @@ impl std::io::Write for HashWriter {
 ///
 /// # Errors
 /// It cannot be read.
-pub(crate) fn file_hash(path: &Path) -> std::io::Result<String> {
+pub fn file_hash(path: &Path) -> std::io::Result<String> {
     let mut hash = HashWriter(Xxh3::new());
     io::copy(&mut open(path)?, &mut hash)?;
     Ok(format!("{:032x}", hash.0.digest128()))
 }
 
 /// Syncs a folder to disk, and with it the names of its files.
-pub(crate) fn sync_folder(path: &Path) -> Result<(), Failure> {
+///
+/// # Errors
+/// The disk refuses.
+pub fn sync_folder(path: &Path) -> Result<(), Failure> {
     let path = if path.as_os_str().is_empty() { Path::new(".") } else { path };
-    let synced = File::open(path).and_then(|folder| folder.sync_all());
-    synced.map_err(|error| Failure::storage(format!("{}: {error}", path.display())))
+    File::open(path).and_then(|folder| folder.sync_all()).map_err(at(path))
 }

@@ -1,4 +1,5 @@
-//! `.lock`: only one process at a time works in a folder, also on file systems that nodes share.
+//! `.lock`: only one process at a time works in a folder, or on a file (`.lock.NAME`), also on file systems
+//! that nodes share.
 //!
 //! The file is created with `O_EXCL`, which every file system does atomically. It names host, job, process
 //! and time. Where the system call `flock` works, the holder also has that lock, so that a killed process
@@ -20,11 +21,11 @@ use std::time::{Duration, SystemTime};
 
 use serde::{Deserialize, Serialize};
 
-use super::host;
-use super::names::LOCK;
 use crate::failure::Failure;
-use crate::files;
+use crate::{files, machine};
 
+/// Name of a folder's lock.
+pub const LOCK: &str = ".lock";
 /// How often a holder rewrites its lock.
 const BEAT: Duration = Duration::from_secs(30);
 /// Time without writing after which a lock is stale, unless `flock` shows that it is held.
@@ -72,11 +73,13 @@ impl Holder {
     /// This process as a holder.
     fn this() -> Self {
         Self {
-            host: host::name(),
-            job: host::job(),
-            restarts: host::variable("SLURM_RESTART_COUNT").and_then(|text| text.parse().ok()).unwrap_or(0),
+            host: machine::name(),
+            job: machine::job(),
+            restarts: machine::variable("SLURM_RESTART_COUNT")
+                .and_then(|text| text.parse().ok())
+                .unwrap_or(0),
             process: std::process::id(),
-            since: host::now(),
+            since: machine::now(),
         }
     }
 }
@@ -99,7 +102,7 @@ impl Found {
         let is_here = holder.host == this.host;
         if self.is_free == Some(false) {
             None
-        } else if is_here && (self.is_free == Some(true) || !host::is_running(holder.process)) {
+        } else if is_here && (self.is_free == Some(true) || !machine::is_running(holder.process)) {
             Some("that process is gone")
         } else if holder.job.is_some() && holder.job == this.job && holder.restarts < this.restarts {
             Some("the job was requeued")
@@ -116,33 +119,45 @@ impl Lock {
     ///
     /// # Errors
     /// Another process works in the folder, or it cannot be written to.
-    pub fn take(folder: &Path, say: &mut dyn FnMut(String)) -> Result<Self, Failure> {
-        let path = folder.join(LOCK);
+    pub fn of_folder(folder: &Path, say: &mut dyn FnMut(String)) -> Result<Self, Failure> {
+        let busy = format!("{}: another process is at work in this folder", folder.display());
+        Self::take(&folder.join(LOCK), &busy, say)
+    }
+
+    /// Takes a file. Messages go to `say`.
+    ///
+    /// # Errors
+    /// Another process works on the file, or its folder cannot be written to.
+    pub fn of_file(path: &Path, say: &mut dyn FnMut(String)) -> Result<Self, Failure> {
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        let busy = format!("{}: another process is at work on this file", path.display());
+        Self::take(&path.with_file_name(format!("{LOCK}.{name}")), &busy, say)
+    }
+
+    fn take(path: &Path, busy: &str, say: &mut dyn FnMut(String)) -> Result<Self, Failure> {
+        let folder = path.parent().unwrap_or(path);
         let trouble =
             |error: io::Error| Failure::storage(format!("cannot write to {}: {error}", folder.display()));
-        files::check_is_file(&path).map_err(trouble)?;
+        files::check_is_file(path).map_err(trouble)?;
         let this = Holder::this();
         // Tries again after removing a stale lock, and after a lock that its holder released in the
         // meantime.
         for _ in 0..3 {
-            match File::options().read(true).write(true).create_new(true).open(&path) {
-                Ok(file) => return Self::hold(file, &path, &this).map_err(trouble),
+            match File::options().read(true).write(true).create_new(true).open(path) {
+                Ok(file) => return Self::hold(file, path, &this).map_err(trouble),
                 Err(error) if error.kind() == ErrorKind::AlreadyExists => {}
                 Err(error) => return Err(trouble(error)),
             }
-            let Some((found, bytes, _flock)) = look(&path).map_err(trouble)? else { continue };
+            let Some((found, bytes, _flock)) = look(path).map_err(trouble)? else { continue };
             let who = found.holder.as_ref().map_or("a process".to_owned(), Holder::to_string);
             let Some(why) = found.stale(&this) else {
-                return Err(Failure::storage(format!(
-                    "{}: another process is at work in this folder: {who}",
-                    folder.display()
-                )));
+                return Err(Failure::storage(format!("{busy}: {who}")));
             };
-            if remove_stale(&path, &bytes).map_err(trouble)? && found.holder.is_some() {
+            if remove_stale(path, &bytes).map_err(trouble)? && found.holder.is_some() {
                 say(format!("{}: the lock of {who} is taken over: {why}", folder.display()));
             }
         }
-        Err(Failure::storage(format!("{}: another process is at work in this folder", folder.display())))
+        Err(Failure::storage(busy))
     }
 
     fn hold(mut file: File, path: &Path, this: &Holder) -> io::Result<Self> {
@@ -290,7 +305,14 @@ fn remove_stale(path: &Path, bytes: &[u8]) -> io::Result<bool> {
 
 /// A file name beside the lock that no other process uses.
 fn beside(path: &Path, what: &str) -> PathBuf {
-    path.with_file_name(format!("{LOCK}.{what}-{}-{}", host::name(), std::process::id()))
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    path.with_file_name(format!("{name}.{what}-{}-{}", machine::name(), std::process::id()))
+}
+
+/// Whether a file is a lock, or a temporary file of a process that examined a lock.
+#[must_use]
+pub fn is_lock(name: &str) -> bool {
+    name.strip_prefix(LOCK).is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
 }
 
 /// The process that holds a folder; `None` if there is no lock or it is stale.

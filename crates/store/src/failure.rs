@@ -1,0 +1,58 @@
+//! Why a command ended without its result.
+
+use std::io::{Error, ErrorKind};
+use std::path::Path;
+
+use thiserror::Error;
+
+/// A failure, with the message for the user.
+#[derive(Debug, Error)]
+pub enum Failure {
+    /// The input cannot be used. Nothing was written.
+    #[error("{0}")]
+    Input(String),
+    /// The run failed.
+    #[error("{0}")]
+    Run(String),
+    /// The disk or folder refused an operation. Finished results are kept.
+    #[error("{0}")]
+    Storage(String),
+    /// The user interrupted it.
+    #[error("{0}")]
+    Interrupted(String),
+    /// The reader of our output closed it (`usar ... | head`). No message is printed.
+    #[error("output closed")]
+    ClosedOutput,
+}
+
+impl Failure {
+    /// A failure because of bad input.
+    pub fn input(message: impl std::fmt::Display) -> Self {
+        Self::Input(message.to_string())
+    }
+
+    /// A failure of a disk or folder.
+    pub fn storage(message: impl std::fmt::Display) -> Self {
+        Self::Storage(message.to_string())
+    }
+
+    /// A failure of the run.
+    pub fn run(message: impl std::fmt::Display) -> Self {
+        Self::Run(message.to_string())
+    }
+}
+
+impl From<Error> for Failure {
+    fn from(error: Error) -> Self {
+        if error.kind() == ErrorKind::BrokenPipe {
+            Self::ClosedOutput
+        } else {
+            Self::Storage(format!("cannot write: {error}"))
+        }
+    }
+}
+
+/// Makes the failure of a file or folder from what the system says of it.
+pub fn at(path: &Path) -> impl Fn(Error) -> Failure {
+    move |error| Failure::Storage(format!("{}: {error}", path.display()))
+}
