@@ -212,7 +212,6 @@ impl Manifest {
             }
         };
         let program = |m: &Self| format!("usar {} with source {}", m.version, m.source);
-        compare("layout", self.schema_version.to_string(), other.schema_version.to_string());
         compare("program", program(self), program(other));
         let axes = |m: &Self| {
             let set = |axis: &Axis, value: &String| {

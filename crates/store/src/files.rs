@@ -160,27 +160,18 @@ pub fn remove(path: &Path) -> io::Result<()> {
     }
 }
 
-struct HashWriter(Xxh3);
-
-impl std::io::Write for HashWriter {
-    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
-        self.0.update(bytes);
-        Ok(bytes.len())
-    }
-
-    fn flush(&mut self) -> std::io::Result<()> {
-        Ok(())
-    }
-}
-
 /// The XXH3-128 of a file's bytes in hexadecimal digits.
 ///
 /// # Errors
 /// It cannot be read.
-pub fn file_hash(path: &Path) -> std::io::Result<String> {
-    let mut hash = HashWriter(Xxh3::new());
-    io::copy(&mut open(path)?, &mut hash)?;
-    Ok(format!("{:032x}", hash.0.digest128()))
+pub fn file_hash(path: &Path) -> io::Result<String> {
+    let (mut file, mut hash, mut bytes) = (open(path)?, Xxh3::new(), vec![0; 1 << 16]);
+    loop {
+        match file.read(&mut bytes)? {
+            0 => return Ok(format!("{:032x}", hash.digest128())),
+            count => hash.update(&bytes[..count]),
+        }
+    }
 }
 
 /// Syncs a folder to disk, and with it the names of its files.

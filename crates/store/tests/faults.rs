@@ -1,7 +1,7 @@
 //! Logs on a disk with faults: what is read is a prefix of what was written, and a resumed job ends with the
 //! bytes of an undisturbed one.
 
-use std::io::{self, Read, Seek, SeekFrom, Write};
+use std::io::{self, Cursor, Read, Seek, SeekFrom, Write};
 use std::path::Path;
 use std::time::Duration;
 
@@ -21,8 +21,7 @@ enum Fault {
 
 /// The bytes of a file, and the faults to come: the number of operations before each.
 struct Disk<'a> {
-    bytes: &'a mut Vec<u8>,
-    at: usize,
+    file: Cursor<&'a mut Vec<u8>>,
     faults: &'a mut Vec<(u32, Fault)>,
     operations: u32,
     refuses: u32,
@@ -31,7 +30,7 @@ struct Disk<'a> {
 
 impl<'a> Disk<'a> {
     fn new(bytes: &'a mut Vec<u8>, faults: &'a mut Vec<(u32, Fault)>) -> Self {
-        Self { bytes, at: 0, faults, operations: 0, refuses: 0, is_dead: false }
+        Self { file: Cursor::new(bytes), faults, operations: 0, refuses: 0, is_dead: false }
     }
 
     /// The number of bytes of an operation that are done.
@@ -65,27 +64,20 @@ impl<'a> Disk<'a> {
 
 impl Read for Disk<'_> {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
-        let count = self.bytes.get(self.at..).unwrap_or_default().read(buffer)?;
-        self.at += count;
-        Ok(count)
+        self.file.read(buffer)
     }
 }
 
 impl Seek for Disk<'_> {
     fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
-        let SeekFrom::Start(at) = to else { return Err(io::ErrorKind::Unsupported.into()) };
-        self.at = at as usize;
-        Ok(at)
+        self.file.seek(to)
     }
 }
 
 impl Write for Disk<'_> {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         let done = self.operate(bytes.len())?;
-        self.bytes.resize(self.bytes.len().max(self.at + done), 0);
-        self.bytes[self.at..self.at + done].copy_from_slice(&bytes[..done]);
-        self.at += done;
-        Ok(done)
+        self.file.write(&bytes[..done])
     }
 
     fn flush(&mut self) -> io::Result<()> {
@@ -97,7 +89,7 @@ impl Medium for Disk<'_> {
     fn cut(&mut self, length: u64) -> io::Result<()> {
         let length = length as usize;
         if self.operate(length)? == length {
-            self.bytes.truncate(length);
+            self.file.get_mut().truncate(length);
         }
         Ok(())
     }

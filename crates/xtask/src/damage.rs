@@ -112,11 +112,11 @@ impl Sound {
 
     /// Whether verification finds a difference.
     fn is_found(&self) -> bool {
-        let Ok((mut folder, damages)) = Folder::read_damaged(&self.folder, &policies::standard()) else {
+        let Ok((mut folder, damage)) = Folder::read_damaged(&self.folder, &policies::standard()) else {
             return true;
         };
         let differs = |outcome| difference(&mut folder, outcome).is_ok_and(|difference| difference.is_some());
-        !damages.is_empty()
+        damage.is_some()
             || self.again.iter().any(differs)
             || !strange_files(&mut folder).is_ok_and(|strange| strange.is_empty())
     }

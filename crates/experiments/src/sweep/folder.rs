@@ -142,40 +142,38 @@ impl Folder {
     /// # Errors
     /// It is not the folder of a sweep, or its files are damaged.
     pub fn read(path: &Path, registry: &Registry) -> Result<Self, Failure> {
-        let (folder, damages) = Self::read_damaged(path, registry)?;
-        if damages.is_empty() { Ok(folder) } else { Err(Failure::input(damages.join("\n"))) }
+        match Self::read_damaged(path, registry)? {
+            (folder, None) => Ok(folder),
+            (_, Some(damage)) => Err(Failure::input(damage)),
+        }
     }
 
-    /// Reads a folder as far as it is sound, and returns its damages.
+    /// Reads a folder whose trials are sound, and returns the damage of its other files.
     ///
     /// # Errors
-    /// The folder does not hold a sweep.
-    pub fn read_damaged(path: &Path, registry: &Registry) -> Result<(Self, Vec<String>), Failure> {
+    /// The folder does not hold a sweep, or its trials are damaged.
+    pub fn read_damaged(path: &Path, registry: &Registry) -> Result<(Self, Option<String>), Failure> {
         let manifest = manifest_in(path)?;
         let experiment = Arc::new(experiment_of(path, &manifest, registry)?);
         let broken = broken_files(path, &manifest);
-        let mut damages = Vec::new();
-        let is_archived = manifest.files.iter().any(|file| file.name == ARCHIVE);
-        if is_archived && broken.is_empty() {
-            let (store, results) = Self::closed(path, &experiment, manifest.shard)?;
-            let path = path.to_owned();
-            return Ok((Self { path, experiment, manifest, store, results, lock: None }, damages));
-        }
-        let folder = if is_archived || !path.join(journal::FILE).exists() {
-            let (store, results) = Store::salvage(path, &experiment, &mut |damage| damages.push(damage))?;
-            Self { path: path.to_owned(), experiment, manifest, store, results, lock: None }
-        } else {
-            Self::with_journal(path, experiment, manifest, None)?.0
-        };
-        if !broken.is_empty() {
-            damages.push(format!(
+        let damage = || {
+            format!(
                 "{}: these files do not have the checksums of the manifest: {}; the sweep's command makes \
                  them again",
                 path.display(),
                 broken.join(", ")
-            ));
+            )
+        };
+        if broken.iter().any(|name| [ARCHIVE, TRIALS].contains(&name.as_str())) {
+            return Err(Failure::input(damage()));
         }
-        Ok((folder, damages))
+        let folder = if manifest.files.iter().any(|file| file.name == ARCHIVE) {
+            let (store, results) = Self::closed(path, &experiment, manifest.shard)?;
+            Self { path: path.to_owned(), experiment, manifest, store, results, lock: None }
+        } else {
+            Self::with_journal(path, experiment, manifest, None)?.0
+        };
+        Ok((folder, (!broken.is_empty()).then(damage)))
     }
 
     /// The store and the places of the trials; the results are dropped.

@@ -7,10 +7,9 @@ use std::sync::atomic::AtomicBool;
 use rne_core::Registry;
 use store::Failure;
 
-use super::disk::{broken_files, experiment_of, manifest_in, resolved_in};
+use super::disk::{experiment_of, manifest_in, resolved_in};
 use super::folder::{Folder, Opening};
 use super::host::Hosts;
-use super::journal::ARCHIVE;
 use super::store::{Order, Store};
 use crate::experiment::{Experiment, Place, PolicySpec, Program, Shard};
 use crate::provenance::{Manifest, scenario_differences};
@@ -35,12 +34,12 @@ struct Part {
     path: PathBuf,
     manifest: Manifest,
     store: Store,
-    /// The places of its trials, if its shard is incomplete.
-    places: Option<Vec<Place>>,
+    /// The places of its trials.
+    places: Vec<Place>,
 }
 
 impl Merge {
-    /// Finds out which shard has which trial, without reading trials.
+    /// Finds out which shard has which trial.
     ///
     /// # Errors
     /// A folder is damaged or does not hold a sweep; the folders hold different sweeps or come from
@@ -54,9 +53,10 @@ impl Merge {
         let part = |path: &PathBuf| {
             let there = manifest_in(path)?;
             check_same(first, path, &manifest, &there, &resolved)?;
-            Part::open(path, there, &experiment)
+            let (store, places) = Folder::read(path, registry)?.into_store();
+            Ok(Part { path: path.clone(), manifest: there, store, places })
         };
-        let parts = folders.iter().map(part).collect::<Result<Vec<_>, _>>()?;
+        let parts = folders.iter().map(part).collect::<Result<Vec<_>, Failure>>()?;
         let order = Order::of(&experiment, None);
         let owners = vec![NOBODY; order.count()];
         let mut merge = Self { experiment, parts, order, owners };
@@ -66,14 +66,9 @@ impl Merge {
     }
 
     fn find_owners(&mut self) -> Result<(), Failure> {
-        let experiment = Arc::clone(&self.experiment);
         for number in 0..self.parts.len() {
-            let Part { manifest, places, .. } = &self.parts[number];
-            let shard = manifest.shard;
-            match places.clone() {
-                Some(places) => places.into_iter().try_for_each(|place| self.own(number, place))?,
-                None => experiment.places(shard).try_for_each(|place| self.own(number, place))?,
-            }
+            let places = std::mem::take(&mut self.parts[number].places);
+            places.into_iter().try_for_each(|place| self.own(number, place))?;
         }
         Ok(())
     }
@@ -149,20 +144,6 @@ impl Merge {
         whole.fill(line, stop)?;
         Hosts::add(out, self.parts.iter().flat_map(|part| Hosts::read(&part.path).runs))?;
         Ok(whole)
-    }
-}
-
-impl Part {
-    fn open(path: &Path, manifest: Manifest, experiment: &Experiment) -> Result<Self, Failure> {
-        let is_finished = manifest.is_complete && broken_files(path, &manifest).is_empty();
-        if is_finished {
-            let order = Order::of(experiment, manifest.shard);
-            let store = Store::archive(path, order)
-                .map_err(|reason| Failure::input(format!("{}: {reason}", path.join(ARCHIVE).display())))?;
-            return Ok(Self { path: path.to_owned(), manifest, store, places: None });
-        }
-        let (store, places) = Folder::read(path, &experiment.registry)?.into_store();
-        Ok(Self { path: path.to_owned(), manifest, store, places: Some(places) })
     }
 }
 

@@ -1,7 +1,6 @@
 //! Storage of a folder's trials: in the journal while trials may be added, in the archive when all are
 //! finished.
 
-use std::collections::BTreeMap;
 use std::io;
 use std::path::Path;
 
@@ -11,7 +10,6 @@ use store::{Failure, at};
 
 use super::journal::{self, ARCHIVE, Journal};
 use super::line::{Finished, LineError, finished_in};
-use super::measured::{Measured, Results};
 use crate::experiment::{Experiment, Place, Shard};
 
 /// The trials of a folder.
@@ -20,8 +18,6 @@ pub(super) enum Store {
     Journal(Journal),
     /// The archive with all trials, in order.
     Archive(Archive, Order),
-    /// The readable part of a damaged archive, with the number of each trial's line.
-    Salvaged(Archive, BTreeMap<Place, usize>),
 }
 
 impl Store {
@@ -33,7 +29,6 @@ impl Store {
         let (archive, number) = match self {
             Self::Journal(journal) => return journal.line(place),
             Self::Archive(archive, order) => (archive, order.rank(place)),
-            Self::Salvaged(archive, numbers) => (archive, numbers.get(&place).copied()),
         };
         let no_such = || io::Error::new(io::ErrorKind::NotFound, "it has no such trial");
         let line = number.ok_or_else(no_such).and_then(|number| archive.line(number).map(<[u8]>::to_vec));
@@ -72,40 +67,6 @@ impl Store {
         }
         Ok(Self::Archive(archive, order))
     }
-
-    /// The readable part of an archive with any damage, and its results. Descriptions of the damage go to
-    /// `say`.
-    ///
-    /// # Errors
-    /// The archive cannot be read at all.
-    pub(super) fn salvage(
-        folder: &Path,
-        experiment: &Experiment,
-        say: &mut dyn FnMut(String),
-    ) -> Result<(Self, Results), Failure> {
-        let path = folder.join(ARCHIVE);
-        let (archive, is_whole) = Archive::open_damaged(&path).map_err(at(&path))?;
-        let (mut numbers, mut results) = (BTreeMap::new(), Results::new());
-        for member in archive.salvage() {
-            let (first, lines, whole) = member.map_err(at(&path))?;
-            for (number, line) in (first..).zip(lines.split_inclusive(|byte| *byte == b'\n')) {
-                match finished_in(line, experiment) {
-                    Ok(finished) => {
-                        results.insert(finished.place(), Measured::of_finished(&finished, experiment));
-                        numbers.insert(finished.place(), number);
-                    }
-                    Err(reason) => say(format!("{}:{}: {reason}", path.display(), number + 1)),
-                }
-            }
-            if let Err(error) = whole {
-                say(format!("{}: after line {}: {error}", path.display(), numbers.len()));
-            }
-        }
-        if !is_whole {
-            say(format!("{}: after line {}: it is cut off, or was changed", path.display(), archive.count()));
-        }
-        Ok((Self::Salvaged(archive, numbers), results))
-    }
 }
 
 /// Restores the journal of a folder from its archive if there is no journal, so that trials can be added.
@@ -119,9 +80,7 @@ pub(super) fn thaw(folder: &Path, experiment: &Experiment) -> Result<(), Failure
     if journal.symlink_metadata().is_err() && pressed.exists() {
         let mut file = NewFile::new(folder, journal::FILE)?;
         file.append(&journal::header(experiment).line())?;
-        let (archive, _) = Archive::open_damaged(&pressed).map_err(at(&pressed))?;
-        for member in archive.salvage() {
-            let (_, lines, _) = member.map_err(at(&pressed))?;
+        for lines in Archive::salvage(&pressed).map_err(at(&pressed))? {
             let lines = lines.split_inclusive(|byte| *byte == b'\n');
             lines.filter(|line| store::entry_of(line).is_some()).try_for_each(|line| file.append(line))?;
         }

@@ -43,7 +43,7 @@ const LONGEST_TRIAL: Duration = Duration::from_hours(1);
 
 impl Arguments {
     pub(crate) fn execute(&self, registry: &Registry, out: &mut dyn Write) -> Result<(), Failure> {
-        let (mut folder, damages) = Folder::read_damaged(&self.folder, registry)?;
+        let (mut folder, damage) = Folder::read_damaged(&self.folder, registry)?;
         let (experiment, manifest) = (folder.shared_experiment(), folder.manifest().clone());
         let all: Vec<TrialKey> = experiment.keys(manifest.shard).collect();
         if !manifest.is_complete {
@@ -54,7 +54,7 @@ impl Arguments {
                 all.len()
             )));
         }
-        damages.iter().for_each(tell);
+        damage.iter().for_each(tell);
         let chosen = self.choose(&self.without_undetermined(&experiment, all.clone()));
         if chosen.is_empty() && !all.is_empty() {
             return Err(Failure::run(
@@ -74,7 +74,7 @@ impl Arguments {
             }
         };
         match strange.first() {
-            None if differences.is_empty() && damages.is_empty() => {
+            None if differences.is_empty() && damage.is_none() => {
                 Ok(writeln!(out, "{verdict}; every table is what they give")?)
             }
             None => Err(Failure::run(verdict)),

@@ -31,10 +31,10 @@ fn changed_bytes_are_named_and_made_again() {
         bytes[middle] ^= 1;
     };
     damage("journal.jsonl.gz", flip);
-    refused(here, 2, "compare results/paper", &["journal.jsonl.gz: after line "]);
+    refused(here, 2, "compare results/paper", &["checksums of the manifest: journal.jsonl.gz"]);
     mended("journal.jsonl.gz: does not have the checksum");
     damage("journal.jsonl.gz", |bytes| bytes.truncate(bytes.len() - 100));
-    refused(here, 2, "compare results/paper", &["journal.jsonl.gz: after line 0: it is cut off"]);
+    refused(here, 2, "compare results/paper", &["checksums of the manifest: journal.jsonl.gz"]);
     mended("journal.jsonl.gz: does not have the checksum");
     damage("trials.csv", flip);
     refused(here, 2, "compare results/paper", &["trials.csv"]);
