@@ -4,7 +4,7 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-use xtask::kills::{files, kill_sweeps};
+use xtask::kills::{files, journal, kill_sweeps};
 
 use crate::place::{column, place, refused, rows};
 use crate::support::{program, succeeds, usar};
@@ -81,8 +81,7 @@ fn an_interrupted_sweep_stops_at_once_and_goes_on() {
     let here = folder.path();
     let sweep = ["sweep", "short.ron", "--policies", "RNE", "--trials", "60"];
     let child = Command::new(program()).args(sweep).current_dir(here).stderr(Stdio::piped()).spawn().unwrap();
-    let journal = here.join("results/paper/journal.jsonl");
-    while std::fs::metadata(&journal).map_or(0, |file| file.len()) == 0 {
+    while journal(&here.join("results/paper")).lines().count() < 2 {
         std::thread::sleep(Duration::from_millis(5));
     }
     assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
