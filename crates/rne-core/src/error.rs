@@ -240,16 +240,14 @@ pub enum RegistryError {
         name: String,
     },
     /// Options that there are not, or values that they cannot take.
-    #[error("{entry} {name}: {reason}, found {found:?}{}", known_options(options))]
+    #[error("{entry} {name}: {reason}{}", known_options(options))]
     Options {
         /// What was asked for.
         entry: Entry,
         /// Its name.
         name: String,
-        /// What is wrong.
+        /// What is wrong, and the options as given.
         reason: String,
-        /// The options as given.
-        found: String,
         /// The options with their defaults.
         options: String,
     },

@@ -198,7 +198,6 @@ impl Registry {
             entry,
             name: name.to_owned(),
             reason,
-            found: options.trim().to_owned(),
             options: kind.defaults.clone(),
         })?;
         let is_default = all == kind.defaults;
@@ -250,7 +249,7 @@ impl PolicyKind {
         let driver: Arc<dyn Driver> = Arc::new(Pure(Arc::new(policy)));
         let make = move |options: &str, _: &Registry| match options.trim() {
             "" | "()" => Ok((Arc::clone(&driver), String::new())),
-            _ => Err("it has no options".to_owned()),
+            text => Err(format!("it has no options, found {text:?}")),
         };
         Self::new([name, about], String::new(), Arc::new(make))
     }
@@ -304,15 +303,15 @@ impl<T: ?Sized + 'static> Kind<T> {
         E: fmt::Display,
     {
         let make = move |options: &str, registry: &Registry| {
-            let options: O = match options.trim() {
+            let given: O = match options.trim() {
                 "" => O::default(),
                 text => read(text).map_err(|problem| {
-                    // The options as a whole are quoted after it.
-                    Problem { found: String::new(), ..*problem }.to_string()
+                    // The options are quoted as a whole.
+                    Problem { found: format!("{text:?}"), ..*problem }.to_string()
                 })?,
             };
-            let all = written(&options);
-            let it = make(options, registry).map_err(|error| error.to_string())?;
+            let all = written(&given);
+            let it = make(given, registry).map_err(|error| format!("{error}, found {:?}", options.trim()))?;
             Ok((it, all))
         };
         Self::new([name, about], written(&O::default()), Arc::new(make))

@@ -427,7 +427,12 @@ impl<'de> de::VariantAccess<'de> for Variant<'de> {
     fn newtype_variant_seed<T: DeserializeSeed<'de>>(self, seed: T) -> Result<T::Value, Misread> {
         match self.reader.node.entries() {
             [one] => seed.deserialize(Reader::of(one)).map_err(|error| error.within("[0]")),
-            _ => seed.deserialize(Reader { is_content: true, ..self.reader }),
+            _ => seed.deserialize(Reader { is_content: true, ..self.reader }).map_err(|mut error| {
+                if error.field.is_empty() {
+                    "must have 1 entry".clone_into(&mut error.rule); // it is no struct
+                }
+                error
+            }),
         }
     }
 

@@ -336,7 +336,7 @@ fn each_value_that_does_not_fit_is_told_in_words_of_the_file() {
         ),
         ("(count: 1, kind: \"Ground\")", "kind must be a name without quotes, found \"Ground\""),
         ("(count: 1, kind: Disc(a))", "kind[0] must be a number, found a"),
-        ("(count: 1, kind: Disc)", "kind must be a number, found Disc"),
+        ("(count: 1, kind: Disc)", "kind must have 1 entry, found Disc"),
         ("(count: 1, kind: Box(1, (2)))", "kind[1] must be a number, found (2)"),
         ("(count: 1, place: (1))", "place must have 2 entries, found (1)"),
         ("(count: 1, place: (1, 2, 3))", "place must have 2 entries, found (1, 2, 3)"),

@@ -6,8 +6,8 @@ use usar_sim::record::{DecisionRecord, TrialRecord};
 
 use super::file::{Map, SweepFile};
 use super::{AnalysisPlan, Axis, Experiment, Seeds};
-use store::Failure;
 use crate::run::TrialKey;
+use store::Failure;
 
 /// How often a policy is asked the same question again.
 const TIMES_ASKED: usize = 3;

@@ -4,8 +4,8 @@
 use ron_tree::Node;
 
 use super::file::SweepFile;
-use store::Failure;
 use crate::metric::Catalogue;
+use store::Failure;
 
 /// The analysis plan of a sweep. Empty for a scenario without a sweep file.
 #[derive(Debug, Clone, Default, PartialEq)]

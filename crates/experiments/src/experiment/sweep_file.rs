@@ -15,9 +15,9 @@ use super::grid::{VARIANT, check_bytes};
 use super::policy::PolicySpec;
 use super::setting::{decides, is_part, overlapping};
 use super::{AnalysisPlan, Axis, Parts, Seeds};
-use store::Failure;
 use crate::limits;
 use crate::metric::{Catalogue, task_names};
+use store::Failure;
 
 /// Most problems that are told at once.
 const MOST_PROBLEMS: usize = 20;

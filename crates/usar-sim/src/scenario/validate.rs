@@ -110,7 +110,8 @@ fn sizes(check: &mut Checker, file: &ScenarioFile) {
 fn general(check: &mut Checker, file: &ScenarioFile) {
     if file.format != super::FORMAT {
         let rule = format!("must be {}", super::FORMAT);
-        check.fail("format", rule, file.format);
+        let hint = if file.format > super::FORMAT { "it is of a newer program" } else { "" };
+        check.fail_with("format", rule, hint.to_owned(), file.format);
     }
     let plain = |c: char| c.is_ascii_alphanumeric() || "-_.".contains(c);
     let is_name = limits::NAME_BYTES.allows(file.name.len()) && file.name.chars().all(plain);

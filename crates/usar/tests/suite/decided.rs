@@ -244,9 +244,11 @@ fn a_study_of_regret_goes_on_and_its_tables_agree_with_each_other() {
     let dis = &told["analyses"][0]["policies"][1];
     assert_eq!(dis["policy"], "DIS");
     assert!((dis["regret"]["value"].as_f64().unwrap() - mean).abs() < 1e-9);
-    refused(here, 2, "study regret small.ron --out parts --limit 7", &[
-        "has the study of regret of something else",
-        "limit: 1000 there, 7 now",
-    ]);
+    refused(
+        here,
+        2,
+        "study regret small.ron --out parts --limit 7",
+        &["has the study of regret of something else", "limit: 1000 there, 7 now"],
+    );
     refused(here, 2, "study regret short.ron --metric luck", &["--metric: unknown metric \"luck\""]);
 }
