@@ -5,7 +5,6 @@ use std::fmt::Write;
 
 use exports::parquet::Kind;
 use serde_json::{Value, json};
-use store::Failure;
 
 use super::column::About;
 use super::rows;
