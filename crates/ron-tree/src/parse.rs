@@ -430,6 +430,7 @@ impl<'t> Reader<'t> {
             Value::Text(self.string()?)
         } else {
             let name = self.identifier();
+            Self::check(start, name.len(), STRING_BYTES, "bytes in a string or a name")?;
             self.token(Part::Word, start);
             Value::Word(name.into())
         };

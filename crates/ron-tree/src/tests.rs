@@ -53,12 +53,12 @@ fn fields_are_found_where_they_stand() {
 
 const NAMED: &str = r#"(
     tasks: [
-        (name: "hard", grid: (4, 5), steps: [
+        (name: "steep", grid: (4, 5), steps: [
             (cost: 1, name: "go"),
             (cost: 2, name: "lift"),
         ]),
-        Some((grid: (6, 7), name: "easy")),
-        Task(name: "hard", grid: (8, 9)),
+        Some((grid: (6, 7), name: "flat")),
+        Task(name: "steep", grid: (8, 9)),
         (name: "a.b", grid: (0, 0)),
         (name: Some("roof"), grid: (1, 1)), (name: "grid[0]"),
         (name: ""), (name: "q\"q"), (name: 3), 1,
@@ -71,9 +71,9 @@ const NAMED: &str = r#"(
 fn entries_are_found_by_their_names() {
     let root = tree(NAMED);
     for (path, canonical, line, value) in [
-        ("tasks.hard.grid[0]", "tasks[0].grid[0]", 3, "4"),
-        ("tasks.easy.grid[1]", "tasks[1].grid[1]", 7, "7"),
-        ("tasks.hard.steps.lift.cost", "tasks[0].steps[1].cost", 5, "2"),
+        ("tasks.steep.grid[0]", "tasks[0].grid[0]", 3, "4"),
+        ("tasks.flat.grid[1]", "tasks[1].grid[1]", 7, "7"),
+        ("tasks.steep.steps.lift.cost", "tasks[0].steps[1].cost", 5, "2"),
         ("tasks[0].steps.go.cost", "tasks[0].steps[0].cost", 4, "1"),
         ("tasks[2].grid[0]", "tasks[2].grid[0]", 8, "8"),
         ("tasks.roof.grid[1]", "tasks[4].grid[1]", 10, "1"),
@@ -83,7 +83,7 @@ fn entries_are_found_by_their_names() {
         assert_eq!(root.line(path), Some(line), "{path}");
         assert_eq!(root.get(path).unwrap().to_string(), value, "{path}");
     }
-    assert_eq!(root.line("tasks.hard.steps.lift.weight"), Some(5));
+    assert_eq!(root.line("tasks.steep.steps.lift.weight"), Some(5));
     for absent in [
         "tasks.a.b",
         "tasks.",
@@ -91,36 +91,36 @@ fn entries_are_found_by_their_names() {
         "tasks.3",
         "tasks.grid[0]",
         "site.hall",
-        "hard",
-        "tasks..hard",
+        "steep",
+        "tasks..steep",
         ".tasks",
-        "tasks.hard.",
-        "tasks[hard]",
-        "tasks.hard.go",
+        "tasks.steep.",
+        "tasks[steep]",
+        "tasks.steep.go",
         "tasks[10]",
     ] {
         assert!(root.get(absent).is_none(), "{absent}");
     }
     let list = tree(r#"[(name: "a", x: 1), (name: "b", x: 2)]"#);
     assert_eq!(list.canonical("b.x"), "[1].x");
-    assert_eq!(root.canonical("tasks.easy.size.x"), "tasks[1].size.x");
+    assert_eq!(root.canonical("tasks.flat.size.x"), "tasks[1].size.x");
 }
 
 #[test]
 fn what_is_there_instead_is_told() {
     let root = tree(
         r#"(
-        tasks: [(name: "hard", grid: (1, 2), steps: [(name: "go")]), (name: "easy"), (name: "hard")],
+        tasks: [(name: "steep", grid: (1, 2), steps: [(name: "go")]), (name: "flat"), (name: "steep")],
         debris: [1, 2], one: [1], none: [], speed: 3,
     )"#,
     );
     for (path, says) in [
-        ("tasks.medium", "tasks has hard, easy (or [0] to [2])"),
-        ("tasks.hadr.grid[0]", "did you mean hard? tasks has hard, easy (or [0] to [2])"),
-        ("tasks[3]", "tasks has hard, easy (or [0] to [2])"),
-        ("tasks.hard.steps.fly", "tasks.hard.steps has go (or [0])"),
-        ("tasks.hard.size", "tasks.hard has name, grid, steps"),
-        ("tasks.hard.grid[2]", "tasks.hard.grid has 2 entries, from [0] on"),
+        ("tasks.medium", "tasks has steep, flat (or [0] to [2])"),
+        ("tasks.stepe.grid[0]", "did you mean steep? tasks has steep, flat (or [0] to [2])"),
+        ("tasks[3]", "tasks has steep, flat (or [0] to [2])"),
+        ("tasks.steep.steps.fly", "tasks.steep.steps has go (or [0])"),
+        ("tasks.steep.size", "tasks.steep has name, grid, steps"),
+        ("tasks.steep.grid[2]", "tasks.steep.grid has 2 entries, from [0] on"),
         ("debris.large", "debris has 2 entries, from [0] on"),
         ("one[1]", "one has 1 entry, [0]"),
         ("none.any", "none has no entries"),
@@ -182,7 +182,7 @@ fn mission() -> Mission {
         arena_m: [20.0, 0.1],
         order: Order::Near,
         levels: None,
-        tasks: vec![task("hard", [3, 4]), task("easy", [1, 1]), task("a \"b\"\n", [7, 8])],
+        tasks: vec![task("steep", [3, 4]), task("flat", [1, 1]), task("a \"b\"\n", [7, 8])],
     }
 }
 
@@ -202,9 +202,9 @@ fn one_field_is_set_and_no_other() {
         ("levels", "(energy: 50)"),
         ("levels.energy", "55"),
         ("tasks[1].grid[1]", "2"),
-        ("tasks.hard.grid[0]", "9"),
-        ("tasks.easy.is_last", "true"),
-        ("tasks.easy.name", "\"light\""),
+        ("tasks.steep.grid[0]", "9"),
+        ("tasks.flat.is_last", "true"),
+        ("tasks.flat.name", "\"light\""),
     ] {
         found = with(&found, path, new).unwrap();
     }
@@ -223,10 +223,10 @@ fn what_cannot_be_set_is_named() {
     for (path, new, says) in [
         ("duration", "1", "duration is no field; did you mean duration_s? There are duration_s, arena_m, or"),
         ("arena_m[2]", "1", "arena_m[2] is no field; arena_m has 2 entries, from [0] on"),
-        ("tasks.medium", "1", "tasks.medium is no field; tasks has hard, easy (or [0] to [2])"),
-        ("tasks.hard.price", "1", "tasks[0].price is no field; there are name, grid, is_last"),
+        ("tasks.medium", "1", "tasks.medium is no field; tasks has steep, flat (or [0] to [2])"),
+        ("tasks.steep.price", "1", "tasks[0].price is no field; there are name, grid, is_last"),
         ("duration_s", "\"long\"", "duration_s must be a number, found \"long\""),
-        ("tasks.hard.is_last", "3", "tasks[0].is_last must be true or false, found 3"),
+        ("tasks.steep.is_last", "3", "tasks[0].is_last must be true or false, found 3"),
         ("order", "Far", "order must be one of Near, Ring, Held, found Far"),
     ] {
         let error = with(&mission(), path, new).unwrap_err().to_string();
@@ -251,7 +251,7 @@ fn a_value_is_read_as_it_was_written() {
         }
     }
     let whole = "(duration_s: 60.0, arena_m: (20.0, 0.1), order: Near, levels: None, tasks: [(name: \
-        \"hard\", grid: (3, 4))])";
+        \"steep\", grid: (3, 4))])";
     mission.tasks.truncate(1);
     (mission.order, mission.levels) = (Order::Near, None);
     assert_eq!(Node::of(&mission).unwrap().to_string(), whole);

@@ -111,12 +111,18 @@ fn is_drawn_for_each(path: &str) -> bool {
     field("team[", ".levels.") || field("scatter[", ".radius_m")
 }
 
-/// Replaces each distribution in a tree by one of its values. Returns the distributions and the problems with
-/// them.
-pub(super) fn take_out(root: &mut Node) -> (Draws, Vec<Problem>) {
-    let mut taken = (Draws::new(), Vec::new());
+/// The distributions of a tree, and the problems with them.
+#[derive(Default)]
+struct Taken {
+    draws: Draws,
+    problems: Vec<Problem>,
+}
+
+/// Replaces each distribution in a tree by one of its values.
+fn take_out(root: &mut Node) -> Taken {
+    let mut taken = Taken::default();
     if has_distribution(root) {
-        take_out_within(root, "", &mut taken);
+        taken.take_out(root, "");
     }
     taken
 }
@@ -125,34 +131,38 @@ fn has_distribution(node: &Node) -> bool {
     is_distribution(node) || node.children().any(has_distribution)
 }
 
-fn take_out_within(node: &mut Node, path: &str, taken: &mut (Draws, Vec<Problem>)) {
-    let node = node.peeled_mut();
-    if !is_distribution(node) || is_drawn_for_each(path) {
-        for (segment, child) in node.children_mut() {
-            let segment = if path.is_empty() { segment.trim_start_matches('.') } else { &segment };
-            take_out_within(child, &format!("{path}{segment}"), taken);
+impl Taken {
+    fn take_out(&mut self, node: &mut Node, path: &str) {
+        let node = node.peeled_mut();
+        if !is_distribution(node) || is_drawn_for_each(path) {
+            for (segment, child) in node.children_mut() {
+                let segment = if path.is_empty() { segment.trim_start_matches('.') } else { &segment };
+                self.take_out(child, &format!("{path}{segment}"));
+            }
+            return;
         }
-        return;
+        let mut stand_in = match Draw::read(node) {
+            Ok(draw) => draw.stand_in(node),
+            Err(problem) => {
+                self.fail(path, node, *problem);
+                Node::word("0")
+            }
+        };
+        stand_in.put_at(node.place);
+        let written = std::mem::replace(node, stand_in);
+        let count = self.draws.len() + 1;
+        if limits::DRAWS.allows(count) {
+            self.draws.insert(path.to_owned(), written);
+        } else if self.problems.is_empty() {
+            let rule = format!("is one distribution too many: at most {}", limits::DRAWS.most);
+            self.fail(path, node, Problem::new("", rule, ""));
+        }
     }
-    let (draws, problems) = taken;
-    let line = Some(node.place.line as usize).filter(|line| *line > 0);
-    if !limits::DRAWS.allows(draws.len() + 1) {
-        let rule = format!("is one distribution too many: at most {}", limits::DRAWS.most);
-        if problems.last().is_none_or(|problem| problem.rule != rule) {
-            problems.push(Problem { line, ..Problem::new(path, rule, "") });
-        }
-        return;
+
+    fn fail(&mut self, path: &str, node: &Node, problem: Problem) {
+        let line = Some(node.place.line as usize).filter(|line| *line > 0);
+        self.problems.push(Problem { field: path.to_owned(), line, ..problem });
     }
-    let mut stand_in = match Draw::read(node) {
-        Ok(draw) => draw.stand_in(node),
-        Err(problem) => {
-            problems.push(Problem { field: path.to_owned(), line, ..*problem });
-            Node::word("0")
-        }
-    };
-    stand_in.put_at(node.place);
-    let written = std::mem::replace(node, stand_in);
-    draws.insert(path.to_owned(), written);
 }
 
 impl ScenarioFile {
@@ -176,10 +186,11 @@ impl ScenarioFile {
     /// Reads a file from a tree, and notes all values of wrong types; no file is returned if a distribution
     /// is wrong. The distributions in the tree are replaced by values.
     pub(super) fn read(tree: &mut Node) -> (Option<Self>, Vec<Problem>) {
-        let (draws, wrong) = take_out(tree);
+        let taken = take_out(tree);
         let (file, mut problems) = tree.read_all();
-        let file = file.filter(|_| wrong.is_empty()).map(|file: Self| Self { draws, ..file });
-        problems.extend(wrong);
+        let file = file.filter(|_| taken.problems.is_empty());
+        let file = file.map(|file: Self| Self { draws: taken.draws, ..file });
+        problems.extend(taken.problems);
         (file, problems)
     }
 

@@ -105,7 +105,8 @@ fn a_study_of_regret_overwrites_no_files_of_others() {
     std::fs::create_dir_all(&results).unwrap();
     for name in ["summary.json", "regret.csv"] {
         std::fs::write(results.join(name), "MINE\n").unwrap();
-        let study = ["regret", "short.ron", "--trials", "1", "--rounds", "1", "--quiet", "--out", "results"];
+        let study =
+            ["study", "regret", "short.ron", "--trials", "1", "--rounds", "1", "--quiet", "--out", "results"];
         refused(here, 2, &study, &["results is not empty and not the folder of a study of regret"]);
     }
 }

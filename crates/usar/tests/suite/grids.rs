@@ -141,7 +141,12 @@ fn strange_texts_are_refused_in_words() {
     let here = folder.path();
     std::fs::write(here.join("deep.ron"), "(".repeat(200_000)).unwrap();
     refused(here, 2, "check deep.ron", &["deep.ron:"]);
-    refused(here, 2, &["sweep", "short.ron", "--policies", "RNE(score: '日')"], &["policies: policy RNE: "]);
+    refused(
+        here,
+        2,
+        &["sweep", "short.ron", "--policies", "RNE(score: '日')"],
+        &["policies: options must be"],
+    );
     refused(here, 2, "sweep short.ron --set duration_s='日'", &["--set: duration_s: "]);
     refused(
         here,

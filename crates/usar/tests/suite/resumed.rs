@@ -69,7 +69,12 @@ fn another_sweep_in_the_folder_is_refused_and_each_difference_named() {
         &["trials: 2 there, more than the 1 asked for; none are taken away"],
     );
     refused(here, 2, "sweep short.ron --policies ENG --trials 2", &["policies: RNE, DIS there, ENG now"]);
-    refused(here, 2, "sweep short.ron --set costs.energy=1", &["--set: costs.energy: "]);
+    refused(
+        here,
+        2,
+        "sweep short.ron --set costs.energy=1",
+        &["--set: costs.energy must be in round brackets"],
+    );
     refused(here, 2, "sweep short.ron --set dt_s=-1", &["--set: dt_s must"]);
     succeeds(&usar(here, "sweep short.ron --policies ENG --trials 1 --fresh"));
     assert_eq!(rows(&here.join("results/paper"), "trials.csv").len(), 1);
