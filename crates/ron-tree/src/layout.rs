@@ -22,7 +22,7 @@ struct Token<'t> {
 /// Formatting a formatted text changes nothing.
 ///
 /// # Errors
-/// The first place that is not well-formed, or that exceeds a [limit](crate::limits).
+/// The first place that is not well-formed, or that exceeds a [limit](mod@crate::limits).
 ///
 /// ```
 /// let text = "(a:1 ,b :[\n1,2 // two\n ]\n)";

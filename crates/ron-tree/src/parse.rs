@@ -35,7 +35,7 @@ impl Node {
     /// The tree of a text.
     ///
     /// # Errors
-    /// The first place that is not well-formed, or that exceeds a [limit](crate::limits).
+    /// The first place that is not well-formed, or that exceeds a [limit](mod@crate::limits).
     pub fn parse(text: &str) -> Result<Self, Malformed> {
         parse(text).map(|(root, _)| root)
     }
