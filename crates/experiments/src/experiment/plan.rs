@@ -1,5 +1,5 @@
-//! The analysis plan of a sweep file: which metrics come first, with which policy the others are compared, and
-//! which differences matter. None of it changes the numbers of a trial.
+//! The analysis plan of a sweep file: which metrics come first, with which policy the others are compared,
+//! and which differences matter. None of it changes the numbers of a trial.
 
 use ron_tree::Node;
 

@@ -330,8 +330,8 @@ pub(super) fn series_rows<'a>(
 /// The columns of `hashes.csv`: a link of a trial's hash chain.
 pub(super) fn links<'a>() -> Columns<LinkRow<'a>> {
     let digest = "Hash of everything up to this step, 32 hexadecimal digits.";
-    let parts = "Hashes of the parts of the state, four hexadecimal digits each; docs/determinism.md lists the \
-        parts.";
+    let parts = "Hashes of the parts of the state, four hexadecimal digits each; docs/determinism.md lists \
+        the parts.";
     let mut columns = with_trial([
         column("step", Natural, "steps", "Number of the simulation step.", |row: &LinkRow| row.it.step),
         column("digest", Text, "", digest, |row: &LinkRow| format!("{:032x}", row.it.digest)),

@@ -84,7 +84,7 @@ mod tests {
             "{error}"
         );
         let error = set.set("walls[0].doors[0].closd", "true").unwrap_err().to_string();
-        assert!(error.contains("did you mean closed?"), "{error}");
+        assert!(error.ends_with("did you mean closed? There are at_m, width_m, name, closed"), "{error}");
         for value in ["{\"dt_s\": \"Uniform(0.01, 0.02)\"}", "1"] {
             let error = set.set("draws", value).unwrap_err().to_string();
             assert!(error.starts_with("draws is no field; there are format, name"), "{error}");
@@ -102,10 +102,14 @@ mod tests {
         };
         assert_eq!(
             refused("costs.energy.per_stop", "1"),
-            "costs.energy.per_stop is no field; did you mean per_step? There are per_step, per_metre, per_second"
+            "costs.energy.per_stop is no field; did you mean per_step? There are per_step, per_metre, \
+             per_second"
         );
         let error = refused("cots.energy", "1");
-        assert!(error.contains("did you mean costs? a scenario has format, name, description"), "{error}");
+        assert!(
+            error.contains("did you mean costs? a scenario has format, name, description, duration_s"),
+            "{error}"
+        );
         assert_eq!(
             refused("debris[7].at", "(1, 1)"),
             "debris[7].at is no field; debris has 2 entries, from [0] on"

@@ -45,7 +45,8 @@ fn bad_sweep_files_are_refused_with_their_lines() {
     refuse(
         "carrier.speed_mps",
         "carrier.speed",
-        "bad.ron:9: axes.\"roles.carrier.speed\"[0]: roles.carrier.speed is no field; ",
+        "bad.ron:9: axes.\"roles.carrier.speed\"[0]: roles.carrier.speed is no field; there are \
+         name, kind, radius_m",
     );
     refuse("[1.5, 3.0]", "[1.5, \"fast\"]", "bad.ron:9: axes.\"roles.carrier.speed_mps\"[1]: ");
     refuse(
