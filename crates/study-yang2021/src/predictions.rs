@@ -84,7 +84,7 @@ fn of_values(values: &[f64]) -> Option<[f64; 4]> {
 /// their standard deviations, and an interval that holds all their intervals. Empty if there is only one
 /// such world.
 #[must_use]
-pub fn over_worlds(worlds: &[(Standing, Vec<Prediction>)]) -> Vec<Prediction> {
+pub(crate) fn over_worlds(worlds: &[(Standing, Vec<Prediction>)]) -> Vec<Prediction> {
     let calibrated: Vec<&Vec<Prediction>> = worlds
         .iter()
         .filter(|(standing, _)| *standing != Standing::Printed)

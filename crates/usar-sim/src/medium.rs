@@ -18,7 +18,7 @@ pub trait Medium {
 
 /// A medium that delivers every report at once and unchanged.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct Perfect;
+pub(crate) struct Perfect;
 
 impl Medium for Perfect {
     fn carry(&self, _step: u64, sent: &mut Vec<Report>, heard: &mut Vec<Report>) {

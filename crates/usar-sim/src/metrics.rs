@@ -116,7 +116,7 @@ impl Metrics {
     }
 
     /// Charges the energy and HP that a robot spent in this step, to the robot and to its group.
-    pub fn charge(&mut self, robot: RobotId, [energy, hp]: [f64; 2]) {
+    pub(crate) fn charge(&mut self, robot: RobotId, [energy, hp]: [f64; 2]) {
         let own = &mut self.robots[robot.index()].spent;
         *own = [own[0] + energy, own[1] + hp];
         let Some(task) = self.task_of[robot.index()] else {

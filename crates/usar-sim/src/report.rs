@@ -27,7 +27,7 @@ pub struct Report {
 
 /// Where a team-mate is seen to be, and how it moves. Robots that see each other need not say so.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Track {
+pub(crate) struct Track {
     /// Its position, in metres.
     pub position: Vector,
     /// Its velocity, in metres per second.

@@ -110,13 +110,13 @@ impl Robot {
 
     /// Number of rescuees for which it has room.
     #[must_use]
-    pub fn free_capacity(&self) -> u32 {
+    pub(crate) fn free_capacity(&self) -> u32 {
         self.spec.capacity - self.load.len() as u32
     }
 
     /// Share of its capacity that is used, from 0 to 1.
     #[must_use]
-    pub fn load_share(&self) -> f64 {
+    pub(crate) fn load_share(&self) -> f64 {
         self.load.len() as f64 / f64::from(self.spec.capacity.max(1))
     }
 
@@ -128,13 +128,13 @@ impl Robot {
 
     /// Sensing range at its present health, in metres.
     #[must_use]
-    pub fn sensing_range(&self) -> f64 {
+    pub(crate) fn sensing_range(&self) -> f64 {
         self.spec.sensing_m * self.health_factor()
     }
 
     /// Observing range at its present health, in metres.
     #[must_use]
-    pub fn observing_range(&self) -> f64 {
+    pub(crate) fn observing_range(&self) -> f64 {
         self.spec.observing_m * self.health_factor()
     }
 

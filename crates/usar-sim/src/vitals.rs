@@ -29,7 +29,7 @@ pub struct WorkRates {
 
 /// Energy spent in one step of `dt` seconds, in the unit of the rates.
 #[must_use]
-pub fn energy_cost(rates: &Rates, moving: bool, metres: f64, dt: f64) -> f64 {
+pub(crate) fn energy_cost(rates: &Rates, moving: bool, metres: f64, dt: f64) -> f64 {
     let moved = if moving { rates.per_step + rates.per_metre * metres } else { 0.0 };
     moved + rates.per_second * dt
 }
@@ -37,7 +37,7 @@ pub fn energy_cost(rates: &Rates, moving: bool, metres: f64, dt: f64) -> f64 {
 /// Health lost in one step of `dt` seconds inside `zones` overlapping zones, which add up, in the unit of the
 /// rates.
 #[must_use]
-pub fn hp_cost(rates: &Rates, zones: usize, metres: f64, dt: f64) -> f64 {
+pub(crate) fn hp_cost(rates: &Rates, zones: usize, metres: f64, dt: f64) -> f64 {
     zones as f64 * (rates.per_step + rates.per_metre * metres + rates.per_second * dt)
 }
 

@@ -95,7 +95,7 @@ impl Calibration {
     ///
     /// # Errors
     /// None: each free field is written in the text.
-    pub fn text_with(&self, values: &[f64]) -> Result<String, Box<Problem>> {
+    pub(crate) fn text_with(&self, values: &[f64]) -> Result<String, Box<Problem>> {
         let pairs = self.free.iter().zip(values).flat_map(|(free, value)| free.settings(*value));
         let mut settings: Vec<_> = pairs.map(|(path, value)| (path.to_owned(), value)).collect();
         if !self.base.name.ends_with(SUFFIX) {
@@ -107,7 +107,7 @@ impl Calibration {
     /// The same text with a first line that describes the fit. No other policy can run in this scenario.
     ///
     /// # Errors
-    /// Those of [`Calibration::text_with`].
+    /// None: each free field is written in the text.
     pub fn fitted_text(&self, evaluation: &Evaluation) -> Result<String, Box<Problem>> {
         let text = self.text_with(&evaluation.values)?;
         let text = match text.split_once('\n') {

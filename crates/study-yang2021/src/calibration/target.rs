@@ -57,7 +57,7 @@ impl Spread {
     /// a true model, the square of each is 1 on average. The model's standard deviation counts as at least
     /// a twentieth of this one.
     #[must_use]
-    pub fn residuals(&self, model: &Self, trials: usize, model_trials: usize) -> [f64; 2] {
+    pub(crate) fn residuals(&self, model: &Self, trials: usize, model_trials: usize) -> [f64; 2] {
         let [n, m] = [trials, model_trials].map(|trials| trials.max(2) as f64);
         let mean = (model.mean - self.mean) / self.sd;
         let spread = (model.sd.max(self.sd / 20.0) / self.sd).ln();

@@ -185,7 +185,7 @@ impl PartFinding {
 
     /// The difference that 80 % of experiments with the paper's number of trials would find.
     #[must_use]
-    pub fn least_found(&self) -> Option<f64> {
+    pub(crate) fn least_found(&self) -> Option<f64> {
         detectable(self.sd()?, PAPERS_TRIALS as usize)
     }
 }
@@ -200,7 +200,7 @@ pub struct Finding {
 }
 
 /// With fewer trials, no power is computed.
-pub const LEAST_TRIALS: u32 = PAPERS_TRIALS * TIMES as u32;
+pub(crate) const LEAST_TRIALS: u32 = PAPERS_TRIALS * TIMES as u32;
 
 /// Seed of the drawn experiments from which the power is computed.
 const POWER_SEED: u64 = 1;
@@ -242,7 +242,7 @@ impl Judged {
 /// The verdict on each claim over all calibrated worlds together: it holds if it holds in each world, and
 /// does not hold if it does not hold in one. `None` if there is only one such world.
 #[must_use]
-pub fn verdicts_over_worlds(judged: &[Judged]) -> Option<Vec<Verdict>> {
+pub(crate) fn verdicts_over_worlds(judged: &[Judged]) -> Option<Vec<Verdict>> {
     let calibrated: Vec<&Judged> =
         judged.iter().filter(|world| world.standing != Standing::Printed).collect();
     let verdict = |claim: usize| Verdict::over(calibrated.iter().map(|world| world.of_all[claim].verdict));

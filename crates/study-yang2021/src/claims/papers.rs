@@ -3,7 +3,7 @@
 use super::{Claim, Part, Side};
 
 /// The columns of the authors' tables.
-pub const AUTHORS_COLUMNS: [&str; 13] = [
+pub(crate) const AUTHORS_COLUMNS: [&str; 13] = [
     "method",
     "trial",
     "time_s",

@@ -20,7 +20,7 @@ pub struct Holder(u32);
 impl BeliefSharing {
     /// Number of beliefs in the field.
     #[must_use]
-    pub fn holders(self, tasks: usize, robots: usize) -> usize {
+    pub(crate) fn holders(self, tasks: usize, robots: usize) -> usize {
         match self {
             Self::WithGroup => tasks,
             Self::WithNobody => robots,
@@ -37,7 +37,7 @@ impl BeliefSharing {
     }
 
     /// The beliefs of these members of the group of a task, each once. A group has one without members, too.
-    pub fn holders_in(self, task: TaskId, members: &[RobotId]) -> impl Iterator<Item = Holder> {
+    pub(crate) fn holders_in(self, task: TaskId, members: &[RobotId]) -> impl Iterator<Item = Holder> {
         let of_group = (self == Self::WithGroup).then_some(Holder(u32::from(task.0)));
         let own = members.iter().filter(move |_| self == Self::WithNobody);
         of_group.into_iter().chain(own.map(|robot| Holder(robot.0)))

@@ -40,7 +40,7 @@ impl PriorityKey {
 
     /// Compares two keys. `Less` means that `self` goes first.
     #[must_use]
-    pub fn precedence(&self, other: &Self) -> Ordering {
+    pub(crate) fn precedence(&self, other: &Self) -> Ordering {
         let level = || self.level.total_cmp(&other.level);
         self.class.cmp(&other.class).then_with(level).then(self.robot.cmp(&other.robot))
     }

@@ -28,7 +28,7 @@ impl Outline {
 
     /// Distance from a point to the outline, in metres; negative inside.
     #[must_use]
-    pub fn signed_distance(&self, point: Vector) -> f32 {
+    pub(crate) fn signed_distance(&self, point: Vector) -> f32 {
         self.shape.distance_to_point(&self.pose, point, false)
     }
 

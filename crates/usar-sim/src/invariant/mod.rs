@@ -20,7 +20,7 @@ use overlaps::Gauge;
 pub use overlaps::{Overlaps, RARE_OVERLAP_M};
 
 /// Deepest overlap that bodies may ever have, in metres.
-pub const MAX_OVERLAP_M: f32 = 0.05;
+pub(crate) const MAX_OVERLAP_M: f32 = 0.05;
 
 /// Distance that a robot may move in one step beyond its top speed times the step, in metres: the solver's
 /// correction of overlaps.

@@ -55,7 +55,7 @@ impl Activity {
 
     /// Whether the robot is at home, or on its way home or to rest. The team may wait for it.
     #[must_use]
-    pub fn is_way_back(self) -> bool {
+    pub(crate) fn is_way_back(self) -> bool {
         matches!(self, Self::Home | Self::Returning | Self::ToRest)
     }
 

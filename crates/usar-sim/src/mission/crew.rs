@@ -50,13 +50,13 @@ impl Crew {
 
     /// The task of a robot's group in this round; none for a robot without a group.
     #[must_use]
-    pub fn group_of(&self, robot: RobotId) -> Option<TaskId> {
+    pub(crate) fn group_of(&self, robot: RobotId) -> Option<TaskId> {
         self.agents[robot.index()].task
     }
 
     /// The belief on which a robot acts; none for the belief of the team at home.
     #[must_use]
-    pub fn holder_of(&self, robot: RobotId, model: &Model) -> Option<Holder> {
+    pub(crate) fn holder_of(&self, robot: RobotId, model: &Model) -> Option<Holder> {
         Some(model.mission.belief_sharing.holder(robot, self.group_of(robot)?))
     }
 

@@ -90,7 +90,7 @@ impl Mission {
 
     /// Begins the decisions of a step: notes which robots are cut off, and ends and begins rounds. A new
     /// round waits for its assignment: see [`Mission::question`]. Returns the robots that the base restocks.
-    pub fn prepare(&mut self, scene: &mut Scene) -> Vec<RobotId> {
+    pub(crate) fn prepare(&mut self, scene: &mut Scene) -> Vec<RobotId> {
         self.crew.look_for_guides(&scene.model.mission, &scene.beliefs.team);
         if !scene.model.errands.is_empty() {
             if self.crew.follow_errands(scene) {
@@ -112,7 +112,7 @@ impl Mission {
     }
 
     /// Decides what every robot does next, and sets its goal.
-    pub fn act(&mut self, scene: &mut Scene) {
+    pub(crate) fn act(&mut self, scene: &mut Scene) {
         if self.ending.is_none() && scene.model.errands.is_empty() {
             self.turn_back(scene);
             for task in scene.model.task_ids() {

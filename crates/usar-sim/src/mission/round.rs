@@ -50,7 +50,7 @@ pub fn turn_back_cause(rules: &MissionModel, energy: f64, hp: f64, way_cost: f64
 
 /// How many steps a robot with these levels (energy and HP, in percent) rests.
 #[must_use]
-pub fn rest_steps(rules: &MissionModel, levels: [f64; 2]) -> u64 {
+pub(crate) fn rest_steps(rules: &MissionModel, levels: [f64; 2]) -> u64 {
     let [once, twice] = rules.rest_steps;
     let fills_both = rules.rest_fills == RestFills::InTurn && levels.iter().all(|level| *level < 100.0);
     if fills_both { twice } else { once }
@@ -58,7 +58,7 @@ pub fn rest_steps(rules: &MissionModel, levels: [f64; 2]) -> u64 {
 
 /// Energy and HP after a rest, in percent.
 #[must_use]
-pub fn levels_after_rest(rules: &MissionModel, [energy, hp]: [f64; 2]) -> [f64; 2] {
+pub(crate) fn levels_after_rest(rules: &MissionModel, [energy, hp]: [f64; 2]) -> [f64; 2] {
     if rules.rest_fills != RestFills::Low {
         return [100.0; 2];
     }

@@ -105,7 +105,7 @@ impl TaskArea {
     /// middle of the block, in as many rows as needed to stay in the area, so that the robots share its
     /// resources.
     #[must_use]
-    pub fn hover(&self, rank: usize, ranks: usize) -> Vector {
+    pub(crate) fn hover(&self, rank: usize, ranks: usize) -> Vector {
         let width = self.block_max.x - self.block_min.x + 2.0 * self.margin;
         let per_row = ((width / self.air_spacing).floor() as usize).max(1);
         let (row, place) = (rank / per_row, rank % per_row);

@@ -37,7 +37,7 @@ use crate::planning::{Inflation, Planner};
 use crate::scenario::{Measure, NeedFile, Scenario, ZoneFile};
 
 /// Robots look around, and look for work, once in this many steps (0.1 s at the usual step).
-pub const SENSING_PERIOD_STEPS: u64 = 5;
+pub(crate) const SENSING_PERIOD_STEPS: u64 = 5;
 
 /// Everything that is fixed in one trial.
 #[derive(Debug)]
@@ -153,7 +153,7 @@ impl Model {
 
     /// Number of steps in this many seconds.
     #[must_use]
-    pub fn steps_in(&self, seconds: f64) -> u64 {
+    pub(crate) fn steps_in(&self, seconds: f64) -> u64 {
         (seconds / self.dt_s).round() as u64
     }
 

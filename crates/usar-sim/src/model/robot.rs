@@ -11,7 +11,7 @@ use crate::ids::RobotId;
 use crate::scenario::{RoleFile, RoleKind, Scenario};
 
 /// Share of the drive's acceleration that robots plan to brake with; the rest is in reserve.
-pub const PLANNED_BRAKING: f32 = 0.8;
+pub(crate) const PLANNED_BRAKING: f32 = 0.8;
 
 /// The fixed properties of one robot.
 #[derive(Debug, Clone, Default, PartialEq)]

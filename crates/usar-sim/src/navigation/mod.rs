@@ -112,7 +112,7 @@ impl Navigator {
     /// The velocity that takes a robot along its route: at most `speed`, less before turns and the end. Zero
     /// if the robot has no route or has arrived.
     #[must_use]
-    pub fn preferred_velocity(&self, robot: &Robot, speed: f32) -> Vector {
+    pub(crate) fn preferred_velocity(&self, robot: &Robot, speed: f32) -> Vector {
         let traveller = &self.travellers[robot.id.index()];
         let Some(route) = traveller.route.as_ref().filter(|_| !traveller.has_arrived(robot.position)) else {
             return Vector::ZERO;

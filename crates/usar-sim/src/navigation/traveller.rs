@@ -75,7 +75,7 @@ impl Traveller {
 
     /// The narrow passages of the route.
     #[must_use]
-    pub fn passages(&self) -> &[Passage] {
+    pub(crate) fn passages(&self) -> &[Passage] {
         &self.passages
     }
 
@@ -94,13 +94,13 @@ impl Traveller {
 
     /// Whether the planner found no route to the goal.
     #[must_use]
-    pub fn leads_nowhere(&self) -> bool {
+    pub(crate) fn leads_nowhere(&self) -> bool {
         self.goal.is_some() && self.is_planned && self.route.is_none()
     }
 
     /// Steps for which the robot has known no route to its goal.
     #[must_use]
-    pub fn lost_steps(&self) -> u64 {
+    pub(crate) fn lost_steps(&self) -> u64 {
         self.lost_steps
     }
 

@@ -94,13 +94,13 @@ impl ObstacleMap {
 
     /// Whether an obstacle cuts the line from `a` to `b`.
     #[must_use]
-    pub fn cuts(&self, a: Vector, b: Vector) -> bool {
+    pub(crate) fn cuts(&self, a: Vector, b: Vector) -> bool {
         self.along(a, b).any(|obstacle| obstacle.cuts(a, b))
     }
 
     /// Whether a point is so near to an obstacle that routes do not lead through it.
     #[must_use]
-    pub fn covers(&self, point: Vector) -> bool {
+    pub(crate) fn covers(&self, point: Vector) -> bool {
         self.near(point, 0.0).any(|obstacle| contains(&obstacle.planned, point))
     }
 }

@@ -128,7 +128,7 @@ impl Planner {
     /// The first of these places that a ground robot of this radius cannot reach among these outlines,
     /// neither from `from` nor from a place before it.
     #[must_use]
-    pub fn first_unreachable<'p, T>(
+    pub(crate) fn first_unreachable<'p, T>(
         &self,
         radius: f32,
         outlines: &[Outline],

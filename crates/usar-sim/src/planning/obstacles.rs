@@ -74,7 +74,7 @@ impl KnownObstacle {
 
     /// A robot that can no longer move, as an obstacle.
     #[must_use]
-    pub fn wreck(number: u32, at: Vector, own_radius: f32, radius: f32, clearance: f32) -> Self {
+    pub(crate) fn wreck(number: u32, at: Vector, own_radius: f32, radius: f32, clearance: f32) -> Self {
         let outline = Outline { shape: SharedShape::ball(own_radius), ..Outline::disc(at, own_radius) };
         Self::new(ObstacleKey::Wreck(number), &outline, radius, clearance)
     }

@@ -45,7 +45,7 @@ pub struct Walls<'a> {
 impl Walls<'_> {
     /// The narrow passages of a route from a position, in order.
     #[must_use]
-    pub fn passages(&self, from: Vector, route: &Route) -> Vec<Passage> {
+    pub(crate) fn passages(&self, from: Vector, route: &Route) -> Vec<Passage> {
         let mut passages: Vec<Passage> = Vec::new();
         let mut left = route.length(from);
         for (a, b) in route.legs(from) {

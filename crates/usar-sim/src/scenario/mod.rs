@@ -40,7 +40,7 @@ pub use schema::scenario_schema;
 pub const FORMAT: u32 = 2;
 
 /// Most radii for which ground routes are planned separately. Each radius costs a map of the known obstacles.
-pub const MAX_RADIUS_CLASSES: usize = 4;
+pub(crate) const MAX_RADIUS_CLASSES: usize = 4;
 
 /// A scenario of which every value was checked. It dereferences to the [`ScenarioFile`] from which it was
 /// made.
@@ -182,7 +182,7 @@ impl Scenario {
     /// robots. If there are more than [`MAX_RADIUS_CLASSES`], robots use the routes of the next larger radius
     /// that is kept. There is at least one radius; it is 0 if the team has no ground robot.
     #[must_use]
-    pub fn ground_radii_m(&self) -> Vec<f64> {
+    pub(crate) fn ground_radii_m(&self) -> Vec<f64> {
         let roles = self.team.iter().filter_map(|row| self.body_of(row));
         let ground = roles.filter(|role| role.kind == RoleKind::Ground);
         let mut radii: Vec<f64> = ground.map(|role| role.radius_m).collect();
@@ -197,7 +197,7 @@ impl Scenario {
 
     /// Radius of the largest robot of this kind in the team, in metres; 0 if there is none.
     #[must_use]
-    pub fn largest_radius_m(&self, kind: RoleKind) -> f64 {
+    pub(crate) fn largest_radius_m(&self, kind: RoleKind) -> f64 {
         let roles = self.team.iter().filter_map(|row| self.body_of(row));
         roles.filter(|role| role.kind == kind).map(|role| role.radius_m).fold(0.0, f64::max)
     }

@@ -32,7 +32,7 @@ impl DebrisFile {
 impl WallFile {
     /// Length of its middle line, in metres.
     #[must_use]
-    pub fn length_m(&self) -> f64 {
+    pub(crate) fn length_m(&self) -> f64 {
         libm::hypot(self.to[0] - self.from[0], self.to[1] - self.from[1])
     }
 
@@ -101,7 +101,7 @@ impl ScenarioFile {
 impl ConflictRules {
     /// The values of the paper's rule; the defaults under another resolver.
     #[must_use]
-    pub fn right_of_way(&self) -> RightOfWay {
+    pub(crate) fn right_of_way(&self) -> RightOfWay {
         match self.resolver {
             ResolverRule::Rotation(rule) | ResolverRule::Swap(rule) => rule,
             ResolverRule::Reciprocal | ResolverRule::None => RightOfWay::default(),

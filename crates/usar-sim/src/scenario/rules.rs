@@ -39,7 +39,7 @@ pub enum CostUnit {
 impl CostUnit {
     /// Converts a cost to percent of the maximum of the robot that bears it.
     #[must_use]
-    pub fn to_percent(self, cost: f64, maximum: f64) -> f64 {
+    pub(crate) fn to_percent(self, cost: f64, maximum: f64) -> f64 {
         match self {
             Self::Percent => cost,
             Self::Points => cost * 100.0 / maximum,
@@ -48,7 +48,7 @@ impl CostUnit {
 
     /// Converts a share of a robot's maximum, in percent, to a cost.
     #[must_use]
-    pub fn of_percent(self, percent: f64, maximum: f64) -> f64 {
+    pub(crate) fn of_percent(self, percent: f64, maximum: f64) -> f64 {
         match self {
             Self::Percent => percent,
             Self::Points => percent * maximum / 100.0,

@@ -59,7 +59,7 @@ impl Debris {
 
     /// Distance from a point to the piece, in metres; negative inside.
     #[must_use]
-    pub fn signed_distance(&self, point: Vector) -> f32 {
+    pub(crate) fn signed_distance(&self, point: Vector) -> f32 {
         self.model.shape.distance_to_point(&self.pose, point, false)
     }
 

@@ -68,7 +68,7 @@ impl World {
     }
 
     /// Advances time by one step and reads back all positions. `step` is the number of steps done then.
-    pub fn integrate(&mut self, step: u64) {
+    pub(crate) fn integrate(&mut self, step: u64) {
         self.physics.integrate();
         for robot in &mut self.robots {
             (robot.position, robot.velocity) = self.physics.robot_motion(robot.id);
@@ -107,13 +107,13 @@ impl World {
 
     /// How often a radiation zone was switched on or off; 1 if it was always on.
     #[must_use]
-    pub fn switches_of(&self, zone: usize) -> u8 {
+    pub(crate) fn switches_of(&self, zone: usize) -> u8 {
         self.zone_switches.get(zone).copied().unwrap_or(1)
     }
 
     /// The step since which a radiation zone is as it is; none if it never was on.
     #[must_use]
-    pub fn zone_since(&self, zone: usize) -> Option<u64> {
+    pub(crate) fn zone_since(&self, zone: usize) -> Option<u64> {
         (self.switches_of(zone) > 0).then(|| self.zone_since.get(zone).copied().unwrap_or(0))
     }
 
