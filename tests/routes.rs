@@ -15,7 +15,7 @@ use usar_sim::robot::Robot;
 use usar_sim::scenario::{DebrisFile, DebrisShape, Scenario};
 use usar_sim::world::World;
 
-use crate::support::{lies, paper, paper_with};
+use crate::support::{lies, paper, paper_with, trial};
 
 type P = [f64; 2];
 
@@ -176,6 +176,115 @@ fn routes_are_connected_clear_of_known_debris_and_as_short_as_the_oracle_s() {
     assert!(compared > 100, "{compared} routes compared");
 }
 
+/// Walls along the lines of a lattice, as people draw floor plans: the ends stick out by half the thickness,
+/// so that walls meet flush.
+struct FloorPlan {
+    /// Columns and rows of cells.
+    cells: [usize; 2],
+    cell_m: f64,
+    thickness_m: f64,
+    /// For each cell: whether there is a wall to its left, and below it. One more column and row than cells.
+    walls: Vec<[bool; 2]>,
+}
+
+impl FloorPlan {
+    /// Lower left corner of the plan.
+    const AT: P = [20.0, 20.0];
+
+    fn draw(seed: u64) -> Self {
+        let mut draws = ChaCha8Rng::seed_from_u64(seed);
+        let cells = [draws.random_range(2..=6_usize), draws.random_range(2..=5_usize)];
+        let share = draws.random_range(0.3..0.8);
+        let walls = (0..(cells[0] + 1) * (cells[1] + 1)).map(|_| [0; 2].map(|_| draws.random_bool(share)));
+        let walls = walls.collect();
+        let cell_m = f64::from(draws.random_range(4..=8_u32)) / 2.0;
+        Self { cells, cell_m, thickness_m: [0.2, 0.3, 0.5][draws.random_range(0..3_usize)], walls }
+    }
+
+    fn wall(&self, x: usize, y: usize, side: usize) -> bool {
+        let [columns, rows] = self.cells;
+        let exists = if side == 0 { x <= columns && y < rows } else { x < columns && y <= rows };
+        exists && self.walls[y * (columns + 1) + x][side]
+    }
+
+    fn outlines(&self) -> Vec<Outline> {
+        let (long, thin) = (self.cell_m + self.thickness_m, self.thickness_m);
+        let places = (0..=self.cells[1]).flat_map(|y| (0..=self.cells[0]).map(move |x| (x, y)));
+        let sides = places.flat_map(|(x, y)| [(x, y, 0), (x, y, 1)]);
+        sides
+            .filter(|(x, y, side)| self.wall(*x, *y, *side))
+            .map(|(x, y, side)| {
+                let half = if side == 0 { [0.0, 0.5] } else { [0.5, 0.0] };
+                let shape =
+                    if side == 0 { DebrisShape::Box(thin, long) } else { DebrisShape::Box(long, thin) };
+                let at = [(x, 0), (y, 1)].map(|(i, k)| Self::AT[k] + (i as f64 + half[k]) * self.cell_m);
+                DebrisFile { shape, at, rotation_deg: 0.0, movable: None, name: None }.outline()
+            })
+            .collect()
+    }
+
+    /// Whether one cell can be reached from another, by a flood fill of the cells; all around is one more.
+    fn is_reachable(&self, from: usize, to: usize) -> bool {
+        let [columns, rows] = self.cells;
+        let outside = columns * rows;
+        let cell = |x: usize, y: usize| if x < columns && y < rows { y * columns + x } else { outside };
+        let (mut flooded, mut queue) = (vec![false; outside + 1], vec![from]);
+        while let Some(here) = queue.pop() {
+            if std::mem::replace(&mut flooded[here], true) {
+                continue;
+            }
+            for y in 0..=rows {
+                for x in 0..=columns {
+                    let left = (0, cell(x.wrapping_sub(1), y), y < rows);
+                    let below = (1, cell(x, y.wrapping_sub(1)), x < columns);
+                    for (side, beside, is_in) in [left, below] {
+                        let ends = [cell(x, y), beside];
+                        if is_in && ends.contains(&here) && !self.wall(x, y, side) {
+                            queue.extend(ends);
+                        }
+                    }
+                }
+            }
+        }
+        flooded[to]
+    }
+
+    fn middle(&self, cell: usize) -> P {
+        let at = [cell % self.cells[0], cell / self.cells[0]];
+        [0, 1].map(|k| Self::AT[k] + (at[k] as f64 + 0.5) * self.cell_m)
+    }
+}
+
+#[test]
+fn no_route_leads_through_walls_that_meet_flush_and_every_open_room_is_reached() {
+    let planner = Planner::new(&paper());
+    let (mut open, mut closed) = (0, 0);
+    for seed in 0..640 {
+        let plan = FloorPlan::draw(seed);
+        let outlines = plan.outlines();
+        let obstacles = known(&outlines);
+        let last = plan.cells[0] * plan.cells[1] - 1;
+        let mut meshes = Meshes::default();
+        for (from, to) in [(0, last), (last, 0), (0, last / 2)] {
+            let start = plan.middle(from);
+            let route = planner.route(&query(&obstacles, start, plan.middle(to), &[]), &mut meshes);
+            assert_eq!(route.is_some(), plan.is_reachable(from, to), "plan {seed}, from {from} to {to}");
+            let Some(route) = route else {
+                closed += 1;
+                continue;
+            };
+            open += 1;
+            for (a, b) in route.legs(vector(start)) {
+                let points = (0..=200).map(|step| a.lerp(b, step as f32 / 200.0));
+                let gap = |point| outlines.iter().map(move |outline| outline.distance_to(point));
+                let least = points.flat_map(gap).fold(f32::INFINITY, f32::min);
+                assert!(f64::from(least) >= OFFSET_M - 5e-3, "plan {seed}: {least} m from a wall");
+            }
+        }
+    }
+    assert!(open > 400 && closed > 400, "{open} open, {closed} closed");
+}
+
 #[test]
 fn a_detour_round_radiation_is_made_where_it_is_cheaper_and_no_further() {
     let cost = |price: &str| {
@@ -282,4 +391,31 @@ fn a_way_that_a_pushed_piece_leaves_free_is_taken_once_it_is_noticed_and_others_
     assert!(before > 40.0 && (after - 10.0).abs() < 1e-3, "{before} m, then {after} m");
     let (before, after) = length_after_move([0.1, 0.0]);
     assert!((after - before).abs() < 1e-6, "still closed: {after} m");
+}
+
+/// A room of two walls that meet flush in a corner. There is no door.
+const SEALED: &str = r#"(
+    name: "sealed", duration_s: 100.0, dt_s: 0.02, arena_m: (40.0, 40.0),
+    roles: [(name: "carrier", observing_m: 6.0)],
+    team: [(role: "carrier", count: 4, center: (10.0, 3.0), width_m: 6.0)],
+    tasks: [(name: "north", difficulty: 1, center: (31.0, 33.5), size_m: (1.0, 1.0), grid: (2, 2), rest: (5.0, 8.0))],
+    walls: [((22.0, 26.9), (22.0, 40.0)), ((21.9, 27.0), (40.0, 27.0))],
+)"#;
+
+/// Walls that meet flush, with ways round all of them.
+const WITH_CORNERS: &str = r#"(
+    name: "with-corners", duration_s: 60.0, dt_s: 0.02, arena_m: (12.0, 12.0),
+    roles: [(name: "carrier", radius_m: 0.25, resources: 4, observing_m: 6.0, sensing_m: 100.0)],
+    team: [(role: "carrier", count: 2, center: (1.2, 0.8), width_m: 1.2)],
+    tasks: [(name: "north", difficulty: 1, center: (10.0, 10.5), size_m: (2.0, 1.0), grid: (3, 2), rest: (11.0, 1.0))],
+    walls: [((4.0, 1.9), (4.0, 10.1)), ((1.9, 2.0), (4.1, 2.0)), ((0.0, 6.0), (4.1, 6.0))],
+)"#;
+
+#[test]
+fn a_room_whose_walls_meet_flush_is_sealed_and_ways_round_such_walls_are_found() {
+    let sealed = Scenario::parse(SEALED, "sealed.ron".as_ref()).unwrap();
+    let error = Layout::sample(&sealed, 1).unwrap_err().to_string();
+    assert!(error.contains("no way from home to task \"north\""), "{error}");
+    let open = Scenario::parse(WITH_CORNERS, "with-corners.ron".as_ref()).unwrap();
+    assert_eq!(trial(&open, "RNE", 1).tasks[0].totals.rescued, 6);
 }

@@ -12,6 +12,7 @@
 //! zone. A route either crosses a zone or leads round it. The search starts from the route that ignores all
 //! zones. It closes each crossed zone for a try, and keeps the zone closed if the new route costs less.
 
+mod faces;
 mod map;
 mod obstacles;
 mod passage;

@@ -6,8 +6,9 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use parry2d::math::Vector;
 use polyanya::{Mesh, Triangulation};
 
+use super::faces::Faces;
 use super::map::ObstacleMap;
-use super::obstacles::{KnownObstacle, ObstacleKey, contains, crosses, push_out, touches};
+use super::obstacles::{KnownObstacle, ObstacleKey, contains, crosses, is_entered, push_out, touches};
 
 /// Range around a point within an obstacle in which the obstacles are considered when a free point is
 /// searched for, in metres. If the search finds none, the range grows.
@@ -21,23 +22,52 @@ const GUESS_RANGE_M: f32 = 2.0;
 /// Number of meshes that are kept. When there are more, all are dropped and made anew on demand.
 const MAX_MESHES: usize = 64;
 
-/// Attempts to triangulate obstacles before they count as impassable. The library may panic where outlines
-/// run along each other (docs/triangulation.md). Each further attempt makes the outlines a little larger,
-/// each by a different amount.
-const MESH_ATTEMPTS: usize = 6;
+/// Attempts to find a path among obstacles before they count as impassable. The first attempt leaves outlines
+/// apart. Where outlines meet, the library may then panic, or take the inside of an obstacle for free
+/// (docs/triangulation.md). Further attempts join the outlines; each but the first of them makes the outlines
+/// a little larger, each by a different amount.
+const ATTEMPTS: usize = 6;
 
-/// The most by which the second attempt makes an outline larger, in metres; twice as much in each further
+/// The most by which the third attempt makes an outline larger, in metres; twice as much in each further
 /// attempt.
 const NUDGE_M: f32 = 5.0e-4;
 
-/// Meshes among few obstacles, kept to save time: robots on the same route ask for the same meshes again and
-/// again. `None` if every attempt failed.
-#[derive(Default)]
-pub struct Meshes(BTreeMap<MeshKey, Option<Mesh>>);
+/// A point this far outside a mesh counts as inside, in metres.
+pub(super) const SEARCH_DELTA_M: f32 = 0.01;
 
-/// The key of a mesh: the distance from the border as its bits, the obstacles with the hashes of
-/// their outlines, and the numbers of the closed zones.
-type MeshKey = (u32, Vec<(ObstacleKey, u64)>, Vec<u32>);
+/// The free plane among few obstacles.
+enum Plane {
+    /// Among outlines that are left apart.
+    Apart(Mesh),
+    /// Among outlines that are joined.
+    Joined(Faces),
+}
+
+impl Plane {
+    fn path(&self, from: Vector, to: Vector) -> Option<Vec<Vector>> {
+        match self {
+            Self::Apart(mesh) => Some(mesh.path(from, to)?.path),
+            Self::Joined(faces) => faces.path(from, to),
+        }
+    }
+}
+
+/// Planes among few obstacles, kept to save time: robots on the same route ask for the same planes again and
+/// again. `None` if the library failed.
+#[derive(Default)]
+pub struct Meshes(BTreeMap<MeshKey, Option<Plane>>);
+
+/// What a plane is made of.
+#[derive(Clone, PartialEq, Eq, PartialOrd, Ord)]
+struct MeshKey {
+    /// Distance from the border, as its bits.
+    offset: u32,
+    /// The obstacles, with the hashes of their outlines.
+    obstacles: Vec<(ObstacleKey, u64)>,
+    /// Numbers of the closed zones.
+    zones: Vec<u32>,
+    attempt: usize,
+}
 
 /// The obstacles from which a path has to keep clear.
 pub(super) struct Search<'a> {
@@ -124,15 +154,42 @@ impl<'a> Search<'a> {
         &self,
         met: &[&KnownObstacle],
         [from, to]: [Vector; 2],
-        Meshes(meshes): &mut Meshes,
+        meshes: &mut Meshes,
     ) -> Option<Vec<Vector>> {
-        let Some(numbers) = self.numbers else { return Some(self.mesh(met)?.path(from, to)?.path) };
-        let seen = met.iter().map(|obstacle| (obstacle.key, obstacle.digest)).collect();
-        let key = (self.offset.to_bits(), seen, numbers.to_vec());
-        if meshes.len() >= MAX_MESHES && !meshes.contains_key(&key) {
-            meshes.clear();
+        for attempt in 0..ATTEMPTS {
+            let path = |plane: &Option<Plane>| plane.as_ref().map(|plane| plane.path(from, to));
+            let found = match self.key(met, attempt) {
+                Some(key) => path(meshes.get(key, || self.plane(met, attempt))),
+                None => path(&self.plane(met, attempt)),
+            };
+            match found {
+                Some(Some(way)) if self.keeps_clear(met, from, &way) => return Some(way),
+                Some(None) if attempt > 0 => return None, // the joined outlines leave no way
+                Some(_) | None => {}
+            }
         }
-        Some(meshes.entry(key).or_insert_with(|| self.mesh(met)).as_ref()?.path(from, to)?.path)
+        None
+    }
+
+    /// The key by which the plane is kept, if it is.
+    fn key(&self, met: &[&KnownObstacle], attempt: usize) -> Option<MeshKey> {
+        Some(MeshKey {
+            offset: self.offset.to_bits(),
+            obstacles: met.iter().map(|obstacle| (obstacle.key, obstacle.digest)).collect(),
+            zones: self.numbers?.to_vec(),
+            attempt,
+        })
+    }
+
+    /// Whether a path enters none of the obstacles that it was made to avoid, except one that its start or
+    /// its end is in.
+    fn keeps_clear(&self, met: &[&KnownObstacle], from: Vector, way: &[Vector]) -> bool {
+        let outlines = met.iter().map(|obstacle| obstacle.planned.as_slice());
+        outlines.chain(self.always.iter().copied()).all(|outline| {
+            let has_end = |at: Option<&Vector>| at.is_some_and(|at| contains(outline, *at));
+            let mut legs = std::iter::once(&from).chain(way).zip(way);
+            has_end(Some(&from)) || has_end(way.last()) || !legs.any(|(a, b)| is_entered(outline, *a, *b))
+        })
     }
 
     /// The obstacles near the cut legs of a path that the path was not made to avoid. Empty if it runs into
@@ -157,31 +214,57 @@ impl<'a> Search<'a> {
         news
     }
 
-    /// The free plane among obstacles, as a navigation mesh; `None` if all attempts fail.
-    fn mesh(&self, met: &[&KnownObstacle]) -> Option<Mesh> {
-        (0..MESH_ATTEMPTS).find_map(|attempt| {
-            // Nothing is shared with a triangulation that is left unfinished.
-            catch_unwind(AssertUnwindSafe(|| self.triangulated(met, attempt))).ok()
-        })
+    /// The free plane among obstacles; `None` if the library fails.
+    fn plane(&self, met: &[&KnownObstacle], attempt: usize) -> Option<Plane> {
+        // Nothing is shared with a triangulation that is left unfinished.
+        catch_unwind(AssertUnwindSafe(|| match attempt.checked_sub(1) {
+            None => Plane::Apart(self.apart(met)),
+            Some(nudge) => Plane::Joined(self.joined(met, nudge)),
+        }))
+        .ok()
     }
 
-    /// The mesh among obstacles. Each attempt but the first makes them a little larger.
-    fn triangulated(&self, met: &[&KnownObstacle], attempt: usize) -> Mesh {
+    /// Corners of the border of all routes.
+    fn border(&self) -> [Vector; 4] {
         let (offset, Vector { x, y }) = (self.offset, self.arena - self.offset);
-        let border = [[offset, offset], [x, offset], [x, y], [offset, y]].map(Vector::from);
-        let mut triangulation = Triangulation::from_outer_edges(&border);
+        [[offset, offset], [x, offset], [x, y], [offset, y]].map(Vector::from)
+    }
+
+    /// Corners of all obstacles that count.
+    fn outlines(&self, met: &[&'a KnownObstacle]) -> impl Iterator<Item = &'a [Vector]> {
         let met = met.iter().map(|obstacle| obstacle.planned.as_slice());
-        let outlines = met.chain(self.always.iter().copied()).enumerate();
-        triangulation.add_obstacles(outlines.map(|(number, outline)| nudged(outline, number, attempt)));
+        met.chain(self.always.iter().copied())
+    }
+
+    /// The mesh among outlines that are left apart.
+    fn apart(&self, met: &[&KnownObstacle]) -> Mesh {
+        let mut triangulation = Triangulation::from_outer_edges(&self.border());
+        triangulation.add_obstacles(self.outlines(met).map(<[Vector]>::to_vec));
         let mut mesh = triangulation.as_navmesh();
-        mesh.set_search_delta(0.01);
+        mesh.set_search_delta(SEARCH_DELTA_M);
         mesh
+    }
+
+    /// The faces among joined outlines.
+    fn joined(&self, met: &[&KnownObstacle], nudge: usize) -> Faces {
+        let outlines = self.outlines(met).enumerate();
+        let outlines: Vec<_> = outlines.map(|(number, outline)| nudged(outline, number, nudge)).collect();
+        Faces::among(&self.border(), &outlines)
+    }
+}
+
+impl Meshes {
+    fn get(&mut self, key: MeshKey, make: impl FnOnce() -> Option<Plane>) -> &Option<Plane> {
+        if self.0.len() >= MAX_MESHES && !self.0.contains_key(&key) {
+            self.0.clear();
+        }
+        self.0.entry(key).or_insert_with(make)
     }
 }
 
 /// An enlarged outline, by a different amount for each number. The first attempt leaves it as it is.
-fn nudged(outline: &[Vector], number: usize, attempt: usize) -> Vec<Vector> {
-    let Some(doublings) = attempt.checked_sub(1) else { return outline.to_vec() };
+fn nudged(outline: &[Vector], number: usize, nudge: usize) -> Vec<Vector> {
+    let Some(doublings) = nudge.checked_sub(1) else { return outline.to_vec() };
     let share = (1 + 7 * number % 13) as f32 / 13.0;
     let by = NUDGE_M * share * (1 << doublings) as f32;
     let middle = outline.iter().copied().sum::<Vector>() / outline.len() as f32;
@@ -202,7 +285,7 @@ mod tests {
     ];
 
     #[test]
-    fn outlines_that_the_library_cannot_triangulate_are_made_larger_by_a_little() {
+    fn outlines_that_the_library_cannot_triangulate_are_joined() {
         let outlines = PANICS.map(|outline| outline.map(Vector::from).to_vec());
         let search = Search {
             arena: Vector::splat(100.0),
@@ -211,8 +294,7 @@ mod tests {
             always: outlines.iter().map(Vec::as_slice).collect(),
             numbers: None,
         };
-        let attempt = |attempt| catch_unwind(AssertUnwindSafe(|| search.triangulated(&[], attempt)));
-        assert!(attempt(0).is_err(), "the library is mended: docs/triangulation.md and the attempts can go");
+        assert!(search.plane(&[], 0).is_none(), "the library is mended: docs/triangulation.md can go");
         let ends = [Vector::new(20.0, 70.0), Vector::new(50.0, 70.0)];
         let way = search.way(ends, &[], &mut Meshes::default()).unwrap();
         let legs = || std::iter::once(&ends[0]).chain(&way).zip(&way);
