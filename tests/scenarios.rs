@@ -58,7 +58,9 @@ const SMALL: &str = r#"(
 fn the_defaults_are_those_of_the_paper_s_scenario() {
     let paper = paper();
     let small = Scenario::parse(SMALL, Path::new("s.ron")).unwrap();
-    assert_eq!(RoleFile { name: "carrier".to_owned(), ..small.roles[0].clone() }, paper.roles[0]);
+    // The paper's carriers hardly see.
+    let carrier = RoleFile { name: "carrier".to_owned(), observing_m: 0.006, ..small.roles[0].clone() };
+    assert_eq!(carrier, paper.roles[0]);
     assert_eq!(small.roles.len(), 1);
     assert_eq!(small.needs, paper.needs);
     assert_eq!(small.initial_levels, paper.initial_levels);
@@ -89,6 +91,36 @@ fn a_scenario_needs_tasks_or_errands_and_errands_need_robots_and_places() {
     assert!(errors.contains("errands[1].robot must be the id of one of the 1 robots, found 7"), "{errors}");
     assert!(errors.contains("errands[2].robot must not stand twice"), "{errors}");
     assert!(errors.contains("errands[2].to must name at least one place"), "{errors}");
+}
+
+#[test]
+fn errands_lead_where_a_robot_can_stand() {
+    let error = |place: &str, rest: &str| {
+        let text = format!(
+            "(name: \"s\", duration_s: 10, dt_s: 0.02, arena_m: (12, 8), team: [(role: \"robot\", count: 1, center: \
+             (2, 4), width_m: 0)], errands: [(robot: 0, to: [{place}])], debris: [(shape: Disc(1), at: (6, 4))], \
+             walls: [(from: (9, 0), to: (9, 4), thickness_m: 0.1)]{rest})"
+        );
+        Scenario::parse(&text, Path::new("s.ron")).map_or_else(|error| error.to_string(), |_| String::new())
+    };
+    assert_eq!(error("(4, 4)", ""), "");
+    assert_eq!(
+        error("(9, 2)", ""),
+        "s.ron:1: errands[0].to[0] must be at least planning.clearance_m (0.15 m) from walls[0], found a place \
+         inside it"
+    );
+    assert!(error("(12, 4)", "").contains("from the wall of the arena, found a place inside it"));
+    assert!(error("(6, 3.5)", "").contains("from debris[0], found a place inside it"));
+    let tight = error("(6, 2.9)", "");
+    assert!(
+        tight.contains("found 0.100 m from it; planning.clearance_m of at most 0.100 would do"),
+        "{tight}"
+    );
+    assert_eq!(error("(6, 2.9)", ", planning: (clearance_m: 0.09)"), "");
+    let room = error("(4, 4)", ", planning: (clearance_m: 4.0)");
+    assert!(room.contains("planning.clearance_m must leave room in the arena of 8 m"), "{room}");
+    let large = error("(4, 4)", ", roles: [(name: \"robot\", radius_m: 1.5)]");
+    assert_eq!(large, "", "a mission's reach does not matter to errands");
 }
 
 #[test]

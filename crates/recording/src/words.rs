@@ -163,6 +163,7 @@ fn sentence(event: &Event, names: Names) -> String {
         Event::DebrisFell { debris } => format!("{} falls", names.debris(*debris)),
         Event::WayClosed { debris } => format!("a way closes: {}", names.debris(*debris)),
         Event::WayOpened { debris } => format!("a way opens: {} is gone", names.debris(*debris)),
+        Event::CalledOff { debris } => format!("{} stays away: its way is to be open", names.debris(*debris)),
         Event::SourceAppeared { zone } => format!("{} appears", names.zone(*zone)),
         Event::SourceDied { zone } => format!("{} dies", names.zone(*zone)),
         Event::Damaged { robot, energy, hp } => {

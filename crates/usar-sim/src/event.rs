@@ -237,6 +237,12 @@ pub enum Event {
         /// Number of the piece that closed it.
         debris: u32,
     },
+    /// Debris that was to fall, or a way that was to close, waited until its place was free. Now that the way
+    /// is to be open, it no longer waits.
+    CalledOff {
+        /// Number of the piece that stays away.
+        debris: u32,
+    },
     /// A radiation source appeared.
     SourceAppeared {
         /// Its number.

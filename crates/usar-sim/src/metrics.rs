@@ -198,6 +198,7 @@ impl Metrics {
                 | Event::DebrisFell { .. }
                 | Event::WayClosed { .. }
                 | Event::WayOpened { .. }
+                | Event::CalledOff { .. }
                 | Event::SourceAppeared { .. }
                 | Event::SourceDied { .. }
                 | Event::Damaged { .. }

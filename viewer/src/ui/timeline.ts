@@ -30,6 +30,7 @@ const ASKED_FOR = [
   'DebrisFell',
   'WayClosed',
   'WayOpened',
+  'CalledOff',
   'SourceAppeared',
   'SourceDied',
   'Damaged',

@@ -1,6 +1,6 @@
 //! The defaults of a scenario file. Robots, costs and rules are those of `scenarios/paper.ron`, which gives
-//! and explains them all; a test compares the two. There is no default for the team, the arena, the duration
-//! and the tasks of a mission.
+//! and explains them all, except that a robot sees rescuees as far as debris; a test compares the two. There
+//! is no default for the team, the arena, the duration and the tasks of a mission.
 
 use rne_core::GroupSizes;
 use rne_core::hierarchy::NeedLevel;
@@ -54,7 +54,7 @@ impl Default for RoleFile {
             speed_mps: 2.25,
             acceleration_mps2: 4.0,
             sensing_m: 3.0,
-            observing_m: 0.006,
+            observing_m: 3.0,
             capacity: 6,
             resources: 1,
             guides: false,

@@ -6,6 +6,7 @@ mod debris;
 mod defaults;
 mod distribution;
 mod draws;
+mod errands;
 mod error;
 mod file;
 mod homes;

@@ -265,7 +265,7 @@ pub(super) fn rules(check: &mut Checker, file: &ScenarioFile) {
     check.number("mission.rest_reserve", mission.rest_reserve, limits::REST_RESERVE);
     check.number("mission.rest_s", mission.rest_s, limits::REST_S);
     check.number("mission.loading_s", mission.loading_s, limits::LOADING_S);
-    let least_reach = file.least_reach_m();
+    let least_reach = if file.errands.is_empty() { file.least_reach_m() } else { 0.0 };
     check.number("mission.reach_m", mission.reach_m, Limit { least: least_reach, ..limits::REACH_M });
     check.number(
         "mission.area_margin_m",
@@ -277,11 +277,26 @@ pub(super) fn rules(check: &mut Checker, file: &ScenarioFile) {
     check.number("mission.health_floor", mission.health_floor, limits::HEALTH_FLOOR);
     check.number("mission.cut_off_s", mission.cut_off_s, limits::CUT_OFF_S);
     check.number("planning.clearance_m", file.planning.clearance_m, limits::CLEARANCE_M);
+    leaves_room(check, file);
     check.number("planning.exposure_price_m", file.planning.exposure_price_m, limits::EXPOSURE_PRICE_M);
     if let ResolverRule::Rotation(rule) | ResolverRule::Swap(rule) = file.conflicts.resolver {
         check.number("conflicts.resolver.margin_m", rule.margin_m, limits::MARGIN_M);
         check.number("conflicts.resolver.horizon_s", rule.horizon_s, limits::HORIZON_S);
         check.count("conflicts.resolver.deadlock_steps", rule.deadlock_steps, limits::DEADLOCK_STEPS);
+    }
+}
+
+/// Checks that routes that keep clear of the walls of the arena leave room in it for the largest robot.
+fn leaves_room(check: &mut Checker, file: &ScenarioFile) {
+    let largest = file.bodies().map(|(body, _)| body.radius_m).fold(0.0, f64::max);
+    let side = f64::min(file.arena_m[0], file.arena_m[1]);
+    let taken = 2.0 * (largest + file.planning.clearance_m);
+    if taken >= side {
+        let rule = format!(
+            "must leave room in the arena of {side} m: with the radius of the largest robot ({largest} m), less \
+             than half of it"
+        );
+        check.fail("planning.clearance_m", rule, file.planning.clearance_m);
     }
 }
 

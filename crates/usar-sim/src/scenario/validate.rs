@@ -4,10 +4,9 @@ use ron_tree::limits::Limit;
 
 use super::checker::{Checker, entry, is_device, meant, names, shown};
 use super::debris::debris;
+use super::errands::{errands, places_are_free};
 use super::error::Problem;
-use super::file::{
-    Amount, Happening, Measure, NeedFile, Normal, RoleFile, SampledCounts, ScenarioFile, TaskFile,
-};
+use super::file::{Amount, Happening, Measure, NeedFile, Normal, RoleFile, ScenarioFile, TaskFile};
 use super::homes::homes_are_free;
 use super::rules::rules;
 use super::scatter::scatter;
@@ -23,6 +22,7 @@ pub(super) fn problems(file: &ScenarioFile) -> Vec<Problem> {
     let mut check = of_values(file);
     if check.problems.is_empty() {
         homes_are_free(&mut check, file); // these need sound shapes and places
+        places_are_free(&mut check, file);
         sense(&mut check, file);
     }
     check.problems
@@ -287,35 +287,6 @@ fn told_facts(check: &mut Checker, field: &str, file: &ScenarioFile, task: &Task
             let (rule, hint) = ("must name other tasks of the scenario", meant(other, known));
             check.fail_with(format!("{field}.after"), rule, hint, shown(other));
         }
-    }
-}
-
-fn errands(check: &mut Checker, file: &ScenarioFile) {
-    let robots: u32 = file.team.iter().map(|row| row.count).sum();
-    let mut seen = std::collections::BTreeSet::new();
-    for (i, errand) in file.errands.iter().enumerate() {
-        if errand.robot >= robots {
-            let rule = format!("must be the id of one of the {robots} robots");
-            check.fail(format!("errands[{i}].robot"), rule, errand.robot);
-        } else if !seen.insert(errand.robot) {
-            check.fail(format!("errands[{i}].robot"), "must not stand twice", errand.robot);
-        }
-        if errand.to.is_empty() {
-            check.fail(format!("errands[{i}].to"), "must name at least one place", "none");
-        } else {
-            check.entries(format!("errands[{i}].to"), errand.to.len(), limits::PLACES);
-        }
-        for (k, place) in errand.to.iter().enumerate() {
-            check.inside(format!("errands[{i}].to[{k}]"), *place, 0.0);
-        }
-    }
-    let samples = |task: &&TaskFile| task.sampled != SampledCounts::default();
-    if let Some(task) = file.tasks.iter().find(samples) {
-        check.fail(
-            format!("{}.sampled", entry("tasks", &task.name)),
-            "must be absent where there are errands: it fills the ways to tasks",
-            "counts above 0",
-        );
     }
 }
 

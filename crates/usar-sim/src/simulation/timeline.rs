@@ -21,14 +21,28 @@ const FREE_M: f32 = 0.1;
 const FREE_STEPS: f32 = 3.0;
 
 impl State {
-    /// Carries out the events that are due. A piece of debris waits until its place is free.
+    /// Carries out the events that are due. A piece of debris waits until its place is free, or until its way
+    /// is to be open.
     pub(super) fn happen(&mut self, model: &Model) {
         for (number, due) in model.timeline.iter().enumerate() {
             if due.step > self.step {
                 break;
             }
             if !self.timeline.done[number] {
+                if let Action::Open(debris) = due.action {
+                    self.call_off(debris, number, model);
+                }
                 self.timeline.done[number] = self.act_out(&due.action, model);
+            }
+        }
+    }
+
+    /// Calls off what waits to put a piece of debris in its place, of the events before this one.
+    fn call_off(&mut self, debris: usize, before: usize, model: &Model) {
+        for (due, done) in model.timeline[..before].iter().zip(&mut self.timeline.done) {
+            let puts = due.action == Action::Fall(debris) || due.action == Action::Close(debris);
+            if puts && !std::mem::replace(done, true) {
+                self.log.push(Event::CalledOff { debris: debris as u32 });
             }
         }
     }

@@ -139,3 +139,47 @@ fn a_trial_goes_on_bit_for_bit_from_before_and_after_each_event() {
         assert_eq!(again.finish().state_hash, digest, "from {at_s} s");
     }
 }
+
+#[test]
+fn what_waits_to_close_is_called_off_when_its_way_is_to_open() {
+    // A robot stands in the door at 10 s, so that the door cannot close.
+    let story = |events: &str| {
+        let text = format!(
+            r#"(name: "gate", duration_s: 40, dt_s: 0.02, arena_m: (40, 40),
+            team: [(role: "robot", count: 1, center: (20, 20), width_m: 0)],
+            errands: [(robot: 0, to: [(20, 30)])],
+            walls: [(from: (0, 20.5), to: (40, 20.5), doors: [(at_m: 20, width_m: 3, name: "gate")])],
+            timeline: [{events}])"#
+        );
+        let scenario = Scenario::parse(&text, "gate.ron".as_ref()).unwrap_or_else(|error| panic!("{error}"));
+        let mut trial = Simulation::new(&scenario, 1).unwrap().checked();
+        let mut policy = policies::standard().open("RANDOM").unwrap();
+        let mut heard = Vec::new();
+        while trial.step(&mut *policy).is_none() {
+            heard.extend(trial.events().iter().cloned());
+        }
+        let ways = |event: &Event| match event {
+            Event::WayClosed { .. } => Some("closed"),
+            Event::WayOpened { .. } => Some("opened"),
+            Event::CalledOff { .. } => Some("called off"),
+            _ => None,
+        };
+        heard.iter().filter_map(ways).collect::<Vec<_>>()
+    };
+    assert_eq!(
+        story(r#"(at_s: 0, event: Closes("gate")), (at_s: 0.02, event: Opens("gate"))"#),
+        ["called off"]
+    );
+    assert_eq!(story(r#"(at_s: 0, event: Closes("gate"))"#), ["closed"]);
+    let twice = r#"(at_s: 0, event: Closes("gate")), (at_s: 0, event: Opens("gate")), (at_s: 0, event: Closes("gate"))"#;
+    assert_eq!(story(twice), ["called off", "closed"]);
+}
+
+#[test]
+fn two_events_of_one_thing_in_a_step_are_no_violation() {
+    let (_, heard, _) = trial(
+        r#"(at_s: 10, event: SourceAppears(at: (33, 26), radius_m: 2, name: "s")), (at_s: 10, event: SourceDies("s")),
+           (at_s: 10, event: DebrisFalls(shape: Disc(1), at: (20, 30), name: "x")), (at_s: 10, event: Opens("x"))"#,
+    );
+    assert_eq!(when(&heard, |event| matches!(event, Event::WayOpened { .. })).len(), 1);
+}
