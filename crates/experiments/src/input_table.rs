@@ -4,7 +4,7 @@ use std::path::Path;
 
 use csv::StringRecord;
 use ron_tree::file::read_text;
-use store::Failure;
+use store::{Failure, refuse};
 
 use crate::limits::{COLUMNS, TABLE_ROWS};
 
@@ -32,9 +32,7 @@ impl InputTable {
         let header = reader.headers().map_err(|error| bad(&error))?.clone();
         let (columns, most) = (header.len(), COLUMNS.most);
         if columns > COLUMNS.count() {
-            return Err(Failure::input(format!(
-                "{shown}:1: must have at most {most} columns, found {columns}"
-            )));
+            refuse!("{shown}:1: must have at most {most} columns, found {columns}");
         }
         let mut rows = Vec::new();
         let mut lines = Lines { text, upto: 0, line: 1 };
@@ -43,9 +41,7 @@ impl InputTable {
             let line = lines.of(&row);
             if row.len() != header.len() {
                 let (cells, columns) = (row.len(), header.len());
-                return Err(Failure::input(format!(
-                    "{shown}:{line}: must have a cell for each of the {columns} columns, found {cells}"
-                )));
+                refuse!("{shown}:{line}: must have a cell for each of the {columns} columns, found {cells}");
             }
             rows.push((line, row));
             if rows.len() > TABLE_ROWS.count() {

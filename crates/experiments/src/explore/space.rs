@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use rayon::prelude::*;
 use ron_tree::Problem;
 use serde::{Deserialize, Serialize};
-use store::Failure;
+use store::{Failure, refuse};
 use thiserror::Error;
 use usar_sim::scenario::{Scenario, ScenarioFile};
 
@@ -135,9 +135,9 @@ impl Space {
     pub fn new(experiment: Experiment, specs: &[String], outcomes: Vec<Outcome>) -> Result<Self, Failure> {
         let bad = |error: &dyn Display| Failure::input(format!("--over: {error}"));
         if !experiment.axes.is_empty() {
-            return Err(Failure::input(
-                "this sweep has axes; --over varies one scenario: name its file, or a sweep without axes",
-            ));
+            refuse!(
+                "this sweep has axes; --over varies one scenario: name its file, or a sweep without axes"
+            );
         }
         let tree = experiment.base.tree();
         let parse = |spec: &String| Free::parse(spec, &tree, &tree);
@@ -210,7 +210,7 @@ impl Space {
     pub fn present(&self) -> Result<Vec<f64>, Failure> {
         let tree = self.experiment.base.tree();
         let present = self.free.iter().map(|free| free.present(&tree)).collect::<Result<_, _>>();
-        present.map_err(|error| Failure::input(format!("--over: {error}")))
+        present.map_err(Failure::input_at("--over"))
     }
 
     /// The outcomes at these points, each from the experiment's number of trials, on the threads of the

@@ -142,7 +142,7 @@ impl Calibration {
         let tree = Node::parse(&self.text).map_err(Failure::run)?;
         let present = |free: &Free| free.present(&tree);
         let present = self.free.iter().map(present).collect::<Result<Vec<f64>, _>>();
-        present.map_err(|error| Failure::input(format!("--over: {error}")))
+        present.map_err(Failure::input_at("--over"))
     }
 
     /// Checks that no field is set twice, that no parameter decides the duration of a trial, and that both

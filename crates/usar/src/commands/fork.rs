@@ -1,21 +1,16 @@
 //! `usar fork`: plays a trial in which one decision is changed.
 
-use std::io::Write;
-use std::path::PathBuf;
-
-use clap::{ArgGroup, Args};
-use experiments::Failure;
+use clap::ArgGroup;
 use experiments::experiment::PolicySpec;
 use experiments::oracle::{Branch, BranchError, Outcome, advance_to};
 use reports::table::{headed, right};
-use rne_core::{Asked, Assignment, Deadline, Decision, Question, Registry, Session};
+use rne_core::{Asked, Assignment, Deadline, Decision, Question, Session};
 use serde::Serialize;
 use usar_sim::record::TrialRecord;
 use usar_sim::simulation::Checkpoint;
 
 use crate::arguments::{ShownArguments, Trial, TrialArguments, parse_policy};
-use crate::output::{print_json, print_table};
-use crate::running::{STOP, session_of, stop_on_signals};
+use crate::prelude::*;
 
 /// What if round N had been decided otherwise?
 #[derive(Debug, Args)]
@@ -128,8 +123,8 @@ impl Arguments {
             (Some(session), _) => session.decide(asked).map_err(Failure::run),
             (None, written) => {
                 let assignment = parse_groups(written.as_deref().unwrap_or_default(), question);
-                let assignment = assignment.map_err(|error| Failure::input(format!("--assign: {error}")))?;
-                assignment.check(question).map_err(|error| Failure::input(format!("--assign: {error}")))?;
+                let assignment = assignment.map_err(Failure::input_at("--assign"))?;
+                assignment.check(question).map_err(Failure::input_at("--assign"))?;
                 Ok(Decision::of(assignment))
             }
         }

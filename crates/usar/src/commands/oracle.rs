@@ -3,13 +3,9 @@
 mod print;
 
 use std::collections::BTreeSet;
-use std::io::Write;
-use std::path::PathBuf;
 use std::sync::Mutex;
 use std::sync::atomic::Ordering;
 
-use clap::Args;
-use experiments::Failure;
 use experiments::experiment::{PolicySpec, Program, split_list};
 use experiments::oracle::{
     BranchError, Coverage, DEFAULT_LIMIT, Objective, Outcome, Survey, advance_to, play, survey,
@@ -17,14 +13,14 @@ use experiments::oracle::{
 use experiments::regret::{DecisionKey, OutcomeLog};
 use indicatif::ProgressBar;
 use rayon::prelude::*;
-use rne_core::{Assignment, Deadline, Decision, Question, Registry, Session, assignments};
+use rne_core::{Assignment, Deadline, Decision, Question, Session, assignments};
 use usar_sim::simulation::Checkpoint;
 
 use super::fork::failure;
 use crate::arguments::{
     PoliciesArgument, ProgressArguments, ShownArguments, Trial, TrialArguments, limit, parse_policy,
 };
-use crate::running::{STOP, stop_on_signals};
+use crate::prelude::*;
 
 /// Number of assignments that are played before their outcomes are written to disk.
 const CHUNK: usize = 16;
@@ -103,7 +99,7 @@ impl Arguments {
         stop_on_signals();
         let trial = self.trial.open_to_all(&self.file, registry)?;
         let objective = Objective::parse(&self.metric, &trial.tasks());
-        let objective = objective.map_err(|error| Failure::input(format!("--metric: {error}")))?;
+        let objective = objective.map_err(Failure::input_at("--metric"))?;
         let onwards = self.onwards(&trial)?;
         let mut simulation = trial.begin()?;
         advance_to(&mut simulation, &mut *trial.session()?, self.round, Deadline::when(&STOP))

@@ -4,11 +4,6 @@ mod plan;
 mod scripts;
 mod submission;
 
-use std::io::Write;
-use std::path::{Path, PathBuf};
-
-use clap::Args;
-use experiments::Failure;
 use experiments::experiment::Experiment;
 use experiments::files::NewFile;
 
@@ -20,10 +15,8 @@ use super::estimate::{Measured, duration};
 use super::slurm;
 use crate::arguments::{Selection, count};
 use crate::bad_value::BadValue;
-use crate::printable::counted;
-use crate::running::stop_on_signals;
+use crate::prelude::*;
 use plan::Wishes;
-use rne_core::Registry;
 
 /// Run a sweep on a cluster: shards as an array of Slurm jobs, then merge and report
 #[derive(Debug, Args)]
@@ -102,7 +95,7 @@ impl Arguments {
             let name = folder.display();
             let advice =
                 format!("usar cluster status {name} says what is missing; --out takes another folder");
-            return Err(Failure::input(format!("--out: {name} exists; nothing was submitted. {advice}")));
+            refuse!("--out: {name} exists; nothing was submitted. {advice}");
         }
         let measured = Measured::of(&experiment, false)?;
         let wishes = Wishes {
@@ -172,7 +165,7 @@ fn shards_of(whole: &Path) -> PathBuf {
 fn absolute(path: &Path) -> Result<PathBuf, Failure> {
     let path = std::path::absolute(path)?;
     if path.to_string_lossy().contains('\n') {
-        return Err(Failure::input(format!("{}: must not have a line break in it", path.display())));
+        refuse!("{}: must not have a line break in it", path.display());
     }
     Ok(path)
 }

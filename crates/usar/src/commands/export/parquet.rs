@@ -1,15 +1,8 @@
 //! `usar export parquet`: the tables of a trial as Parquet.
 
-use std::io::Write;
-use std::path::PathBuf;
-
-use clap::Args;
-use experiments::Failure;
-use rne_core::Registry;
-
 use super::trial::{Form, RecordedArguments, write_tables};
 use crate::arguments::ReplaceArgument;
-use crate::output::make_folder;
+use crate::prelude::*;
 
 /// Write the tables of a trial as Parquet
 #[derive(Debug, Args)]

@@ -10,7 +10,7 @@ use experiments::run::{Outcome, Sessions, TrialKey};
 use experiments::sweep::{Sizes, sizes};
 
 use crate::arguments::progress_bar;
-use crate::running::STOP;
+use crate::prelude::*;
 
 /// Approximate number of measured trials, in whole seeds. Policies that decide alike share their trials, so
 /// that only all policies of a seed show the true cost.

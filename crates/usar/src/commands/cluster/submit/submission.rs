@@ -1,12 +1,10 @@
 //! `submission.json`: a record of the submission, in the folder of the shards.
 
-use std::path::{Path, PathBuf};
-
-use experiments::Failure;
 use experiments::files::{self, NewFile};
 use serde::{Deserialize, Serialize};
 
 use super::plan::Plan;
+use crate::prelude::*;
 
 /// Name of the file.
 const FILE: &str = "submission.json";
