@@ -28,7 +28,7 @@ pub use file::sweep_schema;
 pub use grid::{Axis, Case, VARIANT};
 pub use keep::{Keep, UnknownKeep};
 pub use plan::AnalysisPlan;
-pub use policy::{PolicySpec, PolicyTextError, split_list, with_oracle};
+pub use policy::{PolicySpec, split_list, with_oracle};
 pub use program::{Digest, Program};
 pub use read::{companion, defaults, with_settings};
 pub use shard::{NoShard, Place, Shard};

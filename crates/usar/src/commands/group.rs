@@ -51,10 +51,8 @@ impl Arguments {
     pub(crate) fn execute(&self, registry: &Registry, out: &mut dyn Write) -> Result<(), Failure> {
         let spec = parse_policy("--policy", &self.policy, registry)?;
         let question = self.question()?;
-        let named =
-            |error: &dyn std::fmt::Display| Failure::input(format!("{}: {error}", self.file.display()));
-        let decision = spec.made().decide(&question).map_err(|error| named(&error))?;
-        decision.assignment.check(&question).map_err(|error| named(&error))?;
+        let decision = spec.made().decide(&question).map_err(Failure::input_at(self.file.display()))?;
+        decision.assignment.check(&question).map_err(Failure::input_at(self.file.display()))?;
         if self.json.json {
             return print_plain_json(&decision);
         }

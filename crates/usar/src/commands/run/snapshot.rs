@@ -21,13 +21,12 @@ pub(super) struct Snapshot {
 impl Snapshot {
     /// Reads a file and checks its integrity.
     pub(super) fn read(path: &Path) -> Result<Self, Failure> {
-        let refused =
-            |reason: &dyn std::fmt::Display| Failure::input(format!("{}: {reason}", path.display()));
         let most = SNAPSHOT_BYTES.most as u64;
-        let (start, length) = file::read_start(path, START_BYTES, most).map_err(|error| refused(&error))?;
-        check_start(&start, length).map_err(|error| refused(&error))?;
-        let bytes = file::read(path, most).map_err(|error| refused(&error))?;
-        let identity = Identity::of(&bytes).map_err(|error| refused(&error))?;
+        let (start, length) =
+            file::read_start(path, START_BYTES, most).map_err(Failure::input_at(path.display()))?;
+        check_start(&start, length).map_err(Failure::input_at(path.display()))?;
+        let bytes = file::read(path, most).map_err(Failure::input_at(path.display()))?;
+        let identity = Identity::of(&bytes).map_err(Failure::input_at(path.display()))?;
         Ok(Self { path: path.to_owned(), bytes, identity })
     }
 
