@@ -9,4 +9,4 @@ pub(crate) use rne_core::Registry;
 
 pub(crate) use crate::output::{Destination, csv_of, make_folder, print_json, print_table};
 pub(crate) use crate::printable::counted;
-pub(crate) use crate::running::{STOP, session_of, stop_on_signals, tell};
+pub(crate) use crate::running::{STOP, is_stopped, session_of, stop_on_signals, tell};

@@ -143,6 +143,13 @@ impl Free {
         !(0.01..=0.99).contains(&place)
     }
 
+    /// What a search has found for the parameter, in words.
+    #[must_use]
+    pub fn found(&self, value: f64) -> String {
+        let end = if self.is_at_end(value) { "; it is at the end of its range" } else { "" };
+        format!("{} = {value} (searched from {} to {}{end})", self.name, self.low, self.high)
+    }
+
     /// The parameter's present value, computed from its first field.
     ///
     /// # Errors

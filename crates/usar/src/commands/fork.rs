@@ -2,7 +2,7 @@
 
 use clap::ArgGroup;
 use experiments::experiment::PolicySpec;
-use experiments::oracle::{Branch, BranchError, Outcome, advance_to};
+use experiments::oracle::{Branch, Outcome, advance_to};
 use reports::table::{headed, right};
 use rne_core::{Asked, Assignment, Deadline, Decision, Question, Session};
 use serde::Serialize;
@@ -79,7 +79,7 @@ impl Arguments {
             self.instead.as_deref().map(|text| parse_policy("--instead", text, registry)).transpose()?;
         let mut trial = asked.begin()?;
         let (mut base, stop) = (asked.session()?, Deadline::when(&STOP));
-        advance_to(&mut trial, &mut *base, self.round, stop).map_err(|error| failure(error, "--round: "))?;
+        advance_to(&mut trial, &mut *base, self.round, stop)?;
         let question = trial.question().ok_or_else(|| Failure::run("the trial asks nothing"))?;
         let start = trial.checkpoint();
         let question = Asked { question, deadline: stop, trial: Some(&trial) };
@@ -142,23 +142,11 @@ impl Arguments {
     }
 }
 
-/// A failure of a branch; `place` names the responsible argument if the input is wrong.
-pub(super) fn failure(error: BranchError, place: &str) -> Failure {
-    match error {
-        BranchError::Halted => Failure::Interrupted("stopped".to_owned()),
-        BranchError::NoSuchRound { .. } | BranchError::Refused(_) => {
-            Failure::input(format!("{place}{error}"))
-        }
-        error => Failure::run(error),
-    }
-}
-
 fn side(start: &Checkpoint, decision: Decision, onwards: &mut dyn Session) -> Result<Side, Failure> {
-    let refused = |error| failure(error, "");
     let assignment = decision.assignment.clone();
-    let mut branch = Branch::begin(start, decision).map_err(refused)?;
-    let round = branch.to_round_end(Deadline::when(&STOP)).map_err(refused)?;
-    let rest = branch.to_trial_end(onwards, Deadline::when(&STOP)).map_err(refused)?;
+    let mut branch = Branch::begin(start, decision)?;
+    let round = branch.to_round_end(Deadline::when(&STOP))?;
+    let rest = branch.to_trial_end(onwards, Deadline::when(&STOP))?;
     let record = branch.finish();
     Ok(Side {
         assignment,

@@ -4,8 +4,6 @@ mod event_lines;
 mod live;
 mod snapshot;
 
-use std::sync::atomic::Ordering;
-
 use experiments::experiment::PolicySpec;
 use recording::Story;
 use reports::table::rounds_table;
@@ -105,7 +103,7 @@ impl Arguments {
         stop_on_signals();
         let (record, story) = self.run(simulation, spec, registry)?;
         if let Status::Failed(reason) = &record.status {
-            if STOP.load(Ordering::Relaxed) {
+            if is_stopped() {
                 return Err(Failure::Interrupted(format!(
                     "stopped at {:.0} s of simulated time",
                     record.time_s

@@ -230,9 +230,7 @@ struct Found<'a> {
 impl Found<'_> {
     fn print(&self, out: &mut dyn Write, trials: u32) -> Result<(), Failure> {
         for (free, value) in self.hunt.space.free.iter().zip(&self.best.values) {
-            let [low, high] = free.ends();
-            let end = if free.is_at_end(*value) { "; it is at the end of its range" } else { "" };
-            writeln!(out, "{} = {value} (searched from {low} to {high}{end})", free.name)?;
+            writeln!(out, "{}", free.found(*value))?;
         }
         let (first, count) = (self.hunt.first_seed, self.trail.candidates().len());
         let last = first + u64::from(trials) - 1;

@@ -77,11 +77,8 @@ fn word(text: &str) -> Result<String, BadValue> {
     is_word.then(|| text.to_owned()).ok_or_else(|| BadValue::new("letters, digits and -_.:", text))
 }
 
-/// The scripts of a submission.
-struct Scripts {
-    array: String,
-    merge: String,
-}
+/// The scripts of a submission, with their names.
+type Scripts = [(&'static str, String); 2];
 
 impl Arguments {
     pub(crate) fn execute(&self, registry: &Registry, out: &mut dyn Write) -> Result<(), Failure> {
@@ -151,8 +148,7 @@ impl Arguments {
             Some(path) => ron_tree::file::read_text(path)
                 .map_err(|error| Failure::input(format!("--template: {}: {error}", path.display())))?,
         };
-        let array = scripts::fill(&template, &words)?;
-        Ok(Scripts { array, merge: scripts::fill(scripts::MERGE, &words)? })
+        Ok([(ARRAY, scripts::fill(&template, &words)?), (MERGE, scripts::fill(scripts::MERGE, &words)?)])
     }
 }
 
@@ -171,7 +167,7 @@ fn absolute(path: &Path) -> Result<PathBuf, Failure> {
 }
 
 fn print(out: &mut dyn Write, scripts: &Scripts, folder: &Path) -> Result<(), Failure> {
-    for (name, script) in [(ARRAY, &scripts.array), (MERGE, &scripts.merge)] {
+    for (name, script) in scripts {
         writeln!(out, "\n--- {}\n{script}", folder.join(name).display())?;
     }
     Ok(writeln!(
@@ -199,7 +195,7 @@ fn submit(
 ) -> Result<(), Failure> {
     let trouble = |error| Failure::storage(format!("cannot write to {}: {error}", folder.display()));
     std::fs::create_dir_all(folder.join(LOGS)).map_err(trouble)?;
-    for (name, script) in [(ARRAY, &scripts.array), (MERGE, &scripts.merge)] {
+    for (name, script) in scripts {
         NewFile::write(folder, name, script.as_bytes())?;
     }
     submission.write(folder)?;

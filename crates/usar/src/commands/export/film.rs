@@ -1,7 +1,5 @@
 //! Sequences of pictures of a trial.
 
-use std::sync::atomic::Ordering;
-
 use pictures::{Look, Picture, PictureError, Width, moment};
 use recording::Recording;
 
@@ -37,7 +35,7 @@ pub(super) struct Row<'r> {
 impl Row<'_> {
     /// The picture of a frame.
     pub(super) fn picture(&self, number: usize) -> Result<Picture, Failure> {
-        if STOP.load(Ordering::Relaxed) {
+        if is_stopped() {
             return Err(Failure::Interrupted("stopped; the pictures are not complete".to_owned()));
         }
         moment(self.recording, number, &self.look).map_err(failed)

@@ -1,7 +1,6 @@
 //! The cost of a sweep, measured on a few of its trials.
 
 use std::collections::BTreeSet;
-use std::sync::atomic::Ordering;
 use std::time::Instant;
 
 use experiments::Failure;
@@ -41,7 +40,7 @@ impl Measured {
         let mut outcomes = Vec::new();
         for key in sample {
             let result = experiment.run(&key, &mut sessions, &STOP);
-            if STOP.load(Ordering::Relaxed) {
+            if is_stopped() {
                 return Err(Failure::Interrupted("stopped; nothing was written".to_owned()));
             }
             outcomes.push(Outcome { key, result });

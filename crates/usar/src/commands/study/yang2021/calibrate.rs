@@ -193,9 +193,7 @@ impl Arguments {
     ) -> Result<(), Failure> {
         let (Some(best), evaluations) = (log.best(), log.evaluations().len()) else { return Ok(()) };
         for (free, value) in calibration.free.iter().zip(&best.values) {
-            let [low, high] = free.ends();
-            let end = if free.is_at_end(*value) { "; it is at the end of its range" } else { "" };
-            writeln!(out, "{} = {value} (searched from {low} to {high}{end})", free.name)?;
+            writeln!(out, "{}", free.found(*value))?;
         }
         if log.evaluations().first().is_some_and(|first| first.values == best.values) {
             writeln!(out, "no candidate is nearer to the data than the start")?;
