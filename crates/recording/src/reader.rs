@@ -13,6 +13,7 @@ use crate::header::{Header, VERSION};
 use crate::rows::{MOTION_FIELDS, STREAMS};
 use crate::segment::Segment;
 use crate::trust::Trust;
+use crate::words::{Names, ToldEvent};
 
 /// A recording that was read from a file.
 #[derive(Debug, Clone, PartialEq)]
@@ -151,6 +152,16 @@ impl Recording {
                 at: 0,
                 reason: format!("frame {number} holds numbers that have no meaning"),
             }
+        })
+    }
+
+    /// The events in words.
+    pub fn told(&self) -> impl Iterator<Item = ToldEvent> + '_ {
+        let Header { dt_s, world, .. } = &self.header;
+        let tasks: Vec<&str> = world.tasks.iter().map(|task| task.name.as_str()).collect();
+        self.events.iter().map(move |(step, event)| {
+            let names = Names { tasks: &tasks, debris: &world.debris, zones: &world.zones };
+            ToldEvent::new(*step, *dt_s, event, names)
         })
     }
 

@@ -1,15 +1,15 @@
 //! The columns of the tables that a sweep writes, and what a row of each is.
 
-use exports::parquet::Kind::{self, Natural, Number, Text, Truth};
 use rne_core::TaskId;
 use rne_core::question::{Member, Question};
+use tables::Kind::{Natural, Number, Text, Truth};
+use tables::{About, Cell, Column, Columns, column};
 use usar_sim::event::ReturnCause;
 use usar_sim::hash::Link;
 use usar_sim::metrics::RoundRecord;
 use usar_sim::record::{RobotRecord, TrialRecord};
 use usar_sim::scenario::NeedFile;
 
-use super::column::{About, Cell, Column, Columns};
 use super::line::Finished;
 use super::summary::Summary;
 use crate::experiment::{Axis, Experiment};
@@ -57,16 +57,6 @@ pub(super) type MomentRow<'a> = Of<'a, Delivered>;
 
 /// A row of `hashes.csv`.
 pub(super) type LinkRow<'a> = Of<'a, &'a Link>;
-
-fn column<R, C: Into<Cell>>(
-    name: &str,
-    kind: Kind,
-    unit: &'static str,
-    meaning: &str,
-    read: impl Fn(&R) -> C + 'static,
-) -> Column<R> {
-    Column::new(About::new(name, kind, unit, meaning), read)
-}
 
 const POLICY: &str = "Label of the policy in the sweep.";
 const TRIAL: &str = "Number of the trial, from 1. Trials of the same number have the same seed, whatever the \
@@ -312,8 +302,7 @@ pub(super) fn series<'a>(metrics: &Catalogue) -> Columns<MomentRow<'a>> {
             if place == 0 { tasks.iter().sum::<usize>() as u64 } else { tasks[place - 1] as u64 }
         })
     });
-    let time =
-        column("time_s", Number, "s", "Simulated time.", |row: &MomentRow| Cell::short(Some(row.it.time_s)));
+    let time = column("time_s", Number, "s", "Simulated time.", |row: &MomentRow| Cell::short(row.it.time_s));
     with_trial(std::iter::once(time).chain(rescuees))
 }
 

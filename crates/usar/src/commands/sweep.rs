@@ -14,7 +14,6 @@ use experiments::experiment::{Experiment, Shard};
 use experiments::sweep::disk::trials_in;
 use experiments::sweep::folder::{Folder, Opening};
 use experiments::sweep::host::Hosts;
-use experiments::sweep::write_parquet;
 use reports::table::policy_table;
 use rne_core::Registry;
 
@@ -22,6 +21,7 @@ use self::precision::Precision;
 use crate::arguments::{MeasureArgument, ProgressArguments, Selection, ShownArguments, count};
 use crate::input::check_trials;
 use crate::output::print_table;
+use crate::parquets::write_parquets;
 use crate::recordings::{Recorded, record_trials};
 use crate::running::{STOP, stop_on_signals, tell};
 
@@ -137,7 +137,7 @@ impl Arguments {
         }
         folder.finish(&STOP)?;
         if self.tables == "parquet" {
-            write_parquet(&folder)?;
+            write_parquets(&folder)?;
         }
         if let Some(which) = &self.recordings {
             record_trials(&mut folder, which, &STOP)?;

@@ -5,9 +5,8 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use experiments::Failure;
 use experiments::files::NewFile;
-use exports::tables::Table;
 use exports::{ExportError, parquet};
-use recording::Recording;
+use recording::{Recording, Table};
 use rne_core::Registry;
 
 use crate::arguments::{TrialArguments, seconds};
@@ -73,7 +72,8 @@ pub(super) fn write_tables(
             Form::Csv => table.write_csv(&recording, every, file).map_err(failed)?,
             Form::Parquet => {
                 let rows = table.write_csv(&recording, every, Vec::new()).map_err(failed)?;
-                parquet::from_csv(&*rows, Table::kind, file).map_err(failed)?
+                let columns = table.columns(&recording.header.world.needs);
+                parquet::from_csv(&*rows, &columns, file).map_err(failed)?
             }
         };
         file.finish()?;
