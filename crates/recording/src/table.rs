@@ -4,8 +4,7 @@
 use std::io::{self, Write};
 
 use rne_core::{Member, Question, TaskId};
-use tables::Kind::{Natural, Number, Text, Truth};
-use tables::{About, Cell, Column, Columns, Csv, abouts, column};
+use tables::{About, Cell, Column, Columns, Csv, Kind, abouts, columns};
 use usar_sim::conflict::DelayCause;
 use usar_sim::scenario::{Measure, NeedFile};
 
@@ -44,6 +43,13 @@ struct GroupRow<'a> {
     group: &'a GroupFrame,
     members: usize,
     rescuees: &'a [RescueeFrame],
+}
+
+impl GroupRow<'_> {
+    /// Number of the task's rescuees in a state.
+    fn rescuees(&self, state: u8) -> usize {
+        self.rescuees.iter().filter(|rescuee| rescuee.state == state).count()
+    }
 }
 
 /// A row of the table of events.
@@ -154,7 +160,7 @@ fn of_needs<R>(
             _ => ("", ""),
         };
         let meaning = format!("The need {:?} as it really was, in the units of the scenario.", need.name);
-        let about = About::new(format!("need_{}{ending}", need.name), Number, unit, meaning);
+        let about = About::new(format!("need_{}{ending}", need.name), Kind::Number, unit, meaning);
         Column::new(about, move |row: &R| Cell::short(read(row).get(place).copied()))
     })
 }
@@ -163,54 +169,34 @@ fn robots<'a>(needs: &[NeedFile]) -> Columns<RobotRow<'a>> {
     let activity = format!("What the robot does: {}.", ACTIVITIES.join(", "));
     let delay = format!("Why it does not move on: {}.", DelayCause::ALL.map(DelayCause::name).join(", "));
     let condition = format!("Whether it can still act: {}.", CONDITIONS.join(", "));
-    let mut columns = vec![
-        column("time_s", Number, "s", TIME, |row: &RobotRow| time(row.time_s)),
-        column("robot", Natural, "", ROBOT, |row: &RobotRow| row.id),
-        column("role", Text, "", ROLE, |row: &RobotRow| {
+    let mut columns = columns! { RobotRow:
+        "time_s", Number, "s", TIME, |row| time(row.time_s);
+        "robot", Natural, "", ROBOT, |row| row.id;
+        "role", Text, "", ROLE, |row| {
             let world = &row.header.world;
             world.roles[world.robots[row.id].role].name.clone()
-        }),
-        column("task", Text, "", "Task of its group; empty for none.", |row: &RobotRow| {
+        };
+        "task", Text, "", "Task of its group; empty for none.", |row| {
             let task = row.robot.state.task.and_then(|task| row.header.world.tasks.get(task as usize));
             task.map(|task| task.name.clone())
-        }),
-        column("activity", Text, "", &activity, |row: &RobotRow| {
-            row.header.codes.activities[usize::from(row.robot.state.activity)].clone()
-        }),
-        column("delay", Text, "", &delay, |row: &RobotRow| {
-            row.header.codes.delays[usize::from(row.robot.state.delay)].clone()
-        }),
-        column("waits_for", Natural, "", "The robot that it waits for; empty for none.", |row: &RobotRow| {
-            row.robot.state.waits_for
-        }),
-        column("condition", Text, "", &condition, |row: &RobotRow| {
-            row.header.codes.conditions[usize::from(row.robot.state.condition)].clone()
-        }),
-        column("x_m", Number, "m", "x of its centre.", |row: &RobotRow| {
-            thousandth(row.robot.motion.position_mm[0])
-        }),
-        column("y_m", Number, "m", "y of its centre.", |row: &RobotRow| {
-            thousandth(row.robot.motion.position_mm[1])
-        }),
-        column("vx_mps", Number, "m/s", "x of its velocity.", |row: &RobotRow| {
-            thousandth(row.robot.motion.velocity_mm_s[0])
-        }),
-        column("vy_mps", Number, "m/s", "y of its velocity.", |row: &RobotRow| {
-            thousandth(row.robot.motion.velocity_mm_s[1])
-        }),
-        column("energy_percent", Number, "%", "Its battery level.", |row: &RobotRow| {
-            thousandth(row.robot.motion.energy_millipercent)
-        }),
-        column("hp_percent", Number, "%", "Its health level.", |row: &RobotRow| {
-            thousandth(row.robot.motion.hp_millipercent)
-        }),
-        column("resources", Natural, "", "Rescuing resources that it has left.", |row: &RobotRow| {
-            row.robot.state.resources
-        }),
-        column("on_board", Natural, "rescuees", "Rescuees that it has on board.", |row: &RobotRow| {
-            row.robot.state.load
-        }),
-    ];
+        };
+        "activity", Text, "", &activity,
+            |row| row.header.codes.activities[usize::from(row.robot.state.activity)].clone();
+        "delay", Text, "", &delay, |row| row.header.codes.delays[usize::from(row.robot.state.delay)].clone();
+        "waits_for", Natural, "", "The robot that it waits for; empty for none.",
+            |row| row.robot.state.waits_for;
+        "condition", Text, "", &condition,
+            |row| row.header.codes.conditions[usize::from(row.robot.state.condition)].clone();
+        "x_m", Number, "m", "x of its centre.", |row| thousandth(row.robot.motion.position_mm[0]);
+        "y_m", Number, "m", "y of its centre.", |row| thousandth(row.robot.motion.position_mm[1]);
+        "vx_mps", Number, "m/s", "x of its velocity.", |row| thousandth(row.robot.motion.velocity_mm_s[0]);
+        "vy_mps", Number, "m/s", "y of its velocity.", |row| thousandth(row.robot.motion.velocity_mm_s[1]);
+        "energy_percent", Number, "%", "Its battery level.",
+            |row| thousandth(row.robot.motion.energy_millipercent);
+        "hp_percent", Number, "%", "Its health level.", |row| thousandth(row.robot.motion.hp_millipercent);
+        "resources", Natural, "", "Rescuing resources that it has left.", |row| row.robot.state.resources;
+        "on_board", Natural, "rescuees", "Rescuees that it has on board.", |row| row.robot.state.load;
+    };
     columns.extend(of_needs(needs, |row: &RobotRow| &row.needs));
     columns
 }
@@ -223,29 +209,19 @@ fn robot_rows<'a>(header: &'a Header, frame: &'a Frame, time_s: f64) -> impl Ite
 }
 
 fn groups<'a>() -> Columns<GroupRow<'a>> {
-    let with = |name, state: u8, meaning| {
-        column(name, Natural, "rescuees", meaning, move |row: &GroupRow| {
-            row.rescuees.iter().filter(|rescuee| rescuee.state == state).count()
-        })
-    };
-    vec![
-        column("time_s", Number, "s", TIME, |row: &GroupRow| time(row.time_s)),
-        column("task", Text, "", "Task of the group.", |row: &GroupRow| row.task.name.clone()),
-        column("is_at_work", Truth, "", "Whether the group has work to do.", |row: &GroupRow| {
-            row.group.is_at_work
-        }),
-        column("members", Natural, "robots", "Members of the group.", |row: &GroupRow| row.members),
-        with("waiting", 0, "Rescuees of the task that wait, unclaimed."),
-        with("claimed", 1, "Rescuees of the task that wait for a robot that has claimed them."),
-        with("on_board", 2, "Rescuees of the task on board of a robot."),
-        with("delivered", 3, "Rescuees of the task that were delivered."),
-        column("debris_known", Natural, "", "Pieces of debris that the group knows.", |row: &GroupRow| {
-            row.group.debris.len()
-        }),
-        column("zones_known", Natural, "", "Radiation zones that the group knows.", |row: &GroupRow| {
-            row.group.zones.len()
-        }),
-    ]
+    columns! { GroupRow:
+        "time_s", Number, "s", TIME, |row| time(row.time_s);
+        "task", Text, "", "Task of the group.", |row| row.task.name.clone();
+        "is_at_work", Truth, "", "Whether the group has work to do.", |row| row.group.is_at_work;
+        "members", Natural, "robots", "Members of the group.", |row| row.members;
+        "waiting", Natural, "rescuees", "Rescuees of the task that wait, unclaimed.", |row| row.rescuees(0);
+        "claimed", Natural, "rescuees", "Rescuees of the task that wait for a robot that has claimed them.",
+            |row| row.rescuees(1);
+        "on_board", Natural, "rescuees", "Rescuees of the task on board of a robot.", |row| row.rescuees(2);
+        "delivered", Natural, "rescuees", "Rescuees of the task that were delivered.", |row| row.rescuees(3);
+        "debris_known", Natural, "", "Pieces of debris that the group knows.", |row| row.group.debris.len();
+        "zones_known", Natural, "", "Radiation zones that the group knows.", |row| row.group.zones.len();
+    }
 }
 
 fn group_rows<'a>(header: &'a Header, frame: &'a Frame, time_s: f64) -> impl Iterator<Item = GroupRow<'a>> {
@@ -258,46 +234,33 @@ fn group_rows<'a>(header: &'a Header, frame: &'a Frame, time_s: f64) -> impl Ite
 
 fn events<'a>() -> Columns<EventRow<'a>> {
     let robots = "Numbers of the robots that it is about, with blanks between them.";
-    vec![
-        column("time_s", Number, "s", TIME, |row: &EventRow| time(row.event.time_s)),
-        column("step", Natural, "steps", "The step at whose end it had happened.", |row: &EventRow| {
-            row.event.step
-        }),
-        column("event", Text, "", "Its kind; docs/events.md lists the kinds.", |row: &EventRow| {
-            row.event.event.clone()
-        }),
-        column("robots", Text, "", robots, |row: &EventRow| {
-            row.event.robots().iter().map(u64::to_string).collect::<Vec<_>>().join(" ")
-        }),
-        column("task", Text, "", "The task that it is about; empty for none.", |row: &EventRow| {
+    columns! { EventRow:
+        "time_s", Number, "s", TIME, |row| time(row.event.time_s);
+        "step", Natural, "steps", "The step at whose end it had happened.", |row| row.event.step;
+        "event", Text, "", "Its kind; docs/events.md lists the kinds.", |row| row.event.event.clone();
+        "robots", Text, "", robots,
+            |row| row.event.robots().iter().map(u64::to_string).collect::<Vec<_>>().join(" ");
+        "task", Text, "", "The task that it is about; empty for none.", |row| {
             let task = row.event.number("task").and_then(|task| row.header.world.tasks.get(task as usize));
             task.map(|task| task.name.clone())
-        }),
-        column("rescuee", Natural, "", "The rescuee that it is about; empty for none.", |row: &EventRow| {
-            row.event.number("rescuee")
-        }),
-        column("words", Text, "", "It in a sentence.", |row: &EventRow| row.event.says.clone()),
-    ]
+        };
+        "rescuee", Natural, "", "The rescuee that it is about; empty for none.",
+            |row| row.event.number("rescuee");
+        "words", Text, "", "It in a sentence.", |row| row.event.says.clone();
+    }
 }
 
 fn decisions<'a>(needs: &[NeedFile]) -> Columns<DecisionRow<'a>> {
-    let mut columns = vec![
-        column("time_s", Number, "s", TIME, |row: &DecisionRow| time(row.time_s)),
-        column("round", Natural, "", "Number of the round, from 1.", |row: &DecisionRow| row.question.round),
-        column("robot", Natural, "", ROBOT, |row: &DecisionRow| row.member.id),
-        column("role", Text, "", ROLE, |row: &DecisionRow| {
-            row.question.roles[row.member.role.index()].clone()
-        }),
-        column("task", Text, "", "Task to which it was assigned.", |row: &DecisionRow| {
-            row.question.tasks[row.task.index()].name.clone()
-        }),
-        column("energy_percent", Number, "%", "Its battery level.", |row: &DecisionRow| {
-            Cell::short(row.member.energy_level)
-        }),
-        column("hp_percent", Number, "%", "Its health level.", |row: &DecisionRow| {
-            Cell::short(row.member.hp_level)
-        }),
-    ];
+    let mut columns = columns! { DecisionRow:
+        "time_s", Number, "s", TIME, |row| time(row.time_s);
+        "round", Natural, "", "Number of the round, from 1.", |row| row.question.round;
+        "robot", Natural, "", ROBOT, |row| row.member.id;
+        "role", Text, "", ROLE, |row| row.question.roles[row.member.role.index()].clone();
+        "task", Text, "", "Task to which it was assigned.",
+            |row| row.question.tasks[row.task.index()].name.clone();
+        "energy_percent", Number, "%", "Its battery level.", |row| Cell::short(row.member.energy_level);
+        "hp_percent", Number, "%", "Its health level.", |row| Cell::short(row.member.hp_level);
+    };
     columns.extend(of_needs(needs, |row: &DecisionRow| row.member.needs.values()));
     columns
 }

@@ -70,15 +70,15 @@ impl<R> Column<R> {
     }
 }
 
-/// A column with this name, type, unit and meaning, of which `read` gives the cell of a row.
-pub fn column<R, C: Into<Cell>>(
-    name: &str,
-    kind: Kind,
-    unit: &'static str,
-    meaning: &str,
-    read: impl Fn(&R) -> C + 'static,
-) -> Column<R> {
-    Column::new(About::new(name, kind, unit, meaning), read)
+/// The columns of a table with rows of this type: name, kind, unit, meaning, and how a row is read.
+#[macro_export]
+macro_rules! columns {
+    ($row:ty: $($name:expr, $kind:ident, $unit:expr, $meaning:expr, |$it:ident| $read:expr;)+) => {
+        vec![$($crate::Column::new(
+            $crate::About::new($name, $crate::Kind::$kind, $unit, $meaning),
+            |$it: &$row| $read,
+        )),+]
+    };
 }
 
 /// What a table says of its columns.

@@ -2,13 +2,13 @@
 //! its dictionary and its other forms follow from it.
 //!
 //! ```
-//! use tables::{Cell, Columns, Csv, Kind, abouts, column};
+//! use tables::{Cell, Columns, Csv, abouts, columns};
 //!
 //! let squares = || -> Columns<u32> {
-//!     vec![
-//!         column("side_m", Kind::Natural, "m", "Length of a side.", |side: &u32| *side),
-//!         column("half_m", Kind::Number, "m", "Half of it.", |side| Cell::short(f64::from(*side) / 2.0)),
-//!     ]
+//!     columns! { u32:
+//!         "side_m", Natural, "m", "Length of a side.", |side| *side;
+//!         "half_m", Number, "m", "Half of it.", |side| Cell::short(f64::from(*side) / 2.0);
+//!     }
 //! };
 //! let mut csv = Csv::new(Vec::new());
 //! csv.add_names(&abouts(squares()))?;
@@ -21,6 +21,6 @@ mod column;
 mod page;
 mod rows;
 
-pub use column::{About, Cell, Column, Columns, Kind, abouts, column};
+pub use column::{About, Cell, Column, Columns, Kind, abouts};
 pub use page::section;
 pub use rows::Csv;

@@ -1,15 +1,12 @@
 //! `usar export csv`: the tables of a trial as CSV.
 
 use std::io::Write;
-use std::path::PathBuf;
 
 use clap::Args;
 use experiments::Failure;
 use rne_core::Registry;
 
-use super::trial::{Form, RecordedArguments, write_tables};
-use crate::arguments::ReplaceArgument;
-use crate::output::make_folder;
+use super::trial::{Form, TablesArguments};
 
 /// Write the tables of a trial as CSV
 #[derive(Debug, Args)]
@@ -21,18 +18,11 @@ Examples:
   usar export csv results/paper --policy DIS --seed 3 --out dis")]
 pub(crate) struct Arguments {
     #[command(flatten)]
-    recorded: RecordedArguments,
-    /// File or folder to write
-    #[arg(long, value_name = "FOLDER")]
-    out: PathBuf,
-    #[command(flatten)]
-    replace: ReplaceArgument,
+    tables: TablesArguments,
 }
 
 impl Arguments {
     pub(crate) fn execute(&self, registry: &Registry, out: &mut dyn Write) -> Result<(), Failure> {
-        make_folder(&self.out, self.replace.force)?;
-        write_tables(&self.recorded, &self.out, Form::Csv, registry)?;
-        Ok(writeln!(out, "{}", self.out.display())?)
+        self.tables.write(Form::Csv, registry, out)
     }
 }

@@ -1,5 +1,6 @@
 //! A recorded trial for other programs.
 
+use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
@@ -9,7 +10,8 @@ use exports::{ExportError, parquet};
 use recording::{Recording, Table};
 use rne_core::Registry;
 
-use crate::arguments::{TrialArguments, seconds};
+use crate::arguments::{ReplaceArgument, TrialArguments, seconds};
+use crate::output::make_folder;
 
 /// A recorded trial, or one that is recorded now.
 #[derive(Debug, Args)]
@@ -55,28 +57,38 @@ pub(super) enum Form {
     Parquet,
 }
 
-/// Writes all tables of a trial to a folder.
-pub(super) fn write_tables(
-    recorded: &RecordedArguments,
-    folder: &Path,
-    form: Form,
-    registry: &Registry,
-) -> Result<(), Failure> {
-    let (recording, every) = recorded.read(registry)?;
-    for table in Table::ALL {
-        let ending = if form == Form::Csv { "csv" } else { "parquet" };
-        let name = format!("{}.{ending}", table.name());
-        let file = NewFile::new(folder, &name)?;
-        let failed = |error: ExportError| failed(&folder.join(&name), &error);
-        let file = match form {
-            Form::Csv => table.write_csv(&recording, every, file).map_err(failed)?,
-            Form::Parquet => {
-                let rows = table.write_csv(&recording, every, Vec::new()).map_err(failed)?;
-                let columns = table.columns(&recording.header.world.needs);
-                parquet::from_csv(&*rows, &columns, file).map_err(failed)?
-            }
-        };
-        file.finish()?;
+/// A recorded trial, and a folder for its tables.
+#[derive(Debug, Args)]
+pub(super) struct TablesArguments {
+    #[command(flatten)]
+    recorded: RecordedArguments,
+    /// File or folder to write
+    #[arg(long, value_name = "FOLDER")]
+    out: PathBuf,
+    #[command(flatten)]
+    replace: ReplaceArgument,
+}
+
+impl TablesArguments {
+    /// Writes all tables of the trial.
+    pub(super) fn write(&self, form: Form, registry: &Registry, out: &mut dyn Write) -> Result<(), Failure> {
+        make_folder(&self.out, self.replace.force)?;
+        let (recording, every) = self.recorded.read(registry)?;
+        for table in Table::ALL {
+            let ending = if form == Form::Csv { "csv" } else { "parquet" };
+            let name = format!("{}.{ending}", table.name());
+            let file = NewFile::new(&self.out, &name)?;
+            let failed = |error: ExportError| failed(&self.out.join(&name), &error);
+            let file = match form {
+                Form::Csv => table.write_csv(&recording, every, file).map_err(failed)?,
+                Form::Parquet => {
+                    let rows = table.write_csv(&recording, every, Vec::new()).map_err(failed)?;
+                    let columns = table.columns(&recording.header.world.needs);
+                    parquet::from_csv(&*rows, &columns, file).map_err(failed)?
+                }
+            };
+            file.finish()?;
+        }
+        Ok(writeln!(out, "{}", self.out.display())?)
     }
-    Ok(())
 }
