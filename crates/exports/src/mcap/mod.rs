@@ -40,6 +40,14 @@ const WARNINGS: [&str; 6] = ["stranded", "disabled", "deadlocked", "unreachable"
 /// The recording cannot be read, or the log cannot be written.
 pub fn write<W: Write>(recording: &Recording, every: usize, out: W) -> Result<W, ExportError> {
     let mut channels = Channels::begin(out, recording)?;
+    if recording.frames() > 0 {
+        let first = recording.frame(0)?;
+        for (id, robot) in first.robots.iter().enumerate() {
+            let message = robot_message(recording, id, robot);
+            channels.add_json(Channel::Robot(id), &format!("/robot/{id}"), "usar.Robot", &message)?;
+        }
+        channels.add_json(Channel::Team, "/team", "usar.Team", &team_message(recording, &first))?;
+    }
     let mut told = recording.told().peekable();
     let mut before: Option<Frame> = None;
     for number in (0..recording.frames()).step_by(every.max(1)) {
