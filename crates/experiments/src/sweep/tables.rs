@@ -63,7 +63,7 @@ pub struct Described {
     pub columns: Vec<About>,
 }
 
-/// The tables that a sweep may have, in the order of [`TABLES`].
+/// The tables that a sweep may have, from those that every sweep keeps to those that take the most room.
 #[must_use]
 pub fn described(experiment: &Experiment) -> [Described; TABLES.len()] {
     let of = |place: usize, own: Vec<About>| Described {
