@@ -6,6 +6,7 @@ mod cli;
 mod commands;
 mod input;
 mod output;
+mod parquets;
 mod prelude;
 mod printable;
 mod recordings;

@@ -11,8 +11,8 @@ use store::owned::names_in;
 use store::{Failure, at, refuse};
 use tempfile::{SpooledTempFile, spooled_tempfile_in};
 
-use super::names::{INPUTS, MANIFEST, PARQUETS, PLOTS, RECORDINGS, REPORT};
-use super::tables::TABLES;
+use super::names::{INPUTS, MANIFEST, PLOTS, RECORDINGS, REPORT};
+use super::tables::{PARQUETS, TABLES};
 use super::{host, journal};
 
 /// The file that lists the names of the files that a report wrote, one on each line, relative to the

@@ -10,12 +10,12 @@ use experiments::experiment::{Experiment, Shard};
 use experiments::sweep::disk::trials_in;
 use experiments::sweep::folder::{Folder, Opening};
 use experiments::sweep::host::Hosts;
-use experiments::sweep::write_parquet;
 use reports::table::policy_table;
 
 use self::precision::Precision;
 use crate::arguments::{MeasureArgument, ProgressArguments, Selection, ShownArguments, count};
 use crate::input::check_trials;
+use crate::parquets::write_parquets;
 use crate::prelude::*;
 use crate::recordings::{Recorded, record_trials};
 
@@ -128,7 +128,7 @@ impl Arguments {
         }
         folder.finish(&STOP)?;
         if self.tables == "parquet" {
-            write_parquet(&folder)?;
+            write_parquets(&folder)?;
         }
         if let Some(which) = &self.recordings {
             record_trials(&mut folder, which, &STOP)?;

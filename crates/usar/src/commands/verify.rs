@@ -11,6 +11,7 @@ use experiments::sweep::folder::Folder;
 use rne_core::Basis;
 
 use crate::arguments::{ProgressArguments, count};
+use crate::parquets::strange_parquets;
 use crate::prelude::*;
 
 /// Run a finished sweep again: do the numbers come out again?
@@ -61,7 +62,8 @@ impl Arguments {
         self.mention_other_program(&experiment, &manifest)?;
         let mut differences = self.run_again(&mut folder, chosen)?;
         differences.sort();
-        let strange = strange_files(&mut folder)?;
+        let mut strange = strange_files(&mut folder)?;
+        strange.extend(strange_parquets(&folder)?);
         let of_all = if count < all.len() { format!(" (of {})", all.len()) } else { String::new() };
         let verdict = match differences.first() {
             None => format!("{count} of {count} trials{of_all} match, step by step and number by number"),

@@ -1,6 +1,10 @@
 //! `usar export csv` and `usar export parquet`: the tables of a trial as CSV or as Parquet.
 
-use super::trial::{Form, RecordedArguments, write_tables};
+use experiments::files::NewFile;
+use exports::{ExportError, parquet};
+use recording::Table;
+
+use super::trial::{RecordedArguments, failed};
 use crate::arguments::ReplaceArgument;
 use crate::prelude::*;
 
@@ -30,8 +34,20 @@ pub(crate) struct Arguments<const IS_PARQUET: bool> {
 impl<const IS_PARQUET: bool> Arguments<IS_PARQUET> {
     pub(crate) fn execute(&self, registry: &Registry, out: &mut dyn Write) -> Result<(), Failure> {
         make_folder(&self.out, self.replace.force)?;
-        let form = if IS_PARQUET { Form::Parquet } else { Form::Csv };
-        write_tables(&self.recorded, &self.out, form, registry)?;
+        let (recording, every) = self.recorded.read(registry)?;
+        for table in Table::ALL {
+            let name = format!("{}.{}", table.name(), if IS_PARQUET { "parquet" } else { "csv" });
+            let file = NewFile::new(&self.out, &name)?;
+            let failed = |error: ExportError| failed(&self.out.join(&name), &error);
+            let file = if IS_PARQUET {
+                let rows = table.write_csv(&recording, every, Vec::new()).map_err(failed)?;
+                let columns = table.columns(&recording.header.world.needs);
+                parquet::from_csv(&*rows, &columns, file).map_err(failed)?
+            } else {
+                table.write_csv(&recording, every, file).map_err(failed)?
+            };
+            file.finish()?;
+        }
         Ok(writeln!(out, "{}", self.out.display())?)
     }
 }
