@@ -4,7 +4,7 @@ use std::path::Path;
 
 use csv::StringRecord;
 use ron_tree::file::read_text;
-use store::Failure;
+use store::{Failure, refuse};
 
 use crate::limits::{COLUMNS, TABLE_ROWS};
 
@@ -24,32 +24,27 @@ impl InputTable {
     /// twice.
     pub fn read(path: &Path) -> Result<Self, Failure> {
         let shown = path.display();
-        let bad = |reason: &dyn std::fmt::Display| Failure::input(format!("{shown}: {reason}"));
-        let text = read_text(path).map_err(|error| bad(&error))?;
+        let text = read_text(path).map_err(Failure::input_at(path.display()))?;
         let text = text.as_str();
         let mut reader =
             csv::ReaderBuilder::new().trim(csv::Trim::All).flexible(true).from_reader(text.as_bytes());
-        let header = reader.headers().map_err(|error| bad(&error))?.clone();
+        let header = reader.headers().map_err(Failure::input_at(path.display()))?.clone();
         let (columns, most) = (header.len(), COLUMNS.most);
         if columns > COLUMNS.count() {
-            return Err(Failure::input(format!(
-                "{shown}:1: must have at most {most} columns, found {columns}"
-            )));
+            refuse!("{shown}:1: must have at most {most} columns, found {columns}");
         }
         let mut rows = Vec::new();
         let mut lines = Lines { text, upto: 0, line: 1 };
         for row in reader.records() {
-            let row = row.map_err(|error| bad(&error))?;
+            let row = row.map_err(Failure::input_at(path.display()))?;
             let line = lines.of(&row);
             if row.len() != header.len() {
                 let (cells, columns) = (row.len(), header.len());
-                return Err(Failure::input(format!(
-                    "{shown}:{line}: must have a cell for each of the {columns} columns, found {cells}"
-                )));
+                refuse!("{shown}:{line}: must have a cell for each of the {columns} columns, found {cells}");
             }
             rows.push((line, row));
             if rows.len() > TABLE_ROWS.count() {
-                return Err(bad(&format_args!("must have at most {} rows", TABLE_ROWS.most)));
+                refuse!("{shown}: must have at most {} rows", TABLE_ROWS.most);
             }
         }
         let table = Self { header, rows };

@@ -37,7 +37,7 @@ pub mod sweep;
 pub mod why;
 
 pub use panics::{note_panic, panic_message};
-pub use store::{Failure, files};
+pub use store::{Failure, files, refuse};
 
 /// The programs in the README compile and run.
 #[cfg(doctest)]

@@ -2,9 +2,8 @@
 
 use ron_tree::Node;
 use serde::{Deserialize, Serialize};
-use store::Failure;
 use store::files::FileHash;
-use thiserror::Error;
+use store::{Failure, refuse};
 use usar_sim::physics::ENGINE_FEATURES;
 use xxhash_rust::xxh3::xxh3_128;
 
@@ -61,41 +60,6 @@ pub struct Manifest {
     checksum: String,
 }
 
-/// Why a text is no manifest of a sweep.
-#[derive(Debug, Error)]
-pub enum ManifestError {
-    /// It has another form.
-    #[error(transparent)]
-    Malformed(#[from] serde_json::Error),
-    /// It cannot be written for comparison.
-    #[error(transparent)]
-    Unwritable(#[from] Failure),
-    /// Another version of the program made the folder.
-    #[error("its layout has version {found}; this program reads version {SCHEMA_VERSION}")]
-    OtherLayout {
-        /// The version.
-        found: u32,
-    },
-    /// It was changed.
-    #[error("its checksum does not match: it was changed")]
-    Changed,
-    /// There is no such shard.
-    #[error("it is of {part}, which no sweep has")]
-    NoSuchShard {
-        /// The shard, in words.
-        part: String,
-    },
-    /// The number of trials is out of range.
-    #[error("trials: must be from 1 to {MAX_TRIALS}, found {found}")]
-    Trials {
-        /// The number.
-        found: u32,
-    },
-    /// Its files are not those of a sweep.
-    #[error("it does not list the files of a sweep")]
-    OtherFiles,
-}
-
 impl Manifest {
     /// The manifest of an experiment that is not complete yet.
     #[must_use]
@@ -137,24 +101,24 @@ impl Manifest {
     ///
     /// # Errors
     /// The text is not a manifest or was changed.
-    pub fn parse(text: &[u8]) -> Result<Self, ManifestError> {
+    pub fn parse(text: &[u8]) -> Result<Self, Failure> {
         #[derive(Deserialize)]
         struct Layout {
             schema_version: u32,
         }
-        let Layout { schema_version: found } = serde_json::from_slice(text)?;
+        let Layout { schema_version: found } = serde_json::from_slice(text).map_err(Failure::input)?;
         if found != SCHEMA_VERSION {
-            return Err(ManifestError::OtherLayout { found });
+            refuse!("its layout has version {found}; this program reads version {SCHEMA_VERSION}");
         }
-        let mut manifest: Self = serde_json::from_slice(text)?;
+        let mut manifest: Self = serde_json::from_slice(text).map_err(Failure::input)?;
         if manifest.text()?.as_bytes() != text {
-            return Err(ManifestError::Changed);
+            refuse!("its checksum does not match: it was changed");
         }
         if manifest.shard.is_some_and(|shard| !(1..=shard.of).contains(&shard.number)) {
-            return Err(ManifestError::NoSuchShard { part: manifest.part() });
+            refuse!("it is of {}, which no sweep has", manifest.part());
         }
         if !(1..=MAX_TRIALS).contains(&manifest.trials) {
-            return Err(ManifestError::Trials { found: manifest.trials });
+            refuse!("trials: must be from 1 to {MAX_TRIALS}, found {}", manifest.trials);
         }
         manifest.checksum.clear();
         Ok(manifest)

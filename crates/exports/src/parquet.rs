@@ -8,6 +8,7 @@ use parquet::data_type::{BoolType, ByteArray, ByteArrayType, DoubleType, Int64Ty
 use parquet::file::properties::WriterProperties;
 use parquet::file::writer::{SerializedColumnWriter, SerializedFileWriter};
 use parquet::schema::types::Type;
+use tables::{About, Kind};
 
 use crate::error::ExportError;
 
@@ -16,32 +17,16 @@ const ROWS: usize = 1 << 16;
 /// The column by whose values rows are grouped.
 const CASE: &str = "case";
 
-/// The type of a table's column. In any column, an empty cell is a missing value.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Kind {
-    /// Whole numbers from 0 on.
-    Natural,
-    /// Numbers.
-    Number,
-    /// `true` or `false`.
-    Truth,
-    /// Texts.
-    Text,
-}
-
-/// Writes a CSV table with a header as Parquet. `kind` gives the type of each column by its name. The same
+/// Writes a CSV table with a header as Parquet. A column that is none of `columns` is one of texts. The same
 /// table gives the same bytes.
 ///
 /// # Errors
 /// The table cannot be read, a cell is not of its column's kind, or the file cannot be written.
-pub fn from_csv<W: Write + Send>(
-    table: impl Read,
-    kind: impl Fn(&str) -> Kind,
-    out: W,
-) -> Result<W, ExportError> {
+pub fn from_csv<W: Write + Send>(table: impl Read, columns: &[About], out: W) -> Result<W, ExportError> {
     let mut reader = csv::Reader::from_reader(table);
     let names: Vec<String> = reader.headers()?.iter().map(str::to_owned).collect();
-    let kinds: Vec<Kind> = names.iter().map(|name| kind(name)).collect();
+    let about = |name: &String| columns.iter().find(|about| about.name == *name);
+    let kinds: Vec<Kind> = names.iter().map(|name| about(name).map_or(Kind::Text, |it| it.kind)).collect();
     let properties = WriterProperties::builder()
         .set_created_by(format!("usar {}", env!("CARGO_PKG_VERSION")))
         .set_compression(Compression::SNAPPY)

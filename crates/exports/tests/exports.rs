@@ -4,16 +4,16 @@ use std::collections::BTreeMap;
 use std::io::Write;
 use std::path::Path;
 
-use exports::parquet::{Kind, from_csv};
-use exports::tables::Table;
+use exports::parquet::from_csv;
 use exports::{ExportError, mcap};
 use foxglove::Decode;
 use foxglove::messages::{FrameTransforms, PointCloud, SceneEntity, SceneUpdate};
 use parquet::file::metadata::RowGroupMetaData;
 use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::record::Field;
-use recording::{Options, Recording, record};
+use recording::{Options, Recording, Table, record};
 use serde_json::Value;
+use tables::{About, Kind};
 use usar_sim::scenario::Scenario;
 use usar_sim::simulation::Simulation;
 
@@ -124,10 +124,11 @@ fn tables_are_tidy_and_parquet_has_the_same_cells() {
     let recording = recorded("three-tasks.ron", 60.0);
     let world = &recording.header.world;
     for table in Table::ALL {
-        let csv = table.write_csv(&recording, 10, Vec::new()).unwrap();
+        let csv = table.write_csv::<_, ExportError>(&recording, 10, Vec::new()).unwrap();
+        let columns = table.columns(&world.needs);
         let mut reader = csv::Reader::from_reader(&*csv);
         let header = reader.headers().unwrap().clone();
-        assert!(header.iter().eq(table.columns(world).iter().map(String::as_str)), "{header:?}");
+        assert!(header.iter().eq(columns.iter().map(|about| about.name.as_str())), "{header:?}");
         let rows: Vec<csv::StringRecord> = reader.records().map(Result::unwrap).collect();
         let frames = recording.frames().div_ceil(10);
         let expected = match table {
@@ -139,14 +140,14 @@ fn tables_are_tidy_and_parquet_has_the_same_cells() {
             }
         };
         assert_eq!(rows.len(), expected, "{}", table.name());
-        let written = from_csv(&*csv, Table::kind, Vec::new()).unwrap();
-        assert_eq!(written, from_csv(&*csv, Table::kind, Vec::new()).unwrap(), "the same bytes every time");
+        let written = from_csv(&*csv, &columns, Vec::new()).unwrap();
+        assert_eq!(written, from_csv(&*csv, &columns, Vec::new()).unwrap(), "the same bytes every time");
         let mut file = tempfile::tempfile().unwrap();
         file.write_all(&written).unwrap();
         let read = SerializedFileReader::new(file).unwrap();
         for (row, cells) in read.get_row_iter(None).unwrap().zip(&rows) {
-            for ((name, field), cell) in row.unwrap().get_column_iter().zip(cells) {
-                let is_same = match (Table::kind(name), field) {
+            for (((name, field), cell), about) in row.unwrap().get_column_iter().zip(cells).zip(&columns) {
+                let is_same = match (about.kind, field) {
                     (_, Field::Null) => cell.is_empty(),
                     (Kind::Natural, Field::ULong(value)) => value.to_string() == cell,
                     (Kind::Number, Field::Double(value)) => value.to_string() == cell,
@@ -164,7 +165,8 @@ fn tables_are_tidy_and_parquet_has_the_same_cells() {
 #[test]
 fn a_cell_that_is_not_of_its_kind_is_named() {
     let table = "a,b\n1,2\n,x\n";
-    let error = from_csv(table.as_bytes(), |_| Kind::Natural, Vec::new()).unwrap_err();
+    let columns = ["a", "b"].map(|name| About::new(name, Kind::Natural, "", ""));
+    let error = from_csv(table.as_bytes(), &columns, Vec::new()).unwrap_err();
     assert!(matches!(error, ExportError::Cell { row: 2, .. }), "{error}");
     assert_eq!(error.to_string(), "row 2: column b: must be a whole number, found \"x\"");
 }
@@ -172,7 +174,8 @@ fn a_cell_that_is_not_of_its_kind_is_named() {
 #[test]
 fn the_rows_of_a_case_are_row_groups_of_their_own() {
     let table = "case,x\n1,0.5\n1,1.5\n2,2.5\n3,3.5\n3,4.5\n3,5.5\n";
-    let written = from_csv(table.as_bytes(), |_| Kind::Number, Vec::new()).unwrap();
+    let columns = ["case", "x"].map(|name| About::new(name, Kind::Number, "", ""));
+    let written = from_csv(table.as_bytes(), &columns, Vec::new()).unwrap();
     let mut file = tempfile::tempfile().unwrap();
     file.write_all(&written).unwrap();
     let read = SerializedFileReader::new(file).unwrap();

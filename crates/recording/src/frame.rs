@@ -32,6 +32,163 @@ pub(crate) const CONDITIONS: [&str; 3] = ["able", "stranded", "disabled"];
 /// Names of the states of rescuees, in the order of their numbers.
 pub(crate) const RESCUEE_STATES: [&str; 5] = ["waiting", "claimed", "on_board", "delivered", "absent"];
 
+/// What is stored as whole numbers, always the same count of them.
+pub(crate) trait Stored: Sized {
+    /// Names of its numbers, if the header lists them.
+    const NAMES: &'static [&'static str] = &[];
+
+    /// Appends its numbers.
+    fn write(self, out: &mut Vec<i32>);
+
+    /// Reads its numbers from a row.
+    fn next(row: &mut Row) -> Result<Self, NotNumbers>;
+
+    /// Reads the numbers of a whole row.
+    fn read(numbers: &[i32]) -> Result<Self, NotNumbers> {
+        row(numbers, Self::next)
+    }
+}
+
+/// Reads the numbers of a row, one after the other.
+pub(crate) struct Row<'r>(std::slice::Iter<'r, i32>);
+
+impl Row<'_> {
+    fn next<T: Stored>(&mut self) -> Result<T, NotNumbers> {
+        T::next(self)
+    }
+
+    fn is_over(&self) -> bool {
+        self.0.len() == 0
+    }
+}
+
+fn row<T>(numbers: &[i32], read: impl FnOnce(&mut Row) -> Result<T, NotNumbers>) -> Result<T, NotNumbers> {
+    let mut row = Row(numbers.iter());
+    let value = read(&mut row)?;
+    if row.is_over() { Ok(value) } else { Err(NotNumbers) }
+}
+
+/// Types of one number each.
+macro_rules! numbers {
+    ($($type:ty: $write:expr, $read:expr;)+) => {
+        $(impl Stored for $type {
+            fn write(self, out: &mut Vec<i32>) {
+                out.push($write(self));
+            }
+
+            fn next(row: &mut Row) -> Result<Self, NotNumbers> {
+                row.0.next().and_then(|number| $read(*number)).ok_or(NotNumbers)
+            }
+        })+
+    };
+}
+
+numbers! {
+    i32: std::convert::identity, Some;
+    u32: u32::cast_signed, |number| u32::try_from(number).ok();
+    u8: i32::from, |number| u8::try_from(number).ok();
+    bool: i32::from, |number| [false, true].get(usize::try_from(number).ok()?).copied();
+    // 0 for none, otherwise the id plus 1.
+    Option<u32>: |id: Self| id.map_or(0, |id| id.cast_signed().wrapping_add(1)),
+        |number| u32::try_from(number).ok().map(|number| number.checked_sub(1));
+}
+
+impl Stored for [i32; 2] {
+    fn write(self, out: &mut Vec<i32>) {
+        out.extend(self);
+    }
+
+    fn next(row: &mut Row) -> Result<Self, NotNumbers> {
+        Ok([row.next()?, row.next()?])
+    }
+}
+
+/// Types that are stored field by field: `as` names the numbers of a field for the header, and `=` the
+/// codes that a field may have.
+macro_rules! stored {
+    ($(
+        $(#[$about:meta])*
+        $name:ident {
+            $($(#[$meaning:meta])* $field:ident: $type:ty $(as $($number:literal)+)? $(= $codes:expr)?;)+
+        }
+    )+) => {
+        $($(#[$about])*
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+        pub struct $name {
+            $($(#[$meaning])* pub $field: $type,)+
+        }
+
+        impl Stored for $name {
+            const NAMES: &'static [&'static str] = &[$($($($number,)+)?)+];
+
+            fn write(self, out: &mut Vec<i32>) {
+                $(self.$field.write(out);)+
+            }
+
+            fn next(row: &mut Row) -> Result<Self, NotNumbers> {
+                let read = Self { $($field: row.next()?,)+ };
+                let are_known = true $($(&& usize::from(read.$field) < $codes.len())?)+;
+                are_known.then_some(read).ok_or(NotNumbers)
+            }
+        })+
+    };
+}
+
+stored! {
+    /// Position, velocity and levels of a robot.
+    Motion {
+        /// Centre, in millimetres.
+        position_mm: [i32; 2] as "x_mm" "y_mm";
+        /// Velocity, in millimetres per second.
+        velocity_mm_s: [i32; 2] as "vx_mm_s" "vy_mm_s";
+        /// Battery level, in thousandths of a percent.
+        energy_millipercent: i32 as "energy_millipercent";
+        /// Health level, in thousandths of a percent.
+        hp_millipercent: i32 as "hp_millipercent";
+    }
+
+    /// The activity of a robot, its delay cause, and other state. Activities, causes and conditions are
+    /// numbers; the header's codes name them.
+    RobotState {
+        /// Its activity.
+        activity: u8 = ACTIVITIES;
+        /// The rescuee that it approaches or loads.
+        rescuee: Option<u32>;
+        /// The step until which it loads or rests.
+        until_step: Option<u32>;
+        /// Its delay cause: why it does not move on.
+        delay: u8 = DelayCause::ALL;
+        /// The robot that it waits for.
+        waits_for: Option<u32>;
+        /// The task of its group.
+        task: Option<u32>;
+        /// Whether it can still act.
+        condition: u8 = CONDITIONS;
+        /// Rescuing resources left.
+        resources: u32;
+        /// Rescuees on board.
+        load: u32;
+    }
+
+    /// A rescuee at one moment.
+    RescueeFrame {
+        /// Its state, as a number that the header's codes name.
+        state: u8 = RESCUEE_STATES;
+        /// The robot that has claimed it or has it on board.
+        robot: Option<u32>;
+    }
+
+    /// The place of a piece of debris.
+    MovedDebris {
+        /// Its place, in millimetres.
+        position_mm: [i32; 2];
+        /// Its rotation, in ten-thousandths of a radian anticlockwise.
+        angle: i32;
+        /// Number of its sightings so far: the places at which it could be noticed.
+        sightings: u32;
+    }
+}
+
 /// The state at one moment.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Frame {
@@ -60,43 +217,6 @@ pub struct RobotFrame {
     pub route: Route,
 }
 
-/// Position, velocity and levels of a robot.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-pub struct Motion {
-    /// Centre, in millimetres.
-    pub position_mm: [i32; 2],
-    /// Velocity, in millimetres per second.
-    pub velocity_mm_s: [i32; 2],
-    /// Battery level, in thousandths of a percent.
-    pub energy_millipercent: i32,
-    /// Health level, in thousandths of a percent.
-    pub hp_millipercent: i32,
-}
-
-/// The activity of a robot, its delay cause, and other state. Activities, causes and conditions are
-/// numbers; the header's codes name them.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-pub struct RobotState {
-    /// Its activity.
-    pub activity: u8,
-    /// The rescuee that it approaches or loads.
-    pub rescuee: Option<u32>,
-    /// The step until which it loads or rests.
-    pub until_step: Option<u32>,
-    /// Its delay cause: why it does not move on.
-    pub delay: u8,
-    /// The robot that it waits for.
-    pub waits_for: Option<u32>,
-    /// The task of its group.
-    pub task: Option<u32>,
-    /// Whether it can still act.
-    pub condition: u8,
-    /// Rescuing resources left.
-    pub resources: u32,
-    /// Rescuees on board.
-    pub load: u32,
-}
-
 /// The goal of a robot, and its waypoints.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize)]
 pub struct Route {
@@ -104,26 +224,6 @@ pub struct Route {
     pub goal_mm: Option<[i32; 2]>,
     /// Waypoints ahead, in millimetres.
     pub ahead_mm: Vec<[i32; 2]>,
-}
-
-/// A rescuee at one moment.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-pub struct RescueeFrame {
-    /// Its state, as a number that the header's codes name.
-    pub state: u8,
-    /// The robot that has claimed it or has it on board.
-    pub robot: Option<u32>,
-}
-
-/// The place of a piece of debris.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-pub struct MovedDebris {
-    /// Its place, in millimetres.
-    pub position_mm: [i32; 2],
-    /// Its rotation, in ten-thousandths of a radian anticlockwise.
-    pub angle: i32,
-    /// Number of its sightings so far: the places at which it could be noticed.
-    pub sightings: u32,
 }
 
 /// The knowledge of a group.
@@ -157,42 +257,6 @@ fn count(things: usize) -> i32 {
     (things as u32).cast_signed()
 }
 
-/// An optional id as one number: 0 for none, otherwise the id plus 1.
-fn some(id: Option<u32>) -> i32 {
-    id.map_or(0, |id| id.cast_signed().wrapping_add(1))
-}
-
-/// Reads the numbers of a row, one after the other.
-struct Row<'r>(std::slice::Iter<'r, i32>);
-
-impl Row<'_> {
-    fn next(&mut self) -> Result<i32, NotNumbers> {
-        self.0.next().copied().ok_or(NotNumbers)
-    }
-
-    fn count(&mut self) -> Result<u32, NotNumbers> {
-        u32::try_from(self.next()?).map_err(|_| NotNumbers)
-    }
-
-    fn code(&mut self, codes: usize) -> Result<u8, NotNumbers> {
-        u8::try_from(self.next()?).ok().filter(|code| usize::from(*code) < codes).ok_or(NotNumbers)
-    }
-
-    fn id(&mut self) -> Result<Option<u32>, NotNumbers> {
-        Ok(self.count()?.checked_sub(1))
-    }
-
-    fn is_over(&self) -> bool {
-        self.0.len() == 0
-    }
-}
-
-fn row<T>(numbers: &[i32], read: impl FnOnce(&mut Row) -> Result<T, NotNumbers>) -> Result<T, NotNumbers> {
-    let mut row = Row(numbers.iter());
-    let value = read(&mut row)?;
-    if row.is_over() { Ok(value) } else { Err(NotNumbers) }
-}
-
 impl Motion {
     pub(crate) fn of(robot: &Robot) -> Self {
         Self {
@@ -200,21 +264,6 @@ impl Motion {
             velocity_mm_s: [milli(robot.velocity.x), milli(robot.velocity.y)],
             energy_millipercent: percent(robot.energy),
             hp_millipercent: percent(robot.hp),
-        }
-    }
-
-    pub(crate) fn numbers(self) -> [i32; 6] {
-        let ([x, y], [vx, vy]) = (self.position_mm, self.velocity_mm_s);
-        [x, y, vx, vy, self.energy_millipercent, self.hp_millipercent]
-    }
-
-    pub(crate) fn from_numbers(numbers: [i32; 6]) -> Self {
-        let [x, y, vx, vy, energy, hp] = numbers;
-        Self {
-            position_mm: [x, y],
-            velocity_mm_s: [vx, vy],
-            energy_millipercent: energy,
-            hp_millipercent: hp,
         }
     }
 }
@@ -250,36 +299,6 @@ impl RobotState {
             load: robot.load.len() as u32,
         }
     }
-
-    pub(crate) fn write(&self, out: &mut Vec<i32>) {
-        out.extend_from_slice(&[
-            i32::from(self.activity),
-            some(self.rescuee),
-            some(self.until_step),
-            i32::from(self.delay),
-            some(self.waits_for),
-            some(self.task),
-            i32::from(self.condition),
-            self.resources.cast_signed(),
-            self.load.cast_signed(),
-        ]);
-    }
-
-    pub(crate) fn read(numbers: &[i32]) -> Result<Self, NotNumbers> {
-        row(numbers, |row| {
-            Ok(Self {
-                activity: row.code(ACTIVITIES.len())?,
-                rescuee: row.id()?,
-                until_step: row.id()?,
-                delay: row.code(DelayCause::ALL.len())?,
-                waits_for: row.id()?,
-                task: row.id()?,
-                condition: row.code(CONDITIONS.len())?,
-                resources: row.count()?,
-                load: row.count()?,
-            })
-        })
-    }
 }
 
 impl Route {
@@ -297,11 +316,10 @@ impl Route {
 
     pub(crate) fn read(numbers: &[i32]) -> Result<Self, NotNumbers> {
         row(numbers, |row| {
-            let point = |row: &mut Row| Ok([row.next()?, row.next()?]);
-            let goal_mm = if row.code(2)? == 1 { Some(point(row)?) } else { None };
+            let goal_mm = if row.next()? { Some(row.next()?) } else { None };
             let mut ahead_mm = Vec::new();
             while !row.is_over() {
-                ahead_mm.push(point(row)?);
+                ahead_mm.push(row.next()?);
             }
             Ok(Self { goal_mm, ahead_mm })
         })
@@ -320,14 +338,6 @@ impl RescueeFrame {
         };
         Self { state, robot: robot.map(|robot| robot.0) }
     }
-
-    pub(crate) fn write(self, out: &mut Vec<i32>) {
-        out.extend_from_slice(&[i32::from(self.state), some(self.robot)]);
-    }
-
-    pub(crate) fn read(numbers: &[i32]) -> Result<Self, NotNumbers> {
-        row(numbers, |row| Ok(Self { state: row.code(RESCUEE_STATES.len())?, robot: row.id()? }))
-    }
 }
 
 impl MovedDebris {
@@ -339,17 +349,6 @@ impl MovedDebris {
             angle: nearest(f64::from(libm::atan2f(turn.sin(), turn.cos())) * 10_000.0),
             sightings: piece.sightings.len() as u32,
         }
-    }
-
-    pub(crate) fn write(self, out: &mut Vec<i32>) {
-        let [x, y] = self.position_mm;
-        out.extend_from_slice(&[x, y, self.angle, self.sightings.cast_signed()]);
-    }
-
-    pub(crate) fn read(numbers: &[i32]) -> Result<Self, NotNumbers> {
-        row(numbers, |row| {
-            Ok(Self { position_mm: [row.next()?, row.next()?], angle: row.next()?, sightings: row.count()? })
-        })
     }
 }
 
@@ -380,12 +379,11 @@ impl GroupFrame {
 
     pub(crate) fn read(numbers: &[i32]) -> Result<Self, NotNumbers> {
         row(numbers, |row| {
-            let is_at_work = row.code(2)? == 1;
-            let pieces = row.count()?;
-            let debris = (0..pieces).map(|_| Ok((row.count()?, row.count()?))).collect::<Result<_, _>>()?;
+            let (is_at_work, pieces) = (row.next()?, row.next::<u32>()?);
+            let debris = (0..pieces).map(|_| Ok((row.next()?, row.next()?))).collect::<Result<_, _>>()?;
             let mut zones = Vec::new();
             while !row.is_over() {
-                zones.push(row.count()?);
+                zones.push(row.next()?);
             }
             Ok(Self { is_at_work, debris, zones })
         })
@@ -404,8 +402,8 @@ pub(crate) fn read_sets(numbers: &[i32]) -> Result<Vec<Vec<u32>>, NotNumbers> {
     row(numbers, |row| {
         let mut sets = Vec::new();
         while !row.is_over() {
-            let members = row.count()?;
-            sets.push((0..members).map(|_| row.count()).collect::<Result<_, _>>()?);
+            let members = row.next::<u32>()?;
+            sets.push((0..members).map(|_| row.next()).collect::<Result<_, _>>()?);
         }
         Ok(sets)
     })

@@ -6,8 +6,8 @@ use usar_sim::scenario::{DebrisFile, NeedFile, Point, RoleFile, ZoneFile};
 use usar_sim::simulation::Simulation;
 use xxhash_rust::xxh3::xxh3_128;
 
-use crate::frame::{ACTIVITIES, CONDITIONS, RESCUEE_STATES};
-use crate::rows::{MOTION_FIELDS, STREAMS};
+use crate::frame::{ACTIVITIES, CONDITIONS, Motion, RESCUEE_STATES, Stored};
+use crate::rows::STREAMS;
 
 /// Version of the format.
 pub const VERSION: u32 = 1;
@@ -208,7 +208,7 @@ impl Header {
             first_step: simulation.steps(),
             steps_per_frame,
             frames_per_segment,
-            motion_fields: names(&MOTION_FIELDS),
+            motion_fields: names(Motion::NAMES),
             streams: STREAMS.iter().map(|name| (*name).to_owned()).zip(rows).collect(),
             codes: Codes::of_this_version(),
             world,

@@ -7,6 +7,8 @@
 //! each with checksums. Positions are integers in millimetres, stored as differences from frame to frame.
 //! Every few seconds the whole state is stored.
 //!
+//! [`Table`] writes the time series of robots and groups, events and decisions as CSV.
+//!
 //! Recording does not influence the trial: its result is the same with and without it.
 //!
 //! ```no_run
@@ -35,6 +37,7 @@ mod reader;
 mod rows;
 mod segment;
 mod story;
+mod table;
 mod trust;
 mod words;
 mod writer;
@@ -44,6 +47,7 @@ pub use frame::{Frame, GroupFrame, Motion, MovedDebris, RescueeFrame, RobotFrame
 pub use header::{Codes, Header, RobotPlace, ScenarioText, TaskPlace, VERSION, World};
 pub use reader::{Recording, TimedDecision};
 pub use story::Story;
+pub use table::Table;
 pub use trust::Trust;
 pub use words::{Names, ToldEvent, robots_in_words, told};
 pub use writer::{DEFAULT_FPS, Options, Recorder, record};

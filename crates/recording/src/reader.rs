@@ -8,11 +8,12 @@ use usar_sim::record::TrialRecord;
 
 use crate::chunk::{Chunk, Chunks, Kind};
 use crate::error::ReadError;
-use crate::frame::Frame;
+use crate::frame::{Frame, Motion, Stored};
 use crate::header::{Header, VERSION};
-use crate::rows::{MOTION_FIELDS, STREAMS};
+use crate::rows::STREAMS;
 use crate::segment::Segment;
 use crate::trust::Trust;
+use crate::words::{Names, ToldEvent};
 
 /// A recording that was read from a file.
 #[derive(Debug, Clone, PartialEq)]
@@ -154,6 +155,16 @@ impl Recording {
         })
     }
 
+    /// The events in words.
+    pub fn told(&self) -> impl Iterator<Item = ToldEvent> + '_ {
+        let Header { dt_s, world, .. } = &self.header;
+        let tasks: Vec<&str> = world.tasks.iter().map(|task| task.name.as_str()).collect();
+        self.events.iter().map(move |(step, event)| {
+            let names = Names { tasks: &tasks, debris: &world.debris, zones: &world.zones };
+            ToldEvent::new(*step, *dt_s, event, names)
+        })
+    }
+
     /// The number of the last frame at or before a simulated time in seconds. Times outside the recording
     /// give its first or its last frame.
     #[must_use]
@@ -177,7 +188,7 @@ fn header(chunk: &Chunk) -> Result<Header, ReadError> {
     let header: Header = json(chunk, &content)?;
     let rows: Vec<usize> = header.streams.iter().map(|(_, rows)| *rows).collect();
     let streams = header.streams.iter().map(|(name, _)| name.as_str()).eq(STREAMS);
-    let fields = header.motion_fields.iter().map(String::as_str).eq(MOTION_FIELDS);
+    let fields = header.motion_fields == Motion::NAMES;
     let is_known = streams && fields && header.codes.are_known();
     let has_roles = header.world.robots.iter().all(|robot| robot.role < header.world.roles.len());
     let is_counted = header.dt_s > 0.0 && header.steps_per_frame > 0 && header.frames_per_segment > 0;

@@ -3,13 +3,9 @@
 
 use usar_sim::simulation::Simulation;
 
-use crate::frame::{GroupFrame, Motion, MovedDebris, RescueeFrame, RobotState, Route, push_sets};
+use crate::frame::{GroupFrame, MovedDebris, RescueeFrame, RobotState, Route, Stored, push_sets};
 
-/// Names of each robot's numbers that are stored in every frame.
-pub(crate) const MOTION_FIELDS: [&str; 6] =
-    ["x_mm", "y_mm", "vx_mm_s", "vy_mm_s", "energy_millipercent", "hp_millipercent"];
-
-/// The first of these are positions. They are predicted by extrapolation from the two frames before; the
+/// The first numbers of a robot's motion are positions. They are predicted by extrapolation from the two frames before; the
 /// other numbers are predicted to stay the same.
 pub(crate) const POSITIONS: usize = 2;
 
@@ -35,9 +31,4 @@ pub(crate) fn write_row(simulation: &Simulation, stream: usize, row: usize, out:
         4 => GroupFrame::write_now(simulation, row, out),
         _ => push_sets(simulation, out),
     }
-}
-
-/// The current motion of a robot.
-pub(crate) fn motion(simulation: &Simulation, robot: usize) -> [i32; MOTION_FIELDS.len()] {
-    Motion::of(&simulation.world().robots[robot]).numbers()
 }

@@ -4,10 +4,10 @@
 use usar_sim::simulation::Simulation;
 
 use crate::frame::{
-    Frame, GroupFrame, Motion, MovedDebris, RescueeFrame, RobotFrame, RobotState, Route, read_sets,
+    Frame, GroupFrame, Motion, MovedDebris, RescueeFrame, RobotFrame, RobotState, Route, Stored, read_sets,
 };
 use crate::numbers::{NotNumbers, Numbers, write_signed, write_unsigned};
-use crate::rows::{MOTION_FIELDS, POSITIONS, RESCUEES, STREAMS, is_fixed, motion, write_row};
+use crate::rows::{POSITIONS, RESCUEES, STREAMS, is_fixed, write_row};
 
 /// A number that is stored in every frame, as the difference from its prediction by earlier frames.
 #[derive(Default)]
@@ -67,7 +67,7 @@ pub(crate) struct Draft {
 impl Draft {
     /// An empty segment of a world with this many robots and this many rows of each stream.
     pub(crate) fn new(robots: usize, rows: [usize; STREAMS.len()]) -> Self {
-        let columns = || (0..robots * MOTION_FIELDS.len()).map(|_| Column::default()).collect();
+        let columns = || (0..robots * Motion::NAMES.len()).map(|_| Column::default()).collect();
         let stream = |rows: usize| (0..rows).map(|_| ChangingRow::default()).collect();
         Self {
             first_frame: 0,
@@ -85,9 +85,11 @@ impl Draft {
 
     /// Adds the current state.
     pub(crate) fn push(&mut self, simulation: &Simulation) {
-        for (robot, columns) in self.columns.chunks_exact_mut(MOTION_FIELDS.len()).enumerate() {
-            for ((field, column), value) in columns.iter_mut().enumerate().zip(motion(simulation, robot)) {
-                column.push(value, self.frames, field < POSITIONS);
+        for (robot, columns) in self.columns.chunks_exact_mut(Motion::NAMES.len()).enumerate() {
+            self.row.clear();
+            Motion::of(&simulation.world().robots[robot]).write(&mut self.row);
+            for ((field, column), value) in columns.iter_mut().enumerate().zip(&self.row) {
+                column.push(*value, self.frames, field < POSITIONS);
             }
         }
         let changes = Some([simulation.world().rescuees.changes(), simulation.mission().claims.changes()]);
@@ -149,11 +151,11 @@ impl Segment {
         let mut numbers = Numbers::new(bytes);
         let first_frame = usize::try_from(numbers.unsigned()?).map_err(|_| NotNumbers)?;
         let frames = numbers.count()?;
-        let count = robots.checked_mul(MOTION_FIELDS.len()).ok_or(NotNumbers)?;
+        let count = robots.checked_mul(Motion::NAMES.len()).ok_or(NotNumbers)?;
         if frames == 0 || count.saturating_mul(frames) > numbers.left() {
             return Err(NotNumbers);
         }
-        let column = |i: usize| read_column(&mut numbers, frames, i % MOTION_FIELDS.len() < POSITIONS);
+        let column = |i: usize| read_column(&mut numbers, frames, i % Motion::NAMES.len() < POSITIONS);
         let columns = (0..count).map(column).collect::<Result<_, _>>()?;
         let mut stream = |rows: usize| (0..rows).map(|_| read_row(&mut numbers, frames)).collect();
         let rows = rows.iter().map(|rows| stream(*rows)).collect::<Result<_, _>>()?;
@@ -192,15 +194,14 @@ impl Segment {
             at.checked_sub(1).map(|at| row[at].1.clone()).ok_or(NotNumbers)
         };
         let robot = |(number, columns): (usize, &[Vec<i32>])| {
-            let mut motion = [0; MOTION_FIELDS.len()];
-            motion.iter_mut().zip(columns).for_each(|(value, column)| *value = column[frame]);
+            let motion: Vec<i32> = columns.iter().map(|column| column[frame]).collect();
             Ok(RobotFrame {
-                motion: Motion::from_numbers(motion),
+                motion: Motion::read(&motion)?,
                 state: RobotState::read(&now(&states[number])?)?,
                 route: Route::read(&now(&routes[number])?)?,
             })
         };
-        let robots = self.columns.chunks_exact(MOTION_FIELDS.len()).enumerate().map(robot);
+        let robots = self.columns.chunks_exact(Motion::NAMES.len()).enumerate().map(robot);
         Ok(Frame {
             step,
             robots: robots.collect::<Result<_, _>>()?,

@@ -1,8 +1,8 @@
 //! One figure of a sweep for the column of a paper.
 
-use experiments::Failure;
 use experiments::comparison::{Comparison, compare};
 use experiments::sweep::folder::Folder;
+use experiments::{Failure, refuse};
 
 use crate::drawing::{Sketch, TICK};
 use crate::figures::{Part, sketches, sketches_along_axes};
@@ -44,7 +44,7 @@ pub fn column_figure(
     if let Some(metric) = &look.metric {
         sketch.drawing.keep(metric);
         if sketch.drawing.is_empty() {
-            return Err(Failure::input(format!("--metric: the figure {name} has no panel of {metric}")));
+            refuse!("--metric: the figure {name} has no panel of {metric}");
         }
     }
     let units = look.width_mm * POINTS_PER_MM * TICK / LEAST_TEXT_POINTS;

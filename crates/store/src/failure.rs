@@ -31,6 +31,11 @@ impl Failure {
         Self::Input(message.to_string())
     }
 
+    /// Makes the failure of an option or a file from what is wrong with it.
+    pub fn input_at<E: std::fmt::Display>(place: impl std::fmt::Display) -> impl Fn(E) -> Self {
+        move |error| Self::Input(format!("{place}: {error}"))
+    }
+
     /// A failure of a disk or folder.
     pub fn storage(message: impl std::fmt::Display) -> Self {
         Self::Storage(message.to_string())
@@ -40,6 +45,14 @@ impl Failure {
     pub fn run(message: impl std::fmt::Display) -> Self {
         Self::Run(message.to_string())
     }
+}
+
+/// Returns from a function because of bad input, with a message that is written as for `format!`.
+#[macro_export]
+macro_rules! refuse {
+    ($($message:tt)+) => {
+        return Err($crate::Failure::Input(format!($($message)+)))
+    };
 }
 
 impl From<Error> for Failure {

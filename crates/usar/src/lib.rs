@@ -6,6 +6,8 @@ mod cli;
 mod commands;
 mod input;
 mod output;
+mod parquets;
+mod prelude;
 mod printable;
 mod recordings;
 mod running;

@@ -5,8 +5,8 @@ use std::fs::File;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-use experiments::Failure;
 use experiments::files::NewFile;
+use experiments::{Failure, refuse};
 use reports::table::{Format, Table, shown_as};
 use serde::Serialize;
 
@@ -77,13 +77,13 @@ impl Destination {
         match path.symlink_metadata() {
             Ok(there) if !(force && there.is_file()) => {
                 let advice = if there.is_file() { "; --force replaces it" } else { "" };
-                return Err(Failure::input(format!("{}{advice}", exists(flag, path))));
+                refuse!("{}{advice}", exists(flag, path));
             }
             _ => {}
         }
         let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
         if !folder.is_dir() {
-            return Err(Failure::input(format!("{flag}: there is no folder {}", folder.display())));
+            refuse!("{flag}: there is no folder {}", folder.display());
         }
         Ok(Self { folder: folder.to_owned(), name })
     }
@@ -126,11 +126,11 @@ pub(crate) fn make_folder(path: &Path, force: bool) -> Result<(), Failure> {
     let is_empty = match std::fs::read_dir(path) {
         Ok(mut entries) => entries.next().is_none(),
         Err(error) if error.kind() == io::ErrorKind::NotFound => true,
-        Err(error) => return Err(Failure::input(format!("--out: {}: {error}", path.display()))),
+        Err(error) => refuse!("--out: {}: {error}", path.display()),
     };
     if !is_empty && !force {
         let rule = "is not empty; nothing was written; --force writes to it all the same";
-        return Err(Failure::input(format!("--out: {} {rule}", path.display())));
+        refuse!("--out: {} {rule}", path.display());
     }
     std::fs::create_dir_all(path)
         .map_err(|error| Failure::storage(format!("cannot write to {}: {error}", path.display())))

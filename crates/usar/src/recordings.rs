@@ -164,8 +164,7 @@ pub(crate) struct Shown {
 impl Shown {
     /// Reads the recording; notes if it is truncated.
     pub(crate) fn read(&self) -> Result<Recording, Failure> {
-        let recording = Recording::read(&self.bytes)
-            .map_err(|error| Failure::input(format!("{}: {error}", self.name)))?;
+        let recording = Recording::read(&self.bytes).map_err(Failure::input_at(&self.name))?;
         if let Some(rest) = recording.cut {
             tell(format_args!("note: {}: was cut short; {rest} bytes at its end were left out", self.name));
         }

@@ -48,6 +48,11 @@ pub(crate) fn stop_on_signals() {
     }
 }
 
+/// Whether [`STOP`] is set.
+pub(crate) fn is_stopped() -> bool {
+    STOP.load(Ordering::Relaxed)
+}
+
 /// The exit status after a signal, in the convention of shells: 130 after Ctrl-C.
 pub(crate) fn status_of_signal() -> u8 {
     match SIGNAL.load(Ordering::Relaxed) {
@@ -74,7 +79,7 @@ impl Guard {
             return Ok(());
         }
         let at = simulation.time_s();
-        if STOP.load(Ordering::Relaxed) {
+        if is_stopped() {
             return Err(Failure::Interrupted(format!("stopped at {at:.0} s of simulated time")));
         }
         if self.begun.elapsed().as_secs_f64() > self.longest_s {

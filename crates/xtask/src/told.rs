@@ -24,12 +24,14 @@ The comments of the type are the source of this page: `cargo run --package xtask
 ";
 
 const COLUMNS: &str = "\
-# Columns: metrics and the tables of a sweep
+# Columns: metrics, and the tables of sweeps and recordings
 
 The tables in the folder of `usar sweep scenarios/paper.ron`. A sweep's own `columns.md` has its tasks, \
 needs and
 axes. The name of a metric on the command line has a dot before the task: the column `rescuees_hard` is
 `rescuees.hard`. [Experiments](experiments.md#what-is-in-the-folder) has the other files of the folder.
+The tables that `usar export csv` and `usar export parquet` write of a recording are \
+[below](#recordings-robotscsv).
 
 The program is the source of this page: `cargo run --package xtask -- reference` makes it.
 ";
@@ -43,14 +45,18 @@ fn place(path: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").join(path)
 }
 
-/// The columns of the paper's sweep.
+/// The columns of the paper's sweep and of recordings of its trials.
 fn columns() -> String {
     let file = place("scenarios/paper.ron");
     let experiment = Experiment::load(&file, &Overrides::default(), &policies::standard())
         .expect("the paper's sweep is sound");
     let page = columns_page(&experiment);
-    let (_, tables) = page.split_once("\n\n").expect("a title");
-    format!("{COLUMNS}\n{tables}")
+    let (_, sweep) = page.split_once("\n\n").expect("a title");
+    let of_recordings = recording::Table::ALL.map(|table| {
+        let file = format!("Recordings: {}.csv", table.name());
+        tables::section(&file, table.row_is(), &table.columns(&experiment.base.needs))
+    });
+    format!("{COLUMNS}\n{sweep}{}", of_recordings.concat())
 }
 
 /// The kinds of events, with their comments.

@@ -1,7 +1,7 @@
 /** Draws what robots move among: the floor, places, radiation, debris, rescuees. */
 
 import { Stream } from '../recording/segment';
-import { knownBy, zonesOn } from '../recording/state';
+import { knownBy, taskOf, zonesOn } from '../recording/state';
 import type { Point } from '../recording/types';
 import { addDebris } from './shapes';
 import type { Sheet } from './sheet';
@@ -193,8 +193,7 @@ export function drawRescuees({ context, camera, recording, moment, colours }: Sh
     };
     if (state <= 1) add(waiting, radius);
     if (state === 1) {
-      const task = moment.segment.row(Stream.Robots, robot - 1, moment.frame)[5];
-      const key = task > 0 ? task - 1 : null;
+      const key = taskOf(moment, robot - 1);
       if (!claimed.has(key)) claimed.set(key, new Path2D());
       add(claimed.get(key)!, radius + 2.5);
     }

@@ -1,8 +1,8 @@
 /** Draws robots: where they were, where they go, what they are like, and who waits for whom. */
 
 import type { Moment } from '../recording/recording';
-import { Stream } from '../recording/segment';
-import { bodyOf, routeAt } from '../recording/state';
+import { type MotionField, Stream } from '../recording/segment';
+import { Robot, bodyOf, numberOf, routeAt, taskOf } from '../recording/state';
 import type { Point } from '../recording/types';
 import { addShape, shapesOf } from './shapes';
 import { LARGE_TEAM, type Sheet } from './sheet';
@@ -20,15 +20,17 @@ export function drawTrails({ context, camera, recording, moment }: Sheet, places
   context.lineWidth = 2;
   context.lineCap = 'round';
   places.forEach((place, robot) => {
-    const task = segment.row(Stream.Robots, robot, frame)[5];
-    context.strokeStyle = groupColour(task > 0 ? task - 1 : null);
+    context.strokeStyle = groupColour(taskOf(moment, robot));
     let last = place;
     for (let back = 0; back < TRAIL; back += 4) {
       const isBefore = back > frame;
       const from = isBefore ? before : segment;
       const at = isBefore ? (before?.frames ?? 0) + frame - back : frame - back;
       if (!from || at < 0) break;
-      const next = camera.toScreen([from.motion(robot, 0, at) / 1000, from.motion(robot, 1, at) / 1000]);
+      const next = camera.toScreen([
+        from.motion(robot, 'x_mm', at) / 1000,
+        from.motion(robot, 'y_mm', at) / 1000,
+      ]);
       context.globalAlpha = 0.38 * (1 - back / TRAIL);
       context.beginPath();
       context.moveTo(...last);
@@ -47,8 +49,7 @@ export function drawRoutes(sheet: Sheet, places: Point[]): void {
   const add = (robot: number): void => {
     const { ahead } = routeAt(moment, robot);
     if (ahead.length === 0) return;
-    const task = moment.segment.row(Stream.Robots, robot, moment.frame)[5];
-    const colour = groupColour(task > 0 ? task - 1 : null);
+    const colour = groupColour(taskOf(moment, robot));
     const path = paths.get(colour) ?? new Path2D();
     paths.set(colour, path);
     path.moveTo(...places[robot]);
@@ -94,7 +95,6 @@ export function drawRobots(
   places: Point[],
 ): void {
   const { world, codes } = recording.header;
-  const { segment, frame } = moment;
   const shapes = shapesOf(world.roles);
   const isLarge = places.length > LARGE_TEAM;
   const radiusOf = (robot: number): number => {
@@ -104,12 +104,11 @@ export function drawRobots(
   const paths = new Map<string, Path2D>();
   const lost = new Path2D();
   places.forEach(([x, y], robot) => {
-    const row = segment.row(Stream.Robots, robot, frame);
-    const colour = groupColour(row[5] > 0 ? row[5] - 1 : null);
+    const colour = groupColour(taskOf(moment, robot));
     if (!paths.has(colour)) paths.set(colour, new Path2D());
     const radius = radiusOf(robot);
     addShape(paths.get(colour)!, shapes[world.robots[robot].role], x, y, radius);
-    if (codes.conditions[row[6]] !== 'able') {
+    if (codes.conditions[numberOf(moment, robot, Robot.Condition)] !== 'able') {
       lost.moveTo(x - radius, y - radius);
       lost.lineTo(x + radius, y + radius);
       lost.moveTo(x + radius, y - radius);
@@ -155,13 +154,13 @@ function drawBars(
   context: CanvasRenderingContext2D,
   [x, y]: Point,
   radius: number,
-  { segment, frame }: Moment,
+  moment: Moment,
   robot: number,
   colours: Theme,
 ): void {
   const width = Math.max(14, 2 * radius);
-  const bar = (field: number, row: number, colour: string): void => {
-    const level = Math.min(Math.max(segment.motion(robot, field, frame) / 100_000, 0), 1);
+  const bar = (field: MotionField, row: number, colour: string): void => {
+    const level = Math.min(Math.max(moment.segment.motion(robot, field, moment.frame) / 100_000, 0), 1);
     const top = y + radius + 3 + 3 * row;
     context.fillStyle = colours.halo;
     context.fillRect(x - width / 2 - 0.5, top - 0.5, width + 1, 3);
@@ -170,9 +169,9 @@ function drawBars(
     context.fillStyle = colour;
     context.fillRect(x - width / 2, top, width * level, 2);
   };
-  bar(4, 0, colours.energy);
-  bar(5, 1, colours.hp);
-  const load = Math.min(segment.row(Stream.Robots, robot, frame)[8], 12);
+  bar('energy_millipercent', 0, colours.energy);
+  bar('hp_millipercent', 1, colours.hp);
+  const load = Math.min(numberOf(moment, robot, Robot.Load), 12);
   if (load === 0) return;
   context.fillStyle = colours.rescuee;
   context.beginPath();
@@ -207,7 +206,7 @@ export function drawLinks({ context, moment, colours }: Sheet, places: Point[]):
   context.strokeStyle = context.fillStyle = colours.wait;
   context.lineWidth = 1.5;
   places.forEach(([x, y], robot) => {
-    const other = moment.segment.row(Stream.Robots, robot, moment.frame)[4] - 1;
+    const other = numberOf(moment, robot, Robot.WaitsFor) - 1;
     if (other < 0 || other >= places.length) return;
     const [toX, toY] = places[other];
     const length = Math.hypot(toX - x, toY - y);

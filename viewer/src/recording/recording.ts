@@ -1,7 +1,7 @@
 /** A recording: what does not change at once, segments when they are needed. */
 
 import { type Chunk, ReadError, chunksOf, inflate, inflateJson } from './chunks';
-import { Segment } from './segment';
+import { type MotionField, Segment } from './segment';
 import type { EventJson, Header, Summary, TimedDecision } from './types';
 
 const VERSION = 1;
@@ -130,7 +130,7 @@ export class Recording {
 
   private levelsAt(segment: Segment, frame: number): Levels {
     const robots = this.header.world.robots.length;
-    const range = (field: number): [number, number, number] => {
+    const range = (field: MotionField): [number, number, number] => {
       let [least, sum, most] = [Infinity, 0, -Infinity];
       for (let robot = 0; robot < robots; robot++) {
         const level = segment.motion(robot, field, frame) / 1000;
@@ -138,7 +138,8 @@ export class Recording {
       }
       return [least, sum / robots, most];
     };
-    return { time: this.timeOf(segment.firstFrame + frame), energy: range(4), hp: range(5) };
+    const time = this.timeOf(segment.firstFrame + frame);
+    return { time, energy: range('energy_millipercent'), hp: range('hp_millipercent') };
   }
 
   private segment(number: number, ready: () => void): Segment | null {
@@ -177,7 +178,7 @@ export class Recording {
 async function decode(chunk: Chunk, header: Header): Promise<Segment> {
   const rows = header.streams.map(([, count]) => count);
   try {
-    return new Segment(await inflate(chunk), header.world.robots.length, rows);
+    return new Segment(await inflate(chunk), header.world.robots.length, header.motion_fields, rows);
   } catch (error) {
     if (error instanceof ReadError) throw error;
     throw new ReadError(`The recording is damaged: chunk ${chunk.number} does not hold frames.`);

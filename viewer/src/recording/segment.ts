@@ -2,9 +2,8 @@
 
 import { NotNumbers, Numbers } from './numbers';
 
-/** Numbers of each robot in every frame, and how many of these are positions. */
-export const MOTION = 6;
-const POSITIONS = 2;
+/** A number of each robot in every frame, by its name in the header. */
+export type MotionField = 'x_mm' | 'y_mm' | 'vx_mm_s' | 'vy_mm_s' | 'energy_millipercent' | 'hp_millipercent';
 
 /** Streams of rows that stand only where they change. */
 export const enum Stream {
@@ -55,23 +54,28 @@ export class Segment {
   private readonly columns: Int32Array[];
   private readonly streams: ChangingRow[][];
 
-  constructor(bytes: Uint8Array, robots: number, rows: readonly number[]) {
+  constructor(
+    bytes: Uint8Array,
+    robots: number,
+    private readonly fields: readonly string[],
+    rows: readonly number[],
+  ) {
     const numbers = new Numbers(bytes);
     this.firstFrame = numbers.unsigned();
     this.frames = numbers.count();
-    if (this.frames === 0 || robots * MOTION * this.frames > numbers.left) {
+    if (this.frames === 0 || robots * fields.length * this.frames > numbers.left) {
       throw new NotNumbers('a segment has too few numbers');
     }
-    this.columns = Array.from({ length: robots * MOTION }, (_, i) =>
-      readColumn(numbers, this.frames, i % MOTION < POSITIONS),
+    this.columns = Array.from({ length: robots * fields.length }, (_, i) =>
+      readColumn(numbers, this.frames, ['x_mm', 'y_mm'].includes(fields[i % fields.length])),
     );
     this.streams = rows.map((count) => Array.from({ length: count }, () => readRow(numbers, this.frames)));
     if (numbers.left > 0) throw new NotNumbers('a segment has too many numbers');
   }
 
   /** A number of a robot's motion at a frame of this segment. */
-  motion(robot: number, field: number, frame: number): number {
-    return this.columns[robot * MOTION + field][frame];
+  motion(robot: number, field: MotionField, frame: number): number {
+    return this.columns[robot * this.fields.length + this.fields.indexOf(field)][frame];
   }
 
   /** A row of a stream at a frame of this segment. */

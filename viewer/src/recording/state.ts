@@ -1,8 +1,21 @@
 /** The state at a moment, in words and metres. */
 
 import type { Moment, Recording } from './recording';
-import { Stream } from './segment';
+import { type MotionField, Stream } from './segment';
 import type { Need, Point, Role, World } from './types';
+
+/** The numbers of a row of the stream of robots; ids that may be missing are one higher. */
+export const enum Robot {
+  Activity,
+  Rescuee,
+  Until,
+  Delay,
+  WaitsFor,
+  Task,
+  Condition,
+  Resources,
+  Load,
+}
 
 export interface RobotState {
   id: number;
@@ -24,9 +37,17 @@ export interface RobotState {
 
 const id = (number: number): number | null => (number > 0 ? number - 1 : null);
 
+/** A number of a robot's row. */
+export const numberOf = ({ segment, frame }: Moment, robot: number, number: Robot): number =>
+  segment.row(Stream.Robots, robot, frame)[number];
+
+/** The task of a robot's group. */
+export const taskOf = (moment: Moment, robot: number): number | null =>
+  id(numberOf(moment, robot, Robot.Task));
+
 /** Where a robot is, in metres, between two frames too. */
 export function positionOf(recording: Recording, { segment, frame, part }: Moment, robot: number): Point {
-  const [x, y] = [segment.motion(robot, 0, frame), segment.motion(robot, 1, frame)];
+  const [x, y] = [segment.motion(robot, 'x_mm', frame), segment.motion(robot, 'y_mm', frame)];
   if (part === 0) return [x / 1000, y / 1000];
   let [next, at] = [segment as typeof segment | null, frame + 1];
   if (at >= segment.frames) {
@@ -35,7 +56,7 @@ export function positionOf(recording: Recording, { segment, frame, part }: Momen
   }
   if (!next || next.frames <= at) return [x / 1000, y / 1000];
   const between = (a: number, b: number): number => (a + (b - a) * part) / 1000;
-  return [between(x, next.motion(robot, 0, at)), between(y, next.motion(robot, 1, at))];
+  return [between(x, next.motion(robot, 'x_mm', at)), between(y, next.motion(robot, 'y_mm', at))];
 }
 
 /** What a robot is and can do: its row's own body, or that of its role. */
@@ -47,23 +68,23 @@ export function bodyOf(world: World, robot: number): Role {
 export function robotAt(recording: Recording, { segment, frame }: Moment, robot: number): RobotState {
   const { world, codes, dt_s } = recording.header;
   const row = segment.row(Stream.Robots, robot, frame);
-  const until = id(row[2]);
-  const motion = (field: number): number => segment.motion(robot, field, frame) / 1000;
+  const until = id(row[Robot.Until]);
+  const motion = (field: MotionField): number => segment.motion(robot, field, frame) / 1000;
   return {
     id: robot,
     role: bodyOf(world, robot),
-    activity: codes.activities[row[0]],
-    rescuee: id(row[1]),
+    activity: codes.activities[row[Robot.Activity]],
+    rescuee: id(row[Robot.Rescuee]),
     until: until === null ? null : until * dt_s,
-    delay: codes.delays[row[3]],
-    waitsFor: id(row[4]),
-    task: id(row[5]),
-    condition: codes.conditions[row[6]],
-    resources: row[7],
-    load: row[8],
-    energy: motion(4),
-    hp: motion(5),
-    velocity: [motion(2), motion(3)],
+    delay: codes.delays[row[Robot.Delay]],
+    waitsFor: id(row[Robot.WaitsFor]),
+    task: id(row[Robot.Task]),
+    condition: codes.conditions[row[Robot.Condition]],
+    resources: row[Robot.Resources],
+    load: row[Robot.Load],
+    energy: motion('energy_millipercent'),
+    hp: motion('hp_millipercent'),
+    velocity: [motion('vx_mm_s'), motion('vy_mm_s')],
   };
 }
 

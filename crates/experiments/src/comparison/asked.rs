@@ -2,7 +2,7 @@
 //! family is compared: the rescuees, in total and of each task, of every policy against the first.
 //! `compare` and `report` both ask here and therefore agree.
 
-use store::Failure;
+use store::{Failure, refuse};
 
 use super::{Choice, short};
 use crate::experiment::Experiment;
@@ -60,12 +60,10 @@ impl Asked {
             let (place, value) = margin(experiment, text)?;
             let name = &catalogue[place].name;
             if margins.iter().any(|(known, _)| *known == place) {
-                return Err(Failure::input(format!("--margin: {name} has two margins")));
+                refuse!("--margin: {name} has two margins");
             }
             if !metrics.contains(&place) {
-                return Err(Failure::input(format!(
-                    "--margin: {name} is not compared here; --metric {name} compares it"
-                )));
+                refuse!("--margin: {name} is not compared here; --metric {name} compares it");
             }
             margins.push((place, value));
         }
@@ -81,9 +79,9 @@ impl Asked {
         let labels = experiment.policies.iter().map(|policy| policy.label.as_str());
         let compared: Vec<&str> = labels.filter(is_compared).collect();
         if let ([only], false) = (&*compared, wishes.margins.is_empty()) {
-            return Err(Failure::input(format!(
+            refuse!(
                 "--margin: a margin is for the difference of two policies, and {only} is the only one here"
-            )));
+            );
         }
         let first = compared.first().filter(|_| !is_declared).map(|label| (*label).to_owned());
         let exploratory =
@@ -148,7 +146,7 @@ fn margin(experiment: &Experiment, text: &str) -> Result<(usize, f64), Failure> 
         || Failure::input(format!("--margin: must be METRIC=VALUE with a value above 0, found {text:?}"));
     let (name, value) = text.split_once('=').ok_or_else(bad)?;
     let place = experiment.metrics.named(name.trim());
-    let place = place.map_err(|error| Failure::input(format!("--margin: {error}")))?;
+    let place = place.map_err(Failure::input_at("--margin"))?;
     let value = value.trim().parse::<f64>().ok().filter(|value| value.is_finite() && *value > 0.0);
     Ok((place, value.ok_or_else(bad)?))
 }

@@ -12,7 +12,7 @@ mod words;
 
 use rayon::prelude::*;
 use serde::Serialize;
-use store::Failure;
+use store::{Failure, refuse};
 
 use crate::experiment::Experiment;
 use crate::metric::Metric;
@@ -240,7 +240,7 @@ pub(crate) fn policy_pairs(experiment: &Experiment, choice: Choice) -> Result<Ve
             return Ok(Vec::new());
         }
         let only = &experiment.policies[only].label;
-        return Err(Failure::input(format!("there is nothing to compare: {only} only")));
+        refuse!("there is nothing to compare: {only} only");
     }
     let pairs = |(i, a): (usize, &usize)| chosen[i + 1..].iter().map(|b| [*a, *b]).collect::<Vec<_>>();
     Ok(match baseline {

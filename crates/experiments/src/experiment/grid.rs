@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use rne_core::Registry;
-use store::Failure;
+use store::{Failure, refuse};
 use usar_sim::scenario::{Scenario, ScenarioFile};
 
 use super::policy::PolicySpec;
@@ -59,22 +59,19 @@ pub struct Case {
 pub(super) fn checked_policies(written: &[String], registry: &Registry) -> Result<Vec<PolicySpec>, Failure> {
     if written.len() > POLICIES.count() {
         let most = POLICIES.most;
-        return Err(Failure::input(format!("policies: must be at most {most}, found {}", written.len())));
+        refuse!("policies: must be at most {most}, found {}", written.len());
     }
     let (mut policies, mut labels): (Vec<PolicySpec>, _) = (Vec::new(), BTreeSet::new());
     for text in written {
         let policy = PolicySpec::parse(text, registry);
-        let policy = policy.map_err(|error| Failure::input(format!("policies: {error}")))?;
+        let policy = policy.map_err(Failure::input_at("policies"))?;
         if !labels.insert(policy.label.clone()) {
-            return Err(Failure::input(format!(
-                "policies: must not be listed twice, found {:?}",
-                policy.label
-            )));
+            refuse!("policies: must not be listed twice, found {:?}", policy.label);
         }
         policies.push(policy);
     }
     if policies.is_empty() {
-        return Err(Failure::input("policies: must name at least one policy, found none"));
+        refuse!("policies: must name at least one policy, found none");
     }
     Ok(policies)
 }
@@ -86,7 +83,7 @@ pub(super) fn checked_policies(written: &[String], registry: &Registry) -> Resul
 pub(super) fn cases(base: &Scenario, axes: &[Axis]) -> Result<Vec<Case>, Failure> {
     let count = axes.iter().try_fold(1_usize, |count, axis| count.checked_mul(axis.values.len()));
     let Some(count) = count.filter(|count| CASES.allows(*count)) else {
-        return Err(Failure::input(format!("axes: must span at most {} cases", CASES.most)));
+        refuse!("axes: must span at most {} cases", CASES.most);
     };
     check_bytes(base, count)?;
     let mut grid = Grid { axes, cases: Vec::with_capacity(count) };
@@ -121,7 +118,7 @@ impl Grid<'_> {
         for value in &axis.values {
             let mut file = file.clone();
             for (path, value) in axis.settings(value) {
-                file.set(path, value).map_err(|error| Failure::input(format!("axes: {error}")))?;
+                file.set(path, value).map_err(Failure::input_at("axes"))?;
             }
             values.push(value.clone());
             self.add(file, values)?;

@@ -17,7 +17,7 @@ use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
 use rne_core::{Asked, Registry, TrialStart};
-use store::Failure;
+use store::{Failure, refuse};
 use usar_sim::simulation::{Advance, Ask, Simulation};
 use xxhash_rust::xxh3::xxh3_128;
 
@@ -28,7 +28,7 @@ pub use file::sweep_schema;
 pub use grid::{Axis, Case, VARIANT};
 pub use keep::{Keep, UnknownKeep};
 pub use plan::AnalysisPlan;
-pub use policy::{PolicySpec, PolicyTextError, split_list, with_oracle};
+pub use policy::{PolicySpec, split_list, with_oracle};
 pub use program::{Digest, Program};
 pub use read::{companion, defaults, with_settings};
 pub use shard::{NoShard, Place, Shard};
@@ -152,7 +152,7 @@ impl Experiment {
         let set = overrides.set.iter().map(|entry| entry.split('=').next().unwrap_or_default().trim());
         let on_axis = |path| overlapping(&tree, parts.axes.iter().flat_map(Axis::paths), path);
         if let Some(path) = set.into_iter().find_map(on_axis) {
-            return Err(Failure::input(format!("--set: {path} is on an axis of this sweep")));
+            refuse!("--set: {path} is on an axis of this sweep");
         }
         if let Some(policies) = &overrides.policies {
             parts.policies.clone_from(policies);
@@ -161,9 +161,7 @@ impl Experiment {
             parts.seeds = Seeds::From(first);
         }
         if !readings.is_empty() && !parts.policies.iter().any(|policy| policy.trim() == "RNE") {
-            return Err(Failure::input(
-                "`readings` vary the policy RNE, but this sweep does not run RNE. Add it to `policies`.",
-            ));
+            refuse!("`readings` vary the policy RNE, but this sweep does not run RNE. Add it to `policies`.");
         }
         parts.policies = with_readings(parts.policies, &readings, registry);
         parts.trials = overrides.trials.unwrap_or(parts.trials);
@@ -183,21 +181,16 @@ impl Experiment {
         if let Seeds::Listed(list) = &seeds
             && list.len() < trials as usize
         {
-            return Err(Failure::input(format!(
-                "trials: must be at most the number of listed seeds, {}, found {trials}",
-                list.len()
-            )));
+            refuse!("trials: must be at most the number of listed seeds, {}, found {trials}", list.len());
         }
         if let Seeds::From(first) = &seeds
             && first.checked_add(u64::from(trials)).is_none()
         {
-            return Err(Failure::input(format!(
-                "seeds: {trials} from {first} on go beyond the greatest seed"
-            )));
+            refuse!("seeds: {trials} from {first} on go beyond the greatest seed");
         }
         if !TRIALS.allows(trials as usize) {
             let most = TRIALS.most;
-            return Err(Failure::input(format!("trials: must be a count from 1 to {most}, found {trials}")));
+            refuse!("trials: must be a count from 1 to {most}, found {trials}");
         }
         let cases = cases(&base, &axes)?;
         let program = program.map_or_else(|| Program::running(&policies), Ok)?;
@@ -341,8 +334,7 @@ impl Experiment {
             let is_drawn = case.scenario.is_drawn();
             let trials = if is_drawn { self.trials } else { 1 };
             for seed in (1..=trials).map(|trial| self.seed(trial)) {
-                self.check_case(case, seed)
-                    .map_err(|reason| Failure::input(format!("{}: {reason}", path.display())))?;
+                self.check_case(case, seed).map_err(Failure::input_at(path.display()))?;
             }
         }
         Ok(())

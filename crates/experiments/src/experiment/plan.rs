@@ -41,7 +41,7 @@ impl AnalysisPlan {
     /// An unknown metric, or a margin that is not a number above 0, with the field.
     pub(super) fn checked(self, metrics: &Catalogue) -> Result<Self, Failure> {
         let named = |field: &str, name: &str| {
-            let place = metrics.named(name).map_err(|error| Failure::input(format!("{field}: {error}")))?;
+            let place = metrics.named(name).map_err(Failure::input_at(field))?;
             Ok::<String, Failure>(metrics[place].name.clone())
         };
         let primary = self.primary.iter().map(|name| named("primary", name)).collect::<Result<_, _>>()?;

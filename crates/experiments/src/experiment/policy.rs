@@ -2,12 +2,12 @@
 
 use std::fmt;
 
-use rne_core::{MadeMeasure, MadePolicy, Registry, RegistryError};
+use rne_core::{MadeMeasure, MadePolicy, Registry};
 use ron_tree::{Node, Value, nearest};
 use usar_sim::scenario::Scenario;
 
-use crate::Failure;
 use crate::oracle;
+use crate::{Failure, refuse};
 
 /// A registry with the oracle, unless it has one of its own.
 #[must_use]
@@ -44,7 +44,7 @@ impl PolicySpec {
     ///
     /// # Errors
     /// An unknown name, options that the policy does not have, or unclosed brackets; in one sentence.
-    pub fn parse(text: &str, registry: &Registry) -> Result<Self, PolicyTextError> {
+    pub fn parse(text: &str, registry: &Registry) -> Result<Self, Failure> {
         let text = text.trim();
         let open = text.find('(').unwrap_or(text.len());
         let (label, rest) = match text[..open].find('=') {
@@ -54,19 +54,16 @@ impl PolicySpec {
         let (name, options) = rest.split_at(rest.find('(').unwrap_or(rest.len()));
         let name = name.trim();
         if !registry.names().contains(&name)
-            && let Err(source) = registry.make(name, "")
+            && let Err(unknown) = registry.make(name, "")
         {
-            let meant = nearest(name, registry.names()).map(str::to_owned);
-            return Err(PolicyTextError::Refused { source: Box::new(source), meant });
+            let meant = nearest(name, registry.names()).map(|meant| format!("; did you mean {meant}?"));
+            refuse!("{unknown}{}", meant.unwrap_or_default());
         }
         let options = parse_options(options)?;
         let plain = plain(name, &options);
-        let made = registry
-            .parse(&plain)
-            .map_err(|source| PolicyTextError::Refused { source: Box::new(source), meant: None })?;
-        if let Some(label) = label {
-            check_label(label, name, registry)
-                .map_err(|rule| PolicyTextError::Label { rule, found: text.to_owned() })?;
+        let made = registry.parse(&plain).map_err(Failure::input)?;
+        if let Some(rule) = label.and_then(|label| broken_rule(label, name, registry)) {
+            refuse!("the label before `=` must {rule}, found {text:?}");
         }
         let written = label.map_or(plain.clone(), |label| format!("{label}={plain}"));
         let label = label.map_or(plain, str::to_owned);
@@ -135,46 +132,16 @@ impl PolicySpec {
     }
 }
 
-/// A text that names no policy.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum PolicyTextError {
-    /// The registry refuses it.
-    #[error("{source}{}", meant.as_ref().map(|meant| format!("; did you mean {meant}?")).unwrap_or_default())]
-    Refused {
-        /// Why.
-        source: Box<RegistryError>,
-        /// The known name that is nearest to an unknown one.
-        meant: Option<String>,
-    },
-    /// A label that breaks a rule.
-    #[error("the label before `=` must {rule}, found {found:?}")]
-    Label {
-        /// The rule.
-        rule: &'static str,
-        /// The text.
-        found: String,
-    },
-    /// Options in brackets that are not closed, not named, or written twice.
-    #[error("options must be written as (name: value, name: value), each once, found {found:?}")]
-    Options {
-        /// The options as written.
-        found: String,
-    },
-}
-
 /// The rule that a label breaks, if any.
-fn check_label(label: &str, name: &str, registry: &Registry) -> Result<(), &'static str> {
+fn broken_rule(label: &str, name: &str, registry: &Registry) -> Option<&'static str> {
     if label.is_empty() || label.chars().any(char::is_control) {
-        return Err("be visible characters");
+        return Some("be visible characters");
     }
     if label.starts_with(['=', '+', '-', '@']) {
-        return Err("not begin like a formula, with =, +, - or @");
+        return Some("not begin like a formula, with =, +, - or @");
     }
-    if label != name && registry.names().contains(&label) {
-        return Err("not be the name of another policy");
-    }
-    Ok(())
+    let is_other = label != name && registry.names().contains(&label);
+    is_other.then_some("not be the name of another policy")
 }
 
 fn plain(name: &str, options: &[(String, String)]) -> String {
@@ -182,11 +149,12 @@ fn plain(name: &str, options: &[(String, String)]) -> String {
     if named.is_empty() { name.to_owned() } else { format!("{name}({})", named.join(", ")) }
 }
 
-fn parse_options(text: &str) -> Result<Vec<(String, String)>, PolicyTextError> {
+fn parse_options(text: &str) -> Result<Vec<(String, String)>, Failure> {
     if text.is_empty() {
         return Ok(Vec::new());
     }
-    let wrong = || PolicyTextError::Options { found: text.to_owned() };
+    let form = "(name: value, name: value), each once";
+    let wrong = || Failure::input(format!("options must be written as {form}, found {text:?}"));
     let written = Node::parse(text).map_err(|_| wrong())?;
     match &written.value {
         Value::Struct(name, fields) if name.is_empty() => {

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use rne_core::Registry;
-use store::Failure;
+use store::{Failure, refuse};
 use usar_sim::scenario::{Scenario, ScenarioFile, parse_ron, parse_tree, read_text};
 
 use super::file::SweepFile;
@@ -30,13 +30,13 @@ pub fn with_settings(scenario: &Scenario, settings: &[String]) -> Result<Scenari
             .ok_or_else(|| Failure::input(format!("--set: must be path=value, found {entry:?}")))?;
         let path = path.trim();
         if !decides(path) {
-            return Err(Failure::input(format!(
+            refuse!(
                 "--set: {path}: decides no number of a trial; --policies, --trials and --first-seed say what is run"
-            )));
+            );
         }
-        file.set(path, value).map_err(|error| Failure::input(format!("--set: {error}")))?;
+        file.set(path, value).map_err(Failure::input_at("--set"))?;
         if let Some(other) = overlapping(&tree, earlier.iter().copied(), path) {
-            return Err(Failure::input(format!("--set: {path} and {other} set the same field")));
+            refuse!("--set: {path} and {other} set the same field");
         }
         earlier.push(path);
     }
@@ -92,12 +92,12 @@ pub(super) fn from_scenario(
         let sweep = read_text(&companion).map_err(Failure::input)?;
         let file: SweepFile = parse_ron(&sweep, &companion).map_err(Failure::input)?;
         if Path::new(&file.scenario).file_name() != path.file_name() {
-            return Err(Failure::input(format!(
+            refuse!(
                 "{}: scenario: must be \"{}\", whose sweep this is, found {:?}",
                 companion.display(),
                 path.file_name().unwrap_or_default().display(),
                 file.scenario
-            )));
+            );
         }
         return from_sweep_file(sweep, &companion, registry);
     }

@@ -3,7 +3,7 @@
 use std::fmt;
 
 use ron_tree::{Node, Problem};
-use thiserror::Error;
+use store::{Failure, refuse};
 use usar_sim::scenario::ScenarioFile;
 
 /// Significant digits of a candidate value. With so few digits, the log and the calibrated scenario hold
@@ -24,64 +24,6 @@ pub struct Free {
     is_whole: bool,
 }
 
-/// Why a text is no free parameter of a scenario.
-#[derive(Debug, Clone, PartialEq, Eq, Error)]
-pub enum FreeError {
-    /// The text has another form.
-    #[error(
-        "must be 'PATH=LOW..HIGH' or 'PATH + PATH*RATIO=LOW..HIGH log' with finite numbers, found {spec:?}"
-    )]
-    Form {
-        /// The text.
-        spec: String,
-    },
-    /// The range has no values.
-    #[error("the lower bound must be below the upper one, found {spec:?}")]
-    Bounds {
-        /// The text.
-        spec: String,
-    },
-    /// A logarithmic range begins at 0 or below.
-    #[error("a logarithmic range must be above 0, found {spec:?}")]
-    Logarithm {
-        /// The text.
-        spec: String,
-    },
-    /// A ratio is 0 or below.
-    #[error("a ratio must be above 0, found {spec:?}")]
-    Ratio {
-        /// The text.
-        spec: String,
-    },
-    /// The field has a default value in the scenario.
-    #[error(
-        "{path}: is not written in the scenario; write it there, so that what is found can take its place"
-    )]
-    NotWritten {
-        /// The field.
-        path: String,
-    },
-    /// The field has parts.
-    #[error("{path}: is not a number but has parts: {parts}")]
-    Parts {
-        /// The field.
-        path: String,
-        /// Names of its parts.
-        parts: String,
-    },
-    /// There is no such field.
-    #[error(transparent)]
-    Unknown(#[from] Box<Problem>),
-    /// The field's present value is not a number.
-    #[error("{path}: must be a number, found {written}")]
-    NotNumber {
-        /// The field.
-        path: String,
-        /// Its value.
-        written: String,
-    },
-}
-
 impl Free {
     /// Reads `PATH[*RATIO] [+ PATH[*RATIO] ...]=LOW..HIGH[ log]`; `[*]` in a path is every entry of a list.
     /// `fields` are the fields that the scenario writes; each path must be one of them. `known` are all
@@ -89,9 +31,11 @@ impl Free {
     ///
     /// # Errors
     /// The text has another form, the scenario lacks a path, or the range cannot be searched.
-    pub fn parse(spec: &str, fields: &Node, known: &Node) -> Result<Self, FreeError> {
-        let found = || spec.to_owned();
-        let form = || FreeError::Form { spec: found() };
+    pub fn parse(spec: &str, fields: &Node, known: &Node) -> Result<Self, Failure> {
+        let form = || {
+            let rule = "must be 'PATH=LOW..HIGH' or 'PATH + PATH*RATIO=LOW..HIGH log' with finite numbers";
+            Failure::input(format!("{rule}, found {spec:?}"))
+        };
         let (paths, range) = spec.rsplit_once('=').ok_or_else(form)?;
         let (range, is_log) =
             range.trim().strip_suffix("log").map_or((range.trim(), false), |range| (range.trim(), true));
@@ -99,10 +43,10 @@ impl Free {
         let number = |text: &str| text.trim().parse::<f64>().ok().filter(|value| value.is_finite());
         let (low, high) = number(low).zip(number(high)).ok_or_else(form)?;
         if low >= high {
-            return Err(FreeError::Bounds { spec: found() });
+            refuse!("the lower bound must be below the upper one, found {spec:?}");
         }
         if is_log && low <= 0.0 {
-            return Err(FreeError::Logarithm { spec: found() });
+            refuse!("a logarithmic range must be above 0, found {spec:?}");
         }
         let mut named = Vec::new();
         let mut name = String::new();
@@ -112,7 +56,7 @@ impl Free {
                 None => (part.trim(), 1.0),
             };
             if ratio <= 0.0 {
-                return Err(FreeError::Ratio { spec: found() });
+                refuse!("a ratio must be above 0, found {spec:?}");
             }
             if name.is_empty() {
                 path.clone_into(&mut name);
@@ -199,14 +143,21 @@ impl Free {
         !(0.01..=0.99).contains(&place)
     }
 
+    /// What a search has found for the parameter, in words.
+    #[must_use]
+    pub fn found(&self, value: f64) -> String {
+        let end = if self.is_at_end(value) { "; it is at the end of its range" } else { "" };
+        format!("{} = {value} (searched from {} to {}{end})", self.name, self.low, self.high)
+    }
+
     /// The parameter's present value, computed from its first field.
     ///
     /// # Errors
     /// The first field is not a number.
-    pub fn present(&self, tree: &Node) -> Result<f64, FreeError> {
+    pub fn present(&self, tree: &Node) -> Result<f64, Failure> {
         let (path, ratio) = &self.fields[0];
         let written = tree.get(path).map(ToString::to_string).unwrap_or_default();
-        let not_number = |_| FreeError::NotNumber { path: path.clone(), written: written.clone() };
+        let not_number = |_| Failure::input(format!("{path}: must be a number, found {written}"));
         written.parse::<f64>().map(|value| value / ratio).map_err(not_number)
     }
 
@@ -239,15 +190,16 @@ impl fmt::Display for Free {
 }
 
 /// Why a path cannot be free.
-fn not_there(path: &str, known: &Node) -> FreeError {
-    let path = path.to_owned();
+fn not_there(path: &str, known: &Node) -> Failure {
     let first = path.replace("[*]", "[0]");
     if known.leaves().iter().any(|(field, _)| *field == first) {
-        FreeError::NotWritten { path }
+        Failure::input(format!(
+            "{path}: is not written in the scenario; write it there, so that what is found can take its place"
+        ))
     } else if let Some(node) = known.get(&first) {
-        FreeError::Parts { path, parts: node.names().join(", ") }
+        Failure::input(format!("{path}: is not a number but has parts: {}", node.names().join(", ")))
     } else {
-        known.unknown(&first, "a scenario").into()
+        Failure::input(known.unknown(&first, "a scenario"))
     }
 }
 
@@ -283,7 +235,7 @@ mod tests {
 
     const TEXT: &str = "(roles: (a: (v: 3.0), b: (v: 2.0)), zones: [(r: 4.5), (r: 4.5)], n: (k: 1))";
 
-    fn free(spec: &str) -> Result<Free, FreeError> {
+    fn free(spec: &str) -> Result<Free, Failure> {
         let tree = |text| Node::parse(text).unwrap();
         Free::parse(spec, &tree(TEXT), &tree("(roles: (a: (v: 3.0, w: 1.0), b: (v: 2.0)))"))
     }

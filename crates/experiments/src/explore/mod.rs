@@ -10,7 +10,7 @@ mod space;
 
 pub use descent::{Descent, WORST};
 pub use design::Method;
-pub use free::{Free, FreeError};
+pub use free::Free;
 pub use hunt::{Candidate, FOUND, Hunt, Trail};
 pub use sensitivity::{CHANCE, Evaluations, FIGURE, INDICES, Index, Row, Sensitivity};
 pub use space::{Outcome, Point, PointError, Space, Values, scenario_with};

@@ -1,13 +1,12 @@
 //! A scenario with parameters that vary within ranges, and the outcomes at a point.
 
-use std::fmt::Display;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use rayon::prelude::*;
 use ron_tree::Problem;
 use serde::{Deserialize, Serialize};
-use store::Failure;
+use store::{Failure, refuse};
 use thiserror::Error;
 use usar_sim::scenario::{Scenario, ScenarioFile};
 
@@ -133,23 +132,23 @@ impl Space {
     /// The experiment has axes, the scenario lacks a parameter, two parameters set one field, or an end of
     /// a range cannot be run.
     pub fn new(experiment: Experiment, specs: &[String], outcomes: Vec<Outcome>) -> Result<Self, Failure> {
-        let bad = |error: &dyn Display| Failure::input(format!("--over: {error}"));
         if !experiment.axes.is_empty() {
-            return Err(Failure::input(
-                "this sweep has axes; --over varies one scenario: name its file, or a sweep without axes",
-            ));
+            refuse!(
+                "this sweep has axes; --over varies one scenario: name its file, or a sweep without axes"
+            );
         }
         let tree = experiment.base.tree();
         let parse = |spec: &String| Free::parse(spec, &tree, &tree);
-        let free = specs.iter().map(parse).collect::<Result<Vec<_>, _>>().map_err(|error| bad(&error))?;
+        let free =
+            specs.iter().map(parse).collect::<Result<Vec<_>, _>>().map_err(Failure::input_at("--over"))?;
         let free = free.into_iter().map(|free| free.in_scenario(&experiment.base)).collect::<Vec<_>>();
         let mut paths: Vec<&str> = free.iter().flat_map(|free| free.settings(1.0).map(|(p, _)| p)).collect();
         paths.sort_unstable();
         if let Some([twice, _]) = paths.array_windows().find(|[a, b]| a == b) {
-            return Err(bad(&format!("{twice}: is set by two parameters")));
+            refuse!("--over: {twice}: is set by two parameters");
         }
         let space = Self { experiment, free, outcomes };
-        space.check_ends().map_err(|error| bad(&error))?;
+        space.check_ends().map_err(Failure::input_at("--over"))?;
         Ok(space)
     }
 
@@ -210,7 +209,7 @@ impl Space {
     pub fn present(&self) -> Result<Vec<f64>, Failure> {
         let tree = self.experiment.base.tree();
         let present = self.free.iter().map(|free| free.present(&tree)).collect::<Result<_, _>>();
-        present.map_err(|error| Failure::input(format!("--over: {error}")))
+        present.map_err(Failure::input_at("--over"))
     }
 
     /// The outcomes at these points, each from the experiment's number of trials, on the threads of the

@@ -2,6 +2,7 @@
 
 use rne_core::{AssignmentError, Deadline, Decision, PolicyError, Session, TrialStart};
 use serde::{Deserialize, Serialize};
+use store::Failure;
 use usar_sim::metrics::TaskTotals;
 use usar_sim::record::{Status, TrialRecord};
 use usar_sim::simulation::{Advance, Ask, AssignError, Checkpoint, Simulation};
@@ -93,6 +94,17 @@ pub enum BranchError {
     /// The branch was told to stop.
     #[error("it was halted")]
     Halted,
+}
+
+impl From<BranchError> for Failure {
+    fn from(error: BranchError) -> Self {
+        match error {
+            BranchError::Halted => Self::Interrupted("stopped".to_owned()),
+            BranchError::NoSuchRound { .. } => Self::input(format!("--round: {error}")),
+            BranchError::Refused(_) => Self::input(error),
+            error => Self::run(error),
+        }
+    }
 }
 
 /// Lets a session play a trial from its start until the question of a round awaits its answer.

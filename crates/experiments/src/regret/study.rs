@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use rne_core::{Deadline, Registry};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
-use store::{Failure, Log};
+use store::{Failure, Log, refuse};
 use usar_sim::simulation::Simulation;
 
 use super::decision::{Plan, PlayedDecision, play_decisions};
@@ -80,17 +80,14 @@ impl Study {
     /// The sweep has axes, or a policy that cannot be judged.
     pub fn of(experiment: &Experiment, choices: &Choices) -> Result<Self, Failure> {
         if experiment.cases.len() > 1 {
-            return Err(Failure::input(format!(
+            refuse!(
                 "{}: a study of regret is of one scenario, and this sweep has {} cases",
                 experiment.name,
                 experiment.cases.len()
-            )));
+            );
         }
         if let Some(oracle) = experiment.policies.iter().find(|spec| !spec.is_of_question()) {
-            return Err(Failure::input(format!(
-                "policies: {} is what the others are measured against; leave it out",
-                oracle.label
-            )));
+            refuse!("policies: {} is what the others are measured against; leave it out", oracle.label);
         }
         let then = choices.then.as_deref().map(|then| PolicySpec::parse(then, &experiment.registry));
         let then = then.transpose().map_err(Failure::input)?;

@@ -12,7 +12,6 @@ use super::disk::{broken_files, inputs};
 use super::folder::Folder;
 use super::line::line_of;
 use super::names::GIVEN;
-use super::parquet;
 use crate::experiment::{Experiment, check_form};
 use crate::run::{FaultKind, Outcome, TrialKey};
 
@@ -113,7 +112,7 @@ fn first_field(path: &str, there: &Value, now: &Value) -> Option<String> {
 }
 
 /// The files of a finished sweep's folder that differ from what its trials and its manifest give, one
-/// sentence each.
+/// sentence each. Its Parquet files, which are made from its tables, are left to who can write such files.
 ///
 /// # Errors
 /// The journal cannot be read, or there is no room for the tables in the folder of temporary files.
@@ -141,6 +140,5 @@ pub fn strange_files(folder: &mut Folder) -> Result<Vec<String>, Failure> {
     for file in again.iter().filter(|file| !manifest.files.contains(file)) {
         strange.push(format!("{}: is not what the trials in the journal give", name(&file.name)));
     }
-    strange.extend(parquet::strange(&path, folder.experiment())?);
     Ok(strange)
 }

@@ -1,14 +1,10 @@
 //! The dictionary of a sweep's tables, for people (`columns.md`) and for programs (`datapackage.json`, a
 //! Frictionless Data Package): each column with its type, unit and meaning, as it is declared.
 
-use std::fmt::Write;
-
-use exports::parquet::Kind;
 use serde_json::{Value, json};
+use tables::{About, section};
 
-use super::column::About;
-use super::rows;
-use super::tables::{A_ROW_IS, all_columns, tables_of};
+use super::tables::{Described, described, tables_of};
 use crate::experiment::Experiment;
 
 /// Names of the files: for people, and for programs.
@@ -27,25 +23,9 @@ pub fn columns_page(experiment: &Experiment) -> String {
     markdown(experiment, &tables(experiment))
 }
 
-/// A table: its file, the meaning of a row, and its columns.
-type Described = (&'static str, &'static str, Vec<About>);
-
 /// The tables of an experiment.
 fn tables(experiment: &Experiment) -> Vec<Described> {
-    let before = rows::before(&experiment.axes);
-    let names = tables_of(experiment.keep, None).iter().zip(A_ROW_IS);
-    let all = names.zip(all_columns(experiment));
-    all.map(|((file, row), own)| (*file, row, before.iter().cloned().chain(own).collect())).collect()
-}
-
-/// The type of a column in a data package.
-fn type_of(kind: Kind) -> &'static str {
-    match kind {
-        Kind::Natural => "integer",
-        Kind::Number => "number",
-        Kind::Truth => "boolean",
-        Kind::Text => "string",
-    }
+    described(experiment).into_iter().take(tables_of(experiment.keep, None).len()).collect()
 }
 
 fn markdown(experiment: &Experiment, tables: &[Described]) -> String {
@@ -54,38 +34,28 @@ fn markdown(experiment: &Experiment, tables: &[Described]) -> String {
          percent of a robot's own maximum, unless the scenario counts otherwise (`costs.unit`).\n",
         experiment.name
     );
-    for (file, row, columns) in tables {
-        let _ = write!(
-            text,
-            "\n## {file}\n\nA row is {row}.\n\n| column | type | unit | meaning |\n| --- | --- | --- | --- \
-             |\n"
-        );
-        for About { name, kind, unit, meaning } in columns {
-            let cell = |text: &str| text.replace('|', "\\|");
-            let _ = writeln!(text, "| `{}` | {} | {unit} | {} |", cell(name), type_of(*kind), cell(meaning));
-        }
-    }
+    text.extend(tables.iter().map(|table| section(table.csv, table.row_is, &table.columns)));
     text
 }
 
 fn package(experiment: &Experiment, tables: &[Described]) -> Value {
     let field = |column: &About| {
         let mut field =
-            json!({"name": column.name, "type": type_of(column.kind), "description": column.meaning});
+            json!({"name": column.name, "type": column.kind.name(), "description": column.meaning});
         if !column.unit.is_empty() {
             field["unit"] = column.unit.into();
         }
         field
     };
-    let resource = |(file, row, columns): &Described| {
+    let resource = |table: &Described| {
         json!({
-            "name": file.trim_end_matches(".csv"),
-            "path": file,
-            "title": format!("A row is {row}."),
+            "name": table.csv.trim_end_matches(".csv"),
+            "path": table.csv,
+            "title": format!("A row is {}.", table.row_is),
             "format": "csv",
             "mediatype": "text/csv",
             "encoding": "utf-8",
-            "schema": {"fields": columns.iter().map(field).collect::<Vec<_>>(), "missingValues": [""]},
+            "schema": {"fields": table.columns.iter().map(field).collect::<Vec<_>>(), "missingValues": [""]},
         })
     };
     let name: String = experiment

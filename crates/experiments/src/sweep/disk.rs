@@ -14,7 +14,7 @@ use super::names::{AGAIN, GIVEN, INPUTS, MANIFEST, RESOLVED, sweeps_in};
 use super::tables::tables_of;
 use super::{journal, ours};
 use crate::experiment::{AnalysisPlan, Experiment, Parts, Shard};
-use crate::provenance::{Manifest, ManifestError, scenario_differences};
+use crate::provenance::{Manifest, scenario_differences};
 
 /// Writes the manifest and the inputs of a sweep.
 pub(super) fn write_start(
@@ -70,7 +70,7 @@ pub(super) fn read_manifest(path: &Path) -> Result<Option<Manifest>, Failure> {
     };
     let sound = Manifest::parse(&text).and_then(|manifest| {
         let is_listed = manifest.files.iter().map(|file| file.name.as_str()).eq(listed(&manifest));
-        if is_listed { Ok(manifest) } else { Err(ManifestError::OtherFiles) }
+        if is_listed { Ok(manifest) } else { Err(Failure::input("it does not list the files of a sweep")) }
     });
     sound.map(Some).map_err(|reason| {
         let name = name.display();

@@ -130,10 +130,9 @@ impl Folder {
         shard: Option<Shard>,
     ) -> Result<(Store, Results), Failure> {
         let store = Store::archive(path, Order::of(experiment, shard))
-            .map_err(|error| Failure::input(format!("{}: {error}", path.join(ARCHIVE).display())))?;
+            .map_err(Failure::input_at(path.join(ARCHIVE).display()))?;
         let table = path.join(TRIALS);
-        let results = read_results(&table, experiment, shard)
-            .map_err(|error| Failure::input(format!("{}: {error}", table.display())))?;
+        let results = read_results(&table, experiment, shard).map_err(Failure::input_at(table.display()))?;
         Ok((store, results))
     }
 

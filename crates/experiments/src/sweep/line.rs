@@ -6,7 +6,7 @@ use store::Failure;
 use thiserror::Error;
 
 use super::links;
-use super::summary::{Summary, SummaryError};
+use super::summary::Summary;
 use crate::experiment::{Experiment, Keep, Place, Shard};
 use crate::run::{Fault, Outcome, Trial, TrialKey};
 
@@ -55,7 +55,7 @@ pub(super) enum LineError {
     #[error("is a trial of other sources of its policy")]
     OtherProgram { place: Place },
     #[error("{trial} {error}")]
-    Summary { trial: String, error: SummaryError },
+    Summary { trial: String, error: Failure },
     #[error("has no hash chain")]
     NoChain,
     #[error("is not its trials in order")]

@@ -4,8 +4,7 @@ use std::collections::BTreeMap;
 use std::io;
 use std::path::Path;
 
-use store::files;
-use thiserror::Error;
+use store::{Failure, files, refuse};
 
 use super::line::Finished;
 use super::rows::{FIRST_METRIC, trial_columns};
@@ -56,39 +55,26 @@ impl Measured {
     }
 }
 
-/// What is wrong with a table of trials.
-#[derive(Debug, Error)]
-pub(super) enum TableError {
-    #[error(transparent)]
-    Unreadable(#[from] io::Error),
-    #[error(transparent)]
-    Malformed(#[from] csv::Error),
-    #[error("does not have the columns of this sweep's trials")]
-    OtherColumns,
-    #[error("has no row of trial {trial} of {policy}")]
-    NoRow { trial: u32, policy: String },
-}
-
 /// The results of a finished sweep or shard, from its `trials.csv`.
 pub(super) fn read_results(
     table: &Path,
     experiment: &Experiment,
     shard: Option<Shard>,
-) -> Result<Results, TableError> {
-    let file = files::open(table)?;
+) -> Result<Results, Failure> {
+    let file = files::open(table).map_err(Failure::input)?;
     let mut reader = csv::Reader::from_reader(io::BufReader::with_capacity(1 << 20, file));
     let columns = trial_columns(&experiment.metrics);
     let before = if experiment.axes.is_empty() { 0 } else { 1 + experiment.axes.len() };
-    let header = reader.headers()?;
+    let header = reader.headers().map_err(Failure::input)?;
     if !header.iter().skip(before).eq(columns.iter()) {
-        return Err(TableError::OtherColumns);
+        refuse!("does not have the columns of this sweep's trials");
     }
     let mut row = csv::StringRecord::new();
     let mut next = |key: &TrialKey| {
-        let is_there = reader.read_record(&mut row)?;
+        let is_there = reader.read_record(&mut row).map_err(Failure::input)?;
         let cells: Vec<&str> = row.iter().skip(before).collect();
         if is_there { measured_in(&cells, key, experiment.metrics.len()) } else { None }
-            .ok_or_else(|| TableError::NoRow { trial: key.trial, policy: key.label.clone() })
+            .ok_or_else(|| Failure::input(format!("has no row of trial {} of {}", key.trial, key.label)))
     };
     let places = experiment.places(shard);
     places.map(|place| Ok((place, next(&experiment.key(place))?))).collect()

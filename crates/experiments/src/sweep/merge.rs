@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use rne_core::Registry;
-use store::Failure;
+use store::{Failure, refuse};
 
 use super::disk::{experiment_of, manifest_in, resolved_in};
 use super::folder::{Folder, Opening};
@@ -45,7 +45,7 @@ impl Merge {
     /// A folder is damaged or does not hold a sweep; the folders hold different sweeps or come from
     /// different programs; two of them disagree about a trial; or a trial is missing.
     pub fn of(folders: &[PathBuf], registry: &Registry) -> Result<Self, Failure> {
-        let [first, ..] = folders else { return Err(Failure::input("there is nothing to merge")) };
+        let [first, ..] = folders else { refuse!("there is nothing to merge") };
         let manifest = manifest_in(first)?;
         let experiment = Arc::new(experiment_of(first, &manifest, registry)?);
         check_program(first, &manifest, &experiment.policies)?;

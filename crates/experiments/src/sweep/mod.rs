@@ -2,7 +2,6 @@
 
 pub mod audit;
 mod closing;
-mod column;
 mod dictionary;
 pub mod disk;
 pub mod folder;
@@ -15,20 +14,18 @@ pub mod merge;
 mod missing;
 pub mod names;
 pub mod ours;
-mod parquet;
 pub mod progress;
 mod rows;
 mod sizes;
 mod store;
 mod summary;
-mod table;
 mod tables;
 mod tidy;
 
+pub use self::tables::{Described, described};
 pub use crate::experiment::Place;
 pub use dictionary::columns_page;
 pub use missing::{missing, run_trials};
-pub use parquet::write_parquet;
 pub use rows::trial_columns;
 pub use sizes::{Sizes, sizes};
 pub use tidy::{tidy_columns, tidy_rows};

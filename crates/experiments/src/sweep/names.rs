@@ -6,7 +6,6 @@ use std::path::{Path, PathBuf};
 use store::files;
 
 use super::dictionary::DICTIONARY;
-use super::tables::TABLES;
 
 /// What the folder holds, with the hashes of its files.
 pub(super) const MANIFEST: &str = "manifest.json";
@@ -24,16 +23,6 @@ pub const REPORT: &str = "report.html";
 pub const PLOTS: &str = "plots";
 /// The folder of recordings of trials.
 pub const RECORDINGS: &str = "recordings";
-
-/// The tables as Parquet files, in the order of the tables.
-pub(super) const PARQUETS: [&str; TABLES.len()] = [
-    "trials.parquet",
-    "rounds.parquet",
-    "robots.parquet",
-    "groups.parquet",
-    "series.parquet",
-    "hashes.parquet",
-];
 
 /// Whether a folder holds a sweep. The program that made it may be another one, and the manifest damaged.
 #[must_use]

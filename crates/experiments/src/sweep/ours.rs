@@ -8,11 +8,11 @@ use std::path::{Path, PathBuf};
 use store::files::{self, NewFile};
 use store::lock::is_lock;
 use store::owned::names_in;
-use store::{Failure, at};
+use store::{Failure, at, refuse};
 use tempfile::{SpooledTempFile, spooled_tempfile_in};
 
-use super::names::{INPUTS, MANIFEST, PARQUETS, PLOTS, RECORDINGS, REPORT};
-use super::tables::TABLES;
+use super::names::{INPUTS, MANIFEST, PLOTS, RECORDINGS, REPORT};
+use super::tables::{PARQUETS, TABLES};
 use super::{host, journal};
 
 /// The file that lists the names of the files that a report wrote, one on each line, relative to the
@@ -116,15 +116,12 @@ impl Report {
         let (path, before) = (&self.folder, reported(&self.folder));
         let plots = path.join(PLOTS);
         if plots.symlink_metadata().is_ok_and(|there| !there.is_dir()) {
-            return Err(Failure::input(format!("{}: is not a folder", plots.display())));
+            refuse!("{}: is not a folder", plots.display());
         }
         for (name, _) in &self.files {
             if !before.contains(name) && path.join(name).symlink_metadata().is_ok() {
                 let name = path.join(name);
-                return Err(Failure::input(format!(
-                    "{}: is not of a report of this program; nothing was overwritten",
-                    name.display()
-                )));
+                refuse!("{}: is not of a report of this program; nothing was overwritten", name.display());
             }
         }
         remove_report(path).map_err(|error| self.trouble(&error))?;

@@ -1,15 +1,15 @@
 //! The columns of the tables that a sweep writes, and what a row of each is.
 
-use exports::parquet::Kind::{self, Natural, Number, Text, Truth};
 use rne_core::TaskId;
 use rne_core::question::{Member, Question};
+use tables::Kind::{Natural, Number, Text};
+use tables::{About, Cell, Column, Columns, columns};
 use usar_sim::event::ReturnCause;
 use usar_sim::hash::Link;
 use usar_sim::metrics::RoundRecord;
 use usar_sim::record::{RobotRecord, TrialRecord};
 use usar_sim::scenario::NeedFile;
 
-use super::column::{About, Cell, Column, Columns};
 use super::line::Finished;
 use super::summary::Summary;
 use crate::experiment::{Axis, Experiment};
@@ -58,16 +58,6 @@ pub(super) type MomentRow<'a> = Of<'a, Delivered>;
 /// A row of `hashes.csv`.
 pub(super) type LinkRow<'a> = Of<'a, &'a Link>;
 
-fn column<R, C: Into<Cell>>(
-    name: &str,
-    kind: Kind,
-    unit: &'static str,
-    meaning: &str,
-    read: impl Fn(&R) -> C + 'static,
-) -> Column<R> {
-    Column::new(About::new(name, kind, unit, meaning), read)
-}
-
 const POLICY: &str = "Label of the policy in the sweep.";
 const TRIAL: &str = "Number of the trial, from 1. Trials of the same number have the same seed, whatever the \
     policy.";
@@ -94,32 +84,30 @@ pub(super) fn trials<'a>(metrics: &Catalogue) -> Columns<TrialRow<'a>> {
     let status = "How the trial ended: completed, nobody_can_carry, errands_over, failed, panicked or \
         timed_out.";
     let hash = "Hash of the whole course of the trial: equal hashes, equal trials, bit for bit.";
-    let mut columns = vec![
-        column("method", Text, "", method, |row: &TrialRow| row.key.label.clone()),
-        column("trial", Natural, "", TRIAL, |row: &TrialRow| row.key.trial),
-        column("policy", Text, "", POLICY, |row: &TrialRow| row.key.label.clone()),
-        column("seed", Natural, "", SEED, |row: &TrialRow| row.key.seed),
-        column("status", Text, "", status, |row: &TrialRow| match &row.result {
+    let mut columns = columns! { TrialRow:
+        "method", Text, "", method, |row| row.key.label.clone();
+        "trial", Natural, "", TRIAL, |row| row.key.trial;
+        "policy", Text, "", POLICY, |row| row.key.label.clone();
+        "seed", Natural, "", SEED, |row| row.key.seed;
+        "status", Text, "", status, |row| match &row.result {
             Ok(summary) => summary.status.clone(),
             Err(fault) => fault.kind.name().to_owned(),
-        }),
-    ];
+        };
+    };
     let of_metric = |(place, metric): (usize, &Metric)| {
         Column::new(about(metric, ""), move |row: &TrialRow| {
             Cell::short(row.result.as_ref().ok().and_then(|summary| summary.metrics[place]))
         })
     };
     columns.extend(metrics.iter().enumerate().map(of_metric));
-    let ok = |row: &TrialRow| row.result.as_ref().ok().map(|summary| summary.state_hash.clone());
     let failure = "Why the trial gave no numbers; empty where it did.";
     let replay = "The command that runs a failed trial alone; empty for others.";
-    columns.extend([
-        column("state_hash", Text, "", hash, ok),
-        column("failure", Text, "", failure, |row: &TrialRow| {
-            row.result.as_ref().err().map(|fault| fault.reason.clone())
-        }),
-        column("replay", Text, "", replay, |row: &TrialRow| row.replay.clone()),
-    ]);
+    columns.extend(columns! { TrialRow:
+        "state_hash", Text, "", hash,
+            |row| row.result.as_ref().ok().map(|summary| summary.state_hash.clone());
+        "failure", Text, "", failure, |row| row.result.as_ref().err().map(|fault| fault.reason.clone());
+        "replay", Text, "", replay, |row| row.replay.clone();
+    });
     columns
 }
 
@@ -149,11 +137,11 @@ impl<'a> TrialRow<'a> {
 
 /// The columns with the trial of a row.
 fn of_trial<'a, T: 'a>() -> Columns<Of<'a, T>> {
-    vec![
-        column("policy", Text, "", POLICY, |row: &Of<T>| row.key.label.clone()),
-        column("trial", Natural, "", TRIAL, |row: &Of<T>| row.key.trial),
-        column("seed", Natural, "", SEED, |row: &Of<T>| row.key.seed),
-    ]
+    columns! { Of<T>:
+        "policy", Text, "", POLICY, |row| row.key.label.clone();
+        "trial", Natural, "", TRIAL, |row| row.key.trial;
+        "seed", Natural, "", SEED, |row| row.key.seed;
+    }
 }
 
 fn with_trial<'a, T: 'a>(own: impl IntoIterator<Item = Column<Of<'a, T>>>) -> Columns<Of<'a, T>> {
@@ -173,34 +161,24 @@ pub(super) fn rounds<'a>() -> Columns<RoundRow<'a>> {
     let secured = "Rescuees that the group took on board in the round.";
     let rescued = "Rescuees of the task that were delivered in the round.";
     let turned_back = "Members that left for a rest place in the round.";
-    with_trial([
-        column("round", Natural, "", ROUND, |row: &RoundRow| row.it.1.round),
-        column("task", Text, "", TASK, |row: &RoundRow| {
+    with_trial(columns! { RoundRow:
+        "round", Natural, "", ROUND, |row| row.it.1.round;
+        "task", Text, "", TASK, |row| {
             let (record, round) = row.it;
             record.tasks[round.task.index()].task.clone()
-        }),
-        column("start_s", Number, "s", "Simulated time when the round began.", |row: &RoundRow| {
-            row.it.1.start_s
-        }),
-        column("end_s", Number, "s", end, |row: &RoundRow| row.it.1.end_s),
-        column("members", Text, "", members, |row: &RoundRow| {
-            row.it.1.members.iter().map(|member| member.id.to_string()).collect::<Vec<_>>().join(" ")
-        }),
-        column("secured", Natural, "rescuees", secured, |row: &RoundRow| row.it.1.secured),
-        column("rescued", Natural, "rescuees", rescued, |row: &RoundRow| row.it.1.rescued),
-        column("energy", Number, "points", "Energy that the group spent in the round.", |row: &RoundRow| {
-            row.it.1.energy
-        }),
-        column("hp", Number, "points", "HP that the group lost in the round.", |row: &RoundRow| row.it.1.hp),
-        column("turned_back", Natural, "robots", turned_back, |row: &RoundRow| row.it.1.turned_back),
-        column(
-            "return_cause",
-            Text,
-            "",
-            "Why the group went home; empty where it did not.",
-            |row: &RoundRow| row.it.1.return_cause.map(ReturnCause::name),
-        ),
-    ])
+        };
+        "start_s", Number, "s", "Simulated time when the round began.", |row| row.it.1.start_s;
+        "end_s", Number, "s", end, |row| row.it.1.end_s;
+        "members", Text, "", members,
+            |row| row.it.1.members.iter().map(|member| member.id.to_string()).collect::<Vec<_>>().join(" ");
+        "secured", Natural, "rescuees", secured, |row| row.it.1.secured;
+        "rescued", Natural, "rescuees", rescued, |row| row.it.1.rescued;
+        "energy", Number, "points", "Energy that the group spent in the round.", |row| row.it.1.energy;
+        "hp", Number, "points", "HP that the group lost in the round.", |row| row.it.1.hp;
+        "turned_back", Natural, "robots", turned_back, |row| row.it.1.turned_back;
+        "return_cause", Text, "", "Why the group went home; empty where it did not.",
+            |row| row.it.1.return_cause.map(ReturnCause::name);
+    })
 }
 
 /// The rows of `rounds.csv` of a trial.
@@ -216,43 +194,23 @@ pub(super) fn robots<'a>() -> Columns<RobotRow<'a>> {
     let waiting = "Time in which the robot stood because of others.";
     let stall = "The longest time in which the robot had a goal and came no nearer to it.";
     let waits_for = "The robot that it waited for then; empty for none.";
-    with_trial([
-        column("robot", Natural, "", ROBOT, |row: &RobotRow| row.it.robot),
-        column("role", Text, "", ROLE, |row: &RobotRow| row.it.role.clone()),
-        column("initial_energy", Number, "%", "Battery level when the trial began.", |row: &RobotRow| {
-            row.it.initial_energy
-        }),
-        column("initial_hp", Number, "%", "Health level when the trial began.", |row: &RobotRow| {
-            row.it.initial_hp
-        }),
-        column("final_energy", Number, "%", "Battery level when the trial was over.", |row: &RobotRow| {
-            row.it.final_energy
-        }),
-        column("final_hp", Number, "%", "Health level when the trial was over.", |row: &RobotRow| {
-            row.it.final_hp
-        }),
-        column("energy_spent", Number, "points", "Energy that the robot spent.", |row: &RobotRow| {
-            row.it.energy_spent
-        }),
-        column("hp_lost", Number, "points", "HP that the robot lost.", |row: &RobotRow| row.it.hp_lost),
-        column("distance_m", Number, "m", "Way that the robot travelled.", |row: &RobotRow| {
-            row.it.distance_m
-        }),
-        column("waiting_s", Number, "s", waiting, |row: &RobotRow| row.it.waiting_s),
-        column("longest_stall_s", Number, "s", stall, |row: &RobotRow| row.it.longest_stall_s),
-        column("stall_cause", Text, "", "What took the most of that time.", |row: &RobotRow| {
-            row.it.stall.cause.name()
-        }),
-        column("stall_waits_for", Natural, "", waits_for, |row: &RobotRow| {
-            row.it.stall.waits_for.map(|robot| robot.0)
-        }),
-        column("stranded", Truth, "", "Whether the robot ended with no energy.", |row: &RobotRow| {
-            row.it.stranded
-        }),
-        column("disabled", Truth, "", "Whether the robot ended with no HP.", |row: &RobotRow| {
-            row.it.disabled
-        }),
-    ])
+    with_trial(columns! { RobotRow:
+        "robot", Natural, "", ROBOT, |row| row.it.robot;
+        "role", Text, "", ROLE, |row| row.it.role.clone();
+        "initial_energy", Number, "%", "Battery level when the trial began.", |row| row.it.initial_energy;
+        "initial_hp", Number, "%", "Health level when the trial began.", |row| row.it.initial_hp;
+        "final_energy", Number, "%", "Battery level when the trial was over.", |row| row.it.final_energy;
+        "final_hp", Number, "%", "Health level when the trial was over.", |row| row.it.final_hp;
+        "energy_spent", Number, "points", "Energy that the robot spent.", |row| row.it.energy_spent;
+        "hp_lost", Number, "points", "HP that the robot lost.", |row| row.it.hp_lost;
+        "distance_m", Number, "m", "Way that the robot travelled.", |row| row.it.distance_m;
+        "waiting_s", Number, "s", waiting, |row| row.it.waiting_s;
+        "longest_stall_s", Number, "s", stall, |row| row.it.longest_stall_s;
+        "stall_cause", Text, "", "What took the most of that time.", |row| row.it.stall.cause.name();
+        "stall_waits_for", Natural, "", waits_for, |row| row.it.stall.waits_for.map(|robot| robot.0);
+        "stranded", Truth, "", "Whether the robot ended with no energy.", |row| row.it.stranded;
+        "disabled", Truth, "", "Whether the robot ended with no HP.", |row| row.it.disabled;
+    })
 }
 
 /// The rows of `robots.csv` of a trial.
@@ -267,18 +225,14 @@ pub(super) fn robot_rows<'a>(
 pub(super) fn groups<'a>(needs: &[NeedFile]) -> Columns<GroupRow<'a>> {
     let energy = "Battery level when the robot was grouped.";
     let hp = "Health level when the robot was grouped.";
-    let mut columns = with_trial([
-        column("round", Natural, "", ROUND, |row: &GroupRow| row.it.question.round),
-        column("robot", Natural, "", ROBOT, |row: &GroupRow| row.it.member.id),
-        column("role", Text, "", ROLE, |row: &GroupRow| {
-            row.it.question.roles[row.it.member.role.index()].clone()
-        }),
-        column("task", Text, "", TASK, |row: &GroupRow| {
-            row.it.question.tasks[row.it.task.index()].name.clone()
-        }),
-        column("energy", Number, "%", energy, |row: &GroupRow| Cell::short(row.it.member.energy_level)),
-        column("hp", Number, "%", hp, |row: &GroupRow| Cell::short(row.it.member.hp_level)),
-    ]);
+    let mut columns = with_trial(columns! { GroupRow:
+        "round", Natural, "", ROUND, |row| row.it.question.round;
+        "robot", Natural, "", ROBOT, |row| row.it.member.id;
+        "role", Text, "", ROLE, |row| row.it.question.roles[row.it.member.role.index()].clone();
+        "task", Text, "", TASK, |row| row.it.question.tasks[row.it.task.index()].name.clone();
+        "energy", Number, "%", energy, |row| Cell::short(row.it.member.energy_level);
+        "hp", Number, "%", hp, |row| Cell::short(row.it.member.hp_level);
+    });
     columns.extend(needs.iter().enumerate().map(|(place, need)| {
         let meaning = format!("The need {:?} as it really was, in the units of the scenario.", need.name);
         let about = About::new(format!("need_{}", need.name), Number, "", meaning);
@@ -312,9 +266,10 @@ pub(super) fn series<'a>(metrics: &Catalogue) -> Columns<MomentRow<'a>> {
             if place == 0 { tasks.iter().sum::<usize>() as u64 } else { tasks[place - 1] as u64 }
         })
     });
-    let time =
-        column("time_s", Number, "s", "Simulated time.", |row: &MomentRow| Cell::short(Some(row.it.time_s)));
-    with_trial(std::iter::once(time).chain(rescuees))
+    let time = columns! { MomentRow:
+        "time_s", Number, "s", "Simulated time.", |row| Cell::short(row.it.time_s);
+    };
+    with_trial(time.into_iter().chain(rescuees))
 }
 
 /// The rows of `series.csv` of a trial.
@@ -332,13 +287,11 @@ pub(super) fn links<'a>() -> Columns<LinkRow<'a>> {
     let digest = "Hash of everything up to this step, 32 hexadecimal digits.";
     let parts = "Hashes of the parts of the state, four hexadecimal digits each; docs/determinism.md lists \
         the parts.";
-    let mut columns = with_trial([
-        column("step", Natural, "steps", "Number of the simulation step.", |row: &LinkRow| row.it.step),
-        column("digest", Text, "", digest, |row: &LinkRow| format!("{:032x}", row.it.digest)),
-        column("parts", Text, "", parts, |row: &LinkRow| {
-            row.it.parts.map(|part| format!("{part:04x}")).concat()
-        }),
-    ]);
+    let mut columns = with_trial(columns! { LinkRow:
+        "step", Natural, "steps", "Number of the simulation step.", |row| row.it.step;
+        "digest", Text, "", digest, |row| format!("{:032x}", row.it.digest);
+        "parts", Text, "", parts, |row| row.it.parts.map(|part| format!("{part:04x}")).concat();
+    });
     columns.retain(|column| column.about.name != "seed");
     columns
 }

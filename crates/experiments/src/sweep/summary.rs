@@ -1,7 +1,7 @@
 //! The summary of a trial: its status and the values of its metrics.
 
 use serde::{Deserialize, Serialize};
-use thiserror::Error;
+use store::{Failure, refuse};
 use usar_sim::record::{Status, TrialRecord};
 
 use crate::metric::Catalogue;
@@ -18,15 +18,6 @@ pub(super) struct Summary {
     pub state_hash: String,
 }
 
-/// Why this cannot be the summary of a trial.
-#[derive(Debug, Error)]
-pub(super) enum SummaryError {
-    #[error("must have {count} metrics, found {found}")]
-    Metrics { count: usize, found: usize },
-    #[error("has no status {status:?}")]
-    Status { status: String },
-}
-
 impl Summary {
     pub(super) fn of(record: &TrialRecord, metrics: &Catalogue) -> Self {
         let status = record.status.name().to_owned();
@@ -34,12 +25,12 @@ impl Summary {
     }
 
     /// Checks that this can be the summary of a trial with these metrics.
-    pub(super) fn check(&self, metrics: &Catalogue) -> Result<(), SummaryError> {
+    pub(super) fn check(&self, metrics: &Catalogue) -> Result<(), Failure> {
         let (count, found) = (metrics.len(), self.metrics.len());
         if count != found {
-            return Err(SummaryError::Metrics { count, found });
+            refuse!("must have {count} metrics, found {found}");
         }
-        let no_status = || SummaryError::Status { status: self.status.clone() };
+        let no_status = || Failure::input(format!("has no status {:?}", self.status));
         status_of(&self.status).map(drop).ok_or_else(no_status)
     }
 }

@@ -3,13 +3,12 @@
 use std::path::Path;
 
 use store::Failure;
-use store::files::FileHash;
+use store::files::{FileHash, NewFile};
+use tables::{About, Csv, abouts};
 
-use super::column::{About, abouts};
 use super::line::Finished;
 use super::links;
 use super::rows::{self, TrialRow};
-use super::table::{Rows, Table, before};
 use crate::experiment::{Experiment, Keep, Shard};
 
 /// The table that every folder has.
@@ -18,6 +17,16 @@ pub(super) const TRIALS: &str = "trials.csv";
 /// Names of the tables, from the tables that every sweep keeps to those that take the most room.
 pub(super) const TABLES: [&str; 6] =
     [TRIALS, "rounds.csv", "robots.csv", "groups.csv", "series.csv", links::FILE];
+
+/// The same tables as Parquet files, in the order of the tables.
+pub(super) const PARQUETS: [&str; TABLES.len()] = [
+    "trials.parquet",
+    "rounds.parquet",
+    "robots.parquet",
+    "groups.parquet",
+    "series.parquet",
+    "hashes.parquet",
+];
 
 /// The names of the tables that a sweep has for this `keep`. A shard has only the first; the others are
 /// made when the shards are merged.
@@ -42,20 +51,47 @@ pub(super) const A_ROW_IS: [&str; TABLES.len()] = [
     "a link of a trial's hash chain",
 ];
 
-/// The columns of each table, in the order of [`TABLES`], without the case and the axes.
-pub(super) fn all_columns(experiment: &Experiment) -> [Vec<About>; TABLES.len()] {
+/// A table of a sweep's folder.
+pub struct Described {
+    /// Its file.
+    pub csv: &'static str,
+    /// The file of the same table as Parquet.
+    pub parquet: &'static str,
+    /// What a row is.
+    pub row_is: &'static str,
+    /// Its columns.
+    pub columns: Vec<About>,
+}
+
+/// The tables that a sweep may have, from those that every sweep keeps to those that take the most room.
+#[must_use]
+pub fn described(experiment: &Experiment) -> [Described; TABLES.len()] {
+    let of = |place: usize, own: Vec<About>| Described {
+        csv: TABLES[place],
+        parquet: PARQUETS[place],
+        row_is: A_ROW_IS[place],
+        columns: rows::before(&experiment.axes).into_iter().chain(own).collect(),
+    };
     [
-        abouts(rows::trials(&experiment.metrics)),
-        abouts(rows::rounds()),
-        abouts(rows::robots()),
-        abouts(rows::groups(&experiment.base.needs)),
-        abouts(rows::series(&experiment.metrics)),
-        abouts(rows::links()),
+        of(0, abouts(rows::trials(&experiment.metrics))),
+        of(1, abouts(rows::rounds())),
+        of(2, abouts(rows::robots())),
+        of(3, abouts(rows::groups(&experiment.base.needs))),
+        of(4, abouts(rows::series(&experiment.metrics))),
+        of(5, abouts(rows::links())),
     ]
 }
 
+/// The cells before a table's own columns in the rows of a case: its number from 1 and the values of the
+/// axes; empty without axes.
+fn before(experiment: &Experiment, case: usize) -> Vec<String> {
+    let values = &experiment.cases[case].values;
+    let number = (!values.is_empty()).then(|| (case + 1).to_string());
+    number.into_iter().chain(values.iter().cloned()).collect()
+}
+
 /// The tables while they are written.
-pub(super) struct Tables(Vec<Table>);
+pub(super) struct Tables(Vec<NewFile>);
 
 impl Tables {
     pub(super) fn new(
@@ -64,11 +100,13 @@ impl Tables {
         keep: Keep,
         shard: Option<Shard>,
     ) -> Result<Self, Failure> {
-        let names = tables_of(keep, shard).iter();
-        let tables = names
-            .zip(all_columns(experiment))
-            .map(|(name, columns)| Table::new(path, name, experiment, columns));
-        Ok(Self(tables.collect::<Result<_, _>>()?))
+        let begin = |table: &Described| {
+            let mut names = Csv::new(NewFile::new(path, table.csv)?);
+            names.add_names(&table.columns)?;
+            Ok(names.finish()?)
+        };
+        let count = tables_of(keep, shard).len();
+        Ok(Self(described(experiment)[..count].iter().map(begin).collect::<Result<_, Failure>>()?))
     }
 
     /// The rows of these trials, for the first `count` tables.
@@ -77,7 +115,7 @@ impl Tables {
         trials: impl Iterator<Item = &'a Finished>,
         experiment: &Experiment,
     ) -> Result<TableRows, Failure> {
-        let mut rows = TableRows((0..count).map(|_| Rows::new()).collect());
+        let mut rows = TableRows((0..count).map(|_| Csv::new(Vec::new())).collect());
         for finished in trials {
             rows.add(finished, experiment)?;
         }
@@ -90,16 +128,16 @@ impl Tables {
     }
 
     pub(super) fn append(&mut self, rows: TableRows) -> Result<(), Failure> {
-        self.0.iter_mut().zip(rows.0).try_for_each(|(table, rows)| table.append(rows))
+        self.0.iter_mut().zip(rows.0).try_for_each(|(table, rows)| table.append(&rows.finish()?))
     }
 
     pub(super) fn finish(self) -> Result<Vec<FileHash>, Failure> {
-        self.0.into_iter().map(Table::finish).collect()
+        self.0.into_iter().map(NewFile::finish).collect()
     }
 }
 
 /// Rows of each table, in memory.
-pub(super) struct TableRows(Vec<Rows>);
+pub(super) struct TableRows(Vec<Csv<Vec<u8>>>);
 
 impl TableRows {
     fn add(&mut self, finished: &Finished, experiment: &Experiment) -> Result<(), Failure> {
@@ -107,20 +145,21 @@ impl TableRows {
         let before = before(experiment, key.case);
         let mut tables = self.0.iter_mut();
         let Some(trials) = tables.next() else { return Ok(()) };
-        trials.add(&before, &rows::trials(&experiment.metrics), &TrialRow::of(finished, experiment))?;
+        let row = std::iter::once(TrialRow::of(finished, experiment));
+        trials.add(&before, &rows::trials(&experiment.metrics), row)?;
         let Some(trial) = finished.trial() else { return Ok(()) };
         let Some(rounds) = tables.next() else { return Ok(()) };
-        rounds.add_all(&before, &rows::rounds(), rows::round_rows(key, &trial.record))?;
+        rounds.add(&before, &rows::rounds(), rows::round_rows(key, &trial.record))?;
         let Some(robots) = tables.next() else { return Ok(()) };
-        robots.add_all(&before, &rows::robots(), rows::robot_rows(key, &trial.record))?;
+        robots.add(&before, &rows::robots(), rows::robot_rows(key, &trial.record))?;
         let Some(groups) = tables.next() else { return Ok(()) };
         let needs = &experiment.base.needs;
-        groups.add_all(&before, &rows::groups(needs), rows::group_rows(key, &trial.record))?;
+        groups.add(&before, &rows::groups(needs), rows::group_rows(key, &trial.record))?;
         let duration_s = experiment.cases[key.case].scenario.duration_s;
         let Some(series) = tables.next() else { return Ok(()) };
         let columns = rows::series(&experiment.metrics);
-        series.add_all(&before, &columns, rows::series_rows(key, trial, duration_s))?;
+        series.add(&before, &columns, rows::series_rows(key, trial, duration_s))?;
         let Some(hashes) = tables.next() else { return Ok(()) };
-        hashes.add_all(&before, &rows::links(), rows::link_rows(key, &trial.record))
+        Ok(hashes.add(&before, &rows::links(), rows::link_rows(key, &trial.record))?)
     }
 }

@@ -30,7 +30,6 @@ use self::messages::{WORLD, timestamp, turned, vector};
 use self::scene::{debris_scene, positions, radiation_scene, rescuees, robots_scene, world_scene};
 use self::writer::{Channel, Channels};
 use crate::error::ExportError;
-use crate::tables::events;
 
 /// Names of events that are warnings.
 const WARNINGS: [&str; 6] = ["stranded", "disabled", "deadlocked", "unreachable", "cut_off", "mission_over"];
@@ -41,7 +40,15 @@ const WARNINGS: [&str; 6] = ["stranded", "disabled", "deadlocked", "unreachable"
 /// The recording cannot be read, or the log cannot be written.
 pub fn write<W: Write>(recording: &Recording, every: usize, out: W) -> Result<W, ExportError> {
     let mut channels = Channels::begin(out, recording)?;
-    let mut told = events(recording).peekable();
+    if recording.frames() > 0 {
+        let first = recording.frame(0)?;
+        for (id, robot) in first.robots.iter().enumerate() {
+            let message = robot_message(recording, id, robot);
+            channels.add_json(Channel::Robot(id), &format!("/robot/{id}"), "usar.Robot", &message)?;
+        }
+        channels.add_json(Channel::Team, "/team", "usar.Team", &team_message(recording, &first))?;
+    }
+    let mut told = recording.told().peekable();
     let mut before: Option<Frame> = None;
     for number in (0..recording.frames()).step_by(every.max(1)) {
         let (frame, time_s) = (recording.frame(number)?, recording.header.time_s_of(number));

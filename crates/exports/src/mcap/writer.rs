@@ -36,17 +36,21 @@ pub(super) struct Channels<W: Write> {
     channels: BTreeMap<Channel, (u16, u32)>,
 }
 
-/// The schema of an object with these properties, each with its type in JSON.
-fn object(title: &str, properties: impl IntoIterator<Item = (String, Value)>) -> Value {
-    json!({ "title": title, "type": "object", "properties": Map::from_iter(properties) })
-}
-
-fn typed(names: &[&str], kind: &str) -> Vec<(String, Value)> {
-    names.iter().map(|name| ((*name).to_owned(), json!({ "type": kind }))).collect()
+/// The schema of messages like this one.
+fn schema_of(title: &str, message: &Value) -> Value {
+    let kind = |(name, value): (&String, &Value)| match value {
+        Value::Object(_) => schema_of(name, value),
+        Value::Number(number) if number.is_f64() => json!({ "type": "number" }),
+        Value::Number(_) => json!({ "type": "integer" }),
+        _ => json!({ "type": "string" }),
+    };
+    let properties = message.as_object().into_iter().flatten();
+    let properties: Map<_, _> = properties.map(|field| (field.0.clone(), kind(field))).collect();
+    json!({ "title": title, "type": "object", "properties": properties })
 }
 
 impl<W: Write> Channels<W> {
-    /// Begins a log with the channels of a recording.
+    /// Begins a log with the channels of Foxglove's messages.
     pub(super) fn begin(out: W, recording: &Recording) -> Result<Self, ExportError> {
         let options = WriteOptions::new().disable_seeking(true).library(&recording.header.program);
         let log = options.create(NoSeek::new(out))?;
@@ -59,13 +63,6 @@ impl<W: Write> Channels<W> {
         channels.add_foxglove::<PointCloud>(Channel::Positions, "/positions")?;
         channels.add_foxglove::<PointCloud>(Channel::Rescuees, "/rescuees")?;
         channels.add_foxglove::<Log>(Channel::Events, "/events")?;
-        let world = &recording.header.world;
-        let robot = robot_schema(world.needs.iter().map(|need| need.name.as_str()));
-        for id in 0..world.robots.len() {
-            channels.add_json(Channel::Robot(id), &format!("/robot/{id}"), "usar.Robot", &robot)?;
-        }
-        let counts = typed(&["round", "waiting", "claimed", "on_board", "delivered"], "integer");
-        channels.add_json(Channel::Team, "/team", "usar.Team", &object("usar.Team", counts))?;
         Ok(channels)
     }
 
@@ -75,14 +72,16 @@ impl<W: Write> Channels<W> {
         self.add(channel, schema, topic, &M::get_message_encoding())
     }
 
-    fn add_json(
+    /// Adds a channel for messages of our own like this one.
+    pub(super) fn add_json(
         &mut self,
         channel: Channel,
         topic: &str,
         name: &str,
-        schema: &Value,
+        message: &Value,
     ) -> Result<(), ExportError> {
-        let schema = self.log.add_schema(name, "jsonschema", &serde_json::to_vec(schema)?)?;
+        let schema = serde_json::to_vec(&schema_of(name, message))?;
+        let schema = self.log.add_schema(name, "jsonschema", &schema)?;
         self.add(channel, schema, topic, "json")
     }
 
@@ -128,13 +127,4 @@ impl<W: Write> Channels<W> {
         self.log.finish()?;
         Ok(self.log.into_inner().into_inner())
     }
-}
-
-fn robot_schema<'n>(needs: impl Iterator<Item = &'n str>) -> Value {
-    let mut properties = typed(&["energy_percent", "hp_percent", "speed_mps"], "number");
-    properties.extend(typed(&["resources", "on_board", "waits_for"], "integer"));
-    properties.extend(typed(&["activity", "delay", "task"], "string"));
-    let needs = needs.map(|need| (need.to_owned(), json!({ "type": "number" })));
-    properties.push(("needs".to_owned(), object("needs", needs)));
-    object("usar.Robot", properties)
 }

@@ -7,13 +7,11 @@
 //! of new trials.
 
 mod choice;
-mod error;
 mod fit;
 mod least_squares;
 mod log;
 mod target;
 
-use std::fmt::Display;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -21,7 +19,7 @@ use experiments::comparison::short;
 use experiments::experiment::PolicySpec;
 use experiments::explore::{Free, PointError, WORST, scenario_with};
 use experiments::run::{Fault, TrialSetup, run_trial};
-use experiments::{Failure, panic_message};
+use experiments::{Failure, panic_message, refuse};
 use rayon::prelude::*;
 use rne_core::Registry;
 use ron_tree::{Node, Problem, edited};
@@ -29,7 +27,6 @@ use serde::{Deserialize, Serialize};
 use usar_sim::scenario::Scenario;
 
 pub use choice::{Candidate, Judged, NOT_TOLD_APART, judge};
-pub use error::CandidateError;
 pub use fit::{Fit, write_fit};
 use least_squares::LeastSquares;
 pub use log::{CALIBRATED, Log};
@@ -142,7 +139,7 @@ impl Calibration {
         let tree = Node::parse(&self.text).map_err(Failure::run)?;
         let present = |free: &Free| free.present(&tree);
         let present = self.free.iter().map(present).collect::<Result<Vec<f64>, _>>();
-        present.map_err(|error| Failure::input(format!("--over: {error}")))
+        present.map_err(Failure::input_at("--over"))
     }
 
     /// Checks that no field is set twice, that no parameter decides the duration of a trial, and that both
@@ -151,18 +148,17 @@ impl Calibration {
     /// # Errors
     /// One of these conditions is violated.
     pub fn check(&self) -> Result<(), Failure> {
-        let bad = |error: &dyn Display| Failure::input(format!("--over: {error}"));
-        self.text_with(&self.present()?).map_err(|error| bad(&error))?;
+        self.text_with(&self.present()?).map_err(Failure::input_at("--over"))?;
         for free in &self.free {
             if free.is_of("duration_s") {
-                return Err(bad(&"duration_s: is that of the recorded trials"));
+                refuse!("--over: duration_s: is that of the recorded trials");
             }
             for end in free.ends() {
                 scenario_with(&self.base, std::slice::from_ref(free), &[end]).map_err(|error| {
                     let is_refused =
                         matches!(&error, PointError::Rule(problem) if problem.rule.contains("whole number"));
                     let whole = free.whole_numbers(&self.base).filter(|_| is_refused);
-                    whole.map_or_else(|| bad(&error), |whole| bad(&whole))
+                    Failure::input_at("--over")(whole.unwrap_or_else(|| error.to_string()))
                 })?;
             }
         }
@@ -178,8 +174,8 @@ impl Calibration {
         values: &[f64],
         seeds: impl IntoParallelIterator<Item = u64>,
         stop: &AtomicBool,
-    ) -> Result<Option<Vec<Vec<f64>>>, CandidateError> {
-        let scenario = self.scenario(values)?;
+    ) -> Result<Option<Vec<Vec<f64>>>, Failure> {
+        let scenario = self.scenario(values).map_err(Failure::run)?;
         let trial = |seed| {
             let setup = TrialSetup { scenario: &scenario, seed, is_checked: false };
             let run = AssertUnwindSafe(|| {
@@ -187,16 +183,16 @@ impl Calibration {
                 run_trial(&setup, &mut *session, stop)
             });
             let result = catch_unwind(run)
-                .map_err(|panic| CandidateError::Internal { message: panic_message(&*panic) })?;
-            result.map_err(|fault| CandidateError::Trial { reason: fault.reason })
+                .map_err(|panic| Failure::run(format!("internal error: {}", panic_message(&*panic))))?;
+            result.map_err(|fault| Failure::run(fault.reason))
         };
-        let rows: Vec<Result<Vec<f64>, CandidateError>> =
+        let rows: Vec<Result<Vec<f64>, Failure>> =
             seeds.into_par_iter().map(|seed| self.target.measure(&trial(seed)?.record)).collect();
         if stop.load(Ordering::Relaxed) {
             return Ok(None);
         }
         // The first failure in the order of the seeds, independent of the number of threads.
-        let rows = rows.into_iter().collect::<Result<Vec<Vec<f64>>, CandidateError>>()?;
+        let rows = rows.into_iter().collect::<Result<Vec<Vec<f64>>, Failure>>()?;
         Ok(Some((0..self.target.spreads.len()).map(|q| rows.iter().map(|row| row[q]).collect()).collect()))
     }
 

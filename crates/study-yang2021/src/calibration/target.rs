@@ -12,7 +12,6 @@ use usar_sim::record::TrialRecord;
 use usar_sim::scenario::Scenario;
 
 use super::POLICY;
-use super::error::CandidateError;
 
 /// A quantity of a trial that a target may have, under the authors' name.
 pub struct Quantity {
@@ -128,10 +127,10 @@ impl Target {
     ///
     /// # Errors
     /// The trial lacks a quantity.
-    pub fn measure(&self, record: &TrialRecord) -> Result<Vec<f64>, CandidateError> {
+    pub fn measure(&self, record: &TrialRecord) -> Result<Vec<f64>, Failure> {
         let value = |quantity: &Quantity| {
             let value = quantity.metric.value(record);
-            value.ok_or_else(|| CandidateError::Undefined { quantity: quantity.name.clone() })
+            value.ok_or_else(|| Failure::run(format!("{} is not defined in a trial", quantity.name)))
         };
         self.quantities.iter().map(value).collect()
     }

@@ -1,18 +1,16 @@
 //! Single options that several commands have.
 
 use std::ops::{Bound, RangeBounds};
-use std::path::Path;
 
 use clap::builder::RangedU64ValueParser;
-use clap::{ArgMatches, Args, ValueEnum};
-use experiments::Failure;
+use clap::{ArgMatches, ValueEnum};
 use experiments::experiment::{Experiment, PolicySpec, split_list, with_settings};
 use reports::table::Format;
-use rne_core::Registry;
 use usar_sim::scenario::Scenario;
 
 use crate::bad_value::BadValue;
 use crate::input::load;
+use crate::prelude::*;
 
 /// Fields of a scenario that are set on the command line.
 #[derive(Debug, Args)]
@@ -87,7 +85,7 @@ impl MeasureArgument {
     pub(crate) fn chosen_in(&self, registry: &Registry) -> Result<Registry, Failure> {
         let mut registry = registry.clone();
         let chosen = self.measure.as_deref().map(|text| registry.choose_measure(text)).transpose();
-        chosen.map_err(|error| Failure::input(format!("--measure: {error}")))?;
+        chosen.map_err(Failure::input_at("--measure"))?;
         Ok(registry)
     }
 }
@@ -148,7 +146,7 @@ pub(crate) fn format_of(command: &ArgMatches) -> Format {
 
 /// Parses a policy that an option names.
 pub(crate) fn parse_policy(flag: &str, text: &str, registry: &Registry) -> Result<PolicySpec, Failure> {
-    PolicySpec::parse(text, registry).map_err(|error| Failure::input(format!("{flag}: {error}")))
+    PolicySpec::parse(text, registry).map_err(Failure::input_at(flag))
 }
 
 /// Parses a number within limits.

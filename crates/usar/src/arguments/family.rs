@@ -1,11 +1,10 @@
 //! What is compared.
 
-use clap::Args;
-use experiments::Failure;
 use experiments::comparison::{Asked, Wishes};
 use experiments::experiment::Experiment;
 
 use super::PoliciesArgument;
+use crate::prelude::*;
 
 /// Metrics and policies to compare.
 #[derive(Debug, Args)]

@@ -1,13 +1,9 @@
 //! A scenario and parameters that vary.
 
-use std::path::{Path, PathBuf};
-
-use clap::Args;
-use experiments::Failure;
 use experiments::experiment::{Experiment, Overrides};
-use rne_core::Registry;
 
 use super::{ProgressArguments, SetArguments};
+use crate::prelude::*;
 
 /// A scenario and its parameters.
 #[derive(Debug, Args)]

@@ -1,14 +1,10 @@
 //! Options of commands that draw: the size of a picture, and the kind of its file.
 
-use std::path::Path;
-
-use clap::Args;
-use experiments::Failure;
 use pictures::{Look, Picture, Width};
 
 use super::ReplaceArgument;
 use crate::bad_value::BadValue;
-use crate::output::Destination;
+use crate::prelude::*;
 
 /// The size of pictures.
 #[derive(Debug, Args)]
@@ -82,7 +78,7 @@ impl PictureFile {
             Some("pdf") => |picture| picture.pdf().map_err(Failure::run),
             _ => {
                 let (kinds, path) = (kinds.join(" or ."), path.display());
-                return Err(Failure::input(format!("--out: must end with .{kinds}, found {path}")));
+                refuse!("--out: must end with .{kinds}, found {path}");
             }
         };
         Ok(Self { write, to: Destination::new("--out", path, replace.force)? })

@@ -3,8 +3,6 @@
 use std::fmt::Display;
 use std::time::{Duration, Instant};
 
-use clap::Args;
-use experiments::Failure;
 use experiments::experiment::Shard;
 use experiments::run::Limits;
 use experiments::sweep::folder::Folder;
@@ -13,8 +11,7 @@ use experiments::sweep::{missing, run_trials};
 use indicatif::{HumanDuration, ProgressBar, ProgressStyle};
 
 use super::count;
-use crate::printable::counted;
-use crate::running::{STOP, stop_on_signals, tell};
+use crate::prelude::*;
 
 /// Threads and progress.
 #[derive(Debug, Args)]

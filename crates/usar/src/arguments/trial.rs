@@ -1,22 +1,18 @@
 //! The trials that a command looks at: of a scenario, of a sweep's folder, or recorded.
 
-use std::path::{Path, PathBuf};
-
-use clap::Args;
-use experiments::Failure;
 use experiments::experiment::{Experiment, PolicySpec, check_cost, defaults, split_list, with_settings};
 use experiments::limits::RECORDING_BYTES;
 use experiments::metric::task_names;
 use experiments::sweep::disk::experiment_in;
 use recording::{Options, Recording};
-use rne_core::{Registry, Session};
+use rne_core::Session;
 use ron_tree::file::{read, read_start};
 use usar_sim::scenario::Scenario;
 use usar_sim::simulation::Simulation;
 
 use super::{CaseArgument, SetArguments, parse_policy};
+use crate::prelude::*;
 use crate::recordings::{Shown, recorded, recording_of};
-use crate::running::session_of;
 
 /// The first bytes of a recording.
 const MAGIC: &[u8] = b"USREC";
@@ -135,7 +131,7 @@ impl TrialArguments {
     /// The recording of the one trial that is meant.
     pub(crate) fn recording(&self, file: &Path, registry: &Registry) -> Result<Recording, Failure> {
         if self.policy.as_deref().is_some_and(|policy| split_list(policy).len() != 1) {
-            return Err(Failure::input("--policy: must be one policy here"));
+            refuse!("--policy: must be one policy here");
         }
         let shown = self.recordings_of(file, registry)?;
         let recording = shown.first().map(Shown::read).transpose()?;

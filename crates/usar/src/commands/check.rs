@@ -1,15 +1,12 @@
 //! `usar check`: validates scenarios and sweep files without running them.
 
-use std::io::Write;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::path::{Path, PathBuf};
 
-use clap::Args;
 use experiments::experiment::{Experiment, Overrides};
-use experiments::{Failure, panic_message};
-use rne_core::Registry;
+use experiments::panic_message;
 
 use crate::input::tell_oddities;
+use crate::prelude::*;
 
 /// Validate scenarios and sweep files without running them
 #[derive(Debug, Args)]

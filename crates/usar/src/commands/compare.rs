@@ -1,10 +1,5 @@
 //! `usar compare`: paired comparisons of a sweep's policies.
 
-use std::io::Write;
-use std::path::PathBuf;
-
-use clap::Args;
-use experiments::Failure;
 use experiments::comparison::{
     CONFIDENCE, Comparison, Effect, Interaction, LEVEL, compare, effects, interactions, limit_of_changes,
     limit_of_correction, test_in_words,
@@ -13,13 +8,11 @@ use experiments::metric::Metric;
 use experiments::stats::bootstrap::resamples;
 use experiments::sweep::host::Hosts;
 use reports::table::{comparison_table, differences_table, effects_table, interactions_table};
-use rne_core::Registry;
 use serde_json::json;
 
 use crate::arguments::{FamilyArguments, ShownArguments};
 use crate::input::read_sweep;
-use crate::output::{print_json, print_table};
-use crate::printable::counted;
+use crate::prelude::*;
 
 /// Is A better than B, by how much, and how sure is that?
 #[derive(Debug, Args)]

@@ -1,21 +1,16 @@
 //! `usar fork`: plays a trial in which one decision is changed.
 
-use std::io::Write;
-use std::path::PathBuf;
-
-use clap::{ArgGroup, Args};
-use experiments::Failure;
+use clap::ArgGroup;
 use experiments::experiment::PolicySpec;
-use experiments::oracle::{Branch, BranchError, Outcome, advance_to};
+use experiments::oracle::{Branch, Outcome, advance_to};
 use reports::table::{headed, right};
-use rne_core::{Asked, Assignment, Deadline, Decision, Question, Registry, Session};
+use rne_core::{Asked, Assignment, Deadline, Decision, Question, Session};
 use serde::Serialize;
 use usar_sim::record::TrialRecord;
 use usar_sim::simulation::Checkpoint;
 
 use crate::arguments::{ShownArguments, Trial, TrialArguments, parse_policy};
-use crate::output::{print_json, print_table};
-use crate::running::{STOP, session_of, stop_on_signals};
+use crate::prelude::*;
 
 /// What if round N had been decided otherwise?
 #[derive(Debug, Args)]
@@ -84,7 +79,7 @@ impl Arguments {
             self.instead.as_deref().map(|text| parse_policy("--instead", text, registry)).transpose()?;
         let mut trial = asked.begin()?;
         let (mut base, stop) = (asked.session()?, Deadline::when(&STOP));
-        advance_to(&mut trial, &mut *base, self.round, stop).map_err(|error| failure(error, "--round: "))?;
+        advance_to(&mut trial, &mut *base, self.round, stop)?;
         let question = trial.question().ok_or_else(|| Failure::run("the trial asks nothing"))?;
         let start = trial.checkpoint();
         let question = Asked { question, deadline: stop, trial: Some(&trial) };
@@ -128,8 +123,8 @@ impl Arguments {
             (Some(session), _) => session.decide(asked).map_err(Failure::run),
             (None, written) => {
                 let assignment = parse_groups(written.as_deref().unwrap_or_default(), question);
-                let assignment = assignment.map_err(|error| Failure::input(format!("--assign: {error}")))?;
-                assignment.check(question).map_err(|error| Failure::input(format!("--assign: {error}")))?;
+                let assignment = assignment.map_err(Failure::input_at("--assign"))?;
+                assignment.check(question).map_err(Failure::input_at("--assign"))?;
                 Ok(Decision::of(assignment))
             }
         }
@@ -147,23 +142,11 @@ impl Arguments {
     }
 }
 
-/// A failure of a branch; `place` names the responsible argument if the input is wrong.
-pub(super) fn failure(error: BranchError, place: &str) -> Failure {
-    match error {
-        BranchError::Halted => Failure::Interrupted("stopped".to_owned()),
-        BranchError::NoSuchRound { .. } | BranchError::Refused(_) => {
-            Failure::input(format!("{place}{error}"))
-        }
-        error => Failure::run(error),
-    }
-}
-
 fn side(start: &Checkpoint, decision: Decision, onwards: &mut dyn Session) -> Result<Side, Failure> {
-    let refused = |error| failure(error, "");
     let assignment = decision.assignment.clone();
-    let mut branch = Branch::begin(start, decision).map_err(refused)?;
-    let round = branch.to_round_end(Deadline::when(&STOP)).map_err(refused)?;
-    let rest = branch.to_trial_end(onwards, Deadline::when(&STOP)).map_err(refused)?;
+    let mut branch = Branch::begin(start, decision)?;
+    let round = branch.to_round_end(Deadline::when(&STOP))?;
+    let rest = branch.to_trial_end(onwards, Deadline::when(&STOP))?;
     let record = branch.finish();
     Ok(Side {
         assignment,

@@ -1,21 +1,16 @@
 //! `usar group`: groups a team from a table, or answers a question in JSON, with any policy.
 
-use std::io::Write;
-use std::path::{Path, PathBuf};
-
-use clap::Args;
 use csv::StringRecord;
-use experiments::Failure;
 use experiments::experiment::PolicySpec;
 use experiments::input_table::InputTable;
 use rne_core::question::hardest_first;
 use rne_core::{
-    Decision, LogBase, Member, Need, NeedVector, Question, Quota, RandomSeed, Registry, RoleId,
-    SCHEMA_VERSION, Task,
+    Decision, LogBase, Member, Need, NeedVector, Question, Quota, RandomSeed, RoleId, SCHEMA_VERSION, Task,
 };
 
 use crate::arguments::{JsonArgument, numbers, parse_policy};
 use crate::output::print_plain_json;
+use crate::prelude::*;
 
 /// Group a team from a table, or answer a question in JSON
 #[derive(Debug, Args)]
@@ -56,10 +51,8 @@ impl Arguments {
     pub(crate) fn execute(&self, registry: &Registry, out: &mut dyn Write) -> Result<(), Failure> {
         let spec = parse_policy("--policy", &self.policy, registry)?;
         let question = self.question()?;
-        let named =
-            |error: &dyn std::fmt::Display| Failure::input(format!("{}: {error}", self.file.display()));
-        let decision = spec.made().decide(&question).map_err(|error| named(&error))?;
-        decision.assignment.check(&question).map_err(|error| named(&error))?;
+        let decision = spec.made().decide(&question).map_err(Failure::input_at(self.file.display()))?;
+        decision.assignment.check(&question).map_err(Failure::input_at(self.file.display()))?;
         if self.json.json {
             return print_plain_json(&decision);
         }
@@ -69,12 +62,11 @@ impl Arguments {
     fn question(&self) -> Result<Question, Failure> {
         if self.file.extension().is_some_and(|kind| kind == "json") {
             if !self.tasks.is_empty() || self.weights.is_some() {
-                return Err(Failure::input("--task and --weights are for tables: a question has its own"));
+                refuse!("--task and --weights are for tables: a question has its own");
             }
-            let shown = self.file.display();
-            let text = ron_tree::file::read_text(&self.file)
-                .map_err(|error| Failure::input(format!("{shown}: {error}")))?;
-            return Question::from_json(&text).map_err(|error| Failure::input(format!("{shown}: {error}")));
+            let text =
+                ron_tree::file::read_text(&self.file).map_err(Failure::input_at(self.file.display()))?;
+            return Question::from_json(&text).map_err(Failure::input_at(self.file.display()));
         }
         let Team { roles, needs, members } = read_team(&self.file)?;
         let weights = match &self.weights {
@@ -83,9 +75,7 @@ impl Arguments {
         };
         if weights.len() != needs.len() {
             let (found, names) = (weights.len(), needs.join(", "));
-            return Err(Failure::input(format!(
-                "--weights: must have one entry for each need ({names}), found {found}"
-            )));
+            refuse!("--weights: must have one entry for each need ({names}), found {found}");
         }
         let tasks = self.tasks()?;
         let order = hardest_first(tasks.iter().map(|task| task.difficulty));
@@ -103,7 +93,7 @@ impl Arguments {
             history: Vec::new(),
             random_seed: RandomSeed::from(self.draw_seed),
         };
-        question.checked().map_err(|error| Failure::input(format!("{}: {error}", self.file.display())))
+        question.checked().map_err(Failure::input_at(self.file.display()))
     }
 
     fn tasks(&self) -> Result<Vec<Task>, Failure> {
@@ -187,12 +177,12 @@ fn read_team(path: &Path) -> Result<Team, Failure> {
     let missing: Vec<&str> =
         ["id", "role", "x", "y"].into_iter().filter(|name| table.column(name).is_none()).collect();
     if !missing.is_empty() {
-        return Err(Failure::input(format!("{shown}:1: the header lacks {}", missing.join(", "))));
+        refuse!("{shown}:1: the header lacks {}", missing.join(", "));
     }
     let is_need = |name: &&str| !OTHER_COLUMNS.contains(name);
     let needs: Vec<String> = table.columns().filter(is_need).map(str::to_owned).collect();
     if needs.is_empty() {
-        return Err(Failure::input(format!("{shown}:1: the header lacks needs: columns of any other name")));
+        refuse!("{shown}:1: the header lacks needs: columns of any other name");
     }
     let mut team = Team { roles: Vec::new(), needs, members: Vec::new() };
     let mut problems = Vec::new();

@@ -22,13 +22,12 @@ mod verify;
 mod view;
 mod why;
 
-use std::io::Write;
 use std::sync::LazyLock;
 
 use clap::{CommandFactory, Parser};
-use experiments::Failure;
 use experiments::provenance::COMMIT;
-use rne_core::Registry;
+
+use crate::prelude::*;
 
 /// The version, with the commit from which the program was built, if known.
 static VERSION: LazyLock<String> = LazyLock::new(|| match COMMIT {

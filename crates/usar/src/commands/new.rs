@@ -1,14 +1,10 @@
 //! `usar new`: writes a commented scenario to start from.
 
-use std::io::Write;
-use std::path::{Path, PathBuf};
-
-use clap::{Args, ValueEnum};
-use experiments::Failure;
-use rne_core::Registry;
+use clap::ValueEnum;
 use usar_sim::scenario::Scenario;
 
 use crate::output::{create_new, trouble};
+use crate::prelude::*;
 
 /// Write a commented scenario to begin with
 #[derive(Debug, Args)]

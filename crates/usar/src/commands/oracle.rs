@@ -3,28 +3,20 @@
 mod print;
 
 use std::collections::BTreeSet;
-use std::io::Write;
-use std::path::PathBuf;
 use std::sync::Mutex;
-use std::sync::atomic::Ordering;
 
-use clap::Args;
-use experiments::Failure;
 use experiments::experiment::{PolicySpec, Program, split_list};
-use experiments::oracle::{
-    BranchError, Coverage, DEFAULT_LIMIT, Objective, Outcome, Survey, advance_to, play, survey,
-};
+use experiments::oracle::{Coverage, DEFAULT_LIMIT, Objective, Outcome, Survey, advance_to, play, survey};
 use experiments::regret::{DecisionKey, OutcomeLog};
 use indicatif::ProgressBar;
 use rayon::prelude::*;
-use rne_core::{Assignment, Deadline, Decision, Question, Registry, Session, assignments};
+use rne_core::{Assignment, Deadline, Decision, Question, Session, assignments};
 use usar_sim::simulation::Checkpoint;
 
-use super::fork::failure;
 use crate::arguments::{
     PoliciesArgument, ProgressArguments, ShownArguments, Trial, TrialArguments, limit, parse_policy,
 };
-use crate::running::{STOP, stop_on_signals};
+use crate::prelude::*;
 
 /// Number of assignments that are played before their outcomes are written to disk.
 const CHUNK: usize = 16;
@@ -103,11 +95,10 @@ impl Arguments {
         stop_on_signals();
         let trial = self.trial.open_to_all(&self.file, registry)?;
         let objective = Objective::parse(&self.metric, &trial.tasks());
-        let objective = objective.map_err(|error| Failure::input(format!("--metric: {error}")))?;
+        let objective = objective.map_err(Failure::input_at("--metric"))?;
         let onwards = self.onwards(&trial)?;
         let mut simulation = trial.begin()?;
-        advance_to(&mut simulation, &mut *trial.session()?, self.round, Deadline::when(&STOP))
-            .map_err(|error| failure(error, "--round: "))?;
+        advance_to(&mut simulation, &mut *trial.session()?, self.round, Deadline::when(&STOP))?;
         let question =
             simulation.question().cloned().ok_or_else(|| Failure::run("the trial asks nothing"))?;
         let choices = self.choices(&trial, &question)?;
@@ -167,22 +158,11 @@ impl Arguments {
         let count = assignments::count(&asked.question).min(self.limit);
         let of = then.map_or("assignments".to_owned(), |then| format!("assignments, {} goes on", then.label));
         let named: Vec<Assignment> = asked.choices.iter().map(|(_, choice)| choice.clone()).collect();
-        let survey = self.progress.work(count as usize, &of, |bar| {
+        self.progress.work(count as usize, &of, |bar| {
             let batch = Batch { start, then_spec: then, then: name.as_deref(), progress: bar };
-            survey(&asked.question, &asked.objective, self.limit, &named, |assignments| {
-                batch.play(assignments, log).map_err(Trouble)
-            })
-        })?;
-        survey.map_err(|Trouble(failure)| failure)
-    }
-}
-
-/// A failure in a form that `survey` accepts as an error.
-struct Trouble(Failure);
-
-impl From<BranchError> for Trouble {
-    fn from(error: BranchError) -> Self {
-        Self(failure(error, ""))
+            let play = |assignments: &[Assignment]| batch.play(assignments, log);
+            survey(&asked.question, &asked.objective, self.limit, &named, play)
+        })?
     }
 }
 
@@ -220,14 +200,13 @@ impl Batch<'_> {
         assignment: &Assignment,
         onwards: Option<&mut Box<dyn Session>>,
     ) -> Result<Outcome, Failure> {
-        if STOP.load(Ordering::Relaxed) {
+        if is_stopped() {
             return Err(Failure::Interrupted("stopped; the same command goes on".to_owned()));
         }
         let decision = Decision::of(assignment.clone());
-        let outcome =
-            play(self.start, decision, onwards, Deadline::when(&STOP)).map_err(|error| failure(error, ""));
+        let outcome = play(self.start, decision, onwards, Deadline::when(&STOP));
         self.progress.inc(1);
-        outcome
+        Ok(outcome?)
     }
 }
 

@@ -1,18 +1,13 @@
 //! `usar report`: writes the report of a sweep as one HTML file, with its figures.
 
-use std::io::Write;
-use std::path::PathBuf;
-
-use clap::Args;
-use experiments::Failure;
 use experiments::run::TrialKey;
 use experiments::sweep::folder::Folder;
 use reports::{ShownTrial, Wanted, write_report};
-use rne_core::Registry;
 
 use super::view::page;
 use crate::arguments::{CaseArgument, FamilyArguments, MeasureArgument};
 use crate::input::read_sweep;
+use crate::prelude::*;
 use crate::recordings::{Shown, path_of, recording_of};
 
 /// Write a page: means, comparisons, figures, and their origin
@@ -56,7 +51,7 @@ impl Arguments {
         let mut folder = read_sweep(&self.folder, registry)?;
         let case = self.case.named(folder.experiment())?;
         if folder.results().values().all(|measured| measured.metrics.is_none()) {
-            return Err(Failure::input(format!("{}: no trial has given numbers yet", self.folder.display())));
+            refuse!("{}: no trial has given numbers yet", self.folder.display());
         }
         let wanted = Wanted {
             asked: self.family.asked(folder.experiment())?,
@@ -77,9 +72,7 @@ impl Arguments {
         let keys: Vec<TrialKey> = experiment.keys(None).filter(is_shown).collect();
         if keys.is_empty() {
             let last = experiment.seed(experiment.trials);
-            return Err(Failure::input(format!(
-                "--trial: must be the seed of a finished trial, from {first} to {last}, found {seed}"
-            )));
+            refuse!("--trial: must be the seed of a finished trial, from {first} to {last}, found {seed}");
         }
         keys.iter().map(|key| self.show(folder, key)).collect()
     }

@@ -4,16 +4,10 @@ mod event_lines;
 mod live;
 mod snapshot;
 
-use std::io::Write;
-use std::path::PathBuf;
-use std::sync::atomic::Ordering;
-
-use clap::Args;
-use experiments::Failure;
 use experiments::experiment::PolicySpec;
 use recording::Story;
 use reports::table::rounds_table;
-use rne_core::{Deadline, Registry, Session};
+use rne_core::{Deadline, Session};
 use serde::Serialize;
 use usar_sim::metrics::CutOff;
 use usar_sim::record::{Status, TrialRecord};
@@ -23,10 +17,9 @@ use self::event_lines::EventLines;
 use self::live::Live;
 use self::snapshot::{Snapshot, save};
 use crate::arguments::{MeasureArgument, ShownArguments, Trial, TrialArguments};
-use crate::output::{print_json, print_table};
-use crate::printable::counted;
+use crate::prelude::*;
 use crate::recordings;
-use crate::running::{Guard, STOP, session_of, stop_on_signals};
+use crate::running::Guard;
 
 /// Run one trial and tell what happened, round by round
 #[derive(Debug, Args)]
@@ -110,7 +103,7 @@ impl Arguments {
         stop_on_signals();
         let (record, story) = self.run(simulation, spec, registry)?;
         if let Status::Failed(reason) = &record.status {
-            if STOP.load(Ordering::Relaxed) {
+            if is_stopped() {
                 return Err(Failure::Interrupted(format!(
                     "stopped at {:.0} s of simulated time",
                     record.time_s

@@ -1,11 +1,7 @@
 //! `usar search`: searches for the scenario in which a policy performs worst.
 
-use std::io::Write;
-use std::path::Path;
 use std::sync::Arc;
 
-use clap::Args;
-use experiments::Failure;
 use experiments::comparison::{CONFIDENCE, Choice, Comparison, compare, short};
 use experiments::experiment::{Experiment, Overrides};
 use experiments::explore::{Candidate, Descent, FOUND, Hunt, Outcome, Space, Trail};
@@ -14,11 +10,9 @@ use experiments::metric::Direction;
 use experiments::stats::Moments;
 use experiments::stats::bootstrap::interval;
 use experiments::sweep::folder::{Folder, Opening};
-use rne_core::Registry;
 
 use crate::arguments::{JsonArgument, ParameterArguments, count, seed, share};
-use crate::output::print_json;
-use crate::running::STOP;
+use crate::prelude::*;
 
 /// Folder of the trials that confirm the found scenario.
 const CONFIRMATION: &str = "confirmation";
@@ -119,22 +113,20 @@ impl Arguments {
         let ends = |first: u64, count: u32| (first, first + u64::from(count));
         let (a, b) = (ends(self.first_seed, self.trials), ends(self.confirm_seed, self.confirm_trials));
         if a.0 < b.1 && b.0 < a.1 {
-            return Err(Failure::input(
-                "--confirm-seed: the seeds that confirm must be others than those of the search",
-            ));
+            refuse!("--confirm-seed: the seeds that confirm must be others than those of the search");
         }
         let experiment = self.parameters.experiment(Some(self.policies()), self.trials, registry)?;
         let metric = experiment.metrics.named(&self.metric);
-        let metric = metric.map_err(|error| Failure::input(format!("--metric: {error}")))?;
+        let metric = metric.map_err(Failure::input_at("--metric"))?;
         let is_lowest = match experiment.metrics[metric].direction {
             _ if self.lowest || self.highest => self.lowest,
             Direction::Higher => true,
             Direction::Lower => false,
             Direction::Neither => {
-                return Err(Failure::input(format!(
+                refuse!(
                     "--metric: {} is neither good nor bad; --lowest or --highest says what is looked for",
                     self.metric
-                )));
+                );
             }
         };
         let outcome = outcome(&experiment, metric);
@@ -238,9 +230,7 @@ struct Found<'a> {
 impl Found<'_> {
     fn print(&self, out: &mut dyn Write, trials: u32) -> Result<(), Failure> {
         for (free, value) in self.hunt.space.free.iter().zip(&self.best.values) {
-            let [low, high] = free.ends();
-            let end = if free.is_at_end(*value) { "; it is at the end of its range" } else { "" };
-            writeln!(out, "{} = {value} (searched from {low} to {high}{end})", free.name)?;
+            writeln!(out, "{}", free.found(*value))?;
         }
         let (first, count) = (self.hunt.first_seed, self.trail.candidates().len());
         let last = first + u64::from(trials) - 1;

@@ -3,27 +3,21 @@
 
 mod precision;
 
-use std::io::Write;
-use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
 
-use clap::Args;
-use experiments::Failure;
 use experiments::experiment::{Experiment, Shard};
 use experiments::sweep::disk::trials_in;
 use experiments::sweep::folder::{Folder, Opening};
 use experiments::sweep::host::Hosts;
-use experiments::sweep::write_parquet;
 use reports::table::policy_table;
-use rne_core::Registry;
 
 use self::precision::Precision;
 use crate::arguments::{MeasureArgument, ProgressArguments, Selection, ShownArguments, count};
 use crate::input::check_trials;
-use crate::output::print_table;
+use crate::parquets::write_parquets;
+use crate::prelude::*;
 use crate::recordings::{Recorded, record_trials};
-use crate::running::{STOP, stop_on_signals, tell};
 
 /// With more cases, tables are left to `usar compare` and `usar report`.
 const MAX_TABLES: usize = 8;
@@ -100,10 +94,7 @@ pub(crate) struct Arguments {
 impl Arguments {
     pub(crate) fn execute(&self, registry: &Registry, out: &mut dyn Write) -> Result<(), Failure> {
         if !(self.max_trial_s > 0.0 && self.max_trial_s <= 1e9) {
-            return Err(Failure::input(format!(
-                "--max-trial-s: must be above 0, found {}",
-                self.max_trial_s
-            )));
+            refuse!("--max-trial-s: must be above 0, found {}", self.max_trial_s);
         }
         let registry = &self.measure.chosen_in(registry)?;
         let mut experiment = Experiment::load(&self.file, &self.selection.overrides(), registry)?;
@@ -137,7 +128,7 @@ impl Arguments {
         }
         folder.finish(&STOP)?;
         if self.tables == "parquet" {
-            write_parquet(&folder)?;
+            write_parquets(&folder)?;
         }
         if let Some(which) = &self.recordings {
             record_trials(&mut folder, which, &STOP)?;

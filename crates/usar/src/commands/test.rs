@@ -1,23 +1,17 @@
 //! `usar test`: tests the expectations of sweep files with as few trials as needed.
 
 use std::collections::BTreeMap;
-use std::io::Write;
-use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use clap::Args;
-use experiments::Failure;
 use experiments::comparison::short;
 use experiments::expect::{Expectation, Expected, Judgement, Verdict, judge, looks, parse};
 use experiments::experiment::{Experiment, Overrides};
 use experiments::run::{Outcome, TrialKey, run_all};
 use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
-use rne_core::Registry;
 use serde::Serialize;
 
 use crate::arguments::{JsonArgument, ProgressArguments, count};
-use crate::output::{Destination, print_json};
-use crate::running::STOP;
+use crate::prelude::*;
 
 /// Does the outcome meet what the sweep file expects of it?
 #[derive(Debug, Args)]
@@ -119,14 +113,10 @@ impl Suite {
         let experiment = Experiment::load(file, &Overrides::default(), registry)?;
         let expected = experiment.plan.expect.clone();
         if expected.is_empty() {
-            return Err(Failure::input(format!(
-                "{}: expects nothing: its sweep file has no `expect`",
-                file.display()
-            )));
+            refuse!("{}: expects nothing: its sweep file has no `expect`", file.display());
         }
         let read = |text: &String| {
-            parse(text, &experiment.metrics, &experiment.policies)
-                .map_err(|error| Failure::input(format!("{}: {error}", file.display())))
+            parse(text, &experiment.metrics, &experiment.policies).map_err(Failure::input_at(file.display()))
         };
         let expected = expected.iter().map(read).collect::<Result<Vec<_>, _>>()?;
         let experiment = experiment.with_trials(most.min(experiment.most_trials()))?;

@@ -1,14 +1,11 @@
 //! `usar trust`: Relative Needs Entropy between robots or groups, from needs on the command line.
 
-use std::io::Write;
-
-use clap::{Args, ValueEnum};
-use experiments::Failure;
-use rne_core::{LogBase, NeedDistribution, NeedVector, NeedWeights, Registry, relative_entropy};
+use clap::ValueEnum;
+use rne_core::{LogBase, NeedDistribution, NeedVector, NeedWeights, relative_entropy};
 use serde_json::json;
 
 use crate::arguments::{JsonArgument, numbers};
-use crate::output::print_json;
+use crate::prelude::*;
 
 /// Relative Needs Entropy (RNE) and trust of robots or groups
 #[derive(Debug, Args)]
@@ -47,8 +44,8 @@ enum Base {
 
 impl Arguments {
     pub(crate) fn execute(&self, _: &Registry, out: &mut dyn Write) -> Result<(), Failure> {
-        let weights = NeedWeights::new(numbers("--weights", &self.weights)?)
-            .map_err(|error| Failure::input(format!("--weights: {error}")))?;
+        let weights =
+            NeedWeights::new(numbers("--weights", &self.weights)?).map_err(Failure::input_at("--weights"))?;
         let from = distribution("--from", &self.from, &weights)?;
         let to = distribution("--to", &self.to, &weights)?;
         let rne = relative_entropy(&from, &to).map_err(Failure::input)?;
@@ -84,10 +81,10 @@ fn distribution(flag: &str, members: &[String], weights: &NeedWeights) -> Result
         let flag = if members.len() == 1 { flag.to_owned() } else { format!("{flag} (number {})", i + 1) };
         let needs = NeedVector::new(numbers(&flag, text)?)
             .and_then(|needs| NeedDistribution::of_agent(&needs, weights).map(|_| needs));
-        needs.map_err(|error| Failure::input(format!("{flag}: {error}")))
+        needs.map_err(Failure::input_at(flag))
     };
     let vectors = members.iter().enumerate().map(vector).collect::<Result<Vec<_>, _>>()?;
-    NeedDistribution::of_group(&vectors, weights).map_err(|error| Failure::input(format!("{flag}: {error}")))
+    NeedDistribution::of_group(&vectors, weights).map_err(Failure::input_at(flag))
 }
 
 fn shares(distribution: &NeedDistribution) -> String {

@@ -1,21 +1,18 @@
 //! `usar verify`: checks whether the numbers of a finished sweep are reproduced.
 
-use std::io::Write;
-use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
 
-use clap::Args;
-use experiments::Failure;
 use experiments::experiment::{Experiment, Program};
 use experiments::provenance::{COMMIT, Manifest};
 use experiments::run::{Run, TrialKey, run_all};
 use experiments::sweep::audit::{difference, strange_files};
 use experiments::sweep::folder::Folder;
-use rne_core::{Basis, Registry};
+use rne_core::Basis;
 
 use crate::arguments::{ProgressArguments, count};
-use crate::running::{STOP, tell};
+use crate::parquets::strange_parquets;
+use crate::prelude::*;
 
 /// Run a finished sweep again: do the numbers come out again?
 #[derive(Debug, Args)]
@@ -47,12 +44,12 @@ impl Arguments {
         let (experiment, manifest) = (folder.shared_experiment(), folder.manifest().clone());
         let all: Vec<TrialKey> = experiment.keys(manifest.shard).collect();
         if !manifest.is_complete {
-            return Err(Failure::input(format!(
+            refuse!(
                 "{}: its sweep is not finished: it has {} of {} trials; the sweep's command goes on with it",
                 self.folder.display(),
                 folder.results().len(),
                 all.len()
-            )));
+            );
         }
         damage.iter().for_each(tell);
         let chosen = self.choose(&self.without_undetermined(&experiment, all.clone()));
@@ -65,7 +62,8 @@ impl Arguments {
         self.mention_other_program(&experiment, &manifest)?;
         let mut differences = self.run_again(&mut folder, chosen)?;
         differences.sort();
-        let strange = strange_files(&mut folder)?;
+        let mut strange = strange_files(&mut folder)?;
+        strange.extend(strange_parquets(&folder)?);
         let of_all = if count < all.len() { format!(" (of {})", all.len()) } else { String::new() };
         let verdict = match differences.first() {
             None => format!("{count} of {count} trials{of_all} match, step by step and number by number"),

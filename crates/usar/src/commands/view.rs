@@ -3,17 +3,11 @@
 mod at;
 pub(super) mod page;
 
-use std::io::Write;
-use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-use clap::Args;
-use experiments::Failure;
-use rne_core::Registry;
-
 use crate::arguments::TrialArguments;
+use crate::prelude::*;
 use crate::recordings::Shown;
-use crate::running::tell;
 
 /// Watch a trial, or several side by side, in a browser
 #[derive(Debug, Args)]

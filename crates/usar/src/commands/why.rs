@@ -3,24 +3,19 @@
 mod robot;
 mod told;
 
-use std::io::Write;
-use std::path::PathBuf;
-
-use clap::Args;
-use experiments::Failure;
 use experiments::experiment::PolicySpec;
 use experiments::oracle::{Coverage, Evaluation, Objective, Survey};
 use experiments::regret::OutcomeLog;
 use experiments::why::{Directed, OtherChoice, directed, exchanges, other_choices};
-use rne_core::{Assignment, Decision, Question, Registry, assignments};
+use rne_core::{Assignment, Decision, Question, assignments};
 use serde::Serialize;
 use usar_sim::record::{DecisionRecord, Status};
 use usar_sim::simulation::Simulation;
 
 use super::oracle::decision_key;
 use crate::arguments::{MeasureArgument, ShownArguments, Trial, TrialArguments};
-use crate::output::print_json;
-use crate::running::{Guard, stop_on_signals};
+use crate::prelude::*;
+use crate::running::Guard;
 use robot::{RobotStory, Watched};
 
 /// Why is this robot in this group, and why does it stand still?
@@ -107,10 +102,7 @@ impl Arguments {
         let round = self.round.unwrap_or_else(|| simulation.decisions().len().max(1) as u32);
         let found = simulation.decisions().iter().find(|asked| asked.question.round == round);
         let Some(record) = found else {
-            return Err(Failure::input(format!(
-                "--round: no round {round} began up to {:.1} s",
-                simulation.time_s()
-            )));
+            refuse!("--round: no round {round} began up to {:.1} s", simulation.time_s());
         };
         let account = self.account(&asked, &simulation, record, watched)?;
         if self.shown.is_json() {
@@ -123,11 +115,11 @@ impl Arguments {
     fn play(&self, asked: &Trial, simulation: &mut Simulation) -> Result<Option<Watched>, Failure> {
         let robots = simulation.world().robots.len();
         if let Some(robot) = self.robot.filter(|robot| *robot as usize >= robots) {
-            return Err(Failure::input(format!("--robot: must be below {robots}, found {robot}")));
+            refuse!("--robot: must be below {robots}, found {robot}");
         }
         let end = asked.scenario.duration_s;
         if let Some(at) = self.at.filter(|at| !(0.0..=end).contains(at)) {
-            return Err(Failure::input(format!("--at: must be from 0 to {end} s, found {at}")));
+            refuse!("--at: must be from 0 to {end} s, found {at}");
         }
         let mut watched = self.robot.map(Watched::new);
         let (mut session, guard) = (asked.session()?, Guard::new(f64::INFINITY));

@@ -3,22 +3,15 @@
 mod measured;
 
 use std::collections::BTreeMap;
-use std::io::Write;
-use std::path::PathBuf;
 
-use clap::Args;
-use experiments::Failure;
 use experiments::experiment::{Experiment, Keep, Shard};
 use experiments::sweep::Sizes;
-use rne_core::Registry;
 use serde::Serialize;
 
 pub(crate) use measured::Measured;
 
 use crate::arguments::{JsonArgument, ProgressArguments, Selection, count};
-use crate::output::print_json;
-use crate::printable::counted;
-use crate::running::stop_on_signals;
+use crate::prelude::*;
 
 /// How long a sweep takes, and how much disk, from a few of its trials
 #[derive(Debug, Args)]

@@ -1,17 +1,11 @@
 //! `usar cluster merge`: merges the shards of a sweep into one folder with the bytes of a single run.
 
-use std::io::Write;
-use std::path::PathBuf;
-
-use clap::Args;
-use experiments::Failure;
 use experiments::sweep::merge::Merge;
 use experiments::sweep::names::{is_sweeps, sweeps_in};
-use rne_core::Registry;
 
 use crate::commands::sweep::print;
 use crate::input::check_trials;
-use crate::running::{STOP, stop_on_signals, tell};
+use crate::prelude::*;
 
 /// Join the shards of a sweep into what a single run would have written, byte for byte
 #[derive(Debug, Args)]

@@ -2,22 +2,16 @@
 
 mod shards;
 
-use std::io::Write;
-use std::path::{Path, PathBuf};
-
-use clap::Args;
-use experiments::Failure;
 use experiments::experiment::Shard;
 use experiments::sweep::disk::experiment_in;
 use experiments::sweep::names::{is_sweeps, sweeps_in};
-use rne_core::Registry;
 use serde::Serialize;
 
 use super::estimate::duration;
 use super::slurm;
 use super::submit::{LOGS, Submission, line, quoted};
 use crate::arguments::JsonArgument;
-use crate::output::print_json;
+use crate::prelude::*;
 use shards::{OneShard, Said, State, ranges, seconds_each};
 
 /// Largest number of shards that are listed one by one.
@@ -91,7 +85,7 @@ fn submitted(folder: &Path, submission: &Submission) -> Result<Output, Failure> 
 fn by_hand(folder: &Path, registry: &Registry) -> Result<Output, Failure> {
     let folders = if is_sweeps(folder) { vec![folder.to_owned()] } else { sweeps_in(folder) };
     if folders.is_empty() {
-        return Err(Failure::input(format!("{}: has neither shards nor a sweep in it", folder.display())));
+        refuse!("{}: has neither shards nor a sweep in it", folder.display());
     }
     let said = Said { queued: None, ended: slurm::Tasks::new() };
     let (mut shards, mut all, mut is_checked) = (Vec::new(), None, false);

@@ -4,11 +4,6 @@ mod plan;
 mod scripts;
 mod submission;
 
-use std::io::Write;
-use std::path::{Path, PathBuf};
-
-use clap::Args;
-use experiments::Failure;
 use experiments::experiment::Experiment;
 use experiments::files::NewFile;
 
@@ -20,10 +15,8 @@ use super::estimate::{Measured, duration};
 use super::slurm;
 use crate::arguments::{Selection, count};
 use crate::bad_value::BadValue;
-use crate::printable::counted;
-use crate::running::stop_on_signals;
+use crate::prelude::*;
 use plan::Wishes;
-use rne_core::Registry;
 
 /// Run a sweep on a cluster: shards as an array of Slurm jobs, then merge and report
 #[derive(Debug, Args)]
@@ -84,11 +77,8 @@ fn word(text: &str) -> Result<String, BadValue> {
     is_word.then(|| text.to_owned()).ok_or_else(|| BadValue::new("letters, digits and -_.:", text))
 }
 
-/// The scripts of a submission.
-struct Scripts {
-    array: String,
-    merge: String,
-}
+/// The scripts of a submission, with their names.
+type Scripts = [(&'static str, String); 2];
 
 impl Arguments {
     pub(crate) fn execute(&self, registry: &Registry, out: &mut dyn Write) -> Result<(), Failure> {
@@ -102,7 +92,7 @@ impl Arguments {
             let name = folder.display();
             let advice =
                 format!("usar cluster status {name} says what is missing; --out takes another folder");
-            return Err(Failure::input(format!("--out: {name} exists; nothing was submitted. {advice}")));
+            refuse!("--out: {name} exists; nothing was submitted. {advice}");
         }
         let measured = Measured::of(&experiment, false)?;
         let wishes = Wishes {
@@ -158,8 +148,7 @@ impl Arguments {
             Some(path) => ron_tree::file::read_text(path)
                 .map_err(|error| Failure::input(format!("--template: {}: {error}", path.display())))?,
         };
-        let array = scripts::fill(&template, &words)?;
-        Ok(Scripts { array, merge: scripts::fill(scripts::MERGE, &words)? })
+        Ok([(ARRAY, scripts::fill(&template, &words)?), (MERGE, scripts::fill(scripts::MERGE, &words)?)])
     }
 }
 
@@ -172,13 +161,13 @@ fn shards_of(whole: &Path) -> PathBuf {
 fn absolute(path: &Path) -> Result<PathBuf, Failure> {
     let path = std::path::absolute(path)?;
     if path.to_string_lossy().contains('\n') {
-        return Err(Failure::input(format!("{}: must not have a line break in it", path.display())));
+        refuse!("{}: must not have a line break in it", path.display());
     }
     Ok(path)
 }
 
 fn print(out: &mut dyn Write, scripts: &Scripts, folder: &Path) -> Result<(), Failure> {
-    for (name, script) in [(ARRAY, &scripts.array), (MERGE, &scripts.merge)] {
+    for (name, script) in scripts {
         writeln!(out, "\n--- {}\n{script}", folder.join(name).display())?;
     }
     Ok(writeln!(
@@ -206,7 +195,7 @@ fn submit(
 ) -> Result<(), Failure> {
     let trouble = |error| Failure::storage(format!("cannot write to {}: {error}", folder.display()));
     std::fs::create_dir_all(folder.join(LOGS)).map_err(trouble)?;
-    for (name, script) in [(ARRAY, &scripts.array), (MERGE, &scripts.merge)] {
+    for (name, script) in scripts {
         NewFile::write(folder, name, script.as_bytes())?;
     }
     submission.write(folder)?;

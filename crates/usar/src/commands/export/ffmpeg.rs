@@ -1,11 +1,11 @@
 //! Films, made by the program ffmpeg.
 
-use std::io::{ErrorKind, Read, Write};
-use std::path::Path;
+use std::io::{ErrorKind, Read};
 use std::process::{Child, Command, Stdio};
 
-use experiments::Failure;
 use pictures::Pixels;
+
+use crate::prelude::*;
 
 /// Name of the program.
 const PROGRAM: &str = "ffmpeg";

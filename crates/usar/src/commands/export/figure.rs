@@ -1,18 +1,13 @@
 //! `usar export figure`: draws one figure of a sweep for the column of a paper.
 
-use std::io::Write;
-use std::path::PathBuf;
-
-use clap::Args;
-use experiments::Failure;
 use experiments::comparison::Asked;
 use experiments::sweep::folder::Folder;
 use pictures::{Picture, Width};
 use reports::{ColumnLook, Wanted, column_figure};
-use rne_core::Registry;
 
 use crate::arguments::{CaseArgument, ComparisonArguments, MeasureArgument, PictureArguments, PictureFile};
 use crate::input::read_sweep;
+use crate::prelude::*;
 
 /// Draw one figure of a sweep for the column of a paper, as PDF, SVG or PNG
 #[derive(Debug, Args)]
@@ -83,10 +78,7 @@ impl Arguments {
             folder.experiment().policies.iter().map(|policy| policy.label.as_str()).collect();
         let unknown = asked.policies.iter().flatten().find(|label| !labels.contains(&label.as_str()));
         if let Some(label) = unknown {
-            return Err(Failure::input(format!(
-                "--policies: must be policies of the sweep ({}), found {label:?}",
-                labels.join(", ")
-            )));
+            refuse!("--policies: must be policies of the sweep ({}), found {label:?}", labels.join(", "));
         }
         Ok(Wanted { asked, title: None, case: Some(case), shown: Vec::new() })
     }

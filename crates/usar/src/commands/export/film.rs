@@ -1,15 +1,11 @@
 //! Sequences of pictures of a trial.
 
-use std::sync::atomic::Ordering;
-
-use clap::Args;
-use experiments::Failure;
 use pictures::{Look, Picture, PictureError, Width, moment};
 use recording::Recording;
 
 use super::trial::RecordedArguments;
 use crate::arguments::LookArguments;
-use crate::running::{STOP, stop_on_signals};
+use crate::prelude::*;
 
 /// Largest number of pictures in a sequence.
 const MOST: usize = 100_000;
@@ -39,7 +35,7 @@ pub(super) struct Row<'r> {
 impl Row<'_> {
     /// The picture of a frame.
     pub(super) fn picture(&self, number: usize) -> Result<Picture, Failure> {
-        if STOP.load(Ordering::Relaxed) {
+        if is_stopped() {
             return Err(Failure::Interrupted("stopped; the pictures are not complete".to_owned()));
         }
         moment(self.recording, number, &self.look).map_err(failed)
@@ -59,7 +55,7 @@ pub(super) fn frame_at(recording: &Recording, flag: &str, time_s: f64) -> Result
     let [first, last] = [0, recording.frames() - 1].map(|frame| header.time_s_of(frame));
     if !(first..=last + 1e-6).contains(&time_s) {
         let rule = format!("must be from {first} to {last}, the times of the trial, found {time_s}");
-        return Err(Failure::input(format!("{flag}: {rule}")));
+        refuse!("{flag}: {rule}");
     }
     Ok(recording.frame_at(time_s))
 }
@@ -80,13 +76,11 @@ impl FilmArguments {
         frame_at(recording, "--begin", from)?;
         frame_at(recording, "--end", to)?;
         if to < from {
-            return Err(Failure::input(format!("--end: must not be before --begin ({from}), found {to}")));
+            refuse!("--end: must not be before --begin ({from}), found {to}");
         }
         let count = ((to - from) / every + 1e-6).floor() as usize + 1;
         if count > MOST {
-            return Err(Failure::input(format!(
-                "--every: would be {count} pictures, at most {MOST} are drawn"
-            )));
+            refuse!("--every: would be {count} pictures, at most {MOST} are drawn");
         }
         Ok((0..count).map(|i| recording.frame_at(from + i as f64 * every)).collect())
     }

@@ -1,18 +1,13 @@
 //! `usar export frames`: a trial as pictures, without a display.
 
-use std::io::Write;
-use std::path::{Path, PathBuf};
-
-use clap::{ArgGroup, Args};
-use experiments::Failure;
+use clap::ArgGroup;
 use experiments::files::NewFile;
 use pictures::{Picture, Width, moment, trails};
 use recording::Recording;
-use rne_core::Registry;
 
 use super::film::{FilmArguments, failed, frame_at};
 use crate::arguments::PictureFile;
-use crate::output::make_folder;
+use crate::prelude::*;
 
 /// Draw a trial: one moment, all trajectories, or a series of frames
 #[derive(Debug, Args)]

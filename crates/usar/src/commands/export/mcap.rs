@@ -1,15 +1,8 @@
 //! `usar export mcap`: a trial as an MCAP log.
 
-use std::io::Write;
-use std::path::PathBuf;
-
-use clap::Args;
-use experiments::Failure;
-use rne_core::Registry;
-
 use super::trial::{RecordedArguments, failed};
 use crate::arguments::ReplaceArgument;
-use crate::output::Destination;
+use crate::prelude::*;
 
 /// Write a trial as an MCAP log, for Foxglove, Lichtblick and Rerun
 #[derive(Debug, Args)]

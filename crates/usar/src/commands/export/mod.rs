@@ -1,13 +1,12 @@
 //! `usar export`: sweeps and trials for papers, slides and other programs.
 
-mod csv;
 mod ffmpeg;
 mod figure;
 mod film;
 mod frames;
 mod mcap;
-mod parquet;
 mod table;
+mod tables;
 mod trial;
 mod video;
 
@@ -17,8 +16,12 @@ verbs!(Verb {
     Figure: figure::Arguments,
     Table: table::Arguments,
     Mcap: mcap::Arguments,
-    Csv: csv::Arguments,
-    Parquet: parquet::Arguments,
+    /// Write the tables of a trial as CSV
+    #[command(after_help = tables::help("csv"))]
+    Csv: tables::Arguments<false>,
+    /// Write the tables of a trial as Parquet
+    #[command(after_help = tables::help("parquet"))]
+    Parquet: tables::Arguments<true>,
     Frames: frames::Arguments,
     Video: video::Arguments,
 });

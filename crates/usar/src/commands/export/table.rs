@@ -1,17 +1,11 @@
 //! `usar export table`: prints everything that a sweep measured as one long table.
 
-use std::io::Write;
-use std::path::PathBuf;
-
-use clap::Args;
-use experiments::Failure;
 use experiments::sweep::folder::Folder;
 use experiments::sweep::{tidy_columns, tidy_rows};
-use rne_core::Registry;
 
 use crate::arguments::ReplaceArgument;
 use crate::input::read_sweep;
-use crate::output::Destination;
+use crate::prelude::*;
 
 /// Print everything that a sweep measured as one long table: a row for each value
 #[derive(Debug, Args)]

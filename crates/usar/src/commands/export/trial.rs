@@ -1,16 +1,10 @@
 //! A recorded trial for other programs.
 
-use std::path::{Path, PathBuf};
-
-use clap::Args;
-use experiments::Failure;
-use experiments::files::NewFile;
-use exports::tables::Table;
-use exports::{ExportError, parquet};
+use exports::ExportError;
 use recording::Recording;
-use rne_core::Registry;
 
 use crate::arguments::{TrialArguments, seconds};
+use crate::prelude::*;
 
 /// A recorded trial, or one that is recorded now.
 #[derive(Debug, Args)]
@@ -47,36 +41,4 @@ pub(super) fn failed(path: &Path, error: &ExportError) -> Failure {
         ExportError::Recording(_) => Failure::input(error),
         _ => Failure::storage(format!("{}: {error}", path.display())),
     }
-}
-
-/// The form of a table file.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Form {
-    Csv,
-    Parquet,
-}
-
-/// Writes all tables of a trial to a folder.
-pub(super) fn write_tables(
-    recorded: &RecordedArguments,
-    folder: &Path,
-    form: Form,
-    registry: &Registry,
-) -> Result<(), Failure> {
-    let (recording, every) = recorded.read(registry)?;
-    for table in Table::ALL {
-        let ending = if form == Form::Csv { "csv" } else { "parquet" };
-        let name = format!("{}.{ending}", table.name());
-        let file = NewFile::new(folder, &name)?;
-        let failed = |error: ExportError| failed(&folder.join(&name), &error);
-        let file = match form {
-            Form::Csv => table.write_csv(&recording, every, file).map_err(failed)?,
-            Form::Parquet => {
-                let rows = table.write_csv(&recording, every, Vec::new()).map_err(failed)?;
-                parquet::from_csv(&*rows, Table::kind, file).map_err(failed)?
-            }
-        };
-        file.finish()?;
-    }
-    Ok(())
 }

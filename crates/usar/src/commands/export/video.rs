@@ -1,16 +1,10 @@
 //! `usar export video`: a trial as an animated GIF or as a film.
 
-use std::io::Write;
-use std::path::PathBuf;
-
-use clap::Args;
-use experiments::Failure;
 use pictures::Animation;
-use rne_core::Registry;
 
 use super::ffmpeg;
 use super::film::{FilmArguments, Row, failed};
-use crate::output::Destination;
+use crate::prelude::*;
 
 /// Draw a trial as an animated GIF or as a film
 #[derive(Debug, Args)]
@@ -42,7 +36,7 @@ impl Arguments {
             Some("mp4") => false,
             _ => {
                 let path = self.out.display();
-                return Err(Failure::input(format!("--out: must end with .gif or .mp4, found {path}")));
+                refuse!("--out: must end with .gif or .mp4, found {path}");
             }
         };
         if !is_gif {

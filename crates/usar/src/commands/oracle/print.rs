@@ -1,9 +1,5 @@
 //! The output of `usar oracle`.
 
-use std::io::Write;
-use std::path::Path;
-
-use experiments::Failure;
 use experiments::oracle::{Coverage, Evaluation, Objective, Outcome, Standing, Survey};
 use reports::table::{Table, headed, right};
 use rne_core::Assignment;
@@ -11,7 +7,7 @@ use serde_json::{Value, json};
 
 use super::{Answer, Asked, coverage_in_words};
 use crate::commands::fork::ids;
-use crate::output::{Destination, csv_of, print_json, print_table};
+use crate::prelude::*;
 
 pub(super) fn json(asked: &Asked, answers: &[Answer]) -> Result<(), Failure> {
     print_json(&json!({

@@ -1,14 +1,13 @@
 //! Every event of a trial as a line of JSON.
 
 use std::fs::File;
-use std::io::{self, BufWriter, Write};
-use std::path::{Path, PathBuf};
+use std::io::{self, BufWriter};
 
-use experiments::Failure;
 use recording::told;
 use usar_sim::simulation::Simulation;
 
 use crate::output::{create_new, trouble};
+use crate::prelude::*;
 
 /// The file that is being written.
 pub(super) struct EventLines {

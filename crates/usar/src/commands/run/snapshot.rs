@@ -1,8 +1,5 @@
 //! Snapshots of trials as files.
 
-use std::path::{Path, PathBuf};
-
-use experiments::Failure;
 use experiments::experiment::PolicySpec;
 use experiments::limits::SNAPSHOT_BYTES;
 use ron_tree::file;
@@ -11,8 +8,7 @@ use usar_sim::scenario::Scenario;
 use usar_sim::simulation::Simulation;
 use usar_sim::snapshot::{Identity, START_BYTES, check_start};
 
-use crate::output::Destination;
-use crate::running::session_of;
+use crate::prelude::*;
 
 /// A snapshot that was read from a file.
 pub(super) struct Snapshot {
@@ -25,20 +21,18 @@ pub(super) struct Snapshot {
 impl Snapshot {
     /// Reads a file and checks its integrity.
     pub(super) fn read(path: &Path) -> Result<Self, Failure> {
-        let refused =
-            |reason: &dyn std::fmt::Display| Failure::input(format!("{}: {reason}", path.display()));
         let most = SNAPSHOT_BYTES.most as u64;
-        let (start, length) = file::read_start(path, START_BYTES, most).map_err(|error| refused(&error))?;
-        check_start(&start, length).map_err(|error| refused(&error))?;
-        let bytes = file::read(path, most).map_err(|error| refused(&error))?;
-        let identity = Identity::of(&bytes).map_err(|error| refused(&error))?;
+        let (start, length) =
+            file::read_start(path, START_BYTES, most).map_err(Failure::input_at(path.display()))?;
+        check_start(&start, length).map_err(Failure::input_at(path.display()))?;
+        let bytes = file::read(path, most).map_err(Failure::input_at(path.display()))?;
+        let identity = Identity::of(&bytes).map_err(Failure::input_at(path.display()))?;
         Ok(Self { path: path.to_owned(), bytes, identity })
     }
 
     /// The trial, at the step where the snapshot was taken.
     pub(super) fn restore(&self, scenario: &Scenario) -> Result<Simulation, Failure> {
-        Simulation::restore(scenario, &self.bytes)
-            .map_err(|error| Failure::input(format!("{}: {error}", self.path.display())))
+        Simulation::restore(scenario, &self.bytes).map_err(Failure::input_at(self.path.display()))
     }
 }
 
@@ -52,7 +46,7 @@ pub(super) fn save(
     let mut session = session_of(spec, simulation.scenario(), simulation.seed())?;
     let (now, end) = (simulation.time_s(), simulation.scenario().duration_s);
     if !(now..=end).contains(&seconds) {
-        return Err(Failure::input(format!("--save-at: must be from {now} to {end} s, found {seconds}")));
+        refuse!("--save-at: must be from {now} to {end} s, found {seconds}");
     }
     let to = Destination::new("--save", path, false)?;
     while simulation.time_s() < seconds {
@@ -61,9 +55,7 @@ pub(super) fn save(
                 return Err(Failure::run(reason));
             }
             let (status, time_s) = (status.name().replace('_', " "), simulation.time_s());
-            return Err(Failure::input(format!(
-                "--save-at: the trial ended at {time_s} s already: {status}"
-            )));
+            refuse!("--save-at: the trial ended at {time_s} s already: {status}");
         }
     }
     to.write(&simulation.snapshot(&spec.plain()))

@@ -1,17 +1,12 @@
 //! `usar scenario draw`: draws the world of a scenario before the trial.
 
-use std::io::Write;
-use std::path::PathBuf;
-
-use clap::Args;
-use experiments::Failure;
 use experiments::experiment::defaults;
 use pictures::{Plan, Width, plan};
 use recording::World;
-use rne_core::Registry;
 use usar_sim::simulation::Simulation;
 
 use crate::arguments::{LookArguments, PictureFile, SetArguments};
+use crate::prelude::*;
 
 /// Draw the map of a scenario, before anything runs
 #[derive(Debug, Args)]
@@ -46,8 +41,7 @@ impl Arguments {
             Some(seed) => seed,
             None => defaults(&self.file)?.1,
         };
-        let simulation = Simulation::new(&scenario, seed)
-            .map_err(|error| Failure::input(format!("{}: {error}", self.file.display())))?;
+        let simulation = Simulation::new(&scenario, seed).map_err(Failure::input_at(self.file.display()))?;
         let world = World::of(&simulation);
         let first_sampled = [simulation.scenario().obstacles().len(), scenario.radiation.len()];
         let is_sampled = world.debris.len() > first_sampled[0] || world.zones.len() > first_sampled[1];

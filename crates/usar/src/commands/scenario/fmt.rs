@@ -1,14 +1,8 @@
 //! `usar scenario fmt`: sets the layout of scenario and sweep files.
 
-use std::io::Write;
-use std::path::{Path, PathBuf};
-
-use clap::Args;
-use experiments::Failure;
-use rne_core::Registry;
 use usar_sim::scenario::{formatted, read_text};
 
-use crate::output::Destination;
+use crate::prelude::*;
 
 /// Format scenario and sweep files
 #[derive(Debug, Args)]

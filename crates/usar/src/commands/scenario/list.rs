@@ -1,16 +1,12 @@
 //! `usar scenario list`: lists the available scenarios, policies, roles or metrics.
 
-use std::io::Write;
-use std::path::{Path, PathBuf};
-
-use clap::{Args, ValueEnum};
-use experiments::Failure;
+use clap::ValueEnum;
 use experiments::metric::{Catalogue, task_names};
-use rne_core::Registry;
 use usar_sim::scenario::{RoleKind, Scenario};
 
 use crate::commands::new::PAPER;
 use crate::input::load;
+use crate::prelude::*;
 
 /// List scenarios, policies, roles or metrics, a line each
 #[derive(Debug, Args)]

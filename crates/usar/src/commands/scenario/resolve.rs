@@ -1,15 +1,10 @@
 //! `usar scenario resolve`: prints every resolved value of a scenario, and its origin.
 
-use std::io::Write;
-use std::path::{Path, PathBuf};
-
-use clap::Args;
-use experiments::Failure;
-use rne_core::Registry;
 use ron_tree::{Node, Value};
 use usar_sim::scenario::{parse_tree, read_text};
 
 use crate::arguments::SetArguments;
+use crate::prelude::*;
 
 /// Print every value that a scenario ends up with, and where it comes from
 #[derive(Debug, Args)]

@@ -1,12 +1,11 @@
 //! `usar scenario schema`: the JSON Schema of files, and of questions and decisions.
 
-use std::io::Write;
-
-use clap::{Args, ValueEnum};
-use experiments::Failure;
+use clap::ValueEnum;
 use experiments::experiment::sweep_schema;
-use rne_core::{Decision, Question, Registry};
+use rne_core::{Decision, Question};
 use usar_sim::scenario::scenario_schema;
+
+use crate::prelude::*;
 
 /// Print the JSON Schema of scenario and sweep files, of a question or of a decision
 #[derive(Debug, Args)]

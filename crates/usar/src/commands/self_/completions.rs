@@ -1,13 +1,9 @@
 //! `usar self completions`: scripts with which shells complete commands and options.
 
-use std::io::Write;
-
-use clap::Args;
 use clap_complete::{Shell, generate};
-use experiments::Failure;
-use rne_core::Registry;
 
 use crate::commands::command;
+use crate::prelude::*;
 
 /// Print the completion script of a shell
 #[derive(Debug, Args)]

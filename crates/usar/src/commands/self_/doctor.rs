@@ -1,17 +1,11 @@
 //! `usar self doctor`: shows the program and the machine, and tests whether results can be written.
 
-use std::io::Write;
-use std::path::{Path, PathBuf};
-
-use clap::Args;
-use experiments::Failure;
 use experiments::provenance::COMMIT;
 use experiments::sweep::host::{HostRun, free_bytes};
-use rne_core::Registry;
 use serde::Serialize;
 
 use crate::arguments::{JsonArgument, default_jobs};
-use crate::output::print_json;
+use crate::prelude::*;
 
 /// Number of bytes in the write test.
 const TEST_BYTES: usize = 1 << 12;

@@ -3,18 +3,13 @@
 
 mod markdown;
 
-use std::io::Write;
-use std::path::PathBuf;
-
-use clap::{Args, Command};
+use clap::Command;
 use clap_mangen::Man;
-use experiments::Failure;
 use experiments::files::NewFile;
-use rne_core::Registry;
 
 use crate::arguments::ReplaceArgument;
 use crate::commands::command;
-use crate::output::make_folder;
+use crate::prelude::*;
 
 /// Print the manual page, or write the pages of all commands
 #[derive(Debug, Args)]

@@ -1,10 +1,5 @@
 //! `usar study regret`: the distance of each policy's decisions to the best ones.
 
-use std::io::Write;
-use std::path::{Path, PathBuf};
-
-use clap::Args;
-use experiments::Failure;
 use experiments::experiment::{Experiment, Overrides};
 use experiments::files::NewFile;
 use experiments::oracle::{DEFAULT_LIMIT, Objective};
@@ -13,12 +8,10 @@ use experiments::regret::{
 };
 use reports::regret_figures;
 use reports::table::{headed, right};
-use rne_core::Registry;
 use serde_json::json;
 
 use crate::arguments::{MeasureArgument, ProgressArguments, ShownArguments, limit, parse_policy};
-use crate::output::{csv_of, print_json, print_table};
-use crate::running::STOP;
+use crate::prelude::*;
 
 /// How far does each policy's decision stay behind the best one? A study over all rounds of many trials
 #[derive(Debug, Args)]
@@ -97,9 +90,7 @@ impl Arguments {
     fn objectives(&self, tasks: &[String]) -> Result<Vec<Objective>, Failure> {
         let defaults = ["rescuees", "rescue_rate", "energy_per_rescuee"].map(str::to_owned);
         let names = if self.metric.is_empty() { &defaults[..] } else { &self.metric };
-        let parse = |name: &String| {
-            Objective::parse(name, tasks).map_err(|error| Failure::input(format!("--metric: {error}")))
-        };
+        let parse = |name: &String| Objective::parse(name, tasks).map_err(Failure::input_at("--metric"));
         names.iter().map(parse).collect()
     }
 

@@ -1,19 +1,14 @@
 //! `usar study sensitivity`: finds which parameters of a scenario matter, for outcomes and for differences.
 
-use std::io::Write;
-
-use clap::{Args, ValueEnum};
-use experiments::Failure;
+use clap::ValueEnum;
 use experiments::comparison::{Asked, Wishes};
 use experiments::explore::{Evaluations, FIGURE, INDICES, Method, Row, Sensitivity, Space};
 use experiments::files::NewFile;
 use reports::{ranking, sensitivity_figure, sensitivity_table};
-use rne_core::Registry;
 use serde_json::json;
 
 use crate::arguments::{ComparisonArguments, ParameterArguments, ShownArguments, count, seed};
-use crate::output::{print_json, print_table};
-use crate::running::STOP;
+use crate::prelude::*;
 
 /// Which parameters matter for the outcome, and which for the difference between policies?
 #[derive(Debug, Args)]

@@ -29,7 +29,7 @@ impl Precision {
         let (metric, rest) = text.split_once(':').ok_or_else(|| bad(form))?;
         let (pair, bound) = rest.rsplit_once(':').ok_or_else(|| bad(form))?;
         let metric = experiment.metrics.named(metric.trim());
-        let metric = metric.map_err(|error| Failure::input(format!("--precision: {error}")))?;
+        let metric = metric.map_err(Failure::input_at("--precision"))?;
         let bound: f64 = bound.trim().parse().map_err(|_| bad("the bound must be a number"))?;
         if !(bound.is_finite() && bound > 0.0) {
             return Err(bad("the bound must be a number above 0"));

@@ -4,7 +4,7 @@ use experiments::Failure;
 use recording::{Frame, Recording};
 use serde::Serialize;
 
-use crate::output::print_json;
+use crate::prelude::*;
 
 #[derive(Serialize)]
 struct Output<'a> {

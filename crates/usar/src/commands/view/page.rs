@@ -1,11 +1,8 @@
 //! The page: the viewer, with the recordings embedded.
 
 use std::io::Read;
-use std::path::Path;
 
-use experiments::Failure;
-
-use crate::output::Destination;
+use crate::prelude::*;
 use crate::recordings::Shown;
 
 /// The viewer, built from the folder `viewer`.
@@ -23,10 +20,10 @@ pub(super) fn write(path: &Path, shown: &[Shown]) -> Result<(), Failure> {
         let mut start = Vec::new();
         let _ = file.take(START.len() as u64).read_to_end(&mut start); // what cannot be read is not ours
         if start != START.as_bytes() {
-            return Err(Failure::input(format!(
+            refuse!(
                 "--out: {} exists and is not a page of `usar view`; nothing was overwritten",
                 path.display()
-            )));
+            );
         }
     }
     Destination::new("--out", path, true)?.write(page(shown).as_bytes())

@@ -1,8 +1,5 @@
 //! The account in sentences.
 
-use std::io::Write;
-
-use experiments::Failure;
 use experiments::comparison::digits;
 use experiments::why::{Directed, Exchange, OtherChoice};
 use reports::table::{headed, right};
@@ -13,8 +10,7 @@ use super::robot::{RobotStory, in_words};
 use super::{Account, OracleSays};
 use crate::arguments::Trial;
 use crate::commands::fork::ids;
-use crate::output::print_table;
-use crate::printable::counted;
+use crate::prelude::*;
 
 /// A score that exceeds the next best by a smaller share than this is called close.
 const CLOSE: f64 = 0.05;

@@ -1,7 +1,6 @@
 //! The cost of a sweep, measured on a few of its trials.
 
 use std::collections::BTreeSet;
-use std::sync::atomic::Ordering;
 use std::time::Instant;
 
 use experiments::Failure;
@@ -10,7 +9,7 @@ use experiments::run::{Outcome, Sessions, TrialKey};
 use experiments::sweep::{Sizes, sizes};
 
 use crate::arguments::progress_bar;
-use crate::running::STOP;
+use crate::prelude::*;
 
 /// Approximate number of measured trials, in whole seeds. Policies that decide alike share their trials, so
 /// that only all policies of a seed show the true cost.
@@ -41,7 +40,7 @@ impl Measured {
         let mut outcomes = Vec::new();
         for key in sample {
             let result = experiment.run(&key, &mut sessions, &STOP);
-            if STOP.load(Ordering::Relaxed) {
+            if is_stopped() {
                 return Err(Failure::Interrupted("stopped; nothing was written".to_owned()));
             }
             outcomes.push(Outcome { key, result });

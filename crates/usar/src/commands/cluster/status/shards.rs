@@ -1,8 +1,5 @@
 //! The state of each shard of a sweep, from its folder and from Slurm's state of its task.
 
-use std::path::{Path, PathBuf};
-
-use experiments::Failure;
 use experiments::experiment::Shard;
 use experiments::sweep::host::Hosts;
 use experiments::sweep::progress::{Progress, progress};
@@ -10,6 +7,7 @@ use serde::Serialize;
 
 use super::super::slurm::Tasks;
 use super::super::submit::quoted;
+use crate::prelude::*;
 
 /// The state of a shard.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]

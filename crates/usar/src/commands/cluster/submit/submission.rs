@@ -1,12 +1,10 @@
 //! `submission.json`: a record of the submission, in the folder of the shards.
 
-use std::path::{Path, PathBuf};
-
-use experiments::Failure;
 use experiments::files::{self, NewFile};
 use serde::{Deserialize, Serialize};
 
 use super::plan::Plan;
+use crate::prelude::*;
 
 /// Name of the file.
 const FILE: &str = "submission.json";
@@ -49,13 +47,13 @@ impl Submission {
         if path.symlink_metadata().is_err() {
             return Ok(None);
         }
-        let wrong = |error: &dyn std::fmt::Display| Failure::input(format!("{}: {error}", path.display()));
-        let text = files::read(&path).map_err(|error| wrong(&error))?;
-        let read: Self = serde_json::from_slice(&text).map_err(|error| wrong(&error))?;
-        match read.schema_version {
-            SCHEMA_VERSION => Ok(Some(read)),
-            other => Err(wrong(&format!("its layout has version {other}; this is {SCHEMA_VERSION}"))),
+        let text = files::read(&path).map_err(Failure::input_at(path.display()))?;
+        let read: Self = serde_json::from_slice(&text).map_err(Failure::input_at(path.display()))?;
+        if read.schema_version != SCHEMA_VERSION {
+            let (path, other) = (path.display(), read.schema_version);
+            refuse!("{path}: its layout has version {other}; this is {SCHEMA_VERSION}");
         }
+        Ok(Some(read))
     }
 
     pub(super) fn write(&self, folder: &Path) -> Result<(), Failure> {

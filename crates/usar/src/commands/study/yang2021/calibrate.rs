@@ -3,16 +3,10 @@
 
 mod choose;
 
-use std::io::Write;
-use std::path::{Path, PathBuf};
-
-use clap::Args;
-use experiments::Failure;
 use experiments::comparison::short;
 use experiments::explore::Free;
 use experiments::files::NewFile;
 use rayon::prelude::*;
-use rne_core::Registry;
 use ron_tree::{Node, edited};
 use study_yang2021::calibration::{Calibration, Fit, Log, POLICY, Spread, Target, the_policy, write_fit};
 use study_yang2021::table::fit_table;
@@ -20,8 +14,7 @@ use usar_sim::scenario::Scenario;
 
 use crate::arguments::{ProgressArguments, SetArguments, ShownArguments, count, seed, share};
 use crate::input::load;
-use crate::output::print_table;
-use crate::running::{STOP, tell};
+use crate::prelude::*;
 
 /// Name of the calibrated scenario.
 const CALIBRATED: &str = "calibrated.ron";
@@ -140,10 +133,11 @@ impl Arguments {
     fn calibration(&self, registry: &Registry) -> Result<Calibration, Failure> {
         let first_seed = self.first_seed.unwrap_or(100_001);
         if first_seed <= u64::from(self.fresh_trials) {
-            return Err(Failure::input(format!(
+            refuse!(
                 "--first-seed: must be beyond the fresh trials, whose seeds are 1 to {}, found {}",
-                self.fresh_trials, first_seed
-            )));
+                self.fresh_trials,
+                first_seed
+            );
         }
         let file = self.file.as_deref().unwrap_or(Path::new(""));
         let (given, text) = load(file)?;
@@ -155,18 +149,18 @@ impl Arguments {
                 pair.ok_or_else(|| Failure::input(format!("--set: must be path=value, found {entry:?}")))?;
             let path = path.trim();
             if known.get(path).is_none() {
-                return Err(Failure::input(format!("--set: {}", known.unknown(path, "a scenario"))));
+                refuse!("--set: {}", known.unknown(path, "a scenario"));
             }
             settings.push((path.to_owned(), value.to_owned()));
         }
-        let text = edited(&text, &settings).map_err(|error| Failure::input(format!("--set: {error}")))?;
+        let text = edited(&text, &settings).map_err(Failure::input_at("--set"))?;
         let base = Scenario::parse(&text, file).map_err(Failure::input)?;
         let fields = Node::parse(&text).map_err(Failure::run)?;
         let parse = |spec: &String| Free::parse(spec, &fields, &known);
         let free = self.over.iter().map(parse).collect::<Result<Vec<_>, _>>();
-        let free = free.map_err(|error| Failure::input(format!("--over: {error}")))?;
+        let free = free.map_err(Failure::input_at("--over"))?;
         if let Some((path, _)) = settings.iter().find(|(path, _)| free.iter().any(|free| free.is_of(path))) {
-            return Err(Failure::input(format!("--set: {path} is free")));
+            refuse!("--set: {path} is free");
         }
         let target = Target::load(&self.target, &base)?;
         let (trials, first_step) = (self.trials.unwrap_or(10), self.first_step);
@@ -199,9 +193,7 @@ impl Arguments {
     ) -> Result<(), Failure> {
         let (Some(best), evaluations) = (log.best(), log.evaluations().len()) else { return Ok(()) };
         for (free, value) in calibration.free.iter().zip(&best.values) {
-            let [low, high] = free.ends();
-            let end = if free.is_at_end(*value) { "; it is at the end of its range" } else { "" };
-            writeln!(out, "{} = {value} (searched from {low} to {high}{end})", free.name)?;
+            writeln!(out, "{}", free.found(*value))?;
         }
         if log.evaluations().first().is_some_and(|first| first.values == best.values) {
             writeln!(out, "no candidate is nearer to the data than the start")?;

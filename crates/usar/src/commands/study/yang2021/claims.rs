@@ -1,16 +1,11 @@
 //! `usar study yang2021 claims`: runs the paper's experiment and judges the paper's claims.
 
-use std::io::Write;
-use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
 
-use clap::Args;
-use experiments::Failure;
 use experiments::sweep::folder::{Folder, Opening};
 use experiments::sweep::names::is_sweeps;
 use reports::{Wanted, write_report};
-use rne_core::Registry;
 use study_yang2021::claims::{
     Judged, examples, write_authors_columns, write_claims, write_examples, write_power,
 };
@@ -20,8 +15,7 @@ use study_yang2021::scenarios::{PAPERS_TRIALS, POLICIES, Standing, World, worlds
 
 use crate::arguments::{ProgressArguments, ShownArguments, count};
 use crate::input::check_trials;
-use crate::output::print_table;
-use crate::running::{STOP, tell};
+use crate::prelude::*;
 
 /// Time limit of one trial.
 const TRIAL_LIMIT: Duration = Duration::from_mins(10);
@@ -66,10 +60,10 @@ pub(crate) struct Arguments {
 impl Arguments {
     pub(crate) fn execute(&self, registry: &Registry, out: &mut dyn Write) -> Result<(), Failure> {
         if is_sweeps(&self.out) {
-            return Err(Failure::input(format!(
+            refuse!(
                 "--out: {} is the folder of one sweep; the folders of all scenarios would be put into it",
                 self.out.display()
-            )));
+            );
         }
         // All folders are opened first, so that an unusable folder is found before the first trial.
         let opened = worlds(self.trials, registry)?.into_iter().map(|world| self.open(world));

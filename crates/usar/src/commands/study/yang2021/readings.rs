@@ -1,19 +1,13 @@
 //! `usar study yang2021 readings`: shows what each reading of the paper's ambiguous places changes.
 
-use std::io::Write;
-use std::path::PathBuf;
-
-use clap::Args;
-use experiments::Failure;
 use experiments::rounds::rounds_in;
-use rne_core::Registry;
 use study_yang2021::readings::{Trials, averaged, groupings_in_words, rivals, single};
 use study_yang2021::table::{averaged_table, readings_table, rivals_table};
 
 use super::sorting::gaps;
 use crate::arguments::ShownArguments;
 use crate::input::read_sweep;
-use crate::output::print_table;
+use crate::prelude::*;
 
 /// Which reading of the paper's ambiguous places decides what?
 #[derive(Debug, Args)]
@@ -36,10 +30,7 @@ impl Arguments {
     pub(crate) fn execute(&self, registry: &Registry, out: &mut dyn Write) -> Result<(), Failure> {
         let mut folder = read_sweep(&self.folder, registry)?;
         if folder.experiment().cases.len() > 1 {
-            return Err(Failure::input(format!(
-                "{}: has axes; readings are compared in a sweep of one case",
-                self.folder.display()
-            )));
+            refuse!("{}: has axes; readings are compared in a sweep of one case", self.folder.display());
         }
         let policies = folder.experiment().policies.clone();
         let default = policies
@@ -53,15 +44,12 @@ impl Arguments {
             })?;
         let readings: Vec<usize> = (0..policies.len()).filter(|i| policies[*i].name == "RNE").collect();
         if readings.len() < 2 {
-            return Err(Failure::input(format!("{}: has no readings to compare", self.folder.display())));
+            refuse!("{}: has no readings to compare", self.folder.display());
         }
         let rounds = rounds_in(&mut folder, 0, default)?;
         let trials = Trials::of(&folder);
         if trials.numbers.is_empty() || rounds.is_empty() {
-            return Err(Failure::input(format!(
-                "{}: has no trial yet that all policies have finished",
-                self.folder.display()
-            )));
+            refuse!("{}: has no trial yet that all policies have finished", self.folder.display());
         }
         let rows = single(&trials, default, &readings, &rounds)?;
         writeln!(out, "Each reading by itself against the default, over {} pairs", trials.numbers.len())?;

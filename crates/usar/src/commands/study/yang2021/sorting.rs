@@ -1,20 +1,15 @@
 //! `usar study yang2021 sorting`: compares the groups of a sweep's policies with sorting.
 
-use std::io::Write;
-use std::path::PathBuf;
-
-use clap::Args;
-use experiments::Failure;
 use experiments::metric::task_names;
 use experiments::rounds::{self, Blindness, Example, GroupLevels, Likeness, likeness, rounds_in};
 use experiments::sweep::folder::Folder;
 use reports::table::{levels_table, likeness_table};
-use rne_core::{MadeMeasure, Member, Registry};
+use rne_core::{MadeMeasure, Member};
 use usar_sim::scenario::Scenario;
 
 use crate::arguments::{CaseArgument, MeasureArgument, ShownArguments};
 use crate::input::read_sweep;
-use crate::output::print_table;
+use crate::prelude::*;
 
 /// What do the policies' groups amount to: sorting by energy, by HP, or by what?
 #[derive(Debug, Args)]
@@ -60,10 +55,7 @@ impl Arguments {
             }
         }
         if likenesses.iter().all(|(_, of)| of[0].rounds() == 0) {
-            return Err(Failure::input(format!(
-                "{}: no round of this case was split into two groups",
-                self.folder.display()
-            )));
+            refuse!("{}: no round of this case was split into two groups", self.folder.display());
         }
         print(out, &likenesses, &levels, &folder.experiment().cases[case].scenario, &blind)?;
         if let Some(gaps) = gaps(&folder, case) {

@@ -1,19 +1,13 @@
 //! `--choose`: finds which of several calibrated candidates is nearest to the recorded trials.
 
-use std::io::Write;
-use std::path::PathBuf;
-
-use experiments::Failure;
 use experiments::comparison::digits;
-use rne_core::Registry;
 use serde_json::json;
 use study_yang2021::calibration::{CALIBRATED, Candidate, Judged, NOT_TOLD_APART, POLICY, Target, judge};
 use study_yang2021::table::choice_table;
 use usar_sim::scenario::Scenario;
 
 use super::Arguments;
-use crate::output::{Destination, csv_of, print_json, print_table};
-use crate::running::STOP;
+use crate::prelude::*;
 
 /// Seeds that no calibration uses.
 const FIRST_SEED: u64 = 200_001;
