@@ -7,7 +7,7 @@ use comfy_table::Table;
 use experiments::Failure;
 use experiments::experiment::Digest;
 use experiments::sweep::names::REPORT;
-use experiments::sweep::ours::Report;
+use experiments::sweep::owned::Report;
 
 use crate::claims::{CLAIMS, Example, Judged, LEAST_TRIALS};
 use crate::predictions::{Prediction, over_worlds};

@@ -12,7 +12,7 @@ use usar_sim::scenario::Scenario;
 use super::dictionary::dictionary;
 use super::names::{AGAIN, GIVEN, INPUTS, MANIFEST, RESOLVED, sweeps_in};
 use super::tables::tables_of;
-use super::{journal, ours};
+use super::{journal, owned};
 use crate::experiment::{AnalysisPlan, Experiment, Parts, Shard};
 use crate::provenance::{Manifest, scenario_differences};
 
@@ -32,7 +32,7 @@ pub(super) fn write_start(
     }
     // An existing report and existing Parquet files would belong to the previous contents.
     let trouble = |error| Failure::storage(format!("cannot write to {}: {error}", path.display()));
-    ours::remove_report(path).and_then(|()| ours::remove_parquets(path)).map_err(trouble)?;
+    owned::remove_report(path).and_then(|()| owned::remove_parquets(path)).map_err(trouble)?;
     Ok(manifest)
 }
 
