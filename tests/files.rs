@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use usar_sim::record::Status;
 use usar_sim::scenario::{Scenario, scenario_schema};
 use usar_sim::simulation::Simulation;
-use xtask::{random, reference, told};
+use xtask::{random, reference, reference_pages};
 
 use crate::support::root;
 
@@ -83,11 +83,11 @@ fn the_reference_is_made_of_the_types() {
 
 #[test]
 fn events_and_columns_are_told_by_the_program() {
-    for (path, page) in told::pages() {
+    for (path, page) in reference_pages::pages() {
         let there = std::fs::read_to_string(&path).unwrap();
         assert!(there == page, "{}: `just reference` makes it anew", path.display());
     }
-    let events = &told::pages()[0].1;
+    let events = &reference_pages::pages()[0].1;
     let rows = events.lines().filter(|line| line.starts_with("| `")).count();
     assert!(rows >= 33, "{events}");
     assert!(events.contains("| `made_room` |") && events.contains("`room_for`: "), "{events}");

@@ -10,7 +10,7 @@ use xxhash_rust::xxh3::xxh3_128;
 use crate::experiment::{Axis, Experiment, Keep, Program, Seeds, Shard};
 
 /// Version of the folder's layout.
-pub const SCHEMA_VERSION: u32 = 7;
+pub const SCHEMA_VERSION: u32 = 8;
 
 /// Largest number of trials that a sweep may have for each case and policy.
 const MAX_TRIALS: u32 = 1_000_000;
@@ -38,6 +38,8 @@ pub struct Manifest {
     pub name: String,
     /// The policies as they were written.
     pub policies: Vec<String>,
+    /// All options of each policy, with the defaults.
+    pub policy_options: Vec<String>,
     /// Hash of the sources of each policy.
     pub policy_sources: Vec<String>,
     /// The axes.
@@ -73,6 +75,7 @@ impl Manifest {
             features: ENGINE_FEATURES.map(str::to_owned).to_vec(),
             name: experiment.name.clone(),
             policies: experiment.policies.iter().map(|policy| policy.written().to_owned()).collect(),
+            policy_options: experiment.policies.iter().map(|policy| policy.made().options.clone()).collect(),
             policy_sources: experiment.program.policies.clone(),
             axes: experiment.axes.clone(),
             trials: experiment.trials,

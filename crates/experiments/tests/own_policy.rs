@@ -1,11 +1,16 @@
 //! A program with a policy of its own runs it in sweeps and trials like the built-in ones.
 
 use std::path::Path;
+use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
+use experiments::comparison::{Choice, compare};
 use experiments::experiment::{Experiment, Overrides};
-use experiments::run::Sessions;
+use experiments::run::{Limits, Sessions};
+use experiments::sweep::folder::{Folder, Opening};
+use experiments::sweep::{missing, run_trials};
 use rne_core::{Decision, Policy, PolicyError, PolicyKind, Question};
+use serde::{Deserialize, Serialize};
 
 /// Sends all robots to the easiest task.
 #[derive(Clone)]
@@ -42,4 +47,53 @@ fn a_policy_of_another_crate_is_swept_beside_the_built_in_ones() {
     };
     let [lazy, dis] = [rescued(0), rescued(1)];
     assert!(lazy[0] == 0 && lazy[1] > 0 && dis[0] > 0, "{lazy:?} {dis:?}");
+}
+
+/// A policy with options.
+#[derive(Clone, Default, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+struct Options {
+    gain: f64,
+    is_quick: bool,
+}
+
+#[test]
+fn a_folder_with_a_policy_of_ones_own_can_be_read_by_a_program_without_it() {
+    let mut registry = policies::standard();
+    registry.add(PolicyKind::plain("LAZY", "everybody goes to the easiest task", Lazy)).unwrap();
+    let eager = |_: Options| Ok::<_, PolicyError>(Lazy);
+    registry.add(PolicyKind::with_options("EAGER", "like LAZY", eager)).unwrap();
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).ancestors().nth(2).unwrap();
+    let policies = ["LAZY", "quick=EAGER(is_quick: true)", "EAGER(gain: 2.0)", "DIS"];
+    let overrides = Overrides {
+        policies: Some(policies.map(str::to_owned).to_vec()),
+        trials: Some(2),
+        set: vec!["duration_s=30.0".to_owned(), "mission.group_sizes=Free".to_owned()],
+        ..Overrides::default()
+    };
+    let experiment =
+        Arc::new(Experiment::load(&root.join("scenarios/paper.ron"), &overrides, &registry).unwrap());
+    let out = tempfile::tempdir().unwrap();
+    let path = out.path().join("own");
+    let halt = AtomicBool::new(false);
+    let mut folder = Folder::open(&path, Arc::clone(&experiment), Opening::default(), &mut |_| {}).unwrap();
+    let left = missing(&folder, None);
+    run_trials(&mut folder, left, Limits { jobs: 2, trial: None }, &halt, |_| {}).unwrap();
+    folder.finish(&halt).unwrap();
+    drop(folder);
+
+    let stranger = Folder::read(&path, &policies::standard()).unwrap();
+    let of_stranger = stranger.experiment();
+    for key in experiment.keys(None) {
+        let place = (key.case, key.policy, key.trial);
+        assert_eq!(of_stranger.id(&of_stranger.key(place)), experiment.id(&key), "{}", key.label);
+        assert!(stranger.value(place, 0).is_some(), "{}", key.label);
+    }
+    let compared = compare(&stranger, &[0], Choice::default()).unwrap();
+    assert_eq!((compared.len(), compared[0].n), (6, 2));
+    let run =
+        |policy| of_stranger.run_alone(&of_stranger.key((0, policy, 1)), &mut Sessions::default(), &halt);
+    assert!(run(3).is_ok());
+    let refused = run(1).err().unwrap().reason;
+    assert!(refused.contains("does not have the policy EAGER"), "{refused}");
 }

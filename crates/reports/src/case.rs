@@ -11,7 +11,7 @@ use experiments::stats::Moments;
 use experiments::sweep::folder::Folder;
 use experiments::sweep::host::Hosts;
 use experiments::sweep::names::PLOTS;
-use experiments::sweep::ours::Report;
+use experiments::sweep::owned::Report;
 
 use crate::decisions::{Decisions, decisions};
 use crate::drawing::{self, Figure};

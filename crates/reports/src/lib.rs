@@ -1,7 +1,7 @@
 //! Results for people: the figures and the page of a sweep, and tables for the terminal.
 //!
 //! [`write_report`] makes `report.html` in a sweep's folder; [`table`] has tables as text. Pages of other
-//! crates use the style sheet [`STYLE`].
+//! crates extend `templates/page.html`.
 
 mod case;
 mod decisions;
@@ -22,6 +22,3 @@ pub use paper::{ColumnLook, LEAST_TEXT_POINTS, column_figure};
 pub use regret::regret_figures;
 pub use report::write_report;
 pub use wanted::Wanted;
-
-/// The style sheet of all pages.
-pub const STYLE: &str = include_str!("../templates/style.css");

@@ -9,7 +9,7 @@ use experiments::comparison::{
 use experiments::metric::Metric;
 use experiments::sweep::folder::Folder;
 use experiments::sweep::names::{PLOTS, REPORT};
-use experiments::sweep::ours::Report;
+use experiments::sweep::owned::Report;
 
 use crate::drawing::Figure;
 use crate::figures::along_axes;

@@ -6,7 +6,7 @@ use experiments::Failure;
 use experiments::comparison::compare;
 use experiments::sweep::folder::Folder;
 use experiments::sweep::names::{PLOTS, REPORT};
-use experiments::sweep::ours::Report;
+use experiments::sweep::owned::Report;
 
 use crate::case::{CasePage, Compared, write_case};
 use crate::overview::write_overview;

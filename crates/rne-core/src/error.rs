@@ -212,6 +212,12 @@ pub enum PolicyError {
         /// Name of the policy.
         policy: String,
     },
+    /// The policy is one of another program.
+    #[error("this program does not have the policy {policy}: its results can be read, but not run again")]
+    Absent {
+        /// Name of the policy.
+        policy: String,
+    },
     /// The policy gave up, in its own words.
     #[error("{0}")]
     Other(String),

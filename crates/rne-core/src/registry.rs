@@ -1,6 +1,7 @@
 //! The registry: policies and trust measures by name, each with its options. It is a value: whoever has one
 //! adds kinds to it, and kinds look into the registry that makes them.
 
+use std::collections::BTreeMap;
 use std::fmt;
 use std::sync::Arc;
 
@@ -13,7 +14,7 @@ use crate::error::{Entry, PolicyError, RegistryError};
 use crate::measure::TrustMeasure;
 use crate::policy::Policy;
 use crate::question::Question;
-use crate::session::{Asked, Driver, Pure, Session};
+use crate::session::{Absent, Asked, Driver, Pure, Session};
 
 /// Policies and trust measures by name.
 #[derive(Debug, Clone, Default)]
@@ -252,6 +253,18 @@ impl PolicyKind {
             text => Err(format!("it has no options, found {text:?}")),
         };
         Self::new([name, about], String::new(), Arc::new(make))
+    }
+
+    /// A stand-in for a policy of another program, so that its results can be read here. Of each of its
+    /// options as they are written, `spelled_out` has all options with the defaults. It never answers.
+    #[must_use]
+    pub fn absent(name: &str, spelled_out: BTreeMap<String, String>) -> Self {
+        let driver: Arc<dyn Driver> = Arc::new(Absent(name.to_owned()));
+        let make = move |options: &str, _: &Registry| {
+            let all = spelled_out.get(options.trim()).map_or(options, String::as_str);
+            Ok((Arc::clone(&driver), all.to_owned()))
+        };
+        Self::new([name, "a policy of another program"], String::new(), Arc::new(make))
     }
 
     /// A policy that is made from options: a struct with defaults, read from RON such as `(score: Sum)`.

@@ -43,6 +43,8 @@ pub enum Basis {
     Question,
     /// The running trial as well: without one there is no answer.
     Trial,
+    /// Nothing here: the driver stands for one of another program, and never answers.
+    Absent,
     /// Luck or a person: the same question may get another answer. Such a driver shares no trials, and its
     /// results cannot be verified.
     Undetermined,
@@ -125,6 +127,23 @@ impl<'a> Deadline<'a> {
 }
 
 /// A policy is a session of its own: it keeps nothing between questions.
+/// A policy of another program, by its name.
+pub(crate) struct Absent(pub(crate) String);
+
+impl Driver for Absent {
+    fn open(&self) -> Result<Box<dyn Session>, PolicyError> {
+        Err(PolicyError::Absent { policy: self.0.clone() })
+    }
+
+    fn basis(&self) -> Basis {
+        Basis::Absent
+    }
+
+    fn fingerprint(&self) -> Option<String> {
+        Some(String::new())
+    }
+}
+
 impl<P: Policy + ?Sized> Session for &P {
     fn decide(&mut self, asked: &Asked<'_>) -> Result<Decision, PolicyError> {
         Policy::decide(*self, asked.question)

@@ -7,8 +7,7 @@ use comfy_table::Table;
 use experiments::Failure;
 use experiments::experiment::Digest;
 use experiments::sweep::names::REPORT;
-use experiments::sweep::ours::Report;
-use reports::STYLE;
+use experiments::sweep::owned::Report;
 
 use crate::claims::{CLAIMS, Example, Judged, LEAST_TRIALS};
 use crate::predictions::{Prediction, over_worlds};
@@ -108,7 +107,6 @@ fn footnote(judged: &[Judged]) -> String {
 #[derive(Template)]
 #[template(path = "claims.html")]
 struct Page<'a> {
-    style: &'a str,
     scenarios: Vec<&'a str>,
     sections: Vec<Shown>,
     command: String,
@@ -163,7 +161,6 @@ pub fn write_page(
     sections.rotate_right(1);
     let trials = judged.first().map_or(0, |scenario| scenario.trials);
     let page = Page {
-        style: STYLE.trim_end(),
         scenarios: judged.iter().map(|scenario| scenario.scenario.as_str()).collect(),
         sections,
         command: format!("usar study yang2021 claims --trials {trials}"),

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 
-use experiments::explore::Free;
+use experiments::explore::Parameter;
 use ron_tree::Node;
 use study_yang2021::calibration::{Calibration, Log, Spread, Target, the_policy};
 use usar_sim::scenario::Scenario;
@@ -60,8 +60,12 @@ fn a_log_is_held_by_one_process() {
     let place = tempfile::tempdir().unwrap();
     let (base, text) = Scenario::load(&root().join("scenarios/paper.ron")).unwrap();
     let free = vec![
-        Free::parse("mission.loading_s=1..3", &Node::parse(&text).unwrap(), &Node::parse(&text).unwrap())
-            .unwrap(),
+        Parameter::parse(
+            "mission.loading_s=1..3",
+            &Node::parse(&text).unwrap(),
+            &Node::parse(&text).unwrap(),
+        )
+        .unwrap(),
     ];
     let table = place.path().join("target.csv");
     std::fs::write(&table, "method,rescuees_hard,energy_hard\nDIS,10,150\nDIS,14,160\nDIS,12,170\n").unwrap();

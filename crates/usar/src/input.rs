@@ -9,18 +9,18 @@ use usar_sim::scenario::Scenario;
 
 use crate::running::tell;
 
-/// Loads a scenario and its text. The error has all problems; oddities of a valid scenario go to stderr.
+/// Loads a scenario and its text. The error has all problems; warnings of a valid scenario go to stderr.
 pub(crate) fn load(path: &Path) -> Result<(Scenario, String), Failure> {
     let (scenario, text) = Scenario::load(path).map_err(Failure::input)?;
     tell_oddities(&scenario, &text, path);
     Ok((scenario, text))
 }
 
-/// Tells the oddities of a valid scenario on stderr.
+/// Tells the warnings of a valid scenario on stderr.
 pub(crate) fn tell_oddities(scenario: &Scenario, text: &str, path: &Path) {
-    for odd in scenario.oddities(text) {
-        let line = odd.line.map_or(String::new(), |line| format!(":{line}"));
-        tell(format_args!("note: {}{line}: {odd}", path.display()));
+    for warning in scenario.warnings(text) {
+        let line = warning.line.map_or(String::new(), |line| format!(":{line}"));
+        tell(format_args!("note: {}{line}: {warning}", path.display()));
     }
 }
 

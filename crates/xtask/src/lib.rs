@@ -20,7 +20,7 @@ pub mod navigation;
 pub mod pages;
 pub mod random;
 pub mod reference;
+pub mod reference_pages;
 pub mod rooms;
 pub mod team;
-pub mod told;
 pub mod worlds;

@@ -46,13 +46,8 @@ impl PolicySpec {
     /// An unknown name, options that the policy does not have, or unclosed brackets; in one sentence.
     pub fn parse(text: &str, registry: &Registry) -> Result<Self, Failure> {
         let text = text.trim();
-        let open = text.find('(').unwrap_or(text.len());
-        let (label, rest) = match text[..open].find('=') {
-            Some(at) => (Some(text[..at].trim()), text[at + 1..].trim()),
-            None => (None, text),
-        };
-        let (name, options) = rest.split_at(rest.find('(').unwrap_or(rest.len()));
-        let name = name.trim();
+        let (label, rest) = label_and_rest(text);
+        let (name, options) = name_and_options(rest);
         if !registry.names().contains(&name)
             && let Err(unknown) = registry.make(name, "")
         {
@@ -130,6 +125,22 @@ impl PolicySpec {
     pub fn written(&self) -> &str {
         &self.written
     }
+}
+
+/// The label of a written policy, if it has one, and the rest.
+fn label_and_rest(written: &str) -> (Option<&str>, &str) {
+    let open = written.find('(').unwrap_or(written.len());
+    match written[..open].find('=') {
+        Some(at) => (Some(written[..at].trim()), written[at + 1..].trim()),
+        None => (None, written),
+    }
+}
+
+/// The name of a written policy, with or without a label, and its options as they are written.
+pub(crate) fn name_and_options(written: &str) -> (&str, &str) {
+    let (_, rest) = label_and_rest(written.trim());
+    let (name, options) = rest.split_at(rest.find('(').unwrap_or(rest.len()));
+    (name.trim(), options)
 }
 
 /// The rule that a label breaks, if any.

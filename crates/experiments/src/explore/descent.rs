@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use cmaes::{CMAESOptions, DVector};
 use store::Failure;
 
-use super::Free;
+use super::Parameter;
 
 /// The value of a point that cannot be evaluated.
 pub const WORST: f64 = 1e9;
@@ -33,7 +33,7 @@ impl Descent {
     /// Those of `objective`.
     pub fn search(
         &self,
-        free: &[Free],
+        free: &[Parameter],
         start: &[f64],
         stop: &AtomicBool,
         mut objective: impl FnMut(Vec<f64>) -> Result<Option<f64>, Failure>,

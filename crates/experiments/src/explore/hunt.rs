@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use store::{Failure, Log};
 
 use super::space::{Point, PointError, Space};
-use super::{Descent, Free, WORST};
+use super::{Descent, Parameter, WORST};
 use crate::job::Job;
 
 /// Name of the file with the found scenario.
@@ -71,7 +71,7 @@ impl Hunt {
         let experiment = &self.space.experiment;
         serde_json::json!({
             "program": experiment.program.digest().to_string(),
-            "over": self.space.free.iter().map(Free::to_string).collect::<Vec<_>>(),
+            "over": self.space.free.iter().map(Parameter::to_string).collect::<Vec<_>>(),
             "outcome": self.space.outcomes[0].name(),
             "is_lowest": self.is_lowest,
             "trials": experiment.trials,
@@ -108,7 +108,7 @@ impl Hunt {
         mut done: impl FnMut(usize, f64),
     ) -> Result<bool, Failure> {
         let present = self.space.present()?;
-        let ends = self.space.free.iter().map(Free::ends);
+        let ends = self.space.free.iter().map(Parameter::ends);
         let start: Vec<f64> =
             present.into_iter().zip(ends).map(|(value, [low, high])| value.clamp(low, high)).collect();
         let mut asked = 0;

@@ -3,14 +3,14 @@
 
 mod descent;
 mod design;
-mod free;
 mod hunt;
+mod parameter;
 mod sensitivity;
 mod space;
 
 pub use descent::{Descent, WORST};
 pub use design::Method;
-pub use free::Free;
 pub use hunt::{Candidate, FOUND, Hunt, Trail};
+pub use parameter::Parameter;
 pub use sensitivity::{CHANCE, Evaluations, FIGURE, INDICES, Index, Row, Sensitivity};
 pub use space::{Outcome, Point, PointError, Space, Values, scenario_with};

@@ -13,7 +13,7 @@ use store::{Failure, Log};
 
 use super::design::{Block, MOVE, Method};
 use super::space::Point;
-use super::{Free, Outcome, Space, Values};
+use super::{Outcome, Parameter, Space, Values};
 use crate::job::Job;
 use crate::stats::bootstrap::interval;
 use crate::stats::sensitivity::{self as indices, Effects, Known, Shares};
@@ -228,7 +228,7 @@ impl Sensitivity {
         serde_json::json!({
             "program": experiment.program.digest().to_string(),
             "method": self.method,
-            "over": self.space.free.iter().map(Free::to_string).collect::<Vec<_>>(),
+            "over": self.space.free.iter().map(Parameter::to_string).collect::<Vec<_>>(),
             "policies": policies,
             "outcomes": self.space.outcomes.iter().map(Outcome::name).collect::<Vec<_>>(),
             "trials": experiment.trials,

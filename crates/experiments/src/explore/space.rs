@@ -10,7 +10,7 @@ use store::{Failure, refuse};
 use thiserror::Error;
 use usar_sim::scenario::{Scenario, ScenarioFile};
 
-use super::Free;
+use super::Parameter;
 use crate::comparison::{Choice, policy_pairs};
 use crate::experiment::Experiment;
 use crate::panics::panic_message;
@@ -48,7 +48,7 @@ pub struct Space {
     /// The scenario and the policies; it has one case.
     pub experiment: Experiment,
     /// The parameters.
-    pub free: Vec<Free>,
+    pub free: Vec<Parameter>,
     /// The outcomes.
     pub outcomes: Vec<Outcome>,
 }
@@ -107,7 +107,7 @@ impl From<Vec<Problem>> for PointError {
 ///
 /// # Errors
 /// A field does not take its value, or the values together break a rule.
-pub fn scenario_with(base: &Scenario, free: &[Free], values: &[f64]) -> Result<Scenario, PointError> {
+pub fn scenario_with(base: &Scenario, free: &[Parameter], values: &[f64]) -> Result<Scenario, PointError> {
     let mut file: ScenarioFile = (**base).clone();
     free.iter().zip(values).try_for_each(|(free, value)| free.set(&mut file, *value))?;
     Ok(Scenario::try_from(file)?)
@@ -138,7 +138,7 @@ impl Space {
             );
         }
         let tree = experiment.base.tree();
-        let parse = |spec: &String| Free::parse(spec, &tree, &tree);
+        let parse = |spec: &String| Parameter::parse(spec, &tree, &tree);
         let free =
             specs.iter().map(parse).collect::<Result<Vec<_>, _>>().map_err(Failure::input_at("--over"))?;
         let free = free.into_iter().map(|free| free.in_scenario(&experiment.base)).collect::<Vec<_>>();

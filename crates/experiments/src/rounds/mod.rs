@@ -10,7 +10,7 @@ use store::Failure;
 
 pub use blindness::{Blindness, Example, Pair};
 pub use levels::{GroupLevels, levels, mean_levels};
-pub use sorting::{KEYS, Key, Likeness, Share, likeness};
+pub use sorting::{KEYS, Key, Share, SortingAgreement, agreement};
 
 use crate::run::Trial;
 use crate::sweep::folder::Folder;

@@ -49,7 +49,7 @@ impl Share {
 /// A policy's rounds with two groups, compared with sorting by one key. A tie counts as sorted in either
 /// order, also in the chance.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct Likeness {
+pub struct SortingAgreement {
     /// Rounds in which the whole split equals sorting, regardless of which group takes which task.
     pub split: Share,
     /// The same for each role alone, in rounds in which both groups have members of the role.
@@ -69,7 +69,7 @@ pub struct RoleShare {
     pub share: Share,
 }
 
-impl Likeness {
+impl SortingAgreement {
     /// Adds a round, if it has two groups.
     pub fn add(&mut self, round: &Round, key: &Key) {
         let Ok(tasks) = <[TaskId; 2]>::try_from(round.tasks()) else { return };
@@ -100,10 +100,10 @@ impl Likeness {
 }
 
 /// How similar these rounds are to sorting by each of [`KEYS`].
-pub fn likeness<'r>(rounds: impl IntoIterator<Item = &'r Round>) -> [Likeness; 3] {
-    let mut all: [Likeness; 3] = Default::default();
+pub fn agreement<'r>(rounds: impl IntoIterator<Item = &'r Round>) -> [SortingAgreement; 3] {
+    let mut all: [SortingAgreement; 3] = Default::default();
     for round in rounds {
-        all.iter_mut().zip(&KEYS).for_each(|(likeness, key)| likeness.add(round, key));
+        all.iter_mut().zip(&KEYS).for_each(|(agreement, key)| agreement.add(round, key));
     }
     all
 }
@@ -184,7 +184,7 @@ mod tests {
         let sorted = [(90.0, 'h'), (20.0, 'e'), (80.0, 'h'), (30.0, 'e')];
         let turned = [(90.0, 'e'), (20.0, 'h'), (80.0, 'e'), (30.0, 'h')];
         let mixed = [(90.0, 'h'), (20.0, 'h'), (80.0, 'e'), (30.0, 'e')];
-        let [found, ..] = likeness(&[round(&sorted), round(&turned), round(&mixed), round(&mixed)]);
+        let [found, ..] = agreement(&[round(&sorted), round(&turned), round(&mixed), round(&mixed)]);
         assert!(is(found.split.share(), 0.5) && is(found.roles[0].share.share(), 0.5));
         assert!(is(found.harder_is_higher.share(), 0.25), "{found:?}");
         assert!(is(found.split.chance(), 1.0 / 3.0), "four robots have three splits");
@@ -201,13 +201,13 @@ mod tests {
                 round(&(0..6).map(|i| (levels[i], task(i))).collect::<Vec<_>>())
             });
             let splits: Vec<Round> = splits.collect();
-            let [found, ..] = likeness(&splits);
+            let [found, ..] = agreement(&splits);
             assert!(is(found.split.share(), found.split.chance().unwrap()), "{levels:?}: {found:?}");
         }
     }
 
     #[test]
     fn a_round_of_one_group_is_no_split() {
-        assert_eq!(likeness(&[round(&[(90.0, 'e'), (20.0, 'e')])])[0].rounds(), 0);
+        assert_eq!(agreement(&[round(&[(90.0, 'e'), (20.0, 'e')])])[0].rounds(), 0);
     }
 }

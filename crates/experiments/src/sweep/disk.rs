@@ -1,10 +1,11 @@
 //! The files of a sweep's folder besides its journal and tables: the manifest, the sweep itself, and the
 //! lock.
 
+use std::collections::BTreeMap;
 use std::io::ErrorKind;
 use std::path::Path;
 
-use rne_core::Registry;
+use rne_core::{PolicyKind, Registry};
 use store::Failure;
 use store::files::{self, FileHash, NewFile, file_hash, sync_folder};
 use usar_sim::scenario::Scenario;
@@ -12,8 +13,8 @@ use usar_sim::scenario::Scenario;
 use super::dictionary::dictionary;
 use super::names::{AGAIN, GIVEN, INPUTS, MANIFEST, RESOLVED, sweeps_in};
 use super::tables::tables_of;
-use super::{journal, ours};
-use crate::experiment::{AnalysisPlan, Experiment, Parts, Shard};
+use super::{journal, owned};
+use crate::experiment::{AnalysisPlan, Experiment, Parts, Shard, name_and_options};
 use crate::provenance::{Manifest, scenario_differences};
 
 /// Writes the manifest and the inputs of a sweep.
@@ -32,7 +33,7 @@ pub(super) fn write_start(
     }
     // An existing report and existing Parquet files would belong to the previous contents.
     let trouble = |error| Failure::storage(format!("cannot write to {}: {error}", path.display()));
-    ours::remove_report(path).and_then(|()| ours::remove_parquets(path)).map_err(trouble)?;
+    owned::remove_report(path).and_then(|()| owned::remove_parquets(path)).map_err(trouble)?;
     Ok(manifest)
 }
 
@@ -141,7 +142,8 @@ pub fn broken_files(path: &Path, manifest: &Manifest) -> Vec<String> {
     manifest.files.iter().filter(is_broken).map(|file| file.name.clone()).collect()
 }
 
-/// The experiment of a folder, with policies of a registry.
+/// The experiment of a folder, with policies of a registry. Policies that the registry does not have are
+/// [absent](PolicyKind::absent): their results can be read.
 ///
 /// # Errors
 /// Its resolved scenario cannot be read.
@@ -156,13 +158,29 @@ pub fn experiment_of(path: &Path, manifest: &Manifest, registry: &Registry) -> R
         base,
         axes: manifest.axes.clone(),
         policies: manifest.policies.clone(),
-        registry: registry.clone(),
+        registry: with_absent(registry.clone(), manifest),
         trials: manifest.trials,
         seeds: manifest.seeds.clone(),
         is_checked: manifest.is_checked,
         keep: manifest.keep,
         program: Some(manifest.program()),
     })
+}
+
+/// The registry with stand-ins for the policies of a manifest that it does not have.
+fn with_absent(mut registry: Registry, manifest: &Manifest) -> Registry {
+    let mut absent: BTreeMap<String, BTreeMap<String, String>> = BTreeMap::new();
+    for (written, all) in manifest.policies.iter().zip(&manifest.policy_options) {
+        let (name, options) = name_and_options(written);
+        if !registry.names().contains(&name) {
+            absent.entry(name.to_owned()).or_default().insert(options.to_owned(), all.clone());
+        }
+    }
+    for (name, spelled_out) in absent {
+        // The registry has no policy of this name.
+        let _ = registry.add(PolicyKind::absent(&name, spelled_out));
+    }
+    registry
 }
 
 /// The experiment of a folder. The program that made it may be another one.

@@ -28,7 +28,7 @@ use super::journal::{self, ARCHIVE, Journal};
 use super::line::{Finished, Kept};
 use super::measured::{Results, read_results};
 use super::names::is_sweeps;
-use super::ours::{check_may_be_cleared, clear, remove_unfinished};
+use super::owned::{check_may_be_cleared, clear, remove_unfinished};
 use super::store::{Order, Store, thaw};
 use super::tables::TRIALS;
 use crate::experiment::{Experiment, Place, Shard};

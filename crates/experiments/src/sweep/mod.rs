@@ -13,7 +13,7 @@ mod measured;
 pub mod merge;
 mod missing;
 pub mod names;
-pub mod ours;
+pub mod owned;
 pub mod progress;
 mod rows;
 mod sizes;

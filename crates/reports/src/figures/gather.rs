@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use experiments::Failure;
-use experiments::rounds::{KEYS, Likeness, mean_levels, rounds_of};
+use experiments::rounds::{KEYS, SortingAgreement, mean_levels, rounds_of};
 use experiments::run::{Trial, series_times};
 use experiments::sweep::folder::Folder;
 use rne_core::Question;
@@ -22,7 +22,7 @@ pub(super) struct Gathered {
     /// Number of that trial.
     pub first_trial: u32,
     /// How similar its splits are to sorting.
-    pub likeness: [Likeness; 3],
+    pub agreement: [SortingAgreement; 3],
     /// Roles of the robots.
     pub roles: Vec<String>,
 }
@@ -57,7 +57,7 @@ impl Gathered {
         self.delivered.push(times.iter().map(point).collect());
         self.roles = trial.record.robots.iter().map(|robot| robot.role.clone()).collect();
         for round in rounds_of(number, trial) {
-            self.likeness.iter_mut().zip(&KEYS).for_each(|(likeness, key)| likeness.add(&round, key));
+            self.agreement.iter_mut().zip(&KEYS).for_each(|(agreement, key)| agreement.add(&round, key));
             for task in round.question.task_ids() {
                 for member in round.group(task) {
                     let tasks = vec![0; round.question.tasks.len()];

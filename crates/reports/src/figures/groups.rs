@@ -2,7 +2,7 @@
 
 use experiments::Failure;
 use experiments::experiment::Experiment;
-use experiments::rounds::{KEYS, Likeness, Share};
+use experiments::rounds::{KEYS, Share, SortingAgreement};
 
 use super::gather::Gathered;
 use crate::drawing::{Drawing, Panel, Sketch, from_top, heat_map, is_drawn, layout, names, table};
@@ -82,28 +82,28 @@ pub(super) fn sorting(
     let mut roles_of_all: Vec<String> = Vec::new();
     let names = names(experiment);
     for ((policy, name), gathered) in experiment.policies.iter().zip(names).zip(gathered) {
-        let rounds = gathered.likeness[0].rounds();
+        let rounds = gathered.agreement[0].rounds();
         if rounds == 0 || !is_drawn(only, &policy.label) {
             continue;
         }
-        for (key, likeness) in KEYS.iter().zip(&gathered.likeness) {
+        for (key, agreement) in KEYS.iter().zip(&gathered.agreement) {
             let cell = |value: Option<f64>| value.map_or(String::new(), |value| value.to_string());
             let beside = |share: &Share| [cell(share.share()), cell(share.chance())];
             let first = [policy.label.clone(), key.name.to_owned(), rounds.to_string()];
-            let roles = likeness.roles.iter().map(|role| &role.share);
-            let shares = [&likeness.split].into_iter().chain(roles).chain([&likeness.harder_is_higher]);
-            roles_of_all = likeness.roles.iter().map(|role| role.role.clone()).collect();
+            let roles = agreement.roles.iter().map(|role| &role.share);
+            let shares = [&agreement.split].into_iter().chain(roles).chain([&agreement.harder_is_higher]);
+            roles_of_all = agreement.roles.iter().map(|role| role.role.clone()).collect();
             rows.push(first.into_iter().chain(shares.flat_map(beside)).collect::<Vec<String>>());
         }
-        let row = |share: fn(&Likeness) -> &Share| {
+        let row = |share: fn(&SortingAgreement) -> &Share| {
             gathered
-                .likeness
+                .agreement
                 .iter()
-                .map(|likeness| share(likeness).share().unwrap_or(0.0))
+                .map(|agreement| share(agreement).share().unwrap_or(0.0))
                 .collect::<Vec<f64>>()
         };
-        shares[0].push(row(|likeness| &likeness.split));
-        shares[1].push(row(|likeness| &likeness.harder_is_higher));
+        shares[0].push(row(|agreement| &agreement.split));
+        shares[1].push(row(|agreement| &agreement.harder_is_higher));
         labels.push(name);
         n = n.min(rounds);
     }

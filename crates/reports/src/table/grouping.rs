@@ -1,14 +1,14 @@
 //! Tables of how policies group.
 
 use comfy_table::{Cell, Table};
-use experiments::rounds::{GroupLevels, KEYS, Likeness, Share};
+use experiments::rounds::{GroupLevels, KEYS, Share, SortingAgreement};
 
 use super::{Format, headed, right, shown_as};
 
 /// How often each policy's split equals sorting.
 #[must_use]
-pub fn likeness_table(policies: &[(String, [Likeness; 3])]) -> Table {
-    let first = policies.iter().map(|(_, likenesses)| &likenesses[0]).find(|likeness| likeness.rounds() > 0);
+pub fn likeness_table(policies: &[(String, [SortingAgreement; 3])]) -> Table {
+    let first = policies.iter().map(|(_, agreements)| &agreements[0]).find(|likeness| likeness.rounds() > 0);
     let roles: Vec<String> = first
         .iter()
         .flat_map(|first| first.splittable_roles())
@@ -22,8 +22,8 @@ pub fn likeness_table(policies: &[(String, [Likeness; 3])]) -> Table {
         (Some(share), Some(chance)) => right(&format!("{} ({})", percent(share), percent(chance))),
         _ => right("-"),
     };
-    for (label, likenesses) in policies {
-        for (i, (key, likeness)) in KEYS.iter().zip(likenesses).enumerate() {
+    for (label, agreements) in policies {
+        for (i, (key, likeness)) in KEYS.iter().zip(agreements).enumerate() {
             let first = |text: &str| if i == 0 || is_repeated() { text.to_owned() } else { String::new() };
             let mut row = vec![
                 Cell::new(first(label)),

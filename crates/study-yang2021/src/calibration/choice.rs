@@ -5,7 +5,7 @@ use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
 use experiments::Failure;
-use experiments::explore::Free;
+use experiments::explore::Parameter;
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 use rne_core::Registry;
@@ -68,7 +68,7 @@ impl Candidate {
             serde_json::from_str(&origin).map_err(|error| unreadable(ORIGIN, &error))?;
         let tree = Node::parse(&text).map_err(|error| unreadable(CALIBRATED, &error))?;
         let specs = origin["free"].as_array().into_iter().flatten().filter_map(|free| free.as_str());
-        let free = specs.map(|spec| Free::parse(spec, &tree, &tree)).collect::<Result<Vec<_>, _>>();
+        let free = specs.map(|spec| Parameter::parse(spec, &tree, &tree)).collect::<Result<Vec<_>, _>>();
         let free = free.map_err(|error| unreadable(ORIGIN, &error))?;
         let target = Target::load(target, &base)?;
         let policy = the_policy(registry)?;

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use experiments::Failure;
 use experiments::experiment::Program;
-use experiments::explore::Free;
+use experiments::explore::Parameter;
 use experiments::job::Job;
 
 use super::{Calibration, Evaluation, POLICY};
@@ -72,7 +72,7 @@ fn origin_of(calibration: &Calibration) -> Result<serde_json::Value, Failure> {
     Ok(serde_json::json!({
         "program": Program::running(std::slice::from_ref(&calibration.policy))?.digest().to_string(),
         "policy": POLICY,
-        "free": calibration.free.iter().map(Free::to_string).collect::<Vec<_>>(),
+        "free": calibration.free.iter().map(Parameter::to_string).collect::<Vec<_>>(),
         "target": target,
         "trials": calibration.trials,
         "first_seed": calibration.first_seed,

@@ -17,7 +17,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use experiments::comparison::short;
 use experiments::experiment::PolicySpec;
-use experiments::explore::{Free, PointError, WORST, scenario_with};
+use experiments::explore::{Parameter, PointError, WORST, scenario_with};
 use experiments::run::{Fault, TrialSetup, run_trial};
 use experiments::{Failure, panic_message, refuse};
 use rayon::prelude::*;
@@ -54,7 +54,7 @@ pub struct Calibration {
     /// The policy that decides in it: see [`the_policy`].
     pub policy: PolicySpec,
     /// The free parameters.
-    pub free: Vec<Free>,
+    pub free: Vec<Parameter>,
     /// The target of the fit.
     pub target: Target,
     /// Number of trials of an evaluation.
@@ -127,7 +127,7 @@ impl Calibration {
     /// # Errors
     /// A field is not a number.
     pub fn start(&self) -> Result<Vec<f64>, Failure> {
-        let ends = self.free.iter().map(Free::ends);
+        let ends = self.free.iter().map(Parameter::ends);
         Ok(self.present()?.into_iter().zip(ends).map(|(value, [low, high])| value.clamp(low, high)).collect())
     }
 
@@ -137,7 +137,7 @@ impl Calibration {
     /// A field is not a number.
     pub fn present(&self) -> Result<Vec<f64>, Failure> {
         let tree = Node::parse(&self.text).map_err(Failure::run)?;
-        let present = |free: &Free| free.present(&tree);
+        let present = |free: &Parameter| free.present(&tree);
         let present = self.free.iter().map(present).collect::<Result<Vec<f64>, _>>();
         present.map_err(Failure::input_at("--over"))
     }
@@ -264,7 +264,7 @@ impl Calibration {
 
 /// Edge penalty of a value: `EDGE` at the very end of its range, 0 from a twentieth of the range inwards,
 /// and quadratic in between. A value at an end means that the range decides instead of the data.
-fn edge_penalty(free: &Free, value: f64) -> f64 {
+fn edge_penalty(free: &Parameter, value: f64) -> f64 {
     let place = free.place_of(value);
     let from_end = place.min(1.0 - place).max(0.0);
     EDGE * (1.0 - from_end / 0.05).max(0.0).powi(2)

@@ -4,7 +4,7 @@
 //! reciprocal avoidance, which forms none (`reciprocal`). Each is a type with a state of its own; its
 //! constants are in the model.
 //!
-//! The resolver reads positions and wishes and returns directives.
+//! The resolver reads positions and preferred velocities and returns directives.
 
 mod deadlock;
 mod delay;
@@ -14,10 +14,10 @@ mod predict;
 mod priority;
 mod reciprocal;
 mod retreat;
-mod room;
 mod sets;
 #[cfg(test)]
 mod testing;
+mod yield_place;
 
 use serde::{Deserialize, Serialize};
 
@@ -45,7 +45,7 @@ pub struct Resolver {
 enum Rule {
     Reciprocal(Reciprocal),
     Sets(Sets),
-    /// Robots drive as they wish.
+    /// Robots drive as they prefer.
     None,
 }
 
@@ -85,7 +85,7 @@ impl Resolver {
         Self { rule, directives: Vec::new() }
     }
 
-    /// One directive for each mover, in the order of the movers. Replaces the wishes of robots that make
+    /// One directive for each mover, in the order of the movers. Replaces the preferred velocities of robots that make
     /// room or let others out, and limits those of robots that wait or queue before a passage.
     pub fn resolve(
         &mut self,
@@ -105,7 +105,7 @@ impl Resolver {
             }
             Rule::None => {
                 directives.clear();
-                directives.extend(movers.iter().map(|mover| Directive::granted(mover.wish)));
+                directives.extend(movers.iter().map(|mover| Directive::granted(mover.preferred)));
             }
         }
         &self.directives

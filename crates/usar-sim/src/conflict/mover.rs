@@ -19,7 +19,7 @@ pub struct Mover<'a> {
     /// Velocity, in metres per second.
     pub velocity: Vector,
     /// The preferred velocity, in metres per second; zero for a robot with nowhere to go.
-    pub wish: Vector,
+    pub preferred: Vector,
     /// Distance left to the place where it makes room, in metres; none for a robot that is not going to such
     /// a place.
     pub retreat_left: Option<f32>,
@@ -50,7 +50,7 @@ pub struct Mover<'a> {
 
 impl Mover<'_> {
     pub(super) fn wishes_to_move(&self) -> bool {
-        self.wish != Vector::ZERO
+        self.preferred != Vector::ZERO
     }
 
     /// Distance left to the place where it makes room, or else to the end of its route, in metres.
@@ -99,9 +99,9 @@ pub enum Directive {
 }
 
 impl Directive {
-    /// The directive that grants a wish as it is.
-    pub(super) fn granted(wish: Vector) -> Self {
-        if wish == Vector::ZERO { Self::Stand } else { Self::Proceed(wish) }
+    /// The directive that grants a preferred velocity as it is.
+    pub(super) fn granted(preferred: Vector) -> Self {
+        if preferred == Vector::ZERO { Self::Stand } else { Self::Proceed(preferred) }
     }
 
     /// The velocity that the drive is to reach.

@@ -72,8 +72,8 @@ impl<'a> Surroundings<'a> {
 
     /// How good a free direction is. A direction near the preferred one is good, and so is one near the
     /// direction of the last step: a robot should not dither between two sides.
-    fn merit(&self, direction: Vector, wish: Vector) -> f32 {
-        direction.dot(wish) + PERSISTENCE * direction.dot(self.heading)
+    fn merit(&self, direction: Vector, preferred: Vector) -> f32 {
+        direction.dot(preferred) + PERSISTENCE * direction.dot(self.heading)
     }
 }
 
@@ -91,35 +91,35 @@ fn outward(obstacle: &KnownObstacle, from: Vector) -> Option<Vector> {
 /// The best free direction: the preferred direction itself, a tangent to a robot in the way, or a direction
 /// along debris. `None` if no direction is free.
 pub(super) fn passing_direction(me: &Mover, surroundings: &Surroundings) -> Option<Vector> {
-    let wish = me.wish.normalize_or_zero();
+    let preferred = me.preferred.normalize_or_zero();
     let range = PASSING_RANGE_M.min(me.leg_left); // the route bends there
     let margin = surroundings.margin;
     let near = |(center, touch): &&(Vector, f32)| center.length() < range + touch + margin;
     if surroundings.discs.iter().find(near).is_none() {
-        return Some(wish); // the route already keeps clear of debris
+        return Some(preferred); // the route already keeps clear of debris
     }
     let tangents =
         surroundings.discs.iter().filter(near).flat_map(|(center, touch)| tangents(*center, touch + margin));
     let debris = surroundings.debris(me.position);
-    std::iter::once(wish)
+    std::iter::once(preferred)
         .chain(tangents)
         .chain(along_debris(&debris, me.position))
-        .filter(|direction| direction.dot(wish) > LEAST_ADVANCE)
+        .filter(|direction| direction.dot(preferred) > LEAST_ADVANCE)
         .filter(|direction| surroundings.is_free(&debris, me.position, *direction, range))
-        .max_by(|a, b| surroundings.merit(*a, wish).total_cmp(&surroundings.merit(*b, wish)))
+        .max_by(|a, b| surroundings.merit(*a, preferred).total_cmp(&surroundings.merit(*b, preferred)))
 }
 
 /// The number of the nearest disc (a centre relative to the robot, and the distance at which it touches) in
 /// the way of a preferred velocity.
 pub(super) fn nearest_in_the_way(
-    wish: Vector,
+    preferred: Vector,
     margin: f32,
     discs: impl Iterator<Item = (Vector, f32)>,
 ) -> Option<usize> {
-    let wish = wish.normalize_or_zero();
+    let preferred = preferred.normalize_or_zero();
     let gap = |(center, touch): (Vector, f32)| {
-        let ahead = center.dot(wish);
-        let aside = (center - wish * ahead).length();
+        let ahead = center.dot(preferred);
+        let aside = (center - preferred * ahead).length();
         let gap = center.length() - touch;
         (ahead > 0.0 && aside < touch + margin && gap < PASSING_RANGE_M).then_some(gap)
     };

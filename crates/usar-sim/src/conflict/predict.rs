@@ -39,7 +39,7 @@ impl Neighbours {
     /// Finds all pairs of robots of one layer that could meet within the horizon or be in each other's way.
     /// Needs [`Self::sort`] first.
     pub(super) fn pair(&mut self, movers: &[Mover], margin: f32, horizon: f32) {
-        let fastest = movers.iter().map(|mover| mover.wish.length()).fold(0.0, f32::max);
+        let fastest = movers.iter().map(|mover| mover.preferred.length()).fold(0.0, f32::max);
         let largest = movers.iter().map(|mover| mover.radius).fold(0.0, f32::max);
         let range = (2.0 * fastest * horizon).max(PASSING_RANGE_M) + 2.0 * largest + margin;
         clear(&mut self.lists, movers.len());
@@ -78,7 +78,7 @@ fn will_conflict(a: &Mover, b: &Mover, margin: f32, horizon: f32) -> bool {
         return false;
     }
     let apart = b.position - a.position;
-    let closing = b.wish - a.wish;
+    let closing = b.preferred - a.preferred;
     let approach = -apart.dot(closing);
     if approach <= 0.0 {
         return false;

@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 
 use super::Mover;
 use super::predict::Neighbours;
-use super::room::{Ask, distance_to_way, ways};
+use super::yield_place::{Ask, distance_to_way, ways};
 use crate::event::{Event, EventLog};
 use crate::model::RetreatModel;
 use crate::robot::STANDING_MPS;
@@ -104,7 +104,8 @@ impl Retreats {
         self.of.get(&i).is_some_and(|retreat| retreat.path.is_empty())
     }
 
-    /// Ends the retreats that are over. Sets the wishes of the other retreating robots to go to their places.
+    /// Ends the retreats that are over. Sets the preferred velocities of the other retreating robots to go to
+    /// their places.
     pub(super) fn follow(&mut self, rules: &RetreatModel, movers: &mut [Mover], neighbours: &Neighbours) {
         self.respite.resize(movers.len(), 0);
         self.respite.iter_mut().for_each(|steps| *steps = steps.saturating_sub(1));
@@ -147,14 +148,14 @@ impl Retreats {
     fn for_the_next(&self, i: usize, mut retreat: Retreat, crowd: &Crowd) -> Option<Retreat> {
         let Crowd { rules, movers, neighbours } = crowd;
         let (me, passed) = (&movers[i], &movers[retreat.head]);
-        let direction = passed.wish.normalize_or_zero();
+        let direction = passed.preferred.normalize_or_zero();
         let follows = |k: &usize| {
             let other = &movers[*k];
             *k != i
                 && *k != retreat.head
                 && other.aerial == me.aerial
                 && self.depth(*k) == 0
-                && other.wish.normalize_or_zero().dot(direction) > PLATOON_COS
+                && other.preferred.normalize_or_zero().dot(direction) > PLATOON_COS
                 && !retreat.is_passed(&ways(other)[0], me.radius + other.radius + rules.margin)
         };
         if !me.can_make_room || retreat.is_out_of_patience(rules) || retreat.held_steps > rules.at_place {
@@ -305,17 +306,17 @@ impl Retreat {
         }
     }
 
-    /// Sets the robot's wish: to go to the place where it makes room, or to stay there.
+    /// Sets the robot's preferred velocity: to go to the place where it makes room, or to stay there.
     fn guide(&self, me: &mut Mover, speed_share: f32) {
         let Some(next) = self.path.last() else {
-            me.wish = Vector::ZERO;
+            me.preferred = Vector::ZERO;
             return;
         };
         let to_next = *next - me.position;
         me.retreat_left = Some(self.way(me).windows(2).map(|leg| (leg[1] - leg[0]).length()).sum());
         me.leg_left = to_next.length();
         let reachable = (2.0 * me.braking * me.leg_left).sqrt().max(0.05);
-        me.wish = to_next.normalize_or_zero() * (speed_share * me.speed).min(reachable);
+        me.preferred = to_next.normalize_or_zero() * (speed_share * me.speed).min(reachable);
     }
 }
 

@@ -157,10 +157,10 @@ impl Step<'_, '_, SetsModel, Sets> {
             return by.map(RobotId::index);
         }
         let me = &movers[i];
-        let slow = |j: &&usize| movers[**j].velocity.length() < 0.5 * me.wish.length();
+        let slow = |j: &&usize| movers[**j].velocity.length() < 0.5 * me.preferred.length();
         let near: Vec<usize> = self.scratch.neighbours.of(i).iter().filter(slow).copied().collect();
         let discs = near.iter().map(|j| (movers[*j].position - me.position, me.radius + movers[*j].radius));
-        nearest_in_the_way(me.wish, self.rules.retreats.margin, discs).map(|at| near[at])
+        nearest_in_the_way(me.preferred, self.rules.retreats.margin, discs).map(|at| near[at])
     }
 
     /// Directs all robots. Heads, robots without conflicts and members that need not stop pass the robots
@@ -169,7 +169,7 @@ impl Step<'_, '_, SetsModel, Sets> {
         self.note_who_stands();
         for i in 0..self.movers.len() {
             let goes = self.movers[i].wishes_to_move() && !self.scratch.stands[i];
-            self.directives[i] = if goes { self.pass(i, self.movers[i].wish) } else { Directive::Stand };
+            self.directives[i] = if goes { self.pass(i, self.movers[i].preferred) } else { Directive::Stand };
         }
         let movers = &*self.movers;
         for (set, progress) in self.state.sets.iter().zip(progress) {
@@ -178,8 +178,8 @@ impl Step<'_, '_, SetsModel, Sets> {
                 set.order.iter().map(|i| movers[*i].position).sum::<Vector>() / set.order.len() as f32;
             for i in set.order.iter().filter(|i| backs_off || self.scratch.stands[**i]) {
                 self.directives[*i] = if backs_off {
-                    let wish = back_off_wish(&movers[*i], middle);
-                    Directive::BackOff(self.pass(*i, wish).velocity())
+                    let preferred = back_off_velocity(&movers[*i], middle);
+                    Directive::BackOff(self.pass(*i, preferred).velocity())
                 } else {
                     Directive::Yield { to: movers[set.order[0]].robot }
                 };
@@ -253,8 +253,8 @@ impl Step<'_, '_, SetsModel, Sets> {
 
     /// The directive of a robot that has the right of way: to pass the robots that stand, at the full margin
     /// or squeezing through, or `Blocked`.
-    fn pass(&self, i: usize, wish: Vector) -> Directive {
-        let me = Mover { wish, ..self.movers[i] };
+    fn pass(&self, i: usize, preferred: Vector) -> Directive {
+        let me = Mover { preferred, ..self.movers[i] };
         let (near, stands) = (self.scratch.neighbours.of(i), &self.scratch.stands);
         let blockers = || near.iter().filter(|j| stands[**j]).map(|j| &self.movers[*j]);
         let discs = blockers().map(|other| (other.position - me.position, me.radius + other.radius));
@@ -265,14 +265,15 @@ impl Step<'_, '_, SetsModel, Sets> {
             heading: self.state.headings[i],
         };
         if let Some(direction) = passing_direction(&me, &surroundings) {
-            return Directive::Proceed(direction * wish.length());
+            return Directive::Proceed(direction * preferred.length());
         }
         surroundings.margin = surroundings.margin.min(SQUEEZE_MARGIN_M);
         if let Some(direction) = passing_direction(&me, &surroundings) {
-            return Directive::Proceed(direction * wish.length() * SQUEEZE_SPEED);
+            return Directive::Proceed(direction * preferred.length() * SQUEEZE_SPEED);
         }
         let Surroundings { margin, discs, .. } = surroundings;
-        let blocker = nearest_in_the_way(wish, margin, discs.into_iter()).and_then(|at| blockers().nth(at));
+        let blocker =
+            nearest_in_the_way(preferred, margin, discs.into_iter()).and_then(|at| blockers().nth(at));
         Directive::Blocked { by: blocker.map(|other| other.robot) }
     }
 }
@@ -300,10 +301,10 @@ fn most_shared(members: &[usize], set_of: &[Option<usize>], left: &[Option<Confl
 }
 
 /// Sideways and away from the middle of the set, at half the wished speed.
-fn back_off_wish(me: &Mover, middle: Vector) -> Vector {
+fn back_off_velocity(me: &Mover, middle: Vector) -> Vector {
     let away = (me.position - middle).normalize_or_zero();
-    let to_the_right = -me.wish.perp().normalize_or_zero();
-    (away + to_the_right).normalize_or(to_the_right) * (0.5 * me.wish.length())
+    let to_the_right = -me.preferred.perp().normalize_or_zero();
+    (away + to_the_right).normalize_or(to_the_right) * (0.5 * me.preferred.length())
 }
 
 fn robots(members: &[usize], movers: &[Mover]) -> Vec<RobotId> {

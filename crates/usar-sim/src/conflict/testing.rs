@@ -10,21 +10,21 @@ use crate::model::{ReciprocalModel, RightOfWayModel};
 use crate::scenario::Scenario;
 
 /// A ground robot of 0.4 m radius with this preferred velocity, whose route leads 10 m in that direction.
-pub(super) fn mover(id: u32, at: [f32; 2], wish: [f32; 2]) -> Mover<'static> {
-    let (position, wish) = (Vector::from(at), Vector::from(wish));
+pub(super) fn mover(id: u32, at: [f32; 2], preferred: [f32; 2]) -> Mover<'static> {
+    let (position, preferred) = (Vector::from(at), Vector::from(preferred));
     Mover {
         robot: RobotId(id),
         aerial: false,
         position,
         velocity: Vector::ZERO,
-        wish,
+        preferred,
         retreat_left: None,
         stalled_steps: 0,
         leg_left: 10.0,
-        route: if wish == Vector::ZERO {
+        route: if preferred == Vector::ZERO {
             &[]
         } else {
-            Box::leak(Box::new([position + 10.0 * wish.normalize()]))
+            Box::leak(Box::new([position + 10.0 * preferred.normalize()]))
         },
         passages: &[],
         trail: &[],

@@ -4,7 +4,7 @@ use parry2d::math::Vector;
 use rne_core::TaskId;
 use serde::{Deserialize, Serialize};
 
-use super::watch::Watch;
+use super::progress::Progress;
 use crate::ids::RescueeId;
 
 /// The activity of a robot.
@@ -97,7 +97,7 @@ pub struct Agent {
     /// The rest places that it has given up on in this round, a bit for each task.
     pub rests_given_up: u64,
     /// Its progress towards its goal.
-    pub watch: Watch,
+    pub progress: Progress,
     /// The most energy and HP that one round has cost it, in percent points.
     pub costliest_round: [f64; 2],
 }
@@ -114,7 +114,7 @@ impl Agent {
             has_rested: false,
             is_cut_off: false,
             rests_given_up: 0,
-            watch: Watch::default(),
+            progress: Progress::default(),
             costliest_round: [0.0; 2],
         }
     }

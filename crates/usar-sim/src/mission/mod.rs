@@ -5,12 +5,12 @@ mod agent;
 mod claims;
 mod crew;
 mod errands;
+mod progress;
 mod question;
 mod regroup;
 mod round;
 mod scene;
 mod settle;
-mod watch;
 mod work;
 
 use rne_core::{Question, TaskId};
@@ -19,10 +19,10 @@ use serde::{Deserialize, Serialize};
 pub use agent::{Activity, Agent};
 pub use claims::Claims;
 pub use crew::{Crew, Group};
+pub use progress::Progress;
 pub use round::{FieldState, Fitness, return_cause, turn_back_cause, unfit_cause};
 pub use scene::Scene;
 pub use settle::Sharing;
-pub use watch::Watch;
 
 use crate::event::{Event, TurnBackCause};
 use crate::ids::RobotId;
@@ -99,7 +99,7 @@ impl Mission {
             }
         } else if scene.beliefs.team.iter().any(|robot| robot.is_able() && robot.can_carry()) {
             let crew = &mut self.crew;
-            crew.watch(scene);
+            crew.note_progress(scene);
             if crew.everybody_is_home(scene) && crew.can_begin_round(scene) && !crew.rest_first(scene) {
                 self.end_round(scene);
                 return self.open_round(scene);

@@ -6,11 +6,11 @@ use super::checker::{Checker, entry, is_device, meant, names, shown};
 use super::debris::debris;
 use super::errands::{errands, places_are_free};
 use super::error::Problem;
+use super::feasibility::feasibility;
 use super::file::{Amount, Happening, Measure, NeedFile, Normal, RoleFile, ScenarioFile, TaskFile};
 use super::homes::homes_are_free;
 use super::rules::rules;
 use super::scatter::scatter;
-use super::sense::sense;
 use super::timeline::timeline;
 use crate::limits;
 
@@ -23,7 +23,7 @@ pub(super) fn problems(file: &ScenarioFile) -> Vec<Problem> {
     if check.problems.is_empty() {
         homes_are_free(&mut check, file); // these need sound shapes and places
         places_are_free(&mut check, file);
-        sense(&mut check, file);
+        feasibility(&mut check, file);
     }
     check.problems
 }

@@ -303,7 +303,7 @@ fn mover<'s>(
     navigator: &'s Navigator,
 ) -> Mover<'s> {
     let speed = mission.crew.speed_of(model, robot) as f32;
-    let wish = if robot.is_able() { navigator.preferred_velocity(robot, speed) } else { Vector::ZERO };
+    let preferred = if robot.is_able() { navigator.preferred_velocity(robot, speed) } else { Vector::ZERO };
     let route = navigator.traveller(robot.id).route();
     let agent = &mission.crew.agents[robot.id.index()];
     let no_task = model.tasks.len() as u8;
@@ -315,7 +315,7 @@ fn mover<'s>(
         aerial: robot.is_aerial(),
         position: robot.position,
         velocity: robot.velocity,
-        wish,
+        preferred,
         retreat_left: None,
         stalled_steps: navigator.traveller(robot.id).stalled_steps() as u32,
         leg_left: route.map_or(0.0, |route| (route.ahead()[0] - robot.position).length()),

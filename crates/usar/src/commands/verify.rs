@@ -52,11 +52,9 @@ impl Arguments {
             );
         }
         damage.iter().for_each(tell);
-        let chosen = self.choose(&self.without_undetermined(&experiment, all.clone()));
+        let chosen = self.choose(&self.repeatable(&experiment, all.clone()));
         if chosen.is_empty() && !all.is_empty() {
-            return Err(Failure::run(
-                "no trial can be verified: every policy says that its answers may differ",
-            ));
+            return Err(Failure::run("no trial can be verified: no policy of it can be asked again"));
         }
         let count = chosen.len();
         self.mention_other_program(&experiment, &manifest)?;
@@ -106,19 +104,24 @@ impl Arguments {
         }
     }
 
-    /// Leaves out the trials of policies that may answer the same question in another way.
-    fn without_undetermined(&self, experiment: &Experiment, keys: Vec<TrialKey>) -> Vec<TrialKey> {
-        let of = |key: &TrialKey| &experiment.policies[key.policy];
-        let is_determined = |key: &TrialKey| of(key).made().it.basis() != Basis::Undetermined;
-        let (kept, left): (Vec<TrialKey>, Vec<TrialKey>) = keys.into_iter().partition(is_determined);
-        if let Some(key) = left.first() {
+    /// Leaves out the trials of policies that cannot be asked again: they may answer the same question in
+    /// another way, or this program does not have them.
+    fn repeatable(&self, experiment: &Experiment, mut keys: Vec<TrialKey>) -> Vec<TrialKey> {
+        for (number, policy) in experiment.policies.iter().enumerate() {
+            let why = match policy.made().it.basis() {
+                Basis::Question | Basis::Trial => continue,
+                Basis::Undetermined => "its answers may differ",
+                Basis::Absent => "this program does not have it",
+            };
+            let before = keys.len();
+            keys.retain(|key| key.policy != number);
             self.progress.tell(format_args!(
-                "note: {} trials are not run again, because policy {} says that its answers may differ",
-                left.len(),
-                of(key).label
+                "note: {} of policy {} are not run again: {why}",
+                counted(before - keys.len(), "trial"),
+                policy.label
             ));
         }
-        kept
+        keys
     }
 
     fn choose(&self, all: &[TrialKey]) -> Vec<TrialKey> {

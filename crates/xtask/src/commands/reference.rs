@@ -3,12 +3,12 @@
 
 use std::process::ExitCode;
 
-use xtask::{reference, told};
+use xtask::{reference, reference_pages};
 
 pub fn run() -> ExitCode {
     std::fs::write(reference::path(), reference::page()).expect("the page can be written");
     println!("written: {}", reference::path().display());
-    for (path, page) in told::pages() {
+    for (path, page) in reference_pages::pages() {
         std::fs::write(&path, page).expect("the page can be written");
         println!("written: {}", path.display());
     }

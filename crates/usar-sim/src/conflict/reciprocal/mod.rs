@@ -40,7 +40,7 @@ const FOLLOWING_GAP_M: f32 = 0.05;
 const CLOSE_UP_S: f32 = 0.3;
 
 /// A robot in a queue wishes to go at least this fast, in metres per second: it has not arrived.
-const LEAST_WISH_MPS: f32 = 0.02;
+const LEAST_PREFERRED_MPS: f32 = 0.02;
 
 /// A robot lets another out as long as there is less than this between them, in metres.
 const LET_OUT_GAP_M: f32 = 0.15;
@@ -73,8 +73,8 @@ pub(super) struct Reciprocal {
 }
 
 impl<'m> Step<'_, 'm, ReciprocalModel, Reciprocal> {
-    /// One directive for each mover. Limits the wishes of robots that wait before a passage or queue there,
-    /// and replaces those of robots that let others out.
+    /// One directive for each mover. Limits the preferred velocities of robots that wait before a passage or
+    /// queue there, and replaces those of robots that let others out.
     pub(super) fn resolve(&mut self) {
         let Self { rules, state, scratch, movers, .. } = self;
         state.blocked_steps.resize(movers.len(), 0);
@@ -131,7 +131,7 @@ impl<'m> Step<'_, 'm, ReciprocalModel, Reciprocal> {
         for (i, _, ahead) in waiting {
             let me = &mut self.movers[i];
             let stops_in: f32 = (ahead - me.radius - WAIT_AT_M).max(0.0);
-            me.wish = me.wish.clamp_length_max((2.0 * me.braking * stops_in).sqrt());
+            me.preferred = me.preferred.clamp_length_max((2.0 * me.braking * stops_in).sqrt());
         }
     }
 
@@ -159,7 +159,7 @@ impl<'m> Step<'_, 'm, ReciprocalModel, Reciprocal> {
             }
             let allowed = first.velocity.length() + (gap - FOLLOWING_GAP_M) / CLOSE_UP_S;
             let me = &mut self.movers[i];
-            me.wish = me.wish.clamp_length_max(allowed.max(LEAST_WISH_MPS));
+            me.preferred = me.preferred.clamp_length_max(allowed.max(LEAST_PREFERRED_MPS));
         }
     }
 
@@ -171,7 +171,7 @@ impl<'m> Step<'_, 'm, ReciprocalModel, Reciprocal> {
             let away = head.position - me.position;
             let is_near = away.length() < me.radius + head.radius + LET_OUT_GAP_M;
             if is_near && head.can_make_room && retreat.is_held_up(self.rules.let_out) {
-                self.movers[retreat.head].wish = away.normalize_or_zero() * LET_OUT_SPEED * head.speed;
+                self.movers[retreat.head].preferred = away.normalize_or_zero() * LET_OUT_SPEED * head.speed;
             }
         }
     }
@@ -239,15 +239,15 @@ impl<'m> Step<'_, 'm, ReciprocalModel, Reciprocal> {
         if retreats.head_of(i) == Some(j) || retreats.head_of(j) == Some(i) {
             return Encounter::MakesRoom;
         }
-        Encounter::of(self.movers[i].wish, self.movers[j].wish)
+        Encounter::of(self.movers[i].preferred, self.movers[j].preferred)
     }
 
-    /// The nearest robot in the way of a robot's wish.
+    /// The nearest robot in the way of a robot's preferred velocity.
     fn robot_in_the_way(&self, i: usize) -> Option<usize> {
         let (movers, near) = (&*self.movers, self.scratch.neighbours.of(i));
         let me = &movers[i];
         let discs = near.iter().map(|j| (movers[*j].position - me.position, me.radius + movers[*j].radius));
-        nearest_in_the_way(me.wish, self.rules.retreats.margin, discs).map(|at| near[at])
+        nearest_in_the_way(me.preferred, self.rules.retreats.margin, discs).map(|at| near[at])
     }
 }
 
@@ -277,7 +277,7 @@ mod tests {
         assert!(matches!(queue[0], Directive::Proceed(velocity) if velocity.length() > 1.0), "{queue:?}");
         assert!(matches!(queue[1], Directive::Follow { behind: RobotId(0), .. }), "{queue:?}");
         assert_eq!(queue[1].waits_for(), Some(RobotId(0)));
-        assert!(queue[1].velocity().length() <= LEAST_WISH_MPS, "{queue:?}");
+        assert!(queue[1].velocity().length() <= LEAST_PREFERRED_MPS, "{queue:?}");
         let released = directives(Bench::new().rules.holds_queue + 1);
         assert!(
             matches!(released[1], Directive::Proceed(velocity) if velocity.length() > 0.5),
@@ -296,8 +296,8 @@ mod tests {
 
     #[test]
     fn a_resting_robot_that_was_pushed_aside_goes_back() {
-        let directive = |wish: [f32; 2]| {
-            let mut movers = [mover(0, [5.0, 5.0], wish)];
+        let directive = |preferred: [f32; 2]| {
+            let mut movers = [mover(0, [5.0, 5.0], preferred)];
             movers[0].can_make_room = false;
             Bench::new().resolve(&mut movers)[0]
         };
@@ -307,19 +307,19 @@ mod tests {
 
     #[test]
     fn a_robot_steps_back_from_one_that_cannot_make_room_for_it() {
-        let wish = |gap: f32, steps: u32, can_move: bool| {
+        let preferred = |gap: f32, steps: u32, can_move: bool| {
             let mut bench = Bench::new();
             let mut movers =
                 [mover(0, [5.0, 5.0], [1.0, 0.0]), mover(1, [5.0 + 0.8 + gap, 5.0], [-1.0, 0.0])];
             movers[0].can_make_room = can_move;
             bench.state.retreats.begin_held_up(1, 0, Vector::new(5.0, 7.0), steps);
             bench.step(&mut movers).let_out();
-            movers[0].wish
+            movers[0].preferred
         };
         let held = Bench::new().rules.let_out + 1;
-        assert_eq!(wish(0.05, held, true), Vector::new(-LET_OUT_SPEED * 2.0, 0.0));
-        assert_eq!(wish(0.05, held - 1, true), Vector::X, "not held up for long enough");
-        assert_eq!(wish(0.3, held, true), Vector::X, "not beside it");
-        assert_eq!(wish(0.05, held, false), Vector::X, "it cannot move");
+        assert_eq!(preferred(0.05, held, true), Vector::new(-LET_OUT_SPEED * 2.0, 0.0));
+        assert_eq!(preferred(0.05, held - 1, true), Vector::X, "not held up for long enough");
+        assert_eq!(preferred(0.3, held, true), Vector::X, "not beside it");
+        assert_eq!(preferred(0.05, held, false), Vector::X, "it cannot move");
     }
 }

@@ -303,21 +303,24 @@ mod tests {
         Passage { points, enters_at, leaves_at: enters_at - (to - from).abs() }
     }
 
-    /// The entries of robots at these places with these wishes, whose routes lead 10 m on through a passage
-    /// between x = 10 and x = 12.
+    /// The entries of robots at these places with these preferred velocities, whose routes lead 10 m on
+    /// through a passage between x = 10 and x = 12.
     fn decided(robots: &[(f32, f32)], before: &[Entry]) -> Vec<Turn> {
         let passages: Vec<[Passage; 1]> = robots
             .iter()
-            .map(|(x, wish)| {
-                let way = if *wish > 0.0 { 10.0 - x } else { x - 12.0 };
-                let (from, to) = if *wish > 0.0 { (10.0, 12.0) } else { (12.0, 10.0) };
+            .map(|(x, preferred)| {
+                let way = if *preferred > 0.0 { 10.0 - x } else { x - 12.0 };
+                let (from, to) = if *preferred > 0.0 { (10.0, 12.0) } else { (12.0, 10.0) };
                 [passage(from, to, 10.0 - way)]
             })
             .collect();
         let movers: Vec<Mover> = (0..)
             .zip(robots)
             .zip(&passages)
-            .map(|((i, (x, wish)), passages)| Mover { passages, ..mover(i, [*x, 0.0], [*wish, 0.0]) })
+            .map(|((i, (x, preferred)), passages)| Mover {
+                passages,
+                ..mover(i, [*x, 0.0], [*preferred, 0.0])
+            })
             .collect();
         let entrants: Vec<Entrant> =
             movers.iter().enumerate().filter_map(|(i, me)| Entrant::new(i, me)).collect();
@@ -402,9 +405,9 @@ mod tests {
     fn makes_room_in_bay(first: f32, second: f32, meets: bool) -> [bool; 2] {
         let east = [passage(0.0, 4.5, 10.0), passage(5.5, 10.0, 4.5)];
         let west = [passage(10.0, 5.5, 10.0), passage(4.5, 0.0, 4.5)];
-        let on_the_way = |id: u32, left: f32, wish: f32| {
-            let at = if wish > 0.0 { 10.0 - left } else { left };
-            mover(id, [at, 0.0], [wish, 0.0])
+        let on_the_way = |id: u32, left: f32, preferred: f32| {
+            let at = if preferred > 0.0 { 10.0 - left } else { left };
+            mover(id, [at, 0.0], [preferred, 0.0])
         };
         let (x, way) = if meets { (-1.0, &west) } else { (1.0, &east) };
         let movers = [

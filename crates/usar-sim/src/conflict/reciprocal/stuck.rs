@@ -49,7 +49,8 @@ impl Step<'_, '_, ReciprocalModel, Reciprocal> {
         let movers = &*self.movers;
         let me = &movers[i];
         let is_parked = |j: &usize| !movers[*j].wishes_to_move();
-        let is_slowed = self.directives[i].velocity().dot(me.wish) < SLOWED * me.wish.length_squared();
+        let is_slowed =
+            self.directives[i].velocity().dot(me.preferred) < SLOWED * me.preferred.length_squared();
         let may_ask = is_slowed && self.turn(i).waits_for.is_none();
         if !may_ask || !self.scratch.neighbours.of(i).iter().any(is_parked) {
             return None;
@@ -95,7 +96,7 @@ impl Step<'_, '_, ReciprocalModel, Reciprocal> {
         };
         me.stalled_steps >= self.rules.stuck
             && !goes_after
-            && me.wish.normalize_or_zero().dot(other.wish.normalize_or_zero()) < ALONG
+            && me.preferred.normalize_or_zero().dot(other.preferred.normalize_or_zero()) < ALONG
             && has_better_claim()
     }
 }
@@ -109,7 +110,7 @@ mod tests {
     /// Robots that make room when a robot drives east towards robots that stand on a line across its way.
     fn asked(gap: f32, standing: &[f32]) -> Vec<RobotId> {
         let mut movers = vec![mover(0, [5.0, 8.0], [2.0, 0.0])];
-        movers[0].velocity = movers[0].wish;
+        movers[0].velocity = movers[0].preferred;
         let at = |y: &f32| [5.8 + gap, *y];
         movers.extend((1..).zip(standing).map(|(id, y)| mover(id, at(y), [0.0, 0.0])));
         let mut bench = Bench::new();

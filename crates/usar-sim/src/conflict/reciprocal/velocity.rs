@@ -78,11 +78,11 @@ pub(super) fn avoiding_velocity(
     let plane =
         |other: &Neighbour| robot_plane(me.velocity, other, other.encounter.horizon_s().min(looks_ahead_s));
     planes.extend(neighbours.iter().map(plane));
-    let is_in_the_way = |plane: &HalfPlane| !plane.holds(me.wish);
+    let is_in_the_way = |plane: &HalfPlane| !plane.holds(me.preferred);
     let keeps_right = is_open
         && planes[walls..].iter().any(is_in_the_way)
         && neighbours.iter().any(|other| other.encounter.needs_a_side());
-    let preferred = if keeps_right { me.wish - me.wish.perp() * KEEP_RIGHT } else { me.wish };
+    let preferred = if keeps_right { me.preferred - me.preferred.perp() * KEEP_RIGHT } else { me.preferred };
     best_velocity(&planes, walls, preferred, me.speed)
 }
 

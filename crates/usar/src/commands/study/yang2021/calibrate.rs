@@ -4,7 +4,7 @@
 mod choose;
 
 use experiments::comparison::short;
-use experiments::explore::Free;
+use experiments::explore::Parameter;
 use experiments::files::NewFile;
 use rayon::prelude::*;
 use ron_tree::{Node, edited};
@@ -156,7 +156,7 @@ impl Arguments {
         let text = edited(&text, &settings).map_err(Failure::input_at("--set"))?;
         let base = Scenario::parse(&text, file).map_err(Failure::input)?;
         let fields = Node::parse(&text).map_err(Failure::run)?;
-        let parse = |spec: &String| Free::parse(spec, &fields, &known);
+        let parse = |spec: &String| Parameter::parse(spec, &fields, &known);
         let free = self.over.iter().map(parse).collect::<Result<Vec<_>, _>>();
         let free = free.map_err(Failure::input_at("--over"))?;
         if let Some((path, _)) = settings.iter().find(|(path, _)| free.iter().any(|free| free.is_of(path))) {

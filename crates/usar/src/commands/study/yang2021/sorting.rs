@@ -1,7 +1,7 @@
 //! `usar study yang2021 sorting`: compares the groups of a sweep's policies with sorting.
 
 use experiments::metric::task_names;
-use experiments::rounds::{self, Blindness, Example, GroupLevels, Likeness, likeness, rounds_in};
+use experiments::rounds::{self, Blindness, Example, GroupLevels, SortingAgreement, agreement, rounds_in};
 use experiments::sweep::folder::Folder;
 use reports::table::{levels_table, likeness_table};
 use rne_core::{MadeMeasure, Member};
@@ -38,10 +38,10 @@ impl Arguments {
         let mut folder = read_sweep(&self.folder, registry)?;
         let case = self.case.index(folder.experiment())?;
         let policies = folder.experiment().policies.clone();
-        let (mut likenesses, mut levels, mut blind) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut agreements, mut levels, mut blind) = (Vec::new(), Vec::new(), Vec::new());
         for (place, policy) in policies.iter().enumerate() {
             let rounds = rounds_in(&mut folder, case, place)?;
-            likenesses.push((policy.label.clone(), likeness(&rounds)));
+            agreements.push((policy.label.clone(), agreement(&rounds)));
             levels.extend(rounds::levels(&policy.label, &rounds));
             if let Some(measure) = policy.own_measure(registry).filter(|_| blind.is_empty()) {
                 let mut blindness = Blindness::default();
@@ -54,10 +54,10 @@ impl Arguments {
                 });
             }
         }
-        if likenesses.iter().all(|(_, of)| of[0].rounds() == 0) {
+        if agreements.iter().all(|(_, of)| of[0].rounds() == 0) {
             refuse!("{}: no round of this case was split into two groups", self.folder.display());
         }
-        print(out, &likenesses, &levels, &folder.experiment().cases[case].scenario, &blind)?;
+        print(out, &agreements, &levels, &folder.experiment().cases[case].scenario, &blind)?;
         if let Some(gaps) = gaps(&folder, case) {
             writeln!(out, "{gaps}")?;
         }
@@ -89,7 +89,7 @@ pub(super) fn gaps(folder: &Folder, case: usize) -> Option<String> {
 
 fn print(
     out: &mut dyn Write,
-    likenesses: &[(String, [Likeness; 3])],
+    agreements: &[(String, [SortingAgreement; 3])],
     levels: &[GroupLevels],
     scenario: &Scenario,
     blind: &[Blind],
@@ -100,7 +100,7 @@ fn print(
         "In which share of the rounds a policy's split is the one that sorting each role gives (in brackets: \
          by chance)"
     )?;
-    print_table(out, &likeness_table(likenesses))?;
+    print_table(out, &likeness_table(agreements))?;
     writeln!(
         out,
         "split: in all roles, whichever half takes which task; higher: the group of the {hardest} task has \

@@ -9,7 +9,7 @@ use crate::geometry::Outline;
 use crate::limits;
 
 /// Checks these rules. Places and shapes must be sound.
-pub(super) fn sense(check: &mut Checker, file: &ScenarioFile) {
+pub(super) fn feasibility(check: &mut Checker, file: &ScenarioFile) {
     stacked(check, file);
     if !file.errands.is_empty() {
         return;

@@ -15,11 +15,11 @@ impl Scenario {
     /// Values that are a thousand times larger or smaller than the defaults, perhaps by a wrong unit; a team
     /// smaller than the number of tasks; and rows that change nothing. The lines are those in `text`.
     #[must_use]
-    pub fn oddities(&self, text: &str) -> Vec<Problem> {
+    pub fn warnings(&self, text: &str) -> Vec<Problem> {
         let tree = Node::parse(text).ok();
-        let mut odd = Vec::new();
+        let mut warnings = Vec::new();
         if (self.robots() as usize) < self.tasks.len() {
-            odd.push(Problem {
+            warnings.push(Problem {
                 field: "team".to_owned(),
                 rule: format!("has fewer robots than there are tasks, {}", self.tasks.len()),
                 found: self.robots().to_string(),
@@ -33,23 +33,23 @@ impl Scenario {
             // are compared.
             let usual = ["radius_m", "mass_kg", "speed_mps", "acceleration_mps2"];
             let own = numbers(own).into_iter().filter(|(name, _)| usual.contains(&name.as_str()));
-            compare(&mut odd, &format!("roles[{i}]"), own, &role);
+            compare(&mut warnings, &format!("roles[{i}]"), own, &role);
         }
         let mission = numbers(&MissionRules::default());
-        compare(&mut odd, "mission", numbers(&self.mission).into_iter(), &mission);
+        compare(&mut warnings, "mission", numbers(&self.mission).into_iter(), &mission);
         let planning = numbers(&PlanningRules::default());
-        compare(&mut odd, "planning", numbers(&self.planning).into_iter(), &planning);
-        self.without_effect(&mut odd);
-        for problem in &mut odd {
+        compare(&mut warnings, "planning", numbers(&self.planning).into_iter(), &planning);
+        self.without_effect(&mut warnings);
+        for problem in &mut warnings {
             problem.line = tree.as_ref().and_then(|tree| tree.line(&problem.field));
         }
-        odd
+        warnings
     }
 
     /// Rows that change nothing, and doors that stay closed.
-    fn without_effect(&self, odd: &mut Vec<Problem>) {
+    fn without_effect(&self, warnings: &mut Vec<Problem>) {
         let mut say = |field: String, rule: String, found: String, hint: &str| {
-            odd.push(Problem { field, rule, found, hint: hint.to_owned(), ..Problem::default() });
+            warnings.push(Problem { field, rule, found, hint: hint.to_owned(), ..Problem::default() });
         };
         for (i, row) in self.team.iter().enumerate().filter(|(_, row)| row.count == 0) {
             let rule = format!("gives the team no {}", row.role);
@@ -81,7 +81,7 @@ fn numbers(section: &impl serde::Serialize) -> Vec<(String, f64)> {
 }
 
 fn compare(
-    odd: &mut Vec<Problem>,
+    warnings: &mut Vec<Problem>,
     section: &str,
     own: impl Iterator<Item = (String, f64)>,
     usual: &[(String, f64)],
@@ -92,7 +92,7 @@ fn compare(
         let is_odd = value > 0.0 && *default > 0.0 && (ratio >= FACTOR || ratio <= 1.0 / FACTOR);
         if is_odd {
             let (times, than) = if ratio > 1.0 { (ratio, "times") } else { (1.0 / ratio, "times less than") };
-            odd.push(Problem {
+            warnings.push(Problem {
                 field: format!("{section}.{name}"),
                 rule: format!("is {times:.0} {than} the default, {default}"),
                 found: value.to_string(),

@@ -15,7 +15,7 @@ const NEARER_M: f32 = 0.5;
 
 /// The progress of a robot towards one goal.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
-pub struct Watch {
+pub struct Progress {
     goal: Option<Vector>,
     /// The shortest remaining route so far, in metres; none before the first route.
     nearest_m: Option<f32>,
@@ -25,7 +25,7 @@ pub struct Watch {
     pub held_up_steps: u64,
 }
 
-impl Watch {
+impl Progress {
     /// Notes the length of the remaining route to the goal. Returns whether the robot came nearer.
     fn note(&mut self, goal: Option<Vector>, left_m: Option<f32>) -> bool {
         if self.goal != goal {
@@ -50,7 +50,7 @@ impl Watch {
 impl Crew {
     /// Watches the progress of each robot. A robot that cannot get to its rest place tries the next one. The
     /// team does not wait for a robot that cannot get home.
-    pub(super) fn watch(&mut self, scene: &mut Scene) {
+    pub(super) fn note_progress(&mut self, scene: &mut Scene) {
         for id in (0..scene.beliefs.team.len() as u32).map(RobotId) {
             let robot = &scene.beliefs.team[id.index()];
             if !robot.is_able() {
@@ -83,11 +83,11 @@ impl Crew {
     fn note_way(&mut self, robot: &Robot, scene: &Scene) -> bool {
         let traveller = scene.navigator.traveller(robot.id);
         let left_m = traveller.route().map(|route| route.length(robot.position));
-        let watch = &mut self.agents[robot.id.index()].watch;
-        let is_nearer = watch.note(traveller.goal().map(|goal| goal.point), left_m);
+        let progress = &mut self.agents[robot.id.index()].progress;
+        let is_nearer = progress.note(traveller.goal().map(|goal| goal.point), left_m);
         let is_there = traveller.goal().is_none() || traveller.has_arrived(robot.position);
         if is_there {
-            watch.held_up_steps = 0;
+            progress.held_up_steps = 0;
         }
         is_nearer || is_there
     }
@@ -95,13 +95,13 @@ impl Crew {
     /// Whether a robot has come no nearer to its goal for `mission.cut_off_s` plus the time that its longest
     /// detour takes.
     pub(super) fn is_held_up(&self, robot: &Robot, scene: &Scene) -> bool {
-        let watch = &self.agents[robot.id.index()].watch;
+        let progress = &self.agents[robot.id.index()].progress;
         let rules = &scene.model.mission;
-        if watch.held_up_steps <= rules.cut_off_steps {
+        if progress.held_up_steps <= rules.cut_off_steps {
             return false;
         }
-        let detour_s = f64::from(watch.allowed_way_m()) / self.speed_of(scene.model, robot).max(1e-6);
-        watch.held_up_steps > scene.model.steps_in(rules.cut_off_s + detour_s)
+        let detour_s = f64::from(progress.allowed_way_m()) / self.speed_of(scene.model, robot).max(1e-6);
+        progress.held_up_steps > scene.model.steps_in(rules.cut_off_s + detour_s)
     }
 
     /// Why a robot cannot get to its goal; `None` if it has arrived or still makes progress.
@@ -157,17 +157,19 @@ mod tests {
     #[test]
     fn coming_nearer_counts_and_driving_to_and_fro_does_not() {
         let goal = Some(Vector::ZERO);
-        let mut watch = Watch::default();
-        assert!(!watch.note(goal, Some(20.0)), "the first route");
-        assert!(!watch.note(goal, Some(19.8)) && watch.note(goal, Some(19.5)));
+        let mut progress = Progress::default();
+        assert!(!progress.note(goal, Some(20.0)), "the first route");
+        assert!(!progress.note(goal, Some(19.8)) && progress.note(goal, Some(19.5)));
         for _ in 0..10 {
             assert!(
-                !watch.note(goal, Some(40.0)) && !watch.note(goal, Some(19.4)) && !watch.note(goal, None)
+                !progress.note(goal, Some(40.0))
+                    && !progress.note(goal, Some(19.4))
+                    && !progress.note(goal, None)
             );
         }
-        assert_eq!(watch.held_up_steps, 30);
-        assert!((watch.allowed_way_m() - 21.0).abs() < 1e-6, "the detour from 19.5 m to 40 m and back");
-        assert!(!watch.note(Some(Vector::X), Some(90.0)), "another goal");
-        assert_eq!(watch.held_up_steps, 0);
+        assert_eq!(progress.held_up_steps, 30);
+        assert!((progress.allowed_way_m() - 21.0).abs() < 1e-6, "the detour from 19.5 m to 40 m and back");
+        assert!(!progress.note(Some(Vector::X), Some(90.0)), "another goal");
+        assert_eq!(progress.held_up_steps, 0);
     }
 }

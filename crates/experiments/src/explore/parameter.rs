@@ -12,7 +12,7 @@ const DIGITS: usize = 4;
 
 /// A free parameter. It may set several fields that belong together, each in a fixed ratio to it.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Free {
+pub struct Parameter {
     /// Its name: the first path as written.
     pub name: String,
     /// Every field that it sets, by path, with the field's ratio to the parameter.
@@ -24,7 +24,7 @@ pub struct Free {
     is_whole: bool,
 }
 
-impl Free {
+impl Parameter {
     /// Reads `PATH[*RATIO] [+ PATH[*RATIO] ...]=LOW..HIGH[ log]`; `[*]` in a path is every entry of a list.
     /// `fields` are the fields that the scenario writes; each path must be one of them. `known` are all
     /// fields that a scenario has.
@@ -180,7 +180,7 @@ impl Free {
     }
 }
 
-impl fmt::Display for Free {
+impl fmt::Display for Parameter {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let fields = self.fields.iter().map(|(path, ratio)| format!("{path} * {ratio}"));
         let fields: Vec<String> = fields.collect();
@@ -235,9 +235,9 @@ mod tests {
 
     const TEXT: &str = "(roles: (a: (v: 3.0), b: (v: 2.0)), zones: [(r: 4.5), (r: 4.5)], n: (k: 1))";
 
-    fn free(spec: &str) -> Result<Free, Failure> {
+    fn free(spec: &str) -> Result<Parameter, Failure> {
         let tree = |text| Node::parse(text).unwrap();
-        Free::parse(spec, &tree(TEXT), &tree("(roles: (a: (v: 3.0, w: 1.0), b: (v: 2.0)))"))
+        Parameter::parse(spec, &tree(TEXT), &tree("(roles: (a: (v: 3.0, w: 1.0), b: (v: 2.0)))"))
     }
 
     #[test]
