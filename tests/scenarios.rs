@@ -94,6 +94,50 @@ fn a_scenario_needs_tasks_or_errands_and_errands_need_robots_and_places() {
 }
 
 #[test]
+fn costs_per_step_under_another_step_are_told() {
+    let told = |dt_s: &str| {
+        let mut file = (*paper()).clone();
+        file.set("dt_s", dt_s).unwrap();
+        let scenario = Scenario::try_from(file).unwrap();
+        scenario.warnings(&paper_text()).iter().map(ToString::to_string).collect::<Vec<_>>().join("\n")
+    };
+    assert_eq!(told("0.02"), "");
+    let told = told("0.04");
+    assert!(
+        told.contains(
+            "costs.energy.per_step is paid in every step, here of 0.04 s, found 0.0045; in a second this is 0.500 \
+             times as much"
+        ),
+        "{told}"
+    );
+    assert!(told.contains("costs.hp.per_step"), "{told}");
+}
+
+#[test]
+fn values_at_a_limit_pass_whatever_the_rounding() {
+    let wall = |from: &str, to: &str| {
+        let text = format!(
+            "(name: \"s\", duration_s: 10, dt_s: 0.02, arena_m: (10, 10), team: [(role: \"robot\", count: 1, center: \
+             (2, 2), width_m: 0)], errands: [(robot: 0, to: [(8, 8)])], walls: [(from: {from}, to: {to}, \
+             thickness_m: 0.1)])"
+        );
+        Scenario::parse(&text, Path::new("s.ron")).map(|scenario| scenario.obstacles().len())
+    };
+    assert_eq!(wall("(3.05, 5)", "(2.95, 5)").unwrap(), 1, "0.0999999999999996 m long");
+    assert!(wall("(3.04, 5)", "(2.95, 5)").is_err());
+    // An arc of a milliradian a corner, with edges of 5 cm.
+    let corner = |i: u32| [50.0 * (f64::from(i) * 1e-3).cos(), 50.0 * (f64::from(i) * 1e-3).sin()];
+    let arc: Vec<String> = (0..60).map(corner).map(|[x, y]| format!("({x:?}, {y:?})")).collect();
+    let text = format!(
+        "(name: \"s\", duration_s: 10, dt_s: 0.02, arena_m: (90, 20), team: [(role: \"robot\", count: 1, center: \
+         (2, 2), width_m: 0)], errands: [(robot: 0, to: [(8, 8)])], debris: [(shape: Polygon([(40.0, 1.5), {}]), \
+         at: (20, 10))])",
+        arc.join(", ")
+    );
+    Scenario::parse(&text, Path::new("s.ron")).unwrap_or_else(|error| panic!("{error}"));
+}
+
+#[test]
 fn errands_lead_where_a_robot_can_stand() {
     let error = |place: &str, rest: &str| {
         let text = format!(

@@ -13,7 +13,7 @@ use statrs::distribution::{Beta, ContinuousCDF};
 
 use crate::stats::bootstrap::interval;
 
-pub use parse::{Bad, parse};
+pub use parse::{Bad, expectations, parse};
 
 /// Trials at the first look.
 pub const FIRST_LOOK: u32 = 10;

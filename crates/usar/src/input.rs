@@ -1,5 +1,6 @@
 //! What commands read: scenarios and folders of sweeps.
 
+use std::collections::BTreeSet;
 use std::path::Path;
 
 use experiments::Failure;
@@ -12,15 +13,28 @@ use crate::running::tell;
 /// Loads a scenario and its text. The error has all problems; warnings of a valid scenario go to stderr.
 pub(crate) fn load(path: &Path) -> Result<(Scenario, String), Failure> {
     let (scenario, text) = Scenario::load(path).map_err(Failure::input)?;
-    tell_oddities(&scenario, &text, path);
+    tell_warnings(&scenario, &text, path);
     Ok((scenario, text))
 }
 
 /// Tells the warnings of a valid scenario on stderr.
-pub(crate) fn tell_oddities(scenario: &Scenario, text: &str, path: &Path) {
-    for warning in scenario.warnings(text) {
+pub(crate) fn tell_warnings(scenario: &Scenario, text: &str, path: &Path) {
+    tell_warnings_of_all([scenario], text, path);
+}
+
+/// Tells the warnings of several scenarios on stderr, each once.
+pub(crate) fn tell_warnings_of_all<'s>(
+    scenarios: impl IntoIterator<Item = &'s Scenario>,
+    text: &str,
+    path: &Path,
+) {
+    let mut told = BTreeSet::new();
+    for warning in scenarios.into_iter().flat_map(|scenario| scenario.warnings(text)) {
         let line = warning.line.map_or(String::new(), |line| format!(":{line}"));
-        tell(format_args!("note: {}{line}: {warning}", path.display()));
+        let note = format!("note: {}{line}: {warning}", path.display());
+        if told.insert(note.clone()) {
+            tell(note);
+        }
     }
 }
 

@@ -1,7 +1,11 @@
 //! Parses expectations.
 
+use std::path::Path;
+
+use store::Failure;
+
 use super::{Expectation, Expected, Relation};
-use crate::experiment::PolicySpec;
+use crate::experiment::{Experiment, PolicySpec};
 use crate::metric::Catalogue;
 
 /// Confidence of an expectation without a stated confidence.
@@ -19,6 +23,22 @@ const FORMS: &str = "must be like \"rescuees.total >= 60 in 90 % of seeds\", \"D
     seeds\", \
                      \"rescuees.total: RNE > DIS by 5 (95 %)\" or \"rescuees.total: RNE = ENG within 3 \
                      (95 %)\"";
+
+/// What the file of a sweep expects, in the order in which it is written there.
+///
+/// # Errors
+/// Expectations that cannot be read, all of them.
+pub fn expectations(experiment: &Experiment, file: &Path) -> Result<Vec<Expected>, Failure> {
+    let read = |text: &String| parse(text, &experiment.metrics, &experiment.policies);
+    let (read, bad): (Vec<_>, Vec<_>) = experiment.plan.expect.iter().map(read).partition(Result::is_ok);
+    let bad: Vec<String> =
+        bad.into_iter().filter_map(Result::err).map(|bad| format!("{}: {bad}", file.display())).collect();
+    if bad.is_empty() {
+        Ok(read.into_iter().flatten().collect())
+    } else {
+        Err(Failure::input(bad.join("\n")))
+    }
+}
 
 /// Reads an expectation of a sweep with these metrics and policies.
 ///
@@ -108,19 +128,24 @@ impl Parser<'_> {
             if within <= 0.0 {
                 return Err("the margin after `within` must be above 0".to_owned());
             }
-            return Ok(Expectation::Equal { metric, policies: [self.policy(a)?, self.policy(b)?], within });
+            return Ok(Expectation::Equal { metric, policies: self.two(a, b)?, within });
         }
         let (pair, by) = match rest.split_once(" by ") {
             Some((pair, by)) => (pair, number(by)?),
             None => (rest, 0.0),
         };
         let (a, is_above, b) = split(pair, &[(">", true), ("<", false)]).ok_or(FORMS)?;
-        let [a, b] = [self.policy(a)?, self.policy(b)?];
+        let [a, b] = self.two(a, b)?;
         Ok(Expectation::Above { metric, policies: if is_above { [a, b] } else { [b, a] }, by })
     }
 
     fn metric(&self, name: &str) -> Result<usize, String> {
         self.metrics.named(name.trim()).map_err(|error| error.to_string())
+    }
+
+    fn two(&self, a: &str, b: &str) -> Result<[usize; 2], String> {
+        let both = [self.policy(a)?, self.policy(b)?];
+        if both[0] == both[1] { Err("the two policies must differ".to_owned()) } else { Ok(both) }
     }
 
     fn policy(&self, label: &str) -> Result<usize, String> {

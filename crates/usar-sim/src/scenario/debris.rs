@@ -10,6 +10,12 @@ use crate::limits;
 /// Least width of a polygon in every direction, in metres: less is flat in single precision.
 pub const LEAST_POLYGON_WIDTH_M: f64 = 0.01;
 
+/// Lengths that differ by less than this are equal, in metres: what comes of rounding.
+pub(super) const ROUNDING_M: f64 = 1e-9;
+
+/// Least sine of the angle by which a polygon turns at a corner; small corners of long edges may turn less.
+const LEAST_SINE: f64 = 5e-4;
+
 /// A piece of debris.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -105,7 +111,7 @@ fn wall(check: &mut Checker, field: &str, wall: &WallFile) {
     check.inside(format!("{field}.to"), wall.to, 0.0);
     check.number(format!("{field}.thickness_m"), wall.thickness_m, limits::WALL_THICKNESS_M);
     let length = wall.length_m();
-    if length < wall.thickness_m {
+    if length < wall.thickness_m - ROUNDING_M {
         check.fail(field, "must be at least as long as it is thick", format!("{length} m"));
     }
     let mut doors: Vec<(usize, &Door)> = wall.doors.iter().enumerate().collect();
@@ -115,7 +121,7 @@ fn wall(check: &mut Checker, field: &str, wall: &WallFile) {
         let field = format!("{field}.doors[{i}]");
         check.number(format!("{field}.width_m"), door.width_m, limits::DOOR_WIDTH_M);
         let [begin, end] = [door.at_m - door.width_m / 2.0, door.at_m + door.width_m / 2.0];
-        if !(begin >= free_from && end <= length) {
+        if !(begin >= free_from - ROUNDING_M && end <= length + ROUNDING_M) {
             let rule = format!("must lie within the wall of {length:.3} m and clear of other doors");
             check.fail(field, rule, format!("{begin} to {end} m"));
         }
@@ -139,7 +145,8 @@ fn polygon(check: &mut Checker, field: &str, corners: &[Point]) {
     for i in 0..corners.len() {
         let [a, b, c] = [0, 1, 2].map(|k| corners[(i + k) % corners.len()]);
         let turn = (b[0] - a[0]) * (c[1] - b[1]) - (b[1] - a[1]) * (c[0] - b[0]);
-        if turn < 1e-4 {
+        let sine = turn / (libm::hypot(b[0] - a[0], b[1] - a[1]) * libm::hypot(c[0] - b[0], c[1] - b[1]));
+        if !(turn >= 1e-4 || sine >= LEAST_SINE) {
             let rule = "must be convex, with its corners anticlockwise and none on a straight line";
             return check.fail(
                 field,

@@ -3,6 +3,7 @@
 use parry2d::math::{Pose, Rotation, Vector};
 use parry2d::shape::SharedShape;
 
+use super::debris::ROUNDING_M;
 use super::file::{
     ConflictRules, DebrisFile, DebrisShape, ResolverRule, RightOfWay, RoleFile, Row, ScenarioFile, WallFile,
     ZoneFile,
@@ -48,17 +49,19 @@ impl WallFile {
             std::iter::once(0.0).chain(doors.clone().into_iter().map(|door| door.at_m + door.width_m / 2.0));
         let ends = doors.into_iter().map(|door| door.at_m - door.width_m / 2.0).chain([length]);
         let thickness = self.thickness_m;
-        begins.zip(ends).filter(move |(begin, end)| end - begin >= thickness).map(move |(begin, end)| {
-            let middle = f64::midpoint(begin, end);
-            let at = [from[0] + along[0] * middle, from[1] + along[1] * middle];
-            DebrisFile {
-                shape: DebrisShape::Box(end - begin, thickness),
-                at,
-                rotation_deg,
-                movable: None,
-                name: None,
-            }
-        })
+        begins.zip(ends).filter(move |(begin, end)| end - begin >= thickness - ROUNDING_M).map(
+            move |(begin, end)| {
+                let middle = f64::midpoint(begin, end);
+                let at = [from[0] + along[0] * middle, from[1] + along[1] * middle];
+                DebrisFile {
+                    shape: DebrisShape::Box(end - begin, thickness),
+                    at,
+                    rotation_deg,
+                    movable: None,
+                    name: None,
+                }
+            },
+        )
     }
 }
 

@@ -11,6 +11,9 @@ use super::timeline::{Happening, Moment};
 /// A value is odd if it is larger or smaller than the default by this factor.
 const FACTOR: f64 = 1000.0;
 
+/// The step for which costs per step are written, the paper's and the defaults among them, in seconds.
+const USUAL_STEP_S: f64 = 0.02;
+
 impl Scenario {
     /// Values that are a thousand times larger or smaller than the defaults, perhaps by a wrong unit; a team
     /// smaller than the number of tasks; and rows that change nothing. The lines are those in `text`.
@@ -40,10 +43,34 @@ impl Scenario {
         let planning = numbers(&PlanningRules::default());
         compare(&mut warnings, "planning", numbers(&self.planning).into_iter(), &planning);
         self.without_effect(&mut warnings);
+        self.paid_by_the_step(&mut warnings);
         for problem in &mut warnings {
             problem.line = tree.as_ref().and_then(|tree| tree.line(&problem.field));
         }
         warnings
+    }
+
+    /// Costs per step of a scenario with another step than that for which such costs are written.
+    fn paid_by_the_step(&self, warnings: &mut Vec<Problem>) {
+        let (dt_s, costs) = (self.dt_s, &self.costs);
+        if (dt_s - USUAL_STEP_S).abs() < 1e-9 {
+            return;
+        }
+        for (name, rate) in [("energy", costs.energy.per_step), ("hp", costs.hp.per_step)] {
+            if rate > 0.0 {
+                let times = USUAL_STEP_S / dt_s;
+                warnings.push(Problem {
+                    field: format!("costs.{name}.per_step"),
+                    rule: format!("is paid in every step, here of {dt_s} s"),
+                    found: rate.to_string(),
+                    hint: format!(
+                        "in a second this is {times:.3} times as much as with steps of {USUAL_STEP_S} s; \
+                         per_second does not depend on dt_s"
+                    ),
+                    ..Problem::default()
+                });
+            }
+        }
     }
 
     /// Rows that change nothing, and doors that stay closed.

@@ -9,7 +9,7 @@ use reports::table::Format;
 use usar_sim::scenario::Scenario;
 
 use crate::bad_value::BadValue;
-use crate::input::load;
+use crate::input::tell_warnings;
 use crate::prelude::*;
 
 /// Fields of a scenario that are set on the command line.
@@ -24,7 +24,10 @@ pub(crate) struct SetArguments {
 impl SetArguments {
     /// The scenario in a file, with its fields set.
     pub(crate) fn load(&self, file: &Path) -> Result<Scenario, Failure> {
-        with_settings(&load(file)?.0, &self.set)
+        let (written, text) = Scenario::load(file).map_err(Failure::input)?;
+        let scenario = with_settings(&written, &self.set)?;
+        tell_warnings(&scenario, &text, file);
+        Ok(scenario)
     }
 }
 

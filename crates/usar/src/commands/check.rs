@@ -2,10 +2,11 @@
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
+use experiments::expect::expectations;
 use experiments::experiment::{Experiment, Overrides};
 use experiments::panic_message;
 
-use crate::input::tell_oddities;
+use crate::input::tell_warnings_of_all;
 use crate::prelude::*;
 
 /// Validate scenarios and sweep files without running them
@@ -20,8 +21,9 @@ pub(crate) struct Arguments {
 /// Checks one file, and returns a sentence about a sound file.
 fn check(file: &Path, registry: &Registry) -> Result<String, Failure> {
     let experiment = Experiment::load(file, &Overrides::default(), registry)?;
+    expectations(&experiment, file)?;
     experiment.with_trials(1)?.check_start(file)?;
-    tell_oddities(&experiment.base, &experiment.given, file);
+    tell_warnings_of_all(experiment.cases.iter().map(|case| &case.scenario), &experiment.given, file);
     let cost = experiment.check_cost(false).err();
     Ok(cost.map_or_else(|| "ok".to_owned(), |cost| format!("ok, but expensive: {cost}")))
 }

@@ -14,7 +14,7 @@ use reports::table::policy_table;
 
 use self::precision::Precision;
 use crate::arguments::{MeasureArgument, ProgressArguments, Selection, ShownArguments, count};
-use crate::input::check_trials;
+use crate::input::{check_trials, tell_warnings_of_all};
 use crate::parquets::write_parquets;
 use crate::prelude::*;
 use crate::recordings::{Recorded, record_trials};
@@ -98,6 +98,10 @@ impl Arguments {
         }
         let registry = &self.measure.chosen_in(registry)?;
         let mut experiment = Experiment::load(&self.file, &self.selection.overrides(), registry)?;
+        if !self.progress.quiet {
+            let scenarios = experiment.cases.iter().map(|case| &case.scenario);
+            tell_warnings_of_all(scenarios, &experiment.given, &self.file);
+        }
         let path = self.out.clone().unwrap_or_else(|| default_path(&experiment.name, self.shard));
         if (self.selection.trials.is_none() || self.precision.is_some())
             && !self.fresh

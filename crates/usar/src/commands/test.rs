@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use experiments::comparison::short;
-use experiments::expect::{Expectation, Expected, Judgement, Verdict, judge, looks, parse};
+use experiments::expect::{Expectation, Expected, Judgement, Verdict, expectations, judge, looks};
 use experiments::experiment::{Experiment, Overrides};
 use experiments::run::{Outcome, TrialKey, run_all};
 use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
@@ -111,14 +111,10 @@ struct Suite {
 impl Suite {
     fn load(file: &Path, most: u32, registry: &Registry) -> Result<Self, Failure> {
         let experiment = Experiment::load(file, &Overrides::default(), registry)?;
-        let expected = experiment.plan.expect.clone();
+        let expected = expectations(&experiment, file)?;
         if expected.is_empty() {
             refuse!("{}: expects nothing: its sweep file has no `expect`", file.display());
         }
-        let read = |text: &String| {
-            parse(text, &experiment.metrics, &experiment.policies).map_err(Failure::input_at(file.display()))
-        };
-        let expected = expected.iter().map(read).collect::<Result<Vec<_>, _>>()?;
         let experiment = experiment.with_trials(most.min(experiment.most_trials()))?;
         experiment.check_start(file)?;
         Ok(Self {

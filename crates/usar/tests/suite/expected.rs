@@ -68,4 +68,10 @@ fn what_is_no_expectation_is_told_before_anything_runs() {
     );
     write(here, "\"rescuees: RNE > ENG\"");
     refused(here, 2, "test expected.ron", &["\"ENG\" must be a policy of the sweep (RNE, DIS)"]);
+    write(here, "\"nonsense\", \"rescuees.total: RNE > RNE\"");
+    for verb in ["test", "check"] {
+        let both =
+            ["expected.ron: expect: must be like", "expected.ron: expect: the two policies must differ"];
+        refused(here, 2, &format!("{verb} expected.ron"), &both);
+    }
 }
