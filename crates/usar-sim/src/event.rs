@@ -237,12 +237,6 @@ pub enum Event {
         /// Number of the piece that closed it.
         debris: u32,
     },
-    /// Debris that was to fall, or a way that was to close, waited until its place was free. Now that the way
-    /// is to be open, it no longer waits.
-    CalledOff {
-        /// Number of the piece that stays away.
-        debris: u32,
-    },
     /// A radiation source appeared.
     SourceAppeared {
         /// Its number.
@@ -280,6 +274,12 @@ pub enum Event {
     TaskEnded {
         /// The task.
         task: TaskId,
+    },
+    /// Debris that was to fall, or a way that was to close, waited until its place was free. Now that the way
+    /// is to be open, it no longer waits.
+    CalledOff {
+        /// Number of the piece that stays away.
+        debris: u32,
     },
 }
 
