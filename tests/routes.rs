@@ -277,8 +277,8 @@ fn no_route_leads_through_walls_that_meet_flush_and_every_open_room_is_reached()
             for (a, b) in route.legs(vector(start)) {
                 let points = (0..=200).map(|step| a.lerp(b, step as f32 / 200.0));
                 let gap = |point| outlines.iter().map(move |outline| outline.distance_to(point));
-                let least = points.flat_map(gap).fold(f32::INFINITY, f32::min);
-                assert!(f64::from(least) >= OFFSET_M - 5e-3, "plan {seed}: {least} m from a wall");
+                let nearest = points.flat_map(gap).fold(f32::INFINITY, f32::min);
+                assert!(f64::from(nearest) >= OFFSET_M - 5e-3, "plan {seed}: {nearest} m from a wall");
             }
         }
     }

@@ -157,10 +157,10 @@ impl<'a> Search<'a> {
         meshes: &mut Meshes,
     ) -> Option<Vec<Vector>> {
         for attempt in 0..ATTEMPTS {
-            let path = |plane: &Option<Plane>| plane.as_ref().map(|plane| plane.path(from, to));
+            let path = |plane: &Plane| plane.path(from, to);
             let found = match self.key(met, attempt) {
-                Some(key) => path(meshes.get(key, || self.plane(met, attempt))),
-                None => path(&self.plane(met, attempt)),
+                Some(key) => meshes.get(key, || self.plane(met, attempt)).map(path),
+                None => self.plane(met, attempt).as_ref().map(path),
             };
             match found {
                 Some(Some(way)) if self.keeps_clear(met, from, &way) => return Some(way),
@@ -254,11 +254,11 @@ impl<'a> Search<'a> {
 }
 
 impl Meshes {
-    fn get(&mut self, key: MeshKey, make: impl FnOnce() -> Option<Plane>) -> &Option<Plane> {
+    fn get(&mut self, key: MeshKey, make: impl FnOnce() -> Option<Plane>) -> Option<&Plane> {
         if self.0.len() >= MAX_MESHES && !self.0.contains_key(&key) {
             self.0.clear();
         }
-        self.0.entry(key).or_insert_with(make)
+        self.0.entry(key).or_insert_with(make).as_ref()
     }
 }
 

@@ -72,6 +72,6 @@ fn what_is_no_expectation_is_told_before_anything_runs() {
     for verb in ["test", "check"] {
         let both =
             ["expected.ron: expect: must be like", "expected.ron: expect: the two policies must differ"];
-        refused(here, 2, &format!("{verb} expected.ron"), &both);
+        refused(here, 2, format!("{verb} expected.ron").as_str(), &both);
     }
 }
