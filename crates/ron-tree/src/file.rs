@@ -5,6 +5,8 @@ use std::fs;
 use std::io::{self, Read};
 use std::path::Path;
 
+use crate::nearest::nearest;
+
 /// Largest size of a user's text in bytes: 4 MiB.
 pub const MAX_TEXT_BYTES: u64 = crate::limits::TEXT_BYTES.most as u64;
 
@@ -14,6 +16,9 @@ pub enum ReadError {
     /// The system refuses to read it.
     #[error("cannot be read: {0}")]
     Unreadable(#[from] io::Error),
+    /// There is no such file. The text is empty, or names a file that may be meant.
+    #[error("cannot be read: there is no such file{0}")]
+    Missing(String),
     /// The path is a folder.
     #[error("is a folder, not a file")]
     Folder,
@@ -33,13 +38,27 @@ pub enum ReadError {
 /// # Errors
 /// The file does not exist, is not a regular file, is too large, or cannot be opened.
 pub fn open(path: &Path, most: u64) -> Result<(fs::File, u64), ReadError> {
-    let there = fs::metadata(path)?;
+    let there = fs::metadata(path).map_err(|error| match error.kind() {
+        io::ErrorKind::NotFound => ReadError::Missing(meant(path)),
+        _ => ReadError::Unreadable(error),
+    })?;
     match there.len() {
         _ if there.is_dir() => Err(ReadError::Folder),
         _ if !there.is_file() => Err(ReadError::NotRegular),
         length if length > most => Err(ReadError::TooLarge(most)),
         length => Ok((fs::File::open(path)?, length)),
     }
+}
+
+/// The file of the same folder with the most similar name, as the end of a sentence; empty if there is none.
+fn meant(path: &Path) -> String {
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let entries = fs::read_dir(folder).into_iter().flatten().flatten();
+    let mut names: Vec<String> = entries.filter_map(|entry| entry.file_name().into_string().ok()).collect();
+    names.sort_unstable();
+    let name = path.file_name().map(|name| name.to_string_lossy()).unwrap_or_default();
+    nearest(&name, names.iter().map(String::as_str))
+        .map_or(String::new(), |name| format!("; did you mean {}?", path.with_file_name(name).display()))
 }
 
 /// Reads a file of at most this many bytes.

@@ -1,8 +1,10 @@
 //! The process: the command line is read, the command executed, and what came of it is the exit status.
 
+use std::path::Path;
 use std::process::ExitCode;
 
 use clap::FromArgMatches;
+use clap::error::{ContextKind, ContextValue};
 use experiments::experiment::with_oracle;
 use experiments::{Failure, note_panic, panic_message};
 use reports::table::{fold_at, show_as};
@@ -38,7 +40,13 @@ pub fn main_with(policies: Registry) -> ExitCode {
     let registry = with_oracle(policies);
     // A panic is a defect of the program. It is caught and reported in one sentence, never as a backtrace.
     std::panic::set_hook(Box::new(note_panic));
-    let matches = command().get_matches();
+    let matches = command().try_get_matches().unwrap_or_else(|error| {
+        if let Some(verb) = verb_for(&error) {
+            tell(format_args!("error: {verb}"));
+            std::process::exit(2);
+        }
+        error.exit()
+    });
     let cli = Cli::from_arg_matches(&matches).unwrap_or_else(|error| error.exit());
     if let Some((Width(columns), _)) = terminal_size_of(std::io::stdout()) {
         fold_at(columns);
@@ -61,6 +69,19 @@ pub fn main_with(policies: Registry) -> ExitCode {
             ExitCode::from(exit_status(&failure))
         }
     }
+}
+
+/// For a file or folder in the place of a command: a sentence with the command that is meant.
+fn verb_for(error: &clap::Error) -> Option<String> {
+    let Some(ContextValue::String(found)) = error.get(ContextKind::InvalidSubcommand) else { return None };
+    let path = Path::new(found);
+    let verb = match path.extension().and_then(|ending| ending.to_str()) {
+        Some("ron") => "run",
+        Some("usrec") => "view",
+        _ if path.is_dir() => "compare",
+        _ => return None,
+    };
+    Some(format!("{found} is no command; did you mean `usar {verb} {found}`?"))
 }
 
 fn exit_status(failure: &Failure) -> u8 {

@@ -87,6 +87,9 @@ pub fn manifest_in(path: &Path) -> Result<Manifest, Failure> {
     let not_one = |reason: &dyn std::fmt::Display| {
         Failure::input(format!("{}: is not the folder of a sweep: {reason}", path.display()))
     };
+    if path.is_file() {
+        return Err(not_one(&"it is a file; `usar sweep` makes a folder of results from a scenario"));
+    }
     if !path.is_dir() {
         return Err(not_one(&"there is no such folder"));
     }

@@ -163,6 +163,11 @@ pub(crate) fn limit() -> RangedU64ValueParser<u64> {
     RangedU64ValueParser::new().range(2..=1_000_000)
 }
 
+/// Parses the seed of a trial.
+pub(crate) fn one_seed(text: &str) -> Result<u64, BadValue> {
+    text.parse().map_err(|_| BadValue::new("a whole number from 0 on", text))
+}
+
 /// Parses the first of many seeds.
 pub(crate) fn seed() -> RangedU64ValueParser<u64> {
     RangedU64ValueParser::new().range(..u64::MAX / 2)

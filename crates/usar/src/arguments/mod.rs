@@ -10,7 +10,7 @@ mod trial;
 
 pub(crate) use common::{
     CaseArgument, JsonArgument, MeasureArgument, PoliciesArgument, ReplaceArgument, SetArguments,
-    ShownArguments, count, format_of, limit, numbers, parse_policy, seconds, seed, share,
+    ShownArguments, count, format_of, limit, numbers, one_seed, parse_policy, seconds, seed, share,
 };
 pub(crate) use family::{ComparisonArguments, FamilyArguments};
 pub(crate) use parameters::ParameterArguments;

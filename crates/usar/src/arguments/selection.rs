@@ -3,7 +3,7 @@
 use clap::Args;
 use experiments::experiment::{Keep, Overrides};
 
-use super::{PoliciesArgument, SetArguments, count};
+use super::{PoliciesArgument, SetArguments, count, one_seed};
 
 /// Which trials of a sweep are run or planned, and what is kept of them.
 #[derive(Debug, Args)]
@@ -14,7 +14,7 @@ pub(crate) struct Selection {
     #[arg(long, value_parser = count(1..=1_000_000))]
     pub(crate) trials: Option<u32>,
     /// Seed of the first trial [default: the file's]
-    #[arg(long, hide_short_help = true)]
+    #[arg(long, hide_short_help = true, value_parser = one_seed)]
     first_seed: Option<u64>,
     #[command(flatten)]
     set: SetArguments,

@@ -10,7 +10,7 @@ use ron_tree::file::{read, read_start};
 use usar_sim::scenario::Scenario;
 use usar_sim::simulation::Simulation;
 
-use super::{CaseArgument, SetArguments, parse_policy};
+use super::{CaseArgument, SetArguments, one_seed, parse_policy};
 use crate::prelude::*;
 use crate::recordings::{Shown, recorded, recording_of};
 
@@ -24,7 +24,7 @@ pub(crate) struct TrialArguments {
     #[arg(long)]
     pub(crate) policy: Option<String>,
     /// Seed of the trial [default: the first of the sweep]
-    #[arg(long)]
+    #[arg(long, value_parser = one_seed)]
     seed: Option<u64>,
     #[command(flatten)]
     case: CaseArgument,

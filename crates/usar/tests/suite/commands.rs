@@ -244,3 +244,13 @@ fn a_question_in_json_is_answered_in_json() {
     std::fs::write(path, question.replace("\"round\"", "\"rounds\"")).unwrap();
     refused(&["group", path], "question.json: not the JSON of a question: unknown field `rounds`");
 }
+
+#[test]
+fn what_is_no_command_or_no_file_is_told_with_what_is_meant() {
+    let folder = crate::place::place();
+    let refused = |arguments: &str, says: &str| crate::place::refused(folder.path(), 2, arguments, &[says]);
+    refused("short.ron", "short.ron is no command; did you mean `usar run short.ron`?");
+    refused("run shrot.ron", "shrot.ron: cannot be read: there is no such file; did you mean short.ron?");
+    refused("run short.ron --seed 1.5", "must be a whole number from 0 on, found \"1.5\"");
+    refused("compare short.ron", "it is a file; `usar sweep` makes a folder of results from a scenario");
+}

@@ -5,7 +5,7 @@ use pictures::{Plan, Width, plan};
 use recording::World;
 use usar_sim::simulation::Simulation;
 
-use crate::arguments::{LookArguments, PictureFile, SetArguments};
+use crate::arguments::{LookArguments, PictureFile, SetArguments, one_seed};
 use crate::prelude::*;
 
 /// Draw the map of a scenario, before anything runs
@@ -22,7 +22,7 @@ pub(crate) struct Arguments {
     /// Scenario file (RON)
     file: PathBuf,
     /// Seed of the trial [default: the first of the sweep]
-    #[arg(long)]
+    #[arg(long, value_parser = one_seed)]
     seed: Option<u64>,
     #[command(flatten)]
     set: SetArguments,
