@@ -5,7 +5,8 @@ use geo::{BooleanOps, Contains, LineString, Point, Polygon, unary_union};
 use parry2d::math::Vector;
 use polyanya::{Mesh, Triangulation};
 
-use super::search::SEARCH_DELTA_M;
+/// A point this far outside a mesh counts as inside, in metres.
+pub(super) const SEARCH_DELTA_M: f32 = 0.01;
 
 /// A face smaller than this has no room for the centre of a robot, in square metres.
 const LEAST_FACE_M2: f64 = 1e-3;

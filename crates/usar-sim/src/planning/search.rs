@@ -6,7 +6,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use parry2d::math::Vector;
 use polyanya::{Mesh, Triangulation};
 
-use super::faces::Faces;
+use super::faces::{Faces, SEARCH_DELTA_M};
 use super::map::ObstacleMap;
 use super::obstacles::{KnownObstacle, ObstacleKey, contains, crosses, is_entered, push_out, touches};
 
@@ -31,9 +31,6 @@ const ATTEMPTS: usize = 6;
 /// The most by which the third attempt makes an outline larger, in metres; twice as much in each further
 /// attempt.
 const NUDGE_M: f32 = 5.0e-4;
-
-/// A point this far outside a mesh counts as inside, in metres.
-pub(super) const SEARCH_DELTA_M: f32 = 0.01;
 
 /// The free plane among few obstacles.
 enum Plane {

@@ -291,7 +291,7 @@ fn leaves_room(check: &mut Checker, file: &ScenarioFile) {
     let largest = file.bodies().map(|(body, _)| body.radius_m).fold(0.0, f64::max);
     let side = f64::min(file.arena_m[0], file.arena_m[1]);
     let taken = 2.0 * (largest + file.planning.clearance_m);
-    if taken >= side {
+    if taken >= side && limits::ROBOT_RADIUS_M.range().contains(&largest) {
         let rule = format!(
             "must leave room in the arena of {side} m: with the radius of the largest robot ({largest} m), less \
              than half of it"
