@@ -5,8 +5,8 @@ use usar_sim::simulation::Simulation;
 
 use crate::frame::{GroupFrame, MovedDebris, RescueeFrame, RobotState, Route, Stored, push_sets};
 
-/// The first numbers of a robot's motion are positions. They are predicted by extrapolation from the two frames before; the
-/// other numbers are predicted to stay the same.
+/// The first numbers of a robot's motion are positions. They are predicted by extrapolation from the two
+/// frames before; the other numbers are predicted to stay the same.
 pub(crate) const POSITIONS: usize = 2;
 
 /// The streams of rows that are stored only when they change.

@@ -85,8 +85,8 @@ impl Resolver {
         Self { rule, directives: Vec::new() }
     }
 
-    /// One directive for each mover, in the order of the movers. Replaces the preferred velocities of robots that make
-    /// room or let others out, and limits those of robots that wait or queue before a passage.
+    /// One directive for each mover, in the order of the movers. Replaces the preferred velocities of robots
+    /// that make room or let others out, and limits those of robots that wait or queue before a passage.
     pub fn resolve(
         &mut self,
         model: &RightOfWayModel,

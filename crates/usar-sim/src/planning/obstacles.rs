@@ -102,8 +102,8 @@ pub fn crosses(polygon: &[Vector], a: Vector, b: Vector) -> bool {
     is_clipped(polygon, 0.0, a, b)
 }
 
-/// Whether the line from `a` to `b` is deeper in a convex polygon (anticlockwise) than the rounding of a search
-/// among meshes explains, which leaves out bends of a few millimetres.
+/// Whether the line from `a` to `b` is deeper in a convex polygon (anticlockwise) than the rounding of a
+/// search among meshes explains, which leaves out bends of a few millimetres.
 pub(super) fn is_entered(polygon: &[Vector], a: Vector, b: Vector) -> bool {
     const ROUNDING_M: f32 = 5.0e-3;
     is_clipped(polygon, ROUNDING_M, a, b)
