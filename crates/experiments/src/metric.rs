@@ -43,7 +43,6 @@ enum Scope {
 #[derive(Clone, Copy)]
 struct Declaration {
     name: &'static str,
-    title: &'static str,
     meaning: &'static str,
     unit: &'static str,
     figure: &'static str,
@@ -60,62 +59,61 @@ const RATIO: &str = "points per rescuee";
 /// All metrics.
 #[rustfmt::skip]
 const DECLARATIONS: &[Declaration] = &[
-    per_task("rescuees", "rescuees", "", |r| Some(f64::from(r.rescued())), |t| Some(f64::from(t.rescued))).primary().in_figure("rescuees").higher()
+    per_task("rescuees", "", |r| Some(f64::from(r.rescued())), |t| Some(f64::from(t.rescued))).primary().in_figure("rescuees").higher()
         .means("Rescuees delivered home or to a rest place."),
-    per_task("energy_per_rescuee", "energy per rescuee", RATIO, |r| ratio(r.energy(), r.rescued()), |t| ratio(t.energy, t.rescued)).primary().of_sums("energy").in_figure("energy per rescuee").lower()
+    per_task("energy_per_rescuee", RATIO, |r| ratio(r.energy(), r.rescued()), |t| ratio(t.energy, t.rescued)).primary().of_sums("energy").in_figure("energy per rescuee").lower()
         .means("Energy spent, divided by the rescuees delivered; empty where nobody was rescued. The total \
             includes what robots spent outside groups."),
-    per_task("hp_per_rescuee", "HP per rescuee", RATIO, |r| ratio(r.hp(), r.rescued()), |t| ratio(t.hp, t.rescued)).primary().of_sums("hp").in_figure("HP per rescuee").lower()
+    per_task("hp_per_rescuee", RATIO, |r| ratio(r.hp(), r.rescued()), |t| ratio(t.hp, t.rescued)).primary().of_sums("hp").in_figure("HP per rescuee").lower()
         .means("HP lost, divided by the rescuees delivered; empty where nobody was rescued. The total \
             includes what robots lost outside groups."),
-    whole("rounds", "rounds", "", |r| Some(f64::from(r.completed_rounds))).primary().higher()
+    whole("rounds", "", |r| Some(f64::from(r.completed_rounds))).primary().higher()
         .means("Rounds that ended: everybody was home again for whom the team waits."),
-    whole("waiting", "time waited", "s", |r| Some(r.waiting_s())).in_figure("waiting and deadlocks").lower()
+    whole("waiting", "s", |r| Some(r.waiting_s())).in_figure("waiting and deadlocks").lower()
         .means("Time in which robots stood because of other robots, summed over all robots."),
-    whole("deadlocks", "deadlocks", "", |r| Some(f64::from(r.counts.deadlocks))).in_figure("waiting and deadlocks").lower()
+    whole("deadlocks", "", |r| Some(f64::from(r.counts.deadlocks))).in_figure("waiting and deadlocks").lower()
         .means("Conflict sets in which nobody moved for as long as the rule of right of way allows."),
-    whole("longest_stall", "longest stall", "s", |r| Some(r.longest_stall_s())).in_figure("waiting and deadlocks").lower()
+    whole("longest_stall", "s", |r| Some(r.longest_stall_s())).in_figure("waiting and deadlocks").lower()
         .means("The longest time in which one robot with a goal came no nearer to it, over all robots."),
-    whole("conflicts", "conflicts", "", |r| Some(f64::from(r.counts.conflicts)))
+    whole("conflicts", "", |r| Some(f64::from(r.counts.conflicts)))
         .means("Conflict sets that began: robots whose wishes would have brought them too near to one \
             another."),
-    whole("rotations", "turns passed on", "", |r| Some(f64::from(r.counts.rotations)))
+    whole("rotations", "", |r| Some(f64::from(r.counts.rotations)))
         .means("Times the head of a conflict set lost its turn to the next."),
-    whole("retreats", "times room was made", "", |r| Some(f64::from(r.counts.retreats)))
+    whole("retreats", "", |r| Some(f64::from(r.counts.retreats)))
         .means("Times a robot made room for another."),
-    whole("back_offs", "times backed off", "", |r| Some(f64::from(r.counts.back_offs)))
+    whole("back_offs", "", |r| Some(f64::from(r.counts.back_offs)))
         .means("Times a conflict set backed off sideways."),
-    whole("unreachable", "places given up on", "", |r| Some(f64::from(r.counts.unreachable))).lower()
+    whole("unreachable", "", |r| Some(f64::from(r.counts.unreachable))).lower()
         .means("Times a robot gave up on a rescuee or a place because no way leads there."),
-    whole("errands_done", "errands done", "", |r| Some(f64::from(r.counts.errands_done))).higher()
+    whole("errands_done", "", |r| Some(f64::from(r.counts.errands_done))).higher()
         .means("Places of errands that were reached."),
-    whole("time", "time to the end", "s", |r| Some(r.time_s))
+    whole("time", "s", |r| Some(r.time_s))
         .means("Simulated time when the trial was over."),
-    per_task("secured", "secured", "", |r| Some(f64::from(r.secured())), |t| Some(f64::from(t.secured))).higher()
+    per_task("secured", "", |r| Some(f64::from(r.secured())), |t| Some(f64::from(t.secured))).higher()
         .means("Rescuees that were taken on board."),
-    per_task("energy", "energy spent", POINTS, |r| Some(r.energy()), |t| Some(t.energy))
+    per_task("energy", POINTS, |r| Some(r.energy()), |t| Some(t.energy))
         .means("Energy spent by all robots; of a task, by its groups."),
-    whole("energy.ungrouped", "energy spent outside groups", POINTS, |r| Some(r.ungrouped_energy))
+    whole("energy.ungrouped", POINTS, |r| Some(r.ungrouped_energy))
         .means("Energy spent by robots that were in no group: on their way to rest, and during rounds that \
             went on without them."),
-    per_task("hp", "HP lost", POINTS, |r| Some(r.hp()), |t| Some(t.hp))
+    per_task("hp", POINTS, |r| Some(r.hp()), |t| Some(t.hp))
         .means("HP lost by all robots; of a task, by its groups."),
-    whole("hp.ungrouped", "HP lost outside groups", POINTS, |r| Some(r.ungrouped_hp))
+    whole("hp.ungrouped", POINTS, |r| Some(r.ungrouped_hp))
         .means("HP lost by robots that were in no group."),
-    whole("turned_back", "times turned back", "", |r| Some(f64::from(r.counts.turned_back)))
+    whole("turned_back", "", |r| Some(f64::from(r.counts.turned_back)))
         .means("Times a robot left for its rest place."),
-    whole("stranded", "robots stranded", "", |r| Some(r.stranded() as f64)).lower()
+    whole("stranded", "", |r| Some(r.stranded() as f64)).lower()
         .means("Robots that ended with no energy."),
-    whole("disabled", "robots disabled", "", |r| Some(r.disabled() as f64)).lower()
+    whole("disabled", "", |r| Some(r.disabled() as f64)).lower()
         .means("Robots that ended with no HP."),
-    whole("distance", "distance travelled", "m", |r| Some(r.distance_m()))
+    whole("distance", "m", |r| Some(r.distance_m()))
         .means("Way travelled, summed over all robots."),
 ];
 
-const fn whole(name: &'static str, title: &'static str, unit: &'static str, value: Value) -> Declaration {
+const fn whole(name: &'static str, unit: &'static str, value: Value) -> Declaration {
     Declaration {
         name,
-        title,
         meaning: "",
         unit,
         figure: "",
@@ -126,16 +124,9 @@ const fn whole(name: &'static str, title: &'static str, unit: &'static str, valu
     }
 }
 
-const fn per_task(
-    name: &'static str,
-    title: &'static str,
-    unit: &'static str,
-    total: Value,
-    task: TaskValue,
-) -> Declaration {
+const fn per_task(name: &'static str, unit: &'static str, total: Value, task: TaskValue) -> Declaration {
     Declaration {
         name,
-        title,
         meaning: "",
         unit,
         figure: "",
@@ -184,12 +175,9 @@ impl Declaration {
     }
 
     fn metric(self, part: Option<&str>, source: Source) -> Metric {
-        let Self { name, title, meaning, unit, figure, is_primary, direction, cost, .. } = self;
-        let with_part =
-            |text: &str, between: char| part.map_or(text.to_owned(), |part| format!("{text}{between}{part}"));
+        let Self { name, meaning, unit, figure, is_primary, direction, cost, .. } = self;
         Metric {
-            name: with_part(name, '.'),
-            title: with_part(title, ' '),
+            name: part.map_or(name.to_owned(), |part| format!("{name}.{part}")),
             meaning,
             unit,
             figure,
@@ -225,10 +213,8 @@ enum Source {
 /// A quantity of a trial.
 #[derive(Debug, Clone)]
 pub struct Metric {
-    /// Name on the command line and in the tables of comparisons.
+    /// Name, the same on the command line, in tables, sentences and figures.
     pub name: String,
-    /// Name in words.
-    pub title: String,
     /// Meaning, in a sentence or two.
     pub meaning: &'static str,
     /// Unit; empty for a count.
@@ -266,10 +252,10 @@ impl Metric {
         if self.part.is_empty() { whole } else { whole.replacen(&part, "", 1) }
     }
 
-    /// Its title with its unit, if it has one.
+    /// Its name with its unit, if it has one.
     #[must_use]
-    pub fn title_with_unit(&self) -> String {
-        if self.unit.is_empty() { self.title.clone() } else { format!("{} ({})", self.title, self.unit) }
+    pub fn name_with_unit(&self) -> String {
+        if self.unit.is_empty() { self.name.clone() } else { format!("{} ({})", self.name, self.unit) }
     }
 
     /// Its value; `None` where it is undefined.
@@ -331,12 +317,6 @@ impl Catalogue {
                 .map_or(String::new(), |meant| format!("; did you mean {meant}?"));
             Failure::input(format!("unknown metric {name:?}; known metrics: {}{meant}", known.join(", ")))
         })
-    }
-
-    /// A metric's title; empty for an unknown one.
-    #[must_use]
-    pub fn title(&self, name: &str) -> &str {
-        self.iter().find(|metric| metric.name == name).map_or("", |metric| &metric.title)
     }
 
     /// The places of the cost and of the rescuees whose ratio the metric is; `None` for other metrics.

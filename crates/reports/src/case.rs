@@ -4,10 +4,9 @@
 use askama::Template;
 use experiments::Failure;
 use experiments::comparison::{
-    Comparison, answer, digits, limit_of_correction, short, short_p, test_in_words,
+    Comparison, Verdict, answer, digits, limit_of_correction, moments_of, short, short_p, test_in_words,
 };
 use experiments::experiment::{Axis, Experiment, PolicySpec, Seeds};
-use experiments::stats::Moments;
 use experiments::sweep::folder::Folder;
 use experiments::sweep::host::Hosts;
 use experiments::sweep::names::PLOTS;
@@ -15,8 +14,9 @@ use experiments::sweep::owned::Report;
 
 use crate::decisions::{Decisions, decisions};
 use crate::drawing::{self, Figure};
-use crate::figures::{figures, is_quiet};
+use crate::figures::{Part, figures, is_quiet};
 use crate::maps::{Map, ShownTrial, trails_map, world_map};
+use crate::table::{between, moments};
 use crate::wanted::Wanted;
 
 #[derive(Template)]
@@ -37,8 +37,10 @@ struct Page<'a> {
     policies: Vec<(&'a str, &'a str)>,
     /// The names that figures use for policies with too long labels, each with its label.
     abbreviations: Vec<(String, &'a str)>,
-    /// The answer to the first question of the sweep.
+    /// What is shown, in a few words.
     answer: Option<String>,
+    /// How the question differs from the sweep file's.
+    own: Option<&'a str>,
     /// Whether the sweep file names its metrics.
     is_declared: bool,
     /// Whether some comparison has a margin.
@@ -49,7 +51,7 @@ struct Page<'a> {
     decisions: Option<Decisions>,
     comparisons: Vec<Row>,
     exploratory: Vec<Row>,
-    /// Titles of the metrics of figures that are zero in every trial.
+    /// Names of the metrics of figures that are zero in every trial.
     quiet: Vec<&'a str>,
     found: Vec<&'a str>,
     open: Vec<&'a str>,
@@ -80,12 +82,16 @@ struct Row {
     pairs: String,
     pairing: String,
     is_found: bool,
+    /// Whether it is the first of its metric.
+    is_first: bool,
 }
 
 /// The comparisons of a sweep: those that were asked for, and the others.
 pub(crate) struct Compared {
     pub asked: Vec<Comparison>,
     pub exploratory: Vec<Comparison>,
+    /// How the question differs from the sweep file's.
+    pub own: Option<String>,
 }
 
 /// A case's page: its place, the prefix of its figures' names, and the trials that it shows.
@@ -113,17 +119,19 @@ pub(crate) fn write_case(
     };
     let (here, exploratory) = (of_case(&all.asked), of_case(&all.exploratory));
     let here: Vec<&Comparison> = here.iter().collect();
-    let figures = figures(folder, case, &here)?;
+    let seed = shown.first().map(|trial| trial.seed);
+    let figures = figures(folder, Part { case, only: None, seed }, &here)?;
     let mut maps: Vec<Map> = world_map(folder.experiment(), case).into_iter().collect();
     for (number, trial) in shown.iter().enumerate() {
         let beside = links.strip_suffix(prefix.as_str()).unwrap_or(&links).trim_end_matches('/');
         maps.push(trails_map(number, trial, beside)?);
     }
-    let decided = decisions(folder, case, shown.first().map(|trial| trial.seed))?;
+    let decided = decisions(folder, case, seed)?;
     let mut page = page(folder, case, &here, &all.asked);
     (page.figures, page.maps) = (&figures, &maps);
     page.decisions = decided;
-    page.answer = wanted.asked.metrics.first().and_then(|metric| answer(folder, case, *metric, &here));
+    page.answer = answer(&here);
+    page.own = all.own.as_deref();
     page.is_declared = wanted.asked.is_declared;
     page.margins = wanted.asked.margins_in_words(folder.experiment());
     page.exploratory = exploratory.iter().map(row).collect();
@@ -163,8 +171,8 @@ fn page<'a>(folder: &'a Folder, case: usize, comparisons: &[&'a Comparison], all
         ("invariants checked", if manifest.is_checked { "all, at every step".into() } else { "no".into() }),
     ];
     facts.extend(Hosts::read(folder.path()).rules.into_iter().map(|rule| ("stopping rule", rule)));
-    let sentences = |is_settled: bool| {
-        let wanted = comparisons.iter().filter(|comparison| comparison.is_settled() == is_settled);
+    let sentences = |is_open: bool| {
+        let wanted = comparisons.iter().filter(|one| (one.verdict == Verdict::Undecided) == is_open);
         wanted.map(|comparison| comparison.in_words.as_str()).collect()
     };
     let names = drawing::names(experiment).into_iter();
@@ -187,16 +195,17 @@ fn page<'a>(folder: &'a Folder, case: usize, comparisons: &[&'a Comparison], all
             .map(|spec| (spec.label.as_str(), about(spec, experiment)))
             .collect(),
         answer: None,
+        own: None,
         is_declared: false,
         has_margins: comparisons.iter().any(|comparison| comparison.judged.is_some()),
         margins: String::new(),
         summary: summary(folder, case),
         decisions: None,
-        comparisons: comparisons.iter().map(|comparison| row(comparison)).collect(),
+        comparisons: rows(comparisons),
         exploratory: Vec::new(),
         quiet: quiet(folder, case),
-        found: sentences(true),
-        open: sentences(false),
+        found: sentences(false),
+        open: sentences(true),
         limit: limit_of_correction(all),
         test: test_in_words(all),
         family: all.iter().filter(|comparison| comparison.p.is_some()).count(),
@@ -215,17 +224,27 @@ fn about<'e>(spec: &PolicySpec, experiment: &'e Experiment) -> &'e str {
     kinds.filter(|kind| kind.name == spec.name).map(|kind| kind.about.as_str()).next().unwrap_or_default()
 }
 
-/// Titles of the metrics of figures that are zero in every trial of a case.
+/// Names of the metrics of figures that are zero in every trial of a case.
 fn quiet(folder: &Folder, case: usize) -> Vec<&str> {
     let Experiment { metrics, .. } = folder.experiment();
     let places = metrics.figures().into_iter().flat_map(|(_, places)| places);
-    places.filter(|place| is_quiet(folder, case, *place)).map(|place| metrics[place].title.as_str()).collect()
+    places.filter(|place| is_quiet(folder, case, *place)).map(|place| metrics[place].name.as_str()).collect()
 }
 
 /// The commands that reproduce these results.
 fn command(folder: &Folder) -> String {
     let check = if folder.manifest().is_checked { " --check" } else { "" };
     format!("usar sweep sweep.ron{check} --out again\nusar report again")
+}
+
+/// A row for each comparison, in groups of the same metric.
+fn rows(comparisons: &[&Comparison]) -> Vec<Row> {
+    let groups = comparisons.chunk_by(|a, b| a.metric == b.metric);
+    let of_group = |group: &[&Comparison]| {
+        let rows = group.iter().enumerate().map(|(i, one)| Row { is_first: i == 0, ..row(one) });
+        rows.collect::<Vec<Row>>()
+    };
+    groups.flat_map(of_group).collect()
 }
 
 fn row(c: &Comparison) -> Row {
@@ -239,38 +258,27 @@ fn row(c: &Comparison) -> Row {
         left_out: c.failed + c.missing + c.undefined,
         means: format!("{}, {}", mean(c.mean_a), mean(c.mean_b)),
         difference: number(c.difference),
-        interval: c
-            .interval
-            .map_or("-".to_owned(), |[low, high]| format!("{} to {}", short(low), short(high))),
+        interval: between(c.interval),
         p: c.p.map_or("-".to_owned(), short_p),
-        verdict: c.judged.map_or(String::new(), |judged| judged.in_words()),
+        verdict: c.verdict_in_words(),
         p_holm: c.p_holm.map_or("-".to_owned(), short_p),
         detectable: number(c.detectable),
         pairs: pairs.map_or("-".to_owned(), |pairs| pairs.to_string()),
         pairing: c.pairing.map_or("-".to_owned(), |times| format!("{} x", digits(times, 2))),
-        is_found: c.is_found(),
+        is_found: c.verdict.is_shown(),
+        is_first: false,
     }
 }
 
 /// The table of policies as rows of text.
 fn summary(folder: &Folder, case: usize) -> Vec<Vec<String>> {
     let Experiment { policies, metrics, .. } = folder.experiment();
-    let cell = |policy: usize, metric: usize| {
-        let values = folder.values(case, policy, metric);
-        let moments = Moments::of(&values);
-        let Some(mean) = moments.mean else { return "-".to_owned() };
-        let sd = moments.sd.map_or(String::new(), |sd| format!(" ± {}", short(sd)));
-        let partly = if values.len() < folder.trials_of(case) {
-            format!(" (n = {})", values.len())
-        } else {
-            String::new()
-        };
-        format!("{}{sd}{partly}", digits(mean, 4))
-    };
+    let trials = folder.trials_of(case);
+    let cell = |policy, metric| moments(&moments_of(folder, (case, policy), metric), trials);
     let primary = metrics.iter().enumerate().filter(|(_, metric)| metric.is_primary);
     primary
         .map(|(place, metric)| {
-            std::iter::once(metric.title_with_unit())
+            std::iter::once(metric.name_with_unit())
                 .chain((0..policies.len()).map(|policy| cell(policy, place)))
                 .collect()
         })

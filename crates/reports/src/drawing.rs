@@ -9,6 +9,7 @@ use kuva::plot::{ColorMap, Heatmap, LinePlot, LineStyle};
 use kuva::render::figure::Figure as Panels;
 use kuva::render::layout::{Layout, TickFormat};
 use kuva::render::plots::Plot;
+use kuva::render::theme::Theme;
 
 /// Okabe and Ito's colours, which colour-blind readers can tell apart, in the order of the policies.
 const COLOURS: [&str; 8] =
@@ -38,6 +39,10 @@ pub(crate) struct Drawing {
 /// Size of the numbers at axes, in the unit of a drawing.
 pub(crate) const TICK: f64 = 11.0;
 
+/// A panel for a column is at least this share of its width in the report, and so many units high.
+const NARROWEST: f64 = 0.44;
+const LOWEST: f64 = 165.0;
+
 /// Space around the panels, and between two of them, in the same unit, as in kuva's figures.
 const MARGIN: f64 = 10.0;
 const GAP: f64 = 15.0;
@@ -64,13 +69,25 @@ impl Drawing {
         self.laid_out(columns, cell)
     }
 
-    /// The drawing for a column of this width, in units in which `TICK` is readable. Each row has as many
-    /// panels as fit, each at most as wide as the column.
-    pub fn svg_for(self, width: f64) -> String {
-        let [cell, height] = self.cell;
-        let columns = ((width / cell) as usize).clamp(1, self.panels.len().max(1));
-        let between = GAP * (columns - 1) as f64 + 2.0 * MARGIN;
-        self.laid_out(columns, [(width - between) / columns as f64, height])
+    /// The drawing for a column of this width, in units in which `TICK` is readable; as high as is asked for, or
+    /// with panels of the report's proportions. Each row has as many panels side by side as can be read.
+    pub fn svg_for(mut self, width: f64, height: Option<f64>) -> String {
+        let [cell_width, cell_height] = self.cell;
+        let panels = self.panels.len().max(1);
+        let columns = ((width / (NARROWEST * cell_width)) as usize).clamp(1, panels);
+        let rows = panels.div_ceil(columns);
+        let size = |all: f64, parts: usize| (all - GAP * (parts - 1) as f64 - 2.0 * MARGIN) / parts as f64;
+        let panel_width = size(width, columns);
+        let proportional = (panel_width * cell_height / cell_width).max(LOWEST);
+        let panel_height = height.map_or(proportional, |height| size(height, rows));
+        let in_column = |panel: Panel| {
+            let layout = panel.layout.with_title_size(TICK as u32 + 1).with_label_size(TICK as u32);
+            let has_names = matches!(panel.plots[..], [Plot::Box(_), ..]);
+            let layout = if has_names { layout.with_x_tick_rotate(-30.0) } else { layout.with_ticks(4) };
+            Panel { layout, ..panel }
+        };
+        self.panels = self.panels.into_iter().map(in_column).collect();
+        self.laid_out(columns, [panel_width, panel_height])
     }
 
     fn laid_out(self, columns: usize, cell: [f64; 2]) -> String {
@@ -135,6 +152,7 @@ pub(crate) fn layout(plots: &[Plot], title: &str) -> Layout {
         .with_label_size(13)
         .with_tick_size(TICK as u32)
         .with_tick_format(TickFormat::Custom(Arc::new(tick)))
+        .with_theme(Theme { box_median: "#1A1A1A".into(), ..Theme::light() })
         .with_font_family("DejaVu Sans, Helvetica, Arial, sans-serif")
 }
 
@@ -199,14 +217,33 @@ pub(crate) fn line_panel(lines: &[Line], metric: &str, title: &str, x: &str, y: 
 /// A heat map with its values written in it: white at 0 and blue at `most`, light enough for black text.
 /// Equal values have equal colours, whatever the range of the other values. The first row is on top; its
 /// categories are [`from_top`].
-pub(crate) fn heat_map(mut data: Vec<Vec<f64>>, most: f64) -> Plot {
+pub(crate) fn heat_map(data: Vec<Vec<f64>>, most: f64) -> Plot {
+    coloured(data, most, |share| towards(SKY_BLUE, share.max(0.0)))
+}
+
+/// The same for values of both signs: white at 0, blue at `most`, and orange at its negative.
+pub(crate) fn difference_heat_map(data: Vec<Vec<f64>>, most: f64) -> Plot {
+    coloured(data, most, |share| towards(if share < 0.0 { ORANGE } else { SKY_BLUE }, share.abs()))
+}
+
+/// Okabe and Ito's sky blue and orange, light enough for black text.
+const SKY_BLUE: [f64; 3] = [86.0, 180.0, 233.0];
+const ORANGE: [f64; 3] = [230.0, 159.0, 0.0];
+
+/// White mixed with this share of a colour.
+fn towards(colour: [f64; 3], share: f64) -> String {
+    let [r, g, b] = colour.map(|end| (255.0 + (end - 255.0) * share.min(1.0)).round() as u8);
+    format!("#{r:02X}{g:02X}{b:02X}")
+}
+
+/// A heat map whose colours depend on the values' shares of `most`.
+fn coloured(mut data: Vec<Vec<f64>>, most: f64, colour: fn(f64) -> String) -> Plot {
     data.reverse(); // kuva begins at the bottom
     let all = || data.iter().flatten().copied();
     let (low, high) = (all().fold(f64::INFINITY, f64::min), all().fold(f64::NEG_INFINITY, f64::max));
+    // kuva gives the place between the least and the largest value.
     let colours = ColorMap::Custom(Arc::new(move |place: f64| {
-        let share = (low + place.clamp(0.0, 1.0) * (high - low)) / most.max(f64::MIN_POSITIVE);
-        let part = |end: f64| (255.0 + (end - 255.0) * share.clamp(0.0, 1.0)).round() as u8;
-        format!("#{:02X}{:02X}{:02X}", part(86.0), part(180.0), part(233.0))
+        colour((low + place.clamp(0.0, 1.0) * (high - low)) / most.max(f64::MIN_POSITIVE))
     }));
     Plot::Heatmap(Heatmap::new().with_data(data).with_color_map(colours).with_values())
 }
@@ -234,14 +271,14 @@ const LONGEST_NAME: usize = 12;
 /// Panels in rows with this many columns, as one drawing.
 fn draw(panels: Vec<Panel>, columns: usize, [width, height]: [f64; 2]) -> String {
     let rows = panels.len().div_ceil(columns);
+    let has_legend = panels.len() > 1
+        && panels.iter().all(|panel| matches!(panel.plots[..], [Plot::Line(_) | Plot::Scatter(_), ..]));
     let (plots, layouts): (Vec<_>, Vec<_>) =
         panels.into_iter().map(|panel| (panel.plots, panel.layout)).unzip();
-    let scene = Panels::new(rows, columns)
-        .with_plots(plots)
-        .with_layouts(layouts)
-        .with_cell_size(width, height)
-        .render();
-    let svg = SvgBackend.render_scene(&scene);
+    let figure =
+        Panels::new(rows, columns).with_plots(plots).with_layouts(layouts).with_cell_size(width, height);
+    let figure = if has_legend { figure.with_shared_legend_bottom() } else { figure };
+    let svg = SvgBackend.render_scene(&figure.render());
     with_view_box(&svg)
 }
 

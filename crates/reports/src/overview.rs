@@ -4,13 +4,14 @@
 use askama::Template;
 use experiments::Failure;
 use experiments::comparison::{
-    Comparison, Effect, Interaction, answer, effects, interactions, limit_of_changes,
+    Comparison, Effect, Interaction, answer, answer_of_cases, effects, interactions, limit_of_changes,
 };
 use experiments::metric::Metric;
 use experiments::sweep::folder::Folder;
 use experiments::sweep::names::{PLOTS, REPORT};
 use experiments::sweep::owned::Report;
 
+use crate::case::Compared;
 use crate::drawing::Figure;
 use crate::figures::along_axes;
 use crate::table::{Lines, differences_table, effects_table};
@@ -22,6 +23,10 @@ struct Overview<'a> {
     title: &'a str,
     description: &'a str,
     counts: String,
+    /// In how many cases what is shown.
+    answer: Option<String>,
+    /// How the question differs from the sweep file's.
+    own: Option<&'a str>,
     is_complete: bool,
     cases: Vec<Line>,
     /// Number of cases that have a page.
@@ -58,7 +63,7 @@ impl<'a> Change<'a> {
         let comparisons: Vec<&Comparison> =
             comparisons.iter().filter(|one| one.metric == metric.name).collect();
         Self {
-            metric: &metric.title,
+            metric: &metric.name,
             means: Lines::of(&effects_table(&effects)),
             differences: Lines::of(&differences_table(&comparisons)),
         }
@@ -68,11 +73,11 @@ impl<'a> Change<'a> {
 pub(crate) fn write_overview(
     folder: &Folder,
     wanted: &Wanted,
-    comparisons: &[Comparison],
+    all: &Compared,
     pages: &[usize],
     files: &mut Report,
 ) -> Result<(), Failure> {
-    let experiment = folder.experiment();
+    let (experiment, comparisons) = (folder.experiment(), &all.asked);
     let changes = if experiment.policies.len() > 1 {
         interactions(folder, &wanted.asked.metrics, wanted.asked.choice())?
     } else {
@@ -92,10 +97,10 @@ pub(crate) fn write_overview(
         Line {
             place: experiment.describe(&experiment.cases[case]).trim_end_matches(": ").to_owned(),
             page,
-            answer: wanted.asked.metrics.first().and_then(|metric| answer(folder, case, *metric, &here)),
+            answer: answer(&here),
         }
     };
-    let figures = along_axes(folder)?;
+    let figures = along_axes(folder, comparisons)?;
     let failed = folder.results().values().filter(|measured| measured.metrics.is_none()).count();
     let overview = Overview {
         title: wanted.title.as_deref().unwrap_or(&experiment.name),
@@ -107,6 +112,8 @@ pub(crate) fn write_overview(
             experiment.trials,
             folder.results().len() - failed,
         ),
+        answer: answer_of_cases(&comparisons.iter().collect::<Vec<_>>()),
+        own: all.own.as_deref(),
         is_complete: folder.manifest().is_complete,
         cases: (0..experiment.cases.len()).map(line).collect(),
         pages: pages.len(),

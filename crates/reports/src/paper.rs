@@ -19,6 +19,8 @@ pub const LEAST_TEXT_POINTS: f64 = 7.0;
 pub struct ColumnLook {
     /// Width of the column, in millimetres.
     pub width_mm: f64,
+    /// Height of the figure, in millimetres; `None` for that of its panels.
+    pub height_mm: Option<f64>,
     /// Whether colours are replaced by greys.
     pub is_grey: bool,
     /// The metric whose panels are kept; `None` for all.
@@ -47,8 +49,9 @@ pub fn column_figure(
             refuse!("--metric: the figure {name} has no panel of {metric}");
         }
     }
-    let units = look.width_mm * POINTS_PER_MM * TICK / LEAST_TEXT_POINTS;
-    let svg = in_millimetres(&sketch.drawing.svg_for(units), look.width_mm);
+    let units = |mm: f64| mm * POINTS_PER_MM * TICK / LEAST_TEXT_POINTS;
+    let svg = sketch.drawing.svg_for(units(look.width_mm), look.height_mm.map(units));
+    let svg = in_millimetres(&svg, look.width_mm);
     Ok(if look.is_grey { grey(&svg) } else { svg })
 }
 
@@ -58,7 +61,7 @@ fn all(folder: &mut Folder, wanted: &Wanted) -> Result<Vec<Sketch>, Failure> {
     let asked = &wanted.asked;
     let comparisons = if is_compared { compare(folder, &asked.metrics, asked.choice())? } else { Vec::new() };
     let here: Vec<&Comparison> = comparisons.iter().filter(|c| c.case == case + 1).collect();
-    let part = Part { case, only: asked.policies.as_deref() };
+    let part = Part { case, only: asked.policies.as_deref(), seed: None };
     let along =
         if folder.experiment().axes.is_empty() { Vec::new() } else { sketches_along_axes(folder, part)? };
     let figures = sketches(folder, part, &here)?;
@@ -113,7 +116,7 @@ mod tests {
             let lines = [(0, "A", vec![(0.0, 1.0, 0.5), (1.0, 2.0, 0.5)])];
             let panel = || crate::drawing::line_panel(&lines, "m", "title", "x", "y").unwrap();
             let drawing = Drawing::new((0..panels).map(|_| panel()).collect(), 3, [420.0, 320.0]);
-            let svg = drawing.svg_for(width);
+            let svg = drawing.svg_for(width, None);
             let shown = svg.split_once("viewBox=\"0 0 ").unwrap().1.split_once(' ').unwrap().0;
             assert!(shown.parse::<f64>().unwrap() <= width + 0.5, "{shown} for {width}");
         }

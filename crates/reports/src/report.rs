@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use experiments::Failure;
-use experiments::comparison::compare;
+use experiments::comparison::{compare, own_question};
 use experiments::sweep::folder::Folder;
 use experiments::sweep::names::{PLOTS, REPORT};
 use experiments::sweep::owned::Report;
@@ -25,10 +25,9 @@ pub fn write_report(folder: &mut Folder, mut wanted: Wanted) -> Result<PathBuf, 
     let compared = |metrics: &[usize]| {
         if is_compared { compare(folder, metrics, wanted.asked.choice()) } else { Ok(Vec::new()) }
     };
-    let all = Compared {
-        asked: compared(&wanted.asked.metrics)?,
-        exploratory: compared(&wanted.asked.exploratory)?,
-    };
+    let (asked, exploratory) = (compared(&wanted.asked.metrics)?, compared(&wanted.asked.exploratory)?);
+    let own = own_question(folder, &wanted.asked, &asked)?;
+    let all = Compared { asked, exploratory, own };
     let cases = folder.experiment().cases.len();
     let shown = std::mem::take(&mut wanted.shown);
     let mut files = Report::of(folder.path());
@@ -46,7 +45,7 @@ pub fn write_report(folder: &mut Folder, mut wanted: Wanted) -> Result<PathBuf, 
             let page = CasePage { case: *case, file, links: prefix.clone(), prefix, shown };
             write_case(folder, &wanted, &all, page, &mut files)?;
         }
-        write_overview(folder, &wanted, &all.asked, &chosen, &mut files)?;
+        write_overview(folder, &wanted, &all, &chosen, &mut files)?;
     }
     files.write()?;
     Ok(folder.path().join(REPORT))

@@ -9,11 +9,11 @@ use experiments::experiment::with_oracle;
 use experiments::{Failure, note_panic, panic_message};
 use reports::table::{fold_at, show_as};
 use rne_core::Registry;
-use terminal_size::{Width, terminal_size_of};
+use terminal_size::terminal_size_of;
 
 use crate::arguments::format_of;
 use crate::commands::{Cli, command};
-use crate::output::sentences;
+use crate::output::{columns_of, sentences};
 use crate::running::{status_of_signal, tell};
 
 /// Runs the command with which the process was called. The exit status is 0 for a result, 1 for a failure
@@ -48,9 +48,7 @@ pub fn main_with(policies: Registry) -> ExitCode {
         error.exit()
     });
     let cli = Cli::from_arg_matches(&matches).unwrap_or_else(|error| error.exit());
-    if let Some((Width(columns), _)) = terminal_size_of(std::io::stdout()) {
-        fold_at(columns);
-    }
+    columns_of(terminal_size_of(std::io::stdout())).into_iter().for_each(fold_at);
     let mut verb = &matches;
     while let Some((_, below)) = verb.subcommand() {
         verb = below;

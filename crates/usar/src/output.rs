@@ -9,6 +9,7 @@ use experiments::files::NewFile;
 use experiments::{Failure, refuse};
 use reports::table::{Format, Table, shown_as};
 use serde::Serialize;
+use terminal_size::{Height, Width, terminal_size_of};
 
 use crate::printable::Printable;
 
@@ -18,10 +19,16 @@ const SCHEMA_VERSION: u32 = 1;
 /// The destination of sentences: stdout, or stderr if stdout is for other programs.
 pub(crate) fn sentences(format: Format) -> Box<dyn Write> {
     if format.is_for_programs() {
-        Box::new(Printable::new(io::stderr()))
+        Box::new(Printable::new(io::stderr()).with_columns(columns_of(terminal_size_of(io::stderr()))))
     } else {
-        Box::new(Printable::new(io::stdout().lock()))
+        Box::new(Printable::new(io::stdout().lock()).with_columns(columns_of(terminal_size_of(io::stdout()))))
     }
+}
+
+/// Columns of a terminal of this size, or of the variable `COLUMNS`; `None` for neither.
+pub(crate) fn columns_of(terminal: Option<(Width, Height)>) -> Option<u16> {
+    let of_terminal = terminal.map(|(Width(columns), _)| columns);
+    of_terminal.or_else(|| std::env::var("COLUMNS").ok()?.parse().ok()).filter(|columns| *columns > 0)
 }
 
 /// Writes a table in the selected format. All tables of the program are written here.

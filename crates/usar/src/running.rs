@@ -10,10 +10,12 @@ use experiments::Failure;
 use experiments::experiment::PolicySpec;
 use rne_core::{PolicyError, Session, TrialStart};
 use signal_hook::consts::{SIGINT, SIGTERM};
+use terminal_size::terminal_size_of;
 use usar_sim::scenario::Scenario;
 use usar_sim::simulation::Simulation;
 
-use crate::printable::printable;
+use crate::output::columns_of;
+use crate::printable::Printable;
 
 /// A trial checks once in this many steps whether it is to stop.
 const CLOCK_CHECK_STEPS: u64 = 64;
@@ -95,5 +97,7 @@ impl Guard {
 
 /// Prints a line on stderr. Failures to write it are ignored.
 pub(crate) fn tell(what: impl Display) {
-    let _ = writeln!(std::io::stderr(), "{}", printable(&what.to_string()));
+    let mut stderr =
+        Printable::new(std::io::stderr()).with_columns(columns_of(terminal_size_of(std::io::stderr())));
+    let _ = writeln!(stderr, "{what}").and_then(|()| stderr.flush());
 }

@@ -1,170 +1,140 @@
-//! The answer to the first question of a sweep, in a sentence or two.
+//! The answer of a family of comparisons, before any table: every difference that is shown, in a few words.
 
-use super::words::{beyond_in_words, digits, p_in_words, pairs_in_words, short};
-use super::{Comparison, Judged};
-use crate::metric::{Direction, Metric};
-use crate::stats::Moments;
-use crate::sweep::folder::Folder;
+use super::words::{pairs_in_words, short};
+use super::{Comparison, Verdict};
 
-/// The answer for a case and a metric: which policy has the highest mean (the lowest, for a cost), by how
-/// much, and how certain the difference is. `None` without values.
+/// An answer has at most so many words.
+const WORDS: usize = 25;
+
+/// The answer of the comparisons of one case, in at most 25 words: every difference that is shown, every
+/// equivalence, and how many comparisons are undecided. Where this takes too many words, sizes are left out,
+/// then names. `None` without comparisons.
+///
+/// ```
+/// use experiments::comparison::{Comparison, Verdict, answer};
+///
+/// let (metric, a, b) = ("rescuees.hard".to_owned(), "RNE".to_owned(), "DIS".to_owned());
+/// let one = Comparison {
+///     metric, a, b, difference: Some(13.4), p: Some(0.001), verdict: Verdict::Better,
+///     ..Comparison::default()
+/// };
+/// assert_eq!(answer(&[&one]).unwrap(), "rescuees.hard: RNE 13.4 above DIS.");
+/// ```
 #[must_use]
-pub fn answer(folder: &Folder, case: usize, metric: usize, comparisons: &[&Comparison]) -> Option<String> {
-    let experiment = folder.experiment();
-    let declared = &experiment.metrics[metric];
-    let mut means: Vec<(f64, &str)> = Vec::new();
-    for (place, policy) in experiment.policies.iter().enumerate() {
-        means.extend(
-            Moments::of(&folder.values(case, place, metric)).mean.map(|mean| (mean, policy.label.as_str())),
-        );
+pub fn answer(comparisons: &[&Comparison]) -> Option<String> {
+    if comparisons.iter().all(|one| one.p.is_none()) {
+        return comparisons.first().map(|_| "No pair of trials has values yet.".to_owned());
     }
-    let sign = if declared.direction == Direction::Lower { -1.0 } else { 1.0 };
-    means.sort_by(|a, b| (sign * b.0).total_cmp(&(sign * a.0)));
-    let (first, last) = (means.first()?, means.last()?);
-    let value = |mean: f64| format!("{} {}", digits(mean, 4), unit_of(declared));
-    if means.len() == 1 {
-        return Some(format!("{} has {} on average.", first.1, value(first.0).trim_end()));
+    let candidates = [sized as fn(&Comparison) -> String, named].map(|of| each_named(comparisons, of));
+    let fits = |text: &String| text.split_whitespace().count() <= WORDS;
+    Some(candidates.into_iter().find(fits).unwrap_or_else(|| counted(comparisons)))
+}
+
+/// The names of all that is shown, metric by metric.
+fn each_named(comparisons: &[&Comparison], of: fn(&Comparison) -> String) -> String {
+    let (open, settled): (Vec<&Comparison>, Vec<&Comparison>) =
+        comparisons.iter().copied().partition(|one| one.verdict == Verdict::Undecided);
+    let mut sentences = Vec::new();
+    for group in settled.chunk_by(|a, b| a.metric == b.metric) {
+        let names: Vec<String> = group.iter().map(|one| of(one)).collect();
+        sentences.push(format!("{}: {}.", group[0].metric, names.join(", ")));
     }
-    let own: Vec<&Comparison> = comparisons.iter().filter(|c| c.metric == declared.name).copied().collect();
-    let found: Vec<&Comparison> = own.iter().filter(|c| c.is_found()).copied().collect();
-    let most = if sign > 0.0 { "highest" } else { "lowest" };
-    let lead =
-        format!("{} has the {most} mean of {}: {}", first.1, declared.title, value(first.0).trim_end());
-    let ahead: Vec<&Comparison> =
-        found.iter().filter(|c| c.a == first.1 || c.b == first.1).copied().collect();
-    let size = |c: &Comparison| c.difference.map_or(0.0, f64::abs);
-    if let Some(nearest) = ahead.iter().min_by(|a, b| size(a).total_cmp(&size(b))) {
-        let others: Vec<&str> =
-            ahead.iter().map(|c| if c.a == first.1 { c.b.as_str() } else { c.a.as_str() }).collect();
-        let all = match &others[..] {
-            [_] => String::new(),
-            several => format!(" The difference to each of {} is shown; the smallest:", several.join(", ")),
+    if sentences.is_empty() {
+        sentences.push("No difference is shown.".to_owned());
+    }
+    if !open.is_empty() {
+        sentences.push(format!("Undecided: {} of {}.", open.len(), comparisons.len()));
+    }
+    sentences.join(" ")
+}
+
+fn sized(one: &Comparison) -> String {
+    match (one.verdict, one.judged) {
+        (Verdict::Equivalent, Some(judged)) => {
+            format!("{} within {} of {}", one.a, short(judged.margin), one.b)
+        }
+        _ => {
+            let difference = one.difference.unwrap_or(0.0);
+            let side = if difference > 0.0 { "above" } else { "below" };
+            format!("{} {} {side} {}", one.a, short(difference.abs()), one.b)
+        }
+    }
+}
+
+fn named(one: &Comparison) -> String {
+    let sign = match one.verdict {
+        Verdict::Equivalent => "=",
+        _ if one.difference.is_some_and(|difference| difference > 0.0) => ">",
+        _ => "<",
+    };
+    format!("{}{sign}{}", one.a, one.b)
+}
+
+/// How many of each verdict, for families that are too large to be named.
+fn counted(comparisons: &[&Comparison]) -> String {
+    let count =
+        |is: fn(Verdict) -> bool| comparisons.iter().filter(|one| is(one.verdict)).count().to_string();
+    format!(
+        "{} of {} differences are shown, {} are equivalences, {} are undecided.",
+        count(Verdict::is_shown),
+        comparisons.len(),
+        count(|verdict| verdict == Verdict::Equivalent),
+        count(|verdict| verdict == Verdict::Undecided),
+    )
+}
+
+/// The answer of comparisons in many cases: for each metric and pair, in how many cases what is shown. `None`
+/// without comparisons.
+#[must_use]
+pub fn answer_of_cases(comparisons: &[&Comparison]) -> Option<String> {
+    let (first, cases) = (comparisons.first()?, comparisons.iter().map(|one| one.case).max()?);
+    let same = |one: &&Comparison, like: &Comparison| {
+        (&one.metric, &one.a, &one.b) == (&like.metric, &like.a, &like.b)
+    };
+    let families = comparisons.iter().filter(|one| one.case == first.case);
+    let mut shown = Vec::new();
+    for family in families {
+        let of = || comparisons.iter().copied().filter(|one| same(one, family));
+        let side = |above: bool| {
+            let is_there =
+                |one: &&Comparison| one.verdict.is_shown() && (one.difference > Some(0.0)) == above;
+            match of().filter(is_there).count() {
+                0 => None,
+                count => Some(format!("{} in {count}", if above { "above" } else { "below" })),
+            }
         };
-        return Some(format!("{lead}.{all} {}", shown(nearest, first.1)));
-    }
-    if own.is_empty() {
-        return Some(format!("{lead}."));
-    }
-    let range = format!("{lead}; {} has {}", last.1, value(last.0).trim_end());
-    if found.is_empty() {
-        return Some(format!("{} {range}.", not_shown(declared, &own)));
-    }
-    Some(format!("{range}. {}", shown(found[0], &found[0].a)))
-}
-
-/// What comparisons say of which none shows a difference: what is equivalent, and how open the rest is.
-fn not_shown(metric: &Metric, comparisons: &[&Comparison]) -> String {
-    let (equal, open): (Vec<&Comparison>, Vec<&Comparison>) =
-        comparisons.iter().copied().partition(|comparison| comparison.is_equivalent());
-    let mut said: Vec<String> = equal.iter().map(|comparison| equivalent(metric, comparison)).collect();
-    said.extend(match open[..] {
-        [] => None,
-        [only] => undecided(only),
-        _ => Some(several(metric, &open)),
-    });
-    said.join(" ")
-}
-
-/// Two equivalent policies, and how near to each other they are.
-fn equivalent(metric: &Metric, comparison: &Comparison) -> String {
-    let Comparison { a, b, n, .. } = comparison;
-    let Some((margin, difference, [low, high])) = comparison
-        .judged
-        .and_then(|judged| Some((judged.margin, comparison.difference?, judged.interval_90?)))
-    else {
-        return comparison.in_words.clone();
-    };
-    let [margin, difference, low, high] = [margin, difference, low, high].map(short);
-    format!(
-        "{a} and {b} are equivalent in {}, within the margin of {margin}: {a} less {b} is {difference} (90 % \
-         interval {low} to {high}, {n} pairs).",
-        metric.title
-    )
-}
-
-/// Two policies that the trials cannot tell apart.
-fn undecided(comparison: &Comparison) -> Option<String> {
-    let Comparison { a, b, n, .. } = comparison;
-    let [low, high] = comparison.interval?;
-    let side = |value: f64| format!("{} {}", short(value.abs()), if value < 0.0 { "less" } else { "more" });
-    let [low, high] = [low, high].map(side);
-    Some(format!(
-        "{n} pairs of trials cannot tell {a} from {b}: {a} may have {low} or {high} (95 % interval).{}",
-        power_for_margin(&[comparison])
-    ))
-}
-
-/// With a margin: that the question of it is open, and how many pairs have power for it.
-fn power_for_margin(comparisons: &[&Comparison]) -> String {
-    let pairs = |comparison: &&Comparison| comparison.judged.and_then(|judged| judged.pairs_for_margin);
-    let most = comparisons.iter().max_by_key(|comparison| pairs(comparison));
-    let told = most.and_then(|most| {
-        let (needed, margin) = (pairs(most)?, short(most.judged?.margin));
-        if needed <= most.n as u64 {
-            return Some(format!(
-                " Whether a difference is larger than the margin of {margin} is undecided."
-            ));
+        let sides: Vec<String> = [true, false].into_iter().filter_map(side).collect();
+        if !sides.is_empty() {
+            shown.push(format!("{}: {} {} {}", family.metric, family.a, sides.join(", "), family.b));
         }
-        let needed = pairs_in_words(needed);
-        let widest = if comparisons.len() > 1 { " in the widest of these comparisons" } else { "" };
-        Some(format!(
-            " A rough guess from these trials: about {needed} pairs would detect a true difference of \
-             {margin}, the margin, with 80 % power{widest}, before correction."
-        ))
-    });
-    told.unwrap_or_default()
+    }
+    if shown.is_empty() {
+        return Some(format!("In none of the {cases} cases is a difference shown."));
+    }
+    Some(format!("Shown, of {cases} cases: {}.", shown.join("; ")))
 }
 
-/// Several comparisons that show nothing.
-fn several(metric: &Metric, comparisons: &[&Comparison]) -> String {
-    let n = comparisons.iter().map(|c| c.n).max().unwrap_or(0);
-    let half = |[low, high]: [f64; 2]| (high - low) / 2.0;
-    let widest = comparisons.iter().filter_map(|c| c.interval).map(half).fold(0.0, f64::max);
-    let precision =
-        if widest > 0.0 { format!(", known to ± {} or better", short(widest)) } else { String::new() };
-    format!(
-        "No policy is shown to differ in {} from those that it was compared with. That does not mean that \
-         they are equal: the differences stand on up to {n} pairs of trials{precision}.{}",
-        metric.title,
-        power_for_margin(comparisons)
-    )
-}
-
-fn unit_of(metric: &Metric) -> &str {
-    if metric.unit.is_empty() { metric.title.split(' ').next().unwrap_or_default() } else { metric.unit }
-}
-
-/// A difference that is shown, from the viewpoint of one of its two policies.
-fn shown(comparison: &Comparison, policy: &str) -> String {
-    let (Some(difference), Some([low, high]), Some(p)) =
-        (comparison.difference, comparison.interval, comparison.p_holm)
-    else {
-        return comparison.in_words.clone();
-    };
-    let (other, difference, [low, high]) = if comparison.a == policy {
-        (&comparison.b, difference, [low, high])
-    } else {
-        (&comparison.a, -difference, [-high, -low])
-    };
-    let direction = if difference > 0.0 { "more" } else { "less" };
-    let margin = match comparison.judged {
-        Some(Judged { margin, interval_90: Some([low, high]), .. }) if comparison.is_equivalent() => {
-            let ([low, high], margin) = ([low, high].map(short), short(margin));
-            format!(
-                " The difference is also shown to be smaller than the margin of {margin} (90 % interval of {} \
-                 less {}: {low} to {high}).",
-                comparison.a, comparison.b
-            )
+/// What would settle the comparisons that are undecided; `None` if none is.
+#[must_use]
+pub fn what_would_settle(comparisons: &[Comparison]) -> Option<String> {
+    let open: Vec<&Comparison> =
+        comparisons.iter().filter(|one| one.verdict == Verdict::Undecided && one.p.is_some()).collect();
+    let n = open.iter().map(|one| one.n).max()?;
+    let needed = open.iter().filter_map(|one| one.judged?.pairs_for_margin).max();
+    Some(match needed {
+        None => {
+            "Undecided does not mean equal: --margin METRIC=VALUE names the largest difference that does \
+                 not matter, and tells how many pairs have the power to settle it."
+                .to_owned()
         }
-        judged => judged.map_or(String::new(), beyond_in_words),
-    };
-    format!(
-        "{policy} has {} {direction} than {other} (95 % interval of the mean difference {} to {}, {} pairs, \
-         corrected {}).{margin}",
-        short(difference.abs()),
-        short(low),
-        short(high),
-        comparison.n,
-        p_in_words(p)
-    )
+        Some(needed) if needed > n as u64 => format!(
+            "Undecided does not mean equal: with about {} pairs (here {n}), each single test has 80 % power \
+             to detect a difference as large as its margin, before correction.",
+            pairs_in_words(needed)
+        ),
+        Some(_) => format!(
+            "Undecided does not mean equal: with {n} pairs, each single test has 80 % power to detect a \
+             difference as large as its margin, before correction."
+        ),
+    })
 }

@@ -1,4 +1,4 @@
-//! Verdicts of comparisons with a margin: better, worse, equivalent or undecided.
+//! Verdicts of comparisons: better, worse, undecided, and with a margin equivalent.
 //!
 //! Two policies are *equivalent within a margin* if the 90 % interval of their mean difference lies inside
 //! the margin on both sides. That is the two one-sided tests (TOST, Schuirmann 1987) at 5 %. Otherwise one
@@ -15,7 +15,7 @@ use crate::metric::Direction;
 pub const TOST_CONFIDENCE: f64 = 0.90;
 
 /// The verdict of a comparison on its first policy.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Verdict {
     /// It is better than the second.
@@ -29,6 +29,7 @@ pub enum Verdict {
     /// The difference is smaller than the margin.
     Equivalent,
     /// The trials do not decide.
+    #[default]
     Undecided,
 }
 
@@ -45,6 +46,12 @@ impl Verdict {
             Self::Undecided => "undecided",
         }
     }
+
+    /// Whether it says that a difference is shown.
+    #[must_use]
+    pub fn is_shown(self) -> bool {
+        !matches!(self, Self::Equivalent | Self::Undecided)
+    }
 }
 
 /// Whether a difference that is shown is larger than the margin.
@@ -57,7 +64,7 @@ pub enum Beyond {
     Undecided,
 }
 
-/// A margin and the verdict that a comparison gets with it.
+/// A margin, and what the trials say of it.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Judged {
     /// The margin.
@@ -68,42 +75,42 @@ pub struct Judged {
     /// is none.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub pairs_for_margin: Option<u64>,
-    /// The verdict.
-    pub verdict: Verdict,
     /// For a difference that is shown: whether it is larger than the margin.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub beyond: Option<Beyond>,
 }
 
-impl Judged {
-    /// The verdict and what is known of the margin, for a table.
+impl Comparison {
+    /// The verdict, and what is known of the margin, for a table.
     #[must_use]
-    pub fn in_words(&self) -> String {
-        let (verdict, margin) = (self.verdict.name(), short(self.margin));
-        match (self.verdict, self.beyond) {
+    pub fn verdict_in_words(&self) -> String {
+        let verdict = self.verdict.name();
+        let Some(judged) = &self.judged else { return verdict.to_owned() };
+        let margin = short(judged.margin);
+        match (self.verdict, judged.beyond) {
             (Verdict::Equivalent, _) => format!("{verdict} within {margin}"),
             (_, Some(Beyond::Yes)) => format!("{verdict} by over {margin}"),
             (_, Some(Beyond::Undecided)) => format!("{verdict}; over {margin}?"),
-            (_, None) => format!("{verdict} (margin {margin})"),
+            (_, None) => verdict.to_owned(),
         }
     }
 }
 
-/// Judges a comparison by a margin and the 90 % interval of its difference. The number of pairs is left open.
+/// The verdict of a comparison, where a margin is known with it and the 90 % interval of the difference.
 #[must_use]
-pub fn judge(
+pub fn verdict(
     comparison: &Comparison,
-    interval_90: Option<[f64; 2]>,
-    margin: f64,
+    margin: Option<(f64, Option<[f64; 2]>)>,
     direction: Direction,
-) -> Judged {
-    let is_equivalent = interval_90.is_some_and(|[low, high]| -margin < low && high < margin);
+) -> Verdict {
+    let is_equivalent = margin
+        .is_some_and(|(margin, interval)| interval.is_some_and(|[low, high]| -margin < low && high < margin));
     let side = comparison.interval.map_or(0.0, |[low, high]| match (low > 0.0, high < 0.0) {
         (true, _) => 1.0,
         (_, true) => -1.0,
         _ => 0.0,
     });
-    let verdict = if is_equivalent {
+    if is_equivalent {
         Verdict::Equivalent
     } else if side == 0.0 || !comparison.is_found() {
         Verdict::Undecided
@@ -114,12 +121,14 @@ pub fn judge(
             (Direction::Neither, true) => Verdict::Above,
             (Direction::Neither, false) => Verdict::Below,
         }
-    };
-    let is_shown = !matches!(verdict, Verdict::Equivalent | Verdict::Undecided);
-    let is_beyond = |[low, high]: [f64; 2]| low > margin || high < -margin;
-    let beyond = |interval| if is_beyond(interval) { Beyond::Yes } else { Beyond::Undecided };
-    let beyond = comparison.interval.filter(|_| is_shown).map(beyond);
-    Judged { margin, interval_90, pairs_for_margin: None, verdict, beyond }
+    }
+}
+
+/// Whether a difference that is shown lies beyond the margin; `None` where none is shown.
+#[must_use]
+pub fn beyond(comparison: &Comparison, margin: f64) -> Option<Beyond> {
+    let [low, high] = comparison.interval.filter(|_| comparison.verdict.is_shown())?;
+    Some(if low > margin || high < -margin { Beyond::Yes } else { Beyond::Undecided })
 }
 
 #[cfg(test)]
@@ -140,21 +149,24 @@ mod tests {
         let far: Vec<f64> = (0..40).map(|i| 10.0 + f64::from(i % 5)).collect();
         let far = interval(&far, TOST_CONFIDENCE);
         let clear = comparison([9.0, 13.0], 0.001);
-        let verdict = |direction| judge(&clear, far, 3.0, direction).verdict;
-        assert_eq!(verdict(Direction::Higher), Verdict::Better);
-        assert_eq!(verdict(Direction::Lower), Verdict::Worse);
-        assert_eq!(verdict(Direction::Neither), Verdict::Above);
-        assert_eq!(judge(&clear, far, 20.0, Direction::Higher).verdict, Verdict::Equivalent);
+        assert_eq!(verdict(&clear, None, Direction::Higher), Verdict::Better);
+        assert_eq!(verdict(&clear, Some((3.0, far)), Direction::Lower), Verdict::Worse);
+        assert_eq!(verdict(&clear, None, Direction::Neither), Verdict::Above);
+        assert_eq!(verdict(&clear, Some((20.0, far)), Direction::Higher), Verdict::Equivalent);
         let uncorrected = comparison([9.0, 13.0], 0.2);
-        assert_eq!(judge(&uncorrected, far, 3.0, Direction::Higher).verdict, Verdict::Undecided);
-        let of = |interval, margin| judge(&comparison(interval, 0.001), far, margin, Direction::Higher);
-        assert_eq!(of([9.0, 13.0], 3.0).in_words(), "better by over 3.00");
-        assert_eq!(of([1.0, 13.0], 3.0).in_words(), "better; over 3.00?");
-        assert_eq!(of([9.0, 13.0], 20.0).in_words(), "equivalent within 20.0");
-        assert_eq!(of([-1.0, 13.0], 3.0).in_words(), "undecided (margin 3.00)");
-        assert_eq!(of([-13.0, -9.0], 3.0).in_words(), "worse by over 3.00");
-        let wide = comparison([-1.0, 13.0], 0.001);
-        assert_eq!(judge(&wide, far, 3.0, Direction::Higher).verdict, Verdict::Undecided);
+        assert_eq!(verdict(&uncorrected, Some((3.0, far)), Direction::Higher), Verdict::Undecided);
+        let of = |interval, margin: f64| {
+            let mut one = comparison(interval, 0.001);
+            one.verdict = verdict(&one, Some((margin, far)), Direction::Higher);
+            let beyond = beyond(&one, margin);
+            one.judged = Some(Judged { margin, interval_90: far, pairs_for_margin: None, beyond });
+            one.verdict_in_words()
+        };
+        assert_eq!(of([9.0, 13.0], 3.0), "better by over 3.00");
+        assert_eq!(of([1.0, 13.0], 3.0), "better; over 3.00?");
+        assert_eq!(of([9.0, 13.0], 20.0), "equivalent within 20.0");
+        assert_eq!(of([-1.0, 13.0], 3.0), "undecided");
+        assert_eq!(of([-13.0, -9.0], 3.0), "worse by over 3.00");
     }
 
     /// Two policies whose true difference equals the margin are called equivalent in about 5 % of

@@ -74,7 +74,7 @@ pub fn interactions(folder: &Folder, metrics: &[usize], choice: Choice) -> Resul
     let ps: Vec<Option<f64>> = found.iter().map(|interaction| interaction.p).collect();
     for (interaction, p) in found.iter_mut().zip(corrected(&ps)) {
         interaction.p_holm = p;
-        interaction.in_words = in_words(interaction, experiment.metrics.title(&interaction.metric));
+        interaction.in_words = in_words(interaction);
     }
     Ok(found)
 }
@@ -109,11 +109,11 @@ fn interaction(folder: &Folder, contrast: Contrast, metric: usize, pair: [usize;
     }
 }
 
-fn in_words(interaction: &Interaction, title: &str) -> String {
-    let Interaction { path, values: [from, to], a, b, n, .. } = interaction;
+fn in_words(interaction: &Interaction) -> String {
+    let Interaction { metric, path, values: [from, to], a, b, n, .. } = interaction;
     let others = interaction.others.iter().map(|(path, value)| format!(" (at {path}={value})"));
     let others = others.collect::<Vec<_>>().concat();
-    let place = format!("{title}, {path} from {from} to {to}{others}");
+    let place = format!("{metric}, {path} from {from} to {to}{others}");
     let (Some([there, here]), Some(change), Some(p), Some([low, high])) =
         (interaction.differences, interaction.change, interaction.p_holm, interaction.interval)
     else {

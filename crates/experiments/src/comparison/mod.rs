@@ -6,6 +6,7 @@ mod cell;
 mod effect;
 mod equivalence;
 mod interaction;
+mod own;
 mod pairs;
 mod sums;
 mod words;
@@ -21,14 +22,16 @@ use crate::stats::paired::{detectable, hodges_lehmann, holm, pairs_for_margin};
 use crate::stats::wilcoxon::{DRAWN_PAIRS, DRAWS, EXACT_PAIRS, SignedRank};
 use crate::sweep::folder::Folder;
 
-pub use answer::answer;
+pub use answer::{answer, answer_of_cases, what_would_settle};
 pub use asked::{Asked, Wishes};
 pub use cell::Cell;
 pub use effect::{Effect, effects};
-pub use equivalence::{Beyond, Judged, TOST_CONFIDENCE, Verdict, judge};
+pub use equivalence::{Beyond, Judged, TOST_CONFIDENCE, Verdict};
+use equivalence::{beyond, verdict};
 pub use interaction::{Interaction, interactions};
+pub use own::own_question;
 pub use pairs::Pairs;
-pub use sums::FEW;
+pub use sums::{FEW, moments_of};
 use words::in_words;
 pub use words::{digits, short, short_p};
 
@@ -85,7 +88,9 @@ pub struct Comparison {
     pub pairing: Option<f64>,
     /// The least true mean difference that this many pairs detect with 80 % power, in a single test.
     pub detectable: Option<f64>,
-    /// The verdict, where a margin is known.
+    /// The verdict on the first policy.
+    pub verdict: Verdict,
+    /// What the trials say of the margin, where one is known.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub judged: Option<Judged>,
     /// The finding in words.
@@ -99,16 +104,10 @@ impl Comparison {
         self.p_holm.is_some_and(|p| p < LEVEL)
     }
 
-    /// Whether the trials answer it: they show a difference, or that it is smaller than the margin.
-    #[must_use]
-    pub fn is_settled(&self) -> bool {
-        self.is_found() || self.is_equivalent()
-    }
-
     /// Whether the difference is shown to be smaller than the margin.
     #[must_use]
     pub fn is_equivalent(&self) -> bool {
-        self.judged.is_some_and(|judged| judged.verdict == Verdict::Equivalent)
+        self.verdict == Verdict::Equivalent
     }
 }
 
@@ -199,14 +198,21 @@ pub fn compare(folder: &Folder, metrics: &[usize], choice: Choice) -> Result<Vec
         comparisons[i].p_holm = Some(p);
     }
     for (comparison, (case, metric, pair)) in comparisons.iter_mut().zip(&all) {
-        if let Some((_, margin)) = choice.margins.iter().find(|(place, _)| place == metric) {
+        let direction = experiment.metrics[*metric].direction;
+        let margin = choice.margins.iter().find(|(place, _)| place == metric).map(|(_, margin)| *margin);
+        let with_margin = margin.map(|margin| {
             let pairs = Pairs::of(folder, *metric, pair.map(|policy| (*case, policy)));
-            let direction = experiment.metrics[*metric].direction;
-            let judged = judge(comparison, pairs.interval(TOST_CONFIDENCE), *margin, direction);
-            let pairs_for_margin = pairs_for_margin(&pairs.differences(), *margin);
-            comparison.judged = Some(Judged { pairs_for_margin, ..judged });
-        }
-        comparison.in_words = in_words(comparison, &experiment.metrics);
+            (margin, pairs.interval(TOST_CONFIDENCE), pairs_for_margin(&pairs.differences(), margin))
+        });
+        let interval = with_margin.map(|(margin, interval, _)| (margin, interval));
+        comparison.verdict = verdict(comparison, interval, direction);
+        comparison.judged = with_margin.map(|(margin, interval_90, pairs_for_margin)| Judged {
+            margin,
+            interval_90,
+            pairs_for_margin,
+            beyond: beyond(comparison, margin),
+        });
+        comparison.in_words = in_words(comparison);
     }
     Ok(comparisons)
 }
@@ -243,10 +249,20 @@ pub(crate) fn policy_pairs(experiment: &Experiment, choice: Choice) -> Result<Ve
         refuse!("there is nothing to compare: {only} only");
     }
     let pairs = |(i, a): (usize, &usize)| chosen[i + 1..].iter().map(|b| [*a, *b]).collect::<Vec<_>>();
-    Ok(match baseline {
+    let pairs: Vec<[usize; 2]> = match baseline {
         None => chosen.iter().enumerate().flat_map(pairs).collect(),
         Some(baseline) => chosen.iter().filter(|a| **a != baseline).map(|a| [*a, baseline]).collect(),
-    })
+    };
+    Ok(pairs.into_iter().map(|pair| signed(experiment, pair)).collect())
+}
+
+/// The pair with the sign that it has in every answer of a folder: the sweep file's baseline is what is
+/// taken off; without one, it is the first policy of the sweep that something is taken off from.
+fn signed(experiment: &Experiment, [a, b]: [usize; 2]) -> [usize; 2] {
+    let declared = experiment.plan.baseline.as_deref();
+    let is_baseline = |policy: usize| declared == Some(experiment.policies[policy].label.as_str());
+    let is_turned = is_baseline(a) || (declared.is_none() && b == 0);
+    if is_turned { [b, a] } else { [a, b] }
 }
 
 fn comparison(
@@ -283,6 +299,7 @@ fn comparison(
         effect: has_pairs.then(|| test.effect()),
         pairing: pairing(pairs, &differences),
         detectable: Moments::of(&differences).sd.and_then(|sd| detectable(sd, differences.len())),
+        verdict: Verdict::Undecided,
         judged: None,
         in_words: String::new(),
     }

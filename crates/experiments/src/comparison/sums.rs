@@ -7,8 +7,31 @@
 //! cell's ratio of sums. Tests and standard deviations of these values are therefore valid for the ratio.
 
 use super::cell::Cell;
+use crate::stats::Moments;
 use crate::stats::bootstrap::statistic_interval;
 use crate::sweep::folder::Folder;
+
+/// Mean and standard deviation of a metric in a cell. For a cost per rescuee they are those of the linearised
+/// values: the mean is the sum of the costs over the sum of the rescuees, so that it lies between the means of
+/// the tasks, and trials without rescuees count.
+#[must_use]
+pub fn moments_of(folder: &Folder, (case, policy): Cell, metric: usize) -> Moments {
+    let experiment = folder.experiment();
+    let Some([cost, count]) = experiment.metrics.sums(metric) else {
+        return Moments::of(&folder.values(case, policy, metric));
+    };
+    let trials = experiment.trials_of(case, folder.manifest().shard);
+    let value = |trial, metric| folder.value((case, policy, trial), metric);
+    let parts: Vec<[f64; 2]> =
+        trials.filter_map(|trial| Some([value(trial, cost)?, value(trial, count)?])).collect();
+    let [cost, count] = [0, 1].map(|part: usize| parts.iter().map(|trial| trial[part]).sum::<f64>());
+    if count <= 0.0 {
+        return Moments::of(&[]);
+    }
+    let (ratio, mean) = (cost / count, count / parts.len() as f64);
+    let values = parts.iter().map(|[cost, count]| ratio + (cost - ratio * count) / mean);
+    Moments::of(&values.collect::<Vec<f64>>())
+}
 
 /// If a trial has fewer rescuees than this, ratios of sums are compared. One rescuee more or less would
 /// change the trial's own ratio by a fifth.

@@ -1,16 +1,15 @@
 //! Comparisons in sentences, and their numbers as text.
 
 use super::{Beyond, Comparison, Judged};
-use crate::metric::Catalogue;
 
 /// The finding as one sentence.
-pub(super) fn in_words(comparison: &Comparison, metrics: &Catalogue) -> String {
+pub(super) fn in_words(comparison: &Comparison) -> String {
     let Comparison { a, b, n, .. } = comparison;
     let place = comparison.axes.iter().map(|(path, value)| format!("{path}={value}"));
     let of_sums =
         if comparison.is_of_sums { " (as a ratio of sums, since some trial has few rescuees)" } else { "" };
-    let title = format!("{}{of_sums}", metrics.title(&comparison.metric));
-    let place = place.chain([title]).collect::<Vec<_>>().join(", ");
+    let metric = format!("{}{of_sums}", comparison.metric);
+    let place = place.chain([metric]).collect::<Vec<_>>().join(", ");
     let (Some(difference), Some(p)) = (comparison.difference, comparison.p_holm) else {
         return format!(
             "{place}: nothing can be said of {a} and {b}: there is no pair of trials in which both have a \
@@ -120,7 +119,7 @@ fn equivalence_in_words(comparison: &Comparison, difference: f64, p: f64) -> Opt
 }
 
 /// What is known of the margin where a difference is shown.
-pub(super) fn beyond_in_words(judged: Judged) -> String {
+fn beyond_in_words(judged: Judged) -> String {
     let margin = short(judged.margin);
     match judged.beyond {
         Some(Beyond::Yes) => format!(" The whole interval lies beyond the margin of {margin}."),

@@ -19,15 +19,13 @@ use crate::drawing::{
 pub(super) fn over_time(
     experiment: &Experiment,
     gathered: &[Gathered],
-    Part { case, only }: Part,
+    Part { case, only, .. }: Part,
 ) -> Result<Sketch, Failure> {
     let times: Vec<f64> = series_times(experiment.cases[case].scenario.duration_s).collect();
     let names = names(experiment);
-    let metrics = &experiment.metrics;
-    let titles: Vec<String> =
-        metrics.declared("rescuees").into_iter().map(|place| metrics[place].title.clone()).collect();
     let (mut panels, mut rows) = (Vec::new(), Vec::new());
-    for (part, title) in titles.iter().map(String::as_str).enumerate() {
+    for (part, place) in experiment.metrics.declared("rescuees").into_iter().enumerate() {
+        let metric = &experiment.metrics[place].name;
         let mut lines = Vec::new();
         for (i, (policy, gathered)) in experiment.policies.iter().zip(gathered).enumerate() {
             if !is_drawn(only, &policy.label) {
@@ -40,7 +38,7 @@ pub(super) fn over_time(
                 let half = t_half_width(&values);
                 points.push((*time, mean, half.unwrap_or(0.0)));
                 rows.push(vec![
-                    title.replace(' ', "."),
+                    metric.clone(),
                     policy.label.clone(),
                     time.to_string(),
                     values.len().to_string(),
@@ -50,7 +48,7 @@ pub(super) fn over_time(
             }
             lines.push((i, names[i].as_str(), points));
         }
-        panels.extend(line_panel(&lines, &title.replace(' ', "."), title, "time (s)", "delivered"));
+        panels.extend(line_panel(&lines, metric, metric, "time (s)", "delivered"));
     }
     let n = gathered.iter().map(|gathered| gathered.delivered.len()).min().unwrap_or(0);
     Ok(Sketch {
@@ -69,7 +67,7 @@ pub(super) fn over_time(
 pub(super) fn membership(
     experiment: &Experiment,
     gathered: &[Gathered],
-    Part { case, only }: Part,
+    Part { case, only, .. }: Part,
 ) -> Result<Sketch, Failure> {
     let scenario = &experiment.cases[case].scenario;
     let hardest = scenario.hardest_first().first().map_or(0, |task| task.index());
@@ -133,7 +131,7 @@ pub(super) fn membership(
 pub(super) fn levels(
     experiment: &Experiment,
     gathered: &[Gathered],
-    Part { case, only }: Part,
+    Part { case, only, .. }: Part,
 ) -> Result<Sketch, Failure> {
     let tasks = task_names(&experiment.cases[case].scenario);
     let names = names(experiment);

@@ -17,7 +17,7 @@ pub(super) struct Gathered {
     pub groups: BTreeMap<(u32, u32), Vec<u32>>,
     /// For each round, task and trial, the mean energy and HP of the group.
     pub levels: BTreeMap<(u32, usize), Vec<[f64; 2]>>,
-    /// The first question of the first trial that has one.
+    /// The first question of the trial that is shown.
     pub first_question: Option<Question>,
     /// Number of that trial.
     pub first_trial: u32,
@@ -27,8 +27,9 @@ pub(super) struct Gathered {
     pub roles: Vec<String>,
 }
 
-/// Passes once over all trials of a case, policy by policy.
-pub(super) fn gather(folder: &mut Folder, case: usize) -> Result<Vec<Gathered>, Failure> {
+/// Passes once over all trials of a case, policy by policy. The first question is that of the trial with this
+/// seed, or of the first trial.
+pub(super) fn gather(folder: &mut Folder, case: usize, seed: Option<u64>) -> Result<Vec<Gathered>, Failure> {
     let times: Vec<f64> = series_times(folder.experiment().cases[case].scenario.duration_s).collect();
     let policies = folder.experiment().policies.len();
     if !folder.experiment().keep.has_records() {
@@ -39,7 +40,8 @@ pub(super) fn gather(folder: &mut Folder, case: usize) -> Result<Vec<Gathered>, 
         let mut gathered = Gathered::default();
         for place in folder.places(case, policy) {
             if let Ok(trial) = folder.outcome(place)?.result {
-                gathered.add(place.2, &trial, &times);
+                let is_shown = seed.is_none_or(|seed| folder.experiment().seed(place.2) == seed);
+                gathered.add(place.2, &trial, &times, is_shown);
             }
         }
         all.push(gathered);
@@ -48,7 +50,7 @@ pub(super) fn gather(folder: &mut Folder, case: usize) -> Result<Vec<Gathered>, 
 }
 
 impl Gathered {
-    fn add(&mut self, number: u32, trial: &Trial, times: &[f64]) {
+    fn add(&mut self, number: u32, trial: &Trial, times: &[f64], is_shown: bool) {
         let point = |time: &f64| {
             let by_task = trial.delivered(*time);
             let total = by_task.iter().sum::<usize>();
@@ -68,7 +70,7 @@ impl Gathered {
                     self.levels.entry((round.question.round, task.index())).or_default().push(levels);
                 }
             }
-            if self.first_question.is_none() {
+            if is_shown && self.first_question.is_none() {
                 self.first_trial = number;
                 self.first_question = Some(round.true_question());
             }

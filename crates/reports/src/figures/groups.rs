@@ -3,12 +3,13 @@
 use experiments::Failure;
 use experiments::experiment::Experiment;
 use experiments::rounds::{KEYS, Share, SortingAgreement};
+use rne_core::RoleId;
 
 use super::gather::Gathered;
 use crate::drawing::{Drawing, Panel, Sketch, from_top, heat_map, is_drawn, layout, names, table};
 
-/// The distrust of each robot towards every other of its role, in the first round of the first trial, by the
-/// measure of the policy that decided.
+/// The distrust of each robot towards every other of its role, in the first round of a trial, by the measure of
+/// the policy that decided. All roles have one scale.
 pub(super) fn trust(experiment: &Experiment, gathered: &[Gathered]) -> Result<Option<Sketch>, Failure> {
     let mut with_rounds = experiment.policies.iter().zip(gathered);
     let first = with_rounds
@@ -26,16 +27,21 @@ pub(super) fn trust(experiment: &Experiment, gathered: &[Gathered]) -> Result<Op
             rows.push(vec![team[i].id.to_string(), team[j].id.to_string(), value]);
         }
     }
-    let mut panels = Vec::new();
+    let mut roles = Vec::new();
     for role in question.role_ids() {
         let members: Vec<usize> = (0..team.len()).filter(|i| team[*i].role == role).collect();
-        if members.len() < 2 {
-            continue;
-        }
         let row = |i: &usize| members.iter().map(|j| towards(*i, *j)).collect::<Result<Vec<_>, _>>();
         let data = members.iter().map(row).collect::<Result<Vec<Vec<f64>>, _>>()?;
-        panels.push(trust_panel(&data, &question.roles[role.index()], members.iter().map(|i| team[*i].id)));
+        if members.len() > 1 {
+            roles.push((role, members, data));
+        }
     }
+    let finite = roles.iter().flat_map(|(.., data)| data.iter().flatten()).filter(|value| value.is_finite());
+    let most = 1000.0 * finite.copied().fold(0.0, f64::max);
+    let panel = |(role, members, data): &(RoleId, Vec<usize>, Vec<Vec<f64>>)| {
+        trust_panel(data, &question.roles[role.index()], members.iter().map(|i| team[*i].id), most)
+    };
+    let panels = roles.iter().map(panel).collect();
     let column = format!("{}_{unit}", measure.name.to_lowercase());
     Ok(Some(Sketch {
         name: "trust".into(),
@@ -54,9 +60,7 @@ pub(super) fn trust(experiment: &Experiment, gathered: &[Gathered]) -> Result<Op
 }
 
 /// A heat map of one role. An infinite value is drawn above every finite value: it means no trust at all.
-fn trust_panel(data: &[Vec<f64>], role: &str, ids: impl Iterator<Item = u32>) -> Panel {
-    let finite = data.iter().flatten().filter(|value| value.is_finite());
-    let most = 1000.0 * finite.copied().fold(0.0, f64::max);
+fn trust_panel(data: &[Vec<f64>], role: &str, ids: impl Iterator<Item = u32>, most: f64) -> Panel {
     let beyond = if most > 0.0 { 1.25 * most } else { 1.0 };
     let is_infinite = data.iter().flatten().any(|value| !value.is_finite());
     let shown = |value: &f64| if value.is_finite() { 1000.0 * value } else { beyond };

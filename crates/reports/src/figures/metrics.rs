@@ -1,5 +1,4 @@
-//! Figures of metrics: box plots as in the paper, energy against HP, paired differences, and metrics along
-//! an axis.
+//! Figures of metrics: box plots as in the paper, energy against HP, and paired differences.
 
 use experiments::Failure;
 use experiments::comparison::Comparison;
@@ -7,16 +6,13 @@ use experiments::experiment::Experiment;
 use experiments::metric::{Metric, Values};
 use experiments::stats::Moments;
 use experiments::stats::bootstrap::quantile;
-use experiments::stats::paired::t_half_width;
 use experiments::sweep::folder::Folder;
 use kuva::plot::annotations::ReferenceLine;
 use kuva::plot::{BoxPlot, ForestPlot, ScatterPlot, StripPlot};
 use kuva::render::plots::Plot;
 
 use super::is_quiet;
-use crate::drawing::{
-    Drawing, Panel, Rows, Sketch, colour, is_drawn, layout, line_panel, names, range, table,
-};
+use crate::drawing::{Drawing, Panel, Rows, Sketch, colour, is_drawn, layout, names, range, table};
 
 /// About the largest number of a policy's trials that are drawn as points, beside those beyond the whiskers;
 /// more would hide the boxes.
@@ -70,10 +66,8 @@ fn box_figure(
         }
         let plots = vec![Plot::Box(plot.with_group_colors(colours)), Plot::Strip(points)];
         let [low, high] = range(all);
-        let mut layout = layout(&plots, &metric.title)
-            .with_y_label(metric.unit)
-            .with_y_axis_min(low)
-            .with_y_axis_max(high);
+        let mut layout =
+            layout(&plots, &metric.name).with_y_label(metric.unit).with_y_axis_min(low).with_y_axis_max(high);
         for line in bounds(folder, case, *place) {
             layout = layout.with_reference_line(line);
         }
@@ -250,7 +244,7 @@ fn forest_panel(
         let place = experiment.policies.iter().position(|policy| policy.label == *label);
         place.map_or("", |place| names[place].as_str())
     };
-    let Metric { title, unit, .. } = &experiment.metrics[experiment.metrics.named(metric)?];
+    let Metric { name: title, unit, .. } = &experiment.metrics[experiment.metrics.named(metric)?];
     let mut plot = ForestPlot::new().with_null_value(0.0).with_cap_size(4.0);
     let mut ends = Vec::new();
     for comparison in comparisons {
@@ -331,81 +325,6 @@ fn forest_range(ends: &[f64]) -> [f64; 2] {
     let reach = |sign: f64| ends.iter().fold(0.0, |reach: f64, end| reach.max(sign * end));
     let room = if most > 0.0 { 0.06 * most } else { 1.0 };
     [-reach(-1.0) - room, reach(1.0) + room]
-}
-
-/// Means of the first figure's metrics along each numeric axis, with the other axes as in the case.
-pub(super) fn axes(folder: &Folder, case: usize, only: Option<&[String]>) -> Result<Vec<Sketch>, Failure> {
-    let experiment = folder.experiment();
-    let names = names(experiment);
-    let metrics = experiment.metrics.figures().into_iter().next().map_or(Vec::new(), |(_, metrics)| metrics);
-    let mut all = Vec::new();
-    for (i, axis) in experiment.axes.iter().enumerate() {
-        let numbers: Vec<f64> = axis.values.iter().filter_map(|value| value.parse().ok()).collect();
-        let is_numeric = numbers.len() == axis.values.len();
-        let same_elsewhere = |other: &[String]| {
-            let here = &experiment.cases[case].values;
-            (0..here.len()).all(|k| k == i || here[k] == other[k])
-        };
-        let cases: Vec<usize> = (0..experiment.cases.len())
-            .filter(|other| same_elsewhere(&experiment.cases[*other].values))
-            .collect();
-        let (mut panels, mut rows) = (Vec::new(), Vec::new());
-        for metric in &metrics {
-            let mut lines = Vec::new();
-            let policies = experiment.policies.iter().enumerate();
-            for (p, policy) in policies.filter(|(_, policy)| is_drawn(only, &policy.label)) {
-                let mut points: Vec<(f64, f64, f64)> = Vec::new();
-                for (at, other) in cases.iter().enumerate() {
-                    let values = folder.values(*other, p, *metric);
-                    let Some(mean) = Moments::of(&values).mean else { continue };
-                    let half = t_half_width(&values);
-                    points.push((
-                        if is_numeric { numbers[at] } else { at as f64 },
-                        mean,
-                        half.unwrap_or(0.0),
-                    ));
-                    rows.push(vec![
-                        experiment.metrics[*metric].name.clone(),
-                        policy.label.clone(),
-                        axis.values[at].clone(),
-                        values.len().to_string(),
-                        mean.to_string(),
-                        half.map_or(String::new(), |half| half.to_string()),
-                    ]);
-                }
-                points.sort_by(|a, b| a.0.total_cmp(&b.0));
-                lines.push((p, names[p].as_str(), points));
-            }
-            panels.extend(line_panel(
-                &lines,
-                &experiment.metrics[*metric].name,
-                &experiment.metrics[*metric].title_with_unit(),
-                &axis.path,
-                "",
-            ));
-        }
-        let n = experiment.trials;
-        let places: Vec<String> =
-            axis.values.iter().enumerate().map(|(at, value)| format!("{at}: {value}")).collect();
-        let legend = if is_numeric { String::new() } else { format!(" Values: {}.", places.join(", ")) };
-        let others: Vec<String> = experiment
-            .axes
-            .iter()
-            .zip(&experiment.cases[case].values)
-            .enumerate()
-            .filter(|(k, _)| *k != i)
-            .map(|(_, (axis, value))| format!("{}={value}", axis.path))
-            .collect();
-        let fixed = if others.is_empty() { String::new() } else { format!(" Here {}.", others.join(", ")) };
-        all.push(Sketch {
-            name: format!("along-{}", axis.path.replace(['.', '[', ']'], "-")),
-            title: format!("Along {}", axis.path),
-            caption: format!("Means of up to {n} trials with their 95 % t intervals (band).{legend}{fixed}"),
-            drawing: Drawing::new(panels, 3, [420.0, 320.0]),
-            csv: table(&["metric", "policy", "value", "n", "mean", "half_width"], rows)?,
-        });
-    }
-    Ok(all)
 }
 
 #[cfg(test)]

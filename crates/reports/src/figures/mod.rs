@@ -1,5 +1,6 @@
 //! The figures of a report, each with the table of its numbers.
 
+mod axes;
 mod course;
 mod gather;
 mod groups;
@@ -23,11 +24,14 @@ pub(crate) struct Part<'a> {
     pub case: usize,
     /// Labels of the only policies to draw; `None` for all.
     pub only: Option<&'a [String]>,
+    /// Seed of the trial whose first round is drawn; `None` for the first trial.
+    pub seed: Option<u64>,
 }
 
-/// Figures of metrics along the axes of a sweep.
-pub(crate) fn along_axes(folder: &Folder) -> Result<Vec<Figure>, Failure> {
-    Ok(drawn(metrics::axes(folder, 0, None)?))
+/// Figures along the axes of a sweep: a map of the differences over two axes, and metrics along each.
+pub(crate) fn along_axes(folder: &Folder, comparisons: &[Comparison]) -> Result<Vec<Figure>, Failure> {
+    let maps = axes::difference_maps(folder.experiment(), comparisons)?;
+    Ok(drawn(maps.into_iter().chain(axes::axes(folder, 0, None)?).collect()))
 }
 
 /// The figures that have something to draw.
@@ -38,10 +42,10 @@ fn drawn(sketches: Vec<Sketch>) -> Vec<Figure> {
 /// All figures of a sweep's case for which there is something to draw.
 pub(crate) fn figures(
     folder: &mut Folder,
-    case: usize,
+    part: Part,
     comparisons: &[&Comparison],
 ) -> Result<Vec<Figure>, Failure> {
-    sketches(folder, Part { case, only: None }, comparisons).map(drawn)
+    sketches(folder, part, comparisons).map(drawn)
 }
 
 /// All figures of a sweep's case, before they are drawn.
@@ -50,8 +54,8 @@ pub(crate) fn sketches(
     part: Part,
     comparisons: &[&Comparison],
 ) -> Result<Vec<Sketch>, Failure> {
-    let Part { case, only } = part;
-    let gathered = gather::gather(folder, case)?;
+    let Part { case, only, seed } = part;
+    let gathered = gather::gather(folder, case, seed)?;
     let experiment = folder.experiment();
     let mut figures = metrics::boxes(folder, case, only)?;
     figures.push(metrics::costs(folder, case, only)?);
@@ -70,7 +74,7 @@ pub(crate) fn sketches(
 
 /// The figures of a sweep along its axes, before they are drawn.
 pub(crate) fn sketches_along_axes(folder: &Folder, part: Part) -> Result<Vec<Sketch>, Failure> {
-    metrics::axes(folder, part.case, part.only)
+    axes::axes(folder, part.case, part.only)
 }
 
 /// Whether a metric has values in a case, and all of them are zero.

@@ -1,7 +1,7 @@
 //! Tables of the effects of a sweep's axes, with a row for each case or change.
 
 use comfy_table::{Cell, Table};
-use experiments::comparison::{Comparison, Effect, Interaction, short};
+use experiments::comparison::{Comparison, Effect, Interaction, Verdict, short};
 use experiments::experiment::VARIANT;
 
 use super::{headed, right};
@@ -62,7 +62,7 @@ pub fn interactions_table(interactions: &[&Interaction]) -> Table {
 #[must_use]
 pub fn differences_table(comparisons: &[&Comparison]) -> Table {
     let text = |one: &Comparison| match one.difference.zip(one.interval) {
-        Some((difference, [low, high])) => with_interval(difference, low, high, one.is_found()),
+        Some((difference, [low, high])) => with_interval(difference, low, high, one.verdict.is_shown()),
         None => "-".to_owned(),
     };
     let cells = comparisons.iter().map(|one| Entry {
@@ -71,6 +71,29 @@ pub fn differences_table(comparisons: &[&Comparison]) -> Table {
         text: text(one),
     });
     pivoted("case", cells)
+}
+
+/// The differences of one metric in many cases, for a narrow terminal: a row for each case, a column for each
+/// pair of policies. Without intervals: `*` marks what is shown, `=` what is equivalent.
+#[must_use]
+pub fn cases_table(comparisons: &[&Comparison]) -> Table {
+    let mark = |one: &Comparison| match one.verdict {
+        Verdict::Equivalent => " =",
+        verdict => star(verdict.is_shown()),
+    };
+    let text = |one: &Comparison| {
+        one.difference.map_or("-".to_owned(), |difference| format!("{}{}", signed(difference), mark(one)))
+    };
+    let values =
+        |one: &Comparison| one.axes.iter().map(|(_, value)| value.as_str()).collect::<Vec<_>>().join(", ");
+    let axes = comparisons.first().map_or(&[][..], |one| &one.axes);
+    let title = axes.iter().map(|(path, _)| path.as_str()).collect::<Vec<_>>().join(", ");
+    let cells = comparisons.iter().map(|one| Entry {
+        row: values(one),
+        column: format!("{} - {}", one.a, one.b),
+        text: text(one),
+    });
+    pivoted(&title, cells)
 }
 
 struct Entry {
@@ -105,8 +128,12 @@ fn pivoted(title: &str, entries: impl Iterator<Item = Entry>) -> Table {
 
 /// `value (low to high)`, with a star if the difference is statistically shown.
 fn with_interval(value: f64, low: f64, high: f64, is_found: bool) -> String {
-    let sign = if value > 0.0 { "+" } else { "" };
-    format!("{sign}{} ({} to {}){}", short(value), short(low), short(high), star(is_found))
+    format!("{} ({} to {}){}", signed(value), short(low), short(high), star(is_found))
+}
+
+fn signed(value: f64) -> String {
+    let text = short(value);
+    if value > 0.0 && text != "0" { format!("+{text}") } else { text }
 }
 
 fn star(is_found: bool) -> &'static str {

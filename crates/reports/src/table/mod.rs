@@ -9,14 +9,15 @@ use std::sync::OnceLock;
 pub use comfy_table::Table;
 use comfy_table::presets::UTF8_FULL_CONDENSED;
 use comfy_table::{Cell, CellAlignment, ContentArrangement, Row};
-use experiments::comparison::{Comparison, digits, short, short_p};
+use experiments::comparison::{Comparison, digits, moments_of, short, short_p};
 use experiments::experiment::Experiment;
 use experiments::stats::Moments;
 use experiments::sweep::folder::Folder;
 use usar_sim::event::ReturnCause;
+use usar_sim::metrics::RoundRecord;
 use usar_sim::record::TrialRecord;
 
-pub use effects::{differences_table, effects_table, interactions_table};
+pub use effects::{cases_table, differences_table, effects_table, interactions_table};
 pub(crate) use format::Lines;
 pub use format::{Format, show_as, shown_as};
 pub use grouping::{levels_table, likeness_table};
@@ -30,11 +31,11 @@ const MOST_COLUMNS: usize = 8;
 pub fn policy_table(folder: &Folder, case: usize) -> Table {
     let Experiment { policies, metrics, .. } = folder.experiment();
     let trials = folder.trials_of(case);
-    let cell = |policy, metric| right(&moments(&Moments::of(&folder.values(case, policy, metric)), trials));
+    let cell = |policy, metric| right(&moments(&moments_of(folder, (case, policy), metric), trials));
     let primary = || metrics.iter().enumerate().filter(|(_, metric)| metric.is_primary);
     if policies.len() > MOST_COLUMNS {
-        let titles = primary().map(|(_, metric)| right(&metric.title));
-        let mut table = headed(std::iter::once(Cell::new("policy")).chain(titles));
+        let names = primary().map(|(_, metric)| right(&metric.name));
+        let mut table = headed(std::iter::once(Cell::new("policy")).chain(names));
         for (policy, spec) in policies.iter().enumerate() {
             let cells = primary().map(|(metric, _)| cell(policy, metric));
             table.add_row(std::iter::once(Cell::new(&spec.label)).chain(cells));
@@ -46,25 +47,46 @@ pub fn policy_table(folder: &Folder, case: usize) -> Table {
     let mut last = "";
     for (i, metric) in primary() {
         let cells = (0..policies.len()).map(|policy| cell(policy, i));
-        table.add_row(std::iter::once(Cell::new(indented(&metric.title, last))).chain(cells));
-        last = &metric.title;
+        table.add_row(std::iter::once(Cell::new(indented(&metric.name, last))).chain(cells));
+        last = &metric.name;
     }
     table
 }
 
-/// A title of which only the last word is shown, if its other words equal those of the title above.
-fn indented(title: &str, above: &str) -> String {
-    let common = |text: &str| text.rfind(' ').map(|end| text[..end].to_owned());
+/// A metric's name, of which only the part is shown if the rest equals that of the name above.
+fn indented(name: &str, above: &str) -> String {
+    let common = |text: &str| text.rfind('.').map(|end| text[..end].to_owned());
     let is_terminal = shown_as() == Format::Table;
-    match (common(title), common(above)) {
+    match (common(name), common(above)) {
         (Some(here), Some(there)) if here == there && is_terminal => {
-            " ".repeat(here.len()) + &title[here.len()..]
+            " ".repeat(here.len()) + &name[here.len()..]
         }
-        _ => title.to_owned(),
+        _ => name.to_owned(),
     }
 }
 
-/// A row for each comparison.
+/// The comparisons of one metric in five columns, for a terminal of 80 columns.
+#[must_use]
+pub fn verdict_table(comparisons: &[&Comparison]) -> Table {
+    let mut table = headed(["A - B", "difference", "95 % interval", "p", "verdict"]);
+    for c in comparisons {
+        table.add_row([
+            Cell::new(format!("{} - {}", c.a, c.b)),
+            right(&c.difference.map_or("-".to_owned(), short)),
+            right(&between(c.interval)),
+            right(&c.p_holm.map_or("-".to_owned(), short_p)),
+            Cell::new(c.verdict_in_words()),
+        ]);
+    }
+    table
+}
+
+/// An interval in words.
+pub(crate) fn between(interval: Option<[f64; 2]>) -> String {
+    interval.map_or("-".to_owned(), |[low, high]| format!("{} to {}", short(low), short(high)))
+}
+
+/// A row for each comparison, with all that is known of it.
 #[must_use]
 pub fn comparison_table(comparisons: &[&Comparison]) -> Table {
     let is_judged = comparisons.iter().any(|comparison| comparison.judged.is_some());
@@ -81,18 +103,16 @@ pub fn comparison_table(comparisons: &[&Comparison]) -> Table {
         "p Holm",
         "effect",
         "detectable",
+        "verdict",
     ];
-    let of_margin = ["verdict", "pairs for margin"].into_iter().filter(|_| is_judged);
+    let of_margin = ["pairs for margin"].into_iter().filter(|_| is_judged);
     let mut table = headed(header.into_iter().chain(of_margin).collect::<Vec<_>>());
     let number = |value: Option<f64>| right(&value.map_or("-".to_owned(), short));
     let mean = |value: Option<f64>| right(&value.map_or("-".to_owned(), |value| digits(value, 4)));
     for c in comparisons {
-        let interval =
-            c.interval.map_or("-".to_owned(), |[low, high]| format!("{} to {}", short(low), short(high)));
         let p = |p: Option<f64>| right(&p.map_or("-".to_owned(), short_p));
-        let verdict = c.judged.map_or("-".to_owned(), |judged| judged.in_words());
         let pairs = c.judged.and_then(|judged| judged.pairs_for_margin);
-        let of_margin = [Cell::new(verdict), right(&pairs.map_or("-".to_owned(), |pairs| pairs.to_string()))];
+        let of_margin = [right(&pairs.map_or("-".to_owned(), |pairs| pairs.to_string()))];
         let cells = [
             Cell::new(&c.metric),
             Cell::new(format!("{} - {}", c.a, c.b)),
@@ -100,49 +120,47 @@ pub fn comparison_table(comparisons: &[&Comparison]) -> Table {
             mean(c.mean_a),
             mean(c.mean_b),
             number(c.difference),
-            right(&interval),
+            right(&between(c.interval)),
             number(c.shift),
             p(c.p),
             p(c.p_holm),
             right(&c.effect.map_or("-".to_owned(), |effect| format!("{effect:.2}"))),
             number(c.detectable),
+            Cell::new(c.verdict_in_words()),
         ];
         table.add_row(cells.into_iter().chain(of_margin.into_iter().filter(|_| is_judged)));
     }
     table
 }
 
-/// A row for each round and task.
+/// A row for each round and task: what was carried and why the group went home; where there is room, also
+/// when it began, what it cost, and who turned back.
 #[must_use]
-pub fn rounds_table(record: &TrialRecord) -> Table {
-    let mut table = headed([
-        "round",
-        "task",
-        "from s",
-        "to s",
-        "members",
-        "secured",
-        "rescued",
-        "energy",
-        "HP",
-        "turned back",
-        "went home: why",
-    ]);
-    for round in &record.rounds {
+pub fn rounds_table(record: &TrialRecord, is_wide: bool) -> Table {
+    let cells = |round: &RoundRecord| {
         let members: Vec<String> = round.members.iter().map(|member| member.id.to_string()).collect();
-        table.add_row([
-            right(&round.round.to_string()),
-            Cell::new(&record.tasks[round.task.index()].task),
-            right(&format!("{:.1}", round.start_s)),
-            right(&round.end_s.map_or("-".to_owned(), |end| format!("{end:.1}"))),
-            Cell::new(members.join(" ")),
-            right(&round.secured.to_string()),
-            right(&round.rescued.to_string()),
-            right(&format!("{:.1}", round.energy)),
-            right(&format!("{:.2}", round.hp)),
-            right(&round.turned_back.to_string()),
-            Cell::new(round.return_cause.map_or("-", ReturnCause::name)),
-        ]);
+        [
+            ("round", true, right(&round.round.to_string())),
+            ("task", true, Cell::new(&record.tasks[round.task.index()].task)),
+            ("from s", false, right(&format!("{:.1}", round.start_s))),
+            ("to s", true, right(&round.end_s.map_or("-".to_owned(), |end| format!("{end:.1}")))),
+            ("members", true, Cell::new(members.join(" "))),
+            ("secured", false, right(&round.secured.to_string())),
+            ("rescued", true, right(&round.rescued.to_string())),
+            ("energy", true, right(&format!("{:.1}", round.energy))),
+            ("HP", false, right(&format!("{:.2}", round.hp))),
+            ("turned back", false, right(&round.turned_back.to_string())),
+            ("went home: why", true, Cell::new(round.return_cause.map_or("-", ReturnCause::name))),
+        ]
+        .map(|(name, is_narrow, cell)| (is_wide || is_narrow).then_some((name, cell)))
+    };
+    let mut table = Table::new();
+    for round in &record.rounds {
+        let (names, row): (Vec<&str>, Vec<Cell>) = cells(round).into_iter().flatten().unzip();
+        if table.header().is_none() {
+            table = headed(names);
+        }
+        table.add_row(row);
     }
     table
 }
@@ -167,6 +185,15 @@ pub fn fold_at(columns: u16) {
     let _ = COLUMNS.set(columns); // the terminal is the same
 }
 
+/// Tables with many columns are for terminals of at least so many.
+const WIDE: u16 = 120;
+
+/// Whether a table may have many columns: in a wide terminal, and where programs or pages read it.
+#[must_use]
+pub fn is_wide() -> bool {
+    shown_as() != Format::Table || COLUMNS.get().is_some_and(|columns| *columns >= WIDE)
+}
+
 /// A cell aligned on the right.
 #[must_use]
 pub fn right(text: &str) -> Cell {
@@ -174,7 +201,7 @@ pub fn right(text: &str) -> Cell {
 }
 
 /// `mean ± sd`, with the number of trials if some trials have no value.
-fn moments(moments: &Moments, trials: usize) -> String {
+pub(crate) fn moments(moments: &Moments, trials: usize) -> String {
     let Some(mean) = moments.mean else { return "-".to_owned() };
     let decimals = decimals(mean);
     let sd = moments.sd.map_or(String::new(), |sd| format!(" ± {sd:.decimals$}"));

@@ -311,13 +311,12 @@ fn place_of(folder: &Folder, policy: &str) -> Result<usize, Failure> {
 impl Part {
     /// The comparison in words.
     #[must_use]
-    pub fn words(&self, metrics: &Catalogue) -> String {
-        let [policy, metric] = self.a;
-        let title = |name| metrics.title(name);
-        if self.a[1] == self.b[1] {
-            format!("{}: {policy} {} {}", title(metric), self.claimed.sign(), self.b[0])
+    pub fn words(&self) -> String {
+        let ([policy, metric], [other, other_metric], sign) = (self.a, self.b, self.claimed.sign());
+        if metric == other_metric {
+            format!("{metric}: {policy} {sign} {other}")
         } else {
-            format!("{policy}: {} {} {}", title(metric), self.claimed.sign(), title(self.b[1]))
+            format!("{policy}: {metric} {sign} {other_metric}")
         }
     }
 }

@@ -22,7 +22,7 @@ pub(crate) fn claims_table(judged: &Judged) -> Table {
         ]);
         for (part, (few, all)) in claim.parts.iter().zip(few.parts.iter().zip(&all.parts)) {
             table.add_row([
-                Cell::new(format!("  {}", part.words(&judged.metrics))),
+                Cell::new(format!("  {}", part.words())),
                 Cell::new(""),
                 Cell::new(""),
                 difference(all),
@@ -89,7 +89,7 @@ pub(crate) fn power_table(judged: &Judged) -> Option<Table> {
         ]);
         for (part, found) in claim.parts.iter().zip(&finding.parts) {
             table.add_row([
-                Cell::new(format!("  {}", part.words(&judged.metrics))),
+                Cell::new(format!("  {}", part.words())),
                 Cell::new(""),
                 right(&found.pairs_needed.map_or("-".to_owned(), |pairs| pairs.to_string())),
                 Cell::new(""),

@@ -18,16 +18,16 @@ fn signed(value: f64) -> String {
     if value > 0.0 { format!("+{}", short(value)) } else { short(value) }
 }
 
-/// The titles of the metrics in which readings are compared.
-fn titles(metrics: &Catalogue) -> impl Iterator<Item = Cell> {
-    shown(metrics).into_iter().map(|place| Cell::new(&metrics[place].title))
+/// The metrics in which readings are compared.
+fn names(metrics: &Catalogue) -> impl Iterator<Item = Cell> {
+    shown(metrics).into_iter().map(|place| Cell::new(&metrics[place].name))
 }
 
 /// Each reading by itself.
 #[must_use]
 pub fn readings_table(rows: &[ReadingRow], metrics: &Catalogue) -> Table {
     let header = ["reading", "regrouped", "split otherwise", "trials"].map(Cell::new);
-    let mut table = headed(header.into_iter().chain(titles(metrics)));
+    let mut table = headed(header.into_iter().chain(names(metrics)));
     let share = |share: f64| right(&format!("{:.1} %", 100.0 * share));
     for row in rows {
         let [grouped, split] = row.regrouped;
@@ -40,7 +40,7 @@ pub fn readings_table(rows: &[ReadingRow], metrics: &Catalogue) -> Table {
 /// Each reading averaged over the others.
 #[must_use]
 pub fn averaged_table(rows: &[(String, Vec<Option<Difference>>)], metrics: &Catalogue) -> Table {
-    let mut table = headed(std::iter::once(Cell::new("reading")).chain(titles(metrics)));
+    let mut table = headed(std::iter::once(Cell::new("reading")).chain(names(metrics)));
     for (reading, row) in rows {
         table.add_row(std::iter::once(Cell::new(reading)).chain(differences(row)));
     }

@@ -5,7 +5,7 @@ use std::ops::{Bound, RangeBounds};
 use clap::builder::RangedU64ValueParser;
 use clap::{ArgMatches, ValueEnum};
 use experiments::experiment::{Experiment, PolicySpec, split_list, with_settings};
-use reports::table::Format;
+use reports::table::{Format, is_wide};
 use usar_sim::scenario::Scenario;
 
 use crate::bad_value::BadValue;
@@ -123,6 +123,21 @@ impl ShownArguments {
     /// Whether the result is JSON.
     pub(crate) fn is_json(self) -> bool {
         self.as_json.json
+    }
+}
+
+/// Whether tables have all their columns.
+#[derive(Debug, Clone, Copy, Args)]
+pub(crate) struct WideArgument {
+    /// Show all columns and tables, as in a terminal of 120 columns or more
+    #[arg(long)]
+    wide: bool,
+}
+
+impl WideArgument {
+    /// Whether tables have all their columns: on request, and where there is room.
+    pub(crate) fn is_wide(self) -> bool {
+        self.wide || is_wide()
     }
 }
 

@@ -10,11 +10,12 @@ mod trial;
 
 pub(crate) use common::{
     CaseArgument, JsonArgument, MeasureArgument, PoliciesArgument, ReplaceArgument, SetArguments,
-    ShownArguments, count, format_of, limit, numbers, one_seed, parse_policy, seconds, seed, share,
+    ShownArguments, WideArgument, count, format_of, limit, numbers, one_seed, parse_policy, seconds, seed,
+    share,
 };
 pub(crate) use family::{ComparisonArguments, FamilyArguments};
 pub(crate) use parameters::ParameterArguments;
-pub(crate) use picture::{LookArguments, PictureArguments, PictureFile};
+pub(crate) use picture::{LookArguments, PictureArguments, PictureFile, width};
 pub(crate) use progress::{ProgressArguments, default_jobs, progress_bar};
 pub(crate) use selection::Selection;
 pub(crate) use trial::{Trial, TrialArguments};

@@ -38,7 +38,7 @@ fn dots(text: &str) -> Result<u16, BadValue> {
 }
 
 /// A width from the command line.
-fn width(text: &str) -> Result<Width, BadValue> {
+pub(crate) fn width(text: &str) -> Result<Width, BadValue> {
     let wrong = || BadValue::new("100 to 8000 pixels, as in `800`, or 20mm to 1000mm", text);
     let width = if let Some(length) = text.strip_suffix("mm") {
         let length = length.trim().parse().ok().filter(|length| (20.0..=1000.0).contains(length));

@@ -1,35 +1,38 @@
 //! `usar compare`: paired comparisons of a sweep's policies.
 
 use experiments::comparison::{
-    CONFIDENCE, Comparison, Effect, Interaction, LEVEL, compare, effects, interactions, limit_of_changes,
-    limit_of_correction, test_in_words,
+    Asked, CONFIDENCE, Comparison, Effect, Interaction, LEVEL, answer, answer_of_cases, compare, effects,
+    interactions, limit_of_changes, limit_of_correction, own_question, test_in_words, what_would_settle,
 };
-use experiments::metric::Metric;
+use experiments::experiment::Experiment;
 use experiments::stats::bootstrap::resamples;
 use experiments::sweep::host::Hosts;
-use reports::table::{comparison_table, differences_table, effects_table, interactions_table};
+use reports::table::{
+    cases_table, comparison_table, differences_table, effects_table, interactions_table, verdict_table,
+};
 use serde_json::json;
 
-use crate::arguments::{FamilyArguments, ShownArguments};
+use crate::arguments::{FamilyArguments, ShownArguments, WideArgument};
 use crate::input::read_sweep;
 use crate::prelude::*;
 
 /// Is A better than B, by how much, and how sure is that?
 #[derive(Debug, Args)]
 #[command(after_help = "\
-Trials are paired by seed. For each metric (`all` takes every one) and pair of policies: mean of each, mean \
-difference with its 95 % bootstrap interval, Hodges-Lehmann shift, Wilcoxon's signed-rank test, its p after \
-Holm's correction over all comparisons shown, effect size (matched-pairs rank-biserial), the least \
-difference that this many pairs detect with 80 % power, with a margin how many pairs have this power for \
-it, and one sentence. For a sweep with axes, also how each policy's mean, and each difference, changes \
-along an axis, paired by seed. With a margin, two policies are equivalent if the 90 % interval of their \
-difference lies within it (two one-sided tests at 5 %). Choose metrics before looking: the correction knows \
-only what is shown together.
+Says first what is shown, then, for each metric and pair of policies: the mean difference of trials paired \
+by seed, its 95 % bootstrap interval, p of Wilcoxon's signed-rank test after Holm's correction over all \
+comparisons shown, and a verdict. Many cases are a table of cases. --wide adds means, Hodges-Lehmann shift, \
+effect size (matched-pairs rank-biserial), the least difference that this many pairs detect with 80 % \
+power, with a margin how many pairs have this power for it, a sentence for each comparison, and for a sweep \
+with axes how each policy's mean, and each difference, changes along an axis. With a margin, two policies \
+are equivalent if the 90 % interval of their difference lies within it (two one-sided tests at 5 %). Choose \
+metrics before looking: the correction knows only what is shown together. Where the sweep file asks another \
+question, the answer says how its verdicts differ.
 
 Examples:
   usar compare results/paper
+  usar compare results/paper --wide
   usar compare results/paper --metric rescuees.hard --metric rescuees.easy --baseline DIS
-  usar compare results/paper --policies RNE,ENG
   usar compare results/paper --metric rescuees --margin rescuees=3    equivalent within 3 rescuees?
   usar compare results/paper --metric all --json")]
 pub(crate) struct Arguments {
@@ -39,16 +42,33 @@ pub(crate) struct Arguments {
     family: FamilyArguments,
     #[command(flatten)]
     shown: ShownArguments,
+    #[command(flatten)]
+    wide: WideArgument,
+}
+
+/// What was compared.
+struct Compared<'a> {
+    experiment: &'a Experiment,
+    asked: &'a Asked,
+    comparisons: Vec<Comparison>,
+    effects: Vec<Effect>,
+    interactions: Vec<Interaction>,
 }
 
 impl Arguments {
     pub(crate) fn execute(&self, registry: &Registry, out: &mut dyn Write) -> Result<(), Failure> {
         let folder = read_sweep(&self.folder, registry)?;
         let experiment = folder.experiment();
-        let asked = self.family.asked(experiment)?;
+        let asked = &self.family.asked(experiment)?;
         let comparisons = compare(&folder, &asked.metrics, asked.choice())?;
-        let effects = effects(&folder, &asked.metrics, asked.choice())?;
-        let interactions = interactions(&folder, &asked.metrics, asked.choice())?;
+        let own = own_question(&folder, asked, &comparisons)?;
+        let compared = Compared {
+            experiment,
+            asked,
+            comparisons,
+            effects: effects(&folder, &asked.metrics, asked.choice())?,
+            interactions: interactions(&folder, &asked.metrics, asked.choice())?,
+        };
         if self.shown.is_json() {
             let output = json!({
                 "sweep": experiment.name,
@@ -56,96 +76,166 @@ impl Arguments {
                 "is_complete": folder.manifest().is_complete,
                 "confidence": CONFIDENCE,
                 "level": LEVEL,
-                "comparisons": comparisons,
-                "effects": effects,
-                "interactions": interactions,
+                "own_question": own,
+                "comparisons": compared.comparisons,
+                "effects": compared.effects,
+                "interactions": compared.interactions,
             });
             return print_json(&output);
         }
-        let cases = experiment.cases.iter().enumerate().filter(|_| !comparisons.is_empty());
-        for (i, case) in cases {
-            let place = experiment.describe(case);
-            if !place.is_empty() {
-                writeln!(out, "{}", place.trim_end_matches(": "))?;
-            }
-            let here: Vec<&Comparison> = comparisons.iter().filter(|c| c.case == i + 1).collect();
-            print_table(out, &comparison_table(&here))?;
+        compared.print_answer(out)?;
+        if self.wide.is_wide() {
+            compared.print_wide(out)?
+        } else {
+            compared.print_narrow(out)?
         }
-        for comparison in &comparisons {
-            writeln!(out, "{}", comparison.in_words)?;
+        compared.print_notes(out)?;
+        if let Some(own) = own {
+            writeln!(out, "{own}")?;
         }
-        if !effects.is_empty() {
-            for metric in &asked.metrics {
-                print_changes(out, &experiment.metrics[*metric], &comparisons, &effects, &interactions)?;
-            }
-            writeln!(out, "{CHANGES_NOTE}")?;
-            let counts = || effects.iter().map(|one| one.n);
-            let (least, most) = (counts().min().unwrap_or(0), counts().max().unwrap_or(0));
-            writeln!(out, "Pairs of each change: {least} to {most}")?;
-        }
-        if let Some(limit) = limit_of_correction(&comparisons) {
-            writeln!(out, "\n{limit}")?;
-        }
-        if let Some(limit) = limit_of_changes(&effects, &interactions) {
-            writeln!(out, "\n{limit}")?;
-        }
-        if !comparisons.is_empty() {
-            writeln!(out, "\n{}", footnote(&comparisons))?;
-            let margins = asked.margins_in_words(experiment);
-            if !margins.is_empty() {
-                writeln!(out, "{margins}")?;
-            }
-            let rules = Hosts::read(folder.path()).rules;
-            rules.iter().try_for_each(|rule| writeln!(out, "Pairs were added by a rule: {rule}"))?;
-        }
-        Ok(())
+        let rules = Hosts::read(folder.path()).rules;
+        rules.iter().try_for_each(|rule| Ok(writeln!(out, "Pairs were added by a rule: {rule}")?))
     }
 }
 
-/// Note below the tables of [`print_changes`].
+impl Compared<'_> {
+    fn of_case(&self, case: usize) -> Vec<&Comparison> {
+        self.comparisons.iter().filter(|one| one.case == case + 1).collect()
+    }
+
+    /// The answer, before any table: of the only case, or how many cases show what.
+    fn print_answer(&self, out: &mut dyn Write) -> Result<(), Failure> {
+        let all: Vec<&Comparison> = self.comparisons.iter().collect();
+        let said = if self.experiment.cases.len() == 1 { answer(&all) } else { answer_of_cases(&all) };
+        said.map_or(Ok(()), |said| Ok(writeln!(out, "{said}\n")?))
+    }
+
+    /// Five columns a metric, or a table of cases.
+    fn print_narrow(&self, out: &mut dyn Write) -> Result<(), Failure> {
+        let has_cases = self.experiment.cases.len() > 1;
+        for metric in self.asked.metrics.iter().map(|metric| &self.experiment.metrics[*metric].name) {
+            let here: Vec<&Comparison> =
+                self.comparisons.iter().filter(|one| one.metric == *metric).collect();
+            if here.is_empty() {
+                self.print_means(out, metric)?;
+            } else {
+                writeln!(out, "{metric}")?;
+                print_table(out, &if has_cases { cases_table(&here) } else { verdict_table(&here) })?;
+            }
+        }
+        if has_cases && !self.comparisons.is_empty() {
+            writeln!(out, "*: shown to differ; =: equivalent within the margin; others are undecided.")?;
+            self.print_shown_changes(out)?;
+        }
+        Ok(())
+    }
+
+    /// The changes of differences that are shown, in sentences.
+    fn print_shown_changes(&self, out: &mut dyn Write) -> Result<(), Failure> {
+        let shown: Vec<&Interaction> = self.interactions.iter().filter(|one| one.is_found()).collect();
+        let (count, all) = (shown.len(), self.interactions.len());
+        writeln!(out, "\nDifferences that are shown to change along an axis: {count} of {all} changes.")?;
+        shown.iter().take(MOST_SENTENCES).try_for_each(|one| writeln!(out, "{}", one.in_words))?;
+        if count > MOST_SENTENCES {
+            writeln!(out, "{} more: --wide.", count - MOST_SENTENCES)?;
+        }
+        Ok(())
+    }
+
+    /// All columns, a sentence for each comparison, and all changes along axes.
+    fn print_wide(&self, out: &mut dyn Write) -> Result<(), Failure> {
+        let cases = self.experiment.cases.iter().enumerate().filter(|_| !self.comparisons.is_empty());
+        for (i, case) in cases {
+            let place = self.experiment.describe(case);
+            if !place.is_empty() {
+                writeln!(out, "{}", place.trim_end_matches(": "))?;
+            }
+            print_table(out, &comparison_table(&self.of_case(i)))?;
+        }
+        self.comparisons.iter().try_for_each(|one| writeln!(out, "{}", one.in_words))?;
+        if self.effects.is_empty() {
+            return Ok(());
+        }
+        for metric in self.asked.metrics.iter().map(|metric| &self.experiment.metrics[*metric].name) {
+            writeln!(out)?;
+            self.print_means(out, metric)?;
+            self.print_differences(out, metric)?;
+        }
+        writeln!(out, "{CHANGES_NOTE}")?;
+        let counts = || self.effects.iter().map(|one| one.n);
+        let (least, most) = (counts().min().unwrap_or(0), counts().max().unwrap_or(0));
+        Ok(writeln!(out, "Pairs of each change: {least} to {most}")?)
+    }
+
+    /// The effects of the axes on each policy's mean.
+    fn print_means(&self, out: &mut dyn Write, metric: &str) -> Result<(), Failure> {
+        let effects: Vec<&Effect> = self.effects.iter().filter(|one| one.metric == metric).collect();
+        writeln!(out, "By how much each policy's mean changes, in percent of what it was: {metric}")?;
+        print_table(out, &effects_table(&effects))
+    }
+
+    /// The differences case by case, and their changes.
+    fn print_differences(&self, out: &mut dyn Write, metric: &str) -> Result<(), Failure> {
+        let here: Vec<&Comparison> = self.comparisons.iter().filter(|one| one.metric == metric).collect();
+        if here.is_empty() {
+            return Ok(());
+        }
+        writeln!(out, "\nDifferences between policies, case by case: {metric}")?;
+        print_table(out, &differences_table(&here))?;
+        writeln!(out, "\nBy how much these differences change: {metric}")?;
+        let changes: Vec<&Interaction> =
+            self.interactions.iter().filter(|one| one.metric == metric).collect();
+        print_table(out, &interactions_table(&changes))
+    }
+
+    /// What everything stands on, and what limits it.
+    fn print_notes(&self, out: &mut dyn Write) -> Result<(), Failure> {
+        writeln!(out)?;
+        let limits = [
+            limit_of_correction(&self.comparisons),
+            limit_of_changes(&self.effects, &self.interactions),
+            what_would_settle(&self.comparisons),
+            (!self.comparisons.is_empty()).then(|| footnote(&self.comparisons)),
+            Some(self.asked.margins_in_words(self.experiment)).filter(|margins| !margins.is_empty()),
+        ];
+        limits.into_iter().flatten().try_for_each(|limit| Ok(writeln!(out, "{limit}")?))
+    }
+}
+
+/// At most so many changes of differences are told in sentences.
+const MOST_SENTENCES: usize = 6;
+
+/// Note below the tables of changes.
 const CHANGES_NOTE: &str = "\
 Each change goes from the first value of one axis to another value, all else equal, and is paired by seed. In
 brackets 95 % bootstrap intervals; *: shown after Holm's correction over all changes (of means, and of
 differences), or over all comparisons";
 
-/// Prints the effects of the axes on one metric: each policy's mean, the differences case by case, and
-/// their changes.
-fn print_changes(
-    out: &mut dyn Write,
-    metric: &Metric,
-    comparisons: &[Comparison],
-    effects: &[Effect],
-    interactions: &[Interaction],
-) -> Result<(), Failure> {
-    let Metric { name, title, .. } = metric;
-    let effects: Vec<&Effect> = effects.iter().filter(|one| one.metric == *name).collect();
-    let interactions: Vec<&Interaction> = interactions.iter().filter(|one| one.metric == *name).collect();
-    let comparisons: Vec<&Comparison> = comparisons.iter().filter(|one| one.metric == *name).collect();
-    writeln!(out, "\nBy how much each policy's mean changes, in percent of what it was: {title}")?;
-    print_table(out, &effects_table(&effects))?;
-    if comparisons.is_empty() {
-        return Ok(());
-    }
-    writeln!(out, "\nDifferences between policies, case by case: {title}")?;
-    print_table(out, &differences_table(&comparisons))?;
-    writeln!(out, "\nBy how much these differences change: {title}")?;
-    print_table(out, &interactions_table(&interactions))
-}
-
+/// What everything stands on.
 fn footnote(comparisons: &[Comparison]) -> String {
-    let count = comparisons.iter().filter(|c| c.p.is_some()).count();
+    let family = comparisons.iter().filter(|c| c.p.is_some()).count();
+    let ns = || comparisons.iter().map(|one| one.n);
+    let (least, most) = (ns().min().unwrap_or(0), ns().max().unwrap_or(0));
+    let n = if least == most { most.to_string() } else { format!("{least} to {most}") };
     let sum = |value: fn(&Comparison) -> usize| comparisons.iter().map(value).sum::<usize>();
-    let (failed, missing, undefined) = (sum(|c| c.failed), sum(|c| c.missing), sum(|c| c.undefined));
-    let drawn_from = comparisons.iter().map(|c| resamples(c.n));
-    let least = drawn_from.min().unwrap_or(resamples(0));
-    let drawn = test_in_words(comparisons);
+    let left_out = [
+        (sum(|c| c.failed), "with a failed trial"),
+        (sum(|c| c.missing), "with a missing one"),
+        (sum(|c| c.undefined), "in which the metric is not defined (no rescuee)"),
+    ];
+    let left_out = left_out.iter().filter(|(count, _)| *count > 0);
+    let left_out: Vec<String> = left_out.map(|(count, why)| format!("{count} {why}")).collect();
+    let left_out = if left_out.is_empty() {
+        String::new()
+    } else {
+        format!(" Pairs left out, over all comparisons: {}.", left_out.join(", "))
+    };
+    let resamples = comparisons.iter().map(|c| resamples(c.n)).min().unwrap_or(resamples(0));
     format!(
-        "Paired by seed. Interval: BCa bootstrap of the mean difference, widened for small n, {least} \
-         resamples, fixed seed. {drawn}; two-sided;\n\
-         Holm's correction over the {} above. Pairs left out, over all comparisons: \
-         {failed} with a failed trial, {missing} with\n\
-         a missing one, {undefined} in which the metric is not defined (no rescuee). docs/experiments.md \
-         explains each figure.",
-        counted(count, "comparison")
+        "Paired by seed, n = {n}. Intervals: BCa bootstrap of the mean difference, widened for small n, \
+         {resamples} resamples, fixed seed. p: Wilcoxon's signed-rank test, two-sided, {}, after Holm's \
+         correction over {}.{left_out} docs/experiments.md explains each figure.",
+        test_in_words(comparisons).trim_start_matches("p "),
+        counted(family, "comparison")
     )
 }

@@ -16,7 +16,7 @@ use usar_sim::simulation::Simulation;
 use self::event_lines::EventLines;
 use self::live::Live;
 use self::snapshot::{Snapshot, save};
-use crate::arguments::{MeasureArgument, ShownArguments, Trial, TrialArguments};
+use crate::arguments::{MeasureArgument, ShownArguments, Trial, TrialArguments, WideArgument};
 use crate::prelude::*;
 use crate::recordings;
 use crate::running::Guard;
@@ -74,6 +74,8 @@ pub(crate) struct Arguments {
     #[command(flatten)]
     shown: ShownArguments,
     #[command(flatten)]
+    wide: WideArgument,
+    #[command(flatten)]
     measure: MeasureArgument,
 }
 
@@ -120,7 +122,18 @@ impl Arguments {
             };
             return print_json(&output);
         }
-        print(out, &scenario.name, &spec.label, &record)?;
+        writeln!(
+            out,
+            "{}, policy {}, seed {seed}: {} s simulated, {}",
+            scenario.name,
+            spec.label,
+            record.time_s,
+            record.status.name().replace('_', " ")
+        )?;
+        if !record.rounds.is_empty() {
+            print_table(out, &rounds_table(&record, self.wide.is_wide()))?;
+        }
+        print(out, &record)?;
         story.iter().try_for_each(|line| Ok(writeln!(out, "{line}")?))
     }
 
@@ -172,17 +185,8 @@ fn run(
     Ok(simulation.finish())
 }
 
-fn print(out: &mut dyn Write, scenario: &str, policy: &str, record: &TrialRecord) -> Result<(), Failure> {
-    writeln!(
-        out,
-        "{scenario}, policy {policy}, seed {}: {} s simulated, {}",
-        record.seed,
-        record.time_s,
-        record.status.name().replace('_', " ")
-    )?;
-    if !record.rounds.is_empty() {
-        print_table(out, &rounds_table(record))?;
-    }
+/// Prints what came of a trial as a whole.
+fn print(out: &mut dyn Write, record: &TrialRecord) -> Result<(), Failure> {
     let rescued = record.rescued();
     let by_task = record.tasks.iter().map(|task| format!("{} {}", task.task, task.totals.rescued));
     let by_task = by_task.collect::<Vec<_>>().join(", ");

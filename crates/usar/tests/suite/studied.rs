@@ -85,10 +85,10 @@ fn agrees_with_the_readme(printed: &str) {
     let mut group = String::new();
     let mut rows = Vec::new();
     for mut row in printed.lines().filter(|line| line.starts_with('│')).map(|line| cells(line, '┆')) {
-        if let Some(first) = row[0].strip_suffix(" total") {
+        if let Some(first) = row[0].strip_suffix(".total") {
             first.clone_into(&mut group);
-        } else if ["hard", "easy"].contains(&row[0].as_str()) {
-            row[0] = format!("{group} {}", row[0]);
+        } else if [".hard", ".easy"].contains(&row[0].as_str()) {
+            row[0] = format!("{group}{}", row[0]);
         }
         rows.push(row);
     }

@@ -46,9 +46,9 @@ fn variants_set_several_fields_at_once_and_are_an_axis() {
     succeeds(&usar(&results, "sweep sweep.ron --quiet --out again"));
     assert_eq!(rows(&results.join("again"), "trials.csv"), trials);
     succeeds(&usar(here, "sweep varied.ron --quiet"));
-    let told = succeeds(&usar(here, "compare results/varied"));
+    let told = succeeds(&usar(here, "compare results/varied --wide"));
     assert!(
-        told.contains("By how much these differences change: rescuees total") && told.contains("│ calm "),
+        told.contains("By how much these differences change: rescuees.total") && told.contains("│ calm "),
         "{told}"
     );
     refused(

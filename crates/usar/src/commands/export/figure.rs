@@ -5,7 +5,9 @@ use experiments::sweep::folder::Folder;
 use pictures::{Picture, Width};
 use reports::{ColumnLook, Wanted, column_figure};
 
-use crate::arguments::{CaseArgument, ComparisonArguments, MeasureArgument, PictureArguments, PictureFile};
+use crate::arguments::{
+    CaseArgument, ComparisonArguments, MeasureArgument, PictureArguments, PictureFile, width,
+};
 use crate::input::read_sweep;
 use crate::prelude::*;
 
@@ -15,8 +17,8 @@ use crate::prelude::*;
 The names are those of the report's figures: rescuees, differences, rescuees-over-time, energy-per-rescuee, \
 costs, groups, levels, sorting; a wrong name lists those of the sweep. A column is \
 88mm wide unless --width says otherwise. With --metric, its panel alone is drawn; for `differences`, it says \
-which metrics are compared. Panels stand below each other where \
-the column is narrow, and no text is smaller than 7 points. A PDF has its font embedded. --grey takes the \
+which metrics are compared. Panels stand side by side as long as they can be read, and --height says how \
+high the figure is; no text is smaller than 7 points. A PDF has its font embedded. --grey takes the \
 colours away: policies still differ by their dashes and their places.
 
 Examples:
@@ -34,6 +36,9 @@ pub(crate) struct Arguments {
     case: CaseArgument,
     #[command(flatten)]
     picture: PictureArguments,
+    /// Height of the figure [default: that of its panels]
+    #[arg(long, value_parser = width, value_name = "HEIGHT")]
+    height: Option<Width>,
     /// Without colours
     #[arg(long)]
     grey: bool,
@@ -47,6 +52,17 @@ pub(crate) struct Arguments {
 /// Name of the figure that is made from comparisons.
 const DIFFERENCES: &str = "differences";
 
+/// A length on paper.
+fn millimetres(option: &str, length: Option<Width>) -> Result<Option<f64>, Failure> {
+    match length {
+        None => Ok(None),
+        Some(Width::Millimetres(length)) => Ok(Some(length)),
+        Some(Width::Pixels(_)) => Err(Failure::input(format!(
+            "{option}: a figure is drawn for paper: must be 20mm to 1000mm, as in `88mm`"
+        ))),
+    }
+}
+
 impl Arguments {
     pub(crate) fn execute(&self, registry: &Registry, out: &mut dyn Write) -> Result<(), Failure> {
         let registry = &self.measure.chosen_in(registry)?;
@@ -55,21 +71,15 @@ impl Arguments {
         let path = self.out.clone().unwrap_or_else(|| format!("{}.pdf", self.name).into());
         let file = PictureFile::of(&path, &["pdf", "svg", "png"], self.picture.replace)?;
         let wanted = self.wanted(&folder, case)?;
-        let look =
-            ColumnLook { width_mm: self.width_mm()?, is_grey: self.grey, metric: self.panel(&folder)? };
+        let look = ColumnLook {
+            width_mm: millimetres("--width", self.picture.width)?.unwrap_or(88.0),
+            height_mm: millimetres("--height", self.height)?,
+            is_grey: self.grey,
+            metric: self.panel(&folder)?,
+        };
         let svg = column_figure(&mut folder, &self.name, &wanted, &look)?;
         file.write(&Picture::of_svg(svg, f64::from(self.picture.dpi.unwrap_or(600))))?;
         Ok(writeln!(out, "{}", path.display())?)
-    }
-
-    fn width_mm(&self) -> Result<f64, Failure> {
-        match self.picture.width {
-            None => Ok(88.0),
-            Some(Width::Millimetres(width)) => Ok(width),
-            Some(Width::Pixels(_)) => Err(Failure::input(
-                "--width: a figure is drawn for paper: must be 20mm to 1000mm, as in `88mm`",
-            )),
-        }
     }
 
     fn wanted(&self, folder: &Folder, case: usize) -> Result<Wanted, Failure> {

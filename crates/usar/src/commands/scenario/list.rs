@@ -100,7 +100,8 @@ fn roles(out: &mut dyn Write, scenario: &Scenario) -> Result<(), Failure> {
 
 fn metrics(out: &mut dyn Write, scenario: &Scenario) -> Result<(), Failure> {
     for metric in Catalogue::of(&task_names(scenario)).iter() {
-        writeln!(out, "{}\t{}", metric.name, metric.title_with_unit())?;
+        let unit = if metric.unit.is_empty() { String::new() } else { format!(" In {}.", metric.unit) };
+        writeln!(out, "{}\t{}{unit}", metric.name, metric.meaning)?;
     }
     Ok(())
 }
