@@ -9,7 +9,7 @@ use std::ops::Deref;
 use store::Failure;
 use usar_sim::metrics::TaskTotals;
 use usar_sim::record::TrialRecord;
-use usar_sim::scenario::Scenario;
+use usar_sim::scenario::{Scenario, Words};
 
 pub use values::Values;
 
@@ -164,23 +164,25 @@ impl Declaration {
 
     /// The metrics of this declaration: one of all tasks together and one of each task, or one of the whole
     /// trial.
-    fn metrics(self, tasks: &[String]) -> Vec<Metric> {
+    fn metrics(self, tasks: &[String], words: &Words) -> Vec<Metric> {
         match self.scope {
-            Scope::Whole(value) => vec![self.metric(None, Source::Trial(value))],
+            Scope::Whole(value) => vec![self.metric(None, Source::Trial(value), words)],
             Scope::PerTask { total, task } => {
-                let each = tasks.iter().map(|name| self.metric(Some(name), Source::Task(task)));
-                std::iter::once(self.metric(Some(TOTAL), Source::Trial(total))).chain(each).collect()
+                let each = tasks.iter().map(|name| self.metric(Some(name), Source::Task(task), words));
+                std::iter::once(self.metric(Some(TOTAL), Source::Trial(total), words)).chain(each).collect()
             }
         }
     }
 
-    fn metric(self, part: Option<&str>, source: Source) -> Metric {
+    fn metric(self, part: Option<&str>, source: Source, words: &Words) -> Metric {
         let Self { name, meaning, unit, figure, is_primary, direction, cost, .. } = self;
+        let named = |name: &str| part.map_or(name.to_owned(), |part| format!("{name}.{part}"));
         Metric {
-            name: part.map_or(name.to_owned(), |part| format!("{name}.{part}")),
+            name: named(&words.metric(name)),
+            standard: named(name),
             meaning,
             unit,
-            figure,
+            figure: words.text(figure),
             is_primary,
             direction,
             declared: name,
@@ -220,22 +222,24 @@ pub struct Metric {
     /// Unit; empty for a count.
     pub unit: &'static str,
     /// The report's figure of box plots that shows it beside others of the same figure; empty for none.
-    pub figure: &'static str,
+    pub figure: String,
     /// Whether it is shown by default.
     pub is_primary: bool,
     /// Which direction is better.
     pub direction: Direction,
     declared: &'static str,
+    /// Its name in the standard words.
+    standard: String,
     cost: Option<&'static str>,
     part: String,
     source: Source,
 }
 
 impl Metric {
-    /// The name of its column in `trials.csv`, which ends with the unit of a time or a length.
+    /// The name of its column in `trials.csv`, in the standard words whatever those of the scenario; it ends with the unit of a time or a length.
     #[must_use]
     pub fn column(&self) -> String {
-        let column = self.name.replace('.', "_");
+        let column = self.standard.replace('.', "_");
         let unit = match self.unit {
             "s" => "_s",
             "m" => "_m",
@@ -250,6 +254,12 @@ impl Metric {
         let whole = self.column();
         let part = format!("_{}", self.part);
         if self.part.is_empty() { whole } else { whole.replacen(&part, "", 1) }
+    }
+
+    /// Whether a name without a task means the metrics of its declaration, in either words.
+    fn is_declared_as(&self, name: &str) -> bool {
+        self.declared == name
+            || self.name.strip_suffix(&self.part).is_some_and(|stem| stem.strip_suffix('.') == Some(name))
     }
 
     /// Its name with its unit, if it has one.
@@ -297,10 +307,16 @@ impl Deref for Catalogue {
 }
 
 impl Catalogue {
-    /// All metrics for tasks of these names.
+    /// All metrics of a scenario: of its tasks, in its words.
     #[must_use]
-    pub fn of(tasks: &[String]) -> Self {
-        Self { metrics: DECLARATIONS.iter().flat_map(|declaration| declaration.metrics(tasks)).collect() }
+    pub fn of(scenario: &Scenario) -> Self {
+        Self::with(&task_names(scenario), &scenario.words)
+    }
+
+    /// All metrics for tasks of these names, in these words.
+    pub(crate) fn with(tasks: &[String], words: &Words) -> Self {
+        let of = |declaration: &Declaration| declaration.metrics(tasks, words);
+        Self { metrics: DECLARATIONS.iter().flat_map(of).collect() }
     }
 
     /// The place of a metric. The name of a metric with tasks means the total.
@@ -308,8 +324,11 @@ impl Catalogue {
     /// # Errors
     /// An unknown name, with the known ones.
     pub fn named(&self, name: &str) -> Result<usize, Failure> {
-        let is_named =
-            |metric: &Metric| metric.name == name || (metric.is_total() && metric.declared == name);
+        let is_named = |metric: &Metric| {
+            metric.name == name
+                || metric.standard == name
+                || (metric.is_total() && metric.is_declared_as(name))
+        };
         self.iter().position(is_named).ok_or_else(|| {
             let known: Vec<&str> = self.iter().map(|metric| metric.name.as_str()).collect();
             let names = known.iter().copied().chain(self.iter().map(|metric| metric.declared));
@@ -359,12 +378,12 @@ impl Catalogue {
 
     /// The figures of the report in their order, each with the places of its metrics.
     #[must_use]
-    pub fn figures(&self) -> Vec<(&'static str, Vec<usize>)> {
+    pub fn figures(&self) -> Vec<(&str, Vec<usize>)> {
         let mut figures: Vec<(&str, Vec<usize>)> = Vec::new();
         for (place, metric) in self.iter().enumerate().filter(|(_, metric)| !metric.figure.is_empty()) {
             match figures.iter_mut().find(|(name, _)| *name == metric.figure) {
                 Some((_, places)) => places.push(place),
-                None => figures.push((metric.figure, vec![place])),
+                None => figures.push((&metric.figure, vec![place])),
             }
         }
         figures

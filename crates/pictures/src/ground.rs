@@ -207,7 +207,7 @@ pub(crate) fn entries(
     let mut entries = Vec::new();
     let mut add = |is_there: bool, sign: Sign, means: &str| {
         if is_there {
-            entries.push(Entry::new(sign, means));
+            entries.push(Entry::new(sign, world.words.text(means)));
         }
     };
     let is_movable = |piece: &DebrisFile| piece.movable.is_some();

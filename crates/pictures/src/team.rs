@@ -160,7 +160,7 @@ pub(crate) fn moment_entries(world: &World, unit: f64) -> Vec<Entry> {
     let bar = |colour: &str| Sign::Line(format!("stroke=\"{colour}\" stroke-width=\"{}\"", Num(2.5 * unit)));
     if world.robots.len() <= LARGE_TEAM {
         entries.push(Entry::new(bar(ENERGY), "energy"));
-        entries.push(Entry::new(bar(HP), "HP"));
+        entries.push(Entry::new(bar(HP), world.words.text("HP")));
     }
     entries.push(Entry::new(Sign::Line(waiting_looks(unit)), "waits for"));
     entries

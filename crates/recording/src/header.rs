@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 use usar_sim::conflict::DelayCause;
-use usar_sim::scenario::{DebrisFile, NeedFile, Point, RoleFile, ZoneFile};
+use usar_sim::scenario::{DebrisFile, NeedFile, Point, RoleFile, Words, ZoneFile};
 use usar_sim::simulation::Simulation;
 use xxhash_rust::xxh3::xxh3_128;
 
@@ -104,6 +104,9 @@ pub struct World {
     /// Numbers of the rescuees that appear after the start.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub rescuees_later: Vec<usize>,
+    /// What the scenario calls its things.
+    #[serde(default)]
+    pub words: Words,
 }
 
 /// A task's place.
@@ -279,6 +282,7 @@ impl World {
             debris_later: absent.map(|(number, _)| *number).collect(),
             zones_later: layout.zones_later.iter().copied().collect(),
             rescuees_later: later.map(|rescuee| rescuee.id.index()).collect(),
+            words: scenario.words.clone(),
         }
     }
 

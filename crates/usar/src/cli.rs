@@ -13,6 +13,7 @@ use terminal_size::terminal_size_of;
 
 use crate::arguments::format_of;
 use crate::commands::{Cli, command};
+use crate::library;
 use crate::output::{columns_of, sentences};
 use crate::running::{status_of_signal, tell};
 
@@ -38,6 +39,7 @@ pub fn main() -> ExitCode {
 #[must_use]
 pub fn main_with(policies: Registry) -> ExitCode {
     let registry = with_oracle(policies);
+    usar_sim::scenario::carry(library::FILES);
     // A panic is a defect of the program. It is caught and reported in one sentence, never as a backtrace.
     std::panic::set_hook(Box::new(note_panic));
     let matches = command().try_get_matches().unwrap_or_else(|error| {

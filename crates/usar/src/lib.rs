@@ -5,6 +5,7 @@ mod bad_value;
 mod cli;
 mod commands;
 mod input;
+mod library;
 mod output;
 mod parquets;
 mod prelude;

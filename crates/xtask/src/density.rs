@@ -5,7 +5,7 @@ use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 use usar_sim::scenario::{
     ConflictRules, Costs, DebrisFile, DebrisShape, Draws, InitialLevels, MissionRules, Normal, PlanningRules,
-    Point, RoleFile, Row, Sampled, Scenario, ScenarioFile, TaskFile,
+    Point, RoleFile, Row, Sampled, Scenario, ScenarioFile, TaskFile, Words,
 };
 
 /// The scenario from which the robots have their roles and needs, but not their size and speed.
@@ -123,6 +123,7 @@ pub fn mission(robots: u32, duration_s: f64, to_tasks_m: Option<f64>) -> Scenari
         mission: MissionRules::default(),
         planning: PlanningRules::default(),
         conflicts: ConflictRules::default(),
+        words: Words::default(),
         draws: Draws::new(),
     };
     if let Err(problems) = Scenario::try_from(file.clone()) {

@@ -15,7 +15,7 @@ use usar_sim::ids::RobotId;
 use usar_sim::model::rest_slot;
 use usar_sim::scenario::{
     ConflictRules, Costs, DebrisFile, DebrisShape, Draws, Errand, InitialLevels, MissionRules, Movable,
-    Normal, PlanningRules, Point, Row, Sampled, Scenario, ScenarioFile, TaskFile, ZoneFile,
+    Normal, PlanningRules, Point, Row, Sampled, Scenario, ScenarioFile, TaskFile, Words, ZoneFile,
 };
 
 /// The scenario from which the robots have their roles and needs.
@@ -215,6 +215,7 @@ pub(crate) fn base(seed: u64, arena_m: Point, duration_s: f64) -> ScenarioFile {
         mission: MissionRules::default(),
         planning: PlanningRules::default(),
         conflicts: ConflictRules::default(),
+        words: Words::default(),
         draws: Draws::new(),
     }
 }

@@ -1,13 +1,14 @@
 use rand::SeedableRng;
 use rand::rngs::ChaCha8Rng;
 use rand_distr::{Bernoulli, Distribution, Normal};
+use usar_sim::scenario::Words;
 
 use super::*;
 use crate::experiment::PolicySpec;
 use crate::metric::Catalogue;
 
 fn read(text: &str) -> Result<Expected, String> {
-    let metrics = Catalogue::of(&["far".to_owned()]);
+    let metrics = Catalogue::with(&["far".to_owned()], &Words::default());
     let policies = ["RNE", "DIS"].map(|name| PolicySpec::parse(name, &policies::standard()).unwrap());
     parse(text, &metrics, &policies).map_err(|error| error.to_string())
 }

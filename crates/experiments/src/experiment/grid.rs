@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use rne_core::Registry;
 use store::{Failure, refuse};
-use usar_sim::scenario::{Scenario, ScenarioFile};
+use usar_sim::scenario::{Scenario, ScenarioFile, Words};
 
 use super::policy::PolicySpec;
 use super::setting::checked;
@@ -141,5 +141,6 @@ pub(crate) fn deciding_text(scenario: &Scenario) -> String {
     let mut file: ScenarioFile = (**scenario).clone();
     file.name = String::new();
     file.description = String::new();
+    file.words = Words::default();
     file.tree().to_string()
 }

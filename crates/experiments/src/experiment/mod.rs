@@ -34,7 +34,7 @@ pub use read::{companion, defaults, with_settings};
 pub use shard::{NoShard, Place, Shard};
 
 use crate::limits::TRIALS;
-use crate::metric::{Catalogue, task_names};
+use crate::metric::Catalogue;
 use crate::run::{Fault, Player, Sessions, SharedTrials, Trial, TrialKey, TrialSetup, run_trial};
 pub(crate) use grid::deciding_text;
 use grid::{cases, checked_policies};
@@ -203,7 +203,7 @@ impl Experiment {
         };
         let ids = |case| policies.iter().enumerate().map(|policy| id(case, policy)).collect();
         let ids = cases.iter().map(ids).collect();
-        let metrics = Catalogue::of(&task_names(&base));
+        let metrics = Catalogue::of(&base);
         let plan = plan.checked(&metrics)?;
         let has = |label: &String| policies.iter().any(|policy| policy.label == *label);
         let plan = AnalysisPlan { baseline: plan.baseline.filter(has), ..plan };

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use rne_core::Registry;
 use store::{Failure, refuse};
-use usar_sim::scenario::{Scenario, ScenarioFile, parse_ron, parse_tree, read_text};
+use usar_sim::scenario::{Scenario, ScenarioFile, is_file, parse_ron, parse_tree, read_text};
 
 use super::file::SweepFile;
 use super::setting::{checked, decides, overlapping};
@@ -70,7 +70,7 @@ pub fn companion(scenario: &Path) -> PathBuf {
 /// A companion that cannot be read.
 pub fn defaults(scenario: &Path) -> Result<(String, u64), Failure> {
     let companion = companion(scenario);
-    if !companion.is_file() {
+    if !is_file(&companion) {
         return Ok((RNE.to_owned(), FIRST_SEED));
     }
     let text = read_text(&companion).map_err(Failure::input)?;
@@ -88,7 +88,7 @@ pub(super) fn from_scenario(
     registry: &Registry,
 ) -> Result<(Parts, Vec<Reading>), Failure> {
     let companion = companion(path);
-    if companion.is_file() {
+    if is_file(&companion) {
         let sweep = read_text(&companion).map_err(Failure::input)?;
         let file: SweepFile = parse_ron(&sweep, &companion).map_err(Failure::input)?;
         if Path::new(&file.scenario).file_name() != path.file_name() {

@@ -16,7 +16,7 @@ use super::policy::PolicySpec;
 use super::setting::{decides, is_part, overlapping};
 use super::{AnalysisPlan, Axis, Parts, Seeds};
 use crate::limits;
-use crate::metric::{Catalogue, task_names};
+use crate::metric::Catalogue;
 use store::Failure;
 
 /// Most problems that are told at once.
@@ -256,7 +256,7 @@ impl Check<'_> {
 
     /// Primary metrics and margins.
     fn questions(&mut self, file: &SweepFile, base: &Scenario) {
-        let metrics = Catalogue::of(&task_names(base));
+        let metrics = Catalogue::of(base);
         for (i, name) in file.primary.iter().enumerate() {
             self.take(&format!("primary[{i}]"), metrics.named(name));
         }

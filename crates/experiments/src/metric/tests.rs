@@ -1,9 +1,11 @@
 //! Tests of the catalogue.
 
+use usar_sim::scenario::Words;
+
 use super::Catalogue;
 
 fn catalogue(tasks: &[&str]) -> Catalogue {
-    Catalogue::of(&tasks.iter().map(|task| (*task).to_owned()).collect::<Vec<_>>())
+    Catalogue::with(&tasks.iter().map(|task| (*task).to_owned()).collect::<Vec<_>>(), &Words::default())
 }
 
 #[test]

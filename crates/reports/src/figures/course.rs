@@ -53,7 +53,7 @@ pub(super) fn over_time(
     let n = gathered.iter().map(|gathered| gathered.delivered.len()).min().unwrap_or(0);
     Ok(Sketch {
         name: "rescuees-over-time".into(),
-        title: "Rescuees over time".into(),
+        title: capitalised(&experiment.base.words.text("rescuees over time")),
         caption: format!(
             "Mean delivered up to each time, with its 95 % t interval (band). n = {n} trials or more for \
              each policy."

@@ -154,8 +154,8 @@ pub(super) fn capitalised(text: &str) -> String {
 
 /// Energy against HP per rescuee: the cost of a rescue.
 pub(super) fn costs(folder: &Folder, case: usize, only: Option<&[String]>) -> Result<Sketch, Failure> {
-    let Experiment { policies, metrics, .. } = folder.experiment();
-    let names = names(folder.experiment());
+    let Experiment { policies, metrics, base, .. } = folder.experiment();
+    let (names, words) = (names(folder.experiment()), &base.words);
     let (mut panels, mut counts) = (Vec::new(), Vec::new());
     let mut rows = Rows::new(&["task", "policy", "seed", "energy_per_rescuee", "hp_per_rescuee"])?;
     let [energies, hps] = ["energy_per_rescuee", "hp_per_rescuee"].map(|name| metrics.declared(name));
@@ -183,8 +183,8 @@ pub(super) fn costs(folder: &Folder, case: usize, only: Option<&[String]>) -> Re
         let [energies, hps] =
             [range(all.iter().map(|(energy, _)| *energy)), range(all.iter().map(|(_, hp)| *hp))];
         let layout = layout(&plots, part)
-            .with_x_label("energy per rescuee")
-            .with_y_label("HP per rescuee")
+            .with_x_label(words.text("energy per rescuee"))
+            .with_y_label(words.text("HP per rescuee"))
             .with_x_axis_min(energies[0])
             .with_x_axis_max(energies[1])
             .with_y_axis_min(hps[0])
@@ -193,10 +193,11 @@ pub(super) fn costs(folder: &Folder, case: usize, only: Option<&[String]>) -> Re
     }
     Ok(Sketch {
         name: "costs".into(),
-        title: "Energy and HP per rescuee".into(),
+        title: words.text("Energy and HP per rescuee"),
         caption: format!(
-            "Percent points per rescuee delivered; each point is a trial, at most the first {MAX_POINTS} of \
+            "Percent points per {} delivered; each point is a trial, at most the first {MAX_POINTS} of \
              each policy are drawn. {}",
+            words.rescuee,
             per_box(&counts)
         ),
         drawing: Drawing::new(panels, 3, [400.0, 320.0]),

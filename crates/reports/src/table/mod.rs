@@ -16,6 +16,7 @@ use experiments::sweep::folder::Folder;
 use usar_sim::event::ReturnCause;
 use usar_sim::metrics::RoundRecord;
 use usar_sim::record::TrialRecord;
+use usar_sim::scenario::Words;
 
 pub use effects::{cases_table, differences_table, effects_table, interactions_table};
 pub(crate) use format::Lines;
@@ -136,7 +137,7 @@ pub fn comparison_table(comparisons: &[&Comparison]) -> Table {
 /// A row for each round and task: what was carried and why the group went home; where there is room, also
 /// when it began, what it cost, and who turned back.
 #[must_use]
-pub fn rounds_table(record: &TrialRecord, is_wide: bool) -> Table {
+pub fn rounds_table(record: &TrialRecord, words: &Words, is_wide: bool) -> Table {
     let cells = |round: &RoundRecord| {
         let members: Vec<String> = round.members.iter().map(|member| member.id.to_string()).collect();
         [
@@ -152,11 +153,11 @@ pub fn rounds_table(record: &TrialRecord, is_wide: bool) -> Table {
             ("turned back", false, right(&round.turned_back.to_string())),
             ("went home: why", true, Cell::new(round.return_cause.map_or("-", ReturnCause::name))),
         ]
-        .map(|(name, is_narrow, cell)| (is_wide || is_narrow).then_some((name, cell)))
+        .map(|(name, is_narrow, cell)| (is_wide || is_narrow).then(|| (words.text(name), cell)))
     };
     let mut table = Table::new();
     for round in &record.rounds {
-        let (names, row): (Vec<&str>, Vec<Cell>) = cells(round).into_iter().flatten().unzip();
+        let (names, row): (Vec<String>, Vec<Cell>) = cells(round).into_iter().flatten().unzip();
         if table.header().is_none() {
             table = headed(names);
         }

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use experiments::Failure;
 use experiments::input_table::InputTable;
-use experiments::metric::{Catalogue, Metric, task_names};
+use experiments::metric::{Catalogue, Metric};
 use experiments::stats::Moments;
 use experiments::sweep::trial_columns;
 use serde::{Deserialize, Serialize};
@@ -89,7 +89,7 @@ impl Target {
     pub fn load(path: &Path, scenario: &Scenario) -> Result<Self, Failure> {
         let shown = path.display();
         let table = InputTable::read(path)?;
-        let metrics = Catalogue::of(&task_names(scenario));
+        let metrics = Catalogue::of(scenario);
         let Columns { found, missing, mut problems } = Columns::of(&table, &metrics);
         let mut values = vec![Vec::new(); found.len()];
         for (line, row) in &table.rows {

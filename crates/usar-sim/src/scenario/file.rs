@@ -16,6 +16,7 @@ pub use super::draws::Draws;
 pub use super::rules::*;
 pub use super::scatter::{Placement, Scatter, Scattered};
 pub use super::timeline::{Happening, Moment};
+use super::words::Words;
 
 /// A point `(x, y)` or an extent `(width, height)`, in metres.
 pub type Point = [f64; 2];
@@ -90,6 +91,9 @@ pub struct ScenarioFile {
     /// Rules of right of way.
     #[serde(default)]
     pub conflicts: ConflictRules,
+    /// What the scenario calls its things.
+    #[serde(default)]
+    pub words: Words,
     /// Distributions that stand in the place of values; written there, and not as a field.
     #[serde(skip)]
     pub draws: Draws,

@@ -1,6 +1,7 @@
 //! Scenarios: read from RON and checked, so that every [`Scenario`] is usable.
 
 mod base;
+mod carried;
 mod checker;
 mod debris;
 mod defaults;
@@ -22,6 +23,7 @@ mod set;
 mod timeline;
 mod validate;
 mod warnings;
+mod words;
 
 use std::ops::Deref;
 use std::path::Path;
@@ -31,11 +33,13 @@ use rne_core::{RoleId, TaskId};
 use ron_tree::Node;
 use ron_tree::file::MAX_TEXT_BYTES;
 
+pub use carried::{CARRIED, carry, is_file};
 pub use debris::LEAST_POLYGON_WIDTH_M;
 pub use error::{LayoutError, Problem, Problems, ScenarioError};
 pub use file::*;
 pub use reading::{formatted, parse_ron, parse_tree, read_text};
 pub use schema::scenario_schema;
+pub use words::Words;
 
 /// The format of scenario files that this program reads.
 pub const FORMAT: u32 = 2;

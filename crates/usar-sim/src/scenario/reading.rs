@@ -5,6 +5,7 @@ use std::path::Path;
 use ron_tree::Node;
 use serde::de::DeserializeOwned;
 
+use super::carried::{self, carried};
 use super::error::{Problems, ScenarioError};
 
 /// Reads the text of a scenario or sweep file.
@@ -13,9 +14,13 @@ use super::error::{Problems, ScenarioError};
 /// The file is missing, not a regular file, not text, empty or too large.
 pub fn read_text(path: &Path) -> Result<String, ScenarioError> {
     let unreadable = |reason: String| ScenarioError::Unreadable { path: path.to_owned(), reason };
-    let text = ron_tree::file::read_text(path).map_err(|error| unreadable(error.to_string()))?;
+    if let Some(text) = carried(path) {
+        return Ok(text.to_owned());
+    }
+    let text = ron_tree::file::read_text(path)
+        .map_err(|error| unreadable(format!("{error}{}", carried::meant(path, &error))))?;
     if text.trim().is_empty() {
-        return Err(unreadable("is empty; see scenarios/paper.ron for a complete scenario".into()));
+        return Err(unreadable("is empty; `usar scenario list` has complete scenarios".into()));
     }
     Ok(text)
 }

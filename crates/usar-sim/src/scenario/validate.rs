@@ -12,6 +12,7 @@ use super::homes::homes_are_free;
 use super::rules::rules;
 use super::scatter::scatter;
 use super::timeline::timeline;
+use super::words::words;
 use crate::limits;
 
 /// All broken rules, in the order of the fields.
@@ -54,6 +55,7 @@ fn of_values(file: &ScenarioFile) -> Checker {
     scatter(&mut check, file);
     timeline(&mut check, file);
     needs(&mut check, file);
+    words(&mut check, &file.words);
     check
 }
 

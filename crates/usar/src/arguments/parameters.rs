@@ -3,12 +3,14 @@
 use experiments::experiment::{Experiment, Overrides};
 
 use super::{ProgressArguments, SetArguments};
+use crate::library;
 use crate::prelude::*;
 
 /// A scenario and its parameters.
 #[derive(Debug, Args)]
 pub(crate) struct ParameterArguments {
     /// Scenario or sweep file without axes (RON)
+    #[arg(value_parser = library::path)]
     file: PathBuf,
     /// A parameter and its range: `PATH=LOW..HIGH`; `PATH + PATH*RATIO=LOW..HIGH log` sets several fields and
     /// goes by factors; `[*]` is every entry of a list; can be given several times

@@ -7,6 +7,7 @@ use experiments::experiment::{Experiment, Overrides};
 use experiments::panic_message;
 
 use crate::input::tell_warnings_of_all;
+use crate::library;
 use crate::prelude::*;
 
 /// Validate scenarios and sweep files without running them
@@ -14,7 +15,7 @@ use crate::prelude::*;
 #[command(after_help = "Example:\n  usar check scenarios/*.ron scenarios/sweeps/*.ron")]
 pub(crate) struct Arguments {
     /// Scenario or sweep files (RON)
-    #[arg(required = true)]
+    #[arg(required = true, value_parser = library::path)]
     files: Vec<PathBuf>,
 }
 

@@ -10,6 +10,7 @@ use usar_sim::record::TrialRecord;
 use usar_sim::simulation::Checkpoint;
 
 use crate::arguments::{ShownArguments, Trial, TrialArguments, parse_policy};
+use crate::library;
 use crate::prelude::*;
 
 /// What if round N had been decided otherwise?
@@ -26,7 +27,7 @@ Examples:
   usar fork results/paper --policy ENG --seed 7 --round 2 --instead RNE --json")]
 pub(crate) struct Arguments {
     /// Scenario file (RON), or the folder of a sweep
-    #[arg(value_name = "FILE|DIR")]
+    #[arg(value_name = "FILE|DIR", value_parser = library::path)]
     file: PathBuf,
     #[command(flatten)]
     trial: TrialArguments,

@@ -16,6 +16,7 @@ use usar_sim::simulation::Checkpoint;
 use crate::arguments::{
     PoliciesArgument, ProgressArguments, ShownArguments, Trial, TrialArguments, limit, parse_policy,
 };
+use crate::library;
 use crate::prelude::*;
 
 /// Number of assignments that are played before their outcomes are written to disk.
@@ -40,7 +41,7 @@ Examples:
   usar oracle results/paper --policy DIS --seed 4 --round 2 --policies 'RNE,RNE(sort: true),ENG' --json")]
 pub(crate) struct Arguments {
     /// Scenario file (RON), or the folder of a sweep
-    #[arg(value_name = "FILE|DIR")]
+    #[arg(value_name = "FILE|DIR", value_parser = library::path)]
     file: PathBuf,
     #[command(flatten)]
     trial: TrialArguments,

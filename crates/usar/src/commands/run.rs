@@ -11,12 +11,14 @@ use rne_core::{Deadline, Session};
 use serde::Serialize;
 use usar_sim::metrics::CutOff;
 use usar_sim::record::{Status, TrialRecord};
+use usar_sim::scenario::Words;
 use usar_sim::simulation::Simulation;
 
 use self::event_lines::EventLines;
 use self::live::Live;
 use self::snapshot::{Snapshot, save};
 use crate::arguments::{MeasureArgument, ShownArguments, Trial, TrialArguments, WideArgument};
+use crate::library;
 use crate::prelude::*;
 use crate::recordings;
 use crate::running::Guard;
@@ -39,7 +41,7 @@ Examples:
   usar run scenarios/paper.ron --record paper.usrec                           then: usar view paper.usrec")]
 pub(crate) struct Arguments {
     /// Scenario file (RON), or the folder of a sweep
-    #[arg(value_name = "FILE|DIR")]
+    #[arg(value_name = "FILE|DIR", value_parser = library::path)]
     file: PathBuf,
     #[command(flatten)]
     trial: TrialArguments,
@@ -131,9 +133,9 @@ impl Arguments {
             record.status.name().replace('_', " ")
         )?;
         if !record.rounds.is_empty() {
-            print_table(out, &rounds_table(&record, self.wide.is_wide()))?;
+            print_table(out, &rounds_table(&record, &scenario.words, self.wide.is_wide()))?;
         }
-        print(out, &record)?;
+        print(out, &record, &scenario.words)?;
         story.iter().try_for_each(|line| Ok(writeln!(out, "{line}")?))
     }
 
@@ -186,14 +188,15 @@ fn run(
 }
 
 /// Prints what came of a trial as a whole.
-fn print(out: &mut dyn Write, record: &TrialRecord) -> Result<(), Failure> {
+fn print(out: &mut dyn Write, record: &TrialRecord, words: &Words) -> Result<(), Failure> {
     let rescued = record.rescued();
     let by_task = record.tasks.iter().map(|task| format!("{} {}", task.task, task.totals.rescued));
     let by_task = by_task.collect::<Vec<_>>().join(", ");
     let by_task = if by_task.is_empty() { by_task } else { format!(" ({by_task})") };
     writeln!(
         out,
-        "rescued      {rescued}{by_task} in {} complete rounds; on board at the end {}",
+        "{:<12} {rescued}{by_task} in {} complete rounds; on board at the end {}",
+        words.text("rescued"),
         record.completed_rounds,
         record.secured() - rescued
     )?;
@@ -201,7 +204,8 @@ fn print(out: &mut dyn Write, record: &TrialRecord) -> Result<(), Failure> {
         0 => "-".to_owned(),
         _ => format!("{:.2}", cost / f64::from(rescued)),
     };
-    writeln!(out, "per rescuee  {} energy, {} HP (points)", per(record.energy()), per(record.hp()))?;
+    let (label, hp) = (words.text("per rescuee"), words.text("HP"));
+    writeln!(out, "{label:<12} {} energy, {} {hp} (points)", per(record.energy()), per(record.hp()))?;
     let (waiting, stall) = (record.waiting_s(), record.longest_stall_s());
     writeln!(
         out,

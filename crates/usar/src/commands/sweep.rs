@@ -15,6 +15,7 @@ use reports::table::policy_table;
 use self::precision::Precision;
 use crate::arguments::{MeasureArgument, ProgressArguments, Selection, ShownArguments, count};
 use crate::input::{check_trials, tell_warnings_of_all};
+use crate::library;
 use crate::parquets::write_parquets;
 use crate::prelude::*;
 use crate::recordings::{Recorded, record_trials};
@@ -47,6 +48,7 @@ Examples:
   usar sweep scenarios/paper.ron --precision 'rescuees.hard: RNE-DIS: 2.0' --max-trials 500")]
 pub(crate) struct Arguments {
     /// Scenario or sweep file (RON)
+    #[arg(value_parser = library::path)]
     file: PathBuf,
     #[command(flatten)]
     selection: Selection,

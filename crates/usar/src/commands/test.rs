@@ -11,6 +11,7 @@ use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
 use serde::Serialize;
 
 use crate::arguments::{JsonArgument, ProgressArguments, count};
+use crate::library;
 use crate::prelude::*;
 
 /// Does the outcome meet what the sweep file expects of it?
@@ -34,7 +35,7 @@ Examples:
   usar test scenarios/*.sweep.ron --max-trials 400 --junit results.xml")]
 pub(crate) struct Arguments {
     /// Sweep files, or scenarios with a sweep file beside them
-    #[arg(required = true, value_name = "FILE")]
+    #[arg(required = true, value_name = "FILE", value_parser = library::path)]
     files: Vec<PathBuf>,
     /// Most trials of each policy and case
     #[arg(long, default_value_t = 200, value_parser = count(1..=1_000_000))]

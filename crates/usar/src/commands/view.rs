@@ -6,6 +6,7 @@ pub(super) mod page;
 use std::process::{Command, Stdio};
 
 use crate::arguments::TrialArguments;
+use crate::library;
 use crate::prelude::*;
 use crate::recordings::Shown;
 
@@ -29,7 +30,7 @@ Examples:
   usar view first.usrec --at 120                              the state after 120 s, as JSON")]
 pub(crate) struct Arguments {
     /// Recordings, scenarios or folders of sweeps
-    #[arg(required = true, value_name = "FILE")]
+    #[arg(required = true, value_name = "FILE", value_parser = library::path)]
     files: Vec<PathBuf>,
     #[command(flatten)]
     trial: TrialArguments,

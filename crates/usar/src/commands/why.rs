@@ -14,6 +14,7 @@ use usar_sim::simulation::Simulation;
 
 use super::oracle::decision_key;
 use crate::arguments::{MeasureArgument, ShownArguments, Trial, TrialArguments};
+use crate::library;
 use crate::prelude::*;
 use crate::running::Guard;
 use robot::{RobotStory, Watched};
@@ -32,7 +33,7 @@ Examples:
   usar why results/paper --policy ENG --seed 7 --round 2 --json")]
 pub(crate) struct Arguments {
     /// Scenario file (RON), or the folder of a sweep
-    #[arg(value_name = "FILE|DIR")]
+    #[arg(value_name = "FILE|DIR", value_parser = library::path)]
     file: PathBuf,
     #[command(flatten)]
     trial: TrialArguments,

@@ -11,6 +11,7 @@ use serde::Serialize;
 pub(crate) use measured::Measured;
 
 use crate::arguments::{JsonArgument, ProgressArguments, Selection, count};
+use crate::library;
 use crate::prelude::*;
 
 /// How long a sweep takes, and how much disk, from a few of its trials
@@ -28,6 +29,7 @@ Examples:
   usar cluster estimate scenarios/sweeps/energy.ron --json")]
 pub(crate) struct Arguments {
     /// Scenario or sweep file (RON)
+    #[arg(value_parser = library::path)]
     file: PathBuf,
     #[command(flatten)]
     selection: Selection,

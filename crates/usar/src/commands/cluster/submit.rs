@@ -15,6 +15,7 @@ use super::estimate::{Measured, duration};
 use super::slurm;
 use crate::arguments::{Selection, count};
 use crate::bad_value::BadValue;
+use crate::library;
 use crate::prelude::*;
 use plan::Wishes;
 
@@ -37,6 +38,7 @@ Examples:
   usar cluster status results/energy-shards")]
 pub(crate) struct Arguments {
     /// Scenario or sweep file (RON); it stays as it is until the last shard is done
+    #[arg(value_parser = library::path)]
     file: PathBuf,
     /// Write nothing; say what would be written
     #[arg(long)]

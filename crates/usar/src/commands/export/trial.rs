@@ -4,6 +4,7 @@ use exports::ExportError;
 use recording::Recording;
 
 use crate::arguments::{TrialArguments, seconds};
+use crate::library;
 use crate::prelude::*;
 
 /// A recorded trial, or one that is recorded now.
@@ -11,6 +12,7 @@ use crate::prelude::*;
 pub(super) struct RecordedArguments {
     /// Recording (of `usar run --record`), scenario, which is simulated first, or folder of a sweep, whose trial
     /// is taken from its recordings or simulated again
+    #[arg(value_parser = library::path)]
     file: PathBuf,
     #[command(flatten)]
     trial: TrialArguments,

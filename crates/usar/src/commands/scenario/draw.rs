@@ -6,6 +6,7 @@ use recording::World;
 use usar_sim::simulation::Simulation;
 
 use crate::arguments::{LookArguments, PictureFile, SetArguments, one_seed};
+use crate::library;
 use crate::prelude::*;
 
 /// Draw the map of a scenario, before anything runs
@@ -20,6 +21,7 @@ Examples:
   usar scenario draw scenarios/minimal/head_on.ron --no-title --out lane.svg")]
 pub(crate) struct Arguments {
     /// Scenario file (RON)
+    #[arg(value_parser = library::path)]
     file: PathBuf,
     /// Seed of the trial [default: the first of the sweep]
     #[arg(long, value_parser = one_seed)]

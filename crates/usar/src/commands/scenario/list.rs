@@ -1,11 +1,11 @@
 //! `usar scenario list`: lists the available scenarios, policies, roles or metrics.
 
 use clap::ValueEnum;
-use experiments::metric::{Catalogue, task_names};
+use experiments::metric::Catalogue;
 use usar_sim::scenario::{RoleKind, Scenario};
 
-use crate::commands::new::PAPER;
 use crate::input::load;
+use crate::library;
 use crate::prelude::*;
 
 /// List scenarios, policies, roles or metrics, a line each
@@ -14,22 +14,24 @@ use crate::prelude::*;
 A line begins with the name, then a tab and what it is. Roles and metrics are those of a scenario.
 
 Examples:
-  usar scenario list scenarios                      the scenarios of the folder scenarios/
-  usar scenario list scenarios my-scenarios
+  usar scenario list                                the scenarios that the program carries
+  usar scenario list scenarios my-scenarios         those of a folder
   usar scenario list policies                       with their options and defaults
-  usar scenario list roles scenarios/paper.ron
-  usar scenario list metrics scenarios/three-tasks.ron")]
+  usar scenario list roles paper
+  usar scenario list metrics warehouse")]
 pub(crate) struct Arguments {
     /// What to list
+    #[arg(value_enum, default_value = "scenarios")]
     of: Of,
-    /// A folder of scenarios, or the scenario whose roles and metrics are listed [default: the folder
-    /// scenarios, the paper's scenario]
+    /// A folder of scenarios, or the scenario whose roles and metrics are listed [default: what the program
+    /// carries, and of that the scenario `paper`]
+    #[arg(value_parser = library::path)]
     path: Option<PathBuf>,
 }
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
 enum Of {
-    /// Scenario files of a folder
+    /// Scenarios
     Scenarios,
     /// Grouping policies
     Policies,
@@ -41,22 +43,31 @@ enum Of {
 
 impl Arguments {
     pub(crate) fn execute(&self, registry: &Registry, out: &mut dyn Write) -> Result<(), Failure> {
-        let path = |default: &'static str| self.path.as_deref().unwrap_or(Path::new(default));
         match self.of {
-            Of::Scenarios => scenarios(out, path("scenarios")),
+            Of::Scenarios => match &self.path {
+                Some(path) => scenarios(out, path),
+                None => carried(out),
+            },
             Of::Policies => policies(out, registry),
             Of::Roles => roles(out, &self.scenario()?),
             Of::Metrics => metrics(out, &self.scenario()?),
         }
     }
 
-    /// The scenario that was named, or the paper's, which the program has with it.
+    /// The scenario that was named, or the paper's.
     fn scenario(&self) -> Result<Scenario, Failure> {
-        match &self.path {
-            Some(path) => Ok(load(path)?.0),
-            None => Scenario::parse(PAPER, Path::new("paper.ron")).map_err(Failure::input),
-        }
+        let Ok(paper) = library::path("paper");
+        Ok(load(self.path.as_deref().unwrap_or(&paper))?.0)
     }
+}
+
+/// Lists the scenarios that the program carries.
+fn carried(out: &mut dyn Write) -> Result<(), Failure> {
+    for (name, text) in library::scenarios() {
+        let scenario = Scenario::parse(text, Path::new(name)).map_err(Failure::input)?;
+        writeln!(out, "{name}\t{}", scenario.description)?;
+    }
+    Ok(())
 }
 
 /// Lists the scenarios of a folder by name; files that are not scenarios are left out.
@@ -99,7 +110,7 @@ fn roles(out: &mut dyn Write, scenario: &Scenario) -> Result<(), Failure> {
 }
 
 fn metrics(out: &mut dyn Write, scenario: &Scenario) -> Result<(), Failure> {
-    for metric in Catalogue::of(&task_names(scenario)).iter() {
+    for metric in Catalogue::of(scenario).iter() {
         let unit = if metric.unit.is_empty() { String::new() } else { format!(" In {}.", metric.unit) };
         writeln!(out, "{}\t{}{unit}", metric.name, metric.meaning)?;
     }

@@ -4,6 +4,7 @@ use ron_tree::{Node, Value};
 use usar_sim::scenario::{parse_tree, read_text};
 
 use crate::arguments::SetArguments;
+use crate::library;
 use crate::prelude::*;
 
 /// Print every value that a scenario ends up with, and where it comes from
@@ -17,6 +18,7 @@ Examples:
   usar scenario resolve scenarios/paper.ron --set mission.rest_s=10 | grep rest_s")]
 pub(crate) struct Arguments {
     /// Scenario file (RON)
+    #[arg(value_parser = library::path)]
     file: PathBuf,
     #[command(flatten)]
     set: SetArguments,

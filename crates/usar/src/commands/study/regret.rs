@@ -11,6 +11,7 @@ use reports::table::{headed, right};
 use serde_json::json;
 
 use crate::arguments::{MeasureArgument, ProgressArguments, ShownArguments, limit, parse_policy};
+use crate::library;
 use crate::prelude::*;
 
 /// How far does each policy's decision stay behind the best one? A study over all rounds of many trials
@@ -32,7 +33,7 @@ Examples:
   usar study regret results/regret --metric rescue_rate")]
 pub(crate) struct Arguments {
     /// Sweep file or scenario (RON), or the folder of a study
-    #[arg(value_name = "FILE|DIR")]
+    #[arg(value_name = "FILE|DIR", value_parser = library::path)]
     file: PathBuf,
     /// Trials of each policy, in each case or candidate [default: the file's]
     #[arg(long)]
