@@ -36,7 +36,7 @@ async function show(root: HTMLElement, files: [string, Uint8Array][]): Promise<v
     for (const [name, bytes] of files) recordings.push(await Recording.read(name, bytes));
     const app = new App(root, recordings);
     window.usarView = app;
-    for (const recording of recordings) await recording.survey(() => undefined);
+    for (const recording of recordings) await recording.survey();
     app.refresh();
     document.documentElement.dataset.ready = 'yes';
   } catch (error) {
