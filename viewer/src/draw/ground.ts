@@ -102,9 +102,10 @@ export function drawNames({ context, camera, recording, colours, labels }: Sheet
   });
   if (camera.scale > 5 && world.robots.length > 0 && world.tasks.length > 0) {
     const homes = world.robots.map(({ home }) => home);
-    const top = Math.max(...homes.map(([, y]) => y));
+    // Below, where robots that leave do not cover it.
+    const bottom = Math.min(...homes.map(([, y]) => y)) - 1 - 18 / camera.scale;
     const middle = homes.reduce((sum, [x]) => sum + x, 0) / homes.length;
-    write('home', [middle, top + 1], colours.soft);
+    write('home', [middle, bottom], colours.soft);
   }
 }
 

@@ -58,8 +58,6 @@ export class App {
   constructor(
     root: HTMLElement,
     readonly recordings: readonly Recording[],
-    /** The names of the trials that are shown, of a page that lists its trials. */
-    private readonly trials: string[] = [],
     list?: HTMLElement,
   ) {
     const starts = recordings.map(({ start }) => start);
@@ -249,7 +247,8 @@ export class App {
   }
 
   private link(): string {
-    return linkTo({ time: this.clock.time, robot: this.stages[this.focus].selected, trials: this.trials });
+    const { trials } = readLink(location.hash);
+    return linkTo({ time: this.clock.time, robot: this.stages[this.focus].selected, trials });
   }
 
   private copyLink(): void {

@@ -67,9 +67,9 @@ export class CoursePanel {
   private list({ delays }: Course): void {
     const sums = element('table', { class: 'facts' });
     for (const { cause, stood, robots } of totals(delays)) {
-      const whom = robots.map(([robot, part]) => `robot ${robot} ${seconds(part)}`).join(', ');
+      const whom = robots.map(([robot, part]) => `${seconds(part)} for robot ${robot}`).join(', ');
       const name = element('th', { scope: 'row' }, swatch(causeColour(cause)), words(cause));
-      sums.append(element('tr', {}, name, element('td', {}, seconds(stood), whom && ` for ${whom}`)));
+      sums.append(element('tr', {}, name, element('td', {}, seconds(stood), whom && `: ${whom}`)));
     }
     const listed = delays.filter(({ stood }) => stood >= LISTED);
     this.rows = listed.map((delay) => ({ delay, row: this.row(delay) }));
