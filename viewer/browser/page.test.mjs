@@ -192,6 +192,11 @@ test('a link opens a moment with its totals, the address follows, and a field as
   await page.keyboard.press('Escape');
   await page.waitForTimeout(100);
   assert.equal(await hash(), '#t=129');
+  await page.click('.time');
+  await page.keyboard.type('1:00');
+  await page.keyboard.press('Enter');
+  await page.waitForTimeout(100);
+  assert.equal(await hash(), '#t=60');
   await page.keyboard.press('g');
   await page.keyboard.type('3:20');
   await page.keyboard.press('Enter');

@@ -45,7 +45,7 @@ function drawNumbers(
     context.font = `${robot === looks.selected ? 'bold ' : ''}11px system-ui, sans-serif`;
     const text = String(robot);
     const place = labels.place(robot, places[robot], radii[robot], [
-      context.measureText(text).width + 2,
+      context.measureText(text).width + 5,
       LINE,
     ]);
     if (!place) continue;

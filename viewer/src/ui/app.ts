@@ -156,7 +156,7 @@ export class App {
     const bottom = this.main.getBoundingClientRect().bottom - 10;
     const others = this.transport.root.offsetHeight + this.timeline.root.offsetHeight + 16;
     const count = this.stages.length;
-    const room = isPhone ? 0.6 * window.innerHeight * count : bottom - top - others;
+    const room = isPhone ? 0.4 * window.innerHeight * count : bottom - top - others;
     const { arena_m: arena } = this.recordings[0].header.world;
     const { columns, height } = arrange(count, [stages.clientWidth, room], arena, isPhone ? 1 : count);
     const isBelow = !isPhone && room - height >= LEAST_BELOW;

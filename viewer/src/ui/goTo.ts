@@ -18,7 +18,9 @@ export class GoTo {
       this.field.setCustomValidity('');
     });
     this.field.addEventListener('keydown', (event) => {
-      if (event.key === 'Enter') this.go();
+      if (event.key !== 'Enter') return;
+      event.preventDefault(); // or the button that gets the focus back is pressed by the same key
+      this.go();
     });
     this.root.addEventListener('click', (event) => {
       if (event.target === this.root) this.root.close();
