@@ -18,7 +18,7 @@ server and no network, and can be sent to others. An earlier page of this comman
 
 With --with-replays, the page has all recorded trials of a sweep in it (`usar sweep --recordings`) and lists \
 them with what each rescued: one file to send. If none is recorded, it has the trials with the first seed. \
---policy and --seed choose.
+--policy, --seed and --case choose.
 
 With --at, no page is written: the state at that moment is printed as JSON. --policy can be a list.
 
