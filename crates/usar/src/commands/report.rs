@@ -38,7 +38,7 @@ pub(crate) struct Arguments {
     /// Draw the trajectories of all robots in the trials with this seed, one for each policy
     #[arg(long, value_name = "SEED")]
     trial: Option<u64>,
-    /// Write replays of these trials as well, linked from the report [without --trial: of the first seed]
+    /// Add replays of trials of the sweep [default: those of --trial, or those with the first seed]
     #[arg(long)]
     with_replays: bool,
     #[command(flatten)]

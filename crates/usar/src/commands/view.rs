@@ -39,7 +39,7 @@ pub(crate) struct Arguments {
     files: Vec<PathBuf>,
     #[command(flatten)]
     trial: TrialArguments,
-    /// Put all recorded trials of the sweep into the page [without recordings: those with the first seed]
+    /// Add replays of trials of the sweep [default: all recorded trials, or those with the first seed]
     #[arg(long, conflicts_with = "set")]
     with_replays: bool,
     /// File or folder to write [default: FILE.html]
