@@ -34,7 +34,7 @@ after(async () => {
 });
 
 /** Opens a page from disk; every message, error and request to elsewhere is noted. */
-async function open(name, options = {}) {
+async function open(name, options = {}, hash = '') {
   const context = await browser.newContext({ viewport: { width: 1280, height: 800 }, ...options });
   const page = await context.newPage();
   const complaints = [];
@@ -42,9 +42,9 @@ async function open(name, options = {}) {
   page.on('pageerror', (error) => complaints.push(`error: ${error.message}`));
   page.on('dialog', (dialog) => complaints.push(`dialog: ${dialog.message()}`));
   page.on('request', (request) => {
-    if (request.url() !== `file://${file(name)}`) complaints.push(`request: ${request.url()}`);
+    if (request.url().split('#')[0] !== `file://${file(name)}`) complaints.push(`request: ${request.url()}`);
   });
-  await page.goto(`file://${file(name)}`);
+  await page.goto(`file://${file(name)}${hash}`);
   await page.waitForSelector('html[data-ready="yes"]', { timeout: 20_000 });
   const done = async () => {
     assert.deepEqual(complaints, []);
@@ -170,6 +170,76 @@ test('a phone shows it, and fingers zoom', async () => {
     finger('pointerup', 8, 220, 100);
   });
   assert.ok((await scale()) > 2 * fitted);
+  await done();
+});
+
+test('a link opens a moment with its totals, the address follows, and a field asks for a time', async () => {
+  const { page, done } = await open('two.html', {}, '#t=128&robot=4');
+  await page.waitForTimeout(100);
+  assert.equal(await page.textContent('.robot-panel h2'), 'Robot 4, carrier');
+  assert.match(await page.textContent('.time'), /^2:08\.0/);
+  const rescued = (name, time) => {
+    const { rescuees } = JSON.parse(run('view', name, '--at', String(time)));
+    return `${rescuees.find(([state]) => state === 'delivered')[1]} rescued`;
+  };
+  const totals = () => page.locator('.total').allTextContents();
+  assert.deepEqual(
+    await totals(),
+    ['rne.usrec', 'dis.usrec'].map((name) => rescued(name, 128)),
+  );
+  const hash = () => page.evaluate(() => location.hash);
+  await page.keyboard.press('ArrowRight');
+  await page.keyboard.press('Escape');
+  await page.waitForTimeout(100);
+  assert.equal(await hash(), '#t=129');
+  await page.click('.time');
+  await page.keyboard.type('1:00');
+  await page.keyboard.press('Enter');
+  await page.waitForTimeout(100);
+  assert.equal(await hash(), '#t=60');
+  await page.keyboard.press('g');
+  await page.keyboard.type('3:20');
+  await page.keyboard.press('Enter');
+  await page.waitForTimeout(100);
+  assert.equal(await hash(), '#t=200');
+  assert.deepEqual(
+    await totals(),
+    ['rne.usrec', 'dis.usrec'].map((name) => rescued(name, 200)),
+  );
+  await page.evaluate(() => (location.hash = '#t=60&robot=7'));
+  await page.waitForTimeout(100);
+  assert.equal(await page.textContent('.robot-panel h2'), 'Robot 7, supplier');
+  assert.ok((await page.locator('.course tr').count()) > 0, 'its own timeline');
+  await done();
+});
+
+test('a folder of results is one page that lists its trials', async () => {
+  const policies = [
+    '--policies',
+    'RNE,DIS',
+    '--trials',
+    '2',
+    '--set',
+    'duration_s=120',
+    '--recordings',
+    'all',
+  ];
+  run('sweep', scenario, ...policies, '--quiet', '--out', 'results');
+  run('view', 'results', '--with-replays', '--no-open', '--out', 'all.html');
+  const { page, done } = await open('all.html');
+  assert.deepEqual(await page.locator('.caption strong').allTextContents(), ['RNE', 'DIS']);
+  await page.waitForFunction(() => !document.querySelector('.trials').textContent.includes('…'));
+  const last = page.locator('.trials a[title="Show DIS, seed 2"]');
+  const rescued = await last.textContent();
+  await page.evaluate(() => window.usarView.seek(120));
+  await page.waitForTimeout(100);
+  await last.click();
+  await page.waitForSelector('.stage >> nth=0');
+  await page.waitForFunction(() => document.querySelectorAll('.stage').length === 1);
+  await page.waitForSelector('html[data-ready="yes"]');
+  await page.waitForTimeout(100);
+  assert.ok((await page.textContent('.caption')).startsWith(`DIS ${rescued} rescued`));
+  assert.equal(await page.evaluate(() => location.hash), '#trials=DIS-2&t=120');
   await done();
 });
 

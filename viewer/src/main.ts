@@ -4,6 +4,7 @@ import './style.css';
 import { Recording } from './recording/recording';
 import { App } from './ui/app';
 import { element } from './ui/dom';
+import { TrialList, chosenOf } from './ui/trialList';
 
 declare global {
   interface Window {
@@ -18,25 +19,32 @@ function bytesOf(text: string): Uint8Array {
   return Uint8Array.from({ length: bytes.length }, (_, i) => bytes.charCodeAt(i));
 }
 
-/** The recordings in the page: name and bytes. Their texts are let go. */
-function embedded(): [string, Uint8Array][] {
-  const blocks = document.querySelectorAll<HTMLScriptElement>('script[type="application/x-usrec"]');
-  return [...blocks].map((block) => {
-    const bytes = bytesOf(block.textContent);
-    block.textContent = '';
-    return [block.dataset.name ?? '', bytes];
-  });
+/** A recording that can be read. */
+interface File {
+  name: string;
+  bytes: () => Uint8Array;
 }
 
-async function show(root: HTMLElement, files: [string, Uint8Array][]): Promise<void> {
+/** The recordings in the page, and whether they are a list to choose from. */
+function embedded(): { files: File[]; isList: boolean } {
+  const blocks = [...document.querySelectorAll<HTMLScriptElement>('script[type="application/x-usrec"]')];
+  const files = blocks.map((block) => ({
+    name: block.dataset.name ?? '',
+    bytes: () => bytesOf(block.textContent),
+  }));
+  return { files, isList: blocks.some(({ dataset }) => dataset.listed !== undefined) };
+}
+
+/** Shows recordings, with a list to choose from. */
+async function show(root: HTMLElement, files: File[], list?: TrialList): Promise<void> {
   const status = element('p', { role: 'status' }, 'Reading the recording ...');
   root.replaceChildren(element('div', { class: 'message' }, status));
   try {
     const recordings: Recording[] = [];
-    for (const [name, bytes] of files) recordings.push(await Recording.read(name, bytes));
-    const app = new App(root, recordings);
+    for (const { name, bytes } of files) recordings.push(await Recording.read(name, bytes()));
+    const app = new App(root, recordings, list?.root);
     window.usarView = app;
-    for (const recording of recordings) await recording.survey(() => undefined);
+    for (const recording of recordings) await recording.survey();
     app.refresh();
     document.documentElement.dataset.ready = 'yes';
   } catch (error) {
@@ -45,14 +53,31 @@ async function show(root: HTMLElement, files: [string, Uint8Array][]): Promise<v
   }
 }
 
+/** Shows some of many recordings, and says what each rescued. An address with other trials shows those. */
+async function choose(root: HTMLElement, files: File[]): Promise<void> {
+  const names = files.map(({ name }) => name);
+  const chosen = chosenOf(names, location.hash);
+  window.addEventListener('hashchange', () => {
+    if (chosenOf(names, location.hash).join() !== chosen.join()) location.reload();
+  });
+  const list = new TrialList(names, chosen);
+  await show(
+    root,
+    files.filter(({ name }) => chosen.includes(name)),
+    list,
+  );
+  for (const { name, bytes } of files) list.tell(await Recording.read(name, bytes()));
+}
+
 /** Without a recording in the page, asks for files. */
 function ask(root: HTMLElement): void {
   const input = element('input', { type: 'file', multiple: '', accept: '.usrec' });
   input.addEventListener('change', () => {
     const files = [...(input.files ?? [])];
-    const read = files.map(
-      async (file) => [file.name, new Uint8Array(await file.arrayBuffer())] as [string, Uint8Array],
-    );
+    const read = files.map(async (file): Promise<File> => {
+      const bytes = new Uint8Array(await file.arrayBuffer());
+      return { name: file.name, bytes: () => bytes };
+    });
     void Promise.all(read).then((all) => show(root, all));
   });
   const label = element('label', {}, 'Open recordings (.usrec): ', input);
@@ -61,7 +86,7 @@ function ask(root: HTMLElement): void {
 
 const root = document.getElementById('app');
 if (root) {
-  const files = embedded();
-  if (files.length > 0) void show(root, files);
-  else ask(root);
+  const { files, isList } = embedded();
+  if (files.length === 0) ask(root);
+  else void (isList ? choose(root, files) : show(root, files));
 }

@@ -30,7 +30,7 @@ const said = JSON.parse(readFileSync(new URL('small.at.json', import.meta.url), 
 };
 
 async function settled(recording: Recording): Promise<void> {
-  await recording.survey(() => undefined);
+  await recording.survey();
 }
 
 describe('numbers', () => {

@@ -7,6 +7,7 @@ const { countUntil } = await import('../src/ui/curves');
 const { clockTime, words } = await import('../src/ui/dom');
 const { heat, matrixOrder, scoreText } = await import('../src/ui/roundPanel');
 const { concerns, eventText } = await import('../src/ui/eventPanel');
+const { linkTo, parseTime, readLink } = await import('../src/ui/link');
 const { Camera } = await import('../src/draw/camera');
 
 describe('the clock', () => {
@@ -40,6 +41,22 @@ describe('texts', () => {
       '0.01235 nats',
     ]);
     expect(words('right_of_way')).toBe('right of way');
+  });
+});
+
+describe('links', () => {
+  it('say the time, the robot and the trials', () => {
+    const link = { time: 128.25, robot: 4, trials: ['RNE-3', 'x,y=é-1'] };
+    expect(linkTo(link)).toBe('#trials=RNE-3,x%2Cy%3D%C3%A9-1&t=128.3&robot=4');
+    expect(readLink(linkTo(link))).toEqual({ ...link, time: 128.3 });
+    expect(readLink('#t=128&robot=4')).toEqual({ time: 128, robot: 4, trials: [] });
+    expect(readLink('')).toEqual({ time: null, robot: null, trials: [] });
+    expect(readLink('#t=x&robot=1.5&trials=%')).toEqual({ time: null, robot: null, trials: ['%'] });
+  });
+
+  it('and fields have times as seconds or as minutes', () => {
+    expect(['128', ' 2:08', '2:08.5', '0:00.0'].map(parseTime)).toEqual([128, 128, 128.5, 0]);
+    expect(['', 'x', '-1', '1:2:3', '1.5:00', ':30', '1e3'].map(parseTime)).toEqual(Array(7).fill(null));
   });
 });
 

@@ -189,6 +189,13 @@ pub(crate) fn recording_of(folder: &Path, experiment: &Experiment, key: &TrialKe
     Ok(Shown { name, bytes })
 }
 
+/// The recording of a trial of a sweep, to be shown beside others of the sweep: named by its policy and seed.
+pub(crate) fn replay_of(folder: &Path, experiment: &Experiment, key: &TrialKey) -> Result<Shown, Failure> {
+    let path = path_of(folder, experiment, key);
+    let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+    Ok(Shown { name, ..recording_of(folder, experiment, key)? })
+}
+
 fn options(experiment: &Experiment, key: &TrialKey) -> Options {
     Options::new(&key.label, experiment.policies[key.policy].measure(&experiment.registry))
 }

@@ -2,6 +2,9 @@
 
 import type { Point } from '../recording/types';
 
+/** How far the arena is from the edges of the view, in pixels. */
+export const marginOf = (width: number, height: number): number => (Math.min(width, height) < 500 ? 10 : 22);
+
 export class Camera {
   /** Pixels of a metre. */
   scale = 1;
@@ -22,7 +25,7 @@ export class Camera {
 
   /** Shows the whole arena. */
   fit(): void {
-    const margin = Math.min(this.width, this.height) < 500 ? 10 : 22;
+    const margin = marginOf(this.width, this.height);
     const [width, height] = this.arena;
     this.scale = Math.min((this.width - 2 * margin) / width, (this.height - 2 * margin) / height);
     this.scale = Math.max(this.scale, 0.05);

@@ -3,6 +3,7 @@
 import { Stream } from '../recording/segment';
 import { knownBy, taskOf, zonesOn } from '../recording/state';
 import type { Point } from '../recording/types';
+import { boxAt } from './labels';
 import { addDebris } from './shapes';
 import type { Sheet } from './sheet';
 import { groupColour } from './theme';
@@ -69,33 +70,42 @@ export function drawGround({ context, ratio, camera, recording, colours }: Sheet
 }
 
 /** What the places are for. In pixels. */
-export function drawNames({ context, camera, recording, colours }: Sheet): void {
+export function drawNames({ context, camera, recording, colours, labels }: Sheet): void {
   const { world } = recording.header;
   context.font = '12px system-ui, sans-serif';
   context.textAlign = 'center';
-  context.textBaseline = 'bottom';
+  context.textBaseline = 'middle';
+  context.lineJoin = 'round';
   const write = (text: string, [x, y]: Point, colour: string): void => {
     const [left, top] = camera.toScreen([x, y]);
+    const box = boxAt([left, top - 9], [context.measureText(text).width, 13]);
+    if (!labels.isFree(box)) return;
+    labels.take(box);
     context.lineWidth = 3;
-    context.lineJoin = 'round';
     context.strokeStyle = colours.ground;
-    context.strokeText(text, left, top - 3);
+    context.strokeText(text, left, top - 9);
     context.fillStyle = colour;
-    context.fillText(text, left, top - 3);
+    context.fillText(text, left, top - 9);
   };
   world.tasks.forEach((task, number) => {
     const top = task.center[1] + task.size_m[1] / 2 + 1.5;
     const isAtWall = (world.arena_m[1] - top) * camera.scale < 18;
-    const y = isAtWall ? task.center[1] - task.size_m[1] / 2 - 1.5 - 18 / camera.scale : top;
-    write(task.name, [task.center[0], y], groupColour(number));
+    // At the wall, the name stands beside the area: robots come from below.
+    const aside = task.size_m[0] / 2 + 1.5 + (context.measureText(task.name).width / 2 + 5) / camera.scale;
+    const toRight = task.center[0] < world.arena_m[0] / 2 ? aside : -aside;
+    const at: Point = isAtWall
+      ? [task.center[0] + toRight, task.center[1] - 9 / camera.scale]
+      : [task.center[0], top];
+    write(task.name, at, groupColour(number));
     const restTop = Math.max(...world.robots.map((robot) => robot.rest[number][1]), task.rest[1]);
     if (camera.scale > 5) write('rest', [task.rest[0], restTop + 1], colours.soft);
   });
   if (camera.scale > 5 && world.robots.length > 0 && world.tasks.length > 0) {
     const homes = world.robots.map(({ home }) => home);
-    const top = Math.max(...homes.map(([, y]) => y));
+    // Below, where robots that leave do not cover it.
+    const bottom = Math.min(...homes.map(([, y]) => y)) - 1 - 18 / camera.scale;
     const middle = homes.reduce((sum, [x]) => sum + x, 0) / homes.length;
-    write('home', [middle, top + 1], colours.soft);
+    write('home', [middle, bottom], colours.soft);
   }
 }
 

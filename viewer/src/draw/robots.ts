@@ -1,12 +1,11 @@
 /** Draws robots: where they were, where they go, what they are like, and who waits for whom. */
 
-import type { Moment } from '../recording/recording';
-import { type MotionField, Stream } from '../recording/segment';
+import { Stream } from '../recording/segment';
 import { Robot, bodyOf, numberOf, routeAt, taskOf } from '../recording/state';
 import type { Point } from '../recording/types';
 import { addShape, shapesOf } from './shapes';
 import { LARGE_TEAM, type Sheet } from './sheet';
-import { type Theme, groupColour } from './theme';
+import { groupColour } from './theme';
 
 /** How long a trail is, in frames. */
 const TRAIL = 40;
@@ -90,23 +89,23 @@ function drawGoal({ context, camera, moment, colours }: Sheet, robot: number): v
   context.stroke();
 }
 
-export function drawRobots(
-  { context, camera, recording, moment, looks, colours }: Sheet,
-  places: Point[],
-): void {
+/** How large robots are drawn, in pixels. */
+export function radiiOf({ camera, recording }: Sheet): number[] {
+  const { world } = recording.header;
+  const least = world.robots.length > LARGE_TEAM ? 2.2 : LEAST_RADIUS;
+  return world.robots.map((_, robot) => Math.max(bodyOf(world, robot).radius_m * camera.scale, least));
+}
+
+export function drawRobots(sheet: Sheet, places: Point[], radii: number[]): void {
+  const { context, recording, moment, looks, colours } = sheet;
   const { world, codes } = recording.header;
   const shapes = shapesOf(world.roles);
-  const isLarge = places.length > LARGE_TEAM;
-  const radiusOf = (robot: number): number => {
-    const radius = bodyOf(world, robot).radius_m * camera.scale;
-    return isLarge ? Math.max(radius, 2.2) : Math.max(radius, LEAST_RADIUS);
-  };
   const paths = new Map<string, Path2D>();
   const lost = new Path2D();
   places.forEach(([x, y], robot) => {
     const colour = groupColour(taskOf(moment, robot));
     if (!paths.has(colour)) paths.set(colour, new Path2D());
-    const radius = radiusOf(robot);
+    const radius = radii[robot];
     addShape(paths.get(colour)!, shapes[world.robots[robot].role], x, y, radius);
     if (codes.conditions[numberOf(moment, robot, Robot.Condition)] !== 'able') {
       lost.moveTo(x - radius, y - radius);
@@ -118,7 +117,7 @@ export function drawRobots(
   for (const [colour, path] of paths) {
     context.fillStyle = colour;
     context.fill(path);
-    if (isLarge) continue;
+    if (places.length > LARGE_TEAM) continue;
     context.strokeStyle = colours.halo;
     context.lineWidth = 1.25;
     context.stroke(path);
@@ -126,61 +125,10 @@ export function drawRobots(
   context.strokeStyle = colours.ink;
   context.lineWidth = 2;
   context.stroke(lost);
-  if (!isLarge && camera.scale > 4.5)
-    places.forEach((place, robot) => {
-      drawBars(context, place, radiusOf(robot), moment, robot, colours);
-    });
-  if (!isLarge && camera.scale > 15) {
-    context.font = '11px system-ui, sans-serif';
-    context.textAlign = 'left';
-    context.textBaseline = 'middle';
-    context.fillStyle = colours.ink;
-    places.forEach(([x, y], robot) => {
-      context.fillText(String(robot), x + radiusOf(robot) + 4, y);
-    });
-  }
-  if (looks.selected !== null && looks.selected < places.length) {
-    const [x, y] = places[looks.selected];
-    context.beginPath();
-    context.arc(x, y, radiusOf(looks.selected) + 5, 0, 2 * Math.PI);
-    context.lineWidth = 2;
-    context.strokeStyle = colours.ink;
-    context.stroke();
-  }
-}
-
-/** Energy and HP as two bars below a robot, and the rescuees on board as dots above it. */
-function drawBars(
-  context: CanvasRenderingContext2D,
-  [x, y]: Point,
-  radius: number,
-  moment: Moment,
-  robot: number,
-  colours: Theme,
-): void {
-  const width = Math.max(14, 2 * radius);
-  const bar = (field: MotionField, row: number, colour: string): void => {
-    const level = Math.min(Math.max(moment.segment.motion(robot, field, moment.frame) / 100_000, 0), 1);
-    const top = y + radius + 3 + 3 * row;
-    context.fillStyle = colours.halo;
-    context.fillRect(x - width / 2 - 0.5, top - 0.5, width + 1, 3);
-    context.fillStyle = colours.faint;
-    context.fillRect(x - width / 2, top, width, 2);
-    context.fillStyle = colour;
-    context.fillRect(x - width / 2, top, width * level, 2);
-  };
-  bar('energy_millipercent', 0, colours.energy);
-  bar('hp_millipercent', 1, colours.hp);
-  const load = Math.min(numberOf(moment, robot, Robot.Load), 12);
-  if (load === 0) return;
-  context.fillStyle = colours.rescuee;
+  if (looks.selected === null || looks.selected >= places.length) return;
   context.beginPath();
-  for (let i = 0; i < load; i++) {
-    const cx = x + (i - (load - 1) / 2) * 4;
-    context.moveTo(cx + 1.5, y - radius - 4);
-    context.arc(cx, y - radius - 4, 1.5, 0, 2 * Math.PI);
-  }
-  context.fill();
+  context.arc(...places[looks.selected], radii[looks.selected] + 5, 0, 2 * Math.PI);
+  context.stroke();
 }
 
 /** The members of conflict sets in rings; that of the one with the right of way is whole. */

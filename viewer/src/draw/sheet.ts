@@ -2,6 +2,7 @@
 
 import type { Moment, Recording } from '../recording/recording';
 import type { Camera } from './camera';
+import type { Labels } from './labels';
 import type { Theme } from './theme';
 
 /** What is shown besides the state. */
@@ -22,6 +23,7 @@ export interface Sheet {
   moment: Moment;
   looks: Looks;
   colours: Theme;
+  labels: Labels;
 }
 
 /** Teams that are larger than this are drawn without bars and trails. */

@@ -1,7 +1,9 @@
 /** A recording: what does not change at once, segments when they are needed. */
 
 import { type Chunk, ReadError, chunksOf, inflate, inflateJson } from './chunks';
-import { type MotionField, Segment } from './segment';
+import { Course } from './course';
+import { type MotionField, Segment, Stream } from './segment';
+import { doingOf } from './state';
 import type { EventJson, Header, Summary, TimedDecision } from './types';
 
 const VERSION = 1;
@@ -40,6 +42,8 @@ function happening(event: EventJson, time: number): Happening {
 export class Recording {
   readonly frames: number;
   levels: Levels[] = [];
+  /** What became of each robot; filled by the survey. */
+  readonly courses: Course[];
   private readonly segments = new Map<number, Segment>();
   private readonly pending = new Map<number, Promise<Segment>>();
 
@@ -55,6 +59,7 @@ export class Recording {
     lastSegment: Segment | null,
   ) {
     this.frames = lastSegment ? lastSegment.firstFrame + lastSegment.frames : 0;
+    this.courses = header.world.robots.map(() => new Course());
   }
 
   static async read(name: string, bytes: Uint8Array): Promise<Recording> {
@@ -116,16 +121,25 @@ export class Recording {
     return this.segments.get(Math.floor(frame / this.header.frames_per_segment)) ?? null;
   }
 
-  /** Decodes all segments once, for the curves of the levels; those that the memory allows stay. */
-  async survey(progress: (part: number) => void): Promise<void> {
+  /** Decodes all segments once, for the levels and the courses; those that the memory allows stay. */
+  async survey(): Promise<void> {
     const every = Math.max(1, Math.round(this.frames / 600));
     for (let number = 0; number < this.chunks.length; number++) {
       const segment = await this.decoded(number);
       for (let frame = 0; frame < segment.frames; frame++) {
         if ((segment.firstFrame + frame) % every === 0) this.levels.push(this.levelsAt(segment, frame));
       }
-      progress((number + 1) / this.chunks.length);
+      this.addCourses(segment);
     }
+  }
+
+  private addCourses(segment: Segment): void {
+    this.courses.forEach((course, robot) => {
+      for (const [frame, row] of segment.changes(Stream.Robots, robot)) {
+        course.add(this.timeOf(segment.firstFrame + frame), doingOf(this.header, row));
+      }
+      course.end(this.timeOf(segment.firstFrame + segment.frames - 1));
+    });
   }
 
   private levelsAt(segment: Segment, frame: number): Levels {

@@ -86,6 +86,12 @@ export class Segment {
     return rows[at];
   }
 
+  /** The rows of a stream, each with the frame of this segment from which on it was so. */
+  changes(stream: Stream, number: number): [frame: number, row: readonly number[]][] {
+    const { from, rows } = this.streams[stream][number];
+    return from.map((frame, i) => [frame, rows[i]]);
+  }
+
   /** Numbers that it keeps in memory, roughly. */
   get size(): number {
     return this.columns.length * this.frames;

@@ -2,7 +2,8 @@
 
 import type { Moment, Recording } from './recording';
 import { type MotionField, Stream } from './segment';
-import type { Need, Point, Role, World } from './types';
+import type { Doing } from './course';
+import type { Header, Need, Point, Role, World } from './types';
 
 /** The numbers of a row of the stream of robots; ids that may be missing are one higher. */
 export const enum Robot {
@@ -36,6 +37,13 @@ export interface RobotState {
 }
 
 const id = (number: number): number | null => (number > 0 ? number - 1 : null);
+
+/** What a robot's row says for its course. */
+export const doingOf = ({ codes }: Header, row: readonly number[]): Doing => ({
+  cause: codes.delays[row[Robot.Delay]],
+  waitsFor: id(row[Robot.WaitsFor]),
+  load: row[Robot.Load],
+});
 
 /** A number of a robot's row. */
 export const numberOf = ({ segment, frame }: Moment, robot: number, number: Robot): number =>

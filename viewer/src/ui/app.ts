@@ -4,17 +4,22 @@ import { LARGE_TEAM } from '../draw/sheet';
 import { groupColour, onThemeChange } from '../draw/theme';
 import type { Moment, Recording } from '../recording/recording';
 import { Clock } from './clock';
+import { CoursePanel } from './coursePanel';
 import { Curves } from './curves';
-import { button, clockTime, element, swatch } from './dom';
+import { button, element, swatch } from './dom';
 import { EventPanel } from './eventPanel';
+import { GoTo } from './goTo';
 import { Help } from './help';
+import { LEAST_BELOW, arrange } from './layout';
+import { copyLink, linkTo, readLink, showLink } from './link';
 import { RobotPanel } from './robotPanel';
 import { RoundPanel } from './roundPanel';
 import { Stage } from './stage';
 import { Timeline, rounds } from './timeline';
+import { Transport } from './transport';
 
-/** Height of the line above a stage, in pixels. */
-const CAPTION = 32;
+/** The address follows a trial that plays at most so often, in milliseconds: browsers allow no more. */
+const LINK_PERIOD = 1000;
 
 /** The panels are drawn at most so often while the trial plays, in milliseconds. */
 const PANEL_PERIOD = 120;
@@ -30,9 +35,12 @@ export class App {
   private readonly roundPanel: RoundPanel;
   private readonly eventPanel: EventPanel;
   private readonly help = new Help();
-  private readonly play: HTMLButtonElement;
-  private readonly told = element('output', { class: 'time' });
-  private readonly speed = element('output', { class: 'speed' });
+  private readonly goTo = new GoTo((time) => {
+    this.seek(time);
+  });
+  private readonly transport: Transport;
+  private readonly main = element('div', { class: 'main' });
+  private readonly side = element('aside', { class: 'side' });
   private readonly viewpoints = element('div', {
     class: 'viewpoints',
     role: 'group',
@@ -42,6 +50,7 @@ export class App {
   private isDirty = true;
   private isAfresh = true;
   private panelsDrawn = 0;
+  private linkShown = 0;
   private last = 0;
   /** Drawings so far, and the time that they took, in milliseconds: to measure. */
   readonly drawn = { frames: 0, milliseconds: 0 };
@@ -49,6 +58,7 @@ export class App {
   constructor(
     root: HTMLElement,
     readonly recordings: readonly Recording[],
+    list?: HTMLElement,
   ) {
     const starts = recordings.map(({ start }) => start);
     this.looks.routes = recordings.every(({ header }) => header.world.robots.length <= LARGE_TEAM);
@@ -71,6 +81,13 @@ export class App {
       () => {
         this.follow();
       },
+      new CoursePanel(
+        this.clock,
+        (time) => {
+          this.seek(time);
+        },
+        changed,
+      ),
     );
     this.eventPanel = new EventPanel((time) => {
       this.seek(time);
@@ -78,15 +95,8 @@ export class App {
     this.roundPanel = new RoundPanel((time) => {
       this.seek(time);
     });
-    this.play = button(
-      '▶',
-      'Play or pause (space)',
-      () => {
-        this.toggle();
-      },
-      'play',
-    );
-    root.replaceChildren(this.layout());
+    this.transport = this.makeTransport();
+    root.replaceChildren(this.layout(list));
     document.title = recordings.map(({ header }) => `${header.policy} ${header.scenario.name}`).join(' | ');
     window.addEventListener('keydown', (event) => {
       this.key(event);
@@ -95,55 +105,65 @@ export class App {
       this.showViewpoints();
       this.refresh();
     });
+    window.addEventListener('hashchange', () => {
+      this.goToLink();
+    });
     this.showViewpoints();
     this.showTabs();
+    this.goToLink();
     requestAnimationFrame((now) => {
       this.tick(now);
     });
   }
 
-  private layout(): HTMLElement {
-    const transport = element('div', { class: 'transport' });
-    transport.append(
-      this.play,
-      button('−', 'Slower (-)', () => {
-        this.faster(-1);
-      }),
-      this.speed,
-      button('+', 'Faster (+)', () => {
-        this.faster(1);
-      }),
-      this.told,
-      element('span', { class: 'gap' }),
-      this.viewpoints,
-      button('?', 'Help (?)', () => {
+  private makeTransport(): Transport {
+    const actions = {
+      toggle: () => {
+        this.toggle();
+      },
+      faster: (by: 1 | -1) => {
+        this.faster(by);
+      },
+      askTime: () => {
+        this.goTo.ask(this.clock.time);
+      },
+      copyLink: () => {
+        this.copyLink();
+      },
+      help: () => {
         this.help.toggle();
-      }),
-    );
-    const stages = element('div', { class: `stages count-${Math.min(this.stages.length, 4)}` });
-    stages.append(...this.stages.map(({ root }) => root));
-    new ResizeObserver(() => {
-      this.arrange(stages);
-    }).observe(stages);
-    const main = element('div', { class: 'main' }, stages, transport, this.timeline.root);
-    const side = element('aside', { class: 'side' }, this.tabs, this.robotPanel.root, this.roundPanel.root);
-    side.append(this.curves.root, this.eventPanel.root, this.about());
-    return element('div', { class: 'app' }, main, side, this.help.root);
+      },
+    };
+    return new Transport(this.clock, actions, this.viewpoints);
   }
 
-  /** Puts as many stages side by side as shows the arena the largest. */
+  private layout(list?: HTMLElement): HTMLElement {
+    const stages = element('div', { class: `stages count-${Math.min(this.stages.length, 4)}` });
+    stages.append(...this.stages.map(({ root }) => root));
+    this.main.append(stages, this.transport.root, this.timeline.root);
+    new ResizeObserver(() => {
+      this.arrange(stages);
+    }).observe(this.main);
+    this.side.append(...(list ? [list] : []), this.tabs, this.robotPanel.root, this.roundPanel.root);
+    this.side.append(this.curves.root, this.eventPanel.root, this.about());
+    return element('div', { class: 'app' }, this.main, this.side, this.help.root, this.goTo.root);
+  }
+
+  /** Makes stages as large as the room allows. Where room is left below them, it is for the curves. */
   private arrange(stages: HTMLElement): void {
-    const [width, height] = this.recordings[0].header.world.arena_m;
-    const count = this.stages.length;
     const isPhone = window.matchMedia('(max-width: 860px)').matches;
-    const scale = (columns: number): number => {
-      const rows = Math.ceil(count / columns);
-      const room = stages.clientHeight / rows - CAPTION;
-      return Math.min(stages.clientWidth / columns / width, room / height);
-    };
-    let best = 1;
-    for (let columns = 2; columns <= count; columns++) if (scale(columns) > scale(best)) best = columns;
-    stages.style.gridTemplateColumns = `repeat(${isPhone ? 1 : best}, minmax(0, 1fr))`;
+    const { top } = stages.getBoundingClientRect();
+    const bottom = this.main.getBoundingClientRect().bottom - 10;
+    const others = this.transport.root.offsetHeight + this.timeline.root.offsetHeight + 16;
+    const count = this.stages.length;
+    const room = isPhone ? 0.4 * window.innerHeight * count : bottom - top - others;
+    const { arena_m: arena } = this.recordings[0].header.world;
+    const { columns, height } = arrange(count, [stages.clientWidth, room], arena, isPhone ? 1 : count);
+    const isBelow = !isPhone && room - height >= LEAST_BELOW;
+    stages.style.gridTemplateColumns = `repeat(${columns}, minmax(0, 1fr))`;
+    stages.style.height = `${isBelow || isPhone ? height : room}px`;
+    if (isBelow) this.main.append(this.curves.root);
+    else this.eventPanel.root.before(this.curves.root);
   }
 
   private about(): HTMLElement {
@@ -218,6 +238,26 @@ export class App {
     this.focusOn(number);
   }
 
+  /** Goes where the address says, as far as it says something. */
+  private goToLink(): void {
+    const { time, robot } = readLink(location.hash);
+    if (time !== null) this.clock.seek(time);
+    if (robot !== null) this.select(this.focus, robot);
+    this.refresh();
+  }
+
+  private link(): string {
+    const { trials } = readLink(location.hash);
+    return linkTo({ time: this.clock.time, robot: this.stages[this.focus].selected, trials });
+  }
+
+  private copyLink(): void {
+    showLink(this.link());
+    void copyLink().then(() => {
+      this.transport.sayCopied();
+    });
+  }
+
   seek(time: number): void {
     this.clock.seek(time);
     this.change();
@@ -280,6 +320,12 @@ export class App {
       ']': () => {
         this.toRound(1);
       },
+      g: () => {
+        this.goTo.ask(this.clock.time);
+      },
+      c: () => {
+        this.copyLink();
+      },
       f: () => {
         this.follow();
       },
@@ -297,7 +343,7 @@ export class App {
       },
     };
     const action = Object.hasOwn(actions, event.key) ? actions[event.key] : undefined;
-    if (!action || (this.help.root.open && event.key !== '?')) return;
+    if (!action || this.goTo.root.open || (this.help.root.open && event.key !== '?')) return;
     event.preventDefault();
     action();
     this.change();
@@ -332,9 +378,11 @@ export class App {
       this.panelsDrawn = now;
       this.drawPanels(moments[this.focus]);
     }
-    this.play.textContent = this.clock.isPlaying ? '❚❚' : '▶';
-    this.speed.textContent = `${this.clock.speed}×`;
-    this.told.textContent = `${clockTime(this.clock.time)} / ${clockTime(this.clock.end)}`;
+    if (!this.clock.isPlaying || now - this.linkShown > LINK_PERIOD) {
+      this.linkShown = now;
+      showLink(this.link());
+    }
+    this.transport.draw();
     this.drawn.frames += 1;
     this.drawn.milliseconds += performance.now() - begin;
   }

@@ -72,9 +72,11 @@ export class Curves {
     }
     this.root = element('section', { class: 'panel curves' });
     if (recordings.some(({ header }) => header.world.rescuees.length > 0)) {
-      this.root.append(element('h2', {}, 'Rescued', this.rescuedTold), this.rescued.canvas);
+      const title = element('h2', {}, 'Rescued', this.rescuedTold);
+      this.root.append(element('div', {}, title, this.rescued.canvas));
     }
-    this.root.append(element('h2', {}, 'Levels', this.levelsTold), this.levels.canvas);
+    const title = element('h2', {}, 'Levels', this.levelsTold);
+    this.root.append(element('div', {}, title, this.levels.canvas));
   }
 
   draw(focus: number): void {

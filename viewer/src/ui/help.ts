@@ -6,6 +6,8 @@ const KEYS: [string, string][] = [
   ['space', 'play, pause'],
   ['← →', 'one second back, on; with shift ten'],
   ['+ −', 'faster, slower'],
+  ['g', 'go to a time: a field asks for it'],
+  ['c', 'copy a link to this moment and robot'],
   ['f', 'follow the selected robot, or show the whole arena'],
   ['[ ]', 'the round before, the next round'],
   ['r', 'routes on, off'],
@@ -16,7 +18,7 @@ const KEYS: [string, string][] = [
 
 const SIGNS: [string, string][] = [
   ['●  ■  ▲', 'robots: the shape is the role, the colour the group; triangles fly'],
-  ['▂', 'below a robot: energy, then HP; dots above it: rescuees on board'],
+  ['▂', 'below a robot, where there is room: energy, then HP; dots above it: rescuees on board'],
   ['→', 'a robot waits for another; rings are conflict sets, whole around the one with the right of way'],
   ['•', 'rescuees: dots wait, ringed ones are claimed, empty ones are on board, faint ones are delivered'],
   ['◌', 'debris and radiation that the chosen group does not know are dashed'],

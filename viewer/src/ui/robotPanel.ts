@@ -5,6 +5,7 @@ import { groupColour, theme } from '../draw/theme';
 import type { Moment, Recording } from '../recording/recording';
 import { type RobotState, mostOf, needOf, robotAt } from '../recording/state';
 import type { Need } from '../recording/types';
+import type { CoursePanel } from './coursePanel';
 import { button, clockTime, element, swatch, words } from './dom';
 
 /** A large team is listed anew at most so often, in milliseconds. */
@@ -54,18 +55,26 @@ export function held(robot: RobotState): string {
 
 export class RobotPanel {
   readonly root = element('section', { class: 'panel robot-panel', 'aria-live': 'off' });
-
+  private readonly state = element('div');
   private isTeam = false;
   private teamDrawn = 0;
 
   constructor(
     private readonly select: (robot: number | null) => void,
     private readonly follow: () => void,
-  ) {}
+    private readonly course: CoursePanel,
+  ) {
+    this.root.append(this.state, course.root);
+  }
 
   draw(recording: Recording, moment: Moment, selected: number | null, isFollowing: boolean): void {
-    if (selected === null) this.drawTeam(recording, moment);
-    else this.drawRobot(recording, robotAt(recording, moment, selected), isFollowing);
+    this.course.root.hidden = selected === null;
+    if (selected === null) {
+      this.drawTeam(recording, moment);
+      return;
+    }
+    this.drawRobot(recording, robotAt(recording, moment, selected), isFollowing);
+    this.course.draw(recording, selected);
   }
 
   private drawTeam(recording: Recording, moment: Moment): void {
@@ -90,7 +99,7 @@ export class RobotPanel {
       list.append(chip);
     }
     const hint = 'Click a robot, here or in the arena, for its levels, needs and delays.';
-    this.root.replaceChildren(
+    this.state.replaceChildren(
       element('h2', {}, `Team of ${world.robots.length}`),
       element('p', { class: 'hint' }, hint),
       list,
@@ -139,7 +148,7 @@ export class RobotPanel {
         this.select(null);
       }),
     );
-    this.root.replaceChildren(title, state, element('h3', {}, 'Needs'), needs, tools);
+    this.state.replaceChildren(title, state, element('h3', {}, 'Needs'), needs, tools);
     this.root.dataset.robot = String(robot.id);
   }
 }

@@ -177,14 +177,8 @@ export class RoundPanel {
     const colours = theme();
     const values = order.flatMap(({ at }) => order.map((column) => robots[at][column.at] ?? 0));
     const most = Math.max(...values, 1e-12);
-    context.font = `${Math.min(11, Math.max(cell * 0.6, 7))}px system-ui, sans-serif`;
-    context.textBaseline = 'middle';
+    this.drawIds(order);
     order.forEach((row, i) => {
-      context.fillStyle = groupColour(row.task);
-      context.textAlign = 'right';
-      context.fillText(String(row.id), left - 5, top + (i + 0.5) * cell);
-      context.textAlign = 'center';
-      context.fillText(String(row.id), left + (i + 0.5) * cell, top - 8);
       order.forEach((column, j) => {
         const nats = robots[row.at][column.at];
         context.fillStyle = nats === null ? colours.faint : heat(Math.sqrt(nats / most), colours.isDark);
@@ -222,6 +216,30 @@ export class RoundPanel {
     context.textAlign = 'left';
     context.fillText(`0 to ${Number(most.toPrecision(2))} nats, ⁄ infinite`, left + 128, end + 4);
     this.told.textContent = this.tell(order, robots);
+  }
+
+  /** The ids of rows and columns: upright above narrow columns, and no more than there is room for. */
+  private drawIds(order: { id: number; task: number }[]): void {
+    const { context } = this.sheet;
+    const { cell, left, top } = this.layout(order.length);
+    const size = Math.min(11, Math.max(cell, 8));
+    const every = Math.ceil((size - 1) / cell);
+    context.font = `${size}px system-ui, sans-serif`;
+    context.textBaseline = 'middle';
+    order.forEach(({ id, task }, i) => {
+      if (i % every > 0) return;
+      const middle = (i + 0.5) * cell;
+      context.fillStyle = groupColour(task);
+      context.textAlign = 'right';
+      context.fillText(String(id), left - 5, top + middle);
+      context.save();
+      context.translate(left + middle, top - 5);
+      if (cell < 16) context.rotate(-Math.PI / 2);
+      else context.translate(0, -3);
+      context.textAlign = cell < 16 ? 'left' : 'center';
+      context.fillText(String(id), 0, 0);
+      context.restore();
+    });
   }
 
   private tell(order: { id: number; at: number }[], robots: (number | null)[][]): string {

@@ -1,11 +1,13 @@
 /** One recording from above: a canvas to pan, zoom and click. */
 
 import { Camera } from '../draw/camera';
+import { Labels } from '../draw/labels';
 import { drawScene } from '../draw/scene';
 import type { Looks } from '../draw/sheet';
 import type { Moment, Recording } from '../recording/recording';
 import { positionOf } from '../recording/state';
 import type { Point } from '../recording/types';
+import { countUntil, deliveries } from './curves';
 import { Sheet, element } from './dom';
 
 /** How near to a robot a click may be, in pixels. */
@@ -24,6 +26,9 @@ export class Stage {
   private readonly pointers = new Map<number, Point>();
   private moved = 0;
   private moment: Moment | null = null;
+  private readonly labels = new Labels();
+  private readonly delivered: number[];
+  private readonly total = element('output', { class: 'total' });
 
   constructor(
     readonly recording: Recording,
@@ -40,8 +45,11 @@ export class Stage {
       },
     );
     const { policy, seed, scenario } = recording.header;
-    const caption = element('div', { class: 'caption' });
-    caption.append(element('strong', {}, policy), ` ${scenario.name}, seed ${seed}`);
+    this.delivered = deliveries(recording)
+      .flat()
+      .sort((a, b) => a - b);
+    const caption = element('div', { class: 'caption' }, element('strong', {}, policy), ' ', this.total);
+    caption.append(` ${scenario.name}, seed ${seed}`);
     if (recording.cut !== null) caption.append(element('em', {}, ' (cut short)'));
     this.root = element(
       'section',
@@ -61,7 +69,9 @@ export class Stage {
       this.camera.isFitted = false;
     }
     const looks: Looks = { ...this.looks, selected: this.selected, viewpoint: this.viewpoint };
-    drawScene(this.sheet.context, this.sheet.ratio, this.camera, this.recording, moment, looks);
+    drawScene(this.sheet.context, this.sheet.ratio, this.camera, this.recording, moment, looks, this.labels);
+    if (this.recording.header.world.rescuees.length > 0)
+      this.total.textContent = `${countUntil(this.delivered, time)} rescued`;
     return moment;
   }
 

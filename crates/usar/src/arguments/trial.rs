@@ -3,6 +3,7 @@
 use experiments::experiment::{Experiment, PolicySpec, check_cost, defaults, split_list, with_settings};
 use experiments::limits::RECORDING_BYTES;
 use experiments::metric::task_names;
+use experiments::run::TrialKey;
 use experiments::sweep::disk::experiment_in;
 use recording::{Options, Recording};
 use rne_core::Session;
@@ -12,7 +13,7 @@ use usar_sim::simulation::Simulation;
 
 use super::{CaseArgument, SetArguments, one_seed, parse_policy};
 use crate::prelude::*;
-use crate::recordings::{Shown, recorded, recording_of};
+use crate::recordings::{Shown, path_of, recorded, recording_of, replay_of};
 
 /// The first bytes of a recording.
 const MAGIC: &[u8] = b"USREC";
@@ -128,6 +129,43 @@ impl TrialArguments {
         Ok(shown.into_iter().flatten().collect())
     }
 
+    /// Recordings of many trials of a sweep, seed by seed.
+    pub(crate) fn replays(&self, files: &[PathBuf], registry: &Registry) -> Result<Vec<Shown>, Failure> {
+        let [folder] = files else {
+            refuse!("--with-replays: takes one folder, found {} files", files.len())
+        };
+        if !folder.is_dir() {
+            refuse!(
+                "--with-replays: {} is no folder of a sweep. The page of a file has its recording in it \
+                 without this option",
+                folder.display()
+            );
+        }
+        let (experiment, _) = experiment_in(folder, registry)?;
+        let mut keys = self.replayed(folder, &experiment)?;
+        keys.sort_by_key(|key| (key.seed, key.policy));
+        keys.iter().map(|key| replay_of(folder, &experiment, key)).collect()
+    }
+
+    /// The trials that have recordings, or those with the first seed if none has.
+    fn replayed(&self, folder: &Path, experiment: &Experiment) -> Result<Vec<TrialKey>, Failure> {
+        let case = self.case.index(experiment)?;
+        let labels: Option<Vec<&str>> = self.policy.as_deref().map(split_list);
+        let has_label = |key: &TrialKey| labels.as_ref().is_none_or(|all| all.contains(&key.label.as_str()));
+        let mut keys: Vec<TrialKey> =
+            experiment.keys(None).filter(|key| key.case == case && has_label(key)).collect();
+        let is_recorded = |key: &TrialKey| path_of(folder, experiment, key).exists();
+        let first = || (!keys.iter().any(is_recorded)).then(|| experiment.seed(1));
+        match self.seed.or_else(first) {
+            Some(seed) => keys.retain(|key| key.seed == seed),
+            None => keys.retain(is_recorded),
+        }
+        if keys.is_empty() {
+            refuse!("--with-replays: the sweep has no trial with this policy and seed");
+        }
+        Ok(keys)
+    }
+
     /// The recording of the one trial that is meant.
     pub(crate) fn recording(&self, file: &Path, registry: &Registry) -> Result<Recording, Failure> {
         if self.policy.as_deref().is_some_and(|policy| split_list(policy).len() != 1) {
@@ -157,7 +195,7 @@ impl TrialArguments {
             let of_sweep =
                 of_sweep.map(|experiment| Ok::<_, Failure>((experiment, self.case.index(experiment)?)));
             if let Some((experiment, case)) = of_sweep.transpose()? {
-                let is_it = |key: &experiments::run::TrialKey| {
+                let is_it = |key: &TrialKey| {
                     (key.case, key.seed, &key.label) == (case, trial.seed, &trial.spec.label)
                 };
                 if let Some(key) = experiment.keys(None).find(is_it) {

@@ -8,7 +8,7 @@ use super::view::page;
 use crate::arguments::{CaseArgument, FamilyArguments, MeasureArgument};
 use crate::input::read_sweep;
 use crate::prelude::*;
-use crate::recordings::{Shown, path_of, recording_of};
+use crate::recordings::replay_of;
 
 /// Write a page: means, comparisons, figures, and their origin
 #[derive(Debug, Args)]
@@ -38,7 +38,7 @@ pub(crate) struct Arguments {
     /// Draw the trajectories of all robots in the trials with this seed, one for each policy
     #[arg(long, value_name = "SEED")]
     trial: Option<u64>,
-    /// Write replays of these trials as well, linked from the report [without --trial: of the first seed]
+    /// Add replays of trials of the sweep [default: those of --trial, or those with the first seed]
     #[arg(long)]
     with_replays: bool,
     #[command(flatten)]
@@ -78,12 +78,9 @@ impl Arguments {
     }
 
     fn show(&self, folder: &Folder, key: &TrialKey) -> Result<ShownTrial, Failure> {
-        let path = path_of(folder.path(), folder.experiment(), key);
-        let shown = recording_of(folder.path(), folder.experiment(), key)?;
-        let shown = Shown { name: format!("{}, seed {}", key.label, key.seed), ..shown };
+        let shown = replay_of(folder.path(), folder.experiment(), key)?;
         let recording = shown.read()?;
-        let stem = path.file_stem().unwrap_or_default().to_string_lossy();
-        let page = || (format!("replay-{stem}.html"), page::page(&[shown]).into_bytes());
+        let page = || (format!("replay-{}.html", shown.name), page::page(&[shown], false).into_bytes());
         let (label, seed, replay) = (key.label.clone(), key.seed, self.with_replays.then(page));
         Ok(ShownTrial { label, seed, recording, replay })
     }

@@ -58,6 +58,11 @@ fn the_state_at_a_time_is_told_as_json() {
     let said: Value = serde_json::from_str(&said).unwrap();
     assert_eq!((said["frame"].as_u64(), said["time_s"].as_f64()), (Some(32), Some(3.2)));
     assert_eq!(said["robots"][0]["activity"], "on_errand");
+    let millimetres = &said["state"]["robots"][0]["motion"]["position_mm"];
+    for (axis, field) in ["x_m", "y_m"].into_iter().enumerate() {
+        let metres = said["robots"][0][field].as_f64().unwrap();
+        assert_eq!(Some((metres * 1000.0).round()), millimetres[axis].as_f64());
+    }
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
 }
 
@@ -81,6 +86,17 @@ fn trials_of_a_sweep_are_recorded_and_shown() {
     // One trial comes from its recording, the other is simulated again.
     succeeds(&run(&["view", "r", "--seed", "2", "--policy", "x,RNE", "--no-open", "--out", "two.html"]));
     succeeds(&run(&["view", "r", "--seed", "1", "--no-open", "--out", "one.html"]));
+    // One page has all recorded trials; without recordings, those with the seed that is asked for.
+    let replays = |more: &[&str]| {
+        succeeds(&run(&[&["view", "r", "--with-replays", "--no-open", "--out", "all.html"], more].concat()));
+        let page = read(&folder.path().join("all.html"));
+        let names = page.split("data-name=\"").skip(1).map(|rest| rest.split('"').next().unwrap().to_owned());
+        names.collect::<Vec<_>>()
+    };
+    assert_eq!(replays(&[]), ["RNE-2", "x-2"]);
+    assert_eq!(replays(&["--seed", "1"]), ["RNE-1", "x-1"]);
+    assert_eq!(replays(&["--policy", "x"]), ["x-2"]);
+    refused(&["view", &paper, "--with-replays"], "is no folder of a sweep");
     // A recording of another trial is replaced, and all recordings are deleted when the sweep starts over.
     std::fs::copy(&path, folder.path().join("r/recordings/x-1.usrec")).unwrap();
     succeeds(&sweep(&["--recordings", "1"]));

@@ -24,6 +24,8 @@ struct Robot<'a> {
     id: usize,
     role: &'a str,
     task: Option<&'a str>,
+    x_m: f64,
+    y_m: f64,
     activity: &'a str,
     delay: &'a str,
     energy: f64,
@@ -47,11 +49,14 @@ fn output(recording: &Recording, number: usize, frame: Frame) -> Output<'_> {
         let role = world.body_of(id);
         let levels = [robot.motion.energy_millipercent, robot.motion.hp_millipercent];
         let [energy, hp] = levels.map(|level| f64::from(level) / 1000.0);
+        let [x_m, y_m] = robot.motion.position_mm.map(|mm| f64::from(mm) / 1000.0);
         let needs = world.needs.iter().map(|need| need.name.as_str()).zip(world.needs_of(id, robot));
         Robot {
             id,
             role: &role.name,
             task: robot.state.task.and_then(|task| Some(world.tasks.get(task as usize)?.name.as_str())),
+            x_m,
+            y_m,
             activity: &header.codes.activities[usize::from(robot.state.activity)],
             delay: &header.codes.delays[usize::from(robot.state.delay)],
             energy,

@@ -15,7 +15,7 @@ const PLACE: &str = "<!--recordings-->";
 const START: &str = "<!doctype html><!-- usar view -->";
 
 /// Writes a page completely or not at all. An existing page is replaced; any other existing file is not.
-pub(super) fn write(path: &Path, shown: &[Shown]) -> Result<(), Failure> {
+pub(super) fn write(path: &Path, shown: &[Shown], is_list: bool) -> Result<(), Failure> {
     if let Ok(file) = std::fs::File::open(path) {
         let mut start = Vec::new();
         let _ = file.take(START.len() as u64).read_to_end(&mut start); // what cannot be read is not ours
@@ -26,17 +26,17 @@ pub(super) fn write(path: &Path, shown: &[Shown]) -> Result<(), Failure> {
             );
         }
     }
-    Destination::new("--out", path, true)?.write(page(shown).as_bytes())
+    Destination::new("--out", path, true)?.write(page(shown, is_list).as_bytes())
 }
 
-/// The page with these recordings embedded.
-pub(crate) fn page(shown: &[Shown]) -> String {
+/// The page with these recordings embedded: all of them side by side, or a list to choose from.
+pub(crate) fn page(shown: &[Shown], is_list: bool) -> String {
     let (before, after) = VIEWER.split_once(PLACE).unwrap_or((VIEWER, ""));
     let mut page = before.to_owned();
     for Shown { name, bytes } in shown {
         page.push_str("<script type=\"application/x-usrec\" data-name=\"");
         page.push_str(&escaped(name));
-        page.push_str("\">");
+        page.push_str(if is_list { "\" data-listed>" } else { "\">" });
         base64(&mut page, bytes);
         page.push_str("</script>\n");
     }
@@ -81,6 +81,6 @@ mod tests {
     fn the_page_has_a_place_for_recordings_and_names_are_no_markup() {
         assert!(VIEWER.starts_with(START) && VIEWER.matches(PLACE).count() == 1);
         let shown = Shown { name: "<script>\"&".into(), bytes: vec![1, 2, 3] };
-        assert!(page(&[shown]).contains("data-name=\"&lt;script&gt;&quot;&amp;\">AQID</script>"));
+        assert!(page(&[shown], false).contains("data-name=\"&lt;script&gt;&quot;&amp;\">AQID</script>"));
     }
 }
