@@ -1,5 +1,7 @@
 /** What stands in a recording as JSON: a mirror of the types of the crate `recording`. */
 
+import type { Words } from './words';
+
 export type Point = [number, number];
 
 export interface Role {
@@ -56,6 +58,8 @@ export interface World {
   zones: { at: Point; radius_m: number }[];
   /** Numbers of the radiation zones that are not there at the start. */
   zones_later?: number[];
+  /** What the scenario calls its things; missing in older recordings. */
+  words?: Words;
 }
 
 export interface Header {

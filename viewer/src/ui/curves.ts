@@ -1,5 +1,6 @@
 /** The course of trials: rescuees delivered and levels over time, with a cursor. */
 
+import { inWords } from '../recording/words';
 import { groupColour, theme } from '../draw/theme';
 import type { Recording } from '../recording/recording';
 import type { Clock } from './clock';
@@ -72,7 +73,8 @@ export class Curves {
     }
     this.root = element('section', { class: 'panel curves' });
     if (recordings.some(({ header }) => header.world.rescuees.length > 0)) {
-      const title = element('h2', {}, 'Rescued', this.rescuedTold);
+      const text = inWords(recordings[0].header.world, 'rescued');
+      const title = element('h2', {}, text[0].toUpperCase() + text.slice(1), this.rescuedTold);
       this.root.append(element('div', {}, title, this.rescued.canvas));
     }
     const title = element('h2', {}, 'Levels', this.levelsTold);
@@ -187,7 +189,10 @@ export class Curves {
       const times = levels.map(({ time }) => time);
       const level = levels[Math.max(countUntil(times, this.clock.time) - 1, 0)];
       now.push(swatch(colours.energy), `energy ${level.energy[1].toFixed(0)} % `);
-      now.push(swatch(colours.hp), `HP ${level.hp[1].toFixed(0)} %`);
+      now.push(
+        swatch(colours.hp),
+        `${inWords(this.recordings[number].header.world, 'HP')} ${level.hp[1].toFixed(0)} %`,
+      );
     });
     this.cursor(sheet, context);
     this.levelsTold.replaceChildren(...now);

@@ -1,5 +1,6 @@
 /** What there is to know of one robot at one moment. */
 
+import { inWords } from '../recording/words';
 import { LARGE_TEAM } from '../draw/sheet';
 import { groupColour, theme } from '../draw/theme';
 import type { Moment, Recording } from '../recording/recording';
@@ -115,10 +116,10 @@ export class RobotPanel {
     const colours = theme();
     const fields: [string, string, Node?][] = [
       ['group', group],
-      ['activity', doing(robot)],
+      ['activity', inWords(world, doing(robot))],
       ['delay', held(robot)],
       ['energy', `${robot.energy.toFixed(1)} %`, bar(robot.energy / 100, colours.energy)],
-      ['HP', `${robot.hp.toFixed(1)} %`, bar(robot.hp / 100, colours.hp)],
+      [inWords(world, 'HP'), `${robot.hp.toFixed(1)} %`, bar(robot.hp / 100, colours.hp)],
       ['speed', `${Math.hypot(...robot.velocity).toFixed(2)} m/s`],
       [
         'on board',

@@ -1,5 +1,6 @@
 /** How the team was grouped in a round: the groups, who would trust whom, and the runner-up. */
 
+import { inWords } from '../recording/words';
 import { groupColour, theme } from '../draw/theme';
 import type { Recording } from '../recording/recording';
 import type { Score, TimedDecision } from '../recording/types';
@@ -111,7 +112,13 @@ export class RoundPanel {
       const result = recording.summary?.rounds.find((r) => r.round === question.round && r.task === task);
       const row = element('tr', {}, element('th', { scope: 'row' }, swatch(groupColour(task)), name));
       row.append(element('td', { class: 'members' }, listed(group)));
-      row.append(element('td', { class: 'value' }, result ? `${result.rescued} rescued` : ''));
+      row.append(
+        element(
+          'td',
+          { class: 'value' },
+          result ? inWords(recording.header.world, `${result.rescued} rescued`) : '',
+        ),
+      );
       table.append(row);
     });
     return table;

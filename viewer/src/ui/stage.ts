@@ -7,6 +7,7 @@ import type { Looks } from '../draw/sheet';
 import type { Moment, Recording } from '../recording/recording';
 import { positionOf } from '../recording/state';
 import type { Point } from '../recording/types';
+import { inWords } from '../recording/words';
 import { countUntil, deliveries } from './curves';
 import { Sheet, element } from './dom';
 
@@ -70,8 +71,9 @@ export class Stage {
     }
     const looks: Looks = { ...this.looks, selected: this.selected, viewpoint: this.viewpoint };
     drawScene(this.sheet.context, this.sheet.ratio, this.camera, this.recording, moment, looks, this.labels);
-    if (this.recording.header.world.rescuees.length > 0)
-      this.total.textContent = `${countUntil(this.delivered, time)} rescued`;
+    const { world } = this.recording.header;
+    if (world.rescuees.length > 0)
+      this.total.textContent = inWords(world, `${countUntil(this.delivered, time)} rescued`);
     return moment;
   }
 

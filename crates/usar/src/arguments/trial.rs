@@ -178,7 +178,7 @@ impl TrialArguments {
     }
 
     fn recordings_of(&self, file: &Path, registry: &Registry) -> Result<Vec<Shown>, Failure> {
-        if !file.is_dir() {
+        if file.is_file() {
             let unreadable = |error| Failure::input(format!("{}: {error}", file.display()));
             let most = RECORDING_BYTES.most as u64;
             let (start, _) = read_start(file, MAGIC.len() as u64, most).map_err(unreadable)?;
