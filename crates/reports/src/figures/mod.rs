@@ -1,6 +1,7 @@
 //! The figures of a report, each with the table of its numbers.
 
 mod course;
+mod distrust;
 mod gather;
 mod groups;
 mod metrics;
@@ -13,6 +14,7 @@ use experiments::sweep::folder::Folder;
 
 use crate::drawing::{Figure, Sketch};
 
+pub use distrust::distrust_map;
 pub(crate) use regret::regret;
 pub(crate) use sensitivity::sensitivity;
 
