@@ -18,13 +18,14 @@ const MOST_WITH_NUMBERS: usize = 30;
 #[must_use]
 pub fn distrust_map(title: &str, names: &[String], distrust: &[Vec<f64>]) -> String {
     let cell = if names.len() > MOST_WITH_NUMBERS { 14.0 } else { 46.0 };
-    let side = (cell * names.len() as f64).max(240.0);
+    let side = (cell * names.len() as f64).max(280.0);
+    let longest = names.iter().map(|name| name.chars().count()).max().unwrap_or(0) as f64;
     let panel = distrust_panel(title, names, distrust);
-    Drawing::new(vec![panel], 1, [side + 200.0, side + 150.0]).svg()
+    Drawing::new(vec![panel], 1, [side + 180.0 + 7.0 * longest, side + 130.0 + 5.0 * longest]).svg()
 }
 
-/// The heat map as a panel. An infinite value is drawn above every finite value: it means no trust at all.
-/// Its cell cannot tell a number, so that then none does.
+/// The heat map as a panel. An infinite value is drawn above every finite value: it means no trust at all. No
+/// cell has its number then, for that of the infinite cells would be none.
 pub(super) fn distrust_panel(title: &str, names: &[String], distrust: &[Vec<f64>]) -> Panel {
     let finite = distrust.iter().flatten().filter(|value| value.is_finite());
     let most = 1000.0 * finite.copied().fold(0.0, f64::max);
@@ -34,7 +35,7 @@ pub(super) fn distrust_panel(title: &str, names: &[String], distrust: &[Vec<f64>
     let cells = distrust.iter().map(|row| row.iter().map(shown).collect()).collect();
     let mut map = heat_map(cells, if is_infinite { beyond } else { most });
     if let Plot::Heatmap(map) = &mut map {
-        map.show_values &= !is_infinite;
+        map.show_values = !is_infinite && names.len() <= MOST_WITH_NUMBERS;
     }
     let plots = vec![map];
     let layout = layout(&plots, title)

@@ -10,7 +10,7 @@ mod team;
 use crate::arguments::{MeasureArgument, PictureFile, ReplaceArgument, ShownArguments, parse_policy};
 use crate::prelude::*;
 
-/// Trust of all pairs of a team (CSV), its groups by a policy, or the RNE of needs
+/// Trust in a team from a table (CSV), and its groups by a policy
 #[derive(Debug, Args)]
 #[command(after_help = "\
 The table (CSV with a header) has a row for each robot: id (any text) and needs, which are numbers >= 0. Each \
@@ -48,7 +48,7 @@ pub(crate) struct Arguments {
     #[arg(required_unless_present_any = ["from", "to"], conflicts_with_all = ["from", "to"])]
     file: Option<PathBuf>,
     /// Policy that decides, with its options in brackets [default: none, all pairs are shown]
-    #[arg(long, requires = "file", conflicts_with_all = ["measure", "out"])]
+    #[arg(long, conflicts_with_all = ["measure", "out", "from"])]
     policy: Option<String>,
     /// Weight of each need, separated by commas; only their ratios matter [default: all 1]
     #[arg(long, allow_hyphen_values = true)]
@@ -58,7 +58,7 @@ pub(crate) struct Arguments {
     #[command(flatten)]
     measure: MeasureArgument,
     /// File or folder to write [default: none; else a picture of all pairs]
-    #[arg(long, value_name = "FILE.svg|png|pdf", requires = "file")]
+    #[arg(long, value_name = "FILE.svg|png|pdf", conflicts_with = "from")]
     out: Option<PathBuf>,
     #[command(flatten)]
     replace: ReplaceArgument,

@@ -51,7 +51,7 @@ impl<'t> Matrix<'t> {
 
     /// The matrix as a picture.
     pub(super) fn drawn(&self) -> Picture {
-        let names: Vec<String> = self.names.iter().map(|name| printable(name).into_owned()).collect();
+        let names: Vec<String> = self.names.iter().map(|name| drawn_name(name)).collect();
         let is_infinite = self.distrust.iter().flatten().any(|value| value.is_infinite());
         let darkest = if is_infinite { "; darkest: infinite" } else { "" };
         let (name, unit) = (&self.measure.name, self.measure.it.unit());
@@ -112,6 +112,16 @@ impl<'t> Matrix<'t> {
         }
         table
     }
+}
+
+/// An id as it stands in the picture: of long ones the beginning.
+fn drawn_name(name: &str) -> String {
+    const MOST: usize = 24;
+    let name = printable(name);
+    if name.chars().count() <= MOST {
+        return name.into_owned();
+    }
+    name.chars().take(MOST - 1).chain(['\u{2026}']).collect()
 }
 
 /// A value as a cell: in full for programs.

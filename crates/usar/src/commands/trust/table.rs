@@ -141,6 +141,7 @@ impl Rows {
     fn member(&mut self, row: InputRow, id: u32, needs: &[NeedColumn]) -> Option<Member> {
         let before = self.problems.len();
         self.text(row, "id");
+        let role = self.role(row);
         let mut number = |column: &str, range| self.number(row, column, range);
         let any = f64::MIN..=f64::MAX;
         let home = ["x", "y"].map(|column| number(column, any.clone()).unwrap_or(0.0));
@@ -153,7 +154,6 @@ impl Rows {
         if before == self.problems.len() && values.iter().all(|value| *value == 0.0) {
             self.problems.push((row.line, "must have a need above 0, found none".to_owned()));
         }
-        let role = self.role(row);
         let needs =
             NeedVector::new(values).map_err(|error| self.problems.push((row.line, error.to_string())));
         Some(Member { id, role, home, needs: needs.ok()?, energy_level, hp_level })

@@ -15,7 +15,7 @@ use crate::prelude::*;
 #[derive(Debug, Args)]
 pub(super) struct TeamArguments {
     /// Needs of which less is better, each with its worst value; they count as WORST minus the value
-    #[arg(long, value_name = "NEED=WORST", requires = "file", value_delimiter = ',')]
+    #[arg(long, value_name = "NEED=WORST", conflicts_with = "from", value_delimiter = ',')]
     less_is_better: Vec<LessIsBetter>,
     /// A task: name, difficulty and, for policies that need it, its place `x,y` in metres [default: first,2
     /// and second,1]
@@ -151,8 +151,8 @@ impl Team {
             PolicyError::MissingFact { policy, what, .. } => rows.table.table.refused_at(
                 1,
                 format_args!(
-                    "policy {policy} needs {what}, which is missing; levels are the columns energy_level and \
-                     hp_level, distances go from x and y to `--task NAME,DIFFICULTY,X,Y`"
+                    "policy {policy} needs {what}, which is missing; it takes levels from the columns energy_level \
+                     and hp_level, and distances from x and y to the places of `--task NAME,DIFFICULTY,X,Y`"
                 ),
             ),
             other => Failure::input_at(&self.file)(other),
