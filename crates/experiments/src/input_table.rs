@@ -6,7 +6,7 @@ use std::ops::RangeInclusive;
 use std::path::Path;
 
 use csv::StringRecord;
-use ron_tree::file::read_text;
+use ron_tree::file::{ReadError, read_text};
 use store::{Failure, refuse};
 
 use crate::limits::{COLUMNS, TABLE_ROWS};
@@ -65,7 +65,10 @@ impl InputTable {
     /// The file cannot be read; rows have another number of cells than the header; or a column has no name,
     /// or the name of another one.
     pub fn read(path: &Path) -> Result<Self, Failure> {
-        let text = read_text(path).map_err(Failure::input_at(path.display()))?;
+        let text = read_text(path).map_err(|error| unreadable(path, &error))?;
+        if text.trim().is_empty() {
+            refuse!("{}: is empty", path.display());
+        }
         let separator = separator(&text);
         let mut reader = csv::ReaderBuilder::new()
             .delimiter(separator)
@@ -129,6 +132,7 @@ impl InputTable {
     }
 
     /// Its rows.
+    #[must_use]
     pub fn rows(&self) -> impl ExactSizeIterator<Item = InputRow<'_>> {
         self.rows.iter().map(|(line, cells)| InputRow { table: self, cells, line: *line })
     }
@@ -200,6 +204,12 @@ impl InputTable {
         let is_mixed = self.has_commas && found.contains('.');
         if is_mixed { format!("{rule} with a decimal comma, as in other cells") } else { rule }
     }
+}
+
+fn unreadable(path: &Path, error: &ReadError) -> Failure {
+    let hint =
+        if matches!(error, ReadError::NotText(_)) { "; spreadsheets save it as CSV UTF-8" } else { "" };
+    Failure::Input(format!("{}: {error}{hint}", path.display()))
 }
 
 /// The number in a cell with one decimal comma.

@@ -112,7 +112,8 @@ fn one_robot_and_two_hundred_are_a_team() {
     let groups = matrix(&many, &["--policy", "RNE"]);
     let size = |task: usize| groups["groups"][task]["robots"].as_array().unwrap().len();
     assert_eq!((size(0), size(1)), (100, 100));
-    let crowd = format!("id,hp\n{}", (0..501).map(|i| format!("{i},1\n")).collect::<String>());
+    let crowd: Vec<String> = (0..501).map(|i| format!("{i},1\n")).collect();
+    let crowd = format!("id,hp\n{}", crowd.concat());
     let (_folder, path) = table(&crowd);
     refused(&["trust", &path], "must have 1 to 500 robots, found 501");
 }
@@ -162,8 +163,8 @@ fn bad_tables_are_refused_with_all_their_problems() {
         let (_folder, path) = table(text);
         refused(&[&["trust", path.as_str()], arguments].concat(), message);
     };
-    refuse("", &[], "robots.csv:1: the header lacks id\n");
-    refuse("name,y\n1,0\n", &[], "lacks id\n");
+    refuse("", &[], "robots.csv: is empty\n");
+    refuse("name,y\n1,0\n", &[], "lacks id, found name, y\n");
     refuse("id,y\n1,0\n", &[], "robots.csv:1: the header lacks x, but has y\n");
     refuse("id,role,x,y\n1,a,0,0\n", &[], "the header lacks needs");
     refuse(TABLE.lines().next().unwrap(), &[], "robots.csv: must have 1 to 500 robots, found 0");

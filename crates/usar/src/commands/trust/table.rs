@@ -76,7 +76,7 @@ impl TeamTable {
         if !problems.is_empty() {
             return Err(table.refused(problems));
         }
-        Ok(Self { roles, needs, members, has_places, table })
+        Ok(Self { table, roles, needs, members, has_places })
     }
 }
 
@@ -89,7 +89,8 @@ fn needs(table: &InputTable, less_is_better: &[LessIsBetter]) -> Result<Vec<Need
             problems.push((1, format!("the header lacks {what}")));
         }
     };
-    lacks(table.column("id").is_none(), "id");
+    let found = table.columns().collect::<Vec<_>>().join(", ");
+    lacks(table.column("id").is_none(), &format!("id, found {found}"));
     lacks(table.column("x").is_none() && table.column("y").is_some(), "x, but has y");
     lacks(table.column("y").is_none() && table.column("x").is_some(), "y, but has x");
     lacks(names.is_empty(), "needs: columns of any other name");
