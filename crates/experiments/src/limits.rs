@@ -28,6 +28,8 @@ ron_tree::limits! {
     COLUMNS: "a table" = 1, 1_000;
     /// Rows of a table.
     TABLE_ROWS: "a table" = 0, 100_000;
+    /// Robots of a team in a table.
+    TEAM_ROBOTS: "a team in a table" = 1, 500;
     /// Bytes of a snapshot.
     SNAPSHOT_BYTES: "a snapshot" = 0, 256 << 20;
     /// Bytes of a recording.

@@ -17,6 +17,7 @@ pub mod table;
 mod wanted;
 
 pub use explored::{ranking, sensitivity_figure, sensitivity_table};
+pub use figures::distrust_map;
 pub use maps::ShownTrial;
 pub use paper::{ColumnLook, LEAST_TEXT_POINTS, column_figure};
 pub use regret::regret_figures;

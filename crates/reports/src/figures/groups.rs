@@ -3,8 +3,8 @@
 use experiments::Failure;
 use experiments::experiment::Experiment;
 use experiments::rounds::{KEYS, Share, SortingAgreement};
-use rne_core::RoleId;
 
+use super::distrust::{distrust_panel, largest};
 use super::gather::Gathered;
 use crate::drawing::{Drawing, Panel, Sketch, from_top, heat_map, is_drawn, layout, names, table};
 
@@ -32,16 +32,13 @@ pub(super) fn trust(experiment: &Experiment, gathered: &[Gathered]) -> Result<Op
         let members: Vec<usize> = (0..team.len()).filter(|i| team[*i].role == role).collect();
         let row = |i: &usize| members.iter().map(|j| towards(*i, *j)).collect::<Result<Vec<_>, _>>();
         let data = members.iter().map(row).collect::<Result<Vec<Vec<f64>>, _>>()?;
+        let names: Vec<String> = members.iter().map(|i| team[*i].id.to_string()).collect();
         if members.len() > 1 {
-            roles.push((role, members, data));
+            roles.push((format!("{}s", question.roles[role.index()]), names, data));
         }
     }
-    let finite = roles.iter().flat_map(|(.., data)| data.iter().flatten()).filter(|value| value.is_finite());
-    let most = 1000.0 * finite.copied().fold(0.0, f64::max);
-    let panel = |(role, members, data): &(RoleId, Vec<usize>, Vec<Vec<f64>>)| {
-        trust_panel(data, &question.roles[role.index()], members.iter().map(|i| team[*i].id), most)
-    };
-    let panels = roles.iter().map(panel).collect();
+    let most = roles.iter().map(|(.., data)| largest(data)).fold(0.0, f64::max);
+    let panels = roles.iter().map(|(title, names, data)| distrust_panel(title, names, data, most)).collect();
     let column = format!("{}_{unit}", measure.name.to_lowercase());
     Ok(Some(Sketch {
         name: "trust".into(),
@@ -50,29 +47,14 @@ pub(super) fn trust(experiment: &Experiment, gathered: &[Gathered]) -> Result<Op
             "{name} from each robot to each other of its role when the first round of trial {} under {} was \
              grouped, in thousandths of its unit ({unit}); lower is more trust. It is infinite wherever one \
              robot does not trust the other at all, as where it lacks a need that the other has: such cells \
-             have the darkest colour, beyond the scale, and the table says so. The table has all pairs, those \
+             have the darkest colour, beyond the scale, no cell of that role has its number, and the table says \
+             so. The table has all pairs, those \
              between roles too. n = 1 trial.",
             gathered.first_trial, policy.label
         ),
         drawing: Drawing::new(panels, 3, [400.0, 360.0]),
         csv: table(&["from", "to", &column], rows)?,
     }))
-}
-
-/// A heat map of one role. An infinite value is drawn above every finite value: it means no trust at all.
-fn trust_panel(data: &[Vec<f64>], role: &str, ids: impl Iterator<Item = u32>, most: f64) -> Panel {
-    let beyond = if most > 0.0 { 1.25 * most } else { 1.0 };
-    let is_infinite = data.iter().flatten().any(|value| !value.is_finite());
-    let shown = |value: &f64| if value.is_finite() { 1000.0 * value } else { beyond };
-    let cells = data.iter().map(|row| row.iter().map(shown).collect()).collect();
-    let plots = vec![heat_map(cells, if is_infinite { beyond } else { most })];
-    let names: Vec<String> = ids.map(|id| id.to_string()).collect();
-    let layout = layout(&plots, &format!("{role}s"))
-        .with_x_categories(names.clone())
-        .with_y_categories(from_top(names))
-        .with_x_label("to robot")
-        .with_y_label("from robot");
-    Panel { metric: String::new(), plots, layout }
 }
 
 /// The share of the rounds in which each policy's split equals sorting.

@@ -2,6 +2,7 @@
 
 mod axes;
 mod course;
+mod distrust;
 mod gather;
 mod groups;
 mod metrics;
@@ -14,6 +15,7 @@ use experiments::sweep::folder::Folder;
 
 use crate::drawing::{Figure, Sketch};
 
+pub use distrust::distrust_map;
 pub(crate) use regret::regret;
 pub(crate) use sensitivity::sensitivity;
 

@@ -2,11 +2,11 @@
 
 use std::path::Path;
 
-use experiments::Failure;
-use experiments::input_table::InputTable;
+use experiments::input_table::{CellProblem, InputRow, InputTable, Problem};
 use experiments::metric::{Catalogue, Metric};
 use experiments::stats::Moments;
 use experiments::sweep::trial_columns;
+use experiments::{Failure, refuse};
 use serde::{Deserialize, Serialize};
 use usar_sim::record::TrialRecord;
 use usar_sim::scenario::Scenario;
@@ -87,29 +87,26 @@ impl Target {
     /// than the scenario's; or a quantity is not a number or has no spread. All problems are reported at
     /// once, with file and line.
     pub fn load(path: &Path, scenario: &Scenario) -> Result<Self, Failure> {
-        let shown = path.display();
         let table = InputTable::read(path)?;
         let metrics = Catalogue::of(scenario);
         let Columns { found, missing, mut problems } = Columns::of(&table, &metrics);
         let mut values = vec![Vec::new(); found.len()];
-        for (line, row) in &table.rows {
-            let cells = Cells { table: &table, row };
-            problems.extend(
-                cells.check(scenario, &metrics).into_iter().map(|problem| format!("{line}: {problem}")),
-            );
+        for row in table.rows() {
+            problems.extend(check(row, scenario, &metrics).into_iter().map(|problem| (row.line, problem)));
             for (quantity, values) in found.iter().zip(&mut values) {
-                match cells.number(&quantity.name) {
+                match number(row, &quantity.name) {
                     Ok(value) => values.extend(value),
-                    Err(problem) => problems.push(format!("{line}: {problem}")),
+                    Err(problem) => problems.push((row.line, problem.to_string())),
                 }
             }
         }
-        if problems.is_empty() && table.rows.len() < 2 {
-            problems.push(format!(" must have at least two trials, found {}", table.rows.len()));
-        }
         if !problems.is_empty() {
-            let lines: Vec<String> = problems.iter().map(|problem| format!("{shown}:{problem}")).collect();
-            return Err(Failure::Input(lines.join("\n")));
+            return Err(table.refused(problems));
+        }
+        let shown = path.display();
+        let trials = table.rows().len();
+        if trials < 2 {
+            refuse!("{shown}: must have at least two trials, found {trials}");
         }
         let spread = |(quantity, values): (&Quantity, &Vec<f64>)| {
             Spread::of(values).filter(|spread| spread.sd > 0.0).ok_or_else(|| {
@@ -120,7 +117,7 @@ impl Target {
             })
         };
         let spreads = found.iter().zip(&values).map(spread).collect::<Result<Vec<_>, _>>()?;
-        Ok(Self { quantities: found, spreads, values, trials: table.rows.len(), missing })
+        Ok(Self { quantities: found, spreads, values, trials, missing })
     }
 
     /// The quantities of a trial.
@@ -168,7 +165,7 @@ struct Columns {
     found: Vec<Quantity>,
     missing: Vec<String>,
     /// Problems in the header.
-    problems: Vec<String>,
+    problems: Vec<Problem>,
 }
 
 impl Columns {
@@ -178,66 +175,52 @@ impl Columns {
         let names: Vec<&str> = all.iter().map(|quantity| quantity.name.as_str()).collect();
         let names = names.join(", ");
         for unknown in table.columns().filter(|name| !known.iter().any(|column| column == name)) {
-            problems.push(format!("1: {unknown:?} is no column of trials.csv; what can be fitted: {names}"));
+            problems
+                .push((1, format!("{unknown:?} is no column of trials.csv; what can be fitted: {names}")));
         }
         if table.column("method").is_none() {
-            problems.push("1: has no column method".to_owned());
+            problems.push((1, "has no column method".to_owned()));
         }
         let (found, missing): (Vec<_>, Vec<_>) =
             all.into_iter().partition(|quantity| table.column(&quantity.name).is_some());
         if found.is_empty() && problems.is_empty() {
-            problems.push(format!("1: has none of the columns {names}"));
+            problems.push((1, format!("has none of the columns {names}")));
         }
         Self { found, missing: missing.into_iter().map(|quantity| quantity.name).collect(), problems }
     }
 }
 
-/// A row, with its cells by column name.
-struct Cells<'t> {
-    table: &'t InputTable,
-    row: &'t csv::StringRecord,
+/// A number that is not negative; `None` if there is no such column.
+fn number(row: InputRow, name: &str) -> Result<Option<f64>, CellProblem> {
+    row.number(name, 0.0..=f64::MAX)
 }
 
-impl Cells<'_> {
-    fn text(&self, name: &str) -> Option<&str> {
-        self.row.get(self.table.column(name)?)
+/// Problems in the cells that are not fitted.
+fn check(row: InputRow, scenario: &Scenario, metrics: &Catalogue) -> Vec<String> {
+    let mut problems = Vec::new();
+    if let Some(method) = row.text("method").filter(|method| *method != POLICY) {
+        problems.push(format!("method must be {POLICY}: nothing else is calibrated, found {method:?}"));
     }
-
-    /// A number that is not negative; `None` if there is no such column.
-    fn number(&self, name: &str) -> Result<Option<f64>, String> {
-        let Some(cell) = self.text(name) else { return Ok(None) };
-        let value = cell.parse::<f64>().ok().filter(|value| value.is_finite() && *value >= 0.0);
-        value.map(Some).ok_or_else(|| format!("{name} must be a number from 0 on, found {cell:?}"))
+    let mut told = |name: &str| {
+        number(row, name).unwrap_or_else(|problem| {
+            problems.push(problem.to_string());
+            None
+        })
+    };
+    let (time_s, total) = (told("time_s"), told("rescuees_total"));
+    let (duration_s, dt_s) = (scenario.duration_s, scenario.dt_s);
+    if let Some(time_s) = time_s.filter(|time_s| (time_s - duration_s).abs() > dt_s / 2.0) {
+        problems.push(format!("time_s must be the scenario's duration_s, {duration_s}, found {time_s}"));
     }
-
-    /// Problems in the cells that are not fitted.
-    fn check(&self, scenario: &Scenario, metrics: &Catalogue) -> Vec<String> {
-        let mut problems = Vec::new();
-        if let Some(method) = self.text("method").filter(|method| *method != POLICY) {
-            problems.push(format!("method must be {POLICY}: nothing else is calibrated, found {method:?}"));
+    let tasks = metrics.declared("rescuees").into_iter().map(|place| &metrics[place]);
+    let parts = tasks.filter(|metric| !metric.is_total()).map(|metric| number(row, &metric.column()));
+    if let (Ok(Some(parts)), Some(total)) = (parts.collect::<Result<Option<Vec<f64>>, _>>(), total) {
+        let sum: f64 = parts.iter().sum();
+        if (total - sum).abs() > 1e-6 {
+            problems.push(format!("rescuees_total must be the sum over the tasks, {sum}, found {total}"));
         }
-        let mut number = |name: &str| {
-            let value = self.number(name);
-            value.unwrap_or_else(|problem| {
-                problems.push(problem);
-                None
-            })
-        };
-        let (time_s, total) = (number("time_s"), number("rescuees_total"));
-        let (duration_s, dt_s) = (scenario.duration_s, scenario.dt_s);
-        if let Some(time_s) = time_s.filter(|time_s| (time_s - duration_s).abs() > dt_s / 2.0) {
-            problems.push(format!("time_s must be the scenario's duration_s, {duration_s}, found {time_s}"));
-        }
-        let tasks = metrics.declared("rescuees").into_iter().map(|place| &metrics[place]);
-        let parts = tasks.filter(|metric| !metric.is_total()).map(|metric| self.number(&metric.column()));
-        if let (Ok(Some(parts)), Some(total)) = (parts.collect::<Result<Option<Vec<f64>>, _>>(), total) {
-            let sum: f64 = parts.iter().sum();
-            if (total - sum).abs() > 1e-6 {
-                problems.push(format!("rescuees_total must be the sum over the tasks, {sum}, found {total}"));
-            }
-        }
-        problems
     }
+    problems
 }
 
 #[cfg(test)]

@@ -5,7 +5,6 @@ mod cluster;
 mod compare;
 mod export;
 mod fork;
-mod group;
 mod new;
 mod oracle;
 mod overview;
@@ -122,7 +121,6 @@ verbs!(Verb {
     Oracle: oracle::Arguments,
     Search: search::Arguments,
     Trust: trust::Arguments,
-    Group: group::Arguments,
     /// Scenario files: list, draw, lay out, explain
     #[command(subcommand, disable_help_subcommand = true)]
     Scenario: scenario::Verb,

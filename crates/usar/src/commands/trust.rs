@@ -1,93 +1,89 @@
-//! `usar trust`: Relative Needs Entropy between robots or groups, from needs on the command line.
+//! `usar trust`: the trust of all pairs of a team, its groups by a policy, or Relative Needs Entropy from
+//! needs on the command line.
 
-use clap::ValueEnum;
-use rne_core::{LogBase, NeedDistribution, NeedVector, NeedWeights, relative_entropy};
-use serde_json::json;
+mod groups;
+mod matrix;
+mod pair;
+mod table;
+mod team;
 
-use crate::arguments::{JsonArgument, numbers};
+use crate::arguments::{MeasureArgument, PictureFile, ReplaceArgument, ShownArguments, parse_policy};
 use crate::prelude::*;
 
-/// Relative Needs Entropy (RNE) and trust of robots or groups
+/// Trust in a team from a table (CSV), and its groups by a policy
 #[derive(Debug, Args)]
 #[command(after_help = "\
-Lower RNE means more trust. It is not symmetric: try both directions.
+The table (CSV with a header) has a row for each robot: id (any text) and needs, which are numbers >= 0. Each \
+column is a need but for these, which may be left out: role (policies split each role; the roles are merged \
+in the order in which the table names them first), x and y (metres, for policies that look at distances), \
+energy_level and hp_level (percent, for ENG and HP_DIS). Cells are separated by commas, or by `;` or tabs, \
+with decimal commas or points. A file that ends with .json is a question (docs/decisions.md).
+
+Without --policy, all pairs are shown: the RNE of the robot of each row towards the robot of each column, in \
+nats. Lower RNE means more trust; trust is exp(-RNE). It is not symmetric. With a table, each need is divided \
+by its largest value in the team first, so that no unit dominates (--measure 'RNE(scale: false)': as it is).
+
+The maths takes more of a need for better. --less-is-better damage=100 says that of damage less is better and \
+100 is the worst: it counts as 100 - damage, what is left. A robot at the worst has none of that need, and \
+the RNE towards it from a robot that has some is infinite.
+
+--json prints all pairs as `distrust` and `trust`, a row for each robot that trusts, in the order of `robots` \
+(infinite: null). With --policy it prints the groups by the ids of the table, and as `decision` the \
+decision, whose ids are numbers: those of the table, or, if any is a text, 1 for the first robot, and so on. \
+A question in JSON is answered by the decision alone.
 
 Examples:
-  usar trust --weights 6,4,2 --from 86,120,30 --to 20,30,10
-  usar trust --weights 6,4,2 --from 86,120,30 --to 82,114,24 --to 79,117,23 --json    towards a group of \
-  two")]
+  usar trust robots.csv                                          all pairs
+  usar trust robots.csv --less-is-better damage=100,cost=500 --out matrix.svg
+  usar trust robots.csv --weights 6,4,2 --format csv
+  usar trust robots.csv --policy RNE                             the team in two groups
+  usar trust robots.csv --policy 'RNE(score: JensenShannon, hard_rule: Capability)' --json
+  usar trust robots.csv --policy ENG --task a,3 --task b,2 --task c,1    three tasks by difficulty
+  usar trust robots.csv --policy DIS --task far,2,15.6,64.2 --task near,1,73.4,51.6
+  usar trust question.json --policy ENG --json
+  usar trust --weights 6,4,2 --from 86,120,30 --to 20,30,10      no table: needs as they are
+  usar trust --from 82,114,24 --to 79,117,23 --to 40,56,12       towards a group of two")]
 pub(crate) struct Arguments {
-    /// Weight of each need, separated by commas; only their ratios matter
+    /// The team (CSV), or a question (JSON)
+    #[arg(required_unless_present_any = ["from", "to"], conflicts_with_all = ["from", "to"])]
+    file: Option<PathBuf>,
+    /// Policy that decides, with its options in brackets [default: none, all pairs are shown]
+    #[arg(long, conflicts_with_all = ["measure", "out", "from"])]
+    policy: Option<String>,
+    /// Weight of each need, separated by commas; only their ratios matter [default: all 1]
     #[arg(long, allow_hyphen_values = true)]
-    weights: String,
-    /// Needs of the robot that trusts; repeat the flag for a group
-    #[arg(long, required = true, allow_hyphen_values = true)]
-    from: Vec<String>,
-    /// Needs of the robot that is trusted; repeat the flag for a group
-    #[arg(long, required = true, allow_hyphen_values = true)]
-    to: Vec<String>,
-    /// Base of the logarithm in which the RNE is given
-    #[arg(long, default_value = "e")]
-    log_base: Base,
+    weights: Option<String>,
     #[command(flatten)]
-    json: JsonArgument,
-}
-
-#[derive(Debug, Clone, Copy, ValueEnum)]
-enum Base {
-    E,
-    #[value(name = "2")]
-    Two,
-    #[value(name = "10")]
-    Ten,
+    team: team::TeamArguments,
+    #[command(flatten)]
+    measure: MeasureArgument,
+    /// File or folder to write [default: none; else a picture of all pairs]
+    #[arg(long, value_name = "FILE.svg|png|pdf", conflicts_with = "from")]
+    out: Option<PathBuf>,
+    #[command(flatten)]
+    replace: ReplaceArgument,
+    #[command(flatten)]
+    pair: pair::PairArguments,
+    #[command(flatten)]
+    shown: ShownArguments,
 }
 
 impl Arguments {
-    pub(crate) fn execute(&self, _: &Registry, out: &mut dyn Write) -> Result<(), Failure> {
-        let weights =
-            NeedWeights::new(numbers("--weights", &self.weights)?).map_err(Failure::input_at("--weights"))?;
-        let from = distribution("--from", &self.from, &weights)?;
-        let to = distribution("--to", &self.to, &weights)?;
-        let rne = relative_entropy(&from, &to).map_err(Failure::input)?;
-        let (base, name, unit) = match self.log_base {
-            Base::E => (LogBase::E, "e", "nats"),
-            Base::Two => (LogBase::Two, "2", "bits"),
-            Base::Ten => (LogBase::Ten, "10", "bans"),
-        };
-        let in_base = rne.in_base(base);
-        if self.json.json {
-            return print_json(&json!({
-                "rne": rne.nats(),
-                "infinite": rne.is_infinite(),
-                "trust": rne.trust(),
-                "base": name,
-                "rne_in_base": in_base,
-                "from": from,
-                "to": to,
-            }));
+    pub(crate) fn execute(&self, registry: &Registry, out: &mut dyn Write) -> Result<(), Failure> {
+        let (weights, is_json) = (self.weights.as_deref(), self.shown.is_json());
+        let Some(file) = &self.file else { return self.pair.execute(weights, is_json, out) };
+        if let Some(policy) = &self.policy {
+            let spec = parse_policy("--policy", policy, registry)?;
+            return groups::show(&self.team.read(file, weights)?, &spec, is_json, out);
         }
-        let value = in_base.map_or("infinite".to_owned(), |value| format!("{value:.6} {unit}"));
-        writeln!(out, "RNE    {value}")?;
-        let trust = rne.trust();
-        writeln!(out, "trust  {trust:.6}   (exp of minus the RNE in nats: 1 is full trust, 0 none)")?;
-        writeln!(out, "from   {}", shares(&from))?;
-        writeln!(out, "to     {}", shares(&to))?;
-        Ok(())
+        let registry = self.measure.chosen_in(registry)?;
+        let picture = |path: &PathBuf| PictureFile::of(path, &["svg", "png", "pdf"], self.replace);
+        let picture = self.out.as_ref().map(picture).transpose()?;
+        let team = self.team.read(file, weights)?;
+        let matrix = matrix::Matrix::of(&team, &registry)?;
+        if let Some(picture) = &picture {
+            picture.write(&matrix.drawn())?;
+        }
+        if is_json { matrix.print_json() } else { matrix.print(out) }
     }
-}
-
-fn distribution(flag: &str, members: &[String], weights: &NeedWeights) -> Result<NeedDistribution, Failure> {
-    let vector = |(i, text): (usize, &String)| {
-        let flag = if members.len() == 1 { flag.to_owned() } else { format!("{flag} (number {})", i + 1) };
-        let needs = NeedVector::new(numbers(&flag, text)?)
-            .and_then(|needs| NeedDistribution::of_agent(&needs, weights).map(|_| needs));
-        needs.map_err(Failure::input_at(flag))
-    };
-    let vectors = members.iter().enumerate().map(vector).collect::<Result<Vec<_>, _>>()?;
-    NeedDistribution::of_group(&vectors, weights).map_err(Failure::input_at(flag))
-}
-
-fn shares(distribution: &NeedDistribution) -> String {
-    let shares: Vec<String> = distribution.shares().iter().map(|share| format!("{share:.4}")).collect();
-    format!("({})", shares.join(", "))
 }

@@ -132,9 +132,9 @@ fn what_cannot_be_calibrated_is_refused() {
         ),
         (
             "method,rounds\r\nDIS,6\r\nDIS,six\r\n",
-            "target.csv:3: rounds must be a number from 0 on, found \"six\"",
+            "target.csv:3: rounds: must be a number >= 0, found \"six\"",
         ),
-        ("method,rounds\nDIS,-1\nDIS,7\n", "target.csv:2: rounds must be a number from 0 on, found \"-1\""),
+        ("method,rounds\nDIS,-1\nDIS,7\n", "target.csv:2: rounds: must be a number >= 0, found \"-1\""),
         (
             "method,time_s,rounds\nDIS,120,6\nDIS,60,7\n",
             "target.csv:3: time_s must be the scenario's duration_s, 120, found 60",
@@ -145,7 +145,7 @@ fn what_cannot_be_calibrated_is_refused() {
         ),
         (
             "method,rescuees_total,rounds\nDIS,-5,6\nDIS,9,7\n",
-            "target.csv:2: rescuees_total must be a number from 0 on",
+            "target.csv:2: rescuees_total: must be a number >= 0",
         ),
         ("method,rounds,rounds\nDIS,6,6\n", "the column \"rounds\" stands twice"),
         ("method,rounds\nDIS,6\n", "must have at least two trials, found 1"),

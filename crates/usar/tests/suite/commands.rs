@@ -94,88 +94,11 @@ fn bad_needs_are_refused() {
     );
     trust("6,x,2", "1,2,3", "20,30,10", "--weights: entry 2 must be a number, found \"x\"");
     trust("", "1", "1", "--weights: entry 1 must be a number, found \"\"");
-}
-
-const TABLE: &str = "id,role,x,y,hp,v,sen,eng,res,cap,obs,energy_level,hp_level
-1,carrier,40,14,90,2.1,2.8,120,1,6,0.006,80,90
-2,carrier,43,14,60,1.8,2.4,60,1,6,0.006,40,60
-3,supplier,45,16,95,2.2,2.9,140,10,1,0.006,93,95
-4,supplier,47,16,70,1.9,2.5,75,10,1,0.006,50,70
-5,observer,46,18,45,1.4,17,90,0,0,5.7,90,90
-6,observer,47,18,30,1.2,14,40,0,0,4.8,40,60
-";
-
-fn table(text: &str) -> (tempfile::TempDir, String) {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("robots.csv");
-    std::fs::write(&path, text).unwrap();
-    (folder, path.to_str().unwrap().to_owned())
-}
-
-#[test]
-fn group_splits_a_table_by_any_policy() {
-    let (_folder, path) = table(TABLE);
-    for policy in ["RNE", "ENG", "HP_DIS", "DIS", "RANDOM"] {
-        let tasks = ["--task", "near,1,73,51", "--task", "far,2,15,64"];
-        let value = json(&[&["group", &path, "--policy", policy, "--json"], &tasks[..]].concat());
-        assert!(serde_json::from_value::<rne_core::Decision>(value.clone()).is_ok(), "{value}");
-        let ids = |task: usize| {
-            let group = &value["assignment"]["groups"][task];
-            group.as_array().unwrap().iter().map(|id| id.as_u64().unwrap()).collect::<Vec<_>>()
-        };
-        let mut all = [ids(0), ids(1)].concat();
-        all.sort_unstable();
-        assert_eq!(all, [1, 2, 3, 4, 5, 6], "{policy}");
-        if policy == "ENG" {
-            assert_eq!(ids(1), [1, 3, 5]);
-        }
-        assert_eq!(value["score"].is_null(), policy != "RNE");
+    refused("trust --from 1,2 --to 2", "--to: needs must have 2 entries, found 1");
+    refused("trust --from 1,2", "--to <TO>");
+    for more in ["--policy RNE", "--out x.svg", "--less-is-better a=1", "--format csv", "--measure RNE"] {
+        refused(&*format!("trust --from 1,2 --to 2,1 {more}"), "cannot be used with");
     }
-}
-
-#[test]
-fn bad_tables_are_refused_with_their_lines() {
-    let refuse = |text: &str, arguments: &[&str], message: &str| {
-        let (_folder, path) = table(text);
-        refused(&[&["group", path.as_str()], arguments].concat(), message);
-    };
-    refuse("", &[], "the header lacks id, role, x, y");
-    refuse("id,role,x,y\n1,a,0,0\n", &[], "the header lacks needs");
-    refuse(TABLE.lines().next().unwrap(), &[], "has no robots");
-    refuse(&TABLE.replace("2,carrier", "2,"), &[], "robots.csv:3: role must be a name, found nothing");
-    refuse(
-        &TABLE.replace("2,carrier,43", "2,carrier,nan"),
-        &[],
-        "robots.csv:3: x must be a finite number, found \"nan\"",
-    );
-    refuse(
-        &TABLE.replace("14,90,2.1", "14,-90,2.1"),
-        &[],
-        "robots.csv:2: hp must be a number >= 0, found -90",
-    );
-    refuse(&TABLE.replace("\n2,", "\n1,"), &[], "robot id 1 stands twice");
-    refuse(TABLE, &["--policy", "DIS"], "policy DIS needs the place of each task, which is missing");
-    refuse(
-        &TABLE.replace("energy_level", "note"),
-        &["--policy", "ENG"],
-        "policy ENG needs the energy level, which is missing for robot 1",
-    );
-    refuse(
-        TABLE,
-        &["--policy", "NEAREST"],
-        "unknown policy \"NEAREST\"; known policies: RNE, DIS, ENG, HP_DIS, RANDOM",
-    );
-    refuse(TABLE, &["--policy", "RNE(score: Most)"], "--policy: policy RNE: ");
-    refuse(
-        TABLE,
-        &["--weights", "1,2"],
-        "--weights: must have one entry for each need (hp, v, sen, eng, res, cap, obs), found 2",
-    );
-    refuse(
-        TABLE,
-        &["--task", "far"],
-        "--task: must be NAME,DIFFICULTY or NAME,DIFFICULTY,X,Y, found \"far\"",
-    );
 }
 
 #[test]
@@ -223,26 +146,6 @@ fn the_schemas_in_the_documents_are_those_of_the_types() {
             "usar scenario schema {of} makes it anew"
         );
     }
-}
-
-#[test]
-fn a_question_in_json_is_answered_in_json() {
-    let folder = tempfile::tempdir().unwrap();
-    let question = r#"{"schema_version": 2, "round": 1, "roles": ["walker"], "needs": [{"name": "hp", "weight": 1.0}],
-        "tasks": [{"name": "a", "difficulty": 1}, {"name": "b", "difficulty": 3}, {"name": "c", "difficulty": 2}],
-        "quotas": [{"members": [1, 1, 1], "sizes": "Parts"}], "history": [],
-        "members": [{"id": 4, "role": 0, "home": [0, 0], "needs": [1.0], "energy_level": 10.0},
-            {"id": 2, "role": 0, "home": [0, 0], "needs": [2.0], "energy_level": 90.0},
-            {"id": 7, "role": 0, "home": [0, 0], "needs": [3.0], "energy_level": 50.0}],
-        "random_seed": "0000000000000000000000000000000000000000000000000000000000000000"}"#;
-    let path = folder.path().join("question.json");
-    std::fs::write(&path, question).unwrap();
-    let path = path.to_str().unwrap();
-    let answer = json(&["group", path, "--policy", "ENG", "--json"]);
-    assert_eq!(answer["assignment"]["groups"], serde_json::json!([[4], [2], [7]]));
-    assert_eq!(answer["account"]["Ranking"]["roles"][0][0]["id"], 2);
-    std::fs::write(path, question.replace("\"round\"", "\"rounds\"")).unwrap();
-    refused(&["group", path], "question.json: not the JSON of a question: unknown field `rounds`");
 }
 
 #[test]

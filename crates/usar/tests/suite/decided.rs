@@ -144,7 +144,7 @@ fn the_oracle_as_a_policy_decides_as_the_oracle_says() {
     );
     let text = "id,role,x,y,energy_level\n0,walker,0,0,5\n1,walker,1,0,6\n";
     std::fs::write(here.join("team.csv"), text.replace("energy_level", "eng")).unwrap();
-    refused(here, 2, "group team.csv --policy ORACLE", &["here is no trial"]);
+    refused(here, 2, "trust team.csv --policy ORACLE", &["here is no trial"]);
 }
 
 /// The RNE between the groups of the first round, computed from the recorded needs.

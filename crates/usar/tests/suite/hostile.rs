@@ -143,7 +143,7 @@ fn what_is_no_regular_file_is_not_waited_for() {
         for arguments in [
             vec!["check", file],
             vec!["sweep", file],
-            vec!["group", file],
+            vec!["trust", file],
             vec!["run", "ok.ron", "--resume", file],
             vec!["study", "yang2021", "calibrate", "ok.ron", "--over", "duration_s=5..20", "--target", file],
         ] {

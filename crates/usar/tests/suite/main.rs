@@ -25,4 +25,5 @@ mod shell;
 mod studied;
 mod tabled;
 mod taught;
+mod teams;
 mod viewed;

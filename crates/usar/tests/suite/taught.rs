@@ -87,5 +87,8 @@ fn the_tutorial_comes_to_what_it_says() {
 
 #[test]
 fn the_guides_run() {
-    assert_eq!(["policies.md", "results.md", "paper-figures.md", "study.md"].map(follow), [2, 4, 7, 3]);
+    assert_eq!(
+        ["trust.md", "policies.md", "results.md", "paper-figures.md", "study.md"].map(follow),
+        [2, 2, 4, 7, 3]
+    );
 }

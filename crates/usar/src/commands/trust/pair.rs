@@ -1,0 +1,94 @@
+//! Relative Needs Entropy between two robots or groups, from needs on the command line.
+
+use clap::ValueEnum;
+use rne_core::{LogBase, NeedDistribution, NeedVector, NeedWeights, relative_entropy};
+use serde_json::json;
+
+use crate::arguments::numbers;
+use crate::prelude::*;
+
+/// Needs on the command line.
+#[derive(Debug, Args)]
+pub(super) struct PairArguments {
+    /// Needs of the robot that trusts; repeat the flag for a group
+    #[arg(long, requires = "to", conflicts_with_all = ["format", "measure"], allow_hyphen_values = true)]
+    from: Vec<String>,
+    /// Needs of the robot that is trusted; repeat the flag for a group
+    #[arg(long, requires = "from", allow_hyphen_values = true)]
+    to: Vec<String>,
+    /// Base of the logarithm in which the RNE is given
+    #[arg(long, default_value = "e", conflicts_with = "file")]
+    log_base: Base,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum Base {
+    E,
+    #[value(name = "2")]
+    Two,
+    #[value(name = "10")]
+    Ten,
+}
+
+impl PairArguments {
+    /// Prints the RNE of the first side towards the second.
+    pub(super) fn execute(
+        &self,
+        weights: Option<&str>,
+        is_json: bool,
+        out: &mut dyn Write,
+    ) -> Result<(), Failure> {
+        let weights = self.weights(weights)?;
+        let from = distribution("--from", &self.from, &weights)?;
+        let to = distribution("--to", &self.to, &weights)?;
+        let rne = relative_entropy(&from, &to).map_err(Failure::input)?;
+        let (base, name, unit) = match self.log_base {
+            Base::E => (LogBase::E, "e", "nats"),
+            Base::Two => (LogBase::Two, "2", "bits"),
+            Base::Ten => (LogBase::Ten, "10", "bans"),
+        };
+        let in_base = rne.in_base(base);
+        if is_json {
+            return print_json(&json!({
+                "rne": rne.nats(),
+                "infinite": rne.is_infinite(),
+                "trust": rne.trust(),
+                "base": name,
+                "rne_in_base": in_base,
+                "from": from,
+                "to": to,
+            }));
+        }
+        let value = in_base.map_or("infinite".to_owned(), |value| format!("{value:.6} {unit}"));
+        writeln!(out, "RNE    {value}")?;
+        let trust = rne.trust();
+        writeln!(out, "trust  {trust:.6}   (exp of minus the RNE in nats: 1 is full trust, 0 none)")?;
+        writeln!(out, "from   {}", shares(&from))?;
+        writeln!(out, "to     {}", shares(&to))?;
+        Ok(())
+    }
+
+    fn weights(&self, weights: Option<&str>) -> Result<NeedWeights, Failure> {
+        let weights = match (weights, self.from.first()) {
+            (Some(weights), _) => numbers("--weights", weights)?,
+            (None, first) => vec![1.0; first.map_or(0, |first| first.split(',').count())],
+        };
+        NeedWeights::new(weights).map_err(Failure::input_at("--weights"))
+    }
+}
+
+fn distribution(flag: &str, members: &[String], weights: &NeedWeights) -> Result<NeedDistribution, Failure> {
+    let vector = |(i, text): (usize, &String)| {
+        let flag = if members.len() == 1 { flag.to_owned() } else { format!("{flag} (number {})", i + 1) };
+        let needs = NeedVector::new(numbers(&flag, text)?)
+            .and_then(|needs| NeedDistribution::of_agent(&needs, weights).map(|_| needs));
+        needs.map_err(Failure::input_at(flag))
+    };
+    let vectors = members.iter().enumerate().map(vector).collect::<Result<Vec<_>, _>>()?;
+    NeedDistribution::of_group(&vectors, weights).map_err(Failure::input_at(flag))
+}
+
+fn shares(distribution: &NeedDistribution) -> String {
+    let shares: Vec<String> = distribution.shares().iter().map(|share| format!("{share:.4}")).collect();
+    format!("({})", shares.join(", "))
+}
