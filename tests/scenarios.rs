@@ -4,7 +4,9 @@ use std::path::{Path, PathBuf};
 
 use experiments::experiment::{Experiment, Overrides};
 use usar_sim::model::Layout;
-use usar_sim::scenario::{EmptyTasks, MissionRules, ResolverRule, RightOfWay, RoleFile, Scenario};
+use usar_sim::scenario::{
+    Door, EmptyTasks, MissionRules, ResolverRule, RightOfWay, RoleFile, Scenario, ScenarioFile, WallFile,
+};
 
 use crate::support::{SAMPLED, paper, paper_text, paper_with, root};
 
@@ -111,6 +113,38 @@ fn costs_per_step_under_another_step_are_told() {
         "{told}"
     );
     assert!(told.contains("costs.hp.per_step"), "{told}");
+}
+
+#[test]
+fn a_team_without_a_guide_and_doors_too_narrow_for_all_are_told() {
+    let told = |change: &dyn Fn(&mut ScenarioFile)| {
+        let mut file = (*paper()).clone();
+        change(&mut file);
+        let scenario = Scenario::try_from(file).unwrap();
+        scenario.warnings(&paper_text()).iter().map(ToString::to_string).collect::<Vec<_>>().join("\n")
+    };
+    let blind = told(&|file| file.roles.iter_mut().for_each(|role| role.guides = false));
+    assert!(
+        blind.contains("].guides leaves the team without a guide: every group loses 0.3 of its speed"),
+        "{blind}"
+    );
+    let door = |width_m| Door { at_m: 5.0, width_m, name: None, is_closed: false };
+    let with_door = |width_m| {
+        told(&|file: &mut ScenarioFile| {
+            file.walls.push(WallFile {
+                from: [40.0, 10.0],
+                to: [50.0, 10.0],
+                thickness_m: 0.2,
+                doors: vec![door(width_m)],
+            });
+        })
+    };
+    let narrow = with_door(0.5);
+    assert!(
+        narrow.contains("walls[0].doors[0].width_m is too narrow for every robot, found 0.5; the smallest"),
+        "{narrow}"
+    );
+    assert_eq!(with_door(2.0), "");
 }
 
 #[test]

@@ -5,6 +5,7 @@ use std::process::ExitCode;
 
 use clap::FromArgMatches;
 use clap::error::{ContextKind, ContextValue};
+use clap_complete::CompleteEnv;
 use experiments::experiment::with_oracle;
 use experiments::{Failure, note_panic, panic_message};
 use reports::table::{fold_at, show_as};
@@ -12,7 +13,7 @@ use rne_core::Registry;
 use terminal_size::terminal_size_of;
 
 use crate::arguments::format_of;
-use crate::commands::{Cli, command};
+use crate::commands::{ASKED, Cli, command, completing};
 use crate::library;
 use crate::output::{columns_of, sentences};
 use crate::running::{status_of_signal, tell};
@@ -38,6 +39,7 @@ pub fn main() -> ExitCode {
 /// ```
 #[must_use]
 pub fn main_with(policies: Registry) -> ExitCode {
+    CompleteEnv::with_factory(|| completing(command())).var(ASKED).complete();
     let registry = with_oracle(policies);
     usar_sim::scenario::carry(library::FILES);
     // A panic is a defect of the program. It is caught and reported in one sentence, never as a backtrace.

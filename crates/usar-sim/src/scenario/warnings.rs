@@ -5,7 +5,7 @@ use ron_tree::Node;
 
 use super::Scenario;
 use super::error::Problem;
-use super::file::{MissionRules, PlanningRules, RoleFile};
+use super::file::{MissionRules, PlanningRules, RoleFile, RoleKind};
 use super::timeline::{Happening, Moment};
 
 /// A value is odd if it is larger or smaller than the default by this factor.
@@ -42,6 +42,8 @@ impl Scenario {
         compare(&mut warnings, "mission", numbers(&self.mission).into_iter(), &mission);
         let planning = numbers(&PlanningRules::default());
         compare(&mut warnings, "planning", numbers(&self.planning).into_iter(), &planning);
+        self.without_guide(&mut warnings);
+        self.too_narrow(&mut warnings);
         self.without_effect(&mut warnings);
         self.paid_by_the_step(&mut warnings);
         for problem in &mut warnings {
@@ -67,6 +69,41 @@ impl Scenario {
                         "in a second this is {times:.3} times as much as with steps of {USUAL_STEP_S} s; \
                          per_second does not depend on dt_s"
                     ),
+                    ..Problem::default()
+                });
+            }
+        }
+    }
+
+    /// Robots that fly in a team in which nobody guides.
+    fn without_guide(&self, warnings: &mut Vec<Problem>) {
+        let loss = self.mission.blind_speed_loss;
+        let flies = |(body, count): &(RoleFile, u32)| body.kind == RoleKind::Aerial && *count > 0;
+        let Some((aerial, _)) = self.bodies().find(flies) else { return };
+        if loss == 0.0 || self.tasks.is_empty() || self.bodies().any(|(body, _)| body.guides) {
+            return;
+        }
+        let role = self.roles.iter().position(|role| role.name == aerial.name).unwrap_or_default();
+        warnings.push(Problem {
+            field: format!("roles[{role}].guides"),
+            rule: format!("leaves the team without a guide: every group loses {loss} of its speed"),
+            found: "false".to_owned(),
+            hint: "`guides: true` lets a role guide its group (mission.blind_speed_loss)".to_owned(),
+            ..Problem::default()
+        });
+    }
+
+    /// Doors through which no robot fits.
+    fn too_narrow(&self, warnings: &mut Vec<Problem>) {
+        let widths = self.bodies().map(|(body, _)| 2.0 * (body.radius_m + self.planning.clearance_m));
+        let Some(least) = widths.min_by(f64::total_cmp) else { return };
+        for (i, wall) in self.walls.iter().enumerate() {
+            for (k, door) in wall.doors.iter().enumerate().filter(|(_, door)| door.width_m < least) {
+                warnings.push(Problem {
+                    field: format!("walls[{i}].doors[{k}].width_m"),
+                    rule: "is too narrow for every robot".to_owned(),
+                    found: door.width_m.to_string(),
+                    hint: format!("the smallest robot, with its clearance, takes {least:.2} m"),
                     ..Problem::default()
                 });
             }

@@ -5,18 +5,35 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use experiments::expect::expectations;
 use experiments::experiment::{Experiment, Overrides};
 use experiments::panic_message;
+use serde::Serialize;
 
+use crate::arguments::JsonArgument;
 use crate::input::tell_warnings_of_all;
 use crate::library;
 use crate::prelude::*;
 
 /// Validate scenarios and sweep files without running them
 #[derive(Debug, Args)]
-#[command(after_help = "Example:\n  usar check scenarios/*.ron scenarios/sweeps/*.ron")]
+#[command(after_help = "\
+Examples:
+  usar check mine.ron mine.sweep.ron
+  usar check scenarios/*.ron --json")]
 pub(crate) struct Arguments {
     /// Scenario or sweep files (RON)
     #[arg(required = true, value_parser = library::path)]
     files: Vec<PathBuf>,
+    #[command(flatten)]
+    json: JsonArgument,
+}
+
+/// What came of the check of a file.
+#[derive(Debug, Serialize)]
+struct Checked {
+    file: String,
+    /// What is said of a sound file.
+    told: Option<String>,
+    /// The problems of any other, each with its line, field, rule and found value.
+    problems: Vec<String>,
 }
 
 /// Checks one file, and returns a sentence about a sound file.
@@ -29,30 +46,34 @@ fn check(file: &Path, registry: &Registry) -> Result<String, Failure> {
     Ok(cost.map_or_else(|| "ok".to_owned(), |cost| format!("ok, but expensive: {cost}")))
 }
 
-/// Checks each file, and tells all problems at the end. A panic counts as a problem of its file, so that the
-/// other files are still checked.
-fn check_each(
-    files: &[PathBuf],
-    check: impl Fn(&Path) -> Result<String, Failure>,
-    out: &mut dyn Write,
-) -> Result<(), Failure> {
-    let mut problems = Vec::new();
-    for file in files {
+/// Checks each file. A panic counts as a problem of its file, so that the other files are still checked.
+fn check_each(files: &[PathBuf], check: impl Fn(&Path) -> Result<String, Failure>) -> Vec<Checked> {
+    let one = |file: &PathBuf| {
         let checked = catch_unwind(AssertUnwindSafe(|| check(file))).unwrap_or_else(|panic| {
             let reason = panic_message(&*panic);
             Err(Failure::Input(format!("{}: internal error: {reason}", file.display())))
         });
-        match checked {
-            Ok(told) => writeln!(out, "{}: {told}", file.display())?,
-            Err(failure) => problems.push(failure.to_string()),
-        }
-    }
-    if problems.is_empty() { Ok(()) } else { Err(Failure::Input(problems.join("\n"))) }
+        let problems = checked
+            .as_ref()
+            .err()
+            .map_or_else(Vec::new, |failure| failure.to_string().lines().map(str::to_owned).collect());
+        Checked { file: file.display().to_string(), told: checked.ok(), problems }
+    };
+    files.iter().map(one).collect()
 }
 
 impl Arguments {
     pub(crate) fn execute(&self, registry: &Registry, out: &mut dyn Write) -> Result<(), Failure> {
-        check_each(&self.files, |file| check(file, registry), out)
+        let checked = check_each(&self.files, |file| check(file, registry));
+        let problems: Vec<&str> = checked.iter().flat_map(|one| &one.problems).map(String::as_str).collect();
+        if self.json.json {
+            print_json(&serde_json::json!({"files": checked}))?;
+        } else {
+            for Checked { file, told, .. } in &checked {
+                told.iter().try_for_each(|told| writeln!(out, "{file}: {told}"))?;
+            }
+        }
+        if problems.is_empty() { Ok(()) } else { Err(Failure::Input(problems.join("\n"))) }
     }
 }
 
@@ -66,11 +87,10 @@ mod tests {
             assert!(!file.ends_with("b.ron"), "no such world");
             Ok("ok".to_owned())
         };
-        let mut out = Vec::new();
-        let problems =
-            check_each(&["a.ron", "b.ron", "c.ron"].map(PathBuf::from), check, &mut out).unwrap_err();
-        assert_eq!(String::from_utf8(out).unwrap(), "a.ron: ok\nc.ron: ok\n");
-        assert!(matches!(problems, Failure::Input(_)));
-        assert!(problems.to_string().starts_with("b.ron: internal error: no such world"), "{problems}");
+        let checked = check_each(&["a.ron", "b.ron", "c.ron"].map(PathBuf::from), check);
+        let told: Vec<Option<&str>> = checked.iter().map(|one| one.told.as_deref()).collect();
+        assert_eq!(told, [Some("ok"), None, Some("ok")]);
+        let problems = &checked[1].problems;
+        assert!(problems[0].starts_with("b.ron: internal error: no such world"), "{problems:?}");
     }
 }

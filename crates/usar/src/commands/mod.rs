@@ -21,6 +21,8 @@ mod verify;
 mod view;
 mod why;
 
+pub(crate) use self_::{ASKED, completing};
+
 use std::sync::LazyLock;
 
 use clap::{CommandFactory, Parser};

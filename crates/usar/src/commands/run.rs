@@ -10,7 +10,7 @@ use reports::table::rounds_table;
 use rne_core::{Deadline, Session};
 use serde::Serialize;
 use usar_sim::metrics::CutOff;
-use usar_sim::record::{Status, TrialRecord};
+use usar_sim::record::{DecisionRecord, Status, TaskRecord, TrialRecord};
 use usar_sim::scenario::Words;
 use usar_sim::simulation::Simulation;
 
@@ -136,6 +136,7 @@ impl Arguments {
             print_table(out, &rounds_table(&record, &scenario.words, self.wide.is_wide()))?;
         }
         print(out, &record, &scenario.words)?;
+        finished_tasks(&record).iter().try_for_each(|note| writeln!(out, "{note}"))?;
         story.iter().try_for_each(|line| Ok(writeln!(out, "{line}")?))
     }
 
@@ -185,6 +186,28 @@ fn run(
         watch(&simulation)?;
     }
     Ok(simulation.finish())
+}
+
+/// Tasks that got a group although the team knew that nothing was left there, in a sentence each.
+fn finished_tasks(record: &TrialRecord) -> Vec<String> {
+    let rounds_of = |task: usize| {
+        let is_finished = |one: &&DecisionRecord| {
+            let known = one.question.tasks.get(task).and_then(|task| task.rescuees);
+            known == Some(0)
+                && one.decision.assignment.groups.get(task).is_some_and(|group| !group.is_empty())
+        };
+        record.decisions.iter().filter(is_finished).count()
+    };
+    let told = |(task, named): (usize, &TaskRecord)| match rounds_of(task) {
+        0 => None,
+        rounds => Some(format!(
+            "note: task {} was known to be finished and still got a group in {}: mission.empty_tasks \
+             (GetGroups; the default GetNobody sends nobody)",
+            named.task,
+            counted(rounds, "round")
+        )),
+    };
+    record.tasks.iter().enumerate().filter_map(told).collect()
 }
 
 /// Prints what came of a trial as a whole.

@@ -9,8 +9,9 @@ use experiments::run::{Run, TrialKey, run_all};
 use experiments::sweep::audit::{difference, strange_files};
 use experiments::sweep::folder::Folder;
 use rne_core::Basis;
+use serde_json::{Value, json};
 
-use crate::arguments::{ProgressArguments, count};
+use crate::arguments::{JsonArgument, ProgressArguments, count};
 use crate::parquets::strange_parquets;
 use crate::prelude::*;
 
@@ -33,6 +34,8 @@ pub(crate) struct Arguments {
     sample: Option<u32>,
     #[command(flatten)]
     progress: ProgressArguments,
+    #[command(flatten)]
+    json: JsonArgument,
 }
 
 /// Time limit of a trial.
@@ -62,6 +65,17 @@ impl Arguments {
         differences.sort();
         let mut strange = strange_files(&mut folder)?;
         strange.extend(strange_parquets(&folder)?);
+        if self.json.json {
+            let differences: Vec<Value> = differences
+                .iter()
+                .map(|(TrialKey { case, label, seed, .. }, what)| {
+                    json!({"case": case + 1, "policy": label, "seed": seed, "difference": what})
+                })
+                .collect();
+            print_json(&json!({
+                "trials": all.len(), "run_again": count, "differences": differences, "changed_files": strange,
+            }))?;
+        }
         let of_all = if count < all.len() { format!(" (of {})", all.len()) } else { String::new() };
         let verdict = match differences.first() {
             None => format!("{count} of {count} trials{of_all} match, step by step and number by number"),
@@ -70,6 +84,7 @@ impl Arguments {
             }
         };
         match strange.first() {
+            None if differences.is_empty() && damage.is_none() && self.json.json => Ok(()),
             None if differences.is_empty() && damage.is_none() => {
                 Ok(writeln!(out, "{verdict}; every table is what they give")?)
             }

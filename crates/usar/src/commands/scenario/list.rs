@@ -1,9 +1,11 @@
 //! `usar scenario list`: lists the available scenarios, policies, roles or metrics.
 
 use clap::ValueEnum;
-use experiments::metric::Catalogue;
-use usar_sim::scenario::{RoleKind, Scenario};
+use experiments::metric::{Catalogue, Metric};
+use serde::Serialize;
+use usar_sim::scenario::{RoleFile, RoleKind, Scenario};
 
+use crate::arguments::JsonArgument;
 use crate::input::load;
 use crate::library;
 use crate::prelude::*;
@@ -27,6 +29,15 @@ pub(crate) struct Arguments {
     /// carries, and of that the scenario `paper`]
     #[arg(value_parser = library::path)]
     path: Option<PathBuf>,
+    #[command(flatten)]
+    json: JsonArgument,
+}
+
+/// A name, and what it is.
+#[derive(Serialize)]
+struct Listed {
+    name: String,
+    about: String,
 }
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
@@ -43,15 +54,17 @@ enum Of {
 
 impl Arguments {
     pub(crate) fn execute(&self, registry: &Registry, out: &mut dyn Write) -> Result<(), Failure> {
-        match self.of {
-            Of::Scenarios => match &self.path {
-                Some(path) => scenarios(out, path),
-                None => carried(out),
-            },
-            Of::Policies => policies(out, registry),
-            Of::Roles => roles(out, &self.scenario()?),
-            Of::Metrics => metrics(out, &self.scenario()?),
+        let listed = match (self.of, &self.path) {
+            (Of::Scenarios, Some(path)) => scenarios(path)?,
+            (Of::Scenarios, None) => carried()?,
+            (Of::Policies, _) => policies(registry),
+            (Of::Roles, _) => roles(&self.scenario()?),
+            (Of::Metrics, _) => metrics(&self.scenario()?),
+        };
+        if self.json.json {
+            return print_json(&serde_json::json!({"listed": listed}));
         }
+        listed.iter().try_for_each(|one| Ok(writeln!(out, "{}\t{}", one.name, one.about)?))
     }
 
     /// The scenario that was named, or the paper's.
@@ -61,58 +74,57 @@ impl Arguments {
     }
 }
 
-/// Lists the scenarios that the program carries.
-fn carried(out: &mut dyn Write) -> Result<(), Failure> {
-    for (name, text) in library::scenarios() {
+/// The scenarios that the program carries.
+fn carried() -> Result<Vec<Listed>, Failure> {
+    let one = |(name, text): (&str, &str)| {
         let scenario = Scenario::parse(text, Path::new(name)).map_err(Failure::input)?;
-        writeln!(out, "{name}\t{}", scenario.description)?;
-    }
-    Ok(())
+        Ok(Listed { name: name.to_owned(), about: scenario.description.clone() })
+    };
+    library::scenarios().map(one).collect()
 }
 
-/// Lists the scenarios of a folder by name; files that are not scenarios are left out.
-fn scenarios(out: &mut dyn Write, folder: &Path) -> Result<(), Failure> {
+/// The scenarios of a folder by name; files that are not scenarios are left out.
+fn scenarios(folder: &Path) -> Result<Vec<Listed>, Failure> {
     let entries = std::fs::read_dir(folder)
         .map_err(|error| Failure::input(format!("{}: cannot be read: {error}", folder.display())))?;
     let mut files: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).collect();
     files.retain(|path| path.extension().is_some_and(|kind| kind == "ron"));
     files.sort();
-    for path in files {
-        if let Ok((scenario, _)) = Scenario::load(&path) {
-            writeln!(out, "{}\t{}", path.display(), scenario.description)?;
-        }
-    }
-    Ok(())
+    let one = |path: &PathBuf| {
+        let (scenario, _) = Scenario::load(path).ok()?;
+        Some(Listed { name: path.display().to_string(), about: scenario.description.clone() })
+    };
+    Ok(files.iter().filter_map(one).collect())
 }
 
-fn policies(out: &mut dyn Write, registry: &Registry) -> Result<(), Failure> {
-    for kind in registry.kinds() {
-        writeln!(out, "{}\t{} {}", kind.name, kind.about, kind.defaults)?;
-    }
-    Ok(())
+fn policies(registry: &Registry) -> Vec<Listed> {
+    let kinds = registry.kinds().iter();
+    kinds
+        .map(|kind| Listed { name: kind.name.clone(), about: format!("{} {}", kind.about, kind.defaults) })
+        .collect()
 }
 
-fn roles(out: &mut dyn Write, scenario: &Scenario) -> Result<(), Failure> {
-    for role in &scenario.roles {
+fn roles(scenario: &Scenario) -> Vec<Listed> {
+    let one = |role: &RoleFile| {
         let rows = scenario.team.iter().filter(|row| row.role == role.name);
         let count: u32 = rows.map(|row| row.count).sum();
         let moves = match role.kind {
             RoleKind::Ground => "drives",
             RoleKind::Aerial => "flies",
         };
-        writeln!(
-            out,
-            "{}\t{count} robots; {moves} at {} m/s, senses {} m, carries {}, has {} resources",
-            role.name, role.speed_mps, role.sensing_m, role.capacity, role.resources
-        )?;
-    }
-    Ok(())
+        let about = format!(
+            "{count} robots; {moves} at {} m/s, senses {} m, carries {}, has {} resources",
+            role.speed_mps, role.sensing_m, role.capacity, role.resources
+        );
+        Listed { name: role.name.clone(), about }
+    };
+    scenario.roles.iter().map(one).collect()
 }
 
-fn metrics(out: &mut dyn Write, scenario: &Scenario) -> Result<(), Failure> {
-    for metric in Catalogue::of(scenario).iter() {
+fn metrics(scenario: &Scenario) -> Vec<Listed> {
+    let one = |metric: &Metric| {
         let unit = if metric.unit.is_empty() { String::new() } else { format!(" In {}.", metric.unit) };
-        writeln!(out, "{}\t{}{unit}", metric.name, metric.meaning)?;
-    }
-    Ok(())
+        Listed { name: metric.name.clone(), about: format!("{}{unit}", metric.meaning) }
+    };
+    Catalogue::of(scenario).iter().map(one).collect()
 }

@@ -6,4 +6,6 @@ mod man;
 
 use super::verbs;
 
+pub(crate) use completions::{ASKED, completing};
+
 verbs!(Verb { Doctor: doctor::Arguments, Completions: completions::Arguments, Man: man::Arguments });
