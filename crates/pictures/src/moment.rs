@@ -44,14 +44,23 @@ pub(crate) fn places(frame: &Frame) -> Vec<Lies> {
     frame.debris.iter().map(lies).collect()
 }
 
-/// The title: the trial and the time.
+/// The state of a rescuee that was delivered, as recordings number it.
+const DELIVERED: u8 = 3;
+
+/// The title: the trial, the time, and what was brought home so far.
 fn title(recording: &Recording, number: usize, frame: &Frame) -> String {
     let header = &recording.header;
     let round = recording.decisions.iter().filter(|decided| decided.step <= frame.step).count();
     let tenths = (header.time_s_of(number) * 10.0).round() as u64;
     let time = format!("{}:{:02}.{}", tenths / 600, tenths / 10 % 60, tenths % 10);
-    let name = name_of(recording);
-    if round == 0 { format!("{name}, {time}") } else { format!("{name}, {time}, round {round}") }
+    let round = if round == 0 { String::new() } else { format!(", round {round}") };
+    let rescued = frame.rescuees.iter().filter(|one| one.state == DELIVERED).count();
+    let total = if frame.rescuees.is_empty() {
+        String::new()
+    } else {
+        format!(": {}", header.world.words.text(&format!("{rescued} rescued")))
+    };
+    format!("{}, {time}{round}{total}", name_of(recording))
 }
 
 /// A name of the trial in words.

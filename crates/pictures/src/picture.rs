@@ -89,6 +89,30 @@ pub struct Pixels {
     pub rgba: Vec<u8>,
 }
 
+impl Pixels {
+    /// Pictures of one height side by side; `None` for other pictures, or without any.
+    ///
+    /// ```
+    /// let one = pictures::Pixels { width: 1, height: 2, rgba: vec![1, 1, 1, 255, 2, 2, 2, 255] };
+    /// let two = pictures::Pixels::beside(&[one.clone(), one]).unwrap();
+    /// assert_eq!((two.width, two.height), (2, 2));
+    /// assert_eq!(two.rgba, [1, 1, 1, 255, 1, 1, 1, 255, 2, 2, 2, 255, 2, 2, 2, 255]);
+    /// ```
+    #[must_use]
+    pub fn beside(pictures: &[Self]) -> Option<Self> {
+        let height = pictures.first()?.height;
+        if pictures.iter().any(|one| one.height != height) {
+            return None;
+        }
+        let row = |one: &Self, y: usize| {
+            let bytes = 4 * one.width as usize;
+            one.rgba[y * bytes..(y + 1) * bytes].to_vec()
+        };
+        let rows = (0..height as usize).flat_map(|y| pictures.iter().flat_map(move |one| row(one, y)));
+        Some(Self { width: pictures.iter().map(|one| one.width).sum(), height, rgba: rows.collect() })
+    }
+}
+
 /// Options for text: the embedded font for every family.
 static OPTIONS: LazyLock<Options<'static>> = LazyLock::new(|| {
     let mut fonts = fontdb::Database::new();

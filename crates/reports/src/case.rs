@@ -255,7 +255,7 @@ fn row(c: &Comparison) -> Row {
         metric: if c.is_of_sums { format!("{} (ratio of sums)", c.metric) } else { c.metric.clone() },
         pair: format!("{} - {}", c.a, c.b),
         n: c.n,
-        left_out: c.failed + c.missing + c.undefined,
+        left_out: c.repeated + c.failed + c.missing + c.undefined,
         means: format!("{}, {}", mean(c.mean_a), mean(c.mean_b)),
         difference: number(c.difference),
         interval: between(c.interval),

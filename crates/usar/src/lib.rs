@@ -19,3 +19,8 @@ pub use cli::{main, main_with};
 #[cfg(doctest)]
 #[doc = include_str!("../../../docs/policies.md")]
 struct Policies;
+
+/// So does the one on the front page.
+#[cfg(doctest)]
+#[doc = include_str!("../../../README.md")]
+struct FrontPage;

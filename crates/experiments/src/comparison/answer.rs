@@ -1,7 +1,7 @@
 //! The answer of a family of comparisons, before any table: every difference that is shown, in a few words.
 
 use super::words::{pairs_in_words, short};
-use super::{Comparison, Verdict};
+use super::{Comparison, LEAST_PAIRS, Verdict};
 
 /// An answer has at most so many words.
 const WORDS: usize = 25;
@@ -23,7 +23,11 @@ const WORDS: usize = 25;
 #[must_use]
 pub fn answer(comparisons: &[&Comparison]) -> Option<String> {
     if comparisons.iter().all(|one| one.p.is_none()) {
-        return comparisons.first().map(|_| "No pair of trials has values yet.".to_owned());
+        let n = comparisons.iter().map(|one| one.n).max()?;
+        return Some(match n {
+            0 => "No pair of trials has values yet.".to_owned(),
+            n => format!("No verdict: {n} of the {LEAST_PAIRS} distinct pairs of trials that a test takes."),
+        });
     }
     let candidates = [sized as fn(&Comparison) -> String, named].map(|of| each_named(comparisons, of));
     let fits = |text: &String| text.split_whitespace().count() <= WORDS;

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 use store::Failure;
 
-use super::{CONFIDENCE, Choice, LEVEL, Pairs, policies_of};
+use super::{CONFIDENCE, Choice, LEAST_PAIRS, LEVEL, Pairs, policies_of};
 use crate::experiment::{Case, Experiment};
 use crate::stats::Moments;
 use crate::stats::paired::holm;
@@ -100,7 +100,7 @@ fn effect(folder: &Folder, contrast: Contrast, metric: usize, policy: usize) -> 
         means: Moments::of(&pairs.b).mean.zip(Moments::of(&pairs.a).mean).map(|(there, here)| [there, here]),
         change: Moments::of(&changes).mean,
         interval: pairs.interval(CONFIDENCE),
-        p: (!changes.is_empty()).then(|| SignedRank::of(&changes).p),
+        p: (changes.len() >= LEAST_PAIRS).then(|| SignedRank::of(&changes).p),
         p_holm: None,
     }
 }

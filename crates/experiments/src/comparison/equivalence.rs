@@ -103,8 +103,9 @@ pub fn verdict(
     margin: Option<(f64, Option<[f64; 2]>)>,
     direction: Direction,
 ) -> Verdict {
-    let is_equivalent = margin
-        .is_some_and(|(margin, interval)| interval.is_some_and(|[low, high]| -margin < low && high < margin));
+    let within = |margin: f64, [low, high]: [f64; 2]| -margin < low && high < margin;
+    let is_equivalent = comparison.p.is_some()
+        && margin.is_some_and(|(margin, interval)| interval.is_some_and(|ends| within(margin, ends)));
     let side = comparison.interval.map_or(0.0, |[low, high]| match (low > 0.0, high < 0.0) {
         (true, _) => 1.0,
         (_, true) => -1.0,
@@ -141,7 +142,7 @@ mod tests {
     use crate::stats::bootstrap::{Width, bca_interval, interval};
 
     fn comparison(interval: [f64; 2], p: f64) -> Comparison {
-        Comparison { interval: Some(interval), p_holm: Some(p), ..Comparison::default() }
+        Comparison { interval: Some(interval), p: Some(p), p_holm: Some(p), ..Comparison::default() }
     }
 
     #[test]

@@ -2,12 +2,16 @@
 //! difference of differences, paired by seed, between a case of a sweep with axes and its reference: the
 //! case in which one axis has its first value instead.
 
+use std::collections::BTreeSet;
+
 use serde::Serialize;
 use store::Failure;
 
+use super::cell::Cell;
 use super::effect::{Contrast, contrasts, corrected, is_shown};
+use super::pairs::same;
 use super::words::p_in_words;
-use super::{CONFIDENCE, Choice, Pairs, policy_pairs, short};
+use super::{CONFIDENCE, Choice, LEAST_PAIRS, Pairs, policy_pairs, short};
 use crate::stats::Moments;
 use crate::stats::bootstrap::interval;
 use crate::stats::wilcoxon::SignedRank;
@@ -85,8 +89,11 @@ fn interaction(folder: &Folder, contrast: Contrast, metric: usize, pair: [usize;
     let cells = |case: usize| pair.map(|policy| (case, policy));
     let differences = [reference, case].map(|case| Pairs::by_trial(folder, metric, cells(case)));
     let [there, here] = differences;
-    let both: Vec<[f64; 2]> =
-        there.into_iter().zip(here).filter_map(|(there, here)| Some([there?, here?])).collect();
+    let all: Vec<Cell> = [reference, case].into_iter().flat_map(cells).collect();
+    let mut known = BTreeSet::new();
+    let trials = (1..).zip(there.into_iter().zip(here));
+    let new = trials.filter(|(trial, _)| known.insert(same(folder, &all, *trial)));
+    let both: Vec<[f64; 2]> = new.filter_map(|(_, (there, here))| Some([there?, here?])).collect();
     let column = |i: usize| both.iter().map(|pair| pair[i]).collect::<Vec<f64>>();
     let changes: Vec<f64> = both.iter().map(|[there, here]| here - there).collect();
     let [a, b] = pair.map(|policy| experiment.policies[policy].label.clone());
@@ -103,7 +110,7 @@ fn interaction(folder: &Folder, contrast: Contrast, metric: usize, pair: [usize;
         differences: Moments::of(&column(0)).mean.zip(Moments::of(&column(1)).mean).map(|(x, y)| [x, y]),
         change: Moments::of(&changes).mean,
         interval: interval(&changes, CONFIDENCE),
-        p: (!changes.is_empty()).then(|| SignedRank::of(&changes).p),
+        p: (changes.len() >= LEAST_PAIRS).then(|| SignedRank::of(&changes).p),
         p_holm: None,
         in_words: String::new(),
     }

@@ -37,6 +37,8 @@ pub use words::{digits, short, short_p};
 
 /// Significance level of a finding, after correction.
 pub const LEVEL: f64 = 0.05;
+/// The least number of distinct pairs that give a p value and a verdict: with fewer, no p is below 0.05.
+pub const LEAST_PAIRS: usize = 6;
 /// Confidence of intervals.
 pub const CONFIDENCE: f64 = 0.95;
 
@@ -53,8 +55,10 @@ pub struct Comparison {
     pub a: String,
     /// The second policy.
     pub b: String,
-    /// Pairs in which the metric is defined for both.
+    /// Distinct pairs in which the metric is defined for both.
     pub n: usize,
+    /// Pairs that repeat others, to the last state: where nothing is drawn, seeds do not matter.
+    pub repeated: usize,
     /// Pairs with at least one failed trial.
     pub failed: usize,
     /// Pairs with at least one trial that has not been run.
@@ -74,7 +78,7 @@ pub struct Comparison {
     pub interval: Option<[f64; 2]>,
     /// Hodges-Lehmann shift.
     pub shift: Option<f64>,
-    /// Two-sided p of Wilcoxon's signed-rank test; `None` without any pair.
+    /// Two-sided p of Wilcoxon's signed-rank test; `None` below six pairs.
     pub p: Option<f64>,
     /// Whether p was counted over all choices of signs, instead of from random choices.
     pub is_exact: bool,
@@ -277,6 +281,7 @@ fn comparison(
     let values = experiment.axes.iter().zip(&experiment.cases[case].values);
     let test = SignedRank::of(&differences);
     let has_pairs = !differences.is_empty();
+    let is_tested = differences.len() >= LEAST_PAIRS;
     Comparison {
         case: case + 1,
         axes: values.map(|(axis, value)| (axis.path.clone(), value.clone())).collect(),
@@ -284,6 +289,7 @@ fn comparison(
         a,
         b,
         n: differences.len(),
+        repeated: pairs.repeated,
         failed: pairs.failed,
         missing: pairs.missing,
         undefined: pairs.undefined,
@@ -293,7 +299,7 @@ fn comparison(
         difference: Moments::of(&differences).mean,
         interval: pairs.interval(CONFIDENCE),
         shift: hodges_lehmann(&differences),
-        p: has_pairs.then_some(test.p),
+        p: is_tested.then_some(test.p),
         is_exact: test.is_exact,
         p_holm: None,
         effect: has_pairs.then(|| test.effect()),

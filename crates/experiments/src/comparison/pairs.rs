@@ -1,5 +1,7 @@
 //! Values of two cells of a sweep, paired by seed.
 
+use std::collections::BTreeSet;
+
 use super::cell::Cell;
 use super::sums::Sums;
 use crate::stats::bootstrap::interval;
@@ -12,6 +14,8 @@ pub struct Pairs {
     pub a: Vec<f64>,
     /// Values of the second cell.
     pub b: Vec<f64>,
+    /// Pairs that repeat others, to the last state: they are left out.
+    pub(super) repeated: usize,
     /// Pairs with at least one failed trial.
     pub(super) failed: usize,
     /// Pairs with at least one trial that has not been run.
@@ -27,7 +31,12 @@ impl Pairs {
     #[must_use]
     pub fn of(folder: &Folder, metric: usize, [a, b]: [Cell; 2]) -> Self {
         let mut pairs = Self::default();
+        let mut known = BTreeSet::new();
         for trial in folder.experiment().trials_of(a.0, folder.manifest().shard) {
+            if !known.insert(same(folder, &[a, b], trial)) {
+                pairs.repeated += 1;
+                continue;
+            }
             let result = |(case, policy): Cell| folder.results().get(&(case, policy, trial));
             let value = |measured: &Measured| Some(measured.metrics.as_ref()?.get(metric));
             match (result(a), result(b)) {
@@ -75,4 +84,15 @@ impl Pairs {
     pub fn differences(&self) -> Vec<f64> {
         self.a.iter().zip(&self.b).map(|(a, b)| a - b).collect()
     }
+}
+
+/// What trials of the same number have in common if one repeats another: their last states. A trial without
+/// numbers, or one that has not been run, repeats no other.
+pub(super) fn same(folder: &Folder, cells: &[Cell], trial: u32) -> Vec<(u32, u128)> {
+    let hash = |(case, policy): &Cell| {
+        folder.results().get(&(*case, *policy, trial)).map_or(0, |measured| measured.hash)
+    };
+    let hashes: Vec<u128> = cells.iter().map(hash).collect();
+    let own = if hashes.contains(&0) { trial } else { 0 };
+    hashes.into_iter().map(|hash| (own, hash)).collect()
 }

@@ -6,7 +6,10 @@
 //! rescuees), where R is the ratio of both cells together. The mean of a cell's linearised values is the
 //! cell's ratio of sums. Tests and standard deviations of these values are therefore valid for the ratio.
 
+use std::collections::BTreeSet;
+
 use super::cell::Cell;
+use super::pairs::same;
 use crate::stats::Moments;
 use crate::stats::bootstrap::statistic_interval;
 use crate::sweep::folder::Folder;
@@ -15,8 +18,8 @@ use crate::sweep::folder::Folder;
 /// values: the mean is the sum of the costs over the sum of the rescuees, so that it lies between the means of
 /// the tasks, and trials without rescuees count.
 #[must_use]
-pub fn moments_of(folder: &Folder, (case, policy): Cell, metric: usize) -> Moments {
-    let experiment = folder.experiment();
+pub fn moments_of(folder: &Folder, cell: Cell, metric: usize) -> Moments {
+    let (experiment, (case, policy)) = (folder.experiment(), cell);
     let Some([cost, count]) = experiment.metrics.sums(metric) else {
         return Moments::of(&folder.values(case, policy, metric));
     };
@@ -52,11 +55,12 @@ impl Sums {
     pub fn of(folder: &Folder, metric: usize, [a, b]: [Cell; 2]) -> Option<Self> {
         let experiment = folder.experiment();
         let [cost, count] = experiment.metrics.sums(metric)?;
-        let mut sums = Self::default();
+        let (mut sums, mut known) = (Self::default(), BTreeSet::new());
         for trial in experiment.trials_of(a.0, folder.manifest().shard) {
             let value = |(case, policy): Cell, metric| folder.value((case, policy, trial), metric);
             let parts = |cell: Cell| Some([value(cell, cost)?, value(cell, count)?]);
-            if let (Some([cost_a, count_a]), Some([cost_b, count_b])) = (parts(a), parts(b)) {
+            let is_new = known.insert(same(folder, &[a, b], trial));
+            if let (true, Some([cost_a, count_a]), Some([cost_b, count_b])) = (is_new, parts(a), parts(b)) {
                 sums.trials.push(trial);
                 sums.pairs.push([cost_a, count_a, cost_b, count_b]);
             }

@@ -1,6 +1,6 @@
 //! Comparisons in sentences, and their numbers as text.
 
-use super::{Beyond, Comparison, Judged};
+use super::{Beyond, Comparison, Judged, LEAST_PAIRS};
 
 /// The finding as one sentence.
 pub(super) fn in_words(comparison: &Comparison) -> String {
@@ -10,16 +10,17 @@ pub(super) fn in_words(comparison: &Comparison) -> String {
         if comparison.is_of_sums { " (as a ratio of sums, since some trial has few rescuees)" } else { "" };
     let metric = format!("{}{of_sums}", comparison.metric);
     let place = place.chain([metric]).collect::<Vec<_>>().join(", ");
-    let (Some(difference), Some(p)) = (comparison.difference, comparison.p_holm) else {
+    let Some(difference) = comparison.difference else {
         return format!(
             "{place}: nothing can be said of {a} and {b}: there is no pair of trials in which both have a \
              value."
         );
     };
-    let Some([low, high]) = comparison.interval else {
+    let (Some([low, high]), Some(p)) = (comparison.interval, comparison.p_holm) else {
         let from = if *n == 1 { "in the only pair".to_owned() } else { format!("over {n} pairs") };
+        let distinct = if comparison.repeated > 0 { " of trials that differ" } else { "" };
         return format!(
-            "{place}: {a} less {b} is {} {from}; they are too few for an interval, and say nothing.",
+            "{place}: {a} less {b} is {} {from}{distinct}; a test takes {LEAST_PAIRS} or more.",
             short(difference)
         );
     };

@@ -243,3 +243,12 @@ fn the_t_interval() {
 }
 
 const T_HALF_WIDTH: f64 = 3.727_795_847_319_446_6;
+
+/// 5.34 - 3.20 is not 2.14 in binary: what is tied on paper is tied in ranks.
+#[test]
+fn differences_that_are_tied_on_paper_are_tied() {
+    let in_binary = [5.34 - 3.20, 3.20 - 5.34, 4.28 - 2.14, 1.07, -0.53, 3.21, 0.1 + 0.2 - 0.3];
+    assert_ne!(in_binary[0], in_binary[2]);
+    let on_paper = [2.14, -2.14, 2.14, 1.07, -0.53, 3.21, 0.0];
+    assert_eq!(SignedRank::of(&in_binary), SignedRank::of(&on_paper));
+}

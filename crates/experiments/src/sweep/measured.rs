@@ -23,14 +23,17 @@ pub struct Measured {
     pub status: &'static str,
     /// Values of all metrics, in the order of the experiment's catalogue; `None` for a trial without numbers.
     pub metrics: Option<Values>,
+    /// Hash of its last state; 0 for a trial without numbers.
+    pub hash: u128,
     /// Why it has no values.
     pub failure: Option<Box<str>>,
 }
 
 impl Measured {
     pub(super) fn of(outcome: &Outcome, metrics: &Catalogue) -> Self {
+        let hash = outcome.record().map_or(0, |record| number_of(&record.state_hash));
         let metrics = outcome.record().map(|record| metrics.measure(record).into_iter().collect());
-        Self { status: outcome.status(), metrics, failure: outcome.failure().map(Into::into) }
+        Self { status: outcome.status(), metrics, hash, failure: outcome.failure().map(Into::into) }
     }
 
     pub(super) fn of_finished(finished: &Finished, experiment: &Experiment) -> Self {
@@ -41,12 +44,13 @@ impl Measured {
     }
 
     fn ended(summary: Summary) -> Self {
+        let hash = number_of(&summary.state_hash);
         let metrics = Some(summary.metrics.into_iter().collect());
-        Self { status: status_of(&summary.status).unwrap_or_default(), metrics, failure: None }
+        Self { status: status_of(&summary.status).unwrap_or_default(), metrics, hash, failure: None }
     }
 
     fn failed(key: &TrialKey, fault: &Fault) -> Self {
-        Self { status: fault.kind.name(), metrics: None, failure: Some(fault.sentence(key).into()) }
+        Self { status: fault.kind.name(), metrics: None, hash: 0, failure: Some(fault.sentence(key).into()) }
     }
 
     /// Whether the trial exceeded its time limit.
@@ -91,5 +95,11 @@ fn measured_in(cells: &[&str], key: &TrialKey, metrics: usize) -> Option<Measure
     }
     let value = |cell: &&str| if cell.is_empty() { Some(None) } else { Some(Some(cell.parse().ok()?)) };
     let values: Option<Values> = cells[FIRST_METRIC..FIRST_METRIC + metrics].iter().map(value).collect();
-    Some(Measured { status, metrics: Some(values?), failure: None })
+    let hash = number_of(cells[FIRST_METRIC + metrics]);
+    Some(Measured { status, metrics: Some(values?), hash, failure: None })
+}
+
+/// A hash in hexadecimal digits as a number.
+fn number_of(hash: &str) -> u128 {
+    u128::from_str_radix(hash, 16).unwrap_or_default()
 }

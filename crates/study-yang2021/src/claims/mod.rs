@@ -326,7 +326,6 @@ mod tests {
     use usar_sim::scenario::Scenario;
 
     use super::*;
-    use experiments::metric::task_names;
 
     fn parts(intervals: &[[f64; 4]], claimed: Side) -> Vec<PartFinding> {
         let part = |[low, high, wide_low, wide_high]: &[f64; 4]| PartFinding {

@@ -12,7 +12,7 @@ use super::homes::homes_are_free;
 use super::rules::rules;
 use super::scatter::scatter;
 use super::timeline::timeline;
-use super::words::words;
+use super::words::Words;
 use crate::limits;
 
 /// All broken rules, in the order of the fields.
@@ -57,6 +57,27 @@ fn of_values(file: &ScenarioFile) -> Checker {
     needs(&mut check, file);
     words(&mut check, &file.words);
     check
+}
+
+/// Longest word of a scenario's own, in bytes.
+const LONGEST_WORD: usize = 24;
+
+/// Checks that each word is plain, and that no two things have one.
+fn words(check: &mut Checker, words: &Words) {
+    let is_plain = |word: &str| {
+        word.len() <= LONGEST_WORD
+            && word.starts_with(|c: char| c.is_ascii_lowercase())
+            && word.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit())
+    };
+    let all = words.all();
+    for (i, (field, word)) in all.iter().enumerate() {
+        if !is_plain(word) {
+            let rule = "must be a word of at most 24 small letters and digits that begins with a letter";
+            check.fail(format!("words.{field}"), rule, shown(word));
+        } else if *word == "energy" || all[..i].iter().any(|(_, other)| other == word) {
+            check.fail(format!("words.{field}"), "must be a word that nothing else has", shown(word));
+        }
+    }
 }
 
 /// Checks the number of entries of each table and list. The time and memory of all later checks grow with it.

@@ -3,11 +3,6 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::checker::{Checker, shown};
-
-/// Longest word, in bytes.
-const LONGEST: usize = 24;
-
 /// What things are called in the names of metrics, in sentences, legends and pages. Columns of tables keep the
 /// standard names, so that one program reads all results.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
@@ -32,7 +27,8 @@ impl Default for Words {
 }
 
 impl Words {
-    fn all(&self) -> [(&'static str, &str); 4] {
+    /// The words, by the names of their fields.
+    pub(super) fn all(&self) -> [(&'static str, &str); 4] {
         let Self { rescuee, rescuees, hp, radiation } = self;
         [("rescuee", rescuee), ("rescuees", rescuees), ("hp", hp), ("radiation", radiation)]
     }
@@ -61,23 +57,5 @@ impl Words {
             other => self.metric(other),
         };
         standard.split(' ').map(word).collect::<Vec<_>>().join(" ")
-    }
-}
-
-/// Checks that each word is plain, and that no two things have one.
-pub(super) fn words(check: &mut Checker, words: &Words) {
-    let is_plain = |word: &str| {
-        word.len() <= LONGEST
-            && word.starts_with(|c: char| c.is_ascii_lowercase())
-            && word.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit())
-    };
-    let all = words.all();
-    for (i, (field, word)) in all.iter().enumerate() {
-        if !is_plain(word) {
-            let rule = "must be a word of at most 24 small letters and digits that begins with a letter";
-            check.fail(format!("words.{field}"), rule, shown(word));
-        } else if *word == "energy" || all[..i].iter().any(|(_, other)| other == word) {
-            check.fail(format!("words.{field}"), "must be a word that nothing else has", shown(word));
-        }
     }
 }

@@ -219,6 +219,10 @@ fn footnote(comparisons: &[Comparison]) -> String {
     let n = if least == most { most.to_string() } else { format!("{least} to {most}") };
     let sum = |value: fn(&Comparison) -> usize| comparisons.iter().map(value).sum::<usize>();
     let left_out = [
+        (
+            sum(|c| c.repeated),
+            "that repeat another to the last state (nothing is drawn there, so seeds do not matter)",
+        ),
         (sum(|c| c.failed), "with a failed trial"),
         (sum(|c| c.missing), "with a missing one"),
         (sum(|c| c.undefined), "in which the metric is not defined (no rescuee)"),

@@ -41,8 +41,8 @@ Examples:
   usar trust robots.csv --policy ENG --task a,3 --task b,2 --task c,1    three tasks by difficulty
   usar trust robots.csv --policy DIS --task far,2,15.6,64.2 --task near,1,73.4,51.6
   usar trust question.json --policy ENG --json
-  usar trust --weights 6,4,2 --from 86,120,30 --to 20,30,10      no table: needs as they are
-  usar trust --from 82,114,24 --to 79,117,23 --to 40,56,12       towards a group of two")]
+  usar trust --weights 6,4,2 --trustor 86,120,30 --trustee 20,30,10      no table: needs as they are
+  usar trust --trustor 82,114,24 --trustee 79,117,23 --trustee 40,56,12       towards a group of two")]
 pub(crate) struct Arguments {
     /// The team (CSV), or a question (JSON)
     #[arg(required_unless_present_any = ["from", "to"], conflicts_with_all = ["from", "to"])]

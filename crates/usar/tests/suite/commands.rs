@@ -28,7 +28,7 @@ pub fn refused(arguments: &(impl Words + ?Sized), message: &str) {
 
 #[test]
 fn trust_prints_the_papers_first_example() {
-    let value = json("trust --weights 6,4,2 --from 86,120,30 --to 20,30,10 --json");
+    let value = json("trust --weights 6,4,2 --trustor 86,120,30 --trustee 20,30,10 --json");
     assert_eq!(value["schema_version"], 1);
     assert_eq!(value["infinite"], false);
     let rne = value["rne"].as_f64().unwrap();
@@ -44,13 +44,13 @@ fn trust_between_groups_and_in_other_bases() {
         "trust",
         "--weights",
         "6,4,2",
-        "--from",
+        "--trustor",
         "82,114,24",
-        "--from",
+        "--trustor",
         "79,117,23",
-        "--to",
+        "--trustee",
         "40,56,12",
-        "--to",
+        "--trustee",
         "56,48,15",
         "--json",
         "--log-base",
@@ -64,7 +64,7 @@ fn trust_between_groups_and_in_other_bases() {
 
 #[test]
 fn infinite_rne_is_said_and_not_printed_as_a_number() {
-    let value = json("trust --weights 1,1 --from 1,1 --to 1,0 --json");
+    let value = json("trust --weights 1,1 --trustor 1,1 --trustee 1,0 --json");
     assert_eq!(
         (&value["rne"], &value["infinite"], value["trust"].as_f64()),
         (&Value::Null, &Value::Bool(true), Some(0.0))
@@ -74,17 +74,17 @@ fn infinite_rne_is_said_and_not_printed_as_a_number() {
 #[test]
 fn bad_needs_are_refused() {
     let trust = |weights, from, to, message| {
-        refused(&["trust", "--weights", weights, "--from", from, "--to", to], message);
+        refused(&["trust", "--weights", weights, "--trustor", from, "--trustee", to], message);
     };
-    trust("6,4,2", "86,120", "20,30,10", "--from: needs must have 3 entries, found 2");
-    trust("6,4,2", "86,-1,30", "20,30,10", "--from: needs[1] must be a finite number >= 0, found -1");
-    trust("6,4,2", "86,120,30", "20,NaN,10", "--to: needs[1] must be a finite number >= 0, found NaN");
-    trust("6,4,2", "inf,120,30", "20,30,10", "--from: needs[0] must be a finite number >= 0, found inf");
+    trust("6,4,2", "86,120", "20,30,10", "--trustor: needs must have 3 entries, found 2");
+    trust("6,4,2", "86,-1,30", "20,30,10", "--trustor: needs[1] must be a finite number >= 0, found -1");
+    trust("6,4,2", "86,120,30", "20,NaN,10", "--trustee: needs[1] must be a finite number >= 0, found NaN");
+    trust("6,4,2", "inf,120,30", "20,30,10", "--trustor: needs[0] must be a finite number >= 0, found inf");
     trust(
         "6,4,2",
         "0,0,0",
         "20,30,10",
-        "--from: weighted needs must have at least one entry above 0, found only zeros",
+        "--trustor: weighted needs must have at least one entry above 0, found only zeros",
     );
     trust(
         "0,0,0",
@@ -94,10 +94,10 @@ fn bad_needs_are_refused() {
     );
     trust("6,x,2", "1,2,3", "20,30,10", "--weights: entry 2 must be a number, found \"x\"");
     trust("", "1", "1", "--weights: entry 1 must be a number, found \"\"");
-    refused("trust --from 1,2 --to 2", "--to: needs must have 2 entries, found 1");
-    refused("trust --from 1,2", "--to <TO>");
+    refused("trust --trustor 1,2 --trustee 2", "--trustee: needs must have 2 entries, found 1");
+    refused("trust --trustor 1,2", "--trustee <TRUSTEE>");
     for more in ["--policy RNE", "--out x.svg", "--less-is-better a=1", "--format csv", "--measure RNE"] {
-        refused(&*format!("trust --from 1,2 --to 2,1 {more}"), "cannot be used with");
+        refused(&*format!("trust --trustor 1,2 --trustee 2,1 {more}"), "cannot be used with");
     }
 }
 

@@ -157,7 +157,7 @@ fn a_sweep_file_names_its_metrics_its_baseline_and_which_differences_matter() {
     let here = folder.path();
     let sweep = |rest: &str| {
         let text = format!(
-            "(name: \"asked\", scenario: \"short.ron\", policies: [\"RNE\", \"DIS\", \"ENG\"], trials: 4, \
+            "(name: \"asked\", scenario: \"short.ron\", policies: [\"RNE\", \"DIS\", \"ENG\"], trials: 6, \
              {rest})"
         );
         std::fs::write(here.join("asked.ron"), text).unwrap();
@@ -208,7 +208,7 @@ fn a_sweep_file_names_its_metrics_its_baseline_and_which_differences_matter() {
     let tight = json(&["--metric", "distance", "--baseline", "ENG", "--margin", "distance=1e-9"]);
     let verdicts: Vec<_> =
         tight["comparisons"].as_array().unwrap().iter().map(|c| c["verdict"].as_str().unwrap()).collect();
-    assert_eq!(verdicts, ["undecided"; 2], "four pairs decide nothing");
+    assert_eq!(verdicts, ["undecided"; 2], "six pairs decide nothing");
     refused(
         here,
         2,
@@ -237,7 +237,7 @@ fn a_sweep_file_names_its_metrics_its_baseline_and_which_differences_matter() {
 fn a_sweep_with_axes_says_how_differences_change_along_them() {
     let folder = place();
     let here = folder.path();
-    succeeds(&usar(here, "sweep grid.ron --set duration_s=120 --trials 4 --quiet"));
+    succeeds(&usar(here, "sweep grid.ron --set duration_s=120 --trials 6 --quiet"));
     let told = succeeds(&usar(here, "compare results/grid --metric distance --baseline DIS --json"));
     let told: Value = serde_json::from_str(&told).unwrap();
     let words = succeeds(&usar(here, "compare results/grid --metric distance --baseline DIS"));
@@ -265,7 +265,7 @@ fn a_sweep_with_axes_says_how_differences_change_along_them() {
     for one in effects {
         let policy = one["policy"].as_str().unwrap();
         let at = |at: &str, trial| value(&one[at].to_string(), policy, trial);
-        let change = (1..=4).map(|trial| at("case", trial) - at("reference", trial)).sum::<f64>() / 4.0;
+        let change = (1..=6).map(|trial| at("case", trial) - at("reference", trial)).sum::<f64>() / 6.0;
         assert!((one["change"].as_f64().unwrap() - change).abs() < 1e-6, "{one}");
         let means = one["means"].as_array().unwrap();
         assert!((means[1].as_f64().unwrap() - means[0].as_f64().unwrap() - change).abs() < 1e-6, "{one}");
@@ -275,8 +275,8 @@ fn a_sweep_with_axes_says_how_differences_change_along_them() {
         let difference =
             |at: &str, trial| value(&one[at].to_string(), a, trial) - value(&one[at].to_string(), b, trial);
         let change =
-            (1..=4).map(|trial| difference("case", trial) - difference("reference", trial)).sum::<f64>()
-                / 4.0;
+            (1..=6).map(|trial| difference("case", trial) - difference("reference", trial)).sum::<f64>()
+                / 6.0;
         assert!((one["change"].as_f64().unwrap() - change).abs() < 1e-6, "{one}");
         assert!(one["in_words"].as_str().unwrap().contains(&format!("{a} less {b} goes from")), "{one}");
     }

@@ -7,24 +7,27 @@ use crate::support::{read, root, succeeds, usar};
 fn a_new_scenario_runs_and_nothing_is_overwritten() {
     let folder = tempfile::tempdir().unwrap();
     let here = folder.path();
-    for from in ["minimal", "paper", "three-tasks"] {
+    for from in ["paper", "three-tasks"] {
         let name = format!("mine-{from}");
-        assert_eq!(succeeds(&usar(here, &["new", &name, "--like", from])), format!("{name}.ron\n"));
+        assert_eq!(succeeds(&usar(here, &["new", &name, "--from", from])), format!("{name}.ron\n"));
         let file = format!("{name}.ron");
         assert_eq!(succeeds(&usar(here, &["check", &file])), format!("{file}: ok\n"));
         assert!(read(&here.join(&file)).contains("// SI units. Points are (x, y) in metres"));
     }
-    assert!(succeeds(&usar(here, "run mine-minimal.ron --check")).contains("rescued      9"));
+    succeeds(&usar(here, "new small"));
+    assert!(succeeds(&usar(here, "run small.ron --check")).contains("rescued      9"));
     refused(here, 2, "new mine-paper", &["mine-paper.ron exists; nothing was overwritten"]);
     refused(here, 2, "new ../mine", &["name must be a name of at most 64 letters"]);
-    refused(here, 2, "new a --like papre", &["paper"]);
+    refused(here, 2, "new a --from papre", &["did you mean paper, which the program carries?"]);
 }
 
 #[test]
 fn scenarios_policies_roles_and_metrics_are_listed() {
     let root = root();
     let listed = |arguments: &[&str]| succeeds(&usar(&root, &[&["scenario", "list"], arguments].concat()));
-    let scenarios = listed(&["scenarios"]);
+    let carried = listed(&[]);
+    assert!(carried.contains("warehouse\tforty robots") && carried.contains("collapse\t"), "{carried}");
+    let scenarios = listed(&["scenarios", "scenarios"]);
     assert!(scenarios.contains("scenarios/three-tasks.ron\tNine carriers"), "{scenarios}");
     assert!(!scenarios.contains("sweep"), "{scenarios}");
     let policies = listed(&["policies"]);

@@ -157,8 +157,10 @@ fn the_reports_numbers_are_those_of_the_trials() {
         (0..7).map(|k| (1.0 / all.iter().map(|needs| needs[k]).fold(0.0, f64::max)).to_string()).collect();
     let text = |needs: &[f64]| needs.iter().map(f64::to_string).collect::<Vec<_>>().join(",");
     let (from, to, weights) = (text(&all[0]), text(&all[1]), weights.join(","));
-    let said =
-        succeeds(&usar(here, &["trust", "--weights", &weights, "--from", &from, "--to", &to, "--json"]));
+    let said = succeeds(&usar(
+        here,
+        &["trust", "--weights", &weights, "--trustor", &from, "--trustee", &to, "--json"],
+    ));
     let rne = serde_json::from_str::<Value>(&said).unwrap()["rne"].as_f64().unwrap();
     let shown = &rows(&results.join("plots"), "trust.csv")[1];
     assert_eq!((&shown[0], &shown[1]), ("0", "1"));

@@ -45,9 +45,10 @@ fn each_shell_has_completions_that_know_policies_and_scenarios() {
         "self completions csh",
         &["possible values: bash, elvish, fish, powershell, zsh"],
     );
+    let empty = tempfile::tempdir().unwrap();
     let offered = |words: &[&str]| -> String {
         let mut asked = std::process::Command::new(env!("CARGO_BIN_EXE_usar"));
-        asked.args(["--", "usar"]).args(words).current_dir(tempfile::tempdir().unwrap().path());
+        asked.args(["--", "usar"]).args(words).current_dir(empty.path());
         asked.env("USAR_COMPLETE", "bash").env("_CLAP_COMPLETE_INDEX", words.len().to_string());
         succeeds(&asked.output().unwrap())
     };

@@ -92,3 +92,36 @@ fn the_guides_run() {
         [2, 2, 4, 7, 3]
     );
 }
+
+/// The front page promises that it needs no copy of the project: its commands run in an empty folder.
+#[test]
+fn the_front_page_shows_what_is_printed() {
+    let folder = tempfile::tempdir().unwrap();
+    let here = folder.path();
+    let (mut printed, mut shown, mut worlds) = (String::new(), 0, 0);
+    for block in blocks(&read(&root().join("README.md"))) {
+        match block.language.as_str() {
+            "text" => {
+                for line in block.text.lines().skip_while(|line| !line.starts_with("$ ")) {
+                    if let Some(command) = line.strip_prefix("$ usar ") {
+                        let quiet = if command.starts_with("view") { " --no-open" } else { "" };
+                        let arguments = words(&format!("{command}{quiet}"));
+                        let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
+                        printed = succeeds(&usar(here, &arguments));
+                    } else {
+                        assert!(printed.contains(line), "README.md says {line:?}; printed was\n{printed}");
+                        shown += 1;
+                    }
+                }
+            }
+            "ron" => {
+                std::fs::write(here.join("mine.ron"), &block.text).unwrap();
+                succeeds(&usar(here, &["check", "mine.ron"]));
+                assert!(block.text.lines().count() <= 22, "a world in twenty lines");
+                worlds += 1;
+            }
+            _ => {}
+        }
+    }
+    assert_eq!((shown, worlds), (8, 1));
+}

@@ -38,7 +38,8 @@ impl Row<'_> {
         if is_stopped() {
             return Err(Failure::Interrupted("stopped; the pictures are not complete".to_owned()));
         }
-        moment(self.recording, number, &self.look).map_err(failed)
+        let last = self.recording.frames() - 1; // of trials side by side, one may end before the other
+        moment(self.recording, number.min(last), &self.look).map_err(failed)
     }
 }
 

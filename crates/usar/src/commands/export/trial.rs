@@ -6,6 +6,7 @@ use recording::Recording;
 use crate::arguments::{TrialArguments, seconds};
 use crate::library;
 use crate::prelude::*;
+use crate::recordings::Shown;
 
 /// A recorded trial, or one that is recorded now.
 #[derive(Debug, Args)]
@@ -26,6 +27,12 @@ impl RecordedArguments {
     /// The recording.
     pub(super) fn recording(&self, registry: &Registry) -> Result<Recording, Failure> {
         self.trial.recording(&self.file, registry)
+    }
+
+    /// The recordings, one for each policy of a list.
+    pub(super) fn recordings(&self, registry: &Registry) -> Result<Vec<Recording>, Failure> {
+        let shown = self.trial.recordings(std::slice::from_ref(&self.file), registry)?;
+        shown.iter().map(Shown::read).collect()
     }
 
     /// The recording, and the number of its frames from one exported state to the next.

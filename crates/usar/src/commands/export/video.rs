@@ -1,6 +1,6 @@
 //! `usar export video`: a trial as an animated GIF or as a film.
 
-use pictures::Animation;
+use pictures::{Animation, Pixels};
 
 use super::ffmpeg;
 use super::film::{FilmArguments, Row, failed};
@@ -11,10 +11,12 @@ use crate::prelude::*;
 #[command(
     mut_arg("every", |every| every.required(true)),
     after_help = "\
-A GIF needs no other program; a film (MP4, H.264) is made by ffmpeg.
+A GIF needs no other program; a film (MP4, H.264) is made by ffmpeg. --policy can be a list: then the trials \
+are drawn side by side.
 
 Examples:
   usar export video paper.usrec --every 1 --begin 100 --end 190 --out round.gif --width 480
+  usar export video paper --policy RNE,DIS --every 2 --out both.gif
   usar export video paper.usrec --every 0.2 --fps 25 --out trial.mp4    five times as fast as the robots"
 )]
 pub(crate) struct Arguments {
@@ -42,21 +44,22 @@ impl Arguments {
         if !is_gif {
             ffmpeg::check_program()?;
         }
-        let recording = self.film.recorded.recording(registry)?;
-        let row = self.film.row(&recording)?;
+        let recordings = self.film.recorded.recordings(registry)?;
+        let rows = recordings.iter().map(|recording| self.film.row(recording));
+        let rows = rows.collect::<Result<Vec<_>, Failure>>()?;
         if is_gif {
-            self.write_gif(&to, &row)?;
+            self.write_gif(&to, &rows)?;
         } else {
-            let pictures = row.numbers.iter().map(|number| row.picture(*number)?.pixels().map_err(failed));
+            let pictures = rows[0].numbers.iter().map(|number| beside(&rows, *number));
             let (folder, name) = to.parts();
             ffmpeg::write(folder, name, self.fps, pictures)?;
         }
         Ok(writeln!(out, "{}", self.out.display())?)
     }
 
-    fn write_gif(&self, to: &Destination, row: &Row) -> Result<(), Failure> {
-        let numbers = &row.numbers;
-        let pixels = |place: usize| row.picture(numbers[place])?.pixels().map_err(failed);
+    fn write_gif(&self, to: &Destination, rows: &[Row]) -> Result<(), Failure> {
+        let numbers = &rows[0].numbers;
+        let pixels = |place: usize| beside(rows, numbers[place]);
         let samples = [0, numbers.len() / 2, numbers.len() - 1].map(pixels);
         let samples = samples.into_iter().collect::<Result<Vec<_>, Failure>>()?;
         let delay = (100.0 / f64::from(self.fps)).round() as u16;
@@ -66,4 +69,11 @@ impl Arguments {
         }
         gif.finish().map_err(failed)?.finish().map(drop)
     }
+}
+
+/// The pictures of several trials at one moment, side by side.
+fn beside(rows: &[Row], number: usize) -> Result<Pixels, Failure> {
+    let pixels = |row: &Row| row.picture(number)?.pixels().map_err(failed);
+    let pictures = rows.iter().map(pixels).collect::<Result<Vec<_>, Failure>>()?;
+    Pixels::beside(&pictures).ok_or_else(|| Failure::input("the worlds of these trials differ in shape"))
 }

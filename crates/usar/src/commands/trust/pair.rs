@@ -11,11 +11,11 @@ use crate::prelude::*;
 #[derive(Debug, Args)]
 pub(super) struct PairArguments {
     /// Needs of the robot that trusts; repeat the flag for a group
-    #[arg(long, requires = "to", conflicts_with_all = ["format", "measure"], allow_hyphen_values = true)]
-    from: Vec<String>,
+    #[arg(long, requires = "trustee", conflicts_with_all = ["format", "measure"], allow_hyphen_values = true)]
+    trustor: Vec<String>,
     /// Needs of the robot that is trusted; repeat the flag for a group
-    #[arg(long, requires = "from", allow_hyphen_values = true)]
-    to: Vec<String>,
+    #[arg(long, requires = "trustor", allow_hyphen_values = true)]
+    trustee: Vec<String>,
     /// Base of the logarithm in which the RNE is given
     #[arg(long, default_value = "e", conflicts_with = "file")]
     log_base: Base,
@@ -39,8 +39,8 @@ impl PairArguments {
         out: &mut dyn Write,
     ) -> Result<(), Failure> {
         let weights = self.weights(weights)?;
-        let from = distribution("--from", &self.from, &weights)?;
-        let to = distribution("--to", &self.to, &weights)?;
+        let from = distribution("--trustor", &self.trustor, &weights)?;
+        let to = distribution("--trustee", &self.trustee, &weights)?;
         let rne = relative_entropy(&from, &to).map_err(Failure::input)?;
         let (base, name, unit) = match self.log_base {
             Base::E => (LogBase::E, "e", "nats"),
@@ -69,7 +69,7 @@ impl PairArguments {
     }
 
     fn weights(&self, weights: Option<&str>) -> Result<NeedWeights, Failure> {
-        let weights = match (weights, self.from.first()) {
+        let weights = match (weights, self.trustor.first()) {
             (Some(weights), _) => numbers("--weights", weights)?,
             (None, first) => vec![1.0; first.map_or(0, |first| first.split(',').count())],
         };
