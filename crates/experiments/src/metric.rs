@@ -182,6 +182,7 @@ impl Declaration {
             standard: named(name),
             meaning,
             unit,
+            unit_in_words: words.text(unit),
             figure: words.text(figure),
             is_primary,
             direction,
@@ -221,6 +222,8 @@ pub struct Metric {
     pub meaning: &'static str,
     /// Unit; empty for a count.
     pub unit: &'static str,
+    /// The unit in the words of the scenario.
+    pub unit_in_words: String,
     /// The report's figure of box plots that shows it beside others of the same figure; empty for none.
     pub figure: String,
     /// Whether it is shown by default.
@@ -265,7 +268,11 @@ impl Metric {
     /// Its name with its unit, if it has one.
     #[must_use]
     pub fn name_with_unit(&self) -> String {
-        if self.unit.is_empty() { self.name.clone() } else { format!("{} ({})", self.name, self.unit) }
+        if self.unit.is_empty() {
+            self.name.clone()
+        } else {
+            format!("{} ({})", self.name, self.unit_in_words)
+        }
     }
 
     /// Its value; `None` where it is undefined.

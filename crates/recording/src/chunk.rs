@@ -119,6 +119,11 @@ pub(crate) struct Chunk<'b> {
 }
 
 impl Chunk<'_> {
+    /// Bytes of the inflated content.
+    pub(crate) fn inflated_bytes(&self) -> u64 {
+        self.inflated as u64
+    }
+
     /// The inflated content.
     pub(crate) fn content(&self) -> Result<Vec<u8>, ReadError> {
         let mut content = Vec::new();

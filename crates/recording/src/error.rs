@@ -18,6 +18,12 @@ pub enum ReadError {
         /// The version that this program reads.
         expected: u32,
     },
+    /// Its chunks are larger than any recording's.
+    #[error("has more than {} MiB when it is inflated, which no recording has", .most >> 20)]
+    TooLarge {
+        /// The most bytes that are inflated.
+        most: u64,
+    },
     /// It ends before its header does.
     #[error("ends within its header, after {bytes} bytes: there is nothing to show")]
     NoHeader {

@@ -9,11 +9,17 @@ use usar_sim::record::TrialRecord;
 use crate::chunk::{Chunk, Chunks, Kind};
 use crate::error::ReadError;
 use crate::frame::{Frame, Motion, Stored};
-use crate::header::{Header, VERSION};
+use crate::header::{Header, RobotPlace, TaskPlace, VERSION, World};
 use crate::rows::STREAMS;
 use crate::segment::Segment;
 use crate::trust::Trust;
 use crate::words::{Names, ToldEvent};
+
+/// The most bytes that a recording may have when its chunks are inflated.
+const MOST_INFLATED: u64 = 512 << 20;
+
+/// A step is shorter than this, in seconds.
+const LONGEST_STEP_S: f64 = 1e6;
 
 /// A recording that was read from a file.
 #[derive(Debug, Clone, PartialEq)]
@@ -102,7 +108,12 @@ impl Recording {
             cut: None,
             segments: Vec::new(),
         };
+        let mut inflated = first.inflated_bytes();
         while let Some(chunk) = chunks.next()? {
+            inflated += chunk.inflated_bytes();
+            if inflated > MOST_INFLATED {
+                return Err(ReadError::TooLarge { most: MOST_INFLATED });
+            }
             recording.add(&chunk)?;
         }
         let rest = bytes.len() - chunks.at();
@@ -190,8 +201,51 @@ fn header(chunk: &Chunk) -> Result<Header, ReadError> {
     let streams = header.streams.iter().map(|(name, _)| name.as_str()).eq(STREAMS);
     let fields = header.motion_fields == Motion::NAMES;
     let is_known = streams && fields && header.codes.are_known();
-    let has_roles = header.world.robots.iter().all(|robot| robot.role < header.world.roles.len());
-    let is_counted = header.dt_s > 0.0 && header.steps_per_frame > 0 && header.frames_per_segment > 0;
-    let is_sound = is_counted && has_roles && rows == header.world.rows();
+    let is_timed = header.dt_s > 0.0 && header.dt_s < LONGEST_STEP_S && header.duration_s.is_finite();
+    let is_counted = is_timed && header.steps_per_frame > 0 && header.frames_per_segment > 0;
+    let is_sound = is_counted && fits(&header.world) && rows == header.world.rows();
     if is_known && is_sound { Ok(header) } else { Err(chunk.damaged("its tables do not fit each other")) }
+}
+
+/// Whether the tables of a world name only what is there: roles, rest places of each task, and rescuees.
+fn fits(world: &World) -> bool {
+    let of_robot =
+        |robot: &RobotPlace| robot.role < world.roles.len() && robot.rest.len() == world.tasks.len();
+    let of_task = |task: &TaskPlace| {
+        task.first_rescuee.checked_add(task.rescuees).is_some_and(|end| end <= world.rescuees.len())
+    };
+    let is_there = |numbers: &[usize], count: usize| numbers.iter().all(|number| *number < count);
+    world.robots.iter().all(of_robot)
+        && world.tasks.iter().all(of_task)
+        && is_there(&world.debris_later, world.debris.len())
+        && is_there(&world.zones_later, world.zones.len())
+        && is_there(&world.rescuees_later, world.rescuees.len())
+}
+
+#[cfg(test)]
+mod tests {
+    use usar_sim::scenario::Scenario;
+    use usar_sim::simulation::Simulation;
+
+    use super::*;
+
+    #[test]
+    fn a_world_names_only_what_is_there() {
+        let text = include_str!("../../../scenarios/gallery/one-task.ron");
+        let scenario = Scenario::parse(text, "one-task.ron".as_ref()).unwrap();
+        let sound = World::of(&Simulation::new(&scenario, 1).unwrap());
+        assert!(fits(&sound));
+        let changes: [fn(&mut World); 5] = [
+            |world| world.robots[0].role = world.roles.len(),
+            |world| world.robots[0].rest.clear(),
+            |world| world.tasks[0].first_rescuee = usize::MAX,
+            |world| world.tasks.clear(),
+            |world| world.rescuees_later.push(world.rescuees.len()),
+        ];
+        for change in changes {
+            let mut world = sound.clone();
+            change(&mut world);
+            assert!(!fits(&world));
+        }
+    }
 }

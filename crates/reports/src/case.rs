@@ -48,6 +48,8 @@ struct Page<'a> {
     /// The margins, and who named them.
     margins: String,
     summary: Vec<Vec<String>>,
+    /// What the scenario calls a rescuee.
+    rescuee: &'a str,
     decisions: Option<Decisions>,
     comparisons: Vec<Row>,
     exploratory: Vec<Row>,
@@ -200,6 +202,7 @@ fn page<'a>(folder: &'a Folder, case: usize, comparisons: &[&'a Comparison], all
         has_margins: comparisons.iter().any(|comparison| comparison.judged.is_some()),
         margins: String::new(),
         summary: summary(folder, case),
+        rescuee: &experiment.base.words.rescuee,
         decisions: None,
         comparisons: rows(comparisons),
         exploratory: Vec::new(),

@@ -36,8 +36,8 @@ pub(super) fn in_words(comparison: &Comparison) -> String {
     if comparison.is_found() && !is_clear {
         let shift = comparison.shift.unwrap_or(0.0);
         return format!(
-            "{place}: {a} and {b} differ, but not plainly in the mean: by ranks {a} is {} (shift {}; \
-             corrected {}), while the mean difference is {} ({range}).",
+            "{place}: undecided between {a} and {b}: by ranks {a} is {} (shift {}; corrected {}), but the \
+             interval of the mean difference, {}, does not exclude zero ({range}).",
             if comparison.effect.unwrap_or(0.0) > 0.0 { "above" } else { "below" },
             short(shift),
             p_in_words(p),

@@ -4,7 +4,7 @@ use std::fmt;
 
 use rne_core::{MadeMeasure, MadePolicy, Registry};
 use ron_tree::{Node, Value, nearest};
-use usar_sim::scenario::Scenario;
+use usar_sim::scenario::{Scenario, is_mistaken};
 
 use crate::oracle;
 use crate::{Failure, refuse};
@@ -148,6 +148,9 @@ fn broken_rule(label: &str, name: &str, registry: &Registry) -> Option<&'static 
     if label.is_empty() || label.chars().any(char::is_control) {
         return Some("be visible characters");
     }
+    if is_mistaken(label) {
+        return Some("not be what readers of tables take for a number, or for nothing");
+    }
     if label.starts_with(['=', '+', '-', '@']) {
         return Some("not begin like a formula, with =, +, - or @");
     }
@@ -210,6 +213,7 @@ mod tests {
         assert!(refused("DIS(score: Sum)").contains("policy DIS: it has no options"));
         assert!(refused("RNE(luck: 3)").contains("policy RNE: "));
         assert!(refused("=RNE").contains("label"));
+        assert!(refused("NA=RNE").contains("take for a number, or for nothing"));
         assert!(refused("@x=RNE").contains("must not begin like a formula"));
         assert!(refused("-1=RNE").contains("must not begin like a formula"));
         for text in

@@ -7,7 +7,9 @@ use std::path::Path;
 use rne_core::Registry;
 use ron_tree::limits::Limit;
 use ron_tree::{Node, nearest};
-use usar_sim::scenario::{FORMAT, Scenario, ScenarioFile, parse_ron, parse_tree};
+use usar_sim::scenario::{
+    FORMAT, NOT_MISTAKEN, Scenario, ScenarioFile, beside, is_mistaken, parse_ron, parse_tree,
+};
 use xxhash_rust::xxh3::xxh3_128;
 
 use super::file::{Map, SweepFile};
@@ -132,11 +134,11 @@ impl Check<'_> {
 
     /// The scenario with what the sweep sets in it.
     fn base(&mut self, file: &SweepFile) -> Option<Scenario> {
-        let scenario = self.path.parent().unwrap_or(Path::new("")).join(&file.scenario);
+        let scenario = beside(self.path, &file.scenario);
         let (base, _) = match Scenario::load(&scenario) {
             Ok(loaded) => loaded,
             Err(error) => {
-                self.problems.push((0, error.to_string()));
+                self.problems.push((0, error.of_named(&file.scenario).to_string()));
                 return None;
             }
         };
@@ -233,6 +235,8 @@ impl Check<'_> {
             if is_hidden || name.starts_with(['=', '+', '-', '@']) {
                 let rule = "must have a name of visible characters that does not begin like a formula";
                 self.fail(&field, &rule);
+            } else if is_mistaken(name) {
+                self.fail(&field, &NOT_MISTAKEN);
             }
             let mut file: ScenarioFile = (**base).clone();
             let mut set = Vec::new();

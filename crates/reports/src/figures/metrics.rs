@@ -66,8 +66,10 @@ fn box_figure(
         }
         let plots = vec![Plot::Box(plot.with_group_colors(colours)), Plot::Strip(points)];
         let [low, high] = range(all);
-        let mut layout =
-            layout(&plots, &metric.name).with_y_label(metric.unit).with_y_axis_min(low).with_y_axis_max(high);
+        let mut layout = layout(&plots, &metric.name)
+            .with_y_label(&metric.unit_in_words)
+            .with_y_axis_min(low)
+            .with_y_axis_max(high);
         for line in bounds(folder, case, *place) {
             layout = layout.with_reference_line(line);
         }

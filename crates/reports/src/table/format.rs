@@ -5,6 +5,9 @@ use std::sync::OnceLock;
 use comfy_table::{Row, Table};
 use experiments::Failure;
 
+use super::blocks::in_blocks;
+use super::columns;
+
 /// Output formats of tables.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Format {
@@ -47,7 +50,9 @@ impl Format {
     /// None: it is written to memory.
     pub fn write(self, table: &Table) -> Result<String, Failure> {
         Ok(match self {
-            Self::Table => format!("{table}\n"),
+            Self::Table => {
+                columns().map_or_else(|| format!("{table}\n"), |columns| in_blocks(table, columns))
+            }
             Self::Markdown => markdown(table),
             Self::Csv => csv(table)?,
             Self::Latex => latex(table),

@@ -1,5 +1,6 @@
 //! Tables for people.
 
+mod blocks;
 mod effects;
 mod format;
 mod grouping;
@@ -8,7 +9,7 @@ use std::sync::OnceLock;
 
 pub use comfy_table::Table;
 use comfy_table::presets::UTF8_FULL_CONDENSED;
-use comfy_table::{Cell, CellAlignment, ContentArrangement, Row};
+use comfy_table::{Cell, CellAlignment, Row};
 use experiments::comparison::{Comparison, digits, moments_of, short, short_p};
 use experiments::experiment::Experiment;
 use experiments::stats::Moments;
@@ -171,19 +172,21 @@ pub fn rounds_table(record: &TrialRecord, words: &Words, is_wide: bool) -> Table
 pub fn headed(header: impl Into<Row>) -> Table {
     let mut table = Table::new();
     table.load_style(UTF8_FULL_CONDENSED).set_header(header);
-    if let Some(columns) = COLUMNS.get() {
-        table.set_content_arrangement(ContentArrangement::Dynamic).set_width(*columns);
-    }
     table
 }
 
 /// Width of the terminal in columns, if there is one.
 static COLUMNS: OnceLock<u16> = OnceLock::new();
 
-/// Folds the cells of tables that are wider than a terminal with this many columns. Without this call,
-/// tables keep their full width.
+/// Shows tables that are wider than a terminal with this many columns in parts. Without this call, tables keep
+/// their full width.
 pub fn fold_at(columns: u16) {
     let _ = COLUMNS.set(columns); // the terminal is the same
+}
+
+/// Columns of the terminal; `None` for none.
+fn columns() -> Option<usize> {
+    COLUMNS.get().map(|columns| usize::from(*columns))
 }
 
 /// Tables with many columns are for terminals of at least so many.

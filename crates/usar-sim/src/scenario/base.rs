@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 
 use ron_tree::{Node, Problem, Value};
 
-use super::carried::CARRIED;
+use super::carried::beside;
 use super::error::{Problems, ScenarioError};
 use super::named::{self, Names};
 use super::reading::parse_tree;
@@ -64,9 +64,8 @@ impl Base {
         if name.is_empty() || Path::new(name).is_absolute() {
             return Err(wrong("must be a path from this file's folder"));
         }
-        let folder = path.parent().filter(|_| !name.starts_with(CARRIED)).unwrap_or(Path::new(""));
-        let path = folder.join(name);
-        let tree = parse_tree(&read_text(&path)?, &path)?;
+        let path = beside(path, name);
+        let tree = parse_tree(&read_text(&path)?, &path).map_err(|error| error.of_named(name))?;
         if is_named_in(&tree) {
             return Err(wrong("must be a scenario without a base of its own"));
         }

@@ -1,6 +1,6 @@
 //! Files that a program carries with it, under paths of their own: `usar:/paper.ron`.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
 use ron_tree::file::ReadError;
@@ -21,6 +21,13 @@ pub fn carry(files: &'static [(&'static str, &'static str)]) {
 pub(super) fn carried(path: &Path) -> Option<&'static str> {
     let name = path.to_str()?.strip_prefix(CARRIED)?;
     FILES.get()?.iter().find(|(known, _)| *known == name).map(|(_, text)| *text)
+}
+
+/// The path that a file names, from the file's own folder; that of a carried file is whole.
+#[must_use]
+pub fn beside(file: &Path, named: &str) -> PathBuf {
+    let folder = file.parent().filter(|_| !named.starts_with(CARRIED));
+    folder.unwrap_or(Path::new("")).join(named)
 }
 
 /// Whether a path is that of a file, on disk or carried.

@@ -107,6 +107,23 @@ pub(super) fn is_device(name: &str) -> bool {
     ["con", "prn", "aux", "nul"].contains(&stem.as_str()) || numbered("com") || numbered("lpt")
 }
 
+/// The rule that [`is_mistaken`] names break.
+pub const NOT_MISTAKEN: &str = "must not be what readers of tables take for a number, or for nothing";
+
+/// Whether programs that read tables take this text for a number, for a truth value, or for a missing value.
+///
+/// ```
+/// use usar_sim::scenario::is_mistaken;
+///
+/// assert!(["NA", "None", "nan", "null", "1e5", "true"].into_iter().all(is_mistaken));
+/// assert!(!is_mistaken("north") && !is_mistaken("a1e5"));
+/// ```
+#[must_use]
+pub fn is_mistaken(name: &str) -> bool {
+    let words = ["na", "none", "null", "nil", "true", "false"];
+    words.contains(&name.to_ascii_lowercase().as_str()) || name.parse::<f64>().is_ok()
+}
+
 /// Checks that each name of a table is plain and occurs once.
 pub(super) fn names<'n>(check: &mut Checker, table: &str, names: impl Iterator<Item = &'n str>) {
     let plain = |c: char| c.is_ascii_alphanumeric() || "-_".contains(c);
@@ -117,6 +134,8 @@ pub(super) fn names<'n>(check: &mut Checker, table: &str, names: impl Iterator<I
             let rule =
                 "must be a name of at most 64 letters, digits, `-` and `_` that does not start with `-`";
             check.fail(field, rule, shown(name));
+        } else if is_mistaken(name) {
+            check.fail(field, NOT_MISTAKEN, shown(name));
         } else if is_device(name) {
             check.fail(field, "must not be the name of a device on Windows", shown(name));
         } else if seen.contains(&name) {

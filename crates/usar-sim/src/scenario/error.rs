@@ -1,7 +1,7 @@
 //! Errors of scenarios: file, line, field, rule and found value, all problems of a file at once.
 
 use std::fmt;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use ron_tree::Malformed;
 pub use ron_tree::Problem;
@@ -52,6 +52,24 @@ pub enum ScenarioError {
     Invalid(Problems),
 }
 
+impl ScenarioError {
+    /// The error of a file that another one names by this path: text of a file outside the folder of the other
+    /// is not shown, for it may be none of its reader's business.
+    #[must_use]
+    pub fn of_named(self, named: &str) -> Self {
+        let leads_out = Path::new(named).is_absolute() || named.split(['/', '\\']).any(|part| part == "..");
+        match self {
+            Self::Malformed { path, source } if leads_out => {
+                let place = format!("line {}, column {}", source.line, source.column);
+                let reason =
+                    format!("is not well-formed ({place}); text from outside the folder is not shown");
+                Self::Unreadable { path, reason }
+            }
+            other => other,
+        }
+    }
+}
+
 /// A trial's layout that cannot be drawn.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum LayoutError {
@@ -99,7 +117,7 @@ pub enum LayoutError {
     },
     /// Debris and walls leave no way for a ground robot.
     #[error(
-        "debris leaves no way from home to {to} that is wide enough for a robot of radius {radius_m} m with \
+        "walls and debris leave no way from home to {to} that is wide enough for a robot of radius {radius_m} m with \
          clearance"
     )]
     NoPassage {

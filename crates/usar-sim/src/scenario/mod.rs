@@ -33,7 +33,8 @@ use rne_core::{RoleId, TaskId};
 use ron_tree::Node;
 use ron_tree::file::MAX_TEXT_BYTES;
 
-pub use carried::{CARRIED, carry, is_file};
+pub use carried::{CARRIED, beside, carry, is_file};
+pub use checker::{NOT_MISTAKEN, is_mistaken};
 pub use debris::LEAST_POLYGON_WIDTH_M;
 pub use error::{LayoutError, Problem, Problems, ScenarioError};
 pub use file::*;

@@ -40,8 +40,8 @@ struct Checked {
 fn check(file: &Path, registry: &Registry) -> Result<String, Failure> {
     let experiment = Experiment::load(file, &Overrides::default(), registry)?;
     expectations(&experiment, file)?;
-    experiment.with_trials(1)?.check_start(file)?;
     tell_warnings_of_all(experiment.cases.iter().map(|case| &case.scenario), &experiment.given, file);
+    experiment.with_trials(1)?.check_start(file)?;
     let cost = experiment.check_cost(false).err();
     Ok(cost.map_or_else(|| "ok".to_owned(), |cost| format!("ok, but expensive: {cost}")))
 }

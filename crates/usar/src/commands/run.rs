@@ -11,7 +11,7 @@ use rne_core::{Deadline, Session};
 use serde::Serialize;
 use usar_sim::metrics::CutOff;
 use usar_sim::record::{DecisionRecord, Status, TaskRecord, TrialRecord};
-use usar_sim::scenario::Words;
+use usar_sim::scenario::{EmptyTasks, Words};
 use usar_sim::simulation::Simulation;
 
 use self::event_lines::EventLines;
@@ -136,7 +136,9 @@ impl Arguments {
             print_table(out, &rounds_table(&record, &scenario.words, self.wide.is_wide()))?;
         }
         print(out, &record, &scenario.words)?;
-        finished_tasks(&record).iter().try_for_each(|note| writeln!(out, "{note}"))?;
+        let sends = scenario.mission.empty_tasks == EmptyTasks::GetGroups;
+        let finished = if sends { finished_tasks(&record) } else { Vec::new() };
+        finished.iter().try_for_each(|note| writeln!(out, "{note}"))?;
         story.iter().try_for_each(|line| Ok(writeln!(out, "{line}")?))
     }
 
@@ -202,7 +204,7 @@ fn finished_tasks(record: &TrialRecord) -> Vec<String> {
         0 => None,
         rounds => Some(format!(
             "note: task {} was known to be finished and still got a group in {}: mission.empty_tasks \
-             (GetGroups; the default GetNobody sends nobody)",
+             is GetGroups; the default, GetNobody, sends nobody",
             named.task,
             counted(rounds, "round")
         )),

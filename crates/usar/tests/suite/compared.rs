@@ -310,3 +310,25 @@ fn one_policy_is_compared_with_itself_along_an_axis() {
     let shown: f64 = means.split('┆').nth(1).unwrap().trim().trim_end_matches('│').trim().parse().unwrap();
     assert!((mean - shown).abs() < 0.01 * mean, "{mean} {means}");
 }
+
+/// Where nothing is drawn, every seed is the same trial: twenty of them say no more than one.
+#[test]
+fn trials_that_repeat_one_another_count_once() {
+    let folder = place();
+    let here = folder.path();
+    let scenario = "(name: \"fixed\", duration_s: 60.0, dt_s: 0.02, arena_m: (40.0, 30.0), \
+        team: [(role: \"robot\", count: 2, center: (15.0, 3.0), width_m: 4.0, levels: (energy: 90, hp: 90)), \
+        (role: \"robot\", count: 2, center: (25.0, 3.0), width_m: 4.0, levels: (energy: 50, hp: 100))], \
+        tasks: [(name: \"hard\", difficulty: 2, center: (10.0, 20.0), size_m: (4.0, 4.0), grid: (4, 4), \
+        rest: (6.0, 9.0)), (name: \"easy\", difficulty: 1, center: (30.0, 14.0), size_m: (4.0, 4.0), \
+        grid: (4, 4), rest: (34.0, 9.0))])";
+    std::fs::write(here.join("fixed.ron"), scenario).unwrap();
+    succeeds(&usar(here, "sweep fixed.ron --policies DIS,ENG --trials 20 --quiet"));
+    let told = succeeds(&usar(here, "compare results/fixed --metric energy"));
+    assert!(told.starts_with("No verdict: 1 of the 6 distinct pairs of trials that a test takes."), "{told}");
+    assert!(told.contains("19 that repeat another to the last state"), "{told}");
+    let json = succeeds(&usar(here, "compare results/fixed --metric energy --json"));
+    let one = &serde_json::from_str::<Value>(&json).unwrap()["comparisons"][0];
+    assert_eq!((&one["n"], &one["repeated"], &one["p"]), (&1.into(), &19.into(), &Value::Null));
+    assert_eq!(one["verdict"], "undecided");
+}

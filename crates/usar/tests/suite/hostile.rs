@@ -183,3 +183,20 @@ fn work_that_takes_long_needs_a_word_and_says_what_it_takes() {
     .unwrap();
     refused(here, 2, "sweep many.ron", &["x 12000000 trials is 1.2e12, more than 1e12"]);
 }
+
+/// A path that leads out of its folder is named with the line, without the text that stands there.
+#[test]
+fn text_from_outside_the_folder_is_not_shown() {
+    let folder = tempfile::tempdir().unwrap();
+    let here = folder.path();
+    std::fs::create_dir(here.join("inside")).unwrap();
+    std::fs::write(here.join("secret"), "password: 'hunter2'").unwrap();
+    for text in ["(base: \"../secret\", name: \"a\")", "(scenario: \"../secret\", name: \"a\")"] {
+        std::fs::write(here.join("inside/a.ron"), text).unwrap();
+        let output = usar(&here.join("inside"), &["check", "a.ron"]);
+        let told = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{told}");
+        assert!(told.contains("secret") && told.contains("is not well-formed (line 1"), "{told}");
+        assert!(!told.contains("hunter2") && !told.contains("password"), "{told}");
+    }
+}

@@ -75,10 +75,11 @@ fn screen(simulation: &Simulation, policy: &str, speed: f64) -> String {
         let rescued = own.iter().filter(|one| one.state == RescueeState::Rescued).count();
         let share = if own.is_empty() { 0.0 } else { rescued as f64 / own.len() as f64 };
         lines.push(format!(
-            "{:12} {} {rescued} of {} rescued, {on_board} on board",
+            "{:12} {} {rescued} of {} {}, {on_board} on board",
             short(&task.name, 12),
             bar(share, 20),
-            own.len()
+            own.len(),
+            scenario.words.text("rescued")
         ));
     }
     for (robot, agent) in simulation.world().robots.iter().zip(&mission.crew.agents).take(MOST_ROBOTS) {
@@ -86,10 +87,11 @@ fn screen(simulation: &Simulation, policy: &str, speed: f64) -> String {
         let task = agent.task.map_or("", |task| scenario.tasks[task.index()].name.as_str());
         let [energy, hp] = [robot.energy, robot.hp].map(|level| bar(level / 100.0, 10));
         let mut line = format!(
-            "{:>4} {:10} {:10} energy {energy} HP {hp} ",
+            "{:>4} {:10} {:10} energy {energy} {} {hp} ",
             robot.id.0,
             short(&role.name, 10),
-            short(task, 10)
+            short(task, 10),
+            scenario.words.text("HP")
         );
         let _ = write!(line, "{}", doing(agent.activity));
         lines.push(line);

@@ -123,7 +123,8 @@ fn roles(scenario: &Scenario) -> Vec<Listed> {
 
 fn metrics(scenario: &Scenario) -> Vec<Listed> {
     let one = |metric: &Metric| {
-        let unit = if metric.unit.is_empty() { String::new() } else { format!(" In {}.", metric.unit) };
+        let unit =
+            if metric.unit.is_empty() { String::new() } else { format!(" In {}.", metric.unit_in_words) };
         Listed { name: metric.name.clone(), about: format!("{}{unit}", metric.meaning) }
     };
     Catalogue::of(scenario).iter().map(one).collect()

@@ -1,0 +1,105 @@
+//! Tables that are wider than the terminal: long texts fold between words, and what is still too wide is shown
+//! in blocks of columns, one below the other. No word and no number is cut.
+
+use comfy_table::{Cell, Row, Table};
+use textwrap::core::display_width;
+
+use super::headed;
+
+/// A text of more columns than this may be folded.
+const FOLDED: usize = 28;
+
+/// What a column takes beside its text: two spaces and a line.
+const BESIDE: usize = 3;
+
+/// The table for a terminal with so many columns.
+pub(super) fn in_blocks(table: &Table, columns: usize) -> String {
+    let mut rows: Vec<Vec<Cell>> = table.header().into_iter().chain(table.row_iter()).map(cells).collect();
+    let mut widths = widths(&rows);
+    let excess = (total(&widths) + 1).saturating_sub(columns);
+    if excess == 0 {
+        return format!("{table}\n");
+    }
+    let widest = (0..widths.len()).max_by_key(|column| widths[*column]);
+    if let Some(column) = widest.filter(|column| widths[*column] > FOLDED) {
+        let width = widths[column].saturating_sub(excess).max(FOLDED);
+        rows.iter_mut().for_each(|row| fold(row, column, width));
+        widths = self::widths(&rows);
+    }
+    let blocks = blocks(&widths, columns).into_iter().map(|block| {
+        let of_block = |row: &Vec<Cell>| -> Vec<Cell> {
+            block.iter().filter_map(|column| row.get(*column).cloned()).collect()
+        };
+        let mut part = headed(of_block(&rows[0]));
+        rows[1..].iter().for_each(|row| _ = part.add_row(of_block(row)));
+        format!("{part}\n")
+    });
+    blocks.collect()
+}
+
+fn cells(row: &Row) -> Vec<Cell> {
+    row.cell_iter().cloned().collect()
+}
+
+/// The width of each column's text.
+fn widths(rows: &[Vec<Cell>]) -> Vec<usize> {
+    let columns = rows.iter().map(Vec::len).max().unwrap_or(0);
+    let width = |cell: &Cell| cell.content().lines().map(display_width).max().unwrap_or(0);
+    let of_column = |column: usize| rows.iter().filter_map(|row| row.get(column)).map(width).max();
+    (0..columns).map(|column| of_column(column).unwrap_or(0)).collect()
+}
+
+fn total(widths: &[usize]) -> usize {
+    widths.iter().map(|width| width + BESIDE).sum()
+}
+
+/// Folds a cell between words, if it is wider than this.
+fn fold(row: &mut [Cell], column: usize, width: usize) {
+    let Some(cell) = row.get_mut(column) else { return };
+    let text = cell.content();
+    if display_width(&text) > width {
+        *cell = Cell::new(textwrap::fill(&text, textwrap::Options::new(width).break_words(false)));
+    }
+}
+
+/// The columns of each block: the first of all, and as many others as there is room for.
+fn blocks(widths: &[usize], columns: usize) -> Vec<Vec<usize>> {
+    let mut blocks: Vec<Vec<usize>> = Vec::new();
+    for column in 1..widths.len() {
+        let fits = blocks.last().is_some_and(|block| {
+            let taken: Vec<usize> = block.iter().chain([&column]).map(|column| widths[*column]).collect();
+            total(&taken) < columns
+        });
+        match blocks.last_mut().filter(|_| fits) {
+            Some(block) => block.push(column),
+            None => blocks.push(vec![0, column]),
+        }
+    }
+    blocks
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_table_wider_than_the_terminal_is_shown_in_blocks_without_cutting_a_word() {
+        let mut table = headed(["name", "first number", "second number"]);
+        table.add_row(["energy_per_rescuee.total", "4.44 ± 0.22", "4.31 ± 0.22"]);
+        assert_eq!(in_blocks(&table, 80), format!("{table}\n"));
+        let shown = in_blocks(&table, 45);
+        assert_eq!(shown.matches("energy_per_rescuee.total").count(), 2, "{shown}");
+        assert!(shown.contains("4.44 ± 0.22") && shown.contains("second number"), "{shown}");
+        assert!(shown.lines().all(|line| display_width(line) <= 45), "{shown}");
+    }
+
+    #[test]
+    fn long_texts_fold_between_words() {
+        let mut table = headed(["task", "members"]);
+        let members = (0..40).map(|robot| robot.to_string()).collect::<Vec<_>>().join(" ");
+        table.add_row(["bulk", &members]);
+        let shown = in_blocks(&table, 60);
+        assert!(shown.lines().all(|line| display_width(line) <= 60), "{shown}");
+        assert!(shown.contains(" 39 ") && shown.contains("│ bulk ┆ 0 1 2 "), "{shown}");
+    }
+}
