@@ -59,7 +59,7 @@ reference:
 book:
     bash .ci/book
 
-# A release in target/dist: tests, packages, the program, checksums, notes; `--dry-run` sets no tag
+# A release in target/dist: tests, the program for glibc 2.17 as archive and Debian package, packages, checksums, notes; `--dry-run` sets no tag
 release *arguments:
     bash .ci/release {{arguments}}
 
