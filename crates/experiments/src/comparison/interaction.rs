@@ -7,9 +7,8 @@ use std::collections::BTreeSet;
 use serde::Serialize;
 use store::Failure;
 
-use super::cell::Cell;
+use super::cell::{Cell, same};
 use super::effect::{Contrast, contrasts, corrected, is_shown};
-use super::pairs::same;
 use super::words::p_in_words;
 use super::{CONFIDENCE, Choice, LEAST_PAIRS, Pairs, policy_pairs, short};
 use crate::stats::Moments;

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use super::cell::Cell;
+use super::cell::{Cell, same};
 use super::sums::Sums;
 use crate::stats::bootstrap::interval;
 use crate::sweep::folder::{Folder, Measured};
@@ -84,15 +84,4 @@ impl Pairs {
     pub fn differences(&self) -> Vec<f64> {
         self.a.iter().zip(&self.b).map(|(a, b)| a - b).collect()
     }
-}
-
-/// What trials of the same number have in common if one repeats another: their last states. A trial without
-/// numbers, or one that has not been run, repeats no other.
-pub(super) fn same(folder: &Folder, cells: &[Cell], trial: u32) -> Vec<(u32, u128)> {
-    let hash = |(case, policy): &Cell| {
-        folder.results().get(&(*case, *policy, trial)).map_or(0, |measured| measured.hash)
-    };
-    let hashes: Vec<u128> = cells.iter().map(hash).collect();
-    let own = if hashes.contains(&0) { trial } else { 0 };
-    hashes.into_iter().map(|hash| (own, hash)).collect()
 }

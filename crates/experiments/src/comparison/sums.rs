@@ -8,8 +8,7 @@
 
 use std::collections::BTreeSet;
 
-use super::cell::Cell;
-use super::pairs::same;
+use super::cell::{Cell, same};
 use crate::stats::Moments;
 use crate::stats::bootstrap::statistic_interval;
 use crate::sweep::folder::Folder;

@@ -148,11 +148,11 @@ fn broken_rule(label: &str, name: &str, registry: &Registry) -> Option<&'static 
     if label.is_empty() || label.chars().any(char::is_control) {
         return Some("be visible characters");
     }
-    if is_mistaken(label) {
-        return Some("not be what readers of tables take for a number, or for nothing");
-    }
     if label.starts_with(['=', '+', '-', '@']) {
         return Some("not begin like a formula, with =, +, - or @");
+    }
+    if is_mistaken(label) {
+        return Some("not be what readers of tables take for a number, or for nothing");
     }
     let is_other = label != name && registry.names().contains(&label);
     is_other.then_some("not be the name of another policy")

@@ -45,10 +45,10 @@ Examples:
   usar trust --trustor 82,114,24 --trustee 79,117,23 --trustee 40,56,12       towards a group of two")]
 pub(crate) struct Arguments {
     /// The team (CSV), or a question (JSON)
-    #[arg(required_unless_present_any = ["from", "to"], conflicts_with_all = ["from", "to"])]
+    #[arg(required_unless_present_any = ["trustor", "trustee"], conflicts_with_all = ["trustor", "trustee"])]
     file: Option<PathBuf>,
     /// Policy that decides, with its options in brackets [default: none, all pairs are shown]
-    #[arg(long, conflicts_with_all = ["measure", "out", "from"])]
+    #[arg(long, conflicts_with_all = ["measure", "out", "trustor"])]
     policy: Option<String>,
     /// Weight of each need, separated by commas; only their ratios matter [default: all 1]
     #[arg(long, allow_hyphen_values = true)]
@@ -58,7 +58,7 @@ pub(crate) struct Arguments {
     #[command(flatten)]
     measure: MeasureArgument,
     /// File or folder to write [default: none; else a picture of all pairs]
-    #[arg(long, value_name = "FILE.svg|png|pdf", conflicts_with = "from")]
+    #[arg(long, value_name = "FILE.svg|png|pdf", conflicts_with = "trustor")]
     out: Option<PathBuf>,
     #[command(flatten)]
     replace: ReplaceArgument,

@@ -15,7 +15,7 @@ use crate::prelude::*;
 #[derive(Debug, Args)]
 pub(super) struct TeamArguments {
     /// Needs of which less is better, each with its worst value; they count as WORST minus the value
-    #[arg(long, value_name = "NEED=WORST", conflicts_with = "from", value_delimiter = ',')]
+    #[arg(long, value_name = "NEED=WORST", conflicts_with = "trustor", value_delimiter = ',')]
     less_is_better: Vec<LessIsBetter>,
     /// A task: name, difficulty and, for policies that need it, its place `x,y` in metres [default: first,2
     /// and second,1]
