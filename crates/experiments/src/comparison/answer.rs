@@ -53,16 +53,12 @@ fn each_named(comparisons: &[&Comparison], of: fn(&Comparison) -> String) -> Str
 }
 
 fn sized(one: &Comparison) -> String {
-    match (one.verdict, one.judged) {
-        (Verdict::Equivalent, Some(judged)) => {
-            format!("{} within {} of {}", one.a, short(judged.margin), one.b)
-        }
-        _ => {
-            let difference = one.difference.unwrap_or(0.0);
-            let side = if difference > 0.0 { "above" } else { "below" };
-            format!("{} {} {side} {}", one.a, short(difference.abs()), one.b)
-        }
+    if let (Verdict::Equivalent, Some(judged)) = (one.verdict, one.judged) {
+        return format!("{} within {} of {}", one.a, short(judged.margin), one.b);
     }
+    let difference = one.difference.unwrap_or(0.0);
+    let side = if difference > 0.0 { "above" } else { "below" };
+    format!("{} {} {side} {}", one.a, short(difference.abs()), one.b)
 }
 
 fn named(one: &Comparison) -> String {
