@@ -45,6 +45,7 @@ pub(crate) fn scenarios() -> impl Iterator<Item = (&'static str, &'static str)> 
 }
 
 /// Parses a path from the command line: what is on disk, or else a carried scenario of that name.
+#[expect(clippy::unnecessary_wraps, reason = "clap takes parsers that may fail")]
 pub(crate) fn path(text: &str) -> Result<PathBuf, Infallible> {
     let path = Path::new(text);
     let carried = if is_file(path) || text.ends_with('/') { None } else { named(text) };

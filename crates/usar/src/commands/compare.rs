@@ -85,9 +85,9 @@ impl Arguments {
         }
         compared.print_answer(out)?;
         if self.wide.is_wide() {
-            compared.print_wide(out)?
+            compared.print_wide(out)?;
         } else {
-            compared.print_narrow(out)?
+            compared.print_narrow(out)?;
         }
         compared.print_notes(out)?;
         if let Some(own) = own {
