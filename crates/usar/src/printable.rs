@@ -40,7 +40,8 @@ pub(crate) fn folded(line: &str, columns: usize) -> String {
     let words = line.trim_start();
     let begin = line.len() - words.len();
     let gap = words.find("  ").map(|gap| gap + words[gap..].len() - words[gap..].trim_start().len());
-    let indent = begin + gap.filter(|gap| begin + gap < columns / 2).unwrap_or(0);
+    let after_tab = if line.contains('\t') { 4 } else { 0 };
+    let indent = begin + gap.filter(|gap| begin + gap < columns / 2).unwrap_or(after_tab);
     let spaces = " ".repeat(indent);
     let options = Options::new(columns)
         .break_words(false)

@@ -1,6 +1,8 @@
 //! Tables that are wider than the terminal: long texts fold between words, and what is still too wide is shown
 //! in blocks of columns, one below the other. No word and no number is cut.
 
+use std::collections::BTreeSet;
+
 use comfy_table::{Cell, Row, Table};
 use textwrap::core::display_width;
 
@@ -26,7 +28,7 @@ pub(super) fn in_blocks(table: &Table, columns: usize) -> String {
         rows.iter_mut().for_each(|row| fold(row, column, width));
         widths = self::widths(&rows);
     }
-    let blocks = blocks(&widths, columns).into_iter().map(|block| {
+    let blocks = blocks(&widths, keys(&rows), columns).into_iter().map(|block| {
         let of_block = |row: &Vec<Cell>| -> Vec<Cell> {
             block.iter().filter_map(|column| row.get(*column).cloned()).collect()
         };
@@ -62,17 +64,25 @@ fn fold(row: &mut [Cell], column: usize, width: usize) {
     }
 }
 
-/// The columns of each block: the first of all, and as many others as there is room for.
-fn blocks(widths: &[usize], columns: usize) -> Vec<Vec<usize>> {
+/// How many columns at the left it takes to tell rows apart: one, or two.
+fn keys(rows: &[Vec<Cell>]) -> usize {
+    let firsts: Vec<String> = rows.iter().filter_map(|row| Some(row.first()?.content())).collect();
+    let is_unique = firsts.iter().collect::<BTreeSet<_>>().len() == firsts.len();
+    let columns = rows.iter().map(Vec::len).max().unwrap_or(0);
+    if is_unique || columns < 4 { 1 } else { 2 }
+}
+
+/// The columns of each block: those that tell rows apart, and as many others as there is room for.
+fn blocks(widths: &[usize], keys: usize, columns: usize) -> Vec<Vec<usize>> {
     let mut blocks: Vec<Vec<usize>> = Vec::new();
-    for column in 1..widths.len() {
+    for column in keys..widths.len() {
         let fits = blocks.last().is_some_and(|block| {
             let taken: Vec<usize> = block.iter().chain([&column]).map(|column| widths[*column]).collect();
             total(&taken) < columns
         });
         match blocks.last_mut().filter(|_| fits) {
             Some(block) => block.push(column),
-            None => blocks.push(vec![0, column]),
+            None => blocks.push((0..keys).chain([column]).collect()),
         }
     }
     blocks
@@ -91,6 +101,16 @@ mod tests {
         assert_eq!(shown.matches("energy_per_rescuee.total").count(), 2, "{shown}");
         assert!(shown.contains("4.44 ± 0.22") && shown.contains("second number"), "{shown}");
         assert!(shown.lines().all(|line| display_width(line) <= 45), "{shown}");
+    }
+
+    #[test]
+    fn each_block_says_what_its_rows_are() {
+        let mut table = headed(["metric", "pair", "difference", "interval"]);
+        for pair in ["A - B", "A - C"] {
+            table.add_row(["rescuees.total", pair, "10.5", "7.92 to 13.2"]);
+        }
+        let shown = in_blocks(&table, 40);
+        assert_eq!(shown.matches("rescuees.total ┆ A - C").count(), 2, "{shown}");
     }
 
     #[test]
