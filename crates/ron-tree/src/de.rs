@@ -124,8 +124,10 @@ impl<'de> Reader<'de> {
     }
 
     fn number(self) -> Result<f64, Misread> {
-        let number = self.node.as_word().and_then(float);
-        number.map_or_else(|| self.wrong("must be a number"), Ok)
+        match self.node.as_word() {
+            Some(word) if is_of_other_base(word) => self.wrong("must be a decimal number"),
+            word => word.and_then(float).map_or_else(|| self.wrong("must be a number"), Ok),
+        }
     }
 
     fn whole<T>(self, fit: impl Fn(i128) -> Option<T>) -> Result<T, Misread> {
@@ -333,6 +335,11 @@ fn integer(word: &str) -> Option<i128> {
         _ => digits.parse(),
     };
     number.ok().map(|number| if word.starts_with('-') { -number } else { number })
+}
+
+/// Whether a word is a whole number that is written in hexadecimal, binary or octal digits.
+fn is_of_other_base(word: &str) -> bool {
+    !is_number(word.trim_start_matches(['+', '-'])) && integer(word).is_some()
 }
 
 /// A number as in the text.

@@ -335,6 +335,7 @@ fn each_value_that_does_not_fit_is_told_in_words_of_the_file() {
             "kind must be one of Ground, Disc, Box, found Disk; did you mean Disc?",
         ),
         ("(count: 1, kind: \"Ground\")", "kind must be a name without quotes, found \"Ground\""),
+        ("(count: 1, kind: Disc(0x10))", "kind[0] must be a decimal number, found 0x10"),
         ("(count: 1, kind: Disc(a))", "kind[0] must be a number, found a"),
         ("(count: 1, kind: Disc)", "kind must have 1 entry, found Disc"),
         ("(count: 1, kind: Box(1, (2)))", "kind[1] must be a number, found (2)"),

@@ -13,8 +13,8 @@ pub(crate) struct ComparisonArguments {
     /// or rescuees]
     #[arg(long)]
     pub(crate) metric: Vec<String>,
-    /// Compare each policy with this one only [default: the one that the sweep file names; where neither
-    /// names anything, the first]
+    /// Compare each policy with this one only; a pair keeps the sign that it has in the folder [default: the
+    /// one that the sweep file names; where neither names anything, the first]
     #[arg(long)]
     pub(crate) baseline: Option<String>,
     #[command(flatten)]
