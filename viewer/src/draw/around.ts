@@ -2,7 +2,8 @@
  * a number or for levels, they are left out. */
 
 import type { MotionField } from '../recording/segment';
-import { Robot, numberOf } from '../recording/state';
+import { Robot } from '../recording/robotRow';
+import { numberOf } from '../recording/state';
 import type { Point } from '../recording/types';
 import { boxAt } from './labels';
 import { LARGE_TEAM, type Sheet } from './sheet';

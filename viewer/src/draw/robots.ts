@@ -1,7 +1,8 @@
 /** Draws robots: where they were, where they go, what they are like, and who waits for whom. */
 
 import { Stream } from '../recording/segment';
-import { Robot, bodyOf, numberOf, routeAt, taskOf } from '../recording/state';
+import { Robot } from '../recording/robotRow';
+import { bodyOf, numberOf, routeAt, taskOf } from '../recording/state';
 import type { Point } from '../recording/types';
 import { addShape, shapesOf } from './shapes';
 import { LARGE_TEAM, type Sheet } from './sheet';

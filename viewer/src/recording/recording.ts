@@ -3,7 +3,7 @@
 import { type Chunk, ReadError, chunksOf, inflate, inflateJson } from './chunks';
 import { Course } from './course';
 import { type MotionField, Segment, Stream } from './segment';
-import { doingOf } from './state';
+import { doingOf } from './robotRow';
 import type { EventJson, Header, Summary, TimedDecision } from './types';
 
 const VERSION = 1;

@@ -2,21 +2,8 @@
 
 import type { Moment, Recording } from './recording';
 import { type MotionField, Stream } from './segment';
-import type { Doing } from './course';
-import type { Header, Need, Point, Role, World } from './types';
-
-/** The numbers of a row of the stream of robots; ids that may be missing are one higher. */
-export const enum Robot {
-  Activity,
-  Rescuee,
-  Until,
-  Delay,
-  WaitsFor,
-  Task,
-  Condition,
-  Resources,
-  Load,
-}
+import { Robot, id } from './robotRow';
+import type { Need, Point, Role, World } from './types';
 
 export interface RobotState {
   id: number;
@@ -35,15 +22,6 @@ export interface RobotState {
   /** Metres per second. */
   velocity: Point;
 }
-
-const id = (number: number): number | null => (number > 0 ? number - 1 : null);
-
-/** What a robot's row says for its course. */
-export const doingOf = ({ codes }: Header, row: readonly number[]): Doing => ({
-  cause: codes.delays[row[Robot.Delay]],
-  waitsFor: id(row[Robot.WaitsFor]),
-  load: row[Robot.Load],
-});
 
 /** A number of a robot's row. */
 export const numberOf = ({ segment, frame }: Moment, robot: number, number: Robot): number =>

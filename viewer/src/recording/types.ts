@@ -1,7 +1,5 @@
 /** What stands in a recording as JSON: a mirror of the types of the crate `recording`. */
 
-import type { Words } from './words';
-
 export type Point = [number, number];
 
 export interface Role {
@@ -44,6 +42,14 @@ export interface DebrisPiece {
   at: Point;
   rotation_deg: number;
   movable: { mass_kg: number; friction: number } | null;
+}
+
+/** What a scenario calls its things. */
+export interface Words {
+  rescuee: string;
+  rescuees: string;
+  hp: string;
+  radiation: string;
 }
 
 export interface World {

@@ -2,13 +2,6 @@
 
 import type { World } from './types';
 
-export interface Words {
-  rescuee: string;
-  rescuees: string;
-  hp: string;
-  radiation: string;
-}
-
 /** A text in the words of a world: `120 rescued` is `120 items`. */
 export function inWords({ words }: World, text: string): string {
   if (!words) return text;
