@@ -239,7 +239,8 @@ pub struct Metric {
 }
 
 impl Metric {
-    /// The name of its column in `trials.csv`, in the standard words whatever those of the scenario; it ends with the unit of a time or a length.
+    /// The name of its column in `trials.csv`, in the standard words whatever those of the scenario; it ends
+    /// with the unit of a time or a length.
     #[must_use]
     pub fn column(&self) -> String {
         let column = self.standard.replace('.', "_");

@@ -30,11 +30,14 @@ pub(crate) fn counted(count: usize, thing: &str) -> String {
     }
 }
 
+/// How the lines begin that are shown of a file.
+const EXCERPT: &str = "    ";
+
 /// A line that is folded between words, and begins further in where it goes on: below the second column, if
-/// it has columns. Lines of tables stay as they are.
+/// it has columns. Lines of tables stay as they are, and so do lines of files, which have a caret below them.
 pub(crate) fn folded(line: &str, columns: usize) -> String {
-    if textwrap::core::display_width(line) <= columns || line.starts_with(['│', '┌', '╞', '└', '├'])
-    {
+    let is_kept = line.starts_with(['│', '┌', '╞', '└', '├']) || line.starts_with(EXCERPT);
+    if is_kept || textwrap::core::display_width(line) <= columns {
         return line.to_owned();
     }
     let words = line.trim_start();
@@ -125,10 +128,11 @@ mod tests {
     fn sentences_fold_between_words_and_tables_stay() {
         let mut out = Printable::new(Vec::new()).with_columns(Some(20));
         out.write_all("one two three four-five six\nrescued  220 (hard 114, easy 106)\n".as_bytes()).unwrap();
-        out.write_all("│ a table is never folded │\nunfinished".as_bytes()).unwrap();
+        out.write_all("│ a table is never folded │\n    nor is a line of a file\nunfinished".as_bytes())
+            .unwrap();
         out.flush().unwrap();
         let expected = "one two three\nfour-five six\nrescued  220 (hard\n         114, easy\n         106)\n\
-                        │ a table is never folded │\nunfinished";
+                        │ a table is never folded │\n    nor is a line of a file\nunfinished";
         assert_eq!(String::from_utf8(out.to).unwrap(), expected);
     }
 }

@@ -22,6 +22,9 @@ pub fn own_question(
         return Ok(None);
     }
     let own = Asked::of(folder.experiment(), &Wishes::default())?;
+    if own == *asked {
+        return Ok(None); // without asking twice
+    }
     let owned = compare(folder, &own.metrics, own.choice())?;
     let is_same =
         |a: &Comparison, b: &Comparison| (a.case, &a.metric, &a.a, &a.b) == (b.case, &b.metric, &b.a, &b.b);

@@ -79,18 +79,6 @@ pub(super) fn read_manifest(path: &Path) -> Result<Option<Manifest>, Failure> {
     })
 }
 
-/// The folder beside a missing one that has the most similar name, as the end of a sentence.
-fn nearest_to(path: &Path) -> String {
-    let beside = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let entries = std::fs::read_dir(beside).into_iter().flatten().flatten();
-    let folders = entries.filter(|entry| entry.path().is_dir());
-    let mut names: Vec<String> = folders.filter_map(|entry| entry.file_name().into_string().ok()).collect();
-    names.sort_unstable();
-    let name = path.file_name().map(|name| name.to_string_lossy()).unwrap_or_default();
-    ron_tree::nearest(&name, names.iter().map(String::as_str))
-        .map_or(String::new(), |name| format!("; did you mean {}?", path.with_file_name(name).display()))
-}
-
 /// The manifest of a folder that this program can read.
 ///
 /// # Errors
@@ -104,8 +92,11 @@ pub fn manifest_in(path: &Path) -> Result<Manifest, Failure> {
     }
     if !path.is_dir() {
         let there = Path::new("results").join(path);
-        let meant =
-            if there.is_dir() { format!("; did you mean {}?", there.display()) } else { nearest_to(path) };
+        let meant = if there.is_dir() {
+            format!("; did you mean {}?", there.display())
+        } else {
+            ron_tree::file::meant(path)
+        };
         return Err(not_one(&format!("there is no such folder{meant}")));
     }
     let missing = || match sweeps_in(path) {

@@ -191,14 +191,14 @@ impl Compared<'_> {
     /// What everything stands on, and what limits it.
     fn print_notes(&self, out: &mut dyn Write) -> Result<(), Failure> {
         writeln!(out)?;
-        let limits = [
+        let notes = [
             limit_of_correction(&self.comparisons),
             limit_of_changes(&self.effects, &self.interactions),
             what_would_settle(&self.comparisons),
             (!self.comparisons.is_empty()).then(|| footnote(&self.comparisons)),
             Some(self.asked.margins_in_words(self.experiment)).filter(|margins| !margins.is_empty()),
         ];
-        limits.into_iter().flatten().try_for_each(|limit| Ok(writeln!(out, "{limit}")?))
+        notes.into_iter().flatten().try_for_each(|note| Ok(writeln!(out, "{note}")?))
     }
 }
 
