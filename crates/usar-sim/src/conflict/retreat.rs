@@ -139,7 +139,9 @@ impl Retreats {
         !me.can_make_room
             || retreat.is_out_of_patience(rules)
             || retreat.is_passed(&head_way, apart)
-            || rules.goes_on_within.is_some_and(|within| is_clear_ahead(me, within, &head_way, apart))
+            || rules.goes_on_within.is_some_and(|within| {
+                !retreat.only_goes_back(me, apart) && is_clear_ahead(me, within, &head_way, apart)
+            })
     }
 
     /// Passes a retreat on to the nearest robot that follows the robot that passed. So robots go through a
@@ -288,6 +290,13 @@ impl Retreat {
     /// Whether the other robot's path keeps this distance, in metres, from the whole line of the retreat.
     fn is_passed(&self, head_way: &[Vector], apart: f32) -> bool {
         self.line.iter().all(|point| keeps_apart(*point, head_way, apart))
+    }
+
+    /// Whether the robot's route ends where it was in the way: then it stays at its place until the other has
+    /// passed. It would only be in the way again.
+    fn only_goes_back(&self, me: &Mover, apart: f32) -> bool {
+        let asked_at = self.line.first();
+        asked_at.zip(me.route.last()).is_some_and(|(asked, goal)| (*goal - *asked).length() < apart)
     }
 
     fn advance(&mut self, me: &Mover, head: &Mover, is_served: bool) {

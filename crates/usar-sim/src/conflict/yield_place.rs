@@ -10,7 +10,7 @@ use std::collections::BinaryHeap;
 use parry2d::math::Vector;
 
 use super::Mover;
-use crate::planning::{KnownObstacle, polygon_contains};
+use crate::planning::{KnownObstacle, nearest_border_point, polygon_contains};
 
 /// Cells from the middle of the grid to its border.
 const HALF_CELLS: i32 = 100;
@@ -27,9 +27,8 @@ const CROWD_COST: u32 = 150;
 /// Length of the other robot's route ahead, and of its trail behind, that is to be left free, in metres.
 const CLEARED_WAY_M: f32 = 30.0;
 
-/// An obstacle is ignored if the robot is inside its inflated outline and within this distance of one of its
-/// corners in both x and y, in metres: the robot may leave the outline.
-const LEAVE_M: f32 = 0.8;
+/// A robot that is too close to an obstacle may come this much closer on its way along it, in metres.
+const SLIDE_M: f32 = 0.01;
 
 /// A request for room.
 pub(super) struct Ask<'a> {
@@ -118,8 +117,9 @@ enum Cell {
 struct Grid<'a> {
     ask: &'a Ask<'a>,
     size: f32,
-    /// Obstacles near enough to matter.
-    obstacles: Vec<&'a KnownObstacle>,
+    /// Obstacles near enough to matter, each with how deep the robot is inside its outline, in metres; 0
+    /// outside.
+    obstacles: Vec<(&'a KnownObstacle, f32)>,
     cells: Vec<Cell>,
     cost: Vec<u32>,
     from: Vec<u32>,
@@ -130,22 +130,12 @@ impl<'a> Grid<'a> {
         let size = 0.5 * ask.me.radius;
         let reach = size * HALF_CELLS as f32;
         let here = ask.me.position;
-        let matters = |obstacle: &&KnownObstacle| {
-            let distance = |corner: &Vector| (*corner - here).abs().max_element();
-            let is_left = || obstacle.tight.iter().map(distance).any(|nearest| nearest < LEAVE_M);
-            !(polygon_contains(&obstacle.tight, here) && is_left())
-        };
+        let near = ask.me.known.into_iter().flat_map(|known| known.near(here, reach));
         let count = (ROW * ROW) as usize;
         Self {
             ask,
             size,
-            obstacles: ask
-                .me
-                .known
-                .into_iter()
-                .flat_map(|known| known.near(here, reach))
-                .filter(matters)
-                .collect(),
+            obstacles: near.map(|obstacle| (obstacle, depth(obstacle, here))).collect(),
             cells: vec![Cell::Unknown; count],
             cost: vec![u32::MAX; count],
             from: vec![u32::MAX; count],
@@ -198,10 +188,14 @@ impl<'a> Grid<'a> {
         let Ask { me, head, arena, .. } = self.ask;
         let border = Vector::splat(me.radius);
         let outside = point.cmplt(border).any() || point.cmpgt(*arena - border).any();
-        if outside || self.obstacles.iter().any(|obstacle| polygon_contains(&obstacle.tight, point)) {
+        // A robot that is too close to an obstacle, or touches another robot, may still move away from it.
+        let is_in = |(obstacle, own): &(&KnownObstacle, f32)| {
+            let depth = depth(obstacle, point);
+            depth > 0.0 && (*own <= 0.0 || depth > own + SLIDE_M)
+        };
+        if outside || self.obstacles.iter().any(is_in) {
             return Cell::Blocked;
         }
-        // A robot that already touches another one may still move away from it.
         let nearer = |center: Vector| (center - point).length() < (center - me.position).length();
         let meets = |center: Vector, touch: f32| (center - point).length() < touch && nearer(center);
         if meets(head.position, self.ask.touch_head()) {
@@ -236,6 +230,12 @@ impl<'a> Grid<'a> {
         let samples = (2.0 * (b - a).length() / self.size).ceil().max(1.0);
         (0..=samples as u32).all(|i| self.look_at(a.lerp(b, i as f32 / samples)) == Cell::Free)
     }
+}
+
+/// How deep a point is inside an obstacle's inflated outline, in metres; 0 outside.
+fn depth(obstacle: &KnownObstacle, point: Vector) -> f32 {
+    let is_inside = polygon_contains(&obstacle.tight, point);
+    if is_inside { (nearest_border_point(&obstacle.tight, point) - point).length() } else { 0.0 }
 }
 
 fn neighbours(cell: u32) -> impl Iterator<Item = (u32, u32)> {
