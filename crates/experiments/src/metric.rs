@@ -75,6 +75,9 @@ const DECLARATIONS: &[Declaration] = &[
         .means("Conflict sets in which nobody moved for as long as the rule of right of way allows."),
     whole("longest_stall", "s", |r| Some(r.longest_stall_s())).in_figure("waiting and deadlocks").lower()
         .means("The longest time in which one robot with a goal came no nearer to it, over all robots."),
+    whole("stalled", "", |r| Some(f64::from(r.stalled))).lower()
+        .means("Robots that stood at the end: they could act, had something to do, and had come no nearer to it \
+            for `mission.cut_off_s`, or were cut off."),
     whole("conflicts", "", |r| Some(f64::from(r.counts.conflicts)))
         .means("Conflict sets that began: robots whose wishes would have brought them too near to one \
             another."),

@@ -29,7 +29,7 @@ const MOST: usize = 16;
 const COLUMNS: usize = 80;
 
 /// Events that the story mentions.
-const TOLD: [&str; 13] = [
+const TOLD: [&str; 14] = [
     "deadlocked",
     "turn_passed",
     "backed_off",
@@ -43,6 +43,7 @@ const TOLD: [&str; 13] = [
     "source_appeared",
     "source_died",
     "damaged",
+    "standstill",
 ];
 
 /// Two robots that come near each other.

@@ -160,6 +160,7 @@ fn sentence(event: &Event, names: Names) -> String {
         }
         Event::ErrandsOver => "all errands are over".to_owned(),
         Event::MissionOver => "no robot that can carry is left".to_owned(),
+        Event::Standstill => "no round can begin, and no robot gets anywhere: the trial ends".to_owned(),
         Event::DebrisFell { debris } => format!("{} falls", names.debris(*debris)),
         Event::WayClosed { debris } => format!("a way closes: {}", names.debris(*debris)),
         Event::WayOpened { debris } => format!("a way opens: {} is gone", names.debris(*debris)),

@@ -209,7 +209,8 @@ pub enum Event {
         /// The place, in metres.
         place: [f32; 2],
     },
-    /// The team no longer waits for a robot that does not get home or to rest, until it comes nearer.
+    /// The team no longer waits for a robot that does not get home or to rest, until it comes nearer; or a robot
+    /// gave up on an errand to which it came no nearer.
     CutOff {
         /// The robot.
         robot: RobotId,
@@ -281,6 +282,9 @@ pub enum Event {
         /// Number of the piece that stays away.
         debris: u32,
     },
+    /// No round can begin, no event is to come, and every robot that can act is at home or cut off: the trial
+    /// ends.
+    Standstill,
 }
 
 impl Event {

@@ -72,7 +72,7 @@ pub struct Counts {
     pub unreachable: u32,
 }
 
-/// A robot for which the team did not wait, because it could not get home or to rest.
+/// A robot that did not get home or to rest, so that the team did not wait for it, or to the place of an errand.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct CutOff {
     /// The robot.
@@ -195,6 +195,7 @@ impl Metrics {
                 | Event::RestEnded { .. }
                 | Event::ErrandsOver
                 | Event::MissionOver
+                | Event::Standstill
                 | Event::DebrisFell { .. }
                 | Event::WayClosed { .. }
                 | Event::WayOpened { .. }

@@ -20,6 +20,8 @@ pub enum Status {
     NobodyCanCarry,
     /// All errands were done or given up before the time was over.
     ErrandsOver,
+    /// No round could begin and no robot got anywhere, before the time was over.
+    Stalled,
     /// Something went wrong. The numbers go up to that moment and must not be used.
     Failed(String),
 }
@@ -32,6 +34,7 @@ impl Status {
             Self::Completed => "completed",
             Self::NobodyCanCarry => "nobody_can_carry",
             Self::ErrandsOver => "errands_over",
+            Self::Stalled => "stalled",
             Self::Failed(_) => "failed",
         }
     }
@@ -153,7 +156,10 @@ pub struct TrialRecord {
     pub robots: Vec<RobotRecord>,
     /// How often things happened.
     pub counts: Counts,
-    /// Robots that the watchdog cut off: the team did not wait for them. Absent if there were none.
+    /// Robots that stood at the end: they could act, had something to do, and did not get there.
+    #[serde(default)]
+    pub stalled: u32,
+    /// Robots that the watchdog cut off. Absent if there were none.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub cut_off: Vec<CutOff>,
     /// How deep bodies overlapped, in a checked trial.

@@ -32,7 +32,8 @@ use self::writer::{Channel, Channels};
 use crate::error::ExportError;
 
 /// Names of events that are warnings.
-const WARNINGS: [&str; 6] = ["stranded", "disabled", "deadlocked", "unreachable", "cut_off", "mission_over"];
+const WARNINGS: [&str; 7] =
+    ["stranded", "disabled", "deadlocked", "unreachable", "cut_off", "mission_over", "standstill"];
 
 /// Writes a recording as an MCAP log, with every `every`-th frame.
 ///

@@ -1,7 +1,7 @@
 //! Errands: robots go from place to place. In a scenario with errands, they replace the mission.
 
-use super::{Activity, Crew, Scene};
-use crate::event::Event;
+use super::{Activity, Crew, Progress, Scene};
+use crate::event::{CutOffCause, Event};
 use crate::ids::RobotId;
 use crate::model::Model;
 use crate::robot::Robot;
@@ -16,8 +16,9 @@ impl Crew {
         }
     }
 
-    /// Ticks off the places where robots have arrived, and gives up on places without a route. Returns
-    /// whether no able robot is on an errand any more.
+    /// Ticks off the places where robots have arrived, and gives up on places without a route and on those to
+    /// which a robot comes no nearer, unless an event is to come that may open a way. Returns whether no able
+    /// robot is on an errand any more.
     pub(super) fn follow_errands(&mut self, scene: &mut Scene) -> bool {
         for robot in 0..scene.beliefs.team.len() {
             if self.is_on_errand(&scene.beliefs.team[robot]) {
@@ -32,23 +33,32 @@ impl Crew {
     }
 
     fn follow_errand(&mut self, id: RobotId, scene: &mut Scene) {
-        let traveller = scene.navigator.traveller(id);
-        let robot = &scene.beliefs.team[id.index()];
-        let (gives_up, is_at_place) = (scene.gives_up(id), scene.is_at_place(robot));
-        let agent = &mut self.agents[id.index()];
-        let Some(place) = agent.sweep.last().copied() else { return };
+        let (robot, traveller) = (&scene.beliefs.team[id.index()], scene.navigator.traveller(id));
+        let (position, is_at_place) = (robot.position, scene.is_at_place(robot));
+        let is_beside_place = traveller.has_arrived(position) && !is_at_place;
+        self.note_way(robot, scene);
+        if scene.awaits_opening {
+            self.agents[id.index()].progress = Progress::default();
+        }
+        let Some(place) = self.agents[id.index()].sweep.last().copied() else { return };
         if traveller.goal().is_none_or(|goal| goal.point != place) {
             return; // not yet on its way
         }
+        let cause = if is_beside_place { Some(CutOffCause::NoWay) } else { self.held_up_cause(id, scene) };
         if is_at_place {
-            agent.muster = place;
+            let agent = &mut self.agents[id.index()];
+            (agent.muster, agent.is_cut_off) = (place, false);
             scene.log.push(Event::ErrandDone { robot: id });
-        } else if gives_up || traveller.has_arrived(robot.position) {
-            agent.muster = robot.position;
+        } else if let Some(cause) = cause.filter(|_| !scene.awaits_opening) {
+            self.agents[id.index()].muster = position;
             scene.log.push(Event::Unreachable { robot: id, place: place.into() });
+            if cause == CutOffCause::NoProgress {
+                self.cut_off(id, place, cause, scene);
+            }
         } else {
             return;
         }
+        let agent = &mut self.agents[id.index()];
         agent.sweep.pop();
         if agent.sweep.is_empty() {
             agent.activity = Activity::Standby;

@@ -66,6 +66,8 @@ pub enum Ending {
     NobodyCanCarry,
     /// All errands are done or given up.
     ErrandsOver,
+    /// No round can begin, and no robot gets anywhere.
+    Standstill,
 }
 
 impl Mission {
@@ -103,6 +105,10 @@ impl Mission {
             if crew.everybody_is_home(scene) && crew.can_begin_round(scene) && !crew.rest_first(scene) {
                 self.end_round(scene);
                 return self.open_round(scene);
+            }
+            if crew.is_at_a_standstill(scene) {
+                self.ending = Some(Ending::Standstill);
+                scene.log.push(Event::Standstill);
             }
         } else {
             self.ending = Some(Ending::NobodyCanCarry);

@@ -1,4 +1,5 @@
-//! The watchdog: the team does not wait for a robot that comes no nearer to its home or its rest place.
+//! The watchdog: a robot that comes no nearer gives up on its errand, and the team does not wait for one that
+//! comes no nearer to its home or its rest place.
 
 use parry2d::math::Vector;
 use rne_core::TaskId;
@@ -7,6 +8,7 @@ use serde::{Deserialize, Serialize};
 use super::{Activity, Crew, Scene};
 use crate::event::{CutOffCause, Event};
 use crate::ids::RobotId;
+use crate::model::Model;
 use crate::robot::Robot;
 
 /// Least decrease of the remaining route that counts as coming nearer, in metres. A smaller one may be a push
@@ -80,7 +82,7 @@ impl Crew {
 
     /// Notes the remaining route of a robot. Returns whether the robot came nearer, has arrived, or has no
     /// goal.
-    fn note_way(&mut self, robot: &Robot, scene: &Scene) -> bool {
+    pub(super) fn note_way(&mut self, robot: &Robot, scene: &Scene) -> bool {
         let traveller = scene.navigator.traveller(robot.id);
         let left_m = traveller.route().map(|route| route.length(robot.position));
         let progress = &mut self.agents[robot.id.index()].progress;
@@ -94,24 +96,54 @@ impl Crew {
 
     /// Whether a robot has come no nearer to its goal for `mission.cut_off_s` plus the time that its longest
     /// detour takes.
-    pub(super) fn is_held_up(&self, robot: &Robot, scene: &Scene) -> bool {
+    pub(super) fn is_held_up(&self, robot: &Robot, model: &Model) -> bool {
+        self.is_held_up_for(model.mission.cut_off_s, robot, model)
+    }
+
+    /// The same for another time, in seconds.
+    fn is_held_up_for(&self, seconds: f64, robot: &Robot, model: &Model) -> bool {
         let progress = &self.agents[robot.id.index()].progress;
-        let rules = &scene.model.mission;
-        if progress.held_up_steps <= rules.cut_off_steps {
+        if progress.held_up_steps <= model.steps_in(seconds) {
             return false;
         }
-        let detour_s = f64::from(progress.allowed_way_m()) / self.speed_of(scene.model, robot).max(1e-6);
-        progress.held_up_steps > scene.model.steps_in(rules.cut_off_s + detour_s)
+        let detour_s = f64::from(progress.allowed_way_m()) / self.speed_of(model, robot).max(1e-6);
+        progress.held_up_steps > model.steps_in(seconds + detour_s)
+    }
+
+    /// Number of the robots that can act and stand, as far as the watchdog can tell: they have something to do,
+    /// and do not get there.
+    pub(crate) fn stalled(&self, robots: &[Robot], model: &Model) -> u32 {
+        let stands = |robot: &&Robot| {
+            let agent = &self.agents[robot.id.index()];
+            let is_held_up = || agent.activity != Activity::Standby && self.is_held_up(robot, model);
+            robot.is_able() && (agent.is_cut_off || is_held_up())
+        };
+        robots.iter().filter(stands).count() as u32
+    }
+
+    /// Whether nothing can happen any more in a mission: no round can begin, no event is to come, and every
+    /// robot that can act is at home, or has been cut off and come no nearer for as long again.
+    pub(super) fn is_at_a_standstill(&self, scene: &Scene) -> bool {
+        let stays = |robot: &Robot| {
+            let (agent, model) = (&self.agents[robot.id.index()], scene.model);
+            let is_home = || scene.navigator.traveller(robot.id).has_arrived(robot.position);
+            match agent.activity {
+                Activity::Home if is_home() => true,
+                _ => agent.is_cut_off && self.is_held_up_for(2.0 * model.mission.cut_off_s, robot, model),
+            }
+        };
+        let mut able = scene.beliefs.team.iter().filter(|robot| robot.is_able());
+        !scene.awaits_event && able.all(stays) && !self.can_begin_round(scene)
     }
 
     /// Why a robot cannot get to its goal; `None` if it has arrived or still makes progress.
-    fn held_up_cause(&self, id: RobotId, scene: &Scene) -> Option<CutOffCause> {
+    pub(super) fn held_up_cause(&self, id: RobotId, scene: &Scene) -> Option<CutOffCause> {
         let robot = &scene.beliefs.team[id.index()];
         if scene.navigator.traveller(id).has_arrived(robot.position) {
             None
         } else if scene.gives_up(id) {
             Some(CutOffCause::NoWay)
-        } else if self.is_held_up(robot, scene) {
+        } else if self.is_held_up(robot, scene.model) {
             Some(CutOffCause::NoProgress)
         } else {
             None
@@ -142,8 +174,8 @@ impl Crew {
         }
     }
 
-    /// Marks a robot for which the team no longer waits until it comes nearer. Logs this once.
-    fn cut_off(&mut self, id: RobotId, place: Vector, cause: CutOffCause, scene: &mut Scene) {
+    /// Marks a robot for which nobody waits until it comes nearer. Logs this once.
+    pub(super) fn cut_off(&mut self, id: RobotId, place: Vector, cause: CutOffCause, scene: &mut Scene) {
         if !std::mem::replace(&mut self.agents[id.index()].is_cut_off, true) {
             scene.log.push(Event::CutOff { robot: id, place: place.into(), cause });
         }

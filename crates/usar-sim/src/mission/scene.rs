@@ -26,6 +26,10 @@ pub struct Scene<'s> {
     pub log: &'s mut EventLog,
     /// Steps done.
     pub step: u64,
+    /// Whether an event of the timeline is to come.
+    pub awaits_event: bool,
+    /// Whether an event that may open a way is to come, or was just now.
+    pub awaits_opening: bool,
 }
 
 impl Scene<'_> {

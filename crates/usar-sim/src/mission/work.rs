@@ -15,7 +15,7 @@ impl Mission {
         let agent = &self.crew.agents[id.index()];
         let activity = agent.activity;
         let Some(task) = agent.task.filter(|_| robot.is_able()) else { return };
-        let is_held_up = activity.is_in_field() && self.crew.is_held_up(robot, scene);
+        let is_held_up = activity.is_in_field() && self.crew.is_held_up(robot, scene.model);
         match activity {
             Activity::Approaching(rescuee) => {
                 if is_held_up || is_out_of_reach(id, scene.place_of(id, task, rescuee), scene) {

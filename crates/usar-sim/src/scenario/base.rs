@@ -163,13 +163,13 @@ mod tests {
             1,
         );
         let base = base.replacen("rest_s: 30.0", "rest_s: rest", 1);
-        let over = "(base: \"named.ron\", name: \"over\", values: (rest: 7, far: 9), mission: (loading_s: \
+        let over = "(base: \"named.ron\", name: \"over\", values: (rest: 7, far: 5), mission: (loading_s: \
             near), roles: (carrier: (speed_mps: far)))";
         let wrong = "(base: \"named.ron\", mission: (loading_s: neer))";
         let folder = folder(&[("named.ron", &base), ("over.ron", over), ("wrong.ron", wrong)]);
         let (scenario, _) = Scenario::load(&folder.join("over.ron")).unwrap();
         let expected =
-            [("mission.rest_s", "7"), ("mission.loading_s", "3"), ("roles.carrier.speed_mps", "9")];
+            [("mission.rest_s", "7"), ("mission.loading_s", "3"), ("roles.carrier.speed_mps", "5")];
         let (base, _) = Scenario::load(&folder.join("named.ron")).unwrap();
         let mut file = (*base).clone();
         expected.iter().for_each(|(path, value)| file.set(path, value).unwrap());

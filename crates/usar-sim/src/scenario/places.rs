@@ -79,6 +79,11 @@ impl ScenarioFile {
         self.team.iter().map(|row| (self.body_of(row).unwrap_or_default(), row.count))
     }
 
+    /// Whether a robot may push debris.
+    pub(super) fn can_be_pushed(&self) -> bool {
+        self.debris.iter().any(|piece| piece.movable.is_some())
+    }
+
     /// Properties and abilities of the robots of a row: their role's, with the changes of the row. `None` if
     /// the scenario has no such role.
     #[must_use]

@@ -3,11 +3,11 @@
 use ron_tree::limits::Limit;
 
 use super::checker::{Checker, entry, is_device, meant, names, shown};
-use super::debris::debris;
+use super::debris::{ROUNDING_M, debris};
 use super::errands::{errands, places_are_free};
 use super::error::Problem;
 use super::feasibility::feasibility;
-use super::file::{Amount, Happening, Measure, NeedFile, Normal, RoleFile, ScenarioFile, TaskFile};
+use super::file::{Amount, Happening, Measure, NeedFile, Normal, RoleFile, RoleKind, ScenarioFile, TaskFile};
 use super::homes::homes_are_free;
 use super::rules::rules;
 use super::scatter::scatter;
@@ -61,6 +61,10 @@ fn of_values(file: &ScenarioFile) -> Checker {
 
 /// Longest word of a scenario's own, in bytes.
 const LONGEST_WORD: usize = 24;
+
+/// Robots that may push debris go no farther than this in a step, in metres: the engine would push light
+/// pieces into faster robots.
+const PUSHING_STEP_M: f64 = 0.12;
 
 /// Checks that each word is plain, and that no two things have one.
 fn words(check: &mut Checker, words: &Words) {
@@ -162,7 +166,7 @@ fn team(check: &mut Checker, file: &ScenarioFile) {
         };
         let radius = role.radius_m;
         if row.body.is_some() {
-            self::role(check, &format!("{field}.body"), &role, file.dt_s);
+            self::role(check, &format!("{field}.body"), &role, file);
         }
         check.number(format!("{field}.width_m"), row.width_m, limits::ROW_WIDTH_M);
         if let Some(levels) = &row.levels {
@@ -181,7 +185,7 @@ fn team(check: &mut Checker, file: &ScenarioFile) {
 fn roles(check: &mut Checker, file: &ScenarioFile) {
     names(check, "roles", file.roles.iter().map(|role| role.name.as_str()));
     for spec in &file.roles {
-        role(check, &entry("roles", &spec.name), spec, file.dt_s);
+        role(check, &entry("roles", &spec.name), spec, file);
         for name in spec.constants.keys() {
             let is_need = |need: &NeedFile| need.name == *name && need.measures == Measure::Constant;
             if !file.needs.iter().any(is_need) {
@@ -233,7 +237,7 @@ fn at_best(role: &RoleFile, need: &NeedFile) -> f64 {
     }
 }
 
-fn role(check: &mut Checker, field: &str, spec: &RoleFile, dt: f64) {
+fn role(check: &mut Checker, field: &str, spec: &RoleFile, file: &ScenarioFile) {
     check.number(format!("{field}.radius_m"), spec.radius_m, limits::ROBOT_RADIUS_M);
     check.number(format!("{field}.mass_kg"), spec.mass_kg, limits::ROBOT_MASS_KG);
     check.number(format!("{field}.hp"), spec.hp, limits::HP);
@@ -247,10 +251,17 @@ fn role(check: &mut Checker, field: &str, spec: &RoleFile, dt: f64) {
     for (name, value) in &spec.constants {
         check.number(format!("{field}.constants.{name:?}"), *value, limits::CONSTANT);
     }
-    if spec.speed_mps * dt > spec.radius_m {
+    let (dt, step_m) = (file.dt_s, spec.speed_mps * file.dt_s);
+    if step_m > spec.radius_m + ROUNDING_M {
         let rule = format!(
             "times dt_s ({dt} s) must be at most radius_m ({} m), or contacts are missed",
             spec.radius_m
+        );
+        check.fail(format!("{field}.speed_mps"), rule, spec.speed_mps);
+    } else if spec.kind == RoleKind::Ground && step_m > PUSHING_STEP_M + ROUNDING_M && file.can_be_pushed() {
+        let rule = format!(
+            "times dt_s ({dt} s) must be at most {PUSHING_STEP_M} m where debris can be pushed, or it is \
+             pushed into robots"
         );
         check.fail(format!("{field}.speed_mps"), rule, spec.speed_mps);
     }

@@ -45,6 +45,7 @@ impl Scenario {
         self.without_guide(&mut warnings);
         self.too_narrow(&mut warnings);
         self.without_effect(&mut warnings);
+        self.again(&mut warnings);
         self.paid_by_the_step(&mut warnings);
         for problem in &mut warnings {
             problem.line = tree.as_ref().and_then(|tree| tree.line(&problem.field));
@@ -131,6 +132,33 @@ impl Scenario {
                 if !door.name.as_deref().is_some_and(opens) {
                     let rule = "closes the door for good: no event opens it".to_owned();
                     say(format!("walls[{i}].doors[{k}].closed"), rule, "true".to_owned(), "");
+                }
+            }
+        }
+    }
+    /// Tasks that begin while they are open, or end while they are closed, or begin again.
+    fn again(&self, warnings: &mut Vec<Problem>) {
+        for task in &self.tasks {
+            let (mut is_open, mut was_open) = (!self.begins_later(task), false);
+            for (i, moment) in self.moments() {
+                let (begins, name) = match &moment.event {
+                    Happening::TaskBegins(name) => (true, name),
+                    Happening::TaskEnds(name) => (false, name),
+                    _ => continue,
+                };
+                if *name != task.name {
+                    continue;
+                }
+                let rule = match (begins, is_open) {
+                    (true, true) => "changes nothing: the task is open already",
+                    (false, false) => "changes nothing: the task is over already",
+                    (true, false) if was_open => "opens the task again: its own rescuees do not appear again",
+                    _ => "",
+                };
+                (is_open, was_open) = (begins, was_open || is_open);
+                if !rule.is_empty() {
+                    let (field, found) = (format!("timeline[{i}].event"), format!("{name:?}"));
+                    warnings.push(Problem { field, rule: rule.to_owned(), found, ..Problem::default() });
                 }
             }
         }

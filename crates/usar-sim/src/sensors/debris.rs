@@ -1,4 +1,5 @@
-//! The sensor of debris: pieces within the sensing range, and places from which a piece was taken away.
+//! The sensor of debris: pieces within the sensing range or in touch, and places from which a piece was taken
+//! away.
 
 use smallvec::SmallVec;
 
@@ -10,23 +11,24 @@ use crate::world::Debris;
 /// Reports pieces that lie elsewhere than they did when the belief heard of them last.
 pub(super) fn sense(view: &View, belief: &Belief, sent: &mut Vec<Report>) {
     let (debris, at) = (&view.world.debris, view.robot.position);
+    let range = view.sensing.max(view.touch());
     let has_changed = |number: usize| {
         let heard = belief.debris.get(number).map(|known| known.at_step);
         debris[number].since.last().is_some_and(|since| heard.is_none_or(|heard| heard < *since))
     };
-    let near = view.world.debris_places.near(at, view.sensing).into_iter();
+    let near = view.world.debris_places.near(at, range).into_iter();
     let mut near: SmallVec<[usize; 64]> = near.filter(|number| has_changed(*number)).collect();
     near.sort_unstable();
     for number in near {
-        if debris[number].distance_to(at) <= view.sensing {
+        if debris[number].distance_to(at) <= range {
             sent.extend(report(view, number, &debris[number]));
         }
     }
     for number in view.model.gates.iter().copied().filter(|number| has_changed(*number)) {
         // A robot notices that a piece was taken away where the piece was seen last. A piece that is in range
         // where it lies now was reported above.
-        let is_seen = debris[number].distance_to(at) <= view.sensing;
-        let was_seen = |known: &KnownDebris| known.outline().distance_to(at) <= view.sensing;
+        let is_seen = debris[number].distance_to(at) <= range;
+        let was_seen = |known: &KnownDebris| known.outline().distance_to(at) <= range;
         if !is_seen && belief.debris.get(number).is_some_and(was_seen) {
             sent.extend(report(view, number, &debris[number]));
         }

@@ -1,7 +1,7 @@
 //! Sensors: what a robot notices of the world, as reports. One file a kind.
 //!
-//! Ranges are discs that shrink with health; nothing occludes. A robot reports only what changed since the
-//! belief that it shares heard of it last.
+//! Ranges are discs that shrink with health; nothing occludes. What a robot touches it notices, whatever its
+//! range. A robot reports only what changed since the belief that it shares heard of it last.
 
 pub(crate) mod base;
 mod debris;
@@ -19,6 +19,9 @@ use crate::report::{Report, Speaker, Statement};
 use crate::robot::Robot;
 use crate::world::World;
 
+/// A robot touches what is nearer to its outline than this, in metres.
+const TOUCH_M: f32 = 0.02;
+
 /// The surroundings of one robot at one step.
 struct View<'v> {
     world: &'v World,
@@ -34,6 +37,12 @@ struct View<'v> {
 impl View<'_> {
     fn report(&self, says: Statement) -> Report {
         Report { from: Speaker::Robot(self.robot.id), says, at_step: self.step, sd_m: 0.0 }
+    }
+
+    /// Distance from its centre up to which a robot touches things, in metres; 0 for a robot that flies over
+    /// them.
+    fn touch(&self) -> f32 {
+        if self.robot.is_aerial() { 0.0 } else { self.robot.radius() + TOUCH_M }
     }
 
     fn is_in_range(&self, at: Vector) -> bool {

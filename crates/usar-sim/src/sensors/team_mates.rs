@@ -1,5 +1,7 @@
 //! The sensor of team-mates: where they are and how they move, and which have stopped for good.
 
+use parry2d::math::Vector;
+
 use super::View;
 use crate::belief::Belief;
 use crate::report::{Report, Statement, Track};
@@ -15,8 +17,10 @@ pub(crate) fn tracks(world: &World) -> impl Iterator<Item = Track> + '_ {
 pub(super) fn sense(view: &View, belief: &Belief, sent: &mut Vec<Report>) {
     for number in view.wrecks.iter().filter(|number| belief.wrecks.get(**number).is_none()) {
         let robot = &view.world.robots[*number];
-        let Some(at) = robot.wreck_at.filter(|at| view.is_in_range(*at)) else { continue };
         let (radius, is_aerial) = (robot.radius(), robot.is_aerial());
+        let touches = |at: Vector| (at - view.robot.position).length() <= view.touch() + radius;
+        let is_noticed = |at: &Vector| view.is_in_range(*at) || touches(*at);
+        let Some(at) = robot.wreck_at.filter(is_noticed) else { continue };
         sent.push(view.report(Statement::WreckLies { robot: robot.id, at, radius, is_aerial }));
     }
 }

@@ -248,6 +248,7 @@ impl Simulation {
         match self.state.mission.ending {
             Some(Ending::NobodyCanCarry) => Some(Status::NobodyCanCarry),
             Some(Ending::ErrandsOver) => Some(Status::ErrandsOver),
+            Some(Ending::Standstill) => Some(Status::Stalled),
             None => (self.state.step >= self.model().steps).then_some(Status::Completed),
         }
     }
@@ -259,7 +260,7 @@ impl Simulation {
         let status = status.unwrap_or_else(|| Status::Failed("it was not run to its end".to_owned()));
         self.state.add_link();
         let (time_s, overlaps, model) = (self.time_s(), self.overlaps(), &self.setup.model);
-        let State { world, listeners, chain, beliefs, .. } = self.state;
+        let State { world, listeners, chain, beliefs, mission, .. } = self.state;
         let Listeners { metrics, decisions } = listeners;
         let robots = world.robots.iter().zip(&metrics.robots);
         let tasks = model.tasks.iter().zip(&metrics.tasks);
@@ -277,6 +278,7 @@ impl Simulation {
             decisions,
             robots: robots.map(|(robot, tally)| RobotRecord::of(robot, tally, model)).collect(),
             counts: metrics.counts,
+            stalled: mission.crew.stalled(&world.robots, model),
             cut_off: metrics.cut_off,
             overlaps,
             state_hash: chain.digest(),

@@ -27,6 +27,9 @@ use crate::world::World;
 /// Difference between two sums of the same costs that counts as rounding, as a share.
 const COSTS_ROUNDING: f64 = 1e-9;
 
+/// A robot beside a way has seen after this time that it is open, in seconds.
+const SEEN_AFTER_S: f64 = 4.0;
+
 /// Everything that changes in a trial. Snapshots hold it, and the hash chain covers it.
 #[derive(Serialize, Deserialize)]
 pub(crate) struct State {
@@ -117,8 +120,10 @@ impl State {
 
     /// The mission, and the scene in which it decides.
     pub(super) fn scene<'s>(&'s mut self, model: &'s Model) -> (&'s mut Mission, Scene<'s>) {
-        let Self { mission, beliefs, sent, navigator, log, step, .. } = self;
-        (mission, Scene { model, beliefs, sent, navigator, log, step: *step })
+        let Self { mission, beliefs, sent, navigator, log, step, timeline, .. } = self;
+        let awaits_event = timeline.is_to_come(model);
+        let awaits_opening = timeline.opens_after(step.saturating_sub(model.steps_in(SEEN_AFTER_S)), model);
+        (mission, Scene { model, beliefs, sent, navigator, log, step: *step, awaits_event, awaits_opening })
     }
 
     /// Passes the events of this step from the `from`-th on to the metrics. Returns the number of all events.

@@ -11,7 +11,7 @@ use rne_core::{Deadline, Session};
 use serde::Serialize;
 use usar_sim::metrics::CutOff;
 use usar_sim::record::{DecisionRecord, Status, TaskRecord, TrialRecord};
-use usar_sim::scenario::{EmptyTasks, Words};
+use usar_sim::scenario::{EmptyTasks, Moment, Scenario, Words};
 use usar_sim::simulation::Simulation;
 
 use self::event_lines::EventLines;
@@ -138,7 +138,7 @@ impl Arguments {
         print(out, &record, &scenario.words)?;
         let sends = scenario.mission.empty_tasks == EmptyTasks::GetGroups;
         let finished = if sends { finished_tasks(&record) } else { Vec::new() };
-        finished.iter().try_for_each(|note| writeln!(out, "{note}"))?;
+        finished.iter().chain(&too_late(scenario, &record)).try_for_each(|note| writeln!(out, "{note}"))?;
         story.iter().try_for_each(|line| Ok(writeln!(out, "{line}")?))
     }
 
@@ -212,6 +212,17 @@ fn finished_tasks(record: &TrialRecord) -> Vec<String> {
     record.tasks.iter().enumerate().filter_map(told).collect()
 }
 
+/// Events of the timeline for which the trial was over too soon, in a sentence each.
+fn too_late(scenario: &Scenario, record: &TrialRecord) -> Vec<String> {
+    let end_s = record.time_s;
+    let is_late = |(_, moment): &(usize, &Moment)| moment.at_s > end_s && moment.at_s <= scenario.duration_s;
+    let told = |(number, moment): (usize, &Moment)| {
+        let at_s = moment.at_s;
+        format!("note: timeline[{number}], at {at_s} s, never happened: the trial was over at {end_s:.1} s")
+    };
+    scenario.moments().into_iter().filter(is_late).map(told).collect()
+}
+
 /// Prints what came of a trial as a whole.
 fn print(out: &mut dyn Write, record: &TrialRecord, words: &Words) -> Result<(), Failure> {
     let rescued = record.rescued();
@@ -261,6 +272,10 @@ fn print(out: &mut dyn Write, record: &TrialRecord, words: &Words) -> Result<(),
             out,
             "cut off      robot {robot} at {first_s:.1} s, {times} times in all: it {why} to ({x:.1}, {y:.1})"
         )?;
+    }
+    if record.stalled > 0 {
+        let robots = counted(record.stalled as usize, "robot");
+        writeln!(out, "stalled      {robots} at the end: with something to do, and no nearer to it")?;
     }
     if let Some(overlaps) = record.overlaps {
         writeln!(out, "overlaps     {overlaps}")?;

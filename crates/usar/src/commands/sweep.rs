@@ -7,6 +7,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use experiments::experiment::{Experiment, Shard};
+use experiments::metric::Values;
 use experiments::sweep::disk::trials_in;
 use experiments::sweep::folder::{Folder, Opening};
 use experiments::sweep::host::Hosts;
@@ -191,6 +192,17 @@ fn footnote(folder: &Folder) -> String {
     let experiment = folder.experiment();
     let (first, last) = (experiment.seed(1), experiment.seed(experiment.trials));
     let failed = folder.results().values().filter(|measured| measured.metrics.is_none()).count();
+    let column = experiment.metrics.named("stalled").ok();
+    let stand = |values: &Values| column.and_then(|at| values.get(at)).is_some_and(|robots| robots > 0.0);
+    let measured = folder.results().values().filter_map(|measured| measured.metrics.as_ref());
+    let stalled = measured.filter(|values| stand(values)).count();
+    let stalled = match stalled {
+        0 => String::new(),
+        _ => format!(
+            "\n{} ended with robots that had something to do and got no nearer to it: see the column stalled",
+            counted(stalled, "trial")
+        ),
+    };
     let shard = folder.manifest().shard;
     let missing = experiment.count(shard) - folder.results().len();
     let gaps = match (failed, missing) {
@@ -200,7 +212,7 @@ fn footnote(folder: &Folder) -> String {
     let part = shard.map_or(String::new(), |shard| format!(", shard {} of {}", shard.number, shard.of));
     format!(
         "mean ± sample standard deviation over {} paired trials (seeds {first} to {last}{part}); {} delivered, \
-         as ratios of sums; totals include what robots spent outside a group, on their way to rest{gaps}",
+         as ratios of sums; totals include what robots spent outside a group, on their way to rest{gaps}{stalled}",
         experiment.count(shard) / experiment.policies.len() / experiment.cases.len().max(1),
         experiment.base.words.text("energy and HP in points per rescuee"),
     )
