@@ -12,6 +12,7 @@ pub mod calibration;
 pub mod damage;
 pub mod density;
 pub mod golden;
+pub mod grid;
 pub mod journeys;
 pub mod kills;
 pub mod limits;

@@ -6,7 +6,7 @@ mod commands;
 use std::process::ExitCode;
 
 use commands::{
-    calibration, coverage, damage, golden, kills, limits, million, mutations, pages, reference, scale,
+    calibration, coverage, damage, golden, grid, kills, limits, million, mutations, pages, reference, scale,
     scenarios, soak, work, worlds,
 };
 
@@ -19,6 +19,7 @@ fn main() -> ExitCode {
         "coverage" => coverage::run(arguments),
         "damage" => damage::run(arguments),
         "golden" => golden::run(arguments),
+        "grid" => grid::run(arguments),
         "kills" => kills::run(arguments),
         "million" => million::run(arguments),
         "mutations" => mutations::run(arguments),
@@ -33,7 +34,7 @@ fn main() -> ExitCode {
         "worlds" => worlds::run(arguments),
         _ => {
             eprintln!(
-                "xtask: no task {task:?}. Tasks: calibration, coverage, damage, golden, kills, limits, \
+                "xtask: no task {task:?}. Tasks: calibration, coverage, damage, golden, grid, kills, limits, \
                  million, mutations, navigation, pages, reference, scale, scenarios, soak, work, worlds"
             );
             ExitCode::from(2)

@@ -153,7 +153,7 @@ impl<B, S: Fn(&Robot) -> f64> Wayfinder<'_, '_, B, S> {
         let news = belief.news_since(traveller.seen);
         traveller.seen = belief.seen();
         let (replan, effect) = match &traveller.route {
-            None if news.is_empty() => (check_due, Effect::None),
+            None if news.is_empty() => (check_due && !traveller.is_lost_at(robot.position), Effect::None),
             None => (true, Effect::Cheaper),
             Some(route) => {
                 let effect = self.effect(news, route);

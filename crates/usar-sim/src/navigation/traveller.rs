@@ -45,6 +45,9 @@ pub struct Traveller {
     stalled_steps: u64,
     /// Steps since the robot last knew a route.
     lost_steps: u64,
+    /// Where it last found no route. From there it finds none as long as it hears of nothing new.
+    #[serde(skip)]
+    lost_at: Option<Vector>,
 }
 
 impl Traveller {
@@ -58,6 +61,7 @@ impl Traveller {
             best_length: f32::INFINITY,
             stalled_steps: 0,
             lost_steps: 0,
+            lost_at: None,
         }
     }
 
@@ -104,6 +108,11 @@ impl Traveller {
         self.lost_steps
     }
 
+    /// Whether a robot without a route found none from this very place.
+    pub(super) fn is_lost_at(&self, position: Vector) -> bool {
+        self.lost_at == Some(position)
+    }
+
     /// The next attempt of a robot that comes no nearer to its goal, if an attempt is due.
     pub(super) fn attempt(&self, detour_steps: u64) -> Option<Attempt> {
         if self.stalled_steps == 0 || !self.stalled_steps.is_multiple_of(detour_steps) {
@@ -129,6 +138,7 @@ impl Traveller {
             self.best_length = route.length(position);
             self.stalled_steps = 0;
         }
+        self.lost_at = if route.is_some() { None } else { Some(position) };
         self.route = route;
         self.is_planned = true;
     }

@@ -4,6 +4,7 @@ pub mod calibration;
 pub mod coverage;
 pub mod damage;
 pub mod golden;
+pub mod grid;
 pub mod kills;
 pub mod limits;
 pub mod million;

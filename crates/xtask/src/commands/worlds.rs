@@ -77,6 +77,7 @@ struct Totals {
     refused: u32,
     standstills: u32,
     cut_off: usize,
+    stalled: u32,
     undone: u32,
     longest: f64,
 }
@@ -105,6 +106,12 @@ impl Totals {
             self.stalls += 1;
             println!("{} {seed}: {stall}", self.family);
         }
+        if record.stalled > 0 {
+            self.stalled += 1;
+            let causes = record.cut_off.iter().map(|cut| format!("robot {} {}", cut.robot, cut.cause.name()));
+            let causes: Vec<String> = causes.collect();
+            println!("{} {seed}: {} robots stalled: {}", self.family, record.stalled, causes.join(", "));
+        }
         self.longest = self.longest.max(journeys.standstill_s);
         if journeys.standstill_s > STANDSTILL_S {
             self.standstills += 1;
@@ -123,9 +130,9 @@ impl Totals {
         println!(
             "{family}: {count} worlds, {robots} robots: {violations} violations, {internal} internal errors, \
              {refused} other failures, {standstills} fleets that stood for {STANDSTILL_S} s (longest {:.1} \
-             s), {stalls} robots ({share:.2} %) without progress for 30 s, {} cut off, {} worlds with \
-             errands left",
-            self.longest, self.cut_off, self.undone
+             s), {stalls} robots ({share:.2} %) without progress for 30 s, {} cut off, {} stalled trials, {} \
+             worlds with errands left",
+            self.longest, self.cut_off, self.stalled, self.undone
         );
         violations + internal + refused + standstills == 0 && share <= 1.0
     }
