@@ -1,6 +1,6 @@
 //! Where results come from: enough to reproduce them, and to refuse to mix them with other results.
 
-use ron_tree::Node;
+use ron_tree::{Node, without_types};
 use serde::{Deserialize, Serialize};
 use store::files::FileHash;
 use store::{Failure, refuse};
@@ -109,11 +109,12 @@ impl Manifest {
         struct Layout {
             schema_version: u32,
         }
-        let Layout { schema_version: found } = serde_json::from_slice(text).map_err(Failure::input)?;
+        let wrong = |error: serde_json::Error| Failure::input(without_types(&error));
+        let Layout { schema_version: found } = serde_json::from_slice(text).map_err(wrong)?;
         if found != SCHEMA_VERSION {
             refuse!("its layout has version {found}; this program reads version {SCHEMA_VERSION}");
         }
-        let mut manifest: Self = serde_json::from_slice(text).map_err(Failure::input)?;
+        let mut manifest: Self = serde_json::from_slice(text).map_err(wrong)?;
         if manifest.text()?.as_bytes() != text {
             refuse!("its checksum does not match: it was changed");
         }

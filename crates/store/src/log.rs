@@ -6,6 +6,7 @@ use std::io::{self, BufRead, BufReader, ErrorKind, Read, SeekFrom};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use ron_tree::without_types;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
@@ -173,7 +174,7 @@ pub fn count(path: &Path) -> io::Result<usize> {
 
 fn collect<T: DeserializeOwned>(entries: &mut Vec<T>) -> impl FnMut(&Line) -> Result<(), Box<dyn Error>> {
     |line| {
-        entries.push(serde_json::from_slice(line.entry)?);
+        entries.push(serde_json::from_slice(line.entry).map_err(|error| without_types(&error))?);
         Ok(())
     }
 }
