@@ -62,6 +62,11 @@ pub struct Manifest {
     checksum: String,
 }
 
+/// A part of a sweep, in words.
+pub(crate) fn part(shard: Option<Shard>) -> String {
+    shard.map_or("whole".into(), |shard| format!("shard {}/{}", shard.number, shard.of))
+}
+
 impl Manifest {
     /// The manifest of an experiment that is not complete yet.
     #[must_use]
@@ -137,7 +142,7 @@ impl Manifest {
     /// Which part of the sweep this is, in words.
     #[must_use]
     pub fn part(&self) -> String {
-        self.shard.map_or("whole".into(), |shard| format!("shard {}/{}", shard.number, shard.of))
+        part(self.shard)
     }
 
     /// The program that made the results.

@@ -21,9 +21,9 @@ use crate::words::{Names, ToldEvent};
 const MOST_INFLATED: u64 = 512 << 20;
 
 /// A step is shorter than this, in seconds.
-const LONGEST_STEP_S: f64 = 1e6;
+const LONGEST_STEP_S: f64 = 1.0;
 
-/// A recording begins and has its frames at smaller numbers of steps than this.
+/// A recording begins, has its frames and tells its events at smaller numbers of steps than this.
 const MOST_STEPS: u64 = 1 << 32;
 
 /// A recording that was read from a file.
@@ -138,11 +138,13 @@ impl Recording {
                 let Events { events } = json(chunk, &content)?;
                 let tables = self.header.world.tables();
                 events.iter().try_for_each(|(_, event)| tables.check_event(event)).map_err(misfit)?;
+                check_steps(events.iter().map(|(step, _)| *step)).map_err(misfit)?;
                 self.events.extend(events);
             }
             Kind::Decision => {
                 let decided: TimedDecision = json(chunk, &content)?;
                 decided.check(&self.header.world.tables()).map_err(misfit)?;
+                check_steps([decided.step].into_iter()).map_err(misfit)?;
                 self.decisions.push(decided);
             }
             Kind::Segment => {
@@ -204,6 +206,13 @@ impl Recording {
         let frame = (steps / steps_per_frame as f64).floor().max(0.0) as usize;
         frame.min(self.frames().saturating_sub(1))
     }
+}
+
+fn check_steps(mut steps: impl Iterator<Item = u64>) -> Result<(), Box<Problem>> {
+    let wrong = steps.find(|step| *step >= MOST_STEPS);
+    wrong.map_or(Ok(()), |step| {
+        Err(Box::new(Problem::new("step", format!("must be below {MOST_STEPS}"), step)))
+    })
 }
 
 fn header(chunk: &Chunk) -> Result<Header, ReadError> {

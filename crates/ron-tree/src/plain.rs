@@ -32,7 +32,15 @@ const TYPES: [(&str, &str); 3] =
     [("struct", "an object"), ("enum", "one of the known forms"), ("variant", "one of the known forms")];
 
 /// Words that may stand before those.
-const KINDS: [&str; 7] = ["tuple", "unit", "newtype", "untagged", "internally", "adjacently", "tagged"];
+const KINDS: [&str; 8] =
+    ["tuple", "struct", "unit", "newtype", "untagged", "internally", "adjacently", "tagged"];
+
+/// Names of the program's numbers, by their first letters, and what they are in a file.
+fn number(word: &str) -> Option<&'static str> {
+    let size = word.strip_prefix(['u', 'i', 'f'])?;
+    let is_number = size == "size" || size.parse().is_ok_and(|bits: u8| bits.is_power_of_two() && bits >= 8);
+    is_number.then_some(if word.starts_with('f') { "a number" } else { "a whole number" })
+}
 
 /// The message of an error of JSON without the names of the program's types.
 ///
@@ -49,7 +57,8 @@ pub fn without_types(message: &impl ToString) -> String {
     while let Some(word) = words.next() {
         let is_named = words.peek().is_some_and(|name| name.starts_with(char::is_uppercase));
         let Some((_, means)) = TYPES.iter().find(|(kind, _)| *kind == word && is_named) else {
-            plain.push(word);
+            let is_expected = plain.last() == Some(&"expected");
+            plain.push(number(word).filter(|_| is_expected).unwrap_or(word));
             continue;
         };
         words.next();
@@ -68,8 +77,10 @@ mod tests {
     #[test]
     fn no_name_of_a_type_is_left() {
         for (message, plain) in [
+            ("expected u32 at line 1", "expected a whole number at line 1"),
             ("expected struct World with 3 elements", "expected an object with 3 elements"),
             ("expected tuple variant Event::Fell", "expected one of the known forms"),
+            ("expected struct variant Event::Fell", "expected one of the known forms"),
             (
                 "did not match any variant of untagged enum Stored",
                 "did not match any variant of one of the known forms",
