@@ -32,7 +32,7 @@ impl Tally {
     /// Reads something, and checks how it is refused if it is.
     fn note<E: Display>(&mut self, what: &str, read: impl FnOnce() -> Result<(), E>) {
         match catch_unwind(AssertUnwindSafe(read)) {
-            Err(_) => panic!("{what}: the reader panicked"),
+            Err(panic) => panic!("{what}: the reader panicked: {}", experiments::panic_message(&*panic)),
             Ok(Ok(())) => self.read += 1,
             Ok(Err(error)) => {
                 let said = error.to_string();
@@ -56,7 +56,7 @@ fn read_folder(path: &Path, number: u64) -> Result<(), Failure> {
     let wanted = Wanted::of(folder.experiment())?;
     let metrics: Vec<usize> = (0..folder.experiment().metrics.len()).collect();
     compare(&folder, &metrics, wanted.asked.choice())?;
-    if number % 4 == 0 {
+    if number.is_multiple_of(4) {
         write_report(&mut folder, wanted)?;
     }
     strange_files(&mut folder)?;
