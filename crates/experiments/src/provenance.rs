@@ -1,6 +1,6 @@
 //! Where results come from: enough to reproduce them, and to refuse to mix them with other results.
 
-use ron_tree::Node;
+use ron_tree::{Node, without_types};
 use serde::{Deserialize, Serialize};
 use store::files::FileHash;
 use store::{Failure, refuse};
@@ -62,6 +62,11 @@ pub struct Manifest {
     checksum: String,
 }
 
+/// A part of a sweep, in words.
+pub(crate) fn part(shard: Option<Shard>) -> String {
+    shard.map_or("whole".into(), |shard| format!("shard {}/{}", shard.number, shard.of))
+}
+
 impl Manifest {
     /// The manifest of an experiment that is not complete yet.
     #[must_use]
@@ -109,11 +114,12 @@ impl Manifest {
         struct Layout {
             schema_version: u32,
         }
-        let Layout { schema_version: found } = serde_json::from_slice(text).map_err(Failure::input)?;
+        let wrong = |error: serde_json::Error| Failure::input(without_types(&error));
+        let Layout { schema_version: found } = serde_json::from_slice(text).map_err(wrong)?;
         if found != SCHEMA_VERSION {
             refuse!("its layout has version {found}; this program reads version {SCHEMA_VERSION}");
         }
-        let mut manifest: Self = serde_json::from_slice(text).map_err(Failure::input)?;
+        let mut manifest: Self = serde_json::from_slice(text).map_err(wrong)?;
         if manifest.text()?.as_bytes() != text {
             refuse!("its checksum does not match: it was changed");
         }
@@ -136,7 +142,7 @@ impl Manifest {
     /// Which part of the sweep this is, in words.
     #[must_use]
     pub fn part(&self) -> String {
-        self.shard.map_or("whole".into(), |shard| format!("shard {}/{}", shard.number, shard.of))
+        part(self.shard)
     }
 
     /// The program that made the results.

@@ -2,6 +2,8 @@
 
 use std::fmt::{self, Display, Write};
 
+use ron_tree::visible;
+
 /// A position on the sheet, in pixels from its upper left corner.
 pub(crate) type At = [f64; 2];
 
@@ -17,12 +19,13 @@ impl Display for Num {
     }
 }
 
-/// Escapes a text for SVG. Markup characters are escaped, and characters that SVG forbids become U+FFFD.
+/// Escapes a text for SVG. Markup characters are escaped, characters that act unseen are written by their
+/// numbers, and characters that SVG forbids become U+FFFD.
 pub(crate) struct Escaped<'t>(pub &'t str);
 
 impl Display for Escaped<'_> {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for c in self.0.chars() {
+        for c in visible(self.0).chars() {
             match c {
                 '&' => out.write_str("&amp;")?,
                 '<' => out.write_str("&lt;")?,
@@ -151,7 +154,7 @@ mod tests {
         let text = [1.0, 0.126, -0.001, f64::NAN, 1234.5].map(|value| Num(value).to_string());
         assert_eq!(text, ["1", "0.13", "0", "0", "1234.5"]);
         let escaped = Escaped("<script>\u{1b}&\"\u{0}").to_string();
-        assert_eq!(escaped, "&lt;script&gt;\u{fffd}&amp;&quot;\u{fffd}");
+        assert_eq!(escaped, "&lt;script&gt;\\u{1b}&amp;&quot;\\u{0}");
         let mut path = Path::default();
         path.line([[0.0, 1.0], [2.0, 3.456]]);
         path.square([5.0, 5.0], 1.0);

@@ -29,6 +29,7 @@
 
 mod chunk;
 mod error;
+mod fits;
 mod frame;
 mod header;
 mod needs;

@@ -1,15 +1,17 @@
 //! Reads recordings.
 
 use rne_core::{Decision, Member, Question};
+use ron_tree::{Problem, without_types};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use usar_sim::event::Event;
+use usar_sim::fit::is_result;
 use usar_sim::record::TrialRecord;
 
 use crate::chunk::{Chunk, Chunks, Kind};
 use crate::error::ReadError;
 use crate::frame::{Frame, Motion, Stored};
-use crate::header::{Header, RobotPlace, TaskPlace, VERSION, World};
+use crate::header::{Header, VERSION};
 use crate::rows::STREAMS;
 use crate::segment::Segment;
 use crate::trust::Trust;
@@ -19,7 +21,10 @@ use crate::words::{Names, ToldEvent};
 const MOST_INFLATED: u64 = 512 << 20;
 
 /// A step is shorter than this, in seconds.
-const LONGEST_STEP_S: f64 = 1e6;
+const LONGEST_STEP_S: f64 = 1.0;
+
+/// A recording begins, has its frames and tells its events at smaller numbers of steps than this.
+const MOST_STEPS: u64 = 1 << 32;
 
 /// A recording that was read from a file.
 #[derive(Debug, Clone, PartialEq)]
@@ -72,7 +77,7 @@ struct Version {
 }
 
 fn json<T: DeserializeOwned>(chunk: &Chunk, content: &[u8]) -> Result<T, ReadError> {
-    serde_json::from_slice(content).map_err(|error| chunk.damaged(error.to_string()))
+    serde_json::from_slice(content).map_err(|error| chunk.damaged(without_types(&error)))
 }
 
 impl Recording {
@@ -126,17 +131,33 @@ impl Recording {
         if self.summary.is_some() {
             return Err(chunk.damaged("comes after the end of the recording"));
         }
+        let misfit = |problem: Box<Problem>| chunk.damaged(problem.to_string());
         match chunk.kind {
             Kind::Header => return Err(chunk.damaged("is a second header")),
-            Kind::Events => self.events.extend(json::<Events>(chunk, &content)?.events),
-            Kind::Decision => self.decisions.push(json(chunk, &content)?),
+            Kind::Events => {
+                let Events { events } = json(chunk, &content)?;
+                let tables = self.header.world.tables();
+                events.iter().try_for_each(|(_, event)| tables.check_event(event)).map_err(misfit)?;
+                check_steps(events.iter().map(|(step, _)| *step)).map_err(misfit)?;
+                self.events.extend(events);
+            }
+            Kind::Decision => {
+                let decided: TimedDecision = json(chunk, &content)?;
+                decided.check(&self.header.world.tables()).map_err(misfit)?;
+                check_steps([decided.step].into_iter()).map_err(misfit)?;
+                self.decisions.push(decided);
+            }
             Kind::Segment => {
                 let world = &self.header.world;
                 let segment = Segment::read(&content, world.robots.len(), world.rows());
                 let segment = segment.ok().filter(|segment| segment.first_frame == self.frames());
                 self.segments.push(segment.ok_or_else(|| chunk.damaged("does not hold the next frames"))?);
             }
-            Kind::Summary => self.summary = Some(json(chunk, &content)?),
+            Kind::Summary => {
+                let summary: TrialRecord = json(chunk, &content)?;
+                self.header.world.tables().check_record(&summary).map_err(misfit)?;
+                self.summary = Some(summary);
+            }
         }
         Ok(())
     }
@@ -187,6 +208,13 @@ impl Recording {
     }
 }
 
+fn check_steps(mut steps: impl Iterator<Item = u64>) -> Result<(), Box<Problem>> {
+    let wrong = steps.find(|step| *step >= MOST_STEPS);
+    wrong.map_or(Ok(()), |step| {
+        Err(Box::new(Problem::new("step", format!("must be below {MOST_STEPS}"), step)))
+    })
+}
+
 fn header(chunk: &Chunk) -> Result<Header, ReadError> {
     if chunk.kind != Kind::Header {
         return Err(chunk.damaged("must be the header"));
@@ -201,51 +229,11 @@ fn header(chunk: &Chunk) -> Result<Header, ReadError> {
     let streams = header.streams.iter().map(|(name, _)| name.as_str()).eq(STREAMS);
     let fields = header.motion_fields == Motion::NAMES;
     let is_known = streams && fields && header.codes.are_known();
-    let is_timed = header.dt_s > 0.0 && header.dt_s < LONGEST_STEP_S && header.duration_s.is_finite();
-    let is_counted = is_timed && header.steps_per_frame > 0 && header.frames_per_segment > 0;
-    let is_sound = is_counted && fits(&header.world) && rows == header.world.rows();
+    let is_timed = header.dt_s > 0.0 && header.dt_s < LONGEST_STEP_S && is_result(header.duration_s);
+    let is_counted = is_timed
+        && (1..MOST_STEPS).contains(&header.steps_per_frame)
+        && header.first_step < MOST_STEPS
+        && header.frames_per_segment > 0;
+    let is_sound = is_counted && header.world.fits() && rows == header.world.rows();
     if is_known && is_sound { Ok(header) } else { Err(chunk.damaged("its tables do not fit each other")) }
-}
-
-/// Whether the tables of a world name only what is there: roles, rest places of each task, and rescuees.
-fn fits(world: &World) -> bool {
-    let of_robot =
-        |robot: &RobotPlace| robot.role < world.roles.len() && robot.rest.len() == world.tasks.len();
-    let of_task = |task: &TaskPlace| {
-        task.first_rescuee.checked_add(task.rescuees).is_some_and(|end| end <= world.rescuees.len())
-    };
-    let is_there = |numbers: &[usize], count: usize| numbers.iter().all(|number| *number < count);
-    world.robots.iter().all(of_robot)
-        && world.tasks.iter().all(of_task)
-        && is_there(&world.debris_later, world.debris.len())
-        && is_there(&world.zones_later, world.zones.len())
-        && is_there(&world.rescuees_later, world.rescuees.len())
-}
-
-#[cfg(test)]
-mod tests {
-    use usar_sim::scenario::Scenario;
-    use usar_sim::simulation::Simulation;
-
-    use super::*;
-
-    #[test]
-    fn a_world_names_only_what_is_there() {
-        let text = include_str!("../../../scenarios/gallery/one-task.ron");
-        let scenario = Scenario::parse(text, "one-task.ron".as_ref()).unwrap();
-        let sound = World::of(&Simulation::new(&scenario, 1).unwrap());
-        assert!(fits(&sound));
-        let changes: [fn(&mut World); 5] = [
-            |world| world.robots[0].role = world.roles.len(),
-            |world| world.robots[0].rest.clear(),
-            |world| world.tasks[0].first_rescuee = usize::MAX,
-            |world| world.tasks.clear(),
-            |world| world.rescuees_later.push(world.rescuees.len()),
-        ];
-        for change in changes {
-            let mut world = sound.clone();
-            change(&mut world);
-            assert!(!fits(&world));
-        }
-    }
 }

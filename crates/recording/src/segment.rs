@@ -158,27 +158,43 @@ impl Segment {
         let column = |i: usize| read_column(&mut numbers, frames, i % Motion::NAMES.len() < POSITIONS);
         let columns = (0..count).map(column).collect::<Result<_, _>>()?;
         let mut stream = |rows: usize| (0..rows).map(|_| read_row(&mut numbers, frames)).collect();
-        let rows = rows.iter().map(|rows| stream(*rows)).collect::<Result<_, _>>()?;
-        let segment = Self { first_frame, frames, columns, rows };
+        let read = rows.iter().map(|rows| stream(*rows)).collect::<Result<_, _>>()?;
+        let segment = Self { first_frame, frames, columns, rows: read };
         if numbers.left() > 0 || segment.rows.len() != STREAMS.len() {
             return Err(NotNumbers);
         }
-        segment.check_entries()?;
+        segment.check_entries(rows)?;
         Ok(segment)
     }
 
-    /// Checks that every entry is valid, so that every frame can be read.
-    fn check_entries(&self) -> Result<(), NotNumbers> {
+    /// Checks that every entry is valid, so that every frame can be read, and names only robots, rescuees, debris
+    /// and tasks that are there. A group may know of zones that are not there.
+    fn check_entries(&self, counts: [usize; STREAMS.len()]) -> Result<(), NotNumbers> {
+        let [robots, _, rescuees, debris, groups, _] = counts;
+        let is_there = |numbers: &[Option<u32>], count: usize| {
+            numbers.iter().flatten().all(|number| (*number as usize) < count)
+        };
         for (stream, rows) in self.rows.iter().enumerate() {
             for (_, entry) in rows.iter().flatten() {
-                match stream {
-                    0 => RobotState::read(entry).map(drop),
-                    1 => Route::read(entry).map(drop),
-                    RESCUEES => RescueeFrame::read(entry).map(drop),
-                    3 => MovedDebris::read(entry).map(drop),
-                    4 => GroupFrame::read(entry).map(drop),
-                    _ => read_sets(entry).map(drop),
-                }?;
+                let are_there = match stream {
+                    0 => {
+                        let RobotState { rescuee, waits_for, task, .. } = RobotState::read(entry)?;
+                        is_there(&[rescuee], rescuees)
+                            && is_there(&[waits_for], robots)
+                            && is_there(&[task], groups - 1)
+                    }
+                    1 => Route::read(entry).map(|_| true)?,
+                    RESCUEES => is_there(&[RescueeFrame::read(entry)?.robot], robots),
+                    3 => MovedDebris::read(entry).map(|_| true)?,
+                    4 => {
+                        let known = GroupFrame::read(entry)?.debris;
+                        known.iter().all(|(piece, _)| is_there(&[Some(*piece)], debris))
+                    }
+                    _ => read_sets(entry)?.iter().flatten().all(|robot| is_there(&[Some(*robot)], robots)),
+                };
+                if !are_there {
+                    return Err(NotNumbers);
+                }
             }
         }
         Ok(())

@@ -141,13 +141,13 @@ pub(crate) fn write_case(
     if let Some(title) = &wanted.title {
         page.title = title;
     }
-    files.add(file, page.render().map_err(Failure::run)?.as_bytes())?;
+    files.add(file, &page.render().map_err(Failure::run)?)?;
     for Figure { name, svg, csv, .. } in figures {
-        files.add(format!("{PLOTS}/{prefix}{name}.svg"), svg.as_bytes())?;
-        files.add(format!("{PLOTS}/{prefix}{name}.csv"), csv.as_bytes())?;
+        files.add(format!("{PLOTS}/{prefix}{name}.svg"), &svg)?;
+        files.add(format!("{PLOTS}/{prefix}{name}.csv"), &csv)?;
     }
     for Map { name, svg, .. } in maps {
-        files.add(format!("{PLOTS}/{prefix}{name}.svg"), svg.as_bytes())?;
+        files.add(format!("{PLOTS}/{prefix}{name}.svg"), &svg)?;
     }
     let mut replays = shown.into_iter().filter_map(|trial| trial.replay);
     replays.try_for_each(|(name, content)| files.add(format!("{PLOTS}/{name}"), &content))

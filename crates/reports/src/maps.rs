@@ -15,7 +15,7 @@ pub struct ShownTrial {
     /// Its recording.
     pub recording: Recording,
     /// Its replay: name and content of the file beside the report's figures.
-    pub replay: Option<(String, Vec<u8>)>,
+    pub replay: Option<(String, String)>,
 }
 
 /// A map in the report.

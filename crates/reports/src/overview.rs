@@ -123,10 +123,10 @@ pub(crate) fn write_overview(
         limit: limit_of_changes(&effects, &changes),
         figures: &figures,
     };
-    files.add(REPORT.to_owned(), overview.render().map_err(Failure::run)?.as_bytes())?;
+    files.add(REPORT.to_owned(), &overview.render().map_err(Failure::run)?)?;
     for Figure { name, svg, csv, .. } in figures {
-        files.add(format!("{PLOTS}/{name}.svg"), svg.as_bytes())?;
-        files.add(format!("{PLOTS}/{name}.csv"), csv.as_bytes())?;
+        files.add(format!("{PLOTS}/{name}.svg"), &svg)?;
+        files.add(format!("{PLOTS}/{name}.csv"), &csv)?;
     }
     Ok(())
 }

@@ -282,8 +282,10 @@ impl Decision {
     /// Text that is not the JSON of a decision, or another version.
     pub fn from_json(text: &str) -> Result<Self, crate::error::QuestionError> {
         use crate::error::QuestionError;
-        let mut decision: Self = serde_json::from_str(text)
-            .map_err(|error| QuestionError::Json { what: "decision", reason: error.to_string() })?;
+        let mut decision: Self = serde_json::from_str(text).map_err(|error| QuestionError::Json {
+            what: "decision",
+            reason: ron_tree::without_types(&error),
+        })?;
         let others = decision.alternatives.iter_mut().map(|other| &mut other.assignment);
         let all = std::iter::once(&mut decision.assignment).chain(others);
         all.for_each(|assignment| *assignment = std::mem::take(assignment).sorted());

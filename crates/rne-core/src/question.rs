@@ -271,8 +271,10 @@ impl Question {
     /// # Errors
     /// Text that is not the JSON of a question, or a question that [`Question::checked`] refuses.
     pub fn from_json(text: &str) -> Result<Self, QuestionError> {
-        let question: Self = serde_json::from_str(text)
-            .map_err(|error| QuestionError::Json { what: "question", reason: error.to_string() })?;
+        let question: Self = serde_json::from_str(text).map_err(|error| QuestionError::Json {
+            what: "question",
+            reason: ron_tree::without_types(&error),
+        })?;
         question.checked()
     }
 

@@ -33,5 +33,5 @@ mod medium;
 pub mod owned;
 
 pub use failure::{Failure, at};
-pub use log::{Header, LINE_BYTES, Line, LineError, Log, checked, count, entry_of, read};
+pub use log::{Header, LINE_BYTES, Line, LineError, Log, checked, entry_of, read};
 pub use medium::Medium;

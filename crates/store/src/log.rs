@@ -2,10 +2,11 @@
 
 use std::error::Error;
 use std::fs::File;
-use std::io::{self, BufRead, BufReader, ErrorKind, Read, SeekFrom};
+use std::io::{self, BufRead, BufReader, Read, SeekFrom};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use ron_tree::without_types;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
@@ -150,30 +151,9 @@ pub fn read<T: DeserializeOwned>(path: &Path, header: &Header) -> Result<Vec<T>,
     Ok(entries)
 }
 
-/// Number of complete entries of a log; their checksums are not looked at. A missing file has none.
-///
-/// # Errors
-/// The file cannot be read.
-pub fn count(path: &Path) -> io::Result<usize> {
-    let mut reader = match files::open(path) {
-        Err(error) if error.kind() == ErrorKind::NotFound => return Ok(0),
-        opened => BufReader::with_capacity(1 << 16, opened?),
-    };
-    let mut lines = 0_usize;
-    loop {
-        let buffer = reader.fill_buf()?;
-        if buffer.is_empty() {
-            return Ok(lines.saturating_sub(1));
-        }
-        lines += buffer.split(|byte| *byte == b'\n').count() - 1;
-        let size = buffer.len();
-        reader.consume(size);
-    }
-}
-
 fn collect<T: DeserializeOwned>(entries: &mut Vec<T>) -> impl FnMut(&Line) -> Result<(), Box<dyn Error>> {
     |line| {
-        entries.push(serde_json::from_slice(line.entry)?);
+        entries.push(serde_json::from_slice(line.entry).map_err(|error| without_types(&error))?);
         Ok(())
     }
 }

@@ -168,7 +168,7 @@ pub fn write_page(
     };
     let page = page.render().map_err(Failure::run)?;
     let mut report = Report::of(out);
-    report.add(REPORT.to_owned(), page.as_bytes())?;
+    report.add(REPORT.to_owned(), &page)?;
     report.write()?;
     Ok(out.join(REPORT))
 }

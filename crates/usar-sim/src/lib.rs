@@ -20,6 +20,7 @@
 pub mod belief;
 pub mod conflict;
 pub mod event;
+pub mod fit;
 pub mod geometry;
 pub mod hash;
 pub mod ids;

@@ -1,25 +1,10 @@
 //! Makes text safe to print, and as wide as the terminal: no character of it can control the terminal, and
 //! sentences fold between words.
 
-use std::borrow::Cow;
 use std::io::{self, Write};
 
+use ron_tree::visible;
 use textwrap::{Options, WordSplitter};
-
-/// Whether a character would control a terminal, or change the direction in which text is read.
-fn is_command(c: char) -> bool {
-    let turns = matches!(c, '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
-    (c.is_control() && c != '\n' && c != '\t') || turns
-}
-
-/// The text with every such character replaced by its number, for example `\u{1b}`.
-pub(crate) fn printable(text: &str) -> Cow<'_, str> {
-    if !text.contains(is_command) {
-        return Cow::Borrowed(text);
-    }
-    let escaped = |c: char| if is_command(c) { format!("\\u{{{:x}}}", c as u32) } else { c.to_string() };
-    Cow::Owned(text.chars().map(escaped).collect())
-}
 
 /// A number of things: `1 case`, `2 cases`, `3 policies`.
 pub(crate) fn counted(count: usize, thing: &str) -> String {
@@ -53,7 +38,7 @@ pub(crate) fn folded(line: &str, columns: usize) -> String {
     textwrap::fill(line, options)
 }
 
-/// Passes text on after making it [`printable`], and sentences after they are [`folded`].
+/// Passes text on with every character [`visible`], and sentences after they are [`folded`].
 pub(crate) struct Printable<W> {
     to: W,
     /// Columns of the terminal; `None` for what is not read there.
@@ -85,7 +70,7 @@ impl<W: Write> Printable<W> {
             _ => text.len(),
         };
         for line in text[..whole].split_inclusive('\n') {
-            let line = printable(line);
+            let line = visible(line);
             match self.columns {
                 Some(columns) => self.to.write_all(folded(&line, columns).as_bytes())?,
                 None => self.to.write_all(line.as_bytes())?,

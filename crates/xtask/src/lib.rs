@@ -7,6 +7,7 @@
     reason = "these are parts of tests: they panic where something is not as it must be"
 )]
 
+pub mod bend;
 pub mod calibrated;
 pub mod calibration;
 pub mod damage;

@@ -6,7 +6,7 @@ use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 use rne_core::TaskId;
 use usar_sim::ids::RobotId;
-use usar_sim::model::rest_slot;
+use usar_sim::model::RestSlots;
 use usar_sim::scenario::{
     DebrisFile, DebrisShape, Errand, Movable, Point, Row, Scenario, ScenarioFile, TaskFile,
 };
@@ -102,8 +102,9 @@ fn mission(mut file: ScenarioFile, draws: &mut ChaCha8Rng, kinds: &[FreeSpace; 2
         });
     }
     let scenario = Scenario::try_from(file.clone()).ok()?;
+    let slots = RestSlots::of(&scenario);
     for (task, number) in file.tasks.iter_mut().zip(0..) {
-        let from = |robot| rest_slot(&scenario, TaskId(number), RobotId(robot));
+        let from = |robot| slots.at(TaskId(number), RobotId(robot));
         let offsets: Vec<Point> = (0..scenario.robots())
             .map(|robot| {
                 [f64::from(from(robot).x) - task.center[0], f64::from(from(robot).y) - task.center[1]]

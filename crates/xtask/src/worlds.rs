@@ -12,7 +12,7 @@ use rand::rngs::ChaCha8Rng;
 use rne_core::TaskId;
 use usar_sim::geometry::Outline;
 use usar_sim::ids::RobotId;
-use usar_sim::model::rest_slot;
+use usar_sim::model::RestSlots;
 use usar_sim::scenario::{
     ConflictRules, Costs, DebrisFile, DebrisShape, Draws, Errand, InitialLevels, MissionRules, Movable,
     Normal, PlanningRules, Point, Row, Sampled, Scenario, ScenarioFile, TaskFile, Words, ZoneFile,
@@ -121,7 +121,8 @@ fn mission(seed: u64, draws: &mut ChaCha8Rng) -> Option<ScenarioFile> {
     let file = ScenarioFile { team, tasks, debris, radiation, ..base(seed, arena, 300.0) };
     let free = FreeSpace::new(arena, &file.debris);
     let scenario = Scenario::try_from(file.clone()).ok()?;
-    let slots = (0..robots).flat_map(|i| [0, 1].map(|task| rest_slot(&scenario, TaskId(task), RobotId(i))));
+    let slots = RestSlots::of(&scenario);
+    let slots = (0..robots).flat_map(|i| [0, 1].map(|task| slots.at(TaskId(task), RobotId(i))));
     let slots = slots.map(|slot| [f64::from(slot.x), f64::from(slot.y)]);
     let homes = file.team.iter().flat_map(Row::places);
     let centers = file.tasks.iter().map(|task| task.center);

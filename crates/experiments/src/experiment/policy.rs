@@ -3,7 +3,7 @@
 use std::fmt;
 
 use rne_core::{MadeMeasure, MadePolicy, Registry};
-use ron_tree::{Node, Value, nearest};
+use ron_tree::{Node, Value, is_unseen, nearest};
 use usar_sim::scenario::{Scenario, is_mistaken};
 
 use crate::oracle;
@@ -145,7 +145,7 @@ pub(crate) fn name_and_options(written: &str) -> (&str, &str) {
 
 /// The rule that a label breaks, if any.
 fn broken_rule(label: &str, name: &str, registry: &Registry) -> Option<&'static str> {
-    if label.is_empty() || label.chars().any(char::is_control) {
+    if label.is_empty() || label.contains(|c: char| c.is_control() || is_unseen(c)) {
         return Some("be visible characters");
     }
     if label.starts_with(['=', '+', '-', '@']) {

@@ -7,6 +7,7 @@ use std::sync::atomic::AtomicBool;
 
 use rayon::prelude::*;
 use rne_core::{Deadline, Registry};
+use ron_tree::without_types;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use store::{Failure, Log, refuse};
@@ -147,7 +148,8 @@ impl StudyFolder {
     }
 
     fn of(path: &Path, origin: Value, mut trials: Vec<PlayedTrial>) -> Result<Self, Failure> {
-        let bad = |error| {
+        let bad = |error: serde_json::Error| {
+            let error = without_types(&error);
             let (path, noun) = (path.display(), JOB.noun);
             Failure::input(format!("{path}: is not the folder of a {noun}: {}: {error}", JOB.origin))
         };

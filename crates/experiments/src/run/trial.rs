@@ -3,8 +3,10 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use rne_core::{Deadline, PolicyError, Session, TrialStart};
+use ron_tree::Problem;
 use serde::{Deserialize, Serialize};
 use usar_sim::event::Event;
+use usar_sim::fit::Tables;
 use usar_sim::record::{Status, TrialRecord};
 use usar_sim::scenario::Scenario;
 use usar_sim::simulation::Simulation;
@@ -40,6 +42,25 @@ pub struct Trial {
 }
 
 impl Trial {
+    /// Checks that this can be the trial of a scenario with this seed.
+    ///
+    /// # Errors
+    /// The first value that does not fit.
+    pub fn check(&self, scenario: &Scenario, seed: u64) -> Result<(), Box<Problem>> {
+        let mut tables = Tables::of(scenario);
+        if scenario.is_drawn() {
+            tables.robots = self.record.robots.len(); // their number may be drawn
+        }
+        if self.record.seed != seed {
+            return Err(Box::new(Problem::new("seed", format!("must be {seed}"), self.record.seed)));
+        }
+        if self.deliveries.len() != tables.tasks.len() {
+            let rule = format!("must have {} entries, one for each task", tables.tasks.len());
+            return Err(Box::new(Problem::new("deliveries", rule, self.deliveries.len())));
+        }
+        tables.check_record(&self.record)
+    }
+
     /// Rescuees delivered up to a time in seconds, from each task.
     #[must_use]
     pub fn delivered(&self, time_s: f64) -> Vec<usize> {

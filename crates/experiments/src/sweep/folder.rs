@@ -291,7 +291,7 @@ impl Folder {
     }
 
     pub(super) fn finished(&mut self, place: Place) -> Result<Finished, Failure> {
-        self.store.finished(place, &self.experiment)
+        self.store.finished(place, &self.experiment, &self.path)
     }
 
     /// The line of a trial in the journal.

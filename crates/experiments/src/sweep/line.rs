@@ -1,6 +1,7 @@
 //! A finished trial as a line of the journal.
 
 use rne_core::Account;
+use ron_tree::{Problem, without_types};
 use serde::{Deserialize, Serialize};
 use store::Failure;
 use thiserror::Error;
@@ -48,7 +49,7 @@ pub(super) enum Kept {
 pub(super) enum LineError {
     #[error("the checksum does not match: the line was changed")]
     Changed,
-    #[error("is no trial: {0}")]
+    #[error("is no trial: {}", without_types(.0))]
     NoTrial(#[from] serde_json::Error),
     #[error("{trial} is not of this sweep")]
     OtherSweep { trial: String },
@@ -56,6 +57,8 @@ pub(super) enum LineError {
     OtherProgram { place: Place },
     #[error("{trial} {error}")]
     Summary { trial: String, error: Failure },
+    #[error("{trial} does not fit its scenario: {problem}")]
+    Misfit { trial: String, problem: Box<Problem> },
     #[error("has no hash chain")]
     NoChain,
     #[error("is not its trials in order")]
@@ -145,9 +148,11 @@ pub(super) fn finished_of(
             summary.check(&experiment.metrics).map_err(|error| LineError::Summary { trial, error })?;
             Ok(Kept::Summary(summary))
         }
-        Stored::Ended { mut trial, links } => {
-            trial.record.chain = links::decode(&links).ok_or(LineError::NoChain)?;
-            Ok(Kept::Record(trial))
+        Stored::Ended { trial: mut ended, links } => {
+            ended.record.chain = links::decode(&links).ok_or(LineError::NoChain)?;
+            let fits = ended.check(&experiment.cases[key.case].scenario, key.seed);
+            fits.map_err(|problem| LineError::Misfit { trial, problem })?;
+            Ok(Kept::Record(ended))
         }
     };
     Ok(Finished { key, result })

@@ -5,6 +5,7 @@ use std::io;
 use std::path::Path;
 
 use store::{Failure, files, refuse};
+use usar_sim::fit::is_result;
 
 use super::line::Finished;
 use super::rows::{FIRST_METRIC, trial_columns};
@@ -93,7 +94,13 @@ fn measured_in(cells: &[&str], key: &TrialKey, metrics: usize) -> Option<Measure
         let reason = cells[FIRST_METRIC + metrics + 1].to_owned();
         return Some(Measured::failed(key, &Fault { kind, reason }));
     }
-    let value = |cell: &&str| if cell.is_empty() { Some(None) } else { Some(Some(cell.parse().ok()?)) };
+    let value = |cell: &&str| {
+        if cell.is_empty() {
+            Some(None)
+        } else {
+            Some(Some(cell.parse().ok().filter(|value| is_result(*value))?))
+        }
+    };
     let values: Option<Values> = cells[FIRST_METRIC..FIRST_METRIC + metrics].iter().map(value).collect();
     let hash = number_of(cells[FIRST_METRIC + metrics]);
     Some(Measured { status, metrics: Some(values?), hash, failure: None })

@@ -7,12 +7,11 @@ use std::sync::atomic::AtomicBool;
 use rne_core::Registry;
 use store::{Failure, refuse};
 
-use super::disk::{experiment_of, manifest_in, resolved_in};
 use super::folder::{Folder, Opening};
 use super::host::Hosts;
+use super::shards::Shards;
 use super::store::{Order, Store};
-use crate::experiment::{Experiment, Place, PolicySpec, Program, Shard};
-use crate::provenance::{Manifest, scenario_differences};
+use crate::experiment::{Experiment, Place, Shard};
 use crate::run::TrialKey;
 
 /// Largest number of missing trials that are named.
@@ -32,7 +31,7 @@ pub struct Merge {
 /// One shard.
 struct Part {
     path: PathBuf,
-    manifest: Manifest,
+    shard: Option<Shard>,
     store: Store,
     /// The places of its trials.
     places: Vec<Place>,
@@ -46,15 +45,13 @@ impl Merge {
     /// different programs; two of them disagree about a trial; or a trial is missing.
     pub fn of(folders: &[PathBuf], registry: &Registry) -> Result<Self, Failure> {
         let [first, ..] = folders else { refuse!("there is nothing to merge") };
-        let manifest = manifest_in(first)?;
-        let experiment = Arc::new(experiment_of(first, &manifest, registry)?);
-        check_program(first, &manifest, &experiment.policies)?;
-        let resolved = experiment.base.resolved();
+        let shards = Shards::like(first, registry)?;
+        let experiment = Arc::clone(shards.experiment());
         let part = |path: &PathBuf| {
-            let there = manifest_in(path)?;
-            check_same(first, path, &manifest, &there, &resolved)?;
-            let (store, places) = Folder::read(path, registry)?.into_store();
-            Ok(Part { path: path.clone(), manifest: there, store, places })
+            let folder = shards.read(path)?;
+            let shard = folder.manifest().shard;
+            let (store, places) = folder.into_store();
+            Ok(Part { path: path.clone(), shard, store, places })
         };
         let parts = folders.iter().map(part).collect::<Result<Vec<_>, Failure>>()?;
         let order = Order::of(&experiment, None);
@@ -109,7 +106,7 @@ impl Merge {
 
     /// The missing shards, in words; empty if none is missing.
     fn absent_shards(&self) -> String {
-        let there: Vec<Shard> = self.parts.iter().filter_map(|part| part.manifest.shard).collect();
+        let there: Vec<Shard> = self.parts.iter().filter_map(|part| part.shard).collect();
         let Some(first) = there.first() else { return String::new() };
         let is_there =
             |number: &u32| there.iter().any(|shard| shard.of == first.of && shard.number == *number);
@@ -145,54 +142,4 @@ impl Merge {
         Hosts::add(out, self.parts.iter().flat_map(|part| Hosts::read(&part.path).runs))?;
         Ok(whole)
     }
-}
-
-/// Refuses shards of another program than this one.
-fn check_program(path: &Path, there: &Manifest, policies: &[PolicySpec]) -> Result<(), Failure> {
-    let this = Program::running(policies)?;
-    let that = there.program();
-    if that == this {
-        return Ok(());
-    }
-    let is_same_engine = (&that.version, &that.source) == (&this.version, &this.source);
-    let sources = if is_same_engine {
-        [&that, &this].map(|program| program.policies.join(", "))
-    } else {
-        [that.source, this.source]
-    };
-    let [there, here] = sources;
-    Err(Failure::input(format!(
-        "{} is of usar {} with source {there}; this is {} with source {here}: merge with the program that ran \
-         the shards",
-        path.display(),
-        that.version,
-        this.version,
-    )))
-}
-
-/// Refuses shards of different sweeps.
-fn check_same(
-    first_path: &Path,
-    other_path: &Path,
-    first: &Manifest,
-    other: &Manifest,
-    resolved: &str,
-) -> Result<(), Failure> {
-    let mut differences = first.differences(other);
-    differences.extend(first.policies_lost(other).or_else(|| other.policies_lost(first)));
-    let changed = first.policies_changed(other);
-    differences.extend(changed.iter().map(|policy| format!("policy {policy}: its sources differ")));
-    let scenario = resolved_in(other_path);
-    if scenario != resolved {
-        differences.extend(scenario_differences(resolved, &scenario));
-    }
-    if first.trials != other.trials {
-        differences.push(format!("trials: {} there, {} now", first.trials, other.trials));
-    }
-    if differences.is_empty() {
-        return Ok(());
-    }
-    let (one, other) = (first_path.display(), other_path.display());
-    let differences = differences.join("\n  ");
-    Err(Failure::input(format!("{one} and {other} are not of one sweep:\n  {differences}")))
 }

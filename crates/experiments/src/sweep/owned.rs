@@ -5,6 +5,7 @@ use std::fs;
 use std::io::{Seek, Write};
 use std::path::{Path, PathBuf};
 
+use ron_tree::visible;
 use store::files::{self, NewFile};
 use store::lock::is_lock;
 use store::owned::names_in;
@@ -96,13 +97,14 @@ impl Report {
         Self { folder: folder.to_owned(), files: Vec::new() }
     }
 
-    /// Adds a file, by its name relative to the folder.
+    /// Adds a text file, by its name relative to the folder. Characters that act unseen are written by their
+    /// numbers: names and titles of users' files cannot turn the direction of a page.
     ///
     /// # Errors
     /// The disk does not take it.
-    pub fn add(&mut self, name: String, content: &[u8]) -> Result<(), Failure> {
+    pub fn add(&mut self, name: String, text: &str) -> Result<(), Failure> {
         let mut file = spooled_tempfile_in(MOST_IN_MEMORY, &self.folder);
-        let written = file.write_all(content).and_then(|()| file.rewind());
+        let written = file.write_all(visible(text).as_bytes()).and_then(|()| file.rewind());
         written.map_err(|error| self.trouble(&error))?;
         self.files.push((name, file));
         Ok(())

@@ -35,11 +35,16 @@ impl Store {
         line.map_err(|error| Failure::storage(format!("{ARCHIVE}: {error}")))
     }
 
-    /// A finished trial.
+    /// A finished trial of the folder with this path.
     ///
     /// # Errors
     /// Those of [`Store::line`], or the trial was changed since it was written.
-    pub(super) fn finished(&mut self, place: Place, experiment: &Experiment) -> Result<Finished, Failure> {
+    pub(super) fn finished(
+        &mut self,
+        place: Place,
+        experiment: &Experiment,
+        folder: &Path,
+    ) -> Result<Finished, Failure> {
         let line = self.line(place)?;
         let in_its_place = |finished: Finished| match finished.place() {
             found if found == place => Ok(finished),
@@ -47,7 +52,7 @@ impl Store {
         };
         finished_in(&line, experiment)
             .and_then(in_its_place)
-            .map_err(|reason| Failure::storage(format!("{}: {reason}", self.name())))
+            .map_err(|reason| Failure::input(format!("{}: {reason}", folder.join(self.name()).display())))
     }
 
     /// Name of the file with the trials.

@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 use store::{Failure, refuse};
+use usar_sim::fit::is_result;
 use usar_sim::record::{Status, TrialRecord};
 
 use crate::metric::Catalogue;
@@ -29,6 +30,9 @@ impl Summary {
         let (count, found) = (metrics.len(), self.metrics.len());
         if count != found {
             refuse!("must have {count} metrics, found {found}");
+        }
+        if let Some(value) = self.metrics.iter().flatten().find(|value| !is_result(**value)) {
+            refuse!("has the metric {value:e}, which no trial has");
         }
         let no_status = || Failure::input(format!("has no status {:?}", self.status));
         status_of(&self.status).map(drop).ok_or_else(no_status)

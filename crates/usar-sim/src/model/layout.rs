@@ -8,7 +8,7 @@ use rand::RngExt;
 use rand::rngs::ChaCha8Rng;
 use rne_core::{RoleId, TaskId};
 
-use super::places::{rescuee_places, rest_slot};
+use super::places::{RestSlots, rescuee_places};
 use crate::geometry::{Places, vector};
 use crate::ids::RobotId;
 use crate::planning::Planner;
@@ -219,9 +219,10 @@ impl Layout {
         let mut places: Vec<(String, Vector)> = scenario.tasks.iter().map(place).collect();
         // Neighbouring places follow one another, because each search starts from the place before.
         places.extend(ground.iter().map(|robot| ("a robot's home".to_owned(), robot.home)));
+        let slots = RestSlots::of(scenario);
         for (number, task) in (0..).zip(&scenario.tasks) {
             let name = format!("the rest place of task {:?}", task.name);
-            let slot = |robot: &&RobotStart| rest_slot(scenario, TaskId(number), robot.id);
+            let slot = |robot: &&RobotStart| slots.at(TaskId(number), robot.id);
             places.extend(ground.iter().map(|robot| (name.clone(), slot(robot))));
         }
         (places, ground.first().map(|robot| robot.home))
@@ -324,8 +325,9 @@ impl KeepClear {
         let point = |v: Vector| [f64::from(v.x), f64::from(v.y)];
         let mut list: Vec<(Point, f64)> =
             scenario.team.iter().flat_map(crate::scenario::Row::places).map(|home| (home, radius)).collect();
+        let block = RestSlots::of(scenario);
         for task in (0..).take(scenario.tasks.len()).map(TaskId) {
-            let slots = (0..scenario.robots()).map(|i| rest_slot(scenario, task, RobotId(i)));
+            let slots = (0..scenario.robots()).map(|i| block.at(task, RobotId(i)));
             list.extend(slots.map(|slot| (point(slot), radius)));
         }
         list.extend(rescuee_places(scenario).map(|(_, at)| (point(at), 0.0)));

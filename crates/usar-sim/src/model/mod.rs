@@ -25,7 +25,7 @@ pub use costs::CostModel;
 pub use debris::DebrisModel;
 pub use layout::{Layout, RobotStart};
 pub use mission::{ErrandModel, LowLevel, MissionModel};
-pub use places::{rescuee_places, rest_slot};
+pub use places::{RestSlots, rescuee_places};
 pub use rescuee::RescueeModel;
 pub use right_of_way::{Patience, ReciprocalModel, RetreatModel, RightOfWayModel, RuleKind, SetsModel};
 pub use robot::{RobotModel, RobotSpec};

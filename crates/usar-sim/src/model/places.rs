@@ -7,26 +7,51 @@ use rne_core::TaskId;
 
 use crate::geometry::vector;
 use crate::ids::RobotId;
-use crate::scenario::{Happening, RoleKind, Scenario, TaskFile};
+use crate::scenario::{Happening, Point, RoleKind, Scenario, TaskFile};
 
 /// Free distance between two robots at a rest place, in metres, so that others can pass between them.
 const REST_GAP_M: f64 = 1.2;
 
-/// A robot's own slot at a task's rest place. The slots form a nearly square block round the centre of the
-/// rest place, in order of ids.
-#[must_use]
-pub fn rest_slot(scenario: &Scenario, task: TaskId, robot: RobotId) -> Vector {
-    let robots = scenario.robots();
-    let columns = robots.isqrt() + u32::from(robots.isqrt().pow(2) < robots);
-    let rows = robots.div_ceil(columns);
-    let largest =
-        scenario.largest_radius_m(RoleKind::Ground).max(scenario.largest_radius_m(RoleKind::Aerial));
-    let spacing = 2.0 * largest + REST_GAP_M;
-    let offset = |i: u32, count: u32| spacing * (f64::from(i) - f64::from(count - 1) / 2.0);
-    let center = scenario.tasks[task.index()].rest;
-    let x = center[0] + offset(robot.0 % columns, columns);
-    let y = center[1] + offset(robot.0 / columns, rows);
-    vector([x, y])
+/// The robots' own slots at the rest places of the tasks. The slots of a rest place form a nearly square block
+/// round its centre, in order of ids.
+#[derive(Debug, Clone)]
+pub struct RestSlots {
+    /// Centre of each task's rest place.
+    centers: Vec<Point>,
+    columns: u32,
+    rows: u32,
+    /// Distance between two slots, in metres.
+    spacing: f64,
+}
+
+impl RestSlots {
+    /// The slots of a scenario's team, in O(rows of the team).
+    #[must_use]
+    pub fn of(scenario: &Scenario) -> Self {
+        let robots = scenario.robots();
+        let columns = robots.isqrt() + u32::from(robots.isqrt().pow(2) < robots);
+        let largest =
+            scenario.largest_radius_m(RoleKind::Ground).max(scenario.largest_radius_m(RoleKind::Aerial));
+        Self {
+            centers: scenario.tasks.iter().map(|task| task.rest).collect(),
+            columns,
+            rows: robots.div_ceil(columns.max(1)),
+            spacing: 2.0 * largest + REST_GAP_M,
+        }
+    }
+
+    /// A robot's slot at a task's rest place, in O(1).
+    ///
+    /// # Panics
+    /// The scenario has no such task, or no robot at all.
+    #[must_use]
+    pub fn at(&self, task: TaskId, robot: RobotId) -> Vector {
+        let offset = |i: u32, count: u32| self.spacing * (f64::from(i) - f64::from(count - 1) / 2.0);
+        let center = self.centers[task.index()];
+        let x = center[0] + offset(robot.0 % self.columns, self.columns);
+        let y = center[1] + offset(robot.0 / self.columns, self.rows);
+        vector([x, y])
+    }
 }
 
 /// The task and the place of each rescuee, by id. Rescuees are ordered by task. Those of the task's own

@@ -6,7 +6,7 @@ use parry2d::math::Vector;
 use rne_core::{RoleId, TaskId};
 
 use super::RobotStart;
-use super::places::rest_slot;
+use super::places::RestSlots;
 use crate::ids::RobotId;
 use crate::scenario::{RoleFile, RoleKind, Scenario};
 
@@ -100,13 +100,14 @@ impl RobotModel {
         let specs =
             scenario.bodies().map(|(body, count)| (Arc::new(RobotSpec::compile(&body, scenario)), count));
         let specs = specs.flat_map(|(spec, count)| (0..count).map(move |_| Arc::clone(&spec)));
-        let rest = |id| move |task| rest_slot(scenario, TaskId(task), id);
+        let slots = RestSlots::of(scenario);
+        let tasks = scenario.tasks.len() as u16;
         let robot = |(start, spec): (&RobotStart, Arc<RobotSpec>)| Self {
             id: start.id,
             role: start.role,
             spec,
             home: start.home,
-            rest: (0..scenario.tasks.len() as u16).map(rest(start.id)).collect(),
+            rest: (0..tasks).map(|task| slots.at(TaskId(task), start.id)).collect(),
             initial_levels: [start.energy, start.hp],
             health_floor: scenario.mission.health_floor,
         };

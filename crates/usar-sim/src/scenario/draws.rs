@@ -188,6 +188,11 @@ impl ScenarioFile {
     pub(super) fn read(tree: &mut Node) -> (Option<Self>, Vec<Problem>) {
         let taken = take_out(tree);
         let (file, mut problems) = tree.read_all();
+        for problem in problems.iter_mut().filter(|problem| !problem.rule.contains("number")) {
+            // Where no number may stand, the distribution was found, not the value that stands in for it.
+            let written = taken.draws.get(&problem.field);
+            problem.found = written.map_or(std::mem::take(&mut problem.found), Node::to_string);
+        }
         let file = file.filter(|_| taken.problems.is_empty());
         let file = file.map(|file: Self| Self { draws: taken.draws, ..file });
         problems.extend(taken.problems);

@@ -80,7 +80,7 @@ impl Arguments {
     fn show(&self, folder: &Folder, key: &TrialKey) -> Result<ShownTrial, Failure> {
         let shown = replay_of(folder.path(), folder.experiment(), key)?;
         let recording = shown.read()?;
-        let page = || (format!("replay-{}.html", shown.name), page::page(&[shown], false).into_bytes());
+        let page = || (format!("replay-{}.html", shown.name), page::page(&[shown], false));
         let (label, seed, replay) = (key.label.clone(), key.seed, self.with_replays.then(page));
         Ok(ShownTrial { label, seed, recording, replay })
     }

@@ -144,3 +144,42 @@ fn shards_that_were_run_by_hand_have_a_status_too() {
     std::fs::create_dir(here.join("empty")).unwrap();
     refused(here, 2, "cluster status empty", &["has neither shards nor a sweep in it"]);
 }
+
+#[test]
+fn status_believes_no_folder_that_a_merge_refuses() {
+    let folder = place();
+    let here = folder.path();
+    let sweep = |more: &str, shard: &str, out: &str| {
+        let words =
+            format!("sweep short.ron --policies RNE,DIS --trials 4 {more} --shard {shard} --out {out}");
+        let words: Vec<&str> = words.split_whitespace().collect();
+        succeeds(&usar(here, &words));
+    };
+    sweep("", "1/2", "shards/1");
+    sweep("--set duration_s=31", "2/2", "shards/2");
+    let other = "shards/1 and shards/2 are not of one sweep: duration_s: 30.0 there, 31.0 now";
+    let said = succeeds(&usar(here, "cluster status shards"));
+    assert!(said.starts_with("shards  2: 1 done, 1 refused\ntrials  4 of 8\n"), "{said}");
+    assert!(said.contains(&format!("  shard    2  refused  0 of 4 trials  {other}")), "{said}");
+    refused(here, 2, "cluster merge shards --out whole", &["shards/1 and shards/2 are not of one sweep"]);
+
+    std::fs::rename(here.join("shards/2"), here.join("shards/3")).unwrap();
+    sweep("", "2/2", "shards/2");
+    sweep("", "1/3", "shards/4");
+    let said = succeeds(&usar(here, "cluster status shards"));
+    assert!(said.starts_with("shards  4: 2 done, 2 refused\ntrials  8 of 8\n"), "{said}");
+    assert!(said.contains("shards/4: is shard 1/3, and shards/1 is one of 2 shards"), "{said}");
+    assert!(!said.contains("this merges them"), "{said}");
+
+    std::fs::remove_dir_all(here.join("shards/3")).unwrap();
+    std::fs::remove_dir_all(here.join("shards/4")).unwrap();
+    let archive = here.join("shards/2/journal.jsonl.gz");
+    let mut bytes = std::fs::read(&archive).unwrap();
+    let middle = bytes.len() / 2;
+    bytes[middle] ^= 1;
+    std::fs::write(&archive, bytes).unwrap();
+    let damage = "shards/2: these files do not have the checksums of the manifest: journal.jsonl.gz";
+    let said = succeeds(&usar(here, "cluster status shards"));
+    assert!(said.starts_with("shards  2: 1 done, 1 refused\n") && said.contains(damage), "{said}");
+    refused(here, 2, "cluster merge shards --out whole", &[damage]);
+}

@@ -70,12 +70,14 @@ fn a_report_is_one_file_with_figures_and_the_numbers_behind_them() {
     succeeds(&usar(here, "report results/grid"));
     assert_eq!(overview, read("report.html"), "the same bytes again");
     assert_eq!(page, read("plots/case-1.html"), "the same bytes again");
-    let more = ["--case", "3", "--title", "Of <speed>", "--metric", "distance", "--baseline", "DIS"];
+    let more =
+        ["--case", "3", "--title", "Of <speed>\u{202e}\u{7}", "--metric", "distance", "--baseline", "DIS"];
     succeeds(&usar(here, &[&["report", "results/grid"], &more[..]].concat()));
     assert!(!results.join("plots/case-1.html").exists());
     let third = read("plots/case-3.html");
     assert!(
-        third.contains("<h1>Of &#60;speed&#62;</h1>") && third.contains("<th colspan=\"5\">distance</th>")
+        third.contains("<h1>Of &#60;speed&#62;\\u{202e}\\u{7}</h1>")
+            && third.contains("<th colspan=\"5\">distance</th>")
     );
     let said = succeeds(&usar(here, &[&["compare", "results/grid"], &more[4..]].concat()));
     let [own, in_report] = [&said, &read("report.html")].map(|text| {

@@ -2,9 +2,12 @@
 
 mod shards;
 
+use std::cmp::Reverse;
+
 use experiments::experiment::Shard;
-use experiments::sweep::disk::experiment_in;
+use experiments::sweep::disk::manifest_in;
 use experiments::sweep::names::{is_sweeps, sweeps_in};
+use experiments::sweep::shards::Shards;
 use serde::Serialize;
 
 use super::estimate::duration;
@@ -22,7 +25,8 @@ const MOST_LISTED: usize = 20;
 #[command(after_help = "\
 Looks at the folder of each shard (its manifest, its journal and its lock) and, where there are `squeue` \
 and `sacct`, asks Slurm. A shard is done; running; waiting in the queue; failed, with what Slurm says of \
-its task; or lost: nothing is at work in it and no queue has it. For a folder that `usar cluster submit` \
+its task; lost: nothing is at work in it and no queue has it; or refused: its folder is damaged or holds \
+something else, and the line says what `usar cluster merge` would. For a folder that `usar cluster submit` \
 made, the last line submits what is failed or lost, and nothing else; each of these goes on where it was.
 
 Examples:
@@ -52,7 +56,7 @@ struct Output {
 impl Arguments {
     pub(crate) fn execute(&self, registry: &Registry, out: &mut dyn Write) -> Result<(), Failure> {
         let output = match Submission::read(&self.folder)? {
-            Some(submission) => submitted(&std::path::absolute(&self.folder)?, &submission)?,
+            Some(submission) => submitted(&std::path::absolute(&self.folder)?, &submission, registry)?,
             None => by_hand(&self.folder, registry)?,
         };
         if self.json.json {
@@ -62,15 +66,32 @@ impl Arguments {
     }
 }
 
-/// The state of the shards of a submission.
-fn submitted(folder: &Path, submission: &Submission) -> Result<Output, Failure> {
+/// The state of the shards of a submission: of the shards that its plan names, and of no other folder.
+fn submitted(folder: &Path, submission: &Submission, registry: &Registry) -> Result<Output, Failure> {
     let Submission { array, plan, name, out, .. } = submission;
     let array = array.as_deref().unwrap_or_default();
     let said = Said { queued: slurm::queued(array, name), ended: slurm::ended(array) };
-    let of = |(number, trials): (u32, &usize)| {
-        OneShard::of(number, folder.join(number.to_string()), *trials, &said)
+    let of = plan.shards() as u32;
+    let place = |number: u32| folder.join(number.to_string());
+    // The first folder that is what its name says tells which sweep it is.
+    let is_planned = |number: &u32| {
+        let planned = Some(Shard { number: *number, of });
+        manifest_in(&place(*number)).is_ok_and(|there| there.name == *name && there.shard == planned)
     };
-    let shards = (1..).zip(&plan.trials).map(of).collect::<Result<Vec<_>, _>>()?;
+    let first = (1..=of).find(is_planned);
+    let sweep = first.map(|number| Shards::like(&place(number), registry)).transpose()?;
+    let shard = |(number, trials): (u32, &usize)| match &sweep {
+        Some(sweep) if is_sweeps(&place(number)) => {
+            OneShard::of(sweep, Some(Shard { number, of }), place(number), *trials, &said)
+        }
+        None if is_sweeps(&place(number)) => {
+            let rule = "is not a shard of this submission";
+            let refusal = Failure::input(format!("{}: {rule}", place(number).display()));
+            OneShard::refused(number, &refusal, *trials, place(number))
+        }
+        _ => OneShard::not_begun(number, place(number), *trials, &said),
+    };
+    let shards = (1..).zip(&plan.trials).map(shard).collect();
     let mut output = Output::of(shards, plan.at_once, plan.seconds_per_trial / f64::from(plan.cpus));
     let missing: Vec<u32> = output.missing().map(|shard| shard.number).collect();
     let tasks = format!("{}%{}", ranges(&missing), plan.at_once);
@@ -81,44 +102,78 @@ fn submitted(folder: &Path, submission: &Submission) -> Result<Output, Failure> 
     Ok(output)
 }
 
-/// The state of shards that were run without `usar cluster submit`, or of a single sweep.
+/// The state of shards that were run without `usar cluster submit`, or of a single sweep. The first folder
+/// tells which sweep it is, and how many shards it has.
 fn by_hand(folder: &Path, registry: &Registry) -> Result<Output, Failure> {
-    let folders = if is_sweeps(folder) { vec![folder.to_owned()] } else { sweeps_in(folder) };
-    if folders.is_empty() {
+    let is_one = is_sweeps(folder);
+    let folders = if is_one { vec![folder.to_owned()] } else { sweeps_in(folder) };
+    let [first, ..] = &folders[..] else {
         refuse!("{}: has neither shards nor a sweep in it", folder.display());
-    }
+    };
+    let sweep = Shards::like(first, registry)?;
+    let (experiment, is_checked) = (sweep.experiment(), sweep.manifest().is_checked);
     let said = Said { queued: None, ended: slurm::Tasks::new() };
-    let (mut shards, mut all, mut is_checked) = (Vec::new(), None, false);
-    for place in folders {
-        let (experiment, manifest) = experiment_in(&place, registry)?;
-        let number = manifest.shard.map_or(1, |shard| shard.number);
-        let mut shard = OneShard::of(number, place, experiment.count(manifest.shard), &said)?;
-        if let Some(of) = manifest.shard.filter(|_| shard.state == State::Lost) {
-            shard.why = format!(
-                "nothing is at work in its folder; to go on: {}",
-                shard.command(&shard.folder, manifest.is_checked, of)
-            );
+    let of = sweep.manifest().shard.map(|shard| shard.of);
+    let one = |place: &PathBuf| {
+        let shard = match of_plan(place, first, of) {
+            Ok(shard) => shard,
+            Err(refusal) => return OneShard::refused(0, &refusal, 0, place.clone()),
+        };
+        let mut one = OneShard::of(&sweep, shard, place.clone(), experiment.count(shard), &said);
+        if one.state == State::Lost
+            && let Some(shard) = shard
+        {
+            let command = one.command(&one.folder, is_checked, shard);
+            one.why = format!("nothing is at work in its folder; to go on: {command}");
         }
-        all = manifest.shard.map(|shard| (experiment, shard.of));
-        is_checked = manifest.is_checked;
-        shards.push(shard);
-    }
-    if let Some((experiment, of)) = all.filter(|_| !is_sweeps(folder)) {
-        let like = shards[0].folder.clone();
+        one
+    };
+    let mut shards = each_once(folders.iter().map(one).collect());
+    if let Some(of) = of.filter(|_| !is_one) {
         let is_there = |number: &u32| shards.iter().any(|shard| shard.number == *number);
         let absent: Vec<u32> = (1..=of).filter(|number| !is_there(number)).collect();
         shards.extend(absent.into_iter().map(|number| {
             let shard = Shard { number, of };
             let trials = experiment.count(Some(shard));
-            OneShard::absent(shard, folder.join(number.to_string()), trials, &like, is_checked)
+            OneShard::absent(shard, folder.join(number.to_string()), trials, first, is_checked)
         }));
         shards.sort_by_key(|shard| shard.number);
     }
-    let whole = (!is_sweeps(folder)).then(|| whole_of(folder));
+    let whole = (!is_one).then(|| whole_of(folder));
     Ok(Output {
         merge: whole.and_then(|whole| merge_line(&shards, folder, &whole)),
         ..Output::of(shards, 1, 0.0)
     })
+}
+
+/// The shards by number, each counted once: the folder that is the furthest counts. Other folders with the same
+/// shard are left out, and those that are refused stay, without trials.
+fn each_once(mut shards: Vec<OneShard>) -> Vec<OneShard> {
+    shards.sort_by_key(|shard| (shard.number, shard.state == State::Refused, Reverse(shard.finished)));
+    let mut last = None;
+    shards.retain_mut(|shard| {
+        let is_first = last.replace(shard.number) != Some(shard.number);
+        let is_refused = shard.state == State::Refused;
+        if is_refused && !is_first {
+            shard.trials = 0;
+        }
+        is_first || is_refused
+    });
+    shards
+}
+
+/// The number of the shard in a folder, if it is one of as many as the first is.
+fn of_plan(place: &Path, first: &Path, of: Option<u32>) -> Result<Option<Shard>, Failure> {
+    let there = manifest_in(place)?;
+    if there.shard.map(|shard| shard.of) != of {
+        let (place, first, part) = (place.display(), first.display(), there.part());
+        let plan = of.map_or_else(
+            || "a whole sweep".to_owned(),
+            |of| format!("one of {}", counted(of as usize, "shard")),
+        );
+        refuse!("{place}: is {part}, and {first} is {plan}");
+    }
+    Ok(there.shard)
 }
 
 /// The folder that the shards of a folder are merged into: `results/x` for `results/x-shards`.
@@ -171,6 +226,7 @@ impl Output {
         let open: Vec<&OneShard> = self.shards.iter().filter(|shard| shard.state != State::Done).collect();
         for shard in open.iter().take(MOST_LISTED) {
             let OneShard { number, state, why, finished, trials, .. } = shard;
+            let number = if *number == 0 { "-".to_owned() } else { number.to_string() };
             writeln!(out, "  shard {number:>4}  {:8} {finished} of {trials} trials  {why}", state.name())?;
         }
         if open.len() > MOST_LISTED {

@@ -8,7 +8,7 @@ use usar_sim::mission::Activity;
 use usar_sim::simulation::Simulation;
 use usar_sim::world::RescueeState;
 
-use crate::printable::printable;
+use ron_tree::visible;
 
 /// Time between two drawings.
 const PERIOD: Duration = Duration::from_millis(100);
@@ -100,7 +100,7 @@ fn screen(simulation: &Simulation, policy: &str, speed: f64) -> String {
     if more > 0 {
         lines.push(format!("     and {more} robots more"));
     }
-    let lines: Vec<String> = lines.iter().map(|line| short(&printable(line), COLUMNS)).collect();
+    let lines: Vec<String> = lines.iter().map(|line| short(&visible(line), COLUMNS)).collect();
     lines.join("\n")
 }
 

@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 
 use super::team::Team;
 use crate::prelude::*;
-use crate::printable::printable;
+use ron_tree::visible;
 
 /// The most robots whose matrix is shown in a terminal; of more, each robot's extremes are.
 const MOST_SHOWN: usize = 16;
@@ -117,7 +117,7 @@ impl<'t> Matrix<'t> {
 /// An id as it stands in the picture: of long ones the beginning.
 fn drawn_name(name: &str) -> String {
     const MOST: usize = 24;
-    let name = printable(name);
+    let name = visible(name);
     if name.chars().count() <= MOST {
         return name.into_owned();
     }

@@ -2,6 +2,8 @@
 
 use std::io::Read;
 
+use ron_tree::visible;
+
 use crate::prelude::*;
 use crate::recordings::Shown;
 
@@ -45,7 +47,7 @@ pub(crate) fn page(shown: &[Shown], is_list: bool) -> String {
 
 /// A text escaped as the value of an attribute.
 fn escaped(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+    visible(text).replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }
 
 /// Appends bytes in base64 (RFC 4648, section 4).

@@ -2,7 +2,7 @@
 
 use experiments::experiment::Shard;
 use experiments::sweep::host::Hosts;
-use experiments::sweep::progress::{Progress, progress};
+use experiments::sweep::shards::{Progress, Shards};
 use serde::Serialize;
 
 use super::super::slurm::Tasks;
@@ -23,10 +23,13 @@ pub(super) enum State {
     Failed,
     /// The shard is neither done, nor running, nor in the queue.
     Lost,
+    /// Its folder is not what `usar cluster merge` takes for this shard.
+    Refused,
 }
 
 impl State {
-    pub(super) const ALL: [Self; 5] = [Self::Done, Self::Running, Self::Waiting, Self::Failed, Self::Lost];
+    pub(super) const ALL: [Self; 6] =
+        [Self::Done, Self::Running, Self::Waiting, Self::Failed, Self::Lost, Self::Refused];
 
     pub(super) fn name(self) -> &'static str {
         match self {
@@ -35,6 +38,7 @@ impl State {
             Self::Waiting => "waiting",
             Self::Failed => "failed",
             Self::Lost => "lost",
+            Self::Refused => "refused",
         }
     }
 }
@@ -42,6 +46,7 @@ impl State {
 /// A shard.
 #[derive(Debug, Serialize)]
 pub(super) struct OneShard {
+    /// From 1; 0 for a folder that is refused before its number is known.
     pub number: u32,
     pub state: State,
     /// Slurm's state of the task, or the process that works in the folder.
@@ -61,18 +66,33 @@ pub(super) struct Said {
 
 impl OneShard {
     /// The shard in a folder, which has this many trials to run.
-    ///
-    /// # Errors
-    /// The folder contains something else.
-    pub(super) fn of(number: u32, folder: PathBuf, trials: usize, said: &Said) -> Result<Self, Failure> {
-        let there = progress(&folder)?;
-        let finished = match &there {
-            None => 0,
-            Some(Progress { manifest, .. }) if manifest.is_complete => trials,
-            Some(Progress { journal_lines, .. }) => (*journal_lines).min(trials),
-        };
-        let (state, why) = state(there.as_ref(), number, said);
-        Ok(Self { number, state, why, finished, trials, folder })
+    pub(super) fn of(
+        shards: &Shards,
+        shard: Option<Shard>,
+        folder: PathBuf,
+        trials: usize,
+        said: &Said,
+    ) -> Self {
+        let number = shard.map_or(1, |shard| shard.number);
+        match shards.progress(&folder, shard) {
+            Ok(there) => {
+                let (state, why) = state(Some(&there), number, said);
+                Self { number, state, why, finished: there.finished, trials, folder }
+            }
+            Err(refusal) => Self::refused(number, &refusal, trials, folder),
+        }
+    }
+
+    /// A shard whose folder cannot be merged.
+    pub(super) fn refused(number: u32, refusal: &Failure, trials: usize, folder: PathBuf) -> Self {
+        let why = refusal.to_string().split_whitespace().collect::<Vec<_>>().join(" ");
+        Self { number, state: State::Refused, why, finished: 0, trials, folder }
+    }
+
+    /// A shard of a submission that has no folder yet.
+    pub(super) fn not_begun(number: u32, folder: PathBuf, trials: usize, said: &Said) -> Self {
+        let (state, why) = state(None, number, said);
+        Self { number, state, why, finished: 0, trials, folder }
     }
 
     /// A shard that has no folder yet, with the number of its trials; the folder of another shard, and
@@ -100,7 +120,7 @@ impl OneShard {
 }
 
 fn state(there: Option<&Progress>, number: u32, said: &Said) -> (State, String) {
-    if there.is_some_and(|there| there.manifest.is_complete) {
+    if there.is_some_and(|there| there.is_complete) {
         return (State::Done, String::new());
     }
     if let Some(holder) = there.and_then(|there| there.holder.as_ref()) {

@@ -1,6 +1,7 @@
 //! `submission.json`: a record of the submission, in the folder of the shards.
 
 use experiments::files::{self, NewFile};
+use ron_tree::without_types;
 use serde::{Deserialize, Serialize};
 
 use super::plan::Plan;
@@ -48,7 +49,8 @@ impl Submission {
             return Ok(None);
         }
         let text = files::read(&path).map_err(Failure::input_at(path.display()))?;
-        let read: Self = serde_json::from_slice(&text).map_err(Failure::input_at(path.display()))?;
+        let read: Self = serde_json::from_slice(&text)
+            .map_err(|error| Failure::input(format!("{}: {}", path.display(), without_types(&error))))?;
         if read.schema_version != SCHEMA_VERSION {
             let (path, other) = (path.display(), read.schema_version);
             refuse!("{path}: its layout has version {other}; this is {SCHEMA_VERSION}");
