@@ -13,10 +13,10 @@ use rand_distr::{Distribution, Exp, StandardNormal};
 use rayon::prelude::*;
 
 /// Default number of experiments of each row.
-const REPETITIONS: u64 = 2_000;
+const REPETITIONS: u64 = 10_000;
 
 /// Sequential tests for each experiment of an interval: wrong verdicts are rarer than intervals that miss.
-const TESTS: u64 = 10;
+const TESTS: u64 = 2;
 
 /// Resamples of an interval of means. They are fewer than in results, which changes a limit by a hundredth
 /// of the interval's width.
