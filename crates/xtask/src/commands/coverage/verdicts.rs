@@ -15,11 +15,13 @@ const MOST: u32 = 200;
 /// Differences of a kind, with their true mean.
 type Kind = (&'static str, f64, fn(&mut ChaCha8Rng) -> f64);
 
-const KINDS: [Kind; 4] = [
+const KINDS: [Kind; 5] = [
     ("normal", 0.0, normal),
     ("exponential", 1.0, exponential),
     ("60 % zeros, else normal", 0.0, |draws| if is_zero(draws) { 0.0 } else { normal(draws) }),
     ("60 % zeros, else exponential", 0.4, |draws| if is_zero(draws) { 0.0 } else { exponential(draws) }),
+    // e^(1/2)
+    ("log-normal, sd 1", 1.648_721_270_700_128, |draws| normal(draws).exp()),
 ];
 
 const CONFIDENCES: [f64; 3] = [0.95, 0.99, 0.998];
