@@ -12,26 +12,33 @@ use super::{exponential, normal};
 /// Most trials of a test: the default of `usar test`.
 const MOST: u32 = 200;
 
-/// Differences of a kind, with their true mean.
-type Kind = (&'static str, f64, fn(&mut ChaCha8Rng) -> f64);
+/// Differences of a kind.
+#[derive(Clone, Copy)]
+struct Kind {
+    name: &'static str,
+    /// Their true mean.
+    mean: f64,
+    draw: fn(&mut ChaCha8Rng) -> f64,
+}
 
 const KINDS: [Kind; 5] = [
-    ("normal", 0.0, normal),
-    ("exponential", 1.0, exponential),
-    ("60 % zeros, else normal", 0.0, |draws| if is_zero(draws) { 0.0 } else { normal(draws) }),
-    ("60 % zeros, else exponential", 0.4, |draws| if is_zero(draws) { 0.0 } else { exponential(draws) }),
-    // e^(1/2)
-    ("log-normal, sd 1", 1.648_721_270_700_128, |draws| normal(draws).exp()),
+    Kind { name: "normal", mean: 0.0, draw: normal },
+    Kind { name: "exponential", mean: 1.0, draw: exponential },
+    Kind { name: "60 % zeros, else normal", mean: 0.0, draw: |draws| mostly_zero(draws, normal) },
+    Kind { name: "60 % zeros, else exponential", mean: 0.4, draw: |draws| mostly_zero(draws, exponential) },
+    // The mean is e^(1/2).
+    Kind { name: "log-normal, sd 1", mean: 1.648_721_270_700_128, draw: |draws| normal(draws).exp() },
 ];
 
 const CONFIDENCES: [f64; 3] = [0.95, 0.99, 0.998];
 
-fn is_zero(draws: &mut ChaCha8Rng) -> bool {
-    draws.random::<f64>() < 0.6
+fn mostly_zero(draws: &mut ChaCha8Rng, else_of: fn(&mut ChaCha8Rng) -> f64) -> f64 {
+    if draws.random::<f64>() < 0.6 { 0.0 } else { else_of(draws) }
 }
 
 /// Whether a test comes to a verdict.
-fn is_wrong(draws: &mut ChaCha8Rng, (_, mean, draw): Kind, confidence: f64) -> bool {
+fn is_wrong(draws: &mut ChaCha8Rng, kind: Kind, confidence: f64) -> bool {
+    let Kind { mean, draw, .. } = kind;
     let what = Expectation::Above { metric: 0, policies: [0, 1], by: mean };
     let expected = Expected { text: String::new(), what, confidence };
     let looks = looks(MOST);
@@ -63,6 +70,6 @@ pub(super) fn print(repetitions: u64) {
             let wrong = (0..repetitions).into_par_iter().filter(one).count();
             format!("{:.2} %", 100.0 * wrong as f64 / repetitions.max(1) as f64)
         };
-        println!("| {} | {} |", kind.0, CONFIDENCES.map(share).join(" | "));
+        println!("| {} | {} |", kind.name, CONFIDENCES.map(share).join(" | "));
     }
 }
