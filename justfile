@@ -117,7 +117,7 @@ results:
     target/release/usar sweep scenarios/sweeps/right-of-way.ron
     target/release/usar sweep scenarios/sweeps/right-of-way-crowded.ron
 
-# How often each kind of interval holds what it is to hold (docs/experiments.md): a minute
+# How often each kind of interval holds the truth, and how often verdicts of `usar test` are wrong (docs/experiments.md): ten minutes
 coverage *arguments:
     cargo run --release --package xtask -- coverage {{arguments}}
 

@@ -21,3 +21,4 @@ mod paper_counts;
 mod random_worlds;
 mod routes;
 mod scenarios;
+mod schemas;

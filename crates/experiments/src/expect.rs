@@ -1,22 +1,20 @@
 //! Expectations about a sweep's outcome, tested with as few trials as needed.
 //!
-//! The trials are looked at after 10, 20, 40, ... of them. At each look, an interval of the share or of the
+//! The trials are looked at after 20, 40, 80, ... of them. At each look, an interval of the share or of the
 //! mean difference is compared with the expectation. The expectation *holds* if the whole interval agrees
-//! with it, and *fails* if no part of the interval does. Otherwise more trials decide. The confidence is
-//! shared over the planned looks (Bonferroni). A verdict is therefore wrong with at most the stated
-//! probability, however many looks there are.
+//! with it, and *fails* if no part of the interval does. Otherwise more trials decide. The error that the
+//! confidence allows is shared by all intervals of a file: by its planned looks, cases and expectations
+//! (Bonferroni). So the probability that any verdict of a file is wrong is at most the stated one.
 
 mod parse;
 
 use serde::Serialize;
 use statrs::distribution::{Beta, ContinuousCDF};
 
-use crate::stats::bootstrap::interval;
+use crate::stats::cautious;
+use crate::stats::stopping::FIRST_LOOK;
 
 pub use parse::{Bad, expectations, parse};
-
-/// Trials at the first look.
-pub const FIRST_LOOK: u32 = 10;
 
 /// A relation that a sweep's outcome is expected to fulfil.
 #[derive(Debug, Clone, PartialEq)]
@@ -81,6 +79,14 @@ impl Relation {
     }
 }
 
+impl Expectation {
+    /// Whether an interval judges it. A share of all seeds is refuted by one seed, which is never an error.
+    #[must_use]
+    pub fn has_interval(&self) -> bool {
+        !matches!(self, Self::Share { share, .. } if *share >= 1.0)
+    }
+}
+
 /// An expectation as written, with its confidence.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Expected {
@@ -115,9 +121,11 @@ pub struct Judgement {
     pub observed: Option<f64>,
     /// Its interval.
     pub interval: Option<[f64; 2]>,
+    /// What an interval needs, if there is none yet.
+    pub needs: Option<String>,
 }
 
-/// The looks up to this many trials: 10, 20, 40, ..., and the last.
+/// The looks up to this many trials: 20, 40, 80, ..., and the last.
 #[must_use]
 pub fn looks(most: u32) -> Vec<u32> {
     let doubled = std::iter::successors(Some(FIRST_LOOK), |look| look.checked_mul(2));
@@ -125,16 +133,16 @@ pub fn looks(most: u32) -> Vec<u32> {
 }
 
 /// Judges an expectation by values of trials. `value(policy, metric)` has one value for each trial, `None`
-/// where the metric is undefined. `looks` is the number of planned looks, and `is_last` says whether this
-/// is the last of them.
+/// where the metric is undefined. `intervals` is the number of intervals that share the allowed error: looks
+/// times cases times expectations. `is_last` says whether this is the last look.
 #[must_use]
 pub fn judge(
     expected: &Expected,
     value: impl Fn(usize, usize) -> Vec<Option<f64>>,
-    looks: usize,
+    intervals: usize,
     is_last: bool,
 ) -> Judgement {
-    let confidence = 1.0 - (1.0 - expected.confidence) / looks.max(1) as f64;
+    let confidence = 1.0 - (1.0 - expected.confidence) / intervals.max(1) as f64;
     match expected.what {
         Expectation::Share { policy, metric, relation, value: bound, share } => {
             let values = value(policy, metric);
@@ -192,14 +200,22 @@ fn judge_share(held: usize, n: usize, share: f64, confidence: f64, is_last: bool
             _ => Verdict::Undecided,
         }
     };
-    Judgement { verdict, n, observed, interval }
+    Judgement { verdict, n, observed, interval, needs: None }
 }
 
 fn judge_mean(differences: &[f64], confidence: f64, verdict: impl Fn([f64; 2]) -> Verdict) -> Judgement {
     let n = differences.len();
     let observed = (n > 0).then(|| differences.iter().sum::<f64>() / n as f64);
-    let interval = (n >= FIRST_LOOK as usize).then(|| interval(differences, confidence)).flatten();
-    Judgement { verdict: interval.map_or(Verdict::Undecided, verdict), n, observed, interval }
+    let enough = n >= FIRST_LOOK as usize;
+    let interval = enough.then(|| cautious::interval(differences, confidence)).flatten();
+    let needs = interval.is_none().then(|| {
+        format!(
+            "needs {FIRST_LOOK} pairs, and {} differences other than the commonest one (found {})",
+            cautious::least_others(confidence),
+            cautious::others(differences)
+        )
+    });
+    Judgement { verdict: interval.map_or(Verdict::Undecided, verdict), n, observed, interval, needs }
 }
 
 /// The exact interval of a share (Clopper and Pearson 1934); `None` without any trial.

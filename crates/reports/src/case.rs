@@ -39,8 +39,8 @@ struct Page<'a> {
     abbreviations: Vec<(String, &'a str)>,
     /// What is shown, in a few words.
     answer: Option<String>,
-    /// How the question differs from the sweep file's.
-    own: Option<&'a str>,
+    /// How the question differs from the sweep file's, and what a reader must know of the trials.
+    warnings: &'a [String],
     /// Whether the sweep file names its metrics.
     is_declared: bool,
     /// Whether some comparison has a margin.
@@ -92,8 +92,8 @@ struct Row {
 pub(crate) struct Compared {
     pub asked: Vec<Comparison>,
     pub exploratory: Vec<Comparison>,
-    /// How the question differs from the sweep file's.
-    pub own: Option<String>,
+    /// How the question differs from the sweep file's, and what a reader must know of the trials.
+    pub warnings: Vec<String>,
 }
 
 /// A case's page: its place, the prefix of its figures' names, and the trials that it shows.
@@ -133,7 +133,7 @@ pub(crate) fn write_case(
     (page.figures, page.maps) = (&figures, &maps);
     page.decisions = decided;
     page.answer = answer(&here);
-    page.own = all.own.as_deref();
+    page.warnings = &all.warnings;
     page.is_declared = wanted.asked.is_declared;
     page.margins = wanted.asked.margins_in_words(folder.experiment());
     page.exploratory = exploratory.iter().map(row).collect();
@@ -197,7 +197,7 @@ fn page<'a>(folder: &'a Folder, case: usize, comparisons: &[&'a Comparison], all
             .map(|spec| (spec.label.as_str(), about(spec, experiment)))
             .collect(),
         answer: None,
-        own: None,
+        warnings: &[],
         is_declared: false,
         has_margins: comparisons.iter().any(|comparison| comparison.judged.is_some()),
         margins: String::new(),

@@ -25,8 +25,8 @@ struct Overview<'a> {
     counts: String,
     /// In how many cases what is shown.
     answer: Option<String>,
-    /// How the question differs from the sweep file's.
-    own: Option<&'a str>,
+    /// How the question differs from the sweep file's, and what a reader must know of the trials.
+    warnings: &'a [String],
     is_complete: bool,
     cases: Vec<Line>,
     /// Number of cases that have a page.
@@ -113,7 +113,7 @@ pub(crate) fn write_overview(
             folder.results().len() - failed,
         ),
         answer: answer_of_cases(&comparisons.iter().collect::<Vec<_>>()),
-        own: all.own.as_deref(),
+        warnings: &all.warnings,
         is_complete: folder.manifest().is_complete,
         cases: (0..experiment.cases.len()).map(line).collect(),
         pages: pages.len(),

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use experiments::Failure;
-use experiments::comparison::{compare, own_question};
+use experiments::comparison::{compare, doubts, own_question};
 use experiments::sweep::folder::Folder;
 use experiments::sweep::names::{PLOTS, REPORT};
 use experiments::sweep::owned::Report;
@@ -27,7 +27,8 @@ pub fn write_report(folder: &mut Folder, mut wanted: Wanted) -> Result<PathBuf, 
     };
     let (asked, exploratory) = (compared(&wanted.asked.metrics)?, compared(&wanted.asked.exploratory)?);
     let own = own_question(folder, &wanted.asked, &asked)?;
-    let all = Compared { asked, exploratory, own };
+    let warnings = own.into_iter().chain(doubts(folder)?).collect();
+    let all = Compared { asked, exploratory, warnings };
     let cases = folder.experiment().cases.len();
     let shown = std::mem::take(&mut wanted.shown);
     let mut files = Report::of(folder.path());

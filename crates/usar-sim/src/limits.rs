@@ -91,13 +91,13 @@ ron_tree::limits! {
     /// Pieces of debris at known places.
     DEBRIS: "debris" = 0, 100_000;
     /// Radius of a disc of debris, in metres.
-    DISC_RADIUS_M: "debris[*].shape" = 0.05, 100;
+    DISC_RADIUS_M: "debris[*].shape.Disc" = 0.05, 100;
     /// Width and height of a box of debris, in metres.
-    BOX_M: "debris[*].shape" = 0.1, 1_000;
+    BOX_M: "debris[*].shape.Box[*]" = 0.1, 1_000;
     /// Corners of a polygon.
-    CORNERS: "debris[*].shape" = 3, 64;
+    CORNERS: "debris[*].shape.Polygon" = 3, 64;
     /// A coordinate of a corner, in metres from the polygon's origin.
-    CORNER_M: "debris[*].shape" = -1_000, 1_000;
+    CORNER_M: "debris[*].shape.Polygon[*][*]" = -1_000, 1_000;
     /// Rotation of a piece of debris, in degrees.
     ROTATION_DEG: "debris[*].rotation_deg" = -360, 360;
     /// Mass of a movable piece, in kilograms.

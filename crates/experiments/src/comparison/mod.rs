@@ -3,6 +3,7 @@
 mod answer;
 mod asked;
 mod cell;
+mod doubts;
 mod effect;
 mod equivalence;
 mod interaction;
@@ -25,6 +26,7 @@ use crate::sweep::folder::Folder;
 pub use answer::{answer, answer_of_cases, what_would_settle};
 pub use asked::{Asked, Wishes};
 pub use cell::Cell;
+pub use doubts::doubts;
 pub use effect::{Effect, effects};
 pub use equivalence::{Beyond, Judged, TOST_CONFIDENCE, Verdict};
 use equivalence::{beyond, verdict};

@@ -54,8 +54,8 @@ fn what_is_no_expectation_is_refused_in_one_sentence() {
 
 #[test]
 fn looks_double_up_to_the_last() {
-    assert_eq!(looks(100), [10, 20, 40, 80, 100]);
-    assert_eq!(looks(10), [10]);
+    assert_eq!(looks(200), [20, 40, 80, 160, 200]);
+    assert_eq!(looks(20), [20]);
     assert_eq!(looks(3), [3]);
 }
 
@@ -117,4 +117,38 @@ fn verdicts_are_seldom_wrong_and_clear_cases_are_found() {
     }
     assert_eq!(sequential(&share, || [1.0, 0.0]), Verdict::Holds);
     assert_eq!(sequential(&share, || [0.0, 0.0]), Verdict::Fails);
+}
+
+/// Judges differences of two policies in a sweep's last look.
+fn judged(expected: &Expected, differences: &[f64], intervals: usize) -> Judgement {
+    let value = |policy, _| differences.iter().map(|d| Some(if policy == 0 { *d } else { 0.0 })).collect();
+    judge(expected, value, intervals, true)
+}
+
+#[test]
+fn eight_differences_other_than_the_commonest_decide() {
+    let above = read("rescuees: RNE > DIS").unwrap();
+    let mut differences = vec![1.0; 40];
+    (0..7).for_each(|i| differences[i] = 2.0 + i as f64 / 10.0);
+    let seven = judged(&above, &differences, 1);
+    assert_eq!((seven.verdict, seven.interval), (Verdict::Undecided, None));
+    assert!(seven.needs.unwrap().ends_with("8 differences other than the commonest one (found 7)"));
+    differences[7] = 3.0;
+    assert_eq!(judged(&above, &differences, 1).verdict, Verdict::Holds);
+    // The rarer an error may be, the more differences it takes.
+    assert_eq!(judged(&above, &differences, 100).verdict, Verdict::Undecided);
+    // Equal differences tell nothing of those that were not seen, and 19 pairs are too few.
+    assert_eq!(judged(&above, &[1.0; 200], 1).verdict, Verdict::Undecided);
+    let few: Vec<f64> = (1..20).map(f64::from).collect();
+    assert_eq!(judged(&above, &few, 1).verdict, Verdict::Undecided);
+}
+
+#[test]
+fn expectations_of_a_file_share_their_error() {
+    let above = read("rescuees: RNE > DIS").unwrap();
+    let differences: Vec<f64> = (0..40).map(|i| f64::from(i) - 13.0).collect();
+    assert_eq!(judged(&above, &differences, 1).verdict, Verdict::Holds);
+    assert_eq!(judged(&above, &differences, 20).verdict, Verdict::Undecided, "shared by twenty intervals");
+    let every = read("rescuees > 0 in 100 % of seeds").unwrap().what;
+    assert!(above.what.has_interval() && !every.has_interval());
 }

@@ -3,6 +3,7 @@
 
 mod blindness;
 mod levels;
+mod sizes;
 mod sorting;
 
 use rne_core::{Assignment, Decision, MadePolicy, Member, Question, RoleId, TaskId};
@@ -10,6 +11,7 @@ use store::Failure;
 
 pub use blindness::{Blindness, Example, Pair};
 pub use levels::{GroupLevels, levels, mean_levels};
+pub use sizes::{OddSizes, odd_sizes};
 pub use sorting::{KEYS, Key, Share, SortingAgreement, agreement};
 
 use crate::run::Trial;

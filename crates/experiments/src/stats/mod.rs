@@ -1,6 +1,7 @@
 //! Statistics of a sweep, as functions of slices of numbers.
 
 pub mod bootstrap;
+pub mod cautious;
 mod correlation;
 pub mod paired;
 pub mod sensitivity;

@@ -15,6 +15,7 @@ mod homes;
 mod named;
 mod partial;
 mod places;
+mod ranges;
 mod reading;
 mod rules;
 mod scatter;

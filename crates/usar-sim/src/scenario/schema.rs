@@ -4,22 +4,24 @@ use std::borrow::Cow;
 
 use schemars::generate::SchemaSettings;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
-use serde_json::{Value, json};
+use serde_json::{Map, Value, json};
 
 use super::distribution::{Amount, Distribution};
 use super::file::{Door, Point, ResolverRule, RightOfWay, ScenarioFile, WallFile};
+use super::ranges;
 
 impl JsonSchema for Amount {
     fn schema_name() -> Cow<'static, str> {
         "Amount".into()
     }
 
-    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
-        let drawn = generator.subschema_for::<Distribution>();
-        json_schema!({
-            "description": "A number, or a distribution from which each thing draws its own.",
-            "anyOf": [{"type": "number"}, drawn],
-        })
+    /// Each has a range of its own.
+    fn inline_schema() -> bool {
+        true
+    }
+
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        json_schema!({"type": "number"})
     }
 }
 
@@ -86,6 +88,7 @@ pub fn scenario_schema() -> Value {
     let mut generator = SchemaSettings::draft2020_12().into_generator();
     generator.subschema_for::<Distribution>();
     let mut schema = Value::from(generator.into_root_schema_for::<ScenarioFile>());
+    ranges::put(&mut schema);
     let all = schema.as_object_mut();
     let Some(all) = all else { return schema };
     if let Some(properties) = all.get_mut("properties").and_then(Value::as_object_mut) {
@@ -99,28 +102,51 @@ pub fn scenario_schema() -> Value {
     }
     // Sections may be given in part, and a base supplies the fields that are left out.
     let required = all.remove("required").unwrap_or_default();
-    all.insert("anyOf".to_owned(), json!([{"required": ["base"]}, {"required": required}]));
+    let list = |(table, _): (&str, &str)| (table.to_owned(), json!({"type": "array"}));
+    let lists: Map<String, Value> = TABLES.into_iter().map(list).collect();
+    let whole = json!({"required": required, "properties": lists});
+    all.insert("anyOf".to_owned(), json!([{"required": ["base"]}, whole]));
     if let Some(types) = all.get_mut("$defs").and_then(Value::as_object_mut) {
         for name in ["Normal", "Rates"] {
             types.get_mut(name).and_then(Value::as_object_mut).and_then(|own| own.remove("required"));
         }
         for (name, own) in types.iter_mut() {
-            if name != "Distribution" && name != "Amount" {
+            if name != "Distribution" {
                 let_numbers_be_drawn(own);
             }
         }
     }
     all.get_mut("properties").into_iter().for_each(let_numbers_be_drawn);
+    TABLES.into_iter().for_each(|(table, entry)| let_entries_be_named(all, table, entry));
     schema
+}
+
+/// Tables whose entries have names, each with the type of an entry.
+const TABLES: [(&str, &str); 3] = [("roles", "RoleFile"), ("needs", "NeedFile"), ("tasks", "TaskFile")];
+
+/// Allows a table to be an object with a part of each entry, by its name, as a scenario over a base has it.
+fn let_entries_be_named(all: &mut Map<String, Value>, table: &str, entry: &str) {
+    let mut part = all["$defs"][entry].clone();
+    part.as_object_mut().and_then(|part| part.remove("required"));
+    let Some(own) = all["properties"][table].as_object_mut() else { return };
+    let mut list = Map::new();
+    for key in ["type", "items", "minItems", "maxItems"] {
+        list.extend(own.remove(key).map(|value| (key.to_owned(), value)));
+    }
+    own.insert("anyOf".to_owned(), json!([list, {"type": "object", "additionalProperties": part}]));
 }
 
 /// Allows a distribution in place of each number.
 fn let_numbers_be_drawn(schema: &mut Value) {
     match schema {
         Value::Object(fields) => {
-            let is_number = matches!(fields.get("type").and_then(Value::as_str), Some("number" | "integer"));
+            let kind = fields.get("type").map(|kind| kind.get(0).unwrap_or(kind));
+            let is_number = matches!(kind.and_then(Value::as_str), Some("number" | "integer"));
             if is_number && !fields.contains_key("anyOf") {
-                let mut number = serde_json::Map::new();
+                if fields.get("format").is_some_and(|format| format == "uint32") {
+                    fields.entry("maximum").or_insert(json!(u32::MAX));
+                }
+                let mut number = Map::new();
                 for key in ["type", "format", "minimum", "maximum"] {
                     fields.remove(key).into_iter().for_each(|value| {
                         number.insert(key.to_owned(), value);

@@ -1,8 +1,9 @@
 //! `usar compare`: paired comparisons of a sweep's policies.
 
 use experiments::comparison::{
-    Asked, CONFIDENCE, Comparison, Effect, Interaction, LEVEL, answer, answer_of_cases, compare, effects,
-    interactions, limit_of_changes, limit_of_correction, own_question, test_in_words, what_would_settle,
+    Asked, CONFIDENCE, Comparison, Effect, Interaction, LEVEL, answer, answer_of_cases, compare, doubts,
+    effects, interactions, limit_of_changes, limit_of_correction, own_question, test_in_words,
+    what_would_settle,
 };
 use experiments::experiment::Experiment;
 use experiments::stats::bootstrap::resamples;
@@ -57,7 +58,8 @@ struct Compared<'a> {
 
 impl Arguments {
     pub(crate) fn execute(&self, registry: &Registry, out: &mut dyn Write) -> Result<(), Failure> {
-        let folder = read_sweep(&self.folder, registry)?;
+        let mut folder = read_sweep(&self.folder, registry)?;
+        let doubts = doubts(&mut folder)?;
         let experiment = folder.experiment();
         let asked = &self.family.asked(experiment)?;
         let comparisons = compare(&folder, &asked.metrics, asked.choice())?;
@@ -77,6 +79,7 @@ impl Arguments {
                 "confidence": CONFIDENCE,
                 "level": LEVEL,
                 "own_question": own,
+                "doubts": doubts,
                 "comparisons": compared.comparisons,
                 "effects": compared.effects,
                 "interactions": compared.interactions,
@@ -90,6 +93,7 @@ impl Arguments {
             compared.print_narrow(out)?;
         }
         compared.print_notes(out)?;
+        doubts.iter().try_for_each(|doubt| writeln!(out, "{doubt}"))?;
         if let Some(own) = own {
             writeln!(out, "{own}")?;
         }

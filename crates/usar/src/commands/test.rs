@@ -26,9 +26,10 @@ A sweep file says what is expected of its outcome:
       \"rescuees.total: RNE = ENG within 3\",
   ]
 
-Trials are added (10, 20, 40, ...) until every expectation holds or fails at its confidence (95 % where none \
-is named), shared over the planned looks. The exit status is 0 if all hold, and 1 if one fails or is still \
-undecided after --max-trials.
+Trials are added (20, 40, 80, ...) until every expectation holds or fails at its confidence (95 % where none \
+is named). The expectations, cases and looks of a file share the error that the confidence allows. A mean \
+difference needs 8 differences or more other than the commonest one. The exit status is 0 if all hold, and 1 \
+if one fails or is still undecided after --max-trials. docs/experiments.md says how often verdicts are wrong.
 
 Examples:
   usar test scenarios/paper.ron
@@ -129,6 +130,8 @@ impl Suite {
     /// Runs trials until every expectation is decided in every case, or no trials are left.
     fn test(mut self, progress: &ProgressArguments) -> Result<Vec<Tested>, Failure> {
         let looks = looks(self.experiment.trials);
+        let with_interval = self.expected.iter().filter(|expected| expected.what.has_interval()).count();
+        let intervals = looks.len() * self.experiment.cases.len() * with_interval;
         let mut open: Vec<(usize, usize)> = (0..self.experiment.cases.len())
             .flat_map(|case| (0..self.expected.len()).map(move |place| (case, place)))
             .collect();
@@ -136,7 +139,7 @@ impl Suite {
         for look in &looks {
             self.run_up_to(*look, &open, progress)?;
             open.retain(|(case, place)| {
-                let found = self.judge(*case, *place, *look, looks.len());
+                let found = self.judge(*case, *place, *look, intervals);
                 let is_open = found.judgement.verdict == Verdict::Undecided;
                 tested.insert((*case, *place), found);
                 is_open
@@ -191,7 +194,7 @@ impl Suite {
         if is_whole { Ok(()) } else { Err(Failure::Interrupted("stopped".to_owned())) }
     }
 
-    fn judge(&self, case: usize, place: usize, trials: u32, looks: usize) -> Tested {
+    fn judge(&self, case: usize, place: usize, trials: u32, intervals: usize) -> Tested {
         let expected = &self.expected[place];
         let of =
             |policy: usize| (1..=trials).filter_map(move |trial| self.values.get(&(case, policy, trial)));
@@ -200,7 +203,7 @@ impl Suite {
         let value = |policy: usize, metric: usize| {
             of(policy).map(|value| value.as_ref().ok().and_then(|values| values[metric])).collect()
         };
-        let mut judgement = judge(expected, value, looks, trials == self.experiment.trials);
+        let mut judgement = judge(expected, value, intervals, trials == self.experiment.trials);
         if trouble.is_some() {
             judgement.verdict = Verdict::Fails;
         }
@@ -226,12 +229,13 @@ fn verdict_name(verdict: Verdict) -> &'static str {
 
 /// The observation, in words.
 fn observed(tested: &Tested) -> String {
-    let Judgement { n, observed, interval, .. } = &tested.judgement;
+    let Judgement { n, observed, interval, needs, .. } = &tested.judgement;
     let value = observed.map_or("nothing".to_owned(), short);
     let range =
         interval.map_or(String::new(), |[low, high]| format!(", interval {} to {}", short(low), short(high)));
     let trouble = tested.trouble.as_ref().map_or(String::new(), |trouble| format!("; {trouble}"));
-    format!("observed {value}{range}, n = {n}{trouble}")
+    let needs = needs.as_ref().map_or(String::new(), |needs| format!("; {needs}"));
+    format!("observed {value}{range}, n = {n}{needs}{trouble}")
 }
 
 fn in_words(tested: &Tested) -> String {
