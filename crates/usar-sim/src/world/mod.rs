@@ -69,7 +69,11 @@ impl World {
 
     /// Advances time by one step and reads back all positions. `step` is the number of steps done then.
     pub(crate) fn integrate(&mut self, step: u64) {
-        self.physics.integrate();
+        let Self { physics, debris, debris_places, .. } = self;
+        physics.integrate(|at, reach| {
+            let near = debris_places.near(at, reach);
+            near.into_iter().map(|number| debris[number].distance_to(at)).fold(reach, f32::min)
+        });
         for robot in &mut self.robots {
             (robot.position, robot.velocity) = self.physics.robot_motion(robot.id);
             if !robot.is_able() && robot.wreck_at.is_none() && robot.velocity.length() < STANDING_MPS {
