@@ -167,9 +167,15 @@ impl Physics {
     }
 
     /// Advances time by one step. `to_debris` is the distance from a point to the nearest piece of debris, at most
-    /// the given reach, in metres.
-    pub(crate) fn integrate(&mut self, to_debris: impl Fn(Vector, f32) -> f32) {
-        let is_quiet = !self.debris_is_awake && self.quiet.is_quiet(to_debris);
+    /// the given reach, in metres; `pieces_touch` tells whether a piece that can be pushed touches another,
+    /// or the border of this arena.
+    pub(crate) fn integrate(
+        &mut self,
+        to_debris: impl Fn(Vector, f32) -> f32,
+        pieces_touch: impl FnOnce(Vector) -> bool,
+    ) {
+        let is_quiet =
+            !self.debris_is_awake && !pieces_touch(self.quiet.arena) && self.quiet.is_quiet(to_debris);
         self.steps[0] += 1;
         if is_quiet && !self.is_always_on {
             self.quiet.coast();
@@ -402,7 +408,7 @@ mod tests {
             for _ in 0..500 {
                 let (_, velocity) = world.robot_motion(RobotId(0));
                 world.drive(RobotId(0), (wished - velocity).clamp_length_max(100.0 * DT));
-                world.integrate(|_, _| 0.0);
+                world.integrate(|_, _| 0.0, |_| false);
                 farthest = farthest.max(world.robot_motion(RobotId(0)).0.x);
             }
             let touching = 20.0 - thinnest / 2.0 - RADIUS;
@@ -417,7 +423,7 @@ mod tests {
             let handle = world.debris[0].unwrap();
             let speed: f32 = 3.0;
             world.world.bodies[handle].set_linvel(Vector::new(speed, 0.0), true);
-            (0..200).for_each(|_| world.integrate(|_, _| 0.0));
+            (0..200).for_each(|_| world.integrate(|_, _| 0.0, |_| false));
             let way = world.debris_poses().next().unwrap().1.translation.x - 15.0;
             let expected = speed * speed / (2.0 * friction * GRAVITY);
             assert!((way - expected).abs() < 0.05 * expected + 0.02, "{mass} kg: {way} m, not {expected} m");
@@ -430,7 +436,7 @@ mod tests {
             let mut world = world(1.0, &cuboid([1.0, 1.0], [15.0, 5.0]), Some([20.0, 0.5]));
             let handle = world.debris[0].unwrap();
             world.world.bodies[handle].add_force(Vector::new(newton, 0.0), true);
-            (0..100).for_each(|_| world.integrate(|_, _| 0.0));
+            (0..100).for_each(|_| world.integrate(|_, _| 0.0, |_| false));
             world.debris_poses().next().unwrap().1.translation.x - 15.0
         };
         let limit = 0.5 * 20.0 * GRAVITY;

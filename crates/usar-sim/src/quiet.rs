@@ -38,7 +38,8 @@ pub(crate) struct Disc {
 #[derive(Serialize, Deserialize)]
 pub(crate) struct Quiet {
     dt: f32,
-    arena: Vector,
+    /// Width and height of the arena, in metres.
+    pub arena: Vector,
     /// The robots, by id.
     pub discs: Vec<Disc>,
     /// For each robot, how far it may go before it can touch something, in metres. It only saves time: what is
