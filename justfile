@@ -16,6 +16,10 @@ worlds:
 navigation *arguments:
     cargo run --release --package xtask -- navigation {{arguments}}
 
+# 510 random worlds with the engine at rest in quiet steps and with the engine always on: every hash is the same
+quiet *arguments:
+    cargo run --release --package xtask -- quiet {{arguments}}
+
 # Maps of the grid benchmarks of multi-agent pathfinding (.map, .scen): how many of 100 robots arrive
 grid *arguments:
     cargo run --release --package xtask -- grid {{arguments}}

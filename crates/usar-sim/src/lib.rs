@@ -34,6 +34,7 @@ pub mod model;
 pub mod navigation;
 pub mod physics;
 pub mod planning;
+mod quiet;
 pub mod record;
 pub mod report;
 pub mod robot;

@@ -2,7 +2,8 @@
 //!
 //! Bodies in a plane seen from above, without gravity. Ground robots are discs that touch walls, debris and
 //! each other. Aerial robots touch walls and each other. Debris is fixed, or rubs on the ground with Coulomb
-//! friction.
+//! friction. The engine runs only in steps in which something can touch or slides; in the others, robots coast
+//! ([`Quiet`]), to the same places bit for bit.
 
 use std::collections::BTreeMap;
 
@@ -16,6 +17,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::geometry::Outline;
 use crate::ids::RobotId;
+use crate::quiet::{Disc, Quiet};
 
 /// Features of the engine that change numerical results, for the manifests of results.
 pub const ENGINE_FEATURES: [&str; 1] = ["rapier2d/enhanced-determinism"];
@@ -87,6 +89,17 @@ pub struct Physics {
     debris: Vec<Option<RigidBodyHandle>>,
     /// Bodies of the debris that events place or remove, by number.
     gates: BTreeMap<usize, RigidBodyHandle>,
+    /// Where the robots are, and how they move.
+    quiet: Quiet,
+    /// For each robot, its mass and the inverse, as the engine has them.
+    masses: Vec<[f32; 2]>,
+    /// Whether the engine has a piece of debris awake: it moves, or has not lain still for long.
+    debris_is_awake: bool,
+    /// Steps done, and those in which the engine ran.
+    steps: [u64; 2],
+    /// Whether the engine runs in every step.
+    #[serde(skip)]
+    is_always_on: bool,
 }
 
 impl Physics {
@@ -108,15 +121,35 @@ impl Physics {
             }
             is_movable.then_some(handle)
         };
-        let debris = debris.iter().enumerate().map(insert).collect();
-        let robots = robots.iter().map(|robot| insert_robot(&mut world, robot, dt)).collect();
-        Self { world, robots, debris, gates }
+        let debris: Vec<Option<RigidBodyHandle>> = debris.iter().enumerate().map(insert).collect();
+        let quiet = Quiet::new(dt, arena, robots.iter().map(disc).collect());
+        let robots: Vec<RigidBodyHandle> =
+            robots.iter().map(|robot| insert_robot(&mut world, robot, dt)).collect();
+        let masses = robots.iter().map(|handle| {
+            let body = &world.bodies[*handle];
+            [body.mass(), body.mass_properties().local_mprops.inv_mass]
+        });
+        let masses = masses.collect();
+        let debris_is_awake = debris.iter().any(Option::is_some);
+        let (steps, is_always_on) = ([0; 2], false);
+        Self { world, robots, debris, gates, quiet, masses, debris_is_awake, steps, is_always_on }
+    }
+
+    /// Has the engine run in every step: the reference for quiet steps.
+    pub(crate) fn keep_engine_on(&mut self) {
+        self.is_always_on = true;
+    }
+
+    /// Steps done, and those of them in which the engine ran.
+    #[must_use]
+    pub fn steps(&self) -> [u64; 2] {
+        self.steps
     }
 
     /// Changes a robot's velocity by this vector, in metres per second.
     pub(crate) fn drive(&mut self, robot: RobotId, velocity_change: Vector) {
-        let body = &mut self.world.bodies[self.robots[robot.index()]];
-        body.apply_impulse(velocity_change * body.mass(), true);
+        let [mass, inverse] = self.masses[robot.index()];
+        self.quiet.discs[robot.index()].velocity += velocity_change * mass * inverse;
     }
 
     /// The bodies of the debris that events place or remove.
@@ -128,28 +161,69 @@ impl Physics {
     pub(crate) fn put_debris(&mut self, number: usize, pose: Pose) {
         if let Some(handle) = self.gates.get(&number) {
             self.world.bodies[*handle].set_position(pose, true);
+            self.quiet.forget();
+            self.debris_is_awake = self.debris.iter().any(Option::is_some);
         }
     }
 
-    /// Advances time by one step.
-    pub(crate) fn integrate(&mut self) {
-        self.world.step();
+    /// Advances time by one step. `to_debris` is the distance from a point to the nearest piece of debris, at most
+    /// the given reach, in metres; `pieces_touch` tells whether a piece that can be pushed touches another,
+    /// or the border of this arena.
+    pub(crate) fn integrate(
+        &mut self,
+        to_debris: impl Fn(Vector, f32) -> f32,
+        pieces_touch: impl FnOnce(Vector) -> bool,
+    ) {
+        let is_quiet =
+            !self.debris_is_awake && !pieces_touch(self.quiet.arena) && self.quiet.is_quiet(to_debris);
+        self.steps[0] += 1;
+        if is_quiet && !self.is_always_on {
+            self.quiet.coast();
+        } else {
+            self.steps[1] += 1;
+            self.step_engine();
+        }
+    }
+
+    /// Lets the engine do a step from where the robots are.
+    fn step_engine(&mut self) {
+        let Self { world, robots, debris, quiet, .. } = self;
+        for (handle, disc) in robots.iter().zip(&quiet.discs) {
+            let body = &mut world.bodies[*handle];
+            if body.translation() != disc.at {
+                body.set_position(Pose::from_translation(disc.at), false);
+            }
+            if body.linvel() != disc.velocity {
+                body.set_linvel(disc.velocity, false);
+            }
+        }
+        world.step();
+        for (i, handle) in robots.iter().enumerate() {
+            let body = &world.bodies[*handle];
+            quiet.moved(i, body.translation(), body.linvel());
+        }
+        let is_awake = |handle: &RigidBodyHandle| !world.bodies[*handle].is_sleeping();
+        self.debris_is_awake = debris.iter().flatten().any(is_awake);
+        if self.debris_is_awake {
+            quiet.forget();
+        }
     }
 
     /// Position and velocity of a robot.
     pub(crate) fn robot_motion(&self, robot: RobotId) -> (Vector, Vector) {
-        let body = &self.world.bodies[self.robots[robot.index()]];
-        (body.translation(), body.linvel())
+        let disc = &self.quiet.discs[robot.index()];
+        (disc.at, disc.velocity)
     }
 
     /// Pose, velocity and angular velocity of every body that can move: a part of the hash chain.
     pub(crate) fn motions(&self) -> Vec<(Pose, Vector, f32)> {
-        let movable = self.robots.iter().chain(self.debris.iter().flatten());
+        let discs = self.quiet.discs.iter();
+        let robots = discs.map(|disc| (Pose::from_translation(disc.at), disc.velocity, 0.0));
         let motion = |handle: &RigidBodyHandle| {
             let body = &self.world.bodies[*handle];
             (*body.position(), body.linvel(), body.angvel())
         };
-        movable.map(motion).collect()
+        robots.chain(self.debris.iter().flatten().map(motion)).collect()
     }
 
     /// Numbers and poses of the movable debris, in order.
@@ -209,6 +283,11 @@ fn parameters(dt: f32) -> IntegrationParameters {
         warmstart_joints: false,
         soft_bodies: rapier2d::dynamics::SoftBodiesSettings::default(), // there are none
     }
+}
+
+fn disc(robot: &RobotBody) -> Disc {
+    let RobotBody { position: at, radius, is_aerial, .. } = *robot;
+    Disc { at, velocity: Vector::ZERO, radius, is_aerial }
 }
 
 fn groups(membership: Group, touches: Group) -> InteractionGroups {
@@ -329,7 +408,7 @@ mod tests {
             for _ in 0..500 {
                 let (_, velocity) = world.robot_motion(RobotId(0));
                 world.drive(RobotId(0), (wished - velocity).clamp_length_max(100.0 * DT));
-                world.integrate();
+                world.integrate(|_, _| 0.0, |_| false);
                 farthest = farthest.max(world.robot_motion(RobotId(0)).0.x);
             }
             let touching = 20.0 - thinnest / 2.0 - RADIUS;
@@ -344,7 +423,7 @@ mod tests {
             let handle = world.debris[0].unwrap();
             let speed: f32 = 3.0;
             world.world.bodies[handle].set_linvel(Vector::new(speed, 0.0), true);
-            (0..200).for_each(|_| world.integrate());
+            (0..200).for_each(|_| world.integrate(|_, _| 0.0, |_| false));
             let way = world.debris_poses().next().unwrap().1.translation.x - 15.0;
             let expected = speed * speed / (2.0 * friction * GRAVITY);
             assert!((way - expected).abs() < 0.05 * expected + 0.02, "{mass} kg: {way} m, not {expected} m");
@@ -357,7 +436,7 @@ mod tests {
             let mut world = world(1.0, &cuboid([1.0, 1.0], [15.0, 5.0]), Some([20.0, 0.5]));
             let handle = world.debris[0].unwrap();
             world.world.bodies[handle].add_force(Vector::new(newton, 0.0), true);
-            (0..100).for_each(|_| world.integrate());
+            (0..100).for_each(|_| world.integrate(|_, _| 0.0, |_| false));
             world.debris_poses().next().unwrap().1.translation.x - 15.0
         };
         let limit = 0.5 * 20.0 * GRAVITY;

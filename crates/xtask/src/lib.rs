@@ -20,6 +20,7 @@ pub mod limits;
 pub mod mutations;
 pub mod navigation;
 pub mod pages;
+pub mod quiet;
 pub mod random;
 pub mod reference;
 pub mod reference_pages;

@@ -6,8 +6,8 @@ mod commands;
 use std::process::ExitCode;
 
 use commands::{
-    calibration, coverage, damage, golden, grid, kills, limits, million, mutations, pages, reference, scale,
-    scenarios, soak, work, worlds,
+    calibration, coverage, damage, golden, grid, kills, limits, million, mutations, pages, quiet, reference,
+    scale, scenarios, soak, work, worlds,
 };
 
 fn main() -> ExitCode {
@@ -26,6 +26,7 @@ fn main() -> ExitCode {
         "limits" => limits::run(),
         "navigation" => xtask::navigation::main(),
         "pages" => pages::run(arguments),
+        "quiet" => quiet::run(arguments),
         "reference" => reference::run(),
         "scenarios" => scenarios::run(arguments),
         "scale" => scale::run(arguments),
@@ -35,7 +36,7 @@ fn main() -> ExitCode {
         _ => {
             eprintln!(
                 "xtask: no task {task:?}. Tasks: calibration, coverage, damage, golden, grid, kills, limits, \
-                 million, mutations, navigation, pages, reference, scale, scenarios, soak, work, worlds"
+                 million, mutations, navigation, pages, quiet, reference, scale, scenarios, soak, work, worlds"
             );
             ExitCode::from(2)
         }

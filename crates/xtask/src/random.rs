@@ -60,6 +60,11 @@ pub fn run(seed: u64) -> Ran {
     Ran { text, refused, events, draws, tasks, scattered: scenario.scatter.len(), violation }
 }
 
+/// The scenario of a seed.
+pub fn scenario(seed: u64) -> Scenario {
+    start(seed).1
+}
+
 /// The first text of a seed that is a valid scenario whose trial can begin.
 fn start(seed: u64) -> (String, Scenario, Simulation, u64) {
     for attempt in 0..TRIES {

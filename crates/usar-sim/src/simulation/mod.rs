@@ -113,6 +113,13 @@ impl Simulation {
         self
     }
 
+    /// The same trial with the engine on in every step, for tests and measurements of steps in which it rests.
+    #[must_use]
+    pub fn with_engine_always_on(mut self) -> Self {
+        self.state.world.physics.keep_engine_on();
+        self
+    }
+
     /// The question that waits for an answer.
     #[must_use]
     pub fn question(&self) -> Option<&Question> {

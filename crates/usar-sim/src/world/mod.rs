@@ -4,7 +4,9 @@ mod debris;
 mod effects;
 mod rescuee;
 
+use parry2d::bounding_volume::BoundingVolume;
 use parry2d::math::{Pose, Vector};
+use parry2d::query::distance;
 use serde::{Deserialize, Serialize};
 
 pub use debris::Debris;
@@ -14,6 +16,9 @@ use crate::geometry::Places;
 use crate::model::Model;
 use crate::physics::{DebrisBody, Physics, RobotBody};
 use crate::robot::{Robot, STANDING_MPS};
+
+/// Pieces with a smaller gap than this touch, in metres.
+const TOUCH_M: f32 = 0.005;
 
 /// The state of everything that is in the arena.
 #[derive(Serialize, Deserialize)]
@@ -27,6 +32,9 @@ pub struct World {
     /// The debris by place. Follows from `debris`.
     #[serde(skip)]
     pub(crate) debris_places: Places,
+    /// Whether a piece that can be pushed touches another, if that is known. Follows from `debris`.
+    #[serde(skip)]
+    touching: Option<bool>,
     /// How often each zone was switched on or off. A zone that is there from the start begins with 1. With an
     /// odd number, the zone is on. Empty in a scenario without a timeline: all zones are on.
     zone_switches: Vec<u8>,
@@ -55,6 +63,7 @@ impl World {
             robots,
             debris_places: by_place(&debris),
             debris,
+            touching: None,
             zone_switches: model.zones.iter().take(many).map(|zone| u8::from(!zone.is_later)).collect(),
             zone_since: model.zones.iter().take(many).map(|_| 0).collect(),
             closed_tasks: model.tasks.iter().take(many).map(|task| task.begins_later).collect(),
@@ -69,7 +78,14 @@ impl World {
 
     /// Advances time by one step and reads back all positions. `step` is the number of steps done then.
     pub(crate) fn integrate(&mut self, step: u64) {
-        self.physics.integrate();
+        let Self { physics, debris, debris_places, touching, .. } = self;
+        let to_debris = |at: Vector, reach: f32| {
+            let near = debris_places.near(at, reach);
+            near.into_iter().map(|number| debris[number].distance_to(at)).fold(reach, f32::min)
+        };
+        physics.integrate(to_debris, |arena| {
+            *touching.get_or_insert_with(|| any_touches(debris, debris_places, arena))
+        });
         for robot in &mut self.robots {
             (robot.position, robot.velocity) = self.physics.robot_motion(robot.id);
             if !robot.is_able() && robot.wreck_at.is_none() && robot.velocity.length() < STANDING_MPS {
@@ -80,6 +96,7 @@ impl World {
             let piece = &mut self.debris[number];
             if piece.pose != pose {
                 piece.moved_to(pose, step);
+                self.touching = None;
                 self.debris_places.put(number, piece.bounds());
             }
         }
@@ -147,12 +164,29 @@ impl World {
         let piece = &mut self.debris[number];
         piece.put(pose, step);
         self.physics.put_debris(number, piece.pose);
+        self.touching = None;
         self.debris_places.put(number, piece.bounds());
     }
 }
 
 fn by_place(debris: &[Debris]) -> Places {
     debris.iter().map(Debris::bounds).collect()
+}
+
+/// Whether a piece that can be pushed touches another or the border of the arena.
+fn any_touches(debris: &[Debris], places: &Places, arena: Vector) -> bool {
+    let touches = |one: usize, other: usize| {
+        let [a, b] = [one, other].map(|number| debris[number].outline());
+        let apart = distance(&a.pose, &*a.shape, &b.pose, &*b.shape);
+        one != other && apart.is_ok_and(|apart| apart.distance <= TOUCH_M)
+    };
+    let movable = (0..debris.len()).filter(|number| debris[*number].masses.is_some());
+    movable.into_iter().any(|number| {
+        let bounds = debris[number].bounds().loosened(TOUCH_M);
+        let outside = bounds.mins.min_element() < 0.0 || (arena - bounds.maxs).min_element() < 0.0;
+        let near = places.near(bounds.center(), bounds.half_extents().max_element());
+        outside || near.into_iter().any(|other| touches(number, other))
+    })
 }
 
 fn robot_body(robot: &Robot) -> RobotBody {

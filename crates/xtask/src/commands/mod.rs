@@ -10,6 +10,7 @@ pub mod limits;
 pub mod million;
 pub mod mutations;
 pub mod pages;
+pub mod quiet;
 pub mod reference;
 pub mod scale;
 pub mod scenarios;
