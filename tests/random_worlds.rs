@@ -1,9 +1,11 @@
-//! A sample of the random feasible worlds; all 500 are a recipe.
+//! A sample of the random worlds; hundreds more are recipes.
 
 use rayon::prelude::*;
 use usar_sim::scenario::Scenario;
 use xtask::journeys::{Journeys, STANDSTILL_S};
+use xtask::quiet::both_ways;
 use xtask::worlds::world;
+use xtask::{random, rooms};
 
 #[test]
 fn in_30_random_worlds_nobody_stands_still_for_good_and_no_invariant_is_violated() {
@@ -25,4 +27,20 @@ fn in_30_random_worlds_nobody_stands_still_for_good_and_no_invariant_is_violated
             assert!(!stall.contains("nothing_to_do"), "world {seed}: {stall} has no cause");
         }
     }
+}
+
+#[test]
+fn trials_are_the_same_with_the_engine_at_rest_in_quiet_steps_and_always_on() {
+    let kinds: [fn(u64) -> Scenario; 3] = [world, rooms::rooms, random::scenario];
+    let trials: Vec<_> = (0..24_u64).map(|seed| (seed, kinds[seed as usize % 3])).collect();
+    let run = |(seed, world): &(u64, fn(u64) -> Scenario)| {
+        let mut file = (*world(*seed)).clone();
+        file.duration_s = 40.0;
+        both_ways(&Scenario::try_from(file).unwrap(), *seed)
+    };
+    let ran: Vec<_> = trials.par_iter().filter_map(run).collect();
+    let differing = ran.iter().filter(|both| both.differs_at.is_some()).count();
+    let [all, on] = ran.iter().fold([0, 0], |[all, on], both| [all + both.steps[0], on + both.steps[1]]);
+    assert_eq!((ran.len(), differing), (24, 0));
+    assert!(0 < on && on < all / 2, "the engine ran in {on} of {all} steps");
 }

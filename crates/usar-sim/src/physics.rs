@@ -5,6 +5,9 @@
 //! friction. The engine runs only in steps in which something can touch or slides; in the others, robots coast
 //! ([`Quiet`]), to the same places bit for bit.
 
+#[cfg(test)]
+mod tests;
+
 use std::collections::BTreeMap;
 
 use parry2d::math::{Pose, Vector};
@@ -17,7 +20,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::geometry::Outline;
 use crate::ids::RobotId;
-use crate::quiet::{Disc, Quiet};
+use crate::quiet::{Disc, Fixed, Quiet};
 
 /// Features of the engine that change numerical results, for the manifests of results.
 pub const ENGINE_FEATURES: [&str; 1] = ["rapier2d/enhanced-determinism"];
@@ -91,11 +94,11 @@ pub struct Physics {
     gates: BTreeMap<usize, RigidBodyHandle>,
     /// Where the robots are, and how they move.
     quiet: Quiet,
-    /// For each robot, its mass and the inverse, as the engine has them.
-    masses: Vec<[f32; 2]>,
     /// Whether the engine has a piece of debris awake: it moves, or has not lain still for long.
+    #[serde(skip)]
     debris_is_awake: bool,
-    /// Steps done, and those in which the engine ran.
+    /// Steps done since the last restoring, and those in which the engine ran.
+    #[serde(skip)]
     steps: [u64; 2],
     /// Whether the engine runs in every step.
     #[serde(skip)]
@@ -122,17 +125,25 @@ impl Physics {
             is_movable.then_some(handle)
         };
         let debris: Vec<Option<RigidBodyHandle>> = debris.iter().enumerate().map(insert).collect();
-        let quiet = Quiet::new(dt, arena, robots.iter().map(disc).collect());
-        let robots: Vec<RigidBodyHandle> =
-            robots.iter().map(|robot| insert_robot(&mut world, robot, dt)).collect();
-        let masses = robots.iter().map(|handle| {
-            let body = &world.bodies[*handle];
-            [body.mass(), body.mass_properties().local_mprops.inv_mass]
-        });
-        let masses = masses.collect();
-        let debris_is_awake = debris.iter().any(Option::is_some);
-        let (steps, is_always_on) = ([0; 2], false);
-        Self { world, robots, debris, gates, quiet, masses, debris_is_awake, steps, is_always_on }
+        let handles = robots.iter().map(|robot| insert_robot(&mut world, robot, dt)).collect();
+        let resting = |robot: &RobotBody| Disc { at: robot.position, ..Disc::default() };
+        let quiet = Quiet::new(dt, arena, robots.iter().map(resting).collect());
+        let (debris_is_awake, steps, is_always_on) = (false, [0; 2], false);
+        let mut physics =
+            Self { world, robots: handles, debris, gates, quiet, debris_is_awake, steps, is_always_on };
+        physics.restore(dt, arena, robots);
+        physics
+    }
+
+    /// Restores what snapshots leave out because it does not change.
+    pub(crate) fn restore(&mut self, dt: f32, arena: Vector, robots: &[RobotBody]) {
+        (self.quiet.dt, self.quiet.arena) = (dt, arena);
+        self.debris_is_awake = self.debris.iter().any(Option::is_some);
+        for ((disc, robot), handle) in self.quiet.discs.iter_mut().zip(robots).zip(&self.robots) {
+            let body = &self.world.bodies[*handle];
+            let masses = [body.mass(), body.mass_properties().local_mprops.inv_mass];
+            disc.fixed = Fixed { radius: robot.radius, is_aerial: robot.is_aerial, masses };
+        }
     }
 
     /// Has the engine run in every step: the reference for quiet steps.
@@ -148,8 +159,9 @@ impl Physics {
 
     /// Changes a robot's velocity by this vector, in metres per second.
     pub(crate) fn drive(&mut self, robot: RobotId, velocity_change: Vector) {
-        let [mass, inverse] = self.masses[robot.index()];
-        self.quiet.discs[robot.index()].velocity += velocity_change * mass * inverse;
+        let disc = &mut self.quiet.discs[robot.index()];
+        let [mass, inverse] = disc.fixed.masses;
+        disc.velocity += velocity_change * mass * inverse;
     }
 
     /// The bodies of the debris that events place or remove.
@@ -285,11 +297,6 @@ fn parameters(dt: f32) -> IntegrationParameters {
     }
 }
 
-fn disc(robot: &RobotBody) -> Disc {
-    let RobotBody { position: at, radius, is_aerial, .. } = *robot;
-    Disc { at, velocity: Vector::ZERO, radius, is_aerial }
-}
-
 fn groups(membership: Group, touches: Group) -> InteractionGroups {
     InteractionGroups::new(membership, touches, InteractionTestMode::And)
 }
@@ -366,83 +373,4 @@ fn insert_debris(
     }
     world.insert_impulse_joint(ground, handle, joint);
     (handle, true)
-}
-
-#[cfg(test)]
-mod tests {
-    use parry2d::math::Rotation;
-    use parry2d::shape::SharedShape;
-
-    use super::*;
-
-    const DT: f32 = 0.02;
-    const RADIUS: f32 = 0.4;
-
-    fn cuboid(size: [f32; 2], at: [f32; 2]) -> Outline {
-        let pose = Pose::from_parts(at.into(), Rotation::identity());
-        Outline { shape: SharedShape::cuboid(size[0] / 2.0, size[1] / 2.0), pose }
-    }
-
-    /// A robot of `top_speed` m/s at (5, 5) and one piece of debris; movable with its mass and friction.
-    fn world(top_speed: f32, outline: &Outline, movable: Option<[f32; 2]>) -> Physics {
-        let robot = RobotBody {
-            position: Vector::splat(5.0),
-            is_aerial: false,
-            radius: RADIUS,
-            mass: 50.0,
-            top_speed,
-        };
-        let masses = movable.map(|[mass, friction]| [mass, mass * friction]);
-        let piece = DebrisBody { outline: outline.clone(), is_gate: false, masses };
-        Physics::new(DT, Vector::new(40.0, 10.0), &[robot], &[piece])
-    }
-
-    #[test]
-    fn nobody_gets_through_the_thinnest_wall_at_the_highest_speed() {
-        let (thinnest, fastest) = (0.1, 20.0); // a rule of scenarios: speed times step is at most the radius
-        let wall = cuboid([thinnest, 9.9], [20.0, 5.0]);
-        for angle in [0.0, 0.5, 1.2] {
-            let mut world = world(fastest, &wall, None);
-            let wished = Vector::new(libm::cosf(angle), libm::sinf(angle)) * fastest;
-            let mut farthest: f32 = 0.0;
-            for _ in 0..500 {
-                let (_, velocity) = world.robot_motion(RobotId(0));
-                world.drive(RobotId(0), (wished - velocity).clamp_length_max(100.0 * DT));
-                world.integrate(|_, _| 0.0, |_| false);
-                farthest = farthest.max(world.robot_motion(RobotId(0)).0.x);
-            }
-            let touching = 20.0 - thinnest / 2.0 - RADIUS;
-            assert!((touching - 0.01..touching + 0.05).contains(&farthest), "{angle}: {farthest}");
-        }
-    }
-
-    #[test]
-    fn a_piece_that_slides_is_braked_by_friction_whatever_its_mass() {
-        for (mass, friction) in [(10.0, 0.5), (200.0, 0.5), (30.0, 0.2)] {
-            let mut world = world(1.0, &cuboid([1.0, 1.0], [15.0, 5.0]), Some([mass, friction]));
-            let handle = world.debris[0].unwrap();
-            let speed: f32 = 3.0;
-            world.world.bodies[handle].set_linvel(Vector::new(speed, 0.0), true);
-            (0..200).for_each(|_| world.integrate(|_, _| 0.0, |_| false));
-            let way = world.debris_poses().next().unwrap().1.translation.x - 15.0;
-            let expected = speed * speed / (2.0 * friction * GRAVITY);
-            assert!((way - expected).abs() < 0.05 * expected + 0.02, "{mass} kg: {way} m, not {expected} m");
-        }
-    }
-
-    #[test]
-    fn a_piece_is_pushed_by_more_than_its_friction_only() {
-        let way_pushed_by = |newton: f32| {
-            let mut world = world(1.0, &cuboid([1.0, 1.0], [15.0, 5.0]), Some([20.0, 0.5]));
-            let handle = world.debris[0].unwrap();
-            world.world.bodies[handle].add_force(Vector::new(newton, 0.0), true);
-            (0..100).for_each(|_| world.integrate(|_, _| 0.0, |_| false));
-            world.debris_poses().next().unwrap().1.translation.x - 15.0
-        };
-        let limit = 0.5 * 20.0 * GRAVITY;
-        assert!(way_pushed_by(0.9 * limit) < 0.01);
-        let expected = 0.5 * (0.5 * limit / 20.0) * 2.0 * 2.0; // half the limit is left to accelerate 20 kg for 2 s
-        let way = way_pushed_by(1.5 * limit);
-        assert!((way - expected).abs() < 0.05 * expected, "{way} m, not {expected} m");
-    }
 }

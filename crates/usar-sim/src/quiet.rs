@@ -22,23 +22,36 @@ const ROUNDING_M: f32 = 1.0e-5;
 const PARTS: u8 = 4;
 
 /// A robot as a disc that moves.
-#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, Default, Serialize, Deserialize)]
 pub(crate) struct Disc {
     /// Centre, in metres.
     pub at: Vector,
     /// Metres per second.
     pub velocity: Vector,
+    /// What does not change.
+    #[serde(skip)]
+    pub fixed: Fixed,
+}
+
+/// What does not change about a disc. Snapshots leave it out.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Fixed {
     /// Metres.
     pub radius: f32,
     /// Whether it flies over debris and ground robots.
     pub is_aerial: bool,
+    /// Its mass and the inverse, as the engine has them.
+    pub masses: [f32; 2],
 }
 
 /// The robots, and how far each may go.
 #[derive(Serialize, Deserialize)]
 pub(crate) struct Quiet {
-    dt: f32,
+    /// Length of a step, in seconds.
+    #[serde(skip)]
+    pub dt: f32,
     /// Width and height of the arena, in metres.
+    #[serde(skip)]
     pub arena: Vector,
     /// The robots, by id.
     pub discs: Vec<Disc>,
@@ -75,17 +88,17 @@ impl Quiet {
     fn is_free(&mut self, i: usize, to_debris: impl Fn(Vector, f32) -> f32) -> bool {
         let me = self.discs[i];
         let inside = me.at.min(self.arena - me.at).min_element();
-        let debris = if me.is_aerial { REACH_M } else { to_debris(me.at, REACH_M) };
-        let fixed = inside.min(debris).min(REACH_M) - me.radius;
+        let debris = if me.fixed.is_aerial { REACH_M } else { to_debris(me.at, REACH_M) };
+        let fixed = inside.min(debris).min(REACH_M) - me.fixed.radius;
         if fixed <= self.least(i) {
             return false;
         }
         let mut budget = fixed;
         for (j, other) in self.discs.iter().enumerate() {
-            if j == i || other.is_aerial != me.is_aerial {
+            if j == i || other.fixed.is_aerial != me.fixed.is_aerial {
                 continue;
             }
-            let touch = me.radius + other.radius;
+            let touch = me.fixed.radius + other.fixed.radius;
             let (apart, far) = ((other.at - me.at).length_squared(), touch + 2.0 * REACH_M);
             if apart >= far * far {
                 continue;
@@ -128,7 +141,8 @@ mod tests {
     use super::*;
 
     fn disc(x: f32, velocity: f32) -> Disc {
-        Disc { at: Vector::new(x, 10.0), velocity: Vector::new(velocity, 0.0), radius: 0.4, is_aerial: false }
+        let fixed = Fixed { radius: 0.4, ..Fixed::default() };
+        Disc { at: Vector::new(x, 10.0), velocity: Vector::new(velocity, 0.0), fixed }
     }
 
     fn quiet(discs: &[Disc]) -> Quiet {
@@ -143,7 +157,8 @@ mod tests {
         assert!(quiet(&[disc(5.0, 1.0), disc(5.81, 1.0)]).is_quiet(nothing), "in step, side by side");
         assert!(!quiet(&[disc(0.41, -1.0)]).is_quiet(nothing), "at the border");
         assert!(!quiet(&[disc(5.0, 1.0)]).is_quiet(|_, _| 0.42), "at debris");
-        let flying = Disc { is_aerial: true, ..disc(5.84, -1.0) };
+        let mut flying = disc(5.84, -1.0);
+        flying.fixed.is_aerial = true;
         assert!(quiet(&[disc(5.0, 1.0), flying]).is_quiet(nothing), "above");
     }
 

@@ -113,7 +113,7 @@ impl State {
         }
         debris.iter_mut().zip(&model.debris).for_each(|(piece, model)| piece.model = Arc::clone(model));
         rescuees.iter_mut().zip(&model.rescuees).for_each(|(rescuee, model)| rescuee.model = *model);
-        self.world.place_debris();
+        self.world.restore(model);
         self.beliefs.draw_maps(&model.inflation);
         self.mission.crew.look_for_guides(&model.mission, &self.beliefs.team);
     }

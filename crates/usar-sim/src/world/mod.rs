@@ -71,9 +71,11 @@ impl World {
         }
     }
 
-    /// Draws the debris by place again, after the other fields were read.
-    pub(crate) fn place_debris(&mut self) {
+    /// Restores what follows from the other fields and the model, after those were read.
+    pub(crate) fn restore(&mut self, model: &Model) {
         self.debris_places = by_place(&self.debris);
+        let robots: Vec<RobotBody> = self.robots.iter().map(robot_body).collect();
+        self.physics.restore(model.dt, model.arena, &robots);
     }
 
     /// Advances time by one step and reads back all positions. `step` is the number of steps done then.
