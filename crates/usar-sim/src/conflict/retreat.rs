@@ -237,6 +237,7 @@ impl Retreats {
             crowd: others().map(|(_, other)| disc(other.position, other)).collect(),
             reserved: reserved.collect(),
             margin: rules.margin,
+            leaves_out_corners: rules.leaves_out_corners,
             arena: rules.arena,
         };
         ask.find().or_else(|| {

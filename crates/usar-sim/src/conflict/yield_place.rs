@@ -27,6 +27,10 @@ const CROWD_COST: u32 = 150;
 /// Length of the other robot's route ahead, and of its trail behind, that is to be left free, in metres.
 const CLEARED_WAY_M: f32 = 30.0;
 
+/// Under the paper's rule, an obstacle is left out if the robot is inside its inflated outline and within this
+/// distance of one of its corners in both x and y, in metres.
+const LEAVE_M: f32 = 0.8;
+
 /// A robot that is too close to an obstacle may come this much closer on its way along it, in metres.
 const SLIDE_M: f32 = 0.01;
 
@@ -46,6 +50,8 @@ pub(super) struct Ask<'a> {
     pub(super) reserved: Vec<(Vector, f32)>,
     /// Distance to keep from robots, in metres.
     pub(super) margin: f32,
+    /// Whether obstacles near whose corners `me` is too close are left out.
+    pub(super) leaves_out_corners: bool,
     /// Width and height of the arena, in metres.
     pub(super) arena: Vector,
 }
@@ -130,12 +136,19 @@ impl<'a> Grid<'a> {
         let size = 0.5 * ask.me.radius;
         let reach = size * HALF_CELLS as f32;
         let here = ask.me.position;
-        let near = ask.me.known.into_iter().flat_map(|known| known.near(here, reach));
+        let matters = |obstacle: &&KnownObstacle| {
+            let distance = |corner: &Vector| (*corner - here).abs().max_element();
+            let is_near = || obstacle.tight.iter().map(distance).any(|nearest| nearest < LEAVE_M);
+            !(ask.leaves_out_corners && polygon_contains(&obstacle.tight, here) && is_near())
+        };
+        let near = ask.me.known.into_iter().flat_map(|known| known.near(here, reach)).filter(matters);
+        let own_depth =
+            |obstacle: &KnownObstacle| if ask.leaves_out_corners { 0.0 } else { depth(obstacle, here) };
         let count = (ROW * ROW) as usize;
         Self {
             ask,
             size,
-            obstacles: near.map(|obstacle| (obstacle, depth(obstacle, here))).collect(),
+            obstacles: near.map(|obstacle| (obstacle, own_depth(obstacle))).collect(),
             cells: vec![Cell::Unknown; count],
             cost: vec![u32::MAX; count],
             from: vec![u32::MAX; count],
@@ -190,8 +203,8 @@ impl<'a> Grid<'a> {
         let outside = point.cmplt(border).any() || point.cmpgt(*arena - border).any();
         // A robot that is too close to an obstacle, or touches another robot, may still move away from it.
         let is_in = |(obstacle, own): &(&KnownObstacle, f32)| {
-            let depth = depth(obstacle, point);
-            depth > 0.0 && (*own <= 0.0 || depth > own + SLIDE_M)
+            polygon_contains(&obstacle.tight, point)
+                && (*own <= 0.0 || depth(obstacle, point) > own + SLIDE_M)
         };
         if outside || self.obstacles.iter().any(is_in) {
             return Cell::Blocked;
@@ -283,6 +296,7 @@ mod tests {
             crowd: Vec::new(),
             reserved: Vec::new(),
             margin: 0.15,
+            leaves_out_corners: false,
             arena: Vector::splat(20.0),
         }
     }

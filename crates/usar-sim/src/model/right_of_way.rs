@@ -127,6 +127,9 @@ pub struct RetreatModel {
     /// A robot goes on as soon as its own route ahead is clear of the other robot's for this distance, in
     /// metres; `None` if the other robot has to pass the whole line of the retreat.
     pub goes_on_within: Option<f32>,
+    /// Whether an obstacle that a robot is too close to, near a corner, is left out of the search for a place.
+    /// The paper's rule does so: its published results were made that way. A place may then be in a wall.
+    pub leaves_out_corners: bool,
     /// Width and height of the arena, in metres.
     pub arena: Vector,
 }
@@ -145,6 +148,7 @@ impl RightOfWayModel {
             margin: values.margin_m as f32,
             speed: 1.0,
             goes_on_within: Some(GOES_ON_WITHIN_M),
+            leaves_out_corners: false,
             arena: vector(scenario.arena_m),
         };
         Self {
@@ -155,7 +159,12 @@ impl RightOfWayModel {
                 ResolverRule::None => RuleKind::None,
             },
             sets: SetsModel {
-                retreats: RetreatModel { speed: RETREAT_SPEED, goes_on_within: None, ..retreats.clone() },
+                retreats: RetreatModel {
+                    speed: RETREAT_SPEED,
+                    goes_on_within: None,
+                    leaves_out_corners: true,
+                    ..retreats.clone()
+                },
                 ask_again,
                 horizon: values.horizon_s as f32,
                 patience: Patience {
