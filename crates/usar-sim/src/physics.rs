@@ -3,7 +3,7 @@
 //! Bodies in a plane seen from above, without gravity. Ground robots are discs that touch walls, debris and
 //! each other. Aerial robots touch walls and each other. Debris is fixed, or rubs on the ground with Coulomb
 //! friction. The engine runs only in steps in which something can touch or slides; in the others, robots coast
-//! ([`Quiet`]), to the same places bit for bit.
+//! to the same places, bit for bit (`quiet.rs`).
 
 #[cfg(test)]
 mod tests;

@@ -90,7 +90,8 @@ impl Quiet {
         let inside = me.at.min(self.arena - me.at).min_element();
         let debris = if me.fixed.is_aerial { REACH_M } else { to_debris(me.at, REACH_M) };
         let fixed = inside.min(debris).min(REACH_M) - me.fixed.radius;
-        if fixed <= self.least(i) {
+        let is_clear = fixed > self.least(i); // false where a number is not finite: the engine tells
+        if !is_clear {
             return false;
         }
         let mut budget = fixed;
@@ -104,7 +105,8 @@ impl Quiet {
                 continue;
             }
             let gap = apart.sqrt() - touch;
-            if gap <= GAP_M + (me.velocity - other.velocity).length() * self.dt * ROUNDING {
+            let is_clear = gap > GAP_M + (me.velocity - other.velocity).length() * self.dt * ROUNDING;
+            if !is_clear {
                 return false;
             }
             budget = budget.min(0.5 * gap);
@@ -160,6 +162,7 @@ mod tests {
         let mut flying = disc(5.84, -1.0);
         flying.fixed.is_aerial = true;
         assert!(quiet(&[disc(5.0, 1.0), flying]).is_quiet(nothing), "above");
+        assert!(!quiet(&[disc(5.0, f32::NAN)]).is_quiet(nothing), "not a number");
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! Maps of the grid benchmarks of multi-agent pathfinding as scenarios with errands: a cell is a metre, blocked
 //! cells are boxes, and an agent is a robot of 0.25 m.
 //!
-//! The formats are those of the MovingAI benchmarks (Sturtevant, "Benchmarks for grid-based pathfinding", 2012;
+//! The formats are those of the `MovingAI` benchmarks (Sturtevant, "Benchmarks for grid-based pathfinding", 2012;
 //! Stern et al., "Multi-agent pathfinding: definitions, variants, and benchmarks", 2019): `.map` has a header
 //! and a line of letters for each row, `.scen` a line for each agent.
 
@@ -131,14 +131,14 @@ impl Grid {
         let mut boxes = Vec::new();
         for y in 0..self.height() {
             for x in 0..self.width {
-                let is_open = |done: &[bool], x: usize, y: usize| {
-                    x < self.width && y < self.height() && !self.is_free([x, y]) && !done[y * self.width + x]
-                };
-                let to_x = (x..).find(|x| !is_open(&done, *x, y)).unwrap_or(x);
+                let is_open =
+                    |done: &[bool], x: usize, y: usize| !self.is_free([x, y]) && !done[y * self.width + x];
+                let to_x = (x..self.width).find(|x| !is_open(&done, *x, y)).unwrap_or(self.width);
                 if to_x == x {
                     continue;
                 }
-                let to_y = (y..).find(|y| !(x..to_x).all(|x| is_open(&done, x, *y))).unwrap_or(y);
+                let is_end = |y: &usize| !(x..to_x).all(|x| is_open(&done, x, *y));
+                let to_y = (y..self.height()).find(is_end).unwrap_or(self.height());
                 (y..to_y).for_each(|y| done[y * self.width + x..y * self.width + to_x].fill(true));
                 boxes.push([[x, y], [to_x, to_y]]);
             }
@@ -178,7 +178,7 @@ impl Grid {
             name: None,
         };
         let mut file: ScenarioFile = base(0, [self.width as f64, self.height() as f64], duration_s);
-        file.name = name.to_owned();
+        name.clone_into(&mut file.name);
         file.team = agents.iter().map(|agent| row(middle(agent.from))).collect();
         file.errands =
             (0..).zip(agents).map(|(robot, agent)| Errand { robot, to: vec![middle(agent.to)] }).collect();

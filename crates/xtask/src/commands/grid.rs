@@ -12,7 +12,7 @@ use ron_tree::Node;
 use xtask::grid::{Agent, Grid};
 use xtask::journeys::Journeys;
 
-/// Trials on maps of the grid benchmarks (MovingAI's formats), a cell a metre
+/// Trials on maps of the grid benchmarks (.map and .scen), a cell a metre
 #[derive(Parser)]
 #[command(name = "grid", after_help = AFTER_HELP)]
 struct Options {
