@@ -243,27 +243,48 @@ test('a folder of results is one page that lists its trials', async () => {
   await done();
 });
 
-/** The same recording with other names in its header. */
-function renamed(bytes, rename) {
-  const [head, stored] = [bytes.subarray(8, 28), bytes.readUInt32LE(12)];
-  const header = JSON.parse(inflateRawSync(bytes.subarray(28, 28 + stored)).toString());
-  rename(header);
-  const text = Buffer.from(JSON.stringify(header));
-  const content = deflateRawSync(text);
-  head.writeUInt32LE(content.length, 4);
-  head.writeUInt32LE(text.length, 8);
-  head.writeUInt32LE(crc32(content), 12);
-  head.writeUInt32LE(crc32(head.subarray(0, 16)), 16);
-  return Buffer.concat([bytes.subarray(0, 8), head, content, bytes.subarray(28 + stored)]);
+/** The same recording with its chunks of JSON edited: for each kind of chunk, what changes its value. */
+function edited(bytes, edits) {
+  const parts = [bytes.subarray(0, 8)];
+  for (let at = 8; at < bytes.length;) {
+    const head = Buffer.from(bytes.subarray(at, at + 20));
+    let content = bytes.subarray(at + 20, at + 20 + head.readUInt32LE(4));
+    at += 20 + content.length;
+    const edit = edits[head.toString('latin1', 0, 4)];
+    if (edit) {
+      const value = JSON.parse(inflateRawSync(content).toString());
+      edit(value);
+      const text = Buffer.from(JSON.stringify(value));
+      content = deflateRawSync(text);
+      head.writeUInt32LE(content.length, 4);
+      head.writeUInt32LE(text.length, 8);
+      head.writeUInt32LE(crc32(content), 12);
+      head.writeUInt32LE(crc32(head.subarray(0, 16)), 16);
+    }
+    parts.push(head, content);
+  }
+  return Buffer.concat(parts);
 }
 
 test('hostile names are shown as text', async () => {
   const evil = '<img src=x onerror=alert(1)><script>alert(2)</script>"\'&';
-  const bytes = renamed(readFileSync(file('rne.usrec')), (header) => {
-    header.policy = header.scenario.name = header.scenario.description = header.program = evil;
-    for (const role of header.world.roles) role.name = evil;
-    for (const task of header.world.tasks) task.name = evil;
-    for (const need of header.world.needs) need.name += evil;
+  const ask = ({ question }) => {
+    for (const task of question.tasks) task.name = evil;
+    question.roles.fill(evil);
+  };
+  const bytes = edited(readFileSync(file('rne.usrec')), {
+    HEAD: (header) => {
+      header.policy = header.scenario.name = header.scenario.description = header.program = evil;
+      for (const role of header.world.roles) role.name = evil;
+      for (const task of header.world.tasks) task.name = evil;
+      for (const need of header.world.needs) need.name += evil;
+    },
+    DECI: ask,
+    DONE: (record) => {
+      for (const task of record.tasks) task.task = evil;
+      for (const robot of record.robots) robot.role = evil;
+      record.decisions.forEach(ask);
+    },
   });
   const name = '<img src=x onerror=alert(3)>.usrec';
   writeFileSync(file(name), bytes);
