@@ -1,7 +1,7 @@
 //! A sample of the random worlds; hundreds more are recipes.
 
 use rayon::prelude::*;
-use usar_sim::scenario::Scenario;
+use usar_sim::scenario::{Scenario, ScenarioFile};
 use xtask::journeys::{Journeys, STANDSTILL_S};
 use xtask::quiet::both_ways;
 use xtask::worlds::world;
@@ -43,4 +43,12 @@ fn trials_are_the_same_with_the_engine_at_rest_in_quiet_steps_and_always_on() {
     let [all, on] = ran.iter().fold([0, 0], |[all, on], both| [all + both.steps[0], on + both.steps[1]]);
     assert_eq!((ran.len(), differing), (24, 0));
     assert!(0 < on && on < all / 2, "the engine ran in {on} of {all} steps");
+}
+
+/// In this world, two borders of velocities that are nearly parallel once led to more than the top speed.
+#[test]
+fn no_robot_is_faster_than_its_top_speed() {
+    let file = ScenarioFile { duration_s: 630.0, ..(*rooms::rooms(521)).clone() };
+    let journeys = Journeys::run(&Scenario::try_from(file).unwrap(), 521);
+    assert!(journeys.is_ok(), "{}", journeys.err().unwrap());
 }

@@ -72,7 +72,8 @@ pub struct Counts {
     pub unreachable: u32,
 }
 
-/// A robot that did not get home or to rest, so that the team did not wait for it, or to the place of an errand.
+/// A robot that did not get home or to rest, so that the team did not wait for it, or to the place of an
+/// errand.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct CutOff {
     /// The robot.

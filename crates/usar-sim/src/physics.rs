@@ -2,8 +2,8 @@
 //!
 //! Bodies in a plane seen from above, without gravity. Ground robots are discs that touch walls, debris and
 //! each other. Aerial robots touch walls and each other. Debris is fixed, or rubs on the ground with Coulomb
-//! friction. The engine runs only in steps in which something can touch or slides; in the others, robots coast
-//! to the same places, bit for bit (`quiet.rs`).
+//! friction. The engine runs only in steps in which something can touch or slides. In the others, robots
+//! coast to the same places, bit for bit (`quiet.rs`).
 
 #[cfg(test)]
 mod tests;
@@ -178,9 +178,9 @@ impl Physics {
         }
     }
 
-    /// Advances time by one step. `to_debris` is the distance from a point to the nearest piece of debris, at most
-    /// the given reach, in metres; `pieces_touch` tells whether a piece that can be pushed touches another,
-    /// or the border of this arena.
+    /// Advances time by one step. `to_debris` is the distance from a point to the nearest piece of debris, at
+    /// most the given reach, in metres. `pieces_touch` tells whether a piece that can be pushed touches
+    /// another piece, or the border of this arena.
     pub(crate) fn integrate(
         &mut self,
         to_debris: impl Fn(Vector, f32) -> f32,

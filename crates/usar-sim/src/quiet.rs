@@ -1,9 +1,9 @@
-//! Quiet steps: those in which no robot can touch anything. Robots then move as the engine would move them, and
-//! the engine rests.
+//! Quiet steps: those in which no robot can touch anything. Robots then move as the engine would move them,
+//! and the engine rests.
 //!
-//! Each robot has a way that it may go before it can touch something: the distance to the nearest wall or piece
-//! of debris, or half the distance to the nearest robot, whichever is less. A robot that has used it up is
-//! measured again. So a step costs little for robots far from everything.
+//! Each robot has a budget: the way that it may go before it can touch something. It is the distance to the
+//! nearest wall or piece of debris, or half the distance to the nearest robot, whichever is less. A robot
+//! that has used it up is measured again. So a step costs little for robots far from everything.
 
 use parry2d::math::Vector;
 use serde::{Deserialize, Serialize};
@@ -55,8 +55,7 @@ pub(crate) struct Quiet {
     pub arena: Vector,
     /// The robots, by id.
     pub discs: Vec<Disc>,
-    /// For each robot, how far it may go before it can touch something, in metres. It only saves time: what is
-    /// missing is measured.
+    /// The budget of each robot, in metres. Budgets only save time: those that are missing are measured.
     #[serde(skip)]
     budgets: Vec<f32>,
 }
@@ -72,8 +71,8 @@ impl Quiet {
         self.budgets.clear();
     }
 
-    /// Whether nobody can touch anything in this step. `to_debris` is the distance from a point to the nearest
-    /// piece of debris, at most the given reach, in metres.
+    /// Whether nobody can touch anything in this step. `to_debris` is the distance from a point to the
+    /// nearest piece of debris, at most the given reach, in metres.
     pub(crate) fn is_quiet(&mut self, to_debris: impl Fn(Vector, f32) -> f32) -> bool {
         self.budgets.resize(self.discs.len(), 0.0);
         (0..self.discs.len()).all(|i| self.budgets[i] > self.least(i) || self.is_free(i, &to_debris))

@@ -110,8 +110,8 @@ impl Crew {
         progress.held_up_steps > model.steps_in(seconds + detour_s)
     }
 
-    /// Number of the robots that can act and stand, as far as the watchdog can tell: they have something to do,
-    /// and do not get there.
+    /// Number of the robots that can act and stand, as far as the watchdog can tell: they have something to
+    /// do, and do not get there.
     pub(crate) fn stalled(&self, robots: &[Robot], model: &Model) -> u32 {
         let stands = |robot: &&Robot| {
             let agent = &self.agents[robot.id.index()];

@@ -82,6 +82,7 @@ impl ScenarioFile {
     /// Whether a robot may push debris.
     pub(super) fn can_be_pushed(&self) -> bool {
         self.debris.iter().any(|piece| piece.movable.is_some())
+            || self.scatter.iter().any(|entry| entry.movable.is_some())
     }
 
     /// Properties and abilities of the robots of a row: their role's, with the changes of the row. `None` if

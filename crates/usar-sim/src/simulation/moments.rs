@@ -22,8 +22,8 @@ impl Moments {
         all.any(|(is_done, due)| !is_done && due.step < model.steps)
     }
 
-    /// Whether an action that opens a way has still to happen, or happened after a step, so that a robot may not
-    /// have seen it yet.
+    /// Whether an action that opens a way has still to happen, or happened after a step, so that a robot may
+    /// not have seen it yet.
     pub(super) fn opens_after(&self, step: u64, model: &Model) -> bool {
         let opens = |action: &Action| matches!(action, Action::Open(_) | Action::Die(_));
         let mut all = self.done.iter().zip(&model.timeline);

@@ -10,6 +10,10 @@ use parry2d::math::Vector;
 /// Two borders are parallel if the cross product of their directions is smaller than this.
 const PARALLEL: f32 = 1e-5;
 
+/// A velocity faster than the top speed by more than this factor comes of rounding: borders that are nearly
+/// parallel meet far away.
+const TOO_FAST: f32 = 1.001;
+
 /// Velocities on the left of a line through `point` along the unit vector `direction`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct HalfPlane {
@@ -48,10 +52,12 @@ enum Aim {
 /// The velocity nearest to `preferred`, of at most `top_speed`, that satisfies all half-planes. If none does,
 /// the first `walls` half-planes take precedence over the others.
 pub(super) fn best_velocity(planes: &[HalfPlane], walls: usize, preferred: Vector, top_speed: f32) -> Vector {
-    match solve(planes, Aim::Near(preferred), top_speed) {
+    let best = match solve(planes, Aim::Near(preferred), top_speed) {
         Ok(velocity) => velocity,
         Err((failed, velocity)) => least_bad(planes, walls, failed, velocity, top_speed),
-    }
+    };
+    let is_too_fast = best.length() > TOO_FAST * top_speed;
+    if is_too_fast { best.clamp_length_max(top_speed) } else { best }
 }
 
 /// The best velocity. If the half-planes leave none, the number of the first half-plane that cannot be
