@@ -19,6 +19,7 @@ mod sets;
 mod testing;
 mod yield_place;
 
+use parry2d::math::Vector;
 use serde::{Deserialize, Serialize};
 
 use crate::event::EventLog;
@@ -29,7 +30,7 @@ pub use mover::{Directive, Mover};
 pub use passing::PASSING_RANGE_M;
 use predict::{Conflicts, Neighbours};
 pub use priority::PriorityKey;
-use reciprocal::{Reciprocal, Turn};
+use reciprocal::{Reciprocal, Sight, Turn, Unhindered, Walls};
 use sets::Sets;
 
 /// The conflict resolver of one trial.
@@ -60,6 +61,13 @@ pub struct Scratch {
     stands: Vec<bool>,
     /// For each robot, its turn at a narrow passage.
     turns: Vec<Turn>,
+    unhindered: Unhindered,
+    walls: Walls,
+    sight: Sight,
+    /// For each robot, the direction of its preferred velocity; zero if it has nowhere to go.
+    directions: Vec<Vector>,
+    /// For each robot, the robot for which it makes room.
+    heads: Vec<Option<usize>>,
 }
 
 /// One step of a rule with these constants and this state.

@@ -10,6 +10,8 @@ use super::passing::PASSING_RANGE_M;
 #[derive(Default)]
 pub(super) struct Neighbours {
     by_x: Vec<usize>,
+    /// Their places, in this order.
+    places: Vec<Vector>,
     lists: Vec<Vec<usize>>,
 }
 
@@ -21,28 +23,43 @@ impl Neighbours {
         }
         // The order of the last step is nearly right, so sorting takes linear time.
         self.by_x.sort_by(|a, b| movers[*a].position.x.total_cmp(&movers[*b].position.x).then(a.cmp(b)));
+        self.places.clear();
+        self.places.extend(self.by_x.iter().map(|i| movers[*i].position));
     }
 
     /// The robots within `range` metres of a point, in no particular order. Needs [`Self::sort`] first.
-    pub(super) fn within<'m>(
-        &'m self,
-        movers: &'m [Mover],
-        point: Vector,
-        range: f32,
-    ) -> impl Iterator<Item = usize> + 'm {
-        let first = self.by_x.partition_point(|i| movers[*i].position.x < point.x - range);
-        let strip = self.by_x[first..].iter().copied();
-        let strip = strip.take_while(move |i| movers[*i].position.x <= point.x + range);
-        strip.filter(move |i| (movers[*i].position - point).length() < range)
+    pub(super) fn within(&self, point: Vector, range: f32) -> impl Iterator<Item = usize> {
+        let first = self.places.partition_point(|at| at.x < point.x - range);
+        let strip = self.by_x[first..].iter().zip(&self.places[first..]);
+        let strip = strip.take_while(move |(_, at)| at.x <= point.x + range);
+        strip.filter(move |(_, at)| (**at - point).length() < range).map(|(i, _)| *i)
+    }
+
+    /// The robots in order along x.
+    pub(super) fn by_x(&self) -> &[usize] {
+        &self.by_x
+    }
+
+    /// Forgets who is near whom.
+    pub(super) fn forget(&mut self, robots: usize) {
+        clear(&mut self.lists, robots);
+    }
+
+    /// Finds the robots of its layer within `range` metres of one robot. Needs [`Self::sort`] first.
+    pub(super) fn find(&mut self, i: usize, movers: &[Mover], range: f32) {
+        let me = &movers[i];
+        let mut list = std::mem::take(&mut self.lists[i]);
+        let is_other = |j: &usize| *j != i && movers[*j].aerial == me.aerial;
+        list.extend(self.within(me.position, range).filter(is_other));
+        list.sort_unstable();
+        self.lists[i] = list;
     }
 
     /// Finds all pairs of robots of one layer that could meet within the horizon or be in each other's way.
     /// Needs [`Self::sort`] first.
     pub(super) fn pair(&mut self, movers: &[Mover], margin: f32, horizon: f32) {
-        let fastest = movers.iter().map(|mover| mover.preferred.length()).fold(0.0, f32::max);
-        let largest = movers.iter().map(|mover| mover.radius).fold(0.0, f32::max);
-        let range = (2.0 * fastest * horizon).max(PASSING_RANGE_M) + 2.0 * largest + margin;
-        clear(&mut self.lists, movers.len());
+        let range = range(movers, margin, horizon);
+        self.forget(movers.len());
         for (at, a) in self.by_x.iter().enumerate() {
             for b in &self.by_x[at + 1..] {
                 let apart = movers[*b].position - movers[*a].position;
@@ -68,6 +85,13 @@ impl Neighbours {
     pub(super) fn of(&self, i: usize) -> &[usize] {
         &self.lists[i]
     }
+}
+
+/// The distance within which robots could meet within the horizon or be in each other's way, in metres.
+pub(super) fn range(movers: &[Mover], margin: f32, horizon: f32) -> f32 {
+    let fastest = movers.iter().map(|mover| mover.preferred.length()).fold(0.0, f32::max);
+    let largest = movers.iter().map(|mover| mover.radius).fold(0.0, f32::max);
+    (2.0 * fastest * horizon).max(PASSING_RANGE_M) + 2.0 * largest + margin
 }
 
 /// Whether two robots that both want to move would come closer than their safety distance within the horizon

@@ -165,7 +165,7 @@ impl Retreats {
         }
         let near = |k: &usize| (movers[*k].position - me.position).length();
         let next = neighbours
-            .within(movers, me.position, PLATOON_M)
+            .within(me.position, PLATOON_M)
             .filter(follows)
             .min_by(|a, b| near(a).total_cmp(&near(b)).then(a.cmp(b)))?;
         retreat.head = next;
@@ -220,7 +220,7 @@ impl Retreats {
         let Crowd { rules, movers, neighbours } = crowd;
         let (me, head) = (&movers[blocker], &movers[i]);
         let others = || {
-            let near = neighbours.within(movers, me.position, CROWD_RANGE_M).map(|k| (k, &movers[k]));
+            let near = neighbours.within(me.position, CROWD_RANGE_M).map(|k| (k, &movers[k]));
             near.filter(|(k, other)| *k != i && *k != blocker && other.aerial == me.aerial)
         };
         let disc = |at: Vector, other: &Mover| (at, me.radius + other.radius);

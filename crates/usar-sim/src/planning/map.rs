@@ -50,6 +50,7 @@ pub struct ObstacleMap {
     obstacles: Vec<KnownObstacle>,
     slots: BTreeMap<ObstacleKey, usize>,
     places: Places,
+    digest: u64,
 }
 
 impl ObstacleMap {
@@ -59,11 +60,31 @@ impl ObstacleMap {
         let next = self.obstacles.len();
         let slot = *self.slots.entry(obstacle.key).or_insert(next);
         self.places.put(slot, *obstacle.bounds());
+        self.digest = self.digest.wrapping_add(obstacle.digest_with_key());
         if slot == next {
             self.obstacles.push(obstacle);
             return None;
         }
-        Some(std::mem::replace(&mut self.obstacles[slot], obstacle))
+        let before = std::mem::replace(&mut self.obstacles[slot], obstacle);
+        self.digest = self.digest.wrapping_sub(before.digest_with_key());
+        Some(before)
+    }
+
+    /// A hash of the whole map: maps with the same obstacles have the same.
+    #[must_use]
+    pub(crate) fn digest(&self) -> u64 {
+        self.digest
+    }
+
+    /// Numbers of the obstacles that [`Self::near`] returns. They hold as long as the digest.
+    pub(crate) fn numbers_near(&self, point: Vector, range: f32) -> impl Iterator<Item = usize> {
+        self.places.near(point, range).into_iter()
+    }
+
+    /// The obstacle of a number.
+    #[must_use]
+    pub(crate) fn number(&self, number: usize) -> &KnownObstacle {
+        &self.obstacles[number]
     }
 
     /// The obstacle of this key, if there is one.

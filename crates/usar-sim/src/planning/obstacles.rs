@@ -56,6 +56,21 @@ impl KnownObstacle {
         Self { key, digest: xxh3_64(&bytes), bounds, planned, tight }
     }
 
+    /// A hash of its key and outline.
+    pub(super) fn digest_with_key(&self) -> u64 {
+        let key = match self.key {
+            ObstacleKey::Debris(number) => u64::from(number) << 1,
+            ObstacleKey::Wreck(number) => u64::from(number) << 1 | 1,
+        };
+        xxh3_64(&[self.digest.to_le_bytes(), key.to_le_bytes()].concat())
+    }
+
+    /// Whether its inflated outline may reach within this range of a point, in metres.
+    #[must_use]
+    pub fn may_reach(&self, point: Vector, range: f32) -> bool {
+        (point - point.clamp(self.bounds.mins, self.bounds.maxs)).abs().max_element() <= range
+    }
+
     /// The box that holds `planned`.
     pub(super) fn bounds(&self) -> &Aabb {
         &self.bounds

@@ -35,10 +35,10 @@ pub(super) enum Encounter {
 }
 
 impl Encounter {
-    /// The encounter of two robots with these preferred velocities, neither of which makes room for the
-    /// other.
+    /// The encounter of two robots that wish to go in these directions (zero for a robot with nowhere to go),
+    /// neither of which makes room for the other.
     pub(super) fn of(a: Vector, b: Vector) -> Self {
-        let cos = a.normalize_or_zero().dot(b.normalize_or_zero());
+        let cos = a.dot(b);
         if a == Vector::ZERO || b == Vector::ZERO {
             Self::Other
         } else if cos.abs() < CROSSING {
@@ -73,7 +73,7 @@ mod tests {
     fn encounters_are_told_apart_by_the_angle() {
         let with = |degrees: f32| {
             let angle = degrees.to_radians();
-            Encounter::of(Vector::X, Vector::new(libm::cosf(angle), libm::sinf(angle)) * 0.5)
+            Encounter::of(Vector::X, Vector::new(libm::cosf(angle), libm::sinf(angle)))
         };
         for (degrees, encounter) in [
             (0.0, Encounter::Parallel),

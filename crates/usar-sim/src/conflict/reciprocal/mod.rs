@@ -12,20 +12,26 @@ mod encounter;
 mod half_planes;
 mod passage;
 mod stuck;
+mod unhindered;
 mod velocity;
+mod walls;
 
 use parry2d::math::Vector;
 use serde::{Deserialize, Serialize};
 
 use super::passing::nearest_in_the_way;
+use super::predict::range;
 use super::retreat::{Crowd, Retreats};
-use super::{Directive, Mover, Step};
+use super::{Directive, Mover, Scratch, Step};
 use crate::event::Event;
 use crate::model::ReciprocalModel;
 use encounter::{Encounter, LONGEST_HORIZON_S};
+use half_planes::HalfPlane;
 pub(super) use passage::Turn;
 use passage::{Entrant, Entry, Follows, decide};
-use velocity::{MARGIN_M, Neighbour, avoiding_velocity};
+pub(super) use unhindered::Unhindered;
+use velocity::{HEEDED, MARGIN_M, Neighbour, avoiding_velocity};
+pub(super) use walls::Walls;
 
 /// Robots wait at this distance from a passage, beyond their radius, in metres.
 const WAIT_AT_M: f32 = 0.6;
@@ -62,6 +68,34 @@ const STILL_MPS: f32 = 0.005;
 /// A robot in a queue waits for the robot ahead if it is slower than this, in metres per second.
 const QUEUES_MPS: f32 = 0.05;
 
+/// What one robot sees when it looks for its velocity. It is kept only to reuse its memory.
+#[derive(Default)]
+pub(super) struct Sight {
+    /// Gap and index of each robot that it heeds.
+    heeded: Vec<(f32, usize)>,
+    neighbours: Vec<Neighbour>,
+    planes: Vec<HalfPlane>,
+}
+
+impl Sight {
+    /// Notes which of its neighbours a robot heeds: all of them, or the nearest, the nearest first.
+    fn heed(&mut self, i: usize, movers: &[Mover], near: &[usize]) {
+        let me = &movers[i];
+        let gap = |j: &usize| {
+            let other = &movers[*j];
+            ((other.position - me.position).length() - (me.radius + other.radius + MARGIN_M), *j)
+        };
+        self.heeded.clear();
+        self.heeded.extend(near.iter().map(gap));
+        if near.len() > HEEDED {
+            let nearer = |a: &(f32, usize), b: &(f32, usize)| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1));
+            self.heeded.select_nth_unstable_by(HEEDED, nearer);
+            self.heeded.truncate(HEEDED);
+            self.heeded.sort_unstable_by(nearer);
+        }
+    }
+}
+
 /// The state of the default rule from step to step.
 #[derive(Default, Serialize, Deserialize)]
 pub(super) struct Reciprocal {
@@ -80,12 +114,13 @@ impl<'m> Step<'_, 'm, ReciprocalModel, Reciprocal> {
         state.blocked_steps.resize(movers.len(), 0);
         scratch.neighbours.sort(movers);
         state.retreats.follow(&rules.retreats, movers, &scratch.neighbours);
-        scratch.neighbours.pair(movers, MARGIN_M, LONGEST_HORIZON_S);
+        let near = range(movers, MARGIN_M, LONGEST_HORIZON_S);
         self.hold_before_passages();
         self.queue_before_passages();
         self.let_out();
+        self.look_round();
         for i in 0..self.movers.len() {
-            self.directives[i] = self.steer(i);
+            self.directives[i] = self.steer(i, near);
         }
         let leaders = self.leaders_of_jams();
         for i in 0..self.movers.len() {
@@ -176,18 +211,56 @@ impl<'m> Step<'_, 'm, ReciprocalModel, Reciprocal> {
         }
     }
 
+    /// Notes for the robots of this step where they wish to go, for whom they make room, and whom nobody
+    /// hinders.
+    fn look_round(&mut self) {
+        let (Scratch { neighbours, walls, unhindered, directions, heads, .. }, movers) =
+            (&mut *self.scratch, &*self.movers);
+        neighbours.forget(movers.len());
+        walls.resize(movers.len());
+        unhindered.find(movers, neighbours);
+        directions.clear();
+        directions.extend(movers.iter().map(|mover| mover.preferred.normalize_or_zero()));
+        heads.clear();
+        heads.resize(movers.len(), None);
+        self.state.retreats.iter().for_each(|(i, retreat)| heads[i] = Some(retreat.head));
+    }
+
+    /// The velocity that a robot takes. Looks for its neighbours within `near` metres if it needs them, now or
+    /// because it is stuck.
+    fn velocity(&mut self, i: usize, near: f32) -> Vector {
+        let (movers, arena) = (&*self.movers, self.rules.retreats.arena);
+        let (me, Scratch { unhindered, walls, neighbours, sight, .. }) = (&movers[i], &mut *self.scratch);
+        let is_free = unhindered.is_free(i) && walls.are_clear(i, me, arena);
+        let may_be_stuck = me.stalled_steps >= self.rules.ask_again.min(self.rules.stuck);
+        if !is_free || may_be_stuck {
+            neighbours.find(i, movers, near);
+        }
+        if is_free {
+            return me.preferred.clamp_length_max(me.speed);
+        }
+        let mut sight = std::mem::take(sight);
+        sight.planes.clear();
+        walls.planes(i, me, arena, &mut sight.planes);
+        sight.heed(i, movers, self.scratch.neighbours.of(i));
+        sight.neighbours.clear();
+        sight.neighbours.extend(sight.heeded.iter().map(|(_, j)| self.neighbour(i, *j)));
+        let is_open = self.turn(i).rank.is_none();
+        let velocity = avoiding_velocity(me, &sight.neighbours, &mut sight.planes, is_open);
+        self.scratch.sight = sight;
+        velocity
+    }
+
     /// The directive of a robot: the velocity that it takes among the others, or why it stands still.
-    fn steer(&self, i: usize) -> Directive {
-        let (movers, turn, retreats) = (&*self.movers, self.turn(i), &self.state.retreats);
-        let me = &movers[i];
-        if !me.can_make_room && !me.wishes_to_move() {
+    fn steer(&mut self, i: usize, near: f32) -> Directive {
+        if !self.movers[i].can_make_room && !self.movers[i].wishes_to_move() {
             return Directive::Stand;
         }
-        let neighbours = self.scratch.neighbours.of(i).iter().map(|j| self.neighbour(i, *j)).collect();
-        let arena = self.rules.retreats.arena;
-        let velocity = avoiding_velocity(me, neighbours, arena, turn.rank.is_none());
+        let velocity = self.velocity(i, near);
+        let (movers, turn) = (&*self.movers, self.turn(i));
+        let me = &movers[i];
         let is_still = velocity.length() < STILL_MPS;
-        if let Some(head) = retreats.head_of(i) {
+        if let Some(head) = self.scratch.heads[i] {
             return Directive::Retreat { velocity, room_for: movers[head].robot };
         }
         match turn.waits_for {
@@ -213,12 +286,12 @@ impl<'m> Step<'_, 'm, ReciprocalModel, Reciprocal> {
     }
 
     fn neighbour(&self, i: usize, j: usize) -> Neighbour {
-        let (me, other, retreats) = (&self.movers[i], &self.movers[j], &self.state.retreats);
+        let (me, other, heads) = (&self.movers[i], &self.movers[j], &self.scratch.heads);
         let encounter = self.encounter(i, j);
         let share = match (self.turn(i).rank, self.turn(j).rank) {
             _ if !other.can_make_room => 1.0,
-            _ if retreats.head_of(j) == Some(i) => SHARE_OF_PRIORITY,
-            _ if retreats.head_of(i) == Some(j) => 1.0 - SHARE_OF_PRIORITY,
+            _ if heads[j] == Some(i) => SHARE_OF_PRIORITY,
+            _ if heads[i] == Some(j) => 1.0 - SHARE_OF_PRIORITY,
             (Some(mine), Some(its)) if mine < its => SHARE_OF_THE_FIRST,
             (Some(_), Some(_)) => 1.0 - SHARE_OF_THE_FIRST,
             _ if matches!(encounter, Encounter::Crossing | Encounter::Parallel) => 0.5,
@@ -235,11 +308,11 @@ impl<'m> Step<'_, 'm, ReciprocalModel, Reciprocal> {
     }
 
     fn encounter(&self, i: usize, j: usize) -> Encounter {
-        let retreats = &self.state.retreats;
-        if retreats.head_of(i) == Some(j) || retreats.head_of(j) == Some(i) {
+        let Scratch { heads, directions, .. } = &*self.scratch;
+        if heads[i] == Some(j) || heads[j] == Some(i) {
             return Encounter::MakesRoom;
         }
-        Encounter::of(self.movers[i].preferred, self.movers[j].preferred)
+        Encounter::of(directions[i], directions[j])
     }
 
     /// The nearest robot in the way of a robot's preferred velocity.

@@ -6,12 +6,10 @@
 //! Robots look no farther ahead than their route goes straight.
 
 use parry2d::math::Vector;
-use smallvec::SmallVec;
 
 use super::encounter::Encounter;
 use super::half_planes::{HalfPlane, best_velocity};
 use crate::conflict::Mover;
-use crate::planning::{ObstacleMap, nearest_border_point, outward_normal, polygon_contains};
 
 /// The least horizon, in seconds, just before a bend of the route.
 const LEAST_HORIZON_S: f32 = 0.3;
@@ -19,25 +17,16 @@ const LEAST_HORIZON_S: f32 = 0.3;
 /// Robots that are too close part within this time, in seconds.
 const PART_WITHIN_S: f32 = 0.05;
 
-/// Robots brake for walls and debris that they would reach within this time, in seconds.
-const WALL_HORIZON_S: f32 = 0.5;
-
-/// Robots under pressure may come this much nearer to walls and debris than their routes do, in metres.
-const WALL_SLACK_M: f32 = 0.04;
-
 /// Distance that robots keep from one another, in metres.
 pub(super) const MARGIN_M: f32 = 0.015;
 
 /// A robot heeds this many others at most: the nearest.
-const HEEDED: usize = 12;
+pub(super) const HEEDED: usize = 12;
 
 /// In the open, a preferred velocity that another robot obstructs is turned to the right by this much
 /// (tangent) if any robot nearby heads the other way or stands. This breaks symmetry and keeps traffic to one
 /// side. Robots that only cross pass between one another, and would lose by turning.
 const KEEP_RIGHT: f32 = 0.35;
-
-/// Half-planes of one robot.
-type Planes = SmallVec<[HalfPlane; 24]>;
 
 /// Another robot, as seen by the robot that avoids it.
 #[derive(Clone, Copy)]
@@ -55,23 +44,14 @@ pub(super) struct Neighbour {
     pub(super) encounter: Encounter,
 }
 
-/// The velocity that a robot takes among these neighbours. `is_open` says that it is not at a narrow passage.
+/// The velocity that a robot takes among these neighbours. `planes` are those of walls; the neighbours' are
+/// added. `is_open` says that it is not at a narrow passage.
 pub(super) fn avoiding_velocity(
     me: &Mover,
-    mut neighbours: SmallVec<[Neighbour; 16]>,
-    arena: Vector,
+    neighbours: &[Neighbour],
+    planes: &mut Vec<HalfPlane>,
     is_open: bool,
 ) -> Vector {
-    if neighbours.len() > HEEDED {
-        let gap = |other: &Neighbour| other.offset.length() - other.apart;
-        neighbours.sort_by(|a, b| gap(a).total_cmp(&gap(b)));
-        neighbours.truncate(HEEDED);
-    }
-    let mut planes = Planes::new();
-    border_planes(me, arena, &mut planes);
-    if let Some(known) = me.known {
-        debris_planes(me, known, &mut planes);
-    }
     let walls = planes.len();
     let straight_for_s = me.leg_left / me.speed.max(0.01);
     let looks_ahead_s = straight_for_s.max(LEAST_HORIZON_S);
@@ -83,7 +63,7 @@ pub(super) fn avoiding_velocity(
         && planes[walls..].iter().any(is_in_the_way)
         && neighbours.iter().any(|other| other.encounter.needs_a_side());
     let preferred = if keeps_right { me.preferred - me.preferred.perp() * KEEP_RIGHT } else { me.preferred };
-    best_velocity(&planes, walls, preferred, me.speed)
+    best_velocity(planes, walls, preferred, me.speed)
 }
 
 /// The velocities by which a robot does its share in keeping clear of another.
@@ -116,38 +96,6 @@ fn out_of_disc(from_center: Vector, radius: f32) -> (Vector, Vector) {
     (-outward.perp(), outward * (radius - length))
 }
 
-/// The velocities that keep a robot within the arena.
-fn border_planes(me: &Mover, arena: Vector, planes: &mut Planes) {
-    let gaps = [
-        (me.position.x - me.radius, Vector::X),
-        (arena.x - me.position.x - me.radius, -Vector::X),
-        (me.position.y - me.radius, Vector::Y),
-        (arena.y - me.position.y - me.radius, -Vector::Y),
-    ];
-    planes.extend(gaps.into_iter().filter_map(|(gap, inward)| wall_plane(me, gap.max(0.0), inward)));
-}
-
-/// The velocities that keep clear of the debris that the robot knows.
-fn debris_planes(me: &Mover, known: &ObstacleMap, planes: &mut Planes) {
-    let mut near: SmallVec<[_; 8]> = known.near(me.position, me.speed * WALL_HORIZON_S).collect();
-    near.sort_unstable_by_key(|obstacle| obstacle.key);
-    planes.extend(near.into_iter().filter_map(|obstacle| {
-        let to_border = nearest_border_point(&obstacle.tight, me.position) - me.position;
-        let (gap, away) = if polygon_contains(&obstacle.tight, me.position) {
-            (-to_border.length(), outward_normal(&obstacle.tight, me.position))
-        } else {
-            (to_border.length(), -to_border.normalize_or(Vector::X))
-        };
-        wall_plane(me, gap + WALL_SLACK_M, away)
-    }));
-}
-
-/// The velocities that brake in time for a wall at this distance; `None` for a wall that is too far away to
-/// matter.
-fn wall_plane(me: &Mover, gap: f32, away: Vector) -> Option<HalfPlane> {
-    (gap < me.speed * WALL_HORIZON_S).then(|| HalfPlane::at_least(-gap / WALL_HORIZON_S, away))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -158,7 +106,7 @@ mod tests {
         let me = Mover { velocity: Vector::X, speed: 1.0, ..mover(0, [10.0, 10.0], [1.0, 0.0]) };
         let (offset, velocity) = (Vector::from(offset), Vector::from(velocity));
         let other = Neighbour { offset, velocity, apart: 0.8, share, encounter: Encounter::Other };
-        avoiding_velocity(&me, SmallVec::from_slice(&[other]), Vector::splat(20.0), true)
+        avoiding_velocity(&me, &[other], &mut Vec::new(), true)
     }
 
     /// How near two robots come within the horizon if both keep their velocities.
@@ -193,7 +141,7 @@ mod tests {
             let offset = Vector::new(0.8 - missing, 0.0);
             let encounter = Encounter::Other;
             let other = Neighbour { offset, velocity: Vector::ZERO, apart: 0.8, share: 0.5, encounter };
-            let velocity = avoiding_velocity(&me, SmallVec::from_slice(&[other]), Vector::splat(20.0), true);
+            let velocity = avoiding_velocity(&me, &[other], &mut Vec::new(), true);
             // Each takes half of the missing distance upon itself.
             let expected = Vector::new(-0.5 * missing / PART_WITHIN_S, 0.0);
             assert!((velocity - expected).length() < 1e-4, "{missing}: {velocity} instead of {expected}");
@@ -240,8 +188,8 @@ mod tests {
                 share: 0.5,
                 encounter: Encounter::Other,
             };
-            let neighbours = others.iter().map(neighbour).collect();
-            let found = avoiding_velocity(&me, neighbours, Vector::splat(20.0), false);
+            let neighbours: Vec<Neighbour> = others.iter().map(neighbour).collect();
+            let found = avoiding_velocity(&me, &neighbours, &mut Vec::new(), false);
             assert!((found - Vector::from(expected)).length() < 1e-3, "{found} instead of {expected:?}");
         }
     }
