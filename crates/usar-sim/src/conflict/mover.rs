@@ -53,6 +53,13 @@ impl Mover<'_> {
         self.preferred != Vector::ZERO
     }
 
+    /// Another robot as this one sees it: its index, its centre relative to this robot's, and the distance at
+    /// which the two touch.
+    pub(super) fn sees(&self, other: usize, movers: &[Mover]) -> (usize, Vector, f32) {
+        let (at, radius) = (movers[other].position, movers[other].radius);
+        (other, at - self.position, self.radius + radius)
+    }
+
     /// Distance left to the place where it makes room, or else to the end of its route, in metres.
     pub(super) fn way_left(&self) -> f32 {
         let starts = std::iter::once(&self.position).chain(self.route);

@@ -109,22 +109,22 @@ pub(super) fn passing_direction(me: &Mover, surroundings: &Surroundings) -> Opti
         .max_by(|a, b| surroundings.merit(*a, preferred).total_cmp(&surroundings.merit(*b, preferred)))
 }
 
-/// The number of the nearest disc (a centre relative to the robot, and the distance at which it touches) in
-/// the way of a preferred velocity.
+/// The number of the nearest disc (its number, its centre relative to the robot, and the distance at which it
+/// touches) in the way of a preferred velocity; the lowest of equally near ones.
 pub(super) fn nearest_in_the_way(
     preferred: Vector,
     margin: f32,
-    discs: impl Iterator<Item = (Vector, f32)>,
+    discs: impl Iterator<Item = (usize, Vector, f32)>,
 ) -> Option<usize> {
     let preferred = preferred.normalize_or_zero();
-    let gap = |(center, touch): (Vector, f32)| {
+    let gap = |center: Vector, touch: f32| {
         let ahead = center.dot(preferred);
         let aside = (center - preferred * ahead).length();
         let gap = center.length() - touch;
         (ahead > 0.0 && aside < touch + margin && gap < PASSING_RANGE_M).then_some(gap)
     };
-    let gaps = discs.enumerate().filter_map(|(at, disc)| Some((at, gap(disc)?)));
-    gaps.min_by(|(_, a), (_, b)| a.total_cmp(b)).map(|(at, _)| at)
+    let gaps = discs.filter_map(|(number, center, touch)| Some((number, gap(center, touch)?)));
+    gaps.min_by(|(m, a), (n, b)| a.total_cmp(b).then(m.cmp(n))).map(|(number, _)| number)
 }
 
 /// Directions from the origin that touch a disc on its right and on its left.

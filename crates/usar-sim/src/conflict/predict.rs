@@ -10,8 +10,8 @@ use super::passing::PASSING_RANGE_M;
 #[derive(Default)]
 pub(super) struct Neighbours {
     by_x: Vec<usize>,
-    /// Their places, in this order.
-    places: Vec<Vector>,
+    /// Their places and layers (whether they fly), in this order.
+    places: Vec<(Vector, bool)>,
     lists: Vec<Vec<usize>>,
 }
 
@@ -24,15 +24,17 @@ impl Neighbours {
         // The order of the last step is nearly right, so sorting takes linear time.
         self.by_x.sort_by(|a, b| movers[*a].position.x.total_cmp(&movers[*b].position.x).then(a.cmp(b)));
         self.places.clear();
-        self.places.extend(self.by_x.iter().map(|i| movers[*i].position));
+        self.places.extend(self.by_x.iter().map(|i| (movers[*i].position, movers[*i].aerial)));
     }
 
-    /// The robots within `range` metres of a point, in no particular order. Needs [`Self::sort`] first.
-    pub(super) fn within(&self, point: Vector, range: f32) -> impl Iterator<Item = usize> {
-        let first = self.places.partition_point(|at| at.x < point.x - range);
+    /// The robots within `range` metres of a point, in no particular order, and whether they fly. Needs
+    /// [`Self::sort`] first.
+    pub(super) fn within(&self, point: Vector, range: f32) -> impl Iterator<Item = (usize, bool)> {
+        let first = self.places.partition_point(|(at, _)| at.x < point.x - range);
         let strip = self.by_x[first..].iter().zip(&self.places[first..]);
-        let strip = strip.take_while(move |(_, at)| at.x <= point.x + range);
-        strip.filter(move |(_, at)| (**at - point).length() < range).map(|(i, _)| *i)
+        let strip = strip.take_while(move |(_, (at, _))| at.x <= point.x + range);
+        let near = strip.filter(move |(_, (at, _))| (*at - point).length_squared() < range * range);
+        near.map(|(i, (_, aerial))| (*i, *aerial))
     }
 
     /// The robots in order along x.
@@ -45,13 +47,12 @@ impl Neighbours {
         clear(&mut self.lists, robots);
     }
 
-    /// Finds the robots of its layer within `range` metres of one robot. Needs [`Self::sort`] first.
-    pub(super) fn find(&mut self, i: usize, movers: &[Mover], range: f32) {
-        let me = &movers[i];
+    /// Finds the robots of its layer within `range` metres of one robot, in no particular order. Needs
+    /// [`Self::sort`] first.
+    pub(super) fn find(&mut self, i: usize, me: &Mover, range: f32) {
         let mut list = std::mem::take(&mut self.lists[i]);
-        let is_other = |j: &usize| *j != i && movers[*j].aerial == me.aerial;
-        list.extend(self.within(me.position, range).filter(is_other));
-        list.sort_unstable();
+        let near = self.within(me.position, range);
+        list.extend(near.filter(|(j, aerial)| *j != i && *aerial == me.aerial).map(|(j, _)| j));
         self.lists[i] = list;
     }
 

@@ -158,9 +158,8 @@ impl Step<'_, '_, SetsModel, Sets> {
         }
         let me = &movers[i];
         let slow = |j: &&usize| movers[**j].velocity.length() < 0.5 * me.preferred.length();
-        let near: Vec<usize> = self.scratch.neighbours.of(i).iter().filter(slow).copied().collect();
-        let discs = near.iter().map(|j| (movers[*j].position - me.position, me.radius + movers[*j].radius));
-        nearest_in_the_way(me.preferred, self.rules.retreats.margin, discs).map(|at| near[at])
+        let near = self.scratch.neighbours.of(i).iter().filter(slow);
+        nearest_in_the_way(me.preferred, self.rules.retreats.margin, near.map(|j| me.sees(*j, movers)))
     }
 
     /// Directs all robots. Heads, robots without conflicts and members that need not stop pass the robots
@@ -256,8 +255,8 @@ impl Step<'_, '_, SetsModel, Sets> {
     fn pass(&self, i: usize, preferred: Vector) -> Directive {
         let me = Mover { preferred, ..self.movers[i] };
         let (near, stands) = (self.scratch.neighbours.of(i), &self.scratch.stands);
-        let blockers = || near.iter().filter(|j| stands[**j]).map(|j| &self.movers[*j]);
-        let discs = blockers().map(|other| (other.position - me.position, me.radius + other.radius));
+        let blockers = near.iter().filter(|j| stands[**j]).map(|j| &self.movers[*j]);
+        let discs = blockers.map(|other| (other.position - me.position, me.radius + other.radius));
         let mut surroundings = Surroundings {
             discs: discs.collect(),
             margin: self.rules.retreats.margin,
@@ -271,10 +270,9 @@ impl Step<'_, '_, SetsModel, Sets> {
         if let Some(direction) = passing_direction(&me, &surroundings) {
             return Directive::Proceed(direction * preferred.length() * SQUEEZE_SPEED);
         }
-        let Surroundings { margin, discs, .. } = surroundings;
-        let blocker =
-            nearest_in_the_way(preferred, margin, discs.into_iter()).and_then(|at| blockers().nth(at));
-        Directive::Blocked { by: blocker.map(|other| other.robot) }
+        let blockers = near.iter().filter(|j| stands[**j]).map(|j| me.sees(*j, self.movers));
+        let blocker = nearest_in_the_way(preferred, surroundings.margin, blockers);
+        Directive::Blocked { by: blocker.map(|other| self.movers[other].robot) }
     }
 }
 

@@ -87,7 +87,9 @@ impl Sight {
         };
         self.heeded.clear();
         self.heeded.extend(near.iter().map(gap));
-        if near.len() > HEEDED {
+        if near.len() <= HEEDED {
+            self.heeded.sort_unstable_by_key(|(_, j)| *j);
+        } else {
             let nearer = |a: &(f32, usize), b: &(f32, usize)| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1));
             self.heeded.select_nth_unstable_by(HEEDED, nearer);
             self.heeded.truncate(HEEDED);
@@ -118,7 +120,7 @@ impl<'m> Step<'_, 'm, ReciprocalModel, Reciprocal> {
         self.hold_before_passages();
         self.queue_before_passages();
         self.let_out();
-        self.look_round();
+        self.look_round(near);
         for i in 0..self.movers.len() {
             self.directives[i] = self.steer(i, near);
         }
@@ -212,13 +214,13 @@ impl<'m> Step<'_, 'm, ReciprocalModel, Reciprocal> {
     }
 
     /// Notes for the robots of this step where they wish to go, for whom they make room, and whom nobody
-    /// hinders.
-    fn look_round(&mut self) {
+    /// hinders. Robots farther apart than `near` metres do not matter.
+    fn look_round(&mut self, near: f32) {
         let (Scratch { neighbours, walls, unhindered, directions, heads, .. }, movers) =
             (&mut *self.scratch, &*self.movers);
         neighbours.forget(movers.len());
         walls.resize(movers.len());
-        unhindered.find(movers, neighbours);
+        unhindered.find(movers, neighbours, near);
         directions.clear();
         directions.extend(movers.iter().map(|mover| mover.preferred.normalize_or_zero()));
         heads.clear();
@@ -234,7 +236,7 @@ impl<'m> Step<'_, 'm, ReciprocalModel, Reciprocal> {
         let is_free = unhindered.is_free(i) && walls.are_clear(i, me, arena);
         let may_be_stuck = me.stalled_steps >= self.rules.ask_again.min(self.rules.stuck);
         if !is_free || may_be_stuck {
-            neighbours.find(i, movers, near);
+            neighbours.find(i, me, near);
         }
         if is_free {
             return me.preferred.clamp_length_max(me.speed);
@@ -319,8 +321,7 @@ impl<'m> Step<'_, 'm, ReciprocalModel, Reciprocal> {
     fn robot_in_the_way(&self, i: usize) -> Option<usize> {
         let (movers, near) = (&*self.movers, self.scratch.neighbours.of(i));
         let me = &movers[i];
-        let discs = near.iter().map(|j| (movers[*j].position - me.position, me.radius + movers[*j].radius));
-        nearest_in_the_way(me.preferred, self.rules.retreats.margin, discs).map(|at| near[at])
+        nearest_in_the_way(me.preferred, self.rules.retreats.margin, near.iter().map(|j| me.sees(*j, movers)))
     }
 }
 

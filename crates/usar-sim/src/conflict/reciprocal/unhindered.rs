@@ -68,20 +68,23 @@ pub(in crate::conflict) struct Unhindered {
 }
 
 impl Unhindered {
-    /// Looks at all robots anew. The neighbours must be in order.
-    pub(super) fn find(&mut self, movers: &[Mover], neighbours: &Neighbours) {
+    /// Looks at all robots anew. The neighbours must be in order; robots farther apart than `range` metres do
+    /// not matter.
+    pub(super) fn find(&mut self, movers: &[Mover], neighbours: &Neighbours, range: f32) {
         self.courses.clear();
         self.courses.extend(neighbours.by_x().iter().map(|i| Course::of(*i, &movers[*i])));
         self.is_free.clear();
         self.is_free.resize(movers.len(), true);
         let farthest = self.courses.iter().map(|course| course.reach).fold(0.0, f32::max);
         for (at, a) in self.courses.iter().enumerate() {
+            let widest = (a.reach + farthest).min(range);
             for b in &self.courses[at + 1..] {
-                if b.at.x - a.at.x > a.reach + farthest {
+                let apart = b.at - a.at;
+                if apart.x > widest {
                     break;
                 }
-                let near = a.reach + b.reach;
-                if a.aerial != b.aerial || (b.at - a.at).length_squared() > near * near {
+                let near = (a.reach + b.reach).min(range);
+                if a.aerial != b.aerial || apart.length_squared() > near * near {
                     continue;
                 }
                 let (touch, nearest) = (a.radius + b.radius + MARGIN_M + ROUNDING_M, a.nearest_squared(b));
