@@ -28,6 +28,8 @@ const LEAST_ADVANCE: f32 = -0.3;
 
 /// What a robot has to pass.
 pub(super) struct Surroundings<'a> {
+    /// The preferred velocity, in metres per second.
+    pub(super) preferred: Vector,
     /// Robots that stand or yield: their centres relative to this robot, and the distances at which they
     /// touch it.
     pub(super) discs: SmallVec<[(Vector, f32); 16]>,
@@ -91,11 +93,11 @@ fn outward(obstacle: &KnownObstacle, from: Vector) -> Option<Vector> {
 /// The best free direction: the preferred direction itself, a tangent to a robot in the way, or a direction
 /// along debris. `None` if no direction is free.
 pub(super) fn passing_direction(me: &Mover, surroundings: &Surroundings) -> Option<Vector> {
-    let preferred = me.preferred.normalize_or_zero();
+    let preferred = surroundings.preferred.normalize_or_zero();
     let range = PASSING_RANGE_M.min(me.leg_left); // the route bends there
     let margin = surroundings.margin;
     let near = |(center, touch): &&(Vector, f32)| center.length() < range + touch + margin;
-    if surroundings.discs.iter().find(near).is_none() {
+    if !surroundings.discs.iter().any(|disc| near(&disc)) {
         return Some(preferred); // the route already keeps clear of debris
     }
     let tangents =
@@ -144,10 +146,9 @@ mod tests {
 
     fn pass(discs: &[([f32; 2], f32)]) -> Option<Vector> {
         let discs = discs.iter().map(|(center, radius)| (Vector::from(*center), *radius)).collect();
-        passing_direction(
-            &mover(0, [0.0, 0.0], [1.0, 0.0]),
-            &Surroundings { discs, margin: 0.0, known: None, heading: Vector::ZERO },
-        )
+        let me = mover(0, [0.0, 0.0], [1.0, 0.0]);
+        let (preferred, heading) = (me.preferred, Vector::ZERO);
+        passing_direction(&me, &Surroundings { preferred, discs, margin: 0.0, known: None, heading })
     }
 
     #[test]

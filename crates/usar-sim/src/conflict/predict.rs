@@ -61,13 +61,13 @@ impl Neighbours {
     pub(super) fn pair(&mut self, movers: &[Mover], margin: f32, horizon: f32) {
         let range = range(movers, margin, horizon);
         self.forget(movers.len());
-        for (at, a) in self.by_x.iter().enumerate() {
-            for b in &self.by_x[at + 1..] {
-                let apart = movers[*b].position - movers[*a].position;
+        for (at, (a, (from, aerial))) in self.by_x.iter().zip(&self.places).enumerate() {
+            for (b, (to, other_aerial)) in self.by_x[at + 1..].iter().zip(&self.places[at + 1..]) {
+                let apart = *to - *from;
                 if apart.x > range {
                     break;
                 }
-                if movers[*a].aerial == movers[*b].aerial && apart.length_squared() <= range * range {
+                if aerial == other_aerial && apart.length_squared() <= range * range {
                     self.lists[*a].push(*b);
                     self.lists[*b].push(*a);
                 }
@@ -136,6 +136,11 @@ impl Conflicts {
             self.lists[*a].push(*b);
             self.lists[*b].push(*a);
         }
+    }
+
+    /// Whether no robot is in conflict with another.
+    pub(super) fn is_empty(&self) -> bool {
+        self.pairs.is_empty()
     }
 
     /// The robots in conflict with robot `i`.

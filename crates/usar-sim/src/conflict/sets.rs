@@ -75,6 +75,10 @@ impl Step<'_, '_, SetsModel, Sets> {
     /// member makes room. A set that shares no member with an earlier one is new.
     fn carry_over(&mut self) {
         let Self { state: Sets { sets, retreats, .. }, scratch, movers, log, .. } = self;
+        if sets.is_empty() && scratch.conflicts.is_empty() {
+            note_sets(&mut scratch.set_of, movers.len(), [].iter());
+            return;
+        }
         let mut before: Vec<Option<ConflictSet>> = std::mem::take(sets).into_iter().map(Some).collect();
         note_sets(&mut scratch.set_of, movers.len(), before.iter().flatten());
         let priority = |i: usize| movers[i].priority;
@@ -253,24 +257,23 @@ impl Step<'_, '_, SetsModel, Sets> {
     /// The directive of a robot that has the right of way: to pass the robots that stand, at the full margin
     /// or squeezing through, or `Blocked`.
     fn pass(&self, i: usize, preferred: Vector) -> Directive {
-        let me = Mover { preferred, ..self.movers[i] };
-        let (near, stands) = (self.scratch.neighbours.of(i), &self.scratch.stands);
-        let blockers = near.iter().filter(|j| stands[**j]).map(|j| &self.movers[*j]);
-        let discs = blockers.map(|other| (other.position - me.position, me.radius + other.radius));
+        let (me, near, stands) = (&self.movers[i], self.scratch.neighbours.of(i), &self.scratch.stands);
+        let blockers = near.iter().filter(|j| stands[**j]).map(|j| me.sees(*j, self.movers));
+        let discs = blockers.clone().map(|(_, center, touch)| (center, touch));
         let mut surroundings = Surroundings {
+            preferred,
             discs: discs.collect(),
             margin: self.rules.retreats.margin,
             known: me.known,
             heading: self.state.headings[i],
         };
-        if let Some(direction) = passing_direction(&me, &surroundings) {
+        if let Some(direction) = passing_direction(me, &surroundings) {
             return Directive::Proceed(direction * preferred.length());
         }
         surroundings.margin = surroundings.margin.min(SQUEEZE_MARGIN_M);
-        if let Some(direction) = passing_direction(&me, &surroundings) {
+        if let Some(direction) = passing_direction(me, &surroundings) {
             return Directive::Proceed(direction * preferred.length() * SQUEEZE_SPEED);
         }
-        let blockers = near.iter().filter(|j| stands[**j]).map(|j| me.sees(*j, self.movers));
         let blocker = nearest_in_the_way(preferred, surroundings.margin, blockers);
         Directive::Blocked { by: blocker.map(|other| self.movers[other].robot) }
     }

@@ -33,10 +33,11 @@ impl Crew {
     }
 
     fn follow_errand(&mut self, id: RobotId, scene: &mut Scene) {
-        let (robot, traveller) = (&scene.beliefs.team[id.index()], scene.navigator.traveller(id));
+        let robot = &scene.beliefs.team[id.index()];
+        self.note_way(robot, scene.navigator);
         let (position, is_at_place) = (robot.position, scene.is_at_place(robot));
+        let traveller = scene.navigator.traveller(id);
         let is_beside_place = traveller.has_arrived(position) && !is_at_place;
-        self.note_way(robot, scene);
         if scene.awaits_opening {
             self.agents[id.index()].progress = Progress::default();
         }

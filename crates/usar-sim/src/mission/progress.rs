@@ -9,6 +9,7 @@ use super::{Activity, Crew, Scene};
 use crate::event::{CutOffCause, Event};
 use crate::ids::RobotId;
 use crate::model::Model;
+use crate::navigation::Navigator;
 use crate::robot::Robot;
 
 /// Least decrease of the remaining route that counts as coming nearer, in metres. A smaller one may be a push
@@ -58,7 +59,7 @@ impl Crew {
             if !robot.is_able() {
                 continue;
             }
-            let is_nearer = self.note_way(robot, scene);
+            let is_nearer = self.note_way(robot, scene.navigator);
             let agent = &mut self.agents[id.index()];
             if is_nearer || !agent.activity.is_way_back() {
                 agent.is_cut_off = false;
@@ -82,9 +83,9 @@ impl Crew {
 
     /// Notes the remaining route of a robot. Returns whether the robot came nearer, has arrived, or has no
     /// goal.
-    pub(super) fn note_way(&mut self, robot: &Robot, scene: &Scene) -> bool {
-        let traveller = scene.navigator.traveller(robot.id);
-        let left_m = traveller.route().map(|route| route.length(robot.position));
+    pub(super) fn note_way(&mut self, robot: &Robot, navigator: &mut Navigator) -> bool {
+        let left_m = navigator.way_left(robot.id, robot.position);
+        let traveller = navigator.traveller(robot.id);
         let progress = &mut self.agents[robot.id.index()].progress;
         let is_nearer = progress.note(traveller.goal().map(|goal| goal.point), left_m);
         let is_there = traveller.goal().is_none() || traveller.has_arrived(robot.position);
@@ -100,14 +101,15 @@ impl Crew {
         self.is_held_up_for(model.mission.cut_off_s, robot, model)
     }
 
-    /// The same for another time, in seconds.
+    /// The same for another, longer time, in seconds.
     fn is_held_up_for(&self, seconds: f64, robot: &Robot, model: &Model) -> bool {
         let progress = &self.agents[robot.id.index()].progress;
-        if progress.held_up_steps <= model.steps_in(seconds) {
+        let steps = progress.held_up_steps;
+        if steps <= model.mission.cut_off_steps || steps <= model.steps_in(seconds) {
             return false;
         }
         let detour_s = f64::from(progress.allowed_way_m()) / self.speed_of(model, robot).max(1e-6);
-        progress.held_up_steps > model.steps_in(seconds + detour_s)
+        steps > model.steps_in(seconds + detour_s)
     }
 
     /// Number of the robots that can act and stand, as far as the watchdog can tell: they have something to

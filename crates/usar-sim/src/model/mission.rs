@@ -58,6 +58,8 @@ pub struct MissionModel {
     /// A robot that comes no nearer to its goal for this long, in seconds, gives up on it. A detour adds the
     /// time that it takes.
     pub cut_off_s: f64,
+    /// The same, in steps.
+    pub cut_off_steps: u64,
 }
 
 impl MissionModel {
@@ -84,6 +86,7 @@ impl MissionModel {
             blind_speed: 1.0 - rules.blind_speed_loss,
             load_speed_loss: rules.load_speed_loss,
             cut_off_s: rules.cut_off_s,
+            cut_off_steps: (rules.cut_off_s / dt_s).round() as u64,
         }
     }
 }

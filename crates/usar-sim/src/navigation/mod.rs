@@ -71,6 +71,11 @@ impl Navigator {
         &self.travellers[robot.index()]
     }
 
+    /// Length of the route ahead of a robot, in metres; none without a route.
+    pub(crate) fn way_left(&mut self, robot: RobotId, from: Vector) -> Option<f32> {
+        self.travellers[robot.index()].measure(from)
+    }
+
     /// Places that a robot passed, the latest last.
     #[must_use]
     pub fn trail(&self, robot: RobotId) -> &[Vector] {
@@ -126,7 +131,8 @@ impl Navigator {
         if 2.0 * braking * distance > speed * speed * 1.001 {
             return direction * speed; // the next waypoint is farther than the way that it takes to stop
         }
-        let mut wished = speed.min(reachable(0.0, route.length(robot.position)));
+        let left = traveller.length(robot.position).unwrap_or(0.0);
+        let mut wished = speed.min(reachable(0.0, left));
         if let Some(after) = ahead.get(1) {
             let turn = direction.dot((*after - ahead[0]).normalize_or_zero());
             let in_turn = speed * f32::midpoint(1.0, turn).max(0.3);

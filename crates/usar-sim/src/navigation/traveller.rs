@@ -48,6 +48,17 @@ pub struct Traveller {
     /// Where it last found no route. From there it finds none as long as it hears of nothing new.
     #[serde(skip)]
     lost_at: Option<Vector>,
+    /// The length of the route ahead, as it was measured last. It only saves time.
+    #[serde(skip)]
+    measured: Option<Measured>,
+}
+
+/// The length of a route ahead.
+#[derive(Debug, Clone, Copy)]
+struct Measured {
+    from: Vector,
+    next: usize,
+    length: f32,
 }
 
 impl Traveller {
@@ -62,7 +73,23 @@ impl Traveller {
             stalled_steps: 0,
             lost_steps: 0,
             lost_at: None,
+            measured: None,
         }
+    }
+
+    /// Length of the route ahead from a position, in metres; none without a route.
+    pub(super) fn length(&self, from: Vector) -> Option<f32> {
+        let route = self.route.as_ref()?;
+        let is_same = |measured: &Measured| measured.from == from && measured.next == route.next();
+        Some(self.measured.filter(is_same).map_or_else(|| route.length(from), |measured| measured.length))
+    }
+
+    /// The same, kept for the next time.
+    pub(crate) fn measure(&mut self, from: Vector) -> Option<f32> {
+        let length = self.length(from)?;
+        let next = self.route.as_ref()?.next();
+        self.measured = Some(Measured { from, next, length });
+        Some(length)
     }
 
     /// The goal of the robot, if it has one.
@@ -140,12 +167,13 @@ impl Traveller {
         }
         self.lost_at = if route.is_some() { None } else { Some(position) };
         self.route = route;
+        self.measured = None;
         self.is_planned = true;
     }
 
     pub(super) fn note_progress(&mut self, position: Vector) {
         self.lost_steps = if self.leads_nowhere() { self.lost_steps + 1 } else { 0 };
-        let length = self.route.as_ref().map_or(f32::INFINITY, |route| route.length(position));
+        let length = self.measure(position).unwrap_or(f32::INFINITY);
         if length < self.best_length - PROGRESS_M {
             self.best_length = length;
             self.stalled_steps = 0;

@@ -23,6 +23,12 @@ impl Route {
         Self { waypoints, next: 0 }
     }
 
+    /// Number of the next waypoint.
+    #[must_use]
+    pub(crate) fn next(&self) -> usize {
+        self.next
+    }
+
     /// Waypoints still to pass; never empty.
     #[must_use]
     pub fn ahead(&self) -> &[Vector] {

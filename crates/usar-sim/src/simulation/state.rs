@@ -122,7 +122,8 @@ impl State {
     pub(super) fn scene<'s>(&'s mut self, model: &'s Model) -> (&'s mut Mission, Scene<'s>) {
         let Self { mission, beliefs, sent, navigator, log, step, timeline, .. } = self;
         let awaits_event = timeline.is_to_come(model);
-        let awaits_opening = timeline.opens_after(step.saturating_sub(model.steps_in(SEEN_AFTER_S)), model);
+        let seen = || step.saturating_sub(model.steps_in(SEEN_AFTER_S));
+        let awaits_opening = !timeline.is_empty() && timeline.opens_after(seen(), model);
         (mission, Scene { model, beliefs, sent, navigator, log, step: *step, awaits_event, awaits_opening })
     }
 
@@ -218,16 +219,15 @@ impl State {
     /// can no longer act.
     pub(super) fn expose(&mut self, model: &Model) {
         let unit = model.costs.unit;
-        let (robots, zones_at) = self.world.robots_in_zones(model);
         let metrics = &mut self.listeners.metrics;
-        for robot in robots {
+        for (robot, zones) in self.world.robots_in_zones(model) {
             let speed = robot.velocity.length();
             metrics.robots[robot.id.index()].note_way(f64::from(speed) * model.dt_s());
             let agent = &self.mission.crew.agents[robot.id.index()];
             if !robot.is_able() || matches!(agent.activity, Activity::Resting(_)) {
                 continue;
             }
-            let [energy, hp] = step_costs(model, agent, robot, speed, zones_at(robot.position));
+            let [energy, hp] = step_costs(model, agent, robot, speed, zones);
             let energy = unit.to_percent(energy, robot.spec.energy).min(robot.energy);
             let hp = unit.to_percent(hp, robot.spec.hp).min(robot.hp);
             if energy > 0.0 || hp > 0.0 {

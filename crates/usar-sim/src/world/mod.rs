@@ -3,6 +3,7 @@
 mod debris;
 mod effects;
 mod rescuee;
+mod zones;
 
 use parry2d::bounding_volume::BoundingVolume;
 use parry2d::math::{Pose, Vector};
@@ -16,6 +17,7 @@ use crate::geometry::Places;
 use crate::model::Model;
 use crate::physics::{DebrisBody, Physics, RobotBody};
 use crate::robot::{Robot, STANDING_MPS};
+use zones::ZoneCounts;
 
 /// Pieces with a smaller gap than this touch, in metres.
 const TOUCH_M: f32 = 0.005;
@@ -40,6 +42,9 @@ pub struct World {
     zone_switches: Vec<u8>,
     /// The step of each zone's last switch. Empty in a scenario without a timeline.
     zone_since: Vec<u64>,
+    /// The zones in which each robot is. Follows from the other fields.
+    #[serde(skip)]
+    zone_counts: ZoneCounts,
     /// For each task, whether it has ended, or not begun. Empty in a scenario without a timeline.
     pub closed_tasks: Vec<bool>,
     /// Rescuees, by id.
@@ -65,6 +70,7 @@ impl World {
             debris,
             touching: None,
             zone_switches: model.zones.iter().take(many).map(|zone| u8::from(!zone.is_later)).collect(),
+            zone_counts: ZoneCounts::default(),
             zone_since: model.zones.iter().take(many).map(|_| 0).collect(),
             closed_tasks: model.tasks.iter().take(many).map(|task| task.begins_later).collect(),
             rescuees: Rescuees::new(&model.rescuees),
@@ -110,18 +116,13 @@ impl World {
         self.switches_of(zone) % 2 == 1
     }
 
-    /// The robots, and a function that counts the zones that are on at a point.
-    pub(crate) fn robots_in_zones<'w>(
-        &'w mut self,
-        model: &'w Model,
-    ) -> (&'w mut [Robot], impl Fn(Vector) -> usize + 'w) {
-        let Self { robots, zone_switches, .. } = self;
+    /// The robots, each with the number of zones that are on at its place.
+    pub(crate) fn robots_in_zones(&mut self, model: &Model) -> impl Iterator<Item = (&mut Robot, usize)> {
+        let Self { robots, zone_switches, zone_counts, .. } = self;
         let is_on = |number: usize| zone_switches.get(number).is_none_or(|switches| switches % 2 == 1);
-        let count = move |at: Vector| {
-            let zones = model.zones.iter().enumerate();
-            zones.filter(|(number, zone)| is_on(*number) && zone.disc.contains(at)).count()
-        };
-        (robots, count)
+        let zones = model.zones.iter().enumerate().map(|(number, zone)| (&zone.disc, is_on(number)));
+        zone_counts.update(robots, &zones);
+        robots.iter_mut().zip(zone_counts.iter())
     }
 
     /// How often a radiation zone was switched on or off; 1 if it was always on.
@@ -156,6 +157,7 @@ impl World {
         let changes = self.is_on(zone) != on;
         if changes {
             self.zone_switches[zone] += 1;
+            self.zone_counts.forget();
             self.zone_since[zone] = step;
         }
         changes
