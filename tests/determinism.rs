@@ -40,7 +40,7 @@ fn a_trial_restored_at_every_step_of_1200_ends_as_if_it_had_not_been() {
     let mut policy = policy("RNE");
     let whole = restored(&scenario, &mut *policy, |_| false);
     let pieces = restored(&scenario, &mut *policy, |_| true);
-    assert_eq!(whole.chain.links().len(), 24);
+    assert_eq!(whole.chain.links().len(), 3, "after 10, 20 and 24 s");
     assert_eq!(whole, pieces);
 }
 
@@ -53,6 +53,19 @@ fn a_trial_restored_at_random_steps_ends_as_if_it_had_not_been() {
         let whole = restored(&scenario, &mut *policy, |_| false);
         let pieces = restored(&scenario, &mut *policy, |_| draws.random_range(0..1000_u32) == 0);
         assert_eq!(whole, pieces, "{name}");
+    }
+}
+
+#[test]
+fn a_large_team_has_the_same_bits_on_any_number_of_threads() {
+    let scenario = xtask::density::mission(600, 20.0, None);
+    let trial = || Simulation::new(&scenario, 1).unwrap();
+    let run = |trial: Simulation| trial.run(&mut *policy("ENG"), |_, _, _| {}).chain;
+    let one_after_the_other = run(trial());
+    for threads in [1, 2, 5] {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        let in_parallel = pool.install(|| run(trial().in_parallel()));
+        assert_eq!(in_parallel, one_after_the_other, "{threads} threads");
     }
 }
 

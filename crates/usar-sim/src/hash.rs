@@ -1,15 +1,15 @@
 //! The hash chain over the whole state of a trial: equal chains, equal trials, step by step. What only
 //! listens, metrics and decisions, is no part of it: a new counter changes no hash.
 //!
-//! Every [`PERIOD_STEPS`] steps and at the end, each part of the state is written as bytes (postcard) and
+//! Every [`PERIOD_S`] seconds and at the end, each part of the state is written as bytes (postcard) and
 //! hashed (XXH3, 128 bits). The digests of all parts, the step and the previous link make the next link. Each
 //! link also keeps shortened digests of the parts, which show in which part two chains differ.
 
 use serde::{Deserialize, Serialize};
 use xxhash_rust::xxh3::xxh3_128;
 
-/// A link is added once in this many steps.
-pub const PERIOD_STEPS: u64 = 50;
+/// A link is added once in this time, in seconds.
+pub const PERIOD_S: f64 = 10.0;
 
 /// The parts of the state, in the order of [`Link::parts`].
 pub const PARTS: [&str; 9] =

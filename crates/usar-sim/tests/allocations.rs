@@ -6,7 +6,7 @@ use std::alloc::System;
 use rne_core::{Deadline, Session};
 use stats_alloc::{INSTRUMENTED_SYSTEM, Region, StatsAlloc};
 use usar_sim::conflict::DelayCause;
-use usar_sim::hash::PERIOD_STEPS;
+use usar_sim::hash::PERIOD_S;
 use usar_sim::scenario::Scenario;
 use usar_sim::simulation::Simulation;
 use usar_sim::stage::Stage;
@@ -50,7 +50,7 @@ fn a_step_without_events_plans_and_conflicts_takes_no_memory() {
         // Allocations of the engine itself: its step, and its list of driven bodies.
         taken[Stage::Integrate as usize] = 0;
         taken[Stage::Drive as usize] = 0;
-        let has_link = trial.steps().is_multiple_of(PERIOD_STEPS);
+        let has_link = trial.steps().is_multiple_of((PERIOD_S / scenario.dt_s).round() as u64);
         if was_busy || is_in_conflict(&trial) || !trial.events().is_empty() || has_link {
             continue;
         }

@@ -1,6 +1,7 @@
 //! A belief as a fold over reports.
 
 use std::ops::Range;
+use std::sync::OnceLock;
 
 use rne_core::TaskId;
 use serde::{Deserialize, Serialize};
@@ -9,6 +10,7 @@ use super::known::{KnownDebris, KnownRescuee, KnownTask, KnownWreck, KnownZone};
 use super::news::{News, Opening, Seen};
 use super::table::Table;
 use crate::geometry::{Outline, RadiationZone};
+use crate::hash::part;
 use crate::planning::{Inflation, KnownObstacle, ObstacleKey, ObstacleMap};
 use crate::report::{Report, Statement};
 
@@ -33,6 +35,9 @@ pub struct Belief {
     /// Follows from the other fields.
     #[serde(skip)]
     maps: Maps,
+    /// The hash of the other fields, once it was asked for. Taken away by whatever changes them.
+    #[serde(skip)]
+    digest: OnceLock<u128>,
 }
 
 /// What a belief holds true, as planning needs it.
@@ -57,6 +62,7 @@ impl Belief {
             pool: 0,
             news: Vec::new(),
             maps: Maps { obstacles: inflation.maps(), zones_on: Vec::new() },
+            digest: OnceLock::new(),
         }
     }
 
@@ -87,6 +93,19 @@ impl Belief {
 
     /// Takes a report into account. Returns whether it is newer than what was heard of the thing before.
     pub fn hear(&mut self, report: &Report) -> bool {
+        let is_news = self.take(report);
+        if is_news {
+            self.digest.take();
+        }
+        is_news
+    }
+
+    /// A hash of the whole belief.
+    pub(super) fn digest(&self) -> u128 {
+        *self.digest.get_or_init(|| part(self))
+    }
+
+    fn take(&mut self, report: &Report) -> bool {
         let (at_step, sd_m) = (report.at_step, report.sd_m);
         match &report.says {
             Statement::DebrisLies { debris, shape, pose } => {
@@ -196,6 +215,7 @@ impl Belief {
             });
         }
         self.pool += 1;
+        self.digest.take();
     }
 
     /// The mark after all present news.

@@ -103,6 +103,13 @@ impl Beliefs {
         }
     }
 
+    /// The beliefs as they count in the hash chain.
+    pub(crate) fn to_hash(&self) -> impl Serialize + '_ {
+        let Self { field, home, team, said_at, ledger } = self;
+        let field: Vec<u128> = field.iter().map(Belief::digest).collect();
+        (field, home.digest(), team, said_at, ledger)
+    }
+
     /// The team at home hears all that was heard in the field.
     pub(crate) fn pool(&mut self) {
         self.home.pool(&self.field);

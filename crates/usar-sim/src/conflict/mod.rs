@@ -30,8 +30,11 @@ pub use mover::{Directive, Mover};
 pub use passing::PASSING_RANGE_M;
 use predict::{Conflicts, Neighbours};
 pub use priority::PriorityKey;
-use reciprocal::{Reciprocal, Sight, Turn, Unhindered, Walls};
+use reciprocal::{Near, Reciprocal, Sight, Turn, Unhindered};
 use sets::Sets;
+
+/// From so many robots on, a step is worth more than one thread.
+pub(crate) const MANY_ROBOTS: usize = 500;
 
 /// The conflict resolver of one trial.
 #[derive(Serialize, Deserialize)]
@@ -62,12 +65,15 @@ pub struct Scratch {
     /// For each robot, its turn at a narrow passage.
     turns: Vec<Turn>,
     unhindered: Unhindered,
-    walls: Walls,
+    /// For each robot, what is near it. The walls are kept from step to step, to save time.
+    near: Vec<Near>,
     sight: Sight,
     /// For each robot, the direction of its preferred velocity; zero if it has nowhere to go.
     directions: Vec<Vector>,
     /// For each robot, the robot for which it makes room.
     heads: Vec<Option<usize>>,
+    /// Whether large teams are directed on all threads.
+    pub in_parallel: bool,
 }
 
 /// One step of a rule with these constants and this state.

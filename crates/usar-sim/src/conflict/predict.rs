@@ -10,9 +10,17 @@ use super::passing::PASSING_RANGE_M;
 #[derive(Default)]
 pub(super) struct Neighbours {
     by_x: Vec<usize>,
-    /// Their places and layers (whether they fly), in this order.
-    places: Vec<(Vector, bool)>,
+    /// The same robots, in this order.
+    spots: Vec<Spot>,
+    /// For each robot, those near it: found by [`Self::pair`].
     lists: Vec<Vec<usize>>,
+}
+
+/// A robot where it is.
+#[derive(Clone, Copy)]
+struct Spot {
+    at: Vector,
+    aerial: bool,
 }
 
 impl Neighbours {
@@ -23,18 +31,19 @@ impl Neighbours {
         }
         // The order of the last step is nearly right, so sorting takes linear time.
         self.by_x.sort_by(|a, b| movers[*a].position.x.total_cmp(&movers[*b].position.x).then(a.cmp(b)));
-        self.places.clear();
-        self.places.extend(self.by_x.iter().map(|i| (movers[*i].position, movers[*i].aerial)));
+        let spot = |mover: &Mover| Spot { at: mover.position, aerial: mover.aerial };
+        self.spots.clear();
+        self.spots.extend(self.by_x.iter().map(|i| spot(&movers[*i])));
     }
 
     /// The robots within `range` metres of a point, in no particular order, and whether they fly. Needs
     /// [`Self::sort`] first.
     pub(super) fn within(&self, point: Vector, range: f32) -> impl Iterator<Item = (usize, bool)> {
-        let first = self.places.partition_point(|(at, _)| at.x < point.x - range);
-        let strip = self.by_x[first..].iter().zip(&self.places[first..]);
-        let strip = strip.take_while(move |(_, (at, _))| at.x <= point.x + range);
-        let near = strip.filter(move |(_, (at, _))| (*at - point).length_squared() < range * range);
-        near.map(|(i, (_, aerial))| (*i, *aerial))
+        let first = self.spots.partition_point(|spot| spot.at.x < point.x - range);
+        let strip = self.by_x[first..].iter().zip(&self.spots[first..]);
+        let strip = strip.take_while(move |(_, spot)| spot.at.x <= point.x + range);
+        let near = strip.filter(move |(_, spot)| (spot.at - point).length_squared() < range * range);
+        near.map(|(i, spot)| (*i, spot.aerial))
     }
 
     /// The robots in order along x.
@@ -42,34 +51,29 @@ impl Neighbours {
         &self.by_x
     }
 
-    /// Forgets who is near whom.
-    pub(super) fn forget(&mut self, robots: usize) {
-        clear(&mut self.lists, robots);
-    }
-
-    /// Finds the robots of its layer within `range` metres of one robot, in no particular order. Needs
-    /// [`Self::sort`] first.
-    pub(super) fn find(&mut self, i: usize, me: &Mover, range: f32) {
-        let mut list = std::mem::take(&mut self.lists[i]);
+    /// Adds the robots of its layer within `range` metres of robot `i` to a list, in no particular order.
+    /// Needs [`Self::sort`] first.
+    pub(super) fn find(&self, i: usize, me: &Mover, range: f32, list: &mut Vec<usize>) {
         let near = self.within(me.position, range);
         list.extend(near.filter(|(j, aerial)| *j != i && *aerial == me.aerial).map(|(j, _)| j));
-        self.lists[i] = list;
     }
 
-    /// Finds all pairs of robots of one layer that could meet within the horizon or be in each other's way.
+    /// Finds, for each robot that wishes to move, those of its layer that it could meet within the horizon or
+    /// that could be in its way.
     /// Needs [`Self::sort`] first.
     pub(super) fn pair(&mut self, movers: &[Mover], margin: f32, horizon: f32) {
         let range = range(movers, margin, horizon);
-        self.forget(movers.len());
-        for (at, (a, (from, aerial))) in self.by_x.iter().zip(&self.places).enumerate() {
-            for (b, (to, other_aerial)) in self.by_x[at + 1..].iter().zip(&self.places[at + 1..]) {
-                let apart = *to - *from;
+        clear(&mut self.lists, movers.len());
+        let lists = &mut self.lists;
+        for (at, (a, from)) in self.by_x.iter().zip(&self.spots).enumerate() {
+            for (b, to) in self.by_x[at + 1..].iter().zip(&self.spots[at + 1..]) {
+                let apart = to.at - from.at;
                 if apart.x > range {
                     break;
                 }
-                if aerial == other_aerial && apart.length_squared() <= range * range {
-                    self.lists[*a].push(*b);
-                    self.lists[*b].push(*a);
+                if from.aerial == to.aerial && apart.length_squared() <= range * range {
+                    lists[*a].extend(movers[*a].wishes_to_move().then_some(*b));
+                    lists[*b].extend(movers[*b].wishes_to_move().then_some(*a));
                 }
             }
         }
@@ -82,7 +86,7 @@ impl Neighbours {
         lists.flat_map(|(a, list)| list.iter().filter(move |b| **b > a).map(move |b| (a, *b)))
     }
 
-    /// The robots near robot `i`.
+    /// The robots near robot `i`, in order. Needs [`Self::pair`] first.
     pub(super) fn of(&self, i: usize) -> &[usize] {
         &self.lists[i]
     }

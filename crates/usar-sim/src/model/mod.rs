@@ -33,6 +33,7 @@ pub use task::TaskModel;
 pub use timeline::{Action, Due};
 
 use crate::geometry::{RadiationZone, vector};
+use crate::hash::PERIOD_S;
 use crate::planning::{Inflation, Planner};
 use crate::scenario::{Measure, NeedFile, Scenario, ZoneFile};
 
@@ -49,6 +50,8 @@ pub struct Model {
     pub dt: f32,
     /// Number of steps of the trial, unless its mission ends before.
     pub steps: u64,
+    /// Steps between two links of the hash chain.
+    pub(crate) link_steps: u64,
     /// Width and height of the arena, in metres.
     pub arena: Vector,
     /// Names of the roles.
@@ -125,6 +128,7 @@ impl Model {
             dt_s,
             dt: dt_s as f32,
             steps: scenario.steps(),
+            link_steps: ((PERIOD_S / dt_s).round() as u64).max(1),
             arena: vector(scenario.arena_m),
             roles: scenario.roles.iter().map(|role| role.name.clone()).collect(),
             needs: scenario.needs.iter().map(need).collect(),

@@ -4,6 +4,7 @@ mod trail;
 mod traveller;
 
 use parry2d::math::Vector;
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::belief::{Belief, News};
@@ -25,6 +26,9 @@ const DETOUR_AFTER_S: f64 = 4.0;
 
 /// A detour leads round standing robots within this distance, in metres.
 const DETOUR_RANGE_M: f32 = 8.0;
+
+/// Parts into which a large team is divided for each thread, so that no thread waits long for another.
+const PARTS_PER_THREAD: usize = 4;
 
 /// The effect of news on a route.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -90,28 +94,26 @@ impl Navigator {
         }
     }
 
-    /// Plans routes. A robot plans if it has no route yet, if new knowledge cuts its route or may make it
-    /// dearer or cheaper, or if it makes no progress.
-    pub fn plan<'o, B, S>(&mut self, outlook: &Outlook<'o, B, S>, meshes: &mut Meshes)
+    /// Plans routes, on all threads if `in_parallel`; each has meshes of its own. A robot plans if it has no
+    /// route yet, if new knowledge cuts its route or may make it dearer or cheaper, or if it makes no progress.
+    pub fn plan<'o, B, S>(&mut self, outlook: &Outlook<'o, B, S>, meshes: &mut Vec<Meshes>, in_parallel: bool)
     where
-        B: Fn(RobotId) -> &'o Belief,
-        S: Fn(&Robot) -> f64,
+        B: Fn(RobotId) -> &'o Belief + Sync,
+        S: Fn(&Robot) -> f64 + Sync,
     {
-        let detour_steps = outlook.model.steps_in(DETOUR_AFTER_S);
-        for robot in outlook.team {
-            self.trails[robot.id.index()].note(robot.position);
-            let traveller = &mut self.travellers[robot.id.index()];
-            let Some(goal) = traveller.goal else { continue };
-            if !robot.is_able() || traveller.has_arrived(robot.position) {
-                continue;
-            }
-            if let Some(route) = &mut traveller.route {
-                route.advance(robot.position);
-            }
-            traveller.note_progress(robot.position);
-            let wayfinder = Wayfinder { outlook, robot, goal, belief: (outlook.belief_of)(robot.id) };
-            wayfinder.keep_on_route(traveller, detour_steps, meshes);
+        let Self { travellers, trails } = self;
+        if !in_parallel {
+            meshes.resize_with(meshes.len().max(1), Meshes::default);
+            return outlook.plan(outlook.team, travellers, trails, &mut meshes[0]);
         }
+        let parts = PARTS_PER_THREAD * rayon::current_num_threads();
+        meshes.resize_with(meshes.len().max(parts), Meshes::default);
+        let robots = outlook.team.len().div_ceil(parts).max(1);
+        let journeys = travellers.par_chunks_mut(robots).zip(trails.par_chunks_mut(robots));
+        let parts = outlook.team.par_chunks(robots).zip(journeys).zip(meshes);
+        parts.for_each(|((team, (travellers, trails)), meshes)| {
+            outlook.plan(team, travellers, trails, meshes);
+        });
     }
 
     /// The velocity that takes a robot along its route: at most `speed`, less before turns and the end. Zero
@@ -139,6 +141,36 @@ impl Navigator {
             wished = wished.min(reachable(in_turn, distance));
         }
         direction * wished
+    }
+}
+
+impl<'o, B, S> Outlook<'o, B, S>
+where
+    B: Fn(RobotId) -> &'o Belief,
+    S: Fn(&Robot) -> f64,
+{
+    /// Plans the routes of some of the robots, whose journeys these are.
+    fn plan(
+        &self,
+        team: &'o [Robot],
+        travellers: &mut [Traveller],
+        trails: &mut [Trail],
+        meshes: &mut Meshes,
+    ) {
+        let detour_steps = self.model.steps_in(DETOUR_AFTER_S);
+        for ((robot, traveller), trail) in team.iter().zip(travellers).zip(trails) {
+            trail.note(robot.position);
+            let Some(goal) = traveller.goal else { continue };
+            if !robot.is_able() || traveller.has_arrived(robot.position) {
+                continue;
+            }
+            if let Some(route) = &mut traveller.route {
+                route.advance(robot.position);
+            }
+            traveller.note_progress(robot.position);
+            let wayfinder = Wayfinder { outlook: self, robot, goal, belief: (self.belief_of)(robot.id) };
+            wayfinder.keep_on_route(traveller, detour_steps, meshes);
+        }
     }
 }
 

@@ -19,7 +19,6 @@ use rne_core::{Asked, AssignmentError, Deadline, Decision, Member, Question, Ses
 use thiserror::Error;
 
 use crate::event::Event;
-use crate::hash::PERIOD_STEPS;
 use crate::invariant::{Invariants, Overlaps};
 use crate::mission::Ending;
 use crate::record::{DecisionRecord, RobotRecord, Status, TaskRecord, TrialRecord};
@@ -117,6 +116,14 @@ impl Simulation {
     #[must_use]
     pub fn with_engine_always_on(mut self) -> Self {
         self.state.world.physics.keep_engine_on();
+        self
+    }
+
+    /// The same trial, with the work of a step divided over all threads where the team is large (500 robots).
+    /// The result is the same bit for bit.
+    #[must_use]
+    pub fn in_parallel(mut self) -> Self {
+        self.scratch.use_all_threads();
         self
     }
 
@@ -338,7 +345,7 @@ impl Simulation {
         state.rescue(model, &mut scratch.heard);
         done(Stage::Rescue);
         state.listen(decided, model.dt_s());
-        if state.step.is_multiple_of(PERIOD_STEPS) {
+        if state.step.is_multiple_of(model.link_steps) {
             state.add_link();
         }
         self.check()?;

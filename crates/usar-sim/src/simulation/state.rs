@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use super::charge::{last_event, spend};
 use super::moments::Moments;
 use crate::belief::Beliefs;
-use crate::conflict::{self, Delay, Mover, PriorityKey, Resolver};
+use crate::conflict::{self, Delay, MANY_ROBOTS, Mover, PriorityKey, Resolver};
 use crate::event::{Event, EventLog};
 use crate::hash::{HashChain, PARTS, part};
 use crate::medium;
@@ -54,8 +54,17 @@ pub(crate) struct State {
 pub(super) struct Scratch {
     pub(super) heard: Vec<Report>,
     movers: Vec<Mover<'static>>,
-    meshes: Meshes,
+    meshes: Vec<Meshes>,
     conflict: conflict::Scratch,
+    /// Whether the steps of a large team are done on all threads.
+    in_parallel: bool,
+}
+
+impl Scratch {
+    /// Has the steps of a large team done on all threads.
+    pub(super) fn use_all_threads(&mut self) {
+        (self.in_parallel, self.conflict.in_parallel) = (true, true);
+    }
 }
 
 /// What listens to a trial and acts on nothing: the hash chain leaves it out, so that a new counter changes
@@ -181,7 +190,8 @@ impl State {
             belief_of: |robot| beliefs.of(mission.crew.holder_of(robot, model)),
             speed_of: |robot: &Robot| mission.crew.speed_of(model, robot),
         };
-        self.navigator.plan(&outlook, &mut scratch.meshes);
+        let in_parallel = scratch.in_parallel && beliefs.team.len() >= MANY_ROBOTS;
+        self.navigator.plan(&outlook, &mut scratch.meshes, in_parallel);
     }
 
     /// Decides which robots go and which wait, and notes why robots stop.
@@ -275,7 +285,7 @@ impl State {
             part(&self.world.robots),
             part(&self.world.lying_debris()),
             part(&(&self.world.rescuees, self.mission.claims.held())),
-            part(&(&self.beliefs, &self.sent, self.world.changes())),
+            part(&(self.beliefs.to_hash(), &self.sent, self.world.changes())),
             part(&(self.mission.course(), self.is_midway)),
             part(&self.navigator),
             part(&self.resolver),

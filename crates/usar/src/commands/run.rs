@@ -100,7 +100,8 @@ impl Arguments {
         let simulation =
             snapshot.as_ref().map_or_else(|| trial.begin(), |snapshot| snapshot.restore(scenario))?;
         let seed = simulation.seed();
-        let mut simulation = if self.check { simulation.checked() } else { simulation };
+        let simulation = if self.check { simulation.checked() } else { simulation };
+        let mut simulation = simulation.in_parallel();
         if let (Some(path), Some(seconds)) = (&self.save, self.save_at) {
             save(&mut simulation, spec, path, seconds)?;
         }

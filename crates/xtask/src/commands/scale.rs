@@ -23,7 +23,7 @@ pub fn run(arguments: &[String]) -> ExitCode {
     }
     let mut eng = policies::standard().open("ENG").expect("known");
     let start = Instant::now();
-    let mut trial = Simulation::new(&scenario, 1).expect("drawn");
+    let mut trial = Simulation::new(&scenario, 1).expect("drawn").in_parallel();
     println!(
         "{robots} robots, {} pieces of debris: built in {:.1} s",
         scenario.debris.len(),

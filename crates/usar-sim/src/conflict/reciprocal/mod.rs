@@ -11,27 +11,26 @@
 mod encounter;
 mod half_planes;
 mod passage;
+mod steering;
 mod stuck;
 mod unhindered;
 mod velocity;
 mod walls;
 
-use parry2d::math::Vector;
 use serde::{Deserialize, Serialize};
 
-use super::passing::nearest_in_the_way;
 use super::predict::range;
 use super::retreat::{Crowd, Retreats};
-use super::{Directive, Mover, Scratch, Step};
+use super::{MANY_ROBOTS, Mover, Scratch, Step};
 use crate::event::Event;
 use crate::model::ReciprocalModel;
-use encounter::{Encounter, LONGEST_HORIZON_S};
-use half_planes::HalfPlane;
+use encounter::LONGEST_HORIZON_S;
 pub(super) use passage::Turn;
 use passage::{Entrant, Entry, Follows, decide};
+use steering::Steering;
+pub(super) use steering::{Near, Sight};
 pub(super) use unhindered::Unhindered;
-use velocity::{HEEDED, MARGIN_M, Neighbour, avoiding_velocity};
-pub(super) use walls::Walls;
+use velocity::MARGIN_M;
 
 /// Robots wait at this distance from a passage, beyond their radius, in metres.
 const WAIT_AT_M: f32 = 0.6;
@@ -54,50 +53,6 @@ const LET_OUT_GAP_M: f32 = 0.15;
 /// Share of its top speed at which a robot lets another out.
 const LET_OUT_SPEED: f32 = 0.2;
 
-/// Share of the avoidance that the robot with the right of way at a passage takes; the other robot takes the
-/// rest.
-const SHARE_OF_THE_FIRST: f32 = 0.3;
-
-/// Share of the avoidance in the open that the robot with the better claim takes, and share of a robot in
-/// the avoidance of one that makes room for it.
-const SHARE_OF_PRIORITY: f32 = 0.2;
-
-/// Slower than this is no motion, in metres per second.
-const STILL_MPS: f32 = 0.005;
-
-/// A robot in a queue waits for the robot ahead if it is slower than this, in metres per second.
-const QUEUES_MPS: f32 = 0.05;
-
-/// What one robot sees when it looks for its velocity. It is kept only to reuse its memory.
-#[derive(Default)]
-pub(super) struct Sight {
-    /// Gap and index of each robot that it heeds.
-    heeded: Vec<(f32, usize)>,
-    neighbours: Vec<Neighbour>,
-    planes: Vec<HalfPlane>,
-}
-
-impl Sight {
-    /// Notes which of its neighbours a robot heeds: all of them, or the nearest, the nearest first.
-    fn heed(&mut self, i: usize, movers: &[Mover], near: &[usize]) {
-        let me = &movers[i];
-        let gap = |j: &usize| {
-            let other = &movers[*j];
-            ((other.position - me.position).length() - (me.radius + other.radius + MARGIN_M), *j)
-        };
-        self.heeded.clear();
-        self.heeded.extend(near.iter().map(gap));
-        if near.len() <= HEEDED {
-            self.heeded.sort_unstable_by_key(|(_, j)| *j);
-        } else {
-            let nearer = |a: &(f32, usize), b: &(f32, usize)| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1));
-            self.heeded.select_nth_unstable_by(HEEDED, nearer);
-            self.heeded.truncate(HEEDED);
-            self.heeded.sort_unstable_by(nearer);
-        }
-    }
-}
-
 /// The state of the default rule from step to step.
 #[derive(Default, Serialize, Deserialize)]
 pub(super) struct Reciprocal {
@@ -116,14 +71,10 @@ impl<'m> Step<'_, 'm, ReciprocalModel, Reciprocal> {
         state.blocked_steps.resize(movers.len(), 0);
         scratch.neighbours.sort(movers);
         state.retreats.follow(&rules.retreats, movers, &scratch.neighbours);
-        let near = range(movers, MARGIN_M, LONGEST_HORIZON_S);
         self.hold_before_passages();
         self.queue_before_passages();
         self.let_out();
-        self.look_round(near);
-        for i in 0..self.movers.len() {
-            self.directives[i] = self.steer(i, near);
-        }
+        self.steer();
         let leaders = self.leaders_of_jams();
         for i in 0..self.movers.len() {
             self.push(i, &leaders);
@@ -213,115 +164,30 @@ impl<'m> Step<'_, 'm, ReciprocalModel, Reciprocal> {
         }
     }
 
-    /// Notes for the robots of this step where they wish to go, for whom they make room, and whom nobody
-    /// hinders. Robots farther apart than `near` metres do not matter.
-    fn look_round(&mut self, near: f32) {
-        let (Scratch { neighbours, walls, unhindered, directions, heads, .. }, movers) =
-            (&mut *self.scratch, &*self.movers);
-        neighbours.forget(movers.len());
-        walls.resize(movers.len());
-        unhindered.find(movers, neighbours, near);
+    /// Directs all robots.
+    fn steer(&mut self) {
+        let Self { rules, state, scratch, movers, directives, .. } = self;
+        let Scratch { neighbours, unhindered, turns, directions, heads, near, sight, in_parallel, .. } =
+            &mut **scratch;
+        let range = range(movers, MARGIN_M, LONGEST_HORIZON_S);
+        unhindered.find(movers, neighbours, range);
         directions.clear();
         directions.extend(movers.iter().map(|mover| mover.preferred.normalize_or_zero()));
         heads.clear();
         heads.resize(movers.len(), None);
-        self.state.retreats.iter().for_each(|(i, retreat)| heads[i] = Some(retreat.head));
-    }
-
-    /// The velocity that a robot takes. Looks for its neighbours within `near` metres if it needs them, now or
-    /// because it is stuck.
-    fn velocity(&mut self, i: usize, near: f32) -> Vector {
-        let (movers, arena) = (&*self.movers, self.rules.retreats.arena);
-        let (me, Scratch { unhindered, walls, neighbours, sight, .. }) = (&movers[i], &mut *self.scratch);
-        let is_free = unhindered.is_free(i) && walls.are_clear(i, me, arena);
-        let may_be_stuck = me.stalled_steps >= self.rules.ask_again.min(self.rules.stuck);
-        if !is_free || may_be_stuck {
-            neighbours.find(i, me, near);
+        state.retreats.iter().for_each(|(i, retreat)| heads[i] = Some(retreat.head));
+        near.resize_with(movers.len(), Near::default);
+        let steering = Steering { rules, movers, neighbours, unhindered, turns, directions, heads, range };
+        if *in_parallel && movers.len() >= MANY_ROBOTS {
+            steering.steer_in_parallel(directives, near);
+        } else {
+            steering.steer(directives, near, sight);
         }
-        if is_free {
-            return me.preferred.clamp_length_max(me.speed);
-        }
-        let mut sight = std::mem::take(sight);
-        sight.planes.clear();
-        walls.planes(i, me, arena, &mut sight.planes);
-        sight.heed(i, movers, self.scratch.neighbours.of(i));
-        sight.neighbours.clear();
-        sight.neighbours.extend(sight.heeded.iter().map(|(_, j)| self.neighbour(i, *j)));
-        let is_open = self.turn(i).rank.is_none();
-        let velocity = avoiding_velocity(me, &sight.neighbours, &mut sight.planes, is_open);
-        self.scratch.sight = sight;
-        velocity
-    }
-
-    /// The directive of a robot: the velocity that it takes among the others, or why it stands still.
-    fn steer(&mut self, i: usize, near: f32) -> Directive {
-        if !self.movers[i].can_make_room && !self.movers[i].wishes_to_move() {
-            return Directive::Stand;
-        }
-        let velocity = self.velocity(i, near);
-        let (movers, turn) = (&*self.movers, self.turn(i));
-        let me = &movers[i];
-        let is_still = velocity.length() < STILL_MPS;
-        if let Some(head) = self.scratch.heads[i] {
-            return Directive::Retreat { velocity, room_for: movers[head].robot };
-        }
-        match turn.waits_for {
-            Some(first) if is_still => Directive::Yield { to: movers[first].robot },
-            _ if me.wishes_to_move() && is_still => {
-                Directive::Blocked { by: self.robot_in_the_way(i).map(|j| movers[j].robot) }
-            }
-            _ if me.wishes_to_move() => match self.robot_ahead(i, velocity) {
-                Some(ahead) => Directive::Follow { velocity, behind: movers[ahead].robot },
-                None => Directive::Proceed(velocity),
-            },
-            _ if is_still => Directive::Stand,
-            _ => Directive::GiveWay(velocity),
-        }
-    }
-
-    /// The robot behind which a robot with this velocity queues, or comes no nearer to its goal.
-    fn robot_ahead(&self, i: usize, velocity: Vector) -> Option<usize> {
-        let queues = velocity.length() < QUEUES_MPS;
-        let first = self.turn(i).follows.filter(|_| queues).map(|first| first.robot);
-        let is_stuck = self.movers[i].stalled_steps >= self.rules.stuck;
-        first.or_else(|| is_stuck.then(|| self.robot_in_the_way(i)).flatten())
-    }
-
-    fn neighbour(&self, i: usize, j: usize) -> Neighbour {
-        let (me, other, heads) = (&self.movers[i], &self.movers[j], &self.scratch.heads);
-        let encounter = self.encounter(i, j);
-        let share = match (self.turn(i).rank, self.turn(j).rank) {
-            _ if !other.can_make_room => 1.0,
-            _ if heads[j] == Some(i) => SHARE_OF_PRIORITY,
-            _ if heads[i] == Some(j) => 1.0 - SHARE_OF_PRIORITY,
-            (Some(mine), Some(its)) if mine < its => SHARE_OF_THE_FIRST,
-            (Some(_), Some(_)) => 1.0 - SHARE_OF_THE_FIRST,
-            _ if matches!(encounter, Encounter::Crossing | Encounter::Parallel) => 0.5,
-            _ if me.priority.precedence(&other.priority).is_lt() => SHARE_OF_PRIORITY,
-            _ => 1.0 - SHARE_OF_PRIORITY,
-        };
-        Neighbour {
-            offset: other.position - me.position,
-            velocity: other.velocity,
-            apart: me.radius + other.radius + MARGIN_M,
-            share,
-            encounter,
-        }
-    }
-
-    fn encounter(&self, i: usize, j: usize) -> Encounter {
-        let Scratch { heads, directions, .. } = &*self.scratch;
-        if heads[i] == Some(j) || heads[j] == Some(i) {
-            return Encounter::MakesRoom;
-        }
-        Encounter::of(directions[i], directions[j])
     }
 
     /// The nearest robot in the way of a robot's preferred velocity.
     fn robot_in_the_way(&self, i: usize) -> Option<usize> {
-        let (movers, near) = (&*self.movers, self.scratch.neighbours.of(i));
-        let me = &movers[i];
-        nearest_in_the_way(me.preferred, self.rules.retreats.margin, near.iter().map(|j| me.sees(*j, movers)))
+        self.scratch.near[i].robot_in_the_way(i, self.movers, self.rules)
     }
 }
 

@@ -52,7 +52,7 @@ impl Step<'_, '_, ReciprocalModel, Reciprocal> {
         let is_slowed =
             self.directives[i].velocity().dot(me.preferred) < SLOWED * me.preferred.length_squared();
         let may_ask = is_slowed && self.turn(i).waits_for.is_none();
-        if !may_ask || !self.scratch.neighbours.of(i).iter().any(is_parked) {
+        if !may_ask || !self.scratch.near[i].robots.iter().any(is_parked) {
             return None;
         }
         self.robot_in_the_way(i).filter(is_parked)

@@ -8,14 +8,11 @@
 use parry2d::math::Vector;
 
 use super::encounter::LONGEST_HORIZON_S;
+use super::steering::LEAST_SHARE;
 use super::velocity::MARGIN_M;
-use super::{SHARE_OF_PRIORITY, SHARE_OF_THE_FIRST};
+
 use crate::conflict::Mover;
 use crate::conflict::predict::Neighbours;
-
-/// The least share of a robot in the avoidance of another.
-const LEAST_SHARE: f32 =
-    if SHARE_OF_PRIORITY < SHARE_OF_THE_FIRST { SHARE_OF_PRIORITY } else { SHARE_OF_THE_FIRST };
 
 /// Distance in which rounding is lost, in metres.
 const ROUNDING_M: f32 = 0.001;

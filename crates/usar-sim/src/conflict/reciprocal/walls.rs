@@ -19,9 +19,9 @@ const WALL_SLACK_M: f32 = 0.04;
 /// What was looked up near a robot holds until it is this far away, in metres, separately in x and in y.
 const STRETCH_M: f32 = 1.0;
 
-/// The obstacles near a robot, from step to step.
-#[derive(Default, Clone)]
-struct Surroundings {
+/// The obstacles near a robot, from step to step. They only save time.
+#[derive(Default)]
+pub(super) struct NearWalls {
     /// The digest of the map in which they were looked up; none before the first time.
     map: Option<u64>,
     /// Where.
@@ -29,49 +29,35 @@ struct Surroundings {
     /// How far from there, in metres.
     range: f32,
     /// Numbers of the obstacles in the map, in order of their keys.
-    near: SmallVec<[usize; 8]>,
+    numbers: SmallVec<[usize; 8]>,
 }
 
-/// The surroundings of all robots. They only save time.
-#[derive(Default)]
-pub(in crate::conflict) struct Walls {
-    of: Vec<Surroundings>,
-}
-
-impl Walls {
-    /// Makes room for so many robots.
-    pub(super) fn resize(&mut self, robots: usize) {
-        self.of.resize(robots, Surroundings::default());
-    }
-
-    /// Whether no wall or debris cuts the preferred velocity of robot `i`.
-    pub(super) fn are_clear(&mut self, i: usize, me: &Mover, arena: Vector) -> bool {
+impl NearWalls {
+    /// Whether no wall or debris cuts the preferred velocity of the robot.
+    pub(super) fn are_clear(&mut self, me: &Mover, arena: Vector) -> bool {
         let wished = me.preferred.clamp_length_max(me.speed);
         border_planes(me, arena).all(|plane| plane.holds(wished))
-            && self.debris_planes(i, me).all(|plane| plane.holds(wished))
+            && self.debris_planes(me).all(|plane| plane.holds(wished))
     }
 
-    /// The velocities by which robot `i` keeps clear of walls and debris.
-    pub(super) fn planes(&mut self, i: usize, me: &Mover, arena: Vector, planes: &mut Vec<HalfPlane>) {
+    /// The velocities by which the robot keeps clear of walls and debris.
+    pub(super) fn planes(&mut self, me: &Mover, arena: Vector, planes: &mut Vec<HalfPlane>) {
         planes.extend(border_planes(me, arena));
-        planes.extend(self.debris_planes(i, me));
+        planes.extend(self.debris_planes(me));
     }
 
     /// The velocities that keep clear of the debris that the robot knows.
-    fn debris_planes(&mut self, i: usize, me: &Mover) -> impl Iterator<Item = HalfPlane> {
-        let surroundings = &mut self.of[i];
+    fn debris_planes(&mut self, me: &Mover) -> impl Iterator<Item = HalfPlane> {
         if let Some(known) = me.known {
-            surroundings.look_round(me, known);
+            self.look_round(me, known);
         }
         let near = me.known.into_iter().flat_map(|known| {
             let obstacle = |number: &usize| known.number(*number);
-            surroundings.near.iter().map(obstacle)
+            self.numbers.iter().map(obstacle)
         });
         near.filter_map(move |obstacle| debris_plane(me, obstacle))
     }
-}
 
-impl Surroundings {
     /// Looks the obstacles up anew, if the robot has left the stretch for which they hold, or knows others.
     fn look_round(&mut self, me: &Mover, known: &ObstacleMap) {
         let reach = me.speed * WALL_HORIZON_S;
@@ -80,9 +66,9 @@ impl Surroundings {
             return;
         }
         (self.map, self.at, self.range) = (Some(known.digest()), me.position, reach + STRETCH_M);
-        self.near.clear();
-        self.near.extend(known.numbers_near(self.at, self.range));
-        self.near.sort_unstable_by_key(|number| known.number(*number).key);
+        self.numbers.clear();
+        self.numbers.extend(known.numbers_near(self.at, self.range));
+        self.numbers.sort_unstable_by_key(|number| known.number(*number).key);
     }
 }
 

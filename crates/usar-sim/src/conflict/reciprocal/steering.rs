@@ -1,0 +1,206 @@
+//! The directive of each robot in one step, from what all robots wish. Each robot is steered by itself, so
+//! the robots of a large team can be steered at the same time.
+
+use parry2d::math::Vector;
+use rayon::prelude::*;
+
+use super::encounter::Encounter;
+use super::half_planes::HalfPlane;
+use super::passage::Turn;
+use super::unhindered::Unhindered;
+use super::velocity::{HEEDED, MARGIN_M, Neighbour, avoiding_velocity};
+use super::walls::NearWalls;
+use crate::conflict::passing::nearest_in_the_way;
+use crate::conflict::predict::Neighbours;
+use crate::conflict::{Directive, Mover};
+use crate::model::ReciprocalModel;
+
+/// Share of the avoidance that the robot with the right of way at a passage takes; the other robot takes the
+/// rest.
+const SHARE_OF_THE_FIRST: f32 = 0.3;
+
+/// Share of the avoidance in the open that the robot with the better claim takes, and share of a robot in
+/// the avoidance of one that makes room for it.
+const SHARE_OF_PRIORITY: f32 = 0.2;
+
+/// The least share that a robot may have in the avoidance of another.
+pub(super) const LEAST_SHARE: f32 = SHARE_OF_PRIORITY.min(SHARE_OF_THE_FIRST);
+
+/// Slower than this is no motion, in metres per second.
+const STILL_MPS: f32 = 0.005;
+
+/// A robot in a queue waits for the robot ahead if it is slower than this, in metres per second.
+const QUEUES_MPS: f32 = 0.05;
+
+/// What one robot sees when it looks for its velocity. It is kept only to reuse its memory.
+#[derive(Default)]
+pub(in crate::conflict) struct Sight {
+    /// Gap and index of each robot that it heeds.
+    heeded: Vec<(f32, usize)>,
+    neighbours: Vec<Neighbour>,
+    planes: Vec<HalfPlane>,
+}
+
+impl Sight {
+    /// Notes which of its neighbours a robot heeds: all of them, or the nearest, the nearest first.
+    fn heed(&mut self, me: &Mover, movers: &[Mover], near: &[usize]) {
+        let gap = |j: &usize| {
+            let other = &movers[*j];
+            ((other.position - me.position).length() - (me.radius + other.radius + MARGIN_M), *j)
+        };
+        self.heeded.clear();
+        self.heeded.extend(near.iter().map(gap));
+        if near.len() <= HEEDED {
+            self.heeded.sort_unstable_by_key(|(_, j)| *j);
+        } else {
+            let nearer = |a: &(f32, usize), b: &(f32, usize)| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1));
+            self.heeded.select_nth_unstable_by(HEEDED, nearer);
+            self.heeded.truncate(HEEDED);
+            self.heeded.sort_unstable_by(nearer);
+        }
+    }
+}
+
+/// What is near one robot.
+#[derive(Default)]
+pub(in crate::conflict) struct Near {
+    walls: NearWalls,
+    /// The robots, in no particular order; none if nobody hinders it and it is not stuck.
+    pub(super) robots: Vec<usize>,
+}
+
+/// All robots of a step, for the directive of each.
+pub(super) struct Steering<'s, 'm> {
+    pub(super) rules: &'s ReciprocalModel,
+    pub(super) movers: &'s [Mover<'m>],
+    pub(super) neighbours: &'s Neighbours,
+    pub(super) unhindered: &'s Unhindered,
+    pub(super) turns: &'s [Turn],
+    /// For each robot, the direction of its preferred velocity; zero if it has nowhere to go.
+    pub(super) directions: &'s [Vector],
+    /// For each robot, the robot for which it makes room.
+    pub(super) heads: &'s [Option<usize>],
+    /// Robots farther apart than this do not matter, in metres.
+    pub(super) range: f32,
+}
+
+impl Steering<'_, '_> {
+    /// The directives of all robots, one robot after the other.
+    pub(super) fn steer(&self, directives: &mut [Directive], near: &mut [Near], sight: &mut Sight) {
+        for (i, (directive, near)) in directives.iter_mut().zip(near).enumerate() {
+            *directive = self.directive(i, near, sight);
+        }
+    }
+
+    /// The same, on all threads.
+    pub(super) fn steer_in_parallel(&self, directives: &mut [Directive], near: &mut [Near]) {
+        let robots = directives.par_iter_mut().zip(near).enumerate();
+        robots.for_each_init(Sight::default, |sight, (i, (directive, near))| {
+            *directive = self.directive(i, near, sight);
+        });
+    }
+
+    /// The directive of a robot: the velocity that it takes among the others, or why it stands still.
+    fn directive(&self, i: usize, near: &mut Near, sight: &mut Sight) -> Directive {
+        let (movers, turn) = (self.movers, &self.turns[i]);
+        let me = &movers[i];
+        near.robots.clear();
+        if !me.can_make_room && !me.wishes_to_move() {
+            return Directive::Stand;
+        }
+        let velocity = self.velocity(i, near, sight);
+        let is_still = velocity.length() < STILL_MPS;
+        if let Some(head) = self.heads[i] {
+            return Directive::Retreat { velocity, room_for: movers[head].robot };
+        }
+        match turn.waits_for {
+            Some(first) if is_still => Directive::Yield { to: movers[first].robot },
+            _ if me.wishes_to_move() && is_still => {
+                Directive::Blocked { by: self.robot_in_the_way(i, near).map(|j| movers[j].robot) }
+            }
+            _ if me.wishes_to_move() => match self.robot_ahead(i, velocity, near) {
+                Some(ahead) => Directive::Follow { velocity, behind: movers[ahead].robot },
+                None => Directive::Proceed(velocity),
+            },
+            _ if is_still => Directive::Stand,
+            _ => Directive::GiveWay(velocity),
+        }
+    }
+
+    /// The velocity that a robot takes. Looks for the robots near it if it needs them, now or because it is
+    /// stuck.
+    fn velocity(&self, i: usize, near: &mut Near, sight: &mut Sight) -> Vector {
+        let (me, arena) = (&self.movers[i], self.rules.retreats.arena);
+        let is_free = self.unhindered.is_free(i) && near.walls.are_clear(me, arena);
+        let may_be_stuck = me.stalled_steps >= self.rules.ask_again.min(self.rules.stuck);
+        if !is_free || may_be_stuck {
+            self.neighbours.find(i, me, self.range, &mut near.robots);
+        }
+        if is_free {
+            return me.preferred.clamp_length_max(me.speed);
+        }
+        sight.heed(me, self.movers, &near.robots);
+        let Sight { heeded, neighbours, planes } = sight;
+        neighbours.clear();
+        neighbours.extend(heeded.iter().map(|(_, j)| self.neighbour(i, *j)));
+        planes.clear();
+        near.walls.planes(me, arena, planes);
+        avoiding_velocity(me, neighbours, planes, self.turns[i].rank.is_none())
+    }
+
+    /// The robot behind which a robot with this velocity queues, or comes no nearer to its goal.
+    fn robot_ahead(&self, i: usize, velocity: Vector, near: &Near) -> Option<usize> {
+        let queues = velocity.length() < QUEUES_MPS;
+        let first = self.turns[i].follows.filter(|_| queues).map(|first| first.robot);
+        let is_stuck = self.movers[i].stalled_steps >= self.rules.stuck;
+        first.or_else(|| is_stuck.then(|| self.robot_in_the_way(i, near)).flatten())
+    }
+
+    /// The nearest robot in the way of a robot's preferred velocity.
+    pub(super) fn robot_in_the_way(&self, i: usize, near: &Near) -> Option<usize> {
+        near.robot_in_the_way(i, self.movers, self.rules)
+    }
+
+    fn neighbour(&self, i: usize, j: usize) -> Neighbour {
+        let (me, other, heads) = (&self.movers[i], &self.movers[j], self.heads);
+        let encounter = self.encounter(i, j);
+        let share = match (self.turns[i].rank, self.turns[j].rank) {
+            _ if !other.can_make_room => 1.0,
+            _ if heads[j] == Some(i) => SHARE_OF_PRIORITY,
+            _ if heads[i] == Some(j) => 1.0 - SHARE_OF_PRIORITY,
+            (Some(mine), Some(its)) if mine < its => SHARE_OF_THE_FIRST,
+            (Some(_), Some(_)) => 1.0 - SHARE_OF_THE_FIRST,
+            _ if matches!(encounter, Encounter::Crossing | Encounter::Parallel) => 0.5,
+            _ if me.priority.precedence(&other.priority).is_lt() => SHARE_OF_PRIORITY,
+            _ => 1.0 - SHARE_OF_PRIORITY,
+        };
+        Neighbour {
+            offset: other.position - me.position,
+            velocity: other.velocity,
+            apart: me.radius + other.radius + MARGIN_M,
+            share,
+            encounter,
+        }
+    }
+
+    fn encounter(&self, i: usize, j: usize) -> Encounter {
+        if self.heads[i] == Some(j) || self.heads[j] == Some(i) {
+            return Encounter::MakesRoom;
+        }
+        Encounter::of(self.directions[i], self.directions[j])
+    }
+}
+
+impl Near {
+    /// The nearest robot in the way of the preferred velocity of robot `i`, whose surroundings these are.
+    pub(super) fn robot_in_the_way(
+        &self,
+        i: usize,
+        movers: &[Mover],
+        rules: &ReciprocalModel,
+    ) -> Option<usize> {
+        let me = &movers[i];
+        let near = self.robots.iter().map(|j| me.sees(*j, movers));
+        nearest_in_the_way(me.preferred, rules.retreats.margin, near)
+    }
+}
