@@ -83,7 +83,14 @@ limits:
 bench:
     cargo bench --bench speed
 
-# Instructions of a short trial and of the grouping search against the committed figures; `--write` renews them
+# The same for large teams, and in the same minute the steps of other public libraries: RVO2, navground, Box2D, VMAS
+bench-peers:
+    python3 -m venv target/peers
+    target/peers/bin/pip install --quiet navground==0.7.0 pyrvo==0.4.3 numpy==2.4.6 Box2D==2.3.10 vmas==1.5.2
+    cargo bench --bench speed -- density-12 density-100 density-1000
+    target/peers/bin/python crates/xtask/peers/speed.py
+
+# Instructions of fixed pieces of trials and of the grouping search against the committed figures; `--write` renews them
 instructions *arguments:
     bash .ci/instructions {{arguments}}
 

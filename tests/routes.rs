@@ -369,7 +369,7 @@ fn a_way_that_a_pushed_piece_leaves_free_is_taken_once_it_is_noticed_and_others_
         (0..3).for_each(|piece| {
             known.hear(&lies(piece, &world.debris[piece].outline(), 0));
         });
-        let mut meshes = Meshes::default();
+        let mut meshes = Vec::new();
         let mut navigator = Navigator::new(1);
         let robot = world.robots[0].id;
         navigator.set_goal(robot, Some(Goal { point: Vector::new(20.0, 5.0), within: 0.15 }));
@@ -377,7 +377,7 @@ fn a_way_that_a_pushed_piece_leaves_free_is_taken_once_it_is_noticed_and_others_
             let (team, step) = (&world.robots[..], 1);
             let outlook =
                 Outlook { model: &model, team, step, belief_of: |_| known, speed_of: |_: &Robot| 2.0 };
-            navigator.plan(&outlook, &mut meshes);
+            navigator.plan(&outlook, &mut meshes, false);
             navigator.traveller(robot).route().unwrap().length(world.robots[0].position)
         };
         let before = length(&known);

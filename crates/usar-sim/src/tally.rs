@@ -23,6 +23,9 @@ pub(crate) struct Tally {
 /// The delays of a robot since it last came nearer to its goal.
 #[derive(Debug, Clone, Copy, Default, Serialize, Deserialize)]
 struct Stall {
+    /// Whether it is over, and nothing counted since. It only saves time.
+    #[serde(skip)]
+    is_over: bool,
     /// For each cause, its steps, and the robot for which this robot waited last.
     causes: [(u64, Option<RobotId>); DelayCause::ALL.len()],
 }
@@ -49,9 +52,12 @@ impl Tally {
         self.waiting_steps += u64::from(delay.cause.is_waiting());
         self.delay = delay;
         if steps == 0 {
-            self.stall = Stall::default();
+            if !std::mem::replace(&mut self.stall.is_over, true) {
+                self.stall = Stall { is_over: true, ..Stall::default() };
+            }
             return;
         }
+        self.stall.is_over = false;
         let (count, waits_for) = &mut self.stall.causes[delay.cause as usize];
         *count += 1;
         *waits_for = delay.waits_for.or(*waits_for);

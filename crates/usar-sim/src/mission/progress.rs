@@ -84,11 +84,14 @@ impl Crew {
     /// Notes the remaining route of a robot. Returns whether the robot came nearer, has arrived, or has no
     /// goal.
     pub(super) fn note_way(&mut self, robot: &Robot, navigator: &mut Navigator) -> bool {
-        let left_m = navigator.way_left(robot.id, robot.position);
-        let traveller = navigator.traveller(robot.id);
         let progress = &mut self.agents[robot.id.index()].progress;
-        let is_nearer = progress.note(traveller.goal().map(|goal| goal.point), left_m);
-        let is_there = traveller.goal().is_none() || traveller.has_arrived(robot.position);
+        let traveller = navigator.traveller(robot.id);
+        let goal = traveller.goal().map(|goal| goal.point);
+        if traveller.is_settled_at(robot.position) && progress.goal == goal {
+            return true; // nothing has changed since it was noted last
+        }
+        let (left_m, is_there) = navigator.way_left(robot.id, robot.position);
+        let is_nearer = progress.note(goal, left_m);
         if is_there {
             progress.held_up_steps = 0;
         }

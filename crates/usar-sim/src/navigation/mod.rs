@@ -75,9 +75,11 @@ impl Navigator {
         &self.travellers[robot.index()]
     }
 
-    /// Length of the route ahead of a robot, in metres; none without a route.
-    pub(crate) fn way_left(&mut self, robot: RobotId, from: Vector) -> Option<f32> {
-        self.travellers[robot.index()].measure(from)
+    /// Length of the route ahead of a robot, in metres (none without a route), and whether the robot is at its
+    /// goal or has none.
+    pub(crate) fn way_left(&mut self, robot: RobotId, from: Vector) -> (Option<f32>, bool) {
+        let traveller = &mut self.travellers[robot.index()];
+        (traveller.measure(from), traveller.settle(from))
     }
 
     /// Places that a robot passed, the latest last.

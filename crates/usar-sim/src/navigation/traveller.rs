@@ -51,6 +51,9 @@ pub struct Traveller {
     /// The length of the route ahead, as it was measured last. It only saves time.
     #[serde(skip)]
     measured: Option<Measured>,
+    /// Where it was when it was seen at its goal, or without one, last. It only saves time.
+    #[serde(skip)]
+    settled_at: Option<Vector>,
 }
 
 /// The length of a route ahead.
@@ -74,7 +77,20 @@ impl Traveller {
             lost_steps: 0,
             lost_at: None,
             measured: None,
+            settled_at: None,
         }
+    }
+
+    /// Whether the robot was seen at its goal, or without one, at this very place.
+    pub(crate) fn is_settled_at(&self, position: Vector) -> bool {
+        self.settled_at == Some(position)
+    }
+
+    /// Notes whether the robot is at its goal, or has none.
+    pub(super) fn settle(&mut self, position: Vector) -> bool {
+        let is_there = self.goal.is_none() || self.has_arrived(position);
+        self.settled_at = is_there.then_some(position);
+        is_there
     }
 
     /// Length of the route ahead from a position, in metres; none without a route.
@@ -167,7 +183,7 @@ impl Traveller {
         }
         self.lost_at = if route.is_some() { None } else { Some(position) };
         self.route = route;
-        self.measured = None;
+        (self.measured, self.settled_at) = (None, None);
         self.is_planned = true;
     }
 

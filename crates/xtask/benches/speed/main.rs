@@ -23,17 +23,18 @@ fn main() {
     if !std::env::args().any(|argument| argument == "--bench") {
         return;
     }
-    let paper = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenarios/paper.ron");
-    let (paper, _) = Scenario::load(paper.as_ref()).unwrap_or_else(|error| panic!("{error}"));
     let cases = [
-        ("paper.ron", 12, paper, "RNE", 30_000),
+        ("paper.ron", 12, of_file("paper.ron"), "RNE", 30_000),
+        ("leak.ron", 12, of_file("leak.ron"), "RNE", 30_000),
+        ("crowded.ron", 36, of_file("crowded.ron"), "RNE", 10_000),
         ("density-12", 12, density::mission(12, 60.0, None), "ENG", 3_000),
         ("density-100", 100, density::mission(100, 60.0, None), "ENG", 3_000),
         ("density-1000", 1000, density::mission(1000, 60.0, None), "ENG", 3_000),
         ("work-1000", 1000, density::mission(1000, 60.0, Some(10.0)), "ENG", 3_000),
     ];
-    println!("{TURNS} turns each, medians; us a step; raw: rapier2d alone with as many robots\n");
-    println!("{:<14}{:>8}{:>10}{:>8}{:>12}", "", "raw", "full", "ratio", "trials/s");
+    println!("{TURNS} turns each, medians; us a step; raw: rapier2d alone with as many robots");
+    println!("engine: share of the steps in which it ran\n");
+    println!("{:<14}{:>8}{:>10}{:>8}{:>12}{:>10}", "", "raw", "full", "ratio", "trials/s", "engine");
     let mut shares = Vec::new();
     let mut growth = Vec::new();
     let asked: Vec<String> = std::env::args().skip(1).filter(|argument| !argument.starts_with('-')).collect();
@@ -44,8 +45,9 @@ fn main() {
         turns.sort_by(|a, b| (a[1] / a[0]).total_cmp(&(b[1] / b[0])));
         let [raw, full] = turns[TURNS / 2];
         let trials = 1e6 / (full * *steps as f64);
-        println!("{name:<14}{raw:>8.1}{full:>10.1}{:>8.2}{trials:>12.2}", full / raw);
-        shares.push((name, stages_us(scenario, policy, *steps)));
+        let (stages, engine) = stages_us(scenario, policy, *steps);
+        println!("{name:<14}{raw:>8.1}{full:>10.1}{:>8.2}{trials:>12.2}{engine:>8.1} %", full / raw);
+        shares.push((name, stages));
         if name.starts_with("density") {
             growth.push((f64::from(*robots), full));
         }
@@ -60,6 +62,11 @@ fn main() {
     if asked.is_empty() || asked.iter().any(|name| name == "grouping") {
         grouping::print_table();
     }
+}
+
+fn of_file(name: &str) -> Scenario {
+    let path = format!("{}/../../scenarios/{name}", env!("CARGO_MANIFEST_DIR"));
+    Scenario::load(path.as_ref()).unwrap_or_else(|error| panic!("{error}")).0
 }
 
 fn raw_us(robots: u32, steps: u64) -> f64 {
@@ -83,7 +90,8 @@ fn full_us(scenario: &Scenario, policy: &str, steps: u64) -> f64 {
     start.elapsed().as_secs_f64() * 1e6 / steps as f64
 }
 
-fn stages_us(scenario: &Scenario, policy: &str, steps: u64) -> [f64; Stage::ALL.len()] {
+/// The time of each stage, and the share of steps in which the engine ran, in percent.
+fn stages_us(scenario: &Scenario, policy: &str, steps: u64) -> ([f64; Stage::ALL.len()], f64) {
     let mut policy = open(policy);
     let mut trial = Simulation::new(scenario, 1).expect("drawn");
     let mut spent = [0.0; Stage::ALL.len()];
@@ -96,5 +104,6 @@ fn stages_us(scenario: &Scenario, policy: &str, steps: u64) -> [f64; Stage::ALL.
         });
         assert_eq!(step, None);
     }
-    spent.map(|seconds| seconds * 1e6 / steps as f64)
+    let [all, engine] = trial.world().physics.steps();
+    (spent.map(|seconds| seconds * 1e6 / steps as f64), 100.0 * engine as f64 / all as f64)
 }

@@ -194,9 +194,11 @@ impl<'m> Step<'_, 'm, ReciprocalModel, Reciprocal> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::conflict::Directive;
     use crate::conflict::testing::{Bench, mover};
     use crate::ids::RobotId;
     use crate::planning::Passage;
+    use parry2d::math::Vector;
 
     /// A robot that is to go 10 m east, through a passage between x = 10 and x = 12.
     fn entering(id: u32, [x, y]: [f32; 2]) -> Mover<'static> {

@@ -8,23 +8,14 @@ use super::encounter::Encounter;
 use super::half_planes::HalfPlane;
 use super::passage::Turn;
 use super::unhindered::Unhindered;
-use super::velocity::{HEEDED, MARGIN_M, Neighbour, avoiding_velocity};
+use super::velocity::{
+    HEEDED, MARGIN_M, Neighbour, SHARE_OF_PRIORITY, SHARE_OF_THE_FIRST, avoiding_velocity,
+};
 use super::walls::NearWalls;
 use crate::conflict::passing::nearest_in_the_way;
 use crate::conflict::predict::Neighbours;
 use crate::conflict::{Directive, Mover};
 use crate::model::ReciprocalModel;
-
-/// Share of the avoidance that the robot with the right of way at a passage takes; the other robot takes the
-/// rest.
-const SHARE_OF_THE_FIRST: f32 = 0.3;
-
-/// Share of the avoidance in the open that the robot with the better claim takes, and share of a robot in
-/// the avoidance of one that makes room for it.
-const SHARE_OF_PRIORITY: f32 = 0.2;
-
-/// The least share that a robot may have in the avoidance of another.
-pub(super) const LEAST_SHARE: f32 = SHARE_OF_PRIORITY.min(SHARE_OF_THE_FIRST);
 
 /// Slower than this is no motion, in metres per second.
 const STILL_MPS: f32 = 0.005;

@@ -8,8 +8,7 @@
 use parry2d::math::Vector;
 
 use super::encounter::LONGEST_HORIZON_S;
-use super::steering::LEAST_SHARE;
-use super::velocity::MARGIN_M;
+use super::velocity::{LEAST_SHARE, MARGIN_M};
 
 use crate::conflict::Mover;
 use crate::conflict::predict::Neighbours;

@@ -23,6 +23,17 @@ pub(super) const MARGIN_M: f32 = 0.015;
 /// A robot heeds this many others at most: the nearest.
 pub(super) const HEEDED: usize = 12;
 
+/// Share of the avoidance that the robot with the right of way at a passage takes; the other robot takes the
+/// rest.
+pub(super) const SHARE_OF_THE_FIRST: f32 = 0.3;
+
+/// Share of the avoidance in the open that the robot with the better claim takes, and share of a robot in
+/// the avoidance of one that makes room for it.
+pub(super) const SHARE_OF_PRIORITY: f32 = 0.2;
+
+/// The least share that a robot may have in the avoidance of another.
+pub(super) const LEAST_SHARE: f32 = SHARE_OF_PRIORITY.min(SHARE_OF_THE_FIRST);
+
 /// In the open, a preferred velocity that another robot obstructs is turned to the right by this much
 /// (tangent) if any robot nearby heads the other way or stands. This breaks symmetry and keeps traffic to one
 /// side. Robots that only cross pass between one another, and would lose by turning.
