@@ -18,8 +18,7 @@ pub(super) struct Setup {
 
 impl Setup {
     /// Draws what the seed decides.
-    pub(super) fn new(scenario: &Scenario, seed: u64) -> Result<Arc<Self>, LayoutError> {
-        let given = scenario;
+    pub(super) fn new(given: &Scenario, seed: u64) -> Result<Arc<Self>, LayoutError> {
         let scenario = given.of_trial(seed)?;
         let given = (scenario != *given).then(|| given.clone());
         let layout = Layout::sample(&scenario, seed)?;
