@@ -127,6 +127,8 @@ results:
     target/release/usar sweep scenarios/sweeps/what-matters-leak.ron
     target/release/usar sweep scenarios/sweeps/right-of-way.ron
     target/release/usar sweep scenarios/sweeps/right-of-way-crowded.ron
+    target/release/usar sweep scenarios/sweeps/coarse.ron
+    target/release/usar sweep scenarios/sweeps/coarse-leak.ron
 
 # How often each kind of interval holds the truth, and how often verdicts of `usar test` are wrong (docs/experiments.md): ten minutes
 coverage *arguments:

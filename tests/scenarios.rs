@@ -113,6 +113,10 @@ fn costs_per_step_under_another_step_are_told() {
         "{told}"
     );
     assert!(told.contains("costs.hp.per_step"), "{told}");
+    let mut coarse = (*paper()).clone();
+    coarse.set("fidelity", "Coarse").unwrap();
+    let coarse = Scenario::try_from(coarse).unwrap();
+    assert!(coarse.warnings(&paper_text()).is_empty(), "the longer step changes no cost");
 }
 
 #[test]

@@ -4,8 +4,8 @@
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 use usar_sim::scenario::{
-    ConflictRules, Costs, DebrisFile, DebrisShape, Draws, InitialLevels, MissionRules, Normal, PlanningRules,
-    Point, RoleFile, Row, Sampled, Scenario, ScenarioFile, TaskFile, Words,
+    ConflictRules, Costs, DebrisFile, DebrisShape, Draws, Fidelity, InitialLevels, MissionRules, Normal,
+    PlanningRules, Point, RoleFile, Row, Sampled, Scenario, ScenarioFile, TaskFile, Words,
 };
 
 /// The scenario from which the robots have their roles and needs, but not their size and speed.
@@ -103,6 +103,7 @@ pub fn mission(robots: u32, duration_s: f64, to_tasks_m: Option<f64>) -> Scenari
         only_policy: String::new(),
         duration_s,
         dt_s: DT_S,
+        fidelity: Fidelity::AsWritten,
         arena_m: [side, side],
         debris: boxes(robots, is_taken),
         team,

@@ -64,7 +64,7 @@ impl Journeys {
             longest = longest.max(still);
         }
         let record = trial.finish();
-        Ok(Self { record, standstill_s: longest as f64 * scenario.dt_s })
+        Ok(Self { record, standstill_s: longest as f64 * scenario.step_s() })
     }
 
     /// Robots that made no progress, with the cause.

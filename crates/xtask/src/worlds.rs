@@ -14,8 +14,8 @@ use usar_sim::geometry::Outline;
 use usar_sim::ids::RobotId;
 use usar_sim::model::RestSlots;
 use usar_sim::scenario::{
-    ConflictRules, Costs, DebrisFile, DebrisShape, Draws, Errand, InitialLevels, MissionRules, Movable,
-    Normal, PlanningRules, Point, Row, Sampled, Scenario, ScenarioFile, TaskFile, Words, ZoneFile,
+    ConflictRules, Costs, DebrisFile, DebrisShape, Draws, Errand, Fidelity, InitialLevels, MissionRules,
+    Movable, Normal, PlanningRules, Point, Row, Sampled, Scenario, ScenarioFile, TaskFile, Words, ZoneFile,
 };
 
 /// The scenario from which the robots have their roles and needs.
@@ -196,6 +196,7 @@ pub(crate) fn base(seed: u64, arena_m: Point, duration_s: f64) -> ScenarioFile {
         only_policy: String::new(),
         duration_s,
         dt_s: 0.02,
+        fidelity: Fidelity::AsWritten,
         arena_m,
         team: Vec::new(),
         roles: paper.roles.clone(),

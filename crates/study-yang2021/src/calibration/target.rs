@@ -208,7 +208,7 @@ fn check(row: InputRow, scenario: &Scenario, metrics: &Catalogue) -> Vec<String>
         })
     };
     let (time_s, total) = (told("time_s"), told("rescuees_total"));
-    let (duration_s, dt_s) = (scenario.duration_s, scenario.dt_s);
+    let (duration_s, dt_s) = (scenario.duration_s, scenario.step_s());
     if let Some(time_s) = time_s.filter(|time_s| (time_s - duration_s).abs() > dt_s / 2.0) {
         problems.push(format!("time_s must be the scenario's duration_s, {duration_s}, found {time_s}"));
     }

@@ -10,7 +10,7 @@ use super::{SLOT_M, SWEEP_M};
 use crate::belief::{Beliefs, Holder};
 use crate::event::{Event, TurnBackCause};
 use crate::ids::RobotId;
-use crate::model::{MissionModel, Model, SENSING_PERIOD_STEPS};
+use crate::model::{MissionModel, Model};
 use crate::navigation::Goal;
 use crate::robot::Robot;
 use crate::scenario::{RestAtHome, RoundEnd};
@@ -102,7 +102,7 @@ impl Crew {
     pub(super) fn looks_for_work(&self, id: RobotId, scene: &Scene) -> bool {
         let robot = &scene.beliefs.team[id.index()];
         let is_free = matches!(self.agents[id.index()].activity, Activity::Searching | Activity::Standby);
-        let is_due = (scene.step + u64::from(id.0)).is_multiple_of(SENSING_PERIOD_STEPS);
+        let is_due = (scene.step + u64::from(id.0)).is_multiple_of(scene.model.sensing_steps);
         is_due && is_free && robot.is_able() && robot.free_capacity() > 0
     }
 

@@ -37,8 +37,11 @@ use crate::hash::PERIOD_S;
 use crate::planning::{Inflation, Planner};
 use crate::scenario::{Measure, NeedFile, Scenario, ZoneFile};
 
-/// Robots look around, and look for work, once in this many steps (0.1 s at the usual step).
-pub(crate) const SENSING_PERIOD_STEPS: u64 = 5;
+/// Robots look around, and look for work, once in this many usual steps, which are 0.1 s.
+const SENSING_STEPS: u64 = 5;
+
+/// Usual steps between two checks that the path to a robot's next waypoint is still free.
+const ROUTE_CHECK_STEPS: u64 = 25;
 
 /// Everything that is fixed in one trial.
 #[derive(Debug)]
@@ -52,6 +55,10 @@ pub struct Model {
     pub steps: u64,
     /// Steps between two links of the hash chain.
     pub(crate) link_steps: u64,
+    /// Robots look around, and look for work, once in this many steps.
+    pub(crate) sensing_steps: u64,
+    /// Steps between two checks that the path to a robot's next waypoint is still free.
+    pub(crate) route_check_steps: u64,
     /// Width and height of the arena, in metres.
     pub arena: Vector,
     /// Names of the roles.
@@ -129,6 +136,8 @@ impl Model {
             dt: dt_s as f32,
             steps: scenario.steps(),
             link_steps: ((PERIOD_S / dt_s).round() as u64).max(1),
+            sensing_steps: scenario.fidelity.period(SENSING_STEPS),
+            route_check_steps: scenario.fidelity.period(ROUTE_CHECK_STEPS),
             arena: vector(scenario.arena_m),
             roles: scenario.roles.iter().map(|role| role.name.clone()).collect(),
             needs: scenario.needs.iter().map(need).collect(),

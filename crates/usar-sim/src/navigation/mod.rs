@@ -16,9 +16,6 @@ use trail::Trail;
 use traveller::{Attempt, PROGRESS_M};
 pub use traveller::{Goal, Traveller};
 
-/// Steps between two checks that the path to a robot's next waypoint is still free.
-const ROUTE_CHECK_STEPS: u64 = 25;
-
 /// A robot that has come no nearer to its goal for this long, in seconds, plans a detour round the robots
 /// that stand in its way. After four times as long it plans without a detour again, and so on in turn: robots
 /// that it does not see may block the detour as well.
@@ -188,7 +185,7 @@ impl<B, S: Fn(&Robot) -> f64> Wayfinder<'_, '_, B, S> {
     /// Plans a route if one is due.
     fn keep_on_route(&self, traveller: &mut Traveller, detour_steps: u64, meshes: &mut Meshes) {
         let Self { outlook, robot, belief, .. } = self;
-        let check_due = (outlook.step + robot.id.0 as u64).is_multiple_of(ROUTE_CHECK_STEPS);
+        let check_due = (outlook.step + robot.id.0 as u64).is_multiple_of(outlook.model.route_check_steps);
         let attempt = traveller.attempt(detour_steps);
         let news = belief.news_since(traveller.seen);
         traveller.seen = belief.seen();

@@ -13,6 +13,7 @@ use serde::{Deserialize, Serialize};
 pub use super::debris::{DebrisFile, DebrisShape, Movable, ZoneFile};
 pub use super::distribution::{Amount, Distribution};
 pub use super::draws::Draws;
+pub use super::fidelity::Fidelity;
 pub use super::rules::*;
 pub use super::scatter::{Placement, Scatter, Scattered};
 pub use super::timeline::{Happening, Moment};
@@ -41,6 +42,9 @@ pub struct ScenarioFile {
     pub duration_s: f64,
     /// Length of a simulation step, in seconds.
     pub dt_s: f64,
+    /// How finely a trial is simulated: as written, or in longer steps at the same costs.
+    #[serde(default, skip_serializing_if = "Fidelity::is_as_written")]
+    pub fidelity: Fidelity,
     /// Width and height of the walled arena, in metres.
     pub arena_m: Point,
     /// The team, row by row: ids are given in this order, from 0. Each robot's place in its row is its home.

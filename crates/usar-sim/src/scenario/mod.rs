@@ -10,6 +10,7 @@ mod draws;
 mod errands;
 mod error;
 mod feasibility;
+mod fidelity;
 mod file;
 mod homes;
 mod named;
@@ -163,7 +164,7 @@ impl Scenario {
     /// Number of simulation steps in a trial.
     #[must_use]
     pub fn steps(&self) -> u64 {
-        (self.duration_s / self.dt_s).round() as u64
+        (self.duration_s / self.step_s()).round() as u64
     }
 
     /// Number of robots.

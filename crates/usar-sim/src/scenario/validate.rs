@@ -7,7 +7,9 @@ use super::debris::{ROUNDING_M, debris};
 use super::errands::{errands, places_are_free};
 use super::error::Problem;
 use super::feasibility::feasibility;
-use super::file::{Amount, Happening, Measure, NeedFile, Normal, RoleFile, RoleKind, ScenarioFile, TaskFile};
+use super::file::{
+    Amount, Fidelity, Happening, Measure, NeedFile, Normal, RoleFile, RoleKind, ScenarioFile, TaskFile,
+};
 use super::homes::homes_are_free;
 use super::rules::rules;
 use super::scatter::scatter;
@@ -251,16 +253,17 @@ fn role(check: &mut Checker, field: &str, spec: &RoleFile, file: &ScenarioFile) 
     for (name, value) in &spec.constants {
         check.number(format!("{field}.constants.{name:?}"), *value, limits::CONSTANT);
     }
-    let (dt, step_m) = (file.dt_s, spec.speed_mps * file.dt_s);
+    let (dt, step_m) = (file.step_s(), spec.speed_mps * file.step_s());
+    let step = if file.fidelity == Fidelity::Coarse { "the step of a coarse trial" } else { "dt_s" };
     if step_m > spec.radius_m + ROUNDING_M {
         let rule = format!(
-            "times dt_s ({dt} s) must be at most radius_m ({} m), or contacts are missed",
+            "times {step} ({dt} s) must be at most radius_m ({} m), or contacts are missed",
             spec.radius_m
         );
         check.fail(format!("{field}.speed_mps"), rule, spec.speed_mps);
     } else if spec.kind == RoleKind::Ground && step_m > PUSHING_STEP_M + ROUNDING_M && file.can_be_pushed() {
         let rule = format!(
-            "times dt_s ({dt} s) must be at most {PUSHING_STEP_M} m where debris can be pushed, or it is \
+            "times {step} ({dt} s) must be at most {PUSHING_STEP_M} m where debris can be pushed, or it is \
              pushed into robots"
         );
         check.fail(format!("{field}.speed_mps"), rule, spec.speed_mps);

@@ -5,14 +5,12 @@ use ron_tree::Node;
 
 use super::Scenario;
 use super::error::Problem;
+use super::fidelity::USUAL_STEP_S;
 use super::file::{MissionRules, PlanningRules, RoleFile, RoleKind};
 use super::timeline::{Happening, Moment};
 
 /// A value is odd if it is larger or smaller than the default by this factor.
 const FACTOR: f64 = 1000.0;
-
-/// The step for which costs per step are written, the paper's and the defaults among them, in seconds.
-const USUAL_STEP_S: f64 = 0.02;
 
 impl Scenario {
     /// Values that are a thousand times larger or smaller than the defaults, perhaps by a wrong unit; a team
@@ -68,7 +66,8 @@ impl Scenario {
                     found: rate.to_string(),
                     hint: format!(
                         "in a second this is {times:.3} times as much as with steps of {USUAL_STEP_S} s; \
-                         per_second does not depend on dt_s"
+                         per_second does not depend on dt_s, and `fidelity: Coarse` makes longer steps at the same \
+                         costs"
                     ),
                     ..Problem::default()
                 });

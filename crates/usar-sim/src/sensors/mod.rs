@@ -14,7 +14,7 @@ use parry2d::math::Vector;
 use smallvec::SmallVec;
 
 use crate::belief::Belief;
-use crate::model::{Model, SENSING_PERIOD_STEPS};
+use crate::model::Model;
 use crate::report::{Report, Speaker, Statement};
 use crate::robot::Robot;
 use crate::world::World;
@@ -59,7 +59,7 @@ pub(crate) fn look_around<'b>(
     step: u64,
     sent: &mut Vec<Report>,
 ) {
-    if !step.is_multiple_of(SENSING_PERIOD_STEPS) {
+    if !step.is_multiple_of(model.sensing_steps) {
         return;
     }
     let wrecks = world.robots.iter().filter(|robot| robot.wreck_at.is_some());

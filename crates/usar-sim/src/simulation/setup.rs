@@ -8,9 +8,9 @@ use crate::scenario::{LayoutError, Scenario};
 /// What a trial is set up from: its scenario, what was drawn from its seed, and the model compiled from both.
 /// Nothing in it changes.
 pub(super) struct Setup {
-    /// The scenario with its distributions, if it has any.
+    /// The scenario as it was given, if it is simulated otherwise: with its distributions, in its own steps.
     given: Option<Scenario>,
-    /// The scenario, with the values drawn from its distributions for this trial.
+    /// The scenario in the steps of the trial, with the values drawn from its distributions.
     pub(super) scenario: Scenario,
     pub(super) layout: Layout,
     pub(super) model: Model,
@@ -18,15 +18,15 @@ pub(super) struct Setup {
 
 impl Setup {
     /// Draws what the seed decides.
-    pub(super) fn new(scenario: &Scenario, seed: u64) -> Result<Arc<Self>, LayoutError> {
-        let given = (!scenario.draws.is_empty()).then(|| scenario.clone());
-        let scenario = scenario.of_trial(seed)?;
+    pub(super) fn new(given: &Scenario, seed: u64) -> Result<Arc<Self>, LayoutError> {
+        let scenario = given.of_trial(seed)?;
+        let given = (scenario != *given).then(|| given.clone());
         let layout = Layout::sample(&scenario, seed)?;
         let model = Model::compile(&scenario, &layout, seed);
         Ok(Arc::new(Self { given, scenario, layout, model }))
     }
 
-    /// The scenario as it was given, with its distributions.
+    /// The scenario as it was given, with its distributions and in its own steps.
     pub(super) fn given(&self) -> &Scenario {
         self.given.as_ref().unwrap_or(&self.scenario)
     }

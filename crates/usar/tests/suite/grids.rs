@@ -33,6 +33,37 @@ fn a_sweep_file_spans_its_grid_and_any_field_can_be_an_axis() {
 }
 
 #[test]
+fn a_coarse_trial_is_one_in_longer_steps_at_the_same_costs() {
+    let folder = place();
+    let here = folder.path();
+    let hash = |sets: &[&str]| {
+        let mut arguments = vec!["run", "short.ron", "--policy", "DIS", "--seed", "1", "--check", "--json"];
+        arguments.extend(sets.iter().flat_map(|set| ["--set", set]));
+        let run: Value = serde_json::from_str(&succeeds(&usar(here, &arguments))).unwrap();
+        run["state_hash"].as_str().unwrap().to_owned()
+    };
+    let fine = hash(&[]);
+    let coarse = hash(&["fidelity=Coarse"]);
+    assert_eq!(hash(&["fidelity=AsWritten"]), fine);
+    assert_ne!(coarse, fine);
+    // A cost that is set is one of the steps as they are written.
+    assert_ne!(hash(&["fidelity=Coarse", "costs.energy.per_step=0.01125"]), coarse);
+    let halved =
+        ["fidelity=Coarse", "dt_s=0.01", "costs.energy.per_step=0.00225", "costs.hp.per_step=0.00015"];
+    let halved = [&halved[..], &["conflicts.resolver=Rotation(deadlock_steps: 20)"]].concat();
+    assert_eq!(hash(&halved), coarse, "dt_s says only what the costs are paid for");
+    let sweep = "(name: \"coarse\", scenario: \"short.ron\", policies: [\"DIS\"], trials: 1, axes: \
+        {\"fidelity\": [AsWritten, Coarse]})";
+    std::fs::write(here.join("coarse.ron"), sweep).unwrap();
+    succeeds(&usar(here, "sweep coarse.ron"));
+    let results = here.join("results/coarse");
+    let hashes = column(&results, "state_hash");
+    let swept: Vec<String> = rows(&results, "trials.csv").iter().map(|row| row[hashes].to_owned()).collect();
+    assert_eq!(swept, [fine, coarse]);
+    assert!(succeeds(&usar(here, "verify results/coarse")).starts_with("2 of 2 trials match, step by step"));
+}
+
+#[test]
 fn bad_sweep_files_are_refused_with_their_lines() {
     let folder = place();
     let here = folder.path();
