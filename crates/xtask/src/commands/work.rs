@@ -38,7 +38,7 @@ fn rne() -> Box<dyn Session> {
 fn grouping() {
     let mut rne = rne();
     for carriers in [20, 60] {
-        let decision = rne.decide(&Asked::of(&team::question([carriers, 0, 0])));
+        let decision = rne.decide(&Asked::of(&team::question([carriers, 0, 0], 2)));
         println!("{:?}", decision.expect("a decision").assignment);
     }
 }
