@@ -126,6 +126,14 @@ pub struct Decision {
     /// Whether every choice was searched exactly.
     #[serde(default = "yes")]
     pub proven_optimal: bool,
+    /// What the score of an exact search is at most: the score itself where every choice was searched
+    /// exactly. Absent where there is no score.
+    #[serde(default)]
+    pub upper_bound: Option<RelativeNeedsEntropy>,
+    /// How far the score is below the bound, in per cent of the bound: 0 where every choice was searched
+    /// exactly. Absent where there is no score.
+    #[serde(default)]
+    pub gap_percent: Option<f64>,
     /// The next best assignments that the policy knows of, the best first.
     #[serde(default)]
     pub alternatives: Vec<Alternative>,
@@ -210,7 +218,7 @@ pub struct RoleSplit {
     pub searched: u64,
     /// Whether all were.
     pub proven_optimal: bool,
-    /// No split has a larger score than this; absent where the search was exact or no bound is known.
+    /// No split has a larger score than this; absent where all were looked at.
     pub upper_bound: Option<RelativeNeedsEntropy>,
 }
 
@@ -271,6 +279,8 @@ impl Decision {
             assignment,
             score: None,
             proven_optimal: true,
+            upper_bound: None,
+            gap_percent: None,
             alternatives: Vec::new(),
             account: Account::None,
         }

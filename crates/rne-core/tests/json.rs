@@ -53,7 +53,8 @@ fn what_is_no_decision_is_refused() {
     assert_eq!(
         refused(r#"{"schema_version": 2, "groups": []}"#),
         "not the JSON of a decision: unknown field `groups`, expected one of `schema_version`, `assignment`, \
-         `score`, `proven_optimal`, `alternatives`, `account` at line 1 column 30"
+         `score`, `proven_optimal`, `upper_bound`, `gap_percent`, `alternatives`, `account` at line 1 column \
+         30"
     );
     assert_eq!(
         refused(r#"{"schema_version": 2}"#),

@@ -5,9 +5,9 @@ use rand::{RngExt, SeedableRng};
 use rne_core::question::hardest_first;
 use rne_core::{Member, Need, NeedVector, Question, Quota, RandomSeed, RoleId, SCHEMA_VERSION, Task};
 
-/// A question about a team of carriers, suppliers and observers, to be split over two tasks. Their needs
-/// are as in the paper's scenario, drawn at random.
-pub fn question(counts: [u32; 3]) -> Question {
+/// A question about a team of carriers, suppliers and observers, to be split over so many tasks, at most
+/// three. Their needs are as in the paper's scenario, drawn at random.
+pub fn question(counts: [u32; 3], tasks: usize) -> Question {
     let mut draws = ChaCha8Rng::seed_from_u64(7);
     let of_role = (0..).zip(counts).flat_map(|(role, count)| (0..count).map(move |_| RoleId(role)));
     let members = of_role.zip(0..).map(|(role, id)| {
@@ -27,8 +27,9 @@ pub fn question(counts: [u32; 3]) -> Question {
         }
     });
     let members = members.collect();
-    let task = |name: &str, difficulty, x| Task { place: Some([x, 80.0]), ..Task::new(name, difficulty) };
-    let tasks = vec![task("hard", 2, 20.0), task("easy", 1, 80.0)];
+    let task = |(name, difficulty, x)| Task { place: Some([x, 80.0]), ..Task::new(name, difficulty) };
+    let places = [("hard", 3, 20.0), ("easy", 2, 80.0), ("third", 1, 50.0)];
+    let tasks: Vec<Task> = places.into_iter().take(tasks).map(task).collect();
     let order = hardest_first(tasks.iter().map(|task| task.difficulty));
     let question = Question {
         schema_version: SCHEMA_VERSION,

@@ -1,9 +1,11 @@
 //! Partitions of roles that are too large for the exact search: a deterministic local search.
 //!
 //! The search starts from the best partition by rank in one need's share, then swaps pairs of robots as long
-//! as a swap improves the score. The result is not proven optimal; an upper bound limits its distance from
-//! the optimum.
+//! as a swap improves the score. The result is not proven optimal; [`super::bound`] limits its distance from
+//! the optimum. In large teams, [`super::gain`] tells of most swaps that they lose.
 
+use super::bound::{Choice, upper_bound};
+use super::gain::{Gains, Spread};
 use super::parts::{Partition, distinct_orders, in_order};
 use super::scorer::{Scorer, TIE_TOLERANCE, add_pair, part_sums};
 use rne_core::needs::shares_of;
@@ -67,51 +69,89 @@ struct Swap<'s> {
 
 /// A good partition into parts of these sizes, which must be above 0 and in ascending order.
 pub(super) fn search(rows: &[Vec<f64>], sizes: &[usize], scorer: &mut Scorer) -> Partition {
-    let mut best = best_ranked_start(rows, sizes, scorer);
-    let mut searched = 0;
-    while searched < MAX_SWAPS && improve(&mut best, rows, scorer, &mut searched) {}
-    let pairs = (sizes.len() * (sizes.len() - 1) / 2) as f64;
+    search_with(Spread::of(rows), rows, sizes, scorer)
+}
+
+fn search_with(spread: Spread, rows: &[Vec<f64>], sizes: &[usize], scorer: &mut Scorer) -> Partition {
+    let best = best_ranked_start(rows, sizes, scorer);
+    let bound = upper_bound(&[Choice::new(rows.iter().map(Vec::as_slice), sizes)], sizes.len(), scorer);
+    let mut search = LocalSearch { rows, spread, gains: None, scorer, best, searched: 0 };
+    search.weigh_gains();
+    while search.searched < MAX_SWAPS && search.improve() {}
     Partition {
-        parts: in_order(&best.part_of, sizes.len()),
+        parts: in_order(&search.best.part_of, sizes.len()),
         runner_up: None,
-        searched,
+        searched: search.searched,
         proven_optimal: false,
-        upper_bound: scorer.bound(rows).map(|bound| pairs * bound),
+        upper_bound: Some(bound),
     }
 }
 
-/// Tries to swap each pair of robots once, and keeps each swap that improves the score. Returns whether any
-/// did, but false once [`MAX_SWAPS`] is reached.
-fn improve(best: &mut Scored, rows: &[Vec<f64>], scorer: &mut Scorer, searched: &mut u64) -> bool {
-    let parts = best.sums.len();
-    let mut swapped = [best.sums[0].clone(), best.sums[0].clone()];
-    let mut improved = false;
-    for i in 0..rows.len() {
-        for j in i + 1..rows.len() {
-            if best.part_of[i] == best.part_of[j] {
-                continue;
-            }
-            if *searched == MAX_SWAPS {
-                return false;
-            }
-            *searched += 1;
-            let (out, into) = if best.part_of[i] < best.part_of[j] { (i, j) } else { (j, i) };
-            let [low, high] = [best.part_of[out], best.part_of[into]];
-            for k in 0..rows[0].len() {
-                swapped[0][k] = (best.sums[low][k] - rows[out][k] + rows[into][k]).max(0.0);
-                swapped[1][k] = (best.sums[high][k] - rows[into][k] + rows[out][k]).max(0.0);
-            }
-            let total =
-                best.total_with(&Swap { parts: [low, high], sums: [&swapped[0], &swapped[1]] }, scorer);
-            if total > best.total + TIE_TOLERANCE {
-                let mut part_of = std::mem::take(&mut best.part_of);
-                part_of.swap(i, j);
-                *best = Scored::new(part_of, rows, parts, scorer);
-                improved = true;
+/// The state of a search.
+struct LocalSearch<'a> {
+    rows: &'a [Vec<f64>],
+    spread: Spread,
+    /// What swaps in the best partition gain at most; `None` where each must be scored.
+    gains: Option<Gains>,
+    scorer: &'a mut Scorer,
+    best: Scored,
+    searched: u64,
+}
+
+impl LocalSearch<'_> {
+    /// Tries to swap each pair of robots once, and keeps each swap that improves the score. Returns whether
+    /// any did, but false once [`MAX_SWAPS`] is reached.
+    fn improve(&mut self) -> bool {
+        let parts = self.best.sums.len();
+        let mut swapped = [self.best.sums[0].clone(), self.best.sums[0].clone()];
+        let mut improved = false;
+        for i in 0..self.rows.len() {
+            for j in i + 1..self.rows.len() {
+                if self.best.part_of[i] == self.best.part_of[j] {
+                    continue;
+                }
+                if self.searched == MAX_SWAPS {
+                    return false;
+                }
+                self.searched += 1;
+                if self.improves([i, j], &mut swapped) {
+                    let mut part_of = std::mem::take(&mut self.best.part_of);
+                    part_of.swap(i, j);
+                    self.best = Scored::new(part_of, self.rows, parts, self.scorer);
+                    self.weigh_gains();
+                    improved = true;
+                }
             }
         }
+        improved
     }
-    improved
+
+    /// Whether the swap of two robots of different parts improves the score. `swapped` is for the sums of
+    /// both parts after it.
+    fn improves(&mut self, [i, j]: [usize; 2], swapped: &mut [Vec<f64>; 2]) -> bool {
+        let Self { rows, best, .. } = self;
+        let (out, into) = if best.part_of[i] < best.part_of[j] { (i, j) } else { (j, i) };
+        let [low, high] = [best.part_of[out], best.part_of[into]];
+        if let Some(gains) = &mut self.gains
+            && gains.at_most([low, high], [&rows[out], &rows[into]]) <= 0.0
+        {
+            return false;
+        }
+        for k in 0..rows[0].len() {
+            swapped[0][k] = (best.sums[low][k] - rows[out][k] + rows[into][k]).max(0.0);
+            swapped[1][k] = (best.sums[high][k] - rows[into][k] + rows[out][k]).max(0.0);
+        }
+        let swap = Swap { parts: [low, high], sums: [&swapped[0], &swapped[1]] };
+        best.total_with(&swap, self.scorer) > best.total + TIE_TOLERANCE
+    }
+
+    fn weigh_gains(&mut self) {
+        self.gains = if self.scorer.sort {
+            None // a share's place depends on the others
+        } else {
+            Gains::new(&self.best.sums, self.scorer.direction, &self.spread)
+        };
+    }
 }
 
 fn best_ranked_start(rows: &[Vec<f64>], sizes: &[usize], scorer: &mut Scorer) -> Scored {
@@ -142,4 +182,33 @@ fn ranked_by_share(shares: &[Vec<f64>], need: usize) -> Vec<usize> {
     let mut ranked: Vec<usize> = (0..shares.len()).collect();
     ranked.sort_by(|a, b| shares[*b][need].total_cmp(&shares[*a][need]).then(a.cmp(b)));
     ranked
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rne::ScoreDirection;
+    use rand::rngs::ChaCha8Rng;
+    use rand::{RngExt, SeedableRng};
+
+    #[test]
+    fn swaps_that_are_told_to_lose_change_no_answer() {
+        let mut draws = ChaCha8Rng::seed_from_u64(5);
+        let shapes: [&[usize]; 5] = [&[40, 41], &[20, 70], &[30, 30, 31], &[25, 25, 25, 25], &[3, 60]];
+        for turn in 0..40 {
+            let sizes = shapes[turn % shapes.len()];
+            let (needs, least) = (2 + turn % 6, [0.5, 20.0][turn % 2]);
+            let mut row = || (0..needs).map(|_| draws.random_range(least..40.0)).collect::<Vec<f64>>();
+            let rows: Vec<Vec<f64>> = (0..sizes.iter().sum()).map(|_| row()).collect();
+            let direction = [
+                ScoreDirection::MaxOfBoth,
+                ScoreDirection::FirstToSecond,
+                ScoreDirection::Sum,
+                ScoreDirection::JensenShannon,
+            ][turn % 4];
+            let [all, fewer] = [Spread::unknown(), Spread::of(&rows)]
+                .map(|spread| search_with(spread, &rows, sizes, &mut Scorer::new(direction, false)));
+            assert_eq!(all, fewer, "{direction:?}, {sizes:?}");
+        }
+    }
 }

@@ -6,6 +6,8 @@
 //! the merged groups. The score of more than two groups is the sum over their pairs. The [`HardRule`] decides
 //! which group takes which task.
 
+mod bound;
+mod gain;
 mod group;
 mod local;
 mod measure;
@@ -22,6 +24,7 @@ pub use merge::EXACT_TASKS;
 pub use options::{HardRule, MergeReading, RneOptions, ScoreDirection};
 pub use partition::EXACT_PARTITIONS;
 
+use bound::{Choice, gap_percent, upper_bound};
 use group::Group;
 use merge::{Merge, Merger};
 use partition::best_partition;
@@ -218,6 +221,19 @@ impl Search<'_> {
         as_score(self.scorer.total(&sums, 0))
     }
 
+    /// No grouping that the quotas allow has a larger score than this.
+    fn upper_bound(&self) -> RelativeNeedsEntropy {
+        let choice = |role: RoleId| {
+            let of_role = self.question.members.iter().zip(&self.rows).filter(|(m, _)| m.role == role);
+            let rows = of_role.map(|(_, row)| row.as_slice());
+            Choice::new(rows, &self.question.quotas[role.index()].members)
+        };
+        let with_members = |role: &RoleId| self.question.of_role(*role).next().is_some();
+        let roles: Vec<Choice> = self.question.role_ids().filter(with_members).map(choice).collect();
+        let nats = upper_bound(&roles, self.question.tasks.len(), &self.scorer);
+        RelativeNeedsEntropy::from_nats(nats)
+    }
+
     /// Assigns the groups to tasks by the hard rule. Also returns the suitability of each group.
     fn placed(&mut self, groups: &[Group]) -> Result<(Assignment, Vec<Suitability>), PolicyError> {
         let values = self.rne.suitabilities(self.question, groups, &self.rows, &mut self.scorer)?;
@@ -241,11 +257,14 @@ impl Search<'_> {
             alternatives.push(Alternative { assignment, score: self.total(groups) });
         }
         self.account.suitability = suitability;
+        let upper_bound = if self.proven_optimal { score } else { score.map(|_| self.upper_bound()) };
         Ok(Decision {
             schema_version: SCHEMA_VERSION,
             assignment,
             score,
             proven_optimal: self.proven_optimal,
+            upper_bound,
+            gap_percent: score.zip(upper_bound).map(|(score, bound)| gap_percent(score, bound)),
             alternatives,
             account: Account::Rne(self.account),
         })

@@ -2,7 +2,7 @@
 
 use super::options::ScoreDirection;
 use rne_core::divergence::{jensen_shannon_nats, kullback_leibler};
-use rne_core::needs::{shares_into, shares_of};
+use rne_core::needs::shares_into;
 
 /// A later candidate wins only if it is better by more than this, in nats, so that rounding never decides a
 /// tie.
@@ -10,8 +10,8 @@ pub(super) const TIE_TOLERANCE: f64 = 1e-12;
 
 /// Scores groups given as sums of weighted needs. It reuses its memory from call to call.
 pub(super) struct Scorer {
-    direction: ScoreDirection,
-    sort: bool,
+    pub(super) direction: ScoreDirection,
+    pub(super) sort: bool,
     p: Vec<f64>,
     q: Vec<f64>,
 }
@@ -50,30 +50,6 @@ impl Scorer {
             }
         }
         total
-    }
-
-    /// An upper bound on the score of any two groups of robots with these weighted needs; `None` if no bound
-    /// is known.
-    ///
-    /// A group's share of a need lies between the least and the greatest share of its members. The divergence
-    /// is convex in the first distribution, so it is largest for a single robot against the least shares of
-    /// all.
-    pub(super) fn bound(&self, rows: &[Vec<f64>]) -> Option<f64> {
-        if self.sort {
-            return None; // sorted shares of a group are no mixture of its members'
-        }
-        let shares: Vec<Vec<f64>> = rows.iter().map(|row| shares_of(row)).collect();
-        let mut least = shares.first()?.clone();
-        for row in &shares {
-            least.iter_mut().zip(row).for_each(|(least, share)| *least = least.min(*share));
-        }
-        let directed = shares.iter().map(|row| kullback_leibler(row, &least)).fold(0.0, f64::max);
-        Some(match self.direction {
-            ScoreDirection::MaxOfBoth | ScoreDirection::FirstToSecond => directed,
-            ScoreDirection::Sum => 2.0 * directed,
-            // It is at most a quarter of the sum of both directions.
-            ScoreDirection::JensenShannon => (directed / 2.0).min(std::f64::consts::LN_2),
-        })
     }
 
     /// Writes both distributions to the scratch space. Returns `false` if one of them does not exist.

@@ -6,9 +6,9 @@ use policies::rne::EXACT_TASKS;
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 use rne_core::decision::RneAccount;
-use rne_core::{Account, Decision};
+use rne_core::{Account, Decision, NeedVector};
 
-use crate::oracle::Oracle;
+use crate::oracle::{Oracle, nats};
 use crate::support::{SCORES, decide, drawn_team, names, question, rne, team, two_tasks};
 
 fn account(decision: &Decision) -> &RneAccount {
@@ -29,6 +29,7 @@ fn twenty_robots_are_searched_exactly_and_more_by_local_search_that_says_so() {
     assert!(exact.proven_optimal);
     assert_eq!(account(&exact).splits[0].searched, 92_378);
     assert_eq!(account(&exact).splits[0].upper_bound, None);
+    assert_eq!((exact.upper_bound, exact.gap_percent), (exact.score, Some(0.0)));
     let question = two_tasks(team([21, 3, 2], &levels(26)));
     let local = decide("RNE", &question);
     assert!(!local.proven_optimal);
@@ -52,9 +53,12 @@ fn no_score_of_a_local_search_is_above_its_bound() {
         for score in SCORES {
             for tasks in [2, 3, 4] {
                 let question = question(drawn_team(&[26 + seed, 2], seed as u64), &[1, 2, 3, 4][..tasks]);
-                let options = RneOptions { score, ..RneOptions::default() };
+                let options = RneOptions { score, sort: seed % 3 == 0, ..RneOptions::default() };
                 let decision = decide(&rne(&options), &question);
                 assert!(!decision.proven_optimal);
+                let (score, bound) = (nats(decision.score), nats(decision.upper_bound));
+                let gap = 100.0 * (bound - score) / bound;
+                assert!(score < bound && decision.gap_percent == Some(gap), "{score:?}, {tasks} tasks");
                 let split = &account(&decision).splits[0];
                 let (found, bound) = (split.score.unwrap(), split.upper_bound.unwrap());
                 assert!(found <= bound, "{score:?}, {tasks} tasks: {found:?} is above {bound:?}");
@@ -68,36 +72,48 @@ fn no_score_of_a_local_search_is_above_its_bound() {
     }
 }
 
-/// The bound depends on the robots, not on the search: it holds for every split of a team that contains these
-/// robots.
+/// The bound depends on the robots and the quotas, not on the search.
 #[test]
 fn no_split_at_all_is_above_the_bound() {
     let mut draws = ChaCha8Rng::seed_from_u64(1);
-    for seed in 0..4 {
+    for seed in 0..8 {
         for score in SCORES {
-            let question = question(drawn_team(&[30], seed), &[1, 2, 3]);
-            let options = RneOptions { score, ..RneOptions::default() };
+            let question = question(drawn_team(&[30, 6], seed), &[1, 2, 3]);
+            let options = RneOptions { score, sort: seed % 3 == 0, ..RneOptions::default() };
             let decision = decide(&rne(&options), &question);
-            let bound = account(&decision).splits[0].upper_bound.unwrap().nats().unwrap();
+            let (of_split, of_team) = (account(&decision).splits[0].upper_bound, decision.upper_bound);
             let oracle = Oracle::new(&question, options);
             for _ in 0..50 {
-                // Very uneven parts come nearest to the bound.
-                let mut parts = vec![Vec::new(); 3];
-                let uneven = draws.random_range(0..3);
-                for member in &question.members {
-                    let part = if draws.random_range(0..10) == 0 { draws.random_range(0..3) } else { uneven };
-                    parts[part].push(member.id);
-                }
-                assert!(oracle.total(&parts) <= bound, "{score:?}");
+                let need = draws.random_range(0..5);
+                let mut members: Vec<_> = question.members.iter().collect();
+                // Parts that are sorted by the share of a need, or nearly so, come nearest to the bound.
+                let noise = draws.random_range(0.0..2.0);
+                members.sort_by_cached_key(|member| {
+                    let needs = member.needs.values();
+                    let share = needs[need] / needs.iter().sum::<f64>();
+                    (member.role, (1e6 * (share + noise * draws.random_range(0.0..1.0))) as u64)
+                });
+                let ids: Vec<u32> = members.iter().map(|member| member.id).collect();
+                let parts: Vec<Vec<u32>> = ids[..30].chunks(10).map(<[u32]>::to_vec).collect();
+                assert!(oracle.total(&parts) <= nats(of_split), "{score:?}");
+                let groups = parts.iter().zip(ids[30..].chunks(2)).map(|(a, b)| [a, b].concat());
+                assert!(oracle.total(&groups.collect::<Vec<_>>()) <= nats(of_team), "{score:?}");
             }
         }
     }
 }
 
 #[test]
-fn sorted_shares_have_no_known_bound() {
-    let decision = decide("RNE(sort: true)", &question(drawn_team(&[30], 1), &[1, 2, 3]));
-    assert_eq!(account(&decision).splits[0].upper_bound, None);
+fn a_score_that_is_infinite_is_the_best() {
+    let mut members = drawn_team(&[30], 1);
+    for member in &mut members[..10] {
+        let mut needs = member.needs.values().to_vec();
+        needs[0] = 0.0;
+        member.needs = NeedVector::new(needs).unwrap();
+    }
+    let decision = decide("RNE", &question(members, &[1, 2, 3]));
+    assert!(decision.score.unwrap().is_infinite() && decision.upper_bound.unwrap().is_infinite());
+    assert_eq!(decision.gap_percent, Some(0.0));
 }
 
 #[test]

@@ -112,6 +112,11 @@ fn one_robot_and_two_hundred_are_a_team() {
     let groups = matrix(&many, &["--policy", "RNE"]);
     let size = |task: usize| groups["groups"][task]["robots"].as_array().unwrap().len();
     assert_eq!((size(0), size(1)), (100, 100));
+    let decision: rne_core::Decision = serde_json::from_value(groups["decision"].clone()).unwrap();
+    assert!(decision.upper_bound > decision.score && !decision.proven_optimal);
+    let gap = format!("(gap {:.1} %)\n", decision.gap_percent.unwrap());
+    let told = succeeds(&usar(folder.path(), &["trust", &path, "--policy", "RNE"]));
+    assert!(told.contains(&gap) && told.contains("not proven optimal"), "{told}");
     let crowd: Vec<String> = (0..501).map(|i| format!("{i},1\n")).collect();
     let crowd = format!("id,hp\n{}", crowd.concat());
     let (_folder, path) = table(&crowd);
@@ -136,7 +141,12 @@ fn a_policy_groups_a_table_by_the_names_of_its_robots() {
             assert_eq!(ids(1), ["1", "3", "5"]);
             assert_eq!(answer["decision"]["assignment"]["groups"][1], value!([1, 3, 5]));
         }
-        assert_eq!(answer["decision"]["score"].is_null(), policy != "RNE");
+        for said in ["score", "upper_bound", "gap_percent"] {
+            assert_eq!(answer["decision"][said].is_null(), policy != "RNE", "{policy}: {said}");
+        }
+        let told =
+            succeeds(&usar(folder.path(), &[&["trust", &path, "--policy", policy], &tasks[..]].concat()));
+        assert_eq!(told.contains("(gap 0.0 %, optimal)\n"), policy == "RNE", "{told}");
     }
     // The robots with more energy take the harder task.
     let texts = TABLE.replace("\n1,", "\nspot-2,").replace("\n5,", "\nhusky,");

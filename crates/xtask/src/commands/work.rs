@@ -61,7 +61,7 @@ fn session(policy: &str) -> Box<dyn Session> {
 fn grouping() {
     let mut rne = session("RNE");
     for carriers in [20, 60] {
-        let decision = rne.decide(&Asked::of(&team::question([carriers, 0, 0])));
+        let decision = rne.decide(&Asked::of(&team::question([carriers, 0, 0], 2)));
         println!("{:?}", decision.expect("a decision").assignment);
     }
 }

@@ -67,6 +67,7 @@ fn print_account(out: &mut dyn Write, decision: &Decision, spec: &PolicySpec) ->
         let base: LogBase = base.unwrap_or_default();
         let value = score.in_base(base).map_or("infinite".to_owned(), |value| format!("{value:.9}"));
         writeln!(out, "score   {value} (log base {base:?})")?;
+        print_bound(out, decision, base)?;
     }
     let options = &spec.made().options;
     if !options.is_empty() {
@@ -80,4 +81,12 @@ fn print_account(out: &mut dyn Write, decision: &Decision, spec: &PolicySpec) ->
         )?;
     }
     Ok(())
+}
+
+/// How far the score can be from the best one.
+fn print_bound(out: &mut dyn Write, decision: &Decision, base: LogBase) -> Result<(), Failure> {
+    let (Some(bound), Some(gap)) = (decision.upper_bound, decision.gap_percent) else { return Ok(()) };
+    let bound = bound.in_base(base).map_or("infinite".to_owned(), |value| format!("{value:.9}"));
+    let optimal = if decision.proven_optimal { ", optimal" } else { "" };
+    Ok(writeln!(out, "bound   {bound} (gap {gap:.1} %{optimal})")?)
 }
