@@ -15,8 +15,11 @@ use super::sessions::Sessions;
 use super::trial::{Fault, FaultKind, Outcome, Trial, TrialKey, UNANSWERED};
 use crate::panics::panic_message;
 
-/// How often the time limit and `stop` are checked.
+/// How often the time limit and `stop` are checked, at least.
 const WATCH_PERIOD: Duration = Duration::from_millis(100);
+
+/// How often a shorter time limit is checked, at most.
+const LEAST_WATCH_PERIOD: Duration = Duration::from_millis(1);
 
 /// How long a trial that exceeded its time may take to give up, before its thread is abandoned.
 const GRACE: Duration = Duration::from_secs(1);
@@ -177,7 +180,8 @@ impl Pool {
     ) -> Result<Vec<Outcome>, Failure> {
         let mut outcomes = Vec::new();
         // All messages are read before any trial is declared late.
-        let first = receiver.recv_timeout(WATCH_PERIOD).ok();
+        let period = longest.map_or(WATCH_PERIOD, |longest| longest.clamp(LEAST_WATCH_PERIOD, WATCH_PERIOD));
+        let first = receiver.recv_timeout(period).ok();
         for message in first.into_iter().chain(receiver.try_iter()) {
             match message {
                 Message::Started(worker, key, [halt, is_abandoned]) => {
