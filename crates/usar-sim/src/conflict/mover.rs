@@ -29,6 +29,8 @@ pub struct Mover<'a> {
     pub leg_left: f32,
     /// Waypoints ahead.
     pub route: &'a [Vector],
+    /// Length of the route ahead, in metres.
+    pub route_left: f32,
     /// Narrow passages of the route.
     pub passages: &'a [Passage],
     /// Places that it passed, the latest last.
@@ -62,8 +64,7 @@ impl Mover<'_> {
 
     /// Distance left to the place where it makes room, or else to the end of its route, in metres.
     pub(super) fn way_left(&self) -> f32 {
-        let starts = std::iter::once(&self.position).chain(self.route);
-        self.retreat_left.unwrap_or_else(|| starts.zip(self.route).map(|(a, b)| (*b - *a).length()).sum())
+        self.retreat_left.unwrap_or(self.route_left)
     }
 }
 

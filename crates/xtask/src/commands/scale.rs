@@ -6,9 +6,11 @@
 use std::process::ExitCode;
 use std::time::Instant;
 
+use rne_core::Deadline;
 use usar_sim::record::Status;
 use usar_sim::scenario::Scenario;
 use usar_sim::simulation::Simulation;
+use usar_sim::stage::Stage;
 use xtask::density;
 
 pub fn run(arguments: &[String]) -> ExitCode {
@@ -30,8 +32,16 @@ pub fn run(arguments: &[String]) -> ExitCode {
         start.elapsed().as_secs_f64()
     );
     let start = Instant::now();
-    while trial.step(&mut *eng).is_none() {}
+    let (mut last, mut spent) = (start, [0.0; Stage::ALL.len()]);
+    let mut note = |stage: Stage| {
+        let now = Instant::now();
+        spent[stage as usize] += (now - last).as_secs_f64();
+        last = now;
+    };
+    while trial.step_watched(&mut *eng, Deadline::NEVER, &mut note).is_none() {}
     let steps = trial.steps();
+    let stage = |stage: Stage| format!("{} {:.0}", stage.name(), spent[stage as usize] * 1e6 / steps as f64);
+    println!("us: {}", Stage::ALL.map(stage).join(", "));
     let us = start.elapsed().as_secs_f64() * 1e6 / steps as f64;
     let record = trial.finish();
     assert!(!matches!(record.status, Status::Failed(_)), "{:?}", record.status);
