@@ -29,8 +29,6 @@ pub struct Mover<'a> {
     pub leg_left: f32,
     /// Waypoints ahead.
     pub route: &'a [Vector],
-    /// Length of the route ahead, in metres.
-    pub route_left: f32,
     /// Narrow passages of the route.
     pub passages: &'a [Passage],
     /// Places that it passed, the latest last.
@@ -64,7 +62,8 @@ impl Mover<'_> {
 
     /// Distance left to the place where it makes room, or else to the end of its route, in metres.
     pub(super) fn way_left(&self) -> f32 {
-        self.retreat_left.unwrap_or(self.route_left)
+        let starts = std::iter::once(&self.position).chain(self.route);
+        self.retreat_left.unwrap_or_else(|| starts.zip(self.route).map(|(a, b)| (*b - *a).length()).sum())
     }
 }
 

@@ -26,7 +26,6 @@ pub(super) fn mover(id: u32, at: [f32; 2], preferred: [f32; 2]) -> Mover<'static
         } else {
             Box::leak(Box::new([position + 10.0 * preferred.normalize()]))
         },
-        route_left: if preferred == Vector::ZERO { 0.0 } else { 10.0 },
         passages: &[],
         trail: &[],
         radius: 0.4,

@@ -94,7 +94,7 @@ impl Traveller {
     }
 
     /// Length of the route ahead from a position, in metres; none without a route.
-    pub(crate) fn length(&self, from: Vector) -> Option<f32> {
+    pub(super) fn length(&self, from: Vector) -> Option<f32> {
         let route = self.route.as_ref()?;
         let is_same = |measured: &Measured| measured.from == from && measured.next == route.next();
         Some(self.measured.filter(is_same).map_or_else(|| route.length(from), |measured| measured.length))

@@ -335,7 +335,6 @@ fn mover<'s>(
         stalled_steps: navigator.traveller(robot.id).stalled_steps() as u32,
         leg_left: route.map_or(0.0, |route| (route.ahead()[0] - robot.position).length()),
         route: route.map_or(&[], |route| route.ahead()),
-        route_left: navigator.traveller(robot.id).length(robot.position).unwrap_or(0.0),
         passages: navigator.traveller(robot.id).passages(),
         trail: navigator.trail(robot.id),
         radius: robot.radius(),
