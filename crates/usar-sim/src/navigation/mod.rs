@@ -93,8 +93,9 @@ impl Navigator {
         }
     }
 
-    /// Plans routes, on all threads if `in_parallel`; each has meshes of its own. A robot plans if it has no
-    /// route yet, if new knowledge cuts its route or may make it dearer or cheaper, or if it makes no progress.
+    /// Plans routes, on all threads if `in_parallel`: each part of the team then has meshes of its own. A robot
+    /// plans if it has no route yet, if new knowledge cuts its route or may make it dearer or cheaper, or if it
+    /// makes no progress.
     pub fn plan<'o, B, S>(&mut self, outlook: &Outlook<'o, B, S>, meshes: &mut Vec<Meshes>, in_parallel: bool)
     where
         B: Fn(RobotId) -> &'o Belief + Sync,
