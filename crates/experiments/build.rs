@@ -8,8 +8,16 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// The crates that decide the numbers of every trial, or of a study.
-const DECIDING: [&str; 7] =
-    ["ron-tree", "rne-core", "frozen-physics", "usar-sim", "tables", "experiments", "study-yang2021"];
+const DECIDING: [&str; 8] = [
+    "ron-tree",
+    "rne-core",
+    "frozen-physics",
+    "usar-sim",
+    "statistics",
+    "tables",
+    "experiments",
+    "study-yang2021",
+];
 
 fn main() {
     let root = Path::new("../..");

@@ -9,10 +9,9 @@
 mod parse;
 
 use serde::Serialize;
-use statrs::distribution::{Beta, ContinuousCDF};
-
-use crate::stats::cautious;
-use crate::stats::stopping::FIRST_LOOK;
+use statistics::cautious;
+use statistics::share::clopper_pearson;
+use statistics::stopping::FIRST_LOOK;
 
 pub use parse::{Bad, expectations, parse};
 
@@ -216,20 +215,6 @@ fn judge_mean(differences: &[f64], confidence: f64, verdict: impl Fn([f64; 2]) -
         )
     });
     Judgement { verdict: interval.map_or(Verdict::Undecided, verdict), n, observed, interval, needs }
-}
-
-/// The exact interval of a share (Clopper and Pearson 1934); `None` without any trial.
-#[must_use]
-pub fn clopper_pearson(held: usize, n: usize, confidence: f64) -> Option<[f64; 2]> {
-    let tail = (1.0 - confidence) / 2.0;
-    let (k, n) = (held as f64, n as f64);
-    if n == 0.0 {
-        return None;
-    }
-    let quantile = |a: f64, b: f64, p: f64| Some(Beta::new(a, b).ok()?.inverse_cdf(p));
-    let low = if held == 0 { 0.0 } else { quantile(k, n - k + 1.0, tail)? };
-    let high = if k >= n { 1.0 } else { quantile(k + 1.0, n - k, 1.0 - tail)? };
-    Some([low, high])
 }
 
 #[cfg(test)]

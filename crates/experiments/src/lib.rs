@@ -32,14 +32,8 @@ pub mod provenance;
 pub mod regret;
 pub mod rounds;
 pub mod run;
-pub mod stats;
 pub mod sweep;
 pub mod why;
 
 pub use panics::{note_panic, panic_message};
 pub use store::{Failure, files, refuse};
-
-/// The programs in the README compile and run.
-#[cfg(doctest)]
-#[doc = include_str!("../README.md")]
-struct Readme;

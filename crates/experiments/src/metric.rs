@@ -6,6 +6,7 @@ mod values;
 
 use std::ops::Deref;
 
+use statistics::comparison::Direction;
 use store::Failure;
 use usar_sim::metrics::TaskTotals;
 use usar_sim::record::TrialRecord;
@@ -18,17 +19,6 @@ pub const TOTAL: &str = "total";
 
 type Value = fn(&TrialRecord) -> Option<f64>;
 type TaskValue = fn(&TaskTotals) -> Option<f64>;
-
-/// Which direction of a metric is better.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Direction {
-    /// More is better.
-    Higher,
-    /// Less is better.
-    Lower,
-    /// It is neither good nor bad.
-    Neither,
-}
 
 /// How a metric is computed.
 #[derive(Clone, Copy)]

@@ -4,7 +4,7 @@ use comfy_table::{Cell, Table};
 use experiments::Failure;
 use experiments::comparison::short;
 use experiments::explore::{CHANCE, Index, Outcome, Row};
-use experiments::stats::sensitivity::Known;
+use statistics::sensitivity::Known;
 
 use crate::figures::sensitivity;
 use crate::table::{headed, right};

@@ -5,9 +5,9 @@ use std::path::Path;
 
 use experiments::Failure;
 use experiments::files::NewFile;
-use experiments::stats::Moments;
 use experiments::sweep::folder::Folder;
 use serde::Serialize;
+use statistics::Moments;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
 use crate::scenarios::{PAPERS_TRIALS, POLICIES, Standing};

@@ -7,10 +7,10 @@ use experiments::comparison::CONFIDENCE;
 use experiments::experiment::PolicySpec;
 use experiments::metric::{Catalogue, Values};
 use experiments::rounds::Round;
-use experiments::stats::Moments;
-use experiments::stats::paired::t_half_width_at;
 use experiments::sweep::folder::Folder;
 use rayon::prelude::*;
+use statistics::Moments;
+use statistics::paired::t_half_width_at;
 
 /// The metrics whose differences are shown: rescuees, of all tasks and of each task, and energy per
 /// rescuee.

@@ -6,12 +6,12 @@ use rayon::prelude::*;
 use serde::Serialize;
 use store::Failure;
 
-use super::{CONFIDENCE, Choice, LEAST_PAIRS, LEVEL, Pairs, policies_of};
+use super::{CONFIDENCE, Choice, LEAST_PAIRS, LEVEL, pairs_of, policies_of};
 use crate::experiment::{Case, Experiment};
-use crate::stats::Moments;
-use crate::stats::paired::holm;
-use crate::stats::wilcoxon::SignedRank;
 use crate::sweep::folder::Folder;
+use statistics::Moments;
+use statistics::paired::holm;
+use statistics::wilcoxon::SignedRank;
 
 /// How one policy's mean changes with one field of the scenario.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -86,7 +86,7 @@ pub fn effects(folder: &Folder, metrics: &[usize], choice: Choice) -> Result<Vec
 
 fn effect(folder: &Folder, contrast: Contrast, metric: usize, policy: usize) -> Effect {
     let experiment = folder.experiment();
-    let pairs = Pairs::of(folder, metric, [(contrast.case, policy), (contrast.reference, policy)]);
+    let pairs = pairs_of(folder, metric, [(contrast.case, policy), (contrast.reference, policy)]);
     let changes = pairs.differences();
     Effect {
         case: contrast.case + 1,

@@ -2,19 +2,16 @@
 //! difference of differences, paired by seed, between a case of a sweep with axes and its reference: the
 //! case in which one axis has its first value instead.
 
-use std::collections::BTreeSet;
-
 use serde::Serialize;
 use store::Failure;
 
-use super::cell::{Cell, same};
+use super::cell::{Cell, hashes};
 use super::effect::{Contrast, contrasts, corrected, is_shown};
-use super::words::p_in_words;
-use super::{CONFIDENCE, Choice, LEAST_PAIRS, Pairs, policy_pairs, short};
-use crate::stats::Moments;
-use crate::stats::bootstrap::interval;
-use crate::stats::wilcoxon::SignedRank;
+use super::{CONFIDENCE, Choice, LEAST_PAIRS, Repeats, by_trial, p_in_words, policy_pairs, short};
 use crate::sweep::folder::Folder;
+use statistics::Moments;
+use statistics::bootstrap::interval;
+use statistics::wilcoxon::SignedRank;
 
 /// How the difference of two policies changes with one field of the scenario.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -86,12 +83,12 @@ fn interaction(folder: &Folder, contrast: Contrast, metric: usize, pair: [usize;
     let experiment = folder.experiment();
     let Contrast { case, reference, axis } = contrast;
     let cells = |case: usize| pair.map(|policy| (case, policy));
-    let differences = [reference, case].map(|case| Pairs::by_trial(folder, metric, cells(case)));
+    let differences = [reference, case].map(|case| by_trial(folder, metric, cells(case)));
     let [there, here] = differences;
     let all: Vec<Cell> = [reference, case].into_iter().flat_map(cells).collect();
-    let mut known = BTreeSet::new();
+    let mut repeats = Repeats::default();
     let trials = (1..).zip(there.into_iter().zip(here));
-    let new = trials.filter(|(trial, _)| known.insert(same(folder, &all, *trial)));
+    let new = trials.filter(|(trial, _)| repeats.is_new(*trial, &hashes(folder, &all, *trial)));
     let both: Vec<[f64; 2]> = new.filter_map(|(_, (there, here))| Some([there?, here?])).collect();
     let column = |i: usize| both.iter().map(|pair| pair[i]).collect::<Vec<f64>>();
     let changes: Vec<f64> = both.iter().map(|[there, here]| here - there).collect();

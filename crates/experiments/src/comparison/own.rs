@@ -3,8 +3,7 @@
 
 use store::Failure;
 
-use super::words::p_in_words;
-use super::{Asked, Comparison, Wishes, compare};
+use super::{Asked, Comparison, Wishes, compare, p_in_words};
 use crate::sweep::folder::Folder;
 
 /// How these comparisons differ from those of the folder's own question, in a sentence or two; `None` if they

@@ -15,8 +15,8 @@ use super::design::{Block, MOVE, Method};
 use super::space::Point;
 use super::{Outcome, Parameter, Space, Values};
 use crate::job::Job;
-use crate::stats::bootstrap::interval;
-use crate::stats::sensitivity::{self as indices, Effects, Known, Shares};
+use statistics::bootstrap::interval;
+use statistics::sensitivity::{self as indices, Effects, Known, Shares};
 
 /// Name of the table of indices.
 pub const INDICES: &str = "indices.csv";

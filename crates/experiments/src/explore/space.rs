@@ -15,7 +15,7 @@ use crate::comparison::{Choice, policy_pairs};
 use crate::experiment::Experiment;
 use crate::panics::panic_message;
 use crate::run::{Fault, Sessions, SharedTrials, TrialSetup};
-use crate::stats::Moments;
+use statistics::Moments;
 
 /// An outcome: a policy's mean of a metric, or the mean of the paired differences of two policies.
 #[derive(Debug, Clone, PartialEq, Serialize)]

@@ -8,8 +8,8 @@ use super::features::{FEATURES, values};
 use super::study::{PlayedTrial, StudyFolder};
 use crate::experiment::PolicySpec;
 use crate::oracle::{Objective, Standing, Survey};
-use crate::stats::bootstrap::{interval, ratio_interval};
-use crate::stats::rank_correlation;
+use statistics::bootstrap::{interval, ratio_interval};
+use statistics::rank_correlation;
 
 /// Confidence of all intervals.
 const CONFIDENCE: f64 = 0.95;

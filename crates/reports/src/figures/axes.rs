@@ -3,9 +3,9 @@
 use experiments::Failure;
 use experiments::comparison::Comparison;
 use experiments::experiment::{Axis, Experiment};
-use experiments::stats::Moments;
-use experiments::stats::paired::t_half_width;
 use experiments::sweep::folder::Folder;
+use statistics::Moments;
+use statistics::paired::t_half_width;
 
 use crate::drawing::{
     Drawing, Panel, Sketch, difference_heat_map, from_top, is_drawn, layout, line_panel, names, table,

@@ -5,8 +5,8 @@ use experiments::Failure;
 use experiments::experiment::Experiment;
 use experiments::metric::task_names;
 use experiments::run::series_times;
-use experiments::stats::Moments;
-use experiments::stats::paired::t_half_width;
+use statistics::Moments;
+use statistics::paired::t_half_width;
 
 use super::Part;
 use super::gather::Gathered;

@@ -4,12 +4,12 @@ use experiments::Failure;
 use experiments::comparison::Comparison;
 use experiments::experiment::Experiment;
 use experiments::metric::{Metric, Values};
-use experiments::stats::Moments;
-use experiments::stats::bootstrap::quantile;
 use experiments::sweep::folder::Folder;
 use kuva::plot::annotations::ReferenceLine;
 use kuva::plot::{BoxPlot, ForestPlot, ScatterPlot, StripPlot};
 use kuva::render::plots::Plot;
+use statistics::Moments;
+use statistics::bootstrap::quantile;
 
 use super::is_quiet;
 use crate::drawing::{Drawing, Panel, Rows, Sketch, colour, is_drawn, layout, names, range, table};

@@ -4,10 +4,10 @@ use std::collections::BTreeMap;
 
 use experiments::Failure;
 use experiments::regret::{Analysis, DecisionRow, Estimate};
-use experiments::stats::Moments;
-use experiments::stats::paired::t_half_width;
 use kuva::plot::ForestPlot;
 use kuva::render::plots::Plot;
+use statistics::Moments;
+use statistics::paired::t_half_width;
 
 use crate::drawing::{Drawing, Panel, Sketch, layout, line_panel, range, table};
 

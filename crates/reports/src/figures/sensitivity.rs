@@ -2,9 +2,9 @@
 
 use experiments::Failure;
 use experiments::explore::{Index, Row};
-use experiments::stats::sensitivity::Known;
 use kuva::plot::ForestPlot;
 use kuva::render::plots::Plot;
+use statistics::sensitivity::Known;
 
 use crate::drawing::{Drawing, Panel, Sketch, layout, range, table};
 

@@ -4,10 +4,10 @@ use std::path::Path;
 
 use experiments::input_table::{CellProblem, InputRow, InputTable, Problem};
 use experiments::metric::{Catalogue, Metric};
-use experiments::stats::Moments;
 use experiments::sweep::trial_columns;
 use experiments::{Failure, refuse};
 use serde::{Deserialize, Serialize};
+use statistics::Moments;
 use usar_sim::record::TrialRecord;
 use usar_sim::scenario::Scenario;
 

@@ -22,11 +22,11 @@ mod power;
 use experiments::Failure;
 use experiments::comparison::{CONFIDENCE, TOST_CONFIDENCE};
 use experiments::metric::Catalogue;
-use experiments::stats::Moments;
-use experiments::stats::bootstrap::interval;
-use experiments::stats::paired::{detectable, pairs_needed};
 use experiments::sweep::folder::Folder;
 use serde::Serialize;
+use statistics::Moments;
+use statistics::bootstrap::interval;
+use statistics::paired::{detectable, pairs_needed};
 
 use crate::scenarios::{PAPERS_TRIALS, Standing, margins};
 

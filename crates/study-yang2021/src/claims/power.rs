@@ -1,9 +1,9 @@
 //! Power: the verdicts expected from experiments of other sizes, if the trials at hand are the truth.
 
 use experiments::comparison::CONFIDENCE;
-use experiments::stats::Moments;
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
+use statistics::Moments;
 use statrs::distribution::{ContinuousCDF, Normal, StudentsT};
 
 use super::{Finding, Side, Verdict};

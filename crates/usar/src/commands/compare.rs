@@ -6,12 +6,12 @@ use experiments::comparison::{
     what_would_settle,
 };
 use experiments::experiment::Experiment;
-use experiments::stats::bootstrap::resamples;
 use experiments::sweep::host::Hosts;
 use reports::table::{
     cases_table, comparison_table, differences_table, effects_table, interactions_table, verdict_table,
 };
 use serde_json::json;
+use statistics::bootstrap::resamples;
 
 use crate::arguments::{FamilyArguments, ShownArguments, WideArgument};
 use crate::input::read_sweep;

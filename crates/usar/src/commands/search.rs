@@ -6,10 +6,10 @@ use experiments::comparison::{CONFIDENCE, Choice, Comparison, compare, short};
 use experiments::experiment::{Experiment, Overrides};
 use experiments::explore::{Candidate, Descent, FOUND, Hunt, Outcome, Space, Trail};
 use experiments::files::NewFile;
-use experiments::metric::Direction;
-use experiments::stats::Moments;
-use experiments::stats::bootstrap::interval;
 use experiments::sweep::folder::{Folder, Opening};
+use statistics::Moments;
+use statistics::bootstrap::interval;
+use statistics::comparison::Direction;
 
 use crate::arguments::{JsonArgument, ParameterArguments, count, seed, share};
 use crate::prelude::*;

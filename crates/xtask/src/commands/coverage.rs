@@ -5,12 +5,12 @@ mod verdicts;
 
 use std::process::ExitCode;
 
-use experiments::stats::bootstrap::{Width, bca_interval, bca_ratio_interval, statistic_interval};
-use experiments::stats::sensitivity::{Block, effects, shares};
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 use rand_distr::{Distribution, Exp, StandardNormal};
 use rayon::prelude::*;
+use statistics::bootstrap::{Width, bca_interval, bca_ratio_interval, statistic_interval};
+use statistics::sensitivity::{Block, effects, shares};
 
 /// Default number of experiments of each row.
 const REPETITIONS: u64 = 10_000;

@@ -7,11 +7,11 @@
 //! its effect on the interval's coverage.
 
 use experiments::Failure;
-use experiments::comparison::{Pairs, short};
+use experiments::comparison::{pairs_of, short};
 use experiments::experiment::Experiment;
-use experiments::stats::paired::t_half_width;
-use experiments::stats::stopping::{FIRST_LOOK, next_look};
 use experiments::sweep::folder::Folder;
+use statistics::paired::t_half_width;
+use statistics::stopping::{FIRST_LOOK, next_look};
 
 /// The stopping rule.
 pub(super) struct Precision {
@@ -59,7 +59,7 @@ impl Precision {
         let mut state = State { half_width: 0.0, pairs: usize::MAX };
         for case in 0..folder.experiment().cases.len() {
             let differences =
-                Pairs::of(folder, self.metric, self.policies.map(|policy| (case, policy))).differences();
+                pairs_of(folder, self.metric, self.policies.map(|policy| (case, policy))).differences();
             let half_width = t_half_width(&differences).filter(|half| *half > 0.0)?;
             let enough = differences.len() >= FIRST_LOOK.min(folder.experiment().trials) as usize;
             state.half_width = state.half_width.max(half_width);

@@ -2,10 +2,10 @@
 //! where each verdict is an error.
 
 use experiments::expect::{Expectation, Expected, Verdict, judge, looks};
-use experiments::stats::{Moments, paired::t_half_width_at};
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 use rayon::prelude::*;
+use statistics::{Moments, paired::t_half_width_at};
 
 use super::{exponential, normal};
 

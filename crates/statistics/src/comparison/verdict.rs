@@ -8,8 +8,7 @@
 
 use serde::Serialize;
 
-use super::{Comparison, short};
-use crate::metric::Direction;
+use super::{Comparison, Direction, short};
 
 /// Confidence of the interval whose inclusion in the margin is two one-sided tests at 5 %.
 pub const TOST_CONFIDENCE: f64 = 0.90;
@@ -139,7 +138,7 @@ mod tests {
     use rand_distr::{Distribution, Normal};
 
     use super::*;
-    use crate::stats::bootstrap::{Width, bca_interval, interval};
+    use crate::bootstrap::{Width, bca_interval, interval};
 
     fn comparison(interval: [f64; 2], p: f64) -> Comparison {
         Comparison { interval: Some(interval), p: Some(p), p_holm: Some(p), ..Comparison::default() }

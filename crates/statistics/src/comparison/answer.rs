@@ -11,7 +11,7 @@ const WORDS: usize = 25;
 /// then names. `None` without comparisons.
 ///
 /// ```
-/// use experiments::comparison::{Comparison, Verdict, answer};
+/// use statistics::comparison::{Comparison, Verdict, answer};
 ///
 /// let (metric, a, b) = ("rescuees.hard".to_owned(), "RNE".to_owned(), "DIS".to_owned());
 /// let one = Comparison {

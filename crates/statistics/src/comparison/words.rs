@@ -139,7 +139,7 @@ pub fn short(value: f64) -> String {
 /// About this many significant digits, in engineering form for very large and very small numbers.
 ///
 /// ```
-/// use experiments::comparison::digits;
+/// use statistics::comparison::digits;
 ///
 /// let shown = [0.000_378, 8.333e-6, -12_345_678.0, 52.7].map(|value| digits(value, 3));
 /// assert_eq!(shown, ["0.000378", "8.33e-6", "-12.3e6", "52.7"]);
@@ -171,6 +171,7 @@ pub fn short_p(p: f64) -> String {
 }
 
 /// A p value for use in a sentence.
-pub(super) fn p_in_words(p: f64) -> String {
+#[must_use]
+pub fn p_in_words(p: f64) -> String {
     if p < 0.0001 { "p < 0.0001".to_owned() } else { format!("p = {p:.4}") }
 }

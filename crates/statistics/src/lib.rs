@@ -1,10 +1,13 @@
-//! Statistics of a sweep, as functions of slices of numbers.
+//! Paired comparisons with honest statistics, as functions of slices of numbers: no files, no threads, no clock.
+//! The command and the page in a browser both call them, and therefore say the same.
 
 pub mod bootstrap;
 pub mod cautious;
+pub mod comparison;
 mod correlation;
 pub mod paired;
 pub mod sensitivity;
+pub mod share;
 pub mod stopping;
 #[cfg(test)]
 #[expect(clippy::float_cmp, reason = "ranks, counts and medians of them are exact")]
@@ -36,6 +39,11 @@ impl Moments {
         }
     }
 }
+
+/// The programs in the README compile and run.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;
 
 #[cfg(test)]
 mod moments {

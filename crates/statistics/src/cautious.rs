@@ -67,7 +67,7 @@ fn t_interval(values: &[f64], confidence: f64) -> Option<[f64; 2]> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::stats::paired::t_half_width_at;
+    use crate::paired::t_half_width_at;
 
     /// Twenty quantiles of the exponential distribution: its long tail lies beyond the largest of them.
     #[test]

@@ -17,8 +17,8 @@ mod tests {
     use rand_distr::{Distribution, StandardNormal};
 
     use super::*;
-    use crate::stats::Moments;
-    use crate::stats::paired::t_half_width;
+    use crate::Moments;
+    use crate::paired::t_half_width;
 
     /// Share of 2,000 sequential experiments whose last interval holds the true mean, in percent, if the
     /// bound needs about `pairs` pairs.
