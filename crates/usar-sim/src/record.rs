@@ -173,7 +173,28 @@ pub struct TrialRecord {
     pub chain: HashChain,
 }
 
+/// Version of the layout of a [`NamedRecord`].
+const NAMED_VERSION: u32 = 1;
+
+/// A record with the names of its scenario and policy, as programs print it.
+#[derive(Debug, Clone, Serialize)]
+pub struct NamedRecord<'a> {
+    schema_version: u32,
+    scenario: &'a str,
+    policy: &'a str,
+    rescuees: u32,
+    #[serde(flatten)]
+    record: &'a TrialRecord,
+}
+
 impl TrialRecord {
+    /// The record with the names of its scenario and policy.
+    #[must_use]
+    pub fn named<'a>(&'a self, scenario: &'a str, policy: &'a str) -> NamedRecord<'a> {
+        let rescuees = self.rescued();
+        NamedRecord { schema_version: NAMED_VERSION, scenario, policy, rescuees, record: self }
+    }
+
     /// The question as it was asked, with its history.
     #[must_use]
     pub fn question(&self, asked: &DecisionRecord) -> Question {

@@ -97,10 +97,10 @@ impl PolicySpec {
     /// # Errors
     /// The scenario allows only another policy.
     pub fn check_allowed(&self, scenario: &Scenario) -> Result<(), Failure> {
-        let only = &scenario.only_policy;
-        if only.is_empty() || *only == self.plain() {
+        if scenario.allows(&self.plain()) {
             return Ok(());
         }
+        let only = &scenario.only_policy;
         Err(Failure::input(format!(
             "{}: only_policy allows {only} alone, found {}; a candidate of a calibration runs no other \
              policy before it is chosen",

@@ -13,7 +13,7 @@ use super::carried::beside;
 use super::error::{Problems, ScenarioError};
 use super::named::{self, Names};
 use super::reading::parse_tree;
-use super::{Scenario, read_text};
+use super::{ReadText, Scenario};
 
 /// The field that names the base.
 const FIELD: &str = "base";
@@ -24,13 +24,13 @@ pub(super) fn is_named_in(root: &Node) -> bool {
 }
 
 /// The scenario of a tree that names a base.
-pub(super) fn parse(mut over: Node, path: &Path) -> Result<Scenario, ScenarioError> {
+pub(super) fn parse(mut over: Node, path: &Path, read: &ReadText<'_>) -> Result<Scenario, ScenarioError> {
     let invalid = |list| ScenarioError::Invalid(Problems { path: path.to_owned(), list });
     let (names, wrong) = named::take_out(&mut over);
     if !wrong.is_empty() {
         return Err(invalid(wrong));
     }
-    let base = Base::read(&over, path, names)?;
+    let base = Base::read(&over, path, names, read)?;
     over.remove(FIELD);
     named::expand(&mut over, &base.names).map_err(|problem| invalid(vec![*problem]))?;
     let (mut tree, mut problems) = (base.scenario.tree(), Vec::new());
@@ -54,7 +54,7 @@ struct Base {
 impl Base {
     /// Reads the base of a tree, whose path is relative to the folder of the text. The names in `names`
     /// replace those of the base.
-    fn read(over: &Node, path: &Path, mut names: Names) -> Result<Self, ScenarioError> {
+    fn read(over: &Node, path: &Path, mut names: Names, read: &ReadText<'_>) -> Result<Self, ScenarioError> {
         let node = over.get(FIELD).unwrap_or(over);
         let wrong = |rule: &str| {
             let problem = Problem { line: over.line(FIELD), ..Problem::new(FIELD, rule, node) };
@@ -65,7 +65,7 @@ impl Base {
             return Err(wrong("must be a path from this file's folder"));
         }
         let path = beside(path, name);
-        let tree = parse_tree(&read_text(&path)?, &path).map_err(|error| error.of_named(name))?;
+        let tree = parse_tree(&read(&path)?, &path).map_err(|error| error.of_named(name))?;
         if is_named_in(&tree) {
             return Err(wrong("must be a scenario without a base of its own"));
         }

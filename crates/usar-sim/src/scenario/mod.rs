@@ -40,7 +40,7 @@ pub use checker::{NOT_MISTAKEN, is_mistaken};
 pub use debris::LEAST_POLYGON_WIDTH_M;
 pub use error::{LayoutError, Problem, Problems, ScenarioError};
 pub use file::*;
-pub use reading::{formatted, parse_ron, parse_tree, read_text};
+pub use reading::{ReadText, formatted, parse_ron, parse_tree, read_text};
 pub use schema::scenario_schema;
 pub use words::Words;
 
@@ -109,14 +109,22 @@ impl Scenario {
         Err(ScenarioError::Unreadable { path: path.to_owned(), reason })
     }
 
-    /// Checks the text of a scenario; `path` is used in messages only.
+    /// Checks the text of a scenario. `path` is used in messages, and to find a base that the text names.
     ///
     /// # Errors
     /// The text is not a scenario, or values break rules.
     pub fn parse(text: &str, path: &Path) -> Result<Self, ScenarioError> {
+        Self::parse_from(text, path, &read_text)
+    }
+
+    /// The same, where `read` gives the text of a base by its path: for programs without files.
+    ///
+    /// # Errors
+    /// Those of [`Scenario::parse`] and of `read`.
+    pub fn parse_from(text: &str, path: &Path, read: &ReadText<'_>) -> Result<Self, ScenarioError> {
         let root = parse_tree(text, path)?;
         if base::is_named_in(&root) {
-            return base::parse(root, path);
+            return base::parse(root, path, read);
         }
         Self::parse_with(root, path, &mut named::Names::new())
     }
@@ -153,6 +161,12 @@ impl Scenario {
             problem.line = root.line(&problem.field);
         }
         checked.ok().filter(|_| list.is_empty()).ok_or(list)
+    }
+
+    /// Whether a policy, by its name with its options, may run in this scenario.
+    #[must_use]
+    pub fn allows(&self, policy: &str) -> bool {
+        self.only_policy.is_empty() || self.only_policy == policy
     }
 
     /// The whole scenario with every value, as text, with one line for each entry of a list.

@@ -8,6 +8,9 @@ use serde::de::DeserializeOwned;
 use super::carried::{self, carried};
 use super::error::{Problems, ScenarioError};
 
+/// Gives the text of a file by its path.
+pub type ReadText<'r> = dyn Fn(&Path) -> Result<String, ScenarioError> + 'r;
+
 /// Reads the text of a scenario or sweep file.
 ///
 /// # Errors

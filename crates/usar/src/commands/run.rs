@@ -8,7 +8,6 @@ use experiments::experiment::PolicySpec;
 use recording::Story;
 use reports::table::rounds_table;
 use rne_core::{Deadline, Session};
-use serde::Serialize;
 use usar_sim::metrics::CutOff;
 use usar_sim::record::{DecisionRecord, Status, TaskRecord, TrialRecord};
 use usar_sim::scenario::{EmptyTasks, Moment, Scenario, Words};
@@ -19,6 +18,7 @@ use self::live::Live;
 use self::snapshot::{Snapshot, save};
 use crate::arguments::{MeasureArgument, ShownArguments, Trial, TrialArguments, WideArgument};
 use crate::library;
+use crate::output::print_plain_json;
 use crate::prelude::*;
 use crate::recordings;
 use crate::running::Guard;
@@ -81,15 +81,6 @@ pub(crate) struct Arguments {
     measure: MeasureArgument,
 }
 
-#[derive(Serialize)]
-struct Output<'a> {
-    scenario: &'a str,
-    policy: &'a str,
-    rescuees: u32,
-    #[serde(flatten)]
-    record: &'a TrialRecord,
-}
-
 impl Arguments {
     pub(crate) fn execute(&self, registry: &Registry, out: &mut dyn Write) -> Result<(), Failure> {
         let registry = &self.measure.chosen_in(registry)?;
@@ -117,13 +108,7 @@ impl Arguments {
             return Err(Failure::run(format!("trial of {} with seed {seed} failed: {reason}", spec.label)));
         }
         if self.shown.is_json() {
-            let output = Output {
-                scenario: &scenario.name,
-                policy: &spec.label,
-                rescuees: record.rescued(),
-                record: &record,
-            };
-            return print_json(&output);
+            return print_plain_json(&record.named(&scenario.name, &spec.label));
         }
         writeln!(
             out,
