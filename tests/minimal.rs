@@ -1,6 +1,7 @@
 //! The small worlds: each tells a story, ends in time under every priority, and has a golden summary.
 
 use std::fmt::Write;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use parry2d::math::Vector;
 use usar_sim::belief::Belief;
@@ -11,7 +12,7 @@ use usar_sim::simulation::Simulation;
 
 use crate::support::{lies, policy, root};
 
-const NAMES: [&str; 11] = [
+const NAMES: [&str; 12] = [
     "closed_road",
     "crossing",
     "dead_end",
@@ -22,6 +23,7 @@ const NAMES: [&str; 11] = [
     "pushed",
     "ring",
     "row",
+    "rubble",
     "stranded",
 ];
 
@@ -161,4 +163,23 @@ fn rings_of_2_to_30_robots_swap_sides_in_time() {
         assert_eq!(record.counts.errands_done, robots);
         assert!(record.time_s <= limit, "{robots} robots: {} s, limit {limit} s", record.time_s);
     }
+}
+
+/// The library of triangulations panics on the way through the rubble (docs/triangulation.md). The page of the
+/// laboratory is tested with this world: a build that cannot catch panics ends there.
+#[test]
+fn the_library_panics_in_the_rubble_and_the_trial_goes_on() {
+    static HAS_PANICKED: AtomicBool = AtomicBool::new(false);
+    let others = std::panic::take_hook();
+    std::panic::set_hook(Box::new(move |panic| {
+        let text = panic.payload().downcast_ref::<&str>().copied().unwrap_or_default();
+        if text.contains("previous_region") {
+            HAS_PANICKED.store(true, Ordering::Relaxed);
+        } else {
+            others(panic);
+        }
+    }));
+    let (record, _) = run(load("rubble"));
+    assert!(HAS_PANICKED.load(Ordering::Relaxed), "the library is mended: this world can go");
+    assert_eq!(record.counts.errands_done, 1);
 }
