@@ -46,3 +46,34 @@ fn every_library_says_what_it_is() {
         assert!(text(&format!("crates/{name}/README.md")).starts_with(&format!("# {name}\n")));
     }
 }
+
+/// Names and versions of the packages of a lock file.
+fn locked(path: &str) -> BTreeSet<[String; 2]> {
+    let text = text(path);
+    let packages = text.split("[[package]]").skip(1);
+    let value = |package: &str, field: &str| {
+        let line = package.lines().find_map(|line| line.strip_prefix(field)?.strip_prefix(" = "));
+        line.unwrap_or_default().trim_matches('"').to_owned()
+    };
+    packages.map(|package| ["name", "version"].map(|field| value(package, field))).collect()
+}
+
+/// The page of the laboratory is built from the versions of the command: other ones would have other bits.
+#[test]
+fn the_page_of_the_laboratory_has_the_versions_of_the_command() {
+    let (page, command) = (locked("lab/Cargo.lock"), locked("Cargo.lock"));
+    let others: Vec<_> =
+        page.difference(&command).map(|[name, version]| format!("{name} {version}")).collect();
+    assert_eq!(others, ["usar-lab 0.1.0"]);
+    assert!(page.iter().any(|[name, _]| name == "rapier2d"));
+}
+
+#[test]
+fn only_the_door_of_the_page_is_unsafe() {
+    for file in std::fs::read_dir(root().join("lab/src")).unwrap() {
+        let name = file.unwrap().file_name().into_string().unwrap();
+        let is_unsafe = text(&format!("lab/src/{name}")).contains("unsafe(");
+        assert_eq!(is_unsafe, name == "door.rs", "{name}");
+    }
+    assert!(text("lab/Cargo.toml").contains("unsafe_code = \"deny\""));
+}

@@ -1,0 +1,54 @@
+//! A scenario of the page, with the texts of the files that it may name as its base.
+
+use std::collections::BTreeMap;
+use std::path::{Component, Path, PathBuf};
+
+use serde::Deserialize;
+use usar_sim::scenario::{Scenario, ScenarioError};
+
+/// A scenario as the page has it.
+#[derive(Deserialize)]
+pub(crate) struct Texts {
+    /// Name of its file, with slashes.
+    name: String,
+    /// Its text.
+    pub text: String,
+    /// Other files by their names.
+    #[serde(default)]
+    texts: BTreeMap<String, String>,
+}
+
+impl Texts {
+    /// The checked scenario.
+    pub fn scenario(&self) -> Result<Scenario, ScenarioError> {
+        let path = Path::new(&self.name);
+        let empty = || ScenarioError::Unreadable { path: path.to_owned(), reason: "is empty".to_owned() };
+        if self.text.trim().is_empty() {
+            return Err(empty());
+        }
+        Scenario::parse_from(&self.text, path, &|base| self.read(base))
+    }
+
+    fn read(&self, path: &Path) -> Result<String, ScenarioError> {
+        let name = plain(path);
+        self.texts.get(&name).cloned().ok_or_else(|| {
+            let reason = "cannot be read: the page has no such file".to_owned();
+            ScenarioError::Unreadable { path: path.to_owned(), reason }
+        })
+    }
+}
+
+/// A path without `.` and `..`: that of `gallery/../paper.ron` is `paper.ron`.
+fn plain(path: &Path) -> String {
+    let mut plain = PathBuf::new();
+    for part in path.components() {
+        match part {
+            Component::ParentDir => {
+                plain.pop();
+            }
+            Component::Normal(name) => plain.push(name),
+            Component::CurDir | Component::RootDir | Component::Prefix(_) => {}
+        }
+    }
+    plain.to_string_lossy().replace('\\', "/")
+}
