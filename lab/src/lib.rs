@@ -9,6 +9,8 @@ mod door;
 mod texts;
 mod trial;
 
+use std::fmt::Display;
+
 use serde::Serialize;
 
 /// A failure, as the page shows it.
@@ -19,7 +21,7 @@ pub(crate) struct Failure {
 }
 
 impl Failure {
-    fn of(error: impl ToString) -> Self {
+    fn of(error: impl Display) -> Self {
         Self { error: error.to_string() }
     }
 }

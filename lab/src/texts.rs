@@ -14,8 +14,8 @@ pub(crate) struct Texts {
     /// Its text.
     pub text: String,
     /// Other files by their names.
-    #[serde(default)]
-    texts: BTreeMap<String, String>,
+    #[serde(default, rename = "texts")]
+    others: BTreeMap<String, String>,
 }
 
 impl Texts {
@@ -31,7 +31,7 @@ impl Texts {
 
     fn read(&self, path: &Path) -> Result<String, ScenarioError> {
         let name = plain(path);
-        self.texts.get(&name).cloned().ok_or_else(|| {
+        self.others.get(&name).cloned().ok_or_else(|| {
             let reason = "cannot be read: the page has no such file".to_owned();
             ScenarioError::Unreadable { path: path.to_owned(), reason }
         })
