@@ -177,6 +177,41 @@ fn a_round_begins_without_robots_that_rest_if_the_reading_says_so() {
     assert!(goes_on.len() > waits.len(), "rounds are shorter: {} {}", goes_on.len(), waits.len());
 }
 
+/// Robots that left the field for rest, robots that ended without energy, and the least final energy in percent.
+fn tired(changes: &[(&str, &str)]) -> (usize, usize, f64) {
+    let scenario = paper_with(changes);
+    let (mut turned_back, mut were_in_field) = (0, vec![false; 12]);
+    watch(&scenario, |simulation| {
+        let turns =
+            |event: &&Event| matches!(event, Event::TurnedBack { robot, .. } if were_in_field[robot.index()]);
+        turned_back += simulation.events().iter().filter(turns).count();
+        let agents = &simulation.mission().crew.agents;
+        were_in_field = agents.iter().map(|agent| agent.activity.is_in_field()).collect();
+    });
+    let record = trial(&scenario, "DIS", 7);
+    let least = record.robots.iter().map(|robot| robot.final_energy).fold(f64::INFINITY, f64::min);
+    for decided in &record.decisions {
+        let eng = |member: &rne_core::Member| member.needs.values()[3];
+        assert!(decided.question.members.iter().all(|member| eng(member) >= 0.0));
+    }
+    (turned_back, record.stranded(), least)
+}
+
+/// A round costs a robot about 60 % of its energy here, so that some begin one that they cannot end.
+#[test]
+fn a_robot_finishes_its_round_and_goes_on_with_an_empty_battery_if_the_readings_say_so() {
+    let costly = ("per_step: 0.0045", "per_step: 0.018");
+    let rule = |rule: &'static str| ("energy_turn_back: AtOnce", rule);
+    let (turned_back, ..) = tired(&[costly]);
+    assert!(turned_back > 5, "{turned_back}");
+    let (_, stranded, least) = tired(&[costly, rule("energy_turn_back: AfterRound")]);
+    assert!(stranded > 3 && least >= 0.0, "no reserve keeps {stranded} robots from stopping, {least}");
+    let goes_on = rule("energy_turn_back: AfterRound, empty_battery: GoesOn");
+    let (turned_back, stranded, least) = tired(&[costly, goes_on]);
+    assert_eq!((turned_back, stranded), (0, 0));
+    assert!(least < 0.0, "{least}");
+}
+
 #[test]
 fn a_load_is_kept_through_a_rest_if_the_reading_says_so() {
     let places = |scenario: &Scenario| {

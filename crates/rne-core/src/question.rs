@@ -138,7 +138,8 @@ pub struct Member {
     pub home: [f64; 2],
     /// Its needs, in the order of the table of needs.
     pub needs: NeedVector,
-    /// Battery level in percent of the robot's own maximum.
+    /// Battery level in percent of the robot's own maximum. Below 0 where robots go on with an empty battery; their
+    /// needs of energy are 0 then.
     pub energy_level: Option<f64>,
     /// Health level in percent of the robot's own maximum.
     pub hp_level: Option<f64>,

@@ -170,7 +170,7 @@ impl Robot {
             Measure::Health => self.spec.hp * self.hp / 100.0,
             Measure::Speed => self.speed(),
             Measure::Sensing => self.sensing_range(),
-            Measure::Energy => self.spec.energy * self.energy / 100.0,
+            Measure::Energy => self.spec.energy * self.energy.max(0.0) / 100.0,
             Measure::Resources => f64::from(self.resources),
             Measure::Capacity => f64::from(self.free_capacity()),
             Measure::Observing => self.observing_range(),

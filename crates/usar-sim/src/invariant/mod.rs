@@ -92,6 +92,8 @@ pub struct Invariants {
     /// Top speed of the fastest robot of each layer, ground and air, in metres per second. It may push
     /// others.
     fastest: [f32; 2],
+    /// The least energy and HP that a robot may have, in percent.
+    least: [f64; 2],
     time_s: f64,
     before: Vec<Before>,
     /// The state of each rescuee by the events.
@@ -120,6 +122,7 @@ impl Invariants {
         Self {
             dt: model.dt,
             fastest: [fastest(false), fastest(true)],
+            least: [if model.mission.goes_on_empty { f64::NEG_INFINITY } else { 0.0 }, 0.0],
             time_s: 0.0,
             before: world.robots.iter().map(before).collect(),
             rescuees: world.rescuees.iter().map(|rescuee| rescuee.state).collect(),
@@ -271,10 +274,12 @@ impl Invariants {
         if !robot.position.is_finite() || !robot.velocity.is_finite() {
             return fail(format!("position {}, velocity {}", robot.position, robot.velocity));
         }
-        for (name, now, then) in
-            [("energy", robot.energy, before.levels[0]), ("HP", robot.hp, before.levels[1])]
-        {
-            if !(0.0..=100.0).contains(&now) {
+        let [least_energy, least_hp] = self.least;
+        for (name, now, then, least) in [
+            ("energy", robot.energy, before.levels[0], least_energy),
+            ("HP", robot.hp, before.levels[1], least_hp),
+        ] {
+            if !(least..=100.0).contains(&now) {
                 return fail(format!("{name} {now} %"));
             }
             let has_rested = || events.contains(&Event::RestEnded { robot: robot.id });

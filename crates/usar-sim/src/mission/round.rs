@@ -39,7 +39,8 @@ pub fn unfit_cause(rules: &MissionModel, robot: &Fitness) -> Option<TurnBackCaus
 #[must_use]
 pub fn turn_back_cause(rules: &MissionModel, energy: f64, hp: f64, way_cost: f64) -> Option<TurnBackCause> {
     let at_once = |low: LowLevel, level: f64| low.turn_back == TurnBack::AtOnce && level < low.threshold;
-    if at_once(rules.low_energy, energy) || energy < rules.rest_reserve * way_cost {
+    let keeps_reserve = rules.low_energy.turn_back != TurnBack::AfterRound;
+    if at_once(rules.low_energy, energy) || keeps_reserve && energy < rules.rest_reserve * way_cost {
         Some(TurnBackCause::Energy)
     } else if at_once(rules.low_hp, hp) {
         Some(TurnBackCause::Hp)
@@ -168,6 +169,7 @@ mod tests {
         assert_eq!(cause(TurnBack::AtOnce, 30.0, 30.0, 1.0), None);
         assert_eq!(cause(TurnBack::WhenHome, 10.0, 10.0, 1.0), None);
         assert_eq!(cause(TurnBack::WhenHome, 10.0, 10.0, 7.0), Some(TurnBackCause::Energy));
+        assert_eq!(cause(TurnBack::AfterRound, 1.0, 1.0, 7.0), None, "no reserve calls it back");
     }
 
     #[test]
@@ -180,6 +182,7 @@ mod tests {
         assert!(fit(TurnBack::AtOnce, 30.0, 50.0));
         assert!(!fit(TurnBack::AtOnce, 29.0, 0.0));
         assert!(!fit(TurnBack::WhenHome, 29.0, 0.0));
+        assert!(!fit(TurnBack::AfterRound, 29.0, 0.0));
         assert!(!fit(TurnBack::BeforeRound, 60.0, 40.0));
         assert!(fit(TurnBack::BeforeRound, 75.0, 40.0));
         assert_eq!(cause(TurnBack::BeforeRound, 98.0, 90.0, false), Some(TurnBackCause::Energy));

@@ -6,7 +6,8 @@ use rne_core::GroupSizes;
 use crate::geometry::vector;
 use crate::ids::RobotId;
 use crate::scenario::{
-    BeliefSharing, EmptyTasks, Errand, LoadAtRest, MissionRules, RestAtHome, RestFills, RoundEnd, TurnBack,
+    BeliefSharing, EmptyBattery, EmptyTasks, Errand, LoadAtRest, MissionRules, RestAtHome, RestFills,
+    RoundEnd, TurnBack,
 };
 
 /// When a robot with a low level needs rest.
@@ -25,6 +26,8 @@ pub struct MissionModel {
     pub low_energy: LowLevel,
     /// When a robot with little HP needs rest.
     pub low_hp: LowLevel,
+    /// Whether a robot goes on when its battery is empty.
+    pub goes_on_empty: bool,
     /// A robot turns back when its energy is less than this many times what the way to its rest place costs.
     pub rest_reserve: f64,
     /// Steps of a rest, and of a rest twice as long.
@@ -70,6 +73,7 @@ impl MissionModel {
         Self {
             low_energy: LowLevel { threshold: rules.energy_threshold, turn_back: rules.energy_turn_back },
             low_hp: LowLevel { threshold: rules.hp_threshold, turn_back: rules.hp_turn_back },
+            goes_on_empty: rules.empty_battery == EmptyBattery::GoesOn,
             rest_reserve: rules.rest_reserve,
             rest_steps: [steps(rules.rest_s), steps(2.0 * rules.rest_s)],
             rest_fills: rules.rest_fills,

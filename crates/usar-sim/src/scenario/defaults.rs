@@ -6,9 +6,9 @@ use rne_core::GroupSizes;
 use rne_core::hierarchy::NeedLevel;
 
 use super::file::{
-    BeliefSharing, CostUnit, Costs, EmptyTasks, InitialLevels, LoadAtRest, Measure, MissionRules, Movable,
-    NeedFile, Normal, PlanningRules, RestAtHome, RestFills, RightOfWay, RoleFile, RoleKind, RoundEnd,
-    TurnBack,
+    BeliefSharing, CostUnit, Costs, EmptyBattery, EmptyTasks, InitialLevels, LoadAtRest, Measure,
+    MissionRules, Movable, NeedFile, Normal, PlanningRules, RestAtHome, RestFills, RightOfWay, RoleFile,
+    RoleKind, RoundEnd, TurnBack,
 };
 use crate::vitals::{Rates, WorkRates};
 
@@ -88,6 +88,7 @@ impl Default for MissionRules {
             hp_threshold: 30.0,
             energy_turn_back: TurnBack::AtOnce,
             hp_turn_back: TurnBack::AtOnce,
+            empty_battery: EmptyBattery::Stops,
             rest_reserve: 1.5,
             rest_s: 30.0,
             rest_fills: RestFills::Both,

@@ -66,6 +66,18 @@ pub enum TurnBack {
     WhenHome,
     /// Before a round at whose end it would be below, judged by its costliest round so far.
     BeforeRound,
+    /// Once it is home, and for energy nothing calls it back earlier: `rest_reserve` does not count.
+    AfterRound,
+}
+
+/// What becomes of a robot whose battery is empty.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+pub enum EmptyBattery {
+    /// It stops where it is, for good. The default.
+    #[default]
+    Stops,
+    /// It goes on as before, and its level falls below 0. Needs of energy are never below 0.
+    GoesOn,
 }
 
 /// What a rest restores.
@@ -142,8 +154,10 @@ pub struct MissionRules {
     pub energy_turn_back: TurnBack,
     /// When a robot with little health turns back.
     pub hp_turn_back: TurnBack,
+    /// What becomes of a robot whose battery is empty.
+    pub empty_battery: EmptyBattery,
     /// A robot also turns back when its energy is less than this many times what the straight way to its rest
-    /// place costs.
+    /// place costs; not if `energy_turn_back` is `AfterRound`.
     pub rest_reserve: f64,
     /// Time at a rest place, in seconds.
     pub rest_s: f64,

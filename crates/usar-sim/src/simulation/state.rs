@@ -5,7 +5,7 @@ use std::sync::Arc;
 use parry2d::math::Vector;
 use serde::{Deserialize, Serialize};
 
-use super::charge::{last_event, spend};
+use super::charge::{bearable, last_event, spend};
 use super::moments::Moments;
 use crate::belief::Beliefs;
 use crate::conflict::{self, Delay, MANY_ROBOTS, Mover, PriorityKey, Resolver};
@@ -238,12 +238,12 @@ impl State {
                 continue;
             }
             let [energy, hp] = step_costs(model, agent, robot, speed, zones);
-            let energy = unit.to_percent(energy, robot.spec.energy).min(robot.energy);
-            let hp = unit.to_percent(hp, robot.spec.hp).min(robot.hp);
+            let percent = [unit.to_percent(energy, robot.spec.energy), unit.to_percent(hp, robot.spec.hp)];
+            let [energy, hp] = bearable(robot, percent, &model.mission);
             if energy > 0.0 || hp > 0.0 {
                 spend(robot, [energy, hp], unit, metrics);
             }
-            self.log.extend(last_event(robot));
+            self.log.extend(last_event(robot, &model.mission));
         }
     }
 

@@ -4,7 +4,7 @@ use parry2d::query::distance;
 use rne_core::TaskId;
 
 use super::State;
-use super::charge::{last_event, spend};
+use super::charge::{bearable, last_event, spend};
 use crate::event::Event;
 use crate::geometry::Outline;
 use crate::ids::RobotId;
@@ -138,15 +138,15 @@ impl State {
 
     /// Takes energy and HP from a robot that can still act. A robot whose energy or HP reaches 0 stays where
     /// it is.
-    fn lose(&mut self, id: RobotId, [energy, hp]: [f64; 2], model: &Model) {
+    fn lose(&mut self, id: RobotId, levels: [f64; 2], model: &Model) {
         let robot = &mut self.world.robots[id.index()];
         if !robot.is_able() {
             return;
         }
-        let (energy, hp) = (energy.min(robot.energy), hp.min(robot.hp));
+        let [energy, hp] = bearable(robot, levels, &model.mission);
         self.log.push(Event::Damaged { robot: id, energy, hp });
         spend(robot, [energy, hp], model.costs.unit, &mut self.listeners.metrics);
-        self.log.extend(last_event(robot));
+        self.log.extend(last_event(robot, &model.mission));
         self.sent.push(oneself::report(robot, self.step));
     }
 }
