@@ -43,7 +43,7 @@ Example:
   just grid random-32-32-20.map room-32-32-4.map --robots 100";
 
 pub fn run(arguments: &[String]) -> ExitCode {
-    std::panic::set_hook(Box::new(|_| {})); // a triangulation that fails is tried again with other outlines
+    super::silence_triangulations();
     let name = std::iter::once("grid".to_owned());
     match Options::parse_from(name.chain(arguments.iter().cloned())).run() {
         Ok(()) => ExitCode::SUCCESS,

@@ -20,6 +20,17 @@ pub mod worlds;
 
 use std::path::PathBuf;
 
+/// From now on, a panic of the library of triangulations prints nothing: the planner catches it and tries again with
+/// other outlines.
+fn silence_triangulations() {
+    let others = std::panic::take_hook();
+    std::panic::set_hook(Box::new(move |panic| {
+        if !panic.location().is_some_and(|place| place.file().contains("/spade-")) {
+            others(panic);
+        }
+    }));
+}
+
 /// The program `usar` that was built into the same folder as this one.
 fn usar() -> PathBuf {
     std::env::current_exe().expect("this program has a path").with_file_name("usar")
