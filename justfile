@@ -4,6 +4,14 @@
 ci:
     bash .ci/run
 
+# All that CI checks, and what takes longer than it may: the page of the laboratory, built from nothing and tried in Node and in a browser
+ci-full: ci
+    bash .ci/lab --test
+
+# The laboratory in one page: target/lab/usar-lab.html (docs/lab.md); installs Debian's rustc-web and rust-web-src
+lab:
+    bash .ci/lab
+
 # 100 seeds of paper.ron under all five policies: nobody stuck, nothing lost, no number undefined
 soak:
     cargo run --release --package xtask -- soak
