@@ -1,41 +1,152 @@
-//! The readings of the paper's mission that a calibration compares, a design of experiments for them, and
-//! the conclusions from its runs.
+//! The readings of the paper's mission that a calibration compares, and the starts of its search.
 //!
-//! There are 3 x 2^7 = 384 combinations, of which the screening fits 24. For each of the three kinds of
-//! rest, it fits an eighth of the other 128 combinations (a fractional factorial of resolution III, with
-//! other signs for each kind of rest). The levels of each factor therefore occur in equally many runs with
-//! each kind of rest, and no other single factor biases the mean over a level's runs.
+//! When a tired robot rests is the question; every [`Reading`] answers it. Whatever else the paper leaves open is
+//! drawn anew for each start, the same for every reading: a level of each [`Factor`], all levels equally often, and
+//! values of the free parameters from a Latin hypercube (McKay, Beckman and Conover 1979).
 
-use std::fmt;
 use std::path::Path;
 
-/// A reading of the mission: the field of the scenario and its possible values.
-pub struct Factor {
-    /// Path of the field.
-    pub field: &'static str,
-    /// Its values; the current one comes first.
-    pub levels: &'static [&'static str],
+use experiments::explore::Parameter;
+use rand::SeedableRng;
+use rand::rngs::ChaCha8Rng;
+use rand::seq::SliceRandom;
+use ron_tree::{Node, edited};
+
+/// Starts of each reading.
+pub const STARTS: usize = 32;
+
+/// When a tired robot rests.
+pub struct Reading {
+    /// Its name.
+    pub name: &'static str,
+    /// Values of `mission.energy_turn_back`, `mission.hp_turn_back` and `mission.empty_battery`.
+    rules: [&'static str; 3],
 }
 
-/// The readings, in the order of the table. The last one is not a field: it says whether work has a cost.
-/// The amount is then fitted.
-pub const FACTORS: [Factor; 8] = [
-    Factor { field: "mission.rest_fills", levels: &["Both", "Low", "InTurn"] },
-    Factor { field: "costs.unit", levels: &["Percent", "Points"] },
-    Factor { field: "mission.energy_turn_back", levels: &["AtOnce", "WhenHome"] },
-    Factor { field: "mission.hp_turn_back", levels: &["AtOnce", "WhenHome"] },
-    Factor { field: "mission.resting_guides", levels: &["true", "false"] },
-    Factor { field: "mission.rest_at_home", levels: &["DuringRound", "BeforeRound"] },
-    Factor { field: "mission.load_at_rest", levels: &["Delivered", "Kept"] },
-    Factor { field: WORK, levels: &["free", "costs"] },
+/// The readings, that of the second edition first.
+pub const READINGS: [Reading; 6] = [
+    Reading { name: "at-once", rules: ["AtOnce", "AtOnce", "Stops"] },
+    Reading { name: "when-home", rules: ["WhenHome", "AtOnce", "Stops"] },
+    Reading { name: "after-round-stops", rules: ["AfterRound", "AtOnce", "Stops"] },
+    Reading { name: "after-round", rules: ["AfterRound", "AtOnce", "GoesOn"] },
+    Reading { name: "after-round-both-stops", rules: ["AfterRound", "AfterRound", "Stops"] },
+    Reading { name: "after-round-both", rules: ["AfterRound", "AfterRound", "GoesOn"] },
 ];
 
-const WORK: &str = "work";
+/// Something else that the paper leaves open, with its possible values.
+pub struct Factor {
+    /// Its name: the path of a field, or what stands for several.
+    pub name: &'static str,
+    levels: &'static [Level],
+}
 
-/// Parameters that are free in every run.
-const FREE: [&str; 8] = [
+/// A value of a factor: its name, the fields that it sets, and the parameters that it frees.
+struct Level {
+    name: &'static str,
+    sets: &'static [(&'static str, &'static str)],
+    frees: &'static [&'static str],
+}
+
+const fn level(name: &'static str, sets: &'static [(&'static str, &'static str)]) -> Level {
+    Level { name, sets, frees: &[] }
+}
+
+/// The factors.
+pub const FACTORS: [Factor; 8] = [
+    Factor {
+        name: "mission.rest_fills",
+        levels: &[
+            level("Both", &[("mission.rest_fills", "Both")]),
+            level("Low", &[("mission.rest_fills", "Low")]),
+            level("InTurn", &[("mission.rest_fills", "InTurn")]),
+        ],
+    },
+    Factor {
+        name: "costs.unit",
+        levels: &[
+            level("Percent", &[("costs.unit", "Percent")]),
+            level("Points", &[("costs.unit", "Points")]),
+        ],
+    },
+    Factor {
+        name: "costs.energy",
+        levels: &[
+            Level {
+                name: "per_metre",
+                sets: &[("costs.energy.per_step", "0.0"), ("costs.energy.per_second", "0.0")],
+                frees: &["costs.energy.per_metre = 0.1..1.5 log"],
+            },
+            Level {
+                name: PER_STEP,
+                sets: &[("costs.energy.per_metre", "0.0"), ("costs.energy.per_second", "0.0")],
+                // In steps of 0.04 s: 0.25 to 7.5 in a second of moving.
+                frees: &["costs.energy.per_step = 0.01..0.3 log"],
+            },
+            Level {
+                name: "per_second",
+                sets: &[("costs.energy.per_metre", "0.0"), ("costs.energy.per_step", "0.0")],
+                frees: &["costs.energy.per_second = 0.2..5 log"],
+            },
+        ],
+    },
+    Factor {
+        name: "a group brings",
+        levels: &[
+            level("20", &[]),
+            level("15 by resources", &[("roles.supplier.resources", "6")]),
+            level("14 by capacity", &[("roles.carrier.capacity", "4")]),
+        ],
+    },
+    Factor {
+        name: "mission.resting_guides",
+        levels: &[
+            level("true", &[("mission.resting_guides", "true")]),
+            level("false", &[("mission.resting_guides", "false")]),
+        ],
+    },
+    Factor {
+        name: "mission.rest_at_home",
+        levels: &[
+            level("DuringRound", &[("mission.rest_at_home", "DuringRound")]),
+            level("BeforeRound", &[("mission.rest_at_home", "BeforeRound")]),
+        ],
+    },
+    Factor {
+        name: "mission.load_at_rest",
+        levels: &[
+            level("Delivered", &[("mission.load_at_rest", "Delivered")]),
+            level("Kept", &[("mission.load_at_rest", "Kept")]),
+        ],
+    },
+    Factor {
+        name: "work",
+        levels: &[
+            level(
+                "free",
+                &[
+                    ("costs.work.energy_per_second", "0.0"),
+                    ("costs.work.hp_per_second", "0.0"),
+                    ("mission.load_speed_loss", "0.0"),
+                ],
+            ),
+            Level {
+                name: "costs",
+                sets: &[],
+                frees: &[
+                    "costs.work.energy_per_second = 0..2",
+                    "costs.work.hp_per_second = 0..0.5",
+                    "mission.load_speed_loss = 0..0.6",
+                ],
+            },
+        ],
+    },
+];
+
+const PER_STEP: &str = "per_step";
+
+/// Parameters that are free in every start.
+const FREE: [&str; 7] = [
     "roles.carrier.speed_mps + roles.supplier.speed_mps + roles.observer.speed_mps*0.666666667 = 1.5..6",
-    "costs.energy.per_metre = 0.1..1.5 log",
     "radiation[*].radius_m = 3..25",
     "costs.hp.per_second = 0.02..5 log",
     "planning.exposure_price_m = 0..3",
@@ -44,171 +155,128 @@ const FREE: [&str; 8] = [
     "mission.rest_reserve = 1..3",
 ];
 
-/// Parameters that are free if work has a cost.
-const FREE_WORK: [(&str, &str); 3] = [
-    ("costs.work.energy_per_second", "0..2"),
-    ("costs.work.hp_per_second", "0..0.5"),
-    ("mission.load_speed_loss", "0..0.6"),
-];
-
 /// One level of each factor.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Combination([usize; FACTORS.len()]);
+pub struct Details([usize; FACTORS.len()]);
 
-impl Combination {
+impl Details {
+    /// The details of a start, the same for every reading. Over all starts each level of a factor occurs equally
+    /// often, as far as their number allows.
+    #[must_use]
+    pub fn of_start(start: usize) -> Self {
+        Self(std::array::from_fn(|factor| shuffled(factor)[start] % FACTORS[factor].levels.len()))
+    }
+
+    /// Names of the levels, in the order of the factors.
+    pub fn names(&self) -> impl Iterator<Item = &'static str> {
+        self.levels().map(|level| level.name)
+    }
+
+    fn levels(self) -> impl Iterator<Item = &'static Level> {
+        FACTORS.iter().zip(self.0).map(|(factor, level)| &factor.levels[level])
+    }
+
+    /// Whether energy is charged by the step, so that another length of the step needs another cost.
+    #[must_use]
+    pub fn are_per_step(self) -> bool {
+        self.levels().any(|level| level.name == PER_STEP)
+    }
+
     /// The free parameters, as arguments of `usar study yang2021 calibrate`.
-    pub fn free(&self) -> Vec<String> {
-        let mut free: Vec<String> = FREE.iter().map(|free| (*free).to_owned()).collect();
-        if self.work_costs() {
-            free.extend(FREE_WORK.iter().map(|(field, range)| format!("{field} = {range}")));
-        }
-        free
+    #[must_use]
+    pub fn free(self) -> Vec<&'static str> {
+        let of_levels = self.levels().flat_map(|level| level.frees.iter().copied());
+        FREE.into_iter().chain(of_levels).collect()
     }
 
-    /// The fixed settings, as arguments of `usar study yang2021 calibrate`.
-    pub fn settings(&self) -> Vec<String> {
-        let fields = FACTORS.iter().zip(self.0).filter(|(factor, _)| factor.field != WORK);
-        let mut settings: Vec<String> =
-            fields.map(|(factor, level)| format!("{}={}", factor.field, factor.levels[level])).collect();
-        if !self.work_costs() {
-            settings.extend(FREE_WORK.iter().map(|(field, _)| format!("{field}=0.0")));
-        }
-        settings
-    }
-
-    fn work_costs(&self) -> bool {
-        self.0[FACTORS.len() - 1] == 1
-    }
-
-    /// Number of factors in which two combinations differ.
-    fn differences(&self, other: &Self) -> usize {
-        self.0.iter().zip(other.0).filter(|(a, b)| **a != *b).count()
-    }
-
-    /// All combinations.
-    fn all() -> impl Iterator<Item = Self> {
-        let count: usize = FACTORS.iter().map(|factor| factor.levels.len()).product();
-        (0..count).map(|mut rest| {
-            Self(std::array::from_fn(|at| {
-                let levels = FACTORS[at].levels.len();
-                let level = rest % levels;
-                rest /= levels;
-                level
-            }))
-        })
+    /// The fixed settings of this start under a reading: paths and values.
+    #[must_use]
+    pub fn settings(self, reading: &Reading) -> Vec<(&'static str, &'static str)> {
+        let fields = ["mission.energy_turn_back", "mission.hp_turn_back", "mission.empty_battery"];
+        let rules = fields.into_iter().zip(reading.rules);
+        rules.chain(self.levels().flat_map(|level| level.sets.iter().copied())).collect()
     }
 }
 
-impl fmt::Display for Combination {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        let levels: Vec<&str> =
-            FACTORS.iter().zip(self.0).map(|(factor, level)| factor.levels[level]).collect();
-        f.write_str(&levels.join(" "))
+/// The text of a scenario from which a start begins: its free parameters have values of the Latin hypercube.
+///
+/// # Panics
+/// The scenario does not have the fields.
+#[must_use]
+pub fn text_of_start(text: &str, start: usize) -> String {
+    let tree = Node::parse(text).expect("a scenario");
+    let free = Details::of_start(start).free();
+    let parameters =
+        free.iter().map(|spec| Parameter::parse(spec, &tree, &tree).expect("a field of the start"));
+    let mut settings = Vec::new();
+    for (number, parameter) in parameters.enumerate() {
+        // Factors have the first streams. A start is in the middle of its share of the range.
+        let share = (shuffled(FACTORS.len() + number)[start] as f64 + 0.5) / STARTS as f64;
+        let value = parameter.value(share);
+        settings.extend(parameter.settings(value).map(|(path, value)| (path.to_owned(), value)));
     }
+    edited(text, &settings).expect("each field is written")
 }
 
-/// The 24 combinations of the screening.
-pub fn screening() -> Vec<Combination> {
-    // For each kind of rest: which of the four products of the first three factors have inverted signs.
-    let turned = [[0, 0, 0, 0], [1, 1, 1, 0], [0, 1, 0, 1]];
-    let mut runs = Vec::new();
-    for (rest, [ab, ac, bc, abc]) in turned.into_iter().enumerate() {
-        for i in 0..8_usize {
-            let [a, b, c] = [i & 1, i >> 1 & 1, i >> 2 & 1];
-            runs.push(Combination([rest, a, b, c, a ^ b ^ ab, a ^ c ^ ac, b ^ c ^ bc, a ^ b ^ c ^ abc]));
-        }
-    }
-    runs
+/// The numbers of all starts, in an order of their own for each stream.
+fn shuffled(stream: usize) -> Vec<usize> {
+    let mut draws = ChaCha8Rng::seed_from_u64(2026);
+    draws.set_stream(stream as u64);
+    let mut numbers: Vec<usize> = (0..STARTS).collect();
+    numbers.shuffle(&mut draws);
+    numbers
 }
 
-/// A fitted combination.
+/// A fitted start.
 pub struct Run {
-    /// Name of its folder.
-    pub name: String,
-    /// Its readings.
-    pub combination: Combination,
+    /// Place of its reading.
+    pub reading: usize,
+    /// Its start.
+    pub start: usize,
     /// The least misfit of its calibration.
     pub misfit: f64,
 }
 
-impl fmt::Display for Run {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        write!(f, "{}, misfit {:.1}: {}", self.name, self.misfit, self.combination)
-    }
-}
-
-/// For each level of each factor: the mean logarithm of the misfit over the runs with this level, minus the
-/// mean over all runs.
-fn effects(runs: &[Run]) -> Vec<Vec<f64>> {
-    let mean = |runs: &mut dyn Iterator<Item = &Run>| {
-        let (sum, count) = runs.fold((0.0, 0.0), |(sum, count), run| (sum + run.misfit.ln(), count + 1.0));
-        sum / count
-    };
-    let all = mean(&mut runs.iter());
-    let effect =
-        |at: usize, level: usize| mean(&mut runs.iter().filter(|run| run.combination.0[at] == level)) - all;
-    FACTORS
-        .iter()
-        .enumerate()
-        .map(|(at, factor)| (0..factor.levels.len()).map(|level| effect(at, level)).collect())
-        .collect()
-}
-
-/// The six combinations that are fitted further: the three with the least misfit in the screening, and the
-/// three of all 384 with the least predicted misfit (sum of the effects). Each comes with its starting run
-/// of the screening: the run that differs in the fewest readings, and among these the one with the least
-/// misfit.
-///
-/// # Panics
-/// There are no runs.
-pub fn finalists(runs: &[Run]) -> Vec<(Combination, &Run)> {
-    let mut measured: Vec<&Run> = runs.iter().collect();
-    measured.sort_by(|a, b| a.misfit.total_cmp(&b.misfit));
-    let mut chosen: Vec<Combination> = measured.iter().take(3).map(|run| run.combination).collect();
-    let effects = effects(runs);
-    let promised = |combination: &Combination| -> f64 {
-        combination.0.iter().zip(&effects).map(|(level, effects)| effects[*level]).sum()
-    };
-    let mut all: Vec<Combination> = Combination::all().collect();
-    all.sort_by(|a, b| promised(a).total_cmp(&promised(b)));
-    let new: Vec<Combination> = all.into_iter().filter(|one| !chosen.contains(one)).take(3).collect();
-    chosen.extend(new);
-    let start = |combination: &Combination| {
-        let nearest = measured.iter().min_by_key(|run| run.combination.differences(combination));
-        *nearest.expect("a screening has runs")
-    };
-    chosen.into_iter().map(|combination| (combination, start(&combination))).collect()
-}
-
-/// Writes the runs as a table.
+/// Writes the runs as a table, with the least misfit of each and its details.
 ///
 /// # Panics
 /// The disk does not take it.
-pub fn write_screening(path: &Path, runs: &[Run]) {
+pub fn write_starts(path: &Path, runs: &[Run]) {
     let mut table = csv::Writer::from_path(path).expect("the folder takes a table");
-    let header = ["run", "misfit"].into_iter().chain(FACTORS.iter().map(|factor| factor.field));
+    let header = ["reading", "start", "misfit"].into_iter().chain(FACTORS.iter().map(|factor| factor.name));
     table.write_record(header).expect("the folder takes a table");
-    for run in runs {
-        let levels =
-            FACTORS.iter().zip(run.combination.0).map(|(factor, level)| factor.levels[level].to_owned());
-        let cells = [run.name.clone(), run.misfit.to_string()].into_iter().chain(levels);
-        table.write_record(cells).expect("the folder takes a table");
+    for Run { reading, start, misfit } in runs {
+        let names = Details::of_start(*start);
+        let cells = [READINGS[*reading].name.to_owned(), (start + 1).to_string(), format!("{misfit:.2}")];
+        table
+            .write_record(cells.into_iter().chain(names.names().map(str::to_owned)))
+            .expect("the same folder");
     }
     table.flush().expect("the folder takes a table");
 }
 
-/// Writes the factor by which each level of each factor multiplies the misfit.
-///
-/// # Panics
-/// The disk does not take it.
-pub fn write_effects(path: &Path, runs: &[Run]) {
-    let mut table = csv::Writer::from_path(path).expect("the folder takes a table");
-    table.write_record(["field", "level", "factor_on_misfit"]).expect("the folder takes a table");
-    for (factor, effects) in FACTORS.iter().zip(effects(runs)) {
-        for (level, effect) in factor.levels.iter().zip(effects) {
-            let cells = [factor.field, level, &format!("{:.3}", effect.exp())];
-            table.write_record(cells).expect("the folder takes a table");
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_level_of_a_factor_occurs_equally_often() {
+        let details: Vec<Details> = (0..STARTS).map(Details::of_start).collect();
+        for (place, factor) in FACTORS.iter().enumerate() {
+            let levels = factor.levels.len();
+            for level in 0..levels {
+                let count = details.iter().filter(|one| one.0[place] == level).count();
+                assert!(count.abs_diff(STARTS / levels) <= 1, "{} {level}: {count}", factor.name);
+            }
         }
     }
-    table.flush().expect("the folder takes a table");
+
+    #[test]
+    fn a_start_has_its_own_values_within_their_ranges() {
+        let text = include_str!("../../../docs/calibration/start.ron");
+        let [first, second] = [0, 1].map(|start| Node::parse(&text_of_start(text, start)).unwrap());
+        let speed = |tree: &Node| tree.get("mission.loading_s").unwrap().to_string().parse::<f64>().unwrap();
+        assert!((0.5..8.0).contains(&speed(&first)) && (0.5..8.0).contains(&speed(&second)));
+        assert!((speed(&first) - speed(&second)).abs() > 0.1);
+    }
 }

@@ -1,79 +1,113 @@
-//! The calibration of the paper's world, from the design of its readings to the choice: see
-//! docs/calibration.md.
+//! The calibration of the paper's world, from the starts of its readings to the choice: see docs/calibration.md.
 //!
 //! `calibration [OUT]`, with `usar` built in the same profile. An interrupted calibration resumes.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
 
-use xtask::calibration::{Combination, FACTORS, Run, finalists, screening};
+use ron_tree::{Node, edited};
+use xtask::calibration::{Details, READINGS, Reading, Run, STARTS, text_of_start, write_starts};
 
 const TARGET: &str = "scenarios/reference/dis_trials.csv";
 const START: &str = "docs/calibration/start.ron";
 
+/// A coarser step, few trials and few candidates are enough to find out where a start leads.
+const QUICK: &str = "--trials 4 --evaluations 48 --first-step 0.1 --fresh-trials 2";
+const QUICK_STEP_S: &str = "0.04";
+
+/// The best starts of each reading are fitted further.
+const FINALISTS: usize = 2;
+const WHOLE: &str = "--trials 10 --evaluations 80 --first-step 0.03";
+const WHOLE_STEP_S: &str = "0.02";
+
+/// Seeds that no earlier fit, choice or claim has used.
+const FRESH_SEED: &str = "400001";
+
 pub fn run(arguments: &[String]) -> ExitCode {
     let out = Path::new(arguments.first().map_or("results/calibration", String::as_str));
+    let start = std::fs::read_to_string(START).expect("run from the project's root");
     let mut runs: Vec<Run> = Vec::new();
-    for (i, combination) in screening().into_iter().enumerate() {
-        let name = format!("screening-{:02}", i + 1);
-        let folder = out.join(&name);
-        if !folder.join("fit.csv").exists() {
-            // A coarser step, few trials and few candidates are enough here to find out which readings fit
-            // better.
-            let quick = "--trials 6 --evaluations 80 --first-step 0.05 --fresh-trials 2 --set dt_s=0.04";
-            calibrate(Path::new(START), &folder, &combination, quick);
+    for start_number in 0..STARTS {
+        for (place, reading) in READINGS.iter().enumerate() {
+            let folder = out.join("starts").join(format!("{}-{:02}", reading.name, start_number + 1));
+            let text = text_of_start(&start, start_number);
+            calibrate(&text, &folder, reading, start_number, [QUICK, QUICK_STEP_S]);
+            let misfit = least_misfit(&folder);
+            runs.push(Run { reading: place, start: start_number, misfit });
+            println!("{}: {misfit:.1}", folder.display());
         }
-        runs.push(Run { name, misfit: least_misfit(&folder), combination });
-        println!("{}", runs.last().expect("one was pushed"));
+        write_starts(&out.join("starts.csv"), &runs);
     }
-    xtask::calibration::write_screening(&out.join("screening.csv"), &runs);
-    xtask::calibration::write_effects(&out.join("effects.csv"), &runs);
+    let folders = finals(out, &runs);
+    choose(out, &folders);
+    ExitCode::SUCCESS
+}
+
+/// Fits the best starts of each reading further.
+fn finals(out: &Path, runs: &[Run]) -> Vec<PathBuf> {
     let mut folders = Vec::new();
-    for (i, (combination, nearest)) in finalists(&runs).into_iter().enumerate() {
-        let folder = out.join(format!("final-{}", i + 1));
-        if !folder.join("fit.csv").exists() {
-            let start = out.join(&nearest.name).join("calibrated.ron");
-            let whole = "--trials 10 --evaluations 80 --first-step 0.03 --set dt_s=0.02";
-            calibrate(&start, &folder, &combination, whole);
+    for (place, reading) in READINGS.iter().enumerate() {
+        let mut best: Vec<&Run> = runs.iter().filter(|run| run.reading == place).collect();
+        best.sort_by(|a, b| a.misfit.total_cmp(&b.misfit));
+        for (rank, run) in best.into_iter().take(FINALISTS).enumerate() {
+            let name = format!("{}-{:02}", reading.name, run.start + 1);
+            let text = std::fs::read_to_string(out.join("starts").join(name).join("calibrated.ron"));
+            let text = with_short_steps(&text.expect("a finished calibration"), run.start);
+            let folder = out.join("finals").join(format!("{}-{}", reading.name, rank + 1));
+            calibrate(&text, &folder, reading, run.start, [WHOLE, WHOLE_STEP_S]);
+            println!("{}, from start {}: {:.1}", folder.display(), run.start + 1, least_misfit(&folder));
+            folders.push(folder);
         }
-        println!(
-            "final-{}, from {}, misfit {:.1}: {combination}",
-            i + 1,
-            nearest.name,
-            least_misfit(&folder)
-        );
-        folders.push(folder);
     }
+    folders
+}
+
+/// The same world in steps of half the length: a cost of a step is half as large.
+fn with_short_steps(text: &str, start: usize) -> String {
+    const FIELD: &str = "costs.energy.per_step";
+    if !Details::of_start(start).are_per_step() {
+        return text.to_owned();
+    }
+    let tree = Node::parse(text).expect("a scenario that was run");
+    let cost: f64 = tree.get(FIELD).and_then(|node| node.to_string().parse().ok()).expect("a number");
+    edited(text, &[(FIELD.to_owned(), format!("{:?}", cost / 2.0))]).expect("it is written")
+}
+
+fn choose(out: &Path, folders: &[PathBuf]) {
     let csv = out.join("choice.csv");
     let status = Command::new(super::usar())
         .args(["study", "yang2021", "calibrate", "--choose"])
-        .args(&folders)
-        .args(["--target", TARGET, "--quiet", "--out"])
+        .args(folders)
+        .args(["--target", TARGET, "--first-seed", FRESH_SEED, "--quiet", "--out"])
         .arg(&csv)
         .status()
         .expect("usar can be started");
     assert!(status.success(), "--choose: {status}");
-    xtask::calibrated::write_worlds(&csv, &folders);
-    ExitCode::SUCCESS
+    xtask::calibrated::write_worlds(&csv, folders);
 }
 
-/// Fits one combination of readings.
-fn calibrate(start: &Path, folder: &Path, combination: &Combination, more: &str) {
+/// Fits a start under a reading, unless the folder has the result.
+fn calibrate(text: &str, folder: &Path, reading: &Reading, start: usize, [how, step_s]: [&str; 2]) {
+    if folder.join("fit.csv").exists() {
+        return;
+    }
+    let file = folder.with_extension("ron");
+    std::fs::create_dir_all(folder).expect("the folder can be made");
+    std::fs::write(&file, text).expect("the folder takes a file");
+    let details = Details::of_start(start);
     let mut command = Command::new(super::usar());
-    command
-        .args(["study", "yang2021", "calibrate"])
-        .arg(start)
-        .args(["--target", TARGET, "--quiet", "--out"])
-        .arg(folder);
-    for free in &combination.free() {
-        command.args(["--over", free]);
+    command.args(["study", "yang2021", "calibrate"]).arg(&file);
+    command.args(["--target", TARGET, "--quiet", "--set", &format!("dt_s={step_s}"), "--out"]).arg(folder);
+    for free in details.free() {
+        let halved = step_s == WHOLE_STEP_S && free.starts_with("costs.energy.per_step");
+        command.args(["--over", if halved { "costs.energy.per_step = 0.005..0.15 log" } else { free }]);
     }
-    for setting in combination.settings() {
-        command.args(["--set", &setting]);
+    for (path, value) in details.settings(reading) {
+        command.args(["--set", &format!("{path}={value}")]);
     }
-    let output = command.args(more.split(' ')).output().expect("usar can be started");
+    let output = command.args(how.split(' ')).output().expect("usar can be started");
     let said = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{} of {} readings: {said}", combination, FACTORS.len());
+    assert!(output.status.success(), "{}: {said}", folder.display());
 }
 
 /// The least misfit in the log of a calibration.
