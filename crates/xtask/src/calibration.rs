@@ -77,10 +77,10 @@ pub const FACTORS: [Factor; 8] = [
                 frees: &["costs.energy.per_metre = 0.1..1.5 log"],
             },
             Level {
-                name: PER_STEP,
+                name: "per_step",
                 sets: &[("costs.energy.per_metre", "0.0"), ("costs.energy.per_second", "0.0")],
-                // In steps of 0.04 s: 0.25 to 7.5 in a second of moving.
-                frees: &["costs.energy.per_step = 0.01..0.3 log"],
+                // 0.25 to 7.5 in a second of moving.
+                frees: &["costs.energy.per_step = 0.005..0.15 log"],
             },
             Level {
                 name: "per_second",
@@ -142,8 +142,6 @@ pub const FACTORS: [Factor; 8] = [
     },
 ];
 
-const PER_STEP: &str = "per_step";
-
 /// Parameters that are free in every start.
 const FREE: [&str; 7] = [
     "roles.carrier.speed_mps + roles.supplier.speed_mps + roles.observer.speed_mps*0.666666667 = 1.5..6",
@@ -174,12 +172,6 @@ impl Details {
 
     fn levels(self) -> impl Iterator<Item = &'static Level> {
         FACTORS.iter().zip(self.0).map(|(factor, level)| &factor.levels[level])
-    }
-
-    /// Whether energy is charged by the step, so that another length of the step needs another cost.
-    #[must_use]
-    pub fn are_per_step(self) -> bool {
-        self.levels().any(|level| level.name == PER_STEP)
     }
 
     /// The free parameters, as arguments of `usar study yang2021 calibrate`.

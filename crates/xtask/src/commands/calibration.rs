@@ -5,20 +5,17 @@
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
 
-use ron_tree::{Node, edited};
 use xtask::calibration::{Details, READINGS, Reading, Run, STARTS, text_of_start, write_starts};
 
 const TARGET: &str = "scenarios/reference/dis_trials.csv";
 const START: &str = "docs/calibration/start.ron";
 
-/// A coarser step, few trials and few candidates are enough to find out where a start leads.
+/// Few trials and few candidates are enough to find out where a start leads.
 const QUICK: &str = "--trials 4 --evaluations 48 --first-step 0.1 --fresh-trials 2";
-const QUICK_STEP_S: &str = "0.04";
 
 /// The best starts of each reading are fitted further.
 const FINALISTS: usize = 2;
 const WHOLE: &str = "--trials 10 --evaluations 80 --first-step 0.03";
-const WHOLE_STEP_S: &str = "0.02";
 
 /// Seeds that no earlier fit, choice or claim has used.
 const FRESH_SEED: &str = "400001";
@@ -31,7 +28,7 @@ pub fn run(arguments: &[String]) -> ExitCode {
         for (place, reading) in READINGS.iter().enumerate() {
             let folder = out.join("starts").join(format!("{}-{:02}", reading.name, start_number + 1));
             let text = text_of_start(&start, start_number);
-            calibrate(&text, &folder, reading, start_number, [QUICK, QUICK_STEP_S]);
+            calibrate(&text, &folder, reading, start_number, QUICK);
             let misfit = least_misfit(&folder);
             runs.push(Run { reading: place, start: start_number, misfit });
             println!("{}: {misfit:.1}", folder.display());
@@ -52,25 +49,14 @@ fn finals(out: &Path, runs: &[Run]) -> Vec<PathBuf> {
         for (rank, run) in best.into_iter().take(FINALISTS).enumerate() {
             let name = format!("{}-{:02}", reading.name, run.start + 1);
             let text = std::fs::read_to_string(out.join("starts").join(name).join("calibrated.ron"));
-            let text = with_short_steps(&text.expect("a finished calibration"), run.start);
+            let text = text.expect("a finished calibration");
             let folder = out.join("finals").join(format!("{}-{}", reading.name, rank + 1));
-            calibrate(&text, &folder, reading, run.start, [WHOLE, WHOLE_STEP_S]);
+            calibrate(&text, &folder, reading, run.start, WHOLE);
             println!("{}, from start {}: {:.1}", folder.display(), run.start + 1, least_misfit(&folder));
             folders.push(folder);
         }
     }
     folders
-}
-
-/// The same world in steps of half the length: a cost of a step is half as large.
-fn with_short_steps(text: &str, start: usize) -> String {
-    const FIELD: &str = "costs.energy.per_step";
-    if !Details::of_start(start).are_per_step() {
-        return text.to_owned();
-    }
-    let tree = Node::parse(text).expect("a scenario that was run");
-    let cost: f64 = tree.get(FIELD).and_then(|node| node.to_string().parse().ok()).expect("a number");
-    edited(text, &[(FIELD.to_owned(), format!("{:?}", cost / 2.0))]).expect("it is written")
 }
 
 fn choose(out: &Path, folders: &[PathBuf]) {
@@ -87,7 +73,7 @@ fn choose(out: &Path, folders: &[PathBuf]) {
 }
 
 /// Fits a start under a reading, unless the folder has the result.
-fn calibrate(text: &str, folder: &Path, reading: &Reading, start: usize, [how, step_s]: [&str; 2]) {
+fn calibrate(text: &str, folder: &Path, reading: &Reading, start: usize, how: &str) {
     if folder.join("fit.csv").exists() {
         return;
     }
@@ -97,10 +83,9 @@ fn calibrate(text: &str, folder: &Path, reading: &Reading, start: usize, [how, s
     let details = Details::of_start(start);
     let mut command = Command::new(super::usar());
     command.args(["study", "yang2021", "calibrate"]).arg(&file);
-    command.args(["--target", TARGET, "--quiet", "--set", &format!("dt_s={step_s}"), "--out"]).arg(folder);
+    command.args(["--target", TARGET, "--quiet", "--out"]).arg(folder);
     for free in details.free() {
-        let halved = step_s == WHOLE_STEP_S && free.starts_with("costs.energy.per_step");
-        command.args(["--over", if halved { "costs.energy.per_step = 0.005..0.15 log" } else { free }]);
+        command.args(["--over", free]);
     }
     for (path, value) in details.settings(reading) {
         command.args(["--set", &format!("{path}={value}")]);
