@@ -222,6 +222,7 @@ export class Lab {
     this.table.begin(experiment, this.tasks);
     await experiment.run(this.simulator);
     await this.compare(experiment);
+    this.sayOver(experiment);
     this.choices.setRunning(false);
   }
 
@@ -238,6 +239,12 @@ export class Lab {
     this.choices.progress(part, `${over} of ${trials.length} trials are over.`);
   }
 
+  private sayOver({ pairs, wasCancelled }: Experiment): void {
+    const whole = pairs.filter(({ a, b }) => a.state.kind === 'done' && b.state.kind === 'done');
+    const how = wasCancelled ? 'Cancelled' : 'Done';
+    this.choices.say(`${how}: ${whole.length} of ${pairs.length} pairs are complete.`);
+  }
+
   /** Asks the module what the pairs say together. */
   private async compare(experiment: Experiment): Promise<void> {
     const pairs: CompareQuestion['pairs'] = [];
@@ -248,10 +255,6 @@ export class Lab {
     }
     const missing = experiment.pairs.length - pairs.length;
     const { a, b } = experiment.plan;
-    const all = `${pairs.length} of ${experiment.pairs.length} pairs`;
-    this.choices.say(
-      experiment.wasCancelled ? `Cancelled: ${all} are complete.` : `Done: ${all} are complete.`,
-    );
     if (pairs.length === 0) {
       this.table.say('No pair is complete, so there is nothing to compare.');
       return;

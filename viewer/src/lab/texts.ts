@@ -24,7 +24,7 @@ function decide(question) {
 export class Texts {
   readonly root = element('section', { class: 'panel texts', 'aria-label': 'Texts' });
   /** The tabs; there is room for a button beside them. */
-  readonly bar = element('div', { class: 'bar' });
+  readonly bar = element('div', { class: 'strip' });
   private readonly tabs = element('div', { class: 'tabs', role: 'group', 'aria-label': 'Text' });
   private readonly editor: Editor;
   private problems: readonly Problem[] = [];

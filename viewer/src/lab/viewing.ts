@@ -15,7 +15,7 @@ function rescued({ policy, state }: Trial): string {
 
 export class Viewing {
   readonly root = element('section', { class: 'viewing', 'aria-label': 'Both trials' });
-  private readonly bar = element('header', { class: 'bar' });
+  private readonly bar = element('header', { class: 'strip' });
   private readonly place = element('div', { class: 'viewer' });
   private app: App | null = null;
   /** Counts what is opened, so that a slow recording does not appear in place of a later one. */
