@@ -37,6 +37,19 @@ function placeOf(text: Text, { line, column }: Problem): { from: number; to: num
   return { from: found.from + Math.min(indent, content), to: found.from + Math.max(content, indent) };
 }
 
+/**
+ * Text typed in place of a selection. Browsers would keep the look of what was selected with a style in the
+ * text, which the page does not allow.
+ */
+function replaceSelection(event: InputEvent, view: EditorView): boolean {
+  const { data, inputType, isComposing } = event;
+  if (inputType !== 'insertText' || data === null || isComposing || view.composing) return false;
+  if (view.state.selection.ranges.every(({ empty }) => empty)) return false;
+  event.preventDefault();
+  view.dispatch(view.state.replaceSelection(data), { userEvent: 'input.type', scrollIntoView: true });
+  return true;
+}
+
 export class Editor {
   readonly root: HTMLElement;
   private readonly view: EditorView;
@@ -62,6 +75,7 @@ export class Editor {
       [lineNumbers(), lintGutter(), highlightActiveLine(), highlightActiveLineGutter(), drawSelection()],
       [history(), bracketMatching(), indentUnit.of(isScript ? '  ' : '    '), EditorView.lineWrapping],
       keymap.of([...defaultKeymap, ...historyKeymap, ...lintKeymap]),
+      EditorView.domEventHandlers({ beforeinput: replaceSelection }),
       [isScript ? script : ron, highlighting],
       EditorView.updateListener.of(({ docChanged }) => {
         if (docChanged) this.changed(name);

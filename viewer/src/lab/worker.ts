@@ -23,6 +23,17 @@ async function fresh(): Promise<Module> {
   return Module.make(module);
 }
 
+const channel = new MessageChannel();
+
+/** Lets the browser end this worker, if it is to end. */
+const pause = (): Promise<void> =>
+  new Promise((resolve) => {
+    channel.port1.onmessage = () => {
+      resolve();
+    };
+    channel.port2.postMessage(null);
+  });
+
 /** What the page's own policy says to a question, as the module takes it. */
 function decided(question: unknown): string {
   if (typeof decide !== 'function') throw new Error('There is no function "decide" in the tab "Own policy".');
@@ -59,6 +70,7 @@ async function trial(id: number, spec: TrialSpec): Promise<unknown> {
     }
     progress(advanced.time_s);
     if (advanced.state === 'over') break;
+    await pause();
     if (took < SHORT) steps *= 2;
     else if (took > LONG) steps = Math.max(1, steps >> 1);
   }
