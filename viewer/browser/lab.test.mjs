@@ -263,6 +263,31 @@ test('Cancel frees the workers', async () => {
   await done();
 });
 
+test('a pair is watched while it runs', async () => {
+  const { page, done } = await open();
+  await shorten(page, 86000);
+  await choose(page, { seeds: '1' });
+  await page.click('[aria-label^="Run all"]');
+  await page.click('.pairs .open:not([disabled])');
+  await page.waitForSelector('.viewing .stage');
+  assert.match(await page.textContent('.viewing .caption >> nth=0'), /running/);
+  assert.match(await page.textContent('.viewing strong'), /RNE is still running/);
+  const ends = () => page.evaluate(() => window.usarLab.lab.viewing.viewer.recordings.map(({ end }) => end));
+  const early = await ends();
+  await page.waitForTimeout(1500);
+  const late = await ends();
+  assert.ok(late[0] > early[0] && late[1] > early[1], `${early} ${late}`);
+  await page.click('[aria-label="Go back to the laboratory"]');
+  await page.click('[aria-label="Stop all trials"]');
+  await page.waitForFunction(() =>
+    document.querySelector('.choices .status').textContent.startsWith('Cancelled'),
+  );
+  await page.click('.pairs tbody tr');
+  await page.waitForSelector('.viewing .stage');
+  assert.match(await page.textContent('.viewing .caption >> nth=0'), /cut short/);
+  await done();
+});
+
 const OWN = 'button[aria-label="Edit your own policy"]';
 
 test('the own policy runs at once', async () => {
@@ -300,11 +325,9 @@ test('a trial that fails says why in its row, and the others go on', async () =>
   assert.match(await sentence('function decide(question) {\n  return [;\n}'), /line 2: SyntaxError/);
   assert.match(await sentence('function other() {}'), /no function "decide"/);
   assert.match(await sentence('function decide() {}'), /returned nothing/);
-  assert.match(await sentence('function decide() { return fetch("https://example.org"); }'), /./);
   await page.click('[aria-label^="Put the original"]');
   assert.match(await text(page), /quotas\[role\]/);
-  await page.context().close();
-  done.length; // the browser tells of the syntax error and of the refused request in the console
+  await done();
 });
 
 test('a slider changes its number in the text and nothing else, as one step', async () => {

@@ -23,8 +23,15 @@ interface Change {
   insert: string;
 }
 
-/** Where a problem stands in a text: the word at its column, or its line without the space around. */
-function placeOf(text: Text, { line, column }: Problem): { from: number; to: number } {
+/** The field of a problem with its value, as it stands in a line; null if it does not. */
+function fieldIn(line: string, field: string | null): { from: number; to: number } | null {
+  const name = /(\w+)(?:\[\d+\])*$/.exec(field ?? '')?.[1];
+  const found = name === undefined ? null : new RegExp(`\\b${name}\\s*:\\s*[^,()\\[\\]]*`).exec(line);
+  return found && { from: found.index, to: found.index + found[0].trimEnd().length };
+}
+
+/** Where a problem stands in a text: the word at its column, its field, or its line. */
+function placeOf(text: Text, { line, column, field }: Problem): { from: number; to: number } {
   if (line === null) return { from: 0, to: text.line(1).to };
   const found = text.line(Math.min(Math.max(line, 1), text.lines));
   if (column !== null) {
@@ -32,6 +39,8 @@ function placeOf(text: Text, { line, column }: Problem): { from: number; to: num
     const word = /^[\w.]+|^[^]/.exec(text.sliceString(from, found.to))?.[0].length ?? 0;
     if (word > 0) return { from, to: from + word };
   }
+  const inLine = fieldIn(found.text, field);
+  if (inLine) return { from: found.from + inLine.from, to: found.from + inLine.to };
   const indent = /^\s*/.exec(found.text)?.[0].length ?? 0;
   const content = found.text.replace(/\s*(\/\/.*)?$/, '').length;
   return { from: found.from + Math.min(indent, content), to: found.from + Math.max(content, indent) };

@@ -74,8 +74,8 @@ export class Experiment {
 
   constructor(
     readonly plan: Plan,
-    /** Called whenever a trial has come on, with the bytes that its recording has grown by. */
-    private readonly changed: (pair: Pair, trial: Trial, bytes: Uint8Array<ArrayBuffer> | null) => void,
+    /** Called whenever a trial of a pair has come on. */
+    private readonly changed: (pair: Pair) => void,
   ) {
     const trial = (policy: string, seed: string): Trial => {
       return { policy, seed, state: { kind: 'waiting' }, parts: [] };
@@ -112,7 +112,7 @@ export class Experiment {
     const { source } = this.plan;
     const { policy, seed } = trial;
     trial.state = { kind: 'running', part: 0 };
-    this.changed(pair, trial, null);
+    this.changed(pair);
     try {
       const spec = { ...source, policy, seed };
       const record = await lane
@@ -120,14 +120,14 @@ export class Experiment {
         .ask<TrialRecord>({ kind: 'trial', spec }, ({ time_s, duration_s, bytes }) => {
           trial.state = { kind: 'running', part: time_s / duration_s };
           if (bytes.length > 0) trial.parts.push(bytes);
-          this.changed(pair, trial, bytes);
+          this.changed(pair);
         });
       trial.state = { kind: 'done', record };
     } catch (error) {
       const sentence = error instanceof Error ? error.message : String(error);
       trial.state = this.isCancelled ? { kind: 'cancelled' } : { kind: 'failed', sentence };
     }
-    this.changed(pair, trial, null);
+    this.changed(pair);
   }
 
   private endLanes(): void {
@@ -142,7 +142,7 @@ export class Experiment {
       for (const trial of [pair.a, pair.b]) {
         if (trial.state.kind !== 'waiting') continue;
         trial.state = { kind: 'cancelled' };
-        this.changed(pair, trial, null);
+        this.changed(pair);
       }
     }
     this.endLanes();

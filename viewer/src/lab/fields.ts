@@ -7,6 +7,8 @@ export interface Field {
   path: string;
   /** What it is called: `team[0].count (carrier)`. */
   label: string;
+  /** What it is called among others of its group: `carrier: count`. */
+  short: string;
   group: string;
   value: number;
   least: number;
@@ -85,7 +87,11 @@ function fieldOf(leaf: Leaf, leaves: readonly Leaf[]): Field | null {
   const name = nameOf(leaves, leaf.path);
   const path = leaf.path.replace(/\.(\d+)/g, '[$1]');
   const label = name === undefined ? path : `${path} (${name})`;
-  return { path: leaf.path, label, group: GROUPS[first] ?? first, value, least, most, step };
+  const rest = leaf.path.replace(/^\w+\./, '');
+  const [place, ...inner] = rest.split('.');
+  const isEntry = /^\d+$/.test(place);
+  const short = isEntry ? `${name ?? `${first}[${place}]`}: ${inner.join('.')}` : rest;
+  return { path: leaf.path, label, short, group: GROUPS[first] ?? first, value, least, most, step };
 }
 
 /** The numbers of a text that sliders turn, by groups in a fixed order. */

@@ -138,7 +138,7 @@ export class Lab {
     const texts = this.texts as Texts | undefined;
     if (!texts) return;
     this.header.showFile(texts.file);
-    if (texts.shown !== null) this.sliders.show(texts.shown);
+    this.sliders.show(texts.shown ?? '');
     this.checker.later();
   }
 
@@ -233,6 +233,7 @@ export class Lab {
   private progress(experiment: Experiment, pair: Pair): void {
     if (experiment !== this.experiment) return;
     this.table.draw(pair);
+    this.viewing.grew(pair);
     const { trials, over } = experiment;
     const parts = trials.map(({ state }) => (state.kind === 'running' ? state.part : 0));
     const part = (over + parts.reduce((sum, value) => sum + value, 0)) / trials.length;

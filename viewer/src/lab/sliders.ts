@@ -53,7 +53,13 @@ export class Sliders {
     this.rows = fields.map((field) => this.row(field));
     const groups = new Map<string, HTMLElement[]>();
     for (const { field, input, output } of this.rows) {
-      const label = element('label', { class: 'slider' }, element('span', {}, field.label), output, input);
+      const label = element(
+        'label',
+        { class: 'slider', title: field.label },
+        element('span', {}, field.short),
+        output,
+        input,
+      );
       groups.set(field.group, [...(groups.get(field.group) ?? []), label]);
     }
     const parts = [...groups].map(([name, labels]) => this.group(name, labels));

@@ -46,6 +46,8 @@ export class Recording {
   summary: Summary | null = null;
   /** Bytes at the end of a recording that was cut short; null for a whole one. */
   cut: number | null = 0;
+  /** Whether further bytes are to come. */
+  isGrowing = false;
   levels: Levels[] = [];
   /** What became of each robot; filled by the survey. */
   readonly courses: Course[];

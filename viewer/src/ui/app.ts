@@ -1,13 +1,13 @@
 /** The page: stages side by side, the time below them, panels beside them. */
 
 import { LARGE_TEAM } from '../draw/sheet';
-import { groupColour, onThemeChange } from '../draw/theme';
+import { onThemeChange } from '../draw/theme';
 import type { Moment, Recording } from '../recording/recording';
 import { about } from './about';
 import { Clock } from './clock';
 import { CoursePanel } from './coursePanel';
 import { Curves } from './curves';
-import { button, element, swatch } from './dom';
+import { button, element } from './dom';
 import { EventPanel } from './eventPanel';
 import { GoTo } from './goTo';
 import { Help } from './help';
@@ -19,6 +19,7 @@ import { RoundPanel } from './roundPanel';
 import { Stage } from './stage';
 import { Timeline, rounds } from './timeline';
 import { Transport } from './transport';
+import { viewpointChips } from './viewpoints';
 
 /** The address follows a trial that plays at most so often, in milliseconds: browsers allow no more. */
 const LINK_PERIOD = 1000;
@@ -206,27 +207,12 @@ export class App {
     this.refresh();
   }
 
-  /** The groups whose knowledge can be shown. */
   private showViewpoints(): void {
     const { tasks } = this.recordings[this.focus].header.world;
-    const of = (text: string, viewpoint: number | null, colour: string | null): HTMLElement => {
-      const title = viewpoint === null ? 'Show the world as it is' : `Show what is known to ${text}`;
-      const chip = button(
-        '',
-        title,
-        () => {
-          this.setViewpoint(viewpoint);
-        },
-        'chip',
-      );
-      if (colour) chip.append(swatch(colour));
-      chip.append(element('span', {}, text));
-      chip.setAttribute('aria-pressed', String(this.stages[this.focus].viewpoint === viewpoint));
-      return chip;
-    };
-    const groups = tasks.map((task, number) => of(task.name, number, groupColour(number)));
-    const home = tasks.length > 0 ? [of('home', tasks.length, groupColour(null))] : [];
-    this.viewpoints.replaceChildren(of('the world', null, null), ...groups, ...home);
+    const chips = viewpointChips(tasks, this.stages[this.focus].viewpoint, (viewpoint) => {
+      this.setViewpoint(viewpoint);
+    });
+    this.viewpoints.replaceChildren(...chips);
   }
 
   private setViewpoint(viewpoint: number | null): void {
@@ -355,6 +341,13 @@ export class App {
   refresh(): void {
     this.isAfresh = true;
     this.change();
+  }
+
+  /** Takes account of what was added to recordings that grow. */
+  grew(): void {
+    this.clock.end = Math.max(...this.recordings.map(({ end }) => end));
+    for (const part of [...this.stages, this.curves]) part.grew();
+    this.refresh();
   }
 
   private tick(now: number): void {
