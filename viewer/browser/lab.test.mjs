@@ -2,6 +2,7 @@
 // PAGE is the page, USAR the program, CHROMIUM the browser, SHOTS a folder for screenshots.
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
+import { createServer } from 'node:http';
 import { mkdtempSync, readFileSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
@@ -323,11 +324,40 @@ test('a trial that fails says why in its row, and the others go on', async () =>
     /line 4: Error: no idea/,
   );
   assert.match(await sentence('function decide(question) {\n  return [;\n}'), /line 2: SyntaxError/);
+  assert.ok((await page.locator('.cm-lint-marker-error').count()) > 0, 'the line is marked');
   assert.match(await sentence('function other() {}'), /no function "decide"/);
   assert.match(await sentence('function decide() {}'), /returned nothing/);
   await page.click('[aria-label^="Put the original"]');
   assert.match(await text(page), /quotas\[role\]/);
   await done();
+});
+
+test('the own policy has no network', async () => {
+  let requests = 0;
+  const server = createServer((_, response) => {
+    requests += 1;
+    response.setHeader('Access-Control-Allow-Origin', '*');
+    response.end('self.found = true;');
+  });
+  await new Promise((resolve) => server.listen(0, '127.0.0.1', resolve));
+  const url = `http://127.0.0.1:${server.address().port}/x.js`;
+  const { page } = await open();
+  await shorten(page, 60);
+  await page.click(OWN);
+  for (const reach of [
+    `const x = new XMLHttpRequest(); x.open("GET", "${url}", false); x.send();`,
+    `importScripts("${url}");`,
+    `fetch("${url}");`,
+    `new WebSocket("${url.replace('http', 'ws')}");`,
+    `eval("1");`,
+  ]) {
+    await write(page, `function decide(question) { ${reach} return []; }`);
+    await run(page, { a: 'MINE', b: 'DIS', seeds: '1' });
+    assert.match((await cells(page, 1, '.failed'))[0], /policy/);
+  }
+  assert.equal(requests, 0);
+  await page.context().close(); // the browser told of each refusal
+  server.close();
 });
 
 test('a slider changes its number in the text and nothing else, as one step', async () => {

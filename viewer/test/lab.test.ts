@@ -1,10 +1,14 @@
 import { readFileSync } from 'node:fs';
 import { describe, expect, it } from 'vitest';
+import { commandOf, toCsv } from '../src/lab/commands';
+import type { Experiment, Trial } from '../src/lab/experiment';
 import { changeOf, fieldsOf, written } from '../src/lab/fields';
+import { withSaved } from '../src/lab/page';
 import { lineOf } from '../src/lab/policyErrors';
 import { Scanner, baseOf } from '../src/lab/ron';
 import { basesOf, resolved } from '../src/lab/scenarios';
 import { parseSeeds } from '../src/lab/seeds';
+import { type Session, fromHash, sessionOf, toHash } from '../src/lab/session';
 
 const paper = readFileSync(new URL('../../scenarios/paper.ron', import.meta.url), 'utf8');
 
@@ -114,5 +118,88 @@ describe('errors of the own policy', () => {
     error.stack = 'decide@blob:null/1f:4:7\n';
     expect(lineOf(error)).toBe(4);
     expect(lineOf('no')).toBeNull();
+  });
+});
+
+const session: Session = { file: 'a.ron', texts: { 'a.ron': '(é: "<")' }, a: 'RNE', b: 'DIS', seeds: '1..3' };
+
+describe('links', () => {
+  it('hold what was made, but never code', async () => {
+    const hash = await toHash({ ...session, code: 'function decide() {}' });
+    expect(hash).toMatch(/^#lab=[\w-]+$/);
+    expect(await fromHash(hash!)).toEqual(session);
+    expect(await fromHash('')).toBeNull();
+    expect(await fromHash('#t=12')).toBeNull();
+    await expect(fromHash('#lab=%%')).rejects.toThrow();
+  });
+
+  it('are refused where they would be long or hold much', async () => {
+    const noise = Array.from({ length: 20_000 }, (_, i) => Math.imul(i + 1, 2654435761) >>> 0).join();
+    expect(await toHash({ ...session, texts: { 'a.ron': noise } })).toBeNull();
+    const much = await toHash({ ...session, texts: { 'a.ron': ' '.repeat(3e6) } });
+    await expect(fromHash(much!)).rejects.toThrow('too much');
+  });
+});
+
+describe('saved sessions', () => {
+  it('are taken only if they are sessions', () => {
+    expect(sessionOf({ ...session, code: 'x', more: 1 })).toEqual({ ...session, code: 'x' });
+    for (const other of [null, 3, {}, { ...session, texts: { a: 1 } }, { ...session, seeds: 1 }]) {
+      expect(sessionOf(other)).toBeNull();
+    }
+  });
+
+  it('stand in the page as data, whatever they hold', () => {
+    const page = '<script type="application/json" id="saved">null</script><p>id="saved"</p>';
+    const saved = { text: '</script><!-- $& $1' };
+    const [, block] = /id="saved">(.*?)<\/script>/.exec(withSaved(page, saved))!;
+    expect(JSON.parse(block)).toEqual(saved);
+    expect(withSaved(withSaved(page, saved), null)).toBe(page);
+  });
+});
+
+describe('what is said outside of the page', () => {
+  const record = {
+    ...{
+      scenario: 'a',
+      policy: 'RNE',
+      seed: 1,
+      rescuees: 9,
+      status: 'Completed',
+      time_s: 60,
+      state_hash: 'ab',
+    },
+    ...{ tasks: [{ task: 'x', rescued: 9, energy: 2.5 }], ungrouped_energy: 0.5 },
+  };
+  const a: Trial = {
+    policy: 'RNE(hard_rule: MeanEnergy)',
+    seed: '1',
+    state: { kind: 'done', record },
+    parts: [],
+  };
+  const b: Trial = {
+    policy: 'MINE',
+    seed: '1',
+    state: { kind: 'failed', sentence: 'no "x", or y' },
+    parts: [],
+  };
+  const plan = {
+    ...{ source: { name: 'gallery/a.ron', text: '', texts: {} }, isOriginal: true, tasks: ['x'] },
+    ...{ a: a.policy, b: b.policy, seeds: ['1'], code: '' },
+  };
+
+  it('are commands', () => {
+    const command = "--policy 'RNE(hard_rule: MeanEnergy)' --seed 1 --json";
+    expect(commandOf(plan, a)).toBe(`usar run scenarios/gallery/a.ron ${command}`);
+    expect(commandOf({ ...plan, isOriginal: false }, a)).toBe(`usar run a.ron ${command}`);
+    expect(commandOf(plan, b)).toBeNull();
+  });
+
+  it('are tables', () => {
+    const experiment: Pick<Experiment, 'plan' | 'pairs'> = { plan, pairs: [{ seed: '1', a, b }] };
+    expect(toCsv(experiment).split('\r\n').slice(1)).toEqual([
+      'gallery/a.ron,1,RNE(hard_rule: MeanEnergy),9,9,3,ab,,MINE,,,,,"no ""x"", or y",',
+      '',
+    ]);
   });
 });

@@ -33,7 +33,8 @@ function failure({ state }: Trial): string {
 }
 
 /** The table as CSV: a row for each pair. */
-export function toCsv({ plan, pairs }: Experiment, tasks: readonly string[]): string {
+export function toCsv({ plan, pairs }: Pick<Experiment, 'plan' | 'pairs'>): string {
+  const { tasks } = plan;
   const of = (side: string): string[] => [
     `policy_${side}`,
     `rescuees_${side}`,

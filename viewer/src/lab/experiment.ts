@@ -30,6 +30,8 @@ export interface Plan {
   source: Source;
   /** Whether all texts are those that the program carries. */
   isOriginal: boolean;
+  /** The tasks of the scenario. */
+  tasks: string[];
   a: string;
   b: string;
   seeds: string[];

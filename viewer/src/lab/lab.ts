@@ -7,7 +7,7 @@ import { fileName, toCsv } from './commands';
 import { type Checked, type CompareQuestion, type Compared, MINE, type PolicyFacts } from './contract';
 import { Experiment, type Pair } from './experiment';
 import { Header } from './header';
-import { download, withSaved } from './page';
+import { copyText, download, withSaved } from './page';
 import { Problems } from './problems';
 import { type Session, toHash } from './session';
 import { Simulator } from './simulator';
@@ -31,7 +31,6 @@ export class Lab {
   private readonly body = element('div', { class: 'lab' });
   private simulator: Simulator | null = null;
   private experiment: Experiment | null = null;
-  private tasks: string[] = [];
   private scrolled = 0;
 
   /** `page` is the page as it was delivered. */
@@ -84,7 +83,7 @@ export class Lab {
         this.texts.choose(path);
       },
       saveScenario: () => {
-        const { name, text } = this.texts.source();
+        const [name, text] = this.texts.scenario;
         download(fileName(name), text, 'text/plain');
       },
       saveTable: () => {
@@ -145,7 +144,6 @@ export class Lab {
   private checked(checked: Checked): void {
     this.texts.mark(checked.problems);
     this.problems.show(checked);
-    if (checked.scenario) this.tasks = checked.scenario.tasks;
   }
 
   private session(): Session {
@@ -176,12 +174,9 @@ export class Lab {
     const ownPolicy = [a, b].some((policy) => policy.startsWith(MINE))
       ? ' The own policy is not part of it.'
       : '';
-    try {
-      await navigator.clipboard.writeText(location.href);
-      this.header.say(`The link is copied.${ownPolicy}`);
-    } catch {
-      this.header.say(`The link is in the address line, to be copied there.${ownPolicy}`);
-    }
+    const isCopied = await copyText(location.href);
+    const where = isCopied ? 'The link is copied.' : 'The link is in the address line, to be copied there.';
+    this.header.say(where + ownPolicy);
   }
 
   private saveTable(): void {
@@ -190,7 +185,7 @@ export class Lab {
       return;
     }
     const name = fileName(this.experiment.plan.source.name).replace(/\.ron$/, '');
-    download(`${name}.csv`, toCsv(this.experiment, this.tasks), 'text/csv');
+    download(`${name}.csv`, toCsv(this.experiment), 'text/csv');
   }
 
   private async openPair(pair: Pair): Promise<void> {
@@ -213,13 +208,14 @@ export class Lab {
       return;
     }
     const { texts } = this;
-    const plan = { source: texts.source(), isOriginal: texts.isOriginal, code: texts.code, ...choice };
+    const { tasks } = checked.scenario;
+    const plan = { source: texts.source(), isOriginal: texts.isOriginal, tasks, code: texts.code, ...choice };
+    texts.markOwn(null);
     const experiment = new Experiment(plan, (pair) => {
       this.progress(experiment, pair);
     });
     this.experiment = experiment;
-    this.tasks = checked.scenario.tasks;
-    this.table.begin(experiment, this.tasks);
+    this.table.begin(experiment);
     await experiment.run(this.simulator);
     await this.compare(experiment);
     this.sayOver(experiment);
@@ -232,6 +228,9 @@ export class Lab {
 
   private progress(experiment: Experiment, pair: Pair): void {
     if (experiment !== this.experiment) return;
+    for (const { state } of [pair.a, pair.b]) {
+      if (state.kind === 'failed') this.texts.markOwn(state.sentence);
+    }
     this.table.draw(pair);
     this.viewing.grew(pair);
     const { trials, over } = experiment;

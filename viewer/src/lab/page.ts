@@ -26,6 +26,16 @@ export function withSaved(source: string, saved: unknown): string {
   return source.replace(/(<script [^>]*id="saved"[^>]*>)[^<]*/, (_, tag: string) => tag + text);
 }
 
+/** Copies a text; returns whether the browser allowed it. */
+export async function copyText(text: string): Promise<boolean> {
+  try {
+    await navigator.clipboard.writeText(text);
+    return true;
+  } catch {
+    return false;
+  }
+}
+
 /** Gives the reader a file. */
 export function download(name: string, content: BlobPart, type: string): void {
   const url = URL.createObjectURL(new Blob([content], { type }));

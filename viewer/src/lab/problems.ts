@@ -27,10 +27,11 @@ export class Problems {
   }
 
   show({ problems, warnings, scenario }: Checked): void {
-    const count = problems.length === 1 ? '1 mistake' : `${problems.length} mistakes`;
+    const isOne = problems.length === 1;
+    const count = isOne ? '1 mistake. Click it' : `${problems.length} mistakes. Click one`;
     const fine = scenario ? facts(scenario) : 'No mistakes.';
     this.root.classList.toggle('bad', problems.length > 0);
-    this.summary.textContent = problems.length > 0 ? `${count}. Click one to go to its line.` : fine;
+    this.summary.textContent = problems.length > 0 ? `${count} to go to its line.` : fine;
     const rows = problems.map((problem) => element('li', {}, this.button(problem)));
     const more = warnings.map((warning) => element('li', { class: 'warning' }, `Warning: ${warning}`));
     this.list.replaceChildren(...rows, ...more);

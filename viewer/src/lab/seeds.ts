@@ -1,7 +1,7 @@
 /** Seeds as they are written: `1..20`, `1,2,5`, or both: `1..3, 7`. */
 
-/** So many pairs may be asked for at once. */
-export const MOST_PAIRS = 1000;
+/** So many pairs may be asked for at once: the page keeps all recordings in memory. */
+export const MOST_PAIRS = 500;
 
 /** Seeds are whole numbers of 64 bits; they stay texts, for JavaScript's numbers have 53. */
 const LARGEST = 2n ** 64n - 1n;

@@ -3,10 +3,14 @@
 import { button, element } from '../ui/dom';
 import { commandOf } from './commands';
 import type { Compared } from './contract';
+import { copyText } from './page';
 import { type Experiment, type Pair, type Trial, energyOf } from './experiment';
 
 /** Fewer pairs than this settle little. */
 const FEW = 10;
+
+/** So long a button says that it has copied, in milliseconds. */
+const SAID = 1200;
 
 /** How much of a hash is shown. */
 const HASH = 8;
@@ -42,10 +46,10 @@ export class PairTable {
   }
 
   /** Shows the pairs of another experiment. */
-  begin(experiment: Experiment, tasks: readonly string[]): void {
+  begin(experiment: Experiment): void {
     this.experiment = experiment;
     this.rows.clear();
-    const { a, b, source } = experiment.plan;
+    const { a, b, source, tasks, isOriginal } = experiment.plan;
     const each = tasks.length > 1 ? ` (${tasks.join(' + ')})` : '';
     const head = [
       'Seed',
@@ -88,7 +92,9 @@ export class PairTable {
       { class: 'scroller', tabindex: '0', role: 'region', 'aria-label': 'Pairs' },
       table,
     );
-    this.root.replaceChildren(title, scroller, this.answer);
+    const hint = `The command lines read the file ${source.name}: save the changed text first.`;
+    const notes = isOriginal ? [] : [element('p', { class: 'hint' }, hint)];
+    this.root.replaceChildren(title, scroller, this.answer, ...notes);
   }
 
   /** Draws a row anew. */
@@ -125,8 +131,7 @@ export class PairTable {
     record: { rescuees: number; tasks: { rescued: number }[] } | null,
   ): HTMLElement {
     if (!record) {
-      const cell = td(`state ${trial.state.kind}`, stateText(trial));
-      return cell;
+      return td(`state ${trial.state.kind}`, stateText(trial));
     }
     const each = record.tasks.map(({ rescued }) => rescued).join(' + ');
     const cell = td('number', element('b', {}, String(record.rescuees)));
@@ -137,22 +142,18 @@ export class PairTable {
   private command(side: string, trial: Trial): HTMLElement {
     const command = this.experiment && commandOf(this.experiment.plan, trial);
     if (!command) {
-      const none = element(
+      return element(
         'button',
         { type: 'button', disabled: '', title: 'This policy runs only in this page' },
         side,
       );
-      return none;
     }
-    const copy = button(side, `Copy: ${command}`, () => {
-      void navigator.clipboard.writeText(command).then(
-        () => {
-          copy.textContent = '✓';
-          setTimeout(() => (copy.textContent = side), 1200);
-        },
-        () => window.prompt('The command line of this trial', command),
-      );
-    });
+    const copied = async (): Promise<void> => {
+      if (!(await copyText(command))) window.prompt('The command line of this trial', command);
+      copy.textContent = '✓';
+      setTimeout(() => (copy.textContent = side), SAID);
+    };
+    const copy = button(side, `Copy: ${command}`, () => void copied());
     return copy;
   }
 

@@ -21,13 +21,19 @@ function decide(question) {
 }
 `;
 
+const OWN_HINT =
+  "Run it as the policy MINE. It is asked before each round, and returns the ids of each task's group. " +
+  'console.log(question) shows the question in the console of the browser.';
+
 export class Texts {
   readonly root = element('section', { class: 'panel texts', 'aria-label': 'Texts' });
   /** The tabs; there is room for a button beside them. */
   readonly bar = element('div', { class: 'strip' });
   private readonly tabs = element('div', { class: 'tabs', role: 'group', 'aria-label': 'Text' });
   private readonly editor: Editor;
+  private readonly hint = element('p', { class: 'hint own' }, OWN_HINT);
   private problems: readonly Problem[] = [];
+  private ownProblems: Problem[] = [];
   private tabNames: string[] = [];
   /** The path of the scenario. */
   file = '';
@@ -36,7 +42,7 @@ export class Texts {
   constructor(private readonly changed: () => void) {
     const place = element('div', { class: 'editor' });
     this.bar.append(this.tabs);
-    this.root.append(this.bar, place);
+    this.root.append(this.bar, place, this.hint);
     this.editor = new Editor(place, () => {
       this.showTabs();
       changed();
@@ -68,6 +74,7 @@ export class Texts {
   }
 
   private showTabs(): void {
+    this.hint.hidden = this.editor.shown !== OWN;
     const names = [this.file, ...this.bases(), OWN];
     const key = [...names, this.editor.shown];
     if (key.join('\n') === this.tabNames.join('\n')) return;
@@ -107,7 +114,13 @@ export class Texts {
     return this.editor.shown === OWN ? null : (this.editor.text(this.editor.shown) ?? '');
   }
 
-  /** Gives the scenario the text that the program carries, and forgets no step. */
+  /** The name and the text of the scenario, or of its base while that is shown. */
+  get scenario(): [name: string, text: string] {
+    const name = this.editor.shown === OWN ? this.file : this.editor.shown;
+    return [name, this.textOf(name) ?? ''];
+  }
+
+  /** Puts the text back that the program carries; this can be undone. */
   reset(): void {
     const { shown } = this.editor;
     const original = shown === OWN ? TEMPLATE : SCENARIOS.get(shown);
@@ -124,7 +137,18 @@ export class Texts {
     for (const name of [this.file, ...this.bases()]) this.editor.mark(name, this.problemsOf(name));
   }
 
+  /** Marks the line of the own policy that an error names; null takes the mark away. */
+  markOwn(sentence: string | null): void {
+    const line = /^Own policy, line (\d+):/.exec(sentence ?? '')?.[1];
+    if (sentence !== null && line === undefined) return;
+    const nothing = { file: null, column: null, field: null, rule: null, found: null, hint: null };
+    const problems = sentence === null ? [] : [{ ...nothing, line: Number(line), sentence }];
+    this.ownProblems = problems;
+    this.editor.mark(OWN, problems);
+  }
+
   private problemsOf(name: string): Problem[] {
+    if (name === OWN) return this.ownProblems;
     return this.problems.filter((problem) => this.nameOf(problem) === name);
   }
 
