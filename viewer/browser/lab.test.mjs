@@ -127,7 +127,7 @@ test('it is ready within three seconds, from disk, and small', async () => {
   assert.ok(readFileSync(lab).length <= 2.5e6, `${readFileSync(lab).length} bytes`);
   assert.equal(
     await page.textContent('.problems .summary'),
-    'No mistakes: 12 robots, 2 tasks (hard, easy), 600 s a trial.',
+    'The scenario has no mistakes: 12 robots, 2 tasks (hard, easy), 600 s a trial.',
   );
   console.log(`# ready after ${ready.toFixed(0)} ms, ${readFileSync(lab).length} bytes`);
   await done();
@@ -497,7 +497,7 @@ test('every scenario that is carried is without mistakes', async () => {
   for (const path of paths) {
     await page.selectOption('select', path);
     await page.waitForTimeout(250);
-    assert.match(await page.textContent('.problems .summary'), /^No mistakes/, path);
+    assert.match(await page.textContent('.problems .summary'), /^The scenario has no mistakes/, path);
   }
   await done();
 });

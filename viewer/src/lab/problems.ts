@@ -6,8 +6,10 @@ import { fileName } from './commands';
 
 /** What a scenario without mistakes is. */
 function facts({ robots, tasks, duration_s }: ScenarioFacts): string {
-  const work = tasks.length === 1 ? `the task ${tasks[0]}` : `${tasks.length} tasks (${tasks.join(', ')})`;
-  return `No mistakes: ${robots} robots, ${tasks.length === 0 ? 'no tasks' : work}, ${duration_s} s a trial.`;
+  const some = tasks.length === 1 ? `the task ${tasks[0]}` : `${tasks.length} tasks (${tasks.join(', ')})`;
+  const work = tasks.length === 0 ? 'no tasks' : some;
+  const time = `${duration_s} s a trial`;
+  return `The scenario has no mistakes: ${robots} robots, ${work}, ${time}.`;
 }
 
 export class Problems {
@@ -29,7 +31,7 @@ export class Problems {
   show({ problems, warnings, scenario }: Checked): void {
     const isOne = problems.length === 1;
     const count = isOne ? '1 mistake. Click it' : `${problems.length} mistakes. Click one`;
-    const fine = scenario ? facts(scenario) : 'No mistakes.';
+    const fine = scenario ? facts(scenario) : 'The scenario has no mistakes.';
     this.root.classList.toggle('bad', problems.length > 0);
     this.summary.textContent = problems.length > 0 ? `${count} to go to its line.` : fine;
     const rows = problems.map((problem) => element('li', {}, this.button(problem)));

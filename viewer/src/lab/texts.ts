@@ -141,6 +141,7 @@ export class Texts {
   markOwn(sentence: string | null): void {
     const line = /^Own policy, line (\d+):/.exec(sentence ?? '')?.[1];
     if (sentence !== null && line === undefined) return;
+    if (sentence !== null && this.ownProblems[0]?.sentence === sentence) return;
     const nothing = { file: null, column: null, field: null, rule: null, found: null, hint: null };
     const problems = sentence === null ? [] : [{ ...nothing, line: Number(line), sentence }];
     this.ownProblems = problems;
