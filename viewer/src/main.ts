@@ -42,7 +42,7 @@ async function show(root: HTMLElement, files: File[], list?: TrialList): Promise
   try {
     const recordings: Recording[] = [];
     for (const { name, bytes } of files) recordings.push(await Recording.read(name, bytes()));
-    const app = new App(root, recordings, list?.root);
+    const app = new App(root, recordings, { list: list?.root });
     window.usarView = app;
     for (const recording of recordings) await recording.survey();
     app.refresh();

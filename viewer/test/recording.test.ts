@@ -106,6 +106,37 @@ describe('a recording', () => {
     expect(most).toBeGreaterThan(whole.frames / 2);
   });
 
+  it('grows by bytes that are added to it', async () => {
+    const whole = await Recording.read('whole', file);
+    await whole.survey();
+    const { chunks } = chunksOf(file);
+    const first = chunks.findIndex(({ kind }) => kind === 'SEGM');
+    const begin = chunks[first + 1].at;
+    const growing = await Recording.read('growing', file.subarray(0, begin));
+    await growing.survey();
+    expect(growing.end).toBeLessThan(whole.end);
+    expect(growing.summary).toBeNull();
+    for (let at = begin; at < file.length; at += 997) {
+      await growing.append(file.subarray(at, at + 997));
+      await growing.survey();
+    }
+    expect([growing.frames, growing.end, growing.cut]).toEqual([whole.frames, whole.end, null]);
+    expect(growing.happenings).toEqual(whole.happenings);
+    expect(growing.decisions).toEqual(whole.decisions);
+    expect(growing.summary).toEqual(whole.summary);
+    expect(growing.courses).toEqual(whole.courses);
+  });
+
+  it('tells which chunk is damaged when a damaged one is added', async () => {
+    const { chunks } = chunksOf(file);
+    const first = chunks.findIndex(({ kind }) => kind === 'SEGM');
+    const { at } = chunks[first + 1];
+    const growing = await Recording.read('growing', file.subarray(0, at));
+    const damaged = file.slice(at);
+    damaged[5] ^= 1;
+    await expect(growing.append(damaged)).rejects.toThrow(`chunk ${first + 1},`);
+  });
+
   it('is refused when a byte of it was flipped', () => {
     for (let at = 0; at < file.length; at += 97) {
       const flipped = file.slice();

@@ -64,8 +64,8 @@ const dark = window.matchMedia('(prefers-color-scheme: dark)');
 
 export const theme = (): Theme => (dark.matches ? DARK : LIGHT);
 
-export function onThemeChange(listen: () => void): void {
-  dark.addEventListener('change', listen);
+export function onThemeChange(listen: () => void, signal: AbortSignal): void {
+  dark.addEventListener('change', listen, { signal });
 }
 
 /** The colour of a group, by its task; null is a robot without a group. */

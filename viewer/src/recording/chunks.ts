@@ -37,13 +37,24 @@ export function chunksOf(bytes: Uint8Array): { chunks: Chunk[]; rest: number } {
   if (bytes.length < MAGIC.length || MAGIC.some((byte, i) => bytes[i] !== byte)) {
     throw new ReadError('This is not a recording: its first bytes are not "USREC".');
   }
+  return chunksFrom(bytes, MAGIC.length, 0);
+}
+
+/** The whole chunks from a byte on, numbered from `first`, and how many bytes after them belong to none. */
+export function chunksFrom(
+  bytes: Uint8Array,
+  from: number,
+  first: number,
+): { chunks: Chunk[]; rest: number } {
   const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
   const chunks: Chunk[] = [];
-  let at = MAGIC.length;
+  let at = from;
   while (at + HEAD <= bytes.length) {
     const kind = String.fromCharCode(...bytes.subarray(at, at + 4));
     const damaged = (reason: string): never => {
-      throw new ReadError(`The recording is damaged: chunk ${chunks.length}, at byte ${at}: ${reason}.`);
+      throw new ReadError(
+        `The recording is damaged: chunk ${first + chunks.length}, at byte ${at}: ${reason}.`,
+      );
     };
     if (crc32(bytes.subarray(at, at + 16)) !== view.getUint32(at + 16, true)) {
       damaged('its head does not have its checksum');
@@ -56,7 +67,7 @@ export function chunksOf(bytes: Uint8Array): { chunks: Chunk[]; rest: number } {
     if (end > bytes.length) break;
     const stored = bytes.subarray(begin, end);
     if (crc32(stored) !== view.getUint32(at + 12, true)) damaged('its content does not have its checksum');
-    chunks.push({ kind: kind as Kind, number: chunks.length, at, stored, inflated });
+    chunks.push({ kind: kind as Kind, number: first + chunks.length, at, stored, inflated });
     at = end;
   }
   return { chunks, rest: bytes.length - at };

@@ -1,6 +1,6 @@
 /** A recording: what does not change at once, segments when they are needed. */
 
-import { type Chunk, ReadError, chunksOf, inflate, inflateJson } from './chunks';
+import { type Chunk, ReadError, chunksFrom, chunksOf, inflate, inflateJson } from './chunks';
 import { Course } from './course';
 import { type MotionField, Segment, Stream } from './segment';
 import { doingOf } from './robotRow';
@@ -40,25 +40,30 @@ function happening(event: EventJson, time: number): Happening {
 }
 
 export class Recording {
-  readonly frames: number;
+  readonly happenings: Happening[] = [];
+  readonly decisions: TimedDecision[] = [];
+  frames = 0;
+  summary: Summary | null = null;
+  /** Bytes at the end of a recording that was cut short; null for a whole one. */
+  cut: number | null = 0;
+  /** Whether further bytes are to come. */
+  isGrowing = false;
   levels: Levels[] = [];
   /** What became of each robot; filled by the survey. */
   readonly courses: Course[];
   private readonly segments = new Map<number, Segment>();
   private readonly pending = new Map<number, Promise<Segment>>();
 
+  private readonly chunks: Chunk[] = [];
+  private chunksRead = 0;
+  private surveyed = 0;
+  /** Bytes after the last whole chunk. */
+  private tail = new Uint8Array();
+
   private constructor(
     readonly name: string,
     readonly header: Header,
-    readonly happenings: Happening[],
-    readonly decisions: TimedDecision[],
-    readonly summary: Summary | null,
-    /** Bytes at the end of a recording that was cut short; null for a whole one. */
-    readonly cut: number | null,
-    private readonly chunks: Chunk[],
-    lastSegment: Segment | null,
   ) {
-    this.frames = lastSegment ? lastSegment.firstFrame + lastSegment.frames : 0;
     this.courses = header.world.robots.map(() => new Course());
   }
 
@@ -71,24 +76,41 @@ export class Recording {
     if (header.version !== VERSION) {
       throw new ReadError(`The recording has version ${header.version} of the format, not ${VERSION}.`);
     }
-    const happenings: Happening[] = [];
-    const decisions: TimedDecision[] = [];
-    let summary: Summary | null = null;
+    const recording = new Recording(name, header);
+    await recording.take(chunks, bytes.slice(bytes.length - rest));
+    if (recording.frames === 0) throw new ReadError('The recording was cut short before its first frames.');
+    return recording;
+  }
+
+  /** Adds further bytes of a recording that grows. Each call waits for the one before. */
+  async append(bytes: Uint8Array): Promise<void> {
+    const joined = new Uint8Array(this.tail.length + bytes.length);
+    joined.set(this.tail);
+    joined.set(bytes, this.tail.length);
+    const { chunks, rest } = chunksFrom(joined, 0, this.chunksRead);
+    await this.take(chunks, joined.slice(joined.length - rest));
+  }
+
+  private async take(chunks: readonly Chunk[], tail: Uint8Array<ArrayBuffer>): Promise<void> {
     for (const chunk of chunks) {
       if (chunk.kind === 'EVNT') {
         const { events } = await inflateJson<{ events: [number, EventJson][] }>(chunk);
-        for (const [step, event] of events) happenings.push(happening(event, step * header.dt_s));
+        for (const [step, event] of events) {
+          this.happenings.push(happening(event, step * this.header.dt_s));
+        }
       } else if (chunk.kind === 'DECI') {
-        decisions.push(await inflateJson<TimedDecision>(chunk));
+        this.decisions.push(await inflateJson<TimedDecision>(chunk));
       } else if (chunk.kind === 'DONE') {
-        summary = await inflateJson<Summary>(chunk);
+        this.summary = await inflateJson<Summary>(chunk);
       }
     }
-    const segments = chunks.filter((chunk) => chunk.kind === 'SEGM');
-    const last = segments.length > 0 ? await decode(segments[segments.length - 1], header) : null;
-    if (!last) throw new ReadError('The recording was cut short before its first frames.');
-    const cut = summary && rest === 0 ? null : rest;
-    return new Recording(name, header, happenings, decisions, summary, cut, segments, last);
+    const segments = chunks.filter(({ kind }) => kind === 'SEGM');
+    const last = segments.at(-1) && (await decode(segments[segments.length - 1], this.header));
+    this.chunks.push(...segments);
+    this.chunksRead += chunks.length;
+    if (last) this.frames = last.firstFrame + last.frames;
+    this.tail = tail;
+    this.cut = this.summary && tail.length === 0 ? null : tail.length;
   }
 
   /** The simulated time of a frame, in seconds. */
@@ -121,10 +143,14 @@ export class Recording {
     return this.segments.get(Math.floor(frame / this.header.frames_per_segment)) ?? null;
   }
 
-  /** Decodes all segments once, for the levels and the courses; those that the memory allows stay. */
+  /**
+   * Decodes all segments once, for the levels and the courses; those that the memory allows stay. After
+   * bytes were added, it goes on with the new segments.
+   */
   async survey(): Promise<void> {
     const every = Math.max(1, Math.round(this.frames / 600));
-    for (let number = 0; number < this.chunks.length; number++) {
+    while (this.surveyed < this.chunks.length) {
+      const number = this.surveyed++;
       const segment = await this.decoded(number);
       for (let frame = 0; frame < segment.frames; frame++) {
         if ((segment.firstFrame + frame) % every === 0) this.levels.push(this.levelsAt(segment, frame));

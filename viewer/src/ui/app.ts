@@ -1,15 +1,17 @@
 /** The page: stages side by side, the time below them, panels beside them. */
 
 import { LARGE_TEAM } from '../draw/sheet';
-import { groupColour, onThemeChange } from '../draw/theme';
+import { onThemeChange } from '../draw/theme';
 import type { Moment, Recording } from '../recording/recording';
+import { about } from './about';
 import { Clock } from './clock';
 import { CoursePanel } from './coursePanel';
 import { Curves } from './curves';
-import { button, element, swatch } from './dom';
+import { button, element } from './dom';
 import { EventPanel } from './eventPanel';
 import { GoTo } from './goTo';
 import { Help } from './help';
+import { type KeyActions, actionOf } from './keys';
 import { LEAST_BELOW, arrange } from './layout';
 import { copyLink, linkTo, readLink, showLink } from './link';
 import { RobotPanel } from './robotPanel';
@@ -17,12 +19,21 @@ import { RoundPanel } from './roundPanel';
 import { Stage } from './stage';
 import { Timeline, rounds } from './timeline';
 import { Transport } from './transport';
+import { viewpointChips } from './viewpoints';
 
 /** The address follows a trial that plays at most so often, in milliseconds: browsers allow no more. */
 const LINK_PERIOD = 1000;
 
 /** The panels are drawn at most so often while the trial plays, in milliseconds. */
 const PANEL_PERIOD = 120;
+
+/** How the viewer stands in its page. */
+export interface AppOptions {
+  /** A list of trials to choose from. */
+  list?: HTMLElement;
+  /** Whether the page is the viewer's: its title and its address then say what is shown. */
+  isPage?: boolean;
+}
 
 export class App {
   readonly clock: Clock;
@@ -34,7 +45,10 @@ export class App {
   private readonly robotPanel: RobotPanel;
   private readonly roundPanel: RoundPanel;
   private readonly eventPanel: EventPanel;
-  private readonly help = new Help();
+  private readonly help: Help;
+  private readonly isPage: boolean;
+  /** Ends listeners and the loop when the viewer is taken away. */
+  private readonly ended = new AbortController();
   private readonly goTo = new GoTo((time) => {
     this.seek(time);
   });
@@ -58,8 +72,10 @@ export class App {
   constructor(
     root: HTMLElement,
     readonly recordings: readonly Recording[],
-    list?: HTMLElement,
+    { list, isPage = true }: AppOptions = {},
   ) {
+    this.isPage = isPage;
+    this.help = new Help(isPage);
     const starts = recordings.map(({ start }) => start);
     this.looks.routes = recordings.every(({ header }) => header.world.robots.length <= LARGE_TEAM);
     this.clock = new Clock(Math.min(...starts), Math.max(...recordings.map(({ end }) => end)));
@@ -97,55 +113,57 @@ export class App {
     });
     this.transport = this.makeTransport();
     root.replaceChildren(this.layout(list));
-    document.title = recordings.map(({ header }) => `${header.policy} ${header.scenario.name}`).join(' | ');
-    window.addEventListener('keydown', (event) => {
-      this.key(event);
-    });
-    onThemeChange(() => {
-      this.showViewpoints();
-      this.refresh();
-    });
-    window.addEventListener('hashchange', () => {
-      this.goToLink();
-    });
+    this.listen();
     this.showViewpoints();
     this.showTabs();
-    this.goToLink();
+    if (isPage) this.goToLink();
     requestAnimationFrame((now) => {
       this.tick(now);
     });
   }
 
-  private makeTransport(): Transport {
-    const actions = {
-      toggle: () => {
-        this.toggle();
-      },
-      faster: (by: 1 | -1) => {
-        this.faster(by);
-      },
-      askTime: () => {
-        this.goTo.ask(this.clock.time);
-      },
-      copyLink: () => {
-        this.copyLink();
-      },
-      help: () => {
-        this.help.toggle();
-      },
+  private listen(): void {
+    const { signal } = this.ended;
+    const key = (event: KeyboardEvent): void => {
+      this.key(event);
     };
-    return new Transport(this.clock, actions, this.viewpoints);
+    window.addEventListener('keydown', key, { signal });
+    onThemeChange(() => {
+      this.showViewpoints();
+      this.refresh();
+    }, signal);
+    if (!this.isPage) return;
+    const names = this.recordings.map(({ header }) => `${header.policy} ${header.scenario.name}`);
+    document.title = names.join(' | ');
+    const goTo = (): void => {
+      this.goToLink();
+    };
+    window.addEventListener('hashchange', goTo, { signal });
+  }
+
+  /** Takes the viewer away: its loop, its listeners and its elements end. */
+  dispose(): void {
+    this.ended.abort();
+    this.main.parentElement?.remove();
+  }
+
+  private makeTransport(): Transport {
+    return new Transport(this.clock, this.keys(), this.viewpoints, this.isPage);
   }
 
   private layout(list?: HTMLElement): HTMLElement {
     const stages = element('div', { class: `stages count-${Math.min(this.stages.length, 4)}` });
     stages.append(...this.stages.map(({ root }) => root));
     this.main.append(stages, this.transport.root, this.timeline.root);
-    new ResizeObserver(() => {
+    const observer = new ResizeObserver(() => {
       this.arrange(stages);
-    }).observe(this.main);
+    });
+    observer.observe(this.main);
+    this.ended.signal.addEventListener('abort', () => {
+      observer.disconnect();
+    });
     this.side.append(...(list ? [list] : []), this.tabs, this.robotPanel.root, this.roundPanel.root);
-    this.side.append(this.curves.root, this.eventPanel.root, this.about());
+    this.side.append(this.curves.root, this.eventPanel.root, about(this.recordings[0]));
     return element('div', { class: 'app' }, this.main, this.side, this.help.root, this.goTo.root);
   }
 
@@ -164,16 +182,6 @@ export class App {
     stages.style.height = `${isBelow || isPhone ? height : room}px`;
     if (isBelow) this.main.append(this.curves.root);
     else this.eventPanel.root.before(this.curves.root);
-  }
-
-  private about(): HTMLElement {
-    const { header, cut } = this.recordings[0];
-    const about = element('section', { class: 'panel about' });
-    about.append(element('p', {}, header.scenario.description));
-    if (cut !== null)
-      about.append(element('p', {}, 'The recording was cut short: this is what was whole of it.'));
-    about.append(element('p', { class: 'hint' }, `${header.program}, scenario ${header.scenario.xxh3_128}`));
-    return about;
   }
 
   private showTabs(): void {
@@ -199,27 +207,12 @@ export class App {
     this.refresh();
   }
 
-  /** The groups whose knowledge can be shown. */
   private showViewpoints(): void {
     const { tasks } = this.recordings[this.focus].header.world;
-    const of = (text: string, viewpoint: number | null, colour: string | null): HTMLElement => {
-      const title = viewpoint === null ? 'Show the world as it is' : `Show what is known to ${text}`;
-      const chip = button(
-        '',
-        title,
-        () => {
-          this.setViewpoint(viewpoint);
-        },
-        'chip',
-      );
-      if (colour) chip.append(swatch(colour));
-      chip.append(element('span', {}, text));
-      chip.setAttribute('aria-pressed', String(this.stages[this.focus].viewpoint === viewpoint));
-      return chip;
-    };
-    const groups = tasks.map((task, number) => of(task.name, number, groupColour(number)));
-    const home = tasks.length > 0 ? [of('home', tasks.length, groupColour(null))] : [];
-    this.viewpoints.replaceChildren(of('the world', null, null), ...groups, ...home);
+    const chips = viewpointChips(tasks, this.stages[this.focus].viewpoint, (viewpoint) => {
+      this.setViewpoint(viewpoint);
+    });
+    this.viewpoints.replaceChildren(...chips);
   }
 
   private setViewpoint(viewpoint: number | null): void {
@@ -252,6 +245,7 @@ export class App {
   }
 
   private copyLink(): void {
+    if (!this.isPage) return;
     showLink(this.link());
     void copyLink().then(() => {
       this.transport.sayCopied();
@@ -286,63 +280,53 @@ export class App {
     this.seek((by === 1 ? later : before) ?? this.clock.time);
   }
 
-  private key(event: KeyboardEvent): void {
-    if (event.ctrlKey || event.metaKey || event.altKey) return;
-    const step = event.shiftKey ? 10 : 1;
-    const actions: Record<string, () => void> = {
-      ' ': () => {
+  private keys(): KeyActions {
+    const { clock, looks } = this;
+    return {
+      toggle: () => {
         this.toggle();
       },
-      ArrowLeft: () => {
-        this.seek(this.clock.time - step);
+      step: (seconds) => {
+        this.seek(clock.time + seconds);
       },
-      ArrowRight: () => {
-        this.seek(this.clock.time + step);
+      toStart: () => {
+        this.seek(clock.start);
       },
-      Home: () => {
-        this.seek(this.clock.start);
+      toEnd: () => {
+        this.seek(clock.end);
       },
-      End: () => {
-        this.seek(this.clock.end);
+      faster: (by) => {
+        this.faster(by);
       },
-      '+': () => {
-        this.faster(1);
+      toRound: (by) => {
+        this.toRound(by);
       },
-      '=': () => {
-        this.faster(1);
+      askTime: () => {
+        this.goTo.ask(clock.time);
       },
-      '-': () => {
-        this.faster(-1);
-      },
-      '[': () => {
-        this.toRound(-1);
-      },
-      ']': () => {
-        this.toRound(1);
-      },
-      g: () => {
-        this.goTo.ask(this.clock.time);
-      },
-      c: () => {
+      copyLink: () => {
         this.copyLink();
       },
-      f: () => {
+      follow: () => {
         this.follow();
       },
-      r: () => {
-        this.looks.routes = !this.looks.routes;
+      routes: () => {
+        looks.routes = !looks.routes;
       },
-      w: () => {
-        this.looks.links = !this.looks.links;
+      links: () => {
+        looks.links = !looks.links;
       },
-      Escape: () => {
+      team: () => {
         this.select(this.focus, null);
       },
-      '?': () => {
+      help: () => {
         this.help.toggle();
       },
     };
-    const action = Object.hasOwn(actions, event.key) ? actions[event.key] : undefined;
+  }
+
+  private key(event: KeyboardEvent): void {
+    const action = actionOf(event, this.keys());
     if (!action || this.goTo.root.open || (this.help.root.open && event.key !== '?')) return;
     event.preventDefault();
     action();
@@ -359,7 +343,15 @@ export class App {
     this.change();
   }
 
+  /** Takes account of what was added to recordings that grow. */
+  grew(): void {
+    this.clock.end = Math.max(...this.recordings.map(({ end }) => end));
+    for (const part of [...this.stages, this.curves]) part.grew();
+    this.refresh();
+  }
+
   private tick(now: number): void {
+    if (this.ended.signal.aborted) return;
     const seconds = Math.min((now - this.last) / 1000, 0.25);
     this.last = now;
     requestAnimationFrame((next) => {
@@ -378,7 +370,7 @@ export class App {
       this.panelsDrawn = now;
       this.drawPanels(moments[this.focus]);
     }
-    if (!this.clock.isPlaying || now - this.linkShown > LINK_PERIOD) {
+    if (this.isPage && (!this.clock.isPlaying || now - this.linkShown > LINK_PERIOD)) {
       this.linkShown = now;
       showLink(this.link());
     }

@@ -9,7 +9,7 @@ export class Clock {
 
   constructor(
     readonly start: number,
-    readonly end: number,
+    public end: number,
   ) {
     this.time = start;
   }

@@ -39,7 +39,7 @@ export class Curves {
   readonly root: HTMLElement;
   private readonly rescued: Sheet;
   private readonly levels: Sheet;
-  private readonly delivered: number[][][];
+  private delivered: number[][][];
   private readonly rescuedTold = element('span', { class: 'reading' });
   private readonly levelsTold = element('span', { class: 'reading' });
 
@@ -79,6 +79,11 @@ export class Curves {
     }
     const title = element('h2', {}, 'Levels', this.levelsTold);
     this.root.append(element('div', {}, title, this.levels.canvas));
+  }
+
+  /** Takes account of what was added to the recordings. */
+  grew(): void {
+    this.delivered = this.recordings.map(deliveries);
   }
 
   draw(focus: number): void {

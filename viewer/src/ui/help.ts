@@ -35,11 +35,13 @@ function table(rows: [string, string][]): HTMLElement {
 export class Help {
   readonly root = element('dialog', { class: 'help', 'aria-label': 'Help' });
 
-  constructor() {
+  /** Help of a viewer; links are only for one that has a page of its own. */
+  constructor(hasLinks: boolean) {
+    const keys = KEYS.filter(([key]) => hasLinks || key !== 'c');
     const close = button('Close', 'Close the help', () => {
       this.root.close();
     });
-    this.root.append(element('h2', {}, 'Keys'), table(KEYS), element('h2', {}, 'Signs'), table(SIGNS), close);
+    this.root.append(element('h2', {}, 'Keys'), table(keys), element('h2', {}, 'Signs'), table(SIGNS), close);
     const touch = 'Drag to move the arena, pinch or turn the wheel to zoom, click twice to show all of it.';
     this.root.insertBefore(element('p', { class: 'hint' }, touch), close);
     this.root.addEventListener('click', (event) => {

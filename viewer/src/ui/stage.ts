@@ -28,7 +28,8 @@ export class Stage {
   private moved = 0;
   private moment: Moment | null = null;
   private readonly labels = new Labels();
-  private readonly delivered: number[];
+  private delivered: number[] = [];
+  private readonly cut = element('em');
   private readonly total = element('output', { class: 'total' });
 
   constructor(
@@ -46,12 +47,10 @@ export class Stage {
       },
     );
     const { policy, seed, scenario } = recording.header;
-    this.delivered = deliveries(recording)
-      .flat()
-      .sort((a, b) => a - b);
     const caption = element('div', { class: 'caption' }, element('strong', {}, policy), ' ', this.total);
     caption.append(` ${scenario.name}, seed ${seed}`);
-    if (recording.cut !== null) caption.append(element('em', {}, ' (cut short)'));
+    caption.append(this.cut);
+    this.grew();
     this.root = element(
       'section',
       { class: 'stage' },
@@ -59,6 +58,15 @@ export class Stage {
       element('div', { class: 'view' }, this.sheet.canvas),
     );
     this.listen();
+  }
+
+  /** Takes account of what was added to the recording. */
+  grew(): void {
+    const { cut, isGrowing } = this.recording;
+    this.delivered = deliveries(this.recording)
+      .flat()
+      .sort((a, b) => a - b);
+    this.cut.textContent = cut === null ? '' : isGrowing ? ' (running)' : ' (cut short)';
   }
 
   draw(time: number): Moment | null {

@@ -26,6 +26,7 @@ export class Transport {
     private readonly clock: Clock,
     { toggle, faster, askTime, copyLink, help }: Actions,
     viewpoints: HTMLElement,
+    hasLinks: boolean,
   ) {
     this.play = button('▶', 'Play or pause (space)', toggle, 'play');
     this.time = button('', 'Go to a time (g)', askTime, 'time');
@@ -37,7 +38,7 @@ export class Transport {
       faster(1);
     });
     this.root.append(this.play, slower, this.speed, quicker, this.time, element('span', { class: 'gap' }));
-    this.root.append(viewpoints, this.link, button('?', 'Help (?)', help));
+    this.root.append(viewpoints, ...(hasLinks ? [this.link] : []), button('?', 'Help (?)', help));
   }
 
   draw(): void {
