@@ -1,9 +1,11 @@
 //! Checks a scenario, and tells every mistake with its place.
 
-use serde::Serialize;
-use usar_sim::scenario::{Problem, Scenario, ScenarioError};
+use std::path::Path;
 
-use crate::texts::Texts;
+use serde::Serialize;
+use usar_sim::scenario::{Problem, Problems, Scenario, ScenarioError};
+
+use crate::texts::{Texts, plain};
 
 /// What a check says of a scenario.
 #[derive(Serialize)]
@@ -49,7 +51,13 @@ pub(crate) fn check(texts: &Texts) -> Checked {
             warnings: scenario.warnings(&texts.text).iter().map(ToString::to_string).collect(),
             scenario: Some(facts(&scenario)),
         },
-        Err(error) => Checked { problems: mistakes(error), warnings: Vec::new(), scenario: None },
+        Err(error) => {
+            let mut problems = mistakes(error);
+            for mistake in &mut problems {
+                mistake.file = mistake.file.take().filter(|file| *file != texts.name);
+            }
+            Checked { problems, warnings: Vec::new(), scenario: None }
+        }
     }
 }
 
@@ -65,8 +73,11 @@ fn facts(scenario: &Scenario) -> Facts {
 
 fn mistakes(error: ScenarioError) -> Vec<Mistake> {
     match error {
-        ScenarioError::Invalid(problems) => problems.list.into_iter().map(of_problem).collect(),
-        ScenarioError::Malformed { source, .. } => vec![Mistake {
+        ScenarioError::Invalid(Problems { path, list }) => {
+            list.into_iter().map(|problem| of_problem(problem, &path)).collect()
+        }
+        ScenarioError::Malformed { path, source } => vec![Mistake {
+            file: Some(plain(&path)),
             line: Some(source.line),
             column: Some(source.column),
             sentence: source.message.clone(),
@@ -79,10 +90,11 @@ fn mistakes(error: ScenarioError) -> Vec<Mistake> {
     }
 }
 
-fn of_problem(problem: Problem) -> Mistake {
+/// A mistake in a file, unless it names another one.
+fn of_problem(problem: Problem, path: &Path) -> Mistake {
     let sentence = problem.to_string();
     let Problem { field, file, line, rule, found, hint } = problem;
-    let file = file.map(|path| path.to_string_lossy().into_owned());
+    let file = Some(plain(file.as_deref().unwrap_or(path)));
     Mistake { file, line, column: None, field, rule, found, hint, sentence }
 }
 

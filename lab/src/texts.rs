@@ -4,13 +4,13 @@ use std::collections::BTreeMap;
 use std::path::{Component, Path, PathBuf};
 
 use serde::Deserialize;
-use usar_sim::scenario::{Scenario, ScenarioError};
+use usar_sim::scenario::{Scenario, ScenarioError, parse_tree};
 
 /// A scenario as the page has it.
 #[derive(Deserialize)]
 pub(crate) struct Texts {
     /// Name of its file, with slashes.
-    name: String,
+    pub name: String,
     /// Its text.
     pub text: String,
     /// Other files by their names.
@@ -31,15 +31,18 @@ impl Texts {
 
     fn read(&self, path: &Path) -> Result<String, ScenarioError> {
         let name = plain(path);
-        self.others.get(&name).cloned().ok_or_else(|| {
+        let missing = || {
             let reason = "cannot be read: the page has no such file".to_owned();
-            ScenarioError::Unreadable { path: path.to_owned(), reason }
-        })
+            ScenarioError::Unreadable { path: PathBuf::from(&name), reason }
+        };
+        let text = self.others.get(&name).cloned().ok_or_else(missing)?;
+        parse_tree(&text, Path::new(&name))?; // all texts of the page are the reader's own: where it breaks is told
+        Ok(text)
     }
 }
 
 /// A path without `.` and `..`: that of `gallery/../paper.ron` is `paper.ron`.
-fn plain(path: &Path) -> String {
+pub(crate) fn plain(path: &Path) -> String {
     let mut plain = PathBuf::new();
     for part in path.components() {
         match part {

@@ -40,12 +40,35 @@ describe('the module', () => {
     expect(() => module.json('advance', '1')).toThrow('no trial is running');
     expect(() => module.json('check', '{}')).toThrow('missing field `name`');
     const begin = (changes: object): unknown =>
-      module.json('begin', JSON.stringify({ name: 'a.ron', text: '()', policy: 'RNE', seed: '1', ...changes }));
-    expect(() => begin({ seed: '-1' })).toThrow('the seed must be a whole number from 0 to 18446744073709551615');
+      module.json(
+        'begin',
+        JSON.stringify({ name: 'a.ron', text: '()', policy: 'RNE', seed: '1', ...changes }),
+      );
+    expect(() => begin({ seed: '-1' })).toThrow(
+      'the seed must be a whole number from 0 to 18446744073709551615',
+    );
     expect(() => begin({ text: '' })).toThrow('a.ron: is empty');
     const paper = text('scenarios/paper.ron');
     expect(() => begin({ text: paper, policy: 'RNE(luck: 3)' })).toThrow('luck');
-    expect(() => begin({ text: '(base: "b.ron")' })).toThrow('b.ron: cannot be read: the page has no such file');
+    expect(() => begin({ text: '(base: "b.ron")' })).toThrow(
+      'b.ron: cannot be read: the page has no such file',
+    );
+  });
+});
+
+describe('a check', () => {
+  it('names the file and the line of a mistake, in a base too', () => {
+    const over = '(base: "../paper.ron", name: "over",\n mission: (rest: 1))';
+    const paper = text('scenarios/paper.ron');
+    const problem = (texts: Record<string, string>, own = over): unknown => {
+      const asked = JSON.stringify({ name: 'gallery/over.ron', text: own, texts });
+      return (module.json('check', asked) as { problems: unknown[] }).problems[0];
+    };
+    expect(problem({ 'paper.ron': paper })).toMatchObject({ file: null, line: 2, field: 'mission.rest' });
+    const low = paper.replace('rest_s: 30.0', 'rest_s: -1.0');
+    expect(problem({ 'paper.ron': low })).toMatchObject({ file: 'paper.ron', field: 'mission.rest_s' });
+    expect(problem({ 'paper.ron': '(\n name: ' })).toMatchObject({ file: 'paper.ron', line: 2 });
+    expect(problem({})).toMatchObject({ sentence: 'paper.ron: cannot be read: the page has no such file' });
   });
 });
 
@@ -66,7 +89,9 @@ describe('every trial is the one of the command', () => {
       const path = `scenarios/${name}.ron`;
       for (const policy of POLICIES) {
         for (const seed of ['1', '2', '3']) {
-          expect(run(module, { path, policy, seed }).line, `${policy} ${seed}`).toBe(printed(path, policy, seed));
+          expect(run(module, { path, policy, seed }).line, `${policy} ${seed}`).toBe(
+            printed(path, policy, seed),
+          );
         }
       }
     },
@@ -132,11 +157,13 @@ describe('what goes wrong', () => {
         let damaged = paper;
         for (let times = 1 + draw(4); times > 0; times--) {
           const at = draw(damaged.length);
-          const piece = ['', '(', ')', '9', '-', '"', ',', 'x', '1e9', '\u00e9', damaged.slice(at, at + 40)][draw(11)];
+          const piece = ['', '(', ')', '9', '-', '"', ',', 'x', '1e9', '\u00e9', damaged.slice(at, at + 40)][
+            draw(11)
+          ];
           damaged = damaged.slice(0, at) + piece + damaged.slice(at + draw(12));
         }
         const asked = JSON.stringify({ name: 'damaged.ron', text: damaged });
-        const { problems } = module.json<{ problems: { sentence: string }[] }>('check', asked);
+        const { problems } = module.json('check', asked) as { problems: unknown[] };
         if (problems.length > 0) refused += 1;
         else {
           const begin = { name: 'damaged.ron', text: damaged, policy: 'RNE', seed: '1' };

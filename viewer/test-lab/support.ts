@@ -56,11 +56,22 @@ export function run(module: Module, asked: Asked): Ran {
   const own = text(path);
   const base = /base:\s*"([^"]+)"/.exec(own)?.[1];
   const texts = base ? { [base.replace('../', '')]: text(folder + base) } : {};
-  module.json('begin', JSON.stringify({ name: base?.startsWith('../') ? `sub/${name}` : name, text: own, texts, policy, seed, record, check }));
+  module.json(
+    'begin',
+    JSON.stringify({
+      name: base?.startsWith('../') ? `sub/${name}` : name,
+      text: own,
+      texts,
+      policy,
+      seed,
+      record,
+      check,
+    }),
+  );
   const parts: Uint8Array[] = [];
   let progress: Progress;
   do {
-    progress = module.json<Progress>('advance', String(slice));
+    progress = module.json('advance', String(slice)) as Progress;
     parts.push(module.bytes('segment'));
   } while (progress.state === 'running');
   const line = new TextDecoder().decode(module.bytes('finish'));

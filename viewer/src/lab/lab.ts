@@ -260,7 +260,7 @@ export class Lab {
       return;
     }
     try {
-      const question: CompareQuestion = { a, b, pairs, metric: 'rescuees' };
+      const question: CompareQuestion = { a, b, pairs, metric: 'rescuees.total' };
       this.table.tell(await this.simulator!.call<Compared>('compare', question));
       if (missing > 0)
         this.table.add(`${missing} of ${experiment.pairs.length} pairs are not complete, and not counted.`);

@@ -153,23 +153,9 @@ export class Texts {
     return this.problems.filter((problem) => this.nameOf(problem) === name);
   }
 
-  /**
-   * The text that a problem is about. The module does not always say which: then it is the first that has
-   * the field in the line of the problem.
-   */
-  private nameOf({ file, line, field }: Problem): string {
-    const names = [this.file, ...this.bases()];
-    const word = /\w+$/.exec(field?.replace(/\[\d+\]$/, '') ?? '')?.[0];
-    const hasField = (name: string): boolean => {
-      const found =
-        line === null
-          ? undefined
-          : this.textOf(name)
-              ?.split('\n')
-              .at(line - 1);
-      return word !== undefined && found !== undefined && new RegExp(`\\b${word}\\b`).test(found);
-    };
-    return names.find((name) => name === file) ?? names.find(hasField) ?? this.file;
+  /** The text that a problem is about. */
+  private nameOf({ file }: Problem): string {
+    return file ?? this.file;
   }
 
   goTo(problem: Problem): void {
