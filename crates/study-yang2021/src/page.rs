@@ -94,10 +94,10 @@ fn footnote(judged: &[Judged]) -> String {
             "Paired by seed; intervals: BCa bootstrap at 95 %, widened for small n. A claim holds when the \
              interval of each of its comparisons lies on the\n\
          claimed side, and does not when one lies on the other side (by the shared interval: 95 % for all \
-         its comparisons together). It is\n\
-         equivalent when each of its comparisons holds, or differs by less than the margin of \
-         paper.sweep.ron (90 % interval); else it is\n\
-         undecided. Each verdict is wrong in about 2.5 % of experiments at most; the {} claims are not \
+         its comparisons together). It\n\
+         holds or is within the margin when each of its comparisons holds, or differs by less than the \
+         margin of paper.sweep.ron (90 % interval):\n\
+         of a claim to be the best, the best or within 5 of the best. Else it is undecided. Each verdict is wrong in about 2.5 % of experiments at most; the {} claims are not \
          corrected for one another.\n\
          docs/reproduction.md discusses them.",
             CLAIMS.len()

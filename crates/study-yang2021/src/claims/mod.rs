@@ -81,9 +81,10 @@ pub enum Verdict {
     /// The claim is false.
     #[serde(rename = "does not hold")]
     DoesNotHold,
-    /// What is claimed to differ is the same, within the margin.
-    #[serde(rename = "equivalent")]
-    Equivalent,
+    /// Each comparison holds, or the difference is smaller than the margin: of a claim to be the best, that it is
+    /// the best or within the margin of the best.
+    #[serde(rename = "holds or within margin")]
+    WithinMargin,
     /// The trials do not decide.
     #[serde(rename = "undecided")]
     Undecided,
@@ -96,7 +97,7 @@ impl Verdict {
         match self {
             Self::Holds => "holds",
             Self::DoesNotHold => "does not hold",
-            Self::Equivalent => "equivalent",
+            Self::WithinMargin => "holds or within margin",
             Self::Undecided => "undecided",
         }
     }
@@ -108,7 +109,7 @@ impl Verdict {
         } else if worlds.clone().all(|verdict| verdict == Self::Holds) {
             Self::Holds
         } else if worlds.all(|verdict| verdict != Self::Undecided) {
-            Self::Equivalent
+            Self::WithinMargin
         } else {
             Self::Undecided
         }
@@ -128,7 +129,7 @@ impl Verdict {
         if !parts.is_empty() && parts.iter().all(holds) {
             Self::Holds
         } else if !parts.is_empty() && parts.iter().all(|part| holds(part) || part.is_equivalent) {
-            Self::Equivalent
+            Self::WithinMargin
         } else if parts.iter().any(|part| on(part.shared_interval, part.claimed.other())) {
             Self::DoesNotHold
         } else {
@@ -347,8 +348,8 @@ mod tests {
         assert_eq!(over(&[holds, holds]), holds);
         assert_eq!(over(&[holds, open]), open);
         assert_eq!(over(&[holds, open, falls]), falls);
-        assert_eq!(over(&[holds, Verdict::Equivalent]), Verdict::Equivalent);
-        assert_eq!(over(&[open, Verdict::Equivalent]), open);
+        assert_eq!(over(&[holds, Verdict::WithinMargin]), Verdict::WithinMargin);
+        assert_eq!(over(&[open, Verdict::WithinMargin]), open);
     }
 
     #[test]
@@ -372,7 +373,7 @@ mod tests {
         let mut found = parts(&[[1.0, 3.0, 0.5, 3.5], [-3.0, -1.0, -3.5, -0.5]], Side::More);
         assert_eq!(Verdict::of(&found), Verdict::DoesNotHold);
         found[1].is_equivalent = true;
-        assert_eq!(Verdict::of(&found), Verdict::Equivalent);
+        assert_eq!(Verdict::of(&found), Verdict::WithinMargin);
         let within = |half: f64, margin| {
             let differences = (1..=40).map(|i| (i, if i % 2 == 0 { half } else { -half }));
             is_within(&differences.collect::<Vec<_>>(), margin)

@@ -2,7 +2,7 @@
 
 use experiments::experiment::PolicySpec;
 use reports::table::headed;
-use rne_core::{Decision, LogBase, TaskId};
+use rne_core::{Account, Decision, LogBase, TaskId};
 use serde_json::{Value, json};
 
 use super::team::Team;
@@ -30,7 +30,8 @@ pub(super) fn show(
         (true, false) => print_plain_json(&decision),
         (false, _) => {
             print_groups(out, team, &decision)?;
-            print_account(out, &decision, spec)
+            print_account(out, &decision, spec)?;
+            print_merges(out, team, &decision)
         }
     }
 }
@@ -81,6 +82,19 @@ fn print_account(out: &mut dyn Write, decision: &Decision, spec: &PolicySpec) ->
         )?;
     }
     Ok(())
+}
+
+/// In which order roles were merged, where that decides something.
+fn print_merges(out: &mut dyn Write, team: &Team, decision: &Decision) -> Result<(), Failure> {
+    let Account::Rne(account) = &decision.account else { return Ok(()) };
+    if account.merges.len() < 2 {
+        return Ok(());
+    }
+    let roles = team.question.roles.join(", ");
+    Ok(writeln!(
+        out,
+        "merged  {roles}: the order in which the roles are first mentioned, which decides the merges"
+    )?)
 }
 
 /// How far the score can be from the best one.
