@@ -10,12 +10,12 @@ use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 use rne_core::Registry;
 use ron_tree::Node;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use usar_sim::scenario::Scenario;
 
-use super::log::{CALIBRATED, ORIGIN};
+use super::log::{CALIBRATED, LOG, ORIGIN};
 use super::target::misfit;
-use super::{Calibration, Spread, Target, the_policy};
+use super::{Calibration, Evaluation, Identified, Spread, Target, the_policy};
 
 /// Resamples of the data and of the seeds.
 const RESAMPLES: usize = 4_000;
@@ -24,12 +24,19 @@ const RESAMPLES: usize = 4_000;
 /// from the chosen one.
 pub const NOT_TOLD_APART: f64 = 0.05;
 
+/// A line of a calibration's log; the first has no entry.
+#[derive(Deserialize)]
+struct Logged {
+    entry: Option<Evaluation>,
+}
+
 /// A candidate: the result of a calibration.
 pub struct Candidate {
     /// Name of the calibration's folder.
     pub name: String,
     calibration: Calibration,
     values: Vec<f64>,
+    evaluations: Vec<Evaluation>,
 }
 
 /// A candidate with its judgement.
@@ -72,11 +79,23 @@ impl Candidate {
         let free = free.map_err(|error| unreadable(ORIGIN, &error))?;
         let target = Target::load(target, &base)?;
         let policy = the_policy(registry)?;
-        let (trials, first_seed, first_step) = (0, 0, 0.0);
+        let trials =
+            origin["trials"].as_u64().and_then(|trials| u32::try_from(trials).ok()).unwrap_or_default();
+        let (first_seed, first_step) = (0, 0.0);
         let calibration = Calibration { text, base, policy, free, target, trials, first_seed, first_step };
         let values = calibration.present()?;
         let name = folder.file_name().unwrap_or(folder.as_os_str()).to_string_lossy().into_owned();
-        Ok(Self { name, calibration, values })
+        let log = std::fs::read_to_string(folder.join(LOG)).map_err(|error| unreadable(LOG, &error))?;
+        let entry = |line: &str| serde_json::from_str::<Logged>(line).map(|logged| logged.entry);
+        let evaluations = log.lines().filter_map(|line| entry(line).transpose()).collect::<Result<_, _>>();
+        let evaluations = evaluations.map_err(|error| unreadable(LOG, &error))?;
+        Ok(Self { name, calibration, values, evaluations })
+    }
+
+    /// How well each of its values is known.
+    #[must_use]
+    pub fn identified(&self) -> Vec<Identified> {
+        self.calibration.identified(&self.evaluations)
     }
 
     /// The quantities of the candidate's trials with these seeds, each a list over the trials. `None` if
@@ -152,7 +171,7 @@ mod tests {
         let (policy, free) = (the_policy(&policies::standard()).unwrap(), Vec::new());
         let (trials, first_seed, first_step) = (0, 0, 0.0);
         let calibration = Calibration { text, base, policy, free, target, trials, first_seed, first_step };
-        Candidate { name: name.to_owned(), calibration, values: Vec::new() }
+        Candidate { name: name.to_owned(), calibration, values: Vec::new(), evaluations: Vec::new() }
     }
 
     #[test]

@@ -101,6 +101,11 @@ impl LeastSquares {
         &self.centre + step
     }
 
+    /// The slopes of the residuals at the centre, with a row for each axis.
+    pub(super) fn slopes(&self) -> Option<DMatrix<f64>> {
+        self.model().map(|(_, slopes)| slopes)
+    }
+
     /// The residuals at the centre, and their slopes with a row for each axis, by a weighted ridge
     /// regression.
     fn model(&self) -> Option<(DVector<f64>, DMatrix<f64>)> {

@@ -13,9 +13,10 @@ use super::{Calibration, Evaluation, POLICY};
 pub const CALIBRATED: &str = "calibrated.ron";
 /// Name of the file that describes the calibration.
 pub(super) const ORIGIN: &str = "calibration.json";
+/// Name of the log.
+pub(super) const LOG: &str = "evaluations.jsonl";
 /// The use of the folder, and the files made from the log in the end.
-const JOB: Job =
-    Job { noun: "calibration", origin: ORIGIN, log: "evaluations.jsonl", results: &[CALIBRATED, "fit.csv"] };
+const JOB: Job = Job { noun: "calibration", origin: ORIGIN, log: LOG, results: &[CALIBRATED, "fit.csv"] };
 
 /// The log of one calibration, held by one process.
 pub struct Log {

@@ -8,6 +8,7 @@
 
 mod choice;
 mod fit;
+mod identify;
 mod least_squares;
 mod log;
 mod target;
@@ -28,6 +29,7 @@ use usar_sim::scenario::Scenario;
 
 pub use choice::{Candidate, Judged, NOT_TOLD_APART, judge};
 pub use fit::{Fit, write_fit};
+pub use identify::Identified;
 use least_squares::LeastSquares;
 pub use log::{CALIBRATED, Log};
 pub use target::{Quantity, Spread, Target};

@@ -40,7 +40,8 @@ evaluations.jsonl (the log), calibrated.ron, fit.csv and calibration.json.
 With --choose, the results of several calibrations run the same seeds, which none was fitted to. The one \
 with the least misfit is the choice. Then the recorded trials and the seeds are drawn anew 4,000 times: a \
 candidate that is the nearest in at least 5 % of the draws cannot be told from the choice by these data. \
---out is a CSV then.
+--out is a CSV then; \
+identified.csv beside it says how well the values of each are known, and which trade off.
 
 Examples:
   usar study yang2021 calibrate scenarios/paper.ron --target scenarios/reference/dis_trials.csv \\

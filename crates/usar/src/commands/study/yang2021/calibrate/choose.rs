@@ -31,6 +31,7 @@ pub(super) fn execute(asked: &Arguments, registry: &Registry, out: &mut dyn Writ
     let judged = judge(&target, &measured);
     if let Some(path) = &asked.out {
         write_csv(path, &target, &judged)?;
+        write_identified(&path.with_file_name("identified.csv"), &measured)?;
     }
     if asked.shown.is_json() {
         return print_json(&as_json(&target, &judged));
@@ -78,7 +79,28 @@ fn as_json(target: &Target, judged: &[Judged]) -> serde_json::Value {
     json!({"choice": judged[0].candidate, "candidates": candidates})
 }
 
-fn write_csv(path: &std::path::Path, target: &Target, judged: &[Judged]) -> Result<(), Failure> {
+/// How well the values of each candidate are known.
+fn write_identified(path: &Path, measured: &[(Candidate, Vec<Vec<f64>>)]) -> Result<(), Failure> {
+    let header = ["candidate", "parameter", "value", "standard_error", "trades_off_with", "correlation"];
+    let mut rows = vec![header.map(str::to_owned).to_vec()];
+    for (candidate, _) in measured {
+        for one in candidate.identified() {
+            let [value, error, correlation] =
+                [one.value, one.standard_error, one.correlation].map(|number| digits(number, 4));
+            rows.push(vec![
+                candidate.name.clone(),
+                one.parameter,
+                value,
+                error,
+                one.trades_off_with,
+                correlation,
+            ]);
+        }
+    }
+    Destination::new("--out", path, true)?.write(&csv_of(rows)?)
+}
+
+fn write_csv(path: &Path, target: &Target, judged: &[Judged]) -> Result<(), Failure> {
     let names = target.quantities.iter().flat_map(|q| [format!("{}_mean", q.name), format!("{}_sd", q.name)]);
     let first = ["candidate", "misfit", "edge_penalty", "share_nearest"].map(str::to_owned);
     let mut rows = vec![first.into_iter().chain(names).collect()];
