@@ -2,7 +2,7 @@
 //!
 //! When a tired robot rests is the question; every [`Reading`] answers it. Whatever else the paper leaves open is
 //! drawn anew for each start, the same for every reading: a level of each [`Factor`], all levels equally often, and
-//! values of the free parameters from a Latin hypercube (McKay, Beckman and Conover 1979).
+//! values of the free parameters from a Latin hypercube (`McKay`, Beckman and Conover 1979).
 
 use std::path::Path;
 
