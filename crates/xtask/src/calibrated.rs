@@ -27,6 +27,21 @@ const WORLDS: &str = "\
     variants: {
 ";
 
+const READINGS: &str = "\
+// For each reading of when a tired robot rests, the world that fits the authors' recorded trials best under it, as
+// changes of scenarios/paper-calibrated.ron. Made by `just calibrate`; docs/calibration.md says how well each fits.
+(
+    name: \"when-a-robot-rests\",
+    scenario: \"../paper-calibrated.ron\",
+    policies: [\"RNE\", \"DIS\", \"ENG\", \"HP_DIS\"],
+    trials: 100,
+    first_seed: 600001,
+    primary: [\"rescuees.total\", \"rescuees.hard\", \"rescuees.easy\"],
+    baseline: \"DIS\",
+    margins: {\"rescuees.total\": 5.0, \"rescuees.hard\": 5.0, \"rescuees.easy\": 5.0},
+    variants: {
+";
+
 /// Writes `paper-calibrated.ron` and `calibrated-worlds.ron`. `choice` is the table of the choice; its
 /// first row is the chosen candidate.
 ///
@@ -54,6 +69,22 @@ pub fn write_worlds(choice: &Path, folders: &[PathBuf]) {
     std::fs::write(out.join("paper-calibrated.ron"), named(&chosen)).expect("the folder takes a file");
 }
 
+/// Writes `when-a-robot-rests.ron`: a sweep over these worlds, the best of each reading, as variants of the calibrated
+/// world of the repository.
+///
+/// # Panics
+/// A scenario is not what a calibration wrote, or the disk does not take the file.
+pub fn write_readings(out: &Path, base: &str, folders: &[PathBuf]) {
+    let mut sweep = READINGS.to_owned();
+    for folder in folders {
+        let text = std::fs::read_to_string(folder.join("calibrated.ron")).expect("a finished calibration");
+        let name = folder.file_name().expect("a finalist's name").to_string_lossy();
+        writeln!(sweep, "        {:?}: {{{}\n        }},", name, changes(base, &text)).expect("memory");
+    }
+    sweep.push_str("    },\n)\n");
+    std::fs::write(out.join("when-a-robot-rests.ron"), sweep).expect("the folder takes a file");
+}
+
 /// A candidate's text, with the header and the name of the scenario in the repository. Every policy may run
 /// in it.
 fn named(text: &str) -> String {
@@ -67,7 +98,8 @@ fn named(text: &str) -> String {
 /// The values in which the second scenario differs from the first, as entries of a variant, one a line.
 fn changes(from: &str, to: &str) -> String {
     let [from, to] = [from, to].map(|text| Node::parse(text).expect("a scenario that was run"));
-    let is_new = |(path, leaf): &(String, &Node)| path != "name" && from.get(path) != Some(*leaf);
+    let is_fixed = |path: &str| ["name", "only_policy", "description"].contains(&path);
+    let is_new = |(path, leaf): &(String, &Node)| !is_fixed(path) && from.get(path) != Some(*leaf);
     let entry = |(path, leaf): (String, &Node)| format!("\n            {path:?}: {leaf},");
     to.leaves().into_iter().filter(is_new).map(entry).collect()
 }
