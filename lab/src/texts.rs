@@ -35,7 +35,8 @@ impl Texts {
             let reason = "cannot be read: the page has no such file".to_owned();
             ScenarioError::Unreadable { path: PathBuf::from(&name), reason }
         };
-        let text = self.others.get(&name).cloned().ok_or_else(missing)?;
+        let own = (name == plain(Path::new(&self.name))).then(|| self.text.clone());
+        let text = own.or_else(|| self.others.get(&name).cloned()).ok_or_else(missing)?;
         parse_tree(&text, Path::new(&name))?; // all texts of the page are the reader's own: where it breaks is told
         Ok(text)
     }

@@ -332,6 +332,28 @@ test('a trial that fails says why in its row, and the others go on', async () =>
   await done();
 });
 
+test('what is old is said to be, and one policy is not compared with itself', async () => {
+  const { page, done } = await open();
+  await shorten(page, 20);
+  await run(page, { seeds: '1' });
+  const old = page.locator('.results .few', { hasText: 'have changed since' });
+  assert.equal(await old.isVisible(), false);
+  const sound = await text(page);
+  await write(page, sound.replace('duration_s: 20.0', 'duration: 20.0'));
+  await old.waitFor();
+  await page.click('[aria-label^="Run all"]');
+  await page.waitForFunction(() =>
+    /has mistakes/.test(document.querySelector('.choices .status').textContent),
+  );
+  await write(page, sound.replace('easy', 'near'));
+  await page.waitForFunction(() => document.querySelector('.choices .status').textContent === '');
+  await choose(page, { a: 'DIS', b: 'DIS' });
+  await page.click('[aria-label^="Run all"]');
+  assert.match(await status(page), /same policy/);
+  assert.equal(await page.evaluate(() => window.usarLab.lab.isEdited), true);
+  await done();
+});
+
 test('the own policy has no network', async () => {
   let requests = 0;
   const server = createServer((_, response) => {

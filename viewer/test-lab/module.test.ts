@@ -68,6 +68,8 @@ describe('a check', () => {
     const low = paper.replace('rest_s: 30.0', 'rest_s: -1.0');
     expect(problem({ 'paper.ron': low })).toMatchObject({ file: 'paper.ron', field: 'mission.rest_s' });
     expect(problem({ 'paper.ron': '(\n name: ' })).toMatchObject({ file: 'paper.ron', line: 2 });
+    const itself = '(base: "over.ron", name: "over")';
+    expect(problem({}, itself)).toMatchObject({ rule: 'must be a scenario without a base of its own' });
     expect(problem({})).toMatchObject({ sentence: 'paper.ron: cannot be read: the page has no such file' });
   });
 });

@@ -97,6 +97,7 @@ export class Choices {
     const { a, b, seeds } = this.values;
     const parsed = parseSeeds(seeds);
     if (a === '' || b === '') this.say('Give two policies.');
+    else if (a === b) this.say('A and B are the same policy: give two that differ.');
     else if ('error' in parsed) this.say(parsed.error);
     else return { a, b, seeds: parsed.seeds };
     return null;
@@ -104,6 +105,11 @@ export class Choices {
 
   say(sentence: string): void {
     this.status.textContent = sentence;
+  }
+
+  /** Takes back a sentence, if it still stands there. */
+  unsay(sentence: string): void {
+    if (this.status.textContent === sentence) this.say('');
   }
 
   get isRunning(): boolean {

@@ -19,6 +19,8 @@ import { Viewing } from './viewing';
 /** What is run at first. */
 const BEGIN = { a: 'RNE', b: 'DIS', seeds: '1..10' };
 
+const MISTAKES = 'The scenario has mistakes: they are listed below the text.';
+
 export class Lab {
   private readonly texts: Texts;
   private readonly checker: Checker;
@@ -32,6 +34,8 @@ export class Lab {
   private simulator: Simulator | null = null;
   private experiment: Experiment | null = null;
   private scrolled = 0;
+  /** The texts as they were begun, restored or saved last. */
+  private kept = '';
 
   /** `page` is the page as it was delivered. */
   constructor(
@@ -74,6 +78,7 @@ export class Lab {
       this.changed();
     });
     this.changed();
+    this.kept = this.fingerprint();
     this.layout(root);
   }
 
@@ -91,6 +96,7 @@ export class Lab {
       },
       savePage: () => {
         download('usar-lab.html', withSaved(this.page, this.session()), 'text/html');
+        this.kept = this.fingerprint();
       },
       copyLink: () => void this.copyLink(),
     });
@@ -139,11 +145,29 @@ export class Lab {
     this.header.showFile(texts.file);
     this.sliders.show(texts.shown ?? '');
     this.checker.later();
+    this.table.setCurrent(this.isOfExperiment());
+  }
+
+  /** Whether the texts are those that were run last. */
+  private isOfExperiment(): boolean {
+    const plan = this.experiment?.plan;
+    return !plan || JSON.stringify(plan.source) === JSON.stringify(this.texts.source());
+  }
+
+  /** Whether something was written that leaving the page would lose. */
+  get isEdited(): boolean {
+    return this.kept !== this.fingerprint();
+  }
+
+  private fingerprint(): string {
+    const { texts, code } = this.texts.session();
+    return JSON.stringify({ texts, code });
   }
 
   private checked(checked: Checked): void {
     this.texts.mark(checked.problems);
     this.problems.show(checked);
+    if (checked.scenario) this.choices.unsay(MISTAKES);
   }
 
   private session(): Session {
@@ -159,6 +183,7 @@ export class Lab {
   restore(session: Session): void {
     this.texts.restore(session);
     this.choices.values = session;
+    this.kept = this.fingerprint();
   }
 
   private async copyLink(): Promise<void> {
@@ -203,7 +228,7 @@ export class Lab {
     this.choices.progress(0, 'Checking the scenario ...');
     const checked = await this.checker.now();
     if (!checked?.scenario) {
-      this.choices.say('The scenario has mistakes: they are listed below the text.');
+      this.choices.say(MISTAKES);
       this.choices.setRunning(false);
       return;
     }

@@ -31,7 +31,13 @@ async function begin(root: HTMLElement): Promise<void> {
     lab.say(`The link cannot be read: ${error instanceof Error ? error.message : String(error)}`);
   };
   await restoreAddress(lab).catch(told);
-  window.addEventListener('hashchange', () => void restoreAddress(lab).catch(told));
+  window.addEventListener('hashchange', () => {
+    const isWanted = !lab.isEdited || window.confirm('Replace your texts by those of the link?');
+    if (isWanted) void restoreAddress(lab).catch(told);
+  });
+  window.addEventListener('beforeunload', (event) => {
+    if (lab.isEdited) event.preventDefault();
+  });
   await lab.load();
   document.documentElement.dataset.ready = 'yes';
 }

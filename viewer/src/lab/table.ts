@@ -33,6 +33,7 @@ export class PairTable {
   readonly root = element('section', { class: 'panel results', 'aria-label': 'Results' });
   private readonly rows = new Map<Pair, Row>();
   private readonly answer = element('div', { class: 'answer', role: 'status' });
+  private readonly old = element('p', { class: 'few' }, 'The texts have changed since this run.');
   private experiment: Experiment | null = null;
 
   constructor(private readonly openPair: (pair: Pair) => void) {
@@ -94,7 +95,8 @@ export class PairTable {
     );
     const hint = `The command lines read the file ${source.name}: save the changed text first.`;
     const notes = isOriginal ? [] : [element('p', { class: 'hint' }, hint)];
-    this.root.replaceChildren(title, scroller, this.answer, ...notes);
+    this.old.hidden = true;
+    this.root.replaceChildren(title, this.old, scroller, this.answer, ...notes);
   }
 
   /** Draws a row anew. */
@@ -168,6 +170,11 @@ export class PairTable {
     this.answer.replaceChildren(words, element('p', { class: 'hint' }, `${facts.join(', ')}.`));
     if (n < FEW)
       this.answer.append(element('p', { class: 'few' }, `So few pairs settle little: run at least ${FEW}.`));
+  }
+
+  /** Says whether the table is of the texts as they are now. */
+  setCurrent(isCurrent: boolean): void {
+    this.old.hidden = isCurrent;
   }
 
   /** Says something below the table in place of a comparison. */
