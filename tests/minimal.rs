@@ -165,8 +165,8 @@ fn rings_of_2_to_30_robots_swap_sides_in_time() {
     }
 }
 
-/// The library of triangulations panics on the way through the rubble (docs/triangulation.md). The page of the
-/// laboratory is tested with this world: a build that cannot catch panics ends there.
+/// The library of triangulations panics on the way through the rubble (docs/triangulation.md). The page of
+/// the laboratory is tested with this world: a build that cannot catch panics ends there.
 #[test]
 fn the_library_panics_in_the_rubble_and_the_trial_goes_on() {
     static HAS_PANICKED: AtomicBool = AtomicBool::new(false);

@@ -177,7 +177,8 @@ fn a_round_begins_without_robots_that_rest_if_the_reading_says_so() {
     assert!(goes_on.len() > waits.len(), "rounds are shorter: {} {}", goes_on.len(), waits.len());
 }
 
-/// Robots that left the field for rest, robots that ended without energy, and the least final energy in percent.
+/// Robots that left the field for rest, robots that ended without energy, and the least final energy in
+/// percent.
 fn tired(changes: &[(&str, &str)]) -> (usize, usize, f64) {
     let scenario = paper_with(changes);
     let (mut turned_back, mut were_in_field) = (0, vec![false; 12]);

@@ -1,6 +1,7 @@
-//! The exports. The page writes an argument into a [`room`], calls a function with its length in bytes, and reads as
-//! many bytes as the function returned from where [`reply`] points. Arguments and replies are JSON in UTF-8, but for
-//! those of [`segment`]. A failure is `{"error": "..."}`. A panic is a failure; the trial that panicked is over.
+//! The exports. The page writes an argument into a [`room`], calls a function with its length in bytes, and
+//! reads as many bytes as the function returned from where [`reply`] points. Arguments and replies are JSON
+//! in UTF-8, but for those of [`segment`]. A failure is `{"error": "..."}`. A panic is a failure; the trial
+//! that panicked is over.
 
 #![expect(unsafe_code, reason = "exports of WebAssembly have names of their own")]
 

@@ -1,5 +1,6 @@
-//! The laboratory of a web page: scenarios are checked, trials are run, and pairs of trials are compared, by the
-//! same code as in the command. Built for WebAssembly, it imports nothing: no file, no clock, no random source.
+//! The laboratory of a web page: scenarios are checked, trials are run, and pairs of trials are compared,
+//! by the same code as in the command. Built for WebAssembly, it imports nothing: no file, no clock, no
+//! random source.
 //!
 //! [`door`] has the exports. Each takes JSON and replies with JSON; the modules beside it answer.
 

@@ -186,7 +186,8 @@ impl Trial {
         self.bytes.0.take()
     }
 
-    /// Ends the trial; returns its record as `usar run --json` prints it, and the last bytes of the recording.
+    /// Ends the trial; returns its record as `usar run --json` prints it, and the last bytes of the
+    /// recording.
     pub fn finish(self) -> Result<Finished, Failure> {
         let scenario = self.simulation.scenario().name.clone();
         let mut record = self.simulation.finish();

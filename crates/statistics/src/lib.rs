@@ -1,5 +1,5 @@
-//! Paired comparisons with honest statistics, as functions of slices of numbers: no files, no threads, no clock.
-//! The command and the page in a browser both call them, and therefore say the same.
+//! Paired comparisons with honest statistics, as functions of slices of numbers: no files, no threads, no
+//! clock. The command and the page in a browser both call them, and therefore say the same.
 
 pub mod bootstrap;
 pub mod cautious;

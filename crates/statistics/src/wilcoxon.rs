@@ -1,13 +1,13 @@
 //! Wilcoxon's signed-rank test of paired differences, exact with ties and zeros.
 //!
-//! Differences are rounded to a billionth of the largest before they are ranked, so that what is tied on paper
-//! is tied. Zeros are left out (Wilcoxon 1945), and tied magnitudes share their mean rank. The sum of the ranks of
-//! positive differences is compared with its distribution over all 2^n choices of signs. Up to
+//! Differences are rounded to a billionth of the largest before they are ranked, so that what is tied on
+//! paper is tied. Zeros are left out (Wilcoxon 1945), and tied magnitudes share their mean rank. The sum of
+//! the ranks of positive differences is compared with its distribution over all 2^n choices of signs. Up to
 //! [`EXACT_PAIRS`] differences, this distribution is counted exactly by adding one difference after the
 //! other. Up to [`DRAWN_PAIRS`], [`DRAWS`] random choices of signs replace it. Beyond that, the normal
 //! distribution with the same mean and variance replaces it, with ties and a continuity correction; it is
-//! then indistinguishable from the exact one. Checked against `SciPy` 1.17.1,
-//! `wilcoxon(d, method=PermutationMethod(n_resamples=numpy.inf))`.
+//! then indistinguishable from the exact one. Checked against `SciPy` 1.17.1, `wilcoxon(d,
+//! method=PermutationMethod(n_resamples=numpy.inf))`.
 
 use rand::rngs::ChaCha8Rng;
 use rand::{Rng, SeedableRng};

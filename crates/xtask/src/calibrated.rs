@@ -69,8 +69,8 @@ pub fn write_worlds(choice: &Path, folders: &[PathBuf]) {
     std::fs::write(out.join("paper-calibrated.ron"), named(&chosen)).expect("the folder takes a file");
 }
 
-/// Writes `when-a-robot-rests.ron`: a sweep over these worlds, the best of each reading, as variants of the calibrated
-/// world of the repository.
+/// Writes `when-a-robot-rests.ron`: a sweep over these worlds, the best of each reading, as variants of the
+/// calibrated world of the repository.
 ///
 /// # Panics
 /// A scenario is not what a calibration wrote, or the disk does not take the file.

@@ -1,8 +1,9 @@
 //! The readings of the paper's mission that a calibration compares, and the starts of its search.
 //!
-//! When a tired robot rests is the question; every [`Reading`] answers it. Whatever else the paper leaves open is
-//! drawn anew for each start, the same for every reading: a level of each [`Factor`], all levels equally often, and
-//! values of the free parameters from a Latin hypercube (`McKay`, Beckman and Conover 1979).
+//! When a tired robot rests is the question; every [`Reading`] answers it. Whatever else the paper leaves
+//! open is drawn anew for each start, the same for every reading: a level of each [`Factor`], all levels
+//! equally often, and values of the free parameters from a Latin hypercube (`McKay`, Beckman and Conover
+//! 1979).
 
 use std::path::Path;
 
@@ -158,8 +159,8 @@ const FREE: [&str; 7] = [
 pub struct Details([usize; FACTORS.len()]);
 
 impl Details {
-    /// The details of a start, the same for every reading. Over all starts each level of a factor occurs equally
-    /// often, as far as their number allows.
+    /// The details of a start, the same for every reading. Over all starts each level of a factor occurs
+    /// equally often, as far as their number allows.
     #[must_use]
     pub fn of_start(start: usize) -> Self {
         Self(std::array::from_fn(|factor| shuffled(factor)[start] % FACTORS[factor].levels.len()))

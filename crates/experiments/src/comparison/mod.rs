@@ -1,5 +1,5 @@
-//! Paired comparisons of the policies of a sweep: which are made, and from what trials. What they say is computed
-//! by the crate [`statistics`].
+//! Paired comparisons of the policies of a sweep: which are made, and from what trials. What they say is
+//! computed by the crate [`statistics`].
 
 mod asked;
 mod cell;

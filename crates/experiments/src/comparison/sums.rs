@@ -28,8 +28,8 @@ pub fn moments_of(folder: &Folder, cell: Cell, metric: usize) -> Moments {
     Moments::of(&values.collect::<Vec<f64>>())
 }
 
-/// The sums of a metric. `None` if the metric is not a ratio, if every trial has a large enough denominator, or
-/// if a cell has no rescuees at all.
+/// The sums of a metric. `None` if the metric is not a ratio, if every trial has a large enough
+/// denominator, or if a cell has no rescuees at all.
 pub(super) fn sums_of(folder: &Folder, metric: usize, [a, b]: [Cell; 2]) -> Option<Sums> {
     let experiment = folder.experiment();
     let [cost, count] = experiment.metrics.sums(metric)?;

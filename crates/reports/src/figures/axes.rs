@@ -11,8 +11,8 @@ use crate::drawing::{
     Drawing, Panel, Sketch, difference_heat_map, from_top, is_drawn, layout, line_panel, names, table,
 };
 
-/// The differences between policies over two axes: for each metric a figure with a map for each pair, all of one
-/// colour scale. Empty for any other number of axes, or without comparisons.
+/// The differences between policies over two axes: for each metric a figure with a map for each pair, all
+/// of one colour scale. Empty for any other number of axes, or without comparisons.
 pub(super) fn difference_maps(
     experiment: &Experiment,
     comparisons: &[Comparison],

@@ -27,8 +27,8 @@ pub use grouping::{levels_table, likeness_table};
 /// Largest number of policies that are columns of a table; more are rows.
 const MOST_COLUMNS: usize = 8;
 
-/// Mean ± sample standard deviation of each metric and policy in one case. A row for each metric, or, if there
-/// are more than eight policies, for each policy.
+/// Mean ± sample standard deviation of each metric and policy in one case. A row for each metric, or, if
+/// there are more than eight policies, for each policy.
 #[must_use]
 pub fn policy_table(folder: &Folder, case: usize) -> Table {
     let Experiment { policies, metrics, .. } = folder.experiment();
@@ -178,8 +178,8 @@ pub fn headed(header: impl Into<Row>) -> Table {
 /// Width of the terminal in columns, if there is one.
 static COLUMNS: OnceLock<u16> = OnceLock::new();
 
-/// Shows tables that are wider than a terminal with this many columns in parts. Without this call, tables keep
-/// their full width.
+/// Shows tables that are wider than a terminal with this many columns in parts. Without this call, tables
+/// keep their full width.
 pub fn fold_at(columns: u16) {
     let _ = COLUMNS.set(columns); // the terminal is the same
 }

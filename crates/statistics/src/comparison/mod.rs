@@ -1,4 +1,5 @@
-//! What differs between two subjects that were tried in pairs, by how much, and how certain the difference is.
+//! What differs between two subjects that were tried in pairs, by how much, and how certain the difference
+//! is.
 
 mod answer;
 mod pairs;
@@ -110,8 +111,8 @@ impl Comparison {
         self.verdict == Verdict::Equivalent
     }
 
-    /// The same comparison, of which the names are known, with what these pairs say: all but what takes the whole
-    /// [family](correct), and the [verdict](Self::judge).
+    /// The same comparison, of which the names are known, with what these pairs say: all but what takes the
+    /// whole [family](correct), and the [verdict](Self::judge).
     #[must_use]
     pub fn measured(self, pairs: &Pairs) -> Self {
         let differences = pairs.differences();
@@ -139,8 +140,8 @@ impl Comparison {
         }
     }
 
-    /// Adds the verdict, what the pairs say of a margin if there is one, and the finding in words. The family must
-    /// be [corrected](correct).
+    /// Adds the verdict, what the pairs say of a margin if there is one, and the finding in words. The
+    /// family must be [corrected](correct).
     pub fn judge(&mut self, direction: Direction, margin: Option<(f64, &Pairs)>) {
         let with_margin = margin.map(|(margin, pairs)| {
             (margin, pairs.interval(TOST_CONFIDENCE), pairs_for_margin(&pairs.differences(), margin))

@@ -54,8 +54,8 @@ impl Pairs {
 pub struct Repeats(BTreeSet<Vec<(u32, u128)>>);
 
 impl Repeats {
-    /// Whether trials of this number are new. A hash of 0 is of a trial without numbers, or of one that has not
-    /// been run: it repeats no other.
+    /// Whether trials of this number are new. A hash of 0 is of a trial without numbers, or of one that has
+    /// not been run: it repeats no other.
     pub fn is_new(&mut self, trial: u32, hashes: &[u128]) -> bool {
         let own = if hashes.contains(&0) { trial } else { 0 };
         self.0.insert(hashes.iter().map(|hash| (own, *hash)).collect())

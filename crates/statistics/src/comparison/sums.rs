@@ -3,8 +3,8 @@
 //! The trials with the smallest denominators dominate the mean of the trials' own ratios, and trials
 //! without rescuees are missing from it. The ratio of the sums over all trials has neither defect. A
 //! trial's *linearised value* is its contribution to that ratio: R + (cost - R rescuees) / (mean of
-//! rescuees), where R is the ratio of both subjects together. The mean of a subject's linearised values is its
-//! ratio of sums. Tests and standard deviations of these values are therefore valid for the ratio.
+//! rescuees), where R is the ratio of both subjects together. The mean of a subject's linearised values is
+//! its ratio of sums. Tests and standard deviations of these values are therefore valid for the ratio.
 
 use crate::bootstrap::statistic_interval;
 
@@ -22,7 +22,8 @@ pub struct Sums {
 }
 
 impl Sums {
-    /// Whether ratios of these sums are compared: some trial has few rescuees, and neither subject has none at all.
+    /// Whether ratios of these sums are compared: some trial has few rescuees, and neither subject has none
+    /// at all.
     #[must_use]
     pub fn are_compared(&self) -> bool {
         let is_few = self.pairs.iter().any(|pair| pair[1] < FEW || pair[3] < FEW);

@@ -1,8 +1,8 @@
 //! How well the records fix each fitted value, and which values trade off against one another.
 //!
-//! Near the best candidate each residual is linear in the parameters, with slopes J from a regression on the
-//! evaluated candidates. Residuals count standard errors, so the covariance of the fitted values is the inverse of
-//! J'J (Gauss and Newton's approximation; Seber and Wild 1989, section 2.1).
+//! Near the best candidate each residual is linear in the parameters, with slopes J from a regression on
+//! the evaluated candidates. Residuals count standard errors, so the covariance of the fitted values is the
+//! inverse of J'J (Gauss and Newton's approximation; Seber and Wild 1989, section 2.1).
 
 use nalgebra::DMatrix;
 use serde::Serialize;
@@ -13,8 +13,8 @@ use super::{Calibration, Evaluation};
 /// Candidates count by their distance from the best one: at twice this share of a range, by 1/e.
 const REACH: f64 = 0.06;
 
-/// A flat prior over each range, as a standard deviation in shares of it: without it, what no candidate can tell
-/// would have no standard error.
+/// A flat prior over each range, as a standard deviation in shares of it: without it, what no candidate can
+/// tell would have no standard error.
 const PRIOR_SD: f64 = 0.289;
 
 /// A fitted value, and how well it is known.

@@ -81,8 +81,8 @@ pub enum Verdict {
     /// The claim is false.
     #[serde(rename = "does not hold")]
     DoesNotHold,
-    /// Each comparison holds, or the difference is smaller than the margin: of a claim to be the best, that it is
-    /// the best or within the margin of the best.
+    /// Each comparison holds, or the difference is smaller than the margin: of a claim to be the best, that
+    /// it is the best or within the margin of the best.
     #[serde(rename = "holds or within margin")]
     WithinMargin,
     /// The trials do not decide.

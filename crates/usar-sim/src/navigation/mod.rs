@@ -72,8 +72,8 @@ impl Navigator {
         &self.travellers[robot.index()]
     }
 
-    /// Length of the route ahead of a robot, in metres (none without a route), and whether the robot is at its
-    /// goal or has none.
+    /// Length of the route ahead of a robot, in metres (none without a route), and whether the robot is at
+    /// its goal or has none.
     pub(crate) fn way_left(&mut self, robot: RobotId, from: Vector) -> (Option<f32>, bool) {
         let traveller = &mut self.travellers[robot.index()];
         (traveller.measure(from), traveller.settle(from))
@@ -93,9 +93,9 @@ impl Navigator {
         }
     }
 
-    /// Plans routes, on all threads if `in_parallel`: each part of the team then has meshes of its own. A robot
-    /// plans if it has no route yet, if new knowledge cuts its route or may make it dearer or cheaper, or if it
-    /// makes no progress.
+    /// Plans routes, on all threads if `in_parallel`: each part of the team then has meshes of its own. A
+    /// robot plans if it has no route yet, if new knowledge cuts its route or may make it dearer or
+    /// cheaper, or if it makes no progress.
     pub fn plan<'o, B, S>(&mut self, outlook: &Outlook<'o, B, S>, meshes: &mut Vec<Meshes>, in_parallel: bool)
     where
         B: Fn(RobotId) -> &'o Belief + Sync,

@@ -20,8 +20,8 @@ pub(super) fn spend(robot: &mut Robot, [energy, hp]: [f64; 2], unit: CostUnit, m
         .charge(robot.id, [unit.of_percent(energy, robot.spec.energy), unit.of_percent(hp, robot.spec.hp)]);
 }
 
-/// The end of a robot that has no HP or, where robots need it, no energy left, as its condition and as an event.
-/// Without HP it is disabled, whatever its energy.
+/// The end of a robot that has no HP or, where robots need it, no energy left, as its condition and as an
+/// event. Without HP it is disabled, whatever its energy.
 pub(super) fn last_event(robot: &mut Robot, rules: &MissionModel) -> Option<Event> {
     if robot.hp <= 0.0 {
         robot.condition = Condition::Disabled;

@@ -1,4 +1,5 @@
-//! The calibration of the paper's world, from the starts of its readings to the choice: see docs/calibration.md.
+//! The calibration of the paper's world, from the starts of its readings to the choice: see
+//! docs/calibration.md.
 //!
 //! `calibration [OUT]`, with `usar` built in the same profile. An interrupted calibration resumes.
 

@@ -20,8 +20,8 @@ pub mod worlds;
 
 use std::path::PathBuf;
 
-/// From now on, a panic of the library of triangulations prints nothing: the planner catches it and tries again with
-/// other outlines.
+/// From now on, a panic of the library of triangulations prints nothing: the planner catches it and tries
+/// again with other outlines.
 fn silence_triangulations() {
     let others = std::panic::take_hook();
     std::panic::set_hook(Box::new(move |panic| {
