@@ -12,7 +12,7 @@ use experiments::sweep::owned::Report;
 use crate::claims::{CLAIMS, Example, Judged, LEAST_TRIALS};
 use crate::predictions::{Prediction, over_worlds};
 use crate::scenarios::Standing;
-use crate::table::{claims_table, examples_table, power_table, predictions_table, verdicts_table};
+use crate::table::{claims_table, examples_table, power_table, predictions_table, ranges_table, verdicts_table};
 
 /// A section of the output.
 pub struct Section {
@@ -31,8 +31,8 @@ pub fn sections(
     examples: &[Example],
     predicted: &[(Standing, Vec<Prediction>)],
 ) -> Vec<Section> {
-    // Of an alternative world, only the verdicts are shown; claims.csv and power.csv have the rest.
-    let main = || judged.iter().filter(|world| world.standing != Standing::Alternative);
+    // Of the worlds of other readings, only verdicts and ranges are shown; claims.csv and power.csv have the rest.
+    let main = || judged.iter().filter(|world| world.standing.is_main());
     let claims = main().map(|scenario| Section {
         title: format!("{}: what its trials say of each claim", scenario.scenario),
         table: Some(claims_table(scenario)),
@@ -59,7 +59,12 @@ pub fn sections(
             the authors'"
             .to_owned(),
     });
-    claims.chain([examples]).chain(power).chain(predictions).chain([verdicts]).collect()
+    let ranges = ranges_table(judged).map(|table| Section {
+        title: "Ranges over the readings of when a tired robot rests".to_owned(),
+        table: Some(table),
+        note: RANGES_NOTE.to_owned(),
+    });
+    claims.chain([examples]).chain(power).chain(predictions).chain(ranges).chain([verdicts]).collect()
 }
 
 /// The predictions to show: those of the printed world, and those of all calibrated worlds together.
@@ -71,6 +76,9 @@ fn predicted_worlds(predicted: &[(Standing, Vec<Prediction>)]) -> Vec<Vec<Predic
         of(Standing::Printed).map(|(_, predictions)| predictions.clone()).into_iter().chain(calibrated);
     shown.filter(|predictions| !predictions.is_empty()).collect()
 }
+
+const RANGES_NOTE: &str = "the least and the largest mean difference in the calibrated worlds, one for each \
+    reading; all of them are in claims.csv";
 
 const POWER_NOTE: &str = "leans to: what large experiments would say, were the means of these trials the \
     truth; pairs for 80 %: the fewest with which 80 % of\n\
@@ -86,7 +94,8 @@ fn footnote(judged: &[Judged]) -> String {
         format!(
             "All calibrated worlds: paper-calibrated and {alternatives} that the recorded trials cannot tell \
              from it. A claim holds there if it\n\
-             holds in each, and does not if it does not in one.\n"
+             holds in each, and does not if it does not in one. All readings: the worlds that fit best under \
+             each reading of when a tired robot rests.\n"
         )
     };
     worlds

@@ -87,7 +87,7 @@ fn of_values(values: &[f64]) -> Option<[f64; 4]> {
 pub(crate) fn over_worlds(worlds: &[(Standing, Vec<Prediction>)]) -> Vec<Prediction> {
     let calibrated: Vec<&Vec<Prediction>> = worlds
         .iter()
-        .filter(|(standing, _)| *standing != Standing::Printed)
+        .filter(|(standing, _)| standing.is_in_ensemble())
         .map(|(_, predictions)| predictions)
         .collect();
     let Some(first) = calibrated.first().filter(|_| calibrated.len() > 1) else { return Vec::new() };
@@ -140,7 +140,7 @@ mod tests {
     }
 
     #[test]
-    fn an_interval_over_worlds_holds_that_of_each_calibrated_one_and_not_the_printed() {
+    fn an_interval_over_worlds_holds_that_of_each_world_that_cannot_be_told_apart() {
         let one = |mean: f64, scenario: &str| Prediction {
             scenario: scenario.to_owned(),
             policy: "RNE".to_owned(),
@@ -155,6 +155,7 @@ mod tests {
             (Standing::Printed, vec![one(90.0, "paper")]),
             (Standing::Calibrated, vec![one(6.0, "a")]),
             (Standing::Alternative, vec![one(8.0, "b")]),
+            (Standing::FitsWorse, vec![one(40.0, "c")]),
         ];
         let together = over_worlds(&worlds);
         assert_eq!(together, [Prediction { trials: 20, low: 5.0, high: 9.0, ..one(7.0, ALL) }]);

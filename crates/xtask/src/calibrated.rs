@@ -1,30 +1,16 @@
 //! Scenario files from the result of a calibration: the calibrated world, and, as variants of it, the
-//! worlds that the data cannot tell apart from it.
+//! best worlds of all readings.
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 use ron_tree::{Node, edited};
 
-/// Finalists that are nearest in at least this share of the draws cannot be told apart from the choice.
-const NOT_TOLD_APART: f64 = 0.05;
-
 const HEADER: &str = "\
 // The paper's experiment in a world that costs what the authors recorded: paper.ron with its free values
 // fitted to their ten trials of the distance baseline (scenarios/reference/dis_trials.csv). How, how well,
 // and what does not fit: docs/calibration.md.
 //
-";
-
-const WORLDS: &str = "\
-// The calibrated worlds that the authors' recorded trials cannot tell from scenarios/paper-calibrated.ron:
-// what is claimed of it should hold in them as well. Made by `just calibrate`; docs/calibration.md says how.
-(
-    name: \"calibrated-worlds\",
-    scenario: \"../paper-calibrated.ron\",
-    policies: [\"RNE\", \"DIS\", \"ENG\", \"HP_DIS\"],
-    trials: 50,
-    variants: {
 ";
 
 const READINGS: &str = "\
@@ -42,47 +28,25 @@ const READINGS: &str = "\
     variants: {
 ";
 
-/// Writes `paper-calibrated.ron` and `calibrated-worlds.ron`. `choice` is the table of the choice; its
-/// first row is the chosen candidate.
+/// Writes `paper-calibrated.ron`, the candidate in the first folder, and `when-a-robot-rests.ron`: a sweep over
+/// the best candidate of each reading, as variants of it.
 ///
 /// # Panics
-/// A table or a scenario is not what a calibration wrote, or the disk does not take the files.
-pub fn write_worlds(choice: &Path, folders: &[PathBuf]) {
-    let mut table = csv::Reader::from_path(choice).expect("the choice has a table");
-    let rows: Vec<csv::StringRecord> = table.records().map(|row| row.expect("a table")).collect();
-    let text = |row: &csv::StringRecord| {
-        let folder = folders.iter().find(|folder| folder.ends_with(&row[0])).expect("a finalist's name");
-        std::fs::read_to_string(folder.join("calibrated.ron")).expect("a finished calibration")
-    };
-    let (first, others) = rows.split_first().expect("there are finalists");
-    let chosen = text(first);
-    let mut worlds = WORLDS.to_owned();
-    for row in others {
-        if row[3].parse::<f64>().expect("a share") >= NOT_TOLD_APART {
-            let changes = changes(&chosen, &text(row));
-            writeln!(worlds, "        {:?}: {{{changes}\n        }},", &row[0]).expect("memory");
-        }
-    }
-    worlds.push_str("    },\n)\n");
-    let out = choice.parent().expect("it is in a folder");
-    std::fs::write(out.join("calibrated-worlds.ron"), worlds).expect("the folder takes a file");
-    std::fs::write(out.join("paper-calibrated.ron"), named(&chosen)).expect("the folder takes a file");
-}
-
-/// Writes `when-a-robot-rests.ron`: a sweep over these worlds, the best of each reading, as variants of the
-/// calibrated world of the repository.
-///
-/// # Panics
-/// A scenario is not what a calibration wrote, or the disk does not take the file.
-pub fn write_readings(out: &Path, base: &str, folders: &[PathBuf]) {
+/// A scenario is not what a calibration wrote, or the disk does not take the files.
+pub fn write_worlds(out: &Path, chosen: &Path, best: &[PathBuf]) {
+    let text =
+        |folder: &Path| std::fs::read_to_string(folder.join("calibrated.ron")).expect("a finished calibration");
+    let chosen = text(chosen);
     let mut sweep = READINGS.to_owned();
-    for folder in folders {
-        let text = std::fs::read_to_string(folder.join("calibrated.ron")).expect("a finished calibration");
+    for folder in best {
         let name = folder.file_name().expect("a finalist's name").to_string_lossy();
-        writeln!(sweep, "        {:?}: {{{}\n        }},", name, changes(base, &text)).expect("memory");
+        let changes = changes(&chosen, &text(folder));
+        let end = if changes.is_empty() { "" } else { "\n        " };
+        writeln!(sweep, "        {name:?}: {{{changes}{end}}},").expect("memory");
     }
     sweep.push_str("    },\n)\n");
     std::fs::write(out.join("when-a-robot-rests.ron"), sweep).expect("the folder takes a file");
+    std::fs::write(out.join("paper-calibrated.ron"), named(&chosen)).expect("the folder takes a file");
 }
 
 /// A candidate's text, with the header and the name of the scenario in the repository. Every policy may run
@@ -109,7 +73,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_choice_is_a_scenario_and_what_cannot_be_told_from_it_are_its_variants() {
+    fn the_choice_is_a_scenario_and_the_best_of_each_reading_are_its_variants() {
         let place = tempfile::tempdir().unwrap();
         let candidate = |name: &str, rest: &str| {
             let folder = place.path().join(name);
@@ -121,18 +85,14 @@ mod tests {
             std::fs::write(folder.join("calibrated.ron"), text).unwrap();
             folder
         };
-        let folders = [candidate("final-1", "3.0"), candidate("final-2", "4.0"), candidate("final-3", "5.0")];
-        let choice = place.path().join("choice.csv");
-        let table = "candidate,misfit,edge_penalty,share_nearest\n\
-            final-2,1,0,0.9\nfinal-1,2,0,0.06\nfinal-3,9,0,0.04\n";
-        std::fs::write(&choice, table).unwrap();
-        write_worlds(&choice, &folders);
+        let best = [candidate("home-1", "3.0"), candidate("once-2", "4.0")];
+        write_worlds(place.path(), &best[1], &best);
         let read = |name: &str| std::fs::read_to_string(place.path().join(name)).unwrap();
         let expected = "// [paper] legend\n(\n    format: 2,\n    name: \"paper-calibrated\",\n    mission: \
             (rest_s: 4.0), // [paper]\n)\n";
         assert_eq!(read("paper-calibrated.ron"), HEADER.to_owned() + expected);
-        let expected =
-            "        \"final-1\": {\n            \"mission.rest_s\": 3.0,\n        },\n    },\n)\n";
-        assert_eq!(read("calibrated-worlds.ron"), WORLDS.to_owned() + expected);
+        let expected = "        \"home-1\": {\n            \"mission.rest_s\": 3.0,\n        },\n        \
+            \"once-2\": {},\n    },\n)\n";
+        assert_eq!(read("when-a-robot-rests.ron"), READINGS.to_owned() + expected);
     }
 }

@@ -245,7 +245,7 @@ impl Judged {
 #[must_use]
 pub(crate) fn verdicts_over_worlds(judged: &[Judged]) -> Option<Vec<Verdict>> {
     let calibrated: Vec<&Judged> =
-        judged.iter().filter(|world| world.standing != Standing::Printed).collect();
+        judged.iter().filter(|world| world.standing.is_in_ensemble()).collect();
     let verdict = |claim: usize| Verdict::over(calibrated.iter().map(|world| world.of_all[claim].verdict));
     (calibrated.len() > 1).then(|| (0..CLAIMS.len()).map(verdict).collect())
 }

@@ -4,7 +4,7 @@ use comfy_table::{Cell, Table};
 use experiments::comparison::{digits, short};
 use reports::table::{headed, right};
 
-use crate::claims::{CLAIMS, Example, Judged, PartFinding, Shares, verdicts_over_worlds};
+use crate::claims::{CLAIMS, Example, Judged, PartFinding, Shares, Verdict, verdicts_over_worlds};
 use crate::scenarios::{PAPERS_TRIALS, Standing};
 
 /// The verdicts on each claim from a scenario's trials: a row for each comparison.
@@ -103,22 +103,66 @@ pub(crate) fn power_table(judged: &Judged) -> Option<Table> {
     Some(table)
 }
 
-/// All verdicts side by side: of each scenario, and of all calibrated worlds together if there are several.
+/// All verdicts side by side: of each scenario, of all calibrated worlds together, and how many worlds of all
+/// readings have which.
 pub(crate) fn verdicts_table(judged: &[Judged]) -> Table {
-    let main: Vec<&Judged> = judged.iter().filter(|world| world.standing != Standing::Alternative).collect();
+    let main: Vec<&Judged> = judged.iter().filter(|world| world.standing.is_main()).collect();
+    let readings = of_readings(judged);
     let over_worlds = verdicts_over_worlds(judged);
     let header = main.iter().flat_map(|scenario| {
         [PAPERS_TRIALS, scenario.trials].map(|trials| format!("{}, {trials} pairs", scenario.scenario))
     });
     let header = ["claim".to_owned()].into_iter().chain(header);
-    let last = over_worlds.as_ref().map(|_| "all calibrated worlds".to_owned());
-    let mut table = headed(header.chain(last).map(Cell::new));
+    let together = over_worlds.as_ref().map(|_| "all calibrated worlds".to_owned());
+    let last = (readings.len() > 1).then(|| format!("{} readings", readings.len()));
+    let mut table = headed(header.chain(together).chain(last).map(Cell::new));
     for (i, claim) in CLAIMS.iter().enumerate() {
         let verdicts =
             main.iter().flat_map(|scenario| [&scenario.of_few, &scenario.of_all].map(|of| of[i].verdict));
-        let last = over_worlds.as_ref().map(|verdicts| verdicts[i]);
-        let verdicts = verdicts.chain(last).map(|verdict| Cell::new(verdict.words()));
-        table.add_row(std::iter::once(Cell::new(claim.words)).chain(verdicts));
+        let together = over_worlds.as_ref().map(|verdicts| verdicts[i]);
+        let verdicts = verdicts.chain(together).map(|verdict| verdict.words().to_owned());
+        let last = (readings.len() > 1).then(|| counted(readings.iter().map(|world| world.of_all[i].verdict)));
+        table.add_row(std::iter::once(claim.words.to_owned()).chain(verdicts).chain(last).map(Cell::new));
     }
     table
+}
+
+/// The calibrated worlds, one for each reading of when a tired robot rests.
+fn of_readings(judged: &[Judged]) -> Vec<&Judged> {
+    judged.iter().filter(|world| world.standing != Standing::Printed).collect()
+}
+
+/// The name of a world, without that of the calibrated one, of which it is a variant.
+fn reading(world: &str) -> &str {
+    world.strip_prefix("paper-calibrated-").unwrap_or(world)
+}
+
+/// How often each verdict occurs, in words.
+fn counted(verdicts: impl Iterator<Item = Verdict> + Clone) -> String {
+    let all = [Verdict::Holds, Verdict::WithinMargin, Verdict::DoesNotHold, Verdict::Undecided];
+    let counts = all.map(|verdict| (verdicts.clone().filter(|found| *found == verdict).count(), verdict));
+    let words = counts.iter().filter(|(count, _)| *count > 0);
+    words.map(|(count, verdict)| format!("{}: {count}", verdict.words())).collect::<Vec<_>>().join(", ")
+}
+
+/// For each comparison, the least and the largest difference over the worlds of all readings; `None` if there
+/// is only one such world.
+pub(crate) fn ranges_table(judged: &[Judged]) -> Option<Table> {
+    let readings = of_readings(judged);
+    let mut table = headed(["claim", "least", "in", "largest", "in"]);
+    for (i, claim) in CLAIMS.iter().enumerate() {
+        table.add_row([claim.words]);
+        for (j, part) in claim.parts.iter().enumerate() {
+            let found = |world: &&Judged| Some((world.of_all[i].parts[j].difference?, world.scenario.clone()));
+            let mut found: Vec<(f64, String)> = readings.iter().filter_map(found).collect();
+            found.sort_by(|a, b| a.0.total_cmp(&b.0));
+            let ends = [found.first(), found.last()];
+            let cells = ends.into_iter().flat_map(|end| match end {
+                Some((difference, world)) => [right(&short(*difference)), Cell::new(reading(world))],
+                None => [right("-"), Cell::new("-")],
+            });
+            table.add_row(std::iter::once(Cell::new(format!("  {}", part.words()))).chain(cells));
+        }
+    }
+    (readings.len() > 1).then_some(table)
 }

@@ -5,7 +5,7 @@ mod fit;
 mod predictions;
 mod readings;
 
-pub(crate) use claims::{claims_table, examples_table, power_table, verdicts_table};
+pub(crate) use claims::{claims_table, examples_table, power_table, ranges_table, verdicts_table};
 pub use fit::{choice_table, fit_table};
 pub(crate) use predictions::predictions_table;
 pub use readings::{averaged_table, readings_table, rivals_table};

@@ -70,23 +70,23 @@ fn choose(out: &Path, folders: &[PathBuf]) {
         .status()
         .expect("usar can be started");
     assert!(status.success(), "--choose: {status}");
-    xtask::calibrated::write_worlds(&csv, folders);
-    let base =
-        std::fs::read_to_string("scenarios/paper-calibrated.ron").expect("run from the project's root");
-    let best: Vec<PathBuf> = READINGS.iter().map(|reading| best_of(reading, &csv, folders)).collect();
-    xtask::calibrated::write_readings(out, &base, &best);
+    let mut table = csv::Reader::from_path(&csv).expect("the choice has a table");
+    let ranking: Vec<String> = table.records().map(|row| row.expect("a table")[0].to_owned()).collect();
+    let best: Vec<PathBuf> = READINGS.iter().map(|reading| best_of(reading, &ranking, folders)).collect();
+    xtask::calibrated::write_worlds(out, &folder_of(&ranking[0], folders), &best);
 }
 
 /// The finalist of a reading with the least misfit over the fresh trials.
-fn best_of(reading: &Reading, choice: &Path, folders: &[PathBuf]) -> PathBuf {
-    let mut table = csv::Reader::from_path(choice).expect("the choice has a table");
-    let names = table.records().map(|row| row.expect("a table")[0].to_owned());
-    let is_of = |name: &String| {
+fn best_of(reading: &Reading, ranking: &[String], folders: &[PathBuf]) -> PathBuf {
+    let is_of = |name: &&String| {
         let rank = name.strip_prefix(reading.name).and_then(|rest| rest.strip_prefix('-'));
         rank.is_some_and(|rank| rank.parse::<usize>().is_ok())
     };
-    let name = names.into_iter().find(is_of).expect("each reading has finalists");
-    folders.iter().find(|folder| folder.ends_with(&name)).expect("a finalist's folder").clone()
+    folder_of(ranking.iter().find(is_of).expect("each reading has finalists"), folders)
+}
+
+fn folder_of(name: &str, folders: &[PathBuf]) -> PathBuf {
+    folders.iter().find(|folder| folder.ends_with(name)).expect("a finalist's folder").clone()
 }
 
 /// Fits a start under a reading, unless the folder has the result.
